@@ -230,16 +230,20 @@ std::string passListing(const Profile& profile, const sk::program::Reduction& re
 }
 
 /// The passes that scan a stream of 2^20 elements.
-std::vector<sk::assemble::ReducePass> passesOfScan(const sk::program::Reduction& reduction) {
+std::vector<sk::assemble::ReducePass> passesOfScan(const Profile& profile,
+                                                   const sk::program::Reduction& reduction) {
   constexpr std::int32_t count = 1 << 20;
-  const sk::assemble::ReduceLimits limits{.texture = {16384, 256}, .fanIn = sk::assemble::scanRun};
+  const bool isDispatched = profile.stage == sk::assemble::Stage::Compute;
+  const sk::assemble::ReduceLimits limits{
+      .texture = {16384, 256}, .fanIn = sk::assemble::scanRun, .grouped = isDispatched};
   const bool byIndex = sk::assemble::readsElementIndex(reduction.fold);
   const bool byTexel = !byIndex && readsScalars(reduction.fold) && writesScalars(reduction.fold);
   sk::assemble::RegionLayout elements =
       sk::assemble::linearLayout(count, *sk::assemble::linearTexture(count, limits.texture));
   elements.packed = byTexel;
-  sk::assemble::ScanPlan plan =
-      sk::assemble::planScan(elements, elements, limits, {count, 1}, {byIndex, byTexel}, false);
+  sk::assemble::ScanAccess access{byIndex, byTexel};
+  if (isDispatched) sk::assemble::addTiles(access, reduction, true);
+  sk::assemble::ScanPlan plan = sk::assemble::planScan(elements, elements, limits, {count, 1}, access, false);
   std::vector<sk::assemble::ReducePass> passes = std::move(plan.folds);
   std::ranges::move(plan.scans, std::back_inserter(passes));
   return passes;
@@ -247,7 +251,7 @@ std::vector<sk::assemble::ReducePass> passesOfScan(const sk::program::Reduction&
 
 /// Every program that folds a 1024 x 1024 stream to a value, or scans a stream, for one variant of the reduce.
 std::string formListing(const Profile& profile, const sk::program::Reduction& reduction, bool isScan) {
-  if (isScan) return passListing(profile, reduction, passesOfScan(reduction));
+  if (isScan) return passListing(profile, reduction, passesOfScan(profile, reduction));
   sk::assemble::RegionLayout input;
   input.extent = {1024, 1024, 1, 1};
   const bool byIndex = sk::assemble::readsElementIndex(reduction.fold);

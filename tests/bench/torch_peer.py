@@ -132,6 +132,18 @@ def sort(log2):
     return Work(run, check, 0)
 
 
+def sort_pairs(log2):
+    keys = numbers(1 << log2, seed=1, low=-1000, high=1000)
+    values = 2 * keys
+    def run():
+        order = torch.sort(keys, stable=True)
+        return values[order.indices]
+    def check(result):
+        expected = torch.sort(values.double().cpu()).values
+        return (result.double().cpu() - expected).abs().max().item()
+    return Work(run, check, 0)
+
+
 def bodies(log2):
     n = 1 << log2
     position, mass = numbers(n, 3, seed=1), numbers(n, seed=2)
@@ -221,7 +233,8 @@ PROGRAMS = [
     ("sgemm", "elements", (12, 16, 20), lambda n: (2 * n * math.sqrt(n), 12 * n), gemm),
     ("prefix scan", "ints", (12, 16, 20, 24), lambda n: (n, 8 * n), scan),
     ("compaction", "floats", (12, 16, 20, 24), lambda n: (n, 6 * n), compaction),
-    ("sort", "floats", (12, 16, 20), lambda n: (n * math.log2(n), 8 * n), sort),
+    ("sort", "floats", (12, 16, 20, 24), lambda n: (n * math.log2(n), 8 * n), sort),
+    ("sort of pairs", "floats", (12, 16, 20, 24), lambda n: (n * math.log2(n), 16 * n), sort_pairs),
     ("n-body", "bodies", (10, 12, 14), lambda n: (20 * n * n, 28 * n), bodies),
     ("fft", "complex numbers", (12, 16, 20), lambda n: (5 * n * math.log2(n), 16 * n), fourier),
     ("gray-scott", "elements", (12, 16, 20), lambda n: (240 * n, 160 * n), reaction),

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // fuzz_kernels: compiles random correct kernels in this process, checks their GLSL with glslang, runs them on both fragment
-// profiles, and compares their results with their meaning (kernels/model.hpp). Kernel N of a seed is always the same. The
-// exit status is 1 after a finding, but crashes of the GL driver are counted separately.
+// profiles, and compares their results with their meaning (kernels/model.hpp). Every eighth is a scan (kernels/scans.hpp),
+// which is also dispatched. Kernel N of a seed is always the same. The exit status is 1 after a finding, but crashes of
+// the GL driver are counted separately.
 #include <csignal>
 #include <deque>
 #include <filesystem>
@@ -21,6 +22,7 @@
 #include "glsl.hpp"
 #include "isolation.hpp"
 #include "kernels/device_run.hpp"
+#include "kernels/scans.hpp"
 #include "program/descriptors.hpp"
 
 namespace {
@@ -33,11 +35,16 @@ struct Options : fuzz::Command {
   bool withoutDevice = false;
 };
 
-/// The devices of a child process: with the device's own limits, and both profiles with the guaranteed limits.
+/// The devices of a child process: with the device's own limits, and both fragment profiles with the guaranteed limits.
 struct Devices {
   sk::Device many{sk::DeviceOptions{.profile = "glsl330", .limits = "device"}};
   sk::Device few{sk::DeviceOptions{.profile = "essl300", .textureLimit = 64, .limits = "guaranteed"}};
   sk::Device fewOfMany{sk::DeviceOptions{.profile = "glsl330", .textureLimit = 64, .limits = "guaranteed"}};
+  sk::Device dispatching{sk::DeviceOptions{.profile = "glsl430"}};  ///< for scans
+
+  void release() {
+    for (sk::Device* device : {&many, &few, &fewOfMany, &dispatching}) device->release();
+  }
 };
 
 /// What a child keeps between kernels: devices identify descriptors by their addresses.
@@ -46,9 +53,20 @@ struct Kept {
   std::optional<Devices> devices;
 };
 
-std::string check(const Options& options, const fuzz::RandomKernel& kernel, Kept& kept) {
+/// Every eighth program is a scan.
+bool isScan(std::uint64_t number) { return number % 8 == 7; }
+
+std::string textOf(const Options& options, std::uint64_t number) {
+  return isScan(number) ? fuzz::RandomScan(options.seed, number).text()
+                        : fuzz::RandomKernel(options.seed, number).text();
+}
+
+/// Compiles a program and checks its GLSL. Calls differenceOn(device, unit) for each of the devices.
+template <class DifferenceOn>
+std::string check(const Options& options, const std::string& text, bool dispatches, Kept& kept,
+                  DifferenceOn&& differenceOn) {
   skc::driver::Options compiling;
-  const auto [module, messages] = skc::driver::translateText(compiling, "random.sk", kernel.text());
+  const auto [module, messages] = skc::driver::translateText(compiling, "random.sk", text);
   if (!module) return "refused: " + messages;
   std::vector<std::string> listings;
   compiling.emit = Emit::Glsl;
@@ -60,14 +78,28 @@ std::string check(const Options& options, const fuzz::RandomKernel& kernel, Kept
   if (options.withoutDevice) return {};
   const skc::emit::Program& program = kept.programs.emplace_back(*module);
   if (!kept.devices) kept.devices.emplace();
-  for (sk::Device* device : {&kept.devices->many, &kept.devices->few, &kept.devices->fewOfMany}) {
-    const std::string wrong = fuzz::difference(*device, program.units()[0].kernel, kernel);
-    if (!wrong.empty()) {
-      return std::string(device->profile()) +
-             (device == &kept.devices->many ? ": " : ", guaranteed limits: ") + wrong;
-    }
+  std::vector<sk::Device*> devices{&kept.devices->many, &kept.devices->few, &kept.devices->fewOfMany};
+  if (dispatches) devices.push_back(&kept.devices->dispatching);
+  for (sk::Device* device : devices) {
+    const std::string wrong = differenceOn(*device, program.units()[0]);
+    if (wrong.empty()) continue;
+    const bool isLimited = device == &kept.devices->few || device == &kept.devices->fewOfMany;
+    return std::string(device->profile()) + (isLimited ? ", guaranteed limits: " : ": ") + wrong;
   }
   return {};
+}
+
+std::string check(const Options& options, std::uint64_t number, Kept& kept) {
+  if (isScan(number)) {
+    const fuzz::RandomScan scan(options.seed, number);
+    return check(options, scan.text(), true, kept, [&](sk::Device& device, const skc::emit::Unit& unit) {
+      return scan.difference(device, *unit.reduction);
+    });
+  }
+  const fuzz::RandomKernel kernel(options.seed, number);
+  return check(options, kernel.text(), false, kept, [&](sk::Device& device, const skc::emit::Unit& unit) {
+    return fuzz::difference(device, unit.kernel, kernel);
+  });
 }
 
 /// Prints a stack trace to standard error before the process dies.
@@ -93,7 +125,7 @@ bool isDriversDeath(const fuzz::Finding& finding) {
 int fuzzKernels(const Options& options) {
   if (options.show) {
     for (std::uint64_t i = 0; i < options.count; ++i) {
-      std::cout << fuzz::RandomKernel(options.seed, options.first + i).text() << "\n";
+      std::cout << textOf(options, options.first + i) << "\n";
     }
     return 0;
   }
@@ -108,13 +140,11 @@ int fuzzKernels(const Options& options) {
     fuzz::Verdict verdict;
     skc::driver::withBigStack([&] {
       try {
-        verdict.finding = check(options, fuzz::RandomKernel(options.seed, number), kept);
+        verdict.finding = check(options, number, kept);
       } catch (const std::exception& error) {
         verdict.finding = std::string("throws ") + error.what();
       }
-      if (kept.devices) {  // the next kernel runs on another thread
-        kept.devices->many.release(), kept.devices->few.release(), kept.devices->fewOfMany.release();
-      }
+      if (kept.devices) kept.devices->release();  // the next kernel runs on another thread
       return 0;
     });
     verdict.tally = verdict.finding.empty() ? "agree" : "do not";
@@ -123,8 +153,7 @@ int fuzzKernels(const Options& options) {
   campaign.onFinding = [&](const fuzz::Finding& finding) {
     const bool isDrivers = isDriversDeath(finding);
     driverDeaths += isDrivers;
-    const fs::path file =
-        options.keep("kernel", finding, fuzz::RandomKernel(options.seed, finding.number).text());
+    const fs::path file = options.keep("kernel", finding, textOf(options, finding.number));
     fuzz::tell(isDrivers ? "the driver died of kernel" : "kernel", finding,
                "fuzz_kernels --seed " + std::to_string(options.seed) + " --first " +
                    std::to_string(finding.number) + " --count 1   (" + file.string() + ")");

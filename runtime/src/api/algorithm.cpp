@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// What sk/algorithm.hpp declares. The order is computed on the host's cores, from keys that the device hands over;
-// the streams then bring their elements into it (StreamState::permute).
+// What sk/algorithm.hpp declares. A device may do it itself (DeviceState::reorder). Otherwise the order is computed on the
+// host's cores, from keys that the device hands over; the streams then bring their elements into it
+// (StreamState::permute).
 #include "sk/algorithm.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -16,6 +18,7 @@
 
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
+#include "device/reordering.hpp"
 #include "device/stream_state.hpp"
 #include "sk/error.hpp"
 #include "sk/host_vector.hpp"
@@ -105,8 +108,7 @@ auto rankOf(T key, bool isDescending) {
 Permutation orderOf(const StreamRegion& keys, const SortOptions& options) {
   return withKeys(keys, [&](const auto& values) {
     auto ranks = detail::hostVector<decltype(rankOf(values[0], false))>(values.size());
-    std::ranges::transform(values, ranks.begin(),
-                           [&](auto key) { return rankOf(key, options.descending); });
+    std::ranges::transform(values, ranks.begin(), [&](auto key) { return rankOf(key, options.descending); });
     return radixOrder(std::move(ranks));
   });
 }
@@ -120,6 +122,21 @@ Permutation firstOf(std::size_t size, std::int64_t& count, IsFirst&& isFirst) {
   count = static_cast<std::int64_t>(order.size());
   order.insert(order.end(), rest.begin(), rest.end());
   return order;
+}
+
+/// Has the device reorder the keys, if they move, and the values.
+std::optional<std::int64_t> reorder(DeviceState& device, Reordering::By by, const StreamRegion& keys,
+                                    bool movesKeys, const StreamRegion* values,
+                                    const StreamRegion* places = nullptr) {
+  if (keys.shape.size() == 0) return std::nullopt;
+  std::vector<StreamRegion> moved;
+  if (movesKeys) moved.push_back(keys);
+  if (values != nullptr) moved.push_back(*values);
+  return device.reorder({.by = by, .keys = keys, .moved = moved, .places = places});
+}
+
+Reordering::By byKeys(const SortOptions& options) {
+  return options.descending ? Reordering::By::DescendingKeys : Reordering::By::Keys;
 }
 
 void permute(const StreamRegion& region, const Permutation& order) {
@@ -155,6 +172,7 @@ void detail::sort(const StreamRegion& keys, const StreamRegion* values, const So
   withHostMemory("sk::sort", [&] {
     DeviceState& device = checkStreams(keys, values, "sk::sort", "keys");
     const TraceScope traced(device.trace.get(), "call", "sk::sort");
+    if (reorder(device, byKeys(options), keys, true, values)) return;
     const Permutation order = orderOf(keys, options);
     permute(keys, order);
     if (values != nullptr) permute(*values, order);
@@ -165,12 +183,12 @@ detail::StreamOwner detail::order(const StreamRegion& keys, const SortOptions& o
   return withHostMemory("sk::order", [&] {
     DeviceState& device = checkStreams(keys, nullptr, "sk::order", "keys");
     const TraceScope traced(device.trace.get(), "call", "sk::order");
-    const Permutation order = orderOf(keys, options);
     std::unique_ptr<StreamState> stream =
         device.createStream(ElementTraits<std::int32_t>::element(), keys.shape, Storage::Single);
-    if (!order.empty()) {
-      stream->write({stream.get(), Index::origin(keys.shape.rank()), keys.shape},
-                    reinterpret_cast<const std::byte*>(order.data()));
+    const StreamRegion all{stream.get(), Index::origin(keys.shape.rank()), keys.shape};
+    if (!reorder(device, byKeys(options), keys, false, nullptr, &all)) {
+      const Permutation order = orderOf(keys, options);
+      if (!order.empty()) stream->write(all, reinterpret_cast<const std::byte*>(order.data()));
     }
     return StreamOwner(stream.release());
   });
@@ -180,6 +198,7 @@ std::int64_t detail::unique(const StreamRegion& keys, const StreamRegion* values
   return withHostMemory("sk::unique", [&] {
     DeviceState& device = checkStreams(keys, values, "sk::unique", "keys");
     const TraceScope traced(device.trace.get(), "call", "sk::unique");
+    if (const auto first = reorder(device, Reordering::By::Changes, keys, true, values)) return *first;
     std::int64_t count = 0;
     const Permutation order = withKeys(keys, [&](const auto& all) {
       return firstOf(all.size(), count, [&](std::size_t i) { return i == 0 || !(all[i] == all[i - 1]); });
@@ -194,6 +213,7 @@ std::int64_t detail::partition(const StreamRegion& flags, const StreamRegion& va
   return withHostMemory("sk::partition", [&] {
     DeviceState& device = checkStreams(flags, &values, "sk::partition", "flags");
     const TraceScope traced(device.trace.get(), "call", "sk::partition");
+    if (const auto first = reorder(device, Reordering::By::Flags, flags, false, &values)) return *first;
     std::int64_t count = 0;
     const auto orderBy = [&](const auto& all) {
       return firstOf(all.size(), count, [&](std::size_t i) { return all[i] != 0; });

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,6 +29,7 @@ namespace sk {
 class LoopState;
 struct ResolvedCall;
 struct ResolvedReduction;
+struct Reordering;
 
 /// Exact sums, one per element of the results. They are stored only after all are known: a result may be an
 /// input.
@@ -99,6 +101,10 @@ class DeviceState {
   virtual std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction&, const program::ExactSum&) {
     return nullptr;
   }
+
+  /// Reorders streams and returns the number of elements that come first, if it chooses them; nullopt, without any
+  /// effect, if the host is faster. Throws sk::Error if memory is exhausted; nothing has moved then.
+  virtual std::optional<std::int64_t> reorder(const Reordering&) { return std::nullopt; }
 
   DeviceLimits limits;
   Configuration configuration;

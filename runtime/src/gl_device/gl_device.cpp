@@ -77,12 +77,18 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       profile(profileOf(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", capabilities, choices)),
       computeProfile(profileOf("glsl430", capabilities, choices)),
       target(choices.target),
+      tilesScans(choices.tilesScans.value_or(!capabilities.isSoftware)),
+      chainsScans(choices.chainsScans.value_or(!capabilities.isSoftware)),
+      scanPatience(choices.scanPatience),
       barrier(barrierOf(capabilities, choices)),
       framebuffers(bound),
       pool(bound, framebuffers),
       appendPrograms(*this),
+      sortPrograms(*this),
       binaries(cache, capabilities, driverKey(name(), driver(), profileName())),
-      sharesContext_(choices.sharesContext) {
+      sharesContext_(choices.sharesContext),
+      sortsByDispatches_(choices.target != Target::Fragment && capabilities.hasCompute &&
+                         choices.sortsByDispatches.value_or(!capabilities.isSoftware)) {
   if (target == Target::Compute && !capabilities.hasCompute) {
     throw Error(
         fmt::format("'{}' runs no compute programs, which take OpenGL 4.3; leave profile glsl430 (option or "

@@ -20,15 +20,16 @@
 #include "gl/open_context.hpp"
 #include "gl/samplers.hpp"
 #include "gl/saved_state.hpp"
-#include "gl/state_buffer.hpp"
 #include "gl/value_buffer.hpp"
 #include "gl/vertex_array.hpp"
+#include "gl/work_buffer.hpp"
 #include "gl_device/append/append_programs.hpp"
 #include "gl_device/memory/framebuffer_cache.hpp"
 #include "gl_device/memory/render_target.hpp"
 #include "gl_device/program/program_binaries.hpp"
 #include "gl_device/program/program_cache.hpp"
 #include "gl_device/program/variant.hpp"
+#include "gl_device/sort/device_sort.hpp"
 #include "gl_device/transfer/buffered_transfer.hpp"
 #include "gl_device/transfer/transfer_buffers.hpp"
 #include "native/rest_threads.hpp"
@@ -48,6 +49,11 @@ struct DeviceChoices {
   Target target = Target::Default;  ///< Fragment or Compute; Default: whichever is faster
   bool sharesContext = false;  ///< the application draws in the device's own context
   std::optional<bool> sharesTexels = {};  ///< assemble::Profile::sharesTexels; nullopt: only on GPUs
+  std::optional<bool> tilesScans = {};  ///< work groups scan tiles; nullopt: only on GPUs
+  std::optional<bool> chainsScans =
+      {};  ///< dispatched scans of integers take one pass; nullopt: only on GPUs
+  std::optional<std::int32_t> scanPatience = {};  ///< ScanAccess::patience of such scans
+  std::optional<bool> sortsByDispatches = {};  ///< if there are compute programs; nullopt: only on GPUs
 };
 
 /// The options of a call that affect all of its programs: a program cache's key.
@@ -89,6 +95,7 @@ class GlDevice final : public DeviceState {
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   std::unique_ptr<LoopRunner> makeLoopRunner() override;
   void reduce(const ResolvedReduction& call) override;
+  std::optional<std::int64_t> reorder(const Reordering& reordering) override;
 
   /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
   /// their purpose `whatFor`, if memory is exhausted.
@@ -147,6 +154,9 @@ class GlDevice final : public DeviceState {
   const assemble::Profile profile;  ///< of fragment programs: the table's row, adapted to the device
   const assemble::Profile computeProfile;  ///< of compute programs; unused if the device has none
   const Target target;  ///< Fragment or Compute; Default: whichever is faster
+  const bool tilesScans;  ///< DeviceChoices::tilesScans: in software, groups that wait take longer
+  const bool chainsScans;  ///< DeviceChoices::chainsScans
+  const std::optional<std::int32_t> scanPatience;
   Barrier barrier;  ///< of programs; arithmetic() tests whether it is effective
   gl::BoundState bound;
 
@@ -162,9 +172,11 @@ class GlDevice final : public DeviceState {
   FramebufferCache framebuffers;
   TexturePool pool;
   AppendPrograms appendPrograms;
+  SortPrograms sortPrograms;
   gl::Samplers samplers{bound.deletions};
   gl::ValueBuffer values;
-  gl::StateBuffer groupStates;
+  gl::WorkBuffer groupStates;  ///< of dispatched append outputs
+  gl::WorkBuffer tileResults;  ///< of scans in one pass
   gl::VertexArray vertexArray;
   const std::shared_ptr<PendingReads> pendingReads = std::make_shared<PendingReads>();
   TransferBuffers transferBuffers{bound.deletions};
@@ -188,6 +200,7 @@ class GlDevice final : public DeviceState {
 
   std::int64_t period_ = 1;
   const bool sharesContext_;
+  const bool sortsByDispatches_;
   std::map<ProgramCacheKey, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
   ProgramCache* programs_ = nullptr;  ///< the selected cache
@@ -206,6 +219,8 @@ class DeviceScope {
       device.hasDrawn = true;  // by the application
     }
     device.pool.trim();
+    device.tileResults.trim();
+    device.groupStates.trim();
     device.transferBuffers.trim();
     if (device.isSoftware()) native::restThreads();
   }

@@ -24,6 +24,7 @@ Work gemvWork(double n) { return {2 * n, 4 * n}; }
 Work gemmWork(double n) { return {2 * n * columnsOf(n), 4 * (2 * n + columnsOf(n) * columnsOf(n))}; }
 /// Comparisons, of the best that sort by these.
 Work sortWork(double n) { return {n * std::log2(n), 8 * n}; }
+Work sortPairsWork(double n) { return {n * std::log2(n), 16 * n}; }
 Work bodiesWork(double n) { return {20 * n * n, 28 * n}; }
 Work fourierWork(double n) { return {5 * n * std::log2(n), 16 * n}; }
 
@@ -100,7 +101,15 @@ const std::vector<Program>& programs() {
        compactionProblem,
        compactionCheck,
        compactionOurs},
-      {"sort", "floats", {12, 16, 20}, {}, sortWork, sortProblem, sortCheck, sortOurs},
+      {"sort", "floats", {12, 16, 20, 24}, {}, sortWork, sortProblem, sortCheck, sortOurs},
+      {"sort of pairs",
+       "floats",
+       {12, 16, 20, 24},
+       {},
+       sortPairsWork,
+       sortProblem,
+       sortPairsCheck,
+       sortPairsOurs},
       {"n-body",
        "bodies",
        {10, 12, 14},

@@ -418,7 +418,8 @@ void copyPlanes(ProgramText& program, const Parameter& parameter, const Texel& t
   }
 }
 
-void store(ProgramText& program, const Parameter& parameter, std::string_view variable) {
+void store(ProgramText& program, const Parameter& parameter, std::string_view variable,
+           std::string_view indent) {
   const Element& element = heldBy(parameter);
   const auto [first, end] = writtenPlanes(parameter);
   for (std::size_t plane = first; plane < end; ++plane) {
@@ -429,7 +430,7 @@ void store(ProgramText& program, const Parameter& parameter, std::string_view va
     std::string value = isWhole ? valueOf(variable, field) : widened(program, field, partOf(variable, field));
     if (isWidened(parameter, field)) value = narrowed(program, field, value);
     if (field.scalar == Scalar::Half && parameter.held != nullptr) value = halved(program, field, value);
-    program.statement(fmt::format("{} = {};", output, toOutput(field, std::move(value))));
+    program.statement(fmt::format("{}{} = {};", indent, output, toOutput(field, std::move(value))));
   }
 }
 

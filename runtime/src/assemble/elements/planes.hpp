@@ -70,6 +70,7 @@ void copyPlanes(ProgramText& program, const program::Parameter& parameter, const
 
 /// Adds statements that copy a variable of the element's type to the parameter's outputs, unless it is the
 /// output.
-void store(ProgramText& program, const program::Parameter& parameter, std::string_view variable);
+void store(ProgramText& program, const program::Parameter& parameter, std::string_view variable,
+           std::string_view indent = "");
 
 }  // namespace sk::assemble

@@ -139,6 +139,16 @@ std::vector<std::string> ProgramText::storesOf(std::size_t first, std::size_t en
   return stores;
 }
 
+std::vector<std::string> ProgramText::storing(std::string_view place, bool isArray) {
+  storesItself_ = true;
+  isArray_ = isArray;
+  return storesOf(0, outputs_.size(), place);
+}
+
+void ProgramText::buffer(std::string_view declaration) {
+  addOnce(variables_, fmt::format("layout(std430, binding = 0) {};", declaration));
+}
+
 void ProgramText::variable(std::string_view type, std::string_view name) {
   addOnce(variables_, fmt::format("{} {};", type, name));
 }
@@ -255,6 +265,7 @@ std::string ProgramText::mainOf(const std::string& body) const {
       fmt::format("\nlayout(local_size_x = {}, local_size_y = {}) in;\n\nvoid main() {{\n", width, height);
   if (isGrouped) {
     text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body;
+    if (storesItself_) return text + "}\n";
     if (!storesApart_) text += "  if (gl_LocalInvocationIndex != 0u) return;\n";
   } else if (together_.empty()) {
     text += "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n";

@@ -87,6 +87,11 @@ class ProgramText {
   std::vector<std::string> storesOf(std::size_t first, std::size_t end, std::string_view place) const;
   /// For compute programs: main() becomes the function `sk_run`, and the program ends with `main` in its place.
   void runFrom(std::string main) { mainOfGroups_ = std::move(main); }
+  /// For compute programs whose invocations store any number of texels: the statements that store the outputs' present
+  /// values at a place, an ivec2, or an ivec3 in array textures. main() stores nothing by itself then.
+  std::vector<std::string> storing(std::string_view place, bool isArray);
+  /// Declares a buffer at binding 0, "buffer name {...}", with qualifiers.
+  void buffer(std::string_view declaration);
   /// Declares a global variable.
   void variable(std::string_view type, std::string_view name);
   /// Defines a shared function on first use.
@@ -141,6 +146,7 @@ class ProgramText {
   std::string mainOfGroups_;  ///< of runFrom()
   bool isArray_ = false;
   bool isInBuffer_ = false;  ///< storeInBuffer()
+  bool storesItself_ = false;  ///< storing()
   bool storesApart_ = false;  ///< dispatchGroups()
   std::pair<std::int32_t, std::int32_t> group_{};  ///< the size for each texel; 0: one invocation per texel
   bool relaysUniforms_ = false;

@@ -17,6 +17,7 @@
 #include "assemble/append/point_program.hpp"
 #include "assemble/program/sample_kernels.hpp"
 #include "assemble/reduce/reduce_program.hpp"
+#include "assemble/sort/radix_program.hpp"
 
 using namespace sk::assemble;
 using namespace sk::program;
@@ -203,6 +204,39 @@ TEST_CASE("glslang accepts the points of a scatter output, in layers or not") {
       programs.add(pointVertexProgram(profile, textures), "vert");
       for (int step = 0; step <= static_cast<int>(PointStep::JoinHalves); ++step) {
         programs.add(pointProgram(profile, appendOutput, static_cast<PointStep>(step), textures));
+      }
+    }
+  }
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts the programs of sorts, and of scans by runs and tiles") {
+  Programs programs("tiles");
+  const Profile& profile = *findProfile("glsl430");
+  for (const RadixStep step :
+       {RadixStep::Count, RadixStep::Sum, RadixStep::Move, RadixStep::MoveFirst, RadixStep::MovePairs}) {
+    programs.add(profile, radixProgram(profile, step));
+  }
+  for (const Reduction* reduction : {&samples::sum, &samples::firstHit}) {
+    for (const ScanPass scan : {ScanPass::Folds, ScanPass::Inclusive, ScanPass::Exclusive}) {
+      if (scan == ScanPass::Exclusive && reduction == &samples::firstHit) continue;  // it has no identity
+      for (const auto [domain, isView] : domains) {
+        for (const Walk walk : {Walk::Line, Walk::Plane, Walk::Partials}) {
+          for (const Runs runs : {Runs::OneBlock, Runs::Split}) {
+            const bool isFold = scan == ScanPass::Folds;
+            programs.add(profile, reduceProgram(profile, *reduction,
+                                                {.walk = walk,
+                                                 .runs = runs,
+                                                 .domain = isFold ? Domain::Linear : domain,
+                                                 .domainView = !isFold && isView,
+                                                 .domainRank = 2,
+                                                 .run = 4,
+                                                 .scan = scan,
+                                                 .unit = runs == Runs::OneBlock || isFold ? ScanUnit::Tile
+                                                                                          : ScanUnit::Run,
+                                                 .carried = !isFold}));
+          }
+        }
       }
     }
   }

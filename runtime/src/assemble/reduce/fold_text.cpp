@@ -14,6 +14,17 @@ using program::Kernel;
 using program::Parameter;
 using program::Role;
 
+namespace {
+
+/// The layout of the texels that invocations or groups compute. Those that store results by themselves have none.
+DomainLayout layoutOf(const ReduceVariant& variant) {
+  const bool hasTexel = variant.unit == ScanUnit::Item || variant.scan == ScanPass::Folds;
+  return {hasTexel ? variant.domain : Domain::Linear, variant.domainView, variant.domainRank,
+          variant.domainLayered};
+}
+
+}  // namespace
+
 FoldText::FoldText(const Profile& profile, const program::Reduction& reduction, const ReduceVariant& variant,
                    const Kernel& kernel)
     : profile_(profile),
@@ -22,8 +33,7 @@ FoldText::FoldText(const Profile& profile, const program::Reduction& reduction, 
       held_(kernel, variant.access),
       kernel_(held_.kernel()),
       program_(profile),
-      domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered},
-              "sk_result") {
+      domain_(program_, layoutOf(variant), "sk_result") {
   for (const Parameter& parameter : kernel_.parameters) {
     if (parameter.role == Role::Input) inputs_.push_back(&parameter);
     if (parameter.role == Role::Accumulator) accumulators_.push_back(&parameter);

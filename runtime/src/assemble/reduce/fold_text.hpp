@@ -76,7 +76,7 @@ class FoldText {
 
   void integers(std::initializer_list<std::string_view> uniforms);
   void vectors(std::initializer_list<std::string_view> uniforms);
-  void statement(std::string_view line) { program_.statement(line); }
+  void statement(std::string_view line) { program_.statement(margin_ + std::string(line)); }
   /// Stores the accumulators, and returns the program.
   std::string finish(const std::vector<program::Parameter>& written, std::string_view comment) {
     for (const program::Parameter& parameter : written) store(program_, parameter, total(parameter));
@@ -95,6 +95,7 @@ class FoldText {
   std::vector<std::string> arguments_;  ///< those that are the same for all elements, and iterators
   ProgramText program_;
   DomainText domain_;
+  std::string margin_;  ///< before every statement
   std::string_view folded_ = "sk_total";  ///< the name of the accumulators that are being folded
 
  private:

@@ -38,6 +38,7 @@ struct ReducePass {
   bool toResult;  ///< writes the result rather than a temporary
   TextureShape texture;  ///< of the temporary; empty if toResult
   std::vector<Rect> draws;
+  Rect groups = {};  ///< of passes whose invocations store results by themselves: the work groups
   std::vector<UniformValue> uniforms;
 };
 

@@ -53,6 +53,13 @@ enum class ScanPass : std::uint8_t {
   Exclusive,  ///< the same without the item
 };
 
+/// What an invocation of a pass of a scan computes (scan_plan.hpp).
+enum class ScanUnit : std::uint8_t {
+  Item,  ///< one result; it folds the items before it in its run again
+  Run,  ///< all results of a run
+  Tile,  ///< those of a run, which is one of a work group's tile: the group combines the results of its runs
+};
+
 /// What a pass over rows of different lengths computes (row_program.hpp).
 enum class RowPass : std::uint8_t {
   None,  ///< it has nothing to do with rows
@@ -72,7 +79,8 @@ struct ReduceVariant {
   bool domainView = false;  ///< Domain::Plane: the domain's origin is not (0, 0)
   std::uint8_t domainRank = 1;  ///< Domain::LinearBox: rank of its stream
   std::uint8_t axes = 1;  ///< Walk::Box and Walk::Index
-  /// Walk::Rows: texels of a run, if all runs have the same number, of one row or column; else 0.
+  /// Walk::Rows: texels of a run, if all runs have the same number, of one row or column; else 0. Scans: the items of a
+  /// run.
   std::uint8_t run = 0;
   bool column = false;  ///< Walk::Rows: runs are parts of columns; the last may be longer by one texel
   /// Walk::Rows, columns: texels that are folded separately and then combined; a known run is a multiple of
@@ -86,6 +94,10 @@ struct ReduceVariant {
   bool sourceLayered = false;  ///< of what is read, except for Walk::Index
   bool domainLayered = false;
   ScanPass scan = ScanPass::None;
+  ScanUnit unit = ScanUnit::Item;
+  /// ScanUnit::Tile: the only pass; its groups share a buffer at binding 0, which is 0 at first: a word, then two for each
+  /// accumulator and tile.
+  bool chained = false;
   bool carried = false;  ///< scans: reads the results of the runs before
   bool carryLayered = false;  ///< of these
   RowPass rows = RowPass::None;

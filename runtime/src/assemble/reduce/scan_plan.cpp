@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "assemble/reduce/scan_plan.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cassert>
 #include <optional>
+
+#include "assemble/reduce/scan_tiles.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -26,13 +30,18 @@ class ScanPlanner {
     lines_ = static_cast<std::int32_t>(assemble::elements(extent_) / lines.length);
     const std::int32_t length = access.byTexel ? lines.length / lanes : lines.length;
     levels_.push_back({.length = length, .inner = lines.inner, .texture = {}, .layout = elements_});
+    divide(levels_.back());
   }
 
   ScanPlan plan(bool isExclusive) {
     ScanPlan plan;
-    while (levels_.back().length > runOf(levels_.size() - 1)) {
+    const Level& elements = levels_.front();
+    const bool isChained = access_.chained && lines_ == 1 && elements.unit == ScanUnit::Tile &&
+                           elements.length > elements.folded();
+    while (!isChained && levels_.back().length > levels_.back().folded()) {
       const std::size_t from = levels_.size() - 1;
-      levels_.push_back(partials((levels_.back().length - 1) / runOf(from) + 1));
+      levels_.push_back(partials((levels_.back().length - 1) / levels_.back().folded() + 1));
+      divide(levels_.back());
       ReducePass pass = passOver(from, ScanPass::Folds);
       setTarget(pass, levels_.back());
       plan.folds.push_back(std::move(pass));
@@ -40,11 +49,14 @@ class ScanPlanner {
     for (std::size_t level = levels_.size() - 1; level > 0; --level) {
       ReducePass pass = passOver(level, ScanPass::Inclusive);
       setTarget(pass, levels_[level]);
+      setGroups(pass, levels_[level]);
       plan.scans.push_back(std::move(pass));
     }
     ReducePass pass = passOver(0, isExclusive ? ScanPass::Exclusive : ScanPass::Inclusive);
     pass.toResult = true;
+    pass.variant.chained = isChained;
     addDomain(pass, result_, false);
+    setGroups(pass, levels_[0]);
     plan.scans.push_back(std::move(pass));
     return plan;
   }
@@ -55,7 +67,41 @@ class ScanPlanner {
     std::int32_t inner;  ///< their distance
     TextureShape texture;  ///< of the results of runs
     RegionLayout layout = {};
+    ScanUnit unit = ScanUnit::Item;
+    std::int32_t run = 0;  ///< items of a run
+
+    /// The items that are folded to one of the next level.
+    std::int32_t folded() const { return unit == ScanUnit::Tile ? run * tileGroup : run; }
   };
+
+  /// Chooses what an invocation computes. Lines that are one element apart are walked side by side, each by invocations
+  /// of its own; a line whose elements are neighbours is divided into tiles, unless it is short.
+  void divide(Level& level) const {
+    constexpr std::int32_t shortLine = 128, longestWalk = 32;
+    const bool isOfElements = levels_.size() == 1;
+    const std::int32_t most = isOfElements ? access_.elementRun : access_.partialRun;
+    if (limits_.grouped && level.inner > 1) {
+      level.unit = ScanUnit::Run;
+      level.run = longestWalk;
+    } else if (limits_.grouped && most > 0 && (lines_ == 1 || level.length >= shortLine)) {
+      level.unit = ScanUnit::Tile;
+      level.run = runInTile(level.length, most, isOfElements);
+    } else {
+      level.run = isOfElements && access_.byTexel ? limits_.fanIn / lanes : limits_.fanIn;
+    }
+  }
+
+  /// Long runs save work, but a large GPU wants many tiles.
+  std::int32_t runInTile(std::int32_t length, std::int32_t most, bool isOfElements) const {
+    constexpr std::int64_t enoughTiles = 256;
+    if (length <= tileGroup * most || !isOfElements) {
+      const std::int32_t least = std::min((length - 1) / tileGroup + 1, most);
+      return static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(least)));
+    }
+    const std::int64_t perInvocation = std::int64_t{length} * lines_ / (tileGroup * enoughTiles);
+    return static_cast<std::int32_t>(
+        std::bit_floor(static_cast<std::uint64_t>(std::clamp<std::int64_t>(perInvocation, 1, most))));
+  }
 
   /// A level with this many results in each line. There are fewer of them than elements, so that a texture can hold
   /// them.
@@ -66,19 +112,19 @@ class ScanPlanner {
     return {length, lines_, *texture, linearLayout(count, *texture)};
   }
 
-  /// The items of a run: elements, texels or results.
-  std::int32_t runOf(std::size_t level) const {
-    return level == 0 && access_.byTexel ? limits_.fanIn / lanes : limits_.fanIn;
-  }
-
   /// A pass that reads a level, and, on the way back, the results of the runs of this level.
   ReducePass passOver(std::size_t level, ScanPass scan) const {
     const Level& source = levels_[level];
     ReducePass pass{};
     pass.variant.scan = scan;
-    pass.variant.walk = level > 0 ? Walk::Partials : access_.byIndex ? Walk::Index : Walk::Line;
+    pass.variant.walk = level > 0          ? Walk::Partials
+                        : access_.byIndex  ? Walk::Index
+                        : elements_.linear ? Walk::Line
+                                           : Walk::Plane;
     pass.variant.runs = lines_ == 1 ? Runs::OneBlock : Runs::Split;
-    pass.variant.run = static_cast<std::uint8_t>(runOf(level));
+    pass.variant.unit =
+        scan == ScanPass::Folds && source.unit == ScanUnit::Run ? ScanUnit::Item : source.unit;
+    pass.variant.run = static_cast<std::uint8_t>(source.run);
     pass.variant.packed = level == 0 && access_.byTexel;
     pass.variant.axes = decodedRank({.extent = extent_});
     pass.variant.sourceLayered = source.layout.layered;
@@ -87,6 +133,8 @@ class ScanPlanner {
                      {"sk_lines", false, {lines_}},
                      {"sk_shift", false, {source.layout.shift}},
                      {"sk_start", false, {level == 0 ? firstNumber(elements_) : 0}},
+                     {"sk_origin", true, elements_.origin},
+                     {"sk_width", false, {elements_.extent[0]}},
                      {"sk_item_shape", true, extent_},
                      {"sk_item_step", true, stridesOf(extent_)}};
     if (scan != ScanPass::Folds && level + 1 < levels_.size()) {
@@ -103,12 +151,26 @@ class ScanPlanner {
     addDomain(pass, level.layout, false);
   }
 
+  /// Sets the work groups of a pass over a level that stores its results by itself.
+  void setGroups(ReducePass& pass, const Level& level) const {
+    if (pass.variant.unit == ScanUnit::Item) return;
+    const std::int32_t runs = (level.length - 1) / level.folded() + 1;
+    const std::int64_t count = level.unit == ScanUnit::Tile
+                                   ? std::int64_t{runs} * lines_
+                                   : (std::int64_t{runs} * lines_ - 1) / tileGroup + 1;
+    const std::int64_t width = std::min<std::int64_t>(count, std::int64_t{1} << groupRowShift);
+    pass.groups = {0, 0, static_cast<std::int32_t>(width),
+                   static_cast<std::int32_t>((count - 1) / width + 1)};
+    pass.uniforms.push_back({"sk_groups", false, {static_cast<std::int32_t>(count)}});
+    pass.uniforms.push_back({"sk_patience", false, {access_.patience}});
+  }
+
   const Index4 extent_;
   const RegionLayout elements_, result_;  ///< in elements or in texels
   const ReduceLimits& limits_;
   const ScanAccess& access_;
   std::int32_t lines_;
-  std::vector<Level> levels_;  ///< the elements, then the results of their runs, and so on
+  std::vector<Level> levels_;  ///< the elements, then the results of their runs or tiles, and so on
 };
 
 }  // namespace
@@ -124,13 +186,19 @@ Lines linesOf(const Index4& extent, const Index4& blocks) {
   return {1, 1};
 }
 
+void addTiles(ScanAccess& access, const program::Reduction& reduction, bool chains) {
+  access.partialRun = longestRunInTile(reduction, false);
+  access.chained = chains && mayChain(reduction);
+  if (combinesInFold(reduction)) access.elementRun = longestRunInTile(reduction, access.byTexel);
+}
+
 bool isConsecutive(const RegionLayout& elements) {
   std::int32_t next = 1;
   for (std::size_t d = 0; d < elements.extent.size(); ++d) {
-    if (elements.extent[d] > 1 && elements.stride[d] != next) return false;
+    if (elements.linear && elements.extent[d] > 1 && elements.stride[d] != next) return false;
     next *= elements.extent[d];
   }
-  return elements.linear;
+  return elements.linear || elements.extent[2] * elements.extent[3] == 1;
 }
 
 ScanPlan planScan(const RegionLayout& elements, const RegionLayout& result, const ReduceLimits& limits,

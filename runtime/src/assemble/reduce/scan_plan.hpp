@@ -9,7 +9,9 @@
 //                             draw it from the last level, and from the target of the pass before, if
 //                             pass.variant.carried; forget that level
 //
-// Result r of the runs of line l has number r * lines + l in a linearised texture.
+// Result r of the runs of line l has number r * lines + l in a linearised texture. Where passes are dispatches, a work
+// group folds a tile, which takes the place of the run, and an invocation stores all results of its run
+// (ScanUnit): elements are read twice and results written once.
 #pragma once
 
 #include <cstdint>
@@ -42,12 +44,21 @@ Lines linesOf(const Index4& extent, const Index4& blocks);
 struct ScanAccess {
   bool byIndex = true;  ///< Walk::Index; only the extent of the elements' region layout matters then
   bool byTexel = false;  ///< elements and results are packed, and lines consist of whole texels
+  /// The most items of a run in a tile of elements, and of results of runs; 0: they are not folded in tiles, which only
+  /// dispatches can (scan_tiles.hpp).
+  std::int32_t elementRun = 0, partialRun = 0;
+  bool chained = false;  ///< one pass scans all tiles of the elements, if they are one line
+  std::int32_t patience =
+      1024;  ///< how often a group looks for the result of a tile before it folds it itself
 };
+/// Chooses tiles for a reduction. `chains`: the device scans them in one pass, if it can.
+void addTiles(ScanAccess& access, const program::Reduction& reduction, bool chains);
 /// Whether the elements of a region, which have no index, can be scanned by their numbers: they are consecutive in a
-/// linearised stream.
+/// linearised stream, or in the rows of a plane.
 bool isConsecutive(const RegionLayout& elements);
 
-/// Plans the scan of `elements` to `result`, which has the same extent. It is not empty.
+/// Plans the scan of `elements` to `result`, which has the same extent. It is not empty. `limits.grouped`: the passes
+/// are dispatches.
 ScanPlan planScan(const RegionLayout& elements, const RegionLayout& result, const ReduceLimits& limits,
                   const Lines& lines, const ScanAccess& access, bool isExclusive);
 

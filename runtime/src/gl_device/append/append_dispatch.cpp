@@ -220,7 +220,11 @@ class AppendDispatch {
   bool mayWait() const { return task_.pushesInAnyOrder || !device_.capabilities.isSoftware; }
 
   void bindStates() {
-    if (device_.groupStates.bindZeros(device_.bound, words_)) return;
+    const std::size_t bytes = static_cast<std::size_t>(words_) * sizeof(std::uint32_t);
+    if (device_.groupStates.bind(device_.bound, bytes)) {
+      gl::WorkBuffer::clear(bytes);
+      return;
+    }
     device_.throwIfLost();
     fail(Error::Kind::Memory, call_.kernel, "'{}' has no memory for the states of its work groups",
          device_.name());

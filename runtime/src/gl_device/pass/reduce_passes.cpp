@@ -136,9 +136,14 @@ void ReducePasses::writeIdentities(const RegionLayout& result, std::span<RenderT
 
 void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* const> targets, bool isExclusive,
                         const std::function<void()>& begin) {
-  const assemble::ReduceLimits limits{.texture = device_.textureLimits(), .fanIn = assemble::scanRun};
+  const bool isDispatched = device_.programs().stage() == assemble::Stage::Compute;
+  const assemble::ReduceLimits limits{
+      .texture = device_.textureLimits(), .fanIn = assemble::scanRun, .grouped = isDispatched};
   const assemble::Lines lines = assemble::linesOf(elements_.extent, blocks_);
-  const assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
+  assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
+  if (isDispatched && device_.tilesScans)
+    assemble::addTiles(access, reduction_, device_.chainsScans && !device_.bound.isLogged());
+  access.patience = device_.scanPatience.value_or(access.patience);
   const assemble::ScanPlan plan = assemble::planScan(elements_, result, limits, lines, access, isExclusive);
   startAll(plan.folds);
   startAll(plan.scans);
@@ -154,6 +159,7 @@ void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* cons
   for (const ReducePass& pass : plan.scans) {
     if (pass.toResult) {
       prepare(pass, targets);
+      if (pass.variant.chained) bindChain(pass);
       begin();
       draw(pass, {{}, carries.planes}, targets);
       continue;
@@ -339,7 +345,9 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
         for (const assemble::UniformValue& value : pass.uniforms) {
           program.uniform(value).set(device_.bound, value.value);
         }
-        writeRects(device_, preparedPass(device_, program.kernel, planes), planes, pass.draws);
+        const bool storesItself = pass.groups.width > 0;
+        writeRects(device_, preparedPass(device_, program.kernel, planes), planes,
+                   storesItself ? std::span(&pass.groups, 1) : std::span(pass.draws));
       });
 }
 
@@ -356,6 +364,17 @@ void ReducePasses::bindValues() {
   if (device_.values.bind(device_.bound)) return;
   device_.throwIfLost();
   fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for its value", device_.name());
+}
+
+void ReducePasses::bindChain(const ReducePass& pass) {
+  const auto groups =
+      static_cast<std::size_t>(pass.groups.width) * static_cast<std::size_t>(pass.groups.height);
+  const std::size_t bytes = sizeof(std::uint32_t) * (1 + 2 * accumulatorPlanes(reduction_.fold) * groups);
+  if (!device_.tileResults.bind(device_.bound, bytes)) {
+    device_.throwIfLost();
+    fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for the results of tiles", device_.name());
+  }
+  gl::WorkBuffer::clear(bytes);
 }
 
 bool ReducePasses::start(const ReducePass& pass) {

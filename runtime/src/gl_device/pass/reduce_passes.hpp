@@ -115,6 +115,8 @@ class ReducePasses {
   void prepare(const assemble::ReducePass& pass, std::span<RenderTarget* const> targets);
   /// Binds the value buffer. Throws sk::Error if memory is exhausted.
   void bindValues();
+  /// Binds the buffer of a chained scan. Throws sk::Error if memory is exhausted.
+  void bindChain(const assemble::ReducePass& pass);
   /// Makes the driver start compiling the programs of a pass. False if they exist already.
   bool start(const assemble::ReducePass& pass);
   /// Calls visit(variant, first, count) for each group of planes that the device can draw to together.

@@ -307,6 +307,7 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     auto started = startedReductions_.extract(key);
     finish(result->kernel, kernel, started.empty() ? begin(reduction, variant) : std::move(started.mapped()));
     result->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials ||
+                               variant.unit != assemble::ScanUnit::Item ||
                                variant.rows == assemble::RowPass::Groups;
     if (variant.walk != assemble::Walk::Nothing) {
       const assemble::HeldKernel held(kernel, variant.access);

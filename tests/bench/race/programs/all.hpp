@@ -50,6 +50,8 @@ RACE_OURS(compaction);
 Problem sortProblem(int log2);
 Check sortCheck(const Problem& problem);
 RACE_OURS(sort);
+Check sortPairsCheck(const Problem& problem);
+RACE_OURS(sortPairs);
 
 Problem bodiesProblem(int log2);
 Check bodiesCheck(const Problem& problem);

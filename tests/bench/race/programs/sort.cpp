@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: MIT
 //
-// Sorted floats. Ours is a bitonic network; peers sort as they like. floats: keys.
+// Sorted floats, alone and with a value for each: twice the key. floats: keys.
 #include <algorithm>
 
-#include "bitonic_sort.sk.hpp"
 #include "our_task.hpp"
 #include "programs/all.hpp"
 
 namespace race {
 namespace {
 
+std::vector<float> twice(std::vector<float> keys) {
+  for (float& key : keys) key *= 2;
+  return keys;
+}
+
 class Sort final : public OurTask {
  public:
-  Sort(sk::Device& device, const sk::CallOptions& options, const Problem& p)
+  Sort(sk::Device& device, const Problem& p)
       : OurTask(device),
-        exchange_(bitonic_sort::exchange.with(options)),
         keys_(filled<float>({p.size()}, p.floats[0])),
         sorted_(device.stream<float>({p.size()})) {}
 
@@ -22,16 +25,32 @@ class Sort final : public OurTask {
 
  private:
   void once() override {
-    const auto n = static_cast<int>(keys_.size());
-    exchange_(1, keys_, sorted_);
-    for (int run = 2; run < n; run *= 2) {
-      exchange_(2 * run - 1, sorted_, sorted_);
-      for (int distance = run / 2; distance > 0; distance /= 2) exchange_(distance, sorted_, sorted_);
-    }
+    keys_.copyTo(sorted_);
+    sk::sort(sorted_);
   }
 
-  bitonic_sort::ExchangeKernel exchange_;
   sk::Stream<float> keys_, sorted_;
+};
+
+class SortPairs final : public OurTask {
+ public:
+  SortPairs(sk::Device& device, const Problem& p)
+      : OurTask(device),
+        keys_(filled<float>({p.size()}, p.floats[0])),
+        values_(filled<float>({p.size()}, twice(p.floats[0]))),
+        sortedKeys_(device.stream<float>({p.size()})),
+        sortedValues_(device.stream<float>({p.size()})) {}
+
+  std::vector<float> result() override { return sortedValues_.read(); }
+
+ private:
+  void once() override {
+    keys_.copyTo(sortedKeys_);
+    values_.copyTo(sortedValues_);
+    sk::sort(sortedKeys_, sortedValues_);
+  }
+
+  sk::Stream<float> keys_, values_, sortedKeys_, sortedValues_;
 };
 
 }  // namespace
@@ -48,8 +67,19 @@ Check sortCheck(const Problem& p) {
   return {{}, {keys.begin(), keys.end()}, 0};
 }
 
-std::unique_ptr<Task> sortOurs(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
-  return std::make_unique<Sort>(device, options, p);
+Check sortPairsCheck(const Problem& p) {
+  std::vector<float> values = twice(p.floats[0]);
+  std::sort(values.begin(), values.end());
+  return {{}, {values.begin(), values.end()}, 0};
+}
+
+// There are no kernels to give options to.
+std::unique_ptr<Task> sortOurs(sk::Device& device, const sk::CallOptions&, const Problem& p) {
+  return std::make_unique<Sort>(device, p);
+}
+
+std::unique_ptr<Task> sortPairsOurs(sk::Device& device, const sk::CallOptions&, const Problem& p) {
+  return std::make_unique<SortPairs>(device, p);
 }
 
 }  // namespace race

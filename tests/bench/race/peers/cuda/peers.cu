@@ -254,4 +254,15 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
                                 return cub::DeviceRadixSort::SortKeys(memory, bytes, from, to, n);
                               });
                         }});
+  contenders.push_back({"sort of pairs", "CUB", [](const Problem& p) {
+                          const auto n = static_cast<int>(p.size());
+                          std::vector<float> keysAndValues = p.floats[0];
+                          for (const float key : p.floats[0]) keysAndValues.push_back(2 * key);
+                          const auto keys = std::make_shared<Array<float>>(sizeOf(p));
+                          return std::make_unique<CubTask<float>>(
+                              keysAndValues, sizeOf(p), false,
+                              [n, keys](void* memory, std::size_t& bytes, const float* from, float* to) {
+                                return cub::DeviceRadixSort::SortPairs(memory, bytes, from, keys->data(), from + n, to, n);
+                              });
+                        }});
 }

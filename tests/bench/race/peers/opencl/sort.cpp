@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The same bitonic network as ours; pairs are exchanged where they are.
+// A bitonic network, whose pairs are exchanged where they are.
 #include "peers/opencl/all.hpp"
 #include "peers/opencl/device.hpp"
 

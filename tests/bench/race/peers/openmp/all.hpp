@@ -21,6 +21,7 @@ std::unique_ptr<Task> scanOpenMp(const Problem& p);
 std::unique_ptr<Task> compactionSerial(const Problem& p);
 std::unique_ptr<Task> compactionOpenMp(const Problem& p);
 void sortOpenMp(const Problem& p, float* sorted);
+void sortPairsOpenMp(const Problem& p, float* sorted);
 void bodiesOpenMp(const Problem& p, float* accelerations);
 std::unique_ptr<Task> fourierOpenMp(const Problem& p);
 std::unique_ptr<Task> reactionOpenMp(const Problem& p);

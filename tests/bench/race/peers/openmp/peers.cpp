@@ -22,6 +22,7 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   contenders.push_back({"compaction", "serial", compactionSerial});
   contenders.push_back({"compaction", "OpenMP", compactionOpenMp});
   add("sort", asMany, sortOpenMp);
+  add("sort of pairs", asMany, sortPairsOpenMp);
   add("n-body", [](const Problem& p) { return 3 * p.size(); }, bodiesOpenMp);
   contenders.push_back({"fft", "OpenMP", fourierOpenMp});
   contenders.push_back({"gray-scott", "OpenMP", reactionOpenMp});

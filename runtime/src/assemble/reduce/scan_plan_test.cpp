@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: a dispatched scan takes one pass, or three while the totals of its tiles fit into one, whose groups cover all
+// items; lines that are one element apart are walked side by side.
+#include <catch2/catch.hpp>
+
+#include "assemble/reduce/scan_plan.hpp"
+#include "assemble/reduce/scan_tiles.hpp"
+
+using namespace sk::assemble;
+
+namespace {
+
+constexpr ReduceLimits dispatched{.texture = {16384, 256}, .fanIn = scanRun, .grouped = true};
+
+RegionLayout packedLine(std::int32_t count) {
+  RegionLayout layout = linearLayout(count / lanes, *linearTexture(count / lanes, dispatched.texture));
+  layout.packed = true;
+  layout.extent[0] = count;
+  layout.stride = stridesOf(layout.extent);
+  return layout;
+}
+
+ScanPlan plan(const RegionLayout& elements, const Lines& lines, const ScanAccess& access) {
+  return planScan(elements, elements, dispatched, lines, access, false);
+}
+
+std::int64_t groupsOf(const ReducePass& pass) { return std::int64_t{pass.groups.width} * pass.groups.height; }
+
+}  // namespace
+
+TEST_CASE("a line is scanned in tiles, in one pass or three") {
+  constexpr std::int32_t count = 1 << 24;
+  ScanAccess access{.byIndex = false, .byTexel = true, .elementRun = 4, .partialRun = 16, .chained = false};
+  const ScanPlan three = plan(packedLine(count), {count, 1}, access);
+  REQUIRE(three.folds.size() == 1);
+  REQUIRE(three.scans.size() == 2);
+  CHECK(three.folds[0].variant.unit == ScanUnit::Tile);
+  CHECK(three.folds[0].texture.width * three.folds[0].texture.height == 4096);
+  CHECK(groupsOf(three.scans[0]) == 1);
+  CHECK(groupsOf(three.scans[1]) == 4096);
+  CHECK(three.scans[1].variant.carried);
+  access.chained = true;
+  const ScanPlan one = plan(packedLine(count), {count, 1}, access);
+  CHECK(one.folds.empty());
+  REQUIRE(one.scans.size() == 1);
+  CHECK(one.scans[0].variant.chained);
+  CHECK(groupsOf(one.scans[0]) == 4096);
+  const ScanPlan tile = plan(packedLine(4096), {4096, 1}, access);
+  REQUIRE(tile.scans.size() == 1);
+  CHECK(!tile.scans[0].variant.chained);  // there is nothing before its only tile
+}
+
+TEST_CASE("more groups than fit into a row are dispatched in rows") {
+  constexpr std::int32_t count = 40000 * 4096;
+  const ScanPlan scan =
+      plan(packedLine(count), {count, 1},
+           {.byIndex = false, .byTexel = true, .elementRun = 4, .partialRun = 16, .chained = true});
+  CHECK(scan.scans[0].groups.width == 1 << groupRowShift);
+  CHECK(scan.scans[0].groups.height == 2);
+}
+
+TEST_CASE("lines across rows are walked side by side, and short lines item by item") {
+  RegionLayout plane;
+  plane.extent = {100, 1000, 1, 1};
+  const ScanAccess access{
+      .byIndex = false, .byTexel = false, .elementRun = 16, .partialRun = 16, .chained = true};
+  const ScanPlan across = plan(plane, {1000, 100}, access);
+  REQUIRE(across.folds.size() == 1);
+  CHECK(across.folds[0].variant.unit == ScanUnit::Item);  // an invocation for each run
+  CHECK(across.folds[0].variant.run == 32);
+  for (const ReducePass& pass : across.scans) CHECK(pass.variant.unit == ScanUnit::Run);
+  CHECK(groupsOf(across.scans.back()) == (32 * 100 + tileGroup - 1) / tileGroup);
+  const ScanPlan along = plan(plane, {100, 1}, access);
+  CHECK(along.scans.back().variant.unit == ScanUnit::Item);
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// The compute programs that sort words by a digit of 8 bits, stably (D. Merrill and A. Grimshaw, "High performance and
+// scalable radix sorting", 2011). Sorting by each digit in turn, lowest first, sorts by all of them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "assemble/assemble.hpp"
+
+namespace sk::assemble {
+
+inline constexpr std::int32_t radixDigits = 256;
+/// The keys, or counts, of a work group.
+inline constexpr std::int32_t radixTile = 4096;
+
+enum class RadixStep : std::uint8_t {
+  Count,  ///< keys to counts: digit d of tile t has number d * tiles + t
+  Sum,  ///< counts to the sums before them in their tile, and the tile's totals
+  Move,  ///< keys, sums and totals to keys
+  MoveFirst,  ///< the same to pairs of keys and their numbers: the places where they came from
+  MovePairs,  ///< pairs, sums and totals to pairs
+};
+
+/// The program of a step. It is dispatched in rows of 2^15 groups (tileGroup's), one for each tile, and has the uniforms
+/// sk_rect, sk_length, sk_tiles, sk_keys_shift, sk_counts_shift, sk_totals_shift and sk_digit; its samplers are sk_keys,
+/// of keys or pairs, sk_counts, sk_sums and sk_totals. All textures are linearised.
+std::string radixProgram(const Profile& profile, RadixStep step);
+
+}  // namespace sk::assemble

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// Kernels around a sort of words: from elements to words that compare as the elements do, and back to elements.
+#pragma once
+
+#include <cstdint>
+
+#include "sk/program.hpp"
+
+namespace sk {
+
+/// Whether keys of this type have two words, a lower and an upper one.
+inline bool hasTwoWords(program::Scalar keys) { return keys == program::Scalar::Double; }
+
+/// (key) -> word, or (key) -> lower word, upper word. Words compare as unsigned numbers. All NaNs have the largest word,
+/// also in descending order, and both zeros the same.
+const program::Kernel& wordKernel(program::Scalar keys, bool isDescending);
+/// (word, words[]), or the same for lower words and then for upper words -> 1 if the element of one dimension is equal to
+/// the one before, else 0. A NaN is equal to nothing.
+const program::Kernel& repeatKernel(program::Scalar keys);
+/// (flag) -> 0 if it is true, or not 0, else 1.
+const program::Kernel& flagKernel(program::Scalar flags);
+/// ((word, place), elements[]) -> the texel of a plane at this place; the elements have one dimension or, by rank 4, any.
+const program::Kernel& moveKernel(const program::Field& field, int rank);
+/// ((word, place), upper words[]) -> the upper word at this place, and the place.
+const program::Kernel& upperWordKernel();
+/// (word) or ((word, place)) -> the int or uint key of a word; ((word, place), keys[]) -> the float key, which is taken from
+/// its place if it is a NaN or a zero, whose words do not say which. The keys have one dimension or, by rank 4, any.
+const program::Kernel& restoreKernel(program::Scalar keys, bool isDescending, bool fromPairs, int rank);
+/// ((word, place)) -> the place as an int.
+const program::Kernel& placeKernel();
+
+}  // namespace sk
