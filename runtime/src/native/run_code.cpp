@@ -10,10 +10,10 @@
 #include "native/call_memory.hpp"
 #include "native/chunk_runner.hpp"
 #include "native/code_frame.hpp"
+#include "native/domain_pieces.hpp"
 #include "native/push_parts.hpp"
 #include "native/push_rooms.hpp"
 #include "native/record_buffer.hpp"
-#include "native/row_pieces.hpp"
 #include "native/scatters.hpp"
 #include "native/slot_arrays.hpp"
 #include "sk/native/parallel.hpp"
@@ -253,7 +253,7 @@ class CodeRun {
   CallMemory memory_;
   CodeFrame frame_;
   SlotLayout layout_;
-  RowPieces pieces_;
+  DomainPieces pieces_;
   RowBlocks blocks_;  ///< for rowsEntry_
   bool isRecorded_;
   std::optional<ChunkRunner> runner_;  ///< of runAgain()

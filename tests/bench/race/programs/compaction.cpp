@@ -24,7 +24,7 @@ class Compaction final : public OurTask {
  private:
   void once() override { keepPositive_(x_, kept_); }
 
-  kernels::KeepPositive keepPositive_;
+  kernels::KeepPositiveKernel keepPositive_;
   sk::Stream<float> x_, kept_;
 };
 

@@ -13,10 +13,10 @@
 namespace sk {
 
 /// The rows of a domain, divided into pieces of neighbours along x.
-class RowPieces {
+class DomainPieces {
  public:
   /// If the times of elements may differ widely, pieces are short.
-  RowPieces(const native::Extents& domain, bool areUneven)
+  DomainPieces(const native::Extents& domain, bool areUneven)
       : domain_(domain),
         longest_(areUneven ? 1 << 6 : 1 << 13),
         perRow_((domain[0] + longest_ - 1) / longest_) {}
