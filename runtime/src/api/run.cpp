@@ -7,6 +7,7 @@
 
 #include "call/check_argument.hpp"
 #include "call/check_call.hpp"
+#include "call/dense_regions.hpp"
 #include "call/precision.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
@@ -23,11 +24,13 @@ namespace {
 void runResolved(DeviceState& device, const ResolvedCall& call, RecordedCall* prepared = nullptr) {
   const TraceScope traced(device.trace.get(), "call", call.kernel.name);
   traced.add("domain", call.domain);
-  if (prepared != nullptr) {
-    prepared->run();
-  } else {
-    device.run(call);
-  }
+  if (prepared != nullptr) return prepared->run();
+  const DenseArguments dense(call.kernel, call.arguments);
+  if (dense.areAsGiven()) return device.run(call);
+  ResolvedCall denseCall = call;
+  denseCall.arguments = dense.get();
+  device.run(denseCall);
+  dense.finish();
 }
 
 class RecordedKernel final : public RecordedCall {
@@ -39,7 +42,8 @@ class RecordedKernel final : public RecordedCall {
   }
 
   void run() override {
-    if (!std::exchange(isPrepared_, true)) prepared_ = device_.prepare(call_);
+    if (!std::exchange(isPrepared_, true) && !needsDenseArguments(call_.kernel, call_.arguments))
+      prepared_ = device_.prepare(call_);
     runResolved(device_, call_, prepared_.get());
   }
 

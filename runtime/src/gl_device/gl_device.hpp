@@ -87,6 +87,8 @@ class GlDevice final : public DeviceState {
   void run(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   std::unique_ptr<LoopRunner> makeLoopRunner() override;
+  bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;
+  bool needsDense(const StreamRegion& region) override;
   void reduce(const ResolvedReduction& call) override;
 
   /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names

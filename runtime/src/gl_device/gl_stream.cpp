@@ -252,8 +252,9 @@ bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
     const RegionLayout place = regionLayoutOf(region, glStream(region).layout);
     return place.packed && assemble::isWholeTexels(place);
   };
-  if (!isWholeTexels(from) || !isWholeTexels(to)) {
-    source.unpack();
+  const bool isFromStrides = regionLayoutOf(from, source.layout).strided;  // read by element, packed or not
+  if (!isWholeTexels(to) || (!isFromStrides && !isWholeTexels(from))) {
+    if (!isFromStrides) source.unpack();
     unpack();
   }
   const RegionLayout place = regionLayoutOf(to, layout);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "device/region.hpp"
 #include "native/native_device.hpp"
 #include "sk/error.hpp"
 #include "sk/limits.hpp"
@@ -16,17 +17,17 @@ namespace sk {
 
 namespace {
 
-/// Calls visit(first element in the stream, number in the region, length) for every run of neighbours.
+/// Calls visit(run, number in the region of its first element) for each row of the region.
 template <class Visit>
 void forEachRun(const StreamRegion& region, Visit&& visit) {
-  const native::Operand place = operandOf(region);
-  const native::Extents& extent = place.extent;
+  const AffineRegion all = affine(region);
   std::int64_t number = 0;
-  for (std::int64_t w = 0; w < extent[3]; ++w) {
-    for (std::int64_t z = 0; z < extent[2]; ++z) {
-      for (std::int64_t y = 0; y < extent[1]; ++y, number += extent[0]) {
-        visit(place.first + y * place.stride[1] + z * place.stride[2] + w * place.stride[3], number,
-              extent[0]);
+  for (std::int64_t w = 0; w < all.extent[3]; ++w) {
+    for (std::int64_t z = 0; z < all.extent[2]; ++z) {
+      for (std::int64_t y = 0; y < all.extent[1]; ++y, number += all.extent[0]) {
+        visit(Run{all.first + y * all.stride[1] + z * all.stride[2] + w * all.stride[3], all.extent[0],
+                  all.stride[0]},
+              number);
       }
     }
   }
@@ -35,16 +36,11 @@ void forEachRun(const StreamRegion& region, Visit&& visit) {
 }  // namespace
 
 native::Operand operandOf(const StreamRegion& region) {
+  const AffineRegion all = affine(region);
   native::Operand operand;
-  const Shape& whole = region.stream->shape;
-  std::int64_t stride = 1;
-  for (int d = whole.rank() - 1; d >= 0; --d) {
-    const auto fromFastest = static_cast<std::size_t>(whole.rank() - 1 - d);
-    operand.extent[fromFastest] = region.shape[d];
-    operand.stride[fromFastest] = stride;
-    operand.first += region.begin[d] * stride;
-    stride *= whole[d];
-  }
+  operand.first = all.first;
+  operand.stride = all.stride;
+  operand.extent = all.extent;
   return operand;
 }
 
@@ -80,30 +76,30 @@ NativeDevice& NativeStream::owner() const { return static_cast<NativeDevice&>(*d
 
 void NativeStream::write(const StreamRegion& region, const std::byte* elements) {
   isBroken = false;  // from here on nothing throws
-  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
-    components.write(first, count, elements + static_cast<std::size_t>(number) * element->size,
+  forEachRun(region, [&](const Run& run, std::int64_t number) {
+    components.write(run, elements + static_cast<std::size_t>(number) * element->size,
                      element->size);
   });
   keepStorage();
 }
 
 void NativeStream::read(const StreamRegion& region, std::byte* elements) {
-  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
-    components.read(first, count, elements + static_cast<std::size_t>(number) * element->size, element->size);
+  forEachRun(region, [&](const Run& run, std::int64_t number) {
+    components.read(run, elements + static_cast<std::size_t>(number) * element->size, element->size);
   });
 }
 
 void NativeStream::readReals(const StreamRegion& region, double* values) {
-  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
-    components.readReals(first, count,
+  forEachRun(region, [&](const Run& run, std::int64_t number) {
+    components.readReals(run,
                          values + static_cast<std::size_t>(number) * components.arrays().size());
   });
 }
 
 void NativeStream::writeReals(const StreamRegion& region, const double* values) {
   isBroken = false;  // from here on nothing throws
-  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
-    components.writeReals(first, count,
+  forEachRun(region, [&](const Run& run, std::int64_t number) {
+    components.writeReals(run,
                           values + static_cast<std::size_t>(number) * components.arrays().size());
   });
   keepStorage();
@@ -111,9 +107,7 @@ void NativeStream::writeReals(const StreamRegion& region, const double* values) 
 
 void NativeStream::fill(const StreamRegion& region, const std::byte* value) {
   isBroken = false;  // from here on nothing throws
-  forEachRun(region, [&](std::int64_t first, std::int64_t, std::int64_t count) {
-    components.fill(first, count, value);
-  });
+  forEachRun(region, [&](const Run& run, std::int64_t) { components.fill(run, value); });
   keepStorage();
 }
 
@@ -127,14 +121,14 @@ void NativeStream::exchangeElements(StreamState& other) noexcept {
 
 bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   const NativeStream& source = nativeStream(from);
-  std::vector<std::int64_t> starts;
-  forEachRun(from, [&](std::int64_t first, std::int64_t, std::int64_t) { starts.push_back(first); });
+  std::vector<Run> runs;
+  forEachRun(from, [&](const Run& run, std::int64_t) { runs.push_back(run); });
   Components before;  // overlapping elements are read with their old values
   if (&source == this) before = components.clone(shape.size(), components.real());
   isBroken = false;  // from here on nothing throws
-  auto start = starts.begin();
-  forEachRun(to, [&](std::int64_t first, std::int64_t, std::int64_t count) {
-    components.copy(&source == this ? before : source.components, *start++, first, count);
+  auto next = runs.begin();
+  forEachRun(to, [&](const Run& run, std::int64_t) {
+    components.copy(&source == this ? before : source.components, *next++, run);
   });
   keepStorage();
   return true;
@@ -174,8 +168,8 @@ void NativeStream::permute(const StreamRegion& region, std::span<const std::int3
   std::vector<std::int64_t> places;  // empty if the region is the whole stream
   if (region.shape != shape) {
     to.assign(components, shape.size());
-    forEachRun(region, [&](std::int64_t first, std::int64_t, std::int64_t count) {
-      for (std::int64_t i = 0; i < count; ++i) places.push_back(first + i);
+    forEachRun(region, [&](const Run& run, std::int64_t) {
+      for (std::int64_t i = 0; i < run.count; ++i) places.push_back(run.first + i * run.step);
     });
   }
   for (std::size_t c = 0; c < components.arrays().size(); ++c) {
@@ -197,8 +191,8 @@ void NativeStream::writeScalars(const StreamRegion& region, std::size_t offset, 
   const auto component =
       static_cast<std::size_t>(std::ranges::find(types, offset, &ComponentType::offset) - types.begin());
   const std::size_t bytes = types[component].storedBytes;
-  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
-    components.writeScalars(component, first, count, values + static_cast<std::size_t>(number) * bytes);
+  forEachRun(region, [&](const Run& run, std::int64_t number) {
+    components.writeScalars(component, run, values + static_cast<std::size_t>(number) * bytes);
   });
 }
 

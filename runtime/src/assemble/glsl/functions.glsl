@@ -43,6 +43,13 @@ ivec2 sk_texel(int sk_n, int sk_s) {
   return ivec2(sk_n & ((1 << sk_s) - 1), sk_n >> sk_s);
 }
 
+//// row
+// Texel of element number n in a plane of width w.
+ivec2 sk_in_row(int sk_n, int sk_w) {
+  int sk_y = sk_n / sk_w;
+  return ivec2(sk_n - sk_y * sk_w, sk_y);
+}
+
 //// layered
 // Texel t of layers of 1 << s rows each, which continue each other.
 ivec3 sk_layered(ivec2 sk_t, int sk_s) {

@@ -1,0 +1,670 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: a view by strides, or in another shape, is used like a stream of its elements, on either side of a call and by
+// the host, wherever they lie; what is between its elements keeps its values.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "error_of.hpp"
+#include "sk/sk.hpp"
+#include "support/devices.hpp"
+#include "views.sk.hpp"
+
+namespace run_tests {
+namespace {
+
+using Catch::Matchers::Contains;
+
+using Numbers = std::vector<std::int64_t>;
+
+/// The elements of a view as numbers of its stream, by arithmetic of their own.
+struct Model {
+  sk::Shape shape;
+  Numbers numbers;
+
+  explicit Model(const sk::Shape& all) : shape(all), numbers(static_cast<std::size_t>(all.size())) {
+    std::iota(numbers.begin(), numbers.end(), 0);
+  }
+
+  Model strided(const sk::Index& steps, const sk::Index& offsets) const {
+    Model result = *this;
+    result.numbers.clear();
+    for (int d = 0; d < shape.rank(); ++d) {
+      result.shape = result.shape.with(d, (shape[d] - offsets[d] + steps[d] - 1) / steps[d]);
+    }
+    for (std::int64_t n = 0; n < shape.size(); ++n) {
+      std::int64_t rest = n;
+      bool isIn = true;
+      for (int d = shape.rank() - 1; d >= 0; --d) {
+        const std::int64_t i = rest % shape[d] - offsets[d];
+        isIn = isIn && i >= 0 && i % steps[d] == 0;
+        rest /= shape[d];
+      }
+      if (isIn) result.numbers.push_back(numbers[static_cast<std::size_t>(n)]);
+    }
+    return result;
+  }
+
+  template <class T>
+  std::vector<T> of(const std::vector<T>& stream) const {
+    std::vector<T> result;
+    for (const std::int64_t n : numbers) result.push_back(stream[static_cast<std::size_t>(n)]);
+    return result;
+  }
+  template <class T>
+  void put(const std::vector<T>& elements, std::vector<T>& stream) const {
+    for (std::size_t i = 0; i < numbers.size(); ++i) stream[static_cast<std::size_t>(numbers[i])] = elements[i];
+  }
+};
+
+std::vector<int> counted(std::int64_t count, int first = 1) {
+  std::vector<int> values(static_cast<std::size_t>(count));
+  std::iota(values.begin(), values.end(), first);
+  return values;
+}
+
+template <class T, class F>
+std::vector<T> mapped(std::vector<T> values, const F& f) {
+  for (T& value : values) value = f(value);
+  return values;
+}
+
+/// A stream, a view of it and what the view has to be.
+struct Case {
+  sk::Shape shape;
+  sk::Index steps, offsets;
+  sk::Shape reshaped = {};  ///< of the strided view, if it has a rank
+};
+
+const std::vector<Case>& cases() {
+  static const std::vector<Case> all = {
+      {{6, 8}, {1, 2}, {0, 0}},
+      {{6, 8}, {1, 2}, {0, 1}},
+      {{7, 9}, {2, 2}, {1, 0}},
+      {{5, 12}, {3, 5}, {2, 1}},
+      {{9, 5}, {4, 1}, {0, 2}},
+      {{7, 300}, {2, 3}, {1, 2}},
+      {{1000}, {7}, {3}},
+      {{31}, {2}, {0}},
+      {{4, 5, 6}, {2, 2, 3}, {1, 0, 2}},
+      {{3, 4, 5, 4}, {2, 1, 2, 3}, {0, 1, 1, 0}},
+      {{6, 8}, {1, 1}, {0, 0}, {48}},
+      {{6, 8}, {1, 1}, {0, 0}, {4, 12}},
+      {{6, 8}, {1, 1}, {0, 0}, {3, 2, 8}},
+      {{6, 8}, {2, 1}, {0, 0}, {3, 2, 4}},
+      {{6, 8}, {1, 2}, {0, 1}, {24}},
+      {{6, 8}, {1, 8}, {0, 3}, {6}},
+      {{6, 8}, {6, 1}, {2, 0}, {8}},
+      {{6, 8}, {6, 2}, {2, 0}, {2, 2}},
+      {{96}, {1}, {0}, {8, 12}},
+      {{1200}, {1}, {0}, {30, 40}},
+      {{1200}, {1}, {0}, {10, 10, 12}},
+      {{1200}, {1}, {192}, {28, 36}},
+      {{1200}, {3}, {1}, {20, 20}},
+      {{5, 6, 7}, {1, 1, 1}, {0, 0, 0}, {30, 7}},
+      {{5, 6, 7}, {1, 1, 1}, {0, 0, 0}, {7, 30}},
+      {{1}, {1}, {0}, {1, 1, 1}},
+      {{3, 3}, {5, 5}, {1, 2}},
+  };
+  return all;
+}
+
+struct Viewed {
+  sk::View<int> view;
+  Model model;
+};
+
+Viewed viewOf(sk::Stream<int>& stream, const Case& what) {
+  Viewed result{sk::stride(stream, what.steps, what.offsets), Model(what.shape).strided(what.steps, what.offsets)};
+  if (what.reshaped.rank() > 0) {
+    result.view = result.view.reshape(what.reshaped);
+    result.model.shape = what.reshaped;
+  }
+  return result;
+}
+
+std::string nameOf(const Case& what) {
+  return sk::toString(what.shape) + " by " + sk::toString(what.steps) + " from " + sk::toString(what.offsets) +
+         (what.reshaped.rank() > 0 ? " as " + sk::toString(what.reshaped) : "");
+}
+
+/// Calls test(device, stream of 1, 2 ..., view, model) for every case on every layout.
+template <class Test>
+void onEveryView(const Test& test) {
+  onEveryLayout([&](sk::Device& device) {
+    for (const Case& what : cases()) {
+      INFO(nameOf(what));
+      auto stream = device.stream<int>(what.shape);
+      stream.write(counted(what.shape.size()));
+      const Viewed viewed = viewOf(stream, what);
+      REQUIRE(viewed.view.shape() == viewed.model.shape);
+      test(device, stream, viewed.view, viewed.model);
+    }
+  });
+}
+
+TEST_CASE("the host reads, writes and fills views") {
+  onEveryView([](sk::Device&, sk::Stream<int>& stream, sk::View<int> view, const Model& model) {
+    std::vector<int> all = counted(stream.size());
+    CHECK(view.read() == model.of(all));
+    CHECK(view.readAsync().get() == model.of(all));
+    const std::vector<int> written = counted(view.size(), -5000);
+    view.write(written);
+    model.put(written, all);
+    CHECK(stream.read() == all);
+    view.writeAsync(counted(view.size(), 7000));
+    model.put(counted(view.size(), 7000), all);
+    CHECK(stream.read() == all);
+    view.fill(-3);
+    model.put(std::vector<int>(model.numbers.size(), -3), all);
+    CHECK(stream.read() == all);
+  });
+}
+
+TEST_CASE("views are copied from and to") {
+  onEveryView([](sk::Device& device, sk::Stream<int>& stream, sk::View<int> view, const Model& model) {
+    std::vector<int> all = counted(stream.size());
+    auto dense = device.stream<int>(view.shape());
+    view.copyTo(dense);
+    CHECK(dense.read() == model.of(all));
+    dense.write(counted(view.size(), -400));
+    dense.copyTo(view);
+    model.put(counted(view.size(), -400), all);
+    CHECK(stream.read() == all);
+    // the same elements of another stream
+    auto other = device.stream<int>(stream.shape());
+    other.fill(1);
+    std::vector<int> others(all.size(), 1);
+    for (const Case& what : cases()) {
+      if (what.shape != stream.shape()) continue;
+      const Viewed to = viewOf(other, what);
+      if (to.view.shape() != view.shape()) continue;
+      view.copyTo(to.view);
+      to.model.put(model.of(all), others);
+      CHECK(other.read() == others);
+    }
+  });
+}
+
+TEST_CASE("kernels read and write views") {
+  onEveryView([](sk::Device& device, sk::Stream<int>& stream, sk::View<int> view, const Model& model) {
+    const std::vector<int> before = counted(stream.size());
+    std::vector<int> all = before;
+    auto result = device.stream<int>(view.shape());
+    views::plus(10, view, result);
+    CHECK(result.read() == mapped(model.of(all), [](int x) { return x + 10; }));
+    auto input = device.stream<int>(view.shape());
+    input.write(counted(view.size(), 100));
+    views::plus(5, input, view);
+    model.put(counted(view.size(), 105), all);
+    CHECK(stream.read() == all);
+    // in place
+    views::plus(1, view, view);
+    model.put(counted(view.size(), 106), all);
+    CHECK(stream.read() == all);
+    views::numbered(view, view);
+    int n = 0;
+    model.put(mapped(model.of(all), [&](int x) { return x + 1000 * n++; }), all);
+    CHECK(stream.read() == all);
+    const std::vector<int> here = model.of(all);
+    views::increment(7, input, view, result);
+    CHECK(result.read() == counted(view.size(), 93));
+    model.put(counted(view.size(), 107), all);
+    CHECK(stream.read() == all);
+  });
+}
+
+int at(const std::vector<int>& values, const sk::Shape& shape, std::int64_t y, std::int64_t x) {
+  y = std::clamp<std::int64_t>(y, 0, shape[0] - 1);
+  x = std::clamp<std::int64_t>(x, 0, shape[1] - 1);
+  return values[static_cast<std::size_t>(y * shape[1] + x)];
+}
+
+TEST_CASE("gathers of views end at their edges") {
+  onEveryView([](sk::Device& device, sk::Stream<int>& stream, sk::View<int> view, const Model& model) {
+    const std::vector<int> elements = model.of(counted(stream.size()));
+    const sk::Shape& shape = view.shape();
+    auto result = device.stream<int>(shape);
+    std::vector<int> expected;
+    if (shape.rank() == 2) {
+      views::around(view, result);
+      for (std::int64_t y = 0; y < shape[0]; ++y) {
+        for (std::int64_t x = 0; x < shape[1]; ++x) {
+          expected.push_back(2 * at(elements, shape, y, x + 1) + 3 * at(elements, shape, y - 1, x) +
+                             at(elements, shape, 100, 0));
+        }
+      }
+      CHECK(result.read() == expected);
+    } else if (shape.rank() == 1) {
+      const std::int64_t n = shape[0];
+      const auto wrapped = [&](std::int64_t i) { return elements[static_cast<std::size_t>((i % n + n) % n)]; };
+      views::beside(view, result);
+      for (std::int64_t x = 0; x < n; ++x) expected.push_back(wrapped(x + 1) - wrapped(x - 2));
+      CHECK(result.read() == expected);
+    } else if (shape.rank() == 3) {
+      auto turned = device.stream<int>({shape[2], shape[1], shape[0]});
+      views::turned(view, turned);
+      for (std::int64_t z = 0; z < shape[2]; ++z) {
+        for (std::int64_t y = 0; y < shape[1]; ++y) {
+          for (std::int64_t x = 0; x < shape[0]; ++x) {
+            expected.push_back(elements[static_cast<std::size_t>((x * shape[1] + y) * shape[2] + z)]);
+          }
+        }
+      }
+      CHECK(turned.read() == expected);
+    }
+  });
+}
+
+TEST_CASE("views are reduced and scanned, and hold the results") {
+  onEveryView([](sk::Device& device, sk::Stream<int>& stream, sk::View<int> view, const Model& model) {
+    std::vector<int> all = counted(stream.size());
+    const std::vector<int> elements = model.of(all);
+    CHECK(views::sum(view) == std::accumulate(elements.begin(), elements.end(), 0));
+    CHECK(views::last(view) == elements.back());
+    const sk::Shape& shape = view.shape();
+    auto lines = device.stream<int>(shape.with(shape.rank() - 1, 1));
+    views::sum(view, lines);
+    std::vector<int> sums;
+    const auto length = static_cast<std::size_t>(shape[shape.rank() - 1]);
+    for (std::size_t i = 0; i < elements.size(); i += length) {
+      sums.push_back(std::accumulate(&elements[i], &elements[i] + length, 0));
+    }
+    CHECK(lines.read() == sums);
+    // to a view, of blocks of two rows of its shape
+    sk::Shape doubled = shape.with(0, 2 * shape[0]);
+    auto pairs = device.stream<int>(doubled);
+    pairs.fill(3);
+    views::sum(pairs, view);
+    model.put(std::vector<int>(elements.size(), 6), all);
+    CHECK(stream.read() == all);
+    views::prefix(view, view);
+    int sum = 0;
+    model.put(mapped(std::vector<int>(elements.size(), 6), [&](int x) { return sum += x; }), all);
+    CHECK(stream.read() == all);
+  });
+}
+
+TEST_CASE("sums of floats in views are those of dense streams") {
+  onEveryLayout([](sk::Device& device) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> numbers(-1, 1);
+    std::vector<float> values(33 * 35);
+    for (float& value : values) value = numbers(random);
+    auto stream = device.stream<float>({33, 35});
+    stream.write(values);
+    auto view = sk::stride(stream, {2, 3}, {1, 1});
+    auto dense = device.stream<float>(view.shape());
+    view.copyTo(dense);
+    CHECK(views::total(view) == views::total(dense));
+    if (device.name() == "native") {  // the only one that adds exactly without limbs
+      const auto exact = views::total.with({.accumulate = sk::Accumulate::Exact});
+      CHECK(exact(view) == exact(dense));
+    }
+    auto weights = device.stream<float>({40});
+    weights.write(std::vector<float>(values.begin(), values.begin() + 40));
+    auto everySecond = sk::stride(weights, {2}, {0});
+    auto row = device.stream<float>({20});
+    row.fill(1);
+    double expected = 0;
+    for (std::size_t i = 0; i < 40; i += 2) expected += values[i];
+    CHECK(views::weighted(row, everySecond) == Approx(expected).margin(1e-5));
+    // to every second element of a column
+    auto sums = device.stream<float>({34, 3});
+    sums.fill(-1);
+    auto column = sk::stride(sums, {2, 3}, {0, 1});
+    auto rows = stream.domain({0, 0}, {17, 35});
+    views::total(rows, column);
+    const std::vector<float> all = sums.read();
+    for (std::size_t y = 0; y < 34; ++y) {
+      for (std::size_t x = 0; x < 3; ++x) {
+        if (y % 2 == 0 && x == 1) {
+          double sum = 0;
+          for (std::size_t k = 0; k < 35; ++k) sum += values[y / 2 * 35 + k];
+          CHECK(all[y * 3 + x] == Approx(sum).margin(1e-5));
+        } else {
+          CHECK(all[y * 3 + x] == -1);
+        }
+      }
+    }
+  });
+}
+
+TEST_CASE("elements of all kinds are strided") {
+  onEveryLayout([](sk::Device& device) {
+    const auto isOdd = [](std::size_t i) { return i % 9 % 2 == 1; };
+    auto bodies = device.stream<views::Body>({3, 9});
+    std::vector<views::Body> before;
+    for (int i = 0; i < 27; ++i) before.push_back({{0.5f * static_cast<float>(i), -1}, i});
+    bodies.write(before);
+    auto some = sk::stride(bodies, {1, 2}, {0, 1});
+    views::moved(some, some);
+    const std::vector<views::Body> after = bodies.read();
+    for (std::size_t i = 0; i < 27; ++i) {
+      CHECK(after[i].at.x == (isOdd(i) ? 2 : 1) * before[i].at.x);
+      CHECK(after[i].id == before[i].id + (isOdd(i) ? 1 : 0));
+    }
+    auto halves = device.stream<sk::half>({3, 9});
+    halves.fill(sk::half(3));
+    auto someHalves = sk::stride(halves, {1, 2}, {0, 1});
+    views::halved(someHalves, someHalves);
+    auto bools = device.stream<bool>({3, 9});
+    bools.fill(true);
+    auto someBools = sk::stride(bools, {1, 2}, {0, 1});
+    views::negated(someBools, someBools);
+    auto bytes = device.stream<std::uint8_t>({3, 9});
+    bytes.fill(std::uint8_t(255));
+    auto someBytes = sk::stride(bytes, {1, 2}, {0, 1});
+    views::narrowed(someBytes, someBytes);
+    for (std::size_t i = 0; i < 27; ++i) {
+      CHECK(float(halves.read()[i]) == (isOdd(i) ? 1.5f : 3));
+      CHECK(bools.read()[i] == (isOdd(i) ? 0 : 1));
+      CHECK(int(bytes.read()[i]) == (isOdd(i) ? 0 : 255));
+    }
+  });
+}
+
+TEST_CASE("streams in other precisions are strided") {
+  onEveryProfile([](sk::Device& device) {
+    for (const sk::Storage storage : {sk::Storage::Half, sk::Storage::Double}) {
+      auto wide = device.stream<float>({4, 6}, storage);
+      wide.fill(0.1f);
+      auto some = sk::stride(wide, {2, 2}, {0, 1});
+      views::offset(1, some, some);
+      const double kept = wide.readReals()[0];
+      const std::vector<double> all = some.readReals();
+      CHECK(all == std::vector<double>(6, all[0]));
+      CHECK(all[0] == Approx(1.1).epsilon(1e-3));
+      some.writeReals(std::vector<double>(6, 2));
+      CHECK(wide.readReals() == std::vector<double>{kept, 2, kept, 2, kept, 2, kept, kept, kept, kept, kept, kept,
+                                                    kept, 2, kept, 2, kept, 2, kept, kept, kept, kept, kept, kept});
+    }
+  });
+}
+
+TEST_CASE("views are scattered to, and their elements pushed") {
+  onEveryView([](sk::Device& device, sk::Stream<int>& stream, sk::View<int> view, const Model& model) {
+    std::vector<int> all = counted(stream.size());
+    const std::vector<int> elements = model.of(all);
+    auto odd = device.stream<int>({1});
+    views::odd(view, odd);
+    std::vector<int> pushed = elements;
+    std::erase_if(pushed, [](int x) { return x % 2 == 0; });
+    CHECK(odd.read() == pushed);
+    if (view.shape().rank() == 2) {
+      auto corner = device.stream<int>({1, 1});
+      corner.fill(-9);
+      views::scattered(corner, view);
+      all[static_cast<std::size_t>(model.numbers[0])] = -9;
+    } else if (view.shape().rank() == 1 && view.size() > 1) {
+      auto four = device.stream<int>({4});
+      four.fill(50);
+      views::added(four, view);
+      all[static_cast<std::size_t>(model.numbers[0])] += 100;
+      all[static_cast<std::size_t>(model.numbers[1])] += 100;
+    }
+    CHECK(stream.read() == all);
+  });
+}
+
+TEST_CASE("views of views") {
+  onEveryLayout([](sk::Device& device) {
+    std::mt19937 random(11);
+    const auto below = [&](std::int64_t n) { return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(n)); };
+    for (int round = 0; round < 12; ++round) {
+      const sk::Shape shape = round % 3 == 0 ? sk::Shape(below(400) + 1)
+                              : round % 3 == 1 ? sk::Shape(below(30) + 1, below(40) + 1)
+                                               : sk::Shape(below(6) + 1, below(7) + 1, below(9) + 1);
+      auto stream = device.stream<int>(shape);
+      stream.write(counted(shape.size()));
+      sk::View<int> view = stream.reshape(shape);
+      Model model(shape);
+      std::string steps = sk::toString(shape);
+      for (int step = 0; step < 4 && view.size() > 0; ++step) {
+        const int rank = view.shape().rank();
+        sk::Index begin = sk::Index::origin(rank), end = begin, by = begin;
+        for (int d = 0; d < rank; ++d) {
+          begin[d] = below(view.shape()[d] / 3 + 1);
+          end[d] = view.shape()[d];
+          by[d] = below(3) + 1;
+        }
+        if (step % 2 == 0) {
+          view = sk::stride(view.domain(begin, end), by);
+          model = model.strided(by, begin);
+          steps += " by " + sk::toString(by) + " from " + sk::toString(begin);
+        } else {
+          const sk::Shape other = below(2) == 0 ? sk::Shape(view.size()) : sk::Shape(1, view.size(), 1);
+          try {
+            view = view.reshape(other);
+          } catch (const sk::Error&) {
+            continue;  // "reshape gives no view" tests when
+          }
+          model.shape = other;
+          steps += " as " + sk::toString(other);
+        }
+      }
+      INFO(steps);
+      std::vector<int> all = counted(shape.size());
+      REQUIRE(view.shape() == model.shape);
+      CHECK(view.read() == model.of(all));
+      views::plus(-1000, view, view);
+      model.put(mapped(model.of(all), [](int x) { return x - 1000; }), all);
+      CHECK(stream.read() == all);
+    }
+  });
+}
+
+TEST_CASE("what reads a stream sees it as it was before a strided part is written") {
+  onEveryLayout([](sk::Device& device) {
+    auto u = device.stream<int>({6, 9});
+    const std::vector<int> before = counted(54);
+    u.write(before);
+    auto odd = sk::stride(u, {1, 2}, {0, 1});
+    auto even = sk::stride(u, {1, 2}, {0, 0}).domain({0, 0}, {6, 4});
+    views::increment(100, odd, even, odd);  // both in one call
+    std::vector<int> expected = before;
+    for (std::size_t y = 0; y < 6; ++y) {
+      for (std::size_t x = 1; x < 9; x += 2) {
+        expected[9 * y + x - 1] = before[9 * y + x] + 100;
+        expected[9 * y + x] = before[9 * y + x] - 100;
+      }
+    }
+    CHECK(u.read() == expected);
+    auto left = u.domain({0, 0}, {6, 4});
+    views::around(left, odd);
+    std::vector<int> inLeft;
+    for (std::size_t i = 0; i < 54; ++i) {
+      if (i % 9 < 4) inLeft.push_back(expected[i]);
+    }
+    for (std::size_t y = 0; y < 6; ++y) {
+      for (std::size_t x = 0; x < 4; ++x) {
+        expected[9 * y + 2 * x + 1] = 2 * at(inLeft, {6, 4}, std::int64_t(y), std::int64_t(x) + 1) +
+                                      3 * at(inLeft, {6, 4}, std::int64_t(y) - 1, std::int64_t(x)) +
+                                      at(inLeft, {6, 4}, 100, 0);
+      }
+    }
+    CHECK(u.read() == expected);
+  });
+}
+
+/// One iteration of red-black Gauss-Seidel on the inner elements.
+void sweep(sk::Stream<float>& f, sk::Stream<float>& u) {
+  const std::int64_t h = u.shape()[0], w = u.shape()[1];
+  for (const std::int64_t colour : {0, 1}) {
+    for (const std::int64_t row : {1, 2}) {
+      const std::int64_t column = 1 + (row + colour) % 2;
+      const sk::Index size{(h - row) / 2, (w - column) / 2};
+      auto inner = sk::stride(u, {2, 2}, {row, column}).domain({0, 0}, size);
+      auto source = sk::stride(f, {2, 2}, {row, column}).domain({0, 0}, size);
+      views::relax({int(column), int(row)}, source, u, inner);
+    }
+  }
+}
+
+TEST_CASE("red-black relaxation is that of a loop in place") {
+  onEveryLayout([](sk::Device& device) {
+    for (const auto& [h, w] : {std::pair<std::int64_t, std::int64_t>{9, 9}, {8, 12}, {70, 67}}) {
+      std::vector<float> field(static_cast<std::size_t>(h * w)), source(field.size());
+      for (std::size_t i = 0; i < field.size(); ++i) {
+        field[i] = float(i % 17) - 5;
+        source[i] = float(i % 7) / 8;
+      }
+      auto u = device.stream<float>({h, w}), f = device.stream<float>({h, w});
+      u.write(field);
+      f.write(source);
+      for (int i = 0; i < 3; ++i) {
+        sweep(f, u);
+        for (const std::int64_t colour : {0, 1}) {
+          for (std::int64_t y = 1; y < h - 1; ++y) {
+            for (std::int64_t x = 1; x < w - 1; ++x) {
+              if ((y + x + colour) % 2 != 1) continue;
+              float* const p = &field[static_cast<std::size_t>(y * w + x)];
+              *p = 0.25f * (p[-w] + p[w] + p[-1] + p[1] - source[static_cast<std::size_t>(y * w + x)]);
+            }
+          }
+        }
+      }
+      CHECK(u.read() == field);
+    }
+  });
+}
+
+TEST_CASE("loops repeat calls with views") {
+  onEveryProfile([](sk::Device& device) {
+    auto u = device.stream<int>({5, 8}), v = device.stream<int>({5, 8});
+    u.fill(1);
+    v.fill(2);
+    auto odd = sk::stride(u, {2, 2}, {0, 1});
+    auto flat = u.reshape({40});
+    sk::Loop loop = device.record([&] {
+      views::plus(1, odd, odd);
+      views::plus(2, flat, flat);
+      odd.copyTo(sk::stride(v, {2, 2}, {0, 0}));
+    });
+    loop.repeat(5);
+    std::vector<int> expected(40, 11), copied(40, 2);
+    for (std::size_t i = 0; i < 40; ++i) {
+      if (i / 8 % 2 != 0) continue;
+      if (i % 2 == 1) {
+        expected[i] = 16;
+      } else {
+        copied[i] = 16;
+      }
+    }
+    CHECK(u.read() == expected);
+    CHECK(v.read() == copied);
+  });
+}
+
+TEST_CASE("views stand for uniforms, and are stretched") {
+  onEveryLayout([](sk::Device& device) {
+    auto u = device.stream<int>({4, 6});
+    u.write(counted(24));
+    auto one = sk::stride(u, {4, 6}, {2, 3});
+    auto result = device.stream<int>({2, 2});
+    views::plus(one.reshape({1}), sk::stretch(sk::stride(u, {4, 6}, {1, 1})), result);
+    CHECK(result.read() == std::vector<int>(4, 16 + 8));
+    auto wide = device.stream<int>({4, 6});
+    views::plus(0, sk::stretch(sk::stride(u, {2, 3})), wide);
+    CHECK(wide.read() == std::vector<int>{1, 1, 1, 4, 4, 4, 1, 1, 1, 4, 4, 4, 13, 13, 13, 16, 16, 16, 13, 13, 13, 16, 16, 16});
+    views::plus(0, sk::stride(sk::stride(u, {1, 1}, {0, 2})), result);
+    CHECK(result.read() == std::vector<int>{3, 5, 15, 17});
+  });
+}
+
+TEST_CASE("views are sorted") {
+  onEveryLayout([](sk::Device& device) {
+    auto u = device.stream<int>({4, 10});
+    std::vector<int> all(40);
+    for (std::size_t i = 0; i < 40; ++i) all[i] = static_cast<int>(i * 17 % 40);
+    u.write(all);
+    auto some = sk::stride(u, {2, 3}, {1, 0});
+    sk::sort(some);
+    const Model model = Model({4, 10}).strided({2, 3}, {1, 0});
+    std::vector<int> sorted = model.of(all);
+    std::ranges::sort(sorted);
+    model.put(sorted, all);
+    CHECK(u.read() == all);
+    sk::sort(u.reshape({40}));
+    std::ranges::sort(all);
+    CHECK(u.read() == all);
+  });
+}
+
+TEST_CASE("loops in kernels end, whatever lies between a view's elements") {
+  onEveryLayout([](sk::Device& device) {
+    auto u = device.stream<float>({5, 7});
+    u.fill(-1e9f);
+    auto some = sk::stride(u, {2, 2}, {1, 1});
+    some.fill(20);
+    views::long_way(some, some);
+    CHECK(some.read() == std::vector<float>(6, 110));
+    CHECK(u.read()[0] == -1e9f);
+  });
+}
+
+TEST_CASE("empty views") {
+  onEveryProfile([](sk::Device& device) {
+    auto u = device.stream<int>({3, 4}), none = device.stream<int>({0, 4});
+    u.write(counted(12));
+    auto empty = sk::stride(u, {2, 2}, {3, 0});
+    CHECK(empty.shape() == sk::Shape(0, 2));
+    CHECK(empty.read().empty());
+    views::plus(1, empty, empty);
+    empty.fill(7);
+    CHECK(views::sum(empty) == 0);
+    CHECK(none.reshape({7, 0, 2}).read().empty());
+    CHECK(sk::stride(none, {3, 3}, {0, 1}).shape() == sk::Shape(0, 1));
+    CHECK(u.read() == counted(12));
+  });
+}
+
+TEST_CASE("reshape gives no view of other elements") {
+  onEveryProfile([](sk::Device& device) {
+    auto u = device.stream<int>({4, 6});
+    CHECK_THAT(errorOf([&] { u.reshape({5, 5}); }),
+               Contains("reshape: {4, 6} has 24 element(s), but shape {5, 5} has 25"));
+    CHECK_THAT(errorOf([&] { u.domain({0, 0}, {4, 5}).reshape({20}); }),
+               Contains("reshape: the elements of this view of shape {4, 5} do not lie at regular distances in shape {20}; "
+                        "copy them"));
+    CHECK_THAT(errorOf([&] { sk::stride(u, {3, 2}, {0, 0}).reshape({3, 2}); }), Contains("regular distances"));
+    CHECK_THAT(errorOf([&] { sk::Stream<int>().reshape({1}); }), Contains("reshape: there is no stream"));
+    CHECK(sk::stride(u, {3, 2}, {0, 0}).reshape({1, 2, 1, 3}).shape() == sk::Shape(1, 2, 1, 3));
+    CHECK(std::as_const(u).reshape({24}).size() == 24);
+    static_assert(!sk::isWritable<decltype(std::as_const(u).reshape({24}))>);
+    static_assert(!sk::isWritable<decltype(sk::stride(std::as_const(u), {1, 1}, {0, 0}))>);
+  });
+}
+
+TEST_CASE("strides that do not go through a stream") {
+  onEveryProfile([](sk::Device& device) {
+    auto u = device.stream<int>({4, 6});
+    for (const auto& [steps, offsets] :
+         {std::pair<sk::Index, sk::Index>{{0, 1}, {0, 0}}, {{1, -1}, {0, 0}}, {{1, 1}, {-1, 0}}, {{1, 1}, {0, 7}},
+          {{1}, {0}}, {{1, 1, 1}, {0, 0, 0}}, {{2, 2}, {0}}}) {
+      CHECK_THAT(errorOf([&] { sk::stride(u, steps, offsets); }), Contains("do not go through shape {4, 6}"));
+    }
+    auto one = sk::stride(u, {1, 2}, {0, 0}), apart = sk::stride(u, {1, 2}, {0, 1});
+    auto x = device.stream<int>({4, 3});
+    CHECK_THAT(errorOf([&] { views::increment(1, x, one, u.domain({0, 0}, {4, 3})); }), Contains("overlap"));
+    views::increment(1, x, one, apart);
+    auto pushed = device.stream<int>({9});
+    pushed.write(counted(9));
+    auto late = sk::stride(pushed, {4}, {0});
+    auto six = device.stream<int>({6});
+    six.write(counted(6));
+    views::odd(six, pushed);
+    CHECK_THAT(errorOf([&] { late.read(); }), Contains("a view of shape {3} is no longer inside its stream"));
+  });
+}
+
+}  // namespace
+}  // namespace run_tests
