@@ -17,20 +17,29 @@ namespace sk {
 
 namespace {
 
+std::int64_t rowsOf(const AffineRegion& region) { return region.extent[1] * region.extent[2] * region.extent[3]; }
+
+Run rowOf(const AffineRegion& region, std::int64_t row) {
+  const std::int64_t y = row % region.extent[1], plane = row / region.extent[1];
+  const std::int64_t z = plane % region.extent[2], w = plane / region.extent[2];
+  return {region.first + y * region.stride[1] + z * region.stride[2] + w * region.stride[3], region.extent[0],
+          region.stride[0]};
+}
+
 /// Calls visit(run, number in the region of its first element) for each row of the region.
 template <class Visit>
 void forEachRun(const StreamRegion& region, Visit&& visit) {
   const AffineRegion all = affine(region);
-  std::int64_t number = 0;
-  for (std::int64_t w = 0; w < all.extent[3]; ++w) {
-    for (std::int64_t z = 0; z < all.extent[2]; ++z) {
-      for (std::int64_t y = 0; y < all.extent[1]; ++y, number += all.extent[0]) {
-        visit(Run{all.first + y * all.stride[1] + z * all.stride[2] + w * all.stride[3], all.extent[0],
-                  all.stride[0]},
-              number);
-      }
-    }
-  }
+  for (std::int64_t row = 0; row < rowsOf(all); ++row) visit(rowOf(all, row), row * all.extent[0]);
+}
+
+/// Calls visit(row) for each row of the region, on several threads if there are many elements.
+template <class Visit>
+void forEachRow(const AffineRegion& region, Visit&& visit) {
+  if (rowsOf(region) == 1) return visit(std::int64_t{0});
+  native::inParallel(rowsOf(region), region.extent[0], native::Deal::Evenly, [&](native::Range rows) {
+    for (std::int64_t row = rows.begin; row < rows.end; ++row) visit(row);
+  });
 }
 
 }  // namespace
@@ -107,7 +116,8 @@ void NativeStream::writeReals(const StreamRegion& region, const double* values) 
 
 void NativeStream::fill(const StreamRegion& region, const std::byte* value) {
   isBroken = false;  // from here on nothing throws
-  forEachRun(region, [&](const Run& run, std::int64_t) { components.fill(run, value); });
+  const AffineRegion all = affine(region);
+  forEachRow(all, [&](std::int64_t row) { components.fill(rowOf(all, row), value); });
   keepStorage();
 }
 
@@ -121,15 +131,12 @@ void NativeStream::exchangeElements(StreamState& other) noexcept {
 
 bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   const NativeStream& source = nativeStream(from);
-  std::vector<Run> runs;
-  forEachRun(from, [&](const Run& run, std::int64_t) { runs.push_back(run); });
+  const AffineRegion here = affine(to), there = affine(from);
   Components before;  // overlapping elements are read with their old values
   if (&source == this) before = components.clone(shape.size(), components.real());
   isBroken = false;  // from here on nothing throws
-  auto next = runs.begin();
-  forEachRun(to, [&](const Run& run, std::int64_t) {
-    components.copy(&source == this ? before : source.components, *next++, run);
-  });
+  const Components& read = &source == this ? before : source.components;
+  forEachRow(here, [&](std::int64_t row) { components.copy(read, rowOf(there, row), rowOf(here, row)); });
   keepStorage();
   return true;
 }

@@ -87,6 +87,7 @@ Texel stridedTexel(ProgramText& program, const Parameter& parameter, const Strea
   const std::string shift = parameterUniform(program, "int", "shift", parameter);
   const std::string number = fmt::format("{}.x + {}", origin, distance);
   if (access.addressing == Addressing::Rows) {
+    program.require(Function::Divide);
     program.require(Function::Row);
     return {fmt::format("sk_in_row({}, {})", number, shift), "", access.packed};
   }

@@ -160,7 +160,8 @@ void DomainText::defineStridedIndex() {
   const std::string_view leave = isDrawn() ? "discard" : "return";
   if (layout_.domain == Domain::Strided) {
     program_.prologue(fmt::format("ivec2 sk_left = {} - {}.xy;", program_.texel(), origin));
-    program_.prologue(fmt::format("sk_here = ivec4(sk_left / {}.xy, 0, 0);", stride));
+    // exact, since texels number less than 2^16 in each dimension
+    program_.prologue(fmt::format("sk_here = ivec4((vec2(sk_left) + 0.5) / vec2({}.xy), 0, 0);", stride));
     program_.prologue(fmt::format("if (sk_here.xy * {}.xy != sk_left) {};", stride, leave));
     return;
   }
@@ -170,8 +171,11 @@ void DomainText::defineStridedIndex() {
           : fmt::format("{} * {} + {}", program_.row(), program_.uniform("int", "sk_domain_shift"), program_.column());
   program_.prologue(fmt::format("int sk_left = ({}) - {}.x;", number, origin));
   program_.prologue(fmt::format("if (sk_left < 0) {};", leave));
-  for (const char d : {'w', 'z', 'y', 'x'}) {
-    program_.prologue(fmt::format("sk_here.{0} = sk_left / {1}.{0}; sk_left -= sk_here.{0} * {1}.{0};", d, stride));
+  program_.require(Function::Divide);
+  program_.prologue("sk_here = ivec4(0);");
+  for (int d = layout_.rank; d-- > 0;) {
+    program_.prologue(fmt::format("sk_here.{0} = sk_divide(sk_left, {1}.{0}); sk_left -= sk_here.{0} * {1}.{0};",
+                                  "xyzw"[d], stride));
   }
   program_.prologue(fmt::format("if (sk_left != 0 || any(greaterThanEqual(sk_here, {}))) {};", shape, leave));
 }

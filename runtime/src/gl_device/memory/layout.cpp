@@ -153,7 +153,11 @@ assemble::RegionLayout layoutWithStrides(const StreamRegion& region, const Layou
   const AffineRegion all = affine(region);
   assemble::RegionLayout result = layout.whole;
   for (std::size_t d = 0; d < all.extent.size(); ++d) result.extent[d] = static_cast<std::int32_t>(all.extent[d]);
-  result.view = true;
+  result.view = !isWhole(region);
+  if (result.linear && !result.view) {
+    result.stride = assemble::stridesOf(result.extent);
+    return result;
+  }
   const std::int32_t width = layout.whole.extent[0];
   if (const auto box = result.linear ? boxInAnotherShape(all, result) : stridedPlane(all, result, width)) return *box;
   result.strided = true;
