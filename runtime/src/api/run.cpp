@@ -67,6 +67,12 @@ void record(DeviceState& device, const ResolvedCall& call) {
   device.recording->add(std::make_unique<RecordedKernel>(device, call));
 }
 
+/// Variants with unrolled loops compute in float.
+const Kernel& chosenVariant(const DeviceState& device, const ResolvedCall& call) {
+  const bool isInFloat = !device.isReference() && !needsPrecisionVariant(call.options);
+  return isInFloat ? unrolledVariant(call.kernel, call.specs) : call.kernel;
+}
+
 void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
   if (options.accumulate != Accumulate::Default) {
     fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
@@ -77,8 +83,9 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   DeviceState& device = checked->device;
   checked->call.options = device.configuration.resolve(kernel, options);
   checkTables(kernel, checked->call.options);
-  if (device.recording != nullptr) return record(device, checked->call);
-  runResolved(device, checked->call);
+  const ResolvedCall call = checked->call.of(chosenVariant(device, checked->call), device.limits);
+  if (device.recording != nullptr) return record(device, call);
+  runResolved(device, call);
 }
 
 }  // namespace

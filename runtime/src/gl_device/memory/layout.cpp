@@ -153,7 +153,7 @@ assemble::RegionLayout layoutWithStrides(const StreamRegion& region, const Layou
   const AffineRegion all = affine(region);
   assemble::RegionLayout result = layout.whole;
   for (std::size_t d = 0; d < all.extent.size(); ++d) result.extent[d] = static_cast<std::int32_t>(all.extent[d]);
-  result.view = !isWhole(region);
+  result.view = region.shape.size() != assemble::elements(layout.whole.extent);
   if (result.linear && !result.view) {
     result.stride = assemble::stridesOf(result.extent);
     return result;
