@@ -313,28 +313,21 @@ StreamRegion regionOf(const View<T>& view) {
   return view.region();
 }
 
-/// Every steps[d]-th element of a stream or view in each dimension, from offsets[d] on, rows first: a view of the shape
-/// ceil((extent - offset) / step), to be read and written. Throws sk::Error unless there are a step of at least 1 and an
-/// offset from 0 to the extent in every dimension.
+/// Every steps[d]-th element of a stream or view in each dimension, from offsets[d] on (by default, from the first), rows
+/// first: a view of the shape ceil((extent - offset) / step), to be read and written. Throws sk::Error unless there are a
+/// step of at least 1 and an offset from 0 to the extent in every dimension.
 template <ElementType T>
-View<T> stride(Stream<T>& stream, const Index& steps, const Index& offsets) {
+View<T> stride(Stream<T>& stream, const Index& steps, const Index& offsets = {}) {
   return View<T>(detail::strided(stream.region(), steps, offsets));
 }
 template <ElementType T>
-View<const T> stride(const Stream<T>& stream, const Index& steps, const Index& offsets) {
+View<const T> stride(const Stream<T>& stream, const Index& steps, const Index& offsets = {}) {
   return View<const T>(detail::strided(stream.region(), steps, offsets));
 }
 template <class T>
-View<T> stride(const View<T>& view, const Index& steps, const Index& offsets) {
+View<T> stride(const View<T>& view, const Index& steps, const Index& offsets = {}) {
   return View<T>(detail::strided(view.region(), steps, offsets));
 }
-/// From the first element on.
-template <class S>
-  requires requires(S& stream, const Index& index) { stride(stream, index, index); }
-auto stride(S&& stream, const Index& steps) {
-  return stride(stream, steps, Index::origin(steps.rank()));
-}
-
 /// Whether a reference to S may be an output: non-const streams, and writable views.
 template <class S>
 inline constexpr bool isWritable = false;

@@ -67,7 +67,7 @@ enum class Domain : std::uint8_t {
   /// (append/append_passes.hpp).
   Entry,
   /// Strided regions, for copies to them: of a plane, of a plane by number, of a linearised stream. Texels between
-  /// their elements are skipped.
+  /// their elements are skipped; compute programs run for the elements of a Strided one alone, numbered from {0, 0}.
   Strided,
   StridedRows,
   StridedLinear,

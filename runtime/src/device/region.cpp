@@ -208,9 +208,10 @@ StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, cons
   return part;
 }
 
-StreamRegion detail::strided(const StreamRegion& region, const Index& steps, const Index& offsets) {
+StreamRegion detail::strided(const StreamRegion& region, const Index& steps, const Index& given) {
   requireStream(region, "stride");
   const int rank = region.shape.rank();
+  const Index offsets = given.rank() == 0 ? Index::origin(rank) : given;
   bool isPossible = steps.rank() == rank && offsets.rank() == rank;
   for (int d = 0; isPossible && d < rank; ++d) {
     isPossible = steps[d] > 0 && offsets[d] >= 0 && offsets[d] <= region.shape[d];

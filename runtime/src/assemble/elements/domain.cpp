@@ -96,6 +96,10 @@ void DomainText::leaveOutside() {
 
 Texel DomainText::texel() {
   const std::string texel(program_.texel());
+  if (layout_.domain == Domain::Strided && !isDrawn()) {
+    return {fmt::format("{}.xy + sk_here.xy * {}.xy", program_.uniform("ivec4", "sk_domain_origin"),
+                        program_.uniform("ivec4", "sk_domain_stride"))};
+  }
   if (!layout_.layered) return {texel};
   const std::string shift = program_.uniform("int", "sk_domain_shift");
   if (!isDrawn()) return {texel, shift};
@@ -152,12 +156,16 @@ void DomainText::defineIndex() {
 }
 
 /// The index of a texel's element, if it has one: what is left of its distance from the first element is 0 after whole
-/// strides, the longest first.
+/// strides, the longest first. Compute programs run for the elements of a strided plane alone.
 void DomainText::defineStridedIndex() {
   const std::string origin = program_.uniform("ivec4", "sk_domain_origin");
   const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
   const std::string stride = program_.uniform("ivec4", "sk_domain_stride");
   const std::string_view leave = isDrawn() ? "discard" : "return";
+  if (layout_.domain == Domain::Strided && !isDrawn()) {
+    program_.prologue(fmt::format("sk_here = ivec4({}, 0, 0);", program_.texel()));
+    return;
+  }
   if (layout_.domain == Domain::Strided) {
     program_.prologue(fmt::format("ivec2 sk_left = {} - {}.xy;", program_.texel(), origin));
     // exact, since texels number less than 2^16 in each dimension
