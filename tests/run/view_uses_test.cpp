@@ -285,6 +285,36 @@ TEST_CASE("views stand for uniforms, and are stretched") {
   });
 }
 
+TEST_CASE("kernels in several passes take views") {
+  for (const char* profile : {"glsl330", "essl300"}) {
+    sk::Device limited({.profile = profile, .limits = "guaranteed"});
+    auto u = limited.stream<int>({6, 8}), v = limited.stream<int>({6, 8}), w = limited.stream<int>({3, 4});
+    u.write(counted(48));
+    v.fill(0);
+    auto x = sk::stride(u, {2, 2}, {0, 1}), g = sk::stride(u, {2, 2}, {1, 0});
+    auto r0 = sk::stride(v, {2, 2}, {0, 0}), r9 = sk::stride(v, {2, 2}, {1, 1});
+    auto r1 = limited.stream<int>({3, 4}), r2 = limited.stream<int>({3, 4}), r3 = limited.stream<int>({3, 4});
+    auto r4 = limited.stream<int>({3, 4}), r5 = limited.stream<int>({3, 4}), r6 = limited.stream<int>({3, 4});
+    auto r7 = limited.stream<int>({3, 4}), r8 = limited.stream<int>({3, 4});
+    views::many(x, g, r0, r1, r2, r3, r4, r5, r6, r7, r8, r9);
+    std::vector<int> expected(48, 0);
+    for (std::int64_t y = 0; y < 3; ++y) {
+      for (std::int64_t c = 0; c < 4; ++c) {
+        const int near = static_cast<int>(8 * (2 * y + 1) + 2 * std::min<std::int64_t>(c + 1, 3) + 1);
+        const int own = static_cast<int>(16 * y + 2 * c + 2);
+        expected[static_cast<std::size_t>(16 * y + 2 * c)] = near;
+        expected[static_cast<std::size_t>(16 * y + 8 + 2 * c + 1)] = 9 * own + near;
+      }
+    }
+    CHECK(v.read() == expected);
+    views::wide(x, x, x, x, x, x, x, x, x, x, g, g, g, g, g, g, g, g, g, x, w);
+    const std::vector<int> own = x.read(), near = g.read();
+    std::vector<int> sums;
+    for (std::size_t i = 0; i < 12; ++i) sums.push_back((55 + 20) * own[i] + (210 - 75) * near[i]);
+    CHECK(w.read() == sums);
+  }
+}
+
 TEST_CASE("views are sorted") {
   onEveryLayout([](sk::Device& device) {
     auto u = device.stream<int>({4, 10});
