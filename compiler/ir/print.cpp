@@ -161,7 +161,8 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
     text += fmt::format(", finished by @{}", module.kernels[*kernel.reduction->finish].entry);
   }
   for (const UnrolledVariant& variant : kernel.unrolled) {
-    text += fmt::format(", unrolled @{} if ${} is {}", module.kernels[variant.kernel].entry, variant.spec, variant.value);
+    text += fmt::format(", unrolled @{} if ${} is {}", module.kernels[variant.kernel].entry, variant.spec,
+                        variant.value);
   }
   if (kernel.variants.wide) text += fmt::format(", wide @{}", module.kernels[*kernel.variants.wide].entry);
   if (kernel.variants.half) text += fmt::format(", half @{}", module.kernels[*kernel.variants.half].entry);

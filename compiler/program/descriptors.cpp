@@ -114,8 +114,9 @@ class Builder {
   void addUnrolled(const Kernel& kernel, sk::program::Kernel& made) {
     std::vector<sk::program::UnrolledKernel>& all = storage_.unrolled.emplace_back();
     for (const UnrolledVariant& variant : kernel.unrolled) {
-      const auto before = std::count_if(kernel.params.begin(), kernel.params.begin() + variant.spec,
-                                        [](const KernelParam& param) { return param.role == ParamRole::Spec; });
+      const auto before =
+          std::count_if(kernel.params.begin(), kernel.params.begin() + variant.spec,
+                        [](const KernelParam& param) { return param.role == ParamRole::Spec; });
       all.push_back({static_cast<std::uint8_t>(before), variant.value, &form(variant.kernel)});
     }
     made.unrolled = all;

@@ -18,18 +18,11 @@ namespace {
 
 using namespace ir;
 
-bool mentions(const Expr& expr, VarId var) {
+/// Whether an expression or a block reads a variable.
+template <class Node>
+bool mentions(const Node& node, VarId var) {
   bool found = false;
-  walkExprs(expr, [&](const Expr& inner) {
-    const auto* ref = std::get_if<VarRef>(&inner.node);
-    found = found || (ref != nullptr && ref->var == var);
-  });
-  return found;
-}
-
-bool mentions(const Block& statements, VarId var) {
-  bool found = false;
-  walkExprs(statements, [&](const Expr& expr) {
+  walkExprs(node, [&](const Expr& expr) {
     const auto* ref = std::get_if<VarRef>(&expr.node);
     found = found || (ref != nullptr && ref->var == var);
   });
@@ -60,7 +53,8 @@ std::optional<std::int64_t> expressionsWithoutLoops(const Module& module, const 
   bool hasLoops = false;
   for (const FunctionId id : functionsOf(module, kernel)) {
     const Block& body = module.functions[id].body;
-    walkStmts(body, [&](const Stmt& stmt) { hasLoops = hasLoops || std::holds_alternative<Loop>(stmt.node); });
+    walkStmts(body,
+              [&](const Stmt& stmt) { hasLoops = hasLoops || std::holds_alternative<Loop>(stmt.node); });
     walkExprs(body, [&](const Expr&) { ++count; });
   }
   return hasLoops ? std::nullopt : std::optional(count);

@@ -72,15 +72,18 @@ TEST_CASE("each small value of a bound has a variant") {
 TEST_CASE("all variants together stay within the limit") {
   Sample s;
   // n * n rounds of about 8 expressions
-  const Kernel& kernel = s.kernel(block(s.loop(
-      s.i, s.k.ref(s.n), block(s.loop(s.j, s.k.ref(s.n), block(s.add(binary(Add, s.k.ref(s.i), s.k.ref(s.j)))))))));
+  const Kernel& kernel = s.kernel(
+      block(s.loop(s.i, s.k.ref(s.n),
+                   block(s.loop(s.j, s.k.ref(s.n), block(s.add(binary(Add, s.k.ref(s.i), s.k.ref(s.j)))))))));
   CHECK(kernel.unrolled.size() >= 3);
   CHECK(kernel.unrolled.size() < mostUnrolledValue);
 }
 
 TEST_CASE("other loops have no variants") {
   Sample uniform, mixed, none;
-  CHECK(uniform.kernel(block(uniform.loop(uniform.i, uniform.k.ref(uniform.u), block(uniform.add(uniform.k.ref(uniform.i))))))
+  CHECK(uniform
+            .kernel(block(uniform.loop(uniform.i, uniform.k.ref(uniform.u),
+                                       block(uniform.add(uniform.k.ref(uniform.i))))))
             .unrolled.empty());
   CHECK(mixed
             .kernel(block(mixed.loop(mixed.i, mixed.k.ref(mixed.n), block(mixed.add(mixed.k.ref(mixed.i)))),

@@ -27,7 +27,8 @@ TEST_CASE("an unrolled blur has the bits of its loop") {
 TEST_CASE("loops that a specialisation constant bounds have the bits of loops with arguments") {
   const std::vector<float> x = values<float>(11 * 24);
   onEveryProfile([&](sk::Device& device) {
-    auto a = device.stream<float>({11, 24}), r = device.stream<float>({11, 24}), s = device.stream<float>({11, 24});
+    auto a = device.stream<float>({11, 24}), r = device.stream<float>({11, 24}),
+         s = device.stream<float>({11, 24});
     a.write(x);
     for (const int radius : {-1, 0, 1, 2, 3, 9}) {
       INFO("radius " << radius);

@@ -114,8 +114,9 @@ TEST_CASE("streams in other precisions are strided") {
       CHECK(all == std::vector<double>(6, all[0]));
       CHECK(all[0] == Approx(1.1).epsilon(1e-3));
       some.writeReals(std::vector<double>(6, 2));
-      CHECK(wide.readReals() == std::vector<double>{kept, 2, kept, 2, kept, 2, kept, kept, kept, kept, kept, kept,
-                                                    kept, 2, kept, 2, kept, 2, kept, kept, kept, kept, kept, kept});
+      CHECK(wide.readReals() == std::vector<double>{kept, 2,    kept, 2,    kept, 2,    kept, kept,
+                                                    kept, kept, kept, kept, kept, 2,    kept, 2,
+                                                    kept, 2,    kept, kept, kept, kept, kept, kept});
     }
   });
 }
@@ -123,9 +124,11 @@ TEST_CASE("streams in other precisions are strided") {
 TEST_CASE("views of views") {
   onEveryLayout([](sk::Device& device) {
     std::mt19937 random(11);
-    const auto below = [&](std::int64_t n) { return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(n)); };
+    const auto below = [&](std::int64_t n) {
+      return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(n));
+    };
     for (int round = 0; round < 12; ++round) {
-      const sk::Shape shape = round % 3 == 0 ? sk::Shape(below(400) + 1)
+      const sk::Shape shape = round % 3 == 0   ? sk::Shape(below(400) + 1)
                               : round % 3 == 1 ? sk::Shape(below(30) + 1, below(40) + 1)
                                                : sk::Shape(below(6) + 1, below(7) + 1, below(9) + 1);
       auto stream = device.stream<int>(shape);
@@ -279,7 +282,8 @@ TEST_CASE("views stand for uniforms, and are stretched") {
     CHECK(result.read() == std::vector<int>(4, 16 + 8));
     auto wide = device.stream<int>({4, 6});
     views::plus(0, sk::stretch(sk::stride(u, {2, 3})), wide);
-    CHECK(wide.read() == std::vector<int>{1, 1, 1, 4, 4, 4, 1, 1, 1, 4, 4, 4, 13, 13, 13, 16, 16, 16, 13, 13, 13, 16, 16, 16});
+    CHECK(wide.read() == std::vector<int>{1,  1,  1,  4,  4,  4,  1,  1,  1,  4,  4,  4,
+                                          13, 13, 13, 16, 16, 16, 13, 13, 13, 16, 16, 16});
     views::plus(0, sk::stride(sk::stride(u, {1, 1}, {0, 2})), result);
     CHECK(result.read() == std::vector<int>{3, 5, 15, 17});
   });
@@ -368,9 +372,11 @@ TEST_CASE("reshape gives no view of other elements") {
     CHECK_THAT(errorOf([&] { u.reshape({5, 5}); }),
                Contains("reshape: {4, 6} has 24 element(s), but shape {5, 5} has 25"));
     CHECK_THAT(errorOf([&] { u.domain({0, 0}, {4, 5}).reshape({20}); }),
-               Contains("reshape: the elements of this view of shape {4, 5} do not lie at regular distances in shape {20}; "
+               Contains("reshape: the elements of this view of shape {4, 5} do not lie at regular distances "
+                        "in shape {20}; "
                         "copy them"));
-    CHECK_THAT(errorOf([&] { sk::stride(u, {3, 2}, {0, 0}).reshape({3, 2}); }), Contains("regular distances"));
+    CHECK_THAT(errorOf([&] { sk::stride(u, {3, 2}, {0, 0}).reshape({3, 2}); }),
+               Contains("regular distances"));
     CHECK_THAT(errorOf([&] { sk::Stream<int>().reshape({1}); }), Contains("reshape: there is no stream"));
     CHECK(sk::stride(u, {3, 2}, {0, 0}).reshape({1, 2, 1, 3}).shape() == sk::Shape(1, 2, 1, 3));
     CHECK(std::as_const(u).reshape({24}).size() == 24);
@@ -382,9 +388,13 @@ TEST_CASE("reshape gives no view of other elements") {
 TEST_CASE("strides that do not go through a stream") {
   onEveryProfile([](sk::Device& device) {
     auto u = device.stream<int>({4, 6});
-    for (const auto& [steps, offsets] :
-         {std::pair<sk::Index, sk::Index>{{0, 1}, {0, 0}}, {{1, -1}, {0, 0}}, {{1, 1}, {-1, 0}}, {{1, 1}, {0, 7}},
-          {{1}, {0}}, {{1, 1, 1}, {0, 0, 0}}, {{2, 2}, {0}}}) {
+    for (const auto& [steps, offsets] : {std::pair<sk::Index, sk::Index>{{0, 1}, {0, 0}},
+                                         {{1, -1}, {0, 0}},
+                                         {{1, 1}, {-1, 0}},
+                                         {{1, 1}, {0, 7}},
+                                         {{1}, {0}},
+                                         {{1, 1, 1}, {0, 0, 0}},
+                                         {{2, 2}, {0}}}) {
       CHECK_THAT(errorOf([&] { sk::stride(u, steps, offsets); }), Contains("do not go through shape {4, 6}"));
     }
     auto one = sk::stride(u, {1, 2}, {0, 0}), apart = sk::stride(u, {1, 2}, {0, 1});

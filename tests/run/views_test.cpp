@@ -62,7 +62,8 @@ struct Viewed {
 };
 
 Viewed viewOf(sk::Stream<int>& stream, const Case& what) {
-  Viewed result{sk::stride(stream, what.steps, what.offsets), Model(what.shape).strided(what.steps, what.offsets)};
+  Viewed result{sk::stride(stream, what.steps, what.offsets),
+                Model(what.shape).strided(what.steps, what.offsets)};
   if (what.reshaped.rank() > 0) {
     result.view = result.view.reshape(what.reshaped);
     result.model.shape = what.reshaped;
@@ -71,8 +72,8 @@ Viewed viewOf(sk::Stream<int>& stream, const Case& what) {
 }
 
 std::string nameOf(const Case& what) {
-  return sk::toString(what.shape) + " by " + sk::toString(what.steps) + " from " + sk::toString(what.offsets) +
-         (what.reshaped.rank() > 0 ? " as " + sk::toString(what.reshaped) : "");
+  return sk::toString(what.shape) + " by " + sk::toString(what.steps) + " from " +
+         sk::toString(what.offsets) + (what.reshaped.rank() > 0 ? " as " + sk::toString(what.reshaped) : "");
 }
 
 /// Calls test(device, stream of 1, 2 ..., view, model) for every case on every layout.
@@ -178,7 +179,9 @@ TEST_CASE("gathers of views end at their edges") {
       CHECK(result.read() == expected);
     } else if (shape.rank() == 1) {
       const std::int64_t n = shape[0];
-      const auto wrapped = [&](std::int64_t i) { return elements[static_cast<std::size_t>((i % n + n) % n)]; };
+      const auto wrapped = [&](std::int64_t i) {
+        return elements[static_cast<std::size_t>((i % n + n) % n)];
+      };
       views::beside(view, result);
       for (std::int64_t x = 0; x < n; ++x) expected.push_back(wrapped(x + 1) - wrapped(x - 2));
       CHECK(result.read() == expected);

@@ -112,9 +112,10 @@ StreamState& liveStream(const StreamRegion& region, std::string_view context) {
   if (region.shape.rank() > 0 && !isInside(region)) {
     const std::string from = isBox(region) ? fmt::format(" from {}", toString(region.begin)) : "";
     throw Error(
-        fmt::format("{}: a view{} of shape {} is no longer inside its stream, to which a kernel has pushed {} "
-                    "element(s); make the view after the call",
-                    context, from, toString(region.shape), region.stream->shape.size()),
+        fmt::format(
+            "{}: a view{} of shape {} is no longer inside its stream, to which a kernel has pushed {} "
+            "element(s); make the view after the call",
+            context, from, toString(region.shape), region.stream->shape.size()),
         Error::Kind::Shape);
   }
   return *region.stream;

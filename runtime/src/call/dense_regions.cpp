@@ -25,7 +25,8 @@ bool needsTemporary(const Kernel& kernel, std::span<const Argument> arguments, s
   const StreamRegion& region = arguments[i].region;
   // no value and no variable output has a stride
   return region.stream != nullptr && !isBox(region) && region.shape.size() > 0 &&
-         assemble::isNeeded(kernel.parameters[i], specs) && region.stream->device->needsDense(kernel, arguments, i);
+         assemble::isNeeded(kernel.parameters[i], specs) &&
+         region.stream->device->needsDense(kernel, arguments, i);
 }
 
 bool hasStrides(std::span<const Argument> arguments) {
@@ -48,7 +49,8 @@ void DenseRegion::finish() const {
   if (stream_) given_.stream->copyFrom(region_, given_);
 }
 
-DenseArguments::DenseArguments(const Kernel& kernel, std::span<const Argument> arguments) : given_(arguments) {
+DenseArguments::DenseArguments(const Kernel& kernel, std::span<const Argument> arguments)
+    : given_(arguments) {
   if (!hasStrides(arguments)) return;
   const assemble::SpecValues specs = specsOf(kernel, arguments);
   for (std::size_t i = 0; i < arguments.size(); ++i) {

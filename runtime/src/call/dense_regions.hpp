@@ -37,7 +37,9 @@ class DenseArguments {
 
   /// True if the call can use all arguments as they are.
   bool areAsGiven() const { return temporaries_.empty(); }
-  std::span<const Argument> get() const { return areAsGiven() ? given_ : std::span<const Argument>(arguments_); }
+  std::span<const Argument> get() const {
+    return areAsGiven() ? given_ : std::span<const Argument>(arguments_);
+  }
   /// Copies what the call has written to the arguments that were given.
   void finish() const;
 

@@ -48,7 +48,8 @@ StreamRegion asStrides(const StreamRegion& region) {
   if (!isBox(region)) return region;
   const AffineRegion all = affine(region);
   StreamRegion result{region.stream, {}, region.shape, Index::origin(region.shape.rank()), all.first};
-  for (int d = 0; d < region.shape.rank(); ++d) result.stride[d] = all.stride[fromFastest(region.shape.rank(), d)];
+  for (int d = 0; d < region.shape.rank(); ++d)
+    result.stride[d] = all.stride[fromFastest(region.shape.rank(), d)];
   return result;
 }
 
@@ -154,6 +155,12 @@ bool isSameRegion(const StreamRegion& a, const StreamRegion& b) {
 
 bool overlap(const StreamRegion& a, const StreamRegion& b) {
   if (a.stream != b.stream || a.shape.size() == 0 || b.shape.size() == 0) return false;
+  if (isBox(a) && isBox(b)) {
+    for (int d = 0; d < a.shape.rank(); ++d) {
+      if (a.begin[d] + a.shape[d] <= b.begin[d] || b.begin[d] + b.shape[d] <= a.begin[d]) return false;
+    }
+    return true;
+  }
   const AffineRegion one = affine(a), other = affine(b);
   std::vector<Steps> steps;
   const auto add = [&](const AffineRegion& region, bool isNegative) {
@@ -217,10 +224,11 @@ StreamRegion detail::strided(const StreamRegion& region, const Index& steps, con
     isPossible = steps[d] > 0 && offsets[d] >= 0 && offsets[d] <= region.shape[d];
   }
   if (!isPossible) {
-    throw Error(fmt::format("stride: steps {} from {} do not go through shape {}; give each dimension, rows first, a "
-                            "step of at least 1 and an offset from 0 to its extent",
-                            toString(steps), toString(offsets), toString(region.shape)),
-                Error::Kind::Shape);
+    throw Error(
+        fmt::format("stride: steps {} from {} do not go through shape {}; give each dimension, rows first, a "
+                    "step of at least 1 and an offset from 0 to its extent",
+                    toString(steps), toString(offsets), toString(region.shape)),
+        Error::Kind::Shape);
   }
   StreamRegion part = asStrides(partOf(region, offsets, [&] {
     Index end = offsets;
@@ -250,10 +258,11 @@ StreamRegion detail::reshaped(const StreamRegion& region, const Shape& shape) {
     return result;
   }
   if (!divide(joined(strides), shape, result.stride)) {
-    throw Error(fmt::format("reshape: the elements of this view of shape {} do not lie at regular distances in shape "
-                            "{}; copy them to a stream of their shape (copyTo) and reshape that",
-                            toString(region.shape), toString(shape)),
-                Error::Kind::Shape);
+    throw Error(
+        fmt::format("reshape: the elements of this view of shape {} do not lie at regular distances in shape "
+                    "{}; copy them to a stream of their shape (copyTo) and reshape that",
+                    toString(region.shape), toString(shape)),
+        Error::Kind::Shape);
   }
   return asBox(result);
 }

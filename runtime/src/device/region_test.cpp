@@ -52,13 +52,16 @@ TEST_CASE("strided regions overlap where they share an element") {
     const std::int64_t width = 4 + upTo(9), height = 3 + upTo(5);  // of the stream of both
     const auto part = [&] {
       const std::int64_t x = upTo(2), y = upTo(2), byX = 1 + upTo(3), byY = 1 + upTo(2);
-      return StreamRegion{nullptr, {}, Shape((height - y - 1) / byY + 1, (width - x - 1) / byX + 1),
-                          Index(byY * width, byX), y * width + x};
+      return StreamRegion{nullptr,
+                          {},
+                          Shape((height - y - 1) / byY + 1, (width - x - 1) / byX + 1),
+                          Index(byY * width, byX),
+                          y * width + x};
     };
     const StreamRegion a = part();
     // every third round, any numbers of the stream
-    const StreamRegion b = round % 3 != 0 ? part()
-                                          : StreamRegion{nullptr, {}, Shape(upTo(5) + 1), Index(1 + upTo(6)), upTo(9)};
+    const StreamRegion b =
+        round % 3 != 0 ? part() : StreamRegion{nullptr, {}, Shape(upTo(5) + 1), Index(1 + upTo(6)), upTo(9)};
     std::vector<std::int64_t> common;
     std::ranges::set_intersection(numbersOf(a), numbersOf(b), std::back_inserter(common));
     INFO(round);

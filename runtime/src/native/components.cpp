@@ -171,7 +171,8 @@ void Components::read(const Run& run, std::byte* elements, std::size_t elementBy
 void Components::readReals(const Run& run, double* values) const {
   for (std::size_t c = 0; c < types_.size(); ++c) {
     move(valuesOf(c, run),
-         {reinterpret_cast<std::byte*>(values + c), types_.size() * sizeof(double), sizeof(double)}, run.count);
+         {reinterpret_cast<std::byte*>(values + c), types_.size() * sizeof(double), sizeof(double)},
+         run.count);
   }
 }
 

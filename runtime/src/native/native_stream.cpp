@@ -17,7 +17,9 @@ namespace sk {
 
 namespace {
 
-std::int64_t rowsOf(const AffineRegion& region) { return region.extent[1] * region.extent[2] * region.extent[3]; }
+std::int64_t rowsOf(const AffineRegion& region) {
+  return region.extent[1] * region.extent[2] * region.extent[3];
+}
 
 Run rowOf(const AffineRegion& region, std::int64_t row) {
   const std::int64_t y = row % region.extent[1], plane = row / region.extent[1];
@@ -86,8 +88,7 @@ NativeDevice& NativeStream::owner() const { return static_cast<NativeDevice&>(*d
 void NativeStream::write(const StreamRegion& region, const std::byte* elements) {
   isBroken = false;  // from here on nothing throws
   forEachRun(region, [&](const Run& run, std::int64_t number) {
-    components.write(run, elements + static_cast<std::size_t>(number) * element->size,
-                     element->size);
+    components.write(run, elements + static_cast<std::size_t>(number) * element->size, element->size);
   });
   keepStorage();
 }
@@ -100,16 +101,14 @@ void NativeStream::read(const StreamRegion& region, std::byte* elements) {
 
 void NativeStream::readReals(const StreamRegion& region, double* values) {
   forEachRun(region, [&](const Run& run, std::int64_t number) {
-    components.readReals(run,
-                         values + static_cast<std::size_t>(number) * components.arrays().size());
+    components.readReals(run, values + static_cast<std::size_t>(number) * components.arrays().size());
   });
 }
 
 void NativeStream::writeReals(const StreamRegion& region, const double* values) {
   isBroken = false;  // from here on nothing throws
   forEachRun(region, [&](const Run& run, std::int64_t number) {
-    components.writeReals(run,
-                          values + static_cast<std::size_t>(number) * components.arrays().size());
+    components.writeReals(run, values + static_cast<std::size_t>(number) * components.arrays().size());
   });
   keepStorage();
 }

@@ -50,7 +50,8 @@ struct Model {
   }
   template <class T>
   void put(const std::vector<T>& elements, std::vector<T>& stream) const {
-    for (std::size_t i = 0; i < numbers.size(); ++i) stream[static_cast<std::size_t>(numbers[i])] = elements[i];
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      stream[static_cast<std::size_t>(numbers[i])] = elements[i];
   }
 };
 

@@ -173,17 +173,17 @@ void DomainText::defineStridedIndex() {
     program_.prologue(fmt::format("if (sk_here.xy * {}.xy != sk_left) {};", stride, leave));
     return;
   }
-  const std::string number =
-      layout_.domain == Domain::StridedLinear
-          ? texelNumber()
-          : fmt::format("{} * {} + {}", program_.row(), program_.uniform("int", "sk_domain_shift"), program_.column());
+  const std::string number = layout_.domain == Domain::StridedLinear
+                                 ? texelNumber()
+                                 : fmt::format("{} * {} + {}", program_.row(),
+                                               program_.uniform("int", "sk_domain_shift"), program_.column());
   program_.prologue(fmt::format("int sk_left = ({}) - {}.x;", number, origin));
   program_.prologue(fmt::format("if (sk_left < 0) {};", leave));
   program_.require(Function::Divide);
   program_.prologue("sk_here = ivec4(0);");
   for (int d = layout_.rank; d-- > 0;) {
-    program_.prologue(fmt::format("sk_here.{0} = sk_divide(sk_left, {1}.{0}); sk_left -= sk_here.{0} * {1}.{0};",
-                                  "xyzw"[d], stride));
+    program_.prologue(fmt::format(
+        "sk_here.{0} = sk_divide(sk_left, {1}.{0}); sk_left -= sk_here.{0} * {1}.{0};", "xyzw"[d], stride));
   }
   program_.prologue(fmt::format("if (sk_left != 0 || any(greaterThanEqual(sk_here, {}))) {};", shape, leave));
 }

@@ -82,10 +82,10 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
         text += fmt::format("; {}{}", parameter.name, name(access.storage));
       continue;
     }
-    text +=
-        fmt::format("; {} {}{}{}{}{}{}{}{}", parameter.name, access.packed ? "packed " : "",
-                    name(access.addressing), access.view ? " view" : "", access.strided ? " strided" : "", access.nearby ? " nearby" : "",
-                    access.filtered ? " filtered" : "", access.fitted ? " fitted" : "", name(access.storage));
+    text += fmt::format("; {} {}{}{}{}{}{}{}{}", parameter.name, access.packed ? "packed " : "",
+                        name(access.addressing), access.view ? " view" : "", access.strided ? " strided" : "",
+                        access.nearby ? " nearby" : "", access.filtered ? " filtered" : "",
+                        access.fitted ? " fitted" : "", name(access.storage));
   }
   return text;
 }

@@ -117,7 +117,8 @@ std::optional<assemble::RegionLayout> stridedPlane(const AffineRegion& region, a
                                                    std::int64_t width) {
   const std::int64_t x = region.first % width;
   const bool isOfRows = region.extent[1] == 1 || region.stride[1] % width == 0;
-  if (region.extent[2] * region.extent[3] != 1 || !isOfRows || x + (region.extent[0] - 1) * region.stride[0] >= width)
+  if (region.extent[2] * region.extent[3] != 1 || !isOfRows ||
+      x + (region.extent[0] - 1) * region.stride[0] >= width)
     return std::nullopt;
   plane.origin = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(region.first / width), 0, 0};
   plane.stride = {1, 1, 1, 1};
@@ -129,7 +130,8 @@ std::optional<assemble::RegionLayout> stridedPlane(const AffineRegion& region, a
 
 /// A region of a linearised stream as a box in another shape; nullopt if it has gaps along x, or if its rows do not
 /// begin at the same column of that shape.
-std::optional<assemble::RegionLayout> boxInAnotherShape(const AffineRegion& region, assemble::RegionLayout linear) {
+std::optional<assemble::RegionLayout> boxInAnotherShape(const AffineRegion& region,
+                                                        assemble::RegionLayout linear) {
   if (region.extent[0] > 1 && region.stride[0] != 1) return std::nullopt;
   linear.stride = {1, assemble::noStride, assemble::noStride, assemble::noStride};
   for (std::size_t d = 3; d > 0; --d) {  // a dimension of extent 1 is as far as the next one
@@ -152,14 +154,16 @@ std::optional<assemble::RegionLayout> boxInAnotherShape(const AffineRegion& regi
 assemble::RegionLayout layoutWithStrides(const StreamRegion& region, const Layout& layout) {
   const AffineRegion all = affine(region);
   assemble::RegionLayout result = layout.whole;
-  for (std::size_t d = 0; d < all.extent.size(); ++d) result.extent[d] = static_cast<std::int32_t>(all.extent[d]);
+  for (std::size_t d = 0; d < all.extent.size(); ++d)
+    result.extent[d] = static_cast<std::int32_t>(all.extent[d]);
   result.view = region.shape.size() != assemble::elements(layout.whole.extent);
   if (result.linear && !result.view) {
     result.stride = assemble::stridesOf(result.extent);
     return result;
   }
   const std::int32_t width = layout.whole.extent[0];
-  if (const auto box = result.linear ? boxInAnotherShape(all, result) : stridedPlane(all, result, width)) return *box;
+  if (const auto box = result.linear ? boxInAnotherShape(all, result) : stridedPlane(all, result, width))
+    return *box;
   result.strided = true;
   result.numbered = !result.linear;
   if (result.numbered) result.shift = width;

@@ -195,8 +195,8 @@ void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel
     program.target.set(device.bound, operands[task.appendOutput].regionLayout);
   }
   const Rect elements{0, 0, domain.extent[0], domain.extent[1]};
-  const bool runsByElement = program.stage == assemble::Stage::Compute &&
-                             assemble::domainOf(domain) == assemble::Domain::Strided;
+  const bool runsByElement =
+      program.stage == assemble::Stage::Compute && assemble::domainOf(domain) == assemble::Domain::Strided;
   writeRects(device, pass, targets, runsByElement ? std::span(&elements, 1) : rects);
 }
 

@@ -17,9 +17,10 @@ bool GlDevice::needsDense(const program::Kernel& kernel, std::span<const Argumen
   if (role == Role::Uniform) return false;
   if (role == Role::Scatter) return true;  // points are placed by the rank of the stream
   if (!needsDense(arguments[i].region)) return false;
-  const bool readsRectangles = std::ranges::any_of(kernel.parameters, [](const program::Parameter& parameter) {
-    return parameter.role == Role::Accumulator || assemble::isAppendOutput(parameter);
-  });
+  const bool readsRectangles =
+      std::ranges::any_of(kernel.parameters, [](const program::Parameter& parameter) {
+        return parameter.role == Role::Accumulator || assemble::isAppendOutput(parameter);
+      });
   return readsRectangles || (role != Role::Input && role != Role::Gather);
 }
 

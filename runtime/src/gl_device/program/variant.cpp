@@ -108,13 +108,16 @@ bool isDomainView(const RegionLayout& domain) {
 }
 
 /// Strided domains have ranks of their own in a key, and their rank in place of the kind of domain.
-bool isStrided(const RegionLayout& domain, const Task& task) { return domain.strided && task.work != Work::List; }
+bool isStrided(const RegionLayout& domain, const Task& task) {
+  return domain.strided && task.work != Work::List;
+}
 std::uint64_t rankBits(const RegionLayout& domain, const Task& task) {
   if (!isStrided(domain, task)) return assemble::decodedRank(domain);
   return domain.linear ? 5 : domain.numbered ? 6 : 7;
 }
 std::uint64_t domainBits(const RegionLayout& domain, const Task& task) {
-  const std::uint64_t kind = isStrided(domain, task) ? assemble::decodedRank(domain) - 1u : static_cast<std::uint64_t>(domainOf(domain, task));
+  const std::uint64_t kind = isStrided(domain, task) ? assemble::decodedRank(domain) - 1u
+                                                     : static_cast<std::uint64_t>(domainOf(domain, task));
   return kind | std::uint64_t{domain.layered} << 2 | std::uint64_t{isDomainView(domain)} << 3;
 }
 

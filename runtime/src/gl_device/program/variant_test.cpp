@@ -72,8 +72,10 @@ TEST_CASE("views, repeats and linearised streams are told apart, each with a key
   const Shape plane(8, 9);
   const Shape line(8, 90);
   const RegionLayout square = whole({4, 4});
-  const RegionLayout by2 = strides(plane, Shape(4, 4), {18, 2}), byNumber = strides(plane, Shape(4, 4), {7, 1});
-  const RegionLayout byLine = strides(line, Shape(4, 4), {180, 2}), otherNumber = strides(plane, Shape(4, 4), {7, 2});
+  const RegionLayout by2 = strides(plane, Shape(4, 4), {18, 2}),
+                     byNumber = strides(plane, Shape(4, 4), {7, 1});
+  const RegionLayout byLine = strides(line, Shape(4, 4), {180, 2}),
+                     otherNumber = strides(plane, Shape(4, 4), {7, 2});
   const RegionLayout byRow = strides(plane, Shape(16), {2});
   const std::vector<Chosen> all{
       choose(whole(plane), whole(plane), whole(plane)),
