@@ -536,7 +536,7 @@ bool NativeDevice::needsDense(const Kernel& kernel, std::span<const Argument> ar
   if (role != Role::Output) return all.extent[0] != 1 && all.stride[0] != 1;
   for (std::size_t other = 0; other < arguments.size(); ++other) {
     const Role read = kernel.parameters[other].role;
-    const bool isElement = read == Role::Input && arguments[other].fit == Fit::Same;
+    const bool isElement = read == Role::Input && arguments[other].fit == program::Fit::Same;
     if ((read == Role::Input || read == Role::Gather) && overlap(region, arguments[other].region) &&
         !(isElement && isSameRegion(region, arguments[other].region)))
       return true;
