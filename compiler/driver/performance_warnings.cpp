@@ -174,7 +174,12 @@ void warnOfPerformance(const Module& module, Diagnostics& diagnostics) {
   const emit::Program program(module);
   for (const emit::Unit& unit : program.units()) {
     const Kernel& kernel = module.kernels[unit.id];
-    if (!kernel.isSynthesized && !kernel.pass) advisor.kernel(kernel, unit.kernel);
+    if (kernel.isSynthesized || kernel.pass) continue;
+    if (kernel.unrolled.empty()) {
+      advisor.kernel(kernel, unit.kernel);
+    } else {  // of a variant for a value, which is the one to be fast
+      advisor.kernel(module.kernels[kernel.unrolled.back().kernel], *unit.kernel.unrolled.back().kernel);
+    }
   }
 }
 

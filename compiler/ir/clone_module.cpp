@@ -25,6 +25,7 @@ Kernel clone(const Kernel& kernel) {
               .pass = kernel.pass,
               .variants = kernel.variants,
               .choices = kernel.choices,
+              .unrolled = kernel.unrolled,
               .loc = kernel.loc};
   for (const KernelParam& param : kernel.params) copy.params.push_back(ir::clone(param));
   return copy;

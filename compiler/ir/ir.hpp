@@ -371,6 +371,13 @@ struct LoopNote {
   std::string whyNot = {};  ///< why it stays a loop; empty if it was unrolled
 };
 
+/// A variant of a kernel for one value of a Spec parameter, with the same parameters: set by unroll-spec-loops.
+struct UnrolledVariant {
+  VarId spec;
+  std::uint32_t value;  ///< its bits
+  KernelId kernel;
+};
+
 struct Kernel {
   std::string name;  ///< without namespaces
   std::vector<std::string> scope;  ///< enclosing namespaces, outermost first
@@ -389,6 +396,7 @@ struct Kernel {
   PrecisionVariants variants;
   Choices choices;
   std::vector<LoopNote> loops = {};  ///< loops whose counters index neighbours or array elements
+  std::vector<UnrolledVariant> unrolled = {};
   Loc loc;
 };
 

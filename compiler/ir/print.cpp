@@ -160,6 +160,10 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
   if (kernel.reduction && kernel.reduction->finish) {
     text += fmt::format(", finished by @{}", module.kernels[*kernel.reduction->finish].entry);
   }
+  for (const UnrolledVariant& variant : kernel.unrolled) {
+    text += fmt::format(", unrolled @{} if ${} is {}", module.kernels[variant.kernel].entry, variant.spec,
+                        variant.value);
+  }
   if (kernel.variants.wide) text += fmt::format(", wide @{}", module.kernels[*kernel.variants.wide].entry);
   if (kernel.variants.half) text += fmt::format(", half @{}", module.kernels[*kernel.variants.half].entry);
   if (kernel.reduction) {

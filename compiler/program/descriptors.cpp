@@ -33,6 +33,7 @@ struct Program::Storage {
   std::deque<std::vector<sk::program::CompensatedSum>> compensatedSums;
   std::deque<sk::program::WideReduction> wide;
   std::deque<sk::program::Kernel> forms;
+  std::deque<std::vector<sk::program::UnrolledKernel>> unrolled;
   std::deque<std::vector<sk::program::ExactSum>> exact;
   std::deque<std::vector<std::uint8_t>> combineOperands;
   std::deque<std::vector<std::uint8_t>> factors;
@@ -106,8 +107,20 @@ class Builder {
     } else {
       if (kernel.variants.half) unit.kernel.half = &form(*kernel.variants.half);
       if (kernel.variants.wide) unit.kernel.wide = &form(*kernel.variants.wide);
+      addUnrolled(kernel, unit.kernel);
     }
     storage_.units.push_back(unit);
+  }
+
+  void addUnrolled(const Kernel& kernel, sk::program::Kernel& made) {
+    std::vector<sk::program::UnrolledKernel>& all = storage_.unrolled.emplace_back();
+    for (const UnrolledVariant& variant : kernel.unrolled) {
+      const auto before =
+          std::count_if(kernel.params.begin(), kernel.params.begin() + variant.spec,
+                        [](const KernelParam& param) { return param.role == ParamRole::Spec; });
+      all.push_back({static_cast<std::uint8_t>(before), variant.value, &form(variant.kernel)});
+    }
+    made.unrolled = all;
   }
 
   const sk::program::Table* describe(const Table& table) {

@@ -117,6 +117,7 @@ class SourceWriter {
     const Kernel& declared = kernelOf(unit);
     isScan_ = declared.isScan;  // of the overload that combines, too
     const sk::program::Kernel& whole = program_.units()[unit].kernel;
+    unrolled(whole, declared, names_[unit]);
     if (whole.half != nullptr)
       kernel(*whole.half, *declared.variants.half, names_[unit] + "Half", inFloats(Speed::Any));
     if (whole.wide != nullptr) kernel(*whole.wide, *declared.variants.wide, names_[unit] + "Wide", {});
@@ -128,6 +129,18 @@ class SourceWriter {
       exactSums(made->exact, declared, names_[unit]);
       reduction(*made, declared, names_[unit], combine);
     }
+  }
+
+  /// Prints the variants NAMEUnrolledVALUEKernel of a kernel and their list, NAMEUnrolled.
+  void unrolled(const sk::program::Kernel& whole, const Kernel& declared, const std::string& name) {
+    std::vector<std::string> items;
+    for (std::size_t i = 0; i < whole.unrolled.size(); ++i) {
+      const sk::program::UnrolledKernel& variant = whole.unrolled[i];
+      const std::string variantName = fmt::format("{}Unrolled{}", name, variant.value);
+      kernel(*variant.kernel, declared.unrolled[i].kernel, variantName, inFloats(Speed::Best));
+      items.push_back(fmt::format("{{{}, {}u, &{}Kernel}}", variant.spec, variant.value, variantName));
+    }
+    list("UnrolledKernel", name + "Unrolled", items);
   }
 
   /// How much the speed of a kernel's native code matters.
@@ -446,6 +459,7 @@ class SourceWriter {
     if (!kernel.whyNotHalf.empty()) members.push_back(".whyNotHalf = " + quoted(kernel.whyNotHalf));
     if (!kernel.whyNotWide.empty()) members.push_back(".whyNotWide = " + quoted(kernel.whyNotWide));
     if (!kernel.tables.empty()) members.push_back(fmt::format(".tables = {}Tables", name));
+    if (!kernel.unrolled.empty()) members.push_back(fmt::format(".unrolled = {}Unrolled", name));
     if (!kernel.drawn) members.emplace_back(".drawn = false");
     if (!kernel.dispatched) members.emplace_back(".dispatched = false");
     if (!codeSymbol.empty()) members.push_back(".code = &native::" + codeSymbol);

@@ -26,6 +26,7 @@
 #include "transforms/sum_exactly.hpp"
 #include "transforms/tabulate.hpp"
 #include "transforms/unroll_loops.hpp"
+#include "transforms/unroll_spec_loops.hpp"
 #include "transforms/widen_floats.hpp"
 
 namespace skc {
@@ -62,6 +63,8 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // * unroll-loops needs the constant bounds that folding finds, and folds what it creates. It precedes
 //   everything that inspects kernels: known iterations have known branches, constant offsets and named
 //   components.
+// * unroll-spec-loops precedes unroll-loops, which notes the loops that stay in declared kernels, and like it needs
+//   folded bounds.
 // * find-neighbors needs the constant offsets of unrolled loops, and precedes the analyses of stream uses.
 // * bound-pushes follows folding, which finds trip counts and removes unreachable pushes.
 // * inline-folds lets derive-combine see through helper functions.
@@ -77,6 +80,7 @@ constexpr Transform transforms[] = {
     {"specialize-gathers", plain<specializeGathers>},
     {"tabulate", plain<tabulate>},
     {"fold-constants", plain<foldConstants>},
+    {"unroll-spec-loops", plain<unrollSpecLoops>},
     {"unroll-loops", plain<unrollLoops>},
     {"find-neighbors", plain<findNeighbors>},
     {"guard-streams", plain<guardStreams>},

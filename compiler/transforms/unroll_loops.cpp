@@ -291,10 +291,12 @@ class Unroller {
 }  // namespace
 
 void unrollLoops(Module& module, Diagnostics&) {
-  for (Kernel& kernel : module.kernels) {
-    Unroller unroller(module, kernel);
-    for (const FunctionId id : functionsOf(module, kernel)) unroller.run(module.functions[id]);
-  }
+  for (Kernel& kernel : module.kernels) unrollLoops(module, kernel);
+}
+
+void unrollLoops(Module& module, Kernel& kernel) {
+  Unroller unroller(module, kernel);
+  for (const FunctionId id : functionsOf(module, kernel)) unroller.run(module.functions[id]);
 }
 
 }  // namespace skc

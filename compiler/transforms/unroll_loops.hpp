@@ -30,5 +30,7 @@ constexpr std::int64_t mostUnrolledIterations = 64;
 constexpr std::int64_t mostUnrolledExpressions = 1000;
 
 void unrollLoops(ir::Module& module, Diagnostics& diagnostics);
+/// Likewise, for one kernel, which may not be in the module yet.
+void unrollLoops(ir::Module& module, ir::Kernel& kernel);
 
 }  // namespace skc

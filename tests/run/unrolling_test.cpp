@@ -24,6 +24,36 @@ TEST_CASE("an unrolled blur has the bits of its loop") {
   }
 }
 
+TEST_CASE("loops that a specialisation constant bounds have the bits of loops with arguments") {
+  const std::vector<float> x = values<float>(11 * 24);
+  onEveryProfile([&](sk::Device& device) {
+    auto a = device.stream<float>({11, 24}), r = device.stream<float>({11, 24}),
+         s = device.stream<float>({11, 24});
+    a.write(x);
+    for (const int radius : {-1, 0, 1, 2, 3, 9}) {
+      INFO("radius " << radius);
+      unrolling::bySpec(radius, a, r);
+      unrolling::byUniform(radius, a, s);
+      CHECK(r.read() == s.read());
+    }
+    auto line = streamOf<float>(device, x);
+    auto t = device.stream<float>({11 * 24}), u = device.stream<float>({11 * 24});
+    for (const unsigned taps : {0u, 5u, 8u, 9u}) {
+      INFO("taps " << taps);
+      unrolling::sumsByUniform(true, taps, line, line, u);
+      unrolling::sums(true, taps, line, line, t);
+      CHECK(t.read() == u.read());
+      unrolling::sumsByUniform(false, taps, line, line, u);
+      unrolling::sums(false, taps, sk::none, line, t);
+      CHECK(t.read() == u.read());
+    }
+    sk::Loop loop = device.record([&] { unrolling::bySpec(1, a, r); });
+    loop.repeat(2);
+    unrolling::byUniform(1, a, s);
+    CHECK(r.read() == s.read());
+  });
+}
+
 TEST_CASE(
     "an index that is a neighbor's means the same for every boundary, and beside every shape of the gather") {
   for (const sk::Shape shape : {sk::Shape{9, 12}, sk::Shape{4, 5}, sk::Shape{20, 31}}) {

@@ -206,6 +206,13 @@ struct TableUse {
   std::string_view name;  ///< the function's name in the body
 };
 
+/// A variant of a kernel for one value of a Spec parameter, without the loops that it bounds.
+struct UnrolledKernel {
+  std::uint8_t spec;  ///< the parameter's number among Spec parameters
+  std::uint32_t value;  ///< its bits
+  const Kernel* kernel;
+};
+
 /// A kernel. Its GLSL entry function has a parameter for every Uniform, Iterator, Spec, Input (by value) and
 /// Output (as `out`), in order; gathers, variable outputs and scatter outputs are not parameters.
 struct Kernel {
@@ -231,6 +238,7 @@ struct Kernel {
   const Kernel* wide = nullptr;  ///< the variant that computes in doubles for floats; or null
   std::string_view whyNotHalf = {}, whyNotWide = {};  ///< why a kernel with floats lacks that variant
   std::span<const TableUse> tables = {};  ///< of the functions that the body calls
+  std::span<const UnrolledKernel> unrolled = {};  ///< computes the same, in float
   bool drawn = true;  ///< fragment programs may run it; false if skc was asked for other targets only
   bool dispatched = true;  ///< compute programs may run it
   const native::Code* code = nullptr;  ///< its native code (sk/native/code.hpp); null if there is none

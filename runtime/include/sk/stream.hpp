@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Streams are shaped, typed collections of elements on a device; views are boxes of a stream. Device::stream
-// creates streams. The templates here wrap a few untyped functions; GL appears only in StreamTexture and
+// Streams are shaped, typed collections of elements on a device; views are boxes of a stream, every n-th element of
+// one, or its elements in another shape. Device::stream creates streams. The templates here wrap a few untyped functions; GL appears only in StreamTexture and
 // fillBuffer.
 #pragma once
 
@@ -29,11 +29,15 @@ struct TypedStreams;
 template <ElementType T>
 class Stream;
 
-/// A box of a stream's elements without their type: the argument of an untyped call.
+/// Elements of a stream without their type: the argument of an untyped call. They are a box of the stream, or, if
+/// `stride` has a rank, any elements at regular distances.
 struct StreamRegion {
   StreamState* stream = nullptr;
-  Index begin = {};  ///< the first element
-  Shape shape = {};  ///< the extents; the rank is the stream's
+  Index begin = {};  ///< of a box: the first element
+  Shape shape = {};  ///< the extents; the rank of a box is the stream's
+  /// Element i is number first + sum(i[d] * stride[d]) of the stream, row-major; distances are above 0.
+  Index stride = {};
+  std::int64_t first = 0;
 };
 
 /// The texture that holds one plane of a stream. A scalar or vector element has one plane; a struct has one
@@ -70,6 +74,8 @@ using StreamOwner = Owner<StreamState, StreamDeleter>;
 
 StreamRegion wholeRegion(StreamState* state);
 StreamRegion partOf(const StreamRegion& region, const Index& begin, const Index& end);
+StreamRegion strided(const StreamRegion& region, const Index& steps, const Index& offsets);
+StreamRegion reshaped(const StreamRegion& region, const Shape& shape);
 void write(const StreamRegion& region, const void* elements, std::size_t count);
 void read(const StreamRegion& region, void* elements, std::size_t count);
 TransferOwner readAsync(const StreamRegion& region);
@@ -83,7 +89,7 @@ void fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t byteOffse
 
 }  // namespace detail
 
-/// A box of a stream, by reference: it must not outlive the stream. A view can be an input or an output of a
+/// Elements of a stream, by reference: it must not outlive the stream. A view can be an input or an output of a
 /// kernel wherever the stream can. A View<const T> cannot be written.
 template <class T>
 class View {
@@ -173,12 +179,16 @@ class View {
   /// overlap and may be on different devices. On one device and with one storage, nothing goes through host
   /// memory.
   void copyTo(const View<value_type>& target) const { detail::copy(region_, target.region()); }
+  void copyTo(Stream<value_type>& target) const { detail::copy(region_, target.region()); }
 
   /// The box from `begin` (inclusive) to `end` (exclusive) of this view, rows first. Throws sk::Error unless
   /// the box is inside the view.
   View domain(const Index& begin, const Index& end) const {
     return View(detail::partOf(region_, begin, end));
   }
+  /// The same elements, in row-major order, in another shape; nothing is copied. Throws sk::Error if the shape has
+  /// another number of elements, or if the view's elements do not lie at regular distances in it.
+  View reshape(const Shape& shape) const { return View(detail::reshaped(region_, shape)); }
 
   const Shape& shape() const { return region_.shape; }
   std::int64_t size() const { return region_.shape.size(); }
@@ -258,6 +268,10 @@ class Stream {
   /// the stream.
   View<T> domain(const Index& begin, const Index& end) { return all().domain(begin, end); }
   View<const T> domain(const Index& begin, const Index& end) const { return all().domain(begin, end); }
+  /// The elements, in row-major order, in another shape; nothing is copied. Throws sk::Error if the shape has another
+  /// number of elements.
+  View<T> reshape(const Shape& shape) { return all().reshape(shape); }
+  View<const T> reshape(const Shape& shape) const { return all().reshape(shape); }
 
   /// After a kernel has pushed to the stream, the first call of one of these waits for that kernel.
   Shape shape() const { return region().shape; }
@@ -299,6 +313,21 @@ StreamRegion regionOf(const View<T>& view) {
   return view.region();
 }
 
+/// Every steps[d]-th element of a stream or view in each dimension, from offsets[d] on (by default, from the first), rows
+/// first: a view of the shape ceil((extent - offset) / step), to be read and written. Throws sk::Error unless there are a
+/// step of at least 1 and an offset from 0 to the extent in every dimension.
+template <ElementType T>
+View<T> stride(Stream<T>& stream, const Index& steps, const Index& offsets = {}) {
+  return View<T>(detail::strided(stream.region(), steps, offsets));
+}
+template <ElementType T>
+View<const T> stride(const Stream<T>& stream, const Index& steps, const Index& offsets = {}) {
+  return View<const T>(detail::strided(stream.region(), steps, offsets));
+}
+template <class T>
+View<T> stride(const View<T>& view, const Index& steps, const Index& offsets = {}) {
+  return View<T>(detail::strided(view.region(), steps, offsets));
+}
 /// Whether a reference to S may be an output: non-const streams, and writable views.
 template <class S>
 inline constexpr bool isWritable = false;

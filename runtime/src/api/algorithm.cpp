@@ -16,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include "call/dense_regions.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/reordering.hpp"
@@ -71,7 +72,8 @@ DeviceState& checkStreams(const StreamRegion& keys, const StreamRegion* values, 
 template <class T>
 std::vector<T> readAs(const StreamRegion& region) {
   auto values = detail::hostVector<T>(static_cast<std::size_t>(region.shape.size()));
-  if (!values.empty()) region.stream->read(region, reinterpret_cast<std::byte*>(values.data()));
+  const DenseRegion dense(region, /*isRead=*/true);
+  if (!values.empty()) dense.get().stream->read(dense.get(), reinterpret_cast<std::byte*>(values.data()));
   return values;
 }
 
@@ -85,7 +87,8 @@ auto withKeys(const StreamRegion& keys, Use&& use) {
   if (scalar == program::Scalar::Double) return use(readAs<double>(keys));
   if (!stream.device->isReference() && stream.storage < Storage::Extended) return use(readAs<float>(keys));
   auto values = detail::hostVector<double>(static_cast<std::size_t>(keys.shape.size()));
-  if (!values.empty()) keys.stream->readReals(keys, values.data());
+  const DenseRegion dense(keys, /*isRead=*/true);
+  if (!values.empty()) dense.get().stream->readReals(dense.get(), values.data());
   return use(values);
 }
 
@@ -140,7 +143,10 @@ Reordering::By byKeys(const SortOptions& options) {
 }
 
 void permute(const StreamRegion& region, const Permutation& order) {
-  if (!order.empty()) region.stream->permute(region, order);
+  if (order.empty()) return;
+  const DenseRegion dense(region, /*isRead=*/true);
+  dense.get().stream->permute(dense.get(), order);
+  dense.finish();
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_rows.hpp"
+#include "call/dense_regions.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
@@ -217,7 +218,11 @@ void runResolved(const ResolvedReduction& call) {
   const TraceScope traced(call.device.trace.get(), "call", call.reduction.fold.name);
   traced.add("domain", call.domain);
   if (!call.isToValues()) traced.add("blocks", call.blocks);
-  if (call.blocks.size() != 0) reduceResolved(call);
+  if (call.blocks.size() == 0) return;
+  const DenseArguments dense(call.reduction.fold, call.arguments);
+  if (dense.areAsGiven()) return reduceResolved(call);
+  reduceResolved(call.of(call.reduction, dense.get(), call.values));
+  dense.finish();
 }
 
 class RecordedReduction final : public RecordedCall {

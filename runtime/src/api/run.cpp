@@ -7,6 +7,7 @@
 
 #include "call/check_argument.hpp"
 #include "call/check_call.hpp"
+#include "call/dense_regions.hpp"
 #include "call/precision.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
@@ -23,11 +24,13 @@ namespace {
 void runResolved(DeviceState& device, const ResolvedCall& call, RecordedCall* prepared = nullptr) {
   const TraceScope traced(device.trace.get(), "call", call.kernel.name);
   traced.add("domain", call.domain);
-  if (prepared != nullptr) {
-    prepared->run();
-  } else {
-    device.run(call);
-  }
+  if (prepared != nullptr) return prepared->run();
+  const DenseArguments dense(call.kernel, call.arguments);
+  if (dense.areAsGiven()) return device.run(call);
+  ResolvedCall denseCall = call;
+  denseCall.arguments = dense.get();
+  device.run(denseCall);
+  dense.finish();
 }
 
 class RecordedKernel final : public RecordedCall {
@@ -39,7 +42,8 @@ class RecordedKernel final : public RecordedCall {
   }
 
   void run() override {
-    if (!std::exchange(isPrepared_, true)) prepared_ = device_.prepare(call_);
+    if (!std::exchange(isPrepared_, true) && !needsDenseArguments(call_.kernel, call_.arguments))
+      prepared_ = device_.prepare(call_);
     runResolved(device_, call_, prepared_.get());
   }
 
@@ -63,6 +67,12 @@ void record(DeviceState& device, const ResolvedCall& call) {
   device.recording->add(std::make_unique<RecordedKernel>(device, call));
 }
 
+/// Variants with unrolled loops compute in float.
+const Kernel& chosenVariant(const DeviceState& device, const ResolvedCall& call) {
+  const bool isInFloat = !device.isReference() && !needsPrecisionVariant(call.options);
+  return isInFloat ? unrolledVariant(call.kernel, call.specs) : call.kernel;
+}
+
 void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
   if (options.accumulate != Accumulate::Default) {
     fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
@@ -73,8 +83,9 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   DeviceState& device = checked->device;
   checked->call.options = device.configuration.resolve(kernel, options);
   checkTables(kernel, checked->call.options);
-  if (device.recording != nullptr) return record(device, checked->call);
-  runResolved(device, checked->call);
+  const ResolvedCall call = checked->call.of(chosenVariant(device, checked->call), device.limits);
+  if (device.recording != nullptr) return record(device, call);
+  runResolved(device, call);
 }
 
 }  // namespace

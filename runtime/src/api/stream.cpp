@@ -7,8 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "call/dense_regions.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
+#include "device/region.hpp"
 #include "device/stream_state.hpp"
 #include "sk/error.hpp"
 #include "sk/limits.hpp"
@@ -92,15 +94,6 @@ void StreamState::leave() noexcept {
   device = nullptr;
 }
 
-bool isInside(const StreamRegion& region) {
-  const Shape& shape = region.stream->shape;
-  bool inside = region.shape.rank() == shape.rank();
-  for (int d = 0; inside && d < shape.rank(); ++d) {
-    inside = region.begin[d] + region.shape[d] <= shape[d];
-  }
-  return inside;
-}
-
 StreamState& liveStream(const StreamRegion& region, std::string_view context) {
   if (region.stream == nullptr) {
     throw Error(fmt::format("{}: there is no stream: it was default-constructed or moved from; make one by "
@@ -117,11 +110,12 @@ StreamState& liveStream(const StreamRegion& region, std::string_view context) {
   }
   region.stream->settle();
   if (region.shape.rank() > 0 && !isInside(region)) {
+    const std::string from = isBox(region) ? fmt::format(" from {}", toString(region.begin)) : "";
     throw Error(
         fmt::format(
-            "{}: a view from {} of shape {} is no longer inside its stream, to which a kernel has pushed {} "
+            "{}: a view{} of shape {} is no longer inside its stream, to which a kernel has pushed {} "
             "element(s); make the view after the call",
-            context, toString(region.begin), toString(region.shape), region.stream->shape.size()),
+            context, from, toString(region.shape), region.stream->shape.size()),
         Error::Kind::Shape);
   }
   return *region.stream;
@@ -148,39 +142,13 @@ StreamRegion detail::wholeRegion(StreamState* state) {
   return {state, Index::origin(state->shape.rank()), state->shape};
 }
 
-StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, const Index& end) {
-  if (region.stream == nullptr) {
-    throw Error(
-        "domain: there is no stream: it was default-constructed or moved from; make one by "
-        "device.stream<T>(shape)",
-        Error::Kind::Lost);
-  }
-  const int rank = region.shape.rank();
-  bool isInside = begin.rank() == rank && end.rank() == rank;
-  for (int d = 0; isInside && d < rank; ++d) {
-    isInside = begin[d] >= 0 && begin[d] <= end[d] && end[d] <= region.shape[d];
-  }
-  if (!isInside) {
-    throw Error(
-        fmt::format(
-            "domain: {} (inclusive) to {} (exclusive) is no box inside shape {}; give each a position "
-            "in every dimension, rows first",
-            toString(begin), toString(end), toString(region.shape)),
-        Error::Kind::Shape);
-  }
-  StreamRegion part = region;
-  for (int d = 0; d < rank; ++d) {
-    part.begin[d] += begin[d];
-    part.shape = part.shape.with(d, end[d] - begin[d]);
-  }
-  return part;
-}
-
 void detail::write(const StreamRegion& region, const void* elements, std::size_t count) {
   withHostMemory("write", [&] {
     if (StreamState* stream = checkTransfer(region, count, true, "write")) {
       const TransferScope traced(*stream, "write", region);
-      stream->write(region, static_cast<const std::byte*>(elements));
+      const DenseRegion dense(region, /*isRead=*/false);
+      dense.get().stream->write(dense.get(), static_cast<const std::byte*>(elements));
+      dense.finish();
     }
   });
 }
@@ -189,7 +157,8 @@ void detail::read(const StreamRegion& region, void* elements, std::size_t count)
   withHostMemory("read", [&] {
     if (StreamState* stream = checkTransfer(region, count, false, "read")) {
       const TransferScope traced(*stream, "read", region);
-      stream->read(region, static_cast<std::byte*>(elements));
+      const DenseRegion dense(region, /*isRead=*/true);
+      dense.get().stream->read(dense.get(), static_cast<std::byte*>(elements));
     }
   });
 }
@@ -211,7 +180,8 @@ detail::TransferOwner detail::readAsync(const StreamRegion& region) {
       return TransferOwner(new ReadyTransfer({}));
     }
     const TransferScope traced(stream, "readAsync", region);
-    return TransferOwner(stream.readAsync(region).release());
+    const DenseRegion dense(region, /*isRead=*/true);
+    return TransferOwner(dense.get().stream->readAsync(dense.get()).release());
   });
 }
 
@@ -219,7 +189,9 @@ void detail::writeAsync(const StreamRegion& region, const void* elements, std::s
   withHostMemory("writeAsync", [&] {
     if (StreamState* stream = checkTransfer(region, count, true, "writeAsync")) {
       const TransferScope traced(*stream, "writeAsync", region);
-      stream->writeAsync(region, static_cast<const std::byte*>(elements));
+      const DenseRegion dense(region, /*isRead=*/false);
+      dense.get().stream->writeAsync(dense.get(), static_cast<const std::byte*>(elements));
+      dense.finish();
     }
   });
 }
@@ -277,7 +249,9 @@ void detail::writeReals(const StreamRegion& region, std::span<const double> valu
     }
     if (values.empty()) return;
     const TransferScope traced(stream, "writeReals", region);
-    stream.writeReals(region, values.data());
+    const DenseRegion dense(region, /*isRead=*/false);
+    dense.get().stream->writeReals(dense.get(), values.data());
+    dense.finish();
   });
 }
 
@@ -289,7 +263,8 @@ std::vector<double> detail::readReals(const StreamRegion& region) {
     std::vector<double> values = detail::hostVector<double>(realsIn(region, *stream.element, "readReals"));
     if (!values.empty()) {
       const TransferScope traced(stream, "readReals", region);
-      stream.readReals(region, values.data());
+      const DenseRegion dense(region, /*isRead=*/true);
+      dense.get().stream->readReals(dense.get(), values.data());
     }
     return values;
   });
@@ -334,7 +309,10 @@ void detail::fill(const StreamRegion& region, const void* element) {
 namespace {
 
 /// Copies through host memory: floats as doubles, so that copies from a reference device lose nothing.
-void copyByHost(const StreamRegion& from, const StreamRegion& to) {
+void copyByHost(const StreamRegion& givenFrom, const StreamRegion& givenTo) {
+  const DenseRegion source(givenFrom, /*isRead=*/true), target(givenTo, /*isRead=*/false);
+  const StreamRegion& from = source.get();
+  const StreamRegion& to = target.get();
   const program::Element& element = *from.stream->element;
   const bool isOfFloats = std::ranges::all_of(
       element.fields, [](const program::Field& field) { return field.scalar == program::Scalar::Float; });
@@ -342,11 +320,12 @@ void copyByHost(const StreamRegion& from, const StreamRegion& to) {
     auto values = detail::hostVector<double>(realsIn(from, element, "copyTo"));
     from.stream->readReals(from, values.data());
     to.stream->writeReals(to, values.data());
-    return;
+    return target.finish();
   }
   auto elements = detail::hostVector<std::byte>(bytesOf(from.shape.size(), element.size));
   from.stream->read(from, elements.data());
   to.stream->write(to, elements.data());
+  target.finish();
 }
 
 void runCopy(const StreamRegion& from, const StreamRegion& to) {

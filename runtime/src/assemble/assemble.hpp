@@ -66,6 +66,11 @@ enum class Domain : std::uint8_t {
   /// The linearised list of an append output: the element is the one that pushed the entry
   /// (append/append_passes.hpp).
   Entry,
+  /// Strided regions, for copies to them: of a plane, of a plane by number, of a linearised stream. Texels between
+  /// their elements are skipped; compute programs run for the elements of a Strided one alone, numbered from {0, 0}.
+  Strided,
+  StridedRows,
+  StridedLinear,
 };
 Domain domainOf(const RegionLayout& output);
 
@@ -77,6 +82,7 @@ enum class Addressing : std::uint8_t {
   /// components advance with the element number.
   Linear,
   Layered,  ///< like Linear, in an array texture
+  Rows,  ///< strided: texel = (number % width, number / width) in a plane
 };
 
 struct StreamAccess {
@@ -91,6 +97,7 @@ struct StreamAccess {
   bool fitted = false;  ///< inputs with another program::Fit than Same
   Storage storage = Storage::Single;  ///< inputs, outputs and gathers: how the stream stores floats
   bool packed = false;  ///< four elements per texel
+  bool strided = false;  ///< RegionLayout::strided: a view
   auto operator<=>(const StreamAccess&) const = default;
 };
 
@@ -157,9 +164,9 @@ struct Variant {
 ///   sk_tex_P | sk_tex0_P sk_tex1_P ...   samplers, one per plane (a single plane has no number)
 ///   sk_origin_P  ivec4             first index of the region in its stream, x fastest
 ///   sk_shape_P   ivec4             shape of the region, missing dimensions 1
-///   sk_stride_P  ivec4             Linear: elements to step for each dimension of its stream; of an
-///                                  iterator, of the domain
-///   sk_shift_P   int               Linear: log2 of the texture's width
+///   sk_stride_P  ivec4             Linear and strided: elements to step for each dimension; of an iterator,
+///                                  of the domain
+///   sk_shift_P   int               Linear: log2 of the texture's width; Rows: the width in elements
 ///   sk_ratio_P   ivec4             of a fitted input: its stretch or stride in each dimension
 /// The domain, and hence every output, has the same uniforms under the names `sk_domain_origin
 /// sk_domain_shape sk_domain_stride sk_domain_shift`. If it has layers, there is also `sk_domain_row`, an

@@ -27,6 +27,18 @@ std::vector<Rect> consecutiveTexels(std::int32_t begin, std::int32_t end, std::i
   return rects;
 }
 
+/// The rectangles that hold a strided region, which is not packed, and what lies between its elements.
+std::vector<Rect> texelsAround(const RegionLayout& region) {
+  const Index4& origin = region.origin;
+  const auto reach = [&](std::size_t d) { return (region.extent[d] - 1) * region.stride[d]; };
+  if (!region.linear && !region.numbered) return {{origin[0], origin[1], reach(0) + 1, reach(1) + 1}};
+  std::int32_t last = origin[0];
+  for (std::size_t d = 0; d < region.extent.size(); ++d) last += region.extent[d] > 1 ? reach(d) : 0;
+  if (region.linear) return consecutiveTexels(origin[0], last + 1, region.shift);
+  const std::int32_t firstRow = origin[0] / region.shift;
+  return {{0, firstRow, region.shift, last / region.shift - firstRow + 1}};
+}
+
 }  // namespace
 
 std::int64_t elements(const Index4& extent) {
@@ -40,7 +52,8 @@ Index4 stridesOf(const Index4& extent) {
 }
 
 bool isWholeTexels(const RegionLayout& region) {
-  return region.origin[0] % lanes == 0 && region.extent[0] % lanes == 0;
+  const bool areRowsWhole = !region.linear || decodedRank(region) == 1 || region.stride[1] % lanes == 0;
+  return !region.strided && areRowsWhole && region.origin[0] % lanes == 0 && region.extent[0] % lanes == 0;
 }
 
 RegionLayout texelsOf(const RegionLayout& region) {
@@ -85,6 +98,7 @@ RegionLayout linearLayout(std::int64_t count, const TextureShape& texture) {
 
 bool drawsWholeQuads(const RegionLayout& region) {
   if (region.packed) return drawsWholeQuads(texelsOf(region));
+  if (region.strided) return false;
   const auto isEven = [](std::int32_t number) { return number % 2 == 0; };
   if (region.linear) {
     return !region.view && !region.layered &&
@@ -96,6 +110,7 @@ bool drawsWholeQuads(const RegionLayout& region) {
 
 std::vector<Rect> drawnTexels(const RegionLayout& region) {
   if (elements(region.extent) == 0) return {};
+  if (region.strided) return texelsAround(region);
   if (region.packed) return drawnTexels(texelsOf(region));
   if (!region.linear) {
     return {{region.origin[0], region.origin[1], region.extent[0], region.extent[1]}};

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -21,16 +22,19 @@ using Index4 = std::array<std::int32_t, 4>;
 /// texture with consecutive square layers, so that texel (x, y) is texel (x, y & (1 << shift) - 1) of layer y
 /// >> shift. Packed: a texel holds four elements that are consecutive in x, and each row of the stream has a
 /// multiple of four. Element (x, y) is component x & 3 of texel (x >> 2, y); element number n is component n
-/// & 3 of the texel that number n >> 2 would have.
+/// & 3 of the texel that number n >> 2 would have. Strided: the element at index i of a plane is that at origin + i *
+/// stride of the stream; by number, it has the number origin[0] + sum(i * stride).
 struct RegionLayout {
   bool linear = false;
   bool packed = false;
   bool layered = false;  ///< only if linear
-  bool view = false;  ///< less than the whole stream
+  bool view = false;  ///< less than the whole stream, or in another shape
+  bool strided = false;
+  bool numbered = false;  ///< a strided region of a plane, by number: the stream's rows follow each other
   Index4 origin = {0, 0, 0, 0};  ///< first index of the region in its stream
   Index4 extent = {1, 1, 1, 1};  ///< shape of the region; missing dimensions 1
-  Index4 stride = {1, 1, 1, 1};  ///< linear: stridesOf() of the whole stream
-  std::int32_t shift = 0;  ///< linear: log2 of the texture's width
+  Index4 stride = {1, 1, 1, 1};  ///< linear: stridesOf() of the whole stream; or as strided regions say
+  std::int32_t shift = 0;  ///< linear: log2 of the texture's width; numbered: the elements of a row
 
   bool operator==(const RegionLayout&) const = default;
 };
@@ -43,6 +47,9 @@ Index4 stridesOf(const Index4& extent);
 
 /// Elements per texel of a packed stream.
 inline constexpr std::int32_t lanes = 4;
+
+/// The stride of a missing dimension of a strided region by number, which no element number exceeds.
+inline constexpr std::int32_t noStride = std::numeric_limits<std::int32_t>::max();
 
 /// Whether a region of a packed stream consists of whole texels.
 bool isWholeTexels(const RegionLayout& region);
@@ -83,7 +90,7 @@ struct Rect {
 
 /// The rectangles to draw, one per draw, in a pass that writes every element of the region, which consists of
 /// whole texels. They contain only elements of the stream, so that no kernel ever runs on the unused end of a
-/// linearised texture. At most three; empty if the region is.
+/// linearised texture; those of a strided region also contain elements between. At most three; empty if the region is.
 std::vector<Rect> drawnTexels(const RegionLayout& region);
 
 /// Whether all edges of these rectangles are even, so that the 2 x 2 quads that GPUs shade are inside.

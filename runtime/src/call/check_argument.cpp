@@ -143,18 +143,6 @@ void checkGatherShape(const Kernel& kernel, const Parameter& gather, const Shape
   }
 }
 
-bool overlap(const StreamRegion& a, const StreamRegion& b) {
-  if (a.stream != b.stream || a.shape.size() == 0 || b.shape.size() == 0) {
-    return false;
-  }
-  for (int d = 0; d < a.shape.rank(); ++d) {
-    if (a.begin[d] + a.shape[d] <= b.begin[d] || b.begin[d] + b.shape[d] <= a.begin[d]) {
-      return false;
-    }
-  }
-  return true;
-}
-
 bool isValue(const Parameter& parameter, const Argument& argument) {
   const bool isStream = parameter.role == Role::Uniform && argument.value == nullptr;
   return !isStream && (parameter.role == Role::Uniform || parameter.role == Role::Iterator ||

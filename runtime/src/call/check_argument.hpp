@@ -42,9 +42,6 @@ void checkInputShape(const program::Kernel& kernel, const program::Parameter& in
 void checkGatherShape(const program::Kernel& kernel, const program::Parameter& gather, const Shape& shape,
                       const Shape& domain);
 
-/// Whether two regions share an element.
-bool overlap(const StreamRegion& a, const StreamRegion& b);
-
 /// Whether the argument is a value instead of a stream; streams of one element may stand for uniforms.
 bool isValue(const program::Parameter& parameter, const Argument& argument);
 

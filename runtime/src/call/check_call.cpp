@@ -9,6 +9,7 @@
 #include "call/check_argument.hpp"
 #include "call/check_rows.hpp"
 #include "device/device_state.hpp"
+#include "device/region.hpp"
 #include "device/stream_state.hpp"
 
 namespace sk {

@@ -10,6 +10,7 @@
 #include "call/check_rows.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
+#include "device/region.hpp"
 #include "device/stream_state.hpp"
 
 namespace sk {

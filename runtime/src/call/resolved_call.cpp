@@ -32,6 +32,13 @@ assemble::SpecValues specsOf(const Kernel& kernel, std::span<const Argument> arg
   return specs;
 }
 
+const Kernel& unrolledVariant(const Kernel& kernel, const assemble::SpecValues& specs) {
+  for (const program::UnrolledKernel& variant : kernel.unrolled) {
+    if (specs[variant.spec] == variant.value) return *variant.kernel;
+  }
+  return kernel;
+}
+
 Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const assemble::SpecValues& specs) {
   Shape domain;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {

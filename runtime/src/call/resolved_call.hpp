@@ -26,6 +26,9 @@ struct ResolvedCall {
   ResolvedCall of(const program::Kernel& variant, const DeviceLimits& limits) const;
 };
 
+/// The variant of a kernel for these values of its Spec parameters, or the kernel itself.
+const program::Kernel& unrolledVariant(const program::Kernel& kernel, const assemble::SpecValues& specs);
+
 /// `arguments` must have been checked, or be correct by construction.
 ResolvedCall resolveCall(const program::Kernel& kernel, std::span<const Argument> arguments,
                          const DeviceLimits& limits, const CallOptions& options = {});

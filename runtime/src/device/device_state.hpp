@@ -92,6 +92,12 @@ class DeviceState {
   virtual std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) = 0;
   /// Null if loops need no more than their calls one after the other.
   virtual std::unique_ptr<LoopRunner> makeLoopRunner() { return nullptr; }
+  /// Whether argument `i` of a checked call, a region with strides, needs a temporary stream in its place
+  /// (call/dense_regions.hpp).
+  virtual bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments,
+                          std::size_t i) = 0;
+  /// Likewise for transfers between a region and host memory.
+  virtual bool needsDense(const StreamRegion& region) = 0;
   /// There is at least one block. For an empty domain, the results are the identities, which then exist.
   virtual void reduce(const ResolvedReduction& call) = 0;
   /// Whether it adds sums of floats without rounding; otherwise it compensates them in its own precision.

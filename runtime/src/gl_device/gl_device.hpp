@@ -94,6 +94,8 @@ class GlDevice final : public DeviceState {
   void run(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   std::unique_ptr<LoopRunner> makeLoopRunner() override;
+  bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;
+  bool needsDense(const StreamRegion& region) override;
   void reduce(const ResolvedReduction& call) override;
   std::optional<std::int64_t> reorder(const Reordering& reordering) override;
 

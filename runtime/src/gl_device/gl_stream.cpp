@@ -252,8 +252,11 @@ bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
     const RegionLayout place = regionLayoutOf(region, glStream(region).layout);
     return place.packed && assemble::isWholeTexels(place);
   };
-  if (!isWholeTexels(from) || !isWholeTexels(to)) {
-    source.unpack();
+  // copies from and to strided regions read single elements, packed or not
+  const bool isFromStrides = regionLayoutOf(from, source.layout).strided;
+  const bool isToStrides = regionLayoutOf(to, layout).strided;
+  if (!isWholeTexels(to) || (!isFromStrides && !isWholeTexels(from))) {
+    if (!isFromStrides && !isToStrides) source.unpack();
     unpack();
   }
   const RegionLayout place = regionLayoutOf(to, layout);

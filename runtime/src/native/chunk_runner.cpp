@@ -110,7 +110,7 @@ void ChunkRunner::runInside(std::int64_t begin, std::int64_t end, std::int64_t l
 void ChunkRunner::call(std::int64_t x, std::int64_t count, std::int64_t room) {
   arrays_.place(x, count, room);
   compute(x, count);
-  if (count < room) arrays_.storeOutputs(x, count);
+  if (count < room || layout_.hasStridedOutputs()) arrays_.storeOutputs(x, count, room);
 }
 
 void ChunkRunner::compute(std::int64_t x, std::int64_t count) {

@@ -121,66 +121,71 @@ Components Components::clone(std::int64_t count, RealType real) const {
 void Components::assign(const Components& from, std::int64_t count) { copy(from, 0, 0, count); }
 
 void Components::copy(const Components& others, std::int64_t from, std::int64_t first, std::int64_t count) {
+  copy(others, Run{from, count}, Run{first, count});
+}
+
+void Components::copy(const Components& others, const Run& from, const Run& to) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    native::inParallel(count, 1, native::Deal::Evenly, [&](native::Range part) {
-      move(others.valuesFrom(c, from + part.begin), valuesFrom(c, first + part.begin), part.end - part.begin);
+    native::inParallel(to.count, 1, native::Deal::Evenly, [&](native::Range part) {
+      move(others.valuesOf(c, from.part(part.begin, part.end)), valuesOf(c, to.part(part.begin, part.end)),
+           part.end - part.begin);
     });
   }
 }
 
-void Components::fill(std::int64_t first, std::int64_t count, const std::byte* element) {
-  native::inParallel(count, 1, native::Deal::Evenly, [&](native::Range part) {
-    write(first + part.begin, part.end - part.begin, element, 0);
-  });
+void Components::fill(const Run& run, const std::byte* element) {
+  native::inParallel(run.count, 1, native::Deal::Evenly,
+                     [&](native::Range part) { write(run.part(part.begin, part.end), element, 0); });
 }
 
-Values<std::byte> Components::valuesFrom(std::size_t component, std::int64_t first) {
+Values<std::byte> Components::valuesOf(std::size_t component, const Run& run) {
   const std::size_t bytes = types_[component].storedBytes;
-  return {arrays_[component].get() + static_cast<std::size_t>(first) * bytes, bytes, bytes};
+  return {arrays_[component].get() + static_cast<std::size_t>(run.first) * bytes,
+          static_cast<std::size_t>(run.step) * bytes, bytes};
 }
 
-Values<const std::byte> Components::valuesFrom(std::size_t component, std::int64_t first) const {
+Values<const std::byte> Components::valuesOf(std::size_t component, const Run& run) const {
   const std::size_t bytes = types_[component].storedBytes;
-  return {arrays_[component].get() + static_cast<std::size_t>(first) * bytes, bytes, bytes};
+  return {arrays_[component].get() + static_cast<std::size_t>(run.first) * bytes,
+          static_cast<std::size_t>(run.step) * bytes, bytes};
 }
 
-void Components::write(std::int64_t first, std::int64_t count, const std::byte* elements,
-                       std::size_t elementBytes) {
+void Components::write(const Run& run, const std::byte* elements, std::size_t elementBytes) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    const Values<std::byte> held = valuesFrom(c, first);
-    move({elements + types_[c].offset, elementBytes, types_[c].hostBytes}, held, count);
-    if (types_[c].scalar == program::Scalar::Bool) {   // any byte that is not 0 is true
-      std::transform(held.first, held.first + count, held.first,
-                     [](std::byte value) { return std::byte{value != std::byte{0}}; });
+    const Values<std::byte> held = valuesOf(c, run);
+    move({elements + types_[c].offset, elementBytes, types_[c].hostBytes}, held, run.count);
+    if (types_[c].scalar != program::Scalar::Bool) continue;
+    for (std::int64_t i = 0; i < run.count; ++i) {   // any byte that is not 0 is true
+      std::byte& value = held.first[static_cast<std::size_t>(i) * held.stride];
+      value = std::byte{value != std::byte{0}};
     }
   }
 }
 
-void Components::read(std::int64_t first, std::int64_t count, std::byte* elements,
-                      std::size_t elementBytes) const {
+void Components::read(const Run& run, std::byte* elements, std::size_t elementBytes) const {
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    move(valuesFrom(c, first), {elements + types_[c].offset, elementBytes, types_[c].hostBytes}, count);
+    move(valuesOf(c, run), {elements + types_[c].offset, elementBytes, types_[c].hostBytes}, run.count);
   }
 }
 
-void Components::readReals(std::int64_t first, std::int64_t count, double* values) const {
+void Components::readReals(const Run& run, double* values) const {
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    move(valuesFrom(c, first),
-         {reinterpret_cast<std::byte*>(values + c), types_.size() * sizeof(double), sizeof(double)}, count);
+    move(valuesOf(c, run),
+         {reinterpret_cast<std::byte*>(values + c), types_.size() * sizeof(double), sizeof(double)},
+         run.count);
   }
 }
 
-void Components::writeReals(std::int64_t first, std::int64_t count, const double* values) {
+void Components::writeReals(const Run& run, const double* values) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
     move({reinterpret_cast<const std::byte*>(values + c), types_.size() * sizeof(double), sizeof(double)},
-         valuesFrom(c, first), count);
+         valuesOf(c, run), run.count);
   }
 }
 
-void Components::writeScalars(std::size_t component, std::int64_t first, std::int64_t count,
-                              const std::byte* values) {
+void Components::writeScalars(std::size_t component, const Run& run, const std::byte* values) {
   const std::size_t bytes = types_[component].storedBytes;
-  move({values, bytes, bytes}, valuesFrom(component, first), count);
+  move({values, bytes, bytes}, valuesOf(component, run), run.count);
 }
 
 void Components::roundToHalf(std::int64_t count) {

@@ -38,6 +38,14 @@ struct Values {
   std::size_t bytes;
 };
 
+/// Elements `step` apart.
+struct Run {
+  std::int64_t first, count;
+  std::int64_t step = 1;
+
+  Run part(std::int64_t begin, std::int64_t end) const { return {first + begin * step, end - begin, step}; }
+};
+
 /// The arrays of `count` elements, at first uninitialised. Throws NoMemory (support/checked_size.hpp).
 class Components {
  public:
@@ -63,23 +71,30 @@ class Components {
   /// Copies `count` elements of `others`, which has as many components, from number `from` on to number
   /// `first` on.
   void copy(const Components& others, std::int64_t from, std::int64_t first, std::int64_t count);
-  /// Sets `count` elements from number `first` on to one in host memory.
-  void fill(std::int64_t first, std::int64_t count, const std::byte* element);
-  /// Copies `count` elements from number `first` on, from or to host memory.
-  void write(std::int64_t first, std::int64_t count, const std::byte* elements, std::size_t elementBytes);
-  void read(std::int64_t first, std::int64_t count, std::byte* elements, std::size_t elementBytes) const;
+  void copy(const Components& others, const Run& from, const Run& to);
+  /// Sets elements to one in host memory.
+  void fill(const Run& run, const std::byte* element);
+  /// Copies elements from or to host memory.
+  void write(const Run& run, const std::byte* elements, std::size_t elementBytes);
+  void write(std::int64_t first, std::int64_t count, const std::byte* elements, std::size_t elementBytes) {
+    write(Run{first, count}, elements, elementBytes);
+  }
+  void read(const Run& run, std::byte* elements, std::size_t elementBytes) const;
+  void read(std::int64_t first, std::int64_t count, std::byte* elements, std::size_t elementBytes) const {
+    read(Run{first, count}, elements, elementBytes);
+  }
   /// Likewise for elements of floats: `values` has all components of one element, then the next.
-  void readReals(std::int64_t first, std::int64_t count, double* values) const;
-  void writeReals(std::int64_t first, std::int64_t count, const double* values);
-  /// Sets one scalar of `count` elements from number `first` on; `values` have the type of the arrays.
-  void writeScalars(std::size_t component, std::int64_t first, std::int64_t count, const std::byte* values);
+  void readReals(const Run& run, double* values) const;
+  void writeReals(const Run& run, const double* values);
+  /// Sets one scalar of elements; `values` have the type of the arrays.
+  void writeScalars(std::size_t component, const Run& run, const std::byte* values);
   /// Rounds floats to half precision.
   void roundToHalf(std::int64_t count);
 
  private:
   void allocate(std::int64_t count);
-  Values<std::byte> valuesFrom(std::size_t component, std::int64_t first);
-  Values<const std::byte> valuesFrom(std::size_t component, std::int64_t first) const;
+  Values<std::byte> valuesOf(std::size_t component, const Run& run);
+  Values<const std::byte> valuesOf(std::size_t component, const Run& run) const;
 
   RealType real_ = RealType::Float;
   std::vector<ComponentType> types_;

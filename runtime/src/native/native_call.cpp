@@ -16,6 +16,7 @@
 #include "call/resolved_call.hpp"
 #include "call/resolved_reduction.hpp"
 #include "device/rows_state.hpp"
+#include "device/region.hpp"
 #include "native/coalesce.hpp"
 #include "native/entries.hpp"
 #include "native/extents.hpp"
@@ -40,12 +41,6 @@ using program::Role;
 bool isWritten(Role role) {
   return role == Role::Output || role == Role::Scatter || role == Role::VariableOutput ||
          role == Role::Accumulator;
-}
-
-bool isSameRegion(const StreamRegion& a, const StreamRegion& b) {
-  bool same = a.shape == b.shape;
-  for (int d = 0; same && d < a.shape.rank(); ++d) same = a.begin[d] == b.begin[d];
-  return same;
 }
 
 /// The operands of one call, and what they point to.
@@ -274,6 +269,9 @@ class Operands {
           arguments_[i].region.stream != arguments_[input].region.stream) {
         continue;
       }
+      const bool isApart = kernel_.parameters[i].role != Role::VariableOutput &&
+                           !overlap(arguments_[i].region, arguments_[input].region);
+      if (isApart) continue;
       const bool isForEachElement = kernel_.parameters[i].role == Role::Output || isScan_;
       const bool readsItself = role == Role::Input && isForEachElement &&
                                isSameRegion(arguments_[i].region, arguments_[input].region);
@@ -533,6 +531,24 @@ class PreparedRun final : public RecordedCall {
 };
 
 }  // namespace
+
+// Gathers and scatters find elements by index, and results of folds are stored, in rows without gaps. A part that a
+// call also reads takes a temporary of its own size, rather than a copy of the stream for readers.
+bool NativeDevice::needsDense(const Kernel& kernel, std::span<const Argument> arguments, std::size_t i) {
+  const StreamRegion& region = arguments[i].region;
+  const Role role = kernel.parameters[i].role;
+  if (role == Role::Input || role == Role::Uniform) return false;
+  const AffineRegion all = affine(region);
+  if (role != Role::Output) return all.extent[0] != 1 && all.stride[0] != 1;
+  for (std::size_t other = 0; other < arguments.size(); ++other) {
+    const Role read = kernel.parameters[other].role;
+    const bool isElement = read == Role::Input && arguments[other].fit == program::Fit::Same;
+    if ((read == Role::Input || read == Role::Gather) && overlap(region, arguments[other].region) &&
+        !(isElement && isSameRegion(region, arguments[other].region)))
+      return true;
+  }
+  return false;
+}
 
 std::unique_ptr<RecordedCall> NativeDevice::prepare(const ResolvedCall& call) {
   checkTarget(call.kernel, call.options.target);

@@ -44,6 +44,8 @@ class NativeDevice final : public DeviceState {
   void run(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepare(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
+  bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;
+  bool needsDense(const StreamRegion&) override { return false; }
   void reduce(const ResolvedReduction& call) override;
   bool sumsExactly(const ResolvedReduction& call) const override;
   std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction& call,

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "device/region.hpp"
 #include "native/native_device.hpp"
 #include "sk/error.hpp"
 #include "sk/limits.hpp"
@@ -16,35 +17,41 @@ namespace sk {
 
 namespace {
 
-/// Calls visit(first element in the stream, number in the region, length) for every run of neighbours.
+std::int64_t rowsOf(const AffineRegion& region) {
+  return region.extent[1] * region.extent[2] * region.extent[3];
+}
+
+Run rowOf(const AffineRegion& region, std::int64_t row) {
+  const std::int64_t y = row % region.extent[1], plane = row / region.extent[1];
+  const std::int64_t z = plane % region.extent[2], w = plane / region.extent[2];
+  return {region.first + y * region.stride[1] + z * region.stride[2] + w * region.stride[3], region.extent[0],
+          region.stride[0]};
+}
+
+/// Calls visit(run, number in the region of its first element) for each row of the region.
 template <class Visit>
 void forEachRun(const StreamRegion& region, Visit&& visit) {
-  const native::Operand place = operandOf(region);
-  const native::Extents& extent = place.extent;
-  std::int64_t number = 0;
-  for (std::int64_t w = 0; w < extent[3]; ++w) {
-    for (std::int64_t z = 0; z < extent[2]; ++z) {
-      for (std::int64_t y = 0; y < extent[1]; ++y, number += extent[0]) {
-        visit(place.first + y * place.stride[1] + z * place.stride[2] + w * place.stride[3], number,
-              extent[0]);
-      }
-    }
-  }
+  const AffineRegion all = affine(region);
+  for (std::int64_t row = 0; row < rowsOf(all); ++row) visit(rowOf(all, row), row * all.extent[0]);
+}
+
+/// Calls visit(row) for each row of the region, on several threads if there are many elements.
+template <class Visit>
+void forEachRow(const AffineRegion& region, Visit&& visit) {
+  if (rowsOf(region) == 1) return visit(std::int64_t{0});
+  native::inParallel(rowsOf(region), region.extent[0], native::Deal::Evenly, [&](native::Range rows) {
+    for (std::int64_t row = rows.begin; row < rows.end; ++row) visit(row);
+  });
 }
 
 }  // namespace
 
 native::Operand operandOf(const StreamRegion& region) {
+  const AffineRegion all = affine(region);
   native::Operand operand;
-  const Shape& whole = region.stream->shape;
-  std::int64_t stride = 1;
-  for (int d = whole.rank() - 1; d >= 0; --d) {
-    const auto fromFastest = static_cast<std::size_t>(whole.rank() - 1 - d);
-    operand.extent[fromFastest] = region.shape[d];
-    operand.stride[fromFastest] = stride;
-    operand.first += region.begin[d] * stride;
-    stride *= whole[d];
-  }
+  operand.first = all.first;
+  operand.stride = all.stride;
+  operand.extent = all.extent;
   return operand;
 }
 
@@ -83,40 +90,36 @@ NativeDevice& NativeStream::owner() const { return static_cast<NativeDevice&>(*d
 
 void NativeStream::write(const StreamRegion& region, const std::byte* elements) {
   isBroken = false;  // from here on nothing throws
-  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
-    components.write(first, count, elements + static_cast<std::size_t>(number) * element->size,
-                     element->size);
+  forEachRun(region, [&](const Run& run, std::int64_t number) {
+    components.write(run, elements + static_cast<std::size_t>(number) * element->size, element->size);
   });
   keepStorage();
 }
 
 void NativeStream::read(const StreamRegion& region, std::byte* elements) {
-  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
-    components.read(first, count, elements + static_cast<std::size_t>(number) * element->size, element->size);
+  forEachRun(region, [&](const Run& run, std::int64_t number) {
+    components.read(run, elements + static_cast<std::size_t>(number) * element->size, element->size);
   });
 }
 
 void NativeStream::readReals(const StreamRegion& region, double* values) {
-  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
-    components.readReals(first, count,
-                         values + static_cast<std::size_t>(number) * components.arrays().size());
+  forEachRun(region, [&](const Run& run, std::int64_t number) {
+    components.readReals(run, values + static_cast<std::size_t>(number) * components.arrays().size());
   });
 }
 
 void NativeStream::writeReals(const StreamRegion& region, const double* values) {
   isBroken = false;  // from here on nothing throws
-  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
-    components.writeReals(first, count,
-                          values + static_cast<std::size_t>(number) * components.arrays().size());
+  forEachRun(region, [&](const Run& run, std::int64_t number) {
+    components.writeReals(run, values + static_cast<std::size_t>(number) * components.arrays().size());
   });
   keepStorage();
 }
 
 void NativeStream::fill(const StreamRegion& region, const std::byte* value) {
   isBroken = false;  // from here on nothing throws
-  forEachRun(region, [&](std::int64_t first, std::int64_t, std::int64_t count) {
-    components.fill(first, count, value);
-  });
+  const AffineRegion all = affine(region);
+  forEachRow(all, [&](std::int64_t row) { components.fill(rowOf(all, row), value); });
   keepStorage();
 }
 
@@ -132,15 +135,12 @@ void NativeStream::exchangeElements(StreamState& other) noexcept {
 
 bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   const NativeStream& source = nativeStream(from);
-  std::vector<std::int64_t> starts;
-  forEachRun(from, [&](std::int64_t first, std::int64_t, std::int64_t) { starts.push_back(first); });
+  const AffineRegion here = affine(to), there = affine(from);
   Components before;  // overlapping elements are read with their old values
   if (&source == this) before = components.clone(shape.size(), components.real());
   isBroken = false;  // from here on nothing throws
-  auto start = starts.begin();
-  forEachRun(to, [&](std::int64_t first, std::int64_t, std::int64_t count) {
-    components.copy(&source == this ? before : source.components, *start++, first, count);
-  });
+  const Components& read = &source == this ? before : source.components;
+  forEachRow(here, [&](std::int64_t row) { components.copy(read, rowOf(there, row), rowOf(here, row)); });
   keepStorage();
   return true;
 }
@@ -179,8 +179,8 @@ void NativeStream::permute(const StreamRegion& region, std::span<const std::int3
   std::vector<std::int64_t> places;  // empty if the region is the whole stream
   if (region.shape != shape) {
     to.assign(components, shape.size());
-    forEachRun(region, [&](std::int64_t first, std::int64_t, std::int64_t count) {
-      for (std::int64_t i = 0; i < count; ++i) places.push_back(first + i);
+    forEachRun(region, [&](const Run& run, std::int64_t) {
+      for (std::int64_t i = 0; i < run.count; ++i) places.push_back(run.first + i * run.step);
     });
   }
   for (std::size_t c = 0; c < components.arrays().size(); ++c) {
@@ -202,8 +202,8 @@ void NativeStream::writeScalars(const StreamRegion& region, std::size_t offset, 
   const auto component =
       static_cast<std::size_t>(std::ranges::find(types, offset, &ComponentType::offset) - types.begin());
   const std::size_t bytes = types[component].storedBytes;
-  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
-    components.writeScalars(component, first, count, values + static_cast<std::size_t>(number) * bytes);
+  forEachRun(region, [&](const Run& run, std::int64_t number) {
+    components.writeScalars(component, run, values + static_cast<std::size_t>(number) * bytes);
   });
 }
 

@@ -105,7 +105,9 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   const bool isFitted = width_ != 1 && (argument.multiply[0] != 1 || argument.divide[0] != 1);
   added.isDirect =
       added.isGiven && !operand.holdsFloats && !isFitted && (width_ == 1 || argument.stride[0] == 1);
-  added.isInPlace = added.kind == Kind::Input ? added.isDirect : added.isGiven;
+  added.isStrided = added.kind == Kind::Output && added.isGiven && width_ != 1 && argument.stride[0] != 1;
+  added.isInPlace = added.kind == Kind::Input ? added.isDirect : added.isGiven && !added.isStrided;
+  hasStridedOutputs_ = hasStridedOutputs_ || added.isStrided;
   if (added.kind == Kind::Gather) {
     hasGathers_ = true;
     reach_ = std::max(reach_, added.reach);
@@ -301,16 +303,31 @@ void SlotArrays::useScratch(std::size_t row, const Slot& slot) {
     arrays_[placeOf(row, a)] = scratch_[placeOf(row, a)];
 }
 
-void SlotArrays::storeOutputs(std::int64_t x, std::int64_t count) {
+void SlotArrays::storeOutputs(std::int64_t x, std::int64_t count, std::int64_t room) {
   for (std::size_t row = 0; row < wanted_; ++row) {
-    for (const Slot& slot : layout_.slots()) {
-      if (slot.kind != SlotLayout::Kind::Output || !slot.isInPlace) continue;
+    for (std::size_t s = 0; s < slots_; ++s) {
+      const Slot& slot = layout_.slots()[s];
+      if (slot.isStrided) storeStrided(row, s, x, count);
+      if (slot.kind != SlotLayout::Kind::Output || !slot.isInPlace || count == room) continue;
       for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
         const ArrayRow& to = inRow_[placeOf(row, a)];
         std::memcpy(to.first + x * to.bytes, scratch_[placeOf(row, a)],
                     static_cast<std::size_t>(count * to.bytes));
       }
     }
+  }
+}
+
+void SlotArrays::storeStrided(std::size_t row, std::size_t s, std::int64_t x, std::int64_t count) {
+  const Slot& slot = layout_.slots()[s];
+  const std::int64_t stride = slot.argument->stride[0];
+  const std::int64_t first = rowOf(row, s).first + x * stride;
+  for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
+    withScalar(layout_.arrays()[a].bytes.held, [&]<class T> {
+      const T* const from = reinterpret_cast<const T*>(scratch_[placeOf(row, a)]);
+      T* const to = reinterpret_cast<T*>(layout_.arrays()[a].held) + first;
+      for (std::int64_t i = 0; i < count; ++i) to[i * stride] = from[i];
+    });
   }
 }
 

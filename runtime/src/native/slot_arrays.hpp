@@ -40,6 +40,7 @@ class SlotLayout {
     bool isGiven;
     bool isDirect;  ///< inputs: elements are contiguous, as in the domain
     bool isInPlace;  ///< elements are read or written in place, except at the ends of rows
+    bool isStrided;  ///< outputs: elements of a row are not contiguous
     program::Boundary boundary;
     std::uint8_t rank;
     std::int8_t row[3];
@@ -72,6 +73,8 @@ class SlotLayout {
 
   /// True if no stream's layout requires that its elements are laid out.
   bool isDirect() const { return isDirect_; }
+  /// True if the elements of some outputs are not contiguous (Slot::isStrided).
+  bool hasStridedOutputs() const { return hasStridedOutputs_; }
   /// True if the code uses the index in an input that is correct only in the first lane. Elements are then
   /// computed one by one.
   bool needsElementwiseCalls() const { return needsElementwiseCalls_; }
@@ -102,6 +105,7 @@ class SlotLayout {
   std::pmr::vector<Array> arrays_;
   std::pmr::vector<Value> borders_;
   bool isDirect_ = true;
+  bool hasStridedOutputs_ = false;
   bool needsElementwiseCalls_ = false;
   bool hasGathers_ = false;
   bool hasIndependentElements_ = false;
@@ -151,8 +155,8 @@ class SlotArrays {
   void placeEnds(const RowEnds& ends);
   /// Copies outputs at the ends of all wanted rows to their streams.
   void storeEnds(const RowEnds& ends);
-  /// Copies outputs that were not written in place to their streams.
-  void storeOutputs(std::int64_t x, std::int64_t count);
+  /// Copies outputs that were not written in place to their streams, after place() with this `room`.
+  void storeOutputs(std::int64_t x, std::int64_t count, std::int64_t room);
 
   void* const* get(std::size_t row = 0) const { return arrays_.data() + row * width_; }
   /// The elements for which gathers need no copies in any of these rows.
@@ -176,6 +180,7 @@ class SlotArrays {
   Row& rowOf(std::size_t row, std::size_t slot) { return rows_[row * slots_ + slot]; }
   std::size_t placeOf(std::size_t row, std::size_t array) const { return row * width_ + array; }
 
+  void storeStrided(std::size_t row, std::size_t slot, std::int64_t x, std::int64_t count);
   void stageInput(std::size_t row, std::size_t slot, std::int64_t x, const Length& length, std::int64_t step);
   /// In all rows, or only in those that are out of bounds.
   void stageGather(std::size_t slot, std::int64_t x, const Length& length, bool areOutsideAlone);

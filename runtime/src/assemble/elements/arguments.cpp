@@ -57,6 +57,12 @@ void defineInputIndex(ProgramText& program, const Parameter& input, const Stream
 
 Texel inputTexel(ProgramText& program, const Parameter& input, const StreamAccess& access) {
   const std::string index = fmt::format("sk_index_{}()", input.symbol);
+  if (access.strided) {
+    const std::string stride = parameterUniform(program, "ivec4", "stride", input);
+    if (access.addressing == Addressing::Plane) return stridedTexel(program, input, access, index + ".xy");
+    program.require(Function::Ravel);
+    return stridedTexel(program, input, access, fmt::format("sk_ravel({}, {})", index, stride));
+  }
   const std::string origin =
       access.view ? " + " + parameterUniform(program, "ivec4", "origin", input) : std::string();
   if (access.addressing == Addressing::Plane) {
@@ -68,6 +74,25 @@ Texel inputTexel(ProgramText& program, const Parameter& input, const StreamAcces
   const std::string shift = parameterUniform(program, "int", "shift", input);
   return {fmt::format("sk_texel(sk_ravel({}{}, {}), {}{})", index, origin, stride, shift,
                       access.packed ? " + 2" : ""),
+          access.addressing == Addressing::Layered ? shift : "", access.packed};
+}
+
+Texel stridedTexel(ProgramText& program, const Parameter& parameter, const StreamAccess& access,
+                   const std::string& distance) {
+  const std::string origin = parameterUniform(program, "ivec4", "origin", parameter);
+  if (access.addressing == Addressing::Plane) {
+    const std::string stride = parameterUniform(program, "ivec4", "stride", parameter);
+    return {fmt::format("{}.xy + {} * {}.xy", origin, distance, stride), "", access.packed};
+  }
+  const std::string shift = parameterUniform(program, "int", "shift", parameter);
+  const std::string number = fmt::format("{}.x + {}", origin, distance);
+  if (access.addressing == Addressing::Rows) {
+    program.require(Function::Divide);
+    program.require(Function::Row);
+    return {fmt::format("sk_in_row({}, {})", number, shift), "", access.packed};
+  }
+  program.require(Function::Texel);
+  return {fmt::format("sk_texel({}, {}{})", number, shift, access.packed ? " + 2" : ""),
           access.addressing == Addressing::Layered ? shift : "", access.packed};
 }
 

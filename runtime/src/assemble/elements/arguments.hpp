@@ -36,6 +36,11 @@ void defineInputIndex(ProgramText& program, const program::Parameter& input, con
 /// The texel of the current element of an input that is not aligned, from its sk_index_p.
 Texel inputTexel(ProgramText& program, const program::Parameter& input, const StreamAccess& access);
 
+/// The texel of an element of a strided region. `distance` is its index, an ivec2 expression, if the region is
+/// addressed as a plane; else sum(index * stride), an int expression.
+Texel stridedTexel(ProgramText& program, const program::Parameter& parameter, const StreamAccess& access,
+                   const std::string& distance);
+
 /// The current value of an iterator: one multiplication and one addition; integers wrap.
 std::string iteratorValue(ProgramText& program, const program::Parameter& iterator,
                           const StreamAccess& access, std::string index);

@@ -4,13 +4,15 @@
 // function; in a linearised stream it takes divisions, so main() computes it once.
 #include "assemble/elements/domain.hpp"
 
+#include <cassert>
+
 #include <fmt/format.h>
 
 namespace sk::assemble {
 
 DomainText::DomainText(ProgramText& program, const DomainLayout& layout, std::string_view function)
     : program_(program), layout_(layout), function_(function) {
-  if (layout_.domain == Domain::LinearBox) defineIndex();
+  if (layout_.domain == Domain::LinearBox || isStrided()) defineIndex();
 }
 
 std::string DomainText::lane() {
@@ -54,6 +56,11 @@ std::string DomainText::number() {
     case Domain::LinearBox:
       program_.require(Function::Ravel);
       return fmt::format("sk_ravel({}, {})", index(), program_.uniform("ivec4", "sk_domain_step"));
+    case Domain::Strided:
+    case Domain::StridedRows:
+    case Domain::StridedLinear:
+      assert(!"only copies, which number nothing, go to strided regions");
+      return {};
     case Domain::Entry: return "sk_element";
   }
   return {};
@@ -75,7 +82,10 @@ void DomainText::leaveOutside() {
       program_.prologue(fmt::format("if (({}) >= {}.w * {}.w) return;", firstElement(), stride, shape));
       return;
     }
-    case Domain::LinearBox: return;  // main() discards these
+    case Domain::LinearBox:
+    case Domain::Strided:
+    case Domain::StridedRows:
+    case Domain::StridedLinear: return;  // main() discards these
     case Domain::Entry: {
       const std::string stride = program_.uniform("ivec4", "sk_domain_stride");
       program_.prologue(fmt::format("if (sk_element >= {}.w * {}.w) return;", stride, shape));
@@ -86,6 +96,10 @@ void DomainText::leaveOutside() {
 
 Texel DomainText::texel() {
   const std::string texel(program_.texel());
+  if (layout_.domain == Domain::Strided && !isDrawn()) {
+    return {fmt::format("{}.xy + sk_here.xy * {}.xy", program_.uniform("ivec4", "sk_domain_origin"),
+                        program_.uniform("ivec4", "sk_domain_stride"))};
+  }
   if (!layout_.layered) return {texel};
   const std::string shift = program_.uniform("int", "sk_domain_shift");
   if (!isDrawn()) return {texel, shift};
@@ -108,6 +122,11 @@ std::string DomainText::firstElement() {
 void DomainText::defineIndex() {
   const std::string signature = fmt::format("ivec4 {}()", function_);
   if (program_.isDefined(signature)) return;
+  if (isStrided()) {
+    program_.variable("ivec4", "sk_here");
+    program_.function(signature, {"return sk_here;"});
+    return defineStridedIndex();
+  }
   if (layout_.domain == Domain::Plane) {
     const std::string origin =
         layout_.view ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
@@ -134,6 +153,39 @@ void DomainText::defineIndex() {
   program_.prologue(fmt::format("sk_here = {} - {};", value, origin));
   program_.prologue(fmt::format("if (any(greaterThanEqual(uvec4(sk_here), uvec4({})))) {};", shape,
                                 isDrawn() ? "discard" : "return"));
+}
+
+/// The index of a texel's element, if it has one: what is left of its distance from the first element is 0 after whole
+/// strides, the longest first. Compute programs run for the elements of a strided plane alone.
+void DomainText::defineStridedIndex() {
+  const std::string origin = program_.uniform("ivec4", "sk_domain_origin");
+  const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
+  const std::string stride = program_.uniform("ivec4", "sk_domain_stride");
+  const std::string_view leave = isDrawn() ? "discard" : "return";
+  if (layout_.domain == Domain::Strided && !isDrawn()) {
+    program_.prologue(fmt::format("sk_here = ivec4({}, 0, 0);", program_.texel()));
+    return;
+  }
+  if (layout_.domain == Domain::Strided) {
+    program_.prologue(fmt::format("ivec2 sk_left = {} - {}.xy;", program_.texel(), origin));
+    // exact, since texels number less than 2^16 in each dimension
+    program_.prologue(fmt::format("sk_here = ivec4((vec2(sk_left) + 0.5) / vec2({}.xy), 0, 0);", stride));
+    program_.prologue(fmt::format("if (sk_here.xy * {}.xy != sk_left) {};", stride, leave));
+    return;
+  }
+  const std::string number = layout_.domain == Domain::StridedLinear
+                                 ? texelNumber()
+                                 : fmt::format("{} * {} + {}", program_.row(),
+                                               program_.uniform("int", "sk_domain_shift"), program_.column());
+  program_.prologue(fmt::format("int sk_left = ({}) - {}.x;", number, origin));
+  program_.prologue(fmt::format("if (sk_left < 0) {};", leave));
+  program_.require(Function::Divide);
+  program_.prologue("sk_here = ivec4(0);");
+  for (int d = layout_.rank; d-- > 0;) {
+    program_.prologue(fmt::format(
+        "sk_here.{0} = sk_divide(sk_left, {1}.{0}); sk_left -= sk_here.{0} * {1}.{0};", "xyzw"[d], stride));
+  }
+  program_.prologue(fmt::format("if (sk_left != 0 || any(greaterThanEqual(sk_here, {}))) {};", shape, leave));
 }
 
 }  // namespace sk::assemble

@@ -49,7 +49,9 @@ class DomainText {
 
  private:
   bool isDrawn() const { return program_.stage() == Stage::Fragment; }
+  bool isStrided() const { return layout_.domain >= Domain::Strided; }
   void defineIndex();
+  void defineStridedIndex();
   std::string firstElement();
   std::string plus(std::string index, int components);
   std::string_view inElements() const { return layout_.packed ? " * ivec2(4, 1)" : ""; }

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/elements/arguments.hpp"
 #include "assemble/elements/planes.hpp"
 
 namespace sk::assemble {
@@ -423,6 +424,10 @@ class GatherText {
   }
 
   Texel texel(std::vector<std::string>& lines) {
+    if (access_.strided) {
+      const bool isPlane = access_.addressing == Addressing::Plane;
+      return stridedTexel(program_, parameter_, access_, isPlane ? insidePlane() : number());
+    }
     if (access_.addressing != Addressing::Plane) {
       if (access_.view) lines.push_back(fmt::format("sk_p += {}{};", uniform("origin"), swizzle()));
       program_.require(Function::Texel);
@@ -430,14 +435,16 @@ class GatherText {
       return {fmt::format("sk_texel({}, {}{})", number(), shift, access_.packed ? " + 2" : ""),
               isLayered(access_) ? shift : "", access_.packed};
     }
-    const std::string inside = rank_ == 1 ? "ivec2(sk_p, 0)" : rank_ == 2 ? "sk_p" : "sk_p.xy";
+    const std::string inside = insidePlane();
     return {access_.view ? fmt::format("{} + {}.xy", inside, uniform("origin")) : inside, "", access_.packed};
   }
 
+  std::string insidePlane() const { return rank_ == 1 ? "ivec2(sk_p, 0)" : rank_ == 2 ? "sk_p" : "sk_p.xy"; }
+
   std::string number() {
-    if (rank_ == 1) return "sk_p";
+    if (rank_ == 1) return access_.strided ? fmt::format("sk_p * {}.x", uniform("stride")) : "sk_p";
     const std::string stride = uniform("stride");
-    std::string sum = "sk_p.x";
+    std::string sum = access_.strided ? fmt::format("sk_p.x * {}.x", stride) : "sk_p.x";
     for (int c = 1; c < rank_; ++c) sum += fmt::format(" + sk_p.{0} * {1}.{0}", "xyzw"[c], stride);
     return sum;
   }

@@ -13,6 +13,8 @@ std::string_view text(Function function) {
     case Function::Unravel4: return library::unravel4;
     case Function::Ravel: return library::ravel;
     case Function::Texel: return library::texel;
+    case Function::Divide: return library::divide;
+    case Function::Row: return library::row;
     case Function::Layered: return library::layered;
     case Function::Wrap: return library::wrap;
     case Function::WrapOnce: return library::wrapOnce;

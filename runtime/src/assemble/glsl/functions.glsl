@@ -43,6 +43,24 @@ ivec2 sk_texel(int sk_n, int sk_s) {
   return ivec2(sk_n & ((1 << sk_s) - 1), sk_n >> sk_s);
 }
 
+//// divide
+// n / d for n >= 0 and d > 0, by floats, since software renderers divide integers one by one: the first quotient is off
+// by the rounding error of n, the second by less than 1.
+int sk_divide(int sk_n, int sk_d) {
+  float sk_f = float(sk_d);
+  int sk_q = int(float(sk_n) / sk_f);
+  sk_q += int(floor(float(sk_n - sk_q * sk_d) / sk_f));
+  int sk_r = sk_n - sk_q * sk_d;
+  return sk_q + (sk_r < 0 ? -1 : sk_r >= sk_d ? 1 : 0);
+}
+
+//// row
+// Texel of element number n in a plane of width w.
+ivec2 sk_in_row(int sk_n, int sk_w) {
+  int sk_y = sk_divide(sk_n, sk_w);
+  return ivec2(sk_n - sk_y * sk_w, sk_y);
+}
+
 //// layered
 // Texel t of layers of 1 << s rows each, which continue each other.
 ivec3 sk_layered(ivec2 sk_t, int sk_s) {

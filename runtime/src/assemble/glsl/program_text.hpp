@@ -29,6 +29,8 @@ enum class Function : std::uint8_t {
   Unravel4,
   Ravel,  ///< element number of an index
   Texel,  ///< texel of an element number
+  Divide,  ///< quotient of an element number
+  Row,  ///< texel of an element number in a plane; requires Divide
   Layered,  ///< texel of a layered texture
   Wrap,  ///< wrapped sum of an index and an offset
   WrapOnce,  ///< wrapped index that is less than an extent out of bounds

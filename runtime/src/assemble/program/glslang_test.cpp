@@ -283,6 +283,30 @@ TEST_CASE("glslang accepts kernels that use nothing of the assembler's, and the 
   checkAccepted(programs);
 }
 
+TEST_CASE("glslang accepts strided regions") {
+  Programs programs("strided");
+  for (const Addressing addressing :
+       {Addressing::Plane, Addressing::Rows, Addressing::Linear, Addressing::Layered}) {
+    for (const Profile& profile : profiles()) {
+      for (const Domain domain : {Domain::Strided, Domain::StridedRows, Domain::StridedLinear}) {
+        const StreamAccess strided{.addressing = addressing, .view = true, .strided = true};
+        programs.add(profile, kernelProgram(
+                                  profile, samples::saxpy,
+                                  {.domain = domain, .domainRank = 4, .access = {{}, strided, strided, {}}}));
+      }
+      for (const int rank : {1, 2, 4}) {
+        if (rank > 2 && addressing < Addressing::Linear) continue;
+        const samples::EveryAccess sample(samples::float3Element, "vec3(0.0, 1.0, 2.0)", rank,
+                                          Boundary::Border, -1);
+        const StreamAccess strided{.addressing = addressing, .view = true, .strided = true};
+        programs.add(profile, kernelProgram(profile, sample.kernel(),
+                                            {.domainRank = 2, .access = {{}, strided, strided, {}, {}}}));
+      }
+    }
+  }
+  checkAccepted(programs);
+}
+
 TEST_CASE("glslang accepts values that the vertex program hands on") {
   Programs programs("relayed");
   for (Profile profile : profiles()) {

@@ -31,6 +31,9 @@ std::string_view name(Domain domain) {
     case Domain::Plane: return "plane";
     case Domain::Linear: return "linear";
     case Domain::LinearBox: return "linear box";
+    case Domain::Strided:
+    case Domain::StridedRows: return "strided";
+    case Domain::StridedLinear: return "linear strided";
     case Domain::Entry: return "list";
   }
   return {};
@@ -42,6 +45,7 @@ std::string_view name(Addressing addressing) {
     case Addressing::Plane: return "plane";
     case Addressing::Linear: return "linear";
     case Addressing::Layered: return "layered";
+    case Addressing::Rows: return "rows";
   }
   return {};
 }
@@ -79,10 +83,10 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
         text += fmt::format("; {}{}", parameter.name, name(access.storage));
       continue;
     }
-    text +=
-        fmt::format("; {} {}{}{}{}{}{}{}", parameter.name, access.packed ? "packed " : "",
-                    name(access.addressing), access.view ? " view" : "", access.nearby ? " nearby" : "",
-                    access.filtered ? " filtered" : "", access.fitted ? " fitted" : "", name(access.storage));
+    text += fmt::format("; {} {}{}{}{}{}{}{}{}", parameter.name, access.packed ? "packed " : "",
+                        name(access.addressing), access.view ? " view" : "", access.strided ? " strided" : "",
+                        access.nearby ? " nearby" : "", access.filtered ? " filtered" : "",
+                        access.fitted ? " fitted" : "", name(access.storage));
   }
   return text;
 }
@@ -304,6 +308,9 @@ class KernelText {
 }  // namespace
 
 Domain domainOf(const RegionLayout& output) {
+  if (output.strided) {
+    return output.linear ? Domain::StridedLinear : output.numbered ? Domain::StridedRows : Domain::Strided;
+  }
   if (!output.linear) return Domain::Plane;
   return output.view ? Domain::LinearBox : Domain::Linear;
 }

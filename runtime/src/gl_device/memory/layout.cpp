@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "device/region.hpp"
 #include "sk/error.hpp"
 
 namespace sk {
@@ -109,7 +110,74 @@ Layout listLayout(std::int64_t length, const assemble::TextureLimits& limits) {
   return layout;
 }
 
+namespace {
+
+/// A region of a plane with strides along its rows and columns; nullopt if it has others. Rows have `width` elements.
+std::optional<assemble::RegionLayout> stridedPlane(const AffineRegion& region, assemble::RegionLayout plane,
+                                                   std::int64_t width) {
+  const std::int64_t x = region.first % width;
+  const bool isOfRows = region.extent[1] == 1 || region.stride[1] % width == 0;
+  if (region.extent[2] * region.extent[3] != 1 || !isOfRows ||
+      x + (region.extent[0] - 1) * region.stride[0] >= width)
+    return std::nullopt;
+  plane.origin = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(region.first / width), 0, 0};
+  plane.stride = {1, 1, 1, 1};
+  if (region.extent[0] > 1) plane.stride[0] = static_cast<std::int32_t>(region.stride[0]);
+  if (region.extent[1] > 1) plane.stride[1] = static_cast<std::int32_t>(region.stride[1] / width);
+  plane.strided = plane.stride != assemble::Index4{1, 1, 1, 1};
+  return plane;
+}
+
+/// A region of a linearised stream as a box in another shape; nullopt if it has gaps along x, or if its rows do not
+/// begin at the same column of that shape.
+std::optional<assemble::RegionLayout> boxInAnotherShape(const AffineRegion& region,
+                                                        assemble::RegionLayout linear) {
+  if (region.extent[0] > 1 && region.stride[0] != 1) return std::nullopt;
+  linear.stride = {1, assemble::noStride, assemble::noStride, assemble::noStride};
+  for (std::size_t d = 3; d > 0; --d) {  // a dimension of extent 1 is as far as the next one
+    if (region.extent[d] > 1) {
+      linear.stride[d] = static_cast<std::int32_t>(region.stride[d]);
+    } else if (d < 3) {
+      linear.stride[d] = linear.stride[d + 1];
+    }
+  }
+  std::int64_t rest = region.first;
+  for (std::size_t d = 4; d-- > 0;) {
+    linear.origin[d] = static_cast<std::int32_t>(rest / linear.stride[d]);
+    rest %= linear.stride[d];
+    const std::int64_t end = (linear.origin[d] + region.extent[d]) * linear.stride[d];
+    if (d < 3 && region.extent[d] > 1 && end > linear.stride[d + 1]) return std::nullopt;
+  }
+  return linear;
+}
+
+assemble::RegionLayout layoutWithStrides(const StreamRegion& region, const Layout& layout) {
+  const AffineRegion all = affine(region);
+  assemble::RegionLayout result = layout.whole;
+  for (std::size_t d = 0; d < all.extent.size(); ++d)
+    result.extent[d] = static_cast<std::int32_t>(all.extent[d]);
+  result.view = region.shape.size() != assemble::elements(layout.whole.extent);
+  if (result.linear && !result.view) {
+    result.stride = assemble::stridesOf(result.extent);
+    return result;
+  }
+  const std::int32_t width = layout.whole.extent[0];
+  if (const auto box = result.linear ? boxInAnotherShape(all, result) : stridedPlane(all, result, width))
+    return *box;
+  result.strided = true;
+  result.numbered = !result.linear;
+  if (result.numbered) result.shift = width;
+  result.origin = {static_cast<std::int32_t>(all.first), 0, 0, 0};
+  for (std::size_t d = 0; d < all.extent.size(); ++d) {
+    result.stride[d] = all.extent[d] > 1 ? static_cast<std::int32_t>(all.stride[d]) : assemble::noStride;
+  }
+  return result;
+}
+
+}  // namespace
+
 assemble::RegionLayout regionLayoutOf(const StreamRegion& region, const Layout& layout) {
+  if (!isBox(region)) return layoutWithStrides(region, layout);
   assemble::RegionLayout regionLayout = layout.whole;
   const int rank = region.shape.rank();
   for (int d = 0; d < rank; ++d) {
@@ -124,6 +192,7 @@ assemble::RegionLayout regionLayoutOf(const StreamRegion& region, const Layout& 
 
 bool haveSameTexels(const assemble::RegionLayout& a, const assemble::RegionLayout& b) {
   if (&a == &b) return true;  // an output whose region layout is the domain itself
+  if (a.strided != b.strided || a.numbered != b.numbered || (a.strided && a.stride != b.stride)) return false;
   return a.extent == b.extent && a.origin == b.origin && a.linear == b.linear && a.packed == b.packed &&
          a.layered == b.layered && (!a.linear || (a.shift == b.shift && a.stride == b.stride));
 }

@@ -32,7 +32,7 @@ bool mayPack(const Shape& shape);
 /// large enough.
 Layout listLayout(std::int64_t length, const assemble::TextureLimits& limits);
 
-/// The layout of a region, given the layout of its stream.
+/// The layout of a region, given the layout of its stream. It is strided only if no other layout describes it.
 assemble::RegionLayout regionLayoutOf(const StreamRegion& region, const Layout& layout);
 
 /// The extents of a shape, x first; missing dimensions are 1.

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device/memory/layout.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
 #include <catch2/catch.hpp>
 
 #include "sk/error.hpp"
@@ -12,6 +17,7 @@ using sk::Index;
 using sk::Layout;
 using sk::layoutOf;
 using sk::mostElements;
+using sk::regionLayoutOf;
 using sk::Shape;
 using sk::StreamRegion;
 using sk::assemble::Index4;
@@ -121,4 +127,73 @@ TEST_CASE("which regions have the same texels") {
                              regionLayoutOf(region({1, 1, 1}, {2, 2, 2}), wider)));
   CHECK_FALSE(haveSameTexels(regionLayoutOf(region({1, 1, 1}, {2, 2, 2}), cube),
                              regionLayoutOf(region({1, 1, 1}, {2, 2, 2}), taller)));
+}
+
+namespace {
+
+/// The texel of element `index` of a region, as programs compute it: {x, y}, rows of layers after each other.
+std::array<std::int64_t, 2> texelAt(const RegionLayout& region, const Index4& index) {
+  const auto at = [&](std::size_t d) { return std::int64_t{index[d]}; };
+  if (!region.linear && !region.numbered) {
+    if (!region.strided) return {region.origin[0] + at(0), region.origin[1] + at(1)};
+    return {region.origin[0] + at(0) * region.stride[0], region.origin[1] + at(1) * region.stride[1]};
+  }
+  std::int64_t number = region.strided ? region.origin[0] : 0;
+  for (std::size_t d = 0; d < index.size(); ++d)
+    number += (at(d) + (region.strided ? 0 : region.origin[d])) * region.stride[d];
+  if (region.numbered) return {number % region.shift, number / region.shift};
+  return {number & ((1 << region.shift) - 1), number >> region.shift};
+}
+
+}  // namespace
+
+TEST_CASE("regions with strides are where their elements are") {
+  struct Case {
+    Shape stream;
+    StreamRegion region;
+    bool isStrided, isNumbered;
+  };
+  const Case cases[] = {
+      {{6, 8}, {nullptr, {}, Shape(3, 4), Index(16, 2), 9}, true, false},
+      {{6, 8}, {nullptr, {}, Shape(8), Index(1), 16}, false, false},  // a row
+      {{6, 8}, {nullptr, {}, Shape(6), Index(8), 3}, true, true},  // a column
+      {{6, 8}, {nullptr, {}, Shape(48), Index(1), 0}, true, true},
+      {{6, 8}, {nullptr, {}, Shape(2, 2, 2), Index(16, 8, 3), 1}, true, true},
+      {{1200}, {nullptr, {}, Shape(30, 40), Index(40, 1), 0}, false, false},
+      {{1200}, {nullptr, {}, Shape(28, 36), Index(36, 1), 192}, true, false},  // rows that cross the shape's
+      {{1200}, {nullptr, {}, Shape(4, 36), Index(36, 1), 180}, false, false},
+      {{1200}, {nullptr, {}, Shape(5, 1, 40), Index(40, 1, 1), 80}, false, false},
+      {{1200}, {nullptr, {}, Shape(20, 20), Index(60, 3), 1}, true, false},
+      {{30, 5, 8}, {nullptr, {}, Shape(15, 5, 4), Index(80, 8, 2), 40}, true, false},
+  };
+  for (const Case& one : cases) {
+    INFO(sk::toString(one.stream) << " as " << sk::toString(one.region.shape));
+    const Layout layout = layoutOf(one.stream, {64, 256});
+    const RegionLayout region = regionLayoutOf(one.region, layout);
+    CHECK(region.strided == one.isStrided);
+    CHECK(region.numbered == one.isNumbered);
+    const Shape& shape = one.region.shape;
+    for (std::int64_t n = 0; n < shape.size(); ++n) {
+      Index4 index{};
+      std::int64_t rest = n, number = one.region.first;
+      for (int d = shape.rank() - 1; d >= 0; --d) {
+        index[static_cast<std::size_t>(shape.rank() - 1 - d)] = static_cast<std::int32_t>(rest % shape[d]);
+        number += rest % shape[d] * one.region.stride[d];
+        rest /= shape[d];
+      }
+      const std::int64_t width = layout.texture.width;
+      CHECK(texelAt(region, index) == std::array<std::int64_t, 2>{number % width, number / width});
+    }
+    const std::vector<Rect> drawn = sk::assemble::drawnTexels(region);
+    const auto isDrawn = [&](const std::array<std::int64_t, 2>& texel) {
+      return std::ranges::any_of(drawn, [&](const Rect& rect) {
+        return texel[0] >= rect.x && texel[0] < rect.x + rect.width && texel[1] >= rect.y &&
+               texel[1] < rect.y + rect.height;
+      });
+    };
+    CHECK(isDrawn(texelAt(region, {})));
+    Index4 last{};
+    for (std::size_t d = 0; d < last.size(); ++d) last[d] = region.extent[d] - 1;
+    CHECK(isDrawn(texelAt(region, last)));
+  }
 }

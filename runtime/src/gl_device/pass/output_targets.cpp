@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "assemble/elements/planes.hpp"
+#include "device/region.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/pass/pass.hpp"
 
@@ -54,7 +55,10 @@ OutputTargets::Placement OutputTargets::placementOf(std::size_t output) const {
   if (!isWrittenBefore && isSame && !isAlsoRead) {
     return Placement::Direct;
   }
-  const bool isWhole = !regionLayout.view && !domain_.view;
+  // a stream that is seen in another shape keeps its planes, and one that is not takes none of another shape
+  const StreamRegion& region = arguments_[output].region;
+  const bool isOfShape = isBox(region) && layout_.whole.extent == xFirst(region.stream->shape);
+  const bool isWhole = !regionLayout.view && !domain_.view && isOfShape;
   return isWhole && !isWrittenBefore ? Placement::Swap : Placement::Copy;
 }
 

@@ -194,7 +194,10 @@ void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel
   if (task.work == assemble::Work::List) {
     program.target.set(device.bound, operands[task.appendOutput].regionLayout);
   }
-  writeRects(device, pass, targets, rects);
+  const Rect elements{0, 0, domain.extent[0], domain.extent[1]};
+  const bool runsByElement =
+      program.stage == assemble::Stage::Compute && assemble::domainOf(domain) == assemble::Domain::Strided;
+  writeRects(device, pass, targets, runsByElement ? std::span(&elements, 1) : rects);
 }
 
 namespace {
@@ -202,14 +205,20 @@ namespace {
 /// Whether a blit can copy a region: source and target are planes with the same elements per texel. A loop repeats no
 /// blits: it could not leave them out on the device.
 bool isBlit(const GlDevice& device, const RegionLayout& source, const RegionLayout& target) {
-  return !device.bound.isLogged() && !source.linear && !target.linear && source.packed == target.packed;
+  return !device.bound.isLogged() && !source.linear && !target.linear && source.packed == target.packed &&
+         !source.strided && !target.strided;
+}
+
+/// Whether whole texels are copied.
+bool areTexelsCopied(const RegionLayout& source, const RegionLayout& target) {
+  return source.packed && target.packed && !source.strided;
 }
 
 }  // namespace
 
 void prepareCopy(GlDevice& device, const program::Element& element, const RegionLayout& source,
                  const RegionLayout& target, bool byKernel) {
-  if (source.packed && target.packed) {
+  if (areTexelsCopied(source, target)) {
     prepareCopy(device, assemble::fourOf(element.fields.front().scalar), assemble::texelsOf(source),
                 assemble::texelsOf(target), byKernel);
     return;
@@ -223,7 +232,7 @@ void prepareCopy(GlDevice& device, const program::Element& element, const Region
 
 void copyRegion(GlDevice& device, const program::Element& element, std::span<RenderTarget> from,
                 const RegionLayout& source, std::span<RenderTarget> to, const RegionLayout& target) {
-  if (source.packed && target.packed) {
+  if (areTexelsCopied(source, target)) {
     copyRegion(device, assemble::fourOf(element.fields.front().scalar), from, assemble::texelsOf(source), to,
                assemble::texelsOf(target));
     return;

@@ -79,7 +79,7 @@ void prepareCopy(GlDevice& device, const program::Element& element, const assemb
 
 /// Copies one region to another of the same shape, plane by plane; their layouts may differ. They must not
 /// share a render target. Both hold elements of type `element`. A packed target consists of whole texels; if
-/// the source is packed as well, so does the source.
+/// the source is packed as well, so does the source, unless it is strided.
 void copyRegion(GlDevice& device, const program::Element& element, std::span<RenderTarget> from,
                 const assemble::RegionLayout& source, std::span<RenderTarget> to,
                 const assemble::RegionLayout& target);

@@ -75,7 +75,8 @@ StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, co
   access.addressing = addressingOf(regionLayout);
   access.packed = regionLayout.packed;
   access.fitted = operand.fitted;
-  access.view = access.fitted || regionLayout.origin != assemble::Index4{};
+  access.strided = regionLayout.strided;
+  access.view = access.fitted || access.strided || regionLayout.origin != assemble::Index4{};
   access.nearby = parameter.role == Role::Gather && isNearby(parameter, regionLayout, domain);
   access.filtered = parameter.role == Role::Gather && operand.storage < Storage::Extended &&
                     isFiltered(parameter, regionLayout, filtersFloats);
@@ -105,6 +106,20 @@ assemble::SpecValues specsOf(const program::Kernel& kernel, std::span<const Oper
 
 bool isDomainView(const RegionLayout& domain) {
   return !domain.linear && domain.origin != assemble::Index4{};
+}
+
+/// Strided domains have ranks of their own in a key, and their rank in place of the kind of domain.
+bool isStrided(const RegionLayout& domain, const Task& task) {
+  return domain.strided && task.work != Work::List;
+}
+std::uint64_t rankBits(const RegionLayout& domain, const Task& task) {
+  if (!isStrided(domain, task)) return assemble::decodedRank(domain);
+  return domain.linear ? 5 : domain.numbered ? 6 : 7;
+}
+std::uint64_t domainBits(const RegionLayout& domain, const Task& task) {
+  const std::uint64_t kind = isStrided(domain, task) ? assemble::decodedRank(domain) - 1u
+                                                     : static_cast<std::uint64_t>(domainOf(domain, task));
+  return kind | std::uint64_t{domain.layered} << 2 | std::uint64_t{isDomainView(domain)} << 3;
 }
 
 /// Two bits for `fit`, `view` and `nearby`: fitted inputs are always views, and inputs are never nearby.
@@ -158,7 +173,7 @@ std::size_t ProgramKeyHash::operator()(const ProgramKey& key) const {
 
 Addressing addressingOf(const RegionLayout& regionLayout) {
   if (!regionLayout.linear) {
-    return Addressing::Plane;
+    return regionLayout.numbered ? Addressing::Rows : Addressing::Plane;
   }
   return regionLayout.layered ? Addressing::Layered : Addressing::Linear;
 }
@@ -248,15 +263,18 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
   bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{domain.packed} << 3, 4);
   bits.add(std::uint64_t{task.pyramidLayered} | std::uint64_t{task.scattersInAnyOrder} << 1 |
                std::uint64_t{task.pushesInAnyOrder} << 2,
+  bits.add(domainBits(domain, task), 4);
+  bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{domain.packed} << 2 |
+               std::uint64_t{task.pyramidLayered} << 3,
            4);
   bits.add(task.appendOutput & 15u, 4);
   bits.add(task.appendOutput >> 4, 4);
   bool hasStorages = false;
   for (std::size_t i = 0; i < operands.size(); ++i) {
     hasStorages = hasStorages || operands[i].storage != Storage::Single || operands[i].regionLayout.packed ||
-                  isHeld(kernel.parameters[i], operands[i]);
+                  operands[i].regionLayout.strided || isHeld(kernel.parameters[i], operands[i]);
   }
-  bits.add(static_cast<std::uint64_t>(assemble::decodedRank(domain)) | std::uint64_t{hasStorages} << 3, 4);
+  bits.add(rankBits(domain, task) | std::uint64_t{hasStorages} << 3, 4);
   if (kernel.usesLoops) {
     bits.add(isEven(kernel, domain, task), 4);
   }
@@ -269,8 +287,10 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
     }
     if (hasAccess(kernel, i, task) && isNeeded(parameter, key.specs)) {
       const StreamAccess access = chooseAccess(parameter, operands[i], domain, task, filtersFloats);
-      // Aligned, which no gather is, stands for a filtered one: those are planes and not views
-      const Addressing addressing = access.filtered ? Addressing::Aligned : access.addressing;
+      // Aligned, which no gather is, stands for a filtered one: those are planes and not views. With strides, it stands
+      // for Rows, which is no other access.
+      const bool isOther = access.filtered || access.addressing == Addressing::Rows;
+      const Addressing addressing = isOther ? Addressing::Aligned : access.addressing;
       bits.add(static_cast<std::uint64_t>(addressing) | choiceBits(access) << 2, 4);
     }
     if (hasStorages && parameter.role == Role::Uniform) {
@@ -282,8 +302,10 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
                4);
       if (isStream) bits.add(std::uint64_t{operands[i].regionLayout.layered}, 4);
     } else if (hasStorages && parameter.role != Role::Spec) {
-      bits.add(static_cast<std::uint64_t>(operands[i].storage) |
-                   std::uint64_t{operands[i].regionLayout.packed} << 3,
+      static_assert(static_cast<int>(Storage::Double) <= 4);  // and none is Default, 0
+      bits.add((static_cast<std::uint64_t>(operands[i].storage) & 3) |
+                   std::uint64_t{operands[i].regionLayout.packed} << 2 |
+                   std::uint64_t{operands[i].regionLayout.strided} << 3,
                4);
     }
   }

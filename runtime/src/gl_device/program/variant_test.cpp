@@ -40,6 +40,9 @@ const program::Kernel kernel = makeKernel();
 RegionLayout region(const Shape& stream, const Index& begin, const Shape& shape) {
   return regionLayoutOf({nullptr, begin, shape}, layoutOf(stream, {64, 256}));
 }
+RegionLayout strides(const Shape& stream, const Shape& shape, const Index& stride) {
+  return regionLayoutOf({nullptr, {}, shape, stride, 0}, layoutOf(stream, {64, 256}));
+}
 RegionLayout whole(const Shape& stream) { return region(stream, Index::origin(stream.rank()), stream); }
 
 struct Chosen {
@@ -68,6 +71,12 @@ TEST_CASE("whole planes of one shape are aligned") {
 TEST_CASE("views, repeats and linearised streams are told apart, each with a key of its own") {
   const Shape plane(8, 9);
   const Shape line(8, 90);
+  const RegionLayout square = whole({4, 4});
+  const RegionLayout by2 = strides(plane, Shape(4, 4), {18, 2}),
+                     byNumber = strides(plane, Shape(4, 4), {7, 1});
+  const RegionLayout byLine = strides(line, Shape(4, 4), {180, 2}),
+                     otherNumber = strides(plane, Shape(4, 4), {7, 2});
+  const RegionLayout byRow = strides(plane, Shape(16), {2});
   const std::vector<Chosen> all{
       choose(whole(plane), whole(plane), whole(plane)),
       choose(region(plane, {1, 1}, {4, 4}), whole(plane), region(plane, {2, 2}, {4, 4})),
@@ -79,7 +88,26 @@ TEST_CASE("views, repeats and linearised streams are told apart, each with a key
       choose(region(line, {1, 1}, {2, 9}), region(line, {1, 1}, {2, 9}), region(plane, {0, 0}, {2, 9})),
       choose(region(line, {1, 1}, {2, 9}), whole(plane), region(line, {1, 1}, {2, 9})),
       choose(whole(plane), whole({2, 9}), whole(plane)),
+      choose(by2, whole(plane), square),
+      choose(byNumber, whole(plane), square),
+      choose(byLine, whole(plane), square),
+      choose(square, by2, square),
+      choose(square, byNumber, square),
+      choose(square, byLine, square),
+      choose(square, square, by2),
+      choose(square, square, byNumber),
+      choose(square, square, byLine),
+      choose(by2, square, by2),
+      choose(byNumber, square, byNumber),
+      choose(otherNumber, square, byNumber),
+      choose(byRow, square, byRow),
   };
+  CHECK(all[10].variant.access[1].strided);
+  CHECK(all[11].variant.access[1].addressing == Addressing::Rows);
+  CHECK(all[12].variant.access[1].addressing == Addressing::Linear);
+  CHECK(all[16].variant.domain == Domain::Strided);
+  CHECK(all[17].variant.domain == Domain::StridedRows);
+  CHECK(all[18].variant.domain == Domain::StridedLinear);
   CHECK(all[1].variant.domainView);
   CHECK(all[1].variant.access[1].addressing == Addressing::Plane);
   CHECK(all[1].variant.access[1].view);

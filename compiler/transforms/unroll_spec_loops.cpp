@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/unroll_spec_loops.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "ir/assigned.hpp"
+#include "ir/build.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+#include "transforms/copy_functions.hpp"
+#include "transforms/synthesized_kernel.hpp"
+#include "transforms/unroll_loops.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+/// Whether an expression or a block reads a variable.
+template <class Node>
+bool mentions(const Node& node, VarId var) {
+  bool found = false;
+  walkExprs(node, [&](const Expr& expr) {
+    const auto* ref = std::get_if<VarRef>(&expr.node);
+    found = found || (ref != nullptr && ref->var == var);
+  });
+  return found;
+}
+
+/// The first integer Spec parameter that occurs in the head of a loop, and that nothing changes.
+std::optional<VarId> boundOfLoops(const Module& module, const Kernel& kernel) {
+  const Function& entry = module.functions[kernel.entry];
+  for (VarId p = 0; p < kernel.params.size(); ++p) {
+    const KernelParam& param = kernel.params[p];
+    if (param.role != ParamRole::Spec || !param.type.isScalar() || !param.type.isInteger()) continue;
+    if (assigns(entry.body, p)) continue;
+    bool bounds = false;
+    walkStmts(entry.body, [&](const Stmt& stmt) {
+      const auto* loop = std::get_if<Loop>(&stmt.node);
+      bounds = bounds || (loop != nullptr && (mentions(loop->init, p) || mentions(loop->step, p) ||
+                                              (loop->cond && mentions(*loop->cond, p))));
+    });
+    if (bounds) return p;
+  }
+  return std::nullopt;
+}
+
+/// The expressions of a kernel without loops; nullopt if it has one.
+std::optional<std::int64_t> expressionsWithoutLoops(const Module& module, const Kernel& kernel) {
+  std::int64_t count = 0;
+  bool hasLoops = false;
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    const Block& body = module.functions[id].body;
+    walkStmts(body,
+              [&](const Stmt& stmt) { hasLoops = hasLoops || std::holds_alternative<Loop>(stmt.node); });
+    walkExprs(body, [&](const Expr&) { ++count; });
+  }
+  return hasLoops ? std::nullopt : std::optional(count);
+}
+
+/// Adds the variant for one value of a parameter to the module.
+KernelId addVariant(Module& module, KernelId id, VarId spec, std::uint32_t value) {
+  FunctionCopies copies;
+  Kernel variant = synthesizedFor(module.kernels[id]);
+  variant.signature = module.kernels[id].signature;
+  variant.entry = copyFunction(module, module.kernels[id].entry, copies);
+  for (const KernelParam& param : module.kernels[id].params) variant.params.push_back(clone(param));
+  Function& entry = module.functions[variant.entry];
+  const Type type = entry.variables[spec].type;
+  rewriteExprs(entry.body, [&](ExprPtr& slot) {
+    const auto* ref = std::get_if<VarRef>(&slot->node);
+    if (ref != nullptr && ref->var == spec) slot = makeExpr(type, Literal{value}, slot->loc);
+  });
+  unrollLoops(module, variant);
+  variant.loops.clear();
+  module.kernels.push_back(std::move(variant));
+  return static_cast<KernelId>(module.kernels.size() - 1);
+}
+
+void addVariants(Module& module, KernelId id, VarId spec) {
+  std::int64_t expressions = 0;
+  for (std::uint32_t value = 1; value <= mostUnrolledValue; ++value) {
+    const std::size_t functions = module.functions.size();
+    const KernelId variant = addVariant(module, id, spec, value);
+    const auto added = expressionsWithoutLoops(module, module.kernels[variant]);
+    expressions += added.value_or(0);
+    if (!added || expressions > mostUnrolledExpressions) {
+      module.kernels.pop_back();
+      module.functions.resize(functions);
+      return;
+    }
+    module.kernels[id].unrolled.push_back({spec, value, variant});
+  }
+}
+
+}  // namespace
+
+void unrollSpecLoops(Module& module, Diagnostics&) {
+  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
+  for (KernelId id = 0; id < declared; ++id) {
+    const Kernel& kernel = module.kernels[id];
+    if (kernel.isSynthesized || kernel.reduction) continue;
+    if (const std::optional<VarId> spec = boundOfLoops(module, kernel)) addVariants(module, id, *spec);
+  }
+}
+
+}  // namespace skc
