@@ -256,6 +256,13 @@ std::string wholeListing(const Profile& profile, const sk::program::Kernel& kern
   return hasAppendOutputs ? appendListing(profile, kernel) : kernelListing(profile, kernel);
 }
 
+/// Where the device does not store elements while it folds: the kernel of the outputs, and the reduce of these if there
+/// is one.
+std::string partsListing(const Profile& profile, const sk::program::FoldParts& parts) {
+  const std::string map = wholeListing(profile, parts.map);
+  return parts.after == nullptr ? map : map + "\n" + reductionListing(profile, *parts.after, false);
+}
+
 std::string withoutForm(const emit::Unit& unit, std::string_view precision, std::string_view why) {
   return fmt::format("// {} has no form for {} precision: {}\n", unit.kernel.name, precision,
                      why.empty() ? "it computes no floats" : why);
@@ -266,8 +273,9 @@ std::string unitListing(const Profile& profile, const emit::Unit& unit, std::str
   const sk::program::Kernel& kernel = unit.kernel;
   const sk::program::Reduction* reduction = unit.reduction;
   if (precision.empty() || precision == "single") {
-    return reduction != nullptr ? reductionListing(profile, *reduction, unit.isScan)
-                                : wholeListing(profile, kernel);
+    if (reduction == nullptr) return wholeListing(profile, kernel);
+    const std::string folds = reductionListing(profile, *reduction, unit.isScan);
+    return reduction->parts == nullptr ? folds : folds + "\n" + partsListing(profile, *reduction->parts);
   }
   if (precision == "half") {
     if (reduction != nullptr && reduction->half != nullptr)

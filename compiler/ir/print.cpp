@@ -169,6 +169,11 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
       if (sum.term.kernel) text += fmt::format(" or @{}", module.kernels[*sum.term.kernel].entry);
     }
   }
+  if (kernel.parts) {
+    text += fmt::format(", outputs by @{}", module.kernels[kernel.parts->map].entry);
+    if (kernel.parts->after)
+      text += fmt::format(" and folded after by @{}", module.kernels[*kernel.parts->after].entry);
+  }
   if (kernel.pass) text += fmt::format(", pass {} of {}", kernel.pass->number, kernel.pass->count);
   text += "\n";
   for (std::size_t i = 0; i < kernel.params.size(); ++i) {

@@ -126,8 +126,43 @@ class SourceWriter {
       if (made->compensated != nullptr) compensated(*made->compensated, declared, names_[unit]);
       forms(*made, declared, names_[unit]);
       exactSums(made->exact, declared, names_[unit]);
+      if (made->parts != nullptr) foldParts(*made->parts, declared, names_[unit], combine);
       reduction(*made, declared, names_[unit], combine);
     }
+  }
+
+  /// Prints the constant NAMEParts of a kernel with folded outputs. The reduce that reads outputs has no native
+  /// code, since native code folds beside the outputs.
+  void foldParts(const sk::program::FoldParts& made, const Kernel& declared, const std::string& name,
+                 const std::string& combine) {
+    const FoldPartNames names(name);
+    const FoldParts& parts = *declared.parts;
+    const Kernel& map = module_.kernels[parts.map];
+    if (made.map.half != nullptr)
+      kernel(*made.map.half, *map.variants.half, names.map + "Half", inFloats(Speed::Any));
+    if (made.map.wide != nullptr) kernel(*made.map.wide, *map.variants.wide, names.map + "Wide", {});
+    kernel(made.map, parts.map, names.map, inAnyReal(Speed::Any));
+    list("std::uint8_t", names.map + "Operands", numbersIn(made.mapOperands));
+    std::string after;
+    if (made.after != nullptr) {
+      const bool isNative = std::exchange(options_.native, false);
+      const Kernel& fold = module_.kernels[*parts.after];
+      kernel(made.after->fold, *parts.after, names.after, {});
+      if (made.after->compensated != nullptr) compensated(*made.after->compensated, fold, names.after);
+      exactSums(made.after->exact, fold, names.after);
+      reduction(*made.after, fold, names.after, combine);
+      list("std::uint8_t", names.after + "From", numbersIn(made.afterOperands));
+      after = fmt::format(", &{0}Reduction, {0}From", names.after);
+      options_.native = isNative;
+    }
+    text_ += fmt::format("constexpr FoldParts {0}Parts = {{{1}Kernel, {1}Operands{2}}};\n\n", name, names.map,
+                         after);
+  }
+
+  static std::vector<std::string> numbersIn(std::span<const std::uint8_t> parameters) {
+    std::vector<std::string> numbers;
+    for (const std::uint8_t parameter : parameters) numbers.push_back(std::to_string(parameter));
+    return numbers;
   }
 
   /// How much the speed of a kernel's native code matters.
@@ -212,6 +247,7 @@ class SourceWriter {
     if (!made.exact.empty()) members.push_back(fmt::format(".exact = {}Exact", name));
     if (made.commutative) members.emplace_back(".commutative = true");
     if (!made.term.factors.empty()) members.push_back(".term = " + factors(made.term, name));
+    if (made.parts != nullptr) members.push_back(fmt::format(".parts = &{}Parts", name));
     text_ +=
         fmt::format("constexpr Reduction {}Reduction = {{\n    {}}};\n\n", name, join(members, ",\n    "));
   }
@@ -291,9 +327,7 @@ class SourceWriter {
 
   /// A term that consists of inputs; prints the constant NAMEFactors to which it refers.
   std::string factors(const sk::program::SumTerm& made, const std::string& name) {
-    std::vector<std::string> numbers;
-    for (const std::uint8_t parameter : made.factors) numbers.push_back(std::to_string(parameter));
-    list("std::uint8_t", name + "Factors", numbers);
+    list("std::uint8_t", name + "Factors", numbersIn(made.factors));
     return fmt::format("{{{}Factors}}", name);
   }
 

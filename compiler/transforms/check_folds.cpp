@@ -186,7 +186,7 @@ bool checkByTrial(const Module& module, const Kernel& kernel, Diagnostics& diagn
   if (!isGiven) {
     if (!computesWithOthers(module, kernel)) return true;
     diagnostics.report(Diag::ReduceBothReadings, accumulator->loc,
-                       {kernel.name, print(module, accumulator->type), accumulator->name, wordOf(kernel)});
+                       {kernel.name, print(module, accumulator->type), accumulator->name, accumulatorWordOf(kernel)});
     return false;
   }
   const IdentityTrial start = tryIdentity(module, kernel);

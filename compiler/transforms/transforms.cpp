@@ -10,6 +10,7 @@
 
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
+#include "split/split_folds.hpp"
 #include "split/split_kernels.hpp"
 #include "transforms/assign_rows.hpp"
 #include "transforms/bound_pushes.hpp"
@@ -66,6 +67,8 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // * bound-pushes follows folding, which finds trip counts and removes unreachable pushes.
 // * inline-folds lets derive-combine see through helper functions.
 // * derive-combine precedes remove-unused, because it adds functions that use structs.
+// * split-folds needs derive-combine's identities and combining reduces, and precedes the variants, which its
+//   kernels have, too.
 // * widen-floats and round-halves follow derive-combine, so that variants combine in the same way, and
 //   precede compensate-sums, which does not apply to them.
 // * compensate-sums and sum-exactly need derive-combine's identities and combining reduces.
@@ -83,6 +86,7 @@ constexpr Transform transforms[] = {
     {"bound-pushes", plain<boundPushes>},
     {"inline-folds", plain<inlineFolds>},
     {"derive-combine", plain<deriveCombine>},
+    {"split-folds", plain<split::splitFolds>},
     {"widen-floats", ofPrecisions<widenFloats>},
     {"round-halves", ofPrecisions<roundHalves>},
     {"compensate-sums", plain<compensateSums>},

@@ -272,6 +272,7 @@ struct Plan {
 };
 
 struct CompensatedReduction;
+struct FoldParts;
 struct WideReduction;
 struct ExactSum;
 
@@ -291,6 +292,9 @@ struct SumTerm {
 /// and folds an element into the accumulators. `combine` is a kernel of the same kind: its Inputs correspond
 /// to the Accumulators of `fold` in number and type. They are the result of a later run of elements, which it
 /// folds into the result of an earlier run. It uses no index, and may be `fold` itself.
+///
+/// A kernel with folded outputs is a reduction whose fold has Outputs, too. Whoever calls the fold may ignore
+/// these, as they do not depend on the accumulators.
 struct Reduction {
   Kernel fold;
   Kernel combine;
@@ -309,6 +313,17 @@ struct Reduction {
   std::span<const ExactSum> exact = {};  ///< one for each scalar of the accumulators that is a sum of floats
   bool commutative = false;  ///< elements may be folded in any order, because its operators are known
   SumTerm term = {};  ///< has factors if the reduction only sums such a term to one float
+  const FoldParts* parts = nullptr;  ///< set if the fold has Outputs
+};
+
+/// The parts of a kernel with folded outputs, for devices that cannot store elements while they fold. Operands
+/// are, for each parameter of a part, the parameter of the fold whose argument it gets.
+struct FoldParts {
+  Kernel map;  ///< computes the Outputs
+  std::span<const std::uint8_t> mapOperands;
+  /// Folds the same, but has some of the Outputs as Inputs: the results of `map`. Null if there is none.
+  const Reduction* after = nullptr;
+  std::span<const std::uint8_t> afterOperands = {};
 };
 
 /// A reduction whose accumulators are doubles. `finish` has the accumulators as Inputs and the results, in

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/exact_reduction.hpp"
+#include "api/resolved_reduce.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
 #include "call/precision.hpp"
@@ -112,8 +113,8 @@ bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& seco
          });
 }
 
-/// Adds the choices of the configuration file and the declaration. A file's choice for all reductions applies
-/// only to those that sum floats.
+}  // namespace
+
 CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions& call) {
   const Reduction& reduction = checked.reduction;
   if (!checked.scan) refuseScanOptions(reduction.fold, call);
@@ -129,6 +130,8 @@ CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions&
   return options;
 }
 
+namespace {
+
 /// Whether a result stream stores its floats as halves or doubles.
 bool isStoredInOtherPrecision(const ResolvedReduction& call) {
   if (call.isToValues()) return false;
@@ -141,10 +144,9 @@ bool isStoredInOtherPrecision(const ResolvedReduction& call) {
   return false;
 }
 
-void reduceResolved(const ResolvedReduction& call);
+}  // namespace
 
-/// Reduces to temporary streams of floats and copies these to the results.
-void reduceByFloats(const ResolvedReduction& call) {
+void reduceByTemporaries(const ResolvedReduction& call, const std::function<void()>& between) {
   TemporaryResults floats(call);
   std::vector<Argument> all(call.arguments.begin(), call.arguments.end());
   std::vector<std::size_t> results;
@@ -155,9 +157,11 @@ void reduceByFloats(const ResolvedReduction& call) {
     results.push_back(i);
   }
   reduceResolved(call.of(call.reduction, all, {}));
+  between();
   bool hasBegun = false;
   writeInSteps(call.reduction, call.arguments, hasBegun, [&] {
     for (const std::size_t i : results) {
+      if (call.arguments[i].region.stream->copyFrom(all[i].region, call.arguments[i].region)) continue;
       std::vector<std::byte> elements(static_cast<std::size_t>(all[i].region.shape.size()) *
                                       call.reduction.fold.parameters[i].element->size);
       all[i].region.stream->read(all[i].region, elements.data());
@@ -166,6 +170,8 @@ void reduceByFloats(const ResolvedReduction& call) {
     }
   });
 }
+
+namespace {
 
 /// Computes the sums in the results and the rounding errors in temporaries, then adds both.
 void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction& second) {
@@ -195,9 +201,10 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
   });
 }
 
-/// Reduces with the variant that the options, the device and the results require.
+}  // namespace
+
 void reduceResolved(const ResolvedReduction& call) {
-  if (isStoredInOtherPrecision(call)) return reduceByFloats(call);
+  if (isStoredInOtherPrecision(call)) return reduceByTemporaries(call, [] {});
   if (needsPrecisionVariant(call.options)) return reduceInPrecision(call);
   const CompensatedReduction* second = compensated(call);
   if (isExact(call)) return reduceExactly(call);
@@ -207,6 +214,8 @@ void reduceResolved(const ResolvedReduction& call) {
   inDoubles.options.accumulate = Accumulate::Extended;
   reduceInPrecision(inDoubles);
 }
+
+namespace {
 
 void runResolved(const ResolvedReduction& call) {
   const TraceScope traced(call.device.trace.get(), "call", call.reduction.fold.name);

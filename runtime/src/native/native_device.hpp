@@ -45,6 +45,7 @@ class NativeDevice final : public DeviceState {
   std::unique_ptr<RecordedCall> prepare(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   void reduce(const ResolvedReduction& call) override;
+  bool foldsBesideOutputs(const ResolvedReduction&) override { return true; }
   bool sumsExactly(const ResolvedReduction& call) const override;
   std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction& call,
                                           const program::ExactSum& sum) override;

@@ -106,6 +106,7 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   added.isDirect =
       added.isGiven && !operand.holdsFloats && !isFitted && (width_ == 1 || argument.stride[0] == 1);
   added.isInPlace = added.kind == Kind::Input ? added.isDirect : added.isGiven;
+  hasOutputs_ = hasOutputs_ || (added.kind == Kind::Output && added.isGiven);
   if (added.kind == Kind::Gather) {
     hasGathers_ = true;
     reach_ = std::max(reach_, added.reach);
@@ -282,7 +283,7 @@ void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, st
         for (std::size_t row = 0; row < placed_; ++row) stageInput(row, s, x, {count, room}, step);
         break;
       case SlotLayout::Kind::Output:
-        for (std::size_t row = slot.isInPlace && count == room ? wanted_ : 0; row < placed_; ++row)
+        for (std::size_t row = slot.isInPlace && count == room && step == 1 ? wanted_ : 0; row < placed_; ++row)
           useScratch(row, slot);
         break;
       case SlotLayout::Kind::Gather:
@@ -301,14 +302,21 @@ void SlotArrays::useScratch(std::size_t row, const Slot& slot) {
     arrays_[placeOf(row, a)] = scratch_[placeOf(row, a)];
 }
 
-void SlotArrays::storeOutputs(std::int64_t x, std::int64_t count) {
+void SlotArrays::storeOutputs(std::int64_t x, std::int64_t count, std::int64_t step) {
   for (std::size_t row = 0; row < wanted_; ++row) {
     for (const Slot& slot : layout_.slots()) {
       if (slot.kind != SlotLayout::Kind::Output || !slot.isInPlace) continue;
       for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
         const ArrayRow& to = inRow_[placeOf(row, a)];
-        std::memcpy(to.first + x * to.bytes, scratch_[placeOf(row, a)],
-                    static_cast<std::size_t>(count * to.bytes));
+        const std::byte* const from = scratch_[placeOf(row, a)];
+        if (step == 1) {
+          std::memcpy(to.first + x * to.bytes, from, static_cast<std::size_t>(count * to.bytes));
+          continue;
+        }
+        for (std::int64_t i = 0; i < count; ++i) {
+          std::memcpy(to.first + (x + i * step) * to.bytes, from + i * to.bytes,
+                      static_cast<std::size_t>(to.bytes));
+        }
       }
     }
   }

@@ -77,6 +77,7 @@ class SlotLayout {
   bool needsElementwiseCalls() const { return needsElementwiseCalls_; }
   bool hasGathers() const { return hasGathers_; }
   bool hasBorders() const { return !borders_.empty(); }
+  bool hasOutputs() const { return hasOutputs_; }
   /// The elements of a row for which gathers read only neighbours in bounds along x.
   native::Range inside() const { return inside_; }
   /// The largest reach of a gather.
@@ -104,6 +105,7 @@ class SlotLayout {
   bool isDirect_ = true;
   bool needsElementwiseCalls_ = false;
   bool hasGathers_ = false;
+  bool hasOutputs_ = false;  ///< outputs that are given
   bool hasIndependentElements_ = false;
   std::int64_t reach_ = 0;
   native::Range inside_{0, std::numeric_limits<std::int64_t>::max()};
@@ -135,7 +137,7 @@ class SlotArrays {
   void moveTo(const native::Extents& first, std::size_t wanted = 1, std::size_t placed = 1);
 
   /// Places `count` elements from `x` on, `step` apart, in each row. The arrays may be read and written up to
-  /// `room` elements. Outputs are written in place only if the row is wanted and `room` is `count`.
+  /// `room` elements. Outputs are written in place only if the row is wanted, `room` is `count` and `step` is 1.
   void place(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step = 1);
   /// Likewise for whole groups of lanes from `x` on that are in place, with all their neighbours.
   void placeInside(std::int64_t x) {
@@ -151,8 +153,8 @@ class SlotArrays {
   void placeEnds(const RowEnds& ends);
   /// Copies outputs at the ends of all wanted rows to their streams.
   void storeEnds(const RowEnds& ends);
-  /// Copies outputs that were not written in place to their streams.
-  void storeOutputs(std::int64_t x, std::int64_t count);
+  /// Copies outputs that were not written in place to their streams; arguments as for place().
+  void storeOutputs(std::int64_t x, std::int64_t count, std::int64_t step = 1);
 
   void* const* get(std::size_t row = 0) const { return arrays_.data() + row * width_; }
   /// The elements for which gathers need no copies in any of these rows.

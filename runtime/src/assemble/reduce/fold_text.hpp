@@ -64,6 +64,9 @@ class FoldText {
   /// A call of the entry of a kernel, with its arguments in order.
   std::string calling(const program::Kernel& kernel, const ElementOf& inputElement);
 
+  /// The variable that receives an output of the fold.
+  std::string output(const program::Parameter& parameter);
+
   // ---- statements -------------------------------------------------------------------------------
 
   void integers(std::initializer_list<std::string_view> uniforms);

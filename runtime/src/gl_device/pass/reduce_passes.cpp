@@ -85,6 +85,22 @@ ReducePasses::ReducePasses(GlDevice& device, const ResolvedReduction& call)
   }
 }
 
+bool ReducePasses::mayStoreElements() const {
+  const Kernel& fold = reduction_.fold;
+  std::size_t planes = 2 * accumulatorPlanes(fold);  // with the errors of compensated sums
+  for (const Parameter& parameter : fold.parameters) {
+    if (parameter.role == Role::Output) planes += parameter.element->fields.size();
+  }
+  return device_.programs().stage() == assemble::Stage::Compute && !reduction_.seeded && !foldsByIndex() &&
+         planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
+}
+
+std::size_t ReducePasses::firstOfElements() const {
+  std::size_t i = 0;
+  while (!isRead(i) || operands_[i].regionLayout.extent != elements_.extent) ++i;
+  return i;
+}
+
 bool ReducePasses::mayEndInBuffer() const {
   return device_.programs().stage() == assemble::Stage::Compute && assemble::mayEndInBuffer(reduction_);
 }
@@ -106,7 +122,8 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
                                     .byTexel = byTexel_,
                                     .inAnyOrder = reduction_.commutative,
                                     .inGroups = assemble::foldsInGroups(reduction_)};
-  const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
+  std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
+  passes.front().variant.stores = !elementPlanes_.empty();
   startAll(passes);
   for (const ReducePass& pass : passes) {
     if (pass.toResult) {
@@ -218,8 +235,8 @@ Operand ReducePasses::operandOf(std::size_t i, const Argument& argument, const S
     case Role::Iterator: return domain.size() == 0 ? Operand{} : iteration(parameter, argument.value, domain);
     case Role::Input:
     case Role::Gather:
-    case Role::Accumulator: break;
-    case Role::Output:
+    case Role::Accumulator:
+    case Role::Output: break;
     case Role::VariableOutput:
     case Role::Scatter: return {};
   }
@@ -245,10 +262,12 @@ bool ReducePasses::isRead(std::size_t i) const {
 
 bool ReducePasses::foldsByIndex() const {
   bool byIndex = assemble::readsElementIndex(reduction_.fold);
+  bool hasElements = false;  // a kernel with folded outputs may have no inputs
   for (std::size_t i = 0; i < operands_.size(); ++i) {
+    hasElements = hasElements || isRead(i);
     byIndex = byIndex || (isRead(i) && !haveSameTexels(operands_[i].regionLayout, elements_));
   }
-  return byIndex;
+  return byIndex || !hasElements;
 }
 
 std::vector<Operand> ReducePasses::operandsOfCombine(std::span<RenderTarget> partials) const {
@@ -300,7 +319,9 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
         for (const assemble::UniformValue& value : pass.uniforms) {
           program.uniform(value).set(device_.bound, value.value);
         }
-        writeRects(device_, preparedPass(device_, program.kernel, planes), planes, pass.draws);
+        std::vector<RenderTarget*> written(planes.begin(), planes.end());
+        if (variant.stores) written.insert(written.end(), elementPlanes_.begin(), elementPlanes_.end());
+        writeRects(device_, preparedPass(device_, program.kernel, planes), written, pass.draws);
       });
 }
 
