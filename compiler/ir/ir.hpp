@@ -305,6 +305,9 @@ struct FoldParts {
   /// need another value, or cost no less than folding from the inputs.
   std::optional<KernelId> after;
   std::vector<std::uint32_t> afterOperands;
+  /// A native-only variant of the whole kernel whose float sums are doubles; its reduction has a `finish`. Set by
+  /// sum-in-doubles.
+  std::optional<KernelId> inDoubles = {};
 };
 
 /// Variants of a kernel for other precisions, with the same parameters: set by widen-floats and round-halves.

@@ -169,6 +169,8 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
       if (sum.term.kernel) text += fmt::format(" or @{}", module.kernels[*sum.term.kernel].entry);
     }
   }
+  if (kernel.parts && kernel.parts->inDoubles)
+    text += fmt::format(", natively by @{}", module.kernels[*kernel.parts->inDoubles].entry);
   if (kernel.parts) {
     text += fmt::format(", outputs by @{}", module.kernels[kernel.parts->map].entry);
     if (kernel.parts->after)

@@ -236,6 +236,12 @@ class Builder {
       made.after = &storage_.reductions.emplace_back(reduction(after, describe(after)));
       made.afterOperands = parameterNumbers(kernel.parts->afterOperands);
     }
+    if (kernel.parts->inDoubles) {
+      const Kernel& fold = module_.kernels[*kernel.parts->inDoubles];
+      made.inDoubles = &storage_.wide.emplace_back(sk::program::WideReduction{
+          reduction(fold, describe(fold)), whole(module_.kernels[*fold.reduction->finish])});
+      storage_.wide.back().reduction.commutative = kernel.reduction->commutative;
+    }
     return &storage_.parts.emplace_back(std::move(made));
   }
 

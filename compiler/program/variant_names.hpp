@@ -28,8 +28,9 @@ struct ExactNames {
 
 /// The names for the parts of a kernel with folded outputs.
 struct FoldPartNames {
-  explicit FoldPartNames(const std::string& kernel) : map(kernel + "Map"), after(kernel + "After") {}
-  std::string map, after;
+  explicit FoldPartNames(const std::string& kernel)
+      : map(kernel + "Map"), after(kernel + "After"), doubles(kernel + "InDoubles") {}
+  std::string map, after, doubles;
 };
 
 /// The name of the reduce that combines digits of exact sums. All sums of a kind share it.

@@ -25,6 +25,7 @@
 #include "transforms/round_halves.hpp"
 #include "transforms/specialize_gathers.hpp"
 #include "transforms/sum_exactly.hpp"
+#include "transforms/sum_in_doubles.hpp"
 #include "transforms/tabulate.hpp"
 #include "transforms/unroll_loops.hpp"
 #include "transforms/widen_floats.hpp"
@@ -71,7 +72,8 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 //   kernels have, too.
 // * widen-floats and round-halves follow derive-combine, so that variants combine in the same way, and
 //   precede compensate-sums, which does not apply to them.
-// * compensate-sums and sum-exactly need derive-combine's identities and combining reduces.
+// * compensate-sums, sum-exactly and sum-in-doubles need derive-combine's identities and combining reduces, the last
+//   also split-folds' parts.
 // * assign-rows precedes split-kernels, which tracks variables.
 // * forward-continues follows bound-pushes and derive-combine, which analyse the code as written.
 // * remove-unused follows these, because all of them leave unused entries, and precedes split-kernels, so
@@ -91,6 +93,7 @@ constexpr Transform transforms[] = {
     {"round-halves", ofPrecisions<roundHalves>},
     {"compensate-sums", plain<compensateSums>},
     {"sum-exactly", plain<sumExactly>},
+    {"sum-in-doubles", plain<sumInDoubles>},
     {"assign-rows", plain<assignRows>},
     {"forward-continues", plain<forwardContinues>},
     {"remove-unused", plain<removeUnused>},

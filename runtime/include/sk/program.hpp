@@ -280,7 +280,7 @@ struct ExactSum;
 inline constexpr int longestRun = 32;
 
 /// The term that a sum of floats adds for each element, if the runtime can add it itself: one input, or the
-/// product of two. For an exact sum, it may be a kernel with all parameters of the fold except accumulators,
+/// product of two. For an exact sum, it may be a kernel with all parameters of the fold except accumulators and Outputs,
 /// followed by Outputs of one float: one per term, or two per term, its factors, in a sum of products. A term
 /// that an element does not add is -0.
 struct SumTerm {
@@ -319,6 +319,9 @@ struct Reduction {
 /// The parts of a kernel with folded outputs, for devices that cannot store elements while they fold. Operands
 /// are, for each parameter of a part, the parameter of the fold whose argument it gets.
 struct FoldParts {
+  /// For native code: the whole, whose sums of floats are doubles. It is as good as compensated sums. Null if there is
+  /// none.
+  const WideReduction* inDoubles = nullptr;
   Kernel map;  ///< computes the Outputs
   std::span<const std::uint8_t> mapOperands;
   /// Folds the same, but has some of the Outputs as Inputs: the results of `map`. Null if there is none.
@@ -353,7 +356,7 @@ struct CompensatedReduction {
 };
 
 /// A variant of a reduction that adds one scalar of an accumulator without rounding. The fold of `reduction`
-/// has all parameters of the plain fold except accumulators, then its own accumulators. `finish` takes the
+/// has all parameters of the plain fold except accumulators and Outputs, then its own accumulators. `finish` takes the
 /// plain accumulator and these, and returns the plain accumulator with the rounded sum in that scalar.
 struct ExactSum {
   Reduction reduction;

@@ -104,6 +104,13 @@ bool isExact(const ResolvedReduction& call) {
          call.device.sumsExactly(call);
 }
 
+/// Whether native code sums in doubles beside the outputs of a fold.
+bool foldsInDoubles(const ResolvedReduction& call) {
+  return call.reduction.parts != nullptr && call.reduction.parts->inDoubles != nullptr &&
+         call.options.accumulate != Accumulate::Exact && !call.device.usesPrecisionVariants() &&
+         call.device.sumsInDoubles();
+}
+
 /// Whether the plain variant in doubles can replace the compensated one: not if a stream has bits that floats
 /// drop.
 bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& second) {
@@ -207,6 +214,7 @@ void reduceResolved(const ResolvedReduction& call) {
   if (isStoredInOtherPrecision(call)) return reduceByTemporaries(call, [] {});
   if (needsPrecisionVariant(call.options)) return reduceInPrecision(call);
   const CompensatedReduction* second = compensated(call);
+  if (second != nullptr && foldsInDoubles(call)) return reduceWide(call, *call.reduction.parts->inDoubles);
   if (isExact(call)) return reduceExactly(call);
   if (second == nullptr) return call.device.reduce(call);
   if (!isInDoubles(call, *second)) return reduceCompensated(call, *second);
