@@ -154,6 +154,25 @@ TEST_CASE("order is kept, and an overload combines partial results") {
   });
 }
 
+TEST_CASE("a kernel that calls one folds the element, into an accumulator or a variable") {
+  onEveryProfile([](sk::Device& device) {
+    const auto q = streamOf(device, floats(500, 1)), r = streamOf(device, floats(500, 2));
+    auto rn = device.stream<float>({500}), square = device.stream<float>({500});
+    auto sum = device.scalar<float>(), rr = device.scalar<float>();
+    folded::stepAndSum(2, q, r, rn, sum, rr);
+    folded::stepOfOne(2, q, r, square);
+    double sums = 0, squares = 0;
+    const std::vector<float> values = rn.read(), ones = square.read();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      CHECK(ones[i] == values[i] * values[i]);
+      sums += values[i];
+      squares += values[i] * values[i];
+    }
+    CHECK(sum.read() == Approx(sums).epsilon(1e-6));
+    CHECK(rr.read() == Approx(squares).epsilon(1e-6));
+  });
+}
+
 TEST_CASE("stencils, borders, iterators, indices, arrays and gathers") {
   onEveryProfile([](sk::Device& device) {
     const std::vector<float> u = floats(60 * 130);
