@@ -206,24 +206,33 @@ std::vector<sk::assemble::ReducePass> passesOfScan(const sk::program::Reduction&
   return passes;
 }
 
+bool has(const sk::program::Kernel& kernel, sk::program::Role role) {
+  return std::ranges::find(kernel.parameters, role, &sk::program::Parameter::role) != kernel.parameters.end();
+}
+
 /// Every program that folds a 1024 x 1024 stream to a value, or scans a stream, for one variant of the reduce.
 std::string formListing(const Profile& profile, const sk::program::Reduction& reduction, bool isScan) {
   if (isScan) return passListing(profile, reduction, passesOfScan(reduction));
   sk::assemble::RegionLayout input;
   input.extent = {1024, 1024, 1, 1};
-  const bool byIndex = sk::assemble::readsElementIndex(reduction.fold);
+  const bool byIndex = sk::assemble::readsElementIndex(reduction.fold) || !has(reduction.fold, sk::program::Role::Input);
   input.packed = !byIndex && readsScalars(reduction.fold);
   const bool isCompute = profile.stage == sk::assemble::Stage::Compute;
-  const sk::assemble::ReduceLimits limits{.texture = {16384, 256},
-                                          .grouped = isCompute,
-                                          .toBuffer = isCompute && sk::assemble::mayEndInBuffer(reduction)};
+  const bool hasOutputs = has(reduction.fold, sk::program::Role::Output);
+  const sk::assemble::ReduceLimits limits{
+      .texture = {16384, 256},
+      .grouped = isCompute,
+      .toBuffer = isCompute && !hasOutputs && sk::assemble::mayEndInBuffer(reduction)};
   const sk::assemble::Division division{.blocks = {1, 1, 1, 1},
                                         .byIndex = byIndex,
                                         .byTexel = input.packed,
                                         .inAnyOrder = reduction.commutative,
                                         .inGroups = sk::assemble::foldsInGroups(reduction)};
-  return passListing(profile, reduction,
-                     sk::assemble::planReduction(input, sk::assemble::valueLayout(), limits, division));
+  std::vector<sk::assemble::ReducePass> passes =
+      sk::assemble::planReduction(input, sk::assemble::valueLayout(), limits, division);
+  passes.front().variant.stores = isCompute && hasOutputs && !byIndex && !reduction.seeded &&
+                                  (!input.packed || sk::assemble::mayPackOutputs(reduction.fold));
+  return passListing(profile, reduction, std::move(passes));
 }
 
 /// The plain variant, and the one that calls use by default for sums of floats.

@@ -384,6 +384,15 @@ TEST_CASE("elements of every kind are folded beside outputs of every kind") {
     for (const sk::float4& value : vectors) first += value.z;
     CHECK(both.read()[0].x == first);
     CHECK(most.read() == 6);
+    auto pairs = device.stream<folded::Pair>({n});
+    auto thirds = device.stream<sk::float3>({n});
+    folded::paired(streamOf(device, x), pairs, thirds, halves);
+    CHECK(pairs.read()[2000].low == x[2000]);
+    CHECK(pairs.read()[2000].count.y == 2);
+    CHECK(thirds.read()[3000].y == 2 * x[3000]);
+    double triple = 0;
+    for (const float value : x) triple += 3 * value;
+    CHECK(halves.read() == triple);
     auto ints = device.stream<int>({4});
     auto tally = device.scalar<int>();
     folded::tally(streamOf(device, std::vector<int>{1, 2, 3, 4}), ints, tally);

@@ -92,6 +92,7 @@ bool ReducePasses::mayStoreElements() const {
     if (parameter.role == Role::Output) planes += parameter.element->fields.size();
   }
   return device_.programs().stage() == assemble::Stage::Compute && !reduction_.seeded && !foldsByIndex() &&
+         (!elements_.packed || assemble::mayPackOutputs(fold)) &&
          planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
 }
 
