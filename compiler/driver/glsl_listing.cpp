@@ -228,11 +228,8 @@ std::string formListing(const Profile& profile, const sk::program::Reduction& re
                                         .byTexel = input.packed,
                                         .inAnyOrder = reduction.commutative,
                                         .inGroups = sk::assemble::foldsInGroups(reduction)};
-  std::vector<sk::assemble::ReducePass> passes =
-      sk::assemble::planReduction(input, sk::assemble::valueLayout(), limits, division);
-  passes.front().variant.stores = isCompute && hasOutputs && !byIndex && !reduction.seeded &&
-                                  (!input.packed || sk::assemble::mayPackOutputs(reduction.fold));
-  return passListing(profile, reduction, std::move(passes));
+  return passListing(profile, reduction,
+                     sk::assemble::planReduction(input, sk::assemble::valueLayout(), limits, division));
 }
 
 /// The plain variant, and the one that calls use by default for sums of floats.

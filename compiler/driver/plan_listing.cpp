@@ -36,7 +36,7 @@ class PlanPrinter {
       text_ += fmt::format("\n{} {}{}: ", ir::wordOf(kernel), qualifier(kernel.scope), kernel.name);
       if (kernel.isPart) text_ += "a part: ";
       if (kernel.parts) {
-        text_ += fmt::format("1 pass, and folding, in work groups and natively; else its outputs, then {}\n",
+        text_ += fmt::format("natively 1 pass; on other targets its outputs, then {}\n",
                              kernel.parts->after ? "the reduce of these" : "the reduce without them");
       } else {
         kernel.isScan ? printScan() : kernel.reduction ? printReduce() : printKernel(kernel);

@@ -88,7 +88,6 @@ class GlDevice final : public DeviceState {
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   std::unique_ptr<LoopRunner> makeLoopRunner() override;
   void reduce(const ResolvedReduction& call) override;
-  bool foldsBesideOutputs(const ResolvedReduction& call) override;
 
   /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
   /// their purpose `whatFor`, if memory is exhausted.

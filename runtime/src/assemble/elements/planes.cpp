@@ -418,26 +418,6 @@ void copyPlanes(ProgramText& program, const Parameter& parameter, const Texel& t
   }
 }
 
-std::size_t storeInImages(ProgramText& program, const Parameter& parameter, std::string_view variable,
-                          const Texel& texel, std::size_t binding) {
-  const auto [first, end] = writtenPlanes(parameter);
-  const auto typeOf = [&](std::size_t plane) {
-    const Field& field = heldBy(parameter).fields[plane];
-    return texelType(field, outputWidth(field));
-  };
-  for (std::size_t plane = first; plane < end; ++plane) program.variable(typeOf(plane), outputName(parameter, plane));
-  store(program, parameter, variable);
-  for (std::size_t plane = first; plane < end; ++plane, ++binding) {
-    const std::string image = fmt::format("sk_elements{}", binding);
-    program.variable(fmt::format("layout(binding = {}) writeonly uniform {}", binding,
-                                 imageType(typeOf(plane), !texel.shift.empty())),
-                     image);
-    program.statement(fmt::format("imageStore({}, {}, {});", image, place(program, texel),
-                                  wholeTexel(typeOf(plane), outputName(parameter, plane))));
-  }
-  return binding;
-}
-
 void store(ProgramText& program, const Parameter& parameter, std::string_view variable) {
   const Element& element = heldBy(parameter);
   const auto [first, end] = writtenPlanes(parameter);

@@ -68,11 +68,6 @@ std::string resultVariable(ProgramText& program, const program::Parameter& param
 /// Declares samplers and outputs for the parameter's planes, and copies the texels at `texel` unchanged.
 void copyPlanes(ProgramText& program, const program::Parameter& parameter, const Texel& texel);
 
-/// Adds statements that store a variable of the element's type to the texel of an image for each of the parameter's
-/// planes, which it declares at the bindings from `binding` on. Compute programs only. Returns the next binding.
-std::size_t storeInImages(ProgramText& program, const program::Parameter& parameter, std::string_view variable,
-                          const Texel& texel, std::size_t binding);
-
 /// Adds statements that copy a variable of the element's type to the parameter's outputs, unless it is the
 /// output.
 void store(ProgramText& program, const program::Parameter& parameter, std::string_view variable);

@@ -54,8 +54,26 @@ int componentsOf(std::string_view type) {
   return last >= '2' && last <= '4' ? last - '0' : 1;
 }
 
+std::string_view imageType(std::string_view texel, bool isArray) {
+  switch (texel.front()) {
+    case 'i': return isArray ? "iimage2DArray" : "iimage2D";
+    case 'u': return isArray ? "uimage2DArray" : "uimage2D";
+    default: return isArray ? "image2DArray" : "image2D";
+  }
+}
+
 std::string_view vectorOf(std::string_view texel) {
   return texel.front() == 'i' ? "ivec4" : texel.front() == 'u' ? "uvec4" : "vec4";
+}
+
+/// A value of four components, as imageStore() requires; it ignores those that the image lacks.
+std::string wholeTexel(std::string_view type, std::string_view value) {
+  const int components = componentsOf(type);
+  if (components == 4) return std::string(value);
+  const std::string_view vector = vectorOf(type);
+  if (components == 1) return fmt::format("{}({})", vector, value);
+  const std::string_view zero = vector == "ivec4" ? "0" : vector == "uvec4" ? "0u" : "0.0";
+  return fmt::format("{}({}, {}, {})", vector, value, zero, zero);
 }
 
 /// The size of a work group.
@@ -71,23 +89,6 @@ constexpr std::string_view esPrecision =
     "precision highp usampler2D;\n";
 
 }  // namespace
-
-std::string_view imageType(std::string_view texel, bool isArray) {
-  switch (texel.front()) {
-    case 'i': return isArray ? "iimage2DArray" : "iimage2D";
-    case 'u': return isArray ? "uimage2DArray" : "uimage2D";
-    default: return isArray ? "image2DArray" : "image2D";
-  }
-}
-
-std::string wholeTexel(std::string_view type, std::string_view value) {
-  const int components = componentsOf(type);
-  if (components == 4) return std::string(value);
-  const std::string_view vector = vectorOf(type);
-  if (components == 1) return fmt::format("{}({})", vector, value);
-  const std::string_view zero = vector == "ivec4" ? "0" : vector == "uvec4" ? "0u" : "0.0";
-  return fmt::format("{}({}, {}, {})", vector, value, zero, zero);
-}
 
 std::string ProgramText::uniform(std::string_view type, std::string_view name) {
   if (relaysUniforms_ && relayed_.take(type, name)) {

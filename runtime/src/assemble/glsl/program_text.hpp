@@ -128,11 +128,6 @@ class ProgramText {
   std::size_t shared_ = 0;  ///< bytes
 };
 
-/// The type of an image of texels of this type: "vec2", "uint" ...
-std::string_view imageType(std::string_view texel, bool isArray);
-/// A value of four components, as imageStore() requires; it ignores those that the image lacks.
-std::string wholeTexel(std::string_view type, std::string_view value);
-
 /// `name(arguments)` on one line, or with one line per argument if that is too long.
 std::string call(std::string_view name, const std::vector<std::string>& arguments, std::string_view indent);
 

@@ -9,7 +9,6 @@
 #include <cassert>
 #include <utility>
 
-#include "assemble/assemble.hpp"
 #include "sk/scalar_bytes.hpp"
 
 namespace sk::assemble {
@@ -340,12 +339,6 @@ class Planner {
 };
 
 }  // namespace
-
-bool mayPackOutputs(const program::Kernel& fold) {
-  return std::ranges::all_of(fold.parameters, [](const program::Parameter& parameter) {
-    return parameter.role != program::Role::Output || mayPack(heldBy(parameter));
-  });
-}
 
 bool foldsInGroups(const program::Reduction& reduction) {
   const bool foldCombines =

@@ -68,10 +68,6 @@ bool mayEndInBuffer(const program::Reduction& reduction);
 /// Whether a fold reads the index of its elements.
 bool readsElementIndex(const program::Kernel& fold);
 
-/// Whether a program that folds packed texels can store the outputs of the fold (ReduceVariant::stores): all are
-/// scalars, whose streams are packed, too.
-bool mayPackOutputs(const program::Kernel& fold);
-
 /// How the elements are divided into blocks and addressed.
 struct Division {
   Index4 blocks;  ///< in each dimension of the elements: divisors of their extents

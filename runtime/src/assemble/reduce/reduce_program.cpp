@@ -332,45 +332,13 @@ class ReductionText : FoldText {
 
   /// Folds an element, or the elements of a packed texel from component `first` on.
   void foldTexel(std::string_view indent, int first = 0) {
-    if (!variant_.packed) {
-      statement(fmt::format("{}{}", indent, foldingNext()));
-      return storeElements();
-    }
+    if (!variant_.packed) return statement(fmt::format("{}{}", indent, foldingNext()));
     for (int lane = first; lane < lanes; ++lane) {
       const std::string component = fmt::format(".{}", "xyzw"[lane]);
       const std::string fold =
           calling(kernel_, [&](std::size_t i, std::size_t) { return elementOf(i, component); });
       statement(fmt::format("{}{}", indent, fold));
-      forEachStored([&](const Parameter& output) {
-        statement(fmt::format("{}{}{} = {};", indent, texelOf(output), component, this->output(output)));
-      });
     }
-    storeElements();
-  }
-
-  template <class Visit>
-  void forEachStored(Visit&& visit) {
-    if (!variant_.stores) return;
-    for (const Parameter& parameter : kernel_.parameters) {
-      if (parameter.role == Role::Output && isNeeded(parameter, variant_.specs)) visit(parameter);
-    }
-  }
-
-  /// The variable for the four elements of an output's packed texel.
-  std::string texelOf(const Parameter& output) {
-    std::string name = fmt::format("sk_four_{}", output.symbol);
-    program_.variable(fourOf(output).element->glsl, name);
-    return name;
-  }
-
-  /// Stores the outputs of the element or texel that has been folded.
-  void storeElements() {
-    std::size_t binding = 0;
-    for (const Parameter* accumulator : accumulators_) binding += accumulator->element->fields.size();
-    forEachStored([&](const Parameter& output) {
-      binding = variant_.packed ? storeInImages(program_, fourOf(output), texelOf(output), next_, binding)
-                                : storeInImages(program_, output, this->output(output), next_, binding);
-    });
   }
 
   std::string foldingNext() {

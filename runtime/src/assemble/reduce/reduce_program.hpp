@@ -74,9 +74,6 @@ struct ReduceVariant {
   bool strided = false;
   bool toBuffer = false;  ///< the only element of the result goes to a buffer (ProgramText::storeInBuffer())
   bool packed = false;  ///< walks of elements: the inputs are packed, and a step is a whole texel
-  /// Walks of elements in compute programs, except Index: also stores the outputs of the fold, which have the texels of
-  /// the inputs, to images behind those of the accumulators (elementPlanes()).
-  bool stores = false;
   bool sourceLayered = false;  ///< of what is read, except for Walk::Index
   bool domainLayered = false;
   ScanPass scan = ScanPass::None;

@@ -104,24 +104,6 @@ void reduceToValues(GlDevice& device, const ResolvedReduction& call) {
   readValues(device, fold, value.planes, layout, call.values);
 }
 
-/// The arguments without results, if outputs of the fold are to be stored; else none.
-std::vector<Argument> outputsAlone(const Kernel& fold, std::span<const Argument> arguments) {
-  std::vector<Argument> alone(arguments.begin(), arguments.end());
-  bool stores = false;
-  for (std::size_t i = 0; i < alone.size(); ++i) {
-    if (fold.parameters[i].role == Role::Accumulator) alone[i].region.stream = nullptr;
-    stores = stores || (fold.parameters[i].role == Role::Output && alone[i].region.stream != nullptr);
-  }
-  return stores ? alone : std::vector<Argument>();
-}
-std::vector<Argument> resultsAlone(const Kernel& fold, std::span<const Argument> arguments) {
-  std::vector<Argument> alone(arguments.begin(), arguments.end());
-  for (std::size_t i = 0; i < alone.size(); ++i) {
-    if (fold.parameters[i].role == Role::Output) alone[i].region.stream = nullptr;
-  }
-  return alone;
-}
-
 void reduceToStreams(GlDevice& device, const ResolvedReduction& call) {
   const Kernel& fold = call.reduction.fold;
   const auto isResult = [](const Parameter& parameter) { return parameter.role == Role::Accumulator; };
@@ -140,8 +122,7 @@ void reduceToStreams(GlDevice& device, const ResolvedReduction& call) {
       static_cast<std::size_t>(std::ranges::find_if(fold.parameters, isResult) - fold.parameters.begin());
   const RegionLayout& layout = passes->operands()[first].regionLayout;
   const assemble::SpecValues specs = specsOf(fold, call.arguments);
-  const std::vector<Argument> results = resultsAlone(fold, call.arguments);
-  OutputTargets targets(device, fold, results, specs, passes->operands(), layout,
+  OutputTargets targets(device, fold, call.arguments, specs, passes->operands(), layout,
                         glStream(call.arguments[first].region).layout);
   std::vector<RenderTarget*> drawn;
   for (const std::span<RenderTarget> planes : targets.planesOfOutputs()) {
@@ -149,42 +130,16 @@ void reduceToStreams(GlDevice& device, const ResolvedReduction& call) {
       drawn.push_back(&plane);
     }
   }
-  std::optional<OutputTargets> elements;
-  const std::vector<Argument> outputs = outputsAlone(fold, call.arguments);
-  if (!outputs.empty()) {
-    const StreamRegion& like = call.arguments[passes->firstOfElements()].region;
-    elements.emplace(device, fold, outputs, specs, passes->operands(), passes->elements(), glStream(like).layout);
-    passes->storeElements({elements->planes().begin(), elements->planes().end()});
-    elements->begin();
-  }
   const auto begin = [&] { targets.begin(); };
   if (call.scan) {
     passes->scan(layout, drawn, call.scan->isExclusive, begin);
   } else {
     passes->run(layout, drawn, begin);
   }
-  if (elements) elements->copy();
   targets.putInPlace();
-  if (elements) elements->exchange();
 }
 
 }  // namespace
-
-bool GlDevice::foldsBesideOutputs(const ResolvedReduction& call) {
-  const Kernel& fold = call.reduction.fold;
-  if (call.domain.size() == 0) return false;
-  const assemble::Stage stage = stageOf(fold, KernelClass::Reduces, call.options);
-  if (stage != assemble::Stage::Compute) return false;
-  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
-    const StreamState* const stream = call.arguments[i].region.stream;
-    const bool isOutput = fold.parameters[i].role == Role::Output && stream != nullptr;
-    if (isOutput && stream->storage != Storage::Single) return false;
-  }
-  checkOptions(fold, call.options);
-  const DeviceScope scope(*this);
-  selectPrograms(call.options, stage);
-  return ReducePasses(*this, call).mayStoreElements();
-}
 
 void GlDevice::reduce(const ResolvedReduction& call) {
   const Kernel& fold = call.reduction.fold;

@@ -85,23 +85,6 @@ ReducePasses::ReducePasses(GlDevice& device, const ResolvedReduction& call)
   }
 }
 
-bool ReducePasses::mayStoreElements() const {
-  const Kernel& fold = reduction_.fold;
-  std::size_t planes = 2 * accumulatorPlanes(fold);  // with the errors of compensated sums
-  for (const Parameter& parameter : fold.parameters) {
-    if (parameter.role == Role::Output) planes += parameter.element->fields.size();
-  }
-  return device_.programs().stage() == assemble::Stage::Compute && !reduction_.seeded && !foldsByIndex() &&
-         (!elements_.packed || assemble::mayPackOutputs(fold)) &&
-         planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
-}
-
-std::size_t ReducePasses::firstOfElements() const {
-  std::size_t i = 0;
-  while (!isRead(i) || operands_[i].regionLayout.extent != elements_.extent) ++i;
-  return i;
-}
-
 bool ReducePasses::mayEndInBuffer() const {
   return device_.programs().stage() == assemble::Stage::Compute && assemble::mayEndInBuffer(reduction_);
 }
@@ -123,8 +106,7 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
                                     .byTexel = byTexel_,
                                     .inAnyOrder = reduction_.commutative,
                                     .inGroups = assemble::foldsInGroups(reduction_)};
-  std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
-  passes.front().variant.stores = !elementPlanes_.empty();
+  const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
   startAll(passes);
   for (const ReducePass& pass : passes) {
     if (pass.toResult) {
@@ -236,8 +218,8 @@ Operand ReducePasses::operandOf(std::size_t i, const Argument& argument, const S
     case Role::Iterator: return domain.size() == 0 ? Operand{} : iteration(parameter, argument.value, domain);
     case Role::Input:
     case Role::Gather:
-    case Role::Accumulator:
-    case Role::Output: break;
+    case Role::Accumulator: break;
+    case Role::Output:
     case Role::VariableOutput:
     case Role::Scatter: return {};
   }
@@ -320,9 +302,7 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
         for (const assemble::UniformValue& value : pass.uniforms) {
           program.uniform(value).set(device_.bound, value.value);
         }
-        std::vector<RenderTarget*> written(planes.begin(), planes.end());
-        if (variant.stores) written.insert(written.end(), elementPlanes_.begin(), elementPlanes_.end());
-        writeRects(device_, preparedPass(device_, program.kernel, planes), written, pass.draws);
+        writeRects(device_, preparedPass(device_, program.kernel, planes), planes, pass.draws);
       });
 }
 

@@ -37,14 +37,6 @@ class ReducePasses {
   /// The operands of the fold, one per parameter.
   std::span<const Operand> operands() const { return operands_; }
 
-  /// Whether the passes over elements can also store the outputs of the fold: dispatches that go through texels.
-  bool mayStoreElements() const;
-  /// The layout of the elements, and an argument's stream that has it.
-  const assemble::RegionLayout& elements() const { return elements_; }
-  std::size_t firstOfElements() const;
-  /// Makes run() store the outputs to these planes, which must not be read.
-  void storeElements(std::vector<RenderTarget*> planes) { elementPlanes_ = std::move(planes); }
-
   /// Whether a reduction of a nonempty domain to a value may write it to the device's value buffer.
   bool mayEndInBuffer() const;
 
@@ -119,7 +111,6 @@ class ReducePasses {
   const bool isScan_;
   bool byTexel_ = false;
   const assemble::Index4 blocks_;
-  std::vector<RenderTarget*> elementPlanes_;  ///< storeElements()
 };
 
 }  // namespace sk
