@@ -215,7 +215,8 @@ std::string formListing(const Profile& profile, const sk::program::Reduction& re
   if (isScan) return passListing(profile, reduction, passesOfScan(reduction));
   sk::assemble::RegionLayout input;
   input.extent = {1024, 1024, 1, 1};
-  const bool byIndex = sk::assemble::readsElementIndex(reduction.fold) || !has(reduction.fold, sk::program::Role::Input);
+  const bool byIndex =
+      sk::assemble::readsElementIndex(reduction.fold) || !has(reduction.fold, sk::program::Role::Input);
   input.packed = !byIndex && readsScalars(reduction.fold);
   const bool isCompute = profile.stage == sk::assemble::Stage::Compute;
   const bool hasOutputs = has(reduction.fold, sk::program::Role::Output);

@@ -249,7 +249,8 @@ std::vector<Type> typesOf(const Kernel& kernel, ParamRole role) {
 
 void checkReduction(const Module& module, const Kernel& kernel) {
   const std::vector<Type> accumulators = typesOf(kernel, ParamRole::Accumulator);
-  require(foldsBesideOutputs(kernel) || kernel.isPart || !typesOf(kernel, ParamRole::Input).empty(), "a reduce has no input");
+  require(foldsBesideOutputs(kernel) || kernel.isPart || !typesOf(kernel, ParamRole::Input).empty(),
+          "a reduce has no input");
   for (const KernelParam& param : kernel.params) {
     require(param.role != ParamRole::VariableOutput && param.role != ParamRole::Scatter,
             "a reduce has an append output");

@@ -227,7 +227,8 @@ class Builder {
   const sk::program::FoldParts* parts(const Kernel& kernel) {
     if (!kernel.parts) return nullptr;
     const Kernel& map = module_.kernels[kernel.parts->map];
-    sk::program::FoldParts made{.map = whole(map), .mapOperands = parameterNumbers(kernel.parts->mapOperands)};
+    sk::program::FoldParts made{.map = whole(map),
+                                .mapOperands = parameterNumbers(kernel.parts->mapOperands)};
     addForms(map, made.map);
     made.map.whyNotHalf = storage_.keep(map.variants.whyNotHalf);
     made.map.whyNotWide = storage_.keep(map.variants.whyNotWide);

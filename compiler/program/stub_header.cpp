@@ -172,7 +172,8 @@ class HeaderWriter {
     const bool isOne = accumulatorsOf(kernel) == 1;
     if (form == Form::Fold) {
       return fmt::format(
-          "  /// Also folds all elements to one element of {}, or each block to one. The extents of {} divide those of "
+          "  /// Also folds all elements to one element of {}, or each block to one. The extents of {} "
+          "divide those of "
           "{}.\n",
           isOne ? to : "each of " + to, to, namesOf(kernel, ParamRole::Output));
     }

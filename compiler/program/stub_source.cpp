@@ -158,13 +158,14 @@ class SourceWriter {
     std::string doubles = "nullptr";
     if (made.inDoubles != nullptr && options_.native) {
       reductionForm(made.inDoubles->reduction, *parts.inDoubles, names.doubles, inFloats(Speed::Best));
-      kernel(made.inDoubles->finish, *module_.kernels[*parts.inDoubles].reduction->finish, names.doubles + "Finish",
-             inFloats(Speed::Any));
-      text_ += fmt::format("constexpr WideReduction {0} = {{{0}Reduction, {0}FinishKernel}};\n\n", names.doubles);
+      kernel(made.inDoubles->finish, *module_.kernels[*parts.inDoubles].reduction->finish,
+             names.doubles + "Finish", inFloats(Speed::Any));
+      text_ +=
+          fmt::format("constexpr WideReduction {0} = {{{0}Reduction, {0}FinishKernel}};\n\n", names.doubles);
       doubles = "&" + names.doubles;
     }
-    text_ += fmt::format("constexpr FoldParts {0}Parts = {{{3}, {1}Kernel, {1}Operands{2}}};\n\n", name, names.map,
-                         after, doubles);
+    text_ += fmt::format("constexpr FoldParts {0}Parts = {{{3}, {1}Kernel, {1}Operands{2}}};\n\n", name,
+                         names.map, after, doubles);
   }
 
   static std::vector<std::string> numbersIn(std::span<const std::uint8_t> parameters) {
@@ -266,7 +267,8 @@ class SourceWriter {
     const Compensated& second = *declared.reduction->compensated;
     const Kernel& fold = module_.kernels[second.fold];
     const CompensatedNames names(name);
-    const bool seldomRuns = made.inDoubles || (declared.parts && declared.parts->inDoubles);  // doubles do instead
+    const bool seldomRuns =
+        made.inDoubles || (declared.parts && declared.parts->inDoubles);  // doubles do instead
     const Speed speed = seldomRuns ? Speed::Any : Speed::Best;
     kernel(made.reduction.combine, *fold.reduction->combine, names.combine, combining(inAnyReal(speed)));
     kernel(made.reduction.fold, second.fold, names.fold, inAnyReal(speed));

@@ -222,8 +222,9 @@ class State {
     if (elements.empty()) elements = "values";
     for (const KernelParam& param : kernel.params) {
       if (param.role != ParamRole::Accumulator || param.identity) continue;
-      diagnostics_.report(Diag::ReduceNeedsIdentity, param.loc,
-                          {kernel.name, elements, print(module_, param.type), param.name, accumulatorWordOf(kernel)});
+      diagnostics_.report(
+          Diag::ReduceNeedsIdentity, param.loc,
+          {kernel.name, elements, print(module_, param.type), param.name, accumulatorWordOf(kernel)});
     }
   }
 

@@ -61,12 +61,14 @@ class State {
   }
 
   /// Replaces statements that add floats to a sum by additions of doubles.
-  static void addInDoubles(const Kernel& kernel, Function& entry, Block& block, const std::vector<FloatSum>& sums) {
+  static void addInDoubles(const Kernel& kernel, Function& entry, Block& block,
+                           const std::vector<FloatSum>& sums) {
     Block rewritten;
     for (Stmt& stmt : block) {
       forEachBlock(stmt, [&](Block& inner) { addInDoubles(kernel, entry, inner, sums); });
       const std::optional<FoldPart> part = foldedBy(kernel, stmt);
-      const auto sum = std::ranges::find_if(sums, [&](const FloatSum& one) { return part && one.holds(*part); });
+      const auto sum =
+          std::ranges::find_if(sums, [&](const FloatSum& one) { return part && one.holds(*part); });
       if (sum == sums.end()) {
         rewritten.push_back(std::move(stmt));
         continue;

@@ -34,7 +34,8 @@ sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values, sk::Sha
 
 std::vector<int> numbers(std::size_t count, int seed = 1) {
   std::vector<int> x;
-  for (std::size_t i = 0; i < count; ++i) x.push_back(static_cast<int>((i * 7919 + 13 * i * i) % 101) - 40 + seed);
+  for (std::size_t i = 0; i < count; ++i)
+    x.push_back(static_cast<int>((i * 7919 + 13 * i * i) % 101) - 40 + seed);
   return x;
 }
 
@@ -75,9 +76,10 @@ TEST_CASE("several accumulators fold each block of streams of any shape") {
     struct Case {
       sk::Shape domain, blocks;
     };
-    for (const Case& one : {Case{{50}, {1}}, Case{{70000}, {7}}, Case{{12, 20}, {12, 1}}, Case{{12, 20}, {3, 4}},
-                            Case{{300, 260}, {1, 260}}, Case{{3, 4, 10}, {3, 1, 5}}, Case{{2, 3, 4, 50}, {2, 3, 1, 1}},
-                            Case{{5, 7}, {5, 7}}, Case{{1024, 1024}, {1, 1}}}) {
+    for (const Case& one :
+         {Case{{50}, {1}}, Case{{70000}, {7}}, Case{{12, 20}, {12, 1}}, Case{{12, 20}, {3, 4}},
+          Case{{300, 260}, {1, 260}}, Case{{3, 4, 10}, {3, 1, 5}}, Case{{2, 3, 4, 50}, {2, 3, 1, 1}},
+          Case{{5, 7}, {5, 7}}, Case{{1024, 1024}, {1, 1}}}) {
       INFO(one.domain.size() << " elements, " << one.blocks.size() << " blocks");
       const auto n = static_cast<std::size_t>(one.domain.size());
       const std::vector<int> x = numbers(n);
@@ -210,13 +212,15 @@ TEST_CASE("stencils, borders, iterators, indices, arrays and gathers") {
     for (int i = 0; i < 50; ++i) table.push_back(i * i % 17);
     for (int i = 0; i < n; ++i) {
       x.push_back(i * 7 % 50);
-      ys.push_back(weight[static_cast<std::size_t>((i + 100) & 3)] * table[static_cast<std::size_t>(x.back())]);
+      ys.push_back(weight[static_cast<std::size_t>((i + 100) & 3)] *
+                   table[static_cast<std::size_t>(x.back())]);
       sum += static_cast<long long>(ys.back()) * i;
     }
     auto y = device.stream<int>({n});
     auto total = device.stream<int>({1});
     auto last = device.stream<sk::int2>({1});
-    folded::placed(sk::iter(100, 100 + n), weight, streamOf(device, x), streamOf(device, table), y, total, last);
+    folded::placed(sk::iter(100, 100 + n), weight, streamOf(device, x), streamOf(device, table), y, total,
+                   last);
     CHECK(y.read() == ys);
     CHECK(total.read()[0] == static_cast<int>(sum));
     CHECK(last.read()[0].x == n - 1);
@@ -285,8 +289,8 @@ TEST_CASE("inputs repeat, and views are read and written") {
     const auto row = streamOf(device, std::vector<float>{4}, {1, 1});
     auto rr = device.stream<float>({10, 1});
     auto xn = device.stream<float>({10, 20});
-    folded::step(1, u.domain({5, 5}, {15, 25}), row, u.domain({20, 0}, {30, 20}), u.domain({5, 5}, {15, 25}), xn,
-                 u.domain({25, 10}, {35, 30}), rr);
+    folded::step(1, u.domain({5, 5}, {15, 25}), row, u.domain({20, 0}, {30, 20}), u.domain({5, 5}, {15, 25}),
+                 xn, u.domain({25, 10}, {35, 30}), rr);
     std::vector<float> after = before, sums;
     for (std::size_t y = 0; y < 10; ++y) {
       float sum = 0;
@@ -349,6 +353,25 @@ TEST_CASE("sums are as accurate as those of reduces") {
       both({});
       CHECK(made.read() == Approx(exact).epsilon(7e-8));
     }
+  });
+}
+
+TEST_CASE("infinities and NaN are folded as they are") {
+  onEveryProfile([](sk::Device& device) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    std::vector<float> x(5000, 1.0f);
+    x[4321] = infinity;
+    auto y = device.stream<float>({5000});
+    auto old = device.scalar<float>(), made = device.scalar<float>();
+    folded::both(1, streamOf(device, x), y, old, made);
+    CHECK(y.read()[4321] == infinity);
+    CHECK(old.read() == infinity);
+    CHECK(made.read() == infinity);
+    x[17] = -infinity;
+    folded::both(1, streamOf(device, x), y, old, made);
+    CHECK(std::isnan(old.read()));
+    CHECK(y.read()[17] == -infinity);
+    CHECK(y.read()[18] == 2);
   });
 }
 
@@ -474,14 +497,16 @@ TEST_CASE("what a folded output cannot be is refused before anything runs") {
     CHECK_THAT(errorOf([&] { folded::count(x, y, total, most, positive); }),
                Contains("'y' has shape {6}") && Contains("divisor"));
     CHECK_THAT(errorOf([&] { folded::count(x, y, ok, other, y.domain({0}, {1})); }), Contains("overlap"));
-    CHECK_THAT(errorOf([&] { folded::count(x, device.stream<int>({5}), ok, other, device.stream<int>({1})); }),
-               Contains("'x' has shape {6}"));
+    CHECK_THAT(
+        errorOf([&] { folded::count(x, device.stream<int>({5}), ok, other, device.stream<int>({1})); }),
+        Contains("'x' has shape {6}"));
     CHECK_THAT(errorOf([&] {
                  folded::count.with({.scan = sk::Scan::Exclusive})(x, y, ok, other, device.stream<int>({1}));
                }),
                Contains("no scan"));
     CHECK_THAT(errorOf([&] {
-                 folded::count.with({.accumulate = sk::Accumulate::Exact})(x, y, ok, other, device.stream<int>({1}));
+                 folded::count.with({.accumulate = sk::Accumulate::Exact})(x, y, ok, other,
+                                                                           device.stream<int>({1}));
                }),
                Contains("exact"));
     CHECK(y.read() == std::vector<int>(6, 9));

@@ -29,7 +29,8 @@ using program::Parameter;
 using program::Reduction;
 using program::Role;
 
-std::vector<Argument> argumentsOf(std::span<const std::uint8_t> operands, std::span<const Argument> arguments) {
+std::vector<Argument> argumentsOf(std::span<const std::uint8_t> operands,
+                                  std::span<const Argument> arguments) {
   std::vector<Argument> own;
   for (const std::uint8_t operand : operands) own.push_back(arguments[operand]);
   return own;
@@ -38,7 +39,8 @@ std::vector<Argument> argumentsOf(std::span<const std::uint8_t> operands, std::s
 bool isWritten(Role role) { return role == Role::Output || role == Role::Accumulator; }
 
 /// Whether a kernel reads a stream that parameters of this role of the fold write.
-bool readsWritten(const Kernel& reader, std::span<const Argument> own, const ResolvedReduction& call, Role written) {
+bool readsWritten(const Kernel& reader, std::span<const Argument> own, const ResolvedReduction& call,
+                  Role written) {
   for (std::size_t i = 0; i < own.size(); ++i) {
     if (isWritten(reader.parameters[i].role) || own[i].region.stream == nullptr) continue;
     for (std::size_t k = 0; k < call.arguments.size(); ++k) {
@@ -58,7 +60,8 @@ void checkDisjoint(const Kernel& fold, std::span<const Argument> arguments) {
         continue;
       }
       fail(fold,
-           "the outputs '{}' and '{}' overlap: both write elements of one stream; give them different streams, or "
+           "the outputs '{}' and '{}' overlap: both write elements of one stream; give them different "
+           "streams, or "
            "regions that have no element in common",
            fold.parameters[i].name, fold.parameters[k].name);
     }
@@ -109,8 +112,8 @@ class FoldCall {
 
  private:
   bool isTogether() const {
-    return hasMap_ && !needsPrecisionVariant(call_.options) && call_.options.accumulate != Accumulate::Exact &&
-           call_.device.foldsBesideOutputs(call_);
+    return hasMap_ && !needsPrecisionVariant(call_.options) &&
+           call_.options.accumulate != Accumulate::Exact && call_.device.foldsBesideOutputs(call_);
   }
 
   /// Whether outputs that the kernel has written can be folded: they hold the floats that were computed, and
@@ -170,7 +173,8 @@ class RecordedFold final : public RecordedCall {
   const FoldCall call_;
 };
 
-void checkAndFold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
+void checkAndFold(const Reduction& reduction, std::span<const Argument> arguments,
+                  const CallOptions& options) {
   const FoldCall call(reduction, arguments, options);
   LoopState* const recording = call.device().recording;
   if (recording == nullptr) return call.run();

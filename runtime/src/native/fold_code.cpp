@@ -23,8 +23,8 @@ Bound<Function> bound(const Entry& entry, const CodeFrame& frame) {
 }
 
 /// Tries the fold, which must not change any output.
-void checkWithoutOutputs(const program::Reduction& reduction, const FoldProgram& program, const native::Call& call,
-                         const CodeChoice& choice) {
+void checkWithoutOutputs(const program::Reduction& reduction, const FoldProgram& program,
+                         const native::Call& call, const CodeChoice& choice) {
   if (!program.layout.hasOutputs()) return checkFold(reduction, program, call, choice);
   std::vector<native::Operand> operands(call.operands.begin(), call.operands.end());
   for (std::size_t i = 0; i < operands.size(); ++i) {

@@ -283,7 +283,8 @@ void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, st
         for (std::size_t row = 0; row < placed_; ++row) stageInput(row, s, x, {count, room}, step);
         break;
       case SlotLayout::Kind::Output:
-        for (std::size_t row = slot.isInPlace && count == room && step == 1 ? wanted_ : 0; row < placed_; ++row)
+        for (std::size_t row = slot.isInPlace && count == room && step == 1 ? wanted_ : 0; row < placed_;
+             ++row)
           useScratch(row, slot);
         break;
       case SlotLayout::Kind::Gather:
