@@ -249,17 +249,24 @@ std::vector<sk::assemble::ReducePass> passesOfScan(const Profile& profile,
   return passes;
 }
 
+bool has(const sk::program::Kernel& kernel, sk::program::Role role) {
+  return std::ranges::find(kernel.parameters, role, &sk::program::Parameter::role) != kernel.parameters.end();
+}
+
 /// Every program that folds a 1024 x 1024 stream to a value, or scans a stream, for one variant of the reduce.
 std::string formListing(const Profile& profile, const sk::program::Reduction& reduction, bool isScan) {
   if (isScan) return passListing(profile, reduction, passesOfScan(profile, reduction));
   sk::assemble::RegionLayout input;
   input.extent = {1024, 1024, 1, 1};
-  const bool byIndex = sk::assemble::readsElementIndex(reduction.fold);
+  const bool byIndex =
+      sk::assemble::readsElementIndex(reduction.fold) || !has(reduction.fold, sk::program::Role::Input);
   input.packed = !byIndex && readsScalars(reduction.fold);
   const bool isCompute = profile.stage == sk::assemble::Stage::Compute;
-  const sk::assemble::ReduceLimits limits{.texture = {16384, 256},
-                                          .grouped = isCompute,
-                                          .toBuffer = isCompute && sk::assemble::mayEndInBuffer(reduction)};
+  const bool hasOutputs = has(reduction.fold, sk::program::Role::Output);
+  const sk::assemble::ReduceLimits limits{
+      .texture = {16384, 256},
+      .grouped = isCompute,
+      .toBuffer = isCompute && !hasOutputs && sk::assemble::mayEndInBuffer(reduction)};
   const sk::assemble::Division division{.blocks = {1, 1, 1, 1},
                                         .byIndex = byIndex,
                                         .byTexel = input.packed,
@@ -299,6 +306,13 @@ std::string wholeListing(const Profile& profile, const sk::program::Kernel& kern
   return hasAppendOutputs ? appendListing(profile, kernel) : kernelListing(profile, kernel);
 }
 
+/// Where the device does not store elements while it folds: the kernel of the outputs, and the reduce of these if there
+/// is one.
+std::string partsListing(const Profile& profile, const sk::program::FoldParts& parts) {
+  const std::string map = wholeListing(profile, parts.map);
+  return parts.after == nullptr ? map : map + "\n" + reductionListing(profile, *parts.after, false);
+}
+
 std::string withoutForm(const emit::Unit& unit, std::string_view precision, std::string_view why) {
   return fmt::format("// {} has no form for {} precision: {}\n", unit.kernel.name, precision,
                      why.empty() ? "it computes no floats" : why);
@@ -309,8 +323,9 @@ std::string unitListing(const Profile& profile, const emit::Unit& unit, std::str
   const sk::program::Kernel& kernel = unit.kernel;
   const sk::program::Reduction* reduction = unit.reduction;
   if (precision.empty() || precision == "single") {
-    return reduction != nullptr ? reductionListing(profile, *reduction, unit.isScan)
-                                : wholeListing(profile, kernel);
+    if (reduction == nullptr) return wholeListing(profile, kernel);
+    const std::string folds = reductionListing(profile, *reduction, unit.isScan);
+    return reduction->parts == nullptr ? folds : folds + "\n" + partsListing(profile, *reduction->parts);
   }
   if (precision == "half") {
     if (reduction != nullptr && reduction->half != nullptr)

@@ -34,7 +34,13 @@ class PlanPrinter {
     for (const Kernel& kernel : module_.kernels) {
       if (kernel.pass || kernel.isSynthesized) continue;
       text_ += fmt::format("\n{} {}{}: ", ir::wordOf(kernel), qualifier(kernel.scope), kernel.name);
-      kernel.isScan ? printScan() : kernel.reduction ? printReduce() : printKernel(kernel);
+      if (kernel.isPart) text_ += "a part: ";
+      if (kernel.parts) {
+        text_ += fmt::format("natively 1 pass; on other targets its outputs, then {}\n",
+                             kernel.parts->after ? "the reduce of these" : "the reduce without them");
+      } else {
+        kernel.isScan ? printScan() : kernel.reduction ? printReduce() : printKernel(kernel);
+      }
       for (const LoopNote& loop : kernel.loops) printLoop(loop);
     }
     return std::move(text_);

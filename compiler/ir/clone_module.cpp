@@ -21,6 +21,8 @@ Kernel clone(const Kernel& kernel) {
               .isScan = kernel.isScan,
               .isSynthesized = kernel.isSynthesized,
               .isNativeOnly = kernel.isNativeOnly,
+              .parts = kernel.parts,
+              .isPart = kernel.isPart,
               .plans = kernel.plans,
               .pass = kernel.pass,
               .variants = kernel.variants,

@@ -28,7 +28,8 @@
 //     `specialize-gathers`, only entries have Gather or AppendOutput parameters, every StreamRef
 //     names a kernel parameter, and no two kernels share a function; functions that no kernel reaches
 //     are ignored from then on.
-//   * A reduce has inputs and accumulators. Partial results are combined by a reduce whose inputs have the
+//   * A reduce has inputs and accumulators. A kernel with accumulators is a reduce that has outputs, too, which do
+//     not depend on its accumulators. Partial results are combined by a reduce whose inputs have the
 //     types of its accumulators, and which does not ask where an element is.
 //   * A kernel that some target cannot run in one pass has plans after `split-kernels`. The kernels
 //     of their passes are in the module like all others.
@@ -40,6 +41,7 @@
 // `validate` (validate.hpp) is this text made executable.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -296,6 +298,20 @@ struct Reduction {
   bool commutative = false;
 };
 
+/// Kernels that do a part of what a kernel with outputs and accumulators does, for targets that cannot do both in
+/// one pass; set by split-folds.
+struct FoldParts {
+  KernelId map;  ///< computes the outputs
+  std::vector<std::uint32_t> mapOperands;  ///< for each of its parameters, the whole kernel's
+  /// A reduce that folds the same elements, but reads outputs that `map` has computed. Absent if it would
+  /// need another value, or cost no less than folding from the inputs.
+  std::optional<KernelId> after;
+  std::vector<std::uint32_t> afterOperands;
+  /// A native-only variant of the whole kernel whose float sums are doubles; its reduction has a `finish`. Set by
+  /// sum-in-doubles.
+  std::optional<KernelId> inDoubles = {};
+};
+
 /// Variants of a kernel for other precisions, with the same parameters: set by widen-floats and round-halves.
 struct PrecisionVariants {
   std::optional<KernelId> wide;  ///< computes in double wherever the kernel says float
@@ -387,10 +403,12 @@ struct Kernel {
       ///< Output and Accumulator InOut, Gather Gather,
       ///< VariableOutput and Scatter AppendOutput
   std::vector<KernelParam> params;
-  std::optional<Reduction> reduction;  ///< set for `reduce` and `scan`
+  std::optional<Reduction> reduction;  ///< set for `reduce` and `scan`, and a kernel with accumulators
   bool isScan = false;  ///< keeps the accumulators after each element
   bool isSynthesized = false;  ///< synthesized by a transform: C++ cannot call it
   bool isNativeOnly = false;  ///< no GLSL program runs it
+  std::optional<FoldParts> parts;  ///< of a kernel with outputs and accumulators
+  bool isPart = false;  ///< belongs to the FoldParts of another kernel: C++ cannot call it
   std::vector<Plan> plans;  ///< for targets whose limits it exceeds, the most generous first
   std::optional<PassOf> pass;
   PrecisionVariants variants;
@@ -400,10 +418,20 @@ struct Kernel {
   Loc loc;
 };
 
+/// True if the kernel has outputs as well as accumulators.
+inline bool foldsBesideOutputs(const Kernel& kernel) {
+  return kernel.reduction && std::ranges::any_of(kernel.params, [](const KernelParam& param) {
+           return param.role == ParamRole::Output;
+         });
+}
+
 /// The word that declares a kernel.
 inline std::string_view wordOf(const Kernel& kernel) {
-  return kernel.isScan ? "scan" : kernel.reduction ? "reduce" : "kernel";
+  return kernel.isScan ? "scan" : kernel.reduction && !foldsBesideOutputs(kernel) ? "reduce" : "kernel";
 }
+
+/// The word that declares its accumulators.
+inline std::string_view accumulatorWordOf(const Kernel& kernel) { return kernel.isScan ? "scan" : "reduce"; }
 
 /// An extent of a declared stream: a constant, or, if it has a name, an argument of the struct that the stub
 /// declares for the streams of a namespace.

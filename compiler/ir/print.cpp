@@ -173,6 +173,13 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
       if (sum.term.kernel) text += fmt::format(" or @{}", module.kernels[*sum.term.kernel].entry);
     }
   }
+  if (kernel.parts && kernel.parts->inDoubles)
+    text += fmt::format(", natively by @{}", module.kernels[*kernel.parts->inDoubles].entry);
+  if (kernel.parts) {
+    text += fmt::format(", outputs by @{}", module.kernels[kernel.parts->map].entry);
+    if (kernel.parts->after)
+      text += fmt::format(" and folded after by @{}", module.kernels[*kernel.parts->after].entry);
+  }
   if (kernel.pass) text += fmt::format(", pass {} of {}", kernel.pass->number, kernel.pass->count);
   text += "\n";
   for (std::size_t i = 0; i < kernel.params.size(); ++i) {

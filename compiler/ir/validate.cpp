@@ -249,11 +249,11 @@ std::vector<Type> typesOf(const Kernel& kernel, ParamRole role) {
 
 void checkReduction(const Module& module, const Kernel& kernel) {
   const std::vector<Type> accumulators = typesOf(kernel, ParamRole::Accumulator);
-  require(!typesOf(kernel, ParamRole::Input).empty(), "a reduce has no input");
+  require(foldsBesideOutputs(kernel) || kernel.isPart || !typesOf(kernel, ParamRole::Input).empty(),
+          "a reduce has no input");
   for (const KernelParam& param : kernel.params) {
-    require(param.role != ParamRole::Output && param.role != ParamRole::VariableOutput &&
-                param.role != ParamRole::Scatter,
-            "a reduce has an output");
+    require(param.role != ParamRole::VariableOutput && param.role != ParamRole::Scatter,
+            "a reduce has an append output");
   }
   if (!kernel.reduction->combine) return;
   require(*kernel.reduction->combine < module.kernels.size(), "the combining kernel is not in the table");
@@ -261,6 +261,7 @@ void checkReduction(const Module& module, const Kernel& kernel) {
   require(typesOf(combine, ParamRole::Input) == accumulators &&
               typesOf(combine, ParamRole::Accumulator) == accumulators,
           "the combining kernel does not fold accumulators");
+  require(typesOf(combine, ParamRole::Output).empty(), "the combining kernel has an output");
   const std::vector<std::uint32_t>& operands = kernel.reduction->operands;
   require(operands.size() == combine.params.size(), "the combining kernel has too many or too few operands");
   for (std::size_t i = 0; i < operands.size(); ++i) {
@@ -270,6 +271,21 @@ void checkReduction(const Module& module, const Kernel& kernel) {
                 kernel.params[operands[i]].type == combine.params[i].type,
             "an operand of the combining kernel is not there, or of another kind");
   }
+}
+
+void checkParts(const Module& module, const Kernel& kernel) {
+  const auto check = [&](KernelId id, const std::vector<std::uint32_t>& operands) {
+    require(id < module.kernels.size() && module.kernels[id].isPart, "a part of a fold is not in the table");
+    const Kernel& part = module.kernels[id];
+    require(part.params.size() == operands.size(), "a part of a fold has too many or too few operands");
+    for (std::size_t i = 0; i < operands.size(); ++i) {
+      require(operands[i] < kernel.params.size() && kernel.params[operands[i]].type == part.params[i].type,
+              "an operand of a part of a fold is not there, or has another type");
+    }
+  };
+  require(foldsBesideOutputs(kernel), "a kernel that does not fold beside outputs has parts");
+  check(kernel.parts->map, kernel.parts->mapOperands);
+  if (kernel.parts->after) check(*kernel.parts->after, kernel.parts->afterOperands);
 }
 
 void checkPlan(const Module& module, const Kernel& kernel, const Plan& plan) {
@@ -314,6 +330,7 @@ void checkKernel(const Module& module, Stage stage, const Kernel& kernel) {
   }
   require(hasAccumulator == kernel.reduction.has_value(), "a reduce and an accumulator go together");
   if (kernel.reduction) checkReduction(module, kernel);
+  if (kernel.parts) checkParts(module, kernel);
   for (const Plan& plan : kernel.plans) checkPlan(module, kernel, plan);
 }
 

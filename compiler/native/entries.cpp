@@ -10,6 +10,7 @@
 #include "native/function_code.hpp"
 #include "native/leaves.hpp"
 #include "native/records.hpp"
+#include "native/slots.hpp"
 #include "native/wide_masks.hpp"
 #include "transforms/predicate.hpp"
 
@@ -257,7 +258,7 @@ class EntryWriter {
     return parts;
   }
 
-  /// Calls the entry with `state` as accumulators; returns their new values.
+  /// Calls the entry with `state` as accumulators, and stores outputs; returns the accumulators' new values.
   Parts folded(const Parts& state, const std::function<Parts(std::uint32_t)>& others, llvm::Value* element,
                llvm::Value* count) {
     std::vector<Parts> arguments;
@@ -271,9 +272,14 @@ class EntryWriter {
       arguments.emplace_back(next, next + parts);
       next += parts;
     }
+    const std::vector<Parts> changed = call(std::move(arguments), element, count).outputs;
     Parts result;
-    for (const Parts& output : call(std::move(arguments), element, count).outputs) {
-      for (const Part& part : output) result.push_back({l_.broadcast(part)});
+    auto nextChanged = changed.begin();
+    for (std::uint32_t i = 0; i < s_.kernel.params.size(); ++i) {
+      const ParamRole role = s_.kernel.params[i].role;
+      if (role == ParamRole::Output) streams_.storeOutput(i, *nextChanged++);
+      if (role != ParamRole::Accumulator) continue;
+      for (const Part& part : *nextChanged++) result.push_back({l_.broadcast(part)});
     }
     return result;
   }
@@ -344,6 +350,9 @@ class EntryWriter {
       b_.CreateCondBr(starts, start, resume);
       b_.SetInsertPoint(start);
       keep(registers, startOf(b_.CreateAdd(first, column)));
+      if (s_.kernel.reduction->seeded && foldsBesideOutputs(s_.kernel)) {  // the element's outputs alone
+        folded(kept(registers), [&](std::uint32_t i) { return argument(i); }, column, columns);
+      }
       b_.CreateBr(fold);
       b_.SetInsertPoint(resume);
       keep(registers, loadState(state, column));
@@ -549,15 +558,15 @@ class EntryWriter {
   llvm::BasicBlock* prologue_ = nullptr;
 };
 
-/// True if the reduction can fold partial results: its inputs have the types of its accumulators, and it uses
-/// no index.
+/// True if the reduction can fold partial results: its inputs have the types of its accumulators, and it has no
+/// outputs and uses no index.
 bool combines(const Module& module, const Kernel& kernel) {
   std::vector<Type> inputs, accumulators;
   for (const KernelParam& param : kernel.params) {
     if (param.role == ParamRole::Input) inputs.push_back(param.type);
     if (param.role == ParamRole::Accumulator) accumulators.push_back(param.type);
   }
-  return inputs == accumulators && !usesIndex(module, kernel);
+  return inputs == accumulators && !foldsBesideOutputs(kernel) && !usesIndex(module, kernel);
 }
 
 }  // namespace
@@ -600,7 +609,7 @@ std::vector<EntryKind> entriesOf(const Module& module, const Kernel& kernel, boo
   const bool hasBorders = std::ranges::any_of(kernel.params, [](const KernelParam& param) {
     return param.role == ParamRole::Gather && param.boundary == Boundary::Border;
   });
-  if (hasBorders && !kernel.reduction) kinds.push_back(EntryKind::Borders);
+  if (hasBorders && readsNeighbors(kernel)) kinds.push_back(EntryKind::Borders);
   const bool scatters = std::ranges::any_of(
       kernel.params, [](const KernelParam& param) { return param.role == ParamRole::Scatter; });
   if (scatters) kinds.push_back(EntryKind::Apply);

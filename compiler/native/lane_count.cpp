@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "native/lane_count.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <optional>
 
 #include "analysis/stream_uses.hpp"
@@ -103,6 +105,24 @@ std::uint32_t vectorsOfFold(const Module& module, const Kernel& kernel, std::siz
   return vectors;
 }
 
+/// The lanes of a fold that stores outputs, too. Memory decides its time, so that it goes through all columns of the
+/// runtime (256 bytes of accumulators, 16 to 64 columns) at once, in the order of the elements, unless their
+/// accumulators take more than half of the registers.
+std::uint32_t lanesBesideOutputs(const Module& module, const Kernel& kernel, std::uint32_t one,
+                                 std::uint32_t floatBytes, const CpuLevel& level) {
+  std::uint32_t bytes = 0;  // of a column
+  for (const KernelParam& param : kernel.params) {
+    if (param.role != ParamRole::Accumulator) continue;
+    for (const Scalar scalar : scalarsOf(module, param.type))
+      bytes += scalar == Scalar::Double ? 8 : floatBytes;
+  }
+  const std::uint32_t columns = std::bit_floor(std::clamp(256 / bytes, 16U, 64U));
+  const auto registers = [&](std::uint32_t lanes) { return lanes * bytes * 8 / level.vectorBits; };
+  std::uint32_t lanes = std::min(one, columns);
+  while (2 * lanes <= columns && registers(2 * lanes) <= level.vectorRegisters / 2) lanes *= 2;
+  return lanes;
+}
+
 }  // namespace
 
 std::uint32_t laneCount(const Module& module, const Kernel& kernel, sk::native::EntryKind kind,
@@ -121,6 +141,8 @@ std::uint32_t laneCount(const Module& module, const Kernel& kernel, sk::native::
   if (waits) return scalars <= few ? 2 * one : one;
   const bool foldsInAnyOrder =
       kind == sk::native::EntryKind::Fold && kernel.reduction && kernel.reduction->commutative;
+  if (foldsInAnyOrder && foldsBesideOutputs(kernel))
+    return lanesBesideOutputs(module, kernel, one, bits / 8, level);
   return foldsInAnyOrder ? one * vectorsOfFold(module, kernel, scalars, bits / 8 * one, level.vectorRegisters)
                          : one;
 }

@@ -65,6 +65,8 @@ std::optional<std::vector<std::int32_t>> constantOffset(const Module& module, co
   return std::vector{static_cast<std::int32_t>(*bits)};
 }
 
+bool readsNeighbors(const Kernel& kernel) { return !kernel.reduction || foldsBesideOutputs(kernel); }
+
 SlotPlan planSlots(const Module& module, const Kernel& kernel) {
   SlotPlan plan;
   for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
@@ -72,7 +74,7 @@ SlotPlan planSlots(const Module& module, const Kernel& kernel) {
     if (role == ParamRole::Input || role == ParamRole::Output)
       plan.slots.push_back(slotOf(i, role == ParamRole::Output));
   }
-  if (!kernel.reduction) {
+  if (readsNeighbors(kernel)) {
     for (const FunctionId id : functionsOf(module, kernel)) {
       walkExprs(module.functions[id].body, [&](const Expr& expr) {
         const auto* n = std::get_if<NeighborRead>(&expr.node);

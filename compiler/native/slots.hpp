@@ -26,7 +26,10 @@ struct SlotPlan {
   std::vector<std::size_t> firstArrays;  ///< the first array of each slot
 };
 
-/// Plans slots for inputs, outputs and, except in reductions, rows of neighbours at constant offsets.
+/// True if neighbours at constant offsets have slots: not in reductions without outputs.
+bool readsNeighbors(const ir::Kernel& kernel);
+
+/// Plans slots for inputs, outputs and, if readsNeighbors(), rows of neighbours at constant offsets.
 SlotPlan planSlots(const ir::Module& module, const ir::Kernel& kernel);
 
 /// True if neighbours at this constant offset are read from a slot. Those farther away are read like any

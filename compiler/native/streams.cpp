@@ -517,7 +517,7 @@ Parts Streams::gather(std::uint32_t param, const Parts& index) {
 
 Parts Streams::neighbor(std::uint32_t param, const Parts& offset,
                         const std::optional<std::vector<std::int32_t>>& constant) {
-  if (constant && isNear(*constant) && !kernel_.reduction) {
+  if (constant && isNear(*constant) && readsNeighbors(kernel_)) {
     std::int8_t row[3] = {};
     for (std::size_t d = 1; d < constant->size(); ++d) row[d - 1] = static_cast<std::int8_t>((*constant)[d]);
     const SlotPlan::Location location = *slots_.find(param, row);

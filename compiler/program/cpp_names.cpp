@@ -57,10 +57,7 @@ std::vector<Callable> callables(const Module& module, const Program& program) {
     Callable callable{kernel.scope, kernel.name, {}, {i}};
     while (isTaken(callable.object)) callable.object += '_';
     taken.insert(scope + callable.object);
-    callable.type = uniqueName(pascalCase(kernel.name) + (kernel.isScan      ? "Scan"
-                                                          : kernel.reduction ? "Reduce"
-                                                                             : "Kernel"),
-                               isTaken);
+    callable.type = uniqueName(pascalCase(kernel.name) + pascalCase(wordOf(kernel)), isTaken);
     taken.insert(scope + callable.type);
     names.push_back(scope + kernel.name);
     list.push_back(std::move(callable));

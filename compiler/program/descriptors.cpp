@@ -29,6 +29,7 @@ struct Program::Storage {
   std::deque<std::vector<sk::program::Parameter>> parameters;
   std::vector<std::string_view> sources;
   std::deque<sk::program::Reduction> reductions;
+  std::deque<sk::program::FoldParts> parts;
   std::deque<sk::program::CompensatedReduction> compensated;
   std::deque<std::vector<sk::program::CompensatedSum>> compensatedSums;
   std::deque<sk::program::WideReduction> wide;
@@ -90,7 +91,7 @@ class Builder {
  private:
   void add(KernelId id) {
     const Kernel& kernel = module_.kernels[id];
-    if (kernel.pass || kernel.isSynthesized) return;
+    if (kernel.pass || kernel.isSynthesized || kernel.isPart) return;
     Unit unit{.id = id, .kernel = whole(kernel)};
     unit.kernel.options = {.accumulate = static_cast<sk::Accumulate>(kernel.choices.accumulate),
                            .precision = static_cast<sk::Precision>(kernel.choices.precision),
@@ -105,8 +106,7 @@ class Builder {
       unit.isScan = kernel.isScan;
       addForms(kernel, storage_.reductions.back());
     } else {
-      if (kernel.variants.half) unit.kernel.half = &form(*kernel.variants.half);
-      if (kernel.variants.wide) unit.kernel.wide = &form(*kernel.variants.wide);
+      addForms(kernel, unit.kernel);
       addUnrolled(kernel, unit.kernel);
     }
     storage_.units.push_back(unit);
@@ -121,6 +121,11 @@ class Builder {
       all.push_back({static_cast<std::uint8_t>(before), variant.value, &form(variant.kernel)});
     }
     made.unrolled = all;
+  }
+
+  void addForms(const Kernel& kernel, sk::program::Kernel& made) {
+    if (kernel.variants.half) made.half = &form(*kernel.variants.half);
+    if (kernel.variants.wide) made.wide = &form(*kernel.variants.wide);
   }
 
   const sk::program::Table* describe(const Table& table) {
@@ -228,7 +233,31 @@ class Builder {
             .compensated = compensated(*kernel.reduction),
             .exact = exactSums(kernel),
             .commutative = kernel.reduction->commutative,
-            .term = sumInDoubles(*kernel.reduction)};
+            .term = sumInDoubles(*kernel.reduction),
+            .parts = parts(kernel)};
+  }
+
+  /// The value of Reduction::parts.
+  const sk::program::FoldParts* parts(const Kernel& kernel) {
+    if (!kernel.parts) return nullptr;
+    const Kernel& map = module_.kernels[kernel.parts->map];
+    sk::program::FoldParts made{.map = whole(map),
+                                .mapOperands = parameterNumbers(kernel.parts->mapOperands)};
+    addForms(map, made.map);
+    made.map.whyNotHalf = storage_.keep(map.variants.whyNotHalf);
+    made.map.whyNotWide = storage_.keep(map.variants.whyNotWide);
+    if (kernel.parts->after) {
+      const Kernel& after = module_.kernels[*kernel.parts->after];
+      made.after = &storage_.reductions.emplace_back(reduction(after, describe(after)));
+      made.afterOperands = parameterNumbers(kernel.parts->afterOperands);
+    }
+    if (kernel.parts->inDoubles) {
+      const Kernel& fold = module_.kernels[*kernel.parts->inDoubles];
+      made.inDoubles = &storage_.wide.emplace_back(sk::program::WideReduction{
+          reduction(fold, describe(fold)), whole(module_.kernels[*fold.reduction->finish])});
+      storage_.wide.back().reduction.commutative = kernel.reduction->commutative;
+    }
+    return &storage_.parts.emplace_back(std::move(made));
   }
 
   /// The value of Reduction::term.

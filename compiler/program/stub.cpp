@@ -51,6 +51,7 @@ std::string parameter(const Module& module, const KernelParam& param, Uniforms u
 
 std::vector<Form> formsOf(const Kernel& kernel) {
   if (kernel.isScan) return {Form::Scan};
+  if (foldsBesideOutputs(kernel)) return {Form::Fold};
   if (kernel.reduction) return {Form::ReduceToValue, Form::ReduceToStream};
   return {Form::Run};
 }

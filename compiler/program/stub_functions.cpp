@@ -43,8 +43,10 @@ class FunctionWriter {
       case Form::ReduceToValue: reduceToValue(kernel, unit, uniforms); break;
       case Form::ReduceToStream:
       case Form::Scan:
-        text_ += fmt::format("  sk::{}(sk::program::{}Reduction, {}, this->options);\n", wordOf(kernel),
-                             names_[unit], arguments(kernel, form, uniforms));
+      case Form::Fold:
+        text_ += fmt::format("  sk::{}(sk::program::{}Reduction, {}, this->options);\n",
+                             form == Form::Fold ? "fold" : wordOf(kernel), names_[unit],
+                             arguments(kernel, form, uniforms));
     }
     text_ += "}\n";
   }

@@ -168,15 +168,23 @@ class HeaderWriter {
 
   static std::string purpose(const Kernel& kernel, Form form) {
     if (form == Form::Run) return "";
-    const std::string from = namesOf(kernel, ParamRole::Input);
     const std::string to = namesOf(kernel, ParamRole::Accumulator);
     const bool isOne = accumulatorsOf(kernel) == 1;
+    if (form == Form::Fold) {
+      return fmt::format(
+          "  /// Also folds all elements to one element of {}, or each block to one. The extents of {} "
+          "divide those of "
+          "{}.\n",
+          isOne ? to : "each of " + to, to, namesOf(kernel, ParamRole::Output));
+    }
+    const std::string from = namesOf(kernel, ParamRole::Input);
     switch (form) {
       case Form::Run: break;
       case Form::ReduceToValue:
         return fmt::format("  /// Folds all of {} to {}.\n", from,
                            isOne ? "one value" : fmt::format("a value of each of {}", to));
-      case Form::ReduceToStream: break;
+      case Form::ReduceToStream:
+      case Form::Fold: break;
       case Form::Scan:
         return fmt::format("  /// Folds {}, up to each element, to an element of {}.\n", from,
                            isOne ? to : "each of " + to);
@@ -205,7 +213,7 @@ class HeaderWriter {
   /// True if a reduce returns several values.
   bool usesTuples() const {
     return std::any_of(module_.kernels.begin(), module_.kernels.end(), [](const Kernel& kernel) {
-      return !kernel.isSynthesized && accumulatorsOf(kernel) > 1;
+      return !kernel.isSynthesized && !foldsBesideOutputs(kernel) && accumulatorsOf(kernel) > 1;
     });
   }
 

@@ -36,8 +36,9 @@ inline std::string_view nameOf(sk::program::Scalar scalar) {
   return ir::row(static_cast<ir::Scalar>(scalar)).name;
 }
 
-/// A callable's functions: a kernel and a scan have one, a reduce one that returns a value and one that fills a stream.
-enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream, Scan };
+/// A callable's functions: a kernel (Fold: one with folded outputs) and a scan have one, a reduce one that returns a
+/// value and one that fills a stream.
+enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream, Scan, Fold };
 std::vector<Form> formsOf(const ir::Kernel& kernel);
 
 /// Each function of a kernel with uniform parameters is declared twice: for values, and for calls where streams of

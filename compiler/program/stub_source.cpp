@@ -127,6 +127,7 @@ class SourceWriter {
       if (made->compensated != nullptr) compensated(*made->compensated, declared, names_[unit]);
       forms(*made, declared, names_[unit]);
       exactSums(made->exact, declared, names_[unit]);
+      if (made->parts != nullptr) foldParts(*made->parts, declared, names_[unit], combine);
       reduction(*made, declared, names_[unit], combine);
     }
   }
@@ -141,6 +142,49 @@ class SourceWriter {
       items.push_back(fmt::format("{{{}, {}u, &{}Kernel}}", variant.spec, variant.value, variantName));
     }
     list("UnrolledKernel", name + "Unrolled", items);
+  }
+
+  /// Prints the constant NAMEParts of a kernel with folded outputs. The reduce that reads outputs has no native
+  /// code, since native code folds beside the outputs.
+  void foldParts(const sk::program::FoldParts& made, const Kernel& declared, const std::string& name,
+                 const std::string& combine) {
+    const FoldPartNames names(name);
+    const FoldParts& parts = *declared.parts;
+    const Kernel& map = module_.kernels[parts.map];
+    if (made.map.half != nullptr)
+      kernel(*made.map.half, *map.variants.half, names.map + "Half", inFloats(Speed::Any));
+    if (made.map.wide != nullptr) kernel(*made.map.wide, *map.variants.wide, names.map + "Wide", {});
+    kernel(made.map, parts.map, names.map, inAnyReal(Speed::Any));
+    list("std::uint8_t", names.map + "Operands", numbersIn(made.mapOperands));
+    std::string after;
+    if (made.after != nullptr) {
+      const bool isNative = std::exchange(options_.native, false);
+      const Kernel& fold = module_.kernels[*parts.after];
+      kernel(made.after->fold, *parts.after, names.after, {});
+      if (made.after->compensated != nullptr) compensated(*made.after->compensated, fold, names.after);
+      exactSums(made.after->exact, fold, names.after);
+      reduction(*made.after, fold, names.after, combine);
+      list("std::uint8_t", names.after + "From", numbersIn(made.afterOperands));
+      after = fmt::format(", &{0}Reduction, {0}From", names.after);
+      options_.native = isNative;
+    }
+    std::string doubles = "nullptr";
+    if (made.inDoubles != nullptr && options_.native) {
+      reductionForm(made.inDoubles->reduction, *parts.inDoubles, names.doubles, inFloats(Speed::Best));
+      kernel(made.inDoubles->finish, *module_.kernels[*parts.inDoubles].reduction->finish,
+             names.doubles + "Finish", inFloats(Speed::Any));
+      text_ +=
+          fmt::format("constexpr WideReduction {0} = {{{0}Reduction, {0}FinishKernel}};\n\n", names.doubles);
+      doubles = "&" + names.doubles;
+    }
+    text_ += fmt::format("constexpr FoldParts {0}Parts = {{{3}, {1}Kernel, {1}Operands{2}}};\n\n", name,
+                         names.map, after, doubles);
+  }
+
+  static std::vector<std::string> numbersIn(std::span<const std::uint8_t> parameters) {
+    std::vector<std::string> numbers;
+    for (const std::uint8_t parameter : parameters) numbers.push_back(std::to_string(parameter));
+    return numbers;
   }
 
   /// How much the speed of a kernel's native code matters.
@@ -225,6 +269,7 @@ class SourceWriter {
     if (!made.exact.empty()) members.push_back(fmt::format(".exact = {}Exact", name));
     if (made.commutative) members.emplace_back(".commutative = true");
     if (!made.term.factors.empty()) members.push_back(".term = " + factors(made.term, name));
+    if (made.parts != nullptr) members.push_back(fmt::format(".parts = &{}Parts", name));
     text_ +=
         fmt::format("constexpr Reduction {}Reduction = {{\n    {}}};\n\n", name, join(members, ",\n    "));
   }
@@ -235,7 +280,9 @@ class SourceWriter {
     const Compensated& second = *declared.reduction->compensated;
     const Kernel& fold = module_.kernels[second.fold];
     const CompensatedNames names(name);
-    const Speed speed = second.term.empty() ? Speed::Best : Speed::Any;  // seldom runs: doubles do instead
+    const bool seldomRuns =
+        !second.term.empty() || (declared.parts && declared.parts->inDoubles);  // doubles do instead
+    const Speed speed = seldomRuns ? Speed::Any : Speed::Best;
     kernel(made.reduction.combine, *fold.reduction->combine, names.combine, combining(inAnyReal(speed)));
     kernel(made.reduction.fold, second.fold, names.fold, inAnyReal(speed));
     reduction(made.reduction, fold, names.fold, names.combine);
@@ -304,9 +351,7 @@ class SourceWriter {
 
   /// A term that consists of inputs; prints the constant NAMEFactors to which it refers.
   std::string factors(const sk::program::SumTerm& made, const std::string& name) {
-    std::vector<std::string> numbers;
-    for (const std::uint8_t parameter : made.factors) numbers.push_back(std::to_string(parameter));
-    list("std::uint8_t", name + "Factors", numbers);
+    list("std::uint8_t", name + "Factors", numbersIn(made.factors));
     return fmt::format("{{{}Factors}}", name);
   }
 

@@ -26,6 +26,13 @@ struct ExactNames {
   std::string fold, finish, term;
 };
 
+/// The names for the parts of a kernel with folded outputs.
+struct FoldPartNames {
+  explicit FoldPartNames(const std::string& kernel)
+      : map(kernel + "Map"), after(kernel + "After"), doubles(kernel + "InDoubles") {}
+  std::string map, after, doubles;
+};
+
 /// The name of the reduce that combines digits of exact sums. All sums of a kind share it.
 inline std::string exactCombinationName(const ir::Kernel& combine) { return "sk_" + combine.name; }
 

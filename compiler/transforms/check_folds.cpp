@@ -185,8 +185,9 @@ bool checkByTrial(const Module& module, const Kernel& kernel, Diagnostics& diagn
       std::ranges::any_of(kernel.params, [](const KernelParam& param) { return !!param.identity; });
   if (!isGiven) {
     if (!computesWithOthers(module, kernel)) return true;
-    diagnostics.report(Diag::ReduceBothReadings, accumulator->loc,
-                       {kernel.name, print(module, accumulator->type), accumulator->name, wordOf(kernel)});
+    diagnostics.report(
+        Diag::ReduceBothReadings, accumulator->loc,
+        {kernel.name, print(module, accumulator->type), accumulator->name, accumulatorWordOf(kernel)});
     return false;
   }
   const IdentityTrial start = tryIdentity(module, kernel);

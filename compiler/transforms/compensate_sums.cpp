@@ -111,7 +111,7 @@ class CompensatedVariantBuilder {
     const KernelId fold = makeFold(makeCombination());
     const KernelId finish = makeFinish();
     Compensated compensated{fold, finish, {}, {}};
-    if (kernel().reduction->commutative) {
+    if (kernel().reduction->commutative && !foldsBesideOutputs(kernel())) {
       compensated.term = onlyTerm(module_, kernel());
       compensated.addsDoubles = addsDoubles(module_, kernel());
     }

@@ -11,6 +11,7 @@
 #include "ir/reach.hpp"
 #include "transforms/check_folds.hpp"
 #include "transforms/combine_part.hpp"
+#include "transforms/fold_copy.hpp"
 #include "transforms/fold_identity.hpp"
 #include "transforms/fold_pattern.hpp"
 #include "transforms/synthesized_kernel.hpp"
@@ -116,7 +117,9 @@ class State {
     if (kernel.reduction->combine) {
       if (!checkCombination(kernel)) return;
       needInputs(module_.kernels[*kernel.reduction->combine]);
-    } else if (pattern ? pattern->isPlain : foldsAccumulators(kernel)) {
+    } else if (foldsBesideOutputs(kernel) && !pattern && foldsAccumulators(kernel)) {
+      if (!combineByFoldAlone(id, !isGiven)) return;
+    } else if (!foldsBesideOutputs(kernel) && (pattern ? pattern->isPlain : foldsAccumulators(kernel))) {
       if (!checkOwnCombination(kernel, id)) return;
       if (!pattern && !checkByTrial(module_, kernel, diagnostics_)) return;
       combineByItself(kernel, id, !isGiven);
@@ -153,6 +156,24 @@ class State {
     reduction.seeded = seeded;
     for (std::uint32_t i = 0; i < kernel.params.size(); ++i) reduction.operands.push_back(i);
     needInputs(kernel);
+  }
+
+  /// Makes a reduce without the outputs, which combines its own results and the kernel's.
+  bool combineByFoldAlone(KernelId id, bool seeded) {
+    if (!checkOwnCombination(module_.kernels[id], id)) return false;
+    FoldCopy copy(module_, id, "_combine");
+    copy.dropOutputs();
+    const KernelId alone = copy.finishFold(seeded);
+    if (!checkByTrial(module_, module_.kernels[alone], diagnostics_)) return false;
+    Kernel& kernel = module_.kernels[id];
+    Reduction reduction{alone, {}, seeded};
+    for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
+      if (kernel.params[i].role != ParamRole::Output) reduction.operands.push_back(i);
+    }
+    kernel.reduction = std::move(reduction);
+    needInputs(kernel);
+    needInputs(module_.kernels[alone]);
+    return true;
   }
 
   /// A run that starts from its first elements needs the inputs, whatever the spec parameters.
@@ -198,10 +219,12 @@ class State {
       if (param.role != ParamRole::Input) continue;
       elements += (elements.empty() ? "'" : " and '") + print(module_, param.type) + "'";
     }
+    if (elements.empty()) elements = "values";
     for (const KernelParam& param : kernel.params) {
       if (param.role != ParamRole::Accumulator || param.identity) continue;
-      diagnostics_.report(Diag::ReduceNeedsIdentity, param.loc,
-                          {kernel.name, elements, print(module_, param.type), param.name, wordOf(kernel)});
+      diagnostics_.report(
+          Diag::ReduceNeedsIdentity, param.loc,
+          {kernel.name, elements, print(module_, param.type), param.name, accumulatorWordOf(kernel)});
     }
   }
 
@@ -210,13 +233,13 @@ class State {
     for (const KernelParam& param : kernel.params) {
       if (param.role != ParamRole::Accumulator) continue;
       const std::string type = print(module_, param.type);
-      const std::string total = std::string(wordOf(kernel)) + " " + type + " " + param.name + "<>";
+      const std::string total = std::string(accumulatorWordOf(kernel)) + " " + type + " " + param.name + "<>";
       parts += type + " " + param.name + "_part<>, ";
       totals += (totals.empty() ? "" : ", ") + total;
       if (!param.identity) identities += "an identity, '" + total + " = ...', and ";
     }
     diagnostics_.report(Diag::ReduceNeedsCombine, kernel.loc,
-                        {kernel.name, parts + totals, identities, wordOf(kernel)});
+                        {kernel.name, parts + totals, identities, accumulatorWordOf(kernel)});
   }
 
   Module& module_;

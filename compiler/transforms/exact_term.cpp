@@ -72,6 +72,7 @@ class TermKernel {
     rewrite(body);
     body.insert(body.begin(), std::make_move_iterator(start_.begin()), std::make_move_iterator(start_.end()));
     copy_.dropAccumulators();
+    copy_.dropOutputs();
     return copy_.finishNativeKernel();
   }
 

@@ -107,7 +107,7 @@ class Finder {
 
 void findNeighbors(Module& module, Diagnostics&) {
   for (const Kernel& kernel : module.kernels) {
-    if (kernel.reduction) continue;
+    if (kernel.reduction && !foldsBesideOutputs(kernel)) continue;
     for (const FunctionId id : functionsOf(module, kernel)) {
       Finder(module, kernel, module.functions[id]).run();
     }

@@ -2,6 +2,7 @@
 #include "transforms/fold_copy.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -74,14 +75,31 @@ VarId FoldCopy::addAccumulator(std::string name, Type type, ExprPtr identity) {
 
 void FoldCopy::dropAccumulators() { isDropped_ = true; }
 
+void FoldCopy::dropOutputs() { dropsOutputs_ = true; }
+
+/// Whether an original parameter stays one.
+bool FoldCopy::keeps(VarId param) const {
+  const ParamRole role = kernel_.params[param].role;
+  return !(isDropped_ && role == ParamRole::Accumulator) && !(dropsOutputs_ && role == ParamRole::Output);
+}
+
 /// Moves parameters to the front of the variables, and renumbers the streams by parameter.
 void FoldCopy::renumber() {
   std::vector<VarId> order;   // old ids in new order
   for (VarId i = 0; i < before_; ++i) {
-    if (!isDropped_ || kernel_.params[i].role != ParamRole::Accumulator) order.push_back(i);
+    if (keeps(i)) order.push_back(i);
   }
   order.insert(order.end(), added_.begin(), added_.end());
   const std::size_t parameters = order.size();
+  Block declared;
+  for (VarId i = 0; i < before_; ++i) {
+    if (!dropsOutputs_ || kernel_.params[i].role != ParamRole::Output) continue;
+    order.push_back(i);
+    entry_.variables[i].role = VarRole::Local;
+    declared.push_back(declare(i));
+  }
+  entry_.body.insert(entry_.body.begin(), std::make_move_iterator(declared.begin()),
+                     std::make_move_iterator(declared.end()));
   for (VarId i = static_cast<VarId>(before_); i < entry_.variables.size(); ++i) {
     if (std::ranges::find(added_, i) == added_.end()) order.push_back(i);
   }
@@ -95,7 +113,7 @@ void FoldCopy::renumber() {
   entry_.parameterCount = static_cast<std::uint32_t>(parameters);
   std::vector<KernelParam> params;
   for (std::size_t i = 0; i < kernel_.params.size(); ++i) {
-    if (i >= before_ || numbers[i] != gone) params.push_back(std::move(kernel_.params[i]));
+    if (i >= before_ || keeps(static_cast<VarId>(i))) params.push_back(std::move(kernel_.params[i]));
   }
   kernel_.params = std::move(params);
   for (const VarId var : added_) {
@@ -141,6 +159,15 @@ KernelId FoldCopy::finish(KernelId combine) {
 KernelId FoldCopy::finishCombination() {
   for (KernelParam& param : kernel_.params) param.identity = nullptr;
   return finish(static_cast<KernelId>(module_.kernels.size()), kernel_.params.size(), true);
+}
+
+KernelId FoldCopy::finishFold(bool seeded) {
+  const auto id = static_cast<KernelId>(module_.kernels.size());
+  operands_.clear();
+  const KernelId added = finish(id, 0, seeded);
+  std::vector<std::uint32_t>& own = module_.kernels[added].reduction->operands;
+  for (std::uint32_t i = 0; i < module_.kernels[added].params.size(); ++i) own.push_back(i);
+  return added;
 }
 
 KernelId FoldCopy::finishNativeKernel() {

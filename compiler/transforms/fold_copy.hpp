@@ -28,16 +28,21 @@ class FoldCopy {
   ir::VarId addAccumulator(std::string name, ir::Type type, ir::ExprPtr identity = nullptr);
   /// Removes the original accumulators; the body must no longer use them.
   void dropAccumulators();
+  /// Makes local variables of the outputs.
+  void dropOutputs();
 
   /// Adds the copy to the module as a reduce that `combine` combines, with the arguments that the original
   /// passes to its combining reduce; or as one that combines its own results and has no identities.
   ir::KernelId finish(ir::KernelId combine);
   ir::KernelId finishCombination();
+  /// Adds the copy to the module as a reduce that combines its own results and keeps its identities.
+  ir::KernelId finishFold(bool seeded);
   /// Adds the copy to the module as a native-only kernel. It has no accumulators.
   ir::KernelId finishNativeKernel();
 
  private:
   ir::VarId add(ir::KernelParam param);
+  bool keeps(ir::VarId param) const;
   void renumber();
   ir::KernelId addToModule();
   ir::KernelId finish(ir::KernelId combine, std::size_t operands, bool seeded);
@@ -48,6 +53,7 @@ class FoldCopy {
   std::vector<std::uint32_t> operands_;
   std::size_t before_;  ///< number of original parameters
   bool isDropped_ = false;
+  bool dropsOutputs_ = false;
   FunctionCopies copies_;
   std::vector<ir::VarId> added_;
 };

@@ -181,7 +181,9 @@ bool computesFloats(const Module& module, const Kernel& kernel) {
 void roundHalves(Module& module, Diagnostics&) {
   const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
-    if (module.kernels[id].isSynthesized || !computesFloats(module, module.kernels[id])) continue;
+    const bool readsOutputs = module.kernels[id].isPart && module.kernels[id].reduction;
+    if (module.kernels[id].isSynthesized || readsOutputs || !computesFloats(module, module.kernels[id]))
+      continue;
     const std::optional<KernelId> combine =
         module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
     const KernelId half = roundKernel(module, id);

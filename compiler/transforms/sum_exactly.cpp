@@ -137,6 +137,7 @@ class State {
       body.insert(body.begin(), std::make_move_iterator(start.begin()), std::make_move_iterator(start.end()));
     }
     copy.dropAccumulators();
+    copy.dropOutputs();
     return copy.finish(combine);
   }
 

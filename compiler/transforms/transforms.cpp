@@ -10,6 +10,7 @@
 
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
+#include "split/split_folds.hpp"
 #include "split/split_kernels.hpp"
 #include "transforms/assign_rows.hpp"
 #include "transforms/bound_pushes.hpp"
@@ -24,6 +25,7 @@
 #include "transforms/round_halves.hpp"
 #include "transforms/specialize_gathers.hpp"
 #include "transforms/sum_exactly.hpp"
+#include "transforms/sum_in_doubles.hpp"
 #include "transforms/tabulate.hpp"
 #include "transforms/unroll_loops.hpp"
 #include "transforms/unroll_spec_loops.hpp"
@@ -69,9 +71,12 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // * bound-pushes follows folding, which finds trip counts and removes unreachable pushes.
 // * inline-folds lets derive-combine see through helper functions.
 // * derive-combine precedes remove-unused, because it adds functions that use structs.
+// * split-folds needs derive-combine's identities and combining reduces, and precedes the variants, which its
+//   kernels have, too.
 // * widen-floats and round-halves follow derive-combine, so that variants combine in the same way, and
 //   precede compensate-sums, which does not apply to them.
-// * compensate-sums and sum-exactly need derive-combine's identities and combining reduces.
+// * compensate-sums, sum-exactly and sum-in-doubles need derive-combine's identities and combining reduces, the last
+//   also split-folds' parts.
 // * assign-rows precedes split-kernels, which tracks variables.
 // * forward-continues follows bound-pushes and derive-combine, which analyse the code as written.
 // * remove-unused follows these, because all of them leave unused entries, and precedes split-kernels, so
@@ -87,10 +92,12 @@ constexpr Transform transforms[] = {
     {"bound-pushes", plain<boundPushes>},
     {"inline-folds", plain<inlineFolds>},
     {"derive-combine", plain<deriveCombine>},
+    {"split-folds", plain<split::splitFolds>},
     {"widen-floats", ofPrecisions<widenFloats>},
     {"round-halves", ofPrecisions<roundHalves>},
     {"compensate-sums", plain<compensateSums>},
     {"sum-exactly", plain<sumExactly>},
+    {"sum-in-doubles", plain<sumInDoubles>},
     {"assign-rows", plain<assignRows>},
     {"forward-continues", plain<forwardContinues>},
     {"remove-unused", plain<removeUnused>},

@@ -309,7 +309,10 @@ void widenFloats(Module& module, Diagnostics&) {
   Widener widener(module, types, constants);
   const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
-    if (module.kernels[id].isSynthesized || !computesFloats(module, types, module.kernels[id])) continue;
+    const bool readsOutputs = module.kernels[id].isPart && module.kernels[id].reduction;  // those are rounded
+    if (module.kernels[id].isSynthesized || readsOutputs ||
+        !computesFloats(module, types, module.kernels[id]))
+      continue;
     UnsupportedOperations obstacles(module, types);
     std::string obstacle = obstacles.of(module.kernels[id]);
     const std::optional<KernelId> combine =

@@ -54,7 +54,8 @@ std::string emitted(const fs::path& file, const Kind& kind) {
 TEST_CASE("skc writes what the goldens say") {
   const char* update = std::getenv("SK_UPDATE_GOLDENS");
   int files = 0;
-  for (const char* name : {"heat", "particles", "loops", "folds", "append_outputs", "unrolling", "scans"}) {
+  for (const char* name :
+       {"heat", "particles", "loops", "folds", "append_outputs", "unrolling", "scans", "folded_outputs"}) {
     for (const Kind& kind : kinds) {
       const fs::path file = fs::path(SK_GOLDEN_FOLDER) / (std::string(name) + ".sk");
       const fs::path expected = fs::path(file).replace_extension(kind.extension);
@@ -65,7 +66,7 @@ TEST_CASE("skc writes what the goldens say") {
       ++files;
     }
   }
-  CHECK(files == 35);
+  CHECK(files == 40);
 }
 
 TEST_CASE("skc writes the same again, wherever it runs and whatever else it compiles") {

@@ -111,8 +111,13 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   for (unsigned i = 0; i < declaration->getNumParams(); ++i) {
     kernel.params.push_back(kernelParam(declaration->getParamDecl(i), functionAt(kernel.entry).variables[i]));
   }
-  if (isFold(syntax.kind)) kernel.reduction.emplace();
+  const auto isAccumulator = [](const ir::KernelParam& param) {
+    return param.role == ir::ParamRole::Accumulator;
+  };
+  const bool folds = std::ranges::any_of(kernel.params, isAccumulator);
+  if (isFold(syntax.kind) || folds) kernel.reduction.emplace();
   kernel.isScan = syntax.kind == FunctionKind::Scan;
+  if (folds && !isFold(syntax.kind)) checkFoldedOutputs(kernel, syntax);
   checkKernelShape(kernel, where);
   module_.kernels.push_back(std::move(kernel));
 }
@@ -221,8 +226,31 @@ void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation w
       fail(Diag::KernelWithoutDomain, where, {kernel.name});
     return;
   }
+  if (ir::foldsBesideOutputs(kernel)) return;
   if (count(ir::ParamRole::Input) == 0 || count(ir::ParamRole::Accumulator) == 0) {
     fail(Diag::ReduceParameters, where, {kernel.name, ir::wordOf(kernel)});
+  }
+}
+
+/// Checks the parameters of a kernel that has accumulators.
+void ModuleLowering::checkFoldedOutputs(const ir::Kernel& kernel, const KernelSyntax& syntax) {
+  const auto first = [&](std::initializer_list<ir::ParamRole> roles) -> const ir::KernelParam* {
+    const auto found = std::ranges::find_if(kernel.params, [&](const ir::KernelParam& param) {
+      return std::ranges::find(roles, param.role) != roles.end();
+    });
+    return found == kernel.params.end() ? nullptr : &*found;
+  };
+  const ir::KernelParam& folded = *first({ir::ParamRole::Accumulator});
+  const auto abandon = [&](Diag diag, std::initializer_list<std::string_view> arguments,
+                           const std::vector<FixIt>& fixIts = {}) {
+    diagnostics_.report(diag, folded.loc, arguments, fixIts);
+    throw Abandoned{};
+  };
+  if (const auto* appended = first({ir::ParamRole::VariableOutput, ir::ParamRole::Scatter}))
+    abandon(Diag::FoldBesideAppend, {kernel.name, folded.name, appended->name});
+  if (first({ir::ParamRole::Output}) == nullptr) {
+    abandon(Diag::FoldWithoutOutput, {kernel.name, folded.name},
+            {FixIt::replace(locOf(syntax.keyword), std::string(wordOf(FunctionKind::Reduce)))});
   }
 }
 
@@ -262,11 +290,11 @@ void ModuleLowering::pairReductions() {
   for (ir::Kernel& kernel : module_.kernels) {
     if (!kernel.reduction) continue;
     const std::vector<ir::Type> accumulators = typesOf(kernel, ir::ParamRole::Accumulator);
-    if (typesOf(kernel, ir::ParamRole::Input) == accumulators) continue;
+    if (typesOf(kernel, ir::ParamRole::Input) == accumulators && !ir::foldsBesideOutputs(kernel)) continue;
     for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
       const ir::Kernel& other = module_.kernels[id];
       if (!other.reduction || other.isScan != kernel.isScan) continue;
-      if (other.name != kernel.name || other.scope != kernel.scope) continue;
+      if (other.name != kernel.name || other.scope != kernel.scope || ir::foldsBesideOutputs(other)) continue;
       if (typesOf(other, ir::ParamRole::Input) != accumulators ||
           typesOf(other, ir::ParamRole::Accumulator) != accumulators) {
         continue;

@@ -85,6 +85,7 @@ class ModuleLowering {
   std::string spelling(const clang::TemplateArgument& argument, clang::SourceLocation use);
   ir::KernelParam kernelParam(const clang::ParmVarDecl* declaration, const ir::Variable& variable);
   void checkElement(ir::Type type, std::string_view name, clang::SourceLocation where);
+  void checkFoldedOutputs(const ir::Kernel& kernel, const KernelSyntax& syntax);
   void checkKernelShape(const ir::Kernel& kernel, clang::SourceLocation where);
   void pairReductions();
   void stream(const clang::VarDecl* declaration, const StreamSyntax& syntax);

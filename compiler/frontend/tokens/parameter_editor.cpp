@@ -337,10 +337,10 @@ std::vector<FixIt> ParameterEditor::removedBrackets(const Parts& parts) {
   return {FixIt::remove(locOf(parts.open), locOf(parts.close))};
 }
 
-/// A fix-it that changes the qualifier to the one of accumulators, for a parameter that is one otherwise.
-std::vector<FixIt> ParameterEditor::asAccumulator(const Parts& parts, FunctionKind kind) {
+/// A fix-it that changes the qualifier to this one of accumulators, for a parameter that is one otherwise.
+std::vector<FixIt> ParameterEditor::asAccumulator(const Parts& parts, std::string_view word) {
   if (!parts.isElement || parts.rank > 0) return {};
-  return {FixIt::replace(locOf(parts.qualifier), std::string(wordOf(kind)))};
+  return {FixIt::replace(locOf(parts.qualifier), std::string(word))};
 }
 
 /// Derives the role from qualifier, `<>` and brackets together, as the language's table of parameters says.
@@ -391,20 +391,20 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   if (kind == FunctionKind::Helper) {
     if (parts.isElement) return fail(Diag::StreamInHelper, {name}, removedBrackets(parts));
     if (parts.rank > 0 && !qualifier.empty()) return fail(Diag::OutputBrackets, {name});
-    if (isAccumulator) return fail(Diag::AccumulatorOutsideReduce, {name});
     parts.syntax.role = parts.rank > 0      ? ir::ParamRole::Gather
                         : qualifier.empty() ? ir::ParamRole::Uniform
                                             : ir::ParamRole::Output;
   } else if (qualifier == "out" || qualifier == "inout") {
-    if (isFold(kind)) return fail(Diag::OutputInReduce, {name, wordOf(kind)}, asAccumulator(parts, kind));
+    if (isFold(kind))
+      return fail(Diag::OutputInReduce, {name, wordOf(kind)}, asAccumulator(parts, wordOf(kind)));
     if (qualifier == "inout") return fail(Diag::InoutStream, {name});
     if (!parts.isElement) return fail(Diag::OutputBrackets, {name}, addedBrackets(parts));
     parts.syntax.role = ir::ParamRole::Output;
   } else if (isAccumulator) {
     if (!parts.isElement) return fail(Diag::AccumulatorBrackets, {name, qualifier}, addedBrackets(parts));
-    if (!isFold(kind)) return fail(Diag::AccumulatorOutsideReduce, {name});
-    if (qualifier != wordOf(kind)) {
-      return fail(Diag::AccumulatorOfOther, {name, wordOf(kind)}, asAccumulator(parts, kind));
+    const std::string_view word = isFold(kind) ? wordOf(kind) : wordOf(FunctionKind::Reduce);
+    if (qualifier != word) {
+      return fail(Diag::AccumulatorOfOther, {name, word, wordOf(kind)}, asAccumulator(parts, word));
     }
     parts.syntax.role = ir::ParamRole::Accumulator;
   } else {

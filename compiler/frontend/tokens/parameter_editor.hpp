@@ -5,6 +5,7 @@
 // constants, where Clang checks them like any other.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include <clang/Lex/Token.h>
@@ -57,7 +58,7 @@ class ParameterEditor {
   bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
   static std::vector<FixIt> addedBrackets(const Parts& parts);
   static std::vector<FixIt> removedBrackets(const Parts& parts);
-  static std::vector<FixIt> asAccumulator(const Parts& parts, FunctionKind kind);
+  static std::vector<FixIt> asAccumulator(const Parts& parts, std::string_view word);
   bool resolveRole(Parts& parts, FunctionKind kind);
   bool resolveAppendOutput(Parts& parts, FunctionKind kind);
   std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place);

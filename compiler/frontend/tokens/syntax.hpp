@@ -42,6 +42,7 @@ constexpr std::string_view wordOf(FunctionKind kind) {
 
 struct KernelSyntax {
   FunctionKind kind = FunctionKind::Kernel;
+  clang::SourceLocation keyword;     ///< of `kernel`, `reduce` or `scan`
   ir::Choices choices;
   std::string signature;             ///< the declaration on one line, as written
 };

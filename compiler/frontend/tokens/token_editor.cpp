@@ -206,6 +206,7 @@ class Editor {
     KernelSyntax kernel;
     kernel.choices = choices;
     kernel.kind = kindOf(start);
+    kernel.keyword = start.getLocation();
     std::vector<Token> head;  // result type and name
     while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());
     const std::size_t at = nameAt(head);

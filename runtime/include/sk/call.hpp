@@ -200,6 +200,12 @@ void reduce(const program::Reduction& reduction, std::span<const Argument> argum
 void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
             const CallOptions& options = {});
 
+/// Runs a kernel with folded outputs over the domain that its other outputs define. Folds, besides, each block of the
+/// domain to one element of the arguments of the accumulators, whose extents divide the domain's as in a reduction to
+/// streams. Throws sk::Error like run() and reduce().
+void fold(const program::Reduction& reduction, std::span<const Argument> arguments,
+          const CallOptions& options = {});
+
 /// Folds, for each element of the inputs, all elements up to it (CallOptions::scan, along) to one element of the
 /// arguments of the accumulators, which have the shape of the inputs and may be the same streams. Inputs in rows
 /// (sk::Rows) are scanned row by row. Throws sk::Error if the arguments do not match, or if an exclusive scan

@@ -280,6 +280,7 @@ struct Plan {
 };
 
 struct CompensatedReduction;
+struct FoldParts;
 struct WideReduction;
 struct ExactSum;
 
@@ -287,7 +288,7 @@ struct ExactSum;
 inline constexpr int longestRun = 32;
 
 /// The term that a sum of floats adds for each element, if the runtime can add it itself: one input, or the
-/// product of two. For an exact sum, it may be a kernel with all parameters of the fold except accumulators,
+/// product of two. For an exact sum, it may be a kernel with all parameters of the fold except accumulators and Outputs,
 /// followed by Outputs of one float: one per term, or two per term, its factors, in a sum of products. A term
 /// that an element does not add is -0.
 struct SumTerm {
@@ -299,6 +300,9 @@ struct SumTerm {
 /// and folds an element into the accumulators. `combine` is a kernel of the same kind: its Inputs correspond
 /// to the Accumulators of `fold` in number and type. They are the result of a later run of elements, which it
 /// folds into the result of an earlier run. It uses no index, and may be `fold` itself.
+///
+/// A kernel with folded outputs is a reduction whose fold has Outputs, too. Whoever calls the fold may ignore
+/// these, as they do not depend on the accumulators.
 struct Reduction {
   Kernel fold;
   Kernel combine;
@@ -317,6 +321,20 @@ struct Reduction {
   std::span<const ExactSum> exact = {};  ///< one for each scalar of the accumulators that is a sum of floats
   bool commutative = false;  ///< elements may be folded in any order, because its operators are known
   SumTerm term = {};  ///< has factors if the reduction only sums such a term to one float
+  const FoldParts* parts = nullptr;  ///< set if the fold has Outputs
+};
+
+/// The parts of a kernel with folded outputs, for devices that cannot store elements while they fold. Operands
+/// are, for each parameter of a part, the parameter of the fold whose argument it gets.
+struct FoldParts {
+  /// For native code: the whole, whose sums of floats are doubles. It is as good as compensated sums. Null if there is
+  /// none.
+  const WideReduction* inDoubles = nullptr;
+  Kernel map;  ///< computes the Outputs
+  std::span<const std::uint8_t> mapOperands;
+  /// Folds the same, but has some of the Outputs as Inputs: the results of `map`. Null if there is none.
+  const Reduction* after = nullptr;
+  std::span<const std::uint8_t> afterOperands = {};
 };
 
 /// A reduction whose accumulators are doubles. `finish` has the accumulators as Inputs and the results, in
@@ -346,7 +364,7 @@ struct CompensatedReduction {
 };
 
 /// A variant of a reduction that adds one scalar of an accumulator without rounding. The fold of `reduction`
-/// has all parameters of the plain fold except accumulators, then its own accumulators. `finish` takes the
+/// has all parameters of the plain fold except accumulators and Outputs, then its own accumulators. `finish` takes the
 /// plain accumulator and these, and returns the plain accumulator with the rounded sum in that scalar.
 struct ExactSum {
   Reduction reduction;

@@ -31,7 +31,8 @@ Sum fold(const ExactSum& sum, const ResolvedReduction& call) {
   folded.digits = std::make_unique<TemporaryResults>(call);
   std::vector<Argument> all;
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
-    if (call.reduction.fold.parameters[i].role != Role::Accumulator) all.push_back(call.arguments[i]);
+    const Role role = call.reduction.fold.parameters[i].role;
+    if (role != Role::Accumulator && role != Role::Output) all.push_back(call.arguments[i]);
   }
   for (const Parameter& parameter : sum.reduction.fold.parameters) {
     if (parameter.role == Role::Accumulator) all.push_back(folded.digits->add(*parameter.element));

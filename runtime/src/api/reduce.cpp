@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/exact_reduction.hpp"
+#include "api/resolved_reduce.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_rows.hpp"
@@ -107,6 +108,13 @@ bool isExact(const ResolvedReduction& call) {
          call.device.sumsExactly(call);
 }
 
+/// Whether native code sums in doubles beside the outputs of a fold.
+bool foldsInDoubles(const ResolvedReduction& call) {
+  return call.reduction.parts != nullptr && call.reduction.parts->inDoubles != nullptr &&
+         call.options.accumulate != Accumulate::Exact && !call.device.usesPrecisionVariants() &&
+         call.device.sumsInDoubles();
+}
+
 /// Whether the plain variant in doubles can replace the compensated one: not if a stream has bits that floats
 /// drop.
 bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& second) {
@@ -118,8 +126,8 @@ bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& seco
          });
 }
 
-/// Adds the choices of the configuration file and the declaration. A file's choice for all reductions applies
-/// only to those that sum floats.
+}  // namespace
+
 CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions& call) {
   const Reduction& reduction = checked.reduction;
   if (!checked.scan) refuseScanOptions(reduction.fold, call);
@@ -135,6 +143,8 @@ CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions&
   return options;
 }
 
+namespace {
+
 /// Whether a result stream stores its floats as halves or doubles.
 bool isStoredInOtherPrecision(const ResolvedReduction& call) {
   if (call.isToValues()) return false;
@@ -147,10 +157,9 @@ bool isStoredInOtherPrecision(const ResolvedReduction& call) {
   return false;
 }
 
-void reduceResolved(const ResolvedReduction& call);
+}  // namespace
 
-/// Reduces to temporary streams of floats and copies these to the results.
-void reduceByFloats(const ResolvedReduction& call) {
+void reduceByTemporaries(const ResolvedReduction& call, const std::function<void()>& between) {
   TemporaryResults floats(call);
   std::vector<Argument> all(call.arguments.begin(), call.arguments.end());
   std::vector<std::size_t> results;
@@ -161,9 +170,11 @@ void reduceByFloats(const ResolvedReduction& call) {
     results.push_back(i);
   }
   reduceResolved(call.of(call.reduction, all, {}));
+  between();
   bool hasBegun = false;
   writeInSteps(call.reduction, call.arguments, hasBegun, [&] {
     for (const std::size_t i : results) {
+      if (call.arguments[i].region.stream->copyFrom(all[i].region, call.arguments[i].region)) continue;
       std::vector<std::byte> elements(static_cast<std::size_t>(all[i].region.shape.size()) *
                                       call.reduction.fold.parameters[i].element->size);
       all[i].region.stream->read(all[i].region, elements.data());
@@ -172,6 +183,8 @@ void reduceByFloats(const ResolvedReduction& call) {
     }
   });
 }
+
+namespace {
 
 /// Computes the sums in the results and the rounding errors in temporaries, then adds both.
 void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction& second) {
@@ -201,11 +214,13 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
   });
 }
 
-/// Reduces with the variant that the options, the device and the results require.
+}  // namespace
+
 void reduceResolved(const ResolvedReduction& call) {
-  if (isStoredInOtherPrecision(call)) return reduceByFloats(call);
+  if (isStoredInOtherPrecision(call)) return reduceByTemporaries(call, [] {});
   if (needsPrecisionVariant(call.options)) return reduceInPrecision(call);
   const CompensatedReduction* second = compensated(call);
+  if (second != nullptr && foldsInDoubles(call)) return reduceWide(call, *call.reduction.parts->inDoubles);
   if (isExact(call)) return reduceExactly(call);
   if (second == nullptr) return call.device.reduce(call);
   if (!isInDoubles(call, *second)) return reduceCompensated(call, *second);
@@ -213,6 +228,8 @@ void reduceResolved(const ResolvedReduction& call) {
   inDoubles.options.accumulate = Accumulate::Extended;
   reduceInPrecision(inDoubles);
 }
+
+namespace {
 
 void runResolved(const ResolvedReduction& call) {
   const TraceScope traced(call.device.trace.get(), "call", call.reduction.fold.name);

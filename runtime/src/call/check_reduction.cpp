@@ -105,7 +105,8 @@ class Arguments {
     } else if (parameter.role == Role::Uniform) {
       checkUniformShape(fold_, parameter, arguments_[i].region.shape);
     } else if (parameter.role == Role::Input) {
-      checkInputShape(fold_, parameter, arguments_[i], parameter, domain);
+      const Parameter* const output = firstOutput();
+      checkInputShape(fold_, parameter, arguments_[i], output != nullptr ? *output : parameter, domain);
     } else if (parameter.role == Role::Gather) {
       checkGatherShape(fold_, parameter, arguments_[i].region.shape, domain);
     }
@@ -171,6 +172,14 @@ class Arguments {
     return *std::ranges::find(fold_.parameters, Role::Accumulator, &Parameter::role);
   }
 
+  /// The output that defines the domain of a kernel with folded outputs; else null.
+  const Parameter* firstOutput() const {
+    const auto found = std::ranges::find_if(fold_.parameters, [&](const Parameter& parameter) {
+      return parameter.role == Role::Output && assemble::isNeeded(parameter, specs_);
+    });
+    return found == fold_.parameters.end() ? nullptr : &*found;
+  }
+
   /// Returns the common shape of the results.
   Shape resultShape() const {
     const Parameter* first = nullptr;
@@ -226,6 +235,7 @@ class Arguments {
 
   /// "'x' has shape" for one input, "the inputs together have" for several.
   std::string inputs() const {
+    if (const Parameter* const output = firstOutput()) return fmt::format("'{}' has shape", output->name);
     const auto isInput = [](const Parameter& parameter) { return parameter.role == Role::Input; };
     if (std::ranges::count_if(fold_.parameters, isInput) > 1) {
       return "the inputs together have shape";

@@ -87,19 +87,24 @@ void reduceInPrecision(const ResolvedReduction& call) {
     return;
   }
   checkPlanes(reduction, wide->reduction, call.device.limits);
+  reduceWide(call, *wide);
+}
+
+void reduceWide(const ResolvedReduction& call, const WideReduction& wide) {
+  const Reduction& reduction = call.reduction;
   TemporaryResults doubles(call);
   std::vector<Argument> folded(call.arguments.begin(), call.arguments.end());
   std::vector<std::size_t> results;
   for (std::size_t i = 0; i < folded.size(); ++i) {
-    const Parameter& parameter = wide->reduction.fold.parameters[i];
+    const Parameter& parameter = wide.reduction.fold.parameters[i];
     if (parameter.role != Role::Accumulator) continue;
     folded[i] = doubles.add(*parameter.element);
     results.push_back(i);
   }
-  call.device.reduce(call.of(wide->reduction, folded, doubles.values));
+  call.device.reduce(call.of(wide.reduction, folded, doubles.values));
   if (call.isToValues()) {
     for (std::size_t k = 0; k < results.size(); ++k) {
-      convertElements(*wide->reduction.fold.parameters[results[k]].element,
+      convertElements(*wide.reduction.fold.parameters[results[k]].element,
                       static_cast<const std::byte*>(doubles.values[k]),
                       *reduction.fold.parameters[results[k]].element, static_cast<std::byte*>(call.values[k]),
                       1);
@@ -108,7 +113,7 @@ void reduceInPrecision(const ResolvedReduction& call) {
   }
   std::vector<Argument> finished = doubles.arguments;
   for (const std::size_t i : results) finished.push_back(call.arguments[i]);
-  call.device.run(resolveCall(wide->finish, finished, call.device.limits, call.options));
+  call.device.run(resolveCall(wide.finish, finished, call.device.limits, call.options));
 }
 
 }  // namespace sk

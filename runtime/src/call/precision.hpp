@@ -46,4 +46,7 @@ void refuseScanOptions(const program::Kernel& kernel, const CallOptions& options
 /// Reduces with the variant that the options select. Throws sk::Error if there is none.
 void reduceInPrecision(const ResolvedReduction& call);
 
+/// Reduces with a variant that has the same parameters, but for the accumulators, which are converted in the end.
+void reduceWide(const ResolvedReduction& call, const program::WideReduction& wide);
+
 }  // namespace sk

@@ -26,7 +26,8 @@ struct ScanOrder {
   bool isExclusive = false;
 };
 
-/// A scan is a reduction to streams of the shape of the domain.
+/// A scan is a reduction to streams of the shape of the domain. The outputs of a fold that has some are written if their
+/// arguments have streams; without these, they have only shapes.
 struct ResolvedReduction {
   DeviceState& device;
   const program::Reduction& reduction;

@@ -100,6 +100,8 @@ class DeviceState {
   virtual bool needsDense(const StreamRegion& region) = 0;
   /// There is at least one block. For an empty domain, the results are the identities, which then exist.
   virtual void reduce(const ResolvedReduction& call) = 0;
+  /// Whether reduce() also writes the outputs of a fold that has some, which are given then.
+  virtual bool foldsBesideOutputs(const ResolvedReduction&) { return false; }
   /// Whether it adds sums of floats without rounding; otherwise it compensates them in its own precision.
   virtual bool sumsExactly(const ResolvedReduction&) const { return true; }
   /// The rounded sums of all blocks if the device computes them itself; null if the sum must be folded to

@@ -88,12 +88,12 @@ bool divide(std::vector<Dimension> dimensions, const Shape& shape, Index& stride
 }
 
 /// A number of steps of one length, from `least` to `most`.
-struct Steps {
+struct DimensionSteps {
   std::int64_t length, least, most;
 };
 
 /// Whether steps[from] and those after it can add up to `distance`. Lengths decrease.
-bool reaches(const std::vector<Steps>& steps, std::size_t from, std::int64_t distance) {
+bool reaches(const std::vector<DimensionSteps>& steps, std::size_t from, std::int64_t distance) {
   if (from == steps.size()) return distance == 0;
   std::int64_t least = 0, most = 0, divisor = 0;
   for (std::size_t s = from; s < steps.size(); ++s) {
@@ -162,19 +162,19 @@ bool overlap(const StreamRegion& a, const StreamRegion& b) {
     return true;
   }
   const AffineRegion one = affine(a), other = affine(b);
-  std::vector<Steps> steps;
+  std::vector<DimensionSteps> steps;
   const auto add = [&](const AffineRegion& region, bool isNegative) {
     for (std::size_t d = 0; d < region.extent.size(); ++d) {
       const std::int64_t most = region.extent[d] - 1;
       if (most == 0) continue;
-      const auto same = std::ranges::find(steps, region.stride[d], &Steps::length);
-      Steps& added = same == steps.end() ? steps.emplace_back(Steps{region.stride[d], 0, 0}) : *same;
+      const auto same = std::ranges::find(steps, region.stride[d], &DimensionSteps::length);
+      DimensionSteps& added = same == steps.end() ? steps.emplace_back(DimensionSteps{region.stride[d], 0, 0}) : *same;
       (isNegative ? added.least : added.most) += isNegative ? -most : most;
     }
   };
   add(one, false);
   add(other, true);
-  std::ranges::sort(steps, std::ranges::greater(), &Steps::length);
+  std::ranges::sort(steps, std::ranges::greater(), &DimensionSteps::length);
   return reaches(steps, 0, other.first - one.first);
 }
 

@@ -23,6 +23,26 @@ Bound<Function> bound(const Entry& entry, const CodeFrame& frame) {
   return {functionOf<Function>(entry), entry.lanes, frame.get()};
 }
 
+/// Tries the fold, which must not change any output.
+void checkWithoutOutputs(const program::Reduction& reduction, const FoldProgram& program,
+                         const native::Call& call, const CodeChoice& choice) {
+  if (!program.layout.hasOutputs()) return checkFold(reduction, program, call, choice);
+  std::vector<native::Operand> operands(call.operands.begin(), call.operands.end());
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    if (reduction.fold.parameters[i].role == program::Role::Output) operands[i].components = {};
+  }
+  const native::Call alone{operands, call.domain, call.tables};
+  const CodeFrame frame(reduction.fold, alone);
+  const SlotLayout layout(reduction.fold, alone, frame, choice);
+  const FoldProgram tried{.layout = layout,
+                          .shape = program.shape,
+                          .fold = {program.fold.function, program.fold.lanes, frame.get()},
+                          .combine = program.combine,
+                          .isCommutative = program.isCommutative,
+                          .isUneven = program.isUneven};
+  checkFold(reduction, tried, alone, choice);
+}
+
 }  // namespace
 
 void foldCode(const program::Reduction& reduction, const native::ReduceCall& call, const CodeChoice& choice) {
@@ -44,7 +64,7 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
                             .combine = bound<native::CombineFunction>(combine, combineFrame),
                             .isCommutative = reduction.commutative,
                             .isUneven = reduction.fold.code->isUneven != 0};
-  if (checksFolds() && !reduction.commutative) checkFold(reduction, program, call.fold, choice);
+  if (checksFolds() && !reduction.commutative) checkWithoutOutputs(reduction, program, call.fold, choice);
   const auto rowsOf = [&] {
     const EntryKind kind = call.holdsFloats ? EntryKind::FoldFloatRows : EntryKind::FoldRows;
     return RowsProgram{program,

@@ -55,12 +55,15 @@ void LeafFolder::call(void* const* state, std::int64_t x, const Division& divisi
                       std::int64_t step) {
   const auto [columns, rounds, leaves] = division;
   const std::int64_t count = columns * rounds * leaves;
-  arrays_.place(x, count, count - columns + roundUp(columns, program_.fold.lanes), step);
+  const std::int64_t room = count - columns + roundUp(columns, program_.fold.lanes);
+  arrays_.place(x, count, room, step);
   chunk_.first[0] = x;
   chunk_.count = count;
   chunk_.step = step;
   program_.fold.function(program_.fold.frame, &chunk_, state, columns, rounds, leaves,
                          start == Start::New ? 1 : 0);
+  const bool isInPlace = count == room && step == 1 && !program_.layout.hasStridedOutputs();
+  if (program_.layout.hasOutputs() && !isInPlace) arrays_.storeOutputs(x, count, room, step);
 }
 
 void LeafFolder::foldInto(StateColumns& state, std::int64_t first, std::int64_t x, std::int64_t count,

@@ -647,7 +647,8 @@ std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& w
     all.assign(arguments.begin(), arguments.end());
   } else {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
-      if (reduction.fold.parameters[i].role != Role::Accumulator) all.push_back(arguments[i]);
+      const Role role = reduction.fold.parameters[i].role;
+      if (role != Role::Accumulator && role != Role::Output) all.push_back(arguments[i]);
     }
     all.resize(kernel.parameters.size());  // its outputs are read, but never stored
   }

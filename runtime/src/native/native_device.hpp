@@ -47,6 +47,7 @@ class NativeDevice final : public DeviceState {
   bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;
   bool needsDense(const StreamRegion&) override { return false; }
   void reduce(const ResolvedReduction& call) override;
+  bool foldsBesideOutputs(const ResolvedReduction&) override { return true; }
   bool sumsExactly(const ResolvedReduction& call) const override;
   std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction& call,
                                           const program::ExactSum& sum) override;

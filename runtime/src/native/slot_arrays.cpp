@@ -108,6 +108,7 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   added.isStrided = added.kind == Kind::Output && added.isGiven && width_ != 1 && argument.stride[0] != 1;
   added.isInPlace = added.kind == Kind::Input ? added.isDirect : added.isGiven && !added.isStrided;
   hasStridedOutputs_ = hasStridedOutputs_ || added.isStrided;
+  hasOutputs_ = hasOutputs_ || (added.kind == Kind::Output && added.isGiven);
   if (added.kind == Kind::Gather) {
     hasGathers_ = true;
     reach_ = std::max(reach_, added.reach);
@@ -284,7 +285,8 @@ void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, st
         for (std::size_t row = 0; row < placed_; ++row) stageInput(row, s, x, {count, room}, step);
         break;
       case SlotLayout::Kind::Output:
-        for (std::size_t row = slot.isInPlace && count == room ? wanted_ : 0; row < placed_; ++row)
+        for (std::size_t row = slot.isInPlace && count == room && step == 1 ? wanted_ : 0; row < placed_;
+             ++row)
           useScratch(row, slot);
         break;
       case SlotLayout::Kind::Gather:
@@ -303,22 +305,30 @@ void SlotArrays::useScratch(std::size_t row, const Slot& slot) {
     arrays_[placeOf(row, a)] = scratch_[placeOf(row, a)];
 }
 
-void SlotArrays::storeOutputs(std::int64_t x, std::int64_t count, std::int64_t room) {
+void SlotArrays::storeOutputs(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step) {
   for (std::size_t row = 0; row < wanted_; ++row) {
     for (std::size_t s = 0; s < slots_; ++s) {
       const Slot& slot = layout_.slots()[s];
-      if (slot.isStrided) storeStrided(row, s, x, count);
-      if (slot.kind != SlotLayout::Kind::Output || !slot.isInPlace || count == room) continue;
+      if (slot.isStrided) storeStrided(row, s, x, count, step);
+      if (slot.kind != SlotLayout::Kind::Output || !slot.isInPlace || (count == room && step == 1)) continue;
       for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
         const ArrayRow& to = inRow_[placeOf(row, a)];
-        std::memcpy(to.first + x * to.bytes, scratch_[placeOf(row, a)],
-                    static_cast<std::size_t>(count * to.bytes));
+        const std::byte* const from = scratch_[placeOf(row, a)];
+        if (step == 1) {
+          std::memcpy(to.first + x * to.bytes, from, static_cast<std::size_t>(count * to.bytes));
+          continue;
+        }
+        for (std::int64_t i = 0; i < count; ++i) {
+          std::memcpy(to.first + (x + i * step) * to.bytes, from + i * to.bytes,
+                      static_cast<std::size_t>(to.bytes));
+        }
       }
     }
   }
 }
 
-void SlotArrays::storeStrided(std::size_t row, std::size_t s, std::int64_t x, std::int64_t count) {
+void SlotArrays::storeStrided(std::size_t row, std::size_t s, std::int64_t x, std::int64_t count,
+                             std::int64_t step) {
   const Slot& slot = layout_.slots()[s];
   const std::int64_t stride = slot.argument->stride[0];
   const std::int64_t first = rowOf(row, s).first + x * stride;
@@ -326,7 +336,7 @@ void SlotArrays::storeStrided(std::size_t row, std::size_t s, std::int64_t x, st
     withScalar(layout_.arrays()[a].bytes.held, [&]<class T> {
       const T* const from = reinterpret_cast<const T*>(scratch_[placeOf(row, a)]);
       T* const to = reinterpret_cast<T*>(layout_.arrays()[a].held) + first;
-      for (std::int64_t i = 0; i < count; ++i) to[i * stride] = from[i];
+      for (std::int64_t i = 0; i < count; ++i) to[i * step * stride] = from[i];
     });
   }
 }

@@ -80,6 +80,7 @@ class SlotLayout {
   bool needsElementwiseCalls() const { return needsElementwiseCalls_; }
   bool hasGathers() const { return hasGathers_; }
   bool hasBorders() const { return !borders_.empty(); }
+  bool hasOutputs() const { return hasOutputs_; }
   /// The elements of a row for which gathers read only neighbours in bounds along x.
   native::Range inside() const { return inside_; }
   /// The largest reach of a gather.
@@ -108,6 +109,7 @@ class SlotLayout {
   bool hasStridedOutputs_ = false;
   bool needsElementwiseCalls_ = false;
   bool hasGathers_ = false;
+  bool hasOutputs_ = false;  ///< outputs that are given
   bool hasIndependentElements_ = false;
   std::int64_t reach_ = 0;
   native::Range inside_{0, std::numeric_limits<std::int64_t>::max()};
@@ -139,7 +141,7 @@ class SlotArrays {
   void moveTo(const native::Extents& first, std::size_t wanted = 1, std::size_t placed = 1);
 
   /// Places `count` elements from `x` on, `step` apart, in each row. The arrays may be read and written up to
-  /// `room` elements. Outputs are written in place only if the row is wanted and `room` is `count`.
+  /// `room` elements. Outputs are written in place only if the row is wanted, `room` is `count` and `step` is 1.
   void place(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step = 1);
   /// Likewise for whole groups of lanes from `x` on that are in place, with all their neighbours.
   void placeInside(std::int64_t x) {
@@ -155,8 +157,8 @@ class SlotArrays {
   void placeEnds(const RowEnds& ends);
   /// Copies outputs at the ends of all wanted rows to their streams.
   void storeEnds(const RowEnds& ends);
-  /// Copies outputs that were not written in place to their streams, after place() with this `room`.
-  void storeOutputs(std::int64_t x, std::int64_t count, std::int64_t room);
+  /// Copies outputs that were not written in place to their streams; arguments as for place().
+  void storeOutputs(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step = 1);
 
   void* const* get(std::size_t row = 0) const { return arrays_.data() + row * width_; }
   /// The elements for which gathers need no copies in any of these rows.
@@ -180,7 +182,7 @@ class SlotArrays {
   Row& rowOf(std::size_t row, std::size_t slot) { return rows_[row * slots_ + slot]; }
   std::size_t placeOf(std::size_t row, std::size_t array) const { return row * width_ + array; }
 
-  void storeStrided(std::size_t row, std::size_t slot, std::int64_t x, std::int64_t count);
+  void storeStrided(std::size_t row, std::size_t slot, std::int64_t x, std::int64_t count, std::int64_t step);
   void stageInput(std::size_t row, std::size_t slot, std::int64_t x, const Length& length, std::int64_t step);
   /// In all rows, or only in those that are out of bounds.
   void stageGather(std::size_t slot, std::int64_t x, const Length& length, bool areOutsideAlone);

@@ -161,8 +161,8 @@ std::string FoldText::calling(const Kernel& kernel, const ElementOf& inputElemen
       case Role::Spec: arguments.push_back(arguments_[values++]); break;
       case Role::Input: arguments.push_back(inputElement(i, inputs++)); break;
       case Role::Accumulator: arguments.push_back(total(*accumulators_[accumulators++])); break;
+      case Role::Output: arguments.push_back(output(kernel.parameters[i])); break;
       case Role::Gather:
-      case Role::Output:
       case Role::VariableOutput:
       case Role::Scatter: break;
     }
@@ -198,6 +198,12 @@ void FoldText::foldShared() {
   keep("    ");
   statement("  }");
   statement("}");
+}
+
+std::string FoldText::output(const Parameter& parameter) {
+  std::string name = fmt::format("sk_element_{}", parameter.symbol);
+  program_.variable(parameter.element->glsl, name);
+  return name;
 }
 
 void FoldText::integers(std::initializer_list<std::string_view> uniforms) {

@@ -64,6 +64,9 @@ class FoldText {
   /// A call of the entry of a kernel, with its arguments in order.
   std::string calling(const program::Kernel& kernel, const ElementOf& inputElement);
 
+  /// The variable that receives an output of the fold.
+  std::string output(const program::Parameter& parameter);
+
   // ---- work groups ------------------------------------------------------------------------------
 
   /// Declares the accumulators of all invocations of a group.

@@ -127,6 +127,9 @@ Texel ScanText::resultTexel(const std::string& number) {
     }
     case Domain::Linear:
     case Domain::Entry: break;
+    case Domain::Strided:  // of copies only
+    case Domain::StridedRows:
+    case Domain::StridedLinear: break;
   }
   program_.require(Function::Texel);
   const std::string shift = uniform("int", "sk_domain_shift");

@@ -59,10 +59,12 @@ class OutputTargets {
     Copy,  ///< drawn to new planes, and copied from there to the stream's
   };
 
-  /// Whether an argument is an element output or an accumulator, and needed.
+  /// Whether an argument is an element output or an accumulator, and needed. A reduction may leave out the outputs of
+  /// its fold.
   bool isOutput(std::size_t i) const {
     const program::Role role = kernel_.parameters[i].role;
-    return (role == program::Role::Output || role == program::Role::Accumulator) && isNeeded(i);
+    return arguments_[i].region.stream != nullptr &&
+           (role == program::Role::Output || role == program::Role::Accumulator) && isNeeded(i);
   }
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
   Placement placementOf(std::size_t output) const;

@@ -286,10 +286,12 @@ bool ReducePasses::isRead(std::size_t i) const {
 
 bool ReducePasses::foldsByIndex() const {
   bool byIndex = assemble::readsElementIndex(reduction_.fold);
+  bool hasElements = false;  // a kernel with folded outputs may have no inputs
   for (std::size_t i = 0; i < operands_.size(); ++i) {
+    hasElements = hasElements || isRead(i);
     byIndex = byIndex || (isRead(i) && !haveSameTexels(operands_[i].regionLayout, elements_));
   }
-  return byIndex;
+  return byIndex || !hasElements;
 }
 
 std::vector<Operand> ReducePasses::operandsOfCombine(std::span<RenderTarget> partials) const {

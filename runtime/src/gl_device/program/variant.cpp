@@ -257,15 +257,10 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
                       const RegionLayout& domain, const Task& task, bool filtersFloats) {
   ProgramKey key{&kernel, {}, {}, specsOf(kernel, operands)};
   KeyBits bits(key);
-  bits.add(static_cast<std::uint64_t>(domainOf(domain, task)) | std::uint64_t{domain.layered} << 2 |
-               std::uint64_t{isDomainView(domain)} << 3,
-           4);
+  bits.add(domainBits(domain, task), 4);
   bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{domain.packed} << 3, 4);
   bits.add(std::uint64_t{task.pyramidLayered} | std::uint64_t{task.scattersInAnyOrder} << 1 |
                std::uint64_t{task.pushesInAnyOrder} << 2,
-  bits.add(domainBits(domain, task), 4);
-  bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{domain.packed} << 2 |
-               std::uint64_t{task.pyramidLayered} << 3,
            4);
   bits.add(task.appendOutput & 15u, 4);
   bits.add(task.appendOutput >> 4, 4);

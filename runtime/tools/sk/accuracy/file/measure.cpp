@@ -39,6 +39,10 @@ constexpr std::int64_t extremeBlock = 64;  ///< elements of a reduction, one of 
 
 /// Why a kernel cannot be measured; empty if it can.
 std::string obstacleTo(const Subject& subject) {
+  if (subject.reduction != nullptr && subject.reduction->parts != nullptr) {
+    return "it folds beside its outputs; measure a kernel that computes the outputs and a reduce that folds "
+           "the same";
+  }
   for (const Parameter& parameter : subject.parameters()) {
     if (parameter.role == Role::VariableOutput || parameter.role == Role::Scatter) {
       return fmt::format(

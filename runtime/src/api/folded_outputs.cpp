@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+//
+// sk::fold: kernels with folded outputs. A device that can stores elements while it folds (DeviceState::
+// foldsBesideOutputs). For all others, the call is a kernel and a reduction, in an order in which neither writes what
+// the other reads. Must not depend on the kind of device.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "api/resolved_reduce.hpp"
+#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
+#include "call/check_reduction.hpp"
+#include "call/precision.hpp"
+#include "call/resolved_call.hpp"
+#include "device/device_state.hpp"
+#include "device/loop_state.hpp"
+#include "sk/call.hpp"
+#include "support/checked_size.hpp"
+
+namespace sk {
+
+namespace {
+
+using program::FoldParts;
+using program::Kernel;
+using program::Parameter;
+using program::Reduction;
+using program::Role;
+
+std::vector<Argument> argumentsOf(std::span<const std::uint8_t> operands,
+                                  std::span<const Argument> arguments) {
+  std::vector<Argument> own;
+  for (const std::uint8_t operand : operands) own.push_back(arguments[operand]);
+  return own;
+}
+
+bool isWritten(Role role) { return role == Role::Output || role == Role::Accumulator; }
+
+/// Whether a kernel reads a stream that parameters of this role of the fold write.
+bool readsWritten(const Kernel& reader, std::span<const Argument> own, const ResolvedReduction& call,
+                  Role written) {
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (isWritten(reader.parameters[i].role) || own[i].region.stream == nullptr) continue;
+    for (std::size_t k = 0; k < call.arguments.size(); ++k) {
+      if (call.reduction.fold.parameters[k].role == written &&
+          call.arguments[k].region.stream == own[i].region.stream)
+        return true;
+    }
+  }
+  return false;
+}
+
+void checkDisjoint(const Kernel& fold, std::span<const Argument> arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    for (std::size_t k = 0; k < arguments.size(); ++k) {
+      if (fold.parameters[i].role != Role::Output || fold.parameters[k].role != Role::Accumulator ||
+          arguments[i].isNone || !overlap(arguments[i].region, arguments[k].region)) {
+        continue;
+      }
+      fail(fold,
+           "the outputs '{}' and '{}' overlap: both write elements of one stream; give them different "
+           "streams, or "
+           "regions that have no element in common",
+           fold.parameters[i].name, fold.parameters[k].name);
+    }
+  }
+}
+
+/// A call of a kernel with folded outputs, checked.
+class FoldCall {
+ public:
+  /// `arguments` must outlive the object.
+  FoldCall(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options)
+      : parts_(*reduction.parts),
+        mapArguments_(argumentsOf(parts_.mapOperands, arguments)),
+        hasMap_(checkCall(parts_.map, mapArguments_).has_value()),
+        call_(checkReduction(reduction, arguments, {})) {
+    checkDisjoint(reduction.fold, arguments);
+    call_.options = resolvedOptions(call_, options);
+  }
+
+  DeviceState& device() const { return call_.device; }
+  const ResolvedReduction& resolved() const { return call_; }
+
+  void run() const {
+    const TraceScope traced(call_.device.trace.get(), "call", call_.reduction.fold.name);
+    traced.add("domain", call_.domain);
+    traced.add("blocks", call_.blocks);
+    if (call_.blocks.size() == 0) return map();
+    if (isTogether()) return reduceResolved(call_);
+    if (readsOutputs()) {
+      map();
+      return foldAfter();
+    }
+    std::vector<Argument> alone(call_.arguments.begin(), call_.arguments.end());
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      if (call_.reduction.fold.parameters[i].role == Role::Output) alone[i].region.stream = nullptr;
+    }
+    const ResolvedReduction fold = call_.of(call_.reduction, alone, {});
+    if (!hasMap_ || !readsWritten(parts_.map, mapArguments_, call_, Role::Accumulator)) {
+      reduceResolved(fold);
+      map();
+    } else if (!readsWritten(call_.reduction.fold, call_.arguments, call_, Role::Output)) {
+      map();
+      reduceResolved(fold);
+    } else {
+      reduceByTemporaries(fold, [&] { map(); });
+    }
+  }
+
+ private:
+  bool isTogether() const {
+    return hasMap_ && !needsPrecisionVariant(call_.options) &&
+           call_.options.accumulate != Accumulate::Exact && call_.device.foldsBesideOutputs(call_);
+  }
+
+  /// Whether outputs that the kernel has written can be folded: they hold the floats that were computed, and
+  /// nothing else that is read has been overwritten.
+  bool readsOutputs() const {
+    if (parts_.after == nullptr || !hasMap_ || needsPrecisionVariant(call_.options)) return false;
+    for (std::size_t i = 0; i < call_.arguments.size(); ++i) {
+      const StreamState* const stream = call_.arguments[i].region.stream;
+      if (call_.reduction.fold.parameters[i].role == Role::Output &&
+          (stream == nullptr || stream->storage == Storage::Half))
+        return false;
+    }
+    if (!call_.device.usesPrecisionVariants()) return false;  // native devices have no code for it
+    const Kernel& after = parts_.after->fold;
+    for (std::size_t i = 0; i < after.parameters.size(); ++i) {
+      const Argument& argument = call_.arguments[parts_.afterOperands[i]];
+      const Parameter& whole = call_.reduction.fold.parameters[parts_.afterOperands[i]];
+      if (isWritten(whole.role) || argument.region.stream == nullptr) continue;
+      for (std::size_t k = 0; k < call_.arguments.size(); ++k) {
+        if (call_.reduction.fold.parameters[k].role == Role::Output &&
+            call_.arguments[k].region.stream == argument.region.stream)
+          return false;
+      }
+    }
+    return true;
+  }
+
+  void foldAfter() const {
+    const std::vector<Argument> arguments = argumentsOf(parts_.afterOperands, call_.arguments);
+    reduceResolved(call_.of(*parts_.after, arguments, {}));
+  }
+
+  void map() const {
+    if (!hasMap_) return;
+    CallOptions options = call_.options;
+    options.accumulate = Accumulate::Default;
+    call_.device.run(resolveCall(parts_.map, mapArguments_, call_.device.limits, options));
+  }
+
+  const FoldParts& parts_;
+  std::vector<Argument> mapArguments_;
+  bool hasMap_;  ///< there are elements, and outputs that the spec parameters keep
+  ResolvedReduction call_;
+};
+
+class RecordedFold final : public RecordedCall {
+ public:
+  RecordedFold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options)
+      : arguments_(reduction.fold, arguments), call_(reduction, arguments_.get(), options) {
+    arguments_.noteUses(*call_.device().recording);
+  }
+
+  void run() override { call_.run(); }
+
+ private:
+  const OwnedArguments arguments_;
+  const FoldCall call_;
+};
+
+void checkAndFold(const Reduction& reduction, std::span<const Argument> arguments,
+                  const CallOptions& options) {
+  const FoldCall call(reduction, arguments, options);
+  LoopState* const recording = call.device().recording;
+  if (recording == nullptr) return call.run();
+  recording->add(std::make_unique<RecordedFold>(reduction, arguments, options));
+}
+
+}  // namespace
+
+void fold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
+  withHostMemory(reduction.fold.name, [&] { checkAndFold(reduction, arguments, options); });
+}
+
+}  // namespace sk
