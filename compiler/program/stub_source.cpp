@@ -16,6 +16,7 @@
 #include "program/descriptor_members.hpp"
 #include "program/elements.hpp"
 #include "program/options_text.hpp"
+#include "program/stub_parameters.hpp"
 #include "program/stub_parts.hpp"
 #include "program/variant_names.hpp"
 #include "support/text.hpp"
@@ -379,7 +380,7 @@ class SourceWriter {
     }
     text_ += fmt::format("constexpr Parameter {}Parameters[] = {{\n", name);
     for (std::size_t i = 0; i < declared.params.size(); ++i) {
-      std::string row = parameter(name, kernel.parameters[i], declared.params[i]);
+      std::string row = parameterText(module_, name, kernel.parameters[i], declared.params[i]);
       if (!kernel.parameters[i].layers.empty()) row += fmt::format(", .layers = {}Layers{}", name, i);
       text_ += wrapLine("    " + row + "},", 100, 5) + "\n";
     }
@@ -449,7 +450,7 @@ class SourceWriter {
     }
     std::vector<std::string> temporaries;
     for (const Temporary& temporary : declared.temporaries) {
-      temporaries.push_back(elementOf(temporary.type));
+      temporaries.push_back(elementOf(module_, temporary.type));
     }
     std::vector<std::string> bundles;
     for (std::size_t i = 0; i < made.bundles.size(); ++i) {
@@ -512,11 +513,6 @@ class SourceWriter {
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
   }
 
-  /// The name of the constant that holds a parameter's condition.
-  static std::string conditionName(const std::string& unit, const sk::program::Parameter& param) {
-    return fmt::format("{}Needs_{}", unit, param.symbol);
-  }
-
   void conditionSteps(const std::string& unit, const sk::program::Parameter& param) {
     if (param.neededIf.steps.empty()) return;
     constexpr std::string_view ops[] = {"Spec",      "Literal", "Not",          "And",   "Or",      "BitAnd",
@@ -529,10 +525,6 @@ class SourceWriter {
     }
     const std::string head = fmt::format("constexpr ConditionStep {}[] = {{", conditionName(unit, param));
     text_ += wrapLine(head + join(steps, ", ") + "};", 100, head.size()) + "\n\n";
-  }
-
-  static std::string elementName(const std::string& unit, const sk::program::Parameter& param) {
-    return fmt::format("{}Element_{}", unit, param.symbol);
   }
 
   /// Prints the element of a uniform array, which has no traits because it cannot be a stream's element.
@@ -565,58 +557,6 @@ class SourceWriter {
     text_ += wrapLine(head + join(fields, ", ") + "};", 100, head.size()) + "\n";
     text_ += fmt::format("constexpr Element {0}Element{{\"{1}\", \"{0}\", {2}, {0}Fields}};\n\n", name,
                          print(module_, Type::structType(index)), layout.size);
-  }
-
-  std::string elementText(const std::string& unit, const sk::program::Parameter& param, Type type) const {
-    if (type.kind == Type::Kind::Array) return "&" + elementName(unit, param);
-    return elementOf(type);
-  }
-
-  /// A parameter's initializer, without the closing bracket.
-  std::string parameter(const std::string& unit, const sk::program::Parameter& param,
-                        const KernelParam& declared) const {
-    constexpr std::string_view roles[] = {"Uniform",        "Input",   "Output",   "Gather", "Accumulator",
-                                          "VariableOutput", "Scatter", "Iterator", "Spec"};
-    constexpr std::string_view scatterOps[] = {"Store", "Add", "Min", "Max"};
-    constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
-    const std::string element = elementText(unit, param, declared.type);
-    std::string text =
-        fmt::format("{{.name = \"{}\", .symbol = \"{}\", .role = Role::{}, .element = {}", param.name,
-                    param.symbol, roles[static_cast<std::size_t>(param.role)], element);
-    if (declared.held) text += ", .held = " + elementOf(*declared.held);
-    if (param.rank > 0) text += fmt::format(", .rank = {}", param.rank);
-    if (param.role == sk::program::Role::Gather) {
-      text += fmt::format(", .boundary = Boundary::{}", boundaries[static_cast<std::size_t>(param.boundary)]);
-    }
-    if (param.role == sk::program::Role::Scatter) {
-      text += fmt::format(", .scatter = ScatterOp::{}", scatterOps[static_cast<std::size_t>(param.scatter)]);
-    }
-    if (param.pushes >= 0) text += fmt::format(", .pushes = {}", param.pushes);
-    if (!param.border.empty()) text += fmt::format(", .border = \"{}\"", param.border);
-    if (!param.identity.empty()) text += fmt::format(", .identity = \"{}\"", param.identity);
-    if (param.usesIndex) text += ", .usesIndex = true";
-    if (param.usesExtent) text += ", .usesExtent = true";
-    if (param.usesAt) text += ", .usesAt = true";
-    if (param.usesNear) text += ", .usesNear = true";
-    if (param.usesSample) text += ", .usesSample = true";
-    if (param.filter) text += ", .filter = true";
-    if (param.reach >= 0) text += fmt::format(", .reach = {}", param.reach);
-    if (!param.neededIf.steps.empty()) {
-      text += fmt::format(", .neededIf = {{{}, \"{}\"}}", conditionName(unit, param), param.neededIf.text);
-    }
-    if (param.planeCount > 0) {
-      text += fmt::format(", .firstPlane = {}, .planeCount = {}", param.firstPlane, param.planeCount);
-    }
-    return text;
-  }
-
-  std::string elementOf(Type type) const {
-    if (type.kind == Type::Kind::Struct && module_.structs[type.index].isSynthesized) {
-      return fmt::format("&{}Element", TypeNames(module_).structName(type.index));
-    }
-    const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";
-    const std::string name = type.isVector() ? spelling(type.scalar, type.width) : cppType(module_, type);
-    return fmt::format("&ElementTraits<{}{}>::element()", scope, name);
   }
 
   /// Prints the list of all descriptors, under a name that dlsym() can find.

@@ -24,7 +24,7 @@ compiler/driver       support ir analysis split transforms native/native.hpp nat
 runtime/include/sk    sk
 runtime/src/support   sk support
 runtime/src/trace     sk trace
-runtime/src/device    sk toml trace device call/resolved_call.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp assemble/nearest_word.hpp
+runtime/src/device    sk toml trace device call/resolved_call.hpp call/row_pieces.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp assemble/nearest_word.hpp
 runtime/src/call      sk support device call assemble
 runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp
 runtime/src/native    sk support trace device call native assemble probe/copy_bandwidth.hpp
@@ -32,12 +32,12 @@ runtime/src/probe     sk support trace device call gl gl_device probe assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
 runtime/src/toml      toml
 runtime/src/gl_device sk support trace device call probe gl gl_device assemble native/rest_threads.hpp
-runtime/src/gl_device/memory sk gl gl_device/memory assemble
+runtime/src/gl_device/memory sk gl gl_device/memory device/region.hpp assemble
 runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_bytes.hpp assemble
 runtime/src/assemble/glsl     sk/program.hpp sk/arithmetic.hpp sk/limits.hpp ASSEMBLE assemble/glsl
 runtime/src/assemble/elements sk/program.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements
 runtime/src/assemble/append   sk/program.hpp ASSEMBLE assemble/glsl assemble/elements assemble/append
-runtime/src/assemble/reduce   sk/program.hpp sk/limits.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/reduce assemble/program/sample_kernels.hpp
+runtime/src/assemble/reduce   sk/program.hpp sk/types.hpp sk/limits.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/reduce assemble/program/sample_kernels.hpp
 runtime/tools         sk support/cache_folder.hpp native probe/probe.hpp assemble/nearest_word.hpp
 runtime/tests         sk support trace device call gl gl_device native assemble epoxy
 examples              sk toml epoxy

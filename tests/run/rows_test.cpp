@@ -19,6 +19,7 @@
 #include "rows.sk.hpp"
 #include "sk/native/parallel.hpp"
 #include "sk/sk.hpp"
+#include "rows_support.hpp"
 #include "support/devices.hpp"
 
 namespace run_tests {
@@ -27,37 +28,6 @@ namespace {
 using Catch::Matchers::Contains;
 
 constexpr sk::CallOptions exclusive{.scan = sk::Scan::Exclusive};
-
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
-  auto stream = device.stream<T>({static_cast<std::int64_t>(values.size())});
-  stream.write(values);
-  return stream;
-}
-
-using Starts = std::vector<std::int32_t>;
-
-Starts startsOf(const std::vector<int>& lengths) {
-  Starts starts = {0};
-  for (const int length : lengths) starts.push_back(starts.back() + length);
-  return starts;
-}
-std::size_t rowsIn(const Starts& starts) { return starts.size() - 1; }
-std::size_t sizeOf(const Starts& starts) { return static_cast<std::size_t>(starts.back()); }
-
-std::vector<int> randomLengths(std::size_t count, unsigned most, unsigned seed = 1) {
-  std::mt19937 random(seed);
-  std::vector<int> lengths(count);
-  for (int& length : lengths) length = static_cast<int>(random() % (most + 1));
-  return lengths;
-}
-
-std::vector<int> numbers(std::size_t count, unsigned seed = 1) {
-  std::mt19937 random(seed);
-  std::vector<int> x(count);
-  for (int& v : x) v = static_cast<int>(random() % 19) - 9;
-  return x;
-}
 
 /// Folds each row by a plain loop.
 template <class T, class X, class Fold>

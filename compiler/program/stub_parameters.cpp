@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "program/stub_parameters.hpp"
+
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "glsl/type_names.hpp"
+#include "ir/print.hpp"
+#include "program/elements.hpp"
+#include "program/options_text.hpp"
+#include "program/stub_parts.hpp"
+#include "program/variant_names.hpp"
+#include "support/text.hpp"
+
+namespace skc::emit {
+
+using namespace ir;
+
+std::string conditionName(const std::string& unit, const sk::program::Parameter& param) {
+  return fmt::format("{}Needs_{}", unit, param.symbol);
+}
+
+std::string elementName(const std::string& unit, const sk::program::Parameter& param) {
+  return fmt::format("{}Element_{}", unit, param.symbol);
+}
+
+std::string elementOf(const Module& module, Type type) {
+  if (type.kind == Type::Kind::Struct && module.structs[type.index].isSynthesized) {
+    return fmt::format("&{}Element", TypeNames(module).structName(type.index));
+  }
+  const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";
+  const std::string name = type.isVector() ? spelling(type.scalar, type.width) : cppType(module, type);
+  return fmt::format("&ElementTraits<{}{}>::element()", scope, name);
+}
+
+std::string parameterText(const Module& module, const std::string& unit, const sk::program::Parameter& param,
+                          const KernelParam& declared) {
+  constexpr std::string_view roles[] = {"Uniform",        "Input",   "Output",   "Gather", "Accumulator",
+                                        "VariableOutput", "Scatter", "Iterator", "Spec"};
+  constexpr std::string_view scatterOps[] = {"Store", "Add", "Min", "Max"};
+  constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
+  const std::string element = declared.type.kind == Type::Kind::Array ? "&" + elementName(unit, param)
+                                                                : elementOf(module, declared.type);
+  std::string text =
+      fmt::format("{{.name = \"{}\", .symbol = \"{}\", .role = Role::{}, .element = {}", param.name,
+                  param.symbol, roles[static_cast<std::size_t>(param.role)], element);
+  if (declared.held) text += ", .held = " + elementOf(module, *declared.held);
+  if (param.rank > 0) text += fmt::format(", .rank = {}", param.rank);
+  if (param.role == sk::program::Role::Gather) {
+    text += fmt::format(", .boundary = Boundary::{}", boundaries[static_cast<std::size_t>(param.boundary)]);
+  }
+  if (param.role == sk::program::Role::Scatter) {
+    text += fmt::format(", .scatter = ScatterOp::{}", scatterOps[static_cast<std::size_t>(param.scatter)]);
+  }
+  if (param.pushes >= 0) text += fmt::format(", .pushes = {}", param.pushes);
+  if (!param.border.empty()) text += fmt::format(", .border = \"{}\"", param.border);
+  if (!param.identity.empty()) text += fmt::format(", .identity = \"{}\"", param.identity);
+  if (param.usesIndex) text += ", .usesIndex = true";
+  if (param.usesExtent) text += ", .usesExtent = true";
+  if (param.usesAt) text += ", .usesAt = true";
+  if (param.usesNear) text += ", .usesNear = true";
+  if (param.usesSample) text += ", .usesSample = true";
+  if (param.filter) text += ", .filter = true";
+  if (param.reach >= 0) text += fmt::format(", .reach = {}", param.reach);
+  if (!param.neededIf.steps.empty()) {
+    text += fmt::format(", .neededIf = {{{}, \"{}\"}}", conditionName(unit, param), param.neededIf.text);
+  }
+  if (param.planeCount > 0) {
+    text += fmt::format(", .firstPlane = {}, .planeCount = {}", param.firstPlane, param.planeCount);
+  }
+  return text;
+}
+
+}  // namespace skc::emit

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+//
+// Prints the parameters of descriptors for FILE.sk.cpp, and the names of the constants to which they refer.
+#pragma once
+
+#include <string>
+
+#include "ir/ir.hpp"
+#include "sk/program.hpp"
+
+namespace skc::emit {
+
+/// The name of the constant that holds a parameter's condition.
+std::string conditionName(const std::string& unit, const sk::program::Parameter& param);
+
+/// The name of the constant that describes the element of a uniform array.
+std::string elementName(const std::string& unit, const sk::program::Parameter& param);
+
+/// A pointer to the descriptor of the elements of this type.
+std::string elementOf(const ir::Module& module, ir::Type type);
+
+/// A parameter's initializer, without the closing bracket.
+std::string parameterText(const ir::Module& module, const std::string& unit,
+                          const sk::program::Parameter& param, const ir::KernelParam& declared);
+
+}  // namespace skc::emit
