@@ -307,6 +307,29 @@ TEST_CASE("inputs repeat, and views are read and written") {
   });
 }
 
+TEST_CASE("outputs may be every other element of a stream") {
+  onEveryProfile([](sk::Device& device) {
+    constexpr std::int64_t width = 1500;
+    auto wide = streamOf(device, std::vector<float>(4 * 2 * width, 7.0f), {4, 2 * width});
+    auto odd = sk::stride(wide, {1, 2}, {0, 1});
+    auto old = device.stream<float>({4, 1}), made = device.stream<float>({4, 1});
+    folded::both(1, streamOf(device, std::vector<float>(4 * width, 2.0f), {4, width}), odd, old, made);
+    std::vector<float> expected;
+    for (std::int64_t i = 0; i < 4 * width; ++i) expected.insert(expected.end(), {7, 3});
+    CHECK(wide.read() == expected);
+    CHECK(old.read() == std::vector<float>(4, 2 * width));
+    CHECK(made.read() == std::vector<float>(4, 3 * width));
+    // in an order that is kept, elements that are not neighbours are folded together
+    auto numbersOf = streamOf(device, std::vector<int>(2 * 5000, 1), {10000});
+    auto f = device.stream<folded::Line>({1});
+    folded::compose(streamOf(device, std::vector<int>(5000, 1)), sk::stride(numbersOf, {2}, {0}), f);
+    std::vector<int> both;
+    for (int i = 0; i < 5000; ++i) both.insert(both.end(), {2, 1});
+    CHECK(numbersOf.read() == both);
+    CHECK(f.read()[0].b == 10000);
+  });
+}
+
 TEST_CASE("an empty domain folds to the identity") {
   onEveryProfile([](sk::Device& device) {
     const auto x = device.stream<int>({0});

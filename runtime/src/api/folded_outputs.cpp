@@ -12,10 +12,12 @@
 #include "call/check_argument.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
+#include "call/dense_regions.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
+#include "device/region.hpp"
 #include "sk/call.hpp"
 #include "support/checked_size.hpp"
 
@@ -88,6 +90,21 @@ class FoldCall {
     const TraceScope traced(call_.device.trace.get(), "call", call_.reduction.fold.name);
     traced.add("domain", call_.domain);
     traced.add("blocks", call_.blocks);
+    const DenseArguments dense(call_.reduction.fold, call_.arguments);
+    if (dense.areAsGiven()) return runParts();
+    FoldCall(*this, dense.get()).runParts();
+    dense.finish();
+  }
+
+ private:
+  /// The same call with other arguments in the place of its own.
+  FoldCall(const FoldCall& given, std::span<const Argument> arguments)
+      : parts_(given.parts_),
+        mapArguments_(argumentsOf(parts_.mapOperands, arguments)),
+        hasMap_(given.hasMap_),
+        call_(given.call_.of(given.call_.reduction, arguments, {})) {}
+
+  void runParts() const {
     if (call_.blocks.size() == 0) return map();
     if (isTogether()) return reduceResolved(call_);
     if (readsOutputs()) {
@@ -110,7 +127,6 @@ class FoldCall {
     }
   }
 
- private:
   bool isTogether() const {
     return hasMap_ && !needsPrecisionVariant(call_.options) &&
            call_.options.accumulate != Accumulate::Exact && call_.device.foldsBesideOutputs(call_);
