@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+//
+// The engine that one would use today: a hierarchy of boxes, and kernels that go through it from the first box to the nearest hit.
+#pragma once
+
+#include <optional>
+
+#include "engine.hpp"
+#include "support/scene_file.hpp"
+
+namespace rays {
+
+/// [bvh]: traversal = "stack" or "skip", intersection = "watertight" or "moller", bins, leaf.
+MakeEngine readBvhEngine(const std::optional<examples::SceneTable>& settings);
+
+}  // namespace rays

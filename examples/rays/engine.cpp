@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "engine.hpp"
+
+#include <array>
+
+#include "bvh_engine.hpp"
+
+namespace rays {
+
+std::span<const EngineKind> engineKinds() {
+  static constexpr std::array kinds = {
+      EngineKind{"bvh", "a hierarchy of boxes, all in one kernel", readBvhEngine},
+  };
+  return kinds;
+}
+
+}  // namespace rays
