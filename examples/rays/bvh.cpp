@@ -32,7 +32,8 @@ Bounds boundsOf(const Sphere& s) {
 }
 
 Bounds widened(const Bounds& b) {
-  return {{below(b.least.x), below(b.least.y), below(b.least.z)}, {above(b.most.x), above(b.most.y), above(b.most.z)}};
+  return {{below(b.least.x), below(b.least.y), below(b.least.z)},
+          {above(b.most.x), above(b.most.y), above(b.most.z)}};
 }
 
 struct Split {
@@ -43,7 +44,8 @@ struct Split {
 
 class Builder {
  public:
-  Builder(std::vector<Bounds> boxes, const BvhSettings& settings, const std::function<void(std::int64_t)>& progress)
+  Builder(std::vector<Bounds> boxes, const BvhSettings& settings,
+          const std::function<void(std::int64_t)>& progress)
       : boxes_(std::move(boxes)), settings_(settings), progress_(progress) {
     centres_.reserve(boxes_.size());
     for (const Bounds& b : boxes_) {
@@ -124,12 +126,14 @@ class Builder {
 
   int binOf(const Bounds& centres, std::size_t axis, const sk::float3& centre) const {
     const float low = component(centres.least, axis), high = component(centres.most, axis);
-    const auto bin = static_cast<int>((component(centre, axis) - low) / (high - low) * static_cast<float>(settings_.bins));
+    const auto bin =
+        static_cast<int>((component(centre, axis) - low) / (high - low) * static_cast<float>(settings_.bins));
     return std::clamp(bin, 0, settings_.bins - 1);
   }
 
   /// Of all axes and bins; an infinite cost where nothing can be split.
-  Split bestSplit(const Bounds& bounds, const Bounds& centres, std::uint32_t first, std::uint32_t count) const {
+  Split bestSplit(const Bounds& bounds, const Bounds& centres, std::uint32_t first,
+                  std::uint32_t count) const {
     Split best;
     const double whole = bounds.halfArea();
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -197,7 +201,8 @@ void Bounds::grow(const sk::float3& p) {
 }
 
 void Bounds::grow(const Bounds& other) {
-  least = {std::min(least.x, other.least.x), std::min(least.y, other.least.y), std::min(least.z, other.least.z)};
+  least = {std::min(least.x, other.least.x), std::min(least.y, other.least.y),
+           std::min(least.z, other.least.z)};
   most = {std::max(most.x, other.most.x), std::max(most.y, other.most.y), std::max(most.z, other.most.z)};
 }
 
@@ -209,8 +214,8 @@ double Bounds::halfArea() const {
 
 float packedInt(std::int64_t i) { return std::bit_cast<float>(static_cast<std::uint32_t>(0x40000001 + i)); }
 
-Bvh buildBvh(std::span<const Triangle> triangles, std::span<const Sphere> spheres, const BvhSettings& settings,
-             const std::function<void(std::int64_t)>& progress) {
+Bvh buildBvh(std::span<const Triangle> triangles, std::span<const Sphere> spheres,
+             const BvhSettings& settings, const std::function<void(std::int64_t)>& progress) {
   std::vector<Bounds> boxes;
   boxes.reserve(triangles.size() + spheres.size());
   for (const Triangle& t : triangles) boxes.push_back(boundsOf(t));

@@ -37,22 +37,23 @@ struct BvhNode {
 };
 
 struct BvhSettings {
-  int bins = 16;       ///< places that are tried along an axis
-  int leaf = 4;        ///< shapes in a leaf at most, but where all boxes are alike
+  int bins = 16;  ///< places that are tried along an axis
+  int leaf = 4;  ///< shapes in a leaf at most, but where all boxes are alike
   double visit = 1.0;  ///< cost of a node relative to that of a shape
 };
 
 struct Bvh {
-  std::vector<BvhNode> nodes;        ///< the root first; none where there are no shapes
+  std::vector<BvhNode> nodes;  ///< the root first; none where there are no shapes
   std::vector<std::uint32_t> order;  ///< triangles by index, then spheres
   int depth = 0;
-  double cost = 0.0;  ///< expected nodes and shapes that a ray meets which meets the root's box (surface area heuristic)
+  double cost =
+      0.0;  ///< expected nodes and shapes that a ray meets which meets the root's box (surface area heuristic)
 };
 
 /// Splits by the surface area heuristic in bins (I. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007). Boxes are a
 /// little larger than what is in them, so that rounding never misses one (docs/rays.md). `progress` is told how many shapes are in leaves.
-Bvh buildBvh(std::span<const Triangle> triangles, std::span<const Sphere> spheres, const BvhSettings& settings,
-             const std::function<void(std::int64_t)>& progress = {});
+Bvh buildBvh(std::span<const Triangle> triangles, std::span<const Sphere> spheres,
+             const BvhSettings& settings, const std::function<void(std::int64_t)>& progress = {});
 
 /// Two elements a node, at 2 * i and 2 * i + 1: (least, first) and (most, count). Siblings lie beside each other.
 std::vector<sk::float4> pairLayout(const Bvh& bvh);

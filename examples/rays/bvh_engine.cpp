@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 #include <utility>
 
 #include "bvh.sk.hpp"
 #include "device_scene.hpp"
+#include "path_renderer.hpp"
 
 namespace rays {
 namespace {
@@ -22,7 +22,8 @@ constexpr std::size_t batch = std::size_t{1} << 20;
 
 class BvhEngine : public Engine {
  public:
-  BvhEngine(sk::Device& device, const Model& model, const DeviceSettings& settings) : scene_(device, model, settings) {}
+  BvhEngine(sk::Device& device, const Model& model, const DeviceSettings& settings)
+      : scene_(device, model, settings) {}
 
   void closest(std::span<const Ray> rays, std::span<Hit> hits) override {
     for (std::size_t first = 0; first < rays.size(); first += batch) {
@@ -48,8 +49,8 @@ class BvhEngine : public Engine {
     }
   }
 
-  std::unique_ptr<Renderer> renderer(const Picture&) override {
-    throw std::runtime_error("this engine makes no pictures yet");
+  std::unique_ptr<Renderer> renderer(const Picture& picture) override {
+    return makePathRenderer(scene_, picture);
   }
 
   std::vector<std::string> account() override { return scene_.account(); }
@@ -74,8 +75,10 @@ class BvhEngine : public Engine {
 
 DeviceSettings settingsOf(const SceneTable& table) {
   DeviceSettings settings;
-  if (const auto choice = table.choice("traversal", traversalNames)) settings.traversal = static_cast<HowToTraverse>(*choice);
-  settings.intersection = static_cast<HowToIntersect>(table.choice("intersection", intersectionNames).value_or(0));
+  if (const auto choice = table.choice("traversal", traversalNames))
+    settings.traversal = static_cast<HowToTraverse>(*choice);
+  settings.intersection =
+      static_cast<HowToIntersect>(table.choice("intersection", intersectionNames).value_or(0));
   settings.bvh.bins = static_cast<int>(table.integer("bins", Range{2, 64}).value_or(settings.bvh.bins));
   settings.bvh.leaf = static_cast<int>(table.integer("leaf", Range{1, 7}).value_or(settings.bvh.leaf));
   return settings;

@@ -18,7 +18,8 @@ Bvh built(const Model& model, const BvhSettings& settings) {
   const std::size_t shapes = model.triangles.size() + model.spheres.size();
   if (shapes < manyShapes) return buildBvh(model.triangles, model.spheres, settings);
   examples::Progress progress("building the hierarchy", static_cast<std::int64_t>(shapes));
-  Bvh bvh = buildBvh(model.triangles, model.spheres, settings, [&](std::int64_t done) { progress.update(done); });
+  Bvh bvh =
+      buildBvh(model.triangles, model.spheres, settings, [&](std::int64_t done) { progress.update(done); });
   progress.clear();
   return bvh;
 }
@@ -34,7 +35,10 @@ sk::Stream<sk::float4> streamOf(sk::Device& device, std::vector<sk::float4> elem
 
 std::vector<sk::float4> planesOf(const Model& model) {
   std::vector<sk::float4> planes;
-  for (const Plane& p : model.planes) planes.push_back({p.normal.x, p.normal.y, p.normal.z, p.distance});
+  for (const Plane& p : model.planes) {
+    planes.push_back({p.normal.x, p.normal.y, p.normal.z, p.distance});
+    planes.push_back({0, 0, 0, packedInt(p.material)});
+  }
   return planes;
 }
 
@@ -56,15 +60,17 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   planeCount_ = static_cast<int>(model.planes.size());
   firstPlane_ = model.planeId(0);
   planes_ = streamOf(device, planesOf(model), "planes");
-  nodes_ = streamOf(device, traversal_ == HowToTraverse::Stack ? pairLayout(bvh_) : skipLayout(bvh_), "nodes");
+  nodes_ =
+      streamOf(device, traversal_ == HowToTraverse::Stack ? pairLayout(bvh_) : skipLayout(bvh_), "nodes");
   shapes_ = streamOf(device, shapeLayout(bvh_, model), "shapes");
 }
 
 std::vector<std::string> DeviceScene::account() const {
   if (bvh_.nodes.empty()) return {};
-  return {fmt::format("hierarchy: {} triangles, {} spheres in {} nodes, {} levels, expected cost {:.1f}, built in {:.0f} ms",
-                      model_->triangles.size(), model_->spheres.size(), bvh_.nodes.size(), bvh_.depth, bvh_.cost,
-                      milliseconds_)};
+  return {fmt::format(
+      "hierarchy: {} triangles, {} spheres in {} nodes, {} levels, expected cost {:.1f}, built in {:.0f} ms",
+      model_->triangles.size(), model_->spheres.size(), bvh_.nodes.size(), bvh_.depth, bvh_.cost,
+      milliseconds_)};
 }
 
 }  // namespace rays

@@ -32,8 +32,9 @@ class DeviceScene {
   /// The arguments that all kernels begin with, up to `shapes`, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
-    kernel(static_cast<unsigned>(intersection_), static_cast<unsigned>(traversal_), contracted_, hasTriangles_, hasSpheres_,
-           hasPlanes_, nodeCount_, planeCount_, firstPlane_, planes_, nodes_, shapes_, std::forward<More>(more)...);
+    kernel(static_cast<unsigned>(intersection_), static_cast<unsigned>(traversal_), contracted_,
+           hasTriangles_, hasSpheres_, hasPlanes_, nodeCount_, planeCount_, firstPlane_, planes_, nodes_,
+           shapes_, std::forward<More>(more)...);
   }
 
   sk::Device& device() const { return *device_; }

@@ -20,11 +20,14 @@
 
 namespace rays {
 
+enum class Sampling : std::uint8_t { Random, Sobol };
+
 struct Picture {
   int width = 512;
   int height = 512;
-  int depth = 8;             ///< segments of a path, the one from the camera included
+  int depth = 8;  ///< segments of a path, the one from the camera included
   std::uint32_t seed = 1;
+  Sampling sampling = Sampling::Sobol;  ///< independent numbers, or Sobol's with Owen's scrambling
 };
 
 /// A picture that becomes better with each pass: one more sample for each pixel.

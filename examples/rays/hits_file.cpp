@@ -20,7 +20,8 @@ namespace {
 Ray readRay(TextCursor& cursor, double first) {
   const auto coordinate = [&](std::string_view what) {
     const double x = cursor.needNumber(what);
-    if (!std::isfinite(static_cast<float>(x))) cursor.fail(fmt::format("{} must be finite, as a float is", what));
+    if (!std::isfinite(static_cast<float>(x)))
+      cursor.fail(fmt::format("{} must be finite, as a float is", what));
     return static_cast<float>(x);
   };
   Ray ray;
@@ -31,7 +32,8 @@ Ray readRay(TextCursor& cursor, double first) {
   ray.direction.x = coordinate("dx");
   ray.direction.y = coordinate("dy");
   ray.direction.z = coordinate("dz");
-  if (ray.direction.x == 0 && ray.direction.y == 0 && ray.direction.z == 0) cursor.fail("a direction must not be zero");
+  if (ray.direction.x == 0 && ray.direction.y == 0 && ray.direction.z == 0)
+    cursor.fail("a direction must not be zero");
   if (const auto least = cursor.number()) {
     ray.least = static_cast<float>(*least);
     ray.most = static_cast<float>(cursor.needNumber("tmax"));

@@ -14,6 +14,7 @@
 #include "camera.hpp"
 #include "engine.hpp"
 #include "hits_file.hpp"
+#include "render.hpp"
 #include "scene.hpp"
 #include "support/application.hpp"
 #include "support/stopwatch.hpp"
@@ -36,21 +37,27 @@ struct Settings {
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "what to see: a TOML file, as in examples/rays/scenes");
   std::string engines = "in place of the scene's:";
-  for (const rays::EngineKind& kind : rays::engineKinds()) engines += fmt::format("\n  {:<11} {}", kind.name, kind.does);
+  for (const rays::EngineKind& kind : rays::engineKinds())
+    engines += fmt::format("\n  {:<11} {}", kind.name, kind.does);
   cli.add_option("--engine", s.engine, engines);
   cli.add_option("--size", s.size, "pixels, WxH, in place of the scene's");
-  cli.add_option("--samples", s.samples, "for each pixel, in place of the scene's")->check(CLI::Range(1, 1'000'000));
-  cli.add_option("--seconds", s.seconds, "end after this time, whatever samples there are")->check(CLI::Range(0.0, 1e7));
+  cli.add_option("--samples", s.samples, "for each pixel, in place of the scene's")
+      ->check(CLI::Range(1, 1'000'000));
+  cli.add_option("--seconds", s.seconds, "end after this time, whatever samples there are")
+      ->check(CLI::Range(0.0, 1e7));
   cli.add_option("--output", s.output, "the picture, .png or .pfm, in place of the scene's");
-  cli.add_option("--hits", s.hits, "no picture: write x,y,id,t,u,v of the rays through the pixels' centres to this file");
-  cli.add_option("--trace", s.rays, "with --hits: the rays of this file, lines of ox oy oz dx dy dz [tmin tmax]");
+  cli.add_option("--hits", s.hits,
+                 "no picture: write x,y,id,t,u,v of the rays through the pixels' centres to this file");
+  cli.add_option("--trace", s.rays,
+                 "with --hits: the rays of this file, lines of ox oy oz dx dy dz [tmin tmax]");
   cli.add_flag("--strict", s.strict, "vertices that are not finite are an error");
 }
 
 void applySize(const std::string& text, rays::Overrides& overrides) {
   const std::size_t x = text.find('x');
   const auto number = [&](const std::string& digits) {
-    const bool isNumber = !digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == std::string::npos;
+    const bool isNumber =
+        !digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == std::string::npos;
     const int n = isNumber ? std::stoi(digits) : -1;
     if (n < 0 || n > 32768)
       throw std::runtime_error(fmt::format("--size: '{}' is no size; write WxH, each from 0 to 32768", text));
@@ -62,7 +69,8 @@ void applySize(const std::string& text, rays::Overrides& overrides) {
 }
 
 rays::Scene sceneOf(const Settings& s) {
-  rays::Overrides overrides{.samples = s.samples, .seconds = s.seconds, .engine = s.engine, .strict = s.strict};
+  rays::Overrides overrides{
+      .samples = s.samples, .seconds = s.seconds, .engine = s.engine, .strict = s.strict};
   if (!s.size.empty()) applySize(s.size, overrides);
   rays::Scene scene = rays::readScene(s.scene, overrides);
   if (s.output) scene.output.picture = *s.output;
@@ -80,7 +88,8 @@ void writeHits(examples::Application& app, const Settings& s, const rays::Scene&
   if (fromFile) {
     hits = rays::traceRays(*engine, scene.model, rays::loadRays(s.rays));
   } else {
-    const std::vector<rays::Ray> primary = rays::primaryRays(scene.model.camera, picture.width, picture.height);
+    const std::vector<rays::Ray> primary =
+        rays::primaryRays(scene.model.camera, picture.width, picture.height);
     hits.resize(primary.size());
     engine->closest(primary, hits);
     rays::toSceneLengths(scene.model, hits);
@@ -91,6 +100,22 @@ void writeHits(examples::Application& app, const Settings& s, const rays::Scene&
   fmt::print("wrote {}\n", s.hits.string());
 }
 
+void makePicture(examples::Application& app, const rays::Scene& scene) {
+  rays::checkOutput(scene);
+  sk::Device device(app.device());
+  const std::unique_ptr<rays::Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
+  const rays::Picture& picture = scene.picture;
+  const std::unique_ptr<rays::Renderer> renderer = engine->renderer(picture);
+  const rays::Rendering rendering = rays::render(*renderer, scene);
+  rays::saveRendering(rendering, scene);
+  app.report(
+      fmt::format("{}, {} x {}, {} samples", scene.name, picture.width, picture.height, rendering.samples),
+      device.name(), rendering.milliseconds);
+  for (const std::string& line : engine->account()) fmt::print("{}\n", line);
+  for (const std::string& line : renderer->account()) fmt::print("{}\n", line);
+  fmt::print("wrote {}\n", scene.output.picture.string());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -98,10 +123,12 @@ int main(int argc, char** argv) {
   examples::Application app("rays", "Pictures and hits of scene files by tracing rays.");
   addOptions(app.options(), settings);
   return app.run(argc, argv, [&] {
-    if (settings.scene.empty()) throw std::runtime_error("no scene is named; try examples/rays/scenes/cornell.toml");
-    if (!settings.rays.empty() && settings.hits.empty()) throw std::runtime_error("--trace needs --hits, where its hits go");
+    if (settings.scene.empty())
+      throw std::runtime_error("no scene is named; try examples/rays/scenes/cornell.toml");
+    if (!settings.rays.empty() && settings.hits.empty())
+      throw std::runtime_error("--trace needs --hits, where its hits go");
     const rays::Scene scene = sceneOf(settings);
     if (!settings.hits.empty()) return writeHits(app, settings, scene);
-    throw std::runtime_error("no pictures yet");
+    makePicture(app, scene);
   });
 }

@@ -33,7 +33,8 @@ struct Mesh {
 /// Without `wantsMaterials` the materials of an OBJ file are not looked at.
 Mesh loadMesh(const std::filesystem::path& file, bool wantsMaterials);
 
-Mesh parseObj(const std::string& name, const std::string& text, const std::filesystem::path& folder, bool wantsMaterials);
+Mesh parseObj(const std::string& name, const std::string& text, const std::filesystem::path& folder,
+              bool wantsMaterials);
 Mesh parsePly(const std::string& name, std::string_view bytes);
 
 }  // namespace rays

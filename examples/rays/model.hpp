@@ -32,11 +32,14 @@ enum class Scattering : std::uint8_t { Diffuse, Mirror, Glass, Metal, Frosted };
 struct Material {
   std::string name;
   Scattering scattering = Scattering::Diffuse;
-  sk::float3 colour = {0.8f, 0.8f, 0.8f};  ///< albedo; of metals the reflectance at normal incidence; of glass the tint
-  sk::float3 emission = {0, 0, 0};         ///< radiance, on both sides
-  float ior = 1.5f;                        ///< of glass, relative to outside
-  float roughness = 0.0f;                  ///< GGX's alpha, of metal and frosted glass
-  int texture = -1;                        ///< index into Model::textures; multiplies the colour
+  sk::float3 colour = {0.8f, 0.8f,
+                       0.8f};  ///< albedo; of metals the reflectance at normal incidence; of glass the tint
+  sk::float3 emission = {0, 0,
+                         0};  ///< radiance of the front, which sees a triangle's corners counterclockwise
+  bool glowsBehind = false;  ///< the back emits as well
+  float ior = 1.5f;  ///< of glass, relative to outside
+  float roughness = 0.0f;  ///< GGX's alpha, of metal and frosted glass
+  int texture = -1;  ///< index into Model::textures; multiplies the colour
 
   bool emits() const { return emission.x > 0 || emission.y > 0 || emission.z > 0; }
 };
@@ -74,21 +77,21 @@ struct PointLight {
 
 /// A disc at infinity.
 struct Sun {
-  sk::float3 towards{};     ///< unit vector to the sun
+  sk::float3 towards{};  ///< unit vector to the sun
   sk::float3 irradiance{};  ///< on a surface that faces it
-  float angle = 0.0f;       ///< radius of the disc in radians; 0 makes sharp shadows
+  float angle = 0.0f;  ///< radius of the disc in radians; 0 makes sharp shadows
 };
 
 struct Environment {
   sk::float3 colour{};  ///< radiance; multiplies the image where there is one
-  Raster image;         ///< latitude and longitude, y up; empty: the same everywhere
+  Raster image;  ///< latitude and longitude, y up; empty: the same everywhere
 };
 
 struct Camera {
   Vector from{0, 0, 5}, to{0, 0, 0}, up{0, 1, 0};
   double fieldOfView = 40.0;  ///< vertical, in degrees
-  double lens = 0.0;          ///< radius of the aperture; 0 is a pinhole
-  double focus = 0.0;         ///< distance of what is sharp
+  double lens = 0.0;  ///< radius of the aperture; 0 is a pinhole
+  double focus = 0.0;  ///< distance of what is sharp
 };
 
 /// Lengths are those of the scene file times `unit`, a power of two that brings the scene's extent near 1. Products of
@@ -96,9 +99,9 @@ struct Camera {
 struct Model {
   double unit = 1.0;
   std::vector<Triangle> triangles;
-  std::vector<Corners> corners;     ///< one for each triangle, or none at all
-  std::int32_t triangleCount = 0;   ///< of the file; ids of spheres begin here, and those of planes after them
-  std::int32_t leftOut = 0;         ///< triangles with a vertex that is not finite
+  std::vector<Corners> corners;  ///< one for each triangle, or none at all
+  std::int32_t triangleCount = 0;  ///< of the file; ids of spheres begin here, and those of planes after them
+  std::int32_t leftOut = 0;  ///< triangles with a vertex that is not finite
   std::vector<Sphere> spheres;
   std::vector<Plane> planes;
   std::vector<Material> materials;
@@ -109,7 +112,9 @@ struct Model {
   Camera camera;
 
   std::int32_t sphereId(std::size_t i) const { return triangleCount + static_cast<std::int32_t>(i); }
-  std::int32_t planeId(std::size_t i) const { return sphereId(spheres.size()) + static_cast<std::int32_t>(i); }
+  std::int32_t planeId(std::size_t i) const {
+    return sphereId(spheres.size()) + static_cast<std::int32_t>(i);
+  }
 };
 
 /// Points from `least` to `most` times the direction count, both included.

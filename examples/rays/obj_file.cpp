@@ -37,12 +37,13 @@ void checkFace(TextCursor& cursor, const Counts& counts) {
       checkIndex(cursor, word.substr(first + 1, second - first - 1), counts.textures, "texture vertex");
     if (second + 1 < word.size()) checkIndex(cursor, word.substr(second + 1), counts.normals, "normal");
   }
-  if (corners < 3) cursor.fail(fmt::format("a face has three corners at least, and this one has {}", corners));
+  if (corners < 3)
+    cursor.fail(fmt::format("a face has three corners at least, and this one has {}", corners));
 }
 
 /// Reads positions, and checks all else that will be read.
-std::vector<Vector> checkText(const std::string& name, const std::string& text, const std::filesystem::path& folder,
-                              bool wantsMaterials) {
+std::vector<Vector> checkText(const std::string& name, const std::string& text,
+                              const std::filesystem::path& folder, bool wantsMaterials) {
   std::vector<Vector> points;
   Counts counts;
   TextCursor cursor(name, text);
@@ -75,7 +76,8 @@ sk::float3 colourOf(const tinyobj::real_t (&c)[3]) {
 
 /// MTL has a Phong model: what is far from its mirror or glass is taken for diffuse.
 Material materialOf(const tinyobj::material_t& m, std::map<std::string, std::int32_t>& textures) {
-  Material material{.name = m.name, .colour = colourOf(m.diffuse), .emission = colourOf(m.emission)};
+  Material material{
+      .name = m.name, .colour = colourOf(m.diffuse), .emission = colourOf(m.emission), .glowsBehind = true};
   const bool isClear = m.dissolve < 1 || m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9;
   if (isClear) {
     material.scattering = Scattering::Glass;
@@ -85,7 +87,8 @@ Material materialOf(const tinyobj::material_t& m, std::map<std::string, std::int
     material.scattering = Scattering::Mirror;
     material.colour = colourOf(m.specular);
   } else if (!m.diffuse_texname.empty()) {
-    material.texture = textures.try_emplace(m.diffuse_texname, static_cast<std::int32_t>(textures.size())).first->second;
+    material.texture =
+        textures.try_emplace(m.diffuse_texname, static_cast<std::int32_t>(textures.size())).first->second;
     if (material.colour == sk::float3{0, 0, 0}) material.colour = {1, 1, 1};
   }
   return material;
@@ -116,7 +119,8 @@ Mesh parseObj(const std::string& name, const std::string& text, const std::files
   std::string warning, error;
   std::istringstream stream(text);
   tinyobj::MaterialFileReader reader(folder.string() + "/");
-  if (!tinyobj::LoadObj(&all, &shapes, &materials, &warning, &error, &stream, wantsMaterials ? &reader : nullptr))
+  if (!tinyobj::LoadObj(&all, &shapes, &materials, &warning, &error, &stream,
+                        wantsMaterials ? &reader : nullptr))
     throw std::runtime_error(fmt::format("{}: {}", name, error));
 
   std::map<std::string, std::int32_t> textures;
@@ -127,7 +131,9 @@ Mesh parseObj(const std::string& name, const std::string& text, const std::files
   for (const tinyobj::shape_t& shape : shapes) {
     const std::span<const tinyobj::index_t> indices = shape.mesh.indices;
     for (std::size_t f = 0; 3 * f + 2 < indices.size(); ++f) {
-      const auto point = [&](std::size_t i) { return static_cast<std::uint32_t>(indices[3 * f + i].vertex_index); };
+      const auto point = [&](std::size_t i) {
+        return static_cast<std::uint32_t>(indices[3 * f + i].vertex_index);
+      };
       mesh.faces.push_back({{point(0), point(1), point(2)}, shape.mesh.material_ids[f]});
       if (hasCorners) mesh.corners.push_back(cornersOf(all, indices.subspan(3 * f, 3)));
     }

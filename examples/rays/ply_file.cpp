@@ -38,10 +38,12 @@ struct Header {
 
 Number numberType(const TextCursor& cursor, std::string_view word) {
   static const std::map<std::string_view, Number> types = {
-      {"char", Number::Int8},     {"int8", Number::Int8},     {"uchar", Number::UInt8},   {"uint8", Number::UInt8},
-      {"short", Number::Int16},   {"int16", Number::Int16},   {"ushort", Number::UInt16}, {"uint16", Number::UInt16},
-      {"int", Number::Int32},     {"int32", Number::Int32},   {"uint", Number::UInt32},   {"uint32", Number::UInt32},
-      {"float", Number::Float},   {"float32", Number::Float}, {"double", Number::Double}, {"float64", Number::Double}};
+      {"char", Number::Int8},     {"int8", Number::Int8},     {"uchar", Number::UInt8},
+      {"uint8", Number::UInt8},   {"short", Number::Int16},   {"int16", Number::Int16},
+      {"ushort", Number::UInt16}, {"uint16", Number::UInt16}, {"int", Number::Int32},
+      {"int32", Number::Int32},   {"uint", Number::UInt32},   {"uint32", Number::UInt32},
+      {"float", Number::Float},   {"float32", Number::Float}, {"double", Number::Double},
+      {"float64", Number::Double}};
   const auto found = types.find(word);
   if (found == types.end()) cursor.fail(fmt::format("'{}' is no type of PLY", word));
   return found->second;
@@ -51,7 +53,8 @@ Encoding encodingOf(const TextCursor& cursor, std::string_view word) {
   if (word == "ascii") return Encoding::Text;
   if (word == "binary_little_endian") return Encoding::Little;
   if (word == "binary_big_endian") return Encoding::Big;
-  cursor.fail(fmt::format("'{}' is no format of PLY; there are ascii, binary_little_endian, binary_big_endian", word));
+  cursor.fail(fmt::format(
+      "'{}' is no format of PLY; there are ascii, binary_little_endian, binary_big_endian", word));
 }
 
 Property propertyOf(TextCursor& cursor) {
@@ -70,7 +73,8 @@ Property propertyOf(TextCursor& cursor) {
 
 /// Leaves the cursor at the line `end_header`.
 Header readHeader(TextCursor& cursor) {
-  if (!cursor.nextLine() || cursor.word() != "ply") cursor.fail("this is no PLY file, whose first line is 'ply'");
+  if (!cursor.nextLine() || cursor.word() != "ply")
+    cursor.fail("this is no PLY file, whose first line is 'ply'");
   Header header;
   bool hasFormat = false;
   while (cursor.nextLine()) {
@@ -170,7 +174,8 @@ struct VertexData {
 
 void readVertices(Body& body, const Element& element, Mesh& mesh, VertexData& data) {
   const auto has = [&](std::string_view name) {
-    return std::ranges::any_of(element.properties, [&](const Property& p) { return !p.isList && p.name == name; });
+    return std::ranges::any_of(element.properties,
+                               [&](const Property& p) { return !p.isList && p.name == name; });
   };
   for (const std::string_view name : {"x", "y", "z"}) {
     if (!has(name)) body.fail(fmt::format("vertices have no property '{}'", name));
@@ -209,7 +214,8 @@ void readFace(Body& body, const Property& list, Mesh& mesh) {
   for (std::int64_t i = 0; i < corners; ++i) {
     const double index = body.read(list.type);
     if (!(index >= 0 && index < static_cast<double>(mesh.points.size())) || index != std::floor(index))
-      body.fail(fmt::format("there is no vertex {}; they count from 0, and there are {}", index, mesh.points.size()));
+      body.fail(fmt::format("there is no vertex {}; they count from 0, and there are {}", index,
+                            mesh.points.size()));
     if (i >= 2) points[1] = points[2];
     points[static_cast<std::size_t>(std::min<std::int64_t>(i, 2))] = static_cast<std::uint32_t>(index);
     if (i >= 2) mesh.faces.push_back({points, -1});

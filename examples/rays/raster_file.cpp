@@ -36,7 +36,8 @@ Raster loadPfm(const std::filesystem::path& file) {
   double scale = 0.0;
   if (!(stream >> kind)) fail(file, "the picture does not exist or cannot be read");
   if (kind != "PF" && kind != "Pf") fail(file, "this is no PFM file, which begins with PF or Pf");
-  if (!(stream >> width >> height >> scale) || width < 1 || height < 1 || width > 32768 || height > 32768 || scale == 0.0)
+  if (!(stream >> width >> height >> scale) || width < 1 || height < 1 || width > 32768 || height > 32768 ||
+      scale == 0.0)
     fail(file, "the header of a PFM file has a width and a height from 1 to 32768, and a scale");
   stream.get();
   const std::size_t planes = kind == "PF" ? 3 : 1;
@@ -46,12 +47,14 @@ Raster loadPfm(const std::filesystem::path& file) {
   std::vector<float> raw(count * planes);
   stream.read(reinterpret_cast<char*>(raw.data()), static_cast<std::streamsize>(raw.size() * 4));
   if (!stream) fail(file, "the file ends too early");
-  if ((scale > 0) == (std::endian::native == std::endian::little)) std::ranges::transform(raw, raw.begin(), swapped);
+  if ((scale > 0) == (std::endian::native == std::endian::little))
+    std::ranges::transform(raw, raw.begin(), swapped);
   Raster raster{width, height, std::vector<sk::float3>(count)};
   for (std::size_t y = 0; y < std::size_t(height); ++y) {
     for (std::size_t x = 0; x < std::size_t(width); ++x) {
       const float* p = raw.data() + ((std::size_t(height) - 1 - y) * std::size_t(width) + x) * planes;
-      raster.pixels[y * std::size_t(width) + x] = planes == 3 ? sk::float3{p[0], p[1], p[2]} : sk::float3{p[0], p[0], p[0]};
+      raster.pixels[y * std::size_t(width) + x] =
+          planes == 3 ? sk::float3{p[0], p[1], p[2]} : sk::float3{p[0], p[0], p[0]};
     }
   }
   return raster;

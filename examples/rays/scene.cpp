@@ -20,15 +20,18 @@ namespace {
 using examples::Range;
 using examples::SceneTable;
 
-constexpr std::array<std::string_view, 5> scatteringNames = {"diffuse", "mirror", "glass", "metal", "frosted"};
+constexpr std::array<std::string_view, 5> scatteringNames = {"diffuse", "mirror", "glass", "metal",
+                                                             "frosted"};
 constexpr std::array<std::string_view, 2> lightNames = {"point", "sun"};
 constexpr std::array<std::string_view, 2> toneNames = {"linear", "filmic"};
+constexpr std::array<std::string_view, 2> samplingNames = {"random", "sobol"};
 
 Material readMaterial(const SceneTable& table, const Reading& reading, Model& model) {
   Material m;
   m.name = table.text("name").value_or("");
   if (m.name.empty()) refuse(table, "name", "is missing; things name their material by it");
-  if (reading.materials.contains(m.name)) refuse(table, "name", fmt::format("'{}' is taken by another material", m.name));
+  if (reading.materials.contains(m.name))
+    refuse(table, "name", fmt::format("'{}' is taken by another material", m.name));
   m.scattering = static_cast<Scattering>(table.choice("type", scatteringNames).value_or(0));
   const bool isClear = m.scattering == Scattering::Glass || m.scattering == Scattering::Frosted;
   const bool isRough = m.scattering == Scattering::Metal || m.scattering == Scattering::Frosted;
@@ -37,7 +40,8 @@ Material readMaterial(const SceneTable& table, const Reading& reading, Model& mo
   if (std::max({m.colour.x, m.colour.y, m.colour.z}) > 1)
     refuse(table, "colour", "has components from 0 to 1; what is brighter would make light");
   m.emission = colourOf(table, "emission", {0, 0, 0});
-  if (isClear) m.ior = static_cast<float>(table.number("ior", Range{1.0, 4.0}).value_or(1.5));
+  m.glowsBehind = table.flag("both_sides").value_or(false);
+  if (isClear) m.ior = static_cast<float>(table.number("ior", Range{1.001, 4.0}).value_or(1.5));
   if (isRough) m.roughness = static_cast<float>(table.number("roughness", Range{1e-3, 1.0}).value_or(0.2));
   if (const auto file = table.text("texture")) {
     m.texture = static_cast<std::int32_t>(model.textures.size());
@@ -49,7 +53,8 @@ Material readMaterial(const SceneTable& table, const Reading& reading, Model& mo
 void readMaterials(const SceneTable& root, Reading& reading, Model& model) {
   for (const SceneTable& table : root.tables("material")) {
     model.materials.push_back(readMaterial(table, reading, model));
-    reading.materials.emplace(model.materials.back().name, static_cast<std::int32_t>(model.materials.size()) - 1);
+    reading.materials.emplace(model.materials.back().name,
+                              static_cast<std::int32_t>(model.materials.size()) - 1);
   }
   if (model.materials.empty()) model.materials.push_back({.name = "grey"});
 }
@@ -57,7 +62,8 @@ void readMaterials(const SceneTable& root, Reading& reading, Model& model) {
 void readLights(const SceneTable& root, Model& model) {
   for (const SceneTable& table : root.tables("light")) {
     if (table.choice("type", lightNames).value_or(0) == 0) {
-      model.points.push_back({toFloat3(vectorOf(table, "position", {0, 0, 0})), colourOf(table, "intensity", {1, 1, 1})});
+      model.points.push_back(
+          {toFloat3(vectorOf(table, "position", {0, 0, 0})), colourOf(table, "intensity", {1, 1, 1})});
       continue;
     }
     const Vector towards = vectorOf(table, "towards", {0, 1, 0});
@@ -102,10 +108,12 @@ void readPicture(const SceneTable& root, const Overrides& overrides, Scene& scen
     if (const auto size = table->numbers("size", 2, Range{0, 32768})) {
       picture.width = static_cast<int>((*size)[0]);
       picture.height = static_cast<int>((*size)[1]);
-      if (picture.width != (*size)[0] || picture.height != (*size)[1]) refuse(*table, "size", "takes whole numbers");
+      if (picture.width != (*size)[0] || picture.height != (*size)[1])
+        refuse(*table, "size", "takes whole numbers");
     }
     picture.depth = static_cast<int>(table->integer("depth", Range{1, 1000}).value_or(picture.depth));
-    picture.seed = static_cast<std::uint32_t>(table->integer("seed", Range{0, 4294967295.0}).value_or(picture.seed));
+    picture.seed = static_cast<std::uint32_t>(table->integer("seed", Range{0, 65535}).value_or(picture.seed));
+    picture.sampling = static_cast<Sampling>(table->choice("sampling", samplingNames).value_or(1));
     output.samples = table->integer("samples", Range{1, 1e6}).value_or(output.samples);
     output.seconds = table->number("seconds", Range{0.0, 1e7}).value_or(output.seconds);
     output.exposure = table->number("exposure", Range{1e-6, 1e6}).value_or(output.exposure);
@@ -129,7 +137,8 @@ void readEngines(const SceneTable& root, const Overrides& overrides, Scene& scen
   if (overrides.engine.empty()) return;
   scene.engine = overrides.engine;
   if (!scene.engines.contains(scene.engine))
-    throw std::runtime_error(fmt::format("there is no engine '{}'; there are {}", scene.engine, fmt::join(names, ", ")));
+    throw std::runtime_error(
+        fmt::format("there is no engine '{}'; there are {}", scene.engine, fmt::join(names, ", ")));
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ namespace {
 using examples::Range;
 using examples::SceneTable;
 
-constexpr std::array<std::string_view, 6> shapeNames = {"quad", "box", "sponge", "sphere", "torus", "terrain"};
+constexpr std::array<std::string_view, 6> shapeNames = {"quad",   "box",   "sponge",
+                                                        "sphere", "torus", "terrain"};
 /// Ids are ints, and so are three times them.
 constexpr std::int64_t mostTriangles = std::int64_t{1} << 28;
 
@@ -34,7 +35,8 @@ struct Transform {
   Vector turned(Vector p) const { return {dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)}; }
   /// Of a normal: the matrix of cofactors, which is the inverse's transpose but for its length.
   Vector normal(Vector n) const {
-    return {dot(cross(rows[1], rows[2]), n), dot(cross(rows[2], rows[0]), n), dot(cross(rows[0], rows[1]), n)};
+    return {dot(cross(rows[1], rows[2]), n), dot(cross(rows[2], rows[0]), n),
+            dot(cross(rows[0], rows[1]), n)};
   }
 };
 
@@ -114,7 +116,8 @@ Mesh meshOf(const SceneTable& table, const Reading& reading, bool wantsMaterials
   if (!file) refuse(table, "file", "is missing; name an OBJ or PLY file, or a 'shape'");
   const std::filesystem::path path = reading.folder / *file;
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse(table, "file", fmt::format("'{}' does not exist", path.string()));
+  if (!std::filesystem::exists(path, ignored))
+    refuse(table, "file", fmt::format("'{}' does not exist", path.string()));
   return loadMesh(path, wantsMaterials);
 }
 
@@ -131,9 +134,9 @@ void tellBroken(const Named& named, Reading& reading) {
     }
   }
   if (broken == 0) return;
-  const std::string message = fmt::format("{}: {} not finite ({}{}, counted from 0)", named.label,
-                                          broken == 1 ? "a vertex is" : fmt::format("{} vertices are", broken), list,
-                                          broken > 4 ? " ..." : "");
+  const std::string message = fmt::format(
+      "{}: {} not finite ({}{}, counted from 0)", named.label,
+      broken == 1 ? "a vertex is" : fmt::format("{} vertices are", broken), list, broken > 4 ? " ..." : "");
   if (reading.strict) throw std::runtime_error(message);
   reading.warnings.push_back(message + "; the triangles of it are left out");
 }
@@ -160,16 +163,20 @@ class Placing {
         ++model_.leftOut;
         continue;
       }
-      const std::int32_t own = face.material >= 0 && named.ownMaterials ? named.firstMaterial + face.material : 0;
+      const std::int32_t own =
+          face.material >= 0 && named.ownMaterials ? named.firstMaterial + face.material : 0;
       model_.triangles.push_back({point(0), point(1), point(2), id, material.value_or(own)});
-      if (hasCorners) model_.corners.push_back(cornersOf(mesh.corners[f], transform));
-      else if (!model_.corners.empty()) model_.corners.emplace_back();
+      if (hasCorners)
+        model_.corners.push_back(cornersOf(mesh.corners[f], transform));
+      else if (!model_.corners.empty())
+        model_.corners.emplace_back();
     }
   }
 
  private:
   static Corners cornersOf(Corners corners, const Transform& transform) {
-    for (sk::float3& n : corners.normals) n = toFloat3(normalized(transform.normal(examples::vecOf<double>(n))));
+    for (sk::float3& n : corners.normals)
+      n = toFloat3(normalized(transform.normal(examples::vecOf<double>(n))));
     return corners;
   }
 
@@ -223,7 +230,8 @@ void readMeshes(const SceneTable& root, Reading& reading, Model& model) {
     const auto found = defined.find(of);
     if (found == defined.end()) refuse(table, "of", fmt::format("names no mesh: '{}'", of));
     const std::optional<std::int32_t> material = materialOf(table, reading);
-    placing.add(table, found->second.named, readTransform(table), material ? material : found->second.material);
+    placing.add(table, found->second.named, readTransform(table),
+                material ? material : found->second.material);
   }
 }
 
@@ -231,7 +239,8 @@ void readRound(const SceneTable& root, const Reading& reading, Model& model) {
   for (const SceneTable& table : root.tables("sphere")) {
     const Vector centre = vectorOf(table, "centre", {0, 0, 0});
     const double radius = table.number("radius", positiveLength).value_or(1.0);
-    model.spheres.push_back({toFloat3(centre), static_cast<float>(radius), materialNumber(table, "material", reading)});
+    model.spheres.push_back(
+        {toFloat3(centre), static_cast<float>(radius), materialNumber(table, "material", reading)});
   }
   for (const SceneTable& table : root.tables("flake")) {
     const Vector centre = vectorOf(table, "centre", {0, 0, 0});
@@ -251,9 +260,11 @@ void readPlanes(const SceneTable& root, const Reading& reading, Model& model) {
     if (!(length(normal) > 0)) refuse(table, "normal", "must not be zero");
     const Vector n = normalized(normal);
     const double distance = dot(n, vectorOf(table, "through", {0, 0, 0}));
-    model.planes.push_back({toFloat3(n), static_cast<float>(distance), materialNumber(table, "material", reading)});
+    model.planes.push_back(
+        {toFloat3(n), static_cast<float>(distance), materialNumber(table, "material", reading)});
   }
-  if (model.planes.size() > 64) throw std::runtime_error("a scene has 64 planes at most; make meshes of them");
+  if (model.planes.size() > 64)
+    throw std::runtime_error("a scene has 64 planes at most; make meshes of them");
 }
 
 double largest(const sk::float3& p) {
@@ -297,7 +308,8 @@ void readShapes(const SceneTable& root, Reading& reading, Model& model) {
 
 void chooseUnit(Model& model) {
   double extent = 0.0;
-  for (const Triangle& t : model.triangles) extent = std::max({extent, largest(t.a), largest(t.b), largest(t.c)});
+  for (const Triangle& t : model.triangles)
+    extent = std::max({extent, largest(t.a), largest(t.b), largest(t.c)});
   for (const Sphere& s : model.spheres) extent = std::max(extent, largest(s.centre) + double(s.radius));
   if (extent == 0.0) extent = std::max(1e-30, length(model.camera.to - model.camera.from));
   model.unit = std::ldexp(1.0, -std::ilogb(extent));

@@ -64,14 +64,16 @@ void addSide(Mesh& mesh, LatticePoints& points, const std::array<int, 3>& cell, 
 
 std::uint32_t midpoint(Mesh& mesh, std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>& known,
                        std::uint32_t a, std::uint32_t b) {
-  const auto [entry, isNew] = known.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.points.size()));
+  const auto [entry, isNew] =
+      known.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.points.size()));
   if (isNew) mesh.points.push_back(0.5 * normalized(mesh.points[a] + mesh.points[b]));
   return entry->second;
 }
 
 /// A hash of (x, y, seed) as a number in [-1, 1).
 double noise(int x, int y, std::uint32_t seed) {
-  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^ static_cast<std::uint32_t>(y) * 0xd8163841u ^ seed * 0xcb1ab31fu;
+  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^
+                    static_cast<std::uint32_t>(y) * 0xd8163841u ^ seed * 0xcb1ab31fu;
   h = (h ^ (h >> 15)) * 0x2c1b3c6du;
   h = (h ^ (h >> 12)) * 0x297a2d39u;
   h ^= h >> 15;
@@ -91,7 +93,8 @@ void addFlake(std::vector<Sphere>& spheres, Vector centre, double radius, Vector
   const auto [u, v] = basisOf(axis);
   // Six about the equator, three above.
   for (int i = 0; i < 9; ++i) {
-    const double turn = i < 6 ? i * std::numbers::pi / 3 : (i - 6) * 2 * std::numbers::pi / 3 + std::numbers::pi / 6;
+    const double turn =
+        i < 6 ? i * std::numbers::pi / 3 : (i - 6) * 2 * std::numbers::pi / 3 + std::numbers::pi / 6;
     const double rise = i < 6 ? 0.0 : std::asin(std::sqrt(2.0 / 3.0));
     const Vector out = std::cos(rise) * (std::cos(turn) * u + std::sin(turn) * v) + std::sin(rise) * axis;
     addFlake(spheres, centre + (radius * 4.0 / 3.0) * out, radius / 3, normalized(out), level - 1);
@@ -147,7 +150,9 @@ Mesh icosphere(int level, bool smooth) {
   for (Vector& p : mesh.points) p = 0.5 * normalized(p);
   // Faces are the triples of points that are next to each other.
   const double near = length(mesh.points[0] - mesh.points[6]);
-  const auto isNear = [&](std::size_t a, std::size_t b) { return length(mesh.points[a] - mesh.points[b]) < 1.01 * near; };
+  const auto isNear = [&](std::size_t a, std::size_t b) {
+    return length(mesh.points[a] - mesh.points[b]) < 1.01 * near;
+  };
   for (std::uint32_t a = 0; a < 12; ++a) {
     for (std::uint32_t b = a + 1; b < 12; ++b) {
       for (std::uint32_t c = b + 1; c < 12; ++c) {
@@ -164,8 +169,8 @@ Mesh icosphere(int level, bool smooth) {
     for (const auto& [p, material] : mesh.faces) {
       const std::uint32_t ab = midpoint(mesh, known, p[0], p[1]), bc = midpoint(mesh, known, p[1], p[2]),
                           ca = midpoint(mesh, known, p[2], p[0]);
-      for (const std::array<std::uint32_t, 3>& q :
-           {std::array{p[0], ab, ca}, std::array{p[1], bc, ab}, std::array{p[2], ca, bc}, std::array{ab, bc, ca}})
+      for (const std::array<std::uint32_t, 3>& q : {std::array{p[0], ab, ca}, std::array{p[1], bc, ab},
+                                                    std::array{p[2], ca, bc}, std::array{ab, bc, ca}})
         finer.push_back({q, material});
     }
     mesh.faces = std::move(finer);
@@ -173,7 +178,8 @@ Mesh icosphere(int level, bool smooth) {
   if (!smooth) return mesh;
   for (const Face& face : mesh.faces) {
     Corners corners;
-    for (std::size_t i = 0; i < 3; ++i) corners.normals[i] = toFloat3(normalized(mesh.points[face.points[i]]));
+    for (std::size_t i = 0; i < 3; ++i)
+      corners.normals[i] = toFloat3(normalized(mesh.points[face.points[i]]));
     mesh.corners.push_back(corners);
   }
   return mesh;
@@ -192,7 +198,9 @@ Mesh torus(int around, int across, double tube) {
       normals.push_back(toFloat3(n));
     }
   }
-  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>((i % around) * across + j % across); };
+  const auto at = [&](int i, int j) {
+    return static_cast<std::uint32_t>((i % around) * across + j % across);
+  };
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     mesh.faces.push_back({{a, b, c}, -1});
     mesh.corners.push_back({{normals[a], normals[b], normals[c]}, {}});
@@ -228,7 +236,8 @@ Mesh terrain(int level, double height, std::uint32_t seed) {
       for (int i = (j / half) % 2 == 0 ? half : 0; i <= n; i += step) {
         double sum = 0.0;
         int count = 0;
-        for (const auto& [dx, dy] : {std::pair{-half, 0}, std::pair{half, 0}, std::pair{0, -half}, std::pair{0, half}}) {
+        for (const auto& [dx, dy] :
+             {std::pair{-half, 0}, std::pair{half, 0}, std::pair{0, -half}, std::pair{0, half}}) {
           if (i + dx < 0 || i + dx > n || j + dy < 0 || j + dy > n) continue;
           sum += at(i + dx, j + dy);
           ++count;

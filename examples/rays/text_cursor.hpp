@@ -53,7 +53,8 @@ class TextCursor {
     const std::string_view digits = !w.empty() && w.front() == '+' ? w.substr(1) : w;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error == std::errc::result_out_of_range) return outOfRange(digits);
-    if (error != std::errc() || end != digits.data() + digits.size()) fail(fmt::format("'{}' is no number", shown(w)));
+    if (error != std::errc() || end != digits.data() + digits.size())
+      fail(fmt::format("'{}' is no number", shown(w)));
     return value;
   }
   /// As `number`, but whole.
@@ -65,7 +66,8 @@ class TextCursor {
   }
   /// Throws "FILE:LINE:COLUMN: message", at the latest word.
   [[noreturn]] void fail(std::string_view message) const {
-    throw std::runtime_error(fmt::format("{}:{}:{}: {}", file_, std::max<std::size_t>(line_, 1), wordAt_ - begin_ + 1, message));
+    throw std::runtime_error(
+        fmt::format("{}:{}:{}: {}", file_, std::max<std::size_t>(line_, 1), wordAt_ - begin_ + 1, message));
   }
   std::size_t line() const { return line_; }
   /// Where the next line begins in the text.

@@ -25,8 +25,8 @@ std::vector<Hit> traceRays(Engine& engine, const Model& model, std::span<const R
         std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
     const int own = std::ilogb(greatest);
     exponents.push_back(unit + own);
-    scaled.push_back({scaledBy(ray.origin, unit), scaledBy(ray.least, unit + own), scaledBy(ray.direction, -own),
-                      scaledBy(ray.most, unit + own)});
+    scaled.push_back({scaledBy(ray.origin, unit), scaledBy(ray.least, unit + own),
+                      scaledBy(ray.direction, -own), scaledBy(ray.most, unit + own)});
   }
   std::vector<Hit> hits(rays.size());
   engine.closest(scaled, hits);
