@@ -19,18 +19,6 @@ float component(const sk::float3& v, std::size_t axis) { return axis == 0 ? v.x 
 float below(float x) { return std::min(std::nextafter(x, -HUGE_VALF), x - 0x1p-40f); }
 float above(float x) { return std::max(std::nextafter(x, HUGE_VALF), x + 0x1p-40f); }
 
-Bounds boundsOf(const Triangle& t) {
-  Bounds b;
-  for (const sk::float3* p : {&t.a, &t.b, &t.c}) b.grow(*p);
-  return b;
-}
-
-/// By 2^-20 of the radius more, since the sphere's test rounds more often than boxes do.
-Bounds boundsOf(const Sphere& s) {
-  const float r = s.radius * (1 + 0x1p-20f);
-  return {{s.centre.x - r, s.centre.y - r, s.centre.z - r}, {s.centre.x + r, s.centre.y + r, s.centre.z + r}};
-}
-
 Bounds widened(const Bounds& b) {
   return {{below(b.least.x), below(b.least.y), below(b.least.z)},
           {above(b.most.x), above(b.most.y), above(b.most.z)}};
@@ -212,6 +200,17 @@ double Bounds::halfArea() const {
   return x * y + y * z + z * x;
 }
 
+Bounds boundsOf(const Triangle& t) {
+  Bounds b;
+  for (const sk::float3* p : {&t.a, &t.b, &t.c}) b.grow(*p);
+  return b;
+}
+
+Bounds boundsOf(const Sphere& s) {
+  const float r = s.radius * (1 + 0x1p-20f);
+  return {{s.centre.x - r, s.centre.y - r, s.centre.z - r}, {s.centre.x + r, s.centre.y + r, s.centre.z + r}};
+}
+
 float packedInt(std::int64_t i) { return std::bit_cast<float>(static_cast<std::uint32_t>(0x40000001 + i)); }
 
 Bvh buildBvh(std::span<const Triangle> triangles, std::span<const Sphere> spheres,
@@ -241,10 +240,10 @@ std::vector<sk::float4> skipLayout(const Bvh& bvh) {
   return layout;
 }
 
-std::vector<sk::float4> shapeLayout(const Bvh& bvh, const Model& model) {
+std::vector<sk::float4> shapeLayout(std::span<const std::uint32_t> order, const Model& model) {
   std::vector<sk::float4> layout;
-  layout.reserve(3 * bvh.order.size());
-  for (const std::uint32_t i : bvh.order) {
+  layout.reserve(3 * order.size());
+  for (const std::uint32_t i : order) {
     if (i < model.triangles.size()) {
       const Triangle& t = model.triangles[i];
       layout.push_back(joined(t.a, packedInt(t.id)));
@@ -257,6 +256,15 @@ std::vector<sk::float4> shapeLayout(const Bvh& bvh, const Model& model) {
       layout.push_back({sphere.radius, 0, 0, packedInt(sphere.material)});
       layout.push_back({0, 0, 0, packedInt(-1)});
     }
+  }
+  return layout;
+}
+
+std::vector<sk::float4> planeLayout(const Model& model) {
+  std::vector<sk::float4> layout;
+  for (const Plane& p : model.planes) {
+    layout.push_back({p.normal.x, p.normal.y, p.normal.z, p.distance});
+    layout.push_back({0, 0, 0, packedInt(p.material)});
   }
   return layout;
 }

@@ -28,6 +28,10 @@ struct Bounds {
   double halfArea() const;
 };
 
+Bounds boundsOf(const Triangle& triangle);
+/// By 2^-20 of the radius more, since the sphere's test rounds more often than boxes do.
+Bounds boundsOf(const Sphere& sphere);
+
 /// A leaf has `count` > 0 shapes from `first` on in Bvh::order; else its children are nodes `first` and `first` + 1.
 struct BvhNode {
   Bounds bounds;
@@ -62,9 +66,12 @@ std::vector<sk::float4> pairLayout(const Bvh& bvh);
 /// node: (least, skip) and (most, leaf). `skip` is the node after those below this one; `leaf` is 0, or 8 * first + count.
 std::vector<sk::float4> skipLayout(const Bvh& bvh);
 
-/// Three elements a shape, in the order of the leaves. Triangle: (a, id), (b, material), (c, index into Model::triangles).
+/// Three elements a shape, for numbers as in Bvh::order. Triangle: (a, id), (b, material), (c, index into Model::triangles).
 /// Sphere: (centre, id), (radius, 0, 0, material), (0, 0, 0, -1). Numbers are packed as `packedInt` has them.
-std::vector<sk::float4> shapeLayout(const Bvh& bvh, const Model& model);
+std::vector<sk::float4> shapeLayout(std::span<const std::uint32_t> order, const Model& model);
+
+/// Two elements a plane: (normal, distance) and (0, 0, 0, material).
+std::vector<sk::float4> planeLayout(const Model& model);
 
 /// An int from -1 to 2^29 as a float that no device rounds or takes for a denormal.
 float packedInt(std::int64_t i);

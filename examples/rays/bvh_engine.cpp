@@ -8,6 +8,7 @@
 #include "bvh.sk.hpp"
 #include "device_scene.hpp"
 #include "path_renderer.hpp"
+#include "ray_streams.hpp"
 
 namespace rays {
 namespace {
@@ -28,10 +29,10 @@ class BvhEngine : public Engine {
   void closest(std::span<const Ray> rays, std::span<Hit> hits) override {
     for (std::size_t first = 0; first < rays.size(); first += batch) {
       const std::size_t count = std::min(batch, rays.size() - first);
-      upload(rays.subspan(first, count));
-      sk::Stream<sk::float3> hit = scene_.device().stream<sk::float3>(from_.shape());
-      sk::Stream<int> id = scene_.device().stream<int>(from_.shape());
-      scene_.call(kernels::closest, from_, along_, hit, id);
+      const auto [from, along] = uploadRays(scene_.device(), rays.subspan(first, count));
+      sk::Stream<sk::float3> hit = scene_.device().stream<sk::float3>(from.shape());
+      sk::Stream<int> id = scene_.device().stream<int>(from.shape());
+      scene_.call(kernels::closest, from, along, hit, id);
       const std::vector<sk::float3> tuv = hit.read();
       const std::vector<int> ids = id.read();
       for (std::size_t i = 0; i < count; ++i)
@@ -42,9 +43,9 @@ class BvhEngine : public Engine {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
     for (std::size_t first = 0; first < rays.size(); first += batch) {
       const std::size_t count = std::min(batch, rays.size() - first);
-      upload(rays.subspan(first, count));
-      sk::Stream<std::uint8_t> result = scene_.device().stream<std::uint8_t>(from_.shape());
-      scene_.call(kernels::occluded, from_, along_, result);
+      const auto [from, along] = uploadRays(scene_.device(), rays.subspan(first, count));
+      sk::Stream<std::uint8_t> result = scene_.device().stream<std::uint8_t>(from.shape());
+      scene_.call(kernels::occluded, from, along, result);
       result.read(blocked.subspan(first, count));
     }
   }
@@ -56,21 +57,7 @@ class BvhEngine : public Engine {
   std::vector<std::string> account() override { return scene_.account(); }
 
  private:
-  void upload(std::span<const Ray> rays) {
-    std::vector<sk::float4> from, along;
-    for (const Ray& r : rays) {
-      from.push_back({r.origin.x, r.origin.y, r.origin.z, r.least});
-      along.push_back({r.direction.x, r.direction.y, r.direction.z, r.most});
-    }
-    const sk::Shape shape{static_cast<std::int64_t>(rays.size())};
-    from_ = scene_.device().stream<sk::float4>(shape);
-    along_ = scene_.device().stream<sk::float4>(shape);
-    from_.write(from);
-    along_.write(along);
-  }
-
   DeviceScene scene_;
-  sk::Stream<sk::float4> from_, along_;
 };
 
 DeviceSettings settingsOf(const SceneTable& table) {

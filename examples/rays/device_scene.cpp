@@ -24,24 +24,6 @@ Bvh built(const Model& model, const BvhSettings& settings) {
   return bvh;
 }
 
-/// A gather must not be empty, and what no kernel reads may hold anything.
-sk::Stream<sk::float4> streamOf(sk::Device& device, std::vector<sk::float4> elements, std::string_view name) {
-  if (elements.empty()) elements.push_back({0, 0, 0, 0});
-  sk::Stream<sk::float4> stream = device.stream<sk::float4>({static_cast<std::int64_t>(elements.size())});
-  stream.write(elements);
-  (void)name;
-  return stream;
-}
-
-std::vector<sk::float4> planesOf(const Model& model) {
-  std::vector<sk::float4> planes;
-  for (const Plane& p : model.planes) {
-    planes.push_back({p.normal.x, p.normal.y, p.normal.z, p.distance});
-    planes.push_back({0, 0, 0, packedInt(p.material)});
-  }
-  return planes;
-}
-
 }  // namespace
 
 DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSettings& settings)
@@ -59,10 +41,9 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   nodeCount_ = static_cast<int>(bvh_.nodes.size());
   planeCount_ = static_cast<int>(model.planes.size());
   firstPlane_ = model.planeId(0);
-  planes_ = streamOf(device, planesOf(model), "planes");
-  nodes_ =
-      streamOf(device, traversal_ == HowToTraverse::Stack ? pairLayout(bvh_) : skipLayout(bvh_), "nodes");
-  shapes_ = streamOf(device, shapeLayout(bvh_, model), "shapes");
+  planes_ = streamOf(device, planeLayout(model));
+  nodes_ = streamOf(device, traversal_ == HowToTraverse::Stack ? pairLayout(bvh_) : skipLayout(bvh_));
+  shapes_ = streamOf(device, shapeLayout(bvh_.order, model));
 }
 
 std::vector<std::string> DeviceScene::account() const {

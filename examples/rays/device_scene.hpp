@@ -25,6 +25,15 @@ struct DeviceSettings {
   HowToIntersect intersection = HowToIntersect::Watertight;
 };
 
+/// A gather must not be empty, and what no kernel reads may hold anything.
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, std::vector<T> elements) {
+  if (elements.empty()) elements.push_back(T{});
+  sk::Stream<T> stream = device.stream<T>({static_cast<std::int64_t>(elements.size())});
+  stream.write(elements);
+  return stream;
+}
+
 class DeviceScene {
  public:
   DeviceScene(sk::Device& device, const Model& model, const DeviceSettings& settings);

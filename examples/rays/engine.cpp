@@ -4,12 +4,14 @@
 #include <array>
 
 #include "bvh_engine.hpp"
+#include "streaming_engine.hpp"
 
 namespace rays {
 
 std::span<const EngineKind> engineKinds() {
   static constexpr std::array kinds = {
       EngineKind{"bvh", "a hierarchy of boxes, all in one kernel", readBvhEngine},
+      EngineKind{"streaming", "a uniform grid in streams (Purcell and others, 2002)", readStreamingEngine},
   };
   return kinds;
 }

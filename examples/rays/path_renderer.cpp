@@ -81,14 +81,6 @@ int featuresOf(const Model& model) {
   return features;
 }
 
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, std::vector<T> elements) {
-  if (elements.empty()) elements.push_back(T{});
-  sk::Stream<T> stream = device.stream<T>({static_cast<std::int64_t>(elements.size())});
-  stream.write(elements);
-  return stream;
-}
-
 std::vector<sk::float4> materialsOf(const Model& model, const std::vector<double>& shares) {
   std::vector<sk::float4> elements;
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
