@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "device_scene.hpp"
 #include "engine.hpp"
 #include "support/scene_file.hpp"
 
@@ -12,5 +13,7 @@ namespace rays {
 
 /// [bvh]: traversal = "stack" or "skip", intersection = "watertight" or "moller", bins, leaf.
 MakeEngine readBvhEngine(const std::optional<examples::SceneTable>& settings);
+
+std::unique_ptr<Engine> makeBvhEngine(sk::Device& device, const Model& model, const DeviceSettings& settings);
 
 }  // namespace rays
