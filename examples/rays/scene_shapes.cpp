@@ -59,7 +59,7 @@ Transform rotation(const std::array<double, 4>& axisAndDegrees) {
 /// Scaled first, then turned, then moved.
 Transform readTransform(const SceneTable& table) {
   Vector scale{1, 1, 1};
-  if (const auto s = table.numbers("scale", -1, Range{-1e15, 1e15})) {
+  if (const auto s = table.numbers("scale", -1, Range{-1e18, 1e18})) {
     if (s->size() != 1 && s->size() != 3) refuse(table, "scale", "is one number in brackets, or three");
     scale = s->size() == 1 ? Vector{(*s)[0], (*s)[0], (*s)[0]} : Vector{(*s)[0], (*s)[1], (*s)[2]};
     if (scale.x == 0 || scale.y == 0 || scale.z == 0) refuse(table, "scale", "must not be 0");

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: MIT
+//
+// Hits against loops in double precision, and rays at edges and vertices, where a ray could slip through.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bvh.hpp"
+#include "camera.hpp"
+#include "scene.hpp"
+#include "shapes.hpp"
+#include "support/written_file.hpp"
+#include "trace.hpp"
+
+namespace rays {
+namespace {
+
+using examples::vecOf;
+
+sk::Device profileDevice(const std::string& name) {
+  if (name == "native") return sk::Device::native();
+  return sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
+}
+
+std::unique_ptr<Engine> engineOf(sk::Device& device, const Model& model, const std::string& settings = "") {
+  const examples::WrittenFile file("[bvh]\n" + settings, "written_engine.toml");
+  return readScene(file.path(), {}).engines.at("bvh")(device, model);
+}
+
+Model modelOf(const Mesh& mesh) {
+  Model model;
+  for (const Face& face : mesh.faces) {
+    const auto point = [&](std::size_t i) { return toFloat3(mesh.points[face.points[i]]); };
+    model.triangles.push_back({point(0), point(1), point(2), model.triangleCount++, 0});
+  }
+  model.materials.push_back({.name = "grey"});
+  return model;
+}
+
+struct Exact {
+  double t = HUGE_VAL;
+  double margin = 0.0;  ///< the least weight of a corner; negative outside
+};
+
+/// Where a ray meets the plane of a triangle.
+Exact meet(const Triangle& triangle, const Ray& ray) {
+  const auto o = vecOf<double>(ray.origin), d = vecOf<double>(ray.direction);
+  const auto a = vecOf<double>(triangle.a) - o, b = vecOf<double>(triangle.b) - o,
+             c = vecOf<double>(triangle.c) - o;
+  const double u = dot(d, cross(c, b)), v = dot(d, cross(a, c)), w = dot(d, cross(b, a));
+  const double sum = u + v + w;
+  if (sum == 0) return {};
+  const Vector n = cross(b - a, c - a);
+  return {dot(n, a) / dot(n, d), std::min({u / sum, v / sum, w / sum})};
+}
+
+/// Each hit against all triangles: nothing that is clearly nearer was missed, and what was hit is there.
+void compareWithLoops(const Model& model, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
+  const double near = 1e-5;  // of weights and distances: float's roundings in a scene of extent 1
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    double first = HUGE_VAL;
+    for (const Triangle& triangle : model.triangles) {
+      const Exact exact = meet(triangle, rays[i]);
+      if (exact.margin > near && exact.t >= rays[i].least && exact.t < rays[i].most)
+        first = std::min(first, exact.t);
+    }
+    const Hit& hit = hits[i];
+    if (hit.id < 0) {
+      wrong += first < HUGE_VAL;
+      continue;
+    }
+    const Exact exact = meet(model.triangles[static_cast<std::size_t>(hit.id)], rays[i]);
+    wrong += !(hit.t <= first + near && std::abs(hit.t - exact.t) <= near && exact.margin >= -near);
+  }
+  CHECK(wrong == 0);
+}
+
+std::vector<Ray> randomRays(std::size_t count, std::mt19937& random) {
+  std::normal_distribution<float> normal;
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector direction = normalized(Vector{normal(random), normal(random), normal(random)});
+    rays.push_back(
+        {.origin = {normal(random), normal(random), normal(random)}, .direction = toFloat3(direction)});
+    if (i % 4 == 1) rays.back().most = 0.7f;
+    if (i % 4 == 2) rays.back().least = 0.4f;
+  }
+  return rays;
+}
+
+/// From near `centre`, inside a closed mesh, to its vertices, to points on its edges, and to what floats make of both.
+std::vector<Ray> raysToEdges(const Mesh& mesh, std::size_t count, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Face& face = mesh.faces[random() % mesh.faces.size()];
+    const Vector a = mesh.points[face.points[i % 3]], b = mesh.points[face.points[(i + 1) % 3]];
+    const double along = i % 4 == 0 ? 0.0 : i % 4 == 1 ? 0.5 : 0.5 + 0.5 * uniform(random);
+    const Vector origin =
+        i % 5 == 0 ? Vector{} : 0.05 * Vector{uniform(random), uniform(random), uniform(random)};
+    const sk::float3 from = toFloat3(origin), to = toFloat3(a + along * (b - a));
+    rays.push_back({.origin = from, .direction = {to.x - from.x, to.y - from.y, to.z - from.z}});
+  }
+  return rays;
+}
+
+std::size_t differences(const std::vector<Hit>& a, const std::vector<Hit>& b) {
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) differ += a[i] != b[i];
+  return differ;
+}
+
+std::size_t leaks(Engine& engine, const Model& model, const std::vector<Ray>& rays) {
+  std::size_t missed = 0;
+  for (const Hit& hit : traceRays(engine, model, rays)) missed += hit.id < 0;
+  return missed;
+}
+
+TEST_CASE("hits are those of loops in double precision, on every device and by every way through the boxes") {
+  std::mt19937 random(5);
+  const Model model = modelOf(torus(24, 12, 0.2));
+  const std::vector<Ray> rays = randomRays(3000, random);
+  std::vector<Hit> native(rays.size());
+  for (const char* name : {"native", "glsl330", "essl300", "glsl430"}) {
+    sk::Device device = profileDevice(name);
+    for (const char* settings : {"traversal = \"stack\"\n", "traversal = \"skip\"\nleaf = 1\n"}) {
+      INFO(name << ": " << settings);
+      const std::unique_ptr<Engine> engine = engineOf(device, model, settings);
+      std::vector<Hit> hits(rays.size());
+      engine->closest(rays, hits);
+      if (name == std::string("native")) compareWithLoops(model, rays, hits);
+      if (native[0] == Hit{} && native[1] == Hit{}) native = hits;
+      CHECK(differences(hits, native) == 0);
+      std::vector<std::uint8_t> blocked(rays.size());
+      engine->occluded(rays, blocked);
+      std::size_t differ = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) differ += (blocked[i] != 0) != (hits[i].id >= 0);
+      CHECK(differ == 0);
+    }
+  }
+  sk::Device device = sk::Device::native();
+  std::vector<Hit> hits(rays.size());
+  engineOf(device, model, "intersection = \"moller\"\n")->closest(rays, hits);
+  compareWithLoops(model, rays, hits);
+}
+
+TEST_CASE("no ray passes between triangles that share an edge or a vertex") {
+  std::mt19937 random(11);
+  sk::Device device = sk::Device::native();
+  for (const Mesh& mesh : {icosphere(4, false), box()}) {
+    const Model model = modelOf(mesh);
+    const std::unique_ptr<Engine> engine = engineOf(device, model);
+    CHECK(leaks(*engine, model, raysToEdges(mesh, 500'000, random)) == 0);
+  }
+  for (const char* name : {"glsl330", "essl300", "glsl430"}) {
+    INFO(name);
+    sk::Device gl = profileDevice(name);
+    const Mesh mesh = icosphere(2, false);
+    const Model model = modelOf(mesh);
+    CHECK(leaks(*engineOf(gl, model), model, raysToEdges(mesh, 20'000, random)) == 0);
+  }
+}
+
+TEST_CASE("the test of 1997 leaks, so that the rays above are the right ones") {
+  std::mt19937 random(11);
+  sk::Device device = sk::Device::native();
+  const Mesh mesh = icosphere(4, false);
+  const Model model = modelOf(mesh);
+  CHECK(leaks(*engineOf(device, model, "intersection = \"moller\"\n"), model,
+              raysToEdges(mesh, 100'000, random)) > 0);
+}
+
+TEST_CASE("scenes of any size have the same hits, and directions of any length") {
+  sk::Device device = sk::Device::native();
+  const std::string mesh = "[[mesh]]\nshape = \"torus\"\naround = 12\nacross = 8\nscale = [";
+  std::mt19937 random(3);
+  const std::vector<Ray> rays = randomRays(2000, random);
+  std::vector<Hit> expected;
+  for (const int exponent : {0, -50, 50}) {
+    const double size = std::ldexp(1.0, exponent);
+    const examples::WrittenFile sized(fmt::format("{}{:.20g}]\n", mesh, size), "written_sized.toml");
+    const Scene scene = readScene(sized.path(), {});
+    std::vector<Ray> scaled = rays;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const auto by = [](sk::float3 v, double s) {
+        return sk::float3{float(v.x * s), float(v.y * s), float(v.z * s)};
+      };
+      const double longer = i % 3 == 0 ? 0x1p+40 : i % 3 == 1 ? 0x1p-60 : 1.0;
+      scaled[i] = {by(rays[i].origin, size), float(rays[i].least * size / longer),
+                   by(rays[i].direction, longer), float(rays[i].most * size / longer)};
+    }
+    std::vector<Hit> hits = traceRays(*engineOf(device, scene.model), scene.model, scaled);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      hits[i].t = static_cast<float>(double(hits[i].t) / size *
+                                     (i % 3 == 0   ? 0x1p+40
+                                      : i % 3 == 1 ? 0x1p-60
+                                                   : 1.0));
+    if (expected.empty()) expected = hits;
+    CHECK(differences(hits, expected) == 0);
+  }
+}
+
+TEST_CASE("rays in the planes of faces, along edges and with zeros of both signs end as they must") {
+  sk::Device device = sk::Device::native();
+  const Model model = modelOf(box());
+  const std::unique_ptr<Engine> engine = engineOf(device, model);
+  const std::vector<Ray> rays = {{.origin = {0, 0, 2}, .direction = {0, 0, -1}},
+                                 {.origin = {0, 0, 2}, .direction = {-0.0f, -0.0f, -1}},
+                                 {.origin = {0.5f, 0.5f, 2}, .direction = {0, 0, -1}},
+                                 {.origin = {0.5f, 0, 2}, .direction = {0, -0.0f, -1}},
+                                 {.origin = {0.5000001f, 0, 2}, .direction = {0, 0, -1}},
+                                 {.origin = {0, 0, 0.5f}, .direction = {0, 0, 1}},
+                                 {.origin = {0, 0, 0.5000001f}, .direction = {0, 0, 1}},
+                                 {.origin = {0, 0, 4194304}, .direction = {1e-9f, 0, -1}}};
+  std::vector<Hit> hits(rays.size());
+  engine->closest(rays, hits);
+  CHECK(hits[0].t == 1.5f);
+  CHECK(hits[1] == hits[0]);
+  CHECK(hits[2].t == 1.5f);
+  CHECK(hits[3].t == 1.5f);
+  CHECK(hits[4].id == -1);
+  CHECK(hits[5].t == 0.0f);
+  CHECK(hits[6].id == -1);
+  CHECK(hits[7].t == 4194303.5f);
+}
+
+TEST_CASE("of hits at one distance the least id is taken, and triangles without an area are never hit") {
+  Model model;
+  const Triangle triangle{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, 0, 0};
+  for (const std::int32_t id : {5, 2, 9}) {
+    model.triangles.push_back(triangle);
+    model.triangles.back().id = id;
+  }
+  model.triangles.push_back({{-1, 0, 0.5f}, {1, 0, 0.5f}, {0.5f, 0, 0.5f}, 10, 0});
+  model.triangles.push_back({{0, 0, 0.5f}, {0, 0, 0.5f}, {0, 0, 0.5f}, 11, 0});
+  model.triangleCount = 12;
+  sk::Device device = sk::Device::native();
+  for (const char* settings : {"", "leaf = 1\ntraversal = \"skip\"\n"}) {
+    std::vector<Hit> hits(1);
+    engineOf(device, model, settings)
+        ->closest(std::vector{Ray{.origin = {0, 0, 1}, .direction = {0, 0, -1}}}, hits);
+    CHECK(hits[0].id == 2);
+    CHECK(hits[0].t == 1.0f);
+  }
+}
+
+TEST_CASE("spheres and planes are hit where they are") {
+  Model model;
+  model.spheres = {{{0, 0, 0}, 0.5f, 0}, {{0, 0, -1000}, 1.0f, 0}};
+  model.planes = {{{0, 1, 0}, -0.5f, 0}};
+  sk::Device device = sk::Device::native();
+  const std::unique_ptr<Engine> engine = engineOf(device, model);
+  const std::vector<Ray> rays = {{.origin = {0, 0, 2}, .direction = {0, 0, -1}},
+                                 {.origin = {0, 0, 0}, .direction = {1, 0, 0}},
+                                 {.origin = {3, 0, 0}, .direction = {0, -1, 0}},
+                                 {.origin = {0.9999f, 0, 1000}, .direction = {0, 0, -1}},
+                                 {.origin = {0, 2, 0}, .direction = {1, 0, 0}}};
+  std::vector<Hit> hits(rays.size());
+  engine->closest(rays, hits);
+  CHECK(hits[0] == Hit{0, 1.5f, 0.75f, 0.5f});
+  CHECK(hits[1].t == 0.5f);
+  CHECK(hits[2] == Hit{2, 0.5f, 0, 0});
+  CHECK(hits[3].id == 1);
+  CHECK(hits[3].t == Approx(2000.0 - std::sqrt(1 - 0.9999 * 0.9999)).epsilon(1e-7));
+  CHECK(hits[4].id == -1);
+}
+
+TEST_CASE("a scene with nothing in it has no hits") {
+  Model model;
+  sk::Device device = sk::Device::native();
+  const std::unique_ptr<Engine> engine = engineOf(device, model);
+  std::vector<Hit> hits(3);
+  engine->closest(std::vector<Ray>(3, {.direction = {0, 0, 1}}), hits);
+  CHECK(hits == std::vector<Hit>(3));
+  engine->closest({}, {});
+}
+
+TEST_CASE("the tree holds every shape once, and is never deeper than the stack") {
+  Model model;
+  // Each box holds all that follow: the worst case for splits by surface.
+  for (int i = 0; i < 3000; ++i) {
+    const float s = std::ldexp(1.0f, -i / 30);
+    model.triangles.push_back({{0, 0, 0}, {s, 0, 0}, {0, s, s}, i, 0});
+  }
+  for (const int leaf : {1, 4}) {
+    const Bvh bvh = buildBvh(model.triangles, model.spheres, {.leaf = leaf});
+    CHECK(bvh.depth <= deepestBvh);
+    std::vector<int> seen(model.triangles.size());
+    for (const BvhNode& node : bvh.nodes) {
+      CHECK(node.count <= static_cast<std::uint32_t>(leaf));
+      for (std::uint32_t i = node.first; node.count > 0 && i < node.first + node.count; ++i)
+        ++seen[bvh.order[i]];
+    }
+    CHECK(seen == std::vector<int>(seen.size(), 1));
+    CHECK(skipLayout(bvh).size() == 16 * bvh.nodes.size());
+  }
+}
+
+}  // namespace
+}  // namespace rays
