@@ -5,7 +5,6 @@
 
 #include <optional>
 
-#include "device_scene.hpp"
 #include "engine.hpp"
 #include "support/scene_file.hpp"
 
@@ -13,7 +12,5 @@ namespace rays {
 
 /// [bvh]: traversal = "stack" or "skip", intersection = "watertight" or "moller", bins, leaf.
 MakeEngine readBvhEngine(const std::optional<examples::SceneTable>& settings);
-
-std::unique_ptr<Engine> makeBvhEngine(sk::Device& device, const Model& model, const DeviceSettings& settings);
 
 }  // namespace rays

@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: MIT
+//
+// The classic engines against the hierarchy of boxes.
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
 
-#include "bvh_engine.hpp"
+#include <fmt/format.h>
+
+#include "scene.hpp"
 #include "soup_test.hpp"
-#include "streaming_engine.hpp"
+#include "support/written_file.hpp"
 
 namespace rays {
 namespace {
 
-struct DeviceChoice {
-  const char* device;
-  const char* profile;
-};
-constexpr DeviceChoice devices[] = {{"native", ""}, {"software", "glsl330"}, {"software", "glsl430"}, {"software", "essl300"}};
+sk::Device deviceOf(const std::string& name) {
+  if (name == "native") return sk::Device::native();
+  return sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
+}
 
-sk::Device deviceOf(const DeviceChoice& choice) {
-  return *choice.profile == 0 ? sk::Device(choice.device) : sk::Device({.device = choice.device, .profile = choice.profile});
+std::unique_ptr<Engine> engineOf(sk::Device& device, const Model& model, const std::string& name, const std::string& settings) {
+  const examples::WrittenFile file(fmt::format("[{}]\n{}", name, settings), "written_classic.toml");
+  return readScene(file.path(), {}).engines.at(name)(device, model);
 }
 
 std::vector<Hit> hitsOf(Engine& engine, const std::vector<Ray>& rays) {
@@ -48,13 +55,14 @@ void compareHits(const std::vector<Hit>& got, const std::vector<Hit>& expected) 
 }
 
 /// Every way of an engine against the hierarchy of boxes.
-void compareEngines(sk::Device& device, const Model& model, const std::vector<Ray>& rays, HowToIntersect intersection) {
-  const std::unique_ptr<Engine> bvh = makeBvhEngine(device, model, {.intersection = intersection});
+void compareEngines(sk::Device& device, const Model& model, const std::vector<Ray>& rays, const std::string& intersection) {
+  const std::string test = fmt::format("intersection = '{}'\n", intersection);
+  const std::unique_ptr<Engine> bvh = engineOf(device, model, "bvh", test);
   const std::vector<Hit> hits = hitsOf(*bvh, rays);
   const std::vector<std::uint8_t> shadows = shadowsOf(*bvh, rays);
-  for (const Machine machine : {Machine::Branching, Machine::Multipass}) {
-    INFO((machine == Machine::Branching ? "branching" : "multipass"));
-    const auto streaming = makeStreamingEngine(device, model, {.machine = machine, .intersection = intersection});
+  for (const char* machine : {"branching", "multipass"}) {
+    INFO(machine);
+    const auto streaming = engineOf(device, model, "streaming", fmt::format("machine = '{}'\n{}", machine, test));
     compareHits(hitsOf(*streaming, rays), hits);
     CHECK(shadowsOf(*streaming, rays) == shadows);
   }
@@ -63,10 +71,10 @@ void compareEngines(sk::Device& device, const Model& model, const std::vector<Ra
 TEST_CASE("all engines find the same hits and shadows, on every device") {
   const Model model = soup({});
   const std::vector<Ray> rays = raysAtRandom(1500);
-  for (const DeviceChoice& choice : devices) {
-    INFO(choice.device << " " << choice.profile);
-    sk::Device device = deviceOf(choice);
-    compareEngines(device, model, rays, HowToIntersect::Moller);
+  for (const char* name : {"native", "glsl330", "glsl430", "essl300"}) {
+    INFO(name);
+    sk::Device device = deviceOf(name);
+    compareEngines(device, model, rays, "moller");
   }
 }
 
@@ -76,8 +84,8 @@ TEST_CASE("engines agree on scenes with one kind of shape, or none, or a single 
   for (const SoupSize& size : {SoupSize{100, 0, 0}, SoupSize{0, 30, 0}, SoupSize{0, 0, 2}, SoupSize{0, 0, 0}, SoupSize{1, 0, 0}}) {
     INFO(size.triangles << " triangles, " << size.spheres << " spheres, " << size.planes << " planes");
     const Model model = soup(size);
-    compareEngines(device, model, rays, HowToIntersect::Watertight);
-    compareEngines(device, model, {}, HowToIntersect::Watertight);
+    compareEngines(device, model, rays, "watertight");
+    compareEngines(device, model, {}, "watertight");
   }
 }
 
@@ -85,11 +93,11 @@ TEST_CASE("the multipass machine finds the same however it is set") {
   sk::Device device = sk::Device::native();
   const Model model = soup({});
   const std::vector<Ray> rays = raysAtRandom(300);
-  const std::vector<Hit> hits = hitsOf(*makeStreamingEngine(device, model, {}), rays);
+  const std::vector<Hit> hits = hitsOf(*engineOf(device, model, "streaming", ""), rays);
   for (const int tests : {1, 16}) {
     for (const double compact : {0.0, 1.0}) {
-      const StreamingSettings settings{.machine = Machine::Multipass, .tests = tests, .rounds = 3, .compact = compact};
-      compareHits(hitsOf(*makeStreamingEngine(device, model, settings), rays), hits);
+      const std::string settings = fmt::format("machine = 'multipass'\ntests = {}\nrounds = 3\ncompact = {:.1f}", tests, compact);
+      compareHits(hitsOf(*engineOf(device, model, "streaming", settings), rays), hits);
     }
   }
 }
@@ -107,9 +115,9 @@ TEST_CASE("rays that are not finite end, and hit nothing that matters") {
       rays.push_back(r);
     }
   }
-  for (const Machine machine : {Machine::Branching, Machine::Multipass}) {
-    const std::vector<Hit> hits = hitsOf(*makeStreamingEngine(device, model, {.machine = machine}), rays);
-    CHECK(hits.size() == rays.size());
+  for (const char* machine : {"branching", "multipass"}) {
+    const auto engine = engineOf(device, model, "streaming", fmt::format("machine = '{}'", machine));
+    CHECK(hitsOf(*engine, rays).size() == rays.size());
   }
 }
 
