@@ -22,8 +22,8 @@ class GridScene {
 
   /// The arguments that kernels with a whole way through the grid begin with, up to `shapes`, and then `more`.
   template <class Kernel, class... More>
-  void call(const Kernel& kernel, bool anyHit, More&&... more) {
-    kernel(static_cast<unsigned>(intersection), contracted, hasTriangles, hasSpheres, hasPlanes, anyHit, grid, planeCount,
+  void call(const Kernel& kernel, More&&... more) {
+    kernel(static_cast<unsigned>(intersection), contracted, hasTriangles, hasSpheres, hasPlanes, grid, planeCount,
            firstPlane, planes, cells, lists, shapes, std::forward<More>(more)...);
   }
 

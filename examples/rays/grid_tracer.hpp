@@ -13,8 +13,12 @@ namespace rays {
 
 enum class Machine : std::uint8_t { Branching, Multipass };
 
+/// What paths do, as in segment.sk.
+enum class Use : std::uint8_t { Paths, Whitted, ShadowCasting, RayCasting };
+
 struct StreamingSettings {
   Machine machine = Machine::Branching;
+  Use use = Use::Paths;
   HowToIntersect intersection = HowToIntersect::Watertight;
   GridSettings grid;
   int tests = 4;          ///< shapes that a multipass call tests a ray against

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 #include <vector>
 
 #include "ray_streams.hpp"
 #include "streaming.sk.hpp"
+#include "streaming_renderer.hpp"
 
 namespace rays {
 namespace {
@@ -16,6 +16,7 @@ using examples::Range;
 using examples::SceneTable;
 
 constexpr std::array<std::string_view, 2> machineNames = {"branching", "multipass"};
+constexpr std::array<std::string_view, 4> useNames = {"paths", "whitted", "shadows", "rays"};
 constexpr std::array<std::string_view, 2> intersectionNames = {"watertight", "moller"};
 /// Rays of one call; more come in several.
 constexpr std::size_t batch = std::size_t{1} << 20;
@@ -23,7 +24,7 @@ constexpr std::size_t batch = std::size_t{1} << 20;
 class StreamingEngine : public Engine {
  public:
   StreamingEngine(sk::Device& device, const Model& model, const StreamingSettings& settings)
-      : scene_(device, model, settings.grid, settings.intersection), tracer_(scene_, settings) {}
+      : scene_(device, model, settings.grid, settings.intersection), settings_(settings), tracer_(scene_, settings) {}
 
   void closest(std::span<const Ray> rays, std::span<Hit> hits) override {
     for (std::size_t first = 0; first < rays.size(); first += batch) {
@@ -46,8 +47,8 @@ class StreamingEngine : public Engine {
     }
   }
 
-  std::unique_ptr<Renderer> renderer(const Picture&) override {
-    throw std::runtime_error("the engine 'streaming' makes no pictures");
+  std::unique_ptr<Renderer> renderer(const Picture& picture) override {
+    return makeStreamingRenderer(scene_, tracer_, picture, settings_);
   }
 
   std::vector<std::string> account() override { return scene_.account(); }
@@ -61,12 +62,14 @@ class StreamingEngine : public Engine {
   }
 
   GridScene scene_;
+  StreamingSettings settings_;
   GridTracer tracer_;
 };
 
 StreamingSettings settingsOf(const SceneTable& table) {
   StreamingSettings s;
   s.machine = static_cast<Machine>(table.choice("machine", machineNames).value_or(0));
+  s.use = static_cast<Use>(table.choice("use", useNames).value_or(0));
   s.intersection = static_cast<HowToIntersect>(table.choice("intersection", intersectionNames).value_or(0));
   s.grid.density = table.number("density", Range{1e-6, 1000}).value_or(s.grid.density);
   s.tests = static_cast<int>(table.integer("tests", Range{1, 64}).value_or(s.tests));
