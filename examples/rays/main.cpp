@@ -14,6 +14,7 @@
 #include "camera.hpp"
 #include "engine.hpp"
 #include "hits_file.hpp"
+#include "reference.hpp"
 #include "render.hpp"
 #include "scene.hpp"
 #include "support/application.hpp"
@@ -98,6 +99,7 @@ void writeHits(examples::Application& app, const Settings& s, const rays::Scene&
   app.report(fmt::format("{}, {} rays", scene.name, hits.size()), device.name(), stopwatch.milliseconds());
   for (const std::string& line : engine->account()) fmt::print("{}\n", line);
   fmt::print("wrote {}\n", s.hits.string());
+  if (!fromFile && !hits.empty()) app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
 }
 
 void makePicture(examples::Application& app, const rays::Scene& scene) {
@@ -114,6 +116,7 @@ void makePicture(examples::Application& app, const rays::Scene& scene) {
   for (const std::string& line : engine->account()) fmt::print("{}\n", line);
   for (const std::string& line : renderer->account()) fmt::print("{}\n", line);
   fmt::print("wrote {}\n", scene.output.picture.string());
+  app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
 }
 
 }  // namespace
