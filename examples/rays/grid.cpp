@@ -4,17 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <optional>
+
+#include "overlap.hpp"
 
 namespace rays {
 namespace {
 
 constexpr std::size_t mostEntries = std::size_t{1} << 26;
-
-using Corner = std::array<double, 3>;
-
-Corner cornerOf(const sk::float3& v) { return {v.x, v.y, v.z}; }
 
 /// A shape that a cell lists.
 struct Entry {
@@ -51,40 +48,6 @@ Cells cellsOf(const Bounds& bounds, double wanted) {
     cells.extent[i] = static_cast<float>(extent[i] / cells.size[i]);
   }
   return cells;
-}
-
-/// Whether a triangle meets a box: no axis of those that count separates them (T. Akenine-Möller, "Fast 3D triangle-box overlap
-/// testing", 2001).
-bool meets(const std::array<Corner, 3>& triangle, const Corner& centre, const Corner& half) {
-  std::array<Vector, 3> v;
-  for (std::size_t i = 0; i < 3; ++i)
-    v[i] = {triangle[i][0] - centre[0], triangle[i][1] - centre[1], triangle[i][2] - centre[2]};
-  const auto separates = [&](const Vector& axis) {
-    const double reach = half[0] * std::abs(axis.x) + half[1] * std::abs(axis.y) + half[2] * std::abs(axis.z);
-    const double a = dot(axis, v[0]), b = dot(axis, v[1]), c = dot(axis, v[2]);
-    return std::min({a, b, c}) > reach || std::max({a, b, c}) < -reach;
-  };
-  constexpr std::array<Vector, 3> axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  const std::array<Vector, 3> edges = {v[1] - v[0], v[2] - v[1], v[0] - v[2]};
-  if (separates(cross(edges[0], edges[1]))) return false;
-  for (const Vector& axis : axes) {
-    if (separates(axis)) return false;
-    for (const Vector& edge : edges)
-      if (separates(cross(axis, edge))) return false;
-  }
-  return true;
-}
-
-/// Whether a sphere's surface meets a box.
-bool meets(const Corner& centre, double radius, const Corner& boxCentre, const Corner& half) {
-  double nearest = 0, farthest = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double away = std::abs(centre[i] - boxCentre[i]);
-    nearest += std::pow(std::max(0.0, away - half[i]), 2);
-    farthest += std::pow(away + half[i], 2);
-  }
-  // The sphere's test rounds more often than the walk through cells: see boundsOf in bvh.hpp.
-  return nearest <= std::pow(radius * (1 + 0x1p-20), 2) && farthest >= std::pow(radius * (1 - 0x1p-20), 2);
 }
 
 class GridBuilder {
