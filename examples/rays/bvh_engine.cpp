@@ -73,11 +73,15 @@ DeviceSettings settingsOf(const SceneTable& table) {
 
 }  // namespace
 
+std::unique_ptr<Engine> makeBvhEngine(sk::Device& device, const Model& model,
+                                      const DeviceSettings& settings) {
+  return std::make_unique<BvhEngine>(device, model, settings);
+}
+
 MakeEngine readBvhEngine(const std::optional<SceneTable>& table) {
   const DeviceSettings settings = table ? settingsOf(*table) : DeviceSettings{};
-  return [settings](sk::Device& device, const Model& model) -> std::unique_ptr<Engine> {
-    return std::make_unique<BvhEngine>(device, model, settings);
-  };
+  return
+      [settings](sk::Device& device, const Model& model) { return makeBvhEngine(device, model, settings); };
 }
 
 }  // namespace rays

@@ -20,8 +20,8 @@ enum class HowToTraverse : std::uint8_t { Stack, Skip };
 enum class HowToIntersect : std::uint8_t { Watertight, Moller };
 
 struct DeviceSettings {
-  BvhSettings bvh;
-  std::optional<HowToTraverse> traversal;  ///< none: what is faster on the device
+  BvhSettings bvh{};
+  std::optional<HowToTraverse> traversal{};  ///< none: what is faster on the device
   HowToIntersect intersection = HowToIntersect::Watertight;
 };
 

@@ -5,42 +5,30 @@
 
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <sk/sk.hpp>
 
-#include "device_scene.hpp"
+#include "device_shapes.hpp"
 #include "grid.hpp"
 #include "model.hpp"
 #include "streaming.sk.hpp"
 
 namespace rays {
 
-class GridScene {
- public:
-  GridScene(sk::Device& device, const Model& model, const GridSettings& settings, HowToIntersect intersection);
+struct GridScene : DeviceShapes {
+  GridScene(sk::Device& onDevice, const Model& ofModel, const GridSettings& settings, HowToIntersect howToIntersect);
 
   /// The arguments that kernels with a whole way through the grid begin with, up to `shapes`, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
-    kernel(static_cast<unsigned>(intersection), contracted, hasTriangles, hasSpheres, hasPlanes, grid, planeCount,
-           firstPlane, planes, cells, lists, shapes, std::forward<More>(more)...);
+    kernel(static_cast<unsigned>(intersection), contracted, hasTriangles, hasSpheres, hasPlanes, grid, planeCount, firstPlane, planes,
+           cells, lists, shapes, std::forward<More>(more)...);
   }
 
-  bool hasShapes() const { return hasTriangles || hasSpheres; }
-  std::vector<std::string> account() const;
-
-  sk::Device& device;
-  const Model& model;
   HowToIntersect intersection;
-  bool contracted, hasTriangles, hasSpheres, hasPlanes;
-  int planeCount, firstPlane;
   kernels::Grid grid{};
-  sk::Stream<sk::float4> planes, shapes;
   sk::Stream<int> cells, lists;
-
- private:
-  std::string size_;
+  std::string size;  ///< for the report; empty where there are no shapes
 };
 
 }  // namespace rays

@@ -8,6 +8,7 @@
 #include <sk/sk.hpp>
 
 #include "grid_scene.hpp"
+#include "stream_tracer.hpp"
 
 namespace rays {
 
@@ -33,14 +34,13 @@ struct RoundCount {
   std::int64_t slots = 0;  ///< elements of all rounds, whether their rays were on their way or not
 };
 
-class GridTracer {
+class GridTracer : public StreamTracer {
  public:
   /// `scene` must outlive it.
   GridTracer(GridScene& scene, const StreamingSettings& settings) : scene_(scene), settings_(settings) {}
 
-  /// The nearest hit of each ray, or any. All streams have rank 1 and one size.
   void find(bool anyHit, const sk::Stream<sk::float4>& from, const sk::Stream<sk::float4>& along,
-            sk::Stream<kernels::Found>& found);
+            sk::Stream<kernels::Found>& found) override;
 
   /// Since the beginning, of the multipass machine.
   const RoundCount& count() const { return count_; }

@@ -13,6 +13,7 @@
 #include "reference.hpp"
 #include "scene.hpp"
 #include "shapes.hpp"
+#include "study.hpp"
 #include "support/written_file.hpp"
 #include "trace.hpp"
 
@@ -27,16 +28,6 @@ sk::Device profileDevice(const std::string& name) {
 std::unique_ptr<Engine> engineOf(sk::Device& device, const Model& model, const std::string& settings = "") {
   const examples::WrittenFile file("[bvh]\n" + settings, "written_engine.toml");
   return readScene(file.path(), {}).engines.at("bvh")(device, model);
-}
-
-Model modelOf(const Mesh& mesh) {
-  Model model;
-  for (const Face& face : mesh.faces) {
-    const auto point = [&](std::size_t i) { return toFloat3(mesh.points[face.points[i]]); };
-    model.triangles.push_back({point(0), point(1), point(2), model.triangleCount++, 0});
-  }
-  model.materials.push_back({.name = "grey"});
-  return model;
 }
 
 /// Of each hit against all triangles, the largest error.
@@ -55,22 +46,6 @@ std::vector<Ray> randomRays(std::size_t count, std::mt19937& random) {
         {.origin = {normal(random), normal(random), normal(random)}, .direction = toFloat3(direction)});
     if (i % 4 == 1) rays.back().most = 0.7f;
     if (i % 4 == 2) rays.back().least = 0.4f;
-  }
-  return rays;
-}
-
-/// From near `centre`, inside a closed mesh, to its vertices, to points on its edges, and to what floats make of both.
-std::vector<Ray> raysToEdges(const Mesh& mesh, std::size_t count, std::mt19937& random) {
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  std::vector<Ray> rays;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Face& face = mesh.faces[random() % mesh.faces.size()];
-    const Vector a = mesh.points[face.points[i % 3]], b = mesh.points[face.points[(i + 1) % 3]];
-    const double along = i % 4 == 0 ? 0.0 : i % 4 == 1 ? 0.5 : 0.5 + 0.5 * uniform(random);
-    const Vector origin =
-        i % 5 == 0 ? Vector{} : 0.05 * Vector{uniform(random), uniform(random), uniform(random)};
-    const sk::float3 from = toFloat3(origin), to = toFloat3(a + along * (b - a));
-    rays.push_back({.origin = from, .direction = {to.x - from.x, to.y - from.y, to.z - from.z}});
   }
   return rays;
 }
@@ -116,29 +91,25 @@ TEST_CASE("hits are those of loops in double precision, on every device and by e
 }
 
 TEST_CASE("no ray passes between triangles that share an edge or a vertex") {
-  std::mt19937 random(11);
   sk::Device device = sk::Device::native();
   for (const Mesh& mesh : {icosphere(4, false), box()}) {
     const Model model = modelOf(mesh);
     const std::unique_ptr<Engine> engine = engineOf(device, model);
-    CHECK(leaks(*engine, model, raysToEdges(mesh, 500'000, random)) == 0);
+    CHECK(leaks(*engine, model, raysToEdges(model, {}, 500'000, 11)) == 0);
   }
   for (const char* name : {"glsl330", "essl300", "glsl430"}) {
     INFO(name);
     sk::Device gl = profileDevice(name);
-    const Mesh mesh = icosphere(2, false);
-    const Model model = modelOf(mesh);
-    CHECK(leaks(*engineOf(gl, model), model, raysToEdges(mesh, 20'000, random)) == 0);
+    const Model model = modelOf(icosphere(2, false));
+    CHECK(leaks(*engineOf(gl, model), model, raysToEdges(model, {}, 20'000, 11)) == 0);
   }
 }
 
 TEST_CASE("the test of 1997 leaks, so that the rays above are the right ones") {
-  std::mt19937 random(11);
   sk::Device device = sk::Device::native();
-  const Mesh mesh = icosphere(4, false);
-  const Model model = modelOf(mesh);
+  const Model model = modelOf(icosphere(4, false));
   CHECK(leaks(*engineOf(device, model, "intersection = \"moller\"\n"), model,
-              raysToEdges(mesh, 100'000, random)) > 0);
+              raysToEdges(model, {}, 100'000, 11)) > 0);
 }
 
 TEST_CASE("scenes of any size have the same hits, and directions of any length") {

@@ -17,6 +17,7 @@
 #include "reference.hpp"
 #include "render.hpp"
 #include "scene.hpp"
+#include "study.hpp"
 #include "support/application.hpp"
 #include "support/stopwatch.hpp"
 #include "trace.hpp"
@@ -32,6 +33,8 @@ struct Settings {
   std::optional<std::filesystem::path> output;
   std::optional<std::int64_t> samples;
   std::optional<double> seconds;
+  std::string study;
+  bool small = false;
   bool strict = false;
 };
 
@@ -51,6 +54,11 @@ void addOptions(CLI::App& cli, Settings& s) {
                  "no picture: write x,y,id,t,u,v of the rays through the pixels' centres to this file");
   cli.add_option("--trace", s.rays,
                  "with --hits: the rays of this file, lines of ox oy oz dx dy dz [tmin tmax]");
+  std::string studies = "measure what choices are worth, and print a table:";
+  for (const rays::Study& study : rays::studies())
+    studies += fmt::format("\n  {:<11} {}", study.name, study.asks);
+  cli.add_option("--study", s.study, studies);
+  cli.add_flag("--small", s.small, "a study in seconds, with fewer rays");
   cli.add_flag("--strict", s.strict, "vertices that are not finite are an error");
 }
 
@@ -99,7 +107,8 @@ void writeHits(examples::Application& app, const Settings& s, const rays::Scene&
   app.report(fmt::format("{}, {} rays", scene.name, hits.size()), device.name(), stopwatch.milliseconds());
   for (const std::string& line : engine->account()) fmt::print("{}\n", line);
   fmt::print("wrote {}\n", s.hits.string());
-  if (!fromFile && !hits.empty()) app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
+  if (!fromFile && !hits.empty())
+    app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
 }
 
 void makePicture(examples::Application& app, const rays::Scene& scene) {
@@ -119,6 +128,22 @@ void makePicture(examples::Application& app, const rays::Scene& scene) {
   app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
 }
 
+void runStudy(examples::Application& app, const Settings& s) {
+  std::string names;
+  for (const rays::Study& study : rays::studies()) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
+    if (study.name != s.study) continue;
+    sk::Device device(app.device());
+    const examples::Stopwatch stopwatch;
+    const rays::Findings findings = study.run(device, s.small);
+    app.report(fmt::format("{}: {}", study.name, study.asks), device.name(), stopwatch.milliseconds());
+    fmt::print("\n{}\n", findings.table);
+    for (const examples::Verification& verification : findings.verifications) app.verified(verification);
+    return;
+  }
+  throw std::runtime_error(fmt::format("no study is called '{}'; there are {}", s.study, names));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -126,6 +151,7 @@ int main(int argc, char** argv) {
   examples::Application app("rays", "Pictures and hits of scene files by tracing rays.");
   addOptions(app.options(), settings);
   return app.run(argc, argv, [&] {
+    if (!settings.study.empty()) return runStudy(app, settings);
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/rays/scenes/cornell.toml");
     if (!settings.rays.empty() && settings.hits.empty())

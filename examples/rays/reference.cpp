@@ -24,7 +24,8 @@ bool counts(const Ray& ray, double t) { return t >= ray.least && t <= ray.most; 
 /// Lengths that a distance is computed from.
 double scaleOf(const Ray& ray, double t) {
   const auto o = vecOf<double>(ray.origin);
-  return 1.0 + std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) + std::abs(t) * length(vecOf<double>(ray.direction));
+  return 1.0 + std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) +
+         std::abs(t) * length(vecOf<double>(ray.direction));
 }
 
 /// The nearest root that counts, with the part of the direction along the normal there.
@@ -69,7 +70,8 @@ double ownError(const Model& model, const Ray& ray, const Hit& hit) {
 
 Meeting meet(const Triangle& triangle, const Ray& ray) {
   const auto o = vecOf<double>(ray.origin), d = vecOf<double>(ray.direction);
-  const auto a = vecOf<double>(triangle.a) - o, b = vecOf<double>(triangle.b) - o, c = vecOf<double>(triangle.c) - o;
+  const auto a = vecOf<double>(triangle.a) - o, b = vecOf<double>(triangle.b) - o,
+             c = vecOf<double>(triangle.c) - o;
   const double u = dot(d, cross(c, b)), v = dot(d, cross(a, c)), w = dot(d, cross(b, a));
   const double sum = u + v + w;
   if (sum == 0) return {};
@@ -82,7 +84,8 @@ double errorOf(const Model& model, const Ray& ray, const Hit& hit) {
   // How far a surface that is clearly met lies before what was found.
   const auto missed = [&](const Meeting& meeting) {
     if (meeting.inside < clearlyInside || meeting.t >= hit.t || !counts(ray, meeting.t)) return;
-    error = std::max(error, hit.id < 0 ? HUGE_VAL : (hit.t - meeting.t) * meeting.across / scaleOf(ray, hit.t));
+    error =
+        std::max(error, hit.id < 0 ? HUGE_VAL : (hit.t - meeting.t) * meeting.across / scaleOf(ray, hit.t));
   };
   for (const Triangle& triangle : model.triangles) missed(meet(triangle, ray));
   for (const Sphere& sphere : model.spheres) {

@@ -206,7 +206,7 @@ TEST_CASE("pictures are alike on every device, but for what functions round") {
       text.substr(0, text.find("smooth = true\n")) + text.substr(text.find("smooth = true\n") + 14);
   sk::Device native = sk::Device::native();
   const std::vector<sk::float3> expected = radianceOf(native, sceneText);
-  for (const char* profile : {"glsl330", "essl300", "glsl430"}) {
+  for (const char* profile : {"essl300", "glsl430"}) {
     INFO(profile);
     sk::Device device(sk::DeviceOptions{.device = "software", .profile = profile});
     const std::vector<sk::float3> got = radianceOf(device, sceneText);

@@ -48,10 +48,14 @@ class StreamingEngine : public Engine {
   }
 
   std::unique_ptr<Renderer> renderer(const Picture& picture) override {
-    return makeStreamingRenderer(scene_, tracer_, picture, settings_);
+    if (settings_.machine == Machine::Branching) return makeBranchingRenderer(scene_, picture, settings_.use);
+    return makeMultipassRenderer(scene_, tracer_, picture, settings_.use);
   }
 
-  std::vector<std::string> account() override { return scene_.account(); }
+  std::vector<std::string> account() override {
+    if (scene_.size.empty()) return {};
+    return {scene_.size};
+  }
 
  private:
   sk::Stream<kernels::Found> find(bool anyHit, std::span<const Ray> rays) {

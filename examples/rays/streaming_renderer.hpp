@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Pictures through a uniform grid.
+// Pictures by either machine: one kernel that follows a path through a uniform grid, or many calls around whatever traces rays.
 #pragma once
 
 #include <memory>
@@ -8,11 +8,12 @@
 #include "engine.hpp"
 #include "grid_scene.hpp"
 #include "grid_tracer.hpp"
+#include "stream_tracer.hpp"
 
 namespace rays {
 
-/// The scene and the tracer must outlive it.
-std::unique_ptr<Renderer> makeStreamingRenderer(GridScene& scene, GridTracer& tracer, const Picture& picture,
-                                                const StreamingSettings& settings);
+/// What they are given must outlive renderers.
+std::unique_ptr<Renderer> makeBranchingRenderer(GridScene& scene, const Picture& picture, Use use);
+std::unique_ptr<Renderer> makeMultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use);
 
 }  // namespace rays

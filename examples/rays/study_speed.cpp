@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+//
+// Rays from a camera, which go side by side, and the diffuse rays from what they hit, which go anywhere.
+#include "study.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "bvh_engine.hpp"
+#include "camera.hpp"
+#include "device_scene.hpp"
+#include "reference.hpp"
+#include "shapes.hpp"
+#include "support/stopwatch.hpp"
+#include "support/table.hpp"
+
+namespace rays {
+namespace {
+
+struct Streams {
+  sk::Stream<sk::float4> from, along;
+  sk::Stream<sk::float3> hit;
+  sk::Stream<int> id;
+};
+
+Streams streamsOf(sk::Device& device, const std::vector<Ray>& rays) {
+  std::vector<sk::float4> from, along;
+  for (const Ray& r : rays) {
+    from.push_back({r.origin.x, r.origin.y, r.origin.z, r.least});
+    along.push_back({r.direction.x, r.direction.y, r.direction.z, r.most});
+  }
+  const sk::Shape shape{static_cast<std::int64_t>(rays.size())};
+  Streams s{device.stream<sk::float4>(shape), device.stream<sk::float4>(shape),
+            device.stream<sk::float3>(shape), device.stream<int>(shape)};
+  s.from.write(from);
+  s.along.write(along);
+  return s;
+}
+
+/// In millions a second: the best of some calls, without the way to the device and back.
+double rate(DeviceScene& scene, Streams& s, int calls) {
+  double best = HUGE_VAL;
+  for (int i = 0; i <= calls; ++i) {
+    const examples::Stopwatch stopwatch;
+    scene.call(kernels::closest, s.from, s.along, s.hit, s.id);
+    scene.device().finish();
+    // The first call compiles.
+    if (i > 0) best = std::min(best, stopwatch.milliseconds());
+  }
+  return double(s.from.size()) / best / 1e3;
+}
+
+/// About the normals of what was hit, with the density of the cosine.
+std::vector<Ray> diffuseRays(const Model& model, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  std::vector<Ray> next;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].id < 0) continue;
+    const Triangle& t = model.triangles[static_cast<std::size_t>(hits[i].id)];
+    const auto a = examples::vecOf<double>(t.a), d = examples::vecOf<double>(rays[i].direction);
+    Vector n = normalized(cross(examples::vecOf<double>(t.b) - a, examples::vecOf<double>(t.c) - a));
+    if (dot(n, d) > 0) n = -1.0 * n;
+    const Vector point = examples::vecOf<double>(rays[i].origin) + double(hits[i].t) * d + 1e-5 * n;
+    const Vector anywhere = normalized(Vector{normal(random), normal(random), normal(random)});
+    next.push_back({.origin = toFloat3(point), .direction = toFloat3(normalized(n + 0.999 * anywhere))});
+  }
+  return next;
+}
+
+/// A closed mesh in a ring on rough ground: 225,000 triangles.
+Model speedModel(bool isSmall) {
+  Model model = modelOf(icosphere(isSmall ? 3 : 6, false));
+  const auto add = [&](const Mesh& mesh, double scale, double y) {
+    for (Triangle t : modelOf(mesh).triangles) {
+      for (sk::float3* p : {&t.a, &t.b, &t.c})
+        *p = toFloat3(scale * examples::vecOf<double>(*p) + Vector{0, y, 0});
+      t.id = model.triangleCount++;
+      model.triangles.push_back(t);
+    }
+  };
+  add(torus(isSmall ? 20 : 100, isSmall ? 12 : 60, 0.15), 2.0, 0.0);
+  add(terrain(isSmall ? 4 : 8, 0.3, 1), 4.0, -0.6);
+  return model;
+}
+
+}  // namespace
+
+Findings studySpeed(sk::Device& device, bool isSmall) {
+  const int side = isSmall ? 48 : device.isSoftware() ? 256 : 768;
+  const Model model = speedModel(isSmall);
+  const Camera camera{.from = {1.2, 1.4, 1.8}};
+  const std::vector<Ray> primary = primaryRays(camera, side, side);
+  examples::Table table(
+      {"test", "traversal", "leaf", "nodes", "cost", "primary, Mrays/s", "diffuse, Mrays/s"});
+  for (const HowToIntersect how : {HowToIntersect::Watertight, HowToIntersect::Moller}) {
+    for (const HowToTraverse way : {HowToTraverse::Stack, HowToTraverse::Skip}) {
+      for (const int leaf : {1, 2, 4, 7}) {
+        const DeviceSettings settings{.bvh = {.leaf = leaf}, .traversal = way, .intersection = how};
+        const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, settings);
+        std::vector<Hit> hits(primary.size());
+        engine->closest(primary, hits);
+        DeviceScene scene(device, model, settings);
+        Streams first = streamsOf(device, primary),
+                second = streamsOf(device, diffuseRays(model, primary, hits));
+        const int calls = isSmall ? 1 : 5;
+        table.add({how == HowToIntersect::Watertight ? "watertight" : "moller",
+                   way == HowToTraverse::Stack ? "stack" : "skip", fmt::format("{}", leaf),
+                   fmt::format("{}", scene.bvh().nodes.size()), fmt::format("{:.0f}", scene.bvh().cost),
+                   fmt::format("{:.2f}", rate(scene, first, calls)),
+                   fmt::format("{:.2f}", rate(scene, second, calls))});
+      }
+    }
+  }
+  const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, {});
+  Model seen = model;
+  seen.camera = camera;
+  return {table.text(), {checkEngine(*engine, seen, side, side)}};
+}
+
+}  // namespace rays
