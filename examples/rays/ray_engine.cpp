@@ -100,6 +100,7 @@ class OctreeEngine : public RayEngine, public StreamTracer {
   /// Calls `arrive` for each ray, in any order.
   template <class Arrive>
   void trace(std::span<const Ray> rays, const Arrive& arrive) {
+    flights_.clear();  // of a trace that an error has ended
     const auto capacity = static_cast<std::size_t>(settings_.bucket);
     for (std::size_t first = 0; first < rays.size(); first += batch) {
       const std::span<const Ray> some = rays.subspan(first, std::min(batch, rays.size() - first));
