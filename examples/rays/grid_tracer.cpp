@@ -20,16 +20,23 @@ void GridTracer::findByPasses(bool anyHit, const FloatStream& allFrom, const Flo
                               sk::Stream<kernels::Found>& found) {
   GridScene& s = scene_;
   sk::Device& device = s.device;
+  const std::int64_t all = allFrom.size();
   auto travel = device.stream<kernels::Travel>(allFrom.shape());
   auto ray = device.stream<int>(allFrom.shape());
-  kernels::numberRays(sk::iter(0, static_cast<int>(allFrom.size())), ray);
-  kernels::beginTravel(s.hasShapes(), s.hasPlanes, anyHit, s.grid, s.planeCount, s.firstPlane, s.planes, s.cells, allFrom, allAlong,
-                       travel);
+  kernels::numberRays(sk::iter(0, static_cast<int>(all)), ray);
+  metered(meter_, "begin", all, [&] {
+    kernels::beginTravel(s.hasShapes(), s.hasPlanes, anyHit, s.grid, s.planeCount, s.firstPlane, s.planes, s.cells, allFrom, allAlong,
+                         travel);
+  });
   FloatStream ownFrom, ownAlong;
   const FloatStream *from = &allFrom, *along = &allAlong;
-  const auto deliver = [&] { kernels::deliver(s.hasSpheres && !anyHit, s.shapes, *from, *along, travel, ray, found); };
+  const auto deliver = [&] {
+    metered(meter_, "deliver", travel.size(),
+            [&] { kernels::deliver(s.hasSpheres && !anyHit, s.shapes, *from, *along, travel, ray, found); });
+  };
   for (;;) {
-    const sk::int2 goOn = kernels::countTravels(travel);
+    sk::int2 goOn;
+    metered(meter_, "count", travel.size(), [&] { goOn = kernels::countTravels(travel); });
     const std::int64_t active = std::int64_t{goOn.x} + goOn.y;
     if (active == 0) break;
     if (double(active) <= settings_.compact * double(travel.size())) {
@@ -37,14 +44,14 @@ void GridTracer::findByPasses(bool anyHit, const FloatStream& allFrom, const Flo
       auto nextFrom = device.stream<sk::float4>({0}), nextAlong = device.stream<sk::float4>({0});
       auto nextTravel = device.stream<kernels::Travel>({0});
       auto nextRay = device.stream<int>({0});
-      kernels::goOn(*from, *along, travel, ray, nextFrom, nextAlong, nextTravel, nextRay);
+      metered(meter_, "compact", travel.size(),
+              [&] { kernels::goOn(*from, *along, travel, ray, nextFrom, nextAlong, nextTravel, nextRay); });
       ownFrom = std::move(nextFrom);
       ownAlong = std::move(nextAlong);
       travel = std::move(nextTravel);
       ray = std::move(nextRay);
       from = &ownFrom;
       along = &ownAlong;
-      ++count_.compactions;
     }
     for (int i = 0; i < settings_.rounds; ++i) round(anyHit, *from, *along, travel);
   }
@@ -53,11 +60,11 @@ void GridTracer::findByPasses(bool anyHit, const FloatStream& allFrom, const Flo
 
 void GridTracer::round(bool anyHit, const FloatStream& from, const FloatStream& along, sk::Stream<kernels::Travel>& travel) {
   GridScene& s = scene_;
-  kernels::intersectLists(static_cast<unsigned>(s.intersection), s.contracted, s.hasTriangles, s.hasSpheres, anyHit, settings_.tests,
-                          s.lists, s.shapes, from, along, travel, travel);
-  kernels::traverseCells(s.grid, s.cells, from, along, travel, travel);
-  ++count_.rounds;
-  count_.slots += travel.size();
+  metered(meter_, "intersect", travel.size(), [&] {
+    kernels::intersectLists(static_cast<unsigned>(s.intersection), s.contracted, s.hasTriangles, s.hasSpheres, anyHit, settings_.tests,
+                            s.lists, s.shapes, from, along, travel, travel);
+  });
+  metered(meter_, "traverse", travel.size(), [&] { kernels::traverseCells(s.grid, s.cells, from, along, travel, travel); });
 }
 
 }  // namespace rays

@@ -49,8 +49,13 @@ struct PathStreams {
 
 class MultipassRenderer : public Renderer {
  public:
-  MultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use)
-      : scene_(scene), tracer_(tracer), picture_(picture), use_(use), tables_(scene.device, scene.model, picture),
+  MultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use, PassMeter* meter)
+      : scene_(scene),
+        tracer_(tracer),
+        picture_(picture),
+        use_(use),
+        meter_(meter),
+        tables_(scene.device, scene.model, picture),
         exposure_(scene.device, picture) {}
 
   void pass(std::int64_t index) override {
@@ -58,13 +63,17 @@ class MultipassRenderer : public Renderer {
     const auto sample = static_cast<std::uint32_t>(index);
     const std::int64_t count = std::int64_t{picture_.width} * picture_.height;
     PathStreams paths(scene_.device, {count});
-    kernels::generatePaths(t.features, static_cast<unsigned>(t.sampling), t.view, t.setting, sample, t.seed,
-                           sk::iter(0, static_cast<int>(count)), paths.from, paths.along, paths.path, paths.pixel);
+    metered(meter_, "generate", count, [&] {
+      kernels::generatePaths(t.features, static_cast<unsigned>(t.sampling), t.view, t.setting, sample, t.seed,
+                             sk::iter(0, static_cast<int>(count)), paths.from, paths.along, paths.path, paths.pixel);
+    });
     for (int segment = 0; paths.path.size() > 0; ++segment) {
       shade(sample, segment, paths);
-      kernels::deliverLight(paths.path, paths.along, paths.pixel, exposure_.radiance);
       PathStreams next(scene_.device, {0});
-      kernels::keepPaths(paths.from, paths.along, paths.path, paths.pixel, next.from, next.along, next.path, next.pixel);
+      metered(meter_, "end paths", paths.path.size(), [&] {
+        kernels::deliverLight(paths.path, paths.along, paths.pixel, exposure_.radiance);
+        kernels::keepPaths(paths.from, paths.along, paths.path, paths.pixel, next.from, next.along, next.path, next.pixel);
+      });
       paths = std::move(next);
     }
     exposure_.add();
@@ -84,19 +93,22 @@ class MultipassRenderer : public Renderer {
     tracer_.find(false, paths.from, paths.along, found);
     auto shadowFrom = device.stream<sk::float4>(shape), shadowAlong = device.stream<sk::float4>(shape);
     auto shadowLight = device.stream<sk::float3>(shape);
-    kernels::shadePaths(scene_.hasTriangles, scene_.hasSpheres, scene_.planes, scene_.shapes, t.features,
-                        static_cast<unsigned>(t.sampling), static_cast<unsigned>(use_), t.setting, sample, t.seed, segment, t.materials,
-                        t.corners, t.lights, t.sky, t.texels, t.textures, paths.from, paths.along, found, paths.pixel, paths.path,
-                        paths.from, paths.along, paths.path, shadowFrom, shadowAlong, shadowLight);
+    metered(meter_, "shade", paths.from.size(), [&] {
+      kernels::shadePaths(scene_.hasTriangles, scene_.hasSpheres, scene_.planes, scene_.shapes, t.features,
+                          static_cast<unsigned>(t.sampling), static_cast<unsigned>(use_), t.setting, sample, t.seed, segment, t.materials,
+                          t.corners, t.lights, t.sky, t.texels, t.textures, paths.from, paths.along, found, paths.pixel, paths.path,
+                          paths.from, paths.along, paths.path, shadowFrom, shadowAlong, shadowLight);
+    });
     if (t.setting.lights == 0 || use_ == Use::RayCasting || segment + 1 == picture_.depth) return;
     tracer_.find(true, shadowFrom, shadowAlong, found);
-    kernels::addLight(found, shadowLight, paths.path, paths.path);
+    metered(meter_, "add light", paths.from.size(), [&] { kernels::addLight(found, shadowLight, paths.path, paths.path); });
   }
 
   DeviceShapes& scene_;
   StreamTracer& tracer_;
   Picture picture_;
   Use use_;
+  PassMeter* meter_;
   PathTables tables_;
   Exposure exposure_;
 };
@@ -107,8 +119,9 @@ std::unique_ptr<Renderer> makeBranchingRenderer(GridScene& scene, const Picture&
   return std::make_unique<BranchingRenderer>(scene, picture, use);
 }
 
-std::unique_ptr<Renderer> makeMultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use) {
-  return std::make_unique<MultipassRenderer>(scene, tracer, picture, use);
+std::unique_ptr<Renderer> makeMultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use,
+                                                PassMeter* meter) {
+  return std::make_unique<MultipassRenderer>(scene, tracer, picture, use, meter);
 }
 
 }  // namespace rays

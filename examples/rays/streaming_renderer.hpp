@@ -8,12 +8,14 @@
 #include "engine.hpp"
 #include "grid_scene.hpp"
 #include "grid_tracer.hpp"
+#include "pass_meter.hpp"
 #include "stream_tracer.hpp"
 
 namespace rays {
 
 /// What they are given must outlive renderers.
 std::unique_ptr<Renderer> makeBranchingRenderer(GridScene& scene, const Picture& picture, Use use);
-std::unique_ptr<Renderer> makeMultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use);
+std::unique_ptr<Renderer> makeMultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use,
+                                                PassMeter* meter = nullptr);
 
 }  // namespace rays

@@ -11,6 +11,8 @@ std::span<const Study> studies() {
       Study{"leaks", "what tests of triangles miss at edges and vertices, and how exact their distances are",
             studyLeaks},
       Study{"speed", "rays per second by test, traversal and size of leaves", studySpeed},
+      Study{"streaming", "what a uniform grid and each kernel of a multipass machine cost", studyStreaming},
+      Study{"ray_engine", "what sizes of buckets and calls are worth, and not to wait", studyRayEngine},
   };
   return all;
 }

@@ -32,9 +32,17 @@ std::span<const Study> studies();
 
 Findings studyLeaks(sk::Device& device, bool isSmall);
 Findings studySpeed(sk::Device& device, bool isSmall);
+Findings studyStreaming(sk::Device& device, bool isSmall);
+Findings studyRayEngine(sk::Device& device, bool isSmall);
 
 /// A mesh alone, moved, its ids from 0.
 Model modelOf(const Mesh& mesh, Vector moved = {});
+
+/// A closed mesh in a ring on rough ground: 225,000 triangles, or some thousands.
+Model speedModel(bool isSmall);
+
+/// From what was hit, about its normals, with the density of the cosine.
+std::vector<Ray> diffuseRays(const Model& model, const std::vector<Ray>& rays, const std::vector<Hit>& hits);
 
 /// From near `moved`, inside a closed mesh that was moved there, to its vertices and to points of its edges, as floats have them.
 std::vector<Ray> raysToEdges(const Model& model, Vector moved, std::size_t count, unsigned seed);

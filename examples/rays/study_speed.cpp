@@ -53,7 +53,8 @@ double rate(DeviceScene& scene, Streams& s, int calls) {
   return double(s.from.size()) / best / 1e3;
 }
 
-/// About the normals of what was hit, with the density of the cosine.
+}  // namespace
+
 std::vector<Ray> diffuseRays(const Model& model, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
@@ -71,7 +72,6 @@ std::vector<Ray> diffuseRays(const Model& model, const std::vector<Ray>& rays, c
   return next;
 }
 
-/// A closed mesh in a ring on rough ground: 225,000 triangles.
 Model speedModel(bool isSmall) {
   Model model = modelOf(icosphere(isSmall ? 3 : 6, false));
   const auto add = [&](const Mesh& mesh, double scale, double y) {
@@ -86,8 +86,6 @@ Model speedModel(bool isSmall) {
   add(terrain(isSmall ? 4 : 8, 0.3, 1), 4.0, -0.6);
   return model;
 }
-
-}  // namespace
 
 Findings studySpeed(sk::Device& device, bool isSmall) {
   const int side = isSmall ? 48 : device.isSoftware() ? 256 : 768;
