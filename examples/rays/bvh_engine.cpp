@@ -16,7 +16,7 @@ namespace {
 using examples::Range;
 using examples::SceneTable;
 
-constexpr std::array<std::string_view, 2> traversalNames = {"stack", "skip"};
+constexpr std::array<std::string_view, 3> traversalNames = {"stack", "leaves", "skip"};
 constexpr std::array<std::string_view, 2> intersectionNames = {"watertight", "moller"};
 /// Rays of one call; more come in several.
 constexpr std::size_t batch = std::size_t{1} << 20;

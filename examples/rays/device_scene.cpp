@@ -33,7 +33,7 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   milliseconds_ = stopwatch.milliseconds();
   const bool isNative = device.name().starts_with("native");
   intersection_ = settings.intersection;
-  traversal_ = settings.traversal.value_or(HowToTraverse::Stack);
+  traversal_ = settings.traversal.value_or(isNative ? HowToTraverse::Stack : HowToTraverse::Leaves);
   contracted_ = !isNative;
   hasTriangles_ = !model.triangles.empty();
   hasSpheres_ = !model.spheres.empty();
@@ -42,7 +42,7 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   planeCount_ = static_cast<int>(model.planes.size());
   firstPlane_ = model.planeId(0);
   planes_ = streamOf(device, planeLayout(model));
-  nodes_ = streamOf(device, traversal_ == HowToTraverse::Stack ? pairLayout(bvh_) : skipLayout(bvh_));
+  nodes_ = streamOf(device, traversal_ == HowToTraverse::Skip ? skipLayout(bvh_) : pairLayout(bvh_));
   shapes_ = streamOf(device, shapeLayout(bvh_.order, model));
 }
 

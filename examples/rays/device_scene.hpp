@@ -16,7 +16,7 @@
 
 namespace rays {
 
-enum class HowToTraverse : std::uint8_t { Stack, Skip };
+enum class HowToTraverse : std::uint8_t { Stack, Leaves, Skip };
 enum class HowToIntersect : std::uint8_t { Watertight, Moller };
 
 struct DeviceSettings {

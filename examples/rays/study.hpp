@@ -17,7 +17,7 @@
 namespace rays {
 
 struct Findings {
-  std::string table;
+  std::string table;  ///< in Markdown, which docs/rays.md shows
   std::vector<examples::Verification> verifications{};
 };
 

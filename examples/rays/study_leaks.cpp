@@ -65,7 +65,7 @@ Findings studyLeaks(sk::Device& device, bool isSmall) {
       }
     }
   }
-  return {table.text(), {sound}};
+  return {table.markdown(), {sound}};
 }
 
 }  // namespace rays

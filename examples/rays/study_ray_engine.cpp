@@ -83,7 +83,7 @@ Findings studyRayEngine(sk::Device& device, bool isSmall) {
   addEngine("a grid, branching", *makeStreamingEngine(device, model, {}));
   addEngine("a hierarchy of boxes", *hierarchy);
   const std::unique_ptr<RayEngine> engine = makeRayEngine(device, model, {});
-  return {fmt::format("{} triangles\n{}", model.triangles.size(), table.text()), {checkEngine(*engine, model, side, side)}};
+  return {fmt::format("{} triangles\n{}", model.triangles.size(), table.markdown()), {checkEngine(*engine, model, side, side)}};
 }
 
 }  // namespace rays

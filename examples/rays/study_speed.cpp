@@ -53,6 +53,15 @@ double rate(DeviceScene& scene, Streams& s, int calls) {
   return double(s.from.size()) / best / 1e3;
 }
 
+std::string_view nameOf(HowToTraverse way) {
+  switch (way) {
+    case HowToTraverse::Stack: return "stack";
+    case HowToTraverse::Leaves: return "leaves";
+    case HowToTraverse::Skip: return "skip";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::vector<Ray> diffuseRays(const Model& model, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
@@ -95,8 +104,8 @@ Findings studySpeed(sk::Device& device, bool isSmall) {
   examples::Table table(
       {"test", "traversal", "leaf", "nodes", "cost", "primary, Mrays/s", "diffuse, Mrays/s"});
   for (const HowToIntersect how : {HowToIntersect::Watertight, HowToIntersect::Moller}) {
-    for (const HowToTraverse way : {HowToTraverse::Stack, HowToTraverse::Skip}) {
-      for (const int leaf : {1, 2, 4, 7}) {
+    for (const HowToTraverse way : {HowToTraverse::Stack, HowToTraverse::Leaves, HowToTraverse::Skip}) {
+      for (const int leaf : {1, 2, 4}) {
         const DeviceSettings settings{.bvh = {.leaf = leaf}, .traversal = way, .intersection = how};
         const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, settings);
         std::vector<Hit> hits(primary.size());
@@ -105,10 +114,9 @@ Findings studySpeed(sk::Device& device, bool isSmall) {
         Streams first = streamsOf(device, primary),
                 second = streamsOf(device, diffuseRays(model, primary, hits));
         const int calls = isSmall ? 1 : 5;
-        table.add({how == HowToIntersect::Watertight ? "watertight" : "moller",
-                   way == HowToTraverse::Stack ? "stack" : "skip", fmt::format("{}", leaf),
-                   fmt::format("{}", scene.bvh().nodes.size()), fmt::format("{:.0f}", scene.bvh().cost),
-                   fmt::format("{:.2f}", rate(scene, first, calls)),
+        table.add({how == HowToIntersect::Watertight ? "watertight" : "moller", std::string(nameOf(way)),
+                   fmt::format("{}", leaf), fmt::format("{}", scene.bvh().nodes.size()),
+                   fmt::format("{:.0f}", scene.bvh().cost), fmt::format("{:.2f}", rate(scene, first, calls)),
                    fmt::format("{:.2f}", rate(scene, second, calls))});
       }
     }
@@ -116,7 +124,7 @@ Findings studySpeed(sk::Device& device, bool isSmall) {
   const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, {});
   Model seen = model;
   seen.camera = camera;
-  return {table.text(), {checkEngine(*engine, seen, side, side)}};
+  return {table.markdown(), {checkEngine(*engine, seen, side, side)}};
 }
 
 }  // namespace rays

@@ -92,7 +92,7 @@ std::string tableOfSteps(sk::Device& device, const Model& model, const std::arra
                              })));
   }
   table.add(cells);
-  return table.text();
+  return table.markdown();
 }
 
 sk::PassCount sumOf(const PassMeter& meter) {
@@ -127,7 +127,7 @@ std::string tableOfUses(GridScene& scene, const Picture& picture, int runs) {
                  fmt::format("{:.0f}", milliseconds)});
     }
   }
-  return table.text();
+  return table.markdown();
 }
 
 /// One sample of path tracing by the multipass machine.
@@ -148,7 +148,7 @@ std::string tableOfKernels(GridScene& scene, const Picture& picture) {
                fmt::format("{:.1f}", double(row.elements) / pixels), fmt::format("{:.1f}", double(row.count.bytesWritten) / elements),
                fmt::format("{:.0f} %", 100.0 * row.milliseconds / all)});
   }
-  return table.text();
+  return table.markdown();
 }
 
 /// The model with a mirror, a sun and a sky, so that each use has something to do.
