@@ -95,6 +95,34 @@ std::string tableOfSteps(sk::Device& device, const Model& model, const std::arra
   return table.markdown();
 }
 
+/// How much a multipass call does, how often rays are counted, and when they are compacted.
+std::string tableOfDials(GridScene& scene, const std::vector<Ray>& rays, int runs) {
+  const RayStreams streams = uploadRays(scene.device, rays);
+  auto found = scene.device.stream<kernels::Found>(streams.from.shape());
+  examples::Table table({"shapes a call", "calls until rays are counted", "compacted at", "calls", "primary, Mrays/s"});
+  const auto add = [&](const StreamingSettings& s) {
+    PassMeter meter(scene.device);
+    GridTracer(scene, s, &meter).find(false, streams.from, streams.along, found);
+    std::int64_t calls = 0;
+    for (const PassMeter::Row& row : meter.rows()) calls += row.calls;
+    GridTracer tracer(scene, s);
+    const double best = bestMilliseconds(scene.device, runs, [&] { tracer.find(false, streams.from, streams.along, found); });
+    table.add({fmt::format("{}", s.tests), fmt::format("{}", 2 * s.rounds), fmt::format("{:.0f} %", 100 * s.compact),
+               fmt::format("{}", calls), rateText(streams.from.size(), best)});
+  };
+  const StreamingSettings defaults{.machine = Machine::Multipass};
+  add(defaults);
+  const auto changed = [&](const auto& change) {
+    StreamingSettings s = defaults;
+    change(s);
+    add(s);
+  };
+  for (const int tests : {1, 2, 16}) changed([&](StreamingSettings& s) { s.tests = tests; });
+  for (const int rounds : {1, 2, 32}) changed([&](StreamingSettings& s) { s.rounds = rounds; });
+  for (const double compact : {0.0, 0.25, 0.5, 1.0}) changed([&](StreamingSettings& s) { s.compact = compact; });
+  return table.markdown();
+}
+
 sk::PassCount sumOf(const PassMeter& meter) {
   sk::PassCount sum;
   for (const PassMeter::Row& row : meter.rows()) {
@@ -174,7 +202,7 @@ Findings studyStreaming(sk::Device& device, bool isSmall) {
   const Picture picture{.width = side, .height = side, .depth = 4};
   Findings findings;
   findings.table = tableOfSteps(device, model, {primary, diffuseRays(model, primary, hits)}, runs) + "\n" +
-                   tableOfUses(scene, picture, runs) + "\n" + tableOfKernels(scene, picture);
+                   tableOfDials(scene, primary, runs) + "\n" + tableOfUses(scene, picture, runs) + "\n" + tableOfKernels(scene, picture);
   findings.verifications.push_back(checkEngine(*engine, model, side, side));
   return findings;
 }
