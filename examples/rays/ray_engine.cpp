@@ -27,7 +27,7 @@ using examples::SceneTable;
 constexpr std::array<std::string_view, 3> testNames = {"watertight", "moller", "modified"};
 constexpr std::size_t bucketWidth = 64;
 /// Shapes that a kernel takes in one call.
-constexpr std::size_t mostShapes = 16;
+constexpr std::size_t mostShapes = 64;
 /// Rays of one tree, which only grows.
 constexpr std::size_t batch = std::size_t{1} << 16;
 

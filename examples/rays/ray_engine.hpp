@@ -20,7 +20,7 @@ struct RayEngineSettings {
   BucketTest test = BucketTest::Modified;
   int bucket = 256;      ///< rays; a multiple of 64, for a bucket is 64 wide
   int cache = 64;        ///< buckets of rays that the host keeps before it sends one
-  int shapesPerCall = 16;
+  int shapesPerCall = 64;
   int inFlight = 4;      ///< buckets on the device while the host goes on; 0: it waits for each
   int leaf = 16;         ///< shapes in a leaf of the octree
 };

@@ -27,7 +27,7 @@ struct Way {
 std::vector<Way> waysOf() {
   std::vector<Way> ways = {{"as it comes", {}}};
   for (const int bucket : {64, 1024, 4096}) ways.push_back({"bucket", {.bucket = bucket}});
-  for (const int shapes : {1, 4}) ways.push_back({"shapes a call", {.shapesPerCall = shapes}});
+  for (const int shapes : {1, 4, 16}) ways.push_back({"shapes a call", {.shapesPerCall = shapes}});
   for (const int flights : {0, 1, 16}) ways.push_back({"in flight", {.inFlight = flights}});
   for (const int cache : {1, 8, 512}) ways.push_back({"cache", {.cache = cache}});
   // An octree of one leaf finds shapes by their own boxes alone.
