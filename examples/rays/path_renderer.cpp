@@ -149,19 +149,27 @@ class PathRenderer : public Renderer {
     radiance_ = device.stream<sk::float3>(shape);
     sum_ = device.stream<sk::double3>(shape);
     mean_ = device.stream<sk::float3>(shape);
+    squares_ = device.stream<sk::double3>(shape);
     sum_.fill({0, 0, 0});
+    squares_.fill({0, 0, 0});
   }
 
   void pass(std::int64_t index) override {
     scene_.call(kernels::followPaths, features_, static_cast<unsigned>(picture_.sampling), view_, setting_,
                 static_cast<std::uint32_t>(index), picture_.seed, materials_, corners_, lights_, sky_,
                 texels_, textures_, radiance_);
-    kernels::accumulate(radiance_, sum_, sum_);
+    kernels::accumulate(radiance_, sum_, squares_, sum_, squares_);
     ++passes_;
   }
 
   std::vector<sk::float3> image() override {
     kernels::meanOf(sum_, static_cast<int>(std::max<std::int64_t>(passes_, 1)), mean_);
+    return mean_.read();
+  }
+
+  std::vector<sk::float3> variance() override {
+    if (passes_ < 2) return {};
+    kernels::varianceOf(sum_, squares_, static_cast<int>(passes_), mean_);
     return mean_.read();
   }
 
@@ -196,7 +204,7 @@ class PathRenderer : public Renderer {
   sk::Stream<sk::float4> materials_, corners_, lights_, sky_, texels_;
   sk::Stream<sk::int4> textures_;
   sk::Stream<sk::float3> radiance_, mean_;
-  sk::Stream<sk::double3> sum_;
+  sk::Stream<sk::double3> sum_, squares_;
 };
 
 }  // namespace
