@@ -38,6 +38,8 @@ class Renderer {
   virtual void pass(std::int64_t index) = 0;
   /// The mean of all passes so far: radiance, row by row from the top. Waits for the device.
   virtual std::vector<sk::float3> image() = 0;
+  /// The variance of that mean, for the samples as independent ones; empty where the engine does not measure it.
+  virtual std::vector<sk::float3> variance() { return {}; }
   /// Lines for the report: what this picture required, and what it would have cost otherwise.
   virtual std::vector<std::string> account() { return {}; }
 };

@@ -3,13 +3,14 @@
 #
 # figures.sh RAYS [STUDY...]: runs the studies (all, unless some are named) on the device native and writes their tables
 # into docs/rays.md, between the marks <!-- rays study NAME --> and <!-- /rays -->.
-# Takes some minutes; leave the machine alone meanwhile, for some of the tables are of times.
+# Takes a minute; tables of speeds count the time of the processor, not what passes.
 set -euo pipefail
 (($# > 0)) || { echo "usage: figures.sh RAYS [STUDY...]" >&2; exit 1; }
 program=$(realpath "$1")
 shift
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 (($# > 0)) || set -- leaks speed streaming ray_engine
+export OMP_NUM_THREADS=1  # rates are those of one core
 for study in "$@"; do
   if ! output=$("$program" --study "$study" --device native); then
     printf '%s\nfigures.sh: the study %s missed its bound\n' "$output" "$study" >&2

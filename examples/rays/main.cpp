@@ -7,6 +7,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sk/sk.hpp>
@@ -14,6 +16,7 @@
 #include "camera.hpp"
 #include "engine.hpp"
 #include "hits_file.hpp"
+#include "layers.hpp"
 #include "reference.hpp"
 #include "render.hpp"
 #include "scene.hpp"
@@ -35,6 +38,7 @@ struct Settings {
   std::optional<double> seconds;
   std::string study;
   bool small = false;
+  std::string layers;
   bool strict = false;
 };
 
@@ -54,6 +58,9 @@ void addOptions(CLI::App& cli, Settings& s) {
                  "no picture: write x,y,id,t,u,v of the rays through the pixels' centres to this file");
   cli.add_option("--trace", s.rays,
                  "with --hits: the rays of this file, lines of ox oy oz dx dy dz [tmin tmax]");
+  cli.add_option(
+      "--layers", s.layers,
+      "write FILE_depth.pfm, _normal.pfm, _albedo.pfm, _id.pfm and _variance.pfm beside the picture");
   std::string studies = "measure what choices are worth, and print a table:";
   for (const rays::Study& study : rays::studies())
     studies += fmt::format("\n  {:<11} {}", study.name, study.asks);
@@ -111,7 +118,7 @@ void writeHits(examples::Application& app, const Settings& s, const rays::Scene&
     app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
 }
 
-void makePicture(examples::Application& app, const rays::Scene& scene) {
+void makePicture(examples::Application& app, const Settings& s, const rays::Scene& scene) {
   rays::checkOutput(scene);
   sk::Device device(app.device());
   const std::unique_ptr<rays::Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
@@ -125,6 +132,13 @@ void makePicture(examples::Application& app, const rays::Scene& scene) {
   for (const std::string& line : engine->account()) fmt::print("{}\n", line);
   for (const std::string& line : renderer->account()) fmt::print("{}\n", line);
   fmt::print("wrote {}\n", scene.output.picture.string());
+  if (!s.layers.empty()) {
+    std::vector<rays::Layer> layers = rays::layersOf(*engine, scene.model, picture);
+    if (std::vector<sk::float3> variance = renderer->variance(); !variance.empty())
+      layers.push_back({"variance", std::move(variance)});
+    rays::saveLayers(s.layers, layers, picture);
+    fmt::print("wrote {} layers, {}_*.pfm\n", layers.size(), s.layers);
+  }
   app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
 }
 
@@ -158,6 +172,6 @@ int main(int argc, char** argv) {
       throw std::runtime_error("--trace needs --hits, where its hits go");
     const rays::Scene scene = sceneOf(settings);
     if (!settings.hits.empty()) return writeHits(app, settings, scene);
-    makePicture(app, scene);
+    makePicture(app, settings, scene);
   });
 }

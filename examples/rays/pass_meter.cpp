@@ -2,10 +2,21 @@
 #include "pass_meter.hpp"
 
 #include <algorithm>
+#include <ctime>
+
+#include "support/stopwatch.hpp"
 
 namespace rays {
 
-void PassMeter::note(std::string_view kernel, std::int64_t elements, double milliseconds) {
+double milliseconds(const sk::Device& device, const std::function<void()>& call) {
+  const bool isProcessor = device.isSoftware() || device.name().starts_with("native");
+  const examples::Stopwatch stopwatch;
+  const std::clock_t start = std::clock();
+  call();
+  return isProcessor ? 1e3 * double(std::clock() - start) / CLOCKS_PER_SEC : stopwatch.milliseconds();
+}
+
+void PassMeter::note(std::string_view kernel, std::int64_t elements, double time) {
   auto row = std::ranges::find(rows_, kernel, &Row::kernel);
   if (row == rows_.end()) row = rows_.insert(rows_.end(), Row{.kernel = kernel});
   const sk::PassCount count = device_.passCount();
@@ -14,7 +25,7 @@ void PassMeter::note(std::string_view kernel, std::int64_t elements, double mill
   row->count.passes += count.passes;
   row->count.bytesRead += count.bytesRead;
   row->count.bytesWritten += count.bytesWritten;
-  row->milliseconds += milliseconds;
+  row->milliseconds += time;
 }
 
 }  // namespace rays

@@ -5,14 +5,16 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string_view>
 #include <vector>
 
 #include <sk/sk.hpp>
 
-#include "support/stopwatch.hpp"
-
 namespace rays {
+
+/// What a call costs a device on the processor, whatever else runs beside it; of other devices the time that passes.
+double milliseconds(const sk::Device& device, const std::function<void()>& call);
 
 class PassMeter {
  public:
@@ -34,15 +36,16 @@ class PassMeter {
   void measure(std::string_view kernel, std::int64_t elements, const Call& call) {
     device_.finish();
     device_.countPasses(true);
-    const examples::Stopwatch stopwatch;
-    call();
-    device_.finish();
-    note(kernel, elements, stopwatch.milliseconds());
+    const double time = milliseconds(device_, [&] {
+      call();
+      device_.finish();
+    });
+    note(kernel, elements, time);
     device_.countPasses(false);
   }
 
  private:
-  void note(std::string_view kernel, std::int64_t elements, double milliseconds);
+  void note(std::string_view kernel, std::int64_t elements, double time);
 
   sk::Device& device_;
   std::vector<Row> rows_;

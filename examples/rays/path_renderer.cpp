@@ -24,6 +24,8 @@ class PathRenderer : public Renderer {
 
   std::vector<sk::float3> image() override { return exposure_.image(); }
 
+  std::vector<sk::float3> variance() override { return exposure_.variance(); }
+
   std::vector<std::string> account() override { return {tables_.account()}; }
 
  private:

@@ -39,10 +39,12 @@ class Exposure {
   sk::Stream<sk::float3> radiance;
   void add();
   std::vector<sk::float3> image();
+  /// As Renderer::variance.
+  std::vector<sk::float3> variance();
 
  private:
   std::int64_t passes_ = 0;
-  sk::Stream<sk::double3> sum_;
+  sk::Stream<sk::double3> sum_, squares_;
   sk::Stream<sk::float3> mean_;
 };
 

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "layers.hpp"
 #include "light_table.hpp"
 #include "raster_file.hpp"
 #include "scene.hpp"
@@ -227,6 +228,64 @@ TEST_CASE("a table of aliases has the probabilities of its weights") {
     shares[table[i].alias] += (1 - table[i].stays) / double(table.size());
   }
   for (std::size_t i = 0; i < table.size(); ++i) CHECK(shares[i] == Approx(weights[i] / 8.75));
+}
+
+TEST_CASE("textures are where their coordinates are, in the picture and in the layers") {
+  // Four texels: the left half of the quad's texture is red above and green below, and the right one blue and white.
+  savePfm("written_texture.pfm", 2, 2, std::vector<sk::float3>{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}, {1, 1, 1}});
+  const std::string scene =
+      "[camera]\nfrom = [0, 10, 0]\nto = [0, 0, 0]\nup = [0, 0, -1]\nfield_of_view = 5.72\n[picture]\nsize = "
+      "[4, 4]\nsamples = 1\n"
+      "depth = 2\n[environment]\ncolour = [1, 1, 1]\n[[material]]\nname = \"t\"\ncolour = [1, 1, 1]\ntexture "
+      "= \"written_texture.pfm\"\n"
+      "[[mesh]]\nshape = \"quad\"\nmaterial = \"t\"\n";
+  sk::Device device = sk::Device::native();
+  const Scene read = readScene(examples::WrittenFile(scene, "written_render.toml").path(), {});
+  const std::unique_ptr<Engine> engine = read.engines.at("bvh")(device, read.model);
+  const std::vector<sk::float3> albedo = layersOf(*engine, read.model, read.picture)[2].pixels;
+  // The centres of pixels are at 1/8, 3/8 ... of the texture, whose texels have their centres at 1/4 and 3/4 and repeat.
+  const auto near = [](const sk::float3& c, const sk::float3& e) {
+    return std::abs(c.x - e.x) < 0.01 && std::abs(c.y - e.y) < 0.01 && std::abs(c.z - e.z) < 0.01;
+  };
+  const float a = 0.75f * 0.75f, b = 0.75f * 0.25f, c = 0.25f * 0.25f;
+  CHECK(near(albedo[0], {a + c, b + c, b + c}));
+  CHECK(near(albedo[5], {a + c, b + c, b + c}));
+  CHECK(near(albedo[3], {b + b, b + c, a + b}));
+  CHECK(near(albedo[12], {b + b, a + b, b + c}));
+  // A white sky shows the albedo; its one sample lies anywhere in the pixel.
+  const std::vector<sk::float3> picture = render(*engine->renderer(read.picture), read).radiance;
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    CHECK(std::abs(picture[i].x - albedo[i].x) < 0.3);
+    CHECK(std::abs(picture[i].y - albedo[i].y) < 0.3);
+  }
+  std::filesystem::remove("written_texture.pfm");
+}
+
+TEST_CASE("layers have distance, normal and id in the scene's own lengths") {
+  const std::string scene =
+      "[camera]\nfrom = [0, 0, 500]\nto = [0, 0, 0]\nfield_of_view = 1\n[picture]\nsize = [1, 1]\nsamples = "
+      "1\n[[sphere]]\nradius = 100\n";
+  sk::Device device = sk::Device::native();
+  const Scene read = readScene(examples::WrittenFile(scene, "written_render.toml").path(), {});
+  const std::unique_ptr<Engine> engine = read.engines.at("bvh")(device, read.model);
+  const std::vector<Layer> layers = layersOf(*engine, read.model, read.picture);
+  CHECK(layers[0].pixels[0].x == Approx(400));
+  CHECK(layers[1].pixels[0].z == Approx(1));
+  CHECK(layers[3].pixels[0].x == 0);
+}
+
+TEST_CASE("the variance is that of the mean") {
+  sk::Device device = sk::Device::native();
+  const std::string text = pictureOf(200, 2) + floor +
+                           "[environment]\ncolour = [1, 1, 1]\n[[mesh]]\nshape = \"box\"\ntranslate = [0.3, "
+                           "0.6, 0]\nscale = [0.4]\n";
+  const Scene scene = readScene(examples::WrittenFile(text, "written_render.toml").path(), {});
+  const std::unique_ptr<Engine> engine = scene.engines.at("bvh")(device, scene.model);
+  const std::unique_ptr<Renderer> renderer = engine->renderer(scene.picture);
+  const Estimate between = estimateOf(render(*renderer, scene).radiance);
+  const double within = estimateOf(renderer->variance()).mean;
+  // All pixels see one point: they differ by what each of them says that it may be off by. 256 of them tell that to a tenth.
+  CHECK(within == Approx(between.error * between.error * 256).epsilon(0.35));
 }
 
 TEST_CASE("Sobol's numbers converge faster than independent ones") {

@@ -25,6 +25,8 @@ class BranchingRenderer : public Renderer {
 
   std::vector<sk::float3> image() override { return exposure_.image(); }
 
+  std::vector<sk::float3> variance() override { return exposure_.variance(); }
+
   std::vector<std::string> account() override { return {tables_.account()}; }
 
  private:
@@ -80,6 +82,8 @@ class MultipassRenderer : public Renderer {
   }
 
   std::vector<sk::float3> image() override { return exposure_.image(); }
+
+  std::vector<sk::float3> variance() override { return exposure_.variance(); }
 
   std::vector<std::string> account() override { return {tables_.account()}; }
 

@@ -61,7 +61,7 @@ Findings studyLeaks(sk::Device& device, bool isSmall) {
         if (isWatertight) sound.note(static_cast<std::int64_t>(moved), double(leaks));
         table.add({std::string(name), fmt::format("{:.0f}", moved), isWatertight ? "watertight" : "moller",
                    fmt::format("{:.1f}", 1e6 * double(leaks) / double(count)),
-                   fmt::format("{:.1f}", largestError(*engine, model, by))});
+                   fmt::format("{:.2f}", largestError(*engine, model, by))});
       }
     }
   }
