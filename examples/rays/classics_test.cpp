@@ -120,7 +120,7 @@ TEST_CASE("the ray engine finds the same however it is set, also by its own test
 }
 
 TEST_CASE("pictures are the same by every engine and machine") {
-  const std::string scene = R"(
+  const std::string withGlass = R"(
 [camera]
 from = [0, 0.3, 3]
 [picture]
@@ -150,7 +150,7 @@ material = "white"
 [ray_engine]
 intersection = "watertight"
 )";
-  const auto greenBy = [&](const char* name, const char* engine, const std::string& settings) {
+  const auto greenBy = [](const std::string& scene, const char* name, const char* engine, const std::string& settings) {
     sk::Device device = deviceOf(name);
     const examples::WrittenFile file(fmt::format("{}\n[streaming]\n{}", scene, settings), "written_picture.toml");
     const Scene read = readScene(file.path(), {});
@@ -161,18 +161,22 @@ intersection = "watertight"
     for (const sk::float3& p : renderer->image()) green.push_back(p.y);
     return green;
   };
-  const std::vector<float> expected = greenBy("native", "bvh", "");
-  CHECK(std::ranges::count_if(expected, [](float g) { return g > 0; }) > 200);
+  const std::vector<float> withIt = greenBy(withGlass, "native", "bvh", "");
+  CHECK(std::ranges::count_if(withIt, [](float g) { return g > 0; }) > 200);
   // Programs round differently, so that a path may take another turn; hardly any does.
-  const auto compare = [&](const std::vector<float>& got) {
+  const auto compare = [](const std::vector<float>& got, const std::vector<float>& expected) {
     std::size_t others = 0;
     for (std::size_t i = 0; i < got.size(); ++i) others += !(std::abs(got[i] - expected[i]) <= 1e-3f * expected[i]);
     CHECK(others <= got.size() / 50);
   };
-  compare(greenBy("native", "streaming", ""));
-  compare(greenBy("native", "streaming", "machine = 'multipass'"));
-  compare(greenBy("native", "ray_engine", ""));
-  compare(greenBy("essl300", "streaming", "machine = 'multipass'"));
+  const char* multipass = "machine = 'multipass'";
+  compare(greenBy(withGlass, "native", "streaming", ""), withIt);
+  compare(greenBy(withGlass, "native", "streaming", multipass), withIt);
+  compare(greenBy(withGlass, "native", "ray_engine", ""), withIt);
+  // Glass takes a second to compile there.
+  const std::size_t glass = withGlass.find("type = \"glass\"\n");
+  const std::string without = std::string(withGlass).erase(glass, std::string_view("type = \"glass\"\n").size());
+  compare(greenBy(without, "essl300", "streaming", multipass), greenBy(without, "native", "bvh", ""));
 }
 
 TEST_CASE("shadow casting, ray casting and Whitted's rays see what they should") {
