@@ -11,6 +11,7 @@ std::span<const Study> studies() {
       Study{"leaks", "what tests of triangles miss at edges and vertices, and how exact their distances are",
             studyLeaks},
       Study{"speed", "rays per second by test, traversal and size of leaves", studySpeed},
+      Study{"embree", "the same rays by Embree: rays per second, and hits that differ", studyEmbree},
   };
   return all;
 }

@@ -28,7 +28,7 @@ struct Streams {
   sk::Stream<int> id;
 };
 
-Streams streamsOf(sk::Device& device, const std::vector<Ray>& rays) {
+Streams streamsOf(sk::Device& device, std::span<const Ray> rays) {
   std::vector<sk::float4> from, along;
   for (const Ray& r : rays) {
     from.push_back({r.origin.x, r.origin.y, r.origin.z, r.least});
@@ -42,29 +42,44 @@ Streams streamsOf(sk::Device& device, const std::vector<Ray>& rays) {
   return s;
 }
 
-/// What a device on the processor costs, whatever else runs beside it; else the time that passes.
-double milliseconds(const sk::Device& device, const std::function<void()>& call) {
-  const bool isProcessor = device.isSoftware() || device.name().starts_with("native");
-  const examples::Stopwatch stopwatch;
-  const std::clock_t start = std::clock();
-  call();
-  return isProcessor ? 1e3 * double(std::clock() - start) / CLOCKS_PER_SEC : stopwatch.milliseconds();
-}
-
 /// In millions a second: the best of some calls, without the way to the device and back.
 double rate(DeviceScene& scene, Streams& s, int calls) {
   const auto call = [&] {
     scene.call(kernels::closest, s.from, s.along, s.hit, s.id);
     scene.device().finish();
   };
+  const bool isProcessor = scene.device().isSoftware() || scene.device().name().starts_with("native");
   call();  // compiles
   double best = HUGE_VAL;
-  for (int i = 0; i < calls; ++i) best = std::min(best, milliseconds(scene.device(), call));
+  for (int i = 0; i < calls; ++i) best = std::min(best, callMilliseconds(isProcessor, call));
   return double(s.from.size()) / best / 1e3;
 }
 
-/// About the normals of what was hit, with the density of the cosine.
-std::vector<Ray> diffuseRays(const Model& model, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
+std::string_view nameOf(HowToTraverse way) {
+  switch (way) {
+    case HowToTraverse::Stack: return "stack";
+    case HowToTraverse::Leaves: return "leaves";
+    case HowToTraverse::Skip: return "skip";
+  }
+  return "";
+}
+
+}  // namespace
+
+double closestRate(sk::Device& device, const Model& model, std::span<const Ray> rays, int calls) {
+  DeviceScene scene(device, model, {});
+  Streams streams = streamsOf(device, rays);
+  return rate(scene, streams, calls);
+}
+
+double callMilliseconds(bool isProcessor, const std::function<void()>& call) {
+  const examples::Stopwatch stopwatch;
+  const std::clock_t start = std::clock();
+  call();
+  return isProcessor ? 1e3 * double(std::clock() - start) / CLOCKS_PER_SEC : stopwatch.milliseconds();
+}
+
+std::vector<Ray> diffuseRays(const Model& model, std::span<const Ray> rays, std::span<const Hit> hits) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   std::vector<Ray> next;
@@ -81,7 +96,6 @@ std::vector<Ray> diffuseRays(const Model& model, const std::vector<Ray>& rays, c
   return next;
 }
 
-/// A closed mesh in a ring on rough ground: 225,000 triangles.
 Model speedModel(bool isSmall) {
   Model model = modelOf(icosphere(isSmall ? 3 : 6, false));
   const auto add = [&](const Mesh& mesh, double scale, double y) {
@@ -94,25 +108,14 @@ Model speedModel(bool isSmall) {
   };
   add(torus(isSmall ? 20 : 100, isSmall ? 12 : 60, 0.15), 2.0, 0.0);
   add(terrain(isSmall ? 4 : 8, 0.3, 1), 4.0, -0.6);
+  model.camera.from = {1.2, 1.4, 1.8};
   return model;
 }
-
-std::string_view nameOf(HowToTraverse way) {
-  switch (way) {
-    case HowToTraverse::Stack: return "stack";
-    case HowToTraverse::Leaves: return "leaves";
-    case HowToTraverse::Skip: return "skip";
-  }
-  return "";
-}
-
-}  // namespace
 
 Findings studySpeed(sk::Device& device, bool isSmall) {
   const int side = isSmall ? 48 : device.isSoftware() ? 256 : 512;
   const Model model = speedModel(isSmall);
-  const Camera camera{.from = {1.2, 1.4, 1.8}};
-  const std::vector<Ray> primary = primaryRays(camera, side, side);
+  const std::vector<Ray> primary = primaryRays(model.camera, side, side);
   examples::Table table({"test", "traversal", "leaf", "nodes", "cost", "primary, M/s", "diffuse, M/s"});
   for (const HowToIntersect how : {HowToIntersect::Watertight, HowToIntersect::Moller}) {
     for (const HowToTraverse way : {HowToTraverse::Stack, HowToTraverse::Leaves, HowToTraverse::Skip}) {
@@ -133,9 +136,7 @@ Findings studySpeed(sk::Device& device, bool isSmall) {
     }
   }
   const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, {});
-  Model seen = model;
-  seen.camera = camera;
-  return {table.markdown(), {checkEngine(*engine, seen, side, side)}};
+  return {table.markdown(), {checkEngine(*engine, model, side, side)}};
 }
 
 }  // namespace rays
