@@ -238,8 +238,9 @@ std::string reductionListing(const Profile& profile, const sk::program::Reductio
 std::string kernelListing(const Profile& profile, const sk::program::Kernel& kernel) {
   const sk::assemble::PassLimits limits{profile.drawBuffers, profile.textureUnits};
   const sk::program::Plan* plan = sk::assemble::planWithin(kernel, limits);
-  if (plan == nullptr || sk::assemble::fitsOnePass(kernel, limits)) {
-    return sk::assemble::kernelProgram(profile, kernel, plainVariant(kernel));
+  const sk::assemble::Variant whole = plainVariant(kernel);
+  if (plan == nullptr || sk::assemble::fitsOnePass(kernel, limits, whole.specs)) {
+    return sk::assemble::kernelProgram(profile, kernel, whole);
   }
   std::string text;
   for (const sk::program::Pass& pass : plan->passes) {

@@ -256,6 +256,8 @@ struct Compensated {
   std::vector<CompensatedSum> sums;
   /// The inputs, if each element only adds one input or the product of two.
   std::vector<VarId> term = {};
+  /// Each element only adds an input, an element of a gather, or the product of two such floats: doubles represent it.
+  bool addsDoubles = false;
 };
 
 /// What each element adds to an exact sum, for native code with its own accumulator. Empty if an element may

@@ -84,6 +84,8 @@ class Compilation {
       if (mayContract(request, kind)) addContracted(table, request, slots, kind);
       if (kind == EntryKind::Run) addRows(table, request, slots);
       if (request.inDoubles) addEntries(Real::Double);
+      if (request.inDoubles && kind == EntryKind::FoldRows && mayHoldFloats(plain_, kernel))
+        addEntry(table, request, slots, {EntryKind::FoldFloatRows, Real::Double, target_.levels().front()});
       if (request.inQuads) addEntries(Real::Quad);
     }
     writeCodeTable(code_, table);
@@ -121,7 +123,7 @@ class Compilation {
   /// Returns only the lowest level for code that is seldom run, that computes in another real type than
   /// float, or that has no lanes.
   std::vector<CpuLevel> levelsFor(const KernelRequest& request, EntryKind kind, Real real) const {
-    const bool hasLanes = kind != EntryKind::Apply && kind != EntryKind::Scan;
+    const bool hasLanes = kind != EntryKind::Apply && kind != EntryKind::Scan && kind != EntryKind::FoldRows;
     if (!request.isCold && real == Real::Float && hasLanes) return target_.levels();
     return {target_.levels().front()};
   }
@@ -129,7 +131,8 @@ class Compilation {
   /// Identities and borders are constants, and Apply has no products; cold code is not worth a second entry.
   bool mayContract(const KernelRequest& request, EntryKind kind) const {
     const bool computes = kind == EntryKind::Run || kind == EntryKind::RunRows || kind == EntryKind::Fold ||
-                          kind == EntryKind::Combine || kind == EntryKind::Scan;
+                          kind == EntryKind::Combine || kind == EntryKind::Scan ||
+                          kind == EntryKind::FoldRows;
     return computes && !request.isCold && canContract(plain_, plain_.kernels[request.kernel]);
   }
   void addContracted(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind) {
@@ -165,7 +168,8 @@ class Compilation {
                            .real = real,
                            .hasMaskRegisters = hasMaskRegisters,
                            .convertsHalves = level.convertsHalves,
-                           .isContracted = isContracted};
+                           .isContracted = isContracted,
+                           .holdsFloats = kind == EntryKind::FoldFloatRows};
     const RowBlock block = rowPlan != nullptr ? blockFor(level, rowPlan->carried()) : RowBlock{1, 1};
     if (rowPlan != nullptr) {
       codegen.lanes = options_.lanes != 0 ? options_.lanes : block.lanes;
@@ -205,8 +209,8 @@ class Compilation {
   }
 
   static std::string suffix(const EntryVariant& variant) {
-    static constexpr const char* kinds[] = {".run",     ".fold",  ".combine", ".identity",
-                                            ".borders", ".apply", ".rows",    ".scan"};
+    static constexpr const char* kinds[] = {".run",   ".fold", ".combine", ".identity", ".borders",
+                                            ".apply", ".rows", ".scan",    ".foldrows", ".floatrows"};
     static constexpr const char* reals[] = {"", ".double", ".quad"};
     static constexpr const char* levels[] = {"", ".v3", ".v4"};
     return std::string(kinds[static_cast<std::size_t>(variant.kind)]) +

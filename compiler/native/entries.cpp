@@ -48,6 +48,8 @@ class EntryWriter {
       case EntryKind::Borders: values(ParamRole::Gather, [&] { return borders(); }); break;
       case EntryKind::Apply: apply(); break;
       case EntryKind::Scan: scan(); break;
+      case EntryKind::FoldRows:
+      case EntryKind::FoldFloatRows: foldRows(); break;
     }
     return function_;
   }
@@ -356,6 +358,72 @@ class EntryWriter {
     });
   }
 
+  // ---- rows of different lengths ----------------------------------------------------------------
+
+  void foldRows() {
+    begin(4, 1);
+    streams_.begin(function_->getArg(0), function_->getArg(1), prologue_);
+    const State state = stateIn(function_->getArg(3));
+    const State registers = registersFor(state);
+    llvm::Value* const before = streams_.chunkFirst();
+    const auto startOfRow = [&](llvm::Value* row) {
+      llvm::Value* const address = b_.CreateGEP(b_.getInt32Ty(), function_->getArg(2), row);
+      llvm::Value* const start = b_.CreateSExt(b_.CreateLoad(b_.getInt32Ty(), address), b_.getInt64Ty());
+      return b_.CreateSub(start, before, "", false, true);
+    };
+    loop(number(0), function_->getArg(4), 1, [&](llvm::Value* row) {
+      llvm::Value* const first = startOfRow(row);
+      llvm::Value* const end = startOfRow(b_.CreateAdd(row, number(1)));
+      llvm::Value* const next = startRow(registers, first, end);
+      loop(next, end, 1, [&](llvm::Value* element) {
+        streams_.moveTo(element);
+        keep(registers, folded(kept(registers), [&](std::uint32_t i) { return argument(i); }, element, end));
+      });
+      storeRow(state, row, kept(registers));
+    });
+    end();
+  }
+
+  /// Sets the initial accumulators of a row. Returns the first element to fold.
+  llvm::Value* startRow(const State& registers, llvm::Value* first, llvm::Value* end) {
+    if (!s_.kernel.reduction->seeded) {
+      keep(registers, startOf(first));
+      return first;
+    }
+    if (!hasIdentities(s_.kernel)) {
+      keep(registers, startOf(first));
+      return b_.CreateAdd(first, number(1));
+    }
+    Parts none = identities();
+    for (Part& part : none) part = {l_.broadcast(part)};
+    keep(registers, none);
+    llvm::Value* const isEmpty = b_.CreateICmpSGE(first, end);
+    const auto block = [&](const char* name) {
+      return llvm::BasicBlock::Create(b_.getContext(), name, function_);
+    };
+    llvm::BasicBlock* const seed = block("seed");
+    llvm::BasicBlock* const start = block("row");
+    b_.CreateCondBr(isEmpty, start, seed);
+    b_.SetInsertPoint(seed);
+    keep(registers, startOf(first));
+    b_.CreateBr(start);
+    b_.SetInsertPoint(start);
+    return b_.CreateAdd(first, number(1));
+  }
+
+  /// Stores accumulators in the type in which they are computed.
+  void storeRow(const State& state, llvm::Value* row, const Parts& parts) {
+    if (!l_.options().holdsFloats) return storeState(state, row, parts);
+    for (std::size_t c = 0; c < state.arrays.size(); ++c) {
+      if (state.scalars[c] == Scalar::Float) {
+        b_.CreateStore(l_.broadcast(parts[c]), l_.at(l_.real(), state.arrays[c], row));
+      } else {
+        l_.storeNeighbors(state.scalars[c], parts[c],
+                          l_.at(l_.stored(state.scalars[c]), state.arrays[c], row));
+      }
+    }
+  }
+
   // ---- scans ------------------------------------------------------------------------------------
 
   void scan() {
@@ -499,10 +567,30 @@ llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, EntryK
   return EntryWriter(code, source, name).write(kind);
 }
 
+bool mayHoldFloats(const Module& module, const Kernel& kernel) {
+  const auto isInMemory = [&](Type type) {
+    return std::ranges::any_of(leavesOf(module, type), [](const Leaf& leaf) {
+      return leaf.scalar == Scalar::Float && !leaf.dimensions.empty();
+    });
+  };
+  for (const Constant& constant : module.constants) {
+    if (isInMemory(constant.type)) return false;
+  }
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    const Function& function = module.functions[id];
+    if (isInMemory(function.result)) return false;
+    for (const Variable& variable : function.variables) {
+      if (isInMemory(variable.type)) return false;
+    }
+  }
+  return true;
+}
+
 std::vector<EntryKind> entriesOf(const Module& module, const Kernel& kernel, bool scans) {
   std::vector<EntryKind> kinds;
   if (kernel.reduction) {
     kinds.push_back(EntryKind::Fold);
+    kinds.push_back(EntryKind::FoldRows);
     if (combines(module, kernel)) kinds.push_back(EntryKind::Combine);
     if (hasIdentities(kernel)) kinds.push_back(EntryKind::Identity);
     if (scans) kinds.push_back(EntryKind::Scan);

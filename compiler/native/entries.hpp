@@ -37,9 +37,12 @@ struct EntrySource {
 llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, sk::native::EntryKind kind,
                            const std::string& name);
 
-/// The kinds of entries that a kernel needs, apart from RunRows. A reduction needs Fold, Combine if it folds
+/// The kinds of entries that a kernel needs, apart from RunRows. A reduction needs Fold and FoldRows, Combine if it folds
 /// accumulators into accumulators, Identity if it has identities, and Scan if it `scans`. Any other kernel needs Run, and Borders
 /// if a gather has a border value. Either needs Apply if it scatters.
 std::vector<sk::native::EntryKind> entriesOf(const ir::Module& module, const ir::Kernel& kernel, bool scans);
+
+/// True if a reduction can have FoldFloatRows: only the arrays of arguments hold floats, not those of the code.
+bool mayHoldFloats(const ir::Module& module, const ir::Kernel& kernel);
 
 }  // namespace skc::native

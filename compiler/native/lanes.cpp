@@ -21,6 +21,7 @@ llvm::Type* Lanes::type(Scalar scalar) const {
 }
 
 llvm::Type* Lanes::stored(Scalar scalar) const {
+  if (options_.holdsFloats && scalar == Scalar::Float) return b.getFloatTy();
   return scalar == Scalar::Bool ? b.getInt8Ty() : type(scalar);
 }
 
@@ -132,10 +133,14 @@ llvm::Value* Lanes::at(llvm::Type* element, llvm::Value* base, llvm::Value* inde
 }
 
 llvm::Value* Lanes::toStored(Scalar scalar, llvm::Value* value) const {
+  if (options_.holdsFloats && scalar == Scalar::Float)
+    return b.CreateFPTrunc(value, sameShape(value, b.getFloatTy()));
   return scalar == Scalar::Bool ? b.CreateZExt(value, sameShape(value, b.getInt8Ty())) : value;
 }
 
 llvm::Value* Lanes::fromStored(Scalar scalar, llvm::Value* value) const {
+  if (options_.holdsFloats && scalar == Scalar::Float)
+    return b.CreateFPExt(value, sameShape(value, type(scalar)));
   return scalar == Scalar::Bool ? b.CreateICmpNE(value, llvm::Constant::getNullValue(value->getType()))
                                 : value;
 }

@@ -31,6 +31,7 @@ struct CodegenOptions {
   /// If loops read gathers in blocks (block_gathers.hpp): 32-bit scalars per vector register; else 0.
   std::uint32_t blockWidth = 0;
   bool isContracted = false;  ///< products and sums in the source may be fused
+  bool holdsFloats = false;  ///< arrays hold the language's floats as floats, whatever `real` is
 };
 
 class Lanes {

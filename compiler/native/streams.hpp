@@ -33,6 +33,7 @@ class Streams {
   /// Makes records carry the numbers of their elements.
   void numberRecords() { numbersRecords_ = true; }
 
+  llvm::Value* chunkFirst() { return first(0); }
   llvm::Value* chunkCount() { return chunkField(offsetof(sk::native::Chunk, count)); }
 
   Parts uniform(std::uint32_t param);

@@ -266,7 +266,7 @@ class Builder {
     sk::program::CompensatedReduction& made =
         storage_.compensated.emplace_back(sk::program::CompensatedReduction{
             reduction(fold, describe(fold)), whole(module_.kernels[plain.compensated->finish]), sums,
-            !plain.compensated->term.empty()});
+            plain.compensated->addsDoubles});
     made.reduction.commutative = plain.commutative;
     return &made;
   }

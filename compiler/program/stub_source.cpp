@@ -222,7 +222,7 @@ class SourceWriter {
     const Compensated& second = *declared.reduction->compensated;
     const Kernel& fold = module_.kernels[second.fold];
     const CompensatedNames names(name);
-    const Speed speed = made.inDoubles ? Speed::Any : Speed::Best;  // seldom runs: doubles do instead
+    const Speed speed = second.term.empty() ? Speed::Best : Speed::Any;  // seldom runs: doubles do instead
     kernel(made.reduction.combine, *fold.reduction->combine, names.combine, combining(inAnyReal(speed)));
     kernel(made.reduction.fold, second.fold, names.fold, inAnyReal(speed));
     reduction(made.reduction, fold, names.fold, names.combine);

@@ -111,7 +111,10 @@ class CompensatedVariantBuilder {
     const KernelId fold = makeFold(makeCombination());
     const KernelId finish = makeFinish();
     Compensated compensated{fold, finish, {}, {}};
-    if (kernel().reduction->commutative) compensated.term = onlyTerm(module_, kernel());
+    if (kernel().reduction->commutative) {
+      compensated.term = onlyTerm(module_, kernel());
+      compensated.addsDoubles = addsDoubles(module_, kernel());
+    }
     for (const FloatSum& sum : sums_) compensated.sums.push_back({sum.accumulator, sum.members});
     module_.kernels[fold].reduction->commutative = module_.kernels[id_].reduction->commutative;
     module_.kernels[id_].reduction->compensated = std::move(compensated);

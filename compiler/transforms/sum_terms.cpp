@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ir/build.hpp"
+#include "ir/walk.hpp"
 #include "transforms/fold_pattern.hpp"
 
 namespace skc {
@@ -137,16 +138,52 @@ std::vector<VarId> inputsOf(const Kernel& reduce, const Term& term) {
   return inputs;
 }
 
-std::vector<VarId> onlyTerm(const Module& module, const Kernel& reduce) {
+namespace {
+
+/// The term, if each element only adds one, to one float.
+std::optional<Term> termOf(const Module& module, const Kernel& reduce) {
   const Block& body = module.functions[reduce.entry].body;
   const std::optional<FoldPart> part = body.size() == 1 ? foldedBy(reduce, body[0]) : std::nullopt;
   if (!part || part->op != FoldOp(BinaryOp::Add) ||
       reduce.params[part->accumulator].type != Type::of(Scalar::Float) ||
       std::ranges::count(reduce.params, ParamRole::Accumulator, &KernelParam::role) != 1) {
-    return {};
+    return std::nullopt;
   }
-  const std::vector<Term> terms = termsOf(std::get<Assign>(body[0].node));
-  return terms.size() == 1 ? inputsOf(reduce, terms[0]) : std::vector<VarId>();
+  std::vector<Term> terms = termsOf(std::get<Assign>(body[0].node));
+  if (terms.size() != 1) return std::nullopt;
+  return std::move(terms[0]);
+}
+
+/// Whether a factor of a term is a float that a stream holds, at an index of integers.
+bool isHeldFloat(const Kernel& reduce, const Expr& factor) {
+  if (factor.type != Type::of(Scalar::Float)) return false;
+  if (const auto* n = std::get_if<VarRef>(&factor.node)) {
+    return n->var < reduce.params.size() && reduce.params[n->var].role == ParamRole::Input &&
+           !reduce.params[n->var].held;
+  }
+  const auto* n = std::get_if<GatherRead>(&factor.node);
+  if (n == nullptr || n->stream.space != StreamRef::Space::KernelParameter ||
+      reduce.params[n->stream.id].boundary == Boundary::Border || reduce.params[n->stream.id].held) {
+    return false;
+  }
+  bool ofIntegers = true;
+  walkExprs(*n->index, [&](const Expr& part) {
+    ofIntegers = ofIntegers && !part.type.isFloat() && !std::holds_alternative<Call>(part.node);
+  });
+  return ofIntegers;
+}
+
+}  // namespace
+
+std::vector<VarId> onlyTerm(const Module& module, const Kernel& reduce) {
+  const std::optional<Term> term = termOf(module, reduce);
+  return term ? inputsOf(reduce, *term) : std::vector<VarId>();
+}
+
+bool addsDoubles(const Module& module, const Kernel& reduce) {
+  const std::optional<Term> term = termOf(module, reduce);
+  return term && isHeldFloat(reduce, *term->value) &&
+         (term->factor == nullptr || isHeldFloat(reduce, *term->factor));
 }
 
 ExprPtr ofType(Type type, ExprPtr value) {

@@ -26,6 +26,10 @@ std::vector<ir::VarId> inputsOf(const ir::Kernel& reduce, const Term& term);
 /// The inputs, if each element only adds one input, or the product of two, to one float; otherwise empty.
 std::vector<ir::VarId> onlyTerm(const ir::Module& module, const ir::Kernel& reduce);
 
+/// Whether each element only adds, to one float, an input, an element of a gather, or the product of two such floats, and
+/// the indices are computed from integers: doubles represent such a term exactly.
+bool addsDoubles(const ir::Module& module, const ir::Kernel& reduce);
+
 /// The value itself, or a scalar as a vector of this type, as when a scalar is added to a vector.
 ir::ExprPtr ofType(ir::Type type, ir::ExprPtr value);
 

@@ -2,18 +2,13 @@
 #include "pass_meter.hpp"
 
 #include <algorithm>
-#include <ctime>
 
-#include "support/stopwatch.hpp"
+#include "study.hpp"
 
 namespace rays {
 
 double milliseconds(const sk::Device& device, const std::function<void()>& call) {
-  const bool isProcessor = device.isSoftware() || device.name().starts_with("native");
-  const examples::Stopwatch stopwatch;
-  const std::clock_t start = std::clock();
-  call();
-  return isProcessor ? 1e3 * double(std::clock() - start) / CLOCKS_PER_SEC : stopwatch.milliseconds();
+  return callMilliseconds(device.isSoftware() || device.name().starts_with("native"), call);
 }
 
 void PassMeter::note(std::string_view kernel, std::int64_t elements, double time) {

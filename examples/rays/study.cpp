@@ -13,6 +13,7 @@ std::span<const Study> studies() {
       Study{"speed", "rays per second by test, traversal and size of leaves", studySpeed},
       Study{"streaming", "what a uniform grid and each kernel of a multipass machine cost", studyStreaming},
       Study{"ray_engine", "what sizes of buckets and calls are worth, and not to wait", studyRayEngine},
+      Study{"embree", "the same rays by Embree: rays per second, and hits that differ", studyEmbree},
   };
   return all;
 }

@@ -49,7 +49,6 @@ double bestMilliseconds(const sk::Device& device, Engine& engine, const std::vec
 Findings studyRayEngine(sk::Device& device, bool isSmall) {
   const int side = isSmall ? 32 : 128, runs = isSmall ? 1 : 3;
   Model model = speedModel(true);
-  model.camera = {.from = {1.2, 1.4, 1.8}};
   const std::vector<Ray> primary = primaryRays(model.camera, side, side);
   const std::unique_ptr<Engine> hierarchy = makeBvhEngine(device, model, {});
   std::vector<Hit> hits(primary.size());

@@ -5,16 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <random>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "bvh_engine.hpp"
 #include "camera.hpp"
 #include "device_scene.hpp"
-#include "pass_meter.hpp"
+#include "ray_streams.hpp"
 #include "reference.hpp"
 #include "shapes.hpp"
+#include "support/stopwatch.hpp"
 #include "support/table.hpp"
 
 namespace rays {
@@ -26,18 +29,10 @@ struct Streams {
   sk::Stream<int> id;
 };
 
-Streams streamsOf(sk::Device& device, const std::vector<Ray>& rays) {
-  std::vector<sk::float4> from, along;
-  for (const Ray& r : rays) {
-    from.push_back({r.origin.x, r.origin.y, r.origin.z, r.least});
-    along.push_back({r.direction.x, r.direction.y, r.direction.z, r.most});
-  }
-  const sk::Shape shape{static_cast<std::int64_t>(rays.size())};
-  Streams s{device.stream<sk::float4>(shape), device.stream<sk::float4>(shape),
-            device.stream<sk::float3>(shape), device.stream<int>(shape)};
-  s.from.write(from);
-  s.along.write(along);
-  return s;
+Streams streamsOf(sk::Device& device, std::span<const Ray> rays) {
+  RayStreams streams = uploadRays(device, rays);
+  const sk::Shape shape = streams.from.shape();
+  return {std::move(streams.from), std::move(streams.along), device.stream<sk::float3>(shape), device.stream<int>(shape)};
 }
 
 /// In millions a second: the best of some calls, without the way to the device and back.
@@ -46,9 +41,10 @@ double rate(DeviceScene& scene, Streams& s, int calls) {
     scene.call(kernels::closest, s.from, s.along, s.hit, s.id);
     scene.device().finish();
   };
+  const bool isProcessor = scene.device().isSoftware() || scene.device().name().starts_with("native");
   call();  // compiles
   double best = HUGE_VAL;
-  for (int i = 0; i < calls; ++i) best = std::min(best, milliseconds(scene.device(), call));
+  for (int i = 0; i < calls; ++i) best = std::min(best, callMilliseconds(isProcessor, call));
   return double(s.from.size()) / best / 1e3;
 }
 
@@ -63,7 +59,20 @@ std::string_view nameOf(HowToTraverse way) {
 
 }  // namespace
 
-std::vector<Ray> diffuseRays(const Model& model, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
+double closestRate(sk::Device& device, const Model& model, std::span<const Ray> rays, int calls) {
+  DeviceScene scene(device, model, {});
+  Streams streams = streamsOf(device, rays);
+  return rate(scene, streams, calls);
+}
+
+double callMilliseconds(bool isProcessor, const std::function<void()>& call) {
+  const examples::Stopwatch stopwatch;
+  const std::clock_t start = std::clock();
+  call();
+  return isProcessor ? 1e3 * double(std::clock() - start) / CLOCKS_PER_SEC : stopwatch.milliseconds();
+}
+
+std::vector<Ray> diffuseRays(const Model& model, std::span<const Ray> rays, std::span<const Hit> hits) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   std::vector<Ray> next;
@@ -92,14 +101,14 @@ Model speedModel(bool isSmall) {
   };
   add(torus(isSmall ? 20 : 100, isSmall ? 12 : 60, 0.15), 2.0, 0.0);
   add(terrain(isSmall ? 4 : 8, 0.3, 1), 4.0, -0.6);
+  model.camera.from = {1.2, 1.4, 1.8};
   return model;
 }
 
 Findings studySpeed(sk::Device& device, bool isSmall) {
   const int side = isSmall ? 48 : device.isSoftware() ? 256 : 512;
   const Model model = speedModel(isSmall);
-  const Camera camera{.from = {1.2, 1.4, 1.8}};
-  const std::vector<Ray> primary = primaryRays(camera, side, side);
+  const std::vector<Ray> primary = primaryRays(model.camera, side, side);
   examples::Table table({"test", "traversal", "leaf", "nodes", "cost", "primary, M/s", "diffuse, M/s"});
   for (const HowToIntersect how : {HowToIntersect::Watertight, HowToIntersect::Moller}) {
     for (const HowToTraverse way : {HowToTraverse::Stack, HowToTraverse::Leaves, HowToTraverse::Skip}) {
@@ -120,9 +129,7 @@ Findings studySpeed(sk::Device& device, bool isSmall) {
     }
   }
   const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, {});
-  Model seen = model;
-  seen.camera = camera;
-  return {table.markdown(), {checkEngine(*engine, seen, side, side)}};
+  return {table.markdown(), {checkEngine(*engine, model, side, side)}};
 }
 
 }  // namespace rays

@@ -192,7 +192,6 @@ Model litModel(Model model) {
 Findings studyStreaming(sk::Device& device, bool isSmall) {
   const int side = isSmall ? 32 : 256, runs = isSmall ? 1 : 5;
   Model model = litModel(speedModel(isSmall));
-  model.camera = {.from = {1.2, 1.4, 1.8}};
   const std::vector<Ray> primary = primaryRays(model.camera, side, side);
   const std::unique_ptr<Engine> engine = makeStreamingEngine(device, model, {});
   std::vector<Hit> hits(primary.size());

@@ -2,9 +2,11 @@
 //
 // Devices on the application's own context: results are right whatever state the application set, and that state is
 // restored.
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <epoxy/egl.h>
@@ -318,6 +320,46 @@ TEST_CASE("the buffers of the application's programs are theirs again after a re
   CHECK(start == (isPart ? 256 : 0));
   CHECK(size == (isPart ? 512 : 0));
   CHECK(integerOf(GL_SHADER_STORAGE_BUFFER_BINDING) == static_cast<GLint>(buffers[1]));
+  CHECK(glGetError() == GL_NO_ERROR);
+}
+
+TEST_CASE("a loop on the application's context ends by itself and puts the state back") {
+  static const TestKernel grow("grow", "void grow(float x, out float r) { r = 2.0 * x; }\n",
+                               {input<float>("x"), output<float>("r")});
+  static const TestKernel isLarge("isLarge", "void isLarge(float x, out bool r) { r = x > 900.0; }\n",
+                                  {input<float>("x"), output<bool>("r")});
+  Application application(Application::Kind::Compute);
+  makeHostileState(application);
+  constexpr std::pair<GLenum, GLenum> bindings[] = {
+      {GL_DRAW_INDIRECT_BUFFER, GL_DRAW_INDIRECT_BUFFER_BINDING},
+      {GL_DISPATCH_INDIRECT_BUFFER, GL_DISPATCH_INDIRECT_BUFFER_BINDING},
+      {GL_COPY_READ_BUFFER, GL_COPY_READ_BUFFER_BINDING},
+      {GL_COPY_WRITE_BUFFER, GL_COPY_WRITE_BUFFER_BINDING},
+      {GL_SHADER_STORAGE_BUFFER, GL_SHADER_STORAGE_BUFFER_BINDING}};
+  GLuint buffers[std::size(bindings)] = {};
+  glGenBuffers(static_cast<GLsizei>(std::size(buffers)), buffers);
+  for (std::size_t i = 0; i < std::size(bindings); ++i) glBindBuffer(bindings[i].first, buffers[i]);
+  const auto before = readState(application);
+  {
+    Device device = Device::adopt({.profile = GENERATE("glsl330", "glsl430")});
+    auto x = device.stream<float>(1);
+    auto done = device.stream<bool>(1);
+    Loop loop = device.record([&] {
+      grow(x, x);
+      isLarge(x, done);
+    });
+    x.fill(1);
+    CHECK(loop.until(done, {.every = 6}) == 10);
+    CHECK(x.read() == std::vector<float>{1024});
+    CHECK(readState(application) == before);
+    loop.repeat(2);
+    CHECK(x.read() == std::vector<float>{4096});
+    CHECK(readState(application) == before);
+    for (std::size_t i = 0; i < std::size(bindings); ++i) {
+      CHECK(integerOf(bindings[i].second) == static_cast<GLint>(buffers[i]));
+    }
+  }
+  CHECK(readState(application) == before);
   CHECK(glGetError() == GL_NO_ERROR);
 }
 

@@ -2,9 +2,11 @@
 //
 // Which GL functions a kernel's call calls: none that would set state that is already set. Counting calls instead of
 // measuring time makes the test fail on every machine as soon as a call costs more.
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <epoxy/gl.h>
@@ -82,7 +84,9 @@ Names callsOf(Work&& work) {
   SPY(glFinish);
   SPY(glFenceSync);
   SPY(glDrawArrays);
+  SPY(glDrawArraysIndirect);
   SPY(glDispatchCompute);
+  SPY(glDispatchComputeIndirect);
   SPY(glMemoryBarrier);
   SPY(glReadPixels);
   SPY(glBindBufferBase);
@@ -140,6 +144,56 @@ TEST_CASE("a call dispatches, and sets what has changed") {
         Names{"glUniform1fv", "glDispatchCompute", "glMemoryBarrier"});
   CHECK(callsOf([&] { saxpy()(3.0f, of.x, of.y, of.s); }) ==
         Names{"glBindImageTexture", "glDispatchCompute", "glMemoryBarrier"});
+}
+
+TEST_CASE("a loop gives the commands again that change something") {
+  for (const std::string profile : {"glsl330", "essl300", "glsl430"}) {
+    CAPTURE(profile);
+    Device device(DeviceOptions{.profile = profile});
+    Streams of(device);
+    Loop loop = device.record([&] {
+      saxpy()(2.0f, of.x, of.y, of.r);
+      std::swap(of.y, of.r);
+    });
+    loop.repeat(7);
+    const bool isDispatched = profile == "glsl430";
+    const Names one = isDispatched ? Names{"glBindTexture", "glBindImageTexture", "glDispatchCompute", "glMemoryBarrier"}
+                                   : Names{"glBindTexture", "glBindFramebuffer", "glDrawArrays"};
+    Names expected;
+    for (int i = 0; i < 5; ++i) expected.insert(expected.end(), one.begin(), one.end());
+    Names given = callsOf([&] { loop.repeat(5); });
+    for (Names* const names : {&expected, &given}) std::ranges::sort(*names);  // bindings come in any order
+    CHECK(given == expected);
+    Loop same = device.record([&] { saxpy()(2.0f, of.x, of.s, of.r); });
+    same.repeat(3);
+    CHECK(callsOf([&] { same.repeat(2); }) ==
+          (isDispatched ? Names{"glDispatchCompute", "glMemoryBarrier", "glDispatchCompute", "glMemoryBarrier"}
+                        : Names{"glDrawArrays", "glDrawArrays"}));
+  }
+}
+
+TEST_CASE("a loop that the device ends is queued with counts from a buffer") {
+  static const TestKernel isLarge("isLarge", "void isLarge(float x, out bool r) { r = x > 900.0; }\n",
+                                  {input<float>("x"), output<bool>("r")});
+  Device device(DeviceOptions{.profile = "glsl430"});
+  Streams of(device);
+  auto done = device.stream<bool>({8, 8});
+  const float two = 2;
+  const Argument drawn[] = {argumentOf(two), argumentOf(of.x), argumentOf(of.y), argumentOf(of.s)};
+  Loop loop = device.record([&] {
+    saxpy()(1.0f, of.x, of.y, of.r);
+    run(saxpy().kernel(), drawn, {.target = Target::Fragment});
+    isLarge(of.r, done);
+  });
+  const auto condition = done.domain({7, 3}, {8, 4});
+  CHECK(loop.until(condition, {.every = 2, .most = 9}) == 9);
+  const Names calls = callsOf([&] { CHECK(loop.until(condition, {.every = 8, .most = 24}) == 24); });
+  CHECK(std::ranges::count(calls, "glDrawArraysIndirect") == 24);
+  CHECK(std::ranges::count(calls, "glDispatchComputeIndirect") == 48);
+  CHECK(std::ranges::count(calls, "glDispatchCompute") == 24);  // of the gate
+  CHECK(std::ranges::count(calls, "glDrawArrays") == 0);
+  CHECK(std::ranges::count(calls, "glReadPixels") == 0);
+  CHECK(std::ranges::count(calls, "glGetBufferSubData") <= 4);
 }
 
 // On a GPU, reading a texel back takes longer than computing a small sum.

@@ -21,6 +21,7 @@
 #include "compile_time.hpp"
 #include "functions.hpp"
 #include "hand_written.hpp"
+#include "loop_cost.hpp"
 #include "report.hpp"
 #include "rounds.hpp"
 #include "side_by_side.hpp"
@@ -107,6 +108,7 @@ int measureAll(const Settings& settings) {
   for (const int size : {1024, 2048}) sideBySide.binomial(size);
   bench::functions(device, settings.rounds, settings.sampleMilliseconds, report);
   hostCost(device, settings, report);
+  bench::loopCosts(device, settings.rounds, report);
   sumTime(device, settings, report);
   bench::warmStart(settings.device, std::min(settings.rounds, 9), report);
   compileTimes(settings, report);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// docs_figures RESULTS.json README.md: puts what `./dev bench --json RESULTS.json` measured between the
-// marks <!-- figures WORD... --> and <!-- /figures -->: the rows that begin with one of the words. The rest of the file
-// stays as it is.
+// docs_figures RESULTS.json README.md PERFORMANCE.md: writes what `./dev bench --json RESULTS.json` measured between the
+// marks <!-- figures WORD... --> and <!-- /figures -->, the rows that begin with one of the words, and the excerpts of
+// the tables of docs/performance.md (excerpts.hpp). The rest of the file stays as it is.
 #include <exception>
 #include <fstream>
 #include <iterator>
@@ -14,6 +14,8 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "excerpts.hpp"
 
 namespace {
 
@@ -46,7 +48,7 @@ std::string table(const nlohmann::json& results, const std::set<std::string>& wo
   return text;
 }
 
-void update(const std::string& results, const std::string& document) {
+void update(const std::string& results, const std::string& document, const std::string& performance) {
   const std::string text = read(document);
   const std::size_t begin = text.find(first);
   const std::size_t behind = text.find(behindWords, begin);
@@ -58,16 +60,19 @@ void update(const std::string& results, const std::string& document) {
   const std::size_t rows = behind + behindWords.size();
   std::istringstream listed(text.substr(begin + first.size(), behind - begin - first.size()));
   const std::set<std::string> words{std::istream_iterator<std::string>(listed), {}};
+  const std::string figures =
+      text.substr(0, rows) + table(nlohmann::json::parse(read(results)), words) + text.substr(end);
+  const std::string updated = docs::withExcerpts(figures, read(performance));
   std::ofstream out(document, std::ios::binary);
-  out << text.substr(0, rows) << table(nlohmann::json::parse(read(results)), words) << text.substr(end);
+  out << updated;
   if (!out.flush()) throw std::runtime_error(fmt::format("cannot write '{}'", document));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc != 3) throw std::runtime_error("usage: docs_figures RESULTS.json README.md");
-  update(argv[1], argv[2]);
+  if (argc != 4) throw std::runtime_error("usage: docs_figures RESULTS.json README.md docs/performance.md");
+  update(argv[1], argv[2], argv[3]);
   return 0;
 } catch (const std::exception& error) {
   fmt::print(stderr, "docs_figures: {}\n", error.what());

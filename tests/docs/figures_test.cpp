@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "excerpts.hpp"
 #include "markdown.hpp"
 
 TEST_CASE("README.md has a table of measured figures", "[figures]") {
@@ -48,6 +49,33 @@ std::vector<std::string> rowsOf(const std::string& text, const std::string& name
 }
 
 }  // namespace
+
+TEST_CASE("README.md shows rows of docs/performance.md as they stand there", "[figures]") {
+  const std::string readme = docs::readFile(std::filesystem::path(SK_DOCS_SOURCE) / "README.md");
+  const std::string source = docs::readFile(std::filesystem::path(SK_DOCS_SOURCE) / "docs" / "performance.md");
+  CHECK(readme.find("<!-- excerpt ") != std::string::npos);
+  CHECK(docs::withExcerpts(readme, source) == readme);
+}
+
+TEST_CASE("README.md's errors of sums stand in docs/accuracy.md", "[figures]") {
+  const docs::Document readme = docs::readDocument(SK_DOCS_SOURCE, "README.md");
+  const std::string accuracy = docs::readFile(std::filesystem::path(SK_DOCS_SOURCE) / "docs" / "accuracy.md");
+  const std::size_t table = accuracy.find("\nsum, illconditioned: 4194304 numbers that cancel but for 10^-12");
+  REQUIRE(table != std::string::npos);
+  const std::string measured = accuracy.substr(table, accuracy.find("```", table) - table);
+  static const std::regex row(R"(\| (tree|compensated|exact) \| ([\d.]+) \| ([\d.e+-]+) \|)");
+  int rows = 0;
+  for (const docs::Piece& piece : readme.rows) {
+    std::smatch cells;
+    if (!std::regex_match(piece.text, cells, row)) continue;
+    INFO(piece.text);
+    const std::string error = std::regex_replace(cells[3].str(), std::regex(R"(\+)"), R"(\+)");
+    const std::string line = cells[1].str() + " +" + cells[2].str() + R"( \[[\d. ]+\] +)" + error + " ";
+    CHECK(std::regex_search(measured, std::regex("\n  " + line)));
+    ++rows;
+  }
+  CHECK(rows == 3);
+}
 
 TEST_CASE("docs/performance.md has tables of what was measured", "[figures]") {
   const std::string text = docs::readFile(std::filesystem::path(SK_DOCS_SOURCE) / "docs" / "performance.md");

@@ -142,6 +142,19 @@ const std::vector<Scenario>& scenarios() {
        [](Scene& of) { sum.with({.accumulate = sk::Accumulate::Exact})(of.x, of.part); }, false, false, true},
       {"scan", [](Scene& of) { running(of.x, of.r); }, false, true},
       {"scan in place", [](Scene& of) { running.with({.along = 0})(of.r, of.r); }, false, true},
+      {"loop",
+       [](Scene& of) {
+         auto total = of.device.scalar<float>(0);
+         auto done = of.device.scalar<bool>(false);
+         sk::Loop loop = of.device.record([&] {
+           scale(1.0F, of.x, of.x);
+           sum(of.x, total);
+           done = total < -1;
+         });
+         loop.repeat(4);
+         loop.until(done, {.every = 1, .most = 3});
+       },
+       false, true},
       {"push", [](Scene& of) { positive(of.x, of.pushed); }, false, false, true},
       {"push any number", [](Scene& of) { repeat(of.x, of.pushed, of.s); }},
       {"scatter", [](Scene& of) { histogram(of.indices, of.bins); }},

@@ -141,9 +141,9 @@ TEST_CASE("a loop ends after the iteration that makes its condition true") {
       loops::total(x, sum);
       loops::reached(sum, 20, done);
     });
-    const bool isNative = device.profile() == "native";
-    CHECK(loop.until(done, {.every = 4}) == (isNative ? 10 : 12));
-    CHECK(x.read().front() == (isNative ? 10.0f : 12.0f));
+    const std::int64_t ran = loop.until(done, {.every = 4});
+    CHECK((ran == 10 || (ran == 12 && device.profile() == "essl300")));  // the host may have to ask
+    CHECK(x.read().front() == static_cast<float>(ran));
     CHECK(loop.until(done, {.every = 1}) == 1);
     x.fill(0);
     CHECK(loop.until(done, {.every = 1}) == 10);

@@ -291,6 +291,30 @@ TEST_CASE("several passes read what was there before the call") {
   });
 }
 
+TEST_CASE("streams that values of spec parameters switch off cost no passes") {
+  sk::Device device({.profile = "essl300", .limits = "guaranteed"});
+  const sk::Shape shape{40};
+  Streams<float> r(device, shape, 5);
+  const std::vector<float> x(40, 1.0F);
+  const auto in = streamOf<float>(device, shape, x);
+  const auto passes = [&](auto&& call) {
+    device.countPasses(true);
+    call();
+    device.finish();
+    return device.passCount().passes;
+  };
+  const sk::None n = sk::none;
+  CHECK(passes([&] {
+          passes::choose(false, in, n, n, n, n, n, n, n, n, n, n, n, n, n, n, n, n, r.list[0], n, n, n, n);
+        }) == 1);
+  CHECK(r.list[0].read() == x);
+  CHECK(passes([&] {
+          passes::choose(true, in, in, in, in, in, in, in, in, in, in, in, in, in, in, in, in, in, r.list[0],
+                         r.list[1], r.list[2], r.list[3], r.list[4]);
+        }) > 1);
+  CHECK(r.list[4].read() == std::vector<float>(40, 64.0F));
+}
+
 TEST_CASE("there are two kinds of limits") {
   CHECK_THROWS_WITH(sk::Device(sk::DeviceOptions{.limits = "none"}),
                     "there are no limits 'none'; choose device or guaranteed (option or SK_LIMITS)");

@@ -14,6 +14,7 @@
 
 #include "sk/iter.hpp"
 #include "sk/program.hpp"
+#include "sk/rows.hpp"
 #include "sk/stream.hpp"
 
 namespace sk {
@@ -27,6 +28,7 @@ struct Argument {
       {};  ///< all other arguments, and such uniforms; of an iterator only the shape, if any
   bool isNone = false;  ///< sk::none
   program::Fit fit = program::Fit::Same;  ///< element inputs
+  const RowsState* rows = nullptr;  ///< element inputs of reduces and scans: the rows they are in, or null
 };
 
 /// Passed for a stream that the values of a kernel's spec parameters switch off.
@@ -89,13 +91,14 @@ class In {
   StreamRegion region_;
 };
 
-/// Like In, but also accepts stretch() and stride().
+/// Like In, but also accepts stretch(), stride() and rows (sk::Rows).
 template <class T>
 class ElementIn {
  public:
   template <StreamOf<T> S>
   ElementIn(const S& stream) : argument_{.region = regionOf(stream)} {}
   ElementIn(const Fitted<T>& stream) : argument_{.region = stream.region, .fit = stream.fit} {}
+  ElementIn(const InRows<T>& stream) : argument_{.region = stream.region, .rows = stream.rows} {}
   Argument argument() const { return argument_; }
 
  private:
@@ -193,13 +196,14 @@ void reduce(const program::Reduction& reduction, std::span<const Argument> argum
 /// Folds the inputs to smaller streams: the arguments of the accumulators, all of one shape. Their extents
 /// divide those of the inputs; each element folds one block of the inputs in row-major order. A stream of
 /// lower rank stands for a shape with additional extents of 1; if several such shapes are possible, the call
-/// throws sk::Error.
+/// throws sk::Error. Inputs in rows (sk::Rows) are folded row by row instead, to one element for each row.
 void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
             const CallOptions& options = {});
 
 /// Folds, for each element of the inputs, all elements up to it (CallOptions::scan, along) to one element of the
-/// arguments of the accumulators, which have the shape of the inputs and may be the same streams. Throws
-/// sk::Error if the arguments do not match, or if an exclusive scan has no identity.
+/// arguments of the accumulators, which have the shape of the inputs and may be the same streams. Inputs in rows
+/// (sk::Rows) are scanned row by row. Throws sk::Error if the arguments do not match, or if an exclusive scan
+/// has no identity.
 void scan(const program::Reduction& reduction, std::span<const Argument> arguments,
           const CallOptions& options = {});
 

@@ -332,8 +332,8 @@ struct CompensatedReduction {
   Reduction reduction;
   Kernel finish;
   std::span<const CompensatedSum> sums;
-  /// The plain variant in doubles is as good: doubles represent its terms exactly, each an input or a product
-  /// of two.
+  /// The plain variant in doubles is as good: doubles represent its terms exactly, each an input, an element of a gather,
+  /// or a product of two such floats.
   bool inDoubles = false;
 };
 

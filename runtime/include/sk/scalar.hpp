@@ -139,6 +139,28 @@ class Scalar {
   StreamRegion region() const { return handle_.region(); }
   const detail::ScalarHandle& handle() const { return handle_; }
 
+  /// Like `a = a + b`: the scalar keeps its place.
+  Scalar& operator+=(const detail::ScalarOperand<T>& b)
+    requires ScalarNumber<T>
+  {
+    return *this = *this + b;
+  }
+  Scalar& operator-=(const detail::ScalarOperand<T>& b)
+    requires ScalarNumber<T>
+  {
+    return *this = *this - b;
+  }
+  Scalar& operator*=(const detail::ScalarOperand<T>& b)
+    requires ScalarNumber<T>
+  {
+    return *this = *this * b;
+  }
+  Scalar& operator/=(const detail::ScalarOperand<T>& b)
+    requires ScalarNumber<T>
+  {
+    return *this = *this / b;
+  }
+
   friend Scalar operator-(const Scalar& a)
     requires ScalarNumber<T>
   {

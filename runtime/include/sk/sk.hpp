@@ -11,6 +11,7 @@
 #include "sk/iter.hpp"
 #include "sk/limits.hpp"
 #include "sk/loop.hpp"
+#include "sk/rows.hpp"
 #include "sk/scalar.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"

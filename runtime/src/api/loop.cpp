@@ -3,8 +3,6 @@
 // Implements sk::Loop: recording calls, and running them again.
 #include "sk/loop.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "device/device_state.hpp"
@@ -26,10 +24,6 @@ LoopState& stateOf(const detail::LoopOwner& loop) {
   loop->checkBeforeRun();
   flushScalars(loop->device());
   return *loop;
-}
-
-void run(LoopState& loop, std::int64_t times) {
-  for (std::int64_t i = 0; i < times; ++i) loop.runOnce();
 }
 
 void checkEnd(const LoopState& loop, const StreamRegion& done, const LoopEnd& end) {
@@ -74,7 +68,7 @@ void Loop::repeat(std::int64_t times) {
     LoopState& loop = stateOf(state_);
     if (times < 0) throw Error(fmt::format("repeat: {} is no number of iterations", times));
     const TraceScope traced(loop.device().trace.get(), "call", "loop");
-    run(loop, times);
+    loop.run(times);
   });
 }
 
@@ -82,18 +76,8 @@ std::int64_t Loop::until(const StreamRegion& done, const LoopEnd& end) {
   return withHostMemory("until", [&] {
     LoopState& loop = stateOf(state_);
     checkEnd(loop, done, end);
-    const std::int64_t every = loop.device().hasQueue() ? end.every : 1;
     const TraceScope traced(loop.device().trace.get(), "call", "loop");
-    std::int64_t ran = 0;
-    bool isDone = false;
-    while (!isDone && ran < end.most) {
-      const std::int64_t times = std::min(every, end.most - ran);
-      run(loop, times);
-      ran += times;
-      checkElementsOf(done, false, "until");
-      done.stream->read(done, reinterpret_cast<std::byte*>(&isDone));
-    }
-    return ran;
+    return loop.runUntil(done, end);
   });
 }
 

@@ -10,10 +10,12 @@
 #include "api/exact_reduction.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
+#include "call/check_rows.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
+#include "device/rows_state.hpp"
 #include "sk/call.hpp"
 #include "support/checked_size.hpp"
 
@@ -53,7 +55,8 @@ const CompensatedReduction* compensated(const ResolvedReduction& call) {
     }
     return nullptr;
   }
-  const auto room = static_cast<std::size_t>(call.device.limits.textureUnits);
+  const std::size_t taken = call.rows == nullptr ? 0 : rowTables;
+  const std::size_t room = static_cast<std::size_t>(call.device.limits.textureUnits) - taken;
   const bool fits = planesRead(second->reduction.combine, specsOf(reduction.fold, call.arguments)) <= room;
   return fits || requested == Accumulate::Compensated ? second : nullptr;
 }
@@ -106,7 +109,9 @@ bool isExact(const ResolvedReduction& call) {
 /// Whether the plain variant in doubles can replace the compensated one: not if a stream has bits that floats
 /// drop.
 bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& second) {
-  return second.inDoubles && call.device.sumsInDoubles() &&
+  // without rows, gathers would have to be copied to doubles
+  const bool readsInputs = !call.reduction.term.factors.empty() || call.rows != nullptr;
+  return second.inDoubles && readsInputs && call.device.sumsInDoubles() &&
          std::ranges::none_of(call.arguments, [](const Argument& argument) {
            return argument.region.stream != nullptr && argument.region.stream->storage >= Storage::Extended;
          });
@@ -218,7 +223,7 @@ void runResolved(const ResolvedReduction& call) {
 class RecordedReduction final : public RecordedCall {
  public:
   explicit RecordedReduction(const ResolvedReduction& call)
-      : arguments_(call.reduction.fold, call.arguments), call_(call) {
+      : arguments_(call.reduction.fold, call.arguments), rows_(call.rows), call_(call) {
     call_.arguments = arguments_.get();
     arguments_.noteUses(*call.device.recording);
   }
@@ -227,6 +232,7 @@ class RecordedReduction final : public RecordedCall {
 
  private:
   const OwnedArguments arguments_;
+  const SharedRows rows_;
   ResolvedReduction call_;
 };
 
@@ -238,7 +244,8 @@ void checkAndReduce(const Reduction& reduction, std::span<const Argument> argume
   if (call.device.recording == nullptr) return runResolved(call);
   if (call.isToValues()) {
     fail(reduction.fold,
-         "its value is not known while the device records calls; give it a stream of one element for the result");
+         "its value is not known while the device records calls; give it a stream of one element for the "
+         "result");
   }
   call.device.recording->add(std::make_unique<RecordedReduction>(call));
 }

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
+#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -119,14 +121,6 @@ void runPass(DeviceState& device, std::span<const std::shared_ptr<ScalarNode>> n
   for (const std::shared_ptr<ScalarNode>& node : nodes) node->state = ScalarNode::State::Done;
 }
 
-/// Whether an operation that is held reads the stream, itself or through its operands.
-bool reads(const ScalarNode& node, const StreamState* stream) {
-  return std::ranges::any_of(node.operands, [&](const ScalarNode::Operand& operand) {
-    if (operand.node) return reads(*operand.node, stream);
-    return operand.stream == stream;
-  });
-}
-
 /// Marks operations as lost that an exception keeps from being done.
 class LostUnlessDone {
  public:
@@ -145,6 +139,22 @@ class LostUnlessDone {
 
 bool isPending(const std::shared_ptr<ScalarNode>& node) {
   return node->isHeld && node->state == ScalarNode::State::Pending;
+}
+
+/// Whether an operation that is held reads the stream, itself or through its operands, which come before it.
+bool isRead(const Nodes& nodes, const StreamState* stream) {
+  std::unordered_set<const ScalarNode*> needed;
+  for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
+    if (!isPending(*node) && !needed.contains(node->get())) continue;
+    for (const ScalarNode::Operand& operand : (*node)->operands) {
+      if (operand.node) {
+        needed.insert(operand.node.get());
+      } else if (operand.stream == stream) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -277,13 +287,10 @@ void ScalarHandle::end() noexcept {
   pending_ = {};
   if (!stream_ || stream_->device == nullptr) return;
   const Nodes& nodes = stream_->device->pendingScalars.nodes;
-  const bool isRead = std::ranges::any_of(nodes, [&](const std::shared_ptr<ScalarNode>& node) {
-    return isPending(node) && reads(*node, stream_.get());
-  });
-  if (!isRead) return;
   try {
+    if (!isRead(nodes, stream_.get())) return;
     flushScalars(*stream_->device);
-  } catch (const Error&) {
+  } catch (const std::exception&) {
     // the scalars that needed it say that their values are lost
   }
 }

@@ -7,6 +7,7 @@
 
 #include "assemble/append/append_passes.hpp"
 #include "call/check_argument.hpp"
+#include "call/check_rows.hpp"
 #include "device/device_state.hpp"
 #include "device/stream_state.hpp"
 
@@ -146,6 +147,7 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
   if (arguments.size() != parameters.size()) {
     fail(kernel, "{} arguments are given, but {} are declared", arguments.size(), parameters.size());
   }
+  refuseRows(kernel, arguments);
   const assemble::SpecValues specs = specsOf(kernel, arguments);
   const std::size_t first = firstWritten(kernel, specs);
   if (first == parameters.size()) {

@@ -7,6 +7,7 @@
 
 #include "call/block_grid.hpp"
 #include "call/check_argument.hpp"
+#include "call/check_rows.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "device/stream_state.hpp"
@@ -54,12 +55,19 @@ class Arguments {
       checkShape(i, domain);
     }
     const StreamState& first = *arguments_[first_].region.stream;
+    const RowsState* const rows = rowsOf(fold_, arguments_, specs_);
     ResolvedReduction checked{*first.device, reduction_, arguments_, domain, oneBlock(domain), values};
     checkElements(fold_, checked.device, domain);
     checked.device.checkProgram(reduction_);
     checkUniforms(fold_, checked.device);
-    checkUnits(checked.device, scan.has_value());
+    checkUnits(checked.device, scan.has_value(), rows != nullptr);
     checked.scan = scan;
+    if (rows != nullptr) {
+      checked.rows = rows;
+      checked.blocks = checkRows({reduction_, arguments_, checked.device, domain, scan}, *rows,
+                                 toStreams ? resultShape() : Shape{});
+      return checked;
+    }
     if (scan) {
       checked.blocks = checkScan(*scan, domain);
       return checked;
@@ -102,9 +110,10 @@ class Arguments {
     }
   }
 
-  /// A scan also reads the results of earlier runs.
-  void checkUnits(const DeviceState& device, bool isScan) const {
-    const std::size_t carries = (isScan ? accumulatorPlanes() : 0) + uniformPlanes(fold_, arguments_);
+  /// A scan also reads the results of earlier runs, and rows are read from tables.
+  void checkUnits(const DeviceState& device, bool isScan, bool hasRows) const {
+    const std::size_t carries =
+        (isScan ? accumulatorPlanes() : 0) + (hasRows ? rowTables : 0) + uniformPlanes(fold_, arguments_);
     const auto most = static_cast<std::size_t>(device.limits.textureUnits);
     if (const std::size_t planes = planesRead(fold_, specs_) + carries; planes > most) {
       fail(Error::Kind::Device, fold_,

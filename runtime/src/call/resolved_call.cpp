@@ -58,20 +58,22 @@ Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const 
   return domain;
 }
 
-const program::Plan* planFor(const Kernel& kernel, const DeviceLimits& limits) {
+const program::Plan* planFor(const Kernel& kernel, const assemble::SpecValues& specs,
+                             const DeviceLimits& limits) {
   const assemble::PassLimits pass{limits.drawBuffers, limits.textureUnits};
-  const bool isWhole = kernel.planCount == 0 || assemble::fitsOnePass(kernel, pass);
+  const bool isWhole = kernel.planCount == 0 || assemble::fitsOnePass(kernel, pass, specs);
   return isWhole ? nullptr : assemble::planWithin(kernel, pass);
 }
 
 ResolvedCall resolveCall(const Kernel& kernel, std::span<const Argument> arguments,
                          const DeviceLimits& limits, const CallOptions& options) {
   const assemble::SpecValues specs = specsOf(kernel, arguments);
-  return {kernel, arguments, options, specs, domainOf(kernel, arguments, specs), planFor(kernel, limits)};
+  return {kernel, arguments, options, specs, domainOf(kernel, arguments, specs), planFor(kernel, specs, limits)};
 }
 
 ResolvedCall ResolvedCall::of(const Kernel& variant, const DeviceLimits& limits) const {
-  return {variant, arguments, options, specs, domain, &variant == &kernel ? plan : planFor(variant, limits)};
+  const program::Plan* variantPlan = &variant == &kernel ? plan : planFor(variant, specs, limits);
+  return {variant, arguments, options, specs, domain, variantPlan};
 }
 
 }  // namespace sk

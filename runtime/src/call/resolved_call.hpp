@@ -42,8 +42,9 @@ assemble::SpecValues specsOf(const program::Kernel& kernel, std::span<const Argu
 Shape domainOf(const program::Kernel& kernel, std::span<const Argument> arguments,
                const assemble::SpecValues& specs);
 
-/// The plan for running a kernel on a device with these limits; null if one pass is enough, or if no plan
-/// fits the limits.
-const program::Plan* planFor(const program::Kernel& kernel, const DeviceLimits& limits);
+/// The plan for running a kernel with these values of its Spec parameters on a device with these limits; null if one
+/// pass is enough, or if no plan fits the limits.
+const program::Plan* planFor(const program::Kernel& kernel, const assemble::SpecValues& specs,
+                             const DeviceLimits& limits);
 
 }  // namespace sk

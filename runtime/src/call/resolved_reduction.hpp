@@ -18,6 +18,7 @@
 namespace sk {
 
 class DeviceState;
+class RowsState;
 
 /// How a scan folds the blocks of a reduction: it keeps the accumulators after, or before, each element.
 struct ScanOrder {
@@ -35,6 +36,7 @@ struct ResolvedReduction {
   std::span<void* const> values = {};  ///< one destination per accumulator; empty if the results are streams
   CallOptions options = {};
   std::optional<ScanOrder> scan = {};
+  const RowsState* rows = nullptr;  ///< each row of the domain, which is one-dimensional, is a block; or null
 
   bool isToValues() const { return !values.empty(); }
   /// The shape of stream results, which may have fewer dimensions than `blocks`.

@@ -14,6 +14,7 @@
 
 #include "device/configuration.hpp"
 #include "device/function_table.hpp"
+#include "device/loop_runner.hpp"
 #include "device/recorded_call.hpp"
 #include "device/scalar_pass.hpp"
 #include "device/stream_state.hpp"
@@ -87,6 +88,8 @@ class DeviceState {
   virtual std::unique_ptr<RecordedCall> prepare(const ResolvedCall&) { return nullptr; }
   /// Operations with scalars, prepared to run any number of times.
   virtual std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) = 0;
+  /// Null if loops need no more than their calls one after the other.
+  virtual std::unique_ptr<LoopRunner> makeLoopRunner() { return nullptr; }
   /// There is at least one block. For an empty domain, the results are the identities, which then exist.
   virtual void reduce(const ResolvedReduction& call) = 0;
   /// Whether it adds sums of floats without rounding; otherwise it compensates them in its own precision.

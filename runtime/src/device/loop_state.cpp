@@ -43,6 +43,7 @@ LoopState::LoopState(DeviceState& device) : device_(&device) {
 
 LoopState::~LoopState() {
   endRecording();
+  runner_.reset();  // before the streams whose elements it may hold
   if (device_ != nullptr) std::erase(device_->loops, this);
   for (StreamState* stream : kept_) detail::StreamDeleter()(stream);  // another loop may use it
 }
@@ -87,6 +88,7 @@ void LoopState::finish() {
   for (const auto& [before, after] : moved) holders.emplace_back(after->holder, before);
   for (const auto& [holder, before] : holders) static_cast<void>(holder->release());
   for (const auto& [holder, before] : holders) *holder = detail::StreamOwner(before);
+  runner_ = device_->makeLoopRunner();
   endRecording();
 }
 
@@ -145,6 +147,35 @@ void LoopState::checkBeforeRun() const {
 void LoopState::runOnce() {
   for (const std::unique_ptr<RecordedCall>& call : calls_) call->run();
   for (const auto& [a, b] : exchanges_) a->exchangeElements(*b);
+}
+
+void LoopState::run(std::int64_t times) {
+  if (runner_) return runner_->run(*this, times);
+  for (std::int64_t i = 0; i < times; ++i) runOnce();
+}
+
+std::int64_t LoopState::runUntil(const StreamRegion& done, const LoopEnd& end) {
+  if (runner_) return runner_->runUntil(*this, done, end);
+  return runAndAsk(done, device_->hasQueue() ? end.every : 1, end.most);
+}
+
+std::int64_t LoopState::runAndAsk(const StreamRegion& done, std::int64_t every, std::int64_t most) {
+  std::int64_t ran = 0;
+  bool isDone = false;
+  while (!isDone && ran < most) {
+    const std::int64_t times = std::min(every, most - ran);
+    run(times);
+    ran += times;
+    isDone = isTrue(done);
+  }
+  return ran;
+}
+
+bool LoopState::isTrue(const StreamRegion& done) {
+  checkElementsOf(done, false, "until");
+  bool isDone = false;
+  done.stream->read(done, reinterpret_cast<std::byte*>(&isDone));
+  return isDone;
 }
 
 void refuseInRecording(const DeviceState& device, std::string_view what) {

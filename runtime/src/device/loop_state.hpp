@@ -4,12 +4,14 @@
 // application has swapped meanwhile. Knows neither what a call does nor the kind of device.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "device/loop_runner.hpp"
 #include "device/recorded_call.hpp"
 #include "device/stream_state.hpp"
 #include "sk/call.hpp"
@@ -37,14 +39,30 @@ class LoopState {
   void checkBeforeRun() const;
   /// Runs all calls once, and exchanges the elements of the streams that were swapped.
   void runOnce();
+  /// Runs them as the device runs loops.
+  void run(std::int64_t times);
+  /// Runs them until the condition, one element, is true, and returns how often.
+  std::int64_t runUntil(const StreamRegion& done, const LoopEnd& end);
+  /// Runs them `every` times at once until then.
+  std::int64_t runAndAsk(const StreamRegion& done, std::int64_t every, std::int64_t most);
+  static bool isTrue(const StreamRegion& done);
 
   /// Keeps a stream that its owner has destroyed, if a call uses it or may have recorded it. Returns whether it
   /// does.
   bool keep(StreamState* stream) noexcept;
 
-  /// The device has ended.
-  void leave() noexcept { device_ = nullptr; }
+  /// The device is about to end, or has ended.
+  void leave() noexcept {
+    runner_.reset();
+    device_ = nullptr;
+  }
   DeviceState& device() const { return *device_; }
+
+  struct Used {
+    StreamState* stream;
+    Shape shape;
+  };
+  std::span<const Used> used() const { return used_; }
 
  private:
   /// A stream, and the handle that held it when recording began.
@@ -52,11 +70,6 @@ class LoopState {
     StreamState* stream;
     detail::StreamOwner* holder;
   };
-  struct Used {
-    StreamState* stream;
-    Shape shape;
-  };
-
   void failIfLost() const;
   bool isRecording() const;
   void endRecording() noexcept;
@@ -70,6 +83,7 @@ class LoopState {
   std::vector<Used> used_;
   std::vector<std::pair<StreamState*, StreamState*>> exchanges_;  ///< carried out in order
   std::vector<StreamState*> kept_;  ///< streams that it owns
+  std::unique_ptr<LoopRunner> runner_;  ///< null: calls run one after the other
 };
 
 /// Throws sk::Error if the device records calls: `what` needs a result that only a call that runs has.

@@ -8,6 +8,7 @@
 namespace sk::gl {
 
 void BoundState::drawFramebuffer(GLuint name) {
+  spoil();
   if (drawFramebuffer_ != name) {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name);
     drawFramebuffer_ = name;
@@ -15,6 +16,7 @@ void BoundState::drawFramebuffer(GLuint name) {
 }
 
 void BoundState::readFramebuffer(GLuint name) {
+  spoil();
   if (readFramebuffer_ != name) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, name);
     readFramebuffer_ = name;
@@ -36,15 +38,18 @@ void BoundState::forget() {
 }
 
 void BoundState::forgetProgram(GLuint name) {
+  for (CommandLog* const log : kept_) log->forgetProgram(name);
   if (program_ == name) program_ = unknown;
 }
 
 void BoundState::forgetTexture(GLuint name) {
+  for (CommandLog* const log : kept_) log->forgetTexture(name);
   for (auto* units : {&textures_, &arrayTextures_}) std::ranges::replace(*units, name, unknown);
   std::ranges::replace(images_, name, unknown);
 }
 
 void BoundState::forgetFramebuffer(GLuint name) {
+  for (CommandLog* const log : kept_) log->forgetFramebuffer(name);
   if (drawFramebuffer_ == name) drawFramebuffer_ = unknown;
   if (readFramebuffer_ == name) readFramebuffer_ = unknown;
 }

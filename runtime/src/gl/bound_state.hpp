@@ -6,9 +6,12 @@
 #pragma once
 
 #include <array>
+#include <utility>
+#include <vector>
 
 #include <epoxy/gl.h>
 
+#include "gl/command_log.hpp"
 #include "gl/deletions.hpp"
 #include "gl/errors.hpp"
 
@@ -26,12 +29,14 @@ class BoundState {
   BoundState& operator=(const BoundState&) = delete;
 
   void program(GLuint name) {
+    note({.kind = Command::Kind::Program, .name = name});
     if (program_ != name) {
       glUseProgram(name);
       program_ = name;
     }
   }
   void vertexArray(GLuint name) {
+    note({.kind = Command::Kind::VertexArray, .name = name});
     if (vertexArray_ != name) {
       glBindVertexArray(name);
       vertexArray_ = name;
@@ -39,18 +44,21 @@ class BoundState {
   }
   /// Array textures have a separate binding on each unit.
   void texture(int unit, GLuint name, bool isArray) {
+    note({.kind = isArray ? Command::Kind::ArrayTexture : Command::Kind::Texture, .unit = unit, .name = name});
     if ((isArray ? arrayTextures_ : textures_)[static_cast<std::size_t>(unit)] != name) {
       bindTexture(unit, name, isArray);
     }
   }
   /// Binds a sampler; 0 uses the texture's own settings. The texture must be bound first.
   void sampler(int unit, GLuint name) {
+    note({.kind = Command::Kind::Sampler, .unit = unit, .name = name});
     if (samplers_[static_cast<std::size_t>(unit)] != name) {
       bindSampler(unit, name);
     }
   }
   /// Binds all layers of a texture as an image that programs write.
   void image(int unit, GLuint name, GLenum format) {
+    note({.kind = Command::Kind::Image, .unit = unit, .name = name, .format = format});
     if (images_[static_cast<std::size_t>(unit)] != name) {
       bindImage(unit, name, format);
     }
@@ -58,6 +66,7 @@ class BoundState {
   /// Binds the buffer that programs write, at binding 0 and at the generic binding, through which its bytes
   /// are read.
   void storage(GLuint name) {
+    spoil();
     if (storage_ != name) {
       bindStorage(name);
     }
@@ -70,6 +79,7 @@ class BoundState {
   }
   /// Binds a framebuffer for drawing and reading.
   void framebuffer(GLuint name) {
+    note({.kind = Command::Kind::Framebuffer, .name = name});
     if (drawFramebuffer_ != name || readFramebuffer_ != name) {
       glBindFramebuffer(GL_FRAMEBUFFER, name);
       drawFramebuffer_ = readFramebuffer_ = name;
@@ -79,6 +89,7 @@ class BoundState {
   void readFramebuffer(GLuint name);
   void viewport(GLint x, GLint y, GLsizei width, GLsizei height) {
     const std::array<GLint, 4> wanted{x, y, width, height};
+    note({.kind = Command::Kind::Viewport, .numbers = wanted});
     if (viewport_ != wanted) {
       setViewport(wanted);
       viewport_ = wanted;
@@ -101,6 +112,24 @@ class BoundState {
   void enterApplication(bool hasManyViewports);
   /// Restores what was saved, and the active unit `activeUnit`.
   void leaveApplication(GLint activeUnit);
+
+  /// Notes all later commands in a log; null: in none. Returns the log before.
+  CommandLog* logTo(CommandLog* log) noexcept { return std::exchange(log_, log); }
+  bool isLogged() const noexcept { return log_ != nullptr; }
+  void note(const Command& command) {
+    if (log_ != nullptr) log_->note(command);
+  }
+  template <class Uniform, class Value>
+  void note(Uniform& uniform, const Value& value) {
+    if (log_ != nullptr) log_->note(uniform, value);
+  }
+  /// Must be called for each command that has no Command.
+  void spoil() noexcept {
+    if (log_ != nullptr) log_->spoil();
+  }
+  /// A log that shall learn which objects are deleted, until drop().
+  void keep(CommandLog& log) { kept_.push_back(&log); }
+  void drop(CommandLog& log) noexcept { std::erase(kept_, &log); }
 
   Errors errors;
   Deletions deletions;
@@ -141,6 +170,8 @@ class BoundState {
     return units;
   }
 
+  CommandLog* log_ = nullptr;
+  std::vector<CommandLog*> kept_;
   GLuint program_ = unknown;
   GLuint vertexArray_ = unknown;
   GLuint drawFramebuffer_ = unknown;
@@ -157,6 +188,19 @@ class BoundState {
   std::array<KeptUnit, maxTextureUnits> keptUnits_{};
   std::array<KeptImage, maxImageUnits> keptImages_{};
   KeptStorage keptStorage_;
+};
+
+/// Leaves commands out of the log whose effect lasts, as long as this object lives.
+class UnloggedScope {
+ public:
+  explicit UnloggedScope(BoundState& bound) : bound_(bound), log_(bound.logTo(nullptr)) {}
+  ~UnloggedScope() { bound_.logTo(log_); }
+  UnloggedScope(const UnloggedScope&) = delete;
+  UnloggedScope& operator=(const UnloggedScope&) = delete;
+
+ private:
+  BoundState& bound_;
+  CommandLog* log_;
 };
 
 /// Deletes, at its end, the objects whose owners were destroyed in this scope. The context must be current.

@@ -7,18 +7,41 @@
 
 namespace sk::gl {
 
-/// Draws the viewport as a strip of four corners, which a vertex program computes from gl_VertexID.
-inline void drawViewport() { glDrawArrays(GL_TRIANGLE_STRIP, 0, 4); }
+/// The vertices of a strip of four corners, which a vertex program computes from gl_VertexID.
+inline constexpr GLsizei cornersOfViewport = 4;
 
-/// Runs work groups of the compute program, and makes their writes visible to all later commands.
-inline void dispatch(GLsizei groupsInX, GLsizei groupsInY) {
-  glDispatchCompute(static_cast<GLuint>(groupsInX), static_cast<GLuint>(groupsInY), 1);
+/// Draws the viewport.
+inline void drawViewport(BoundState& bound) {
+  bound.note({.kind = Command::Kind::Draw});
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, cornersOfViewport);
+}
+/// Draws the viewport as often as the counts at `offset` in the buffer of indirect draws say.
+inline void drawViewportIndirect(GLintptr offset) {
+  glDrawArraysIndirect(GL_TRIANGLE_STRIP, reinterpret_cast<const void*>(offset));
+}
+
+/// Makes the writes of a dispatch visible to all later commands.
+inline void finishDispatch() {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                   GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
 }
+/// Runs work groups of the compute program.
+inline void dispatch(BoundState& bound, GLsizei groupsInX, GLsizei groupsInY) {
+  bound.note({.kind = Command::Kind::Dispatch, .numbers = {groupsInX, groupsInY}});
+  glDispatchCompute(static_cast<GLuint>(groupsInX), static_cast<GLuint>(groupsInY), 1);
+  finishDispatch();
+}
+/// Runs as many work groups as the counts at `offset` in the buffer of indirect dispatches say.
+inline void dispatchIndirect(GLintptr offset) {
+  glDispatchComputeIndirect(offset);
+  finishDispatch();
+}
 
 /// Orders dispatches after draws that read what they write.
-inline void finishDraws() { glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT); }
+inline void finishDraws(BoundState& bound) {
+  bound.note({.kind = Command::Kind::FinishDraws});
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
 
 /// Waits until the device has finished all commands.
 inline void finish() { glFinish(); }
@@ -31,6 +54,7 @@ struct Corner {
 /// same format, bit for bit.
 inline void blit(BoundState& bound, GLuint from, Corner source, GLuint to, Corner target, GLsizei width,
                  GLsizei height) {
+  bound.spoil();
   bound.readFramebuffer(from);
   bound.drawFramebuffer(to);
   glBlitFramebuffer(source.x, source.y, source.x + width, source.y + height, target.x, target.y,

@@ -32,6 +32,7 @@ Framebuffer::Framebuffer(BoundState& bound, std::span<const GLuint> textures, bo
 }
 
 void Framebuffer::selectLayer(BoundState& bound, GLint layer) {
+  bound.spoil();
   bound.framebuffer(name());
   if (layer == layer_) {
     return;
@@ -45,6 +46,7 @@ void Framebuffer::selectLayer(BoundState& bound, GLint layer) {
 
 void Framebuffer::read(BoundState& bound, const Transfer& transfer, GLint x, GLint y, GLsizei width,
                        GLsizei height, void* texels) const {
+  bound.spoil();
   bound.framebuffer(name());
   glReadPixels(x, y, width, height, transfer.format, transfer.type, texels);
 }

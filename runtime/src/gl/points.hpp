@@ -7,6 +7,7 @@
 
 #include <epoxy/gl.h>
 
+#include "gl/bound_state.hpp"
 #include "gl/capabilities.hpp"
 
 namespace sk::gl {
@@ -33,6 +34,9 @@ class Blending {
 };
 
 /// Draws `count` points with the current bindings; the vertex program computes positions from gl_VertexID.
-inline void drawPoints(GLsizei count) { glDrawArrays(GL_POINTS, 0, count); }
+inline void drawPoints(BoundState& bound, GLsizei count) {
+  bound.spoil();
+  glDrawArrays(GL_POINTS, 0, count);
+}
 
 }  // namespace sk::gl

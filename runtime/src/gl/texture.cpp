@@ -38,6 +38,7 @@ Texture::Texture(BoundState& bound, const Format& format, const assemble::Textur
 }
 
 void Texture::write(BoundState& bound, const assemble::Rect& rect, GLint layer, const void* texels) {
+  bound.spoil();
   bound.textureToChange(name(), isLayered());
   const Transfer& tight = format_->tight;
   if (isLayered()) {
@@ -50,6 +51,7 @@ void Texture::write(BoundState& bound, const assemble::Rect& rect, GLint layer, 
 }
 
 void Texture::copyLayer(BoundState& bound, GLuint framebuffer, GLint layer, GLsizei width, GLsizei height) {
+  bound.spoil();
   bound.readFramebuffer(framebuffer);
   bound.textureToChange(name(), true);
   glCopyTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, 0, 0, width, height);

@@ -123,11 +123,15 @@ FieldUniform::FieldUniform(GLint location, std::span<const program::Field> parts
   }
 }
 
-void FieldUniform::set(const void* value) {
-  const std::byte* bytes = static_cast<const std::byte*>(value) + field_->offset;
-  if (location_ < 0 || (isKnown_ && std::memcmp(last_.data(), bytes, size_) == 0)) {
-    return;
-  }
+void FieldUniform::set(BoundState& bound, const void* value) {
+  if (location_ < 0) return;
+  const std::byte* const bytes = static_cast<const std::byte*>(value) + field_->offset;
+  bound.note(*this, std::span(bytes, size_));
+  setBytes(bytes);
+}
+
+void FieldUniform::setBytes(const std::byte* bytes) {
+  if (isKnown_ && std::memcmp(last_.data(), bytes, size_) == 0) return;
   std::memcpy(last_.data(), bytes, size_);
   isKnown_ = true;
   if (parts_ == 1) {
@@ -138,9 +142,14 @@ void FieldUniform::set(const void* value) {
   }
 }
 
-void DoubleUniform::set(const void* value) {
+void DoubleUniform::set(BoundState& bound, const void* value) {
   double whole = 0;
   std::memcpy(&whole, static_cast<const std::byte*>(value) + offset_, sizeof whole);
+  bound.note(*this, whole);
+  setValue(whole);
+}
+
+void DoubleUniform::setValue(double whole) {
   if (isKnown_ && std::memcmp(&last_, &whole, sizeof whole) == 0) {
     return;
   }

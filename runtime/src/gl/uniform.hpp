@@ -11,6 +11,7 @@
 
 #include <epoxy/gl.h>
 
+#include "gl/bound_state.hpp"
 #include "sk/program.hpp"
 
 namespace sk::gl {
@@ -23,12 +24,12 @@ class IntUniform {
   IntUniform() = default;
   IntUniform(GLint location, bool isVector) : location_(location), isVector_(isVector) {}
 
-  void set(const Int4& value) {
-    if (location_ >= 0 && !(isKnown_ && value_ == value)) {
-      send(value);
-    }
+  void set(BoundState& bound, const Int4& value) {
+    if (location_ < 0) return;
+    bound.note({.kind = Command::Kind::Ints, .uniform = this, .numbers = value});
+    if (!(isKnown_ && value_ == value)) send(value);
   }
-  void set(std::int32_t value) { set(Int4{value, 0, 0, 0}); }
+  void set(BoundState& bound, std::int32_t value) { set(bound, Int4{value, 0, 0, 0}); }
 
  private:
   void send(const Int4& value);
@@ -46,7 +47,8 @@ class DoubleUniform {
   static DoubleUniform pair(GLint head, GLint tail, std::uint32_t offset) { return {-1, head, tail, offset}; }
 
   /// `value` is the whole parameter, with the double at byte `offset`.
-  void set(const void* value);
+  void set(BoundState& bound, const void* value);
+  void setValue(double value);
 
  private:
   DoubleUniform(GLint bits, GLint head, GLint tail, std::uint32_t offset)
@@ -65,7 +67,9 @@ class FieldUniform {
   FieldUniform(GLint location, std::span<const program::Field> parts);
 
   /// `value` is the whole parameter, laid out as its Element says.
-  void set(const void* value);
+  void set(BoundState& bound, const void* value);
+  /// `bytes` is its own part of the parameter.
+  void setBytes(const std::byte* bytes);
 
  private:
   GLint location_;

@@ -13,6 +13,7 @@
 #include "assemble/glsl/tables.hpp"
 #include "call/check_argument.hpp"
 #include "call/precision.hpp"
+#include "device/loop_state.hpp"
 #include "gl/commands.hpp"
 #include "gl_device/append/append_call.hpp"
 #include "gl_device/gl_stream.hpp"
@@ -130,6 +131,7 @@ GlDevice::~GlDevice() {
     }
   }
   if (passes && current) passes->complete();
+  for (LoopState* loop : loops) loop->leave();
   while (firstStream() != nullptr) {
     auto& stream = static_cast<GlStream&>(*firstStream());
     stream.leave();

@@ -86,6 +86,7 @@ class GlDevice final : public DeviceState {
   void makeCurrent() override;
   void run(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
+  std::unique_ptr<LoopRunner> makeLoopRunner() override;
   void reduce(const ResolvedReduction& call) override;
 
   /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names

@@ -224,10 +224,14 @@ void GlStream::fill(const StreamRegion& region, const std::byte* value) {
     std::copy_n(texel.begin(), held().size, texel.begin() + static_cast<std::ptrdiff_t>(at));
   }
   PlanesLease one(owner());
-  one.planes = owner().acquirePlanes(*what.element, {1, 1}, "the value of fill()");
   const RegionLayout single{.extent = {1, 1, 1, 1}};
-  bool ignored = false;
-  upload(owner(), *what.element, one.planes, single, texel.data(), ignored);
+  {
+    const UnreservedScope unreserved(owner().pool);  // a loop keeps the texel
+    const gl::UnloggedScope unlogged(owner().bound);
+    one.planes = owner().acquirePlanes(*what.element, {1, 1}, "the value of fill()");
+    bool ignored = false;
+    upload(owner(), *what.element, one.planes, single, texel.data(), ignored);
+  }
   const std::vector<assemble::Rect> rects = assemble::drawnTexels(what.place);
   prepareCopy(owner(), *what.element, single, what.place, /*byKernel=*/true);
   isBroken = true;
@@ -236,6 +240,7 @@ void GlStream::fill(const StreamRegion& region, const std::byte* value) {
     RenderTarget* const targets[] = {&planes[plane]};
     runKernel(owner(), copyKernel(what.element->fields[plane]), operands, what.place, rects, targets);
   }
+  owner().pool.keep(one.planes);
   setWritten();
 }
 

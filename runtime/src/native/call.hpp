@@ -15,6 +15,10 @@
 #include "native/memory.hpp"
 #include "sk/native/table.hpp"
 
+namespace sk {
+class RowPieces;
+}  // namespace sk
+
 namespace sk::native {
 
 using Extents = std::array<std::int64_t, 4>;
@@ -61,6 +65,8 @@ struct ReduceCall {
   Call combine;  ///< ignores its Inputs and Accumulators
   Extents block{1, 1, 1, 1};  ///< divides the domain
   std::optional<ScanOf> scan = std::nullopt;
+  const RowPieces* rows = nullptr;  ///< the blocks of a one-dimensional domain, if their lengths differ
+  bool holdsFloats = false;  ///< rows: all operands hold floats, but the code computes in double
 };
 
 }  // namespace sk::native

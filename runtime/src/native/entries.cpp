@@ -42,6 +42,8 @@ std::string_view nameOf(EntryKind kind) {
     case EntryKind::Combine: return "combines partial results";
     case EntryKind::Identity: return "gives its identities";
     case EntryKind::Scan: return "scans elements";
+    case EntryKind::FoldRows:
+    case EntryKind::FoldFloatRows: return "folds rows of different lengths";
     case EntryKind::Apply: return "stores what it scatters";
     case EntryKind::Borders: break;
   }

@@ -7,6 +7,7 @@
 #include "native/check_fold.hpp"
 #include "native/code_frame.hpp"
 #include "native/fold_program.hpp"
+#include "native/fold_rows.hpp"
 #include "native/scan_blocks.hpp"
 #include "native/sum_floats.hpp"
 
@@ -25,7 +26,7 @@ Bound<Function> bound(const Entry& entry, const CodeFrame& frame) {
 }  // namespace
 
 void foldCode(const program::Reduction& reduction, const native::ReduceCall& call, const CodeChoice& choice) {
-  if (!call.scan && sumsFloats(reduction, call.fold, choice)) {
+  if (!call.scan && call.rows == nullptr && sumsFloats(reduction, call.fold, choice)) {
     sumFloats(reduction, call, choice);
     return;
   }
@@ -33,7 +34,8 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
   const Entry& combine = entryOf(reduction.combine, EntryKind::Combine, choice);
   const CodeFrame frame(reduction.fold, call.fold);
   const CodeFrame combineFrame(reduction.combine, call.combine);
-  const SlotLayout layout(reduction.fold, call.fold, frame, choice);
+  const SlotLayout layout(reduction.fold, call.fold, frame,
+                          call.holdsFloats ? CodeChoice{.real = RealType::Float} : choice);
   const StateShape shape(reduction.fold.parameters, choice.real);
   const FoldResults results(reduction.fold.parameters, call.fold.operands, shape);
   const FoldProgram program{.layout = layout,
@@ -43,6 +45,15 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
                             .isCommutative = reduction.commutative,
                             .isUneven = reduction.fold.code->isUneven != 0};
   if (checksFolds() && !reduction.commutative) checkFold(reduction, program, call.fold, choice);
+  const auto rowsOf = [&] {
+    const EntryKind kind = call.holdsFloats ? EntryKind::FoldFloatRows : EntryKind::FoldRows;
+    return RowsProgram{program,
+                       bound<native::FoldRowsFunction>(entryOf(reduction.fold, kind, choice), frame)};
+  };
+  if (!call.scan && call.rows != nullptr) {
+    foldRows(rowsOf(), *call.rows, results);
+    return;
+  }
   if (!call.scan) {
     foldBlocks(program, call.fold.domain, call.block, results);
     return;
@@ -54,6 +65,10 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
   const Entry& scan = entryOf(reduction.fold, EntryKind::Scan, choice);
   const ScanProgram scanProgram{program, bound<native::ScanFunction>(scan, frame), identities,
                                 call.scan->isExclusive, call.scan->combinesRuns};
+  if (call.rows != nullptr) {
+    scanRows(scanProgram, rowsOf(), *call.rows, results);
+    return;
+  }
   scanBlocks(scanProgram, call.fold.domain, call.block, results);
 }
 

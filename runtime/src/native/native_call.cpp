@@ -15,8 +15,10 @@
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "call/resolved_reduction.hpp"
+#include "device/rows_state.hpp"
 #include "native/coalesce.hpp"
 #include "native/entries.hpp"
+#include "native/extents.hpp"
 #include "native/fold_code.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
@@ -31,32 +33,9 @@ namespace {
 
 using native::Extents;
 using native::Operand;
-using program::Fit;
 using program::Kernel;
 using program::Parameter;
 using program::Role;
-
-/// Extents with x first; missing dimensions have extent 1.
-Extents fastestFirst(const Shape& shape) {
-  Extents extents{1, 1, 1, 1};
-  for (int d = 0; d < shape.rank(); ++d) {
-    extents[static_cast<std::size_t>(shape.rank() - 1 - d)] = shape[d];
-  }
-  return extents;
-}
-
-/// Sets how the index in an element input follows from that in the domain.
-void fit(Operand& operand, Fit way, const Extents& domain) {
-  for (std::size_t d = 0; d < domain.size(); ++d) {
-    const std::int64_t extent = operand.extent[d];
-    if (way == Fit::Same) {
-      operand.multiply[d] = extent == 1 ? 0 : 1;
-    } else {  // one of the two is 1
-      operand.divide[d] = std::max<std::int64_t>(domain[d] / extent, 1);
-      operand.multiply[d] = std::max<std::int64_t>(extent / domain[d], 1);
-    }
-  }
-}
 
 bool isWritten(Role role) {
   return role == Role::Output || role == Role::Scatter || role == Role::VariableOutput ||
@@ -106,18 +85,36 @@ class Operands {
     return kept_.emplace_back(element, real_, count);
   }
 
-  /// True if another run needs no more than refresh(): there are no copies of streams, and no pushes.
-  bool mayRunAgain() const { return copies_.empty() && written_.empty() && pushed_.empty(); }
-  /// Takes the arrays of all streams, and the values in streams, anew, which calls may have exchanged meanwhile.
-  void refresh() {
-    for (const Held& held : held_) copyHeld(held);
+  /// True if another run needs no more than beginAgain() and settleAgain(), and finds out what these need.
+  bool mayRunAgain() {
+    if (!copies_.empty() || !written_.empty() || !pushed_.empty()) return false;
     for (std::size_t i = 0; i < list_.size(); ++i) {
       const StreamRegion& region = arguments_[i].region;
       const Role role = kernel_.parameters[i].role;
-      if (region.stream == nullptr || role == Role::Uniform || list_[i].components.empty()) continue;
+      if (region.stream == nullptr) continue;
       NativeStream& stream = nativeStream(region);
-      const bool isSpare = isWritten(role) && isReplaced(region);
-      list_[i].components = (isSpare ? stream.spare() : stream.components).arrays();
+      if (isWrittenInPlace(i)) writtenInPlace_.push_back(&stream);
+      if (writesWholeStream(i) && isReplaced(region)) replaced_.push_back(&stream);
+      if (isWritten(role)) results_.push_back(&stream);
+      if (role == Role::Uniform || list_[i].components.empty()) continue;
+      lent_.push_back({i, &stream, isWritten(role) && isReplaced(region)});
+    }
+    return true;
+  }
+  bool readsValuesInStreams() const { return !held_.empty(); }
+  /// begin(), with the arrays and values that streams have now.
+  void beginAgain() {
+    for (const Held& held : held_) copyHeld(held);
+    for (const Lent& lent : lent_) {
+      list_[lent.operand].components = (lent.isSpare ? lent.stream->spare() : lent.stream->components).arrays();
+    }
+    for (NativeStream* const stream : writtenInPlace_) stream->isBroken = true;
+  }
+  void settleAgain() {
+    for (NativeStream* const stream : replaced_) stream->exchange();
+    for (NativeStream* const stream : results_) {
+      stream->keepStorage();
+      stream->isBroken = false;
     }
   }
 
@@ -176,6 +173,11 @@ class Operands {
   struct Held {
     StreamRegion region;
     Components& value;
+  };
+  struct Lent {
+    std::size_t operand;  ///< whose arrays are a stream's
+    NativeStream* stream;
+    bool isSpare;
   };
 
   /// True if an argument is written neither to spare arrays nor to a copy.
@@ -320,6 +322,8 @@ class Operands {
   std::vector<Operand> list_;
   std::list<Components> kept_;
   std::vector<Held> held_;  ///< uniforms
+  std::vector<Lent> lent_;  ///< this and the next three: for beginAgain() and settleAgain()
+  std::vector<NativeStream*> writtenInPlace_, replaced_, results_;
   std::list<native::Pushed> pushed_;
   std::vector<std::pair<const NativeStream*, const Components*>> copies_;  ///< for reading
   std::list<std::pair<NativeStream*, Components>> written_;
@@ -349,6 +353,36 @@ std::optional<native::ScanOf> scanOf(const ResolvedReduction& call) {
   return native::ScanOf{.isExclusive = call.scan->isExclusive, .combinesRuns = foldsDigits};
 }
 
+bool hasDoubles(const program::Element& element) {
+  return std::ranges::any_of(
+      element.fields, [](const program::Field& field) { return field.scalar == program::Scalar::Double; });
+}
+
+/// Whether rows are folded in doubles from operands that hold floats: none has doubles, and the code that combines
+/// accumulators reads no operands of its own.
+bool foldsFloatRows(const program::Reduction& reduction, std::span<const Argument> arguments,
+                    const CodeChoice& choice) {
+  if (choice.real != RealType::Double || reduction.fold.code == nullptr ||
+      findEntry(*reduction.fold.code, native::EntryKind::FoldFloatRows, choice) == nullptr) {
+    return false;
+  }
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (hasDoubles(*reduction.fold.parameters[i].element)) return false;
+    const StreamState* const stream = arguments[i].region.stream;
+    if (stream != nullptr && nativeStream(arguments[i].region).components.real() != RealType::Float)
+      return false;
+  }
+  return std::ranges::all_of(reduction.combine.parameters, [](const Parameter& parameter) {
+    return parameter.role == Role::Input || parameter.role == Role::Accumulator;
+  });
+}
+
+/// The rows of a reduction, if its blocks are rows of different lengths.
+struct RowsOfCall {
+  const RowPieces* pieces = nullptr;
+  bool holdsFloats = false;  ///< native::ReduceCall::holdsFloats
+};
+
 /// The call of a reduction, without its results.
 class Folding {
  public:
@@ -356,12 +390,15 @@ class Folding {
 
   Folding(const CodeChoice& choice, const program::Reduction& reduction, std::span<const Argument> arguments,
           const Shape& domain, std::vector<native::Table> foldTables,
-          std::vector<native::Table> combineTables, const std::optional<native::ScanOf>& scan)
-      : fold(choice.real, reduction.fold, arguments, domain, std::move(foldTables), scan.has_value()),
+          std::vector<native::Table> combineTables, const std::optional<native::ScanOf>& scan,
+          const RowsOfCall& rows)
+      : fold(rows.holdsFloats ? RealType::Float : choice.real, reduction.fold, arguments, domain,
+             std::move(foldTables), scan.has_value()),
         choice_(choice),
         reduction_(reduction),
         combineTables_(std::move(combineTables)),
-        scan_(scan) {
+        scan_(scan),
+        rows_(rows) {
     for (const std::uint8_t operand : reduction.combineOperands) {
       combine_.push_back(fold.list()[operand]);
     }
@@ -369,8 +406,9 @@ class Folding {
   }
 
   void run(Extents block) {
-    const native::Call whole = fold.call(block);
-    const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block, scan_};
+    const native::Call whole = rows_.pieces == nullptr ? fold.call(block) : fold.callAsItIs();
+    const native::ReduceCall call{
+        whole, {combine_, {1, 1, 1, 1}, combineTables_}, block, scan_, rows_.pieces, rows_.holdsFloats};
     foldCode(reduction_, call, choice_);
   }
   /// Stores the identities to all blocks, of which there are `counts` in each dimension; `results` are the
@@ -397,6 +435,7 @@ class Folding {
   const program::Reduction& reduction_;
   std::vector<native::Table> combineTables_;
   std::optional<native::ScanOf> scan_;
+  RowsOfCall rows_;
   std::vector<Operand> combine_;
 };
 
@@ -463,18 +502,18 @@ class PreparedRun final : public RecordedCall {
         kernel_(kernel),
         choice_(codeChoice(real, call.options)),
         operands_(real, kernel, call.arguments, call.domain, std::move(tables)),
-        call_(operands_.call()) {}
+        call_(operands_.call()),
+        code_(kernel, choice_, operands_.readsValuesInStreams()) {}
 
-  bool mayRun() const { return operands_.mayRunAgain(); }
+  bool mayRun() { return operands_.mayRunAgain(); }
 
   void run() override {
     {
       const NativePass traced(device_, kernel_, {}, resolved_.arguments, resolved_.domain);
-      operands_.refresh();
-      operands_.begin();
-      runCode(kernel_, call_, choice_);
+      operands_.beginAgain();
+      code_.run(call_);
     }
-    operands_.settle();
+    operands_.settleAgain();
   }
 
  private:
@@ -484,6 +523,7 @@ class PreparedRun final : public RecordedCall {
   const CodeChoice choice_;
   Operands operands_;
   const native::Call call_;
+  RepeatedCode code_;
 };
 
 }  // namespace
@@ -503,9 +543,14 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
   const program::Reduction& reduction =
       computesInHalf(call.options) ? halfVariant(call.reduction) : call.reduction;
   const RealType real = realOf(call.options);
-  Folding folding(codeChoice(real, call.options), reduction, call.arguments, call.domain,
+  const CodeChoice choice = codeChoice(real, call.options);
+  RowsOfCall rows;
+  if (call.rows != nullptr) {
+    rows = {&call.rows->pieces(), !call.scan && foldsFloatRows(reduction, call.arguments, choice)};
+  }
+  Folding folding(choice, reduction, call.arguments, call.domain,
                   tablesOf(reduction.fold, real, call.options),
-                  tablesOf(reduction.combine, real, call.options), scanOf(call));
+                  tablesOf(reduction.combine, real, call.options), scanOf(call), rows);
   const Extents counts = fastestFirst(call.blocks);
   std::vector<std::size_t> results;
   std::vector<const Components*> values;
@@ -519,13 +564,14 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
     } else {
       folding.fold.list()[i] = resultOperand(folding.fold, call.arguments[i].region,
                                              call.scan ? fastestFirst(call.domain) : counts);
+      if (rows.holdsFloats) folding.fold.list()[i].holdsFloats = true;
     }
     results.push_back(i);
   }
   {
     const NativePass traced(*this, reduction.fold, "fold", call.arguments, call.domain);
     folding.fold.begin();
-    if (call.domain.size() == 0) {
+    if (call.domain.size() == 0 && call.rows == nullptr) {
       folding.storeIdentities(results, counts);
     } else {
       Extents block = fastestFirst(call.domain);
@@ -549,6 +595,25 @@ bool NativeDevice::sumsExactly(const ResolvedReduction& call) const {
   });
 }
 
+namespace {
+
+template <class Real>
+std::unique_ptr<RoundedSums> sumsOf(const ResolvedReduction& whole, const program::ExactSum& sum,
+                                    Operands& operands, RealType real) {
+  const CodeChoice choice{.real = real};  // the same bits on every device: never contracted
+  if (whole.rows != nullptr) {
+    return std::make_unique<NativeSums<Real>>(
+        sumRowsExactly<Real>(whole.reduction, sum, operands.callAsItIs(), whole.rows->pieces(), choice));
+  }
+  const Extents counts = fastestFirst(whole.blocks);
+  Extents block = fastestFirst(whole.domain);
+  for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
+  const native::Call call = operands.call(block);
+  return std::make_unique<NativeSums<Real>>(sk::sumExactly<Real>(whole.reduction, sum, call, block, choice));
+}
+
+}  // namespace
+
 std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& whole,
                                                       const program::ExactSum& sum) {
   const program::Reduction& reduction = whole.reduction;
@@ -566,22 +631,13 @@ std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& w
   }
   const RealType real = realOf(whole.options);
   Operands operands(real, kernel, all, whole.domain, tablesOf(kernel, real, whole.options));
-  const Extents counts = fastestFirst(whole.blocks);
-  Extents block = fastestFirst(whole.domain);
-  for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
   const NativePass traced(*this, kernel, "fold", all, whole.domain);
-  const native::Call call = operands.call(block);
-  const CodeChoice choice{.real = real};  // the same bits on every device: never contracted
   switch (real) {
     case RealType::Float: break;
-    case RealType::Double:
-      return std::make_unique<NativeSums<double>>(
-          sk::sumExactly<double>(reduction, sum, call, block, choice));
-    case RealType::Quad:
-      return std::make_unique<NativeSums<native::Quad>>(
-          sk::sumExactly<native::Quad>(reduction, sum, call, block, choice));
+    case RealType::Double: return sumsOf<double>(whole, sum, operands, real);
+    case RealType::Quad: return sumsOf<native::Quad>(whole, sum, operands, real);
   }
-  return std::make_unique<NativeSums<float>>(sk::sumExactly<float>(reduction, sum, call, block, choice));
+  return sumsOf<float>(whole, sum, operands, real);
 }
 
 }  // namespace sk

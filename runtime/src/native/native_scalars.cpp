@@ -121,13 +121,20 @@ struct ScalarValue {
   }
 };
 
+/// The values of a pass, whose memory is kept between its runs.
+struct ScalarValues {
+  std::vector<ScalarValue> reads, steps;
+};
+
 /// `Float` and `Double` stand for a kernel's float and double.
 template <class Float, class Double>
 class Evaluation {
  public:
-  Evaluation(const ScalarPass& pass, RealType real) : pass_(pass), real_(real) {}
+  Evaluation(const ScalarPass& pass, ScalarValues& values) : pass_(pass), reads_(values.reads), steps_(values.steps) {}
 
   void run() {
+    reads_.clear();
+    steps_.clear();
     for (const StreamRegion& read : pass_.reads) reads_.push_back(stored(read.stream));
     for (const ScalarStep& step : pass_.steps) steps_.push_back(valueOf(step));
     for (const ScalarPass::Output& output : pass_.outputs) {
@@ -189,8 +196,8 @@ class Evaluation {
   static bool isBinary(ScalarOp op) { return op >= ScalarOp::Add; }
 
   const ScalarPass& pass_;
-  RealType real_;
-  std::vector<ScalarValue> reads_, steps_;
+  std::vector<ScalarValue>& reads_;
+  std::vector<ScalarValue>& steps_;
 };
 
 class NativeScalars final : public RecordedCall {
@@ -199,15 +206,16 @@ class NativeScalars final : public RecordedCall {
 
   void run() override {
     switch (real_) {
-      case RealType::Float: Evaluation<float, double>(pass_, real_).run(); return;
-      case RealType::Double: Evaluation<double, double>(pass_, real_).run(); return;
-      case RealType::Quad: Evaluation<native::Quad, native::Quad>(pass_, real_).run(); return;
+      case RealType::Float: Evaluation<float, double>(pass_, values_).run(); return;
+      case RealType::Double: Evaluation<double, double>(pass_, values_).run(); return;
+      case RealType::Quad: Evaluation<native::Quad, native::Quad>(pass_, values_).run(); return;
     }
   }
 
  private:
   const ScalarPass pass_;
   const RealType real_;
+  ScalarValues values_;
 };
 
 }  // namespace

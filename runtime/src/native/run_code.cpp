@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "native/call_memory.hpp"
 #include "native/chunk_runner.hpp"
@@ -27,6 +30,7 @@ using program::Role;
 /// One kernel over one domain.
 class CodeRun {
  public:
+  /// What the call's operands point to must outlive it.
   CodeRun(const Kernel& kernel, const native::Call& call, const CodeChoice& choice)
       : kernel_(kernel),
         call_(call),
@@ -35,20 +39,45 @@ class CodeRun {
         rowsEntry_(findRowsEntry(kernel, call, choice)),
         frame_(kernel, call, memory_.get()),
         layout_(kernel, call, frame_, choice, memory_.get()),
-        pieces_(call.domain, kernel.code->isUneven != 0) {}
+        pieces_(call.domain, kernel.code->isUneven != 0),
+        blocks_(call.domain, rowsEntry_ == nullptr ? 1 : rowsEntry_->rows),
+        isRecorded_(has(Role::VariableOutput) || has(Role::Scatter)) {}
 
   void run() {
     if (pieces_.count() == 0) return;
-    if (has(Role::VariableOutput) || has(Role::Scatter)) {
+    if (isRecorded_) {
       record();
     } else if (rowsEntry_ != nullptr) {
       runBlocks();
     } else {
-      const auto rows = static_cast<std::size_t>(call_.domain[1]);
-      const std::size_t atOnce = std::min(ChunkRunner::rowsAtOnce(layout_), rows);
+      const std::size_t atOnce = rowsAtOnce();
       inParallel(pieces_.count(), [&](Range range) { runPieces(range, frame_.get(), {}, atOnce); });
     }
   }
+
+  /// Like run(), with the memory of the last runAgain() on this thread, if there is too little work for others.
+  void runAgain() {
+    if (pieces_.count() == 0) return;
+    const bool isAlone = rowsEntry_ == nullptr ? native::threadsFor(pieces_.count(), costOfPiece()) == 1
+                                               : native::threadsFor(blocks_.count(), costOfBlock()) == 1;
+    if (isRecorded_ || !isAlone) return run();
+    const std::size_t atOnce = rowsAtOnce();
+    if (!runner_) {
+      if (rowsEntry_ == nullptr) {
+        runner_.emplace(layout_, entry_, frame_.get(), ChunkHook{}, atOnce);
+      } else {
+        runner_.emplace(layout_, *rowsEntry_, frame_.get());
+      }
+    }
+    if (rowsEntry_ == nullptr) {
+      visitPieces({0, pieces_.count()}, *runner_, atOnce);
+    } else {
+      visitBlocks({0, blocks_.count()}, *runner_);
+    }
+  }
+
+  /// True if gathers have border values, which are read when the call is prepared.
+  bool hasBorders() const { return layout_.hasBorders(); }
 
  private:
   /// The RunRows entry; null if there is none, or if the domain has one row or less than half of the entry's
@@ -68,20 +97,29 @@ class CodeRun {
   void runPieces(Range range, const native::Frame* frame, const ChunkHook& hook,
                  std::size_t rowsAtOnce = 1) const {
     ChunkRunner runner(layout_, entry_, frame, hook, rowsAtOnce);
+    visitPieces(range, runner, rowsAtOnce);
+  }
+  void visitPieces(Range range, ChunkRunner& runner, std::size_t rowsAtOnce) const {
     pieces_.forEachRun(
         range, static_cast<std::int64_t>(rowsAtOnce),
         [&](const Extents& first, std::int64_t count, std::size_t rows) { runner.run(first, count, rows); });
   }
+  std::size_t rowsAtOnce() const {
+    return std::min(ChunkRunner::rowsAtOnce(layout_), static_cast<std::size_t>(call_.domain[1]));
+  }
 
   void runBlocks() const {
-    const RowBlocks blocks(call_.domain, rowsEntry_->rows);
-    native::inParallel(blocks.count(), blocks.elementsOfOne() << 6, Deal::AsTheyCome, [&](Range range) {
+    native::inParallel(blocks_.count(), costOfBlock(), Deal::AsTheyCome, [&](Range range) {
       ChunkRunner runner(layout_, *rowsEntry_, frame_.get());
-      blocks.forEach(range, [&](const Extents& first, std::int64_t count, std::int64_t rows) {
-        runner.run(first, count, static_cast<std::size_t>(rows));
-      });
+      visitBlocks(range, runner);
     });
   }
+  void visitBlocks(Range range, ChunkRunner& runner) const {
+    blocks_.forEach(range, [&](const Extents& first, std::int64_t count, std::int64_t rows) {
+      runner.run(first, count, static_cast<std::size_t>(rows));
+    });
+  }
+  std::int64_t costOfBlock() const { return blocks_.elementsOfOne() << 6; }
 
   bool isUneven() const { return kernel_.code->isUneven != 0; }
   std::int64_t costOfPiece() const { return pieces_.elementsOfOne() * (isUneven() ? 1 << 6 : 1); }
@@ -164,7 +202,7 @@ class CodeRun {
   static constexpr std::int64_t elementsOfLog = 1 << 15;
 
   const Kernel& kernel_;
-  const native::Call& call_;
+  const native::Call call_;
   CodeChoice choice_;
   const native::Entry& entry_;
   const native::Entry* rowsEntry_;
@@ -172,12 +210,71 @@ class CodeRun {
   CodeFrame frame_;
   SlotLayout layout_;
   RowPieces pieces_;
+  RowBlocks blocks_;  ///< for rowsEntry_
+  bool isRecorded_;
+  std::optional<ChunkRunner> runner_;  ///< of runAgain()
 };
 
 }  // namespace
 
 void runCode(const Kernel& kernel, const native::Call& call, const CodeChoice& choice) {
   CodeRun(kernel, call, choice).run();
+}
+
+struct RepeatedCode::State {
+  State(const Kernel& kernel, const native::Call& call, const CodeChoice& choice)
+      : operands(call.operands.begin(), call.operands.end()),
+        code(kernel, {operands, call.domain, call.tables}, choice) {
+    for (const native::Operand& operand : operands) {
+      arrays.push_back(operand.components.data());
+      arrays.insert(arrays.end(), operand.components.begin(), operand.components.end());
+    }
+  }
+
+  bool has(const native::Call& call) const {
+    auto next = arrays.begin();
+    for (const native::Operand& operand : call.operands) {
+      if (*next++ != operand.components.data()) return false;
+      for (const void* const array : operand.components) {
+        if (*next++ != array) return false;
+      }
+    }
+    return true;
+  }
+
+  std::vector<native::Operand> operands;
+  std::vector<const void*> arrays;  ///< where each operand's list of arrays is, and these
+  CodeRun code;
+};
+
+RepeatedCode::RepeatedCode(const Kernel& kernel, const CodeChoice& choice, bool hasNewValues)
+    : kernel_(kernel), choice_(choice), hasNewValues_(hasNewValues) {}
+RepeatedCode::~RepeatedCode() = default;
+
+RepeatedCode::State& RepeatedCode::stateOf(const native::Call& call) {
+  constexpr std::size_t most = 6;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    last_ = last_ + 1 < states_.size() ? last_ + 1 : 0;
+    if (states_[last_]->has(call)) return *states_[last_];
+  }
+  auto made = std::make_unique<State>(kernel_, call, choice_);
+  if (states_.size() < most) {
+    last_ = states_.size();
+    states_.push_back(std::move(made));
+  } else {
+    last_ = last_ + 1 < most ? last_ + 1 : 0;
+    states_[last_] = std::move(made);
+  }
+  return *states_[last_];
+}
+
+void RepeatedCode::run(const native::Call& call) {
+  State& state = stateOf(call);
+  if (hasNewValues_ && state.code.hasBorders()) {  // these may depend on the values
+    runCode(kernel_, call, choice_);
+  } else {
+    state.code.runAgain();
+  }
 }
 
 }  // namespace sk

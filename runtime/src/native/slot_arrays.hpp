@@ -76,6 +76,7 @@ class SlotLayout {
   /// computed one by one.
   bool needsElementwiseCalls() const { return needsElementwiseCalls_; }
   bool hasGathers() const { return hasGathers_; }
+  bool hasBorders() const { return !borders_.empty(); }
   /// The elements of a row for which gathers read only neighbours in bounds along x.
   native::Range inside() const { return inside_; }
   /// The largest reach of a gather.

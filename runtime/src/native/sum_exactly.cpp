@@ -2,7 +2,6 @@
 #include "native/sum_exactly.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "native/chunk_runner.hpp"
@@ -119,11 +118,9 @@ std::vector<std::size_t> outputArrays(const Kernel& kernel, const SlotLayout& la
   return arrays;
 }
 
-/// The scalar's identity, which is one of the terms; nullopt in a seeded reduction.
+/// The scalar's identity, which must exist.
 template <class Real>
-std::optional<Real> identityOf(const program::Reduction& reduction, const program::ExactSum& sum,
-                               const CodeChoice& choice) {
-  if (reduction.seeded) return std::nullopt;
+Real identityOf(const program::Reduction& reduction, const program::ExactSum& sum, const CodeChoice& choice) {
   const std::span<const program::Parameter> parameters = reduction.fold.parameters;
   const StateShape shape(parameters, choice.real);
   const StateColumns identities(shape, 1);
@@ -174,6 +171,82 @@ std::vector<Real> sumBlocks(const BlockPieces& pieces, const Accumulator<Real>& 
   return results;
 }
 
+/// Likewise, of all rows; those without elements have the value `ofNone`. Sums are exact in any order.
+template <class Real, class Make>
+std::vector<Real> sumRows(const RowPieces& rows, const Accumulator<Real>& start, Real ofNone,
+                          native::Deal deal, Make&& make) {
+  struct Part {
+    std::int64_t row, begin, end;
+    bool isAlone;  ///< a whole row
+  };
+  std::vector<Real> results(static_cast<std::size_t>(rows.rows()), ofNone);
+  std::vector<Part> parts;
+  for (std::int64_t row = 0; row < rows.rows(); ++row) {
+    const std::int64_t first = rows.starts()[static_cast<std::size_t>(row)];
+    const std::int64_t end = rows.starts()[static_cast<std::size_t>(row) + 1];
+    for (std::int64_t begin = first; begin < end; begin += BlockPieces::most)
+      parts.push_back(
+          {row, begin, std::min(begin + BlockPieces::most, end), end - first <= BlockPieces::most});
+  }
+  std::vector<std::size_t> shared;  // parts of rows that have several
+  std::vector<std::size_t> place(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    place[i] = shared.size();
+    if (!parts[i].isAlone) shared.push_back(i);
+  }
+  std::vector<Accumulator<Real>> sums(shared.size(), start);
+  const auto count = static_cast<std::int64_t>(parts.size());
+  const std::int64_t cost = count == 0 ? 1 : (parts.back().end - parts.front().begin) / count + 1;
+  native::inParallel(count, cost, deal, [&](Range range) {
+    auto adder = make();
+    for (std::int64_t i = range.begin; i < range.end; ++i) {
+      const Part& part = parts[static_cast<std::size_t>(i)];
+      Accumulator<Real> sum = start;
+      const bool isFirst = part.begin == rows.starts()[static_cast<std::size_t>(part.row)];
+      if (!isFirst) sum.clear();
+      adder.add(sum, {part.begin, 0, 0, 0}, part.end - part.begin);
+      if (part.isAlone) {
+        results[static_cast<std::size_t>(part.row)] = sum.rounded();
+      } else {
+        sums[place[static_cast<std::size_t>(i)]] = sum;
+      }
+    }
+  });
+  for (std::size_t k = 0, first = 0; k < shared.size(); ++k) {
+    const Part& part = parts[shared[k]];
+    if (k == 0 || parts[shared[k - 1]].row != part.row) first = k;
+    if (k != first) sums[first].add(sums[k]);
+    if (k + 1 == shared.size() || parts[shared[k + 1]].row != part.row)
+      results[static_cast<std::size_t>(part.row)] = sums[first].rounded();
+  }
+  return results;
+}
+
+/// Calls sumAll(start, deal, make), which returns the sums, with what sumBlocks() takes.
+template <class Real, class SumAll>
+std::vector<Real> withAdder(const program::Reduction& reduction, const program::ExactSum& sum,
+                            const Call& call, const CodeChoice& choice, SumAll&& sumAll) {
+  Accumulator<Real> start = Summing<Real>::of(sum.ofProducts);
+  if (!reduction.seeded) {  // the identity is one of the terms
+    const Real identity = identityOf<Real>(reduction, sum, choice);
+    start.add(1, &identity);
+  }
+  if (sum.term.kernel == nullptr) {
+    const FactorKernel factors(reduction.fold, sum.term.factors, call);
+    const CodeFrame frame(factors.kernel(), factors.call());
+    const SlotLayout layout(factors.kernel(), factors.call(), frame, choice);
+    return sumAll(start, native::Deal::Evenly, [&] { return FactorAdder<Real>(layout); });
+  }
+  const Kernel& kernel = *sum.term.kernel;
+  const native::Entry& run = entryOf(kernel, native::EntryKind::Run, choice);
+  const CodeFrame frame(kernel, call);
+  const SlotLayout layout(kernel, call, frame, choice);
+  const std::vector<std::size_t> outputs = outputArrays(kernel, layout);
+  const native::Deal deal = kernel.code->isUneven != 0 ? native::Deal::AsTheyCome : native::Deal::Evenly;
+  return sumAll(start, deal,
+                [&] { return TermAdder<Real>(layout, outputs, sum.ofProducts, run, frame.get()); });
+}
+
 }  // namespace
 
 const Kernel& kernelOfTerm(const program::Reduction& reduction, const program::ExactSum& sum) {
@@ -184,22 +257,21 @@ template <class Real>
 std::vector<Real> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
                              const Call& call, const Extents& block, const CodeChoice& choice) {
   const BlockPieces pieces(call.domain, block);
-  Accumulator<Real> start = Summing<Real>::of(sum.ofProducts);
-  if (const std::optional<Real> identity = identityOf<Real>(reduction, sum, choice)) start.add(1, &*identity);
-  if (sum.term.kernel == nullptr) {
-    const FactorKernel factors(reduction.fold, sum.term.factors, call);
-    const CodeFrame frame(factors.kernel(), factors.call());
-    const SlotLayout layout(factors.kernel(), factors.call(), frame, choice);
-    return sumBlocks<Real>(pieces, start, native::Deal::Evenly, [&] { return FactorAdder<Real>(layout); });
-  }
-  const Kernel& kernel = *sum.term.kernel;
-  const native::Entry& run = entryOf(kernel, native::EntryKind::Run, choice);
-  const CodeFrame frame(kernel, call);
-  const SlotLayout layout(kernel, call, frame, choice);
-  const std::vector<std::size_t> outputs = outputArrays(kernel, layout);
-  const native::Deal deal = kernel.code->isUneven != 0 ? native::Deal::AsTheyCome : native::Deal::Evenly;
-  return sumBlocks<Real>(pieces, start, deal,
-                         [&] { return TermAdder<Real>(layout, outputs, sum.ofProducts, run, frame.get()); });
+  return withAdder<Real>(reduction, sum, call, choice,
+                         [&](const Accumulator<Real>& start, native::Deal deal, auto&& make) {
+                           return sumBlocks<Real>(pieces, start, deal, make);
+                         });
+}
+
+template <class Real>
+std::vector<Real> sumRowsExactly(const program::Reduction& reduction, const program::ExactSum& sum,
+                                 const Call& call, const RowPieces& rows, const CodeChoice& choice) {
+  const bool hasEmptyRows = std::ranges::adjacent_find(rows.starts()) != rows.starts().end();
+  const Real ofNone = hasEmptyRows ? identityOf<Real>(reduction, sum, choice) : Real(0);
+  return withAdder<Real>(reduction, sum, call, choice,
+                         [&](const Accumulator<Real>& start, native::Deal, auto&& make) {
+                           return sumRows<Real>(rows, start, ofNone, native::Deal::AsTheyCome, make);
+                         });
 }
 
 template std::vector<float> sumExactly<float>(const program::Reduction&, const program::ExactSum&,
@@ -209,5 +281,13 @@ template std::vector<double> sumExactly<double>(const program::Reduction&, const
 template std::vector<native::Quad> sumExactly<native::Quad>(const program::Reduction&,
                                                             const program::ExactSum&, const Call&,
                                                             const Extents&, const CodeChoice&);
+
+template std::vector<float> sumRowsExactly<float>(const program::Reduction&, const program::ExactSum&,
+                                                  const Call&, const RowPieces&, const CodeChoice&);
+template std::vector<double> sumRowsExactly<double>(const program::Reduction&, const program::ExactSum&,
+                                                    const Call&, const RowPieces&, const CodeChoice&);
+template std::vector<native::Quad> sumRowsExactly<native::Quad>(const program::Reduction&,
+                                                                const program::ExactSum&, const Call&,
+                                                                const RowPieces&, const CodeChoice&);
 
 }  // namespace sk

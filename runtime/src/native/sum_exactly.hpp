@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "call/row_pieces.hpp"
 #include "native/call.hpp"
 #include "native/entries.hpp"
 #include "sk/program.hpp"
@@ -28,5 +29,10 @@ template <class Real>
 std::vector<Real> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
                              const native::Call& call, const native::Extents& block,
                              const CodeChoice& choice);
+
+/// Likewise, of each row of a one-dimensional domain. A row without elements has the reduction's identity.
+template <class Real>
+std::vector<Real> sumRowsExactly(const program::Reduction& reduction, const program::ExactSum& sum,
+                                 const native::Call& call, const RowPieces& rows, const CodeChoice& choice);
 
 }  // namespace sk

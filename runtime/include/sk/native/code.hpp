@@ -106,13 +106,30 @@ using CombineFunction = void(const Frame*, void* const* state, void* const* late
 /// them, the first result of an exclusive scan that starts is the identity.
 using ScanFunction = void(const Frame*, const Chunk*, void* const* state, void* const* results,
                           std::int64_t starts, std::int64_t isExclusive);
+/// Folds `rows` rows of elements, one after the other and each in order: row r has the elements starts[r] to
+/// starts[r + 1] - 1 of the domain, the first of which is the chunk's first or a later one. Stores the accumulators of
+/// row r to column r of `state`. A row without elements has the identities; without identities, there is none.
+using FoldRowsFunction = void(const Frame*, const Chunk*, const std::int32_t* starts, void* const* state,
+                              std::int64_t rows);
 /// Carries out the records of a scatter output, in order. `appendBuffer` has no `elements`.
 using ApplyFunction = void(const Frame*, const AppendBuffer* appendBuffer, std::int64_t parameter);
 /// Writes one element of each array: the identities of a reduction, or the values out of bounds of gathers
 /// with Boundary::Border; all components of one parameter, then the next.
 using ValuesFunction = void(const Frame*, void* const* values);
 
-enum class EntryKind : std::uint8_t { Run, Fold, Combine, Identity, Borders, Apply, RunRows, Scan };
+/// FoldFloatRows is FoldRows with Real::Double where the arrays of all arguments hold floats.
+enum class EntryKind : std::uint8_t {
+  Run,
+  Fold,
+  Combine,
+  Identity,
+  Borders,
+  Apply,
+  RunRows,
+  Scan,
+  FoldRows,
+  FoldFloatRows
+};
 enum class Real : std::uint8_t { Float, Double, Quad };  ///< represents the language's float
 /// Generations of a CPU: x86-64, x86-64-v3, x86-64-v4. Each runs the code of earlier ones. Other CPUs have
 /// one level.

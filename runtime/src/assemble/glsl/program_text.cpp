@@ -114,7 +114,10 @@ void ProgramText::storeAt(std::string_view place, bool isArray) {
 
 void ProgramText::storeInBuffer() { isInBuffer_ = true; }
 
-void ProgramText::dispatchGroups(std::int32_t width, std::int32_t height) { group_ = {width, height}; }
+void ProgramText::dispatchGroups(std::int32_t width, std::int32_t height, bool storesApart) {
+  group_ = {width, height};
+  storesApart_ = storesApart;
+}
 
 void ProgramText::variable(std::string_view type, std::string_view name) {
   addOnce(variables_, fmt::format("{} {};", type, name));
@@ -222,8 +225,8 @@ std::string ProgramText::mainOf(const std::string& body) const {
   std::string text =
       fmt::format("\nlayout(local_size_x = {}, local_size_y = {}) in;\n\nvoid main() {{\n", width, height);
   if (isGrouped) {
-    text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body +
-            "  if (gl_LocalInvocationIndex != 0u) return;\n";
+    text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body;
+    if (!storesApart_) text += "  if (gl_LocalInvocationIndex != 0u) return;\n";
   } else if (together_.empty()) {
     text += "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n";
     text += "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n" + body;

@@ -68,8 +68,9 @@ class ProgramText {
   void storeAt(std::string_view place, bool isArray);
   /// Stores the outputs in the buffer at binding 0 instead: 16 bytes each, as four components.
   void storeInBuffer();
-  /// For compute programs: a work group of this size computes one texel, which its first invocation stores.
-  void dispatchGroups(std::int32_t width, std::int32_t height);
+  /// For compute programs: a work group of this size computes one texel, which its first invocation stores. If it
+  /// `storesApart`, each invocation that does not return stores a texel of its own.
+  void dispatchGroups(std::int32_t width, std::int32_t height, bool storesApart = false);
   /// Declares a global variable.
   void variable(std::string_view type, std::string_view name);
   /// Defines a shared function on first use.
@@ -111,6 +112,7 @@ class ProgramText {
   std::string place_;  ///< of storeAt()
   bool isArray_ = false;
   bool isInBuffer_ = false;  ///< storeInBuffer()
+  bool storesApart_ = false;  ///< dispatchGroups()
   std::pair<std::int32_t, std::int32_t> group_{};  ///< the size for each texel; 0: one invocation per texel
   bool relaysUniforms_ = false;
   RelayedValues relayed_;

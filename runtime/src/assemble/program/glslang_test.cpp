@@ -313,3 +313,50 @@ TEST_CASE("glslang accepts folds of several inputs to several accumulators, by i
   }
   checkAccepted(programs);
 }
+
+TEST_CASE("glslang accepts passes over rows of different lengths, and blocks by work groups") {
+  Programs programs("rows");
+  constexpr StreamAccess packed{.addressing = Addressing::Linear, .view = true, .packed = true};
+  constexpr StreamAccess plane{Addressing::Plane, true};
+  for (const Profile& profile : profiles()) {
+    const bool isCompute = profile.stage == Stage::Compute;
+    for (const auto [domain, view] : domains) {
+      for (const StreamAccess& x : {packed, plane}) {
+        const std::vector<StreamAccess> access = {{}, x, plane, {Addressing::Plane}, {}, {}};
+        ReduceVariant variant{
+            .walk = Walk::Index, .domain = domain, .domainView = view, .domainRank = 4, .access = access};
+        for (const RowPass pass : {RowPass::Folds, RowPass::Inclusive, RowPass::Exclusive}) {
+          variant.rows = pass;
+          variant.carried = pass == RowPass::Inclusive;
+          variant.tableLayered = variant.carryLayered = variant.carried && domain == Domain::Linear;
+          programs.add(profile, reduceProgram(profile, samples::weigh, variant));
+        }
+        variant.carried = variant.tableLayered = variant.carryLayered = false;
+        if (!isCompute) continue;
+        Reduction added = samples::weigh;
+        added.addition = added.combine.body;
+        for (const bool inOrder : {false, true}) {
+          added.commutative = !inOrder;
+          variant.rows = RowPass::Groups;
+          variant.grouped = false;
+          programs.add(profile, reduceProgram(profile, added, variant));
+          variant.rows = RowPass::None;
+          variant.grouped = true;
+          variant.axes = 4;
+          programs.add(profile, reduceProgram(profile, added, variant));
+        }
+      }
+      for (const Reduction* reduction : {&samples::sum, &samples::firstHit, &samples::countTrue}) {
+        for (const RowPass pass : {RowPass::Folds, RowPass::Inclusive}) {
+          programs.add(profile, reduceProgram(profile, *reduction,
+                                              {.walk = Walk::Partials,
+                                               .domain = domain,
+                                               .domainView = view,
+                                               .domainRank = 4,
+                                               .rows = pass}));
+        }
+      }
+    }
+  }
+  checkAccepted(programs);
+}

@@ -8,10 +8,11 @@ namespace sk::assemble {
 
 using program::Role;
 
-bool fitsOnePass(const program::Kernel& kernel, const PassLimits& limits) {
+bool fitsOnePass(const program::Kernel& kernel, const PassLimits& limits, const SpecValues& specs) {
   std::size_t written = 0;
   std::size_t read = 0;
   for (const program::Parameter& parameter : kernel.parameters) {
+    if (!isNeeded(parameter, specs)) continue;
     const bool isRead = parameter.role == Role::Input || parameter.role == Role::Gather;
     if (isRead) read += heldBy(parameter).fields.size();
     if (parameter.role == Role::Output) written += heldBy(parameter).fields.size();

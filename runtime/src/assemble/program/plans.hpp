@@ -3,6 +3,7 @@
 // Selects a kernel's plan for the number of planes that a pass may write and read.
 #pragma once
 
+#include "assemble/condition.hpp"
 #include "sk/program.hpp"
 
 namespace sk::assemble {
@@ -13,8 +14,8 @@ struct PassLimits {
   int textureUnits;
 };
 
-/// Whether the whole kernel fits in one pass.
-bool fitsOnePass(const program::Kernel& kernel, const PassLimits& limits);
+/// Whether one pass has room for all streams that the kernel needs with these values of its Spec parameters.
+bool fitsOnePass(const program::Kernel& kernel, const PassLimits& limits, const SpecValues& specs);
 
 /// The first plan within the limits; null if there is none.
 const program::Plan* planWithin(const program::Kernel& kernel, const PassLimits& limits);

@@ -160,6 +160,36 @@ std::string FoldText::calling(const Kernel& kernel, const ElementOf& inputElemen
   return call(kernel.entry, arguments, "        ") + ";";
 }
 
+std::string FoldText::sharedName(const Parameter& accumulator) const {
+  return fmt::format("sk_shared_{}", accumulator.symbol);
+}
+
+void FoldText::declareShared() {
+  for (const Parameter* accumulator : accumulators_) {
+    program_.variable("shared " + std::string(accumulator->element->glsl),
+                      fmt::format("{}[{}]", sharedName(*accumulator), groupSize));
+  }
+}
+
+void FoldText::foldShared() {
+  const auto keep = [&](std::string_view indent) {
+    for (const Parameter* accumulator : accumulators_) {
+      statement(fmt::format("{}{}[sk_i] = {};", indent, sharedName(*accumulator), total(*accumulator)));
+    }
+  };
+  keep("");
+  statement(fmt::format("for (int sk_s = 1; sk_s < {}; sk_s *= 2) {{", groupSize));
+  statement("  memoryBarrierShared();");
+  statement("  barrier();");
+  statement("  if ((sk_i & (2 * sk_s - 1)) == 0 && sk_i + sk_s < sk_runs) {");
+  statement("    " + calling(reduction_.combine, [&](std::size_t, std::size_t k) {
+              return fmt::format("{}[sk_i + sk_s]", sharedName(*accumulators_[k]));
+            }));
+  keep("    ");
+  statement("  }");
+  statement("}");
+}
+
 void FoldText::integers(std::initializer_list<std::string_view> uniforms) {
   for (const std::string_view uniform : uniforms) program_.uniform("int", uniform);
 }

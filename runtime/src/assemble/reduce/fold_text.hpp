@@ -64,6 +64,14 @@ class FoldText {
   /// A call of the entry of a kernel, with its arguments in order.
   std::string calling(const program::Kernel& kernel, const ElementOf& inputElement);
 
+  // ---- work groups ------------------------------------------------------------------------------
+
+  /// Declares the accumulators of all invocations of a group.
+  void declareShared();
+  /// Combines the accumulators of the first sk_runs invocations, in order, into those of the first one. sk_i is the
+  /// number of the invocation.
+  void foldShared();
+
   // ---- statements -------------------------------------------------------------------------------
 
   void integers(std::initializer_list<std::string_view> uniforms);
@@ -90,6 +98,7 @@ class FoldText {
   std::string_view folded_ = "sk_total";  ///< the name of the accumulators that are being folded
 
  private:
+  std::string sharedName(const program::Parameter& accumulator) const;
   std::string itemPosition(int components);
   void defineParameter(const program::Parameter& parameter, const StreamAccess& access);
 };

@@ -68,8 +68,10 @@ class Planner {
   }
 
   std::vector<ReducePass> plan() {
-    const bool isByRows = findRows();
-    if (isByRows) {
+    const bool isByRows = !division_.byGroups && findRows();
+    if (division_.byGroups) {
+      addBlocks();
+    } else if (isByRows) {
       addRows(Walk::Rows);
     } else {
       addPass(division_.byIndex ? Walk::Index : input_.linear ? Walk::Box : Walk::Plane);
@@ -238,6 +240,26 @@ class Planner {
     addDomain(pass, pass.toResult ? result_ : partials(pass, groups), false);
     addTarget(pass);
     if (!pass.toResult) sourceWidth_ = pass.texture.width;
+    passes_.push_back(std::move(pass));
+  }
+
+  /// Adds a pass in which a work group folds a block or a part of one.
+  void addBlocks() {
+    constexpr std::int32_t mostOfInvocation = 64;
+    const std::int32_t runs = divideUp(left_, groupSize * mostOfInvocation);
+    ReducePass pass{};
+    pass.toResult = runs == 1;
+    pass.variant.walk = Walk::Index;
+    pass.variant.grouped = true;
+    pass.variant.packed = division_.byTexel;
+    pass.variant.axes = decodedRank({.extent = input_.extent});
+    pass.uniforms = {{"sk_fan", false, {divideUp(left_, runs)}},
+                     {"sk_block_length", false, {left_}},
+                     {"sk_blocks", false, {blocks_}},
+                     {"sk_item_shape", true, elements_}};
+    setBlocks(pass, blockShape(), division_.blocks);
+    setDomain(pass, pass.toResult ? result_ : partials(pass, runs));
+    left_ = runs;
     passes_.push_back(std::move(pass));
   }
 

@@ -75,6 +75,9 @@ struct Division {
   bool byTexel = false;  ///< the elements are packed, and blocks consist of whole texels
   bool inAnyOrder = false;  ///< Reduction::commutative
   bool inGroups = false;  ///< foldsInGroups()
+  /// Work groups fold the blocks (block_program.hpp). With byTexel, all inputs are packed, and their texels have the same
+  /// x.
+  bool byGroups = false;
 };
 
 /// Plans the passes that fold elements into `result`, whose elements are the blocks, in order. Neither is

@@ -12,8 +12,10 @@
 #include "assemble/elements/arguments.hpp"
 #include "assemble/elements/planes.hpp"
 #include "assemble/glsl/program_text.hpp"
+#include "assemble/reduce/block_program.hpp"
 #include "assemble/reduce/fold_text.hpp"
 #include "assemble/reduce/reduce_names.hpp"
+#include "assemble/reduce/row_program.hpp"
 #include "assemble/reduce/scan_program.hpp"
 
 namespace sk::assemble {
@@ -235,41 +237,11 @@ class ReductionText : FoldText {
     foldShared();
   }
 
-  void declareShared() {
-    for (const Parameter* accumulator : accumulators_) {
-      program_.variable("shared " + std::string(accumulator->element->glsl),
-                        fmt::format("{}[{}]", sharedName(*accumulator), groupSize));
-    }
-  }
-
   /// Invocations without elements contribute identities.
   void combineInGroup() {
     declareShared();
     statement(fmt::format("int sk_i = int(gl_LocalInvocationIndex), sk_runs = {};", groupSize));
     foldShared();
-  }
-
-  void foldShared() {
-    const auto keep = [&](std::string_view indent) {
-      for (const Parameter* accumulator : accumulators_) {
-        statement(fmt::format("{}{}[sk_i] = {};", indent, sharedName(*accumulator), total(*accumulator)));
-      }
-    };
-    keep("");
-    statement(fmt::format("for (int sk_s = 1; sk_s < {}; sk_s *= 2) {{", groupSize));
-    statement("  memoryBarrierShared();");
-    statement("  barrier();");
-    statement("  if ((sk_i & (2 * sk_s - 1)) == 0 && sk_i + sk_s < sk_runs) {");
-    statement("    " + calling(reduction_.combine, [&](std::size_t, std::size_t k) {
-                return fmt::format("{}[sk_i + sk_s]", sharedName(*accumulators_[k]));
-              }));
-    keep("    ");
-    statement("  }");
-    statement("}");
-  }
-
-  std::string sharedName(const Parameter& accumulator) const {
-    return fmt::format("sk_shared_{}", accumulator.symbol);
   }
 
   std::string blockIndex() {
@@ -403,6 +375,8 @@ class ReductionText : FoldText {
 }  // namespace
 
 std::string reduceProgram(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant) {
+  if (isByGroupsOfBlocks(variant)) return blockProgram(profile, reduction, variant);
+  if (variant.rows != RowPass::None) return rowProgram(profile, reduction, variant);
   if (variant.scan != ScanPass::None) return scanProgram(profile, reduction, variant);
   return ReductionText(profile, reduction, variant).write();
 }

@@ -53,6 +53,15 @@ enum class ScanPass : std::uint8_t {
   Exclusive,  ///< the same without the item
 };
 
+/// What a pass over rows of different lengths computes (row_program.hpp).
+enum class RowPass : std::uint8_t {
+  None,  ///< it has nothing to do with rows
+  Folds,  ///< one result for each piece of a row
+  Groups,  ///< the same; a work group folds several pieces together; packed: all inputs begin at the same lane
+  Inclusive,  ///< scans: one result for each item, up to it
+  Exclusive,  ///< the same without the item
+};
+
 /// One program of a reduction or a scan, which passes with equal variants share. For walks of partial results and for
 /// Nothing, `access` does not describe inputs. For Index, no input is aligned; for other walks, all are
 /// aligned and have one layout.
@@ -79,6 +88,8 @@ struct ReduceVariant {
   ScanPass scan = ScanPass::None;
   bool carried = false;  ///< scans: reads the results of the runs before
   bool carryLayered = false;  ///< of these
+  RowPass rows = RowPass::None;
+  bool tableLayered = false;  ///< rows: of the first table
   bool reshaped = false;  ///< the result has other dimensions than the grid of blocks
   std::uint8_t firstPlane = 0;  ///< among the planes of all accumulators: the first one written,
   std::uint8_t planeCount = 0;  ///< and how many; 0 means all

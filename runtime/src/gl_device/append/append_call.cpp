@@ -216,7 +216,7 @@ class AppendCall {
     device_.bound.program(program.program.name());
     bindPlanes(device_, {&pyramid.odd(), 1}, program.units);
     bindPlanes(device_, {&pyramid.even(), 1}, program.units + 1);
-    program.pyramid.set(pyramid.plan());
+    program.pyramid.set(device_.bound, pyramid.plan());
   }
 
   void storeList(List& list) noexcept {

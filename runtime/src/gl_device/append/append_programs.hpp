@@ -4,6 +4,7 @@
 // that scatter points. They are compiled on first use and kept as long as the device.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -27,8 +28,12 @@ class AppendProgram {
  public:
   explicit AppendProgram(gl::Program&& program) : program_(std::move(program)) {}
 
-  void set(std::string_view uniform, std::int32_t value) { find(uniform, false).set(value); }
-  void set(std::string_view uniform, const gl::Int4& value) { find(uniform, true).set(value); }
+  void set(gl::BoundState& bound, std::string_view uniform, std::int32_t value) {
+    find(uniform, false).set(bound, value);
+  }
+  void set(gl::BoundState& bound, std::string_view uniform, const gl::Int4& value) {
+    find(uniform, true).set(bound, value);
+  }
   /// The uniform `sk_domain_row` of programs that draw to layers.
   gl::IntUniform& row() { return find("sk_domain_row", false); }
   const gl::Program& program() const { return program_; }
@@ -37,7 +42,7 @@ class AppendProgram {
   gl::IntUniform& find(std::string_view name, bool isVector);
 
   gl::Program program_;
-  std::vector<std::pair<std::string, gl::IntUniform>> uniforms_;
+  std::deque<std::pair<std::string, gl::IntUniform>> uniforms_;  ///< a loop's commands refer to them
 };
 
 class AppendPrograms {

@@ -47,14 +47,14 @@ void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below
   const auto number = static_cast<std::size_t>(&level - plan_.levels.data()) + 1;
   device_.bound.program(program.program().name());
   bindPlanes(device_, {&below, 1}, 0);
-  program.set("sk_children", level.children);
-  program.set("sk_tree_shift", plan_.shift);
-  program.set("sk_row", level.row);
+  program.set(device_.bound, "sk_children", level.children);
+  program.set(device_.bound, "sk_tree_shift", plan_.shift);
+  program.set(device_.bound, "sk_row", level.row);
   if (ofCounts) {
-    program.set("sk_below_width", shape.width);
-    program.set("sk_below_shift", std::bit_width(static_cast<std::uint32_t>(shape.height)) - 1);
+    program.set(device_.bound, "sk_below_width", shape.width);
+    program.set(device_.bound, "sk_below_shift", std::bit_width(static_cast<std::uint32_t>(shape.height)) - 1);
   } else {
-    program.set("sk_below_row", belowRow);
+    program.set(device_.bound, "sk_below_row", belowRow);
   }
   RenderTarget& above = ofLevel(number);
   const auto bytesBelow = level.children * static_cast<std::int64_t>(below.texture.format().texelBytes());

@@ -115,7 +115,7 @@ AppendProgram& Scatterer::programOf(PointStep step) {
   AppendProgram& program =
       device_.appendPrograms.points(appendOutput_, step, {listLayout_.layered, regionLayout_.layered});
   device_.bound.program(program.program().name());
-  program.set("sk_domain_shift", regionLayout_.shift);
+  program.set(device_.bound, "sk_domain_shift", regionLayout_.shift);
   return program;
 }
 
@@ -135,9 +135,9 @@ void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> 
   bindPlanes(device_, list_, 0);
   const gl::Texture& texture = targets.front().texture;
   const assemble::TextureShape& shape = texture.shape();
-  program.set("sk_list_shift", listLayout_.shift);
-  program.set("sk_first", first);
-  program.set("sk_size", gl::Int4{shape.width, shape.height, 0, 0});
+  program.set(device_.bound, "sk_list_shift", listLayout_.shift);
+  program.set(device_.bound, "sk_first", first);
+  program.set(device_.bound, "sk_size", gl::Int4{shape.width, shape.height, 0, 0});
   device_.bound.vertexArray(device_.vertexArray.name());
   device_.hasDrawn = true;
   const gl::Blending blending(device_.capabilities, blend, device_.isGuest());
@@ -148,7 +148,7 @@ void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> 
   forEachLayer(whole, drawn.layerRows, [&](const assemble::Rect& part, std::int32_t layer, std::int32_t) {
     selectLayer(device_, drawn, layer, program.row());
     device_.bound.viewport(0, 0, part.width, part.height);
-    gl::drawPoints(count);
+    gl::drawPoints(device_.bound, count);
   });
 }
 

@@ -37,6 +37,23 @@ class TexturePool {
   /// Returns a render target from acquire() to the pool. Never allocates, and does not call GL.
   void release(RenderTarget&& renderTarget) noexcept;
 
+  /// Render targets that a loop has set aside: no other call draws to them. They count as in use. Small ones are
+  /// acquired in the order of their release, and not twice in an iteration, so that an iteration mostly finds what
+  /// the one before the last has used; of large ones, the last that was released, so that there are few.
+  struct Reserve {
+    std::vector<RenderTarget> idle;  ///< in the order of their release
+    std::size_t ofEarlier = 0;  ///< how many of them were idle when the iteration began, and still are
+    std::vector<RenderTarget> kept;  ///< whose texels stay as they are
+    bool hasOverflown = false;  ///< a render target has gone to the pool instead
+  };
+  /// Has acquire() look in a reserve first, and release() return to it; null: in none.
+  void use(Reserve* reserve) noexcept { reserve_ = reserve; }
+  Reserve* reserve() const noexcept { return reserve_; }
+  /// If there is a reserve, moves render targets to it whose texels must stay.
+  void keep(std::vector<RenderTarget>& renderTargets);
+  /// Returns the render targets of a reserve to the pool.
+  void release(Reserve& reserve) noexcept;
+
   /// Deletes the render targets that have been idle for a number of calls, if idle ones take much memory.
   /// Must be called once per call.
   void trim() {
@@ -58,20 +75,36 @@ class TexturePool {
     std::vector<Idle> idle;  ///< has capacity for the acquired ones as well
     std::size_t acquired = 0;
   };
+  static constexpr std::size_t smallBytes = std::size_t{1} << 20;
   static constexpr std::size_t keptBytes = std::size_t{256} << 20;
   static constexpr std::int64_t keptCalls = 16;
 
   static std::uint64_t key(const gl::Format& format, const assemble::TextureShape& shape);
+  RenderTarget acquireReserved(std::uint64_t shapeKey);
   /// Returns an empty render target if no idle one has this key.
   RenderTarget acquireIdle(std::uint64_t shapeKey);
   void deleteOlderThan(std::int64_t time);
 
   gl::BoundState& bound_;
   FramebufferCache& framebuffers_;
+  Reserve* reserve_ = nullptr;
   std::unordered_map<std::uint64_t, Bucket> buckets_;
   std::size_t bytes_ = 0;
   std::int64_t used_ = 0;
   std::int64_t clock_ = 0;
+};
+
+/// Leaves the reserve alone as long as this object lives: for what TexturePool::keep() takes.
+class UnreservedScope {
+ public:
+  explicit UnreservedScope(TexturePool& pool) : pool_(pool), reserve_(pool.reserve()) { pool_.use(nullptr); }
+  ~UnreservedScope() { pool_.use(reserve_); }
+  UnreservedScope(const UnreservedScope&) = delete;
+  UnreservedScope& operator=(const UnreservedScope&) = delete;
+
+ private:
+  TexturePool& pool_;
+  TexturePool::Reserve* reserve_;
 };
 
 }  // namespace sk

@@ -34,7 +34,7 @@ void blit(GlDevice& device, RenderTarget& from, const RegionLayout& source, Rend
 void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes,
                    std::span<const Rect> rects) {
   if (std::exchange(device.hasDrawn, false)) {
-    gl::finishDraws();
+    gl::finishDraws(device.bound);
   }
   int unit = 0;
   for (const RenderTarget* plane : planes) {
@@ -48,8 +48,9 @@ void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTar
     const GLint rows = program.isGrouped ? mostGroups : mostGroups * program.workGroup[1];
     for (std::int32_t done = 0; done < rect.height; done += rows) {
       const std::int32_t height = std::min(rows, rect.height - done);
-      program.rect.set({rect.x, rect.y + done, rect.width, height});
-      gl::dispatch(groups(rect.width, program.workGroup[0]), groups(height, program.workGroup[1]));
+      program.rect.set(device.bound, {rect.x, rect.y + done, rect.width, height});
+      gl::dispatch(device.bound, groups(rect.width, program.workGroup[0]),
+                   groups(height, program.workGroup[1]));
     }
   }
 }
@@ -115,7 +116,7 @@ void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect>
     forEachLayer(rect, target.layerRows, [&](const Rect& part, std::int32_t layer, std::int32_t) {
       selectLayer(device, target, layer, row);
       device.bound.viewport(part.x, part.y, part.width, part.height);
-      gl::drawViewport();
+      gl::drawViewport(device.bound);
     });
   }
 }
@@ -131,11 +132,11 @@ void writeRects(GlDevice& device, const PreparedPass& pass, std::span<RenderTarg
 void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row) {
   if (target.layerRows == 0) {
     device.bound.framebuffer(target.framebuffer->name());
-    row.set(0);
+    row.set(device.bound, 0);
     return;
   }
   target.framebuffer->selectLayer(device.bound, layer);
-  row.set(layer * target.layerRows);
+  row.set(device.bound, layer * target.layerRows);
 }
 
 void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
@@ -148,8 +149,8 @@ void bindOperands(GlDevice& device, KernelProgram& program, const program::Kerne
       device.bound.sampler(unit, read.sampler);
     }
     unit = next;
-    read.uniforms.set(operand.regionLayout);
-    read.ratio.set(operand.ratio);
+    read.uniforms.set(device.bound, operand.regionLayout);
+    read.ratio.set(device.bound, operand.ratio);
   }
   for (const std::size_t bundle : program.bundles) {
     device.bound.texture(unit, bundles[bundle].name(), true);
@@ -158,16 +159,16 @@ void bindOperands(GlDevice& device, KernelProgram& program, const program::Kerne
   for (KernelProgram::Table& table : program.tables) {
     device.bound.texture(unit, table.texture, false);
     device.bound.sampler(unit++, 0);
-    table.range.set(table.values.data());
+    table.range.set(device.bound, table.values.data());
   }
   for (KernelProgram::Value& value : program.values) {
-    value.uniform.set(operands[value.parameter].value);
+    value.uniform.set(device.bound, operands[value.parameter].value);
   }
   for (KernelProgram::Double& value : program.doubles) {
-    value.uniform.set(operands[value.parameter].value);
+    value.uniform.set(device.bound, operands[value.parameter].value);
   }
   for (KernelProgram::Value& step : program.steps) {
-    step.uniform.set(operands[step.parameter].step.data());
+    step.uniform.set(device.bound, operands[step.parameter].step.data());
   }
 }
 
@@ -189,18 +190,19 @@ void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel
                          texelBytesOf(targets));
   device.bound.program(program.program.name());
   bindOperands(device, program, kernel, operands, bundles);
-  program.domain.set(domain);
+  program.domain.set(device.bound, domain);
   if (task.work == assemble::Work::List) {
-    program.target.set(operands[task.appendOutput].regionLayout);
+    program.target.set(device.bound, operands[task.appendOutput].regionLayout);
   }
   writeRects(device, pass, targets, rects);
 }
 
 namespace {
 
-/// Whether a blit can copy a region: source and target are planes with the same elements per texel.
-bool isBlit(const RegionLayout& source, const RegionLayout& target) {
-  return !source.linear && !target.linear && source.packed == target.packed;
+/// Whether a blit can copy a region: source and target are planes with the same elements per texel. A loop repeats no
+/// blits: it could not leave them out on the device.
+bool isBlit(const GlDevice& device, const RegionLayout& source, const RegionLayout& target) {
+  return !device.bound.isLogged() && !source.linear && !target.linear && source.packed == target.packed;
 }
 
 }  // namespace
@@ -212,7 +214,7 @@ void prepareCopy(GlDevice& device, const program::Element& element, const Region
                 assemble::texelsOf(target), byKernel);
     return;
   }
-  if (!byKernel && isBlit(source, target)) return;
+  if (!byKernel && isBlit(device, source, target)) return;
   for (const program::Field& field : element.fields) {
     const Operand operands[] = {{nullptr, source, {}}, {}};
     device.programs().kernelProgram(copyKernel(field), operands, target);
@@ -227,7 +229,7 @@ void copyRegion(GlDevice& device, const program::Element& element, std::span<Ren
     return;
   }
   for (std::size_t plane = 0; plane < from.size(); ++plane) {
-    if (isBlit(source, target)) {
+    if (isBlit(device, source, target)) {
       const assemble::Rect rect{target.origin[0], target.origin[1], target.extent[0], target.extent[1]};
       const PassScope traced(device, {"copy", {}, "blit"}, rect, to[plane].texture.format().texelBytes());
       blit(device, from[plane], source, to[plane], target);

@@ -9,6 +9,7 @@
 #include "call/check_argument.hpp"
 #include "call/fold_check_setting.hpp"
 #include "call/resolved_call.hpp"
+#include "device/rows_state.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/memory/element_packing.hpp"
@@ -131,7 +132,11 @@ void reduceToStreams(GlDevice& device, const ResolvedReduction& call) {
     }
   }
   const auto begin = [&] { targets.begin(); };
-  if (call.scan) {
+  if (call.rows != nullptr && call.scan) {
+    passes->scanRows(*call.rows, layout, drawn, call.scan->isExclusive, begin);
+  } else if (call.rows != nullptr) {
+    passes->foldRows(*call.rows, layout, drawn, begin);
+  } else if (call.scan) {
     passes->scan(layout, drawn, call.scan->isExclusive, begin);
   } else {
     passes->run(layout, drawn, begin);
@@ -147,6 +152,7 @@ void GlDevice::reduce(const ResolvedReduction& call) {
   refuseFoldCheck(call.reduction);
   checkStorages(fold, call.arguments, specsOf(fold, call.arguments));
   const assemble::Stage stage = stageOf(fold, KernelClass::Reduces, call.options);
+  if (call.rows != nullptr) call.rows->makeTables(call.scan.has_value());
   const DeviceScope scope(*this);
   const gl::LabelGroup group(labels, fold.name);
   selectPrograms(call.options, stage);

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <utility>
 
 #include "assemble/glsl/program_text.hpp"
+#include "assemble/reduce/row_program.hpp"
 #include "assemble/reduce/scan_plan.hpp"
 #include "assemble/reduce/scan_program.hpp"
 #include "call/check_argument.hpp"
@@ -74,8 +76,15 @@ ReducePasses::ReducePasses(GlDevice& device, const ResolvedReduction& call)
       reduction_(call.reduction),
       specs_(specsOf(call.reduction.fold, call.arguments)),
       isScan_(call.scan.has_value()),
+      isInRows_(call.rows != nullptr),
       blocks_(xFirst(call.blocks)) {
   findOperands(call.arguments, call.domain);
+  if (isInRows_) return;
+  byGroups_ = !isScan_ && call.domain.size() > 0 && foldsByGroups();
+  if (byGroups_) {
+    byTexel_ = readsTexelsTogether();
+    return;
+  }
   byTexel_ = isScan_ ? mayScanByTexel(call.arguments) : foldsByTexel(blocks_);
   if (!byTexel_ && call.domain.size() > 0) {
     for (std::size_t i = 0; i < call.arguments.size(); ++i) {
@@ -91,13 +100,7 @@ bool ReducePasses::mayEndInBuffer() const {
 
 void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const> targets,
                        const std::function<void()>& begin) {
-  if (assemble::elements(elements_.extent) == 0) {
-    const ReducePass identities = assemble::planIdentities(result);
-    prepare(identities, targets);
-    begin();
-    draw(identities, {}, targets);
-    return;
-  }
+  if (assemble::elements(elements_.extent) == 0) return writeIdentities(result, targets, begin);
   assemble::ReduceLimits limits = limitsOfPasses();
   limits.toBuffer = targets.empty();
   PlanesLease partials(device_);
@@ -105,7 +108,8 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
                                     .byIndex = foldsByIndex(),
                                     .byTexel = byTexel_,
                                     .inAnyOrder = reduction_.commutative,
-                                    .inGroups = assemble::foldsInGroups(reduction_)};
+                                    .inGroups = assemble::foldsInGroups(reduction_),
+                                    .byGroups = byGroups_};
   const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
   startAll(passes);
   for (const ReducePass& pass : passes) {
@@ -120,6 +124,14 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
     draw(pass, {partials.planes}, pointersTo(next.planes));
     std::swap(partials.planes, next.planes);
   }
+}
+
+void ReducePasses::writeIdentities(const RegionLayout& result, std::span<RenderTarget* const> targets,
+                                   const std::function<void()>& begin) {
+  const ReducePass identities = assemble::planIdentities(result);
+  prepare(identities, targets);
+  begin();
+  draw(identities, {}, targets);
 }
 
 void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* const> targets, bool isExclusive,
@@ -194,6 +206,29 @@ bool ReducePasses::mayGroup() const {
 bool ReducePasses::foldsByTexel(const Index4& blocks) const {
   return elements_.packed && !foldsByIndex() && assemble::isWholeTexels(elements_) &&
          elements_.extent[0] / blocks[0] % assemble::lanes == 0;
+}
+
+bool ReducePasses::foldsByGroups() const {
+  constexpr std::int32_t leastAcross = 64, least = 512;
+  const std::int64_t blocks = assemble::elements(blocks_);
+  return blocks > 1 && elements_.extent[0] / blocks_[0] >= leastAcross &&
+         assemble::elements(elements_.extent) / blocks >= least && assemble::foldsInGroups(reduction_) &&
+         mayGroup();
+}
+
+bool ReducePasses::readsTexelsTogether() const {
+  if (assemble::readsElementIndex(reduction_.fold) || !elements_.packed ||
+      !assemble::isWholeTexels(elements_) || elements_.extent[0] / blocks_[0] % assemble::lanes != 0) {
+    return false;
+  }
+  for (std::size_t i = 0; i < operands_.size(); ++i) {
+    const RegionLayout& input = operands_[i].regionLayout;
+    if (isRead(i) && (!input.packed || operands_[i].fitted || !assemble::isWholeTexels(input) ||
+                      input.extent[0] != elements_.extent[0])) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool ReducePasses::mayScanByTexel(std::span<const Argument> arguments) const {
@@ -283,9 +318,13 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
   const bool isPartial = assemble::isOfPartials(pass.variant.walk);
   const Kernel& own = isPartial ? reduction_.combine : reduction_.fold;
   const assemble::ContinuedKernel continued(own);
-  const Kernel& kernel = pass.variant.carried ? continued.kernel() : own;
+  const Kernel& read = pass.variant.carried ? continued.kernel() : own;
+  std::optional<assemble::RowKernel> inRows;
+  if (pass.variant.rows != assemble::RowPass::None) inRows.emplace(read, pass.variant.rows);
+  const Kernel& kernel = inRows ? inRows->kernel() : read;
   std::vector<Operand> operands = isPartial ? operandsOfCombine(source.partials) : operands_;
   if (pass.variant.carried) addCarries(operands, source.carries);
+  operands.insert(operands.end(), source.tables.begin(), source.tables.end());
   if (pass.variant.toBuffer) bindValues();
   forEachPart(
       pass, operands, [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
@@ -298,7 +337,7 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
         device_.bound.program(program.kernel.program.name());
         bindOperands(device_, program.kernel, kernel, operands);
         for (const assemble::UniformValue& value : pass.uniforms) {
-          program.uniform(value).set(value.value);
+          program.uniform(value).set(device_.bound, value.value);
         }
         writeRects(device_, preparedPass(device_, program.kernel, planes), planes, pass.draws);
       });
@@ -359,6 +398,8 @@ void ReducePasses::addAccess(assemble::ReduceVariant& variant, const Kernel& ker
       access.addressing = addressingOf(regionLayout);
       access.fitted = operands[i].fitted;
       access.view = regionLayout.origin != Index4{};
+      access.packed =
+          (isInRows_ || byGroups_) && regionLayout.packed;  // the inputs of others have been unpacked
     }
   }
   variant.access = std::move(chosen.access);

@@ -28,6 +28,8 @@ void takeAccumulators(const program::Kernel& fold, const assemble::TextureShape&
 
 std::vector<RenderTarget*> pointersTo(std::span<RenderTarget> planes);
 
+class RowsState;
+
 class ReducePasses {
  public:
   /// Unpacks the inputs unless the reduction can read all of them by packed texels. A DeviceScope must be
@@ -46,6 +48,13 @@ class ReducePasses {
   /// sk::Error before that.
   void run(const assemble::RegionLayout& result, std::span<RenderTarget* const> targets,
            const std::function<void()>& begin);
+  /// Folds each row of the domain and writes the results, as run() does. `rows` has its tables.
+  void foldRows(const RowsState& rows, const assemble::RegionLayout& result,
+                std::span<RenderTarget* const> targets, const std::function<void()>& begin);
+  /// Scans each row of the domain, which is not empty, as scan() does.
+  void scanRows(const RowsState& rows, const assemble::RegionLayout& result,
+                std::span<RenderTarget* const> targets, bool isExclusive, const std::function<void()>& begin);
+
   /// Whether a scan also writes packed texels: its results must not be unpacked then.
   bool scansByTexel() const { return isScan_ && byTexel_; }
   /// Scans the elements, which are not none, along lines, to `targets`. Calls begin() like run().
@@ -57,6 +66,7 @@ class ReducePasses {
   struct Source {
     std::span<RenderTarget> partials = {};  ///< of passes over partial results
     std::span<RenderTarget> carries = {};  ///< of passes of scans that continue from them
+    std::span<const Operand> tables = {};  ///< of passes over rows
   };
   void findOperands(std::span<const Argument> arguments, const Shape& domain);
   /// The limits for planReduction(). In software, runs are long: a pass costs as much as some thousand
@@ -70,6 +80,10 @@ class ReducePasses {
   bool mayGroup() const;
   /// Whether runs step by packed texels: all inputs are packed, and blocks consist of whole texels.
   bool foldsByTexel(const assemble::Index4& blocks) const;
+  /// Whether work groups fold blocks: these have enough elements side by side for their invocations.
+  bool foldsByGroups() const;
+  /// Whether these read whole texels: all inputs are packed, and repeat in no block.
+  bool readsTexelsTogether() const;
   /// Whether runs of a scan do: its results, too, are packed, and lines are whole texels that are consecutive.
   bool mayScanByTexel(std::span<const Argument> arguments) const;
   Operand operandOf(std::size_t i, const Argument& argument, const Shape& domain) const;
@@ -85,6 +99,13 @@ class ReducePasses {
   std::vector<Operand> operandsOfCombine(std::span<RenderTarget> partials) const;
   /// The operands of the accumulators' results of earlier runs (assemble::ContinuedKernel).
   void addCarries(std::vector<Operand>& operands, std::span<RenderTarget> carries) const;
+  /// A pass over rows at a level: it reads elements, or partial results of this layout.
+  assemble::ReducePass passOverRows(const assemble::RegionLayout& partials, bool ofElements) const;
+  /// Whether all inputs are packed, and begin at the same component of a texel.
+  bool beginAtOneLane() const;
+  /// Writes the identities, since there are no elements.
+  void writeIdentities(const assemble::RegionLayout& result, std::span<RenderTarget* const> targets,
+                       const std::function<void()>& begin);
   /// Draws a pass, once for each group of targets that the device can draw to together.
   void draw(const assemble::ReducePass& pass, const Source& source, std::span<RenderTarget* const> targets);
   /// Makes the driver start compiling the programs of all passes, up to the first that exists.
@@ -109,6 +130,8 @@ class ReducePasses {
   std::vector<Operand> operands_;  ///< of the fold
   assemble::RegionLayout elements_;
   const bool isScan_;
+  const bool isInRows_;  ///< of different lengths
+  bool byGroups_ = false;
   bool byTexel_ = false;
   const assemble::Index4 blocks_;
 };

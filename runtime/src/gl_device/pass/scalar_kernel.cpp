@@ -24,14 +24,23 @@ using program::Intrinsic;
 using program::Parameter;
 using program::Role;
 
-/// What kernels' text has for these operations (compiler/glsl), too.
+/// What kernels' text has for divisions (compiler/glsl), too. Floats are compared as integers: some compilers make
+/// a >= b of !(a < b), which is false for NaN.
 constexpr std::string_view helpers =
+    "bool sk_ordered(float a, float b) {\n"
+    "  return max(floatBitsToUint(a) & 0x7fffffffu, floatBitsToUint(b) & 0x7fffffffu) <= 0x7f800000u;\n"
+    "}\n"
+    "int sk_key(float x) {\n"
+    "  int i = floatBitsToInt(x);\n"
+    "  return i < 0 ? (-2147483647 - 1) - i : i;\n"
+    "}\n"
     "int sk_div(int a, int b) {\n"
     "  int d = b == 0 || (b == -1 && a == -2147483647 - 1) ? 1 : b;\n"
     "  return a / d;\n"
     "}\n"
     "uint sk_div(uint a, uint b) { return a / (b == 0u ? 1u : b); }\n";
 constexpr std::string_view doubleHelpers =
+    "bool sk_ordered(sk_double a, sk_double b) { return !sk_isnan(a) && !sk_isnan(b); }\n"
     "sk_double sk_max(sk_double a, sk_double b) { return sk_less(a, b) || sk_isnan(a) ? b : a; }\n"
     "sk_double sk_min(sk_double a, sk_double b) { return sk_less(b, a) || sk_isnan(a) ? b : a; }\n";
 
@@ -47,9 +56,9 @@ std::string_view patternOfDoubles(ScalarOp op) {
     case ScalarOp::Divide: return "sk_div({0}, {1})";
     case ScalarOp::Minimum: return "sk_min({0}, {1})";
     case ScalarOp::Maximum: return "sk_max({0}, {1})";
-    case ScalarOp::Less: return "sk_less({0}, {1})";
-    case ScalarOp::LessEqual: return "sk_less_equal({0}, {1})";
-    case ScalarOp::Equal: return "sk_equal({0}, {1})";
+    case ScalarOp::Less: return "sk_ordered({0}, {1}) && sk_less({0}, {1})";
+    case ScalarOp::LessEqual: return "sk_ordered({0}, {1}) && sk_less_equal({0}, {1})";
+    case ScalarOp::Equal: return "sk_ordered({0}, {1}) && sk_equal({0}, {1})";
     case ScalarOp::Select: return "{0} ? {1} : {2}";
     case ScalarOp::Not:
     case ScalarOp::And:
@@ -60,6 +69,14 @@ std::string_view patternOfDoubles(ScalarOp op) {
 
 std::string_view patternOf(ScalarOp op, program::Scalar type) {
   if (type == program::Scalar::Double) return patternOfDoubles(op);
+  if (type == program::Scalar::Float) {
+    switch (op) {
+      case ScalarOp::Less: return "sk_ordered({0}, {1}) && sk_key({0}) < sk_key({1})";
+      case ScalarOp::LessEqual: return "sk_ordered({0}, {1}) && sk_key({0}) <= sk_key({1})";
+      case ScalarOp::Equal: return "sk_ordered({0}, {1}) && sk_key({0}) == sk_key({1})";
+      default: break;
+    }
+  }
   const bool isFloat = type == program::Scalar::Float;
   switch (op) {
     case ScalarOp::Copy: return "{0}";

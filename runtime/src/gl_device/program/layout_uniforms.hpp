@@ -18,11 +18,11 @@ class LayoutUniforms {
   LayoutUniforms(const gl::Program& program, std::string_view names);
 
   /// The program must be bound.
-  void set(const assemble::RegionLayout& regionLayout) {
-    origin_.set(regionLayout.origin);
-    shape_.set(regionLayout.extent);
-    stride_.set(regionLayout.stride);
-    shift_.set(regionLayout.shift);
+  void set(gl::BoundState& bound, const assemble::RegionLayout& regionLayout) {
+    origin_.set(bound, regionLayout.origin);
+    shape_.set(bound, regionLayout.extent);
+    stride_.set(bound, regionLayout.stride);
+    shift_.set(bound, regionLayout.shift);
   }
 
  private:

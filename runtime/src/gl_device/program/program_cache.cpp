@@ -7,6 +7,7 @@
 
 #include "assemble/elements/storage.hpp"
 #include "assemble/glsl/tables.hpp"
+#include "assemble/reduce/row_program.hpp"
 #include "assemble/reduce/scan_program.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/program/shader_log.hpp"
@@ -216,11 +217,11 @@ void ProgramCache::findListUniforms(KernelProgram& result, const program::Parame
   result.program.setSampler("sk_even", result.units + 1);
 }
 
-void KernelProgram::Pyramid::set(const assemble::PyramidPlan& plan) {
-  shift.set(plan.shift);
-  levels.set(static_cast<std::int32_t>(plan.levels.size()));
+void KernelProgram::Pyramid::set(gl::BoundState& bound, const assemble::PyramidPlan& plan) {
+  shift.set(bound, plan.shift);
+  levels.set(bound, static_cast<std::int32_t>(plan.levels.size()));
   for (std::size_t level = 0; level < plan.levels.size(); ++level) {
-    rows[level + 1].set(plan.levels[level].row);
+    rows[level + 1].set(bound, plan.levels[level].row);
   }
 }
 
@@ -290,12 +291,15 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
     auto started = startedReductions_.extract(key);
     finish(result->kernel, kernel, started.empty() ? begin(reduction, variant) : std::move(started.mapped()));
-    result->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials;
+    result->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials ||
+                               variant.rows == assemble::RowPass::Groups;
     if (variant.walk != assemble::Walk::Nothing) {
       const assemble::HeldKernel held(kernel, variant.access);
       const assemble::ContinuedKernel continued(held.kernel());
-      findParameters(result->kernel, variant.carried ? continued.kernel() : held.kernel(), variant.specs,
-                     variant.access);
+      const program::Kernel& read = variant.carried ? continued.kernel() : held.kernel();
+      const bool isInRows = variant.rows != assemble::RowPass::None;
+      findParameters(result->kernel, isInRows ? assemble::RowKernel(read, variant.rows).kernel() : read,
+                     variant.specs, variant.access);
     }
     makeRoom(reductions_, [&](const ReduceKey& other) { return other.first == &reduction; });
     return *reductions_.insert_or_assign(key, Kept<ReduceProgram>{std::move(result), ++clock_})

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <map>
 #include <memory>
 #include <span>
@@ -56,7 +57,7 @@ struct KernelProgram {
     gl::IntUniform shift, levels;
     std::array<gl::IntUniform, assemble::mostPyramidLevels + 1> rows;
 
-    void set(const assemble::PyramidPlan& plan);
+    void set(gl::BoundState& bound, const assemble::PyramidPlan& plan);
   };
 
   gl::Program program;
@@ -81,7 +82,7 @@ struct KernelProgram {
 /// The program of one variant of a reduction's passes.
 struct ReduceProgram {
   KernelProgram kernel;  ///< its parameters are those of the fold or of the combining kernel
-  std::vector<std::pair<std::string, gl::IntUniform>> uniforms;
+  std::deque<std::pair<std::string, gl::IntUniform>> uniforms;  ///< a loop's commands refer to them
 
   gl::IntUniform& uniform(const assemble::UniformValue& value);
 };

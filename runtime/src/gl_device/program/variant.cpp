@@ -176,18 +176,22 @@ Operand regionOperand(const Argument& argument, const Shape& domain) {
   return operand;
 }
 
+RegionLayout texelOf(RegionLayout element) {
+  if (!element.linear) return element;
+  std::int64_t number = 0;
+  for (std::size_t d = 0; d < element.origin.size(); ++d) {
+    number += std::int64_t{element.origin[d]} * element.stride[d];
+  }
+  const std::int32_t shift = element.shift + (element.packed ? 2 : 0);
+  element.origin = {static_cast<std::int32_t>(number & ((std::int64_t{1} << shift) - 1)),
+                    static_cast<std::int32_t>(number >> shift), 0, 0};
+  return element;
+}
+
 Operand uniformOperand(const Argument& argument) {
   if (argument.value != nullptr) return {.value = argument.value};
   Operand operand = regionOperand(argument, argument.region.shape);
-  RegionLayout& region = operand.regionLayout;
-  if (!region.linear) return operand;
-  std::int64_t number = 0;
-  for (std::size_t d = 0; d < region.origin.size(); ++d) {
-    number += std::int64_t{region.origin[d]} * region.stride[d];
-  }
-  const std::int32_t shift = region.shift + (region.packed ? 2 : 0);
-  region.origin = {static_cast<std::int32_t>(number & ((std::int64_t{1} << shift) - 1)),
-                   static_cast<std::int32_t>(number >> shift), 0, 0};
+  operand.regionLayout = texelOf(operand.regionLayout);
   return operand;
 }
 

@@ -54,6 +54,9 @@ assemble::Addressing addressingOf(const assemble::RegionLayout& regionLayout);
 /// The operand for a region, an argument of a call over a domain of this shape.
 Operand regionOperand(const Argument& argument, const Shape& domain);
 
+/// The layout of a region of one element, with the element's place among the elements of all texels, x and y, as origin.
+assemble::RegionLayout texelOf(assemble::RegionLayout element);
+
 /// The operand for a uniform: a value or, if a stream of one element holds it, that element, with the texel as origin
 /// (StreamAccess::view).
 Operand uniformOperand(const Argument& argument);

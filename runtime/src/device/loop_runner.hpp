@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+//
+// How a device runs the iterations of a loop (device/loop_state.hpp).
+#pragma once
+
+#include <cstdint>
+
+#include "sk/loop.hpp"
+#include "sk/stream.hpp"
+
+namespace sk {
+
+class LoopState;
+
+/// It belongs to one loop, which has been checked before each call.
+class LoopRunner {
+ public:
+  LoopRunner() = default;
+  virtual ~LoopRunner() = default;
+  LoopRunner(const LoopRunner&) = delete;
+  LoopRunner& operator=(const LoopRunner&) = delete;
+
+  virtual void run(LoopState& loop, std::int64_t times) = 0;
+  /// Runs until the condition, one element that is checked, is true after an iteration. Returns the number of
+  /// iterations.
+  virtual std::int64_t runUntil(LoopState& loop, const StreamRegion& done, const LoopEnd& end) = 0;
+};
+
+}  // namespace sk
