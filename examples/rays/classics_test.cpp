@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // The classic engines against the hierarchy of boxes.
-#include <catch2/catch.hpp>
 #include <algorithm>
 #include <array>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -22,7 +22,8 @@ sk::Device deviceOf(const std::string& name) {
   return sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
 }
 
-std::unique_ptr<Engine> engineOf(sk::Device& device, const Model& model, const std::string& name, const std::string& settings) {
+std::unique_ptr<Engine> engineOf(sk::Device& device, const Model& model, const std::string& name,
+                                 const std::string& settings) {
   const examples::WrittenFile file(fmt::format("[{}]\n{}", name, settings), "written_classic.toml");
   return readScene(file.path(), {}).engines.at(name)(device, model);
 }
@@ -44,7 +45,8 @@ std::vector<std::uint8_t> shadowsOf(Engine& engine, const std::vector<Ray>& rays
 void compareHits(const std::vector<Hit>& got, const std::vector<Hit>& expected, float bound = 0x1p-20f) {
   REQUIRE(got.size() == expected.size());
   for (std::size_t i = 0; i < got.size(); ++i) {
-    INFO("ray " << i << ": " << got[i].id << " at " << 1e6 * got[i].t << "e-6, expected " << expected[i].id << " at " << 1e6 * expected[i].t << "e-6");
+    INFO("ray " << i << ": " << got[i].id << " at " << 1e6 * got[i].t << "e-6, expected " << expected[i].id
+                << " at " << 1e6 * expected[i].t << "e-6");
     if (expected[i].id < 0) {
       CHECK(got[i].id < 0);
       continue;
@@ -57,14 +59,16 @@ void compareHits(const std::vector<Hit>& got, const std::vector<Hit>& expected, 
 }
 
 /// Every way of an engine against the hierarchy of boxes.
-void compareEngines(sk::Device& device, const Model& model, const std::vector<Ray>& rays, const std::string& intersection) {
+void compareEngines(sk::Device& device, const Model& model, const std::vector<Ray>& rays,
+                    const std::string& intersection) {
   const std::string test = fmt::format("intersection = '{}'\n", intersection);
   const std::unique_ptr<Engine> bvh = engineOf(device, model, "bvh", test);
   const std::vector<Hit> hits = hitsOf(*bvh, rays);
   const std::vector<std::uint8_t> shadows = shadowsOf(*bvh, rays);
   for (const char* machine : {"branching", "multipass"}) {
     INFO(machine);
-    const auto streaming = engineOf(device, model, "streaming", fmt::format("machine = '{}'\n{}", machine, test));
+    const auto streaming =
+        engineOf(device, model, "streaming", fmt::format("machine = '{}'\n{}", machine, test));
     compareHits(hitsOf(*streaming, rays), hits);
     CHECK(shadowsOf(*streaming, rays) == shadows);
   }
@@ -86,7 +90,8 @@ TEST_CASE("all engines find the same hits and shadows, on every device") {
 TEST_CASE("engines agree on scenes with one kind of shape, or none, or a single cell") {
   sk::Device device = sk::Device::native();
   const std::vector<Ray> rays = raysAtRandom(300);
-  for (const SoupSize& size : {SoupSize{100, 0, 0}, SoupSize{0, 30, 0}, SoupSize{0, 0, 2}, SoupSize{0, 0, 0}, SoupSize{1, 0, 0}}) {
+  for (const SoupSize& size :
+       {SoupSize{100, 0, 0}, SoupSize{0, 30, 0}, SoupSize{0, 0, 2}, SoupSize{0, 0, 0}, SoupSize{1, 0, 0}}) {
     INFO(size.triangles << " triangles, " << size.spheres << " spheres, " << size.planes << " planes");
     const Model model = soup(size);
     compareEngines(device, model, rays, "watertight");
@@ -101,7 +106,8 @@ TEST_CASE("the multipass machine finds the same however it is set") {
   const std::vector<Hit> hits = hitsOf(*engineOf(device, model, "streaming", ""), rays);
   for (const int tests : {1, 16}) {
     for (const double compact : {0.0, 1.0}) {
-      const std::string settings = fmt::format("machine = 'multipass'\ntests = {}\nrounds = 3\ncompact = {:.1f}", tests, compact);
+      const std::string settings =
+          fmt::format("machine = 'multipass'\ntests = {}\nrounds = 3\ncompact = {:.1f}", tests, compact);
       compareHits(hitsOf(*engineOf(device, model, "streaming", settings), rays), hits);
     }
   }
@@ -112,8 +118,9 @@ TEST_CASE("the ray engine finds the same however it is set, also by its own test
   const Model model = soup({});
   const std::vector<Ray> rays = raysAtRandom(300);
   const std::vector<Hit> hits = hitsOf(*engineOf(device, model, "bvh", "intersection = 'moller'"), rays);
-  for (const char* settings : {"", "bucket = 64\ncache = 1\nin_flight = 0\nshapes_per_call = 3", "bucket = 4096\nleaf = 1",
-                               "bucket = 64\ncache = 2\nin_flight = 1\nleaf = 1000"}) {
+  for (const char* settings :
+       {"", "bucket = 64\ncache = 1\nin_flight = 0\nshapes_per_call = 3", "bucket = 4096\nleaf = 1",
+        "bucket = 64\ncache = 2\nin_flight = 1\nleaf = 1000"}) {
     INFO(settings);
     compareHits(hitsOf(*engineOf(device, model, "ray_engine", settings), rays), hits, 1e-5f);
   }
@@ -150,9 +157,11 @@ material = "white"
 [ray_engine]
 intersection = "watertight"
 )";
-  const auto greenBy = [](const std::string& scene, const char* name, const char* engine, const std::string& settings) {
+  const auto greenBy = [](const std::string& scene, const char* name, const char* engine,
+                          const std::string& settings) {
     sk::Device device = deviceOf(name);
-    const examples::WrittenFile file(fmt::format("{}\n[streaming]\n{}", scene, settings), "written_picture.toml");
+    const examples::WrittenFile file(fmt::format("{}\n[streaming]\n{}", scene, settings),
+                                     "written_picture.toml");
     const Scene read = readScene(file.path(), {});
     const std::unique_ptr<Engine> made = read.engines.at(engine)(device, read.model);
     const std::unique_ptr<Renderer> renderer = made->renderer(read.picture);
@@ -166,7 +175,8 @@ intersection = "watertight"
   // Programs round differently, so that a path may take another turn; hardly any does.
   const auto compare = [](const std::vector<float>& got, const std::vector<float>& expected) {
     std::size_t others = 0;
-    for (std::size_t i = 0; i < got.size(); ++i) others += !(std::abs(got[i] - expected[i]) <= 1e-3f * expected[i]);
+    for (std::size_t i = 0; i < got.size(); ++i)
+      others += !(std::abs(got[i] - expected[i]) <= 1e-3f * expected[i]);
     CHECK(others <= got.size() / 50);
   };
   const char* multipass = "machine = 'multipass'";
@@ -175,7 +185,8 @@ intersection = "watertight"
   compare(greenBy(withGlass, "native", "ray_engine", ""), withIt);
   // Glass takes a second to compile there.
   const std::size_t glass = withGlass.find("type = \"glass\"\n");
-  const std::string without = std::string(withGlass).erase(glass, std::string_view("type = \"glass\"\n").size());
+  const std::string without =
+      std::string(withGlass).erase(glass, std::string_view("type = \"glass\"\n").size());
   compare(greenBy(without, "essl300", "streaming", multipass), greenBy(without, "native", "bvh", ""));
 }
 
@@ -209,8 +220,9 @@ material = "mirror"
   sk::Device device = sk::Device::native();
   for (const char* machine : {"branching", "multipass"}) {
     const auto greenOf = [&](const char* use) {
-      const examples::WrittenFile file(fmt::format("{}\n[streaming]\nuse = '{}'\nmachine = '{}'", scene, use, machine),
-                                       "written_use.toml");
+      const examples::WrittenFile file(
+          fmt::format("{}\n[streaming]\nuse = '{}'\nmachine = '{}'", scene, use, machine),
+          "written_use.toml");
       const Scene read = readScene(file.path(), {});
       const std::unique_ptr<Engine> made = read.engines.at("streaming")(device, read.model);
       const std::unique_ptr<Renderer> renderer = made->renderer(read.picture);
@@ -220,7 +232,8 @@ material = "mirror"
     };
     // Irradiance 1 on an albedo of 0.5 is radiance 0.5 / pi.
     const float lit = 0.15915f;
-    const auto rays = greenOf("rays"), shadows = greenOf("shadows"), whitted = greenOf("whitted"), paths = greenOf("paths");
+    const auto rays = greenOf("rays"), shadows = greenOf("shadows"), whitted = greenOf("whitted"),
+               paths = greenOf("paths");
     INFO(machine);
     CHECK(rays[0] == Approx(lit).epsilon(0.01));
     CHECK(rays[1] == Approx(lit).epsilon(0.01));
@@ -239,7 +252,8 @@ TEST_CASE("rays that are not finite end, and hit nothing that matters") {
   for (const float bad : {nan, infinity, -infinity}) {
     for (int i = 0; i < 6; ++i) {
       Ray r{.origin = {0.1f, 0.2f, 0.3f}, .direction = {0.3f, 0.5f, 1.0f}};
-      float* components[] = {&r.origin.x, &r.origin.y, &r.origin.z, &r.direction.x, &r.direction.y, &r.direction.z};
+      float* components[] = {&r.origin.x,    &r.origin.y,    &r.origin.z,
+                             &r.direction.x, &r.direction.y, &r.direction.z};
       *components[i] = bad;
       rays.push_back(r);
     }

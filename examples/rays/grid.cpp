@@ -37,7 +37,9 @@ Cells cellsOf(const Bounds& bounds, double wanted) {
   for (std::size_t i = 0; i < 3; ++i) extent[i] = high[i] - cells.low[i];
   const double longest = std::max({extent[0], extent[1], extent[2]});
   double small = longest / mostCells, large = longest;
-  const auto along = [&](std::size_t axis, double side) { return std::max(1.0, std::floor(extent[axis] / side)); };
+  const auto along = [&](std::size_t axis, double side) {
+    return std::max(1.0, std::floor(extent[axis] / side));
+  };
   for (int i = 0; i < 50; ++i) {
     const double side = std::sqrt(small * large);
     (along(0, side) * along(1, side) * along(2, side) > wanted ? small : large) = side;
@@ -52,7 +54,8 @@ Cells cellsOf(const Bounds& bounds, double wanted) {
 
 class GridBuilder {
  public:
-  GridBuilder(const Model& model, const Cells& cells, double margin) : model_(model), cells_(cells), margin_(margin) {
+  GridBuilder(const Model& model, const Cells& cells, double margin)
+      : model_(model), cells_(cells), margin_(margin) {
     for (std::size_t i = 0; i < 3; ++i) half_[i] = 0.5 * cells.extent[i] + margin;
   }
 
@@ -66,7 +69,8 @@ class GridBuilder {
         least[i] = std::min({corners[0][i], corners[1][i], corners[2][i]});
         most[i] = std::max({corners[0][i], corners[1][i], corners[2][i]});
       }
-      if (!add(shape++, least, most, [&](const Corner& centre) { return meets(corners, centre, half_); })) return {};
+      if (!add(shape++, least, most, [&](const Corner& centre) { return meets(corners, centre, half_); }))
+        return {};
     }
     for (const Sphere& s : model_.spheres) {
       const Corner middle = cornerOf(s.centre);
@@ -76,14 +80,17 @@ class GridBuilder {
         least[i] = middle[i] - reach;
         most[i] = middle[i] + reach;
       }
-      if (!add(shape++, least, most, [&](const Corner& centre) { return meets(middle, radius, centre, half_); })) return {};
+      if (!add(shape++, least, most,
+               [&](const Corner& centre) { return meets(middle, radius, centre, half_); }))
+        return {};
     }
     return std::move(entries_);
   }
 
  private:
   int cellAt(double x, std::size_t axis) const {
-    return std::clamp(static_cast<int>(std::floor((x - cells_.low[axis]) / cells_.extent[axis])), 0, cells_.size[axis] - 1);
+    return std::clamp(static_cast<int>(std::floor((x - cells_.low[axis]) / cells_.extent[axis])), 0,
+                      cells_.size[axis] - 1);
   }
 
   /// Of the cells between two corners, those which `isMet`; false where all entries together are too many.
@@ -130,7 +137,8 @@ void makeLists(const std::vector<Entry>& entries, UniformGrid& grid) {
   }
   grid.lists.assign(static_cast<std::size_t>(next), -1);
   std::vector<int> at = grid.starts;
-  for (const Entry& e : entries) grid.lists[static_cast<std::size_t>(at[e.cell]++)] = static_cast<int>(e.shape);
+  for (const Entry& e : entries)
+    grid.lists[static_cast<std::size_t>(at[e.cell]++)] = static_cast<int>(e.shape);
   grid.entries = static_cast<std::int64_t>(entries.size());
 }
 
@@ -138,7 +146,8 @@ void makeLists(const std::vector<Entry>& entries, UniformGrid& grid) {
 
 double gridMargin(const Bounds& b) {
   double longest = 0, largest = 0;
-  for (const auto& [low, high] : {std::array{b.least.x, b.most.x}, {b.least.y, b.most.y}, {b.least.z, b.most.z}}) {
+  for (const auto& [low, high] :
+       {std::array{b.least.x, b.most.x}, {b.least.y, b.most.y}, {b.least.z, b.most.z}}) {
     longest = std::max(longest, double(high) - low);
     largest = std::max({largest, std::abs(double(high)), std::abs(double(low))});
   }
@@ -158,7 +167,8 @@ UniformGrid buildGrid(const Model& model, const GridSettings& settings) {
   for (double wanted = settings.density * double(shapes);; wanted /= 8) {
     const Cells cells = cellsOf(grid.bounds, std::clamp(wanted, 1.0, 0x1p24));
     grid.size = {cells.size[0], cells.size[1], cells.size[2]};
-    grid.cell = {static_cast<float>(cells.extent[0]), static_cast<float>(cells.extent[1]), static_cast<float>(cells.extent[2])};
+    grid.cell = {static_cast<float>(cells.extent[0]), static_cast<float>(cells.extent[1]),
+                 static_cast<float>(cells.extent[2])};
     const std::optional<std::vector<Entry>> entries = GridBuilder(model, cells, margin).entries();
     if (!entries && wanted > 1) continue;
     if (entries) makeLists(*entries, grid);

@@ -23,12 +23,12 @@ struct GridSettings {
 
 struct UniformGrid {
   Bounds bounds;
-  sk::float3 cell{};          ///< extents of one
-  sk::int3 size{};            ///< cells along each axis; 0 where there are no shapes
-  std::vector<int> starts;    ///< for each cell, x fastest: where its list begins in `lists`; -1: it is empty
-  std::vector<int> lists;     ///< numbers of shapes, triangles before spheres; each list ends with -1
-  int longest = 0;            ///< shapes of the longest list
-  std::int64_t entries = 0;   ///< shapes of all lists
+  sk::float3 cell{};  ///< extents of one
+  sk::int3 size{};  ///< cells along each axis; 0 where there are no shapes
+  std::vector<int> starts;  ///< for each cell, x fastest: where its list begins in `lists`; -1: it is empty
+  std::vector<int> lists;  ///< numbers of shapes, triangles before spheres; each list ends with -1
+  int longest = 0;  ///< shapes of the longest list
+  std::int64_t entries = 0;  ///< shapes of all lists
   std::int64_t occupied = 0;  ///< cells that are not empty
 };
 

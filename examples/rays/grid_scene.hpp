@@ -16,13 +16,14 @@
 namespace rays {
 
 struct GridScene : DeviceShapes {
-  GridScene(sk::Device& onDevice, const Model& ofModel, const GridSettings& settings, HowToIntersect howToIntersect);
+  GridScene(sk::Device& onDevice, const Model& ofModel, const GridSettings& settings,
+            HowToIntersect howToIntersect);
 
   /// The arguments that kernels with a whole way through the grid begin with, up to `shapes`, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
-    kernel(static_cast<unsigned>(intersection), contracted, hasTriangles, hasSpheres, hasPlanes, grid, planeCount, firstPlane, planes,
-           cells, lists, shapes, std::forward<More>(more)...);
+    kernel(static_cast<unsigned>(intersection), contracted, hasTriangles, hasSpheres, hasPlanes, grid,
+           planeCount, firstPlane, planes, cells, lists, shapes, std::forward<More>(more)...);
   }
 
   HowToIntersect intersection;

@@ -24,7 +24,8 @@ std::array<int, 3> cellAt(const UniformGrid& grid, const sk::float3& p, double o
   const auto along = [&](double x, double low, double cell, int size) {
     return std::clamp(static_cast<int>(std::floor((x + away - low) / cell)), 0, size - 1);
   };
-  return {along(p.x, grid.bounds.least.x, grid.cell.x, grid.size.x), along(p.y, grid.bounds.least.y, grid.cell.y, grid.size.y),
+  return {along(p.x, grid.bounds.least.x, grid.cell.x, grid.size.x),
+          along(p.y, grid.bounds.least.y, grid.cell.y, grid.size.y),
           along(p.z, grid.bounds.least.z, grid.cell.z, grid.size.z)};
 }
 
@@ -36,7 +37,8 @@ void checkThatPointsAreListed(const Model& model, const UniformGrid& grid) {
     float u = unit(), v = unit();
     if (u + v > 1) u = 1 - u, v = 1 - v;
     const float w = 1 - u - v;
-    const sk::float3 p = {w * t.a.x + u * t.b.x + v * t.c.x, w * t.a.y + u * t.b.y + v * t.c.y, w * t.a.z + u * t.b.z + v * t.c.z};
+    const sk::float3 p = {w * t.a.x + u * t.b.x + v * t.c.x, w * t.a.y + u * t.b.y + v * t.c.y,
+                          w * t.a.z + u * t.b.z + v * t.c.z};
     for (const double off : {0.0, -0.9, 0.9}) {
       INFO("triangle " << i << ", off by " << off);
       CHECK(std::ranges::count(listAt(grid, cellAt(grid, p, off)), static_cast<int>(i)) == 1);

@@ -10,7 +10,8 @@ using FloatStream = sk::Stream<sk::float4>;
 
 }  // namespace
 
-void GridTracer::find(bool anyHit, const FloatStream& from, const FloatStream& along, sk::Stream<kernels::Found>& found) {
+void GridTracer::find(bool anyHit, const FloatStream& from, const FloatStream& along,
+                      sk::Stream<kernels::Found>& found) {
   if (from.size() == 0) return;
   if (settings_.machine == Machine::Multipass) return findByPasses(anyHit, from, along, found);
   scene_.call(kernels::findInGrid, anyHit, from, along, found);
@@ -25,8 +26,8 @@ void GridTracer::findByPasses(bool anyHit, const FloatStream& allFrom, const Flo
   auto ray = device.stream<int>(allFrom.shape());
   kernels::numberRays(sk::iter(0, static_cast<int>(all)), ray);
   metered(meter_, "begin", all, [&] {
-    kernels::beginTravel(s.hasShapes(), s.hasPlanes, anyHit, s.grid, s.planeCount, s.firstPlane, s.planes, s.cells, allFrom, allAlong,
-                         travel);
+    kernels::beginTravel(s.hasShapes(), s.hasPlanes, anyHit, s.grid, s.planeCount, s.firstPlane, s.planes,
+                         s.cells, allFrom, allAlong, travel);
   });
   FloatStream ownFrom, ownAlong;
   const FloatStream *from = &allFrom, *along = &allAlong;
@@ -58,13 +59,15 @@ void GridTracer::findByPasses(bool anyHit, const FloatStream& allFrom, const Flo
   deliver();
 }
 
-void GridTracer::round(bool anyHit, const FloatStream& from, const FloatStream& along, sk::Stream<kernels::Travel>& travel) {
+void GridTracer::round(bool anyHit, const FloatStream& from, const FloatStream& along,
+                       sk::Stream<kernels::Travel>& travel) {
   GridScene& s = scene_;
   metered(meter_, "intersect", travel.size(), [&] {
-    kernels::intersectLists(static_cast<unsigned>(s.intersection), s.contracted, s.hasTriangles, s.hasSpheres, anyHit, settings_.tests,
-                            s.lists, s.shapes, from, along, travel, travel);
+    kernels::intersectLists(static_cast<unsigned>(s.intersection), s.contracted, s.hasTriangles, s.hasSpheres,
+                            anyHit, settings_.tests, s.lists, s.shapes, from, along, travel, travel);
   });
-  metered(meter_, "traverse", travel.size(), [&] { kernels::traverseCells(s.grid, s.cells, from, along, travel, travel); });
+  metered(meter_, "traverse", travel.size(),
+          [&] { kernels::traverseCells(s.grid, s.cells, from, along, travel, travel); });
 }
 
 }  // namespace rays

@@ -40,12 +40,18 @@ bool Bundle::mayMeet(const Corner& low, const Corner& high) const {
   for (std::size_t i = 0; i < 3; ++i) {
     // At distance t the rays span t * alongLeast to t * alongMost, seen from where they begin: it must reach `near` and begin before `far`.
     const double near = low[i] - fromMost[i], far = high[i] - fromLeast[i];
-    if (alongMost[i] > 0) from = std::max(from, near / alongMost[i]);
-    else if (alongMost[i] < 0) to = std::min(to, near / alongMost[i]);
-    else if (near > 0) return false;
-    if (alongLeast[i] > 0) to = std::min(to, far / alongLeast[i]);
-    else if (alongLeast[i] < 0) from = std::max(from, far / alongLeast[i]);
-    else if (far < 0) return false;
+    if (alongMost[i] > 0)
+      from = std::max(from, near / alongMost[i]);
+    else if (alongMost[i] < 0)
+      to = std::min(to, near / alongMost[i]);
+    else if (near > 0)
+      return false;
+    if (alongLeast[i] > 0)
+      to = std::min(to, far / alongLeast[i]);
+    else if (alongLeast[i] < 0)
+      from = std::max(from, far / alongLeast[i]);
+    else if (far < 0)
+      return false;
   }
   return from <= to;
 }
@@ -58,7 +64,8 @@ Octree::Octree(const Model& model, int leaf) : model_(model), leaf_(leaf) {
   stamps_.resize(boxes_.size());
   if (boxes_.empty()) return;
   margin_ = gridMargin(bounds);
-  const Corner low = widened(cornerOf(bounds.least), -margin_), high = widened(cornerOf(bounds.most), margin_);
+  const Corner low = widened(cornerOf(bounds.least), -margin_),
+               high = widened(cornerOf(bounds.most), margin_);
   nodes_.push_back({low, high});
   std::vector<int> all(boxes_.size());
   std::iota(all.begin(), all.end(), 0);

@@ -37,7 +37,7 @@ class Octree {
  private:
   struct Node {
     Corner low{}, high{};
-    std::int32_t first = 0;   ///< of its children, or of its shapes in `lists_`
+    std::int32_t first = 0;  ///< of its children, or of its shapes in `lists_`
     std::int32_t count = -1;  ///< of shapes; -1: it has children
   };
   void split(std::size_t at, std::vector<int> shapes, int level);
@@ -49,7 +49,7 @@ class Octree {
   double margin_ = 0.0;
   std::vector<Node> nodes_;
   std::vector<int> lists_;
-  std::vector<Bounds> boxes_;          ///< of shapes
+  std::vector<Bounds> boxes_;  ///< of shapes
   std::vector<std::uint32_t> stamps_;  ///< the bundle that has seen a shape
   std::uint32_t stamp_ = 0;
 };

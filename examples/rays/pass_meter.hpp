@@ -54,8 +54,10 @@ class PassMeter {
 /// Calls, and measures where there is a meter.
 template <class Call>
 void metered(PassMeter* meter, std::string_view kernel, std::int64_t elements, const Call& call) {
-  if (meter == nullptr) call();
-  else meter->measure(kernel, elements, call);
+  if (meter == nullptr)
+    call();
+  else
+    meter->measure(kernel, elements, call);
 }
 
 }  // namespace rays

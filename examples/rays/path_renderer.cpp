@@ -17,8 +17,8 @@ class PathRenderer : public Renderer {
   void pass(std::int64_t index) override {
     PathTables& t = tables_;
     scene_.call(kernels::followPaths, t.features, static_cast<unsigned>(t.sampling), t.view, t.setting,
-                static_cast<std::uint32_t>(index), t.seed, t.materials, t.corners, t.lights, t.sky, t.texels, t.textures,
-                exposure_.radiance);
+                static_cast<std::uint32_t>(index), t.seed, t.materials, t.corners, t.lights, t.sky, t.texels,
+                t.textures, exposure_.radiance);
     exposure_.add();
   }
 

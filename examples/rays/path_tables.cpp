@@ -117,7 +117,10 @@ kernels::View viewFor(const Camera& camera, const Picture& picture) {
 }  // namespace
 
 PathTables::PathTables(sk::Device& device, const Model& model, const Picture& picture)
-    : features(featuresOf(model)), sampling(picture.sampling), seed(picture.seed), view(viewFor(model.camera, picture)) {
+    : features(featuresOf(model)),
+      sampling(picture.sampling),
+      seed(picture.seed),
+      view(viewFor(model.camera, picture)) {
   LightTable table = lightTable(model);
   setting = {{picture.width, picture.height},
              picture.depth,

@@ -60,7 +60,10 @@ struct Flight {
 class OctreeEngine : public RayEngine, public StreamTracer {
  public:
   OctreeEngine(sk::Device& device, const Model& model, const RayEngineSettings& settings)
-      : shapes_(device, model), settings_(settings), octree_(model, settings.leaf), normals_(streamOf(device, normalsOf(model))) {}
+      : shapes_(device, model),
+        settings_(settings),
+        octree_(model, settings.leaf),
+        normals_(streamOf(device, normalsOf(model))) {}
 
   void closest(std::span<const Ray> rays, std::span<Hit> hits) override {
     trace(rays, [&](std::size_t ray, const kernels::Found& f) {
@@ -78,7 +81,10 @@ class OctreeEngine : public RayEngine, public StreamTracer {
     std::vector<Ray> rays;
     rays.reserve(begins.size());
     for (std::size_t i = 0; i < begins.size(); ++i)
-      rays.push_back({{begins[i].x, begins[i].y, begins[i].z}, begins[i].w, {ways[i].x, ways[i].y, ways[i].z}, ways[i].w});
+      rays.push_back({{begins[i].x, begins[i].y, begins[i].z},
+                      begins[i].w,
+                      {ways[i].x, ways[i].y, ways[i].z},
+                      ways[i].w});
     std::vector<kernels::Found> all(rays.size());
     trace(rays, [&](std::size_t ray, const kernels::Found& f) { all[ray] = f; });
     found.write(all);
@@ -91,9 +97,10 @@ class OctreeEngine : public RayEngine, public StreamTracer {
   const BucketCount& count() const override { return count_; }
 
   std::vector<std::string> account() override {
-    return {fmt::format("octree: {} nodes, built in {:.0f} ms", octree_.nodes(), octreeMilliseconds_),
-            fmt::format("{} rays in {} buckets, {} calls, {:.1f} tests for each ray", count_.rays, count_.buckets, count_.calls,
-                        double(count_.tests) / double(std::max<std::int64_t>(count_.rays, 1)))};
+    return {
+        fmt::format("octree: {} nodes, built in {:.0f} ms", octree_.nodes(), octreeMilliseconds_),
+        fmt::format("{} rays in {} buckets, {} calls, {:.1f} tests for each ray", count_.rays, count_.buckets,
+                    count_.calls, double(count_.tests) / double(std::max<std::int64_t>(count_.rays, 1)))};
   }
 
  private:
@@ -106,13 +113,16 @@ class OctreeEngine : public RayEngine, public StreamTracer {
       const std::span<const Ray> some = rays.subspan(first, std::min(batch, rays.size() - first));
       RayTree tree(some, capacity);
       const auto land = [&](std::size_t mostLeft) {
-        while (flights_.size() > mostLeft) landOne([&](std::size_t ray, const kernels::Found& f) { arrive(first + ray, f); });
+        while (flights_.size() > mostLeft)
+          landOne([&](std::size_t ray, const kernels::Found& f) { arrive(first + ray, f); });
       };
       for (std::size_t i = 0; i < some.size(); ++i) {
         const Ray& r = some[i];
         // What is no ray hits nothing.
-        if (!isFinite(r.origin) || !isFinite(r.direction) || !(r.most >= r.least)) arrive(first + i, missed(r));
-        else tree.insert(static_cast<std::uint32_t>(i));
+        if (!isFinite(r.origin) || !isFinite(r.direction) || !(r.most >= r.least))
+          arrive(first + i, missed(r));
+        else
+          tree.insert(static_cast<std::uint32_t>(i));
         if (tree.size() < capacity * static_cast<std::size_t>(settings_.cache)) continue;
         send(some, tree.take());
         land(static_cast<std::size_t>(settings_.inFlight));
@@ -135,7 +145,8 @@ class OctreeEngine : public RayEngine, public StreamTracer {
     }
     const sk::Shape shape{settings_.bucket / static_cast<int>(bucketWidth), static_cast<int>(bucketWidth)};
     sk::Device& device = shapes_.device;
-    return {device.stream<sk::float4>(shape), device.stream<sk::float4>(shape), device.stream<kernels::Found>(shape)};
+    return {device.stream<sk::float4>(shape), device.stream<sk::float4>(shape),
+            device.stream<kernels::Found>(shape)};
   }
 
   void send(std::span<const Ray> rays, std::vector<std::uint32_t> bucket) {
@@ -151,9 +162,11 @@ class OctreeEngine : public RayEngine, public StreamTracer {
     Slot slot = takeSlot();
     slot.from.writeAsync(from);
     slot.along.writeAsync(along);
-    kernels::startBucket(shapes_.hasPlanes, shapes_.planeCount, shapes_.firstPlane, shapes_.planes, slot.from, slot.along, slot.found);
+    kernels::startBucket(shapes_.hasPlanes, shapes_.planeCount, shapes_.firstPlane, shapes_.planes, slot.from,
+                         slot.along, slot.found);
     test(octree_.shapesOf(bundle), slot);
-    if (shapes_.hasSpheres) kernels::finishBucket(shapes_.shapes, slot.from, slot.along, slot.found, slot.found);
+    if (shapes_.hasSpheres)
+      kernels::finishBucket(shapes_.shapes, slot.from, slot.along, slot.found, slot.found);
     count_.rays += static_cast<std::int64_t>(bucket.size());
     ++count_.buckets;
     sk::Future<kernels::Found> found = slot.found.readAsync();
@@ -166,8 +179,9 @@ class OctreeEngine : public RayEngine, public StreamTracer {
       const std::size_t count = std::min(perCall, shapes.size() - first);
       std::array<int, mostShapes> chosen{};
       std::copy_n(shapes.begin() + static_cast<std::ptrdiff_t>(first), count, chosen.begin());
-      kernels::testBucket(static_cast<unsigned>(settings_.test), shapes_.contracted, shapes_.hasTriangles, shapes_.hasSpheres,
-                          static_cast<int>(count), chosen, shapes_.shapes, normals_, slot.from, slot.along, slot.found, slot.found);
+      kernels::testBucket(static_cast<unsigned>(settings_.test), shapes_.contracted, shapes_.hasTriangles,
+                          shapes_.hasSpheres, static_cast<int>(count), chosen, shapes_.shapes, normals_,
+                          slot.from, slot.along, slot.found, slot.found);
       ++count_.calls;
     }
     count_.tests += static_cast<std::int64_t>(shapes.size()) * settings_.bucket;
@@ -200,7 +214,8 @@ RayEngineSettings settingsOf(const SceneTable& table) {
     value = static_cast<int>(table.integer(key, Range{least, most}).value_or(value));
   };
   whole("bucket", 64, 65536, s.bucket);
-  if (s.bucket % static_cast<int>(bucketWidth) != 0) table.fail("bucket", "'bucket' is a multiple of 64, for buckets are 64 rays wide");
+  if (s.bucket % static_cast<int>(bucketWidth) != 0)
+    table.fail("bucket", "'bucket' is a multiple of 64, for buckets are 64 rays wide");
   whole("cache", 1, 4096, s.cache);
   whole("shapes_per_call", 1, mostShapes, s.shapesPerCall);
   whole("in_flight", 0, 64, s.inFlight);
@@ -210,7 +225,8 @@ RayEngineSettings settingsOf(const SceneTable& table) {
 
 }  // namespace
 
-std::unique_ptr<RayEngine> makeRayEngine(sk::Device& device, const Model& model, const RayEngineSettings& settings) {
+std::unique_ptr<RayEngine> makeRayEngine(sk::Device& device, const Model& model,
+                                         const RayEngineSettings& settings) {
   return std::make_unique<OctreeEngine>(device, model, settings);
 }
 

@@ -18,11 +18,11 @@ enum class BucketTest : std::uint8_t { Watertight, Moller, Modified };
 
 struct RayEngineSettings {
   BucketTest test = BucketTest::Modified;
-  int bucket = 256;      ///< rays; a multiple of 64, for a bucket is 64 wide
-  int cache = 64;        ///< buckets of rays that the host keeps before it sends one
+  int bucket = 256;  ///< rays; a multiple of 64, for a bucket is 64 wide
+  int cache = 64;  ///< buckets of rays that the host keeps before it sends one
   int shapesPerCall = 64;
-  int inFlight = 4;      ///< buckets on the device while the host goes on; 0: it waits for each
-  int leaf = 16;         ///< shapes in a leaf of the octree
+  int inFlight = 4;  ///< buckets on the device while the host goes on; 0: it waits for each
+  int leaf = 16;  ///< shapes in a leaf of the octree
 };
 
 /// What the engine has done since it was made.
@@ -41,6 +41,7 @@ class RayEngine : public Engine {
 /// [ray_engine]: intersection = "modified", "moller" or "watertight", bucket, cache, shapes_per_call, in_flight, leaf.
 MakeEngine readRayEngine(const std::optional<examples::SceneTable>& settings);
 
-std::unique_ptr<RayEngine> makeRayEngine(sk::Device& device, const Model& model, const RayEngineSettings& settings);
+std::unique_ptr<RayEngine> makeRayEngine(sk::Device& device, const Model& model,
+                                         const RayEngineSettings& settings);
 
 }  // namespace rays

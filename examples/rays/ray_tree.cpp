@@ -23,7 +23,8 @@ RayTree::Place RayTree::placeOf(const Ray& ray) {
 void RayTree::insert(std::uint32_t ray) {
   const Place place = placeOf(rays_[ray]);
   std::uint32_t at = 0;
-  while (nodes_[at].first != 0) at = nodes_[at].first + (place[nodes_[at].dimension] >= nodes_[at].middle ? 1 : 0);
+  while (nodes_[at].first != 0)
+    at = nodes_[at].first + (place[nodes_[at].dimension] >= nodes_[at].middle ? 1 : 0);
   nodes_[at].rays.push_back(ray);
   ++size_;
   const std::size_t count = nodes_[at].rays.size();

@@ -17,7 +17,9 @@ namespace rays {
 class RayTree {
  public:
   /// The rays must outlive it. `take` gives `capacity` of them at most.
-  RayTree(std::span<const Ray> rays, std::size_t capacity) : rays_(rays), capacity_(capacity) { nodes_.emplace_back(); }
+  RayTree(std::span<const Ray> rays, std::size_t capacity) : rays_(rays), capacity_(capacity) {
+    nodes_.emplace_back();
+  }
 
   void insert(std::uint32_t ray);
   /// Rays that are in the tree.
@@ -30,9 +32,9 @@ class RayTree {
   using Place = std::array<float, dimensions>;
   struct Node {
     std::vector<std::uint32_t> rays;  ///< of a leaf
-    std::uint32_t first = 0;          ///< of its two children; 0: it is a leaf
+    std::uint32_t first = 0;  ///< of its two children; 0: it is a leaf
     std::uint32_t dimension = 0;
-    float middle = 0.0f;              ///< where the second child begins
+    float middle = 0.0f;  ///< where the second child begins
   };
   static Place placeOf(const Ray& ray);
   void split(std::uint32_t leaf);

@@ -24,7 +24,9 @@ constexpr std::size_t batch = std::size_t{1} << 20;
 class StreamingEngine : public Engine {
  public:
   StreamingEngine(sk::Device& device, const Model& model, const StreamingSettings& settings)
-      : scene_(device, model, settings.grid, settings.intersection), settings_(settings), tracer_(scene_, settings) {}
+      : scene_(device, model, settings.grid, settings.intersection),
+        settings_(settings),
+        tracer_(scene_, settings) {}
 
   void closest(std::span<const Ray> rays, std::span<Hit> hits) override {
     for (std::size_t first = 0; first < rays.size(); first += batch) {
@@ -84,13 +86,16 @@ StreamingSettings settingsOf(const SceneTable& table) {
 
 }  // namespace
 
-std::unique_ptr<Engine> makeStreamingEngine(sk::Device& device, const Model& model, const StreamingSettings& settings) {
+std::unique_ptr<Engine> makeStreamingEngine(sk::Device& device, const Model& model,
+                                            const StreamingSettings& settings) {
   return std::make_unique<StreamingEngine>(device, model, settings);
 }
 
 MakeEngine readStreamingEngine(const std::optional<SceneTable>& table) {
   const StreamingSettings settings = table ? settingsOf(*table) : StreamingSettings{};
-  return [settings](sk::Device& device, const Model& model) { return makeStreamingEngine(device, model, settings); };
+  return [settings](sk::Device& device, const Model& model) {
+    return makeStreamingEngine(device, model, settings);
+  };
 }
 
 }  // namespace rays

@@ -15,6 +15,7 @@ namespace rays {
 /// [streaming]: machine = "branching" or "multipass", use = "paths", "whitted", "shadows" or "rays", intersection = "watertight" or "moller", density, tests, rounds, compact.
 MakeEngine readStreamingEngine(const std::optional<examples::SceneTable>& settings);
 
-std::unique_ptr<Engine> makeStreamingEngine(sk::Device& device, const Model& model, const StreamingSettings& settings);
+std::unique_ptr<Engine> makeStreamingEngine(sk::Device& device, const Model& model,
+                                            const StreamingSettings& settings);
 
 }  // namespace rays

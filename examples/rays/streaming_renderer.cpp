@@ -13,13 +13,16 @@ namespace {
 class BranchingRenderer : public Renderer {
  public:
   BranchingRenderer(GridScene& scene, const Picture& picture, Use use)
-      : scene_(scene), use_(use), tables_(scene.device, scene.model, picture), exposure_(scene.device, picture) {}
+      : scene_(scene),
+        use_(use),
+        tables_(scene.device, scene.model, picture),
+        exposure_(scene.device, picture) {}
 
   void pass(std::int64_t index) override {
     const PathTables& t = tables_;
-    scene_.call(kernels::followPathsInGrid, t.features, static_cast<unsigned>(t.sampling), static_cast<unsigned>(use_), t.view, t.setting,
-                static_cast<std::uint32_t>(index), t.seed, t.materials, t.corners, t.lights, t.sky, t.texels, t.textures,
-                exposure_.radiance);
+    scene_.call(kernels::followPathsInGrid, t.features, static_cast<unsigned>(t.sampling),
+                static_cast<unsigned>(use_), t.view, t.setting, static_cast<std::uint32_t>(index), t.seed,
+                t.materials, t.corners, t.lights, t.sky, t.texels, t.textures, exposure_.radiance);
     exposure_.add();
   }
 
@@ -51,7 +54,8 @@ struct PathStreams {
 
 class MultipassRenderer : public Renderer {
  public:
-  MultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use, PassMeter* meter)
+  MultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use,
+                    PassMeter* meter)
       : scene_(scene),
         tracer_(tracer),
         picture_(picture),
@@ -67,14 +71,16 @@ class MultipassRenderer : public Renderer {
     PathStreams paths(scene_.device, {count});
     metered(meter_, "generate", count, [&] {
       kernels::generatePaths(t.features, static_cast<unsigned>(t.sampling), t.view, t.setting, sample, t.seed,
-                             sk::iter(0, static_cast<int>(count)), paths.from, paths.along, paths.path, paths.pixel);
+                             sk::iter(0, static_cast<int>(count)), paths.from, paths.along, paths.path,
+                             paths.pixel);
     });
     for (int segment = 0; paths.path.size() > 0; ++segment) {
       shade(sample, segment, paths);
       PathStreams next(scene_.device, {0});
       metered(meter_, "end paths", paths.path.size(), [&] {
         kernels::deliverLight(paths.path, paths.along, paths.pixel, exposure_.radiance);
-        kernels::keepPaths(paths.from, paths.along, paths.path, paths.pixel, next.from, next.along, next.path, next.pixel);
+        kernels::keepPaths(paths.from, paths.along, paths.path, paths.pixel, next.from, next.along, next.path,
+                           next.pixel);
       });
       paths = std::move(next);
     }
@@ -99,13 +105,15 @@ class MultipassRenderer : public Renderer {
     auto shadowLight = device.stream<sk::float3>(shape);
     metered(meter_, "shade", paths.from.size(), [&] {
       kernels::shadePaths(scene_.hasTriangles, scene_.hasSpheres, scene_.planes, scene_.shapes, t.features,
-                          static_cast<unsigned>(t.sampling), static_cast<unsigned>(use_), t.setting, sample, t.seed, segment, t.materials,
-                          t.corners, t.lights, t.sky, t.texels, t.textures, paths.from, paths.along, found, paths.pixel, paths.path,
-                          paths.from, paths.along, paths.path, shadowFrom, shadowAlong, shadowLight);
+                          static_cast<unsigned>(t.sampling), static_cast<unsigned>(use_), t.setting, sample,
+                          t.seed, segment, t.materials, t.corners, t.lights, t.sky, t.texels, t.textures,
+                          paths.from, paths.along, found, paths.pixel, paths.path, paths.from, paths.along,
+                          paths.path, shadowFrom, shadowAlong, shadowLight);
     });
     if (t.setting.lights == 0 || use_ == Use::RayCasting || segment + 1 == picture_.depth) return;
     tracer_.find(true, shadowFrom, shadowAlong, found);
-    metered(meter_, "add light", paths.from.size(), [&] { kernels::addLight(found, shadowLight, paths.path, paths.path); });
+    metered(meter_, "add light", paths.from.size(),
+            [&] { kernels::addLight(found, shadowLight, paths.path, paths.path); });
   }
 
   DeviceShapes& scene_;
@@ -123,8 +131,8 @@ std::unique_ptr<Renderer> makeBranchingRenderer(GridScene& scene, const Picture&
   return std::make_unique<BranchingRenderer>(scene, picture, use);
 }
 
-std::unique_ptr<Renderer> makeMultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use,
-                                                PassMeter* meter) {
+std::unique_ptr<Renderer> makeMultipassRenderer(DeviceShapes& scene, StreamTracer& tracer,
+                                                const Picture& picture, Use use, PassMeter* meter) {
   return std::make_unique<MultipassRenderer>(scene, tracer, picture, use, meter);
 }
 

@@ -40,7 +40,8 @@ double bestMilliseconds(const sk::Device& device, Engine& engine, const std::vec
   std::vector<Hit> hits(rays.size());
   engine.closest(rays, hits);  // compiles
   double best = HUGE_VAL;
-  for (int i = 0; i < runs; ++i) best = std::min(best, milliseconds(device, [&] { engine.closest(rays, hits); }));
+  for (int i = 0; i < runs; ++i)
+    best = std::min(best, milliseconds(device, [&] { engine.closest(rays, hits); }));
   return best;
 }
 
@@ -54,10 +55,13 @@ Findings studyRayEngine(sk::Device& device, bool isSmall) {
   std::vector<Hit> hits(primary.size());
   hierarchy->closest(primary, hits);
   const std::vector<Ray> diffuse = diffuseRays(model, primary, hits);
-  const auto rate = [](const std::vector<Ray>& rays, double time) { return fmt::format("{:.3f}", double(rays.size()) / time / 1e3); };
+  const auto rate = [](const std::vector<Ray>& rays, double time) {
+    return fmt::format("{:.3f}", double(rays.size()) / time / 1e3);
+  };
 
-  examples::Table table({"dial", "bucket", "shapes a call", "in flight", "cache", "calls", "tests a ray, primary", "diffuse", "Mtests/s",
-                         "primary, Mrays/s", "diffuse, Mrays/s"});
+  examples::Table table({"dial", "bucket", "shapes a call", "in flight", "cache", "calls",
+                         "tests a ray, primary", "diffuse", "Mtests/s", "primary, Mrays/s",
+                         "diffuse, Mrays/s"});
   for (const Way& way : waysOf()) {
     const RayEngineSettings& s = way.settings;
     const std::unique_ptr<RayEngine> engine = makeRayEngine(device, model, s);
@@ -67,19 +71,24 @@ Findings studyRayEngine(sk::Device& device, bool isSmall) {
     const BucketCount both = engine->count();
     const auto trials = double(runs + 1);
     const double testsOne = double(one.tests) / trials, testsTwo = double(both.tests - one.tests) / trials;
-    table.add({way.name, fmt::format("{}", s.bucket), fmt::format("{}", s.shapesPerCall), fmt::format("{}", s.inFlight),
-               fmt::format("{}", s.cache), fmt::format("{:.0f}", double(both.calls) / trials),
-               fmt::format("{:.0f}", testsOne / double(primary.size())), fmt::format("{:.0f}", testsTwo / double(diffuse.size())),
-               fmt::format("{:.0f}", (testsOne + testsTwo) / (first + second) / 1e3), rate(primary, first), rate(diffuse, second)});
+    table.add({way.name, fmt::format("{}", s.bucket), fmt::format("{}", s.shapesPerCall),
+               fmt::format("{}", s.inFlight), fmt::format("{}", s.cache),
+               fmt::format("{:.0f}", double(both.calls) / trials),
+               fmt::format("{:.0f}", testsOne / double(primary.size())),
+               fmt::format("{:.0f}", testsTwo / double(diffuse.size())),
+               fmt::format("{:.0f}", (testsOne + testsTwo) / (first + second) / 1e3), rate(primary, first),
+               rate(diffuse, second)});
   }
   const auto addEngine = [&](const char* name, Engine& engine) {
-    table.add({name, "-", "-", "-", "-", "-", "-", "-", "-", rate(primary, bestMilliseconds(device, engine, primary, runs)),
+    table.add({name, "-", "-", "-", "-", "-", "-", "-", "-",
+               rate(primary, bestMilliseconds(device, engine, primary, runs)),
                rate(diffuse, bestMilliseconds(device, engine, diffuse, runs))});
   };
   addEngine("a grid, branching", *makeStreamingEngine(device, model, {}));
   addEngine("a hierarchy of boxes", *hierarchy);
   const std::unique_ptr<RayEngine> engine = makeRayEngine(device, model, {});
-  return {fmt::format("{} triangles\n{}", model.triangles.size(), table.markdown()), {checkEngine(*engine, model, side, side)}};
+  return {fmt::format("{} triangles\n{}", model.triangles.size(), table.markdown()),
+          {checkEngine(*engine, model, side, side)}};
 }
 
 }  // namespace rays

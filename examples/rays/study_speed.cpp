@@ -32,7 +32,8 @@ struct Streams {
 Streams streamsOf(sk::Device& device, std::span<const Ray> rays) {
   RayStreams streams = uploadRays(device, rays);
   const sk::Shape shape = streams.from.shape();
-  return {std::move(streams.from), std::move(streams.along), device.stream<sk::float3>(shape), device.stream<int>(shape)};
+  return {std::move(streams.from), std::move(streams.along), device.stream<sk::float3>(shape),
+          device.stream<int>(shape)};
 }
 
 /// In millions a second: the best of some calls, without the way to the device and back.

@@ -36,11 +36,13 @@ double bestMilliseconds(sk::Device& device, int runs, const std::function<void()
   return best;
 }
 
-std::string rateText(std::int64_t rays, double time) { return fmt::format("{:.2f}", double(rays) / time / 1e3); }
+std::string rateText(std::int64_t rays, double time) {
+  return fmt::format("{:.2f}", double(rays) / time / 1e3);
+}
 
 struct Steps {
   double cells = 0.0, tests = 0.0;  ///< means
-  int most = 0;                     ///< of both together, of one ray
+  int most = 0;  ///< of both together, of one ray
 };
 
 Steps stepsOf(GridScene& scene, const RayStreams& rays) {
@@ -57,10 +59,11 @@ Steps stepsOf(GridScene& scene, const RayStreams& rays) {
 }
 
 /// Grids of several densities, and a hierarchy, for the rays of a camera and those that what they hit scatters.
-std::string tableOfSteps(sk::Device& device, const Model& model, const std::array<std::vector<Ray>, 2>& rays, int runs) {
+std::string tableOfSteps(sk::Device& device, const Model& model, const std::array<std::vector<Ray>, 2>& rays,
+                         int runs) {
   const std::array<RayStreams, 2> streams = {uploadRays(device, rays[0]), uploadRays(device, rays[1])};
-  examples::Table table({"structure, machine", "cells, primary", "tests", "most steps", "cells, diffuse", "tests", "most steps",
-                         "primary, Mrays/s", "diffuse, Mrays/s"});
+  examples::Table table({"structure, machine", "cells, primary", "tests", "most steps", "cells, diffuse",
+                         "tests", "most steps", "primary, Mrays/s", "diffuse, Mrays/s"});
   const auto add = [&](double density, Machine machine) {
     GridScene scene(device, model, {.density = density}, HowToIntersect::Watertight);
     GridTracer tracer(scene, {.machine = machine});
@@ -74,8 +77,9 @@ std::string tableOfSteps(sk::Device& device, const Model& model, const std::arra
     }
     for (const RayStreams& some : streams) {
       auto found = device.stream<kernels::Found>(some.from.shape());
-      cells.push_back(rateText(some.from.size(),
-                               bestMilliseconds(device, runs, [&] { tracer.find(false, some.from, some.along, found); })));
+      cells.push_back(rateText(some.from.size(), bestMilliseconds(device, runs, [&] {
+                                 tracer.find(false, some.from, some.along, found);
+                               })));
     }
     table.add(cells);
   };
@@ -98,16 +102,19 @@ std::string tableOfSteps(sk::Device& device, const Model& model, const std::arra
 std::string tableOfDials(GridScene& scene, const std::vector<Ray>& rays, int runs) {
   const RayStreams streams = uploadRays(scene.device, rays);
   auto found = scene.device.stream<kernels::Found>(streams.from.shape());
-  examples::Table table({"shapes a call", "calls until rays are counted", "compacted at", "calls", "primary, Mrays/s"});
+  examples::Table table(
+      {"shapes a call", "calls until rays are counted", "compacted at", "calls", "primary, Mrays/s"});
   const auto add = [&](const StreamingSettings& s) {
     PassMeter meter(scene.device);
     GridTracer(scene, s, &meter).find(false, streams.from, streams.along, found);
     std::int64_t calls = 0;
     for (const PassMeter::Row& row : meter.rows()) calls += row.calls;
     GridTracer tracer(scene, s);
-    const double best = bestMilliseconds(scene.device, runs, [&] { tracer.find(false, streams.from, streams.along, found); });
-    table.add({fmt::format("{}", s.tests), fmt::format("{}", 2 * s.rounds), fmt::format("{:.0f} %", 100 * s.compact),
-               fmt::format("{}", calls), rateText(streams.from.size(), best)});
+    const double best =
+        bestMilliseconds(scene.device, runs, [&] { tracer.find(false, streams.from, streams.along, found); });
+    table.add({fmt::format("{}", s.tests), fmt::format("{}", 2 * s.rounds),
+               fmt::format("{:.0f} %", 100 * s.compact), fmt::format("{}", calls),
+               rateText(streams.from.size(), best)});
   };
   const StreamingSettings defaults{.machine = Machine::Multipass};
   add(defaults);
@@ -118,7 +125,8 @@ std::string tableOfDials(GridScene& scene, const std::vector<Ray>& rays, int run
   };
   for (const int tests : {1, 2, 16}) changed([&](StreamingSettings& s) { s.tests = tests; });
   for (const int rounds : {1, 2, 32}) changed([&](StreamingSettings& s) { s.rounds = rounds; });
-  for (const double compact : {0.0, 0.25, 0.5, 1.0}) changed([&](StreamingSettings& s) { s.compact = compact; });
+  for (const double compact : {0.0, 0.25, 0.5, 1.0})
+    changed([&](StreamingSettings& s) { s.compact = compact; });
   return table.markdown();
 }
 
@@ -136,17 +144,21 @@ std::string mebibytes(std::int64_t bytes) { return fmt::format("{:.1f}", double(
 
 /// A sample of each pixel, for what paths may do, by both machines.
 std::string tableOfUses(GridScene& scene, const Picture& picture, int runs) {
-  constexpr std::array<std::string_view, 4> names = {"path tracing", "Whitted", "shadow casting", "ray casting"};
+  constexpr std::array<std::string_view, 4> names = {"path tracing", "Whitted", "shadow casting",
+                                                     "ray casting"};
   examples::Table table({"use", "machine", "passes", "MiB read", "MiB written", "ms"});
   for (const Use use : {Use::RayCasting, Use::ShadowCasting, Use::Whitted, Use::Paths}) {
     for (const Machine machine : {Machine::Branching, Machine::Multipass}) {
       PassMeter meter(scene.device);
       GridTracer counted(scene, {.machine = machine}, &meter), tracer(scene, {.machine = machine});
       const bool isBranching = machine == Machine::Branching;
-      const std::unique_ptr<Renderer> renderer =
-          isBranching ? makeBranchingRenderer(scene, picture, use) : makeMultipassRenderer(scene, tracer, picture, use);
-      if (isBranching) meter.measure("all", 0, [&] { renderer->pass(0); });
-      else makeMultipassRenderer(scene, counted, picture, use, &meter)->pass(0);
+      const std::unique_ptr<Renderer> renderer = isBranching
+                                                     ? makeBranchingRenderer(scene, picture, use)
+                                                     : makeMultipassRenderer(scene, tracer, picture, use);
+      if (isBranching)
+        meter.measure("all", 0, [&] { renderer->pass(0); });
+      else
+        makeMultipassRenderer(scene, counted, picture, use, &meter)->pass(0);
       const sk::PassCount count = sumOf(meter);
       const double best = bestMilliseconds(scene.device, runs, [&] { renderer->pass(0); });
       table.add({std::string(names[static_cast<std::size_t>(use)]), isBranching ? "branching" : "multipass",
@@ -161,18 +173,21 @@ std::string tableOfUses(GridScene& scene, const Picture& picture, int runs) {
 std::string tableOfKernels(GridScene& scene, const Picture& picture) {
   PassMeter meter(scene.device);
   GridTracer tracer(scene, {.machine = Machine::Multipass}, &meter);
-  const std::unique_ptr<Renderer> renderer = makeMultipassRenderer(scene, tracer, picture, Use::Paths, &meter);
+  const std::unique_ptr<Renderer> renderer =
+      makeMultipassRenderer(scene, tracer, picture, Use::Paths, &meter);
   renderer->pass(0);
   meter.forget();
   renderer->pass(0);
   double all = 0.0;
   for (const PassMeter::Row& row : meter.rows()) all += row.milliseconds;
-  examples::Table table({"kernel", "calls", "passes", "elements a pixel", "bytes written an element", "part of the time"});
+  examples::Table table(
+      {"kernel", "calls", "passes", "elements a pixel", "bytes written an element", "part of the time"});
   const double pixels = double(picture.width) * picture.height;
   for (const PassMeter::Row& row : meter.rows()) {
     const auto elements = double(std::max<std::int64_t>(row.elements, 1));
     table.add({std::string(row.kernel), fmt::format("{}", row.calls), fmt::format("{}", row.count.passes),
-               fmt::format("{:.1f}", double(row.elements) / pixels), fmt::format("{:.1f}", double(row.count.bytesWritten) / elements),
+               fmt::format("{:.1f}", double(row.elements) / pixels),
+               fmt::format("{:.1f}", double(row.count.bytesWritten) / elements),
                fmt::format("{:.0f} %", 100.0 * row.milliseconds / all)});
   }
   return table.markdown();
@@ -200,7 +215,8 @@ Findings studyStreaming(sk::Device& device, bool isSmall) {
   const Picture picture{.width = side, .height = side, .depth = 4};
   Findings findings;
   findings.table = tableOfSteps(device, model, {primary, diffuseRays(model, primary, hits)}, runs) + "\n" +
-                   tableOfDials(scene, primary, runs) + "\n" + tableOfUses(scene, picture, runs) + "\n" + tableOfKernels(scene, picture);
+                   tableOfDials(scene, primary, runs) + "\n" + tableOfUses(scene, picture, runs) + "\n" +
+                   tableOfKernels(scene, picture);
   findings.verifications.push_back(checkEngine(*engine, model, side, side));
   return findings;
 }
