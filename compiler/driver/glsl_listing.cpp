@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/append/append_groups.hpp"
 #include "assemble/append/append_passes.hpp"
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/append/point_program.hpp"
@@ -82,11 +83,49 @@ std::vector<sk::assemble::PointStep> pointSteps(const sk::program::Parameter& ap
           PointStep::JoinHalves};
 }
 
+/// The compute programs of a kernel with append outputs: the owners of stores, if there are any, and everything else.
+std::string groupListing(const Profile& profile, const sk::program::Kernel& kernel) {
+  using sk::program::Role;
+  const sk::Order order = kernel.options.order;
+  const auto mayPack = [&](const sk::program::Parameter& parameter) {
+    return parameter.role == Role::Input && sk::assemble::mayGroupPacked(kernel) &&
+           sk::assemble::mayPack(heldBy(parameter));
+  };
+  sk::assemble::Variant variant = plainVariant(kernel);
+  variant.domainPacked = std::any_of(kernel.parameters.begin(), kernel.parameters.end(), mayPack);
+  variant.task.scattersInAnyOrder = order == sk::Order::Any;
+  bool isOwned = false;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const sk::program::Parameter& parameter = kernel.parameters[i];
+    isOwned = isOwned || sk::assemble::hasOwners(parameter, order);
+    const bool isAligned = mayPack(parameter) == variant.domainPacked;
+    if (parameter.role == Role::Scatter || (parameter.role == Role::Input && !isAligned)) {
+      variant.access[i] = foundByIndex(variant.domain, /*isPacked=*/false);
+    } else if (parameter.role == Role::Input) {
+      variant.access[i] = {};
+    }
+  }
+  std::vector<std::string> programs;
+  for (const auto work : {sk::assemble::Work::Owners, sk::assemble::Work::Groups}) {
+    variant.task.work = work;
+    if (work == sk::assemble::Work::Groups || isOwned)
+      programs.push_back(sk::assemble::kernelProgram(profile, kernel, variant));
+  }
+  return skc::join(programs, "\n");
+}
+
 /// All programs of a kernel with append outputs: counting, the sums of counts, each list, and its points.
 std::string appendListing(const Profile& profile, const sk::program::Kernel& kernel) {
+  const bool mayGroup =
+      std::all_of(kernel.parameters.begin(), kernel.parameters.end(), [&](const auto& parameter) {
+        return !sk::assemble::isAppendOutput(parameter) ||
+               sk::assemble::mayGroup(parameter, kernel.options.order);
+      });
+  if (profile.stage == sk::assemble::Stage::Compute && mayGroup) return groupListing(profile, kernel);
   if (profile.stage == sk::assemble::Stage::Compute) {
     return appendListing(*sk::assemble::findProfile("glsl330"), kernel) +
-           fmt::format("\n// {} has variable or scatter outputs, and is drawn\n", kernel.name);
+           fmt::format("\n// {} combines what compute programs cannot combine in order, and is drawn\n",
+                       kernel.name);
   }
   sk::assemble::Variant variant = plainVariant(kernel);
   std::vector<std::string> programs;

@@ -20,7 +20,7 @@ struct Choice {
   std::array<std::string_view, 6> values;
   std::string_view list;  ///< for messages
 };
-constexpr std::array<Choice, 5> choices = {{
+constexpr std::array<Choice, 6> choices = {{
     {"precision",
      &ir::Choices::precision,
      {"", "half", "single", "extended", "double"},
@@ -32,6 +32,7 @@ constexpr std::array<Choice, 5> choices = {{
     {"intrinsics", &ir::Choices::intrinsics, {"", "fast", "accurate"}, "fast, accurate"},
     {"tables", &ir::Choices::tables, {"", "off", "on"}, "off, on"},
     {"contraction", &ir::Choices::contraction, {"", "exact", "fast"}, "exact, fast"},
+    {"order", &ir::Choices::order, {"", "kept", "any"}, "kept, any"},
 }};
 
 bool startsAttributes(const TokenCursor& cursor, std::size_t at) {

@@ -359,9 +359,9 @@ struct PassOf {
 };
 
 /// The attributes in front of a kernel, such as [[precision(extended)]]: numbers of the enumerators of
-/// sk::Precision, sk::Accumulate, sk::Intrinsics, sk::Tables and sk::Contraction; 0 if unspecified.
+/// sk::Precision, sk::Accumulate, sk::Intrinsics, sk::Tables, sk::Contraction and sk::Order; 0 if unspecified.
 struct Choices {
-  std::uint8_t precision = 0, accumulate = 0, intrinsics = 0, tables = 0, contraction = 0;
+  std::uint8_t precision = 0, accumulate = 0, intrinsics = 0, tables = 0, contraction = 0, order = 0;
 };
 
 /// A loop that unroll-loops has considered.

@@ -69,7 +69,7 @@ static_assert(static_cast<int>(ParamRole::Spec) == static_cast<int>(sk::program:
 static_assert(static_cast<int>(ScatterOp::Max) == static_cast<int>(sk::program::ScatterOp::Max));
 static_assert(static_cast<int>(sk::Precision::Double) == 4 && static_cast<int>(sk::Accumulate::Exact) == 4 &&
                   static_cast<int>(sk::Intrinsics::Accurate) == 2 && static_cast<int>(sk::Tables::On) == 2 &&
-                  static_cast<int>(sk::Contraction::Fast) == 2,
+                  static_cast<int>(sk::Contraction::Fast) == 2 && static_cast<int>(sk::Order::Any) == 2,
               "frontend/choices.cpp has the same order");
 static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program::Boundary::Border));
 
@@ -95,7 +95,8 @@ class Builder {
                            .precision = static_cast<sk::Precision>(kernel.choices.precision),
                            .intrinsics = static_cast<sk::Intrinsics>(kernel.choices.intrinsics),
                            .tables = static_cast<sk::Tables>(kernel.choices.tables),
-                           .contraction = static_cast<sk::Contraction>(kernel.choices.contraction)};
+                           .contraction = static_cast<sk::Contraction>(kernel.choices.contraction),
+                           .order = static_cast<sk::Order>(kernel.choices.order)};
     unit.kernel.whyNotHalf = storage_.keep(kernel.variants.whyNotHalf);
     unit.kernel.whyNotWide = storage_.keep(kernel.variants.whyNotWide);
     if (kernel.reduction) {

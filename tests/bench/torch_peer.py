@@ -117,6 +117,12 @@ def scan(log2):
     return Work(run, lambda result: (result.long() - torch.cumsum(x.long(), 0)).abs().max().item(), 0)
 
 
+def compaction(log2):
+    x = numbers(1 << log2, seed=1, low=-1)
+    run = lambda: torch.masked_select(x, x > 0)
+    return Work(run, lambda result: float(result.cpu().tolist() != [v for v in x.cpu().tolist() if v > 0]), 0)
+
+
 def sort(log2):
     keys = numbers(1 << log2, seed=1, low=-1000, high=1000)
     run = lambda: torch.sort(keys).values
@@ -214,6 +220,7 @@ PROGRAMS = [
     ("sgemv", "elements", (12, 16, 20, 24), lambda n: (2 * n, 4 * n), gemv),
     ("sgemm", "elements", (12, 16, 20), lambda n: (2 * n * math.sqrt(n), 12 * n), gemm),
     ("prefix scan", "ints", (12, 16, 20, 24), lambda n: (n, 8 * n), scan),
+    ("compaction", "floats", (12, 16, 20, 24), lambda n: (n, 6 * n), compaction),
     ("sort", "floats", (12, 16, 20), lambda n: (n * math.log2(n), 8 * n), sort),
     ("n-body", "bodies", (10, 12, 14), lambda n: (20 * n * n, 28 * n), bodies),
     ("fft", "complex numbers", (12, 16, 20), lambda n: (5 * n * math.log2(n), 16 * n), fourier),

@@ -51,6 +51,19 @@ bool haveSameBits(const std::vector<T>& a, const std::vector<T>& b) {
 
 // ---- pushes ----------------------------------------------------------------------------------------
 
+TEST_CASE("a stream that is pushed to again has room for more, or less") {
+  sk::Device device = sk::Device::native();
+  auto r = device.stream<int>({0});
+  for (const std::int64_t size : {70001, 5, 0, 600011, 64}) {
+    std::vector<int> x = someInts(size, 1000);
+    keepSome(streamOf(device, x), r);
+    std::erase_if(x, [](int value) { return value % 5 == 3; });
+    REQUIRE(haveSameBits(r.read(), x));
+    keepSome(r, r);  // keeps all, and reads what it replaces
+    REQUIRE(haveSameBits(r.read(), x));
+  }
+}
+
 TEST_CASE("one push for some of the elements") {
   sk::Device device = sk::Device::native();
   for (const std::int64_t size : sizes) {

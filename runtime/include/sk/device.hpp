@@ -81,7 +81,8 @@ struct DeviceLimits {
 
 /// The result of a trial with one class of kernels (docs/runtime.md, Targets).
 struct TargetTrial {
-  std::string_view kernels;  ///< "elements", "neighbours", "gathers", "loops" or "reduces"
+  /// "elements", "neighbours", "gathers", "loops", "reduces", "pushes" or "scatters"
+  std::string_view kernels;
   double computeOverFragment;  ///< time of compute programs divided by time of fragment programs
 };
 

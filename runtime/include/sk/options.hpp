@@ -77,6 +77,16 @@ enum class Scan : std::uint8_t {
   Exclusive,  ///< those before it; the first element of the result is the identity
 };
 
+/// Whether what elements push, and what they add to elements of a scatter output, keeps its order.
+enum class Order : std::uint8_t {
+  Default,  ///< the choice of the kernel's declaration, else Kept
+  Kept,  ///< the result is that of a loop over the elements in row-major order: the same bits in every run
+  /// The device may take values as they come, which can be faster. Variable outputs hold the same values in another
+  /// order, sums of floats round differently, and any one of several values stored to an element wins: results may
+  /// differ from run to run. Kernels without such outputs, and reductions, ignore the choice.
+  Any,
+};
+
 /// Options of one call, as in `sum.with({.accumulate = ...})(x)`.
 struct CallOptions {
   Accumulate accumulate = Accumulate::Default;
@@ -85,6 +95,7 @@ struct CallOptions {
   Tables tables = Tables::Default;
   Target target = Target::Default;
   Contraction contraction = Contraction::Default;
+  Order order = Order::Default;
   Scan scan = Scan::Default;  ///< scans only
   /// Scans only: scans each line along this dimension by itself (0 is the slowest); by default, the whole stream
   /// in row-major order.
@@ -103,6 +114,7 @@ struct CallOptions {
             .tables = chosen(tables, later.tables),
             .target = chosen(target, later.target),
             .contraction = chosen(contraction, later.contraction),
+            .order = chosen(order, later.order),
             .scan = chosen(scan, later.scan),
             .along = later.along ? later.along : along};
   }

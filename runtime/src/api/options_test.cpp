@@ -20,8 +20,8 @@ TEST_CASE("choices add up, and the last one of a kind holds") {
                                              .precision = Precision::Extended,
                                              .target = Target::Compute});
   STATIC_REQUIRE(both.with({}).options == both.options);
-  constexpr CallOptions all{Accumulate::Tree, Precision::Half,  Intrinsics::Fast,
-                            Tables::Off,      Target::Fragment, Contraction::Fast};
+  constexpr CallOptions all{Accumulate::Tree, Precision::Half,   Intrinsics::Fast, Tables::Off,
+                            Target::Fragment, Contraction::Fast, Order::Any};
   STATIC_REQUIRE(CallOptions{}.with(all) == all);
   STATIC_REQUIRE(all.with({}) == all);
 }

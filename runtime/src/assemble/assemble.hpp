@@ -107,27 +107,34 @@ bool mayPack(const program::Element& held);
 /// take four times as long to compile.
 bool mayWritePacked(const program::Kernel& kernel);
 
+/// Likewise for a kernel with append outputs and Work::Groups, over a domain whose texels hold four elements.
+bool mayGroupPacked(const program::Kernel& kernel);
+
 /// The longest body, in characters, for which this is worthwhile, and the total length of the functions that
 /// it calls, counted per call: software drivers take some 10 s for four times as many.
 constexpr std::size_t longestPackedBody = 4096, longestPackedCalls = 28672;
 
-/// What a kernel's program computes (append/append_passes.hpp).
+/// What a kernel's program computes (append/append_passes.hpp, append/append_groups.hpp).
 enum class Work : std::uint8_t {
   Elements,  ///< its outputs; there are no append outputs
   Counts,  ///< its outputs, and how often each element pushes to each counted append output
   List,  ///< the list of one append output only
+  Owners,  ///< a compute program: which element stores to an element of a scatter output last
+  Groups,  ///< a compute program: its outputs, and all append outputs
 };
 
 struct Task {
   Work work = Work::Elements;
   std::uint8_t appendOutput = 0;  ///< List: the parameter
   bool pyramidLayered = false;  ///< List: the pyramid of a counted append output has layers
+  bool scattersInAnyOrder = false;  ///< Owners, Groups: Order::Any
+  bool pushesInAnyOrder = false;  ///< Groups: Order::Any, and all variable outputs have room
   auto operator<=>(const Task&) const = default;
 };
 
 /// One choice of layouts for a kernel. `access` has one entry per parameter, in order. Entries of Spec
 /// and Output parameters, and of streams that `specs` switches off, are ignored. The entry of a scatter
-/// output gives the layout of its elements, for Work::List.
+/// output gives the layout of its elements, for Work::List, Owners and Groups.
 struct Variant {
   Task task = {};
   Domain domain = Domain::Plane;
@@ -161,15 +168,17 @@ struct Variant {
 /// dimension. If each of its work groups computes one texel, it is dispatched with that number of groups.
 /// Outputs are `layout(location = n) out`, or images with binding n, one per plane, numbered in order of
 /// parameters and fields. Work::Counts adds one for each counted append output. Work::List writes only the
-/// planes of the append output, which follow the target texel in a scatter output. The list of a counted
-/// append output reads a pyramid (append/histo_pyramid.hpp):
+/// planes of the append output, which follow the target texel in a scatter output. Work::Groups has the planes of all
+/// outputs and lists, and then, for each variable output, an image of one texel with the number of its pushes. The list of a
+/// counted append output reads a pyramid (append/histo_pyramid.hpp):
 ///   sk_odd sk_even sk_tree_shift   its textures (samplers) and log2 of their width
 ///   sk_levels, sk_rows[l]          the number of levels, and the first row of level l in its texture
 /// Functions with tables have the uniforms of tables.hpp.
 /// If the profile relays uniforms, most of them are uniforms of the vertex program.
 ///
 /// Requires extents up to sk::mostExtent, element numbers up to sk::mostElements and nonempty gathers; the
-/// runtime rejects other calls. Compute programs support only Work::Elements.
+/// runtime rejects other calls. Fragment programs support Work::Elements, Counts and List, compute programs Work::Elements,
+/// Owners and Groups.
 std::string kernelProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
 
 /// The sampler's name for a plane of a parameter, in kernels and reductions. Planes in a bundle share its

@@ -24,6 +24,7 @@ constexpr std::string_view storages[] = {"single", "half", "extended", "double"}
 constexpr std::string_view tableUses[] = {"off", "on"};
 constexpr std::string_view targets[] = {"fragment", "compute", "native"};
 constexpr std::string_view contractions[] = {"exact", "fast"};
+constexpr std::string_view orders[] = {"kept", "any"};
 
 /// The enumerator of a name: the names are in the enumerators' order, without Default.
 template <class Choice>
@@ -54,11 +55,13 @@ CallOptions optionsOf(const std::string& file, const toml::table& table) {
       options.target = choiceOf<Target>(targets, file, "target", node);
     } else if (key == "contraction") {
       options.contraction = choiceOf<Contraction>(contractions, file, "contraction", node);
+    } else if (key == "order") {
+      options.order = choiceOf<Order>(orders, file, "order", node);
     } else {
       throw Error(
           fmt::format(
-              "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables, target "
-              "and contraction",
+              "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables, target, "
+              "contraction and order",
               file, key.source().begin.line, key.str()),
           Error::Kind::File);
     }
@@ -142,6 +145,7 @@ CallOptions merged(CallOptions first, const CallOptions& second) {
   if (first.tables == Tables::Default) first.tables = second.tables;
   if (first.target == Target::Default) first.target = second.target;
   if (first.contraction == Contraction::Default) first.contraction = second.contraction;
+  if (first.order == Order::Default) first.order = second.order;
   return first;
 }
 

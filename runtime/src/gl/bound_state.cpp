@@ -58,11 +58,9 @@ void BoundState::forgetStorage(GLuint name) {
   if (storage_ == name) storage_ = unknown;
 }
 
-void BoundState::bindImage(int unit, GLuint name, GLenum format) {
-  const auto slot = static_cast<std::size_t>(unit);
-  keepImage(slot);
-  glBindImageTexture(static_cast<GLuint>(unit), name, 0, GL_TRUE, 0, GL_WRITE_ONLY, format);
-  images_[slot] = name;
+void BoundState::bindImage(int unit, GLuint name, GLenum format, GLenum access) {
+  keepImage(static_cast<std::size_t>(unit));
+  glBindImageTexture(static_cast<GLuint>(unit), name, 0, GL_TRUE, 0, access, format);
 }
 
 /// Saves the application's image binding before its first change.

@@ -60,8 +60,15 @@ class BoundState {
   void image(int unit, GLuint name, GLenum format) {
     note({.kind = Command::Kind::Image, .unit = unit, .name = name, .format = format});
     if (images_[static_cast<std::size_t>(unit)] != name) {
-      bindImage(unit, name, format);
+      bindImage(unit, name, format, GL_WRITE_ONLY);
+      images_[static_cast<std::size_t>(unit)] = name;
     }
+  }
+  /// Binds all layers of a texture as an image that programs read and write, with a format of the same size.
+  void atomicImage(int unit, GLuint name, GLenum format) {
+    spoil();
+    bindImage(unit, name, format, GL_READ_WRITE);
+    images_[static_cast<std::size_t>(unit)] = unknown;
   }
   /// Binds the buffer that programs write, at binding 0 and at the generic binding, through which its bytes
   /// are read.
@@ -137,7 +144,7 @@ class BoundState {
  private:
   void bindTexture(int unit, GLuint name, bool isArray);
   void bindSampler(int unit, GLuint name);
-  void bindImage(int unit, GLuint name, GLenum format);
+  void bindImage(int unit, GLuint name, GLenum format, GLenum access);
   void keepImage(std::size_t unit);
   void bindStorage(GLuint name);
   void keepStorage();

@@ -51,6 +51,9 @@ void readCompute(Capabilities& found) {
                      integerOf(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS) >= found.textureUnits;
   if (found.hasCompute) {
     found.uniformComponents = std::min(found.uniformComponents, integerOf(GL_MAX_COMPUTE_UNIFORM_COMPONENTS));
+    GLint64 storageBytes = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storageBytes);
+    found.storageBytes = storageBytes;
   }
 }
 

@@ -37,6 +37,7 @@ struct Capabilities {
   int drawBuffers = 0;
   int textureUnits = 0;  ///< at most maxTextureUnits
   int uniformComponents = 0;  ///< components of a program's uniforms
+  std::int64_t storageBytes = 0;  ///< of a buffer that compute programs write
 };
 
 /// Most planes that one pass writes, on any device.

@@ -43,6 +43,12 @@ inline void finishDraws(BoundState& bound) {
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
+/// Makes what programs have written to a buffer visible to later programs and commands.
+inline void finishStorage(BoundState& bound) {
+  bound.spoil();
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
 /// Waits until the device has finished all commands.
 inline void finish() { glFinish(); }
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/append/append_groups.hpp"
 #include "assemble/append/append_passes.hpp"
 #include "assemble/glsl/tables.hpp"
 #include "call/check_argument.hpp"
@@ -164,15 +165,18 @@ bool GlDevice::computesInPairs(const CallOptions& options) const {
          (requiresPairs || !capabilities.isSoftware || profile.doubles == assemble::Doubles::Pairs);
 }
 
-bool GlDevice::mayDispatch(const program::Kernel& kernel) const {
-  return capabilities.hasCompute && kernel.dispatched && !hasAppendOutputs(kernel);
+bool GlDevice::mayDispatch(const program::Kernel& kernel, const CallOptions& options) const {
+  return capabilities.hasCompute && kernel.dispatched &&
+         std::ranges::all_of(kernel.parameters, [&](const program::Parameter& parameter) {
+           return !assemble::isAppendOutput(parameter) || assemble::mayGroup(parameter, options.order);
+         });
 }
 
 assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, KernelClass kernels,
                                   const CallOptions& options) {
   using assemble::Stage;
   const Target wanted = options.target != Target::Default ? options.target : target;
-  if (!mayDispatch(kernel)) return Stage::Fragment;
+  if (!mayDispatch(kernel, options)) return Stage::Fragment;
   if (!kernel.drawn || wanted == Target::Compute) return Stage::Compute;
   if (wanted == Target::Fragment) return Stage::Fragment;
   return fasterFor(kernels);
@@ -200,6 +204,19 @@ std::vector<TargetTrial> GlDevice::trialTargets() {
     }
   }
   return trials;
+}
+
+void GlDevice::selectDrawnPrograms(const program::Kernel& kernel, const CallOptions& options) {
+  if (!kernel.drawn || options.target == Target::Compute) {
+    fail(Error::Kind::Device, kernel,
+         "compute programs write its outputs only to streams that need no texture with layers, that fit the "
+         "device's {} "
+         "images, and of which no two are regions of one stream; compile it with skc "
+         "--target=fragment,compute and call "
+         "it without Target::Compute",
+         limits.drawBuffers);
+  }
+  selectPrograms(options, assemble::Stage::Fragment);
 }
 
 void GlDevice::selectPrograms(const CallOptions& options, assemble::Stage stage) {
@@ -290,7 +307,8 @@ void GlDevice::checkProgram(const program::Reduction& reduction) {
   checkProgram(reduction.combine);
 }
 
-void GlDevice::checkTarget(const program::Kernel& kernel, Target requested) const {
+void GlDevice::checkTarget(const program::Kernel& kernel, const CallOptions& options) const {
+  const Target requested = options.target;
   if (requested == Target::Native) {
     fail(Error::Kind::Device, kernel,
          "its streams are on '{}'; native code runs on streams of sk::Device::native()", name());
@@ -302,11 +320,15 @@ void GlDevice::checkTarget(const program::Kernel& kernel, Target requested) cons
     fail(Error::Kind::Device, kernel, "'{}' runs no compute programs, which take OpenGL 4.3; {}", name(),
          wayOut);
   }
-  if (mustDispatch && hasAppendOutputs(kernel)) {
-    fail(Error::Kind::Device, kernel, "variable and scatter outputs are drawn; {}", wayOut);
-  }
   if (mustDispatch && !kernel.dispatched) {
     fail(Error::Kind::Compile, kernel, "it has no compute programs; {}", compileForBoth);
+  }
+  if (mustDispatch && !mayDispatch(kernel, options)) {
+    fail(Error::Kind::Device, kernel,
+         "compute programs combine only single numbers of 32 bits in a scatter output, and add floats only "
+         "with Order::Any; "
+         "{}",
+         wayOut);
   }
   if (requested == Target::Fragment && !kernel.drawn) {
     fail(Error::Kind::Compile, kernel, "it has no fragment programs; {}", compileForBoth);
@@ -314,7 +336,7 @@ void GlDevice::checkTarget(const program::Kernel& kernel, Target requested) cons
 }
 
 void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& options) {
-  checkTarget(kernel, options.target);
+  checkTarget(kernel, options);
   if (computesInPairs(options)) {
     needExactSums(kernel);
   }

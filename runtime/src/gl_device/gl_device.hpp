@@ -20,6 +20,7 @@
 #include "gl/open_context.hpp"
 #include "gl/samplers.hpp"
 #include "gl/saved_state.hpp"
+#include "gl/state_buffer.hpp"
 #include "gl/value_buffer.hpp"
 #include "gl/vertex_array.hpp"
 #include "gl_device/append/append_programs.hpp"
@@ -121,6 +122,8 @@ class GlDevice final : public DeviceState {
   /// which one is faster. No DeviceScope may be open.
   assemble::Stage stageOf(const program::Kernel& kernel, KernelClass kernels, const CallOptions& options);
   ProgramCache& programs() { return *programs_; }
+  /// Selects fragment programs for a call that compute programs cannot run. Throws sk::Error if the kernel has none.
+  void selectDrawnPrograms(const program::Kernel& kernel, const CallOptions& options);
   /// The texture of a table, created on first use. Binds a texture.
   GLuint textureOf(const FunctionTable& table);
 
@@ -161,6 +164,7 @@ class GlDevice final : public DeviceState {
   AppendPrograms appendPrograms;
   gl::Samplers samplers{bound.deletions};
   gl::ValueBuffer values;
+  gl::StateBuffer groupStates;
   gl::VertexArray vertexArray;
   const std::shared_ptr<PendingReads> pendingReads = std::make_shared<PendingReads>();
   TransferBuffers transferBuffers{bound.deletions};
@@ -176,9 +180,9 @@ class GlDevice final : public DeviceState {
  private:
   bool computesInPairs(const CallOptions& options) const;
   assemble::Stage fasterFor(KernelClass kernels);
-  bool mayDispatch(const program::Kernel& kernel) const;
+  bool mayDispatch(const program::Kernel& kernel, const CallOptions& options) const;
   /// Throws sk::Error if a kernel cannot run on the target that a call requests.
-  void checkTarget(const program::Kernel& kernel, Target requested) const;
+  void checkTarget(const program::Kernel& kernel, const CallOptions& options) const;
   void needExactSums(const program::Kernel& kernel);
   [[noreturn]] void failAsLost() const;
 

@@ -27,6 +27,7 @@ using Extents = std::array<std::int64_t, 4>;
 struct Pushed {
   std::vector<ArrayMemory> arrays;
   std::int64_t count = 0;
+  std::int64_t capacity = 0;  ///< elements that the arrays have room for
 };
 
 /// The argument for one parameter.

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "native/memory.hpp"
@@ -53,6 +54,11 @@ class Components {
   /// Copies the first `count` elements of `from`, which has as many components.
   void assign(const Components& from, std::int64_t count);
   std::span<void* const> arrays() const { return pointers_; }
+  /// Gives the arrays away.
+  std::vector<ArrayMemory> release() {
+    pointers_.clear();
+    return std::exchange(arrays_, {});
+  }
 
   /// Copies `count` elements of `others`, which has as many components, from number `from` on to number
   /// `first` on.

@@ -17,6 +17,7 @@ namespace sk {
 struct CodeChoice {
   RealType real = RealType::Float;
   bool mayContract = false;  ///< products and sums may be fused
+  bool mayReorder = false;  ///< pushes and scatters may be carried out in any order
 };
 
 /// The level with this name, such as x86-64-v3. Throws sk::Error if there is none.

@@ -131,16 +131,17 @@ class Operands {
     struct PushedElements {
       NativeStream& stream;
       Components components;
-      std::int64_t count;
+      std::int64_t count, capacity;
     };
     std::list<PushedElements> pushed;
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (list_[i].pushed == nullptr) continue;
       NativeStream& stream = nativeStream(arguments_[i].region);
-      const std::int64_t count = list_[i].pushed->count;
-      pushed.push_back({stream, stream.heldOf(std::move(*list_[i].pushed), real_), count});
+      const auto [count, capacity] = std::pair(list_[i].pushed->count, list_[i].pushed->capacity);
+      pushed.push_back({stream, stream.heldOf(std::move(*list_[i].pushed), real_), count, capacity});
     }
-    for (PushedElements& one : pushed) one.stream.replaceElements(std::move(one.components), one.count);
+    for (PushedElements& one : pushed)
+      one.stream.replaceElements(std::move(one.components), one.count, one.capacity);
     for (const auto& [stream, copy] : written_) stream->components.assign(copy, stream->shape.size());
     for (std::size_t i = 0; i < list_.size(); ++i) {
       const StreamRegion& region = arguments_[i].region;
@@ -205,6 +206,9 @@ class Operands {
       case Role::VariableOutput: {
         Operand operand;
         operand.pushed = &pushed_.emplace_back();
+        NativeStream& stream = nativeStream(argument.region);
+        if (stream.components.real() == real_) *operand.pushed = stream.takeRoom();
+        operand.pushed->count = 0;
         return operand;
       }
       case Role::Input:
@@ -343,7 +347,9 @@ class NativeSums final : public RoundedSums {
 };
 
 CodeChoice codeChoice(RealType real, const CallOptions& options) {
-  return {.real = real, .mayContract = options.contraction == Contraction::Fast};
+  return {.real = real,
+          .mayContract = options.contraction == Contraction::Fast,
+          .mayReorder = options.order == Order::Any};
 }
 
 /// Only a reduction to digits has no exact variant of its own in an exact call.

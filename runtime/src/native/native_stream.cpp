@@ -73,6 +73,9 @@ void NativeStream::countBytes() noexcept {
       bytes_ += shape.size() * static_cast<std::int64_t>(component.storedBytes);
     }
   }
+  for (const ComponentType& component : components.types()) {
+    bytes_ += room_.count * static_cast<std::int64_t>(component.storedBytes);
+  }
   owner().countBytes(bytes_ - before);
 }
 
@@ -121,6 +124,8 @@ void NativeStream::exchangeElements(StreamState& other) noexcept {
   auto& with = static_cast<NativeStream&>(other);
   std::swap(components, with.components);
   std::swap(spare_, with.spare_);
+  std::swap(room_, with.room_);
+  std::swap(capacity_, with.capacity_);
   std::swap(bytes_, with.bytes_);
   std::swap(isBroken, with.isBroken);
 }
@@ -245,8 +250,11 @@ Components NativeStream::heldOf(native::Pushed pushed, RealType real) const {
   return real == components.real() ? std::move(given) : given.clone(count, components.real());
 }
 
-void NativeStream::replaceElements(Components&& pushed, std::int64_t count) noexcept {
+void NativeStream::replaceElements(Components&& pushed, std::int64_t count, std::int64_t capacity) noexcept {
+  const std::int64_t before = std::max(capacity_, shape.size());
+  room_ = {.arrays = components.release(), .count = shape.size(), .capacity = before};
   components = std::move(pushed);
+  capacity_ = std::max(capacity, count);
   spare_ = {};
   shape = Shape(count);
   isBroken = false;

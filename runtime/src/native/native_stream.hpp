@@ -39,7 +39,9 @@ class NativeStream final : public StreamState {
   /// sk::Error if it is too much.
   Components heldOf(native::Pushed pushed, RealType real) const;
   /// Replaces the elements by `count` elements that were pushed; the shape becomes {count}.
-  void replaceElements(Components&& pushed, std::int64_t count) noexcept;
+  void replaceElements(Components&& pushed, std::int64_t count, std::int64_t capacity) noexcept;
+  /// Arrays for a call to push to, which held the stream's elements before the last call that pushed; none if there are none.
+  native::Pushed takeRoom() { return std::exchange(room_, {}); }
 
   /// Rounds floats to half precision if that is the stream's storage. Must follow every write.
   void keepStorage();
@@ -48,11 +50,16 @@ class NativeStream final : public StreamState {
   /// for later calls.
   Components& spare();
   /// Exchanges the stream's own arrays for the spare ones.
-  void exchange() { std::swap(components, spare_); }
+  void exchange() {
+    std::swap(components, spare_);
+    capacity_ = 0;
+  }
   /// Frees all arrays.
   void empty() {
     components = {};
     spare_ = {};
+    room_ = {};
+    capacity_ = 0;
   }
 
   Components components;
@@ -62,6 +69,8 @@ class NativeStream final : public StreamState {
   void countBytes() noexcept;
 
   Components spare_;
+  native::Pushed room_;
+  std::int64_t capacity_ = 0;  ///< elements that `components` have room for; 0: as many as there are
   std::int64_t bytes_ = 0;  ///< as counted for the trace
 };
 

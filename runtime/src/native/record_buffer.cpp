@@ -60,6 +60,13 @@ void RecordBuffer::reserve(std::int64_t count) {
   setPointers();
 }
 
+void RecordBuffer::adopt(std::vector<ArrayMemory>&& arrays, std::int64_t capacity) {
+  arrays_ = std::move(arrays);
+  appendBuffer_.count = 0;
+  appendBuffer_.capacity = capacity;
+  setPointers();
+}
+
 void RecordBuffer::setPointers() {
   for (std::size_t c = 0; c < arrays_.size(); ++c) pointers_[c] = arrays_[c].get();
   if (hasTarget_) appendBuffer_.targets = reinterpret_cast<std::int64_t*>(pointers_[sortedColumns_ - 1]);

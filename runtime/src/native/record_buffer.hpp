@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "native/code_frame.hpp"
@@ -45,6 +46,10 @@ class RecordBuffer {
   /// Adds records whose arrays the caller then writes; there must be room for them.
   void addUnwritten(std::int64_t count) { appendBuffer_.count += count; }
   void clear() { appendBuffer_.count = sorted_ = 0; }
+  /// Appends to these arrays, one for each component, which have room for `capacity` records and mostLanes more. Only for
+  /// records without targets and element numbers. release() returns the arrays.
+  void adopt(std::vector<ArrayMemory>&& arrays, std::int64_t capacity);
+  std::vector<ArrayMemory> release() { return std::exchange(arrays_, {}); }
 
   /// Sorts the records since the last call, all of one chunk, by element; stable. Does nothing if records
   /// carry no element numbers.

@@ -11,6 +11,7 @@
 #include "native/chunk_runner.hpp"
 #include "native/code_frame.hpp"
 #include "native/push_parts.hpp"
+#include "native/push_rooms.hpp"
 #include "native/record_buffer.hpp"
 #include "native/row_pieces.hpp"
 #include "native/scatters.hpp"
@@ -136,6 +137,11 @@ class CodeRun {
   /// computed together.
   bool isReordered() const { return kernel_.code->isReordered != 0 && entry_.lanes > 1; }
 
+  /// Puts the records of a chunk in the order of elements.
+  void sortRecords(RecordFrame& frame) const {
+    if (!choice_.mayReorder) frame.sort();
+  }
+
   /// True if scatters are logged. Logs cost time per record, so that few threads gain only if elements take
   /// long to compute.
   bool logsScatters(std::int64_t threads) const {
@@ -146,6 +152,7 @@ class CodeRun {
   /// Carries out the scatters of a batch of elements before the next batch is computed, so that logs stay
   /// small.
   void record() const {
+    if (PushRooms::mayHold(kernel_, elements())) return pushToRooms();
     PushParts pushes;
     const std::int64_t threads = native::threadsFor(pieces_.count(), costOfPiece());
     if (logsScatters(threads)) {
@@ -165,10 +172,45 @@ class CodeRun {
     pushes.store(call_.operands);
   }
 
+  std::int64_t elements() const {
+    return call_.domain[0] * call_.domain[1] * call_.domain[2] * call_.domain[3];
+  }
+
+  /// Pushes to arrays that have room for all pushes.
+  void pushToRooms() const {
+    const std::int64_t threads = native::threadsFor(pieces_.count(), costOfPiece());
+    const std::int64_t ofSlice = std::max<std::int64_t>(1, elementsOfSlice / pieces_.elementsOfOne());
+    const bool isAlone = threads == 1 && !isReordered();
+    const std::int64_t slices = isAlone ? 1 : (pieces_.count() + ofSlice - 1) / ofSlice;
+    PushRooms rooms(kernel_, call_, choice_.real, slices);
+    if (isAlone) {
+      RecordFrame frame(kernel_, frame_, {choice_.real, /*isReordered=*/false, /*scatters=*/false});
+      rooms.lend(frame);
+      runPieces({0, pieces_.count()}, frame.get(), {});
+      return rooms.settle(call_.operands, frame);
+    }
+    native::inParallel(threads, costOfPiece() * pieces_.count() / threads, Deal::Evenly, [&](Range) {
+      RecordFrame frame(kernel_, frame_, {choice_.real, isReordered(), /*scatters=*/false});
+      const ChunkHook hook =
+          isReordered() ? ChunkHook{elementsOfChunk, [&] { sortRecords(frame); }} : ChunkHook{};
+      try {
+        for (std::int64_t slice = rooms.next(); slice < slices; slice = rooms.next()) {
+          const std::int64_t begin = slice * ofSlice;
+          runPieces({begin, std::min(begin + ofSlice, pieces_.count())}, frame.get(), hook);
+          rooms.place(slice, frame);
+        }
+      } catch (...) {
+        rooms.fail();
+        throw;
+      }
+    });
+    rooms.settle(call_.operands);
+  }
+
   void pushPieces(Range pieces, PushParts& pushes) const {
     RecordFrame frame(kernel_, frame_, {choice_.real, isReordered(), /*scatters=*/false});
     runPieces(pieces, frame.get(),
-              isReordered() ? ChunkHook{elementsOfChunk, [&] { frame.sort(); }} : ChunkHook{});
+              isReordered() ? ChunkHook{elementsOfChunk, [&] { sortRecords(frame); }} : ChunkHook{});
     pushes.add(pieces.begin, frame.pushed());
   }
 
@@ -178,7 +220,7 @@ class CodeRun {
     const Scatters scatters(kernel_, frame_, choice_);
     RecordFrame frame(kernel_, frame_, {choice_.real, isReordered(), /*scatters=*/true});
     runPieces(pieces, frame.get(), {elementsOfChunk, [&] {
-                                      frame.sort();
+                                      sortRecords(frame);
                                       scatters.apply(frame);
                                     }});
     pushes.add(pieces.begin, frame.pushed());
@@ -188,7 +230,7 @@ class CodeRun {
     RecordFrame frame(kernel_, frame_, {choice_.real, isReordered(), /*scatters=*/true});
     std::unique_ptr<Scatters::Log> log = scatters.newLog();
     runPieces(pieces, frame.get(), {elementsOfChunk, [&] {
-                                      frame.sort();
+                                      sortRecords(frame);
                                       scatters.move(frame, *log);
                                     }});
     pushes.add(pieces.begin, frame.pushed());
@@ -197,6 +239,8 @@ class CodeRun {
 
   /// The elements whose records are sorted and moved together, so that these stay in the nearest cache.
   static constexpr std::int64_t elementsOfChunk = 1 << 10;
+  /// The elements whose pushes a thread copies together, so that these stay in a cache.
+  static constexpr std::int64_t elementsOfSlice = 1 << 15;
   /// The elements per thread whose records are carried out later. The logs of the simplest kernels stay in a
   /// cache.
   static constexpr std::int64_t elementsOfLog = 1 << 15;

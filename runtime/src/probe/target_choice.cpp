@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/append/append_passes.hpp"
 #include "call/block_grid.hpp"
 #include "call/resolved_reduction.hpp"
 #include "device/stream_state.hpp"
@@ -50,6 +52,12 @@ constexpr std::array<Parameter, 2> gatherParameters{
 constexpr std::array<Parameter, 2> loopParameters{
     {{.name = "x", .symbol = "x", .role = Role::Input, .element = &floats},
      {.name = "r", .symbol = "r", .role = Role::Output, .element = &floats}}};
+constexpr std::array<Parameter, 2> scatterParameters{
+    {{.name = "x", .symbol = "x", .role = Role::Input, .element = &floats, .usesIndex = true},
+     {.name = "r", .symbol = "r", .role = Role::Scatter, .element = &floats, .rank = 2, .pushes = 1}}};
+constexpr std::array<Parameter, 2> pushParameters{
+    {{.name = "x", .symbol = "x", .role = Role::Input, .element = &floats},
+     {.name = "r", .symbol = "r", .role = Role::VariableOutput, .element = &floats, .pushes = 1}}};
 constexpr std::array<Parameter, 2> sumParameters{
     {{.name = "x", .symbol = "x", .role = Role::Input, .element = &floats},
      {.name = "r", .symbol = "r", .role = Role::Accumulator, .element = &floats, .identity = "0.0"}}};
@@ -100,6 +108,14 @@ const Kernel loops = [] {
   kernel.usesLoops = true;
   return kernel;
 }();
+const Kernel scatters =
+    kernelOf("a trial of scatters", "void sk_trial(float x) { sk_put_r(sk_index_x().yx ^ 5, x); }\n",
+             scatterParameters);
+const Kernel pushes = kernelOf("a trial of pushes",
+                               "void sk_trial(float x) {\n"
+                               "  if ((floatBitsToInt(x) & 1) == 0) sk_push_r(x);\n"
+                               "}\n",
+                               pushParameters);
 const program::Reduction sum = [] {
   program::Reduction reduction{};
   reduction.fold =
@@ -115,11 +131,13 @@ class Trial {
   Trial(GlDevice& device, KernelClass kernels)
       : device_(device),
         kernels_(kernels),
-        shape_(device.capabilities.isSoftware ? Shape{1024, 1024} : Shape{2048, 2048}),
+        shape_(shapeFor(device, kernels)),
         x_(device.createStream(floats, shape_, Storage::Single)),
         y_(device.createStream(floats, shape_, Storage::Single)),
-        r_(device.createStream(floats, shape_, Storage::Single)) {
-    const std::vector<float> values(static_cast<std::size_t>(shape_.size()), 0.5F);
+        r_(device.createStream(floats, shape_, Storage::Single)),
+        list_(device.createStream(floats, {0}, Storage::Single)) {
+    std::vector<float> values(static_cast<std::size_t>(shape_.size()), 0.5F);
+    for (std::size_t i = 0; i < values.size(); i += 2) values[i] = std::nextafter(0.5F, 1.0F);
     detail::write(detail::wholeRegion(x_.get()), values.data(), values.size());
     detail::write(detail::wholeRegion(y_.get()), values.data(), values.size());
   }
@@ -139,6 +157,13 @@ class Trial {
   }
 
  private:
+  /// Scatters take a software renderer long.
+  static Shape shapeFor(const GlDevice& device, KernelClass kernels) {
+    if (!device.capabilities.isSoftware) return {2048, 2048};
+    return kernels == KernelClass::Pushes || kernels == KernelClass::Scatters ? Shape{256, 256}
+                                                                              : Shape{1024, 1024};
+  }
+
   double seconds(Target target) {
     device_.finish();
     const auto start = std::chrono::steady_clock::now();
@@ -157,6 +182,10 @@ class Trial {
       case KernelClass::Neighbours: return device_.runUnchecked(neighbours, two, options);
       case KernelClass::Gathers: return device_.runUnchecked(gathers, two, options);
       case KernelClass::Loops: return device_.runUnchecked(loops, two, options);
+      case KernelClass::Pushes:
+        return device_.runUnchecked(
+            pushes, std::array{x, Argument{.region = detail::wholeRegion(list_.get())}}, options);
+      case KernelClass::Scatters: return device_.runUnchecked(scatters, two, options);
       case KernelClass::Reduces: {
         float total = 0;
         const std::array<void*, 1> results{&total};
@@ -169,7 +198,7 @@ class Trial {
   GlDevice& device_;
   const KernelClass kernels_;
   const Shape shape_;
-  const std::unique_ptr<StreamState> x_, y_, r_;
+  const std::unique_ptr<StreamState> x_, y_, r_, list_;
 };
 
 }  // namespace
@@ -181,13 +210,20 @@ std::string_view nameOf(KernelClass kernels) {
     case KernelClass::Gathers: return "gathers";
     case KernelClass::Loops: return "loops";
     case KernelClass::Reduces: return "reduces";
+    case KernelClass::Pushes: return "pushes";
+    case KernelClass::Scatters: return "scatters";
   }
   return {};
 }
 
-KernelClass classOf(const Kernel& kernel) {
-  if (kernel.usesLoops) return KernelClass::Loops;
+KernelClass classOf(const Kernel& kernel, Order order) {
   const auto any = [&](auto&& asks) { return std::ranges::any_of(kernel.parameters, asks); };
+  if (any(assemble::isAppendOutput)) {
+    const bool pushes =
+        any([](const Parameter& parameter) { return parameter.role == Role::VariableOutput; });
+    return pushes && order != Order::Any ? KernelClass::Pushes : KernelClass::Scatters;
+  }
+  if (kernel.usesLoops) return KernelClass::Loops;
   if (any([](const Parameter& parameter) { return parameter.usesAt || parameter.usesSample; }))
     return KernelClass::Gathers;
   return any([](const Parameter& parameter) { return parameter.usesNear; }) ? KernelClass::Neighbours

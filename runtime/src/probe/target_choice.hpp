@@ -24,13 +24,15 @@ enum class KernelClass : std::uint8_t {
   Gathers,  ///< reads at computed indices
   Loops,  ///< has loops
   Reduces,
+  Pushes,  ///< has variable outputs, whose order is kept
+  Scatters,  ///< has scatter outputs, or variable outputs in any order
 };
-inline constexpr std::size_t kernelClasses = 5;
+inline constexpr std::size_t kernelClasses = 7;
 
 std::string_view nameOf(KernelClass kernels);
 
 /// The class of a kernel that is not the fold of a reduction.
-KernelClass classOf(const program::Kernel& kernel);
+KernelClass classOf(const program::Kernel& kernel, Order order = Order::Kept);
 
 /// Identifies what a trial's result depends on: texture limits change layouts, and software depends on the
 /// processor.

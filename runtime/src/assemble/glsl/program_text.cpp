@@ -119,6 +119,26 @@ void ProgramText::dispatchGroups(std::int32_t width, std::int32_t height, bool s
   storesApart_ = storesApart;
 }
 
+void ProgramText::storeLater(std::size_t first) {
+  for (std::size_t i = first; i < outputs_.size(); ++i) outputs_[i].isStoredLater = true;
+}
+
+void ProgramText::makeAtomic(std::size_t output, std::string_view format) {
+  outputs_[output].atomicFormat = format;
+}
+
+std::string ProgramText::storeOf(std::size_t output, std::string_view place) const {
+  const auto& [type, name, isStoredLater, atomicFormat] = outputs_[output];
+  return fmt::format("imageStore(sk_image{}, {}, {});", output, place, wholeTexel(type, name));
+}
+
+std::vector<std::string> ProgramText::storesOf(std::size_t first, std::size_t end,
+                                               std::string_view place) const {
+  std::vector<std::string> stores;
+  for (std::size_t i = first; i < end; ++i) stores.push_back(storeOf(i, place));
+  return stores;
+}
+
 void ProgramText::variable(std::string_view type, std::string_view name) {
   addOnce(variables_, fmt::format("{} {};", type, name));
 }
@@ -131,6 +151,11 @@ void ProgramText::function(std::string_view signature, const std::vector<std::st
   fmt::format_to(std::back_inserter(functions_), "\n{} {{\n", signature);
   for (const std::string& line : statements) functions_ += "  " + line + '\n';
   functions_ += "}\n";
+}
+
+void ProgramText::defineWith(std::string_view signature, std::string_view lines) {
+  signatures_.emplace_back(signature);
+  fmt::format_to(std::back_inserter(functions_), "\n{} {{\n{}}}\n", signature, lines);
 }
 
 bool ProgramText::isDefined(std::string_view signature) const {
@@ -195,11 +220,14 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
 std::string ProgramText::declarationOfOutputs() const {
   std::string text = isInBuffer_ ? declarationOfBuffer() : std::string();
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    const auto& [type, name] = outputs_[i];
+    const auto& [type, name, isStoredLater, atomicFormat] = outputs_[i];
     if (isDrawn()) {
       fmt::format_to(std::back_inserter(text), "layout(location = {}) out {} {};\n", i, type, name);
     } else {
-      if (!isInBuffer_)
+      if (!atomicFormat.empty())
+        fmt::format_to(std::back_inserter(text), "layout(binding = {}, {}) uniform {} sk_image{};\n", i,
+                       atomicFormat, imageType(type, false), i);
+      else if (!isInBuffer_)
         fmt::format_to(std::back_inserter(text), "layout(binding = {}) writeonly uniform {} sk_image{};\n", i,
                        imageType(type, isArray_), i);
       fmt::format_to(std::back_inserter(text), "{} {};\n", type, name);
@@ -219,6 +247,7 @@ std::string ProgramText::declarationOfBuffer() const {
 /// Invocations outside the rectangle, which fill the last work groups, return immediately.
 std::string ProgramText::mainOf(const std::string& body) const {
   if (isDrawn()) return "\nvoid main() {\n" + body + "}\n";
+  if (!mainOfGroups_.empty()) return "\nvoid sk_run() {\n" + body + storesAtEnd() + "}\n" + mainOfGroups_;
   const bool isGrouped = group_.first > 0;
   const auto [width, height] =
       isGrouped ? group_ : groupForTexels(outputs_.empty() ? 1 : componentsOf(outputs_.front().type));
@@ -236,16 +265,20 @@ std::string ProgramText::mainOf(const std::string& body) const {
     text += together_ + keptTogether_ + "  memoryBarrierShared();\n  barrier();\n";
     text += "  if (any(greaterThanEqual(sk_pixel - sk_rect.xy, sk_rect.zw))) return;\n" + body;
   }
+  return text + storesAtEnd() + "}\n";
+}
+
+std::string ProgramText::storesAtEnd() const {
+  std::string text;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    const auto& [type, name] = outputs_[i];
     if (isInBuffer_) {
-      fmt::format_to(std::back_inserter(text), "  sk_value{} = {};\n", i, wholeTexel(type, name));
-    } else {
-      fmt::format_to(std::back_inserter(text), "  imageStore(sk_image{}, {}, {});\n", i, place_,
-                     wholeTexel(type, name));
+      fmt::format_to(std::back_inserter(text), "  sk_value{} = {};\n", i,
+                     wholeTexel(outputs_[i].type, outputs_[i].name));
+    } else if (!outputs_[i].isStoredLater) {
+      fmt::format_to(std::back_inserter(text), "  {}\n", storeOf(i, place_));
     }
   }
-  return text + "}\n";
+  return text;
 }
 
 std::string call(std::string_view name, const std::vector<std::string>& arguments, std::string_view indent) {

@@ -71,6 +71,22 @@ class ProgramText {
   /// For compute programs: a work group of this size computes one texel, which its first invocation stores. If it
   /// `storesApart`, each invocation that does not return stores a texel of its own.
   void dispatchGroups(std::int32_t width, std::int32_t height, bool storesApart = false);
+  struct Output {
+    std::string type, name;
+    bool isStoredLater = false;
+    std::string atomicFormat = {};  ///< empty: the image is only written
+  };
+  const Output& outputAt(std::size_t number) const { return outputs_[number]; }
+  /// The number of outputs so far, which is the binding of the next one's image.
+  std::size_t outputCount() const { return outputs_.size(); }
+  /// Outputs from number `first` on are stored where storesOf() says, not at the end of main().
+  void storeLater(std::size_t first);
+  /// The image of this output is read and written, with this format ("r32i").
+  void makeAtomic(std::size_t output, std::string_view format);
+  /// Statements that store outputs from number `first` up to `end` at texel `place`.
+  std::vector<std::string> storesOf(std::size_t first, std::size_t end, std::string_view place) const;
+  /// For compute programs: main() becomes the function `sk_run`, and the program ends with `main` in its place.
+  void runFrom(std::string main) { mainOfGroups_ = std::move(main); }
   /// Declares a global variable.
   void variable(std::string_view type, std::string_view name);
   /// Defines a shared function on first use.
@@ -78,6 +94,18 @@ class ProgramText {
   /// Defines a function, unless this signature has been defined.
   void function(std::string_view signature, const std::vector<std::string>& statements);
   bool isDefined(std::string_view signature) const;
+  /// Adds the text of functions, once.
+  void functions(std::string_view text) {
+    if (functions_.find(text) == std::string::npos) functions_ += text;
+  }
+  /// Defines a function with the lines that `write` adds by statement().
+  template <class Write>
+  void functionOf(std::string_view signature, Write&& write) {
+    std::string lines = std::exchange(main_, {});
+    write();
+    std::swap(lines, main_);
+    defineWith(signature, lines);
+  }
   /// Adds a line to main().
   void statement(std::string_view line);
   /// Adds a line to main() that precedes all lines of statement().
@@ -97,19 +125,20 @@ class ProgramText {
   std::string finish(const Profile& profile, std::string_view comment, const program::Kernel& kernel) const;
 
  private:
-  struct Output {
-    std::string type, name;
-  };
+  std::string storeOf(std::size_t output, std::string_view place) const;
+  void defineWith(std::string_view signature, std::string_view lines);
 
   bool isDrawn() const { return stage_ == Stage::Fragment; }
   std::string declarationOfOutputs() const;
   std::string declarationOfBuffer() const;
   std::string mainOf(const std::string& body) const;
+  std::string storesAtEnd() const;
 
   Stage stage_ = Stage::Fragment;
   bool sharesTexels_ = false;
   bool samples_ = false;
   std::string place_;  ///< of storeAt()
+  std::string mainOfGroups_;  ///< of runFrom()
   bool isArray_ = false;
   bool isInBuffer_ = false;  ///< storeInBuffer()
   bool storesApart_ = false;  ///< dispatchGroups()

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/append/append_groups.hpp"
 #include "assemble/append/append_passes.hpp"
 #include "assemble/assemble.hpp"
 #include "assemble/elements/arguments.hpp"
@@ -86,19 +87,26 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
   return text;
 }
 
+/// Work groups of append outputs do not fetch texels together: they run the kernel on one texel after the other.
+Profile profileFor(const Task& task, Profile profile) {
+  if (task.work == Work::Groups || task.work == Work::Owners) profile.sharesTexels = false;
+  return profile;
+}
+
 class KernelText {
  public:
   KernelText(const Profile& profile, const Kernel& kernel, const Variant& variant)
-      : profile_(profile),
+      : profile_(profileFor(variant.task, profile)),
         held_(kernel, variant.access),
         kernel_(held_.kernel()),
         variant_(variant),
-        program_(profile),
+        program_(profile_),
         domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
-                           variant.domainPacked}) {}
+                           variant.domainPacked}),
+        groups_(program_, domain_, kernel_, variant) {}
 
   std::string write() {
-    assert(profile_.stage == Stage::Fragment || variant_.task.work == Work::Elements);
+    assert(variant_.task.work == Work::Elements || isGroups() == (profile_.stage == Stage::Compute));
     if (profile_.relaysUniforms && !isList()) relayUniforms();
     if (isList())
       findEntry(program_, domain_, kernel_.parameters[variant_.task.appendOutput],
@@ -121,6 +129,7 @@ class KernelText {
     storeAppendOutputs();
     if (profile_.stage == Stage::Compute)
       program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
+    if (isGroups()) groups_.finish();
     return program_.finish(profile_, describe(profile_, kernel_, variant_), kernel_);
   }
 
@@ -150,6 +159,7 @@ class KernelText {
     for (int lane = 0; lane < lanes; ++lane) {
       if (domain_.usesLane()) program_.statement(fmt::format("sk_lane = {};", lane));
       callWith(std::string_view("xyzw").substr(static_cast<std::size_t>(lane), 1));
+      if (isGroups() && !groups_.afterElement().empty()) program_.statement(groups_.afterElement());
     }
   }
 
@@ -172,6 +182,7 @@ class KernelText {
   }
 
   bool isList() const { return variant_.task.work == Work::List; }
+  bool isGroups() const { return variant_.task.work == Work::Groups || variant_.task.work == Work::Owners; }
 
   void defineAccess(std::size_t i, const StreamAccess& access) {
     const Parameter& parameter = kernel_.parameters[i];
@@ -243,12 +254,14 @@ class KernelText {
 
   void defineAppendOutput(std::size_t i, const StreamAccess& access) {
     const Parameter& appendOutput = kernel_.parameters[i];
+    if (isGroups()) return groups_.define(appendOutput, access);
     if (!isList()) return defineCounting(program_, appendOutput);
     i == variant_.task.appendOutput ? defineListed(program_, appendOutput, access)
                                     : defineIgnored(program_, appendOutput);
   }
 
   void storeAppendOutputs() {
+    if (isGroups()) return;  // the body has stored them
     if (isList()) return storeListed(program_, kernel_.parameters[variant_.task.appendOutput]);
     for (const Parameter& parameter : kernel_.parameters) {
       if (isAppendOutput(parameter)) storeCount(program_, parameter);
@@ -256,7 +269,7 @@ class KernelText {
   }
 
   void defineOutput(const Parameter& parameter) {
-    if (isList()) {  // another pass writes it
+    if (isList() || variant_.task.work == Work::Owners) {  // another pass writes it
       arguments_.push_back({fmt::format("sk_unused_{}", parameter.symbol)});
       program_.statement(fmt::format("{} {};", parameter.element->glsl, arguments_.back().text));
     } else {
@@ -275,12 +288,13 @@ class KernelText {
     }
   }
 
-  const Profile& profile_;
+  const Profile profile_;
   const HeldKernel held_;
   const Kernel& kernel_;
   const Variant& variant_;
   ProgramText program_;
   DomainText domain_;
+  GroupText groups_;
   std::vector<Value> arguments_;
   std::deque<Parameter> written_;  ///< of packed texels
   std::vector<Result> results_;
@@ -300,10 +314,23 @@ bool mayPack(const program::Element& held) {
          field.scalar != program::Scalar::Double;
 }
 
-bool mayWritePacked(const Kernel& kernel) {
+namespace {
+
+bool mayRunInSequence(const Kernel& kernel) {
   return !kernel.usesLoops && kernel.body.size() <= longestPackedBody &&
-         lengthOfCalls(kernel) <= longestPackedCalls &&
-         std::ranges::all_of(kernel.parameters, [](const Parameter& parameter) {
+         lengthOfCalls(kernel) <= longestPackedCalls;
+}
+
+}  // namespace
+
+bool mayGroupPacked(const Kernel& kernel) {
+  return mayRunInSequence(kernel) && std::ranges::none_of(kernel.parameters, [](const Parameter& parameter) {
+           return parameter.role == Role::Output;
+         });
+}
+
+bool mayWritePacked(const Kernel& kernel) {
+  return mayRunInSequence(kernel) && std::ranges::all_of(kernel.parameters, [](const Parameter& parameter) {
            return !isAppendOutput(parameter) &&
                   (parameter.role != Role::Output || mayPack(heldBy(parameter)));
          });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Draws the counts, the pyramids and the lists, then scatters the lists or makes them the elements of
+// Dispatches a call if that is possible. Else draws the counts, the pyramids and the lists, then scatters the lists or makes them the elements of
 // variable outputs. All passes that run the kernel come before any change of a stream that the kernel may
 // read.
 #include "gl_device/append/append_call.hpp"
@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "assemble/append/append_passes.hpp"
-#include "call/check_argument.hpp"
+#include "gl_device/append/append_dispatch.hpp"
+#include "gl_device/append/append_operands.hpp"
 #include "gl_device/append/histo_pyramid.hpp"
 #include "gl_device/append/scatter_points.hpp"
 #include "gl_device/gl_device.hpp"
@@ -32,35 +33,28 @@ using program::Kernel;
 using program::Parameter;
 using program::Role;
 
-/// If elements push at most this often to a variable output, its list has room for the largest possible
-/// number of entries, and the call does not wait for their number.
-constexpr std::int32_t mostRoom = 4;
-
 /// The list of one append output.
 struct List {
   explicit List(GlDevice& device) : planes(device), total(device) {}
 
   std::size_t appendOutput = 0;
-  Layout layout;         ///< of `planes`
-  PlanesLease planes;    ///< none if the list is empty; a scatter output's target texels come first
-  PlanesLease total;     ///< HistoPyramid::totalTexture() if the number of entries is not read; else none
+  Layout layout;  ///< of `planes`
+  PlanesLease planes;  ///< none if the list is empty; a scatter output's target texels come first
+  PlanesLease total;  ///< HistoPyramid::totalTexture() if the number of entries is not read; else none
 };
 
 class AppendCall {
  public:
   AppendCall(GlDevice& device, const ResolvedCall& call)
       : device_(device),
+        call_(call),
         kernel_(call.kernel),
         arguments_(call.arguments),
         specs_(call.specs),
         layout_(layoutOf(call.domain, device.textureLimits())),
         counts_(device) {
-    for (std::size_t i = 0; i < arguments_.size(); ++i) {
-      if (isScattered(i) || isPartlyWritten(i)) glStream(arguments_[i].region).unpack();
-    }
-    for (std::size_t i = 0; i < arguments_.size(); ++i) {
-      operands_.push_back(operandOf(i, call.domain));
-    }
+    unpackWritten(call);
+    operands_ = appendOperands(call);
   }
 
   /// Everything that may fail precedes changes of streams, except of outputs that the counting pass draws in
@@ -80,7 +74,7 @@ class AppendCall {
     }
     std::list<std::pair<GlStream*, Scatterer>> scatterers;
     for (const std::unique_ptr<List>& list : lists) {
-      if (!isScattered(list->appendOutput) || list->planes.planes.empty()) continue;
+      if (!isScattered(call_, list->appendOutput) || list->planes.planes.empty()) continue;
       GlStream& stream = glStream(arguments_[list->appendOutput].region);
       scatterers.emplace_back(
           std::piecewise_construct, std::tuple(&stream),
@@ -101,31 +95,6 @@ class AppendCall {
   }
 
  private:
-  bool isScattered(std::size_t i) const {
-    return kernel_.parameters[i].role == Role::Scatter && assemble::isNeeded(kernel_.parameters[i], specs_);
-  }
-
-  /// Whether an element output is a part of its stream, which must then be unpacked, because the domain is.
-  bool isPartlyWritten(std::size_t i) const {
-    const StreamRegion& region = arguments_[i].region;
-    return kernel_.parameters[i].role == Role::Output && assemble::isNeeded(kernel_.parameters[i], specs_) &&
-           region.shape != region.stream->shape;
-  }
-
-  Operand operandOf(std::size_t i, const Shape& domain) const {
-    const Parameter& parameter = kernel_.parameters[i];
-    const Argument& argument = arguments_[i];
-    if (parameter.role == Role::Uniform) return uniformOperand(argument);
-    if (parameter.role == Role::Spec) return {.value = argument.value};
-    if (parameter.role == Role::Iterator) {
-      return iteration(parameter, argument.value, domain);
-    }
-    if (parameter.role == Role::VariableOutput || !assemble::isNeeded(parameter, specs_)) {
-      return {};
-    }
-    return regionOperand(argument, domain);
-  }
-
   /// Draws the element outputs, and the counts of each counted append output.
   void drawCounts(OutputTargets& targets) {
     const auto counted = std::count_if(
@@ -157,11 +126,11 @@ class AppendCall {
     std::int64_t length = elements * appendOutput.pushes;
     if (counts != nullptr) {
       pyramid.emplace(device_, *counts, layout_);
-      if (hasRoom(appendOutput, elements)) {
+      if (hasRoom(appendOutput, elements, device_.limits.textureSize)) {
         list->total.planes = pyramid->totalTexture();
       } else {
         length = pyramid->total();
-        if (length > mostPushes) failForPushes(appendOutput);
+        if (length > mostPushes) failForPushes(kernel_, appendOutput);
       }
     }
     list->layout = listLayout(length, device_.textureLimits());
@@ -169,18 +138,6 @@ class AppendCall {
       drawList(*list, pyramid ? &*pyramid : nullptr);
     }
     return list;
-  }
-
-  [[noreturn]] void failForPushes(const Parameter& appendOutput) const {
-    fail(Error::Kind::Shape, kernel_, "it {} '{}' more than {} values in one call; divide the domain",
-         appendOutput.role == Role::Scatter ? "scatters to" : "pushes to", appendOutput.name, mostPushes);
-  }
-
-  /// Whether the list is given room for the largest possible number of entries (mostRoom).
-  bool hasRoom(const Parameter& appendOutput, std::int64_t elements) const {
-    const std::int64_t most = std::int64_t{device_.limits.textureSize} * device_.limits.textureSize / 2;
-    return appendOutput.role == Role::VariableOutput && appendOutput.pushes >= 0 &&
-           appendOutput.pushes <= mostRoom && elements * appendOutput.pushes <= most;
   }
 
   void drawList(List& list, HistoPyramid* pyramid) {
@@ -228,6 +185,7 @@ class AppendCall {
   }
 
   GlDevice& device_;
+  const ResolvedCall& call_;
   const Kernel& kernel_;
   std::span<const Argument> arguments_;
   const assemble::SpecValues& specs_;
@@ -242,7 +200,13 @@ bool hasAppendOutputs(const Kernel& kernel) {
   return std::any_of(kernel.parameters.begin(), kernel.parameters.end(), assemble::isAppendOutput);
 }
 
-void runWithAppendOutputs(GlDevice& device, const ResolvedCall& call) { AppendCall(device, call).run(); }
+void runWithAppendOutputs(GlDevice& device, const ResolvedCall& call) {
+  if (device.programs().stage() == assemble::Stage::Compute) {
+    if (dispatchAppends(device, call)) return;
+    device.selectDrawnPrograms(call.kernel, call.options);
+  }
+  AppendCall(device, call).run();
+}
 
 void runOverNothing(const ResolvedCall& call) {
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {

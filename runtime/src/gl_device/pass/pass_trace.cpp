@@ -193,6 +193,8 @@ std::string_view stepOf(const assemble::Task& task) {
     case assemble::Work::Elements: return {};
     case assemble::Work::Counts: return "counts";
     case assemble::Work::List: return "list";
+    case assemble::Work::Owners: return "owners";
+    case assemble::Work::Groups: return "append";
   }
   return {};
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/append/append_passes.hpp"
 #include "assemble/elements/storage.hpp"
 #include "assemble/glsl/tables.hpp"
 #include "assemble/reduce/row_program.hpp"
@@ -113,6 +114,8 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
   }
   if (variant.task.work == assemble::Work::List) {
     findListUniforms(*result, kernel.parameters[variant.task.appendOutput]);
+  } else if (variant.task.work == assemble::Work::Groups || variant.task.work == assemble::Work::Owners) {
+    findAppendUniforms(*result, kernel);
   }
   return result;
 }
@@ -202,6 +205,18 @@ void ProgramCache::addDoubles(KernelProgram& result, std::size_t number, const s
     result.doubles.push_back(
         {number, isNative ? gl::DoubleUniform::bits(location(one + ".bits"), offset)
                           : gl::DoubleUniform::pair(location(one + ".hi"), location(one + ".lo"), offset)});
+  }
+}
+
+void ProgramCache::findAppendUniforms(KernelProgram& result, const program::Kernel& kernel) {
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const program::Parameter& parameter = kernel.parameters[i];
+    if (!assemble::isAppendOutput(parameter)) continue;
+    result.appends.push_back(
+        {i,
+         LayoutUniforms(result.program, fmt::format("sk_*_{}", parameter.symbol)),
+         {result.program.location(fmt::format("sk_room_{}", parameter.symbol)), false},
+         {result.program.location(fmt::format("sk_owners_{}", parameter.symbol)), true}});
   }
 }
 

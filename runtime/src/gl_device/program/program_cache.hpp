@@ -60,6 +60,14 @@ struct KernelProgram {
     void set(gl::BoundState& bound, const assemble::PyramidPlan& plan);
   };
 
+  /// The uniforms of an append output in a compute program (assemble/append/append_groups.hpp).
+  struct Append {
+    std::size_t parameter;
+    LayoutUniforms layout;  ///< of the list, or of the scatter output
+    gl::IntUniform room;  ///< the entries that the list has room for
+    gl::IntUniform owners;  ///< the first owner in the buffer of states, and the texels in a row
+  };
+
   gl::Program program;
   assemble::Stage stage = assemble::Stage::Fragment;
   gl::IntUniform rect;  ///< compute programs: the texels that a dispatch writes
@@ -69,6 +77,7 @@ struct KernelProgram {
   LayoutUniforms domain;
   gl::IntUniform domainRow;  ///< layered domains: the first row of the drawn layer
   LayoutUniforms target;  ///< of the scatter output whose list it writes
+  std::vector<Append> appends;
   Pyramid pyramid;  ///< its textures are on the units from `units` on
   int units = 0;  ///< the number of units of reads, bundles and tables
   std::vector<Value> values;
@@ -120,6 +129,7 @@ class ProgramCache {
   void findValue(KernelProgram& result, std::size_t number, const program::Parameter& parameter);
   void addDoubles(KernelProgram& result, std::size_t number, const std::string& name,
                   std::span<const program::Field> parts) const;
+  void findAppendUniforms(KernelProgram& result, const program::Kernel& kernel);
   void findListUniforms(KernelProgram& result, const program::Parameter& appendOutput);
   bool isCompute() const { return profile_.stage == assemble::Stage::Compute; }
   ProgramBuild begin(const program::Kernel& kernel, const assemble::Variant& variant);

@@ -28,8 +28,9 @@ using program::Role;
 /// Whether a program depends on the region layout of a parameter, besides the domain's.
 bool hasAccess(const program::Kernel& kernel, std::size_t i, const Task& task) {
   const Role role = kernel.parameters[i].role;
-  return role == Role::Input || role == Role::Gather ||
-         (role == Role::Scatter && task.work == Work::List && task.appendOutput == i);
+  if (role == Role::Input || role == Role::Gather) return true;
+  const bool isListed = task.work == Work::List && task.appendOutput == i;
+  return role == Role::Scatter && (isListed || task.work == Work::Groups || task.work == Work::Owners);
 }
 
 /// Whether a stream holds the value of a uniform.
@@ -244,8 +245,9 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
   bits.add(static_cast<std::uint64_t>(domainOf(domain, task)) | std::uint64_t{domain.layered} << 2 |
                std::uint64_t{isDomainView(domain)} << 3,
            4);
-  bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{domain.packed} << 2 |
-               std::uint64_t{task.pyramidLayered} << 3,
+  bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{domain.packed} << 3, 4);
+  bits.add(std::uint64_t{task.pyramidLayered} | std::uint64_t{task.scattersInAnyOrder} << 1 |
+               std::uint64_t{task.pushesInAnyOrder} << 2,
            4);
   bits.add(task.appendOutput & 15u, 4);
   bits.add(task.appendOutput >> 4, 4);

@@ -43,6 +43,10 @@ Problem scanProblem(int log2);
 Check scanCheck(const Problem& problem);
 RACE_OURS(scan);
 
+Problem compactionProblem(int log2);
+Check compactionCheck(const Problem& problem);
+RACE_OURS(compaction);
+
 Problem sortProblem(int log2);
 Check sortCheck(const Problem& problem);
 RACE_OURS(sort);

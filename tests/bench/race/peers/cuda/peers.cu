@@ -5,6 +5,7 @@
 #include <cub/cub.cuh>
 #include <cuda_runtime.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -44,6 +45,11 @@ class Array {
   T* data_ = nullptr;
   std::size_t size_;
 };
+
+struct IsPositive {
+  __host__ __device__ bool operator()(float x) const { return x > 0; }
+};
+constexpr IsPositive isPositive;
 
 constexpr int block = 256;
 int blocksOf(std::int64_t n) { return static_cast<int>((n + block - 1) / block); }
@@ -228,6 +234,16 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
                               p.ints[0], sizeOf(p), false,
                               [n](void* memory, std::size_t& bytes, const std::int32_t* from, std::int32_t* to) {
                                 return cub::DeviceScan::ExclusiveSum(memory, bytes, from, to, n);
+                              });
+                        }});
+  contenders.push_back({"compaction", "CUB", [](const Problem& p) {
+                          const auto n = static_cast<int>(p.size());
+                          const auto kept = std::count_if(p.floats[0].begin(), p.floats[0].end(), isPositive);
+                          auto count = std::make_shared<Array<int>>(std::size_t{1});
+                          return std::make_unique<CubTask<float>>(
+                              p.floats[0], static_cast<std::size_t>(kept), false,
+                              [n, count](void* memory, std::size_t& bytes, const float* from, float* to) {
+                                return cub::DeviceSelect::If(memory, bytes, from, to, count->data(), n, isPositive);
                               });
                         }});
   contenders.push_back({"sort", "CUB", [](const Problem& p) {

@@ -18,6 +18,8 @@ void mandelbrotOpenMp(const Problem& p, float* steps);
 void gemvOpenMp(const Problem& p, float* y);
 void gemmOpenMp(const Problem& p, float* c);
 std::unique_ptr<Task> scanOpenMp(const Problem& p);
+std::unique_ptr<Task> compactionSerial(const Problem& p);
+std::unique_ptr<Task> compactionOpenMp(const Problem& p);
 void sortOpenMp(const Problem& p, float* sorted);
 void bodiesOpenMp(const Problem& p, float* accelerations);
 std::unique_ptr<Task> fourierOpenMp(const Problem& p);

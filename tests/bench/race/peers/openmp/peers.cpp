@@ -19,6 +19,8 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   add("sgemv", [](const Problem& p) { return p.rows; }, gemvOpenMp);
   add("sgemm", asMany, gemmOpenMp);
   contenders.push_back({"prefix scan", "OpenMP", scanOpenMp});
+  contenders.push_back({"compaction", "serial", compactionSerial});
+  contenders.push_back({"compaction", "OpenMP", compactionOpenMp});
   add("sort", asMany, sortOpenMp);
   add("n-body", [](const Problem& p) { return 3 * p.size(); }, bodiesOpenMp);
   contenders.push_back({"fft", "OpenMP", fourierOpenMp});

@@ -1,0 +1,555 @@
+// SPDX-License-Identifier: MIT
+#include "assemble/append/append_groups.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "assemble/append/append_text.hpp"
+#include "assemble/append/histo_pyramid.hpp"
+#include "assemble/elements/planes.hpp"
+
+namespace sk::assemble {
+
+using program::Field;
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+using program::Scalar;
+using program::ScatterOp;
+
+namespace {
+
+/// Pushes of up to this many bytes in a tile go through shared memory.
+constexpr std::size_t stagedBytes = std::size_t{16} << 10;
+/// The most elements that an invocation computes: with more, it holds so many values that fewer groups run side by side.
+constexpr int mostOfInvocation = 8;
+
+constexpr std::string_view meeting = R"(
+void sk_meet() {
+  memoryBarrierShared();
+  barrier();
+}
+)";
+
+/// Replaces the counts of a tile's texels by the numbers of pushes before each; returns the number of all.
+constexpr std::string_view scanOfCounts = R"(
+uint sk_sum(uint a, uint b) {{ return min(a + b, {limit}u); }}
+
+uint sk_scan() {{
+  uint sk_t = gl_LocalInvocationIndex;
+  uint sk_all = 0u;
+  for (uint sk_i = sk_t * {rounds}u; sk_i < (sk_t + 1u) * {rounds}u; ++sk_i) {{
+    uint sk_one = sk_counts[sk_i];
+    sk_counts[sk_i] = sk_all;
+    sk_all = sk_sum(sk_all, sk_one);
+  }}
+  sk_sums[sk_t] = sk_all;
+  sk_meet();
+  for (uint sk_d = 1u; sk_d < {group}u; sk_d <<= 1) {{
+    uint sk_other = sk_t >= sk_d ? sk_sums[sk_t - sk_d] : 0u;
+    sk_meet();
+    sk_all = sk_sum(sk_all, sk_other);
+    sk_sums[sk_t] = sk_all;
+    sk_meet();
+  }}
+  uint sk_before = sk_t > 0u ? sk_sums[sk_t - 1u] : 0u;
+  for (uint sk_i = sk_t * {rounds}u; sk_i < (sk_t + 1u) * {rounds}u; ++sk_i) {{
+    sk_counts[sk_i] = sk_sum(sk_before, sk_counts[sk_i]);
+  }}
+  sk_meet();
+  return sk_sums[{group} - 1];
+}}
+)";
+
+/// Publishes a tile's number of pushes, and adds up those of the tiles before. A state is 0, or a number with a flag: 2^30
+/// if it is the tile's own, 2^31 if it includes all tiles before.
+constexpr std::string_view lookBack = R"(
+uint sk_look(uint sk_k, uint sk_own) {{
+  uint sk_t = gl_LocalInvocationIndex;
+  uint sk_mine = sk_tile * {outputs}u + sk_k;
+  if (sk_t == 0u && sk_tile > 0u) atomicExchange(sk_state[sk_mine], sk_own | 0x40000000u);
+  uint sk_before = 0u;
+  for (uint sk_end = sk_tile; sk_end > 0u; sk_end -= {group}u) {{
+    if (sk_t == 0u) {{
+      sk_low = 0u;
+      sk_high = 0u;
+      sk_nearest = {group}u;
+    }}
+    sk_meet();
+    uint sk_seen = 0u;
+    if (sk_t < sk_end) {{
+      do {{
+        sk_seen = sk_state[(sk_end - 1u - sk_t) * {outputs}u + sk_k];
+      }} while (sk_seen == 0u);
+      if (sk_seen >= 0x80000000u) atomicMin(sk_nearest, sk_t);
+    }}
+    sk_meet();
+    if (sk_t < sk_end && sk_t <= sk_nearest) {{
+      atomicAdd(sk_low, sk_seen & 0xffffu);
+      atomicAdd(sk_high, sk_seen >> 16 & 0x3fffu);
+    }}
+    sk_meet();
+    sk_before = sk_sum(sk_before, sk_high < 0x2000u ? min((sk_high << 16) + sk_low, {limit}u) : {limit}u);
+    bool sk_done = sk_nearest < {group}u;
+    sk_meet();
+    if (sk_done) break;
+  }}
+  if (sk_t == 0u) atomicExchange(sk_state[sk_mine], sk_sum(sk_before, sk_own) | 0x80000000u);
+  return sk_before;
+}}
+)";
+
+/// Takes places for a tile's pushes as groups come.
+constexpr std::string_view takePlace = R"(
+uint sk_take(uint sk_k, uint sk_own) {
+  if (gl_LocalInvocationIndex == 0u) sk_low = atomicAdd(sk_state[sk_k], sk_own);
+  sk_meet();
+  uint sk_place = sk_low;
+  sk_meet();
+  return sk_place;
+}
+)";
+
+/// Orders the bits of floats, -0 below 0. A NaN that is stored gives way to any value, and one that is given is ignored.
+constexpr std::string_view orderOfFloats = R"(
+bool sk_is_nan(uint b) { return (b & 0x7fffffffu) > 0x7f800000u; }
+uint sk_key(uint b) { return (b & 0x80000000u) != 0u ? ~b : b | 0x80000000u; }
+bool sk_below(uint a, uint b) { return sk_is_nan(b) || (!sk_is_nan(a) && sk_key(a) < sk_key(b)); }
+bool sk_above(uint a, uint b) { return sk_is_nan(b) || (!sk_is_nan(a) && sk_key(a) > sk_key(b)); }
+)";
+
+std::string filled(std::string_view text, int rounds, std::size_t outputs) {
+  return fmt::format(fmt::runtime(text), fmt::arg("limit", countLimit), fmt::arg("rounds", rounds),
+                     fmt::arg("group", appendGroup), fmt::arg("outputs", outputs));
+}
+
+/// Bytes of a staged element.
+std::size_t bytesOf(const program::Element& element) {
+  std::size_t bytes = 0;
+  for (const Field& field : element.fields) {
+    const int width = field.width == 3 ? 4 : field.width;
+    bytes += static_cast<std::size_t>(width) * (field.scalar == Scalar::Double ? 8 : 4);
+  }
+  return bytes;
+}
+
+/// The only field of an element that is one scalar, which no two invocations can each store a part of; else null.
+const Field* scalarField(const Parameter& scatter) {
+  const Field& field = scatter.element->fields.front();
+  const bool isOne = scatter.element->fields.size() == 1 && field.path.empty() && field.width == 1;
+  return isOne ? &field : nullptr;
+}
+
+}  // namespace
+
+GroupPlan planGroups(const Kernel& kernel, bool isPacked) {
+  const int elements = isPacked ? lanes : 1;
+  const int most = mostOfInvocation / elements;
+  std::size_t bytesPerElement = 0;
+  bool pushesOnce = true;
+  for (const Parameter& parameter : kernel.parameters) {
+    if (parameter.role != Role::VariableOutput) continue;
+    if (parameter.pushes < 0) return {most, false};
+    pushesOnce = pushesOnce && parameter.pushes <= 1;
+    bytesPerElement += bytesOf(*parameter.element) * static_cast<std::size_t>(parameter.pushes);
+  }
+  for (int rounds = most; rounds > 1; rounds /= 2) {
+    const std::size_t bytes = bytesPerElement * static_cast<std::size_t>(elements * rounds * appendGroup);
+    if (bytes <= stagedBytes) return {rounds, bytes > 0, bytes > 0 && pushesOnce};
+  }
+  return {most, false};
+}
+
+bool mayGroup(const Parameter& appendOutput, Order order) {
+  if (appendOutput.role == Role::VariableOutput || appendOutput.scatter == ScatterOp::Store) return true;
+  const Field* const field = scalarField(appendOutput);
+  if (field == nullptr) return false;
+  if (field->scalar == Scalar::Int || field->scalar == Scalar::Uint) return true;
+  return field->scalar == Scalar::Float && (appendOutput.scatter != ScatterOp::Add || order == Order::Any);
+}
+
+bool hasOwners(const Parameter& scatter, Order order) {
+  if (scatter.role != Role::Scatter || scatter.scatter != ScatterOp::Store) return false;
+  const Field* const field = scalarField(scatter);
+  return order != Order::Any || field == nullptr || field->scalar == Scalar::Double;
+}
+
+GroupText::GroupText(ProgramText& program, DomainText& domain, const Kernel& kernel, const Variant& variant)
+    : program_(program),
+      domain_(domain),
+      variant_(variant),
+      plan_(planGroups(kernel, variant.domainPacked)) {}
+
+// ---- functions that the body calls ---------------------------------------------------------------
+
+void GroupText::define(const Parameter& appendOutput, const StreamAccess& access) {
+  if (appendOutput.role == Role::Scatter) return definePut(appendOutput, access);
+  if (variant_.task.work == Work::Owners) return program_.function(signatureOf(appendOutput), {});
+  definePush(appendOutput);
+}
+
+void GroupText::definePush(const Parameter& appendOutput) {
+  const std::size_t first = program_.outputCount();
+  declareOutputs(program_, appendOutput);
+  program_.storeLater(first);
+  const Pushed pushed{&appendOutput, first, program_.outputCount()};
+  pushed_.push_back(pushed);
+  if (plan_.isHeld) return holdPushed(pushed);
+  program_.variable("uint", named("at", appendOutput));
+  program_.functionOf(
+      fmt::format("void {}({} sk_v)", named("keep", appendOutput), appendOutput.element->glsl),
+      [&] { keepPushed(pushed); });
+  program_.function(signatureOf(appendOutput),
+                    {fmt::format("if (sk_storing) {}(sk_v);", named("keep", appendOutput)),
+                     fmt::format("++{};", named("at", appendOutput))});
+}
+
+std::string GroupText::stagedName(const Pushed& pushed, std::size_t plane) {
+  return fmt::format("sk_staged{}_{}", plane, pushed.parameter->symbol);
+}
+
+void GroupText::declareStaged(const Pushed& pushed) {
+  const int entries = plan_.rounds * appendGroup * elementsOfTexel() * std::max(pushed.parameter->pushes, 1);
+  for (std::size_t plane = 0; plane < pushed.end - pushed.first; ++plane) {
+    program_.variable("shared " + program_.outputAt(pushed.first + plane).type,
+                      fmt::format("{}[{}]", stagedName(pushed, plane), entries));
+  }
+}
+
+/// Holds what the element of `sk_slot` pushes. Slots are constants once loops are unrolled and functions inlined, so that
+/// values stay in registers.
+void GroupText::holdPushed(const Pushed& pushed) {
+  const Parameter& parameter = *pushed.parameter;
+  program_.require(Function::Texel);
+  program_.uniform("int", named("room", parameter));
+  program_.uniform("int", named("shift", parameter));
+  declareStaged(pushed);
+  program_.variable("int", "sk_slot");
+  program_.variable("uint", named("bits", parameter));
+  for (std::size_t plane = 0; plane < pushed.end - pushed.first; ++plane) {
+    program_.variable(program_.outputAt(pushed.first + plane).type,
+                      fmt::format("sk_held{}_{}[{}]", plane, parameter.symbol, slots()));
+  }
+  program_.functionOf(signatureOf(parameter), [&] {
+    store(program_, parameter, "sk_v");
+    for (std::size_t plane = 0; plane < pushed.end - pushed.first; ++plane) {
+      program_.statement(fmt::format("sk_held{}_{}[sk_slot] = {};", plane, parameter.symbol,
+                                     program_.outputAt(pushed.first + plane).name));
+    }
+    program_.statement(fmt::format("{} |= 1u << sk_slot;", named("bits", parameter)));
+  });
+}
+
+/// Stores `sk_v` to the list, or to shared memory.
+void GroupText::keepPushed(const Pushed& pushed) {
+  const Parameter& parameter = *pushed.parameter;
+  const std::string at = named("at", parameter);
+  program_.require(Function::Texel);
+  const std::string room = program_.uniform("int", named("room", parameter));
+  const std::string shift = program_.uniform("int", named("shift", parameter));
+  if (!plan_.isStaged) program_.statement(fmt::format("if ({} >= uint({})) return;", at, room));
+  store(program_, parameter, "sk_v");
+  if (!plan_.isStaged) {
+    for (const std::string& line :
+         program_.storesOf(pushed.first, pushed.end, fmt::format("sk_texel(int({}), {})", at, shift))) {
+      program_.statement(line);
+    }
+    return;
+  }
+  declareStaged(pushed);
+  for (std::size_t plane = 0; plane < pushed.end - pushed.first; ++plane) {
+    program_.statement(fmt::format("{}[{}] = {};", stagedName(pushed, plane), at,
+                                   program_.outputAt(pushed.first + plane).name));
+  }
+}
+
+void GroupText::definePut(const Parameter& scatter, const StreamAccess& access) {
+  const std::string texel = targetTexel(program_, scatter, access);
+  const std::string inside = fmt::format("if (!({})) return;", isInside(program_, scatter));
+  const bool isOwned = hasOwners(scatter, variant_.task.scattersInAnyOrder ? Order::Any : Order::Kept);
+  if (isOwned) declareStates();
+  if (variant_.task.work == Work::Owners) {
+    if (!isOwned) return program_.function(signatureOf(scatter), {});
+    return program_.function(signatureOf(scatter), {inside, fmt::format("ivec2 sk_to = {};", texel),
+                                                    fmt::format("atomicMax({}, uint({}) + 1u);",
+                                                                ownerOf(scatter), domain_.number())});
+  }
+  const std::size_t first = program_.outputCount();
+  if (scatter.scatter == ScatterOp::Store) {
+    declareOutputs(program_, scatter);
+  } else {
+    const Scalar scalar = scatter.element->fields.front().scalar;
+    const bool isInt = scalar == Scalar::Int;
+    program_.output(isInt ? "int" : "uint", named("atomic", scatter));
+    program_.makeAtomic(first, isInt ? "r32i" : "r32ui");
+    if (scalar == Scalar::Float && scatter.scatter != ScatterOp::Add) program_.functions(orderOfFloats);
+  }
+  program_.storeLater(first);
+  program_.functionOf(signatureOf(scatter), [&] {
+    program_.statement("if (!sk_storing) return;");
+    program_.statement(inside);
+    program_.statement(fmt::format("ivec2 sk_to = {};", texel));
+    if (scatter.scatter != ScatterOp::Store) return putAtomically(scatter, fmt::format("sk_image{}", first));
+    if (isOwned) {
+      program_.statement(fmt::format("if ({} != uint({}) + 1u) return;", ownerOf(scatter), domain_.number()));
+    }
+    store(program_, scatter, "sk_v");
+    for (const std::string& line : program_.storesOf(first, program_.outputCount(), "sk_to"))
+      program_.statement(line);
+  });
+}
+
+/// Floats are combined by comparing and exchanging.
+void GroupText::putAtomically(const Parameter& scatter, const std::string& image) {
+  const Scalar scalar = scatter.element->fields.front().scalar;
+  if (scalar != Scalar::Float) {
+    const std::string_view operation = scatter.scatter == ScatterOp::Add   ? "Add"
+                                       : scatter.scatter == ScatterOp::Min ? "Min"
+                                                                           : "Max";
+    return program_.statement(fmt::format("imageAtomic{}({}, sk_to, sk_v);", operation, image));
+  }
+  program_.statement(fmt::format("uint sk_old = imageLoad({}, sk_to).x;", image));
+  program_.statement("for (;;) {");
+  if (scatter.scatter == ScatterOp::Add) {
+    program_.statement("  uint sk_new = floatBitsToUint(uintBitsToFloat(sk_old) + sk_v);");
+  } else {
+    program_.statement("  uint sk_new = floatBitsToUint(sk_v);");
+    program_.statement(fmt::format("  if (!{}(sk_new, sk_old)) return;",
+                                   scatter.scatter == ScatterOp::Min ? "sk_below" : "sk_above"));
+  }
+  program_.statement(fmt::format("  uint sk_seen = imageAtomicCompSwap({}, sk_to, sk_old, sk_new);", image));
+  program_.statement("  if (sk_seen == sk_old) return;");
+  program_.statement("  sk_old = sk_seen;");
+  program_.statement("}");
+}
+
+/// The word of the texel `sk_to` in the buffer of states.
+std::string GroupText::ownerOf(const Parameter& scatter) {
+  const std::string owners = program_.uniform("ivec4", named("owners", scatter));
+  return fmt::format("sk_state[{0}.x + sk_to.y * {0}.y + sk_to.x]", owners);
+}
+
+void GroupText::declareStates() {
+  program_.variable(
+      "layout(std430, binding = 0) coherent volatile buffer sk_states {\n"
+      "  uint sk_begun, sk_ended, sk_state[];\n}",
+      "");
+}
+
+// ---- main() --------------------------------------------------------------------------------------
+
+template <class Text>
+std::string GroupText::ofPushed(Text&& text) const {
+  std::string all;
+  for (std::size_t k = 0; k < pushed_.size(); ++k) all += text(pushed_[k], k);
+  return all;
+}
+
+void GroupText::finish() {
+  program_.variable("bool", "sk_storing");
+  if (variant_.task.work == Work::Groups) program_.statement("if (!sk_storing) return;");
+  std::string text = fmt::format("\nlayout(local_size_x = {}) in;\n", appendGroup);
+  if (!pushed_.empty()) {
+    declareStates();
+    declareTotals();
+    text += meeting;
+  }
+  program_.runFrom(text + (pushed_.empty() ? mainOfTiles() : mainOfPushes()));
+}
+
+void GroupText::declareTotals() {
+  totals_ = program_.outputCount();
+  for (const Pushed& pushed : pushed_) program_.output("ivec4", named("total", *pushed.parameter));
+  program_.storeLater(totals_);
+}
+
+/// Runs the kernel on the invocation's texels of the tile. sk_rect: texels in a row, texels, rounds.
+std::string GroupText::visits(std::string_view before, std::string_view after) const {
+  return fmt::format(
+      "  for (int sk_r = 0; sk_r < {} && sk_r < sk_rect.z; ++sk_r) {{\n"
+      "    uint sk_n = sk_first + uint(sk_r) * {}u;\n"
+      "    if (sk_n >= uint(sk_rect.y)) break;\n"
+      "    sk_pixel = ivec2(int(sk_n) % sk_rect.x, int(sk_n) / sk_rect.x);\n"
+      "{}    sk_run();\n{}  }}\n",
+      plan_.rounds, appendGroup, before, after);
+}
+
+namespace {
+
+/// `sk_tile` is the tile's number.
+constexpr std::string_view findTexels =
+    "  uint sk_span = uint(sk_rect.z) * {}u;\n"
+    "  uint sk_tiles = (uint(sk_rect.y) + sk_span - 1u) / sk_span;\n"
+    "  if (sk_tile >= sk_tiles) return;\n"
+    "  uint sk_first = sk_tile * sk_span + sk_t;\n";
+
+constexpr std::string_view ownTile =
+    "  uint sk_tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;\n";
+
+}  // namespace
+
+std::string GroupText::mainOfTiles() const {
+  return fmt::format(
+      "\nvoid main() {{\n  uint sk_t = gl_LocalInvocationIndex;\n{}{}  sk_storing = true;\n{}}}\n", ownTile,
+      fmt::format(fmt::runtime(findTexels), appendGroup), visits(""));
+}
+
+/// Copies what is staged to the list. sk_base_r and sk_size_r are the place and the number of a tile's pushes.
+std::string GroupText::copiesOfStaged() const {
+  return ofPushed([&](const Pushed& pushed, std::size_t) {
+    const Parameter& parameter = *pushed.parameter;
+    std::string text = fmt::format(
+        "  for (uint sk_i = sk_t; sk_i < sk_size_{0}; sk_i += {1}u) {{\n"
+        "    uint sk_to = sk_base_{0} + sk_i;\n"
+        "    if (sk_to >= uint(sk_room_{0})) break;\n",
+        parameter.symbol, appendGroup);
+    for (std::size_t plane = 0; plane < pushed.end - pushed.first; ++plane) {
+      text += fmt::format("    {} = {}[sk_i];\n", program_.outputAt(pushed.first + plane).name,
+                          stagedName(pushed, plane));
+    }
+    const std::string place = fmt::format("sk_texel(int(sk_to), sk_shift_{})", parameter.symbol);
+    for (const std::string& line : program_.storesOf(pushed.first, pushed.end, place))
+      text += "    " + line + "\n";
+    return text + "  }\n";
+  });
+}
+
+/// Stores the number of pushes to a variable output.
+std::string GroupText::totalOf(std::size_t number, std::string_view total) const {
+  return fmt::format("    sk_total_{} = ivec4(0, 0, 0, int({}));\n    {}\n",
+                     pushed_[number].parameter->symbol, total,
+                     program_.storesOf(totals_ + number, totals_ + number + 1, "ivec2(0)").front());
+}
+
+/// The function of GroupStep::Scan.
+std::string GroupText::scanOfTiles() const {
+  std::string text = "\nvoid sk_scan_tiles(uint sk_tiles) {\n  uint sk_t = gl_LocalInvocationIndex;\n";
+  for (std::size_t k = 0; k < pushed_.size(); ++k) {
+    text += fmt::format(
+        "  uint sk_before{0} = 0u;\n"
+        "  for (uint sk_first = 0u; sk_first < sk_tiles; sk_first += {1}u) {{\n"
+        "    sk_meet();\n"
+        "    for (uint sk_i = sk_t; sk_i < {1}u; sk_i += {2}u) {{\n"
+        "      uint sk_n = sk_first + sk_i;\n"
+        "      sk_counts[sk_i] = sk_n < sk_tiles ? sk_state[sk_n * {3}u + {0}u] : 0u;\n"
+        "    }}\n"
+        "    sk_meet();\n"
+        "    uint sk_all = sk_scan();\n"
+        "    for (uint sk_i = sk_t; sk_i < {1}u; sk_i += {2}u) {{\n"
+        "      uint sk_n = sk_first + sk_i;\n"
+        "      if (sk_n < sk_tiles) sk_state[sk_n * {3}u + {0}u] = sk_sum(sk_before{0}, sk_counts[sk_i]);\n"
+        "    }}\n"
+        "    sk_before{0} = sk_sum(sk_before{0}, sk_all);\n"
+        "  }}\n"
+        "  if (sk_t == 0u) {{\n",
+        k, plan_.rounds * appendGroup, appendGroup, pushed_.size());
+    text += totalOf(k, fmt::format("sk_before{}", k)) + "  }\n";
+  }
+  return text + "}\n";
+}
+
+/// Runs the kernel on all texels of the invocation, and sets the number of pushes of each, sk_own_r.
+std::string GroupText::runToCount() const {
+  if (!plan_.isHeld) {
+    return "  sk_storing = false;\n" + visits(forEach("    sk_at_{0} = 0u;\n"),
+                                              forEach("    sk_own_{0}[sk_r] = min(sk_at_{0}, {4}u);\n"));
+  }
+  std::string text = "  sk_storing = sk_rect.w != 0;\n" + forEach("  sk_bits_{0} = 0u;\n");
+  for (int round = 0; round < plan_.rounds; ++round) {
+    text += fmt::format(
+        "  if (sk_rect.z > {0} && sk_first + {1}u < uint(sk_rect.y)) {{\n"
+        "    uint sk_n = sk_first + {1}u;\n"
+        "    sk_pixel = ivec2(int(sk_n) % sk_rect.x, int(sk_n) / sk_rect.x);\n"
+        "    sk_slot = {2};\n"
+        "    sk_run();\n"
+        "  }}\n",
+        round, round * appendGroup, round * elementsOfTexel());
+  }
+  for (int round = 0; round < plan_.rounds; ++round) {
+    text += ofPushed([&](const Pushed& pushed, std::size_t) {
+      return fmt::format("  sk_own_{0}[{1}] = uint(bitCount(sk_bits_{0} >> {2} & {3}u));\n",
+                         pushed.parameter->symbol, round, round * elementsOfTexel(),
+                         (1 << elementsOfTexel()) - 1);
+    });
+  }
+  return text;
+}
+
+/// Stages or stores the pushes of all texels of the invocation.
+std::string GroupText::runToStore() const {
+  if (!plan_.isHeld) {
+    return "  sk_storing = true;\n" +
+           visits(forEach(plan_.isStaged ? "    sk_at_{0} = sk_own_{0}[sk_r];\n"
+                                         : "    sk_at_{0} = sk_sum(sk_base_{0}, sk_own_{0}[sk_r]);\n"));
+  }
+  return ofPushed([&](const Pushed& pushed, std::size_t) {
+    const std::string_view symbol = pushed.parameter->symbol;
+    std::string text;
+    for (int slot = 0; slot < slots(); ++slot) {
+      text += fmt::format("  if ((sk_bits_{} >> {} & 1u) != 0u) {{\n", symbol, slot);
+      for (std::size_t plane = 0; plane < pushed.end - pushed.first; ++plane) {
+        text += fmt::format("    {}[sk_own_{}[{}]] = sk_held{}_{}[{}];\n", stagedName(pushed, plane), symbol,
+                            slot / elementsOfTexel(), plane, symbol, slot);
+      }
+      text += fmt::format("    ++sk_own_{}[{}];\n  }}\n", symbol, slot / elementsOfTexel());
+    }
+    return text;
+  });
+}
+
+/// Formats a pattern for each variable output: {0} its symbol, {1} the rounds, {2} the group's invocations, {3} its number, {4} the
+/// largest count, {5} the number of variable outputs.
+std::string GroupText::forEach(std::string_view pattern) const {
+  return ofPushed([&](const Pushed& pushed, std::size_t k) {
+    return fmt::format(fmt::runtime(pattern), pushed.parameter->symbol, plan_.rounds, appendGroup, k,
+                       countLimit, pushed_.size());
+  });
+}
+
+std::string GroupText::mainOfPushes() const {
+  const bool inAnyOrder = variant_.task.pushesInAnyOrder;
+  program_.variable("shared uint", fmt::format("sk_counts[{}]", plan_.rounds * appendGroup));
+  program_.variable("shared uint", fmt::format("sk_sums[{}]", appendGroup));
+  program_.variable("shared uint", "sk_tile, sk_low, sk_high, sk_nearest");
+  std::string text = filled(scanOfCounts, plan_.rounds, pushed_.size());
+  text +=
+      inAnyOrder ? std::string(takePlace) : filled(lookBack, plan_.rounds, pushed_.size()) + scanOfTiles();
+  text += "\nvoid main() {\n  uint sk_t = gl_LocalInvocationIndex;\n";
+  text += fmt::format("  bool sk_looks = {};\n", inAnyOrder ? "false" : "sk_rect.w == 1");
+  text +=
+      "  if (sk_t == 0u && sk_looks) sk_tile = atomicAdd(sk_begun, 1u);\n"
+      "  if (sk_t == 0u && !sk_looks) sk_tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;\n"
+      "  sk_meet();\n";
+  text += fmt::format(fmt::runtime(findTexels), appendGroup);
+  if (!inAnyOrder) text += "  if (sk_rect.w == 2) {\n    sk_scan_tiles(sk_tiles);\n    return;\n  }\n";
+  text += forEach(
+      "  uint sk_own_{0}[{1}];\n"
+      "  for (int sk_r = 0; sk_r < {1}; ++sk_r) sk_own_{0}[sk_r] = 0u;\n");
+  text += runToCount();
+  text += forEach(
+      "  sk_meet();\n"
+      "  for (int sk_r = 0; sk_r < {1}; ++sk_r) sk_counts[uint(sk_r) * {2}u + sk_t] = sk_own_{0}[sk_r];\n"
+      "  sk_meet();\n"
+      "  uint sk_size_{0} = sk_scan();\n"
+      "  for (int sk_r = 0; sk_r < {1}; ++sk_r) sk_own_{0}[sk_r] = sk_counts[uint(sk_r) * {2}u + sk_t];\n");
+  if (inAnyOrder) {
+    text += forEach("  uint sk_base_{0} = sk_take({3}u, sk_size_{0});\n");
+    text +=
+        "  if (sk_t == 0u) memoryBarrierBuffer();\n  if (sk_t == 0u && atomicAdd(sk_ended, 1u) == sk_tiles - "
+        "1u) {\n";
+    for (std::size_t k = 0; k < pushed_.size(); ++k) text += totalOf(k, fmt::format("sk_state[{}]", k));
+  } else {
+    text += forEach(
+        "  if (sk_rect.w == 0 && sk_t == 0u) sk_state[sk_tile * {5}u + {3}u] = sk_size_{0};\n"
+        "  uint sk_base_{0} = sk_looks ? sk_look({3}u, sk_size_{0}) : sk_state[sk_tile * {5}u + {3}u];\n");
+    text += "  if (sk_rect.w == 0) return;\n  if (sk_t == 0u && sk_looks && sk_tile == sk_tiles - 1u) {\n";
+    for (std::size_t k = 0; k < pushed_.size(); ++k)
+      text += totalOf(k, fmt::format("sk_sum(sk_base_{0}, sk_size_{0})", pushed_[k].parameter->symbol));
+  }
+  text += "  }\n" + runToStore();
+  if (plan_.isStaged) text += "  sk_meet();\n" + copiesOfStaged();
+  return text + "}\n";
+}
+
+}  // namespace sk::assemble

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+//
+// Variable outputs whose number of elements has a small bound, because each element of the domain pushes only a few times. They
+// get arrays with room for that many, and no list grows. A single thread appends to the arrays themselves. Several threads
+// append the pushes of a slice of the domain to buffers of their own, which stay in a cache, and copy them to their
+// place, which is known as soon as all slices before have been computed: slices are dealt out in order.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "native/call.hpp"
+#include "native/record_buffer.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+class PushRooms {
+ public:
+  /// Whether all variable outputs of a kernel over so many elements can have such arrays.
+  static bool mayHold(const program::Kernel& kernel, std::int64_t elements);
+
+  /// Uses the arrays that the operands of variable outputs come with, if these have room. Throws NoMemory.
+  PushRooms(const program::Kernel& kernel, const native::Call& call, RealType real, std::int64_t slices);
+
+  /// For a single thread: lets code append to the arrays. settle() then takes them back.
+  void lend(RecordFrame& frame);
+  /// The next slice, or the number of slices after the last one. Thread-safe.
+  std::int64_t next() { return std::min(next_++, slices_); }
+  /// Copies what a slice has pushed to its place, and clears the buffers. Waits for earlier slices to be computed. Thread-safe.
+  /// If another thread has failed, does nothing.
+  void place(std::int64_t slice, RecordFrame& frame);
+  /// Must be called if a slice cannot be placed, so that no thread waits for it.
+  void fail() { hasFailed_ = true; }
+  /// Gives the arrays to the operands of variable outputs.
+  void settle(std::span<const native::Operand> operands);
+  void settle(std::span<const native::Operand> operands, RecordFrame& lent);
+
+ private:
+  struct Output {
+    native::Pushed pushed;
+    std::vector<std::size_t> bytes;  ///< of a value in each array
+    std::unique_ptr<std::atomic<std::int64_t>[]>
+        ends;  ///< for each slice, the pushes up to its end; -1 if unknown
+  };
+  void copy(Output& output, const RecordBuffer& buffer, std::int64_t first);
+
+  std::int64_t slices_;
+  std::atomic<std::int64_t> next_ = 0;
+  std::atomic<bool> hasFailed_ = false;
+  std::vector<Output> outputs_;
+};
+
+}  // namespace sk
