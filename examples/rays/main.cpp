@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -170,8 +171,12 @@ int main(int argc, char** argv) {
       throw std::runtime_error("no scene is named; try examples/rays/scenes/cornell.toml");
     if (!settings.rays.empty() && settings.hits.empty())
       throw std::runtime_error("--trace needs --hits, where its hits go");
-    const rays::Scene scene = sceneOf(settings);
-    if (!settings.hits.empty()) return writeHits(app, settings, scene);
-    makePicture(app, settings, scene);
+    try {
+      const rays::Scene scene = sceneOf(settings);
+      if (!settings.hits.empty()) return writeHits(app, settings, scene);
+      makePicture(app, settings, scene);
+    } catch (const std::bad_alloc&) {
+      throw std::runtime_error("the scene does not fit in memory; take smaller meshes or fewer instances");
+    }
   });
 }
