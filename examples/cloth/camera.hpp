@@ -6,7 +6,7 @@
 #include <array>
 
 #include "scene.hpp"
-#include "vec.hpp"
+#include "support/vec.hpp"
 
 namespace examples {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "model.hpp"
-#include "vec.hpp"
+#include "support/vec.hpp"
 
 namespace examples {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "vec.hpp"
+#include "support/vec.hpp"
 
 namespace examples {
 

@@ -26,4 +26,18 @@ std::string Table::text() const {
   return text;
 }
 
+std::string Table::markdown() const {
+  std::string text;
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    text += '|';
+    for (const std::string& cell : rows_[row]) text += fmt::format(" {} |", cell);
+    text += '\n';
+    if (row > 0) continue;
+    text += '|';
+    for (std::size_t i = 0; i < rows_[row].size(); ++i) text += "---|";
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace examples

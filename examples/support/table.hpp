@@ -15,6 +15,8 @@ class Table {
   void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
   /// The whole table, every line ended. The first column is set to the left, the others to the right.
   std::string text() const;
+  /// The same for documents: Markdown, columns as wide as they happen to be.
+  std::string markdown() const;
 
  private:
   std::vector<std::vector<std::string>> rows_;

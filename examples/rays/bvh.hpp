@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+//
+// A hierarchy of boxes over triangles and spheres, built on the host, and its two layouts for devices. It knows no device.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <sk/types.hpp>
+
+#include "model.hpp"
+
+namespace rays {
+
+/// How deep a tree may be, whatever the scene: kernels keep a stack of this many numbers.
+inline constexpr int deepestBvh = 32;
+
+struct Bounds {
+  sk::float3 least = {HUGE_VALF, HUGE_VALF, HUGE_VALF};
+  sk::float3 most = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+
+  void grow(const sk::float3& p);
+  void grow(const Bounds& other);
+  /// Half of the surface; 0 where nothing is in it.
+  double halfArea() const;
+};
+
+Bounds boundsOf(const Triangle& triangle);
+/// By 2^-20 of the radius more, since the sphere's test rounds more often than boxes do.
+Bounds boundsOf(const Sphere& sphere);
+
+/// A leaf has `count` > 0 shapes from `first` on in Bvh::order; else its children are nodes `first` and `first` + 1.
+struct BvhNode {
+  Bounds bounds;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  std::uint32_t axis = 0;  ///< along which the first child lies before the second
+};
+
+struct BvhSettings {
+  int bins = 16;  ///< places that are tried along an axis
+  int leaf = 4;  ///< shapes in a leaf at most, but where all boxes are alike
+  double visit = 1.0;  ///< cost of a node relative to that of a shape
+};
+
+struct Bvh {
+  std::vector<BvhNode> nodes;  ///< the root first; none where there are no shapes
+  std::vector<std::uint32_t> order;  ///< triangles by index, then spheres
+  int depth = 0;
+  double cost =
+      0.0;  ///< expected nodes and shapes that a ray meets which meets the root's box (surface area heuristic)
+};
+
+/// Splits by the surface area heuristic in bins (I. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007). Boxes are a
+/// little larger than what is in them, so that rounding never misses one (docs/rays.md). `progress` is told how many shapes are in leaves.
+Bvh buildBvh(std::span<const Triangle> triangles, std::span<const Sphere> spheres,
+             const BvhSettings& settings, const std::function<void(std::int64_t)>& progress = {});
+
+/// Two elements a node, at 2 * i and 2 * i + 1: (least, first) and (most, count). Siblings lie beside each other.
+std::vector<sk::float4> pairLayout(const Bvh& bvh);
+
+/// For each of the eight signs of directions, the tree in the order in which such a ray meets it, one after the other. Two elements a
+/// node: (least, skip) and (most, leaf). `skip` is the node after those below this one; `leaf` is 0, or 8 * first + count.
+std::vector<sk::float4> skipLayout(const Bvh& bvh);
+
+/// Three elements a shape, for numbers as in Bvh::order. Triangle: (a, id), (b, material), (c, index into Model::triangles).
+/// Sphere: (centre, id), (radius, 0, 0, material), (0, 0, 0, -1). Numbers are packed as `packedInt` has them.
+std::vector<sk::float4> shapeLayout(std::span<const std::uint32_t> order, const Model& model);
+
+/// Two elements a plane: (normal, distance) and (0, 0, 0, material).
+std::vector<sk::float4> planeLayout(const Model& model);
+
+/// An int from -1 to 2^29 as a float that no device rounds or takes for a denormal.
+float packedInt(std::int64_t i);
+
+}  // namespace rays

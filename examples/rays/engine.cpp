@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#include "engine.hpp"
+
+#include <array>
+
+#include "bvh_engine.hpp"
+#include "ray_engine.hpp"
+#include "streaming_engine.hpp"
+
+namespace rays {
+
+std::span<const EngineKind> engineKinds() {
+  static constexpr std::array kinds = {
+      EngineKind{"bvh", "a hierarchy of boxes, all in one kernel", readBvhEngine},
+      EngineKind{"streaming", "a uniform grid in streams (Purcell and others, 2002)", readStreamingEngine},
+      EngineKind{"ray_engine", "buckets of rays that the host sends (Carr and others, 2002)", readRayEngine},
+  };
+  return kinds;
+}
+
+}  // namespace rays

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+//
+// What every engine can do: hits of rays, shadows, pictures in passes. An engine lives in files of its own and has one row in
+// engine.cpp; the table of the scene that has its name holds its settings.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "model.hpp"
+#include "support/scene_file.hpp"
+
+namespace rays {
+
+enum class Sampling : std::uint8_t { Random, Sobol };
+
+struct Picture {
+  int width = 512;
+  int height = 512;
+  int depth = 8;  ///< segments of a path, the one from the camera included
+  std::uint32_t seed = 1;
+  Sampling sampling = Sampling::Sobol;  ///< independent numbers, or Sobol's with Owen's scrambling
+};
+
+/// A picture that becomes better with each pass: one more sample for each pixel.
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+  /// Adds sample `index` of every pixel; the same index makes the same sample.
+  virtual void pass(std::int64_t index) = 0;
+  /// The mean of all passes so far: radiance, row by row from the top. Waits for the device.
+  virtual std::vector<sk::float3> image() = 0;
+  /// The variance of that mean, for the samples as independent ones; empty where the engine does not measure it.
+  virtual std::vector<sk::float3> variance() { return {}; }
+  /// Lines for the report: what this picture required, and what it would have cost otherwise.
+  virtual std::vector<std::string> account() { return {}; }
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  /// The nearest hit of each ray; of hits at one distance, the one with the least id. As many hits as rays. The greatest
+  /// component of a ray's direction lies between 1/2 and 4 (traceRays in trace.hpp sees to that).
+  virtual void closest(std::span<const Ray> rays, std::span<Hit> hits) = 0;
+  /// 1 where anything is hit, else 0.
+  virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) = 0;
+  /// Throws std::runtime_error where the engine does not know something that the scene names.
+  virtual std::unique_ptr<Renderer> renderer(const Picture& picture) = 0;
+  /// Lines for the report: sizes of what was built, time that it took.
+  virtual std::vector<std::string> account() { return {}; }
+};
+
+/// An engine for a model, which must outlive it.
+using MakeEngine = std::function<std::unique_ptr<Engine>(sk::Device&, const Model&)>;
+
+struct EngineKind {
+  std::string_view name;  ///< in scenes: engine = "name", and settings in [name]
+  std::string_view does;  ///< for --help
+  /// Reads the settings, before there is a device. `settings` is none where the scene has no such table.
+  MakeEngine (*read)(const std::optional<examples::SceneTable>& settings);
+};
+
+/// All of them; the first is the default.
+std::span<const EngineKind> engineKinds();
+
+}  // namespace rays

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "grid_tracer.hpp"
+
+#include <utility>
+
+namespace rays {
+namespace {
+
+using FloatStream = sk::Stream<sk::float4>;
+
+}  // namespace
+
+void GridTracer::find(bool anyHit, const FloatStream& from, const FloatStream& along,
+                      sk::Stream<kernels::Found>& found) {
+  if (from.size() == 0) return;
+  if (settings_.machine == Machine::Multipass) return findByPasses(anyHit, from, along, found);
+  scene_.call(kernels::findInGrid, anyHit, from, along, found);
+}
+
+void GridTracer::findByPasses(bool anyHit, const FloatStream& allFrom, const FloatStream& allAlong,
+                              sk::Stream<kernels::Found>& found) {
+  GridScene& s = scene_;
+  sk::Device& device = s.device;
+  const std::int64_t all = allFrom.size();
+  auto travel = device.stream<kernels::Travel>(allFrom.shape());
+  auto ray = device.stream<int>(allFrom.shape());
+  kernels::numberRays(sk::iter(0, static_cast<int>(all)), ray);
+  metered(meter_, "begin", all, [&] {
+    kernels::beginTravel(s.hasShapes(), s.hasPlanes, anyHit, s.grid, s.planeCount, s.firstPlane, s.planes,
+                         s.cells, allFrom, allAlong, travel);
+  });
+  FloatStream ownFrom, ownAlong;
+  const FloatStream *from = &allFrom, *along = &allAlong;
+  const auto deliver = [&] {
+    metered(meter_, "deliver", travel.size(),
+            [&] { kernels::deliver(s.hasSpheres && !anyHit, s.shapes, *from, *along, travel, ray, found); });
+  };
+  for (;;) {
+    sk::int2 goOn;
+    metered(meter_, "count", travel.size(), [&] { goOn = kernels::countTravels(travel); });
+    const std::int64_t active = std::int64_t{goOn.x} + goOn.y;
+    if (active == 0) break;
+    if (double(active) <= settings_.compact * double(travel.size())) {
+      deliver();
+      auto nextFrom = device.stream<sk::float4>({0}), nextAlong = device.stream<sk::float4>({0});
+      auto nextTravel = device.stream<kernels::Travel>({0});
+      auto nextRay = device.stream<int>({0});
+      metered(meter_, "compact", travel.size(),
+              [&] { kernels::goOn(*from, *along, travel, ray, nextFrom, nextAlong, nextTravel, nextRay); });
+      ownFrom = std::move(nextFrom);
+      ownAlong = std::move(nextAlong);
+      travel = std::move(nextTravel);
+      ray = std::move(nextRay);
+      from = &ownFrom;
+      along = &ownAlong;
+    }
+    for (int i = 0; i < settings_.rounds; ++i) round(anyHit, *from, *along, travel);
+  }
+  deliver();
+}
+
+void GridTracer::round(bool anyHit, const FloatStream& from, const FloatStream& along,
+                       sk::Stream<kernels::Travel>& travel) {
+  GridScene& s = scene_;
+  metered(meter_, "intersect", travel.size(), [&] {
+    kernels::intersectLists(static_cast<unsigned>(s.intersection), s.contracted, s.hasTriangles, s.hasSpheres,
+                            anyHit, settings_.tests, s.lists, s.shapes, from, along, travel, travel);
+  });
+  metered(meter_, "traverse", travel.size(),
+          [&] { kernels::traverseCells(s.grid, s.cells, from, along, travel, travel); });
+}
+
+}  // namespace rays

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+//
+// rays: pictures and hits of scene files, by the engine that the scene asks for.
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <sk/sk.hpp>
+
+#include "camera.hpp"
+#include "engine.hpp"
+#include "hits_file.hpp"
+#include "layers.hpp"
+#include "reference.hpp"
+#include "render.hpp"
+#include "scene.hpp"
+#include "study.hpp"
+#include "support/application.hpp"
+#include "support/stopwatch.hpp"
+#include "trace.hpp"
+
+namespace {
+
+struct Settings {
+  std::filesystem::path scene;
+  std::string size;
+  std::string engine;
+  std::filesystem::path hits;
+  std::filesystem::path rays;
+  std::optional<std::filesystem::path> output;
+  std::optional<std::int64_t> samples;
+  std::optional<double> seconds;
+  std::string study;
+  bool small = false;
+  std::string layers;
+  bool strict = false;
+};
+
+void addOptions(CLI::App& cli, Settings& s) {
+  cli.add_option("scene", s.scene, "what to see: a TOML file, as in examples/rays/scenes");
+  std::string engines = "in place of the scene's:";
+  for (const rays::EngineKind& kind : rays::engineKinds())
+    engines += fmt::format("\n  {:<11} {}", kind.name, kind.does);
+  cli.add_option("--engine", s.engine, engines);
+  cli.add_option("--size", s.size, "pixels, WxH, in place of the scene's");
+  cli.add_option("--samples", s.samples, "for each pixel, in place of the scene's")
+      ->check(CLI::Range(1, 1'000'000));
+  cli.add_option("--seconds", s.seconds, "end after this time, whatever samples there are")
+      ->check(CLI::Range(0.0, 1e7));
+  cli.add_option("--output", s.output, "the picture, .png or .pfm, in place of the scene's");
+  cli.add_option("--hits", s.hits,
+                 "no picture: write x,y,id,t,u,v of the rays through the pixels' centres to this file");
+  cli.add_option("--trace", s.rays,
+                 "with --hits: the rays of this file, lines of ox oy oz dx dy dz [tmin tmax]");
+  cli.add_option(
+      "--layers", s.layers,
+      "write FILE_depth.pfm, _normal.pfm, _albedo.pfm, _id.pfm and _variance.pfm beside the picture");
+  std::string studies = "measure what choices are worth, and print a table:";
+  for (const rays::Study& study : rays::studies())
+    studies += fmt::format("\n  {:<11} {}", study.name, study.asks);
+  cli.add_option("--study", s.study, studies);
+  cli.add_flag("--small", s.small, "a study in seconds, with fewer rays");
+  cli.add_flag("--strict", s.strict, "vertices that are not finite are an error");
+}
+
+void applySize(const std::string& text, rays::Overrides& overrides) {
+  const std::size_t x = text.find('x');
+  const auto number = [&](const std::string& digits) {
+    const bool isNumber =
+        !digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == std::string::npos;
+    const int n = isNumber ? std::stoi(digits) : -1;
+    if (n < 0 || n > 32768)
+      throw std::runtime_error(fmt::format("--size: '{}' is no size; write WxH, each from 0 to 32768", text));
+    return n;
+  };
+  if (x == std::string::npos) number("");
+  overrides.width = number(text.substr(0, x));
+  overrides.height = number(text.substr(x + 1));
+}
+
+rays::Scene sceneOf(const Settings& s) {
+  rays::Overrides overrides{
+      .samples = s.samples, .seconds = s.seconds, .engine = s.engine, .strict = s.strict};
+  if (!s.size.empty()) applySize(s.size, overrides);
+  rays::Scene scene = rays::readScene(s.scene, overrides);
+  if (s.output) scene.output.picture = *s.output;
+  for (const std::string& warning : scene.warnings) fmt::print(stderr, "rays: warning: {}\n", warning);
+  return scene;
+}
+
+void writeHits(examples::Application& app, const Settings& s, const rays::Scene& scene) {
+  sk::Device device(app.device());
+  const std::unique_ptr<rays::Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
+  const bool fromFile = !s.rays.empty();
+  const rays::Picture& picture = scene.picture;
+  const examples::Stopwatch stopwatch;
+  std::vector<rays::Hit> hits;
+  if (fromFile) {
+    hits = rays::traceRays(*engine, scene.model, rays::loadRays(s.rays));
+  } else {
+    const std::vector<rays::Ray> primary =
+        rays::primaryRays(scene.model.camera, picture.width, picture.height);
+    hits.resize(primary.size());
+    engine->closest(primary, hits);
+    rays::toSceneLengths(scene.model, hits);
+  }
+  rays::saveHits(s.hits, hits, fromFile ? 0 : std::max(picture.width, 1));
+  app.report(fmt::format("{}, {} rays", scene.name, hits.size()), device.name(), stopwatch.milliseconds());
+  for (const std::string& line : engine->account()) fmt::print("{}\n", line);
+  fmt::print("wrote {}\n", s.hits.string());
+  if (!fromFile && !hits.empty())
+    app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
+}
+
+void makePicture(examples::Application& app, const Settings& s, const rays::Scene& scene) {
+  rays::checkOutput(scene);
+  sk::Device device(app.device());
+  const std::unique_ptr<rays::Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
+  const rays::Picture& picture = scene.picture;
+  const std::unique_ptr<rays::Renderer> renderer = engine->renderer(picture);
+  const rays::Rendering rendering = rays::render(*renderer, scene);
+  rays::saveRendering(rendering, scene);
+  app.report(
+      fmt::format("{}, {} x {}, {} samples", scene.name, picture.width, picture.height, rendering.samples),
+      device.name(), rendering.milliseconds);
+  for (const std::string& line : engine->account()) fmt::print("{}\n", line);
+  for (const std::string& line : renderer->account()) fmt::print("{}\n", line);
+  fmt::print("wrote {}\n", scene.output.picture.string());
+  if (!s.layers.empty()) {
+    std::vector<rays::Layer> layers = rays::layersOf(*engine, scene.model, picture);
+    if (std::vector<sk::float3> variance = renderer->variance(); !variance.empty())
+      layers.push_back({"variance", std::move(variance)});
+    rays::saveLayers(s.layers, layers, picture);
+    fmt::print("wrote {} layers, {}_*.pfm\n", layers.size(), s.layers);
+  }
+  app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
+}
+
+void runStudy(examples::Application& app, const Settings& s) {
+  std::string names;
+  for (const rays::Study& study : rays::studies()) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
+    if (study.name != s.study) continue;
+    sk::Device device(app.device());
+    const examples::Stopwatch stopwatch;
+    const rays::Findings findings = study.run(device, s.small);
+    app.report(fmt::format("{}: {}", study.name, study.asks), device.name(), stopwatch.milliseconds());
+    fmt::print("\n{}\n", findings.table);
+    for (const examples::Verification& verification : findings.verifications) app.verified(verification);
+    return;
+  }
+  throw std::runtime_error(fmt::format("no study is called '{}'; there are {}", s.study, names));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  examples::Application app("rays", "Pictures and hits of scene files by tracing rays.");
+  addOptions(app.options(), settings);
+  return app.run(argc, argv, [&] {
+    if (!settings.study.empty()) return runStudy(app, settings);
+    if (settings.scene.empty())
+      throw std::runtime_error("no scene is named; try examples/rays/scenes/cornell.toml");
+    if (!settings.rays.empty() && settings.hits.empty())
+      throw std::runtime_error("--trace needs --hits, where its hits go");
+    try {
+      const rays::Scene scene = sceneOf(settings);
+      if (!settings.hits.empty()) return writeHits(app, settings, scene);
+      makePicture(app, settings, scene);
+    } catch (const std::bad_alloc&) {
+      throw std::runtime_error("the scene does not fit in memory; take smaller meshes or fewer instances");
+    }
+  });
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "camera.hpp"
+
+namespace rays {
+namespace {
+
+using examples::vecOf;
+
+constexpr double clearlyInside = 1e-3;
+/// Of rays with shapes.
+constexpr std::size_t mostTests = 20'000'000;
+
+Vector at(const Ray& ray, double t) { return vecOf<double>(ray.origin) + t * vecOf<double>(ray.direction); }
+
+bool counts(const Ray& ray, double t) { return t >= ray.least && t <= ray.most; }
+
+/// Lengths that a distance is computed from.
+double scaleOf(const Ray& ray, double t) {
+  const auto o = vecOf<double>(ray.origin);
+  return 1.0 + std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) +
+         std::abs(t) * length(vecOf<double>(ray.direction));
+}
+
+/// The nearest root that counts, with the part of the direction along the normal there.
+std::optional<Meeting> meetSphere(const Sphere& sphere, const Ray& ray) {
+  const Vector f = vecOf<double>(ray.origin) - vecOf<double>(sphere.centre), d = vecOf<double>(ray.direction);
+  const double a = dot(d, d), b = dot(f, d);
+  const double discriminant = b * b - a * (dot(f, f) - double(sphere.radius) * sphere.radius);
+  if (discriminant < 0) return std::nullopt;
+  for (const double t : {(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a}) {
+    const double across = std::abs(dot(d, f + t * d)) / sphere.radius;
+    if (counts(ray, t)) return Meeting{t, across / std::sqrt(a), across};
+  }
+  return std::nullopt;
+}
+
+std::optional<Meeting> meetPlane(const Plane& plane, const Ray& ray) {
+  const auto n = vecOf<double>(plane.normal);
+  const double across = dot(n, vecOf<double>(ray.direction));
+  const double t = (plane.distance - dot(n, vecOf<double>(ray.origin))) / across;
+  if (across == 0 || !counts(ray, t)) return std::nullopt;
+  return Meeting{t, 1.0, std::abs(across)};
+}
+
+/// The distance of the hit's point from the surface that it names.
+double ownError(const Model& model, const Ray& ray, const Hit& hit) {
+  const Vector p = at(ray, hit.t);
+  if (hit.id >= model.planeId(0)) {
+    const Plane& plane = model.planes[static_cast<std::size_t>(hit.id - model.planeId(0))];
+    return std::abs(dot(vecOf<double>(plane.normal), p) - plane.distance);
+  }
+  if (hit.id >= model.sphereId(0)) {
+    const Sphere& sphere = model.spheres[static_cast<std::size_t>(hit.id - model.sphereId(0))];
+    return std::abs(length(p - vecOf<double>(sphere.centre)) - sphere.radius);
+  }
+  const auto found = std::ranges::lower_bound(model.triangles, hit.id, {}, &Triangle::id);
+  if (found == model.triangles.end() || found->id != hit.id) return HUGE_VAL;
+  const Meeting meeting = meet(*found, ray);
+  return meeting.inside < -clearlyInside ? HUGE_VAL : std::abs(hit.t - meeting.t) * meeting.across;
+}
+
+}  // namespace
+
+Meeting meet(const Triangle& triangle, const Ray& ray) {
+  const auto o = vecOf<double>(ray.origin), d = vecOf<double>(ray.direction);
+  const auto a = vecOf<double>(triangle.a) - o, b = vecOf<double>(triangle.b) - o,
+             c = vecOf<double>(triangle.c) - o;
+  const double u = dot(d, cross(c, b)), v = dot(d, cross(a, c)), w = dot(d, cross(b, a));
+  const double sum = u + v + w;
+  if (sum == 0) return {};
+  const Vector n = normalized(cross(b - a, c - a));
+  return {dot(n, a) / dot(n, d), std::min({u / sum, v / sum, w / sum}), std::abs(dot(n, d))};
+}
+
+double errorOf(const Model& model, const Ray& ray, const Hit& hit) {
+  double error = hit.id < 0 ? 0.0 : ownError(model, ray, hit) / scaleOf(ray, hit.t);
+  // How far a surface that is clearly met lies before what was found.
+  const auto missed = [&](const Meeting& meeting) {
+    if (meeting.inside < clearlyInside || meeting.t >= hit.t || !counts(ray, meeting.t)) return;
+    error =
+        std::max(error, hit.id < 0 ? HUGE_VAL : (hit.t - meeting.t) * meeting.across / scaleOf(ray, hit.t));
+  };
+  for (const Triangle& triangle : model.triangles) missed(meet(triangle, ray));
+  for (const Sphere& sphere : model.spheres) {
+    if (const auto meeting = meetSphere(sphere, ray)) missed(*meeting);
+  }
+  for (const Plane& plane : model.planes) {
+    if (const auto meeting = meetPlane(plane, ray)) missed(*meeting);
+  }
+  return error;
+}
+
+examples::Verification checkEngine(Engine& engine, const Model& model, int width, int height) {
+  examples::Verification verification("rays of pixels against all shapes", 0x1p-20,
+                                      "16 roundings of floats, of the lengths that a hit is computed from");
+  const std::vector<Ray> all = primaryRays(model.camera, width, height);
+  const std::size_t shapes = std::max<std::size_t>(1, model.triangles.size() + model.spheres.size());
+  const std::size_t count = std::clamp<std::size_t>(mostTests / shapes, 1, 2000);
+  // Not a divisor of the width, so that all columns have their turn.
+  std::size_t step = std::max<std::size_t>(1, all.size() / count);
+  if (step > 1 && width % static_cast<int>(step) == 0) ++step;
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < all.size(); i += step) rays.push_back(all[i]);
+  std::vector<Hit> hits(rays.size());
+  engine.closest(rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    verification.note(static_cast<std::int64_t>(i), errorOf(model, rays[i], hits[i]));
+  return verification;
+}
+
+}  // namespace rays

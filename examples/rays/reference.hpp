@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// Hits by loops in double precision over everything there is: what engines are held against.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine.hpp"
+#include "model.hpp"
+#include "support/verification.hpp"
+
+namespace rays {
+
+/// Where a ray meets the plane of a triangle.
+struct Meeting {
+  double t = HUGE_VAL;
+  double inside = -1.0;  ///< the least weight of a corner; negative outside the triangle
+  double across = 0.0;   ///< the ray's length along the normal, for t = 1
+};
+Meeting meet(const Triangle& triangle, const Ray& ray);
+
+/// How far a hit's point is from the surface that it names, or a surface that was missed is before it, relative to the lengths that it was computed
+/// from. Infinite where something was missed as a whole. What a ray meets within a thousandth of a triangle's edge
+/// may be a hit or none.
+double errorOf(const Model& model, const Ray& ray, const Hit& hit);
+
+/// Traces some of the rays through the picture's pixels, as many as loops over all shapes can follow in a moment.
+examples::Verification checkEngine(Engine& engine, const Model& model, int width, int height);
+
+}  // namespace rays

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "streaming_renderer.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "path_tables.hpp"
+#include "streaming_path.sk.hpp"
+
+namespace rays {
+namespace {
+
+class BranchingRenderer : public Renderer {
+ public:
+  BranchingRenderer(GridScene& scene, const Picture& picture, Use use)
+      : scene_(scene),
+        use_(use),
+        tables_(scene.device, scene.model, picture),
+        exposure_(scene.device, picture) {}
+
+  void pass(std::int64_t index) override {
+    const PathTables& t = tables_;
+    scene_.call(kernels::followPathsInGrid, t.features, static_cast<unsigned>(t.sampling),
+                static_cast<unsigned>(use_), t.view, t.setting, static_cast<std::uint32_t>(index), t.seed,
+                t.materials, t.corners, t.lights, t.sky, t.texels, t.textures, exposure_.radiance);
+    exposure_.add();
+  }
+
+  std::vector<sk::float3> image() override { return exposure_.image(); }
+
+  std::vector<sk::float3> variance() override { return exposure_.variance(); }
+
+  std::vector<std::string> account() override { return {tables_.account()}; }
+
+ private:
+  GridScene& scene_;
+  Use use_;
+  PathTables tables_;
+  Exposure exposure_;
+};
+
+/// Paths that have not ended, in the order of their pixels.
+struct PathStreams {
+  PathStreams(sk::Device& device, const sk::Shape& shape)
+      : from(device.stream<sk::float4>(shape)),
+        along(device.stream<sk::float4>(shape)),
+        path(device.stream<kernels::Path>(shape)),
+        pixel(device.stream<sk::int2>(shape)) {}
+
+  sk::Stream<sk::float4> from, along;
+  sk::Stream<kernels::Path> path;
+  sk::Stream<sk::int2> pixel;
+};
+
+class MultipassRenderer : public Renderer {
+ public:
+  MultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use,
+                    PassMeter* meter)
+      : scene_(scene),
+        tracer_(tracer),
+        picture_(picture),
+        use_(use),
+        meter_(meter),
+        tables_(scene.device, scene.model, picture),
+        exposure_(scene.device, picture) {}
+
+  void pass(std::int64_t index) override {
+    const PathTables& t = tables_;
+    const auto sample = static_cast<std::uint32_t>(index);
+    const std::int64_t count = std::int64_t{picture_.width} * picture_.height;
+    PathStreams paths(scene_.device, {count});
+    metered(meter_, "generate", count, [&] {
+      kernels::generatePaths(t.features, static_cast<unsigned>(t.sampling), t.view, t.setting, sample, t.seed,
+                             sk::iter(0, static_cast<int>(count)), paths.from, paths.along, paths.path,
+                             paths.pixel);
+    });
+    for (int segment = 0; paths.path.size() > 0; ++segment) {
+      shade(sample, segment, paths);
+      PathStreams next(scene_.device, {0});
+      metered(meter_, "end paths", paths.path.size(), [&] {
+        kernels::deliverLight(paths.path, paths.along, paths.pixel, exposure_.radiance);
+        kernels::keepPaths(paths.from, paths.along, paths.path, paths.pixel, next.from, next.along, next.path,
+                           next.pixel);
+      });
+      paths = std::move(next);
+    }
+    exposure_.add();
+  }
+
+  std::vector<sk::float3> image() override { return exposure_.image(); }
+
+  std::vector<sk::float3> variance() override { return exposure_.variance(); }
+
+  std::vector<std::string> account() override { return {tables_.account()}; }
+
+ private:
+  /// Traces the rays of a segment, and those to lights.
+  void shade(std::uint32_t sample, int segment, PathStreams& paths) {
+    const PathTables& t = tables_;
+    sk::Device& device = scene_.device;
+    const sk::Shape shape = paths.from.shape();
+    auto found = device.stream<kernels::Found>(shape);
+    tracer_.find(false, paths.from, paths.along, found);
+    auto shadowFrom = device.stream<sk::float4>(shape), shadowAlong = device.stream<sk::float4>(shape);
+    auto shadowLight = device.stream<sk::float3>(shape);
+    metered(meter_, "shade", paths.from.size(), [&] {
+      kernels::shadePaths(scene_.hasTriangles, scene_.hasSpheres, scene_.planes, scene_.shapes, t.features,
+                          static_cast<unsigned>(t.sampling), static_cast<unsigned>(use_), t.setting, sample,
+                          t.seed, segment, t.materials, t.corners, t.lights, t.sky, t.texels, t.textures,
+                          paths.from, paths.along, found, paths.pixel, paths.path, paths.from, paths.along,
+                          paths.path, shadowFrom, shadowAlong, shadowLight);
+    });
+    if (t.setting.lights == 0 || use_ == Use::RayCasting || segment + 1 == picture_.depth) return;
+    tracer_.find(true, shadowFrom, shadowAlong, found);
+    metered(meter_, "add light", paths.from.size(),
+            [&] { kernels::addLight(found, shadowLight, paths.path, paths.path); });
+  }
+
+  DeviceShapes& scene_;
+  StreamTracer& tracer_;
+  Picture picture_;
+  Use use_;
+  PassMeter* meter_;
+  PathTables tables_;
+  Exposure exposure_;
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> makeBranchingRenderer(GridScene& scene, const Picture& picture, Use use) {
+  return std::make_unique<BranchingRenderer>(scene, picture, use);
+}
+
+std::unique_ptr<Renderer> makeMultipassRenderer(DeviceShapes& scene, StreamTracer& tracer,
+                                                const Picture& picture, Use use, PassMeter* meter) {
+  return std::make_unique<MultipassRenderer>(scene, tracer, picture, use, meter);
+}
+
+}  // namespace rays

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+//
+// Experiments on what choices are worth. One file each; docs/rays.md shows their tables.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "mesh.hpp"
+#include "model.hpp"
+#include "support/verification.hpp"
+
+namespace rays {
+
+struct Findings {
+  std::string table;  ///< in Markdown, which docs/rays.md shows
+  std::vector<examples::Verification> verifications{};
+};
+
+struct Study {
+  std::string_view name;
+  std::string_view asks;  ///< for --help
+  /// `isSmall`: in seconds, with fewer rays.
+  Findings (*run)(sk::Device& device, bool isSmall);
+};
+
+std::span<const Study> studies();
+
+Findings studyLeaks(sk::Device& device, bool isSmall);
+Findings studySpeed(sk::Device& device, bool isSmall);
+Findings studyStreaming(sk::Device& device, bool isSmall);
+Findings studyRayEngine(sk::Device& device, bool isSmall);
+
+/// Embree on the same rays, where the program was built with it; throws std::runtime_error elsewhere.
+Findings studyEmbree(sk::Device& device, bool isSmall);
+
+/// A closed mesh in a ring on rough ground: 225,000 triangles, or few. The camera looks at all of it.
+Model speedModel(bool isSmall);
+/// From what these rays hit, in any direction about the normal, with the density of the cosine.
+std::vector<Ray> diffuseRays(const Model& model, std::span<const Ray> rays, std::span<const Hit> hits);
+/// How long a call takes: the processor's time on devices that run there, whatever else runs beside it; else the time that passes.
+double callMilliseconds(bool isProcessor, const std::function<void()>& call);
+
+/// Millions of rays a second through a hierarchy of default settings: the best of some calls, without the way to the device and back.
+double closestRate(sk::Device& device, const Model& model, std::span<const Ray> rays, int calls);
+
+/// A mesh alone, moved, its ids from 0.
+Model modelOf(const Mesh& mesh, Vector moved = {});
+
+/// From near `moved`, inside a closed mesh that was moved there, to its vertices and to points of its edges, as floats have them.
+std::vector<Ray> raysToEdges(const Model& model, Vector moved, std::size_t count, unsigned seed);
+
+}  // namespace rays

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+//
+// Rays from a camera, which go side by side, and the diffuse rays from what they hit, which go anywhere.
+#include "study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <random>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bvh_engine.hpp"
+#include "camera.hpp"
+#include "device_scene.hpp"
+#include "ray_streams.hpp"
+#include "reference.hpp"
+#include "shapes.hpp"
+#include "support/stopwatch.hpp"
+#include "support/table.hpp"
+
+namespace rays {
+namespace {
+
+struct Streams {
+  sk::Stream<sk::float4> from, along;
+  sk::Stream<sk::float3> hit;
+  sk::Stream<int> id;
+};
+
+Streams streamsOf(sk::Device& device, std::span<const Ray> rays) {
+  RayStreams streams = uploadRays(device, rays);
+  const sk::Shape shape = streams.from.shape();
+  return {std::move(streams.from), std::move(streams.along), device.stream<sk::float3>(shape),
+          device.stream<int>(shape)};
+}
+
+/// In millions a second: the best of some calls, without the way to the device and back.
+double rate(DeviceScene& scene, Streams& s, int calls) {
+  const auto call = [&] {
+    scene.call(kernels::closest, s.from, s.along, s.hit, s.id);
+    scene.device().finish();
+  };
+  const bool isProcessor = scene.device().isSoftware() || scene.device().name().starts_with("native");
+  call();  // compiles
+  double best = HUGE_VAL;
+  for (int i = 0; i < calls; ++i) best = std::min(best, callMilliseconds(isProcessor, call));
+  return double(s.from.size()) / best / 1e3;
+}
+
+std::string_view nameOf(HowToTraverse way) {
+  switch (way) {
+    case HowToTraverse::Stack: return "stack";
+    case HowToTraverse::Leaves: return "leaves";
+    case HowToTraverse::Skip: return "skip";
+  }
+  return "";
+}
+
+}  // namespace
+
+double closestRate(sk::Device& device, const Model& model, std::span<const Ray> rays, int calls) {
+  DeviceScene scene(device, model, {});
+  Streams streams = streamsOf(device, rays);
+  return rate(scene, streams, calls);
+}
+
+double callMilliseconds(bool isProcessor, const std::function<void()>& call) {
+  const examples::Stopwatch stopwatch;
+  const std::clock_t start = std::clock();
+  call();
+  return isProcessor ? 1e3 * double(std::clock() - start) / CLOCKS_PER_SEC : stopwatch.milliseconds();
+}
+
+std::vector<Ray> diffuseRays(const Model& model, std::span<const Ray> rays, std::span<const Hit> hits) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  std::vector<Ray> next;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].id < 0) continue;
+    const Triangle& t = model.triangles[static_cast<std::size_t>(hits[i].id)];
+    const auto a = examples::vecOf<double>(t.a), d = examples::vecOf<double>(rays[i].direction);
+    Vector n = normalized(cross(examples::vecOf<double>(t.b) - a, examples::vecOf<double>(t.c) - a));
+    if (dot(n, d) > 0) n = -1.0 * n;
+    const Vector point = examples::vecOf<double>(rays[i].origin) + double(hits[i].t) * d + 1e-5 * n;
+    const Vector anywhere = normalized(Vector{normal(random), normal(random), normal(random)});
+    next.push_back({.origin = toFloat3(point), .direction = toFloat3(normalized(n + 0.999 * anywhere))});
+  }
+  return next;
+}
+
+Model speedModel(bool isSmall) {
+  Model model = modelOf(icosphere(isSmall ? 3 : 6, false));
+  const auto add = [&](const Mesh& mesh, double scale, double y) {
+    for (Triangle t : modelOf(mesh).triangles) {
+      for (sk::float3* p : {&t.a, &t.b, &t.c})
+        *p = toFloat3(scale * examples::vecOf<double>(*p) + Vector{0, y, 0});
+      t.id = model.triangleCount++;
+      model.triangles.push_back(t);
+    }
+  };
+  add(torus(isSmall ? 20 : 100, isSmall ? 12 : 60, 0.15), 2.0, 0.0);
+  add(terrain(isSmall ? 4 : 8, 0.3, 1), 4.0, -0.6);
+  model.camera.from = {1.2, 1.4, 1.8};
+  return model;
+}
+
+Findings studySpeed(sk::Device& device, bool isSmall) {
+  const int side = isSmall ? 48 : device.isSoftware() ? 256 : 512;
+  const Model model = speedModel(isSmall);
+  const std::vector<Ray> primary = primaryRays(model.camera, side, side);
+  examples::Table table({"test", "traversal", "leaf", "nodes", "cost", "primary, M/s", "diffuse, M/s"});
+  for (const HowToIntersect how : {HowToIntersect::Watertight, HowToIntersect::Moller}) {
+    for (const HowToTraverse way : {HowToTraverse::Stack, HowToTraverse::Leaves, HowToTraverse::Skip}) {
+      for (const int leaf : {1, 2, 4}) {
+        const DeviceSettings settings{.bvh = {.leaf = leaf}, .traversal = way, .intersection = how};
+        const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, settings);
+        std::vector<Hit> hits(primary.size());
+        engine->closest(primary, hits);
+        DeviceScene scene(device, model, settings);
+        Streams first = streamsOf(device, primary),
+                second = streamsOf(device, diffuseRays(model, primary, hits));
+        const int calls = isSmall ? 1 : 5;
+        table.add({how == HowToIntersect::Watertight ? "watertight" : "moller", std::string(nameOf(way)),
+                   fmt::format("{}", leaf), fmt::format("{}", scene.bvh().nodes.size()),
+                   fmt::format("{:.0f}", scene.bvh().cost), fmt::format("{:.2f}", rate(scene, first, calls)),
+                   fmt::format("{:.2f}", rate(scene, second, calls))});
+      }
+    }
+  }
+  const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, {});
+  return {table.markdown(), {checkEngine(*engine, model, side, side)}};
+}
+
+}  // namespace rays
