@@ -508,6 +508,20 @@ TEST_CASE("natively, a folded sum has the bits of a reduce, for any number of th
   }
 }
 
+TEST_CASE("a kernel that only gathers folds, also exactly") {
+  onEveryProfile([](sk::Device& device) {
+    auto p = streamOf(device, std::vector<float>{1, 2, 4, 8, 16});
+    auto q = device.stream<float>({5});
+    for (const sk::Accumulate accumulate :
+         {sk::Accumulate::Default, sk::Accumulate::Tree, sk::Accumulate::Exact}) {
+      auto total = device.scalar<float>();
+      folded::stencil.with({.accumulate = accumulate})(p, q, total);
+      CHECK(q.read() == std::vector<float>{0, -1, -2, -4, 24});
+      CHECK(total.read() == 342);  // -2 - 8 - 32 + 384
+    }
+  });
+}
+
 TEST_CASE("what a folded output cannot be is refused before anything runs") {
   onEveryProfile([](sk::Device& device) {
     const auto x = streamOf(device, std::vector<int>{1, 2, 3, 4, 5, 6});
