@@ -119,7 +119,7 @@ class Builder {
     return std::clamp(bin, 0, settings_.bins - 1);
   }
 
-  /// Of all axes and bins; an infinite cost where nothing can be split.
+  /// Returns the cheapest split over all axes and bins; its cost is infinite if nothing can be split.
   Split bestSplit(const Bounds& bounds, const Bounds& centres, std::uint32_t first,
                   std::uint32_t count) const {
     Split best;

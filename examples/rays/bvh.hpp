@@ -55,7 +55,7 @@ struct Bvh {
 };
 
 /// Splits by the surface area heuristic in bins (I. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007). Boxes are a
-/// little larger than what is in them, so that rounding never misses one (docs/rays.md). `progress` is told how many shapes are in leaves.
+/// little larger than what is in them, so that rounding never misses one (docs/rays.md). Calls `progress` with the number of shapes in leaves so far.
 Bvh buildBvh(std::span<const Triangle> triangles, std::span<const Sphere> spheres,
              const BvhSettings& settings, const std::function<void(std::int64_t)>& progress = {});
 

@@ -93,7 +93,7 @@ class GridBuilder {
                       cells_.size[axis] - 1);
   }
 
-  /// Of the cells between two corners, those which `isMet`; false where all entries together are too many.
+  /// Adds the shape to each cell between two corners for which `isMet` holds. Returns false if there are too many entries.
   template <class IsMet>
   bool add(std::uint32_t shape, const Corner& least, const Corner& most, const IsMet& isMet) {
     std::array<int, 3> first{}, last{};

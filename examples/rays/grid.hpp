@@ -36,7 +36,7 @@ struct UniformGrid {
 /// the scene, so that its hits are always listed in a cell that it passes.
 double gridMargin(const Bounds& bounds);
 
-/// Cells are as many as asked for, fewer where shapes lie in so many of them that lists would not fit in 2^26 entries.
+/// Builds a grid with as many cells as the settings ask for, or fewer if the lists would have more than 2^26 entries.
 UniformGrid buildGrid(const Model& model, const GridSettings& settings);
 
 }  // namespace rays

@@ -30,7 +30,7 @@ std::unique_ptr<Engine> engineOf(sk::Device& device, const Model& model, const s
   return readScene(file.path(), {}).engines.at("bvh")(device, model);
 }
 
-/// Of each hit against all triangles, the largest error.
+/// Returns the largest error of the hits, compared with a test of all triangles.
 double largestError(const Model& model, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
   double largest = 0.0;
   for (std::size_t i = 0; i < rays.size(); ++i) largest = std::max(largest, errorOf(model, rays[i], hits[i]));

@@ -33,7 +33,7 @@ double areaOf(const Triangle& t) {
   return 0.5 * length(cross(examples::vecOf<double>(t.b) - a, examples::vecOf<double>(t.c) - a));
 }
 
-/// Of the scene's bounding sphere, about the origin: what far lights shine on.
+/// Returns the radius of a sphere around the origin that contains the scene. Distant lights shine on its disc.
 double sceneRadius(const Model& model) {
   double most = 0.0;
   const auto grow = [&](const sk::float3& p, double r) {

@@ -74,7 +74,7 @@ TEST_CASE("OBJ faces have polygons, relative indices and materials") {
   CHECK(mesh.materials[2].ior == Approx(1.4));
 }
 
-TEST_CASE("what is wrong with an OBJ file is told at its line and column") {
+TEST_CASE("errors in OBJ files name the line and the column") {
   CHECK(objMessage("v 0 0 0\nv 1 x 0\n") == "a.obj:2:5: 'x' is no number");
   CHECK(objMessage("v 0 0\n") == "a.obj:1:6: z is missing");
   CHECK(objMessage("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 4\n") ==
@@ -119,7 +119,7 @@ TEST_CASE("PLY files are read as text and in both orders of bytes") {
   }
 }
 
-TEST_CASE("what is wrong with a PLY file is told at its place") {
+TEST_CASE("errors in PLY files name their location") {
   const std::string faces =
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n";
   CHECK_THAT(plyMessage("obj\n"), Catch::StartsWith("a.ply:1:1: this is no PLY file"));

@@ -74,7 +74,7 @@ TEST_CASE("vertices that are not finite are named and left out, or an error") {
   CHECK_THAT(messageOf(text, strict), Catch::Contains("a vertex is not finite"));
 }
 
-TEST_CASE("an empty mesh is told of") {
+TEST_CASE("an empty mesh is reported") {
   const examples::WrittenFile mesh("# nothing\n", "written_rays.obj");
   const Scene scene = read("[[mesh]]\nfile = \"written_rays.obj\"\n");
   CHECK(scene.model.triangles.empty());
@@ -82,7 +82,7 @@ TEST_CASE("an empty mesh is told of") {
   CHECK_THAT(scene.warnings[0], Catch::Contains("the mesh has no faces"));
 }
 
-TEST_CASE("what is wrong with a scene is told at its line and column") {
+TEST_CASE("errors in scenes name the line and the column") {
   CHECK_THAT(messageOf("[camera]\nfiled_of_view = 3\n"),
              Catch::Contains(":2:1: ") && Catch::Contains("did you mean 'field_of_view'"));
   CHECK_THAT(messageOf("engine = \"bvhh\"\n"), Catch::Contains("did you mean 'bvh'"));
