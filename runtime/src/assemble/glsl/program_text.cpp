@@ -140,7 +140,7 @@ std::vector<std::string> ProgramText::storesOf(std::size_t first, std::size_t en
 }
 
 std::vector<std::string> ProgramText::storing(std::string_view place, bool isArray) {
-  storesItself_ = true;
+  storeLater(0);
   isArray_ = isArray;
   return storesOf(0, outputs_.size(), place);
 }
@@ -265,7 +265,7 @@ std::string ProgramText::mainOf(const std::string& body) const {
       fmt::format("\nlayout(local_size_x = {}, local_size_y = {}) in;\n\nvoid main() {{\n", width, height);
   if (isGrouped) {
     text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body;
-    if (storesItself_) return text + "}\n";
+    if (storesAtEnd().empty()) return text + "}\n";
     if (!storesApart_) text += "  if (gl_LocalInvocationIndex != 0u) return;\n";
   } else if (together_.empty()) {
     text += "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n";

@@ -148,7 +148,6 @@ class ProgramText {
   std::string mainOfGroups_;  ///< of runFrom()
   bool isArray_ = false;
   bool isInBuffer_ = false;  ///< storeInBuffer()
-  bool storesItself_ = false;  ///< storing()
   bool storesApart_ = false;  ///< dispatchGroups()
   std::pair<std::int32_t, std::int32_t> group_{};  ///< the size for each texel; 0: one invocation per texel
   bool relaysUniforms_ = false;
