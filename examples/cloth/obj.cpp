@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "obj.hpp"
 
-#include <fstream>
 #include <iterator>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 
 #include <fmt/format.h>
+
+#include "support/text_file.hpp"
 
 namespace examples {
 namespace {
@@ -44,11 +43,7 @@ std::string objOf(int columns, int rows, std::span<const sk::float4> positions,
 
 void saveObj(const std::filesystem::path& file, int columns, int rows, std::span<const sk::float4> positions,
              std::span<const sk::float4> normals) {
-  std::error_code ignored;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
-  std::ofstream stream(file, std::ios::binary);
-  stream << objOf(columns, rows, positions, normals);
-  if (!stream.flush()) throw std::runtime_error(fmt::format("cannot write '{}'", file.string()));
+  writeFile(file, objOf(columns, rows, positions, normals));
 }
 
 }  // namespace examples

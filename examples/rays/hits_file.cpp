@@ -11,9 +11,12 @@
 
 #include <fmt/format.h>
 
-#include "text_cursor.hpp"
+#include "support/text_cursor.hpp"
 
 namespace rays {
+
+using examples::TextCursor;
+
 namespace {
 
 /// The first number of the line has been taken already.

@@ -10,9 +10,12 @@
 
 #include <tiny_obj_loader.h>
 
-#include "text_cursor.hpp"
+#include "support/text_cursor.hpp"
 
 namespace rays {
+
+using examples::TextCursor;
+
 namespace {
 
 /// Counts of what faces refer to, up to their line.

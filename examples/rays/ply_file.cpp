@@ -10,9 +10,12 @@
 #include <limits>
 #include <map>
 
-#include "text_cursor.hpp"
+#include "support/text_cursor.hpp"
 
 namespace rays {
+
+using examples::TextCursor;
+
 namespace {
 
 enum class Encoding : std::uint8_t { Text, Little, Big };

@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-namespace rays {
+namespace examples {
 
 class TextCursor {
  public:
@@ -90,4 +90,4 @@ class TextCursor {
   std::size_t at_ = 0, begin_ = 0, end_ = 0, wordAt_ = 0, line_ = 0;
 };
 
-}  // namespace rays
+}  // namespace examples

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "layout.hpp"
+
+#include <algorithm>
+
+#include "named.hpp"
+#include "support/stopwatch.hpp"
+
+namespace linear {
+
+namespace {
+
+constexpr std::size_t mostDiagonals = 64;
+
+bool always(const SparseMatrix& a) { return a.entries() > 0; }
+bool onDemand(const SparseMatrix&) { return false; }  // slower than others on every device that was measured
+
+/// Worth a trial where the diagonals hold little that is not an entry.
+bool hasFewDiagonals(const SparseMatrix& a) {
+  if (a.rows != a.columns || a.rows == 0) return false;
+  const std::vector<std::int64_t> diagonals = diagonalsOf(a, mostDiagonals);
+  return diagonals.size() <= mostDiagonals &&
+         static_cast<std::int64_t>(diagonals.size()) * a.rows <= 2 * a.entries();
+}
+
+bool isMostlyFull(const SparseMatrix& a) { return a.entries() > 0 && 2 * a.entries() >= a.rows * a.columns; }
+
+constexpr LayoutKind layouts[] = {
+    {"rows", "compressed rows, balanced whatever their lengths", makeRows, always},
+    {"slices", "SELL-C-sigma: slices of 32 rows of similar lengths", makeSlices, always},
+    {"buckets", "rows of one length together (Bolz and others 2003)", makeBuckets, onDemand},
+    {"diagonals", "one stream for each diagonal (Krueger and Westermann 2003)", makeDiagonals,
+     hasFewDiagonals},
+    {"points", "an addition for each entry (Krueger and Westermann 2003)", makePoints, onDemand},
+    {"dense", "all elements", makeDense, isMostlyFull},
+};
+
+double secondsOf(sk::Device& device, Matrix& matrix, const Arithmetic& arithmetic) {
+  Vector x = device.stream<float>(matrix.domain(), arithmetic.vectors);
+  Vector y = device.stream<float>(matrix.range(), arithmetic.vectors);
+  x.fill(1.0f);
+  double best = 0.0;
+  for (int i = 0; i < 4; ++i) {  // the first builds programs
+    device.finish();
+    const examples::Stopwatch watch;
+    matrix.multiply(x, y);
+    device.finish();
+    const double seconds = watch.milliseconds() / 1000.0;
+    if (i == 1 || (i > 1 && seconds < best)) best = seconds;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::span<const LayoutKind> layoutKinds() { return layouts; }
+
+std::vector<std::int64_t> diagonalsOf(const SparseMatrix& a, std::size_t most) {
+  std::vector<std::int64_t> found;
+  for (std::int64_t i = 0; i < a.rows && found.size() <= most; ++i)
+    for (auto k = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
+         k < static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]); ++k) {
+      const std::int64_t offset = (a.column[k] - i + a.columns) % a.columns;
+      const auto at = std::lower_bound(found.begin(), found.end(), offset);
+      if (at == found.end() || *at != offset) found.insert(at, offset);
+    }
+  return found;
+}
+
+std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const SparseMatrix& a, std::string_view layout,
+                                   const Arithmetic& arithmetic, std::vector<LayoutTrial>* trials) {
+  if (layout != "auto") return rowNamed(layoutKinds(), layout, "layout").make(device, a, arithmetic);
+  const LayoutKind* best = &layouts[0];
+  double least = 0.0;
+  for (const LayoutKind& kind : layouts) {
+    if (!kind.suits(a)) continue;
+    const std::unique_ptr<Matrix> matrix = kind.make(device, a, arithmetic);
+    const double seconds = secondsOf(device, *matrix, arithmetic);
+    if (trials != nullptr) trials->push_back({kind.name, seconds});
+    if (least == 0.0 || seconds < least) {
+      least = seconds;
+      best = &kind;
+    }
+  }
+  return best->make(device, a, arithmetic);
+}
+
+}  // namespace linear

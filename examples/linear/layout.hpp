@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+//
+// The layouts that a sparse matrix may have on a device, and the choice between them.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "matrix.hpp"
+#include "sparse.hpp"
+
+namespace linear {
+
+struct LayoutKind {
+  std::string_view name;  ///< of --layout
+  std::string_view does;
+  /// Copies a matrix to the device. Throws std::runtime_error if the layout cannot hold it.
+  std::unique_ptr<Matrix> (*make)(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
+  /// Whether a trial of this layout is worth its memory for the matrix.
+  bool (*suits)(const SparseMatrix& a);
+};
+
+std::span<const LayoutKind> layoutKinds();
+
+/// How long one product took with a layout, in a trial.
+struct LayoutTrial {
+  std::string_view layout;
+  double seconds = 0.0;
+};
+
+/// Copies a matrix to the device in the named layout. "auto" tries those that suit the matrix, and takes the one whose product is
+/// the fastest; `trials` receives their times. Throws std::runtime_error for an unknown name, with the known ones.
+std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const SparseMatrix& a, std::string_view layout,
+                                   const Arithmetic& arithmetic, std::vector<LayoutTrial>* trials = nullptr);
+
+std::unique_ptr<Matrix> makeRows(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
+std::unique_ptr<Matrix> makeSlices(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
+std::unique_ptr<Matrix> makeBuckets(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
+std::unique_ptr<Matrix> makeDiagonals(sk::Device& device, const SparseMatrix& a,
+                                      const Arithmetic& arithmetic);
+std::unique_ptr<Matrix> makePoints(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
+std::unique_ptr<Matrix> makeDense(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
+
+/// The offsets column - row of the entries, modulo the number of columns, ascending. Stops after `most` + 1 of them.
+std::vector<std::int64_t> diagonalsOf(const SparseMatrix& a, std::size_t most);
+
+}  // namespace linear

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+//
+// The layouts of the first papers about linear algebra on GPUs: diagonals and points (J. Krueger and R. Westermann, "Linear algebra
+// operators for GPU implementation of numerical algorithms", 2003), and rows of one length together (J. Bolz, I. Farmer, E. Grinspun and P. Schroeder, "Sparse
+// matrix solvers on the GPU: conjugate gradients and multigrid", 2003).
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "layout.hpp"
+#include "products.sk.hpp"
+
+namespace linear {
+
+namespace {
+
+/// Diagonals i and i - n share a stream: its element at row r is the entry of column (r + i) mod n.
+class DiagonalMatrix : public Matrix {
+ public:
+  DiagonalMatrix(sk::Device& device, const SparseMatrix& a, const std::vector<std::int64_t>& offsets,
+                 const Arithmetic& arithmetic)
+      : Matrix(arithmetic),
+        count_(static_cast<int>(offsets.size())),
+        value_(device.stream<float>({count_, a.rows}, arithmetic.matrix)),
+        offset_(device.stream<int>({count_})) {
+    std::vector<double> values(static_cast<std::size_t>(count_ * a.rows), 0.0);
+    for (std::int64_t i = 0; i < a.rows; ++i)
+      for (auto k = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
+           k < static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]); ++k) {
+        const std::int64_t offset = (a.column[k] - i + a.columns) % a.columns;
+        const auto diagonal = std::lower_bound(offsets.begin(), offsets.end(), offset) - offsets.begin();
+        values[static_cast<std::size_t>(diagonal * a.rows + i)] = a.value[k];
+      }
+    value_.writeReals(values);
+    // The shorter way around, so that most elements are not beyond an end.
+    std::vector<int> shortest;
+    for (const std::int64_t o : offsets)
+      shortest.push_back(static_cast<int>(2 * o > a.rows ? o - a.rows : o));
+    offset_.write(shortest);
+  }
+
+  sk::Shape domain() const override { return {value_.shape()[1]}; }
+  void multiply(const Vector& x, Vector& y) override {
+    if (value_.size() == 0) return y.fill(0.0f);
+    diagonalProduct.with(options())(count_, value_, offset_, x, y);
+  }
+  void multiply(const Vector& x, Vector& y, Vector& xy) override {
+    if (value_.size() == 0) return Matrix::multiply(x, y, xy);
+    diagonalProductDot.with(options())(count_, value_, offset_, x, x, y, xy);
+  }
+  std::string layout() const override { return "diagonals"; }
+  std::int64_t stored() const override { return value_.size(); }
+  std::int64_t bytes() const override { return 4 * value_.size(); }
+
+ private:
+  int count_;
+  Vector value_;
+  sk::Stream<int> offset_;
+};
+
+class PointMatrix : public Matrix {
+ public:
+  PointMatrix(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic)
+      : Matrix(arithmetic),
+        rows_(a.rows),
+        columns_(a.columns),
+        value_(device.stream<float>({a.entries()}, arithmetic.matrix)),
+        row_(device.stream<int>({a.entries()})),
+        column_(device.stream<int>({a.entries()})) {
+    std::vector<int> row;
+    row.reserve(a.column.size());
+    for (std::int64_t i = 0; i < a.rows; ++i)
+      row.insert(row.end(), static_cast<std::size_t>(a.length(i)), static_cast<int>(i));
+    value_.writeReals(a.value);
+    row_.write(row);
+    column_.write(a.column);
+  }
+
+  sk::Shape domain() const override { return {columns_}; }
+  sk::Shape range() const override { return {rows_}; }
+  using Matrix::multiply;
+  void multiply(const Vector& x, Vector& y) override {
+    y.fill(0.0f);
+    if (value_.size() != 0) pointProduct.with(options())(value_, row_, column_, x, y);
+  }
+  std::string layout() const override { return "points"; }
+  std::int64_t stored() const override { return value_.size(); }
+  std::int64_t bytes() const override { return 12 * value_.size(); }
+
+ private:
+  std::int64_t rows_, columns_;
+  Vector value_;
+  sk::Stream<int> row_, column_;
+};
+
+/// Rows of one length: entry k of all rows is in row k of the streams.
+struct Bucket {
+  Bucket(sk::Device& device, const SparseMatrix& a, const std::vector<int>& rows,
+         const Arithmetic& arithmetic)
+      : length(static_cast<int>(a.length(rows.front()))),
+        value(device.stream<float>({length, rows.size()}, arithmetic.matrix)),
+        column(device.stream<int>({length, rows.size()})),
+        row(device.stream<int>({rows.size()})) {
+    std::vector<double> values(static_cast<std::size_t>(length) * rows.size());
+    std::vector<int> columns(values.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(length); ++k) {
+        const std::size_t from = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(rows[i])]) + k;
+        values[k * rows.size() + i] = a.value[from];
+        columns[k * rows.size() + i] = a.column[from];
+      }
+    value.writeReals(values);
+    column.write(columns);
+    row.write(rows);
+  }
+
+  int length;
+  Vector value;
+  sk::Stream<int> column, row;
+};
+
+class BucketMatrix : public Matrix {
+ public:
+  BucketMatrix(sk::Device& device, const SparseMatrix& a,
+               const std::map<std::int64_t, std::vector<int>>& rowsByLength, const Arithmetic& arithmetic)
+      : Matrix(arithmetic), rows_(a.rows), columns_(a.columns) {
+    for (const auto& [length, rows] : rowsByLength)
+      if (length > 0) buckets_.emplace_back(device, a, rows, arithmetic);
+    hasEmptyRows_ = rowsByLength.contains(0);
+  }
+
+  sk::Shape domain() const override { return {columns_}; }
+  sk::Shape range() const override { return {rows_}; }
+  using Matrix::multiply;
+  void multiply(const Vector& x, Vector& y) override {
+    if (hasEmptyRows_ || buckets_.empty()) y.fill(0.0f);
+    for (Bucket& b : buckets_) bucketProduct.with(options())(b.length, b.value, b.column, b.row, x, y);
+  }
+  std::string layout() const override { return "buckets"; }
+  std::int64_t stored() const override {
+    std::int64_t sum = 0;
+    for (const Bucket& b : buckets_) sum += b.value.size();
+    return sum;
+  }
+  std::int64_t bytes() const override { return 8 * stored() + 4 * rows_; }
+
+ private:
+  std::int64_t rows_, columns_;
+  std::vector<Bucket> buckets_;
+  bool hasEmptyRows_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Matrix> makeDiagonals(sk::Device& device, const SparseMatrix& a,
+                                      const Arithmetic& arithmetic) {
+  if (a.rows != a.columns)
+    throw std::runtime_error(
+        fmt::format("the layout 'diagonals' takes square matrices; this one has {} x {}", a.rows, a.columns));
+  constexpr std::size_t most = 4096;
+  constexpr std::int64_t mostValues = std::int64_t{1} << 28;
+  const std::vector<std::int64_t> offsets = diagonalsOf(a, most);
+  if (offsets.size() > most || static_cast<std::int64_t>(offsets.size()) * a.rows > mostValues)
+    throw std::runtime_error(
+        "the matrix has too many diagonals for the layout 'diagonals'; take 'rows' or 'slices'");
+  return std::make_unique<DiagonalMatrix>(device, a, offsets, arithmetic);
+}
+
+std::unique_ptr<Matrix> makePoints(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic) {
+  return std::make_unique<PointMatrix>(device, a, arithmetic);
+}
+
+std::unique_ptr<Matrix> makeBuckets(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic) {
+  constexpr std::size_t most = 256;  // each is a call, and a program
+  std::map<std::int64_t, std::vector<int>> rowsByLength;
+  for (std::int64_t i = 0; i < a.rows; ++i) rowsByLength[a.length(i)].push_back(static_cast<int>(i));
+  if (rowsByLength.size() > most)
+    throw std::runtime_error(fmt::format(
+        "the rows have {} different lengths, and the layout 'buckets' takes {}; take 'rows' or 'slices'",
+        rowsByLength.size(), most));
+  return std::make_unique<BucketMatrix>(device, a, rowsByLength, arithmetic);
+}
+
+}  // namespace linear

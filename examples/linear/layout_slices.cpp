@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+//
+// The layout SELL-C-sigma: M. Kreutzer and others, "A unified sparse matrix data format for efficient general sparse matrix-vector
+// multiplication on modern processors with wide SIMD units" (2014). Rows of similar lengths, found among `window` neighbours, share a slice, whose
+// entries are stored side by side and filled to the longest row. The vectors keep their order: each row knows its slot.
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "layout.hpp"
+#include "products.sk.hpp"
+
+namespace linear {
+
+namespace {
+
+constexpr std::int64_t height = 32;
+constexpr std::int64_t window = 256;
+
+struct Slices {
+  std::vector<int> slot;  ///< of each row
+  std::vector<int> start;  ///< of each slice, and the end
+};
+
+Slices slicesOf(const SparseMatrix& a) {
+  std::vector<std::int64_t> order(static_cast<std::size_t>(a.rows));
+  std::iota(order.begin(), order.end(), 0);
+  for (std::int64_t first = 0; first < a.rows; first += window)
+    std::stable_sort(order.begin() + first, order.begin() + std::min(a.rows, first + window),
+                     [&](std::int64_t i, std::int64_t j) { return a.length(i) > a.length(j); });
+  Slices s;
+  s.slot.resize(order.size());
+  s.start.push_back(0);
+  std::int64_t end = 0;
+  for (std::int64_t first = 0; first < a.rows; first += height) {
+    std::int64_t longest = 0;
+    for (std::int64_t i = first; i < std::min(a.rows, first + height); ++i) {
+      s.slot[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = static_cast<int>(i);
+      longest = std::max(longest, a.length(order[static_cast<std::size_t>(i)]));
+    }
+    end += longest * height;
+    if (end > std::numeric_limits<std::int32_t>::max())
+      throw std::runtime_error(fmt::format(
+          "the layout 'slices' would hold {} entries or more; at most 2^31 - 1 can be. Try 'rows'", end));
+    s.start.push_back(static_cast<int>(end));
+  }
+  return s;
+}
+
+/// Whether all columns are less than 2^15 from their rows, so that 16 bits hold an offset.
+bool isNarrow(const SparseMatrix& a) {
+  for (std::int64_t i = 0; i < a.rows; ++i) {
+    if (a.length(i) == 0) continue;
+    const auto first = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
+    const auto last = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]) - 1;
+    if (a.column[first] - i < -0x8000 || a.column[last] - i > 0x7fff) return false;
+  }
+  return true;
+}
+
+template <class Offset>
+class SliceMatrix : public Matrix {
+ public:
+  SliceMatrix(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic)
+      : SliceMatrix(device, a, slicesOf(a), arithmetic) {}
+
+  sk::Shape domain() const override { return {columns_}; }
+  sk::Shape range() const override { return slot_.shape(); }
+  void multiply(const Vector& x, Vector& y) override {
+    if (value_.size() == 0) return y.fill(0.0f);
+    sliceProduct.with(options())(static_cast<int>(height), slot_, start_, offset_, value_, x, y);
+  }
+  void multiply(const Vector& x, Vector& y, Vector& xy) override {
+    if (value_.size() == 0) return Matrix::multiply(x, y, xy);
+    sliceProductDot.with(options())(static_cast<int>(height), slot_, start_, offset_, value_, x, x, y, xy);
+  }
+  std::string layout() const override { return "slices"; }
+  std::int64_t stored() const override { return value_.size(); }
+  std::int64_t bytes() const override {
+    return (4 + static_cast<std::int64_t>(sizeof(Offset))) * value_.size() +
+           4 * (slot_.size() + start_.size());
+  }
+
+ private:
+  SliceMatrix(sk::Device& device, const SparseMatrix& a, const Slices& slices, const Arithmetic& arithmetic)
+      : Matrix(arithmetic),
+        columns_(a.columns),
+        slot_(device.stream<int>({a.rows})),
+        start_(device.stream<int>({static_cast<std::int64_t>(slices.start.size())})),
+        offset_(device.stream<Offset>({slices.start.back()})),
+        value_(device.stream<float>({slices.start.back()}, arithmetic.matrix)) {
+    // What fills a row reads its own element of x, or the last one, and multiplies it by 0.
+    std::vector<Offset> offset(static_cast<std::size_t>(slices.start.back()), 0);
+    std::vector<double> value(offset.size(), 0.0);
+    for (std::int64_t i = 0; i < a.rows; ++i) {
+      const std::int64_t slot = slices.slot[static_cast<std::size_t>(i)];
+      std::int64_t at = slices.start[static_cast<std::size_t>(slot / height)] + slot % height;
+      for (auto k = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
+           k < static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]); ++k, at += height) {
+        offset[static_cast<std::size_t>(at)] = static_cast<Offset>(a.column[k] - i);
+        value[static_cast<std::size_t>(at)] = a.value[k];
+      }
+    }
+    slot_.write(slices.slot);
+    start_.write(slices.start);
+    offset_.write(offset);
+    value_.writeReals(value);
+  }
+
+  std::int64_t columns_;
+  sk::Stream<int> slot_, start_;
+  sk::Stream<Offset> offset_;
+  Vector value_;
+};
+
+}  // namespace
+
+std::unique_ptr<Matrix> makeSlices(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic) {
+  if (isNarrow(a)) return std::make_unique<SliceMatrix<std::int16_t>>(device, a, arithmetic);
+  return std::make_unique<SliceMatrix<std::int32_t>>(device, a, arithmetic);
+}
+
+}  // namespace linear

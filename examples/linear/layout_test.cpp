@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+//
+// Products of every layout, on every kind of device, beside those of double precision.
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <sk/sk.hpp>
+
+#include "layout.hpp"
+#include "stencil.hpp"
+
+namespace linear {
+namespace {
+
+std::vector<double> randomVector(std::int64_t n) {
+  std::mt19937 random(7);
+  std::vector<double> v(static_cast<std::size_t>(n));
+  for (double& x : v)
+    x = static_cast<double>(static_cast<float>(std::uniform_real_distribution<double>(-1, 1)(random)));
+  return v;
+}
+
+/// Rows of very different lengths, the first and some others empty; values that floats hold.
+SparseMatrix irregular(std::int64_t rows, std::int64_t columns) {
+  std::mt19937 random(3);
+  std::vector<Entry> entries;
+  for (std::int64_t i = 1; i < rows; ++i) {
+    const std::int64_t length = i % 7 == 0 ? 0 : i == 5 ? columns : static_cast<std::int64_t>(random() % 9);
+    for (std::int64_t k = 0; k < length; ++k)
+      entries.push_back({i, static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(columns)),
+                         static_cast<double>(static_cast<int>(random() % 2001) - 1000) / 1024.0});
+  }
+  return assemble(rows, columns, entries);
+}
+
+/// |y - A x| against what rounding every product and sum may give: (length + 1) u times the sum of magnitudes, and u |y|.
+void checkProduct(const SparseMatrix& a, const std::vector<double>& x, const std::vector<double>& y) {
+  const std::vector<double> expected = multiply(a, x);
+  REQUIRE(y.size() == expected.size());
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    double magnitudes = 0.0;
+    for (auto k = static_cast<std::size_t>(a.starts[i]); k < static_cast<std::size_t>(a.starts[i + 1]); ++k)
+      magnitudes += std::abs(a.value[k] * x[static_cast<std::size_t>(a.column[k])]);
+    const double bound =
+        static_cast<double>(a.length(static_cast<std::int64_t>(i)) + 1) * 0x1p-24 * magnitudes;
+    if (std::abs(y[i] - expected[i]) > bound) {
+      CAPTURE(i, y[i], expected[i], bound);
+      FAIL("a product is off");
+    }
+  }
+}
+
+std::vector<double> productOf(sk::Device& device, Matrix& matrix, const std::vector<double>& x) {
+  Vector in = device.stream<float>(matrix.domain()), out = device.stream<float>(matrix.range());
+  in.writeReals(x);
+  out.fill(99.0f);
+  matrix.multiply(in, out);
+  return out.readReals();
+}
+
+std::vector<sk::Device> devices() {
+  std::vector<sk::Device> all;
+  all.push_back(sk::Device::native());
+  for (const char* profile : {"glsl330", "essl300"})
+    all.emplace_back(sk::DeviceOptions{.device = "software", .profile = profile});
+  return all;
+}
+
+TEST_CASE("Every layout multiplies alike on every device") {
+  const SparseMatrix square = irregular(67, 67), wide = irregular(41, 83);
+  const SparseMatrix grid = assemble(poisson({7, 11}));
+  for (sk::Device& device : devices()) {
+    CAPTURE(device.profile());
+    for (const LayoutKind& kind : layoutKinds()) {
+      CAPTURE(kind.name);
+      for (const SparseMatrix* a : {&square, &wide, &grid}) {
+        if (kind.name == "diagonals" && a->rows != a->columns) {
+          CHECK_THROWS_WITH(kind.make(device, *a, {}), Catch::Contains("takes square matrices"));
+          continue;
+        }
+        const std::unique_ptr<Matrix> matrix = kind.make(device, *a, {});
+        const std::vector<double> x = randomVector(a->columns);
+        checkProduct(*a, x, productOf(device, *matrix, x));
+      }
+    }
+  }
+}
+
+TEST_CASE("Layouts hold matrices without rows, without entries, and of one element") {
+  sk::Device device = sk::Device::native();
+  for (const LayoutKind& kind : layoutKinds()) {
+    CAPTURE(kind.name);
+    for (const std::int64_t n : {0, 1, 5}) {
+      const SparseMatrix empty = assemble(n, n, {});
+      const std::unique_ptr<Matrix> matrix = kind.make(device, empty, {});
+      CHECK(productOf(device, *matrix, randomVector(n)) ==
+            std::vector<double>(static_cast<std::size_t>(n), 0.0));
+    }
+    const Entry one{0, 0, -2.5};
+    const std::unique_ptr<Matrix> matrix = kind.make(device, assemble(1, 1, std::span(&one, 1)), {});
+    CHECK(productOf(device, *matrix, {2.0}) == std::vector<double>{-5.0});
+  }
+}
+
+TEST_CASE("A folded product is x . A x") {
+  const SparseMatrix a = irregular(67, 67);
+  const std::vector<double> x = randomVector(67), y = multiply(a, x);
+  double expected = 0.0, magnitudes = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    expected += x[i] * y[i];
+    magnitudes += std::abs(x[i] * y[i]);
+  }
+  for (sk::Device& device : devices()) {
+    CAPTURE(device.profile());
+    for (const LayoutKind& kind : layoutKinds()) {
+      CAPTURE(kind.name);
+      const std::unique_ptr<Matrix> matrix = kind.make(device, a, {});
+      Vector in = device.stream<float>({67}), out = device.stream<float>({67}),
+             xy = device.stream<float>({1});
+      in.writeReals(x);
+      matrix->multiply(in, out, xy);
+      CHECK(std::abs(xy.readReals()[0] - expected) <=
+            72 * 0x1p-24 * magnitudes);  // 67 entries in the longest row
+    }
+  }
+}
+
+TEST_CASE("Stencils are their matrices") {
+  for (sk::Device& device : devices()) {
+    CAPTURE(device.profile());
+    for (const sk::Shape& grid : {sk::Shape{1, 1}, sk::Shape{13, 7}, sk::Shape{3, 5, 7}}) {
+      Stencil stencil = poisson(grid);
+      stencil.along[0] = -0.25;  // dimensions must not be mixed up
+      const SparseMatrix a = assemble(stencil);
+      const std::vector<double> x = randomVector(a.columns);
+      CHECK(multiply(stencil, x) == multiply(a, x));
+      checkProduct(a, x, productOf(device, *makeMatrix(stencil, {}), x));
+    }
+  }
+}
+
+TEST_CASE("The automatic choice takes a layout that suits the matrix, and unknown names are told") {
+  sk::Device device = sk::Device::native();
+  std::vector<LayoutTrial> trials;
+  makeMatrix(device, assemble(poisson({32, 32})), "auto", {}, &trials);
+  REQUIRE(trials.size() == 3);  // rows, slices, diagonals
+  CHECK_THROWS_WITH(makeMatrix(device, irregular(5, 5), "csr", {}),
+                    "no layout is called 'csr'; there are rows, slices, buckets, diagonals, points, dense");
+}
+
+}  // namespace
+}  // namespace linear

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <catch2/catch.hpp>
+
+#include "matrix_market.hpp"
+#include "support/written_file.hpp"
+
+namespace linear {
+namespace {
+
+std::string errorOf(std::string_view text) {
+  try {
+    parseMarket(text, "a.mtx");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_CASE("Matrix Market files of every kind are read") {
+  const MarketFile general = parseMarket(
+      "%%MatrixMarket matrix coordinate real general\n% a comment\n\n2 3 4\n2 3 -1.5e2\n1 1 2\n2 3 0.5\n  1 "
+      "3 4 \n",
+      "a.mtx");
+  CHECK(general.duplicates == 1);
+  CHECK(general.matrix.rows == 2);
+  CHECK(general.matrix.columns == 3);
+  CHECK(general.matrix.starts == std::vector<std::int64_t>{0, 2, 3});
+  CHECK(general.matrix.column == std::vector<std::int32_t>{0, 2, 2});
+  CHECK(general.matrix.value == std::vector<double>{2, 4, -149.5});
+
+  const SparseMatrix symmetric =
+      parseMarket("%%MatrixMarket matrix coordinate integer symmetric\n2 2 2\n1 1 3\n2 1 7\n", "a.mtx")
+          .matrix;
+  CHECK(symmetric.value == std::vector<double>{3, 7, 7});
+  const SparseMatrix skew =
+      parseMarket("%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n2 1 7\n", "a.mtx").matrix;
+  CHECK(skew.value == std::vector<double>{-7, 7});
+  const SparseMatrix pattern =
+      parseMarket("%%MatrixMarket matrix coordinate pattern general\n1 2 1\n1 2\n", "a.mtx").matrix;
+  CHECK(pattern.value == std::vector<double>{1});
+  const SparseMatrix array =
+      parseMarket("%%matrixmarket MATRIX array real general\n2 2\n1\n2\n0\n4\n", "a.mtx").matrix;
+  CHECK(array.starts == std::vector<std::int64_t>{0, 1, 3});
+  CHECK(array.value == std::vector<double>{1, 2, 4});
+  const SparseMatrix half =
+      parseMarket("%%MatrixMarket matrix array real symmetric\n2 2\n1\n2\n4\n", "a.mtx").matrix;
+  CHECK(half.value == std::vector<double>{1, 2, 2, 4});
+  CHECK(parseMarket("%%MatrixMarket matrix coordinate real general\n0 0 0\n", "a.mtx").matrix.rows == 0);
+}
+
+TEST_CASE("Broken Matrix Market files are refused with their line and column") {
+  const std::string head = "%%MatrixMarket matrix coordinate real general\n";
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "a.mtx:1:1: this is no Matrix Market file"},
+      {"2 2 1\n", "a.mtx:1:1: this is no Matrix Market file"},
+      {"%%MatrixMarket tensor coordinate real general\n", "a.mtx:1:16: only the object 'matrix'"},
+      {"%%MatrixMarket matrix coordinate complex general\n", "a.mtx:1:34: complex matrices"},
+      {"%%MatrixMarket matrix coordinate real hermitian\n", "a.mtx:1:39: the symmetry is"},
+      {"%%MatrixMarket matrix array pattern general\n", "an array has no pattern"},
+      {head, "the line with the size is missing"},
+      {head + "2 2\n", "a.mtx:2:4: the number of entries is missing"},
+      {head + "-1 2 0\n", "cannot be stored"},
+      {head + "2 2 1\n3 1 5\n", "a.mtx:3:1: there is no row 3; rows are from 1 to 2"},
+      {head + "2 2 1\n0 1 5\n", "there is no row 0"},
+      {head + "2 2 1\n1 4 5\n", "a.mtx:3:3: there is no column 4"},
+      {head + "2 2 1\n1 1 nan\n", "a.mtx:3:5: 'nan' is not finite"},
+      {head + "2 2 1\n1 1 five\n", "a.mtx:3:5: 'five' is no number"},
+      {head + "2 2 1\n1 1\n", "the value is missing"},
+      {head + "2 2 1\n1 1 2 3\n", "a number too many"},
+      {head + "2 2 2\n1 1 2\n", "the file ends after 1 of 2 entries"},
+      {head + "2 2 1\n1 1 2\n1 2 2\n", "a.mtx:4:1: the file goes on after its last entry"},
+      {head + "2 2 4611686018427387904\n1 1 2\n", "the file ends after 1 of"},
+      {"%%MatrixMarket matrix coordinate real symmetric\n2 3 0\n", "a symmetric matrix is square"},
+      {"%%MatrixMarket matrix coordinate real symmetric\n2 2 1\n1 2 1\n", "is above the diagonal"},
+      {"%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n1 1 1\n",
+       "a skew-symmetric matrix has no entry (1, 1)"},
+      {"%%MatrixMarket matrix array real general\n2 2\n1\n2\n3\n", "the file ends before row 2 of column 2"}};
+  for (const auto& [text, message] : cases) {
+    CAPTURE(text);
+    CHECK_THAT(errorOf(text), Catch::Contains(message));
+  }
+  CHECK_THROWS_WITH(readMarket("none.mtx"), "the matrix 'none.mtx' does not exist or cannot be read");
+}
+
+TEST_CASE("Vectors keep their digits in Matrix Market files") {
+  const examples::WrittenFile file("", "vector.mtx");
+  const std::vector<double> values = {1.0 / 3.0, -0.0, 1e-310, 6.02e23};
+  writeMarketVector(file.path(), values);
+  CHECK(readMarketVector(file.path()) == values);
+  const examples::WrittenFile matrix("%%MatrixMarket matrix array real general\n2 2\n1\n2\n3\n4\n",
+                                     "square.mtx");
+  CHECK_THROWS_WITH(readMarketVector(matrix.path()), Catch::Contains("a vector has one column or one row"));
+}
+
+}  // namespace
+}  // namespace linear

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#include "matrix.hpp"
+
+#include <algorithm>
+
+#include "vectors.sk.hpp"
+
+namespace linear {
+
+double Arithmetic::roundoff() const {
+  const auto computed = [&] {
+    switch (precision) {
+      case sk::Precision::Half: return 0x1p-11;
+      case sk::Precision::Default:
+      case sk::Precision::Single: return 0x1p-24;
+      case sk::Precision::Extended: return 0x1p-44;
+      case sk::Precision::Double: return 0x1p-53;
+    }
+    return 1.0;
+  }();
+  const auto stored = [&] {
+    switch (vectors) {
+      case sk::Storage::Half: return 0x1p-11;
+      case sk::Storage::Default:
+      case sk::Storage::Single: return 0x1p-24;
+      case sk::Storage::Extended: return 0x1p-48;
+      case sk::Storage::Double: return 0x1p-53;
+    }
+    return 1.0;
+  }();
+  return std::max(computed, stored);
+}
+
+void Matrix::multiply(const Vector& x, Vector& y, Vector& xy) {
+  multiply(x, y);
+  dot.with(options())(x, y, xy);
+}
+
+}  // namespace linear

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+//
+// A matrix on a device, whatever its layout, and the precisions that a solver may choose between.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <sk/sk.hpp>
+
+namespace linear {
+
+using Vector = sk::Stream<float>;
+
+/// What numbers are computed in and stored as. The defaults are floats, with compensated sums.
+struct Arithmetic {
+  sk::Precision precision = sk::Precision::Single;
+  sk::Storage matrix = sk::Storage::Single;  ///< of the entries
+  sk::Storage vectors = sk::Storage::Single;
+  sk::Accumulate accumulate = sk::Accumulate::Default;
+
+  sk::CallOptions options() const { return {.accumulate = accumulate, .precision = precision}; }
+  /// Sums keep all bits that they are computed in.
+  sk::Storage sums() const {
+    if (precision == sk::Precision::Double) return sk::Storage::Double;
+    return precision == sk::Precision::Extended ? sk::Storage::Extended : sk::Storage::Single;
+  }
+  /// Half the distance from 1 to the next number that vectors and computations can hold.
+  double roundoff() const;
+};
+
+class Matrix {
+ public:
+  virtual ~Matrix() = default;
+
+  /// The shapes of x and y in y = A x.
+  virtual sk::Shape domain() const = 0;
+  virtual sk::Shape range() const { return domain(); }
+
+  /// y = A x. x and y are different streams.
+  virtual void multiply(const Vector& x, Vector& y) = 0;
+  /// The same, and xy, of one element, becomes x . y. Only for square matrices.
+  virtual void multiply(const Vector& x, Vector& y, Vector& xy);
+
+  /// The layout's name, as --layout takes it.
+  virtual std::string layout() const = 0;
+  /// Entries that the layout stores, those that only fill included.
+  virtual std::int64_t stored() const = 0;
+  /// Bytes of the matrix that one product reads.
+  virtual std::int64_t bytes() const = 0;
+
+ protected:
+  explicit Matrix(const Arithmetic& arithmetic) : options_(arithmetic.options()) {}
+  const sk::CallOptions& options() const { return options_; }
+
+ private:
+  sk::CallOptions options_;
+};
+
+}  // namespace linear

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "method.hpp"
+
+#include <array>
+#include <utility>
+
+#include "vectors.sk.hpp"
+
+namespace linear {
+
+Method::Method(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner,
+               const Arithmetic& arithmetic)
+    : device_(device),
+      matrix_(matrix),
+      preconditioner_(preconditioner),
+      arithmetic_(arithmetic),
+      options_(arithmetic.options()),
+      x_(vector()),
+      r_(vector()),
+      rr_(sum()),
+      limit_(sum()),
+      state_(device.stream<int>({1})),
+      done_(device.stream<bool>({1})) {}
+
+void Method::begin(std::span<const double> rightHandSide, double limit) {
+  x_.fill(0.0f);
+  r_.writeReals(rightHandSide);
+  limit_.writeReals(std::array{limit});
+  state_.fill(Running);
+  start();
+}
+
+std::int64_t Method::run(std::int64_t every, std::int64_t most) {
+  if (!loop_) loop_ = device_.record([&] { iterate(); });
+  return loop_.until(done_, {.every = every, .most = most});
+}
+
+State Method::state() const { return static_cast<State>(state_.read()[0]); }
+
+double Method::residualSquared() const { return rr_.readReals()[0]; }
+
+void Method::precondition(const Vector& r, Vector& z, Vector& rz) {
+  if (preconditioner_ != nullptr) return preconditioner_->apply(r, z, rz);
+  r.copyTo(z);
+  dot.with(options_)(r, z, rz);
+}
+
+namespace {
+
+/// M. Hestenes and E. Stiefel, "Methods of conjugate gradients for solving linear systems" (1952), preconditioned. p . A p is folded
+/// where A p is computed, and r . r where r is.
+class ConjugateGradients : public Method {
+ public:
+  ConjugateGradients(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner,
+                     const Arithmetic& arithmetic)
+      : Method(device, matrix, preconditioner, arithmetic),
+        p_(vector()),
+        q_(vector()),
+        rz_(sum()),
+        next_(sum()),
+        pq_(sum()),
+        folded_(sum()) {
+    if (preconditioner != nullptr) z_ = vector();
+  }
+
+ private:
+  void start() override {
+    dot.with(options_)(r_, r_, rr_);
+    precondition(r_, p_, rz_);
+  }
+
+  void iterate() override {
+    matrix_.multiply(p_, q_, pq_);
+    const bool isPlain = preconditioner_ == nullptr;
+    cgStep.with(options_)(rz_, pq_, p_, q_, x_, r_, x_, r_, isPlain ? next_ : folded_);
+    if (!isPlain) preconditioner_->apply(r_, z_, next_);
+    cgDirection.with(options_)(next_, rz_, isPlain ? r_ : z_, p_, p_);
+    cgCheck.with(options_)(limit_, isPlain ? next_ : folded_, pq_, next_, rr_, state_, done_);
+    std::swap(rz_, next_);
+  }
+
+  Vector z_, p_, q_, rz_, next_, pq_, folded_;
+};
+
+/// H. van der Vorst, "Bi-CGSTAB: a fast and smoothly converging variant of Bi-CG for the solution of nonsymmetric linear systems"
+/// (1992), preconditioned from the right.
+class BiconjugateGradients : public Method {
+ public:
+  BiconjugateGradients(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner,
+                       const Arithmetic& arithmetic)
+      : Method(device, matrix, preconditioner, arithmetic),
+        shadow_(vector()),
+        p_(vector()),
+        v_(vector()),
+        s_(vector()),
+        t_(vector()),
+        rho_(sum()),
+        next_(sum()),
+        sv_(sum()),
+        ts_(sum()),
+        tt_(sum()),
+        unused_(sum()) {
+    if (preconditioner != nullptr) {
+      pz_ = vector();
+      sz_ = vector();
+    }
+  }
+
+ private:
+  void start() override {
+    r_.copyTo(shadow_);
+    r_.copyTo(p_);
+    dot.with(options_)(r_, r_, rr_);
+    rr_.copyTo(rho_);
+  }
+
+  void iterate() override {
+    const bool isPlain = preconditioner_ == nullptr;
+    if (!isPlain) preconditioner_->apply(p_, pz_, unused_);
+    const Vector& p = isPlain ? p_ : pz_;
+    matrix_.multiply(p, v_);
+    dot.with(options_)(shadow_, v_, sv_);
+    bicgHalf.with(options_)(rho_, sv_, r_, v_, s_);
+    if (!isPlain) preconditioner_->apply(s_, sz_, unused_);
+    const Vector& z = isPlain ? s_ : sz_;
+    matrix_.multiply(z, t_);
+    dots.with(options_)(s_, t_, ts_, tt_);
+    bicgStep.with(options_)(rho_, sv_, ts_, tt_, p, z, s_, t_, shadow_, x_, x_, r_, rr_, next_);
+    bicgDirection.with(options_)(next_, sv_, ts_, tt_, r_, p_, v_, p_);
+    bicgCheck.with(options_)(limit_, rr_, next_, sv_, tt_, state_, done_);
+    std::swap(rho_, next_);
+  }
+
+  Vector shadow_, p_, v_, s_, t_, pz_, sz_;
+  Vector rho_, next_, sv_, ts_, tt_, unused_;
+};
+
+template <class M>
+std::unique_ptr<Method> make(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner,
+                             const Arithmetic& arithmetic) {
+  return std::make_unique<M>(device, matrix, preconditioner, arithmetic);
+}
+
+constexpr MethodKind methods[] = {
+    {"cg", "conjugate gradients, for symmetric positive definite matrices", true, make<ConjugateGradients>},
+    {"bicgstab", "stabilised biconjugate gradients, for any matrix", false, make<BiconjugateGradients>},
+};
+
+}  // namespace
+
+std::span<const MethodKind> methodKinds() { return methods; }
+
+}  // namespace linear

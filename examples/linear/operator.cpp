@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "operator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace linear {
+
+namespace {
+
+double powerOfTwo(double norm) { return norm > 0.0 ? std::ldexp(1.0, -std::ilogb(norm) - 1) : 1.0; }
+
+bool annihilatesOnes(const Operator& a) {
+  if (a.size == 0 || a.infinityNorm == 0.0) return false;
+  const std::vector<double> ones(static_cast<std::size_t>(a.size), 1.0);
+  const std::vector<double> sums = a.multiply(ones);
+  return std::ranges::all_of(sums, [&](double s) { return std::abs(s) <= 0x1p-44 * a.infinityNorm; });
+}
+
+}  // namespace
+
+Operator operatorOf(const SparseMatrix& a) {
+  if (a.rows != a.columns)
+    throw std::runtime_error(
+        fmt::format("a system of equations has a square matrix; this one has {} x {}", a.rows, a.columns));
+  Operator o;
+  o.size = a.rows;
+  o.infinityNorm = infinityNorm(a);
+  o.diagonal = diagonal(a);
+  if (!std::isfinite(o.infinityNorm))
+    throw std::runtime_error("the matrix has entries that are not finite, or whose sums are not");
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.rows); ++i) {
+    double squares = 0.0, sum = 0.0;
+    for (auto k = static_cast<std::size_t>(a.starts[i]); k < static_cast<std::size_t>(a.starts[i + 1]); ++k) {
+      squares += a.value[k] * a.value[k];
+      sum += std::abs(a.value[k]);
+    }
+    o.rowSquares.push_back(squares);
+    if (o.diagonal[i] != 0.0) o.jacobiBound = std::max(o.jacobiBound, sum / std::abs(o.diagonal[i]));
+  }
+  o.asymmetry = asymmetry(a);
+  o.multiply = [&a](std::span<const double> x) { return linear::multiply(a, x); };
+  o.hasConstantKernel = annihilatesOnes(o);
+  o.scale = powerOfTwo(o.infinityNorm);
+  return o;
+}
+
+Operator operatorOf(const Stencil& a) {
+  double sum = std::abs(a.centre), squares = a.centre * a.centre;
+  for (int d = 0; d < a.grid.rank(); ++d) {
+    const double c = a.along[static_cast<std::size_t>(d)];
+    sum += 2 * std::abs(c);
+    squares += 2 * c * c;
+  }
+  const auto n = static_cast<std::size_t>(a.size());
+  Operator o;
+  o.size = a.size();
+  o.infinityNorm = sum;
+  o.diagonal.assign(n, a.centre);
+  o.rowSquares.assign(n, squares);
+  o.jacobiBound = a.centre != 0.0 ? sum / std::abs(a.centre) : 0.0;
+  o.multiply = [a](std::span<const double> x) { return linear::multiply(a, x); };
+  o.scale = powerOfTwo(o.infinityNorm);
+  return o;
+}
+
+SparseMatrix scaled(SparseMatrix a, double scale) {
+  for (double& v : a.value) v *= scale;
+  return a;
+}
+
+Stencil scaled(Stencil a, double scale) {
+  a.centre *= scale;
+  for (double& c : a.along) c *= scale;
+  return a;
+}
+
+}  // namespace linear

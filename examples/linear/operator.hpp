@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// A square matrix in double precision on the host, stored or not: what residuals are computed with, and what
+// preconditioners and checks need to know of it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sparse.hpp"
+#include "stencil.hpp"
+
+namespace linear {
+
+struct Operator {
+  std::int64_t size = 0;
+  double infinityNorm = 0.0;
+  std::vector<double> diagonal;
+  std::vector<double> rowSquares;  ///< the sum of squares of each row
+  /// The largest of (sum of magnitudes of a row) / |diagonal|: bounds the eigenvalues of the matrix after Jacobi's scaling.
+  double jacobiBound = 0.0;
+  /// Why the matrix is not symmetric; "" if it is.
+  std::string asymmetry;
+  bool hasConstantKernel = false;  ///< A 1 = 0, but for roundings: the matrix is singular
+  /// y = A x in double precision.
+  std::function<std::vector<double>(std::span<const double>)> multiply;
+  /// A power of two: the matrix on the device is this times A, so that its largest row sum is from 1/2 to 1.
+  double scale = 1.0;
+};
+
+/// `a` must outlive the operator. Throws std::runtime_error if the matrix is not square or has entries that are not finite.
+Operator operatorOf(const SparseMatrix& a);
+Operator operatorOf(const Stencil& a);
+
+/// The matrix times a power of two.
+SparseMatrix scaled(SparseMatrix a, double scale);
+Stencil scaled(Stencil a, double scale);
+
+}  // namespace linear

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "preconditioner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "operator.hpp"
+#include "vectors.sk.hpp"
+
+namespace linear {
+
+namespace {
+
+void checkDiagonal(const Operator& a, std::string_view name) {
+  const auto zero = std::ranges::find(a.diagonal, 0.0);
+  if (zero != a.diagonal.end())
+    throw std::runtime_error(
+        fmt::format("row {} has no diagonal entry, or 0, and the preconditioner '{}' divides by it; take "
+                    "'spai0' or 'none'",
+                    zero - a.diagonal.begin() + 1, name));
+}
+
+/// 1 / diagonal of the matrix on the device, which is scaled.
+Vector inverseDiagonal(sk::Device& device, const Matrix& matrix, const Operator& a,
+                       const Arithmetic& arithmetic) {
+  std::vector<double> inverse(a.diagonal.size());
+  for (std::size_t i = 0; i < inverse.size(); ++i) inverse[i] = 1.0 / (a.scale * a.diagonal[i]);
+  Vector stream = device.stream<float>(matrix.domain(), arithmetic.vectors);
+  stream.writeReals(inverse);
+  return stream;
+}
+
+class Diagonal : public Preconditioner {
+ public:
+  Diagonal(Vector entries, const Arithmetic& arithmetic)
+      : entries_(std::move(entries)), options_(arithmetic.options()) {}
+  void apply(const Vector& r, Vector& z, Vector& rz) override {
+    multiplyElements.with(options_)(entries_, r, z, rz);
+  }
+
+ private:
+  Vector entries_;
+  sk::CallOptions options_;
+};
+
+/// A fixed number of Chebyshev's iterations for D^-1 A z = D^-1 r from z = 0, for eigenvalues from bound / 30 to bound.
+class Chebyshev : public Preconditioner {
+ public:
+  Chebyshev(sk::Device& device, Matrix& matrix, const Operator& a, const Arithmetic& arithmetic)
+      : matrix_(matrix),
+        inverse_(inverseDiagonal(device, matrix, a, arithmetic)),
+        change_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
+        product_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
+        options_(arithmetic.options()),
+        middle_(a.jacobiBound * (1.0 + 1.0 / 30.0) / 2.0),
+        radius_(a.jacobiBound * (1.0 - 1.0 / 30.0) / 2.0) {}
+
+  void apply(const Vector& r, Vector& z, Vector& rz) override {
+    double rho = radius_ / middle_;
+    chebyshevFirst.with(options_)(static_cast<float>(1.0 / middle_), inverse_, r, change_, z);
+    for (int k = 1; k < steps; ++k) {
+      matrix_.multiply(z, product_);
+      const double next = 1.0 / (2.0 * middle_ / radius_ - rho);
+      chebyshevStep.with(options_)(static_cast<float>(next * rho), static_cast<float>(2.0 * next / radius_),
+                                   inverse_, r, product_, change_, z, change_, z);
+      rho = next;
+    }
+    dot.with(options_)(r, z, rz);
+  }
+
+ private:
+  static constexpr int steps = 4;
+  Matrix& matrix_;
+  Vector inverse_, change_, product_;
+  sk::CallOptions options_;
+  double middle_, radius_;
+};
+
+std::unique_ptr<Preconditioner> makeNone(sk::Device&, Matrix&, const Operator&, const Arithmetic&) {
+  return nullptr;
+}
+
+std::unique_ptr<Preconditioner> makeJacobi(sk::Device& device, Matrix& matrix, const Operator& a,
+                                           const Arithmetic& arithmetic) {
+  checkDiagonal(a, "jacobi");
+  return std::make_unique<Diagonal>(inverseDiagonal(device, matrix, a, arithmetic), arithmetic);
+}
+
+/// The diagonal matrix M with the least ||I - M A|| in Frobenius' norm (O. Broeker and M. Grote, "Sparse approximate inverse
+/// smoothers for geometric and algebraic multigrid", 2002).
+std::unique_ptr<Preconditioner> makeSpai0(sk::Device& device, Matrix& matrix, const Operator& a,
+                                          const Arithmetic& arithmetic) {
+  std::vector<double> entries(a.diagonal.size());
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    entries[i] = a.rowSquares[i] > 0.0 ? a.diagonal[i] / a.rowSquares[i] / a.scale : 0.0;
+  Vector stream = device.stream<float>(matrix.domain(), arithmetic.vectors);
+  stream.writeReals(entries);
+  return std::make_unique<Diagonal>(std::move(stream), arithmetic);
+}
+
+std::unique_ptr<Preconditioner> makeChebyshev(sk::Device& device, Matrix& matrix, const Operator& a,
+                                              const Arithmetic& arithmetic) {
+  checkDiagonal(a, "chebyshev");
+  return std::make_unique<Chebyshev>(device, matrix, a, arithmetic);
+}
+
+constexpr PreconditionerKind preconditioners[] = {
+    {"none", "the residual as it is", makeNone},
+    {"jacobi", "division by the diagonal", makeJacobi},
+    {"spai0", "the best diagonal approximate inverse", makeSpai0},
+    {"chebyshev", "four of Chebyshev's iterations after Jacobi's scaling, for symmetric matrices",
+     makeChebyshev},
+};
+
+}  // namespace
+
+std::span<const PreconditionerKind> preconditionerKinds() { return preconditioners; }
+
+}  // namespace linear

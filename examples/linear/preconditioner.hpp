@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// Preconditioners: z = M r, where M is near the inverse of the matrix and cheap to apply.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include <sk/sk.hpp>
+
+#include "matrix.hpp"
+
+namespace linear {
+
+struct Operator;
+
+class Preconditioner {
+ public:
+  virtual ~Preconditioner() = default;
+  /// z = M r, and rz, of one element, becomes r . z. May be recorded in a loop.
+  virtual void apply(const Vector& r, Vector& z, Vector& rz) = 0;
+};
+
+struct PreconditionerKind {
+  std::string_view name;  ///< of --preconditioner
+  std::string_view does;
+  /// `matrix` outlives the preconditioner. Null for none. Throws std::runtime_error if the matrix does not allow it.
+  std::unique_ptr<Preconditioner> (*make)(sk::Device& device, Matrix& matrix, const Operator& a,
+                                          const Arithmetic& arithmetic);
+};
+
+std::span<const PreconditionerKind> preconditionerKinds();
+
+}  // namespace linear

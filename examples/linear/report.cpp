@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "report.hpp"
+
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace linear {
+
+std::string textOf(const Account& account, const Solution& solution) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "layout {}", account.layout);
+  if (account.stored > 0) fmt::format_to(out, ", {} entries stored for {}", account.stored, account.entries);
+  for (std::size_t i = 0; i < account.trials.size(); ++i)
+    fmt::format_to(out, "{}{} {:.3g} ms", i == 0 ? "; a product takes with " : ", ", account.trials[i].layout,
+                   account.trials[i].seconds * 1000.0);
+  fmt::format_to(out, "\n{} after {} iterations", nameOf(solution.outcome), solution.iterations);
+  if (solution.restarts > 0)
+    fmt::format_to(out, ", begun anew {} times for the residual in double precision", solution.restarts);
+  fmt::format_to(
+      out,
+      "\nresidual {:.3g} (in double precision; {:.3g} as the method computed it), backward error {:.3g}\n",
+      solution.residualTrue, solution.residualRecurred, solution.backwardError);
+  return text;
+}
+
+std::string jsonOf(const Account& account, const Solution& solution) {
+  nlohmann::ordered_json json;
+  json["outcome"] = nameOf(solution.outcome);
+  json["iterations"] = solution.iterations;
+  json["restarts"] = solution.restarts;
+  json["residual_true"] = solution.residualTrue;
+  json["residual_recurred"] = solution.residualRecurred;
+  json["backward_error"] = solution.backwardError;
+  json["seconds"] = solution.seconds;
+  json["layout"] = account.layout;
+  json["fill"] = account.fill();
+  json["device"] = account.device;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace linear

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// What a solve has come to, for people and for programs.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "layout.hpp"
+#include "solve.hpp"
+
+namespace linear {
+
+struct Account {
+  std::string system;
+  std::int64_t unknowns = 0;
+  std::int64_t entries = 0;
+  std::string device;
+  std::string layout = "none";
+  std::int64_t stored = 0;  ///< entries that the layout holds; 0 if it holds none
+  std::vector<LayoutTrial> trials;
+
+  /// Stored entries for each entry of the matrix; 0 if none is stored.
+  double fill() const {
+    return entries > 0 ? static_cast<double>(stored) / static_cast<double>(entries) : 0.0;
+  }
+};
+
+std::string textOf(const Account& account, const Solution& solution);
+/// An object with outcome, iterations, restarts, residual_true, residual_recurred, backward_error, seconds, layout, fill and device. Numbers
+/// that are not finite are null.
+std::string jsonOf(const Account& account, const Solution& solution);
+
+}  // namespace linear

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+//
+// Solves A x = b: chooses the limits of a method on the device, begins it anew for what is left, and reports what has been reached in double
+// precision. It knows no layout and no method by name.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "method.hpp"
+#include "operator.hpp"
+
+namespace linear {
+
+enum class Outcome {
+  Converged,
+  MostIterations,
+  Stagnated,  ///< the residual in double precision does not become smaller any more
+  NotPositiveDefinite,
+  Breakdown,
+  NotFinite,
+};
+std::string_view nameOf(Outcome outcome);
+
+struct SolveSettings {
+  double tolerance = 1e-8;  ///< of ||b - A x|| / ||b||, in double precision
+  std::int64_t most = 10000;  ///< iterations
+  std::int64_t every = 16;  ///< iterations between two looks at the residual
+  /// Mixed-precision refinement: begins anew with the residual in double precision, and adds up the solutions in double
+  /// precision, until the tolerance is reached. Without it, the method runs once.
+  bool refines = true;
+  /// Called with the iterations so far, and the residual that the method computes, as a part of ||b||.
+  std::function<void(std::int64_t, double)> progress = {};
+};
+
+/// A residual as the method computed it, as a part of ||b||.
+struct HistoryPoint {
+  std::int64_t iteration = 0;
+  double residual = 0.0;
+};
+
+struct Solution {
+  std::vector<double> x;  ///< the best that was found
+  Outcome outcome = Outcome::Stagnated;
+  std::int64_t iterations = 0;
+  std::int64_t restarts = 0;
+  double residualTrue = 0.0;  ///< ||b - A x|| / ||b||, computed in double precision; 2-norms
+  double residualRecurred = 0.0;  ///< the same, as the method computed it last
+  double backwardError = 0.0;  ///< ||b - A x|| / (||A|| ||x|| + ||b||); infinity norms
+  double seconds = 0.0;
+  std::vector<HistoryPoint> history;
+};
+
+/// `method` belongs to a matrix that is a.scale * A. Throws std::runtime_error if b has another size than A or is not finite.
+Solution solve(Method& method, const Operator& a, std::span<const double> b, const Arithmetic& arithmetic,
+               const SolveSettings& settings);
+
+}  // namespace linear

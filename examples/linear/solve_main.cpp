@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+//
+// solve: systems of equations from Matrix Market files, with the residual that has really been reached.
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <sk/sk.hpp>
+
+#include "chart.hpp"
+#include "layout.hpp"
+#include "matrix_market.hpp"
+#include "method.hpp"
+#include "named.hpp"
+#include "preconditioner.hpp"
+#include "report.hpp"
+#include "solve.hpp"
+#include "support/application.hpp"
+#include "support/progress.hpp"
+#include "support/text_file.hpp"
+#include "system.hpp"
+
+namespace {
+
+struct Settings {
+  std::string matrix;
+  std::filesystem::path rightHandSide, solution, json, svg;
+  std::string solver = "cg", preconditioner = "jacobi", layout = "auto";
+  std::string precision = "single", storage = "single", entries, accumulate = "compensated";
+  linear::SolveSettings solve;
+};
+
+template <class T>
+struct Choice {
+  std::string_view name;
+  T value;
+};
+constexpr Choice<sk::Precision> precisions[] = {{"half", sk::Precision::Half},
+                                                {"single", sk::Precision::Single},
+                                                {"extended", sk::Precision::Extended},
+                                                {"double", sk::Precision::Double}};
+constexpr Choice<sk::Storage> storages[] = {{"half", sk::Storage::Half},
+                                            {"single", sk::Storage::Single},
+                                            {"extended", sk::Storage::Extended},
+                                            {"double", sk::Storage::Double}};
+constexpr Choice<sk::Accumulate> accumulations[] = {{"tree", sk::Accumulate::Tree},
+                                                    {"compensated", sk::Accumulate::Default},
+                                                    {"extended", sk::Accumulate::Extended},
+                                                    {"exact", sk::Accumulate::Exact}};
+
+template <class T, std::size_t n>
+T chosen(const Choice<T> (&table)[n], std::string_view name, std::string_view what) {
+  return linear::rowNamed(std::span<const Choice<T>>(table), name, what).value;
+}
+
+template <class Kinds>
+std::string described(std::string head, const Kinds& kinds) {
+  for (const auto& kind : kinds) head += fmt::format("\n  {:<11} {}", kind.name, kind.does);
+  return head;
+}
+
+void addOptions(CLI::App& cli, Settings& s) {
+  cli.add_option("matrix", s.matrix,
+                 "a Matrix Market file, or poisson:WxH or poisson:WxHxD for Poisson's equation on a grid");
+  cli.add_option("--rhs", s.rightHandSide,
+                 "the right-hand side, a Matrix Market file; A times ones if there is none");
+  cli.add_option("--solver", s.solver, described("the method:", linear::methodKinds()))
+      ->capture_default_str();
+  cli.add_option("--preconditioner", s.preconditioner,
+                 described("what the residual is multiplied by:", linear::preconditionerKinds()))
+      ->capture_default_str();
+  cli.add_option(
+         "--layout", s.layout,
+         described(
+             "how the device holds the matrix:\n  auto        the fastest of those that suit it, by a trial\n"
+             "  stencil     not at all: coefficients of a grid",
+             linear::layoutKinds()))
+      ->capture_default_str();
+  cli.add_option("--precision", s.precision, "what iterations compute in: half, single, extended or double")
+      ->capture_default_str();
+  cli.add_option("--storage", s.storage, "what vectors are stored in: half, single, extended or double")
+      ->capture_default_str();
+  cli.add_option("--entries", s.entries, "what the matrix is stored in; as --storage if it is not given");
+  cli.add_option("--accumulate", s.accumulate,
+                 "how scalar products add: tree, compensated, extended or exact")
+      ->capture_default_str();
+  cli.add_option("--tolerance", s.solve.tolerance, "of ||b - A x|| / ||b||, in double precision")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  cli.add_option("--most", s.solve.most, "the most iterations")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40))
+      ->capture_default_str();
+  cli.add_option("--every", s.solve.every, "iterations between two looks at the residual")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30))
+      ->capture_default_str();
+  cli.add_flag("!--no-refinement", s.solve.refines, "run the method once, in its own precision");
+  cli.add_option("--solution", s.solution, "write x to this Matrix Market file");
+  cli.add_option("--json", s.json, "write what was reached to this file");
+  cli.add_option("--chart", s.svg, "draw the residual over the iterations to this file, as SVG");
+}
+
+void checkSymmetry(const linear::MethodKind& method, const linear::Operator& a) {
+  if (method.needsSymmetry && !a.asymmetry.empty())
+    throw std::runtime_error(fmt::format(
+        "the solver '{}' needs a symmetric matrix: {}; take --solver bicgstab", method.name, a.asymmetry));
+}
+
+void solveSystem(examples::Application& app, Settings& s) {
+  const linear::Arithmetic arithmetic{
+      .precision = chosen(precisions, s.precision, "precision"),
+      .matrix = chosen(storages, s.entries.empty() ? s.storage : s.entries, "storage"),
+      .vectors = chosen(storages, s.storage, "storage"),
+      .accumulate = chosen(accumulations, s.accumulate, "accumulation")};
+  const linear::MethodKind& methodKind = linear::rowNamed(linear::methodKinds(), s.solver, "solver");
+  const linear::PreconditionerKind& preconditionerKind =
+      linear::rowNamed(linear::preconditionerKinds(), s.preconditioner, "preconditioner");
+
+  const linear::System system(s.matrix, s.rightHandSide);
+  const linear::Operator& a = system.matrix();
+  checkSymmetry(methodKind, a);
+  if (system.duplicates() > 0)
+    fmt::print(stderr, "solve: warning: {} entries are given several times, and were added up\n",
+               system.duplicates());
+
+  sk::Device device(app.device());
+  linear::Account account;
+  account.system = system.description();
+  account.unknowns = a.size;
+  account.entries = system.entries();
+  account.device = device.name();
+  linear::Solution solution;
+  if (a.size > 0) {
+    const std::unique_ptr<linear::Matrix> matrix =
+        system.makeMatrix(device, s.layout, arithmetic, &account.trials);
+    const std::unique_ptr<linear::Preconditioner> preconditioner =
+        preconditionerKind.make(device, *matrix, a, arithmetic);
+    const std::unique_ptr<linear::Method> method =
+        methodKind.make(device, *matrix, preconditioner.get(), arithmetic);
+    account.layout = matrix->layout();
+    account.stored = matrix->stored();
+    examples::Progress progress("solve", s.solve.most);
+    s.solve.progress = [&](std::int64_t done, double) { progress.update(done); };
+    solution = linear::solve(*method, a, system.rightHandSide(), arithmetic, s.solve);
+    progress.clear();
+  } else {
+    solution.outcome = linear::Outcome::Converged;
+  }
+
+  app.report(
+      fmt::format("{}, {} unknowns, {}", account.system, account.unknowns, linear::nameOf(solution.outcome)),
+      device.name(), solution.seconds * 1000.0);
+  fmt::print("{}{}", linear::textOf(account, solution),
+             linear::textChart(solution.history, s.solve.tolerance));
+  if (!s.solution.empty()) linear::writeMarketVector(s.solution, solution.x);
+  if (!s.svg.empty())
+    examples::writeFile(s.svg, linear::svgChart(solution.history, s.solve.tolerance, account.system));
+  if (!s.json.empty()) examples::writeFile(s.json, linear::jsonOf(account, solution));
+  examples::Verification verification("||b - A x|| / ||b|| in double precision", s.solve.tolerance,
+                                      "--tolerance");
+  verification.note(0, solution.residualTrue);
+  app.verified(verification);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  examples::Application app("solve",
+                            "Solves systems of linear equations, and says what has really been reached.");
+  addOptions(app.options(), settings);
+  return app.run(argc, argv, [&] {
+    if (settings.matrix.empty())
+      throw std::runtime_error("no matrix is named; try poisson:256x256, or a Matrix Market file");
+    try {
+      solveSystem(app, settings);
+    } catch (const std::bad_alloc&) {
+      throw std::runtime_error("the matrix does not fit in memory");
+    }
+  });
+}

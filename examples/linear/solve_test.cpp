@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+//
+// Solves whose outcome is known: what converges, to which residual, and what each failure is called.
+#include <cmath>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <sk/sk.hpp>
+
+#include "layout.hpp"
+#include "named.hpp"
+#include "solve.hpp"
+#include "sparse.hpp"
+#include "stencil.hpp"
+
+namespace linear {
+namespace {
+
+struct Choice {
+  std::string_view solver = "cg";
+  std::string_view preconditioner = "jacobi";
+  Arithmetic arithmetic = {};
+  SolveSettings settings = {};
+  std::string_view layout = "rows";
+};
+
+Solution solveWith(sk::Device& device, const SparseMatrix& a, const std::vector<double>& b,
+                   const Choice& choice) {
+  const Operator o = operatorOf(a);
+  const std::unique_ptr<Matrix> matrix =
+      makeMatrix(device, scaled(a, o.scale), choice.layout, choice.arithmetic);
+  const auto preconditioner = rowNamed(preconditionerKinds(), choice.preconditioner, "preconditioner")
+                                  .make(device, *matrix, o, choice.arithmetic);
+  const auto method = rowNamed(methodKinds(), choice.solver, "solver")
+                          .make(device, *matrix, preconditioner.get(), choice.arithmetic);
+  return solve(*method, o, b, choice.arithmetic, choice.settings);
+}
+
+std::vector<double> ones(std::int64_t n) { return std::vector<double>(static_cast<std::size_t>(n), 1.0); }
+
+/// Convection against diffusion on a line: not symmetric.
+SparseMatrix convection(std::int64_t n) {
+  std::vector<Entry> entries;
+  for (std::int64_t i = 0; i < n; ++i) {
+    entries.push_back({i, i, 2.0});
+    if (i > 0) entries.push_back({i, i - 1, -1.4});
+    if (i + 1 < n) entries.push_back({i, i + 1, -0.6});
+  }
+  return assemble(n, n, entries);
+}
+
+SparseMatrix diagonalMatrix(const std::vector<double>& d) {
+  std::vector<Entry> entries;
+  for (std::size_t i = 0; i < d.size(); ++i)
+    entries.push_back({static_cast<std::int64_t>(i), static_cast<std::int64_t>(i), d[i]});
+  return assemble(static_cast<std::int64_t>(d.size()), static_cast<std::int64_t>(d.size()), entries);
+}
+
+TEST_CASE("Every solver and preconditioner reaches the tolerance in double precision") {
+  sk::Device device = sk::Device::native();
+  const SparseMatrix symmetric = assemble(poisson({17, 19})), other = convection(101);
+  for (const MethodKind& method : methodKinds()) {
+    const SparseMatrix& a = method.needsSymmetry ? symmetric : other;
+    const std::vector<double> b = multiply(a, ones(a.columns));
+    for (const PreconditionerKind& preconditioner : preconditionerKinds()) {
+      if (!method.needsSymmetry && preconditioner.name == "chebyshev")
+        continue;  // its polynomial is for real eigenvalues
+      CAPTURE(method.name, preconditioner.name);
+      const Solution s =
+          solveWith(device, a, b, {.solver = method.name, .preconditioner = preconditioner.name});
+      CHECK(s.outcome == Outcome::Converged);
+      CHECK(s.residualTrue <= 1e-8);
+      CHECK(s.iterations < 600);
+    }
+  }
+}
+
+TEST_CASE("Refinement reaches the backward error of double precision from each precision") {
+  sk::Device device = sk::Device::native();
+  const SparseMatrix a = assemble(poisson({16, 16}));
+  const std::vector<double> b = multiply(a, ones(a.columns));
+  const Arithmetic precisions[] = {
+      {},
+      {.precision = sk::Precision::Half, .matrix = sk::Storage::Half, .vectors = sk::Storage::Half},
+      {.precision = sk::Precision::Single, .matrix = sk::Storage::Half, .vectors = sk::Storage::Single},
+      {.precision = sk::Precision::Double, .matrix = sk::Storage::Double, .vectors = sk::Storage::Double}};
+  for (const Arithmetic& arithmetic : precisions) {
+    CAPTURE(static_cast<int>(arithmetic.precision), static_cast<int>(arithmetic.vectors));
+    const Solution s = solveWith(device, a, b, {.arithmetic = arithmetic, .settings = {.tolerance = 1e-14}});
+    CHECK(s.outcome == Outcome::Converged);
+    CHECK(s.backwardError < 1e-15);
+    const double error = std::abs(s.x[100] - 1.0);
+    CHECK(error < 1e-11);  // cond(A) is about 120
+  }
+}
+
+TEST_CASE("Devices that draw solve like native ones") {
+  const SparseMatrix a = assemble(poisson({9, 10}));
+  const std::vector<double> b = multiply(a, ones(a.columns));
+  for (const char* profile : {"glsl330", "essl300"}) {
+    sk::Device device(sk::DeviceOptions{.device = "software", .profile = profile});
+    for (const std::string_view solver : {"cg", "bicgstab"}) {
+      CAPTURE(profile, solver);
+      const Solution s =
+          solveWith(device, a, b, {.solver = solver, .settings = {.tolerance = 1e-12}, .layout = "slices"});
+      CHECK(s.outcome == Outcome::Converged);
+    }
+  }
+}
+
+TEST_CASE("What cannot be solved says why") {
+  sk::Device device = sk::Device::native();
+  const std::vector<double> b = ones(4);
+  const auto outcomeOf = [&](const SparseMatrix& a, const Choice& choice) {
+    const Solution s = solveWith(device, a, b, choice);
+    for (const double x : s.x) CHECK(std::isfinite(x));
+    return s.outcome;
+  };
+  CHECK(outcomeOf(diagonalMatrix({1, 2, -3, 4}), {.preconditioner = "none"}) == Outcome::NotPositiveDefinite);
+  const Entry turned[] = {{0, 1, 1}, {1, 0, -1}, {2, 3, 1}, {3, 2, -1}};  // r . A r = 0
+  CHECK(outcomeOf(assemble(4, 4, turned), {.solver = "bicgstab", .preconditioner = "none"}) ==
+        Outcome::Breakdown);
+  CHECK(outcomeOf(assemble(poisson({2, 2})), {.settings = {.tolerance = 0.0, .most = 0}}) ==
+        Outcome::MostIterations);
+
+  const SparseMatrix empty = assemble(4, 4, {});
+  CHECK_THROWS_WITH(outcomeOf(empty, {}), Catch::Contains("row 1 has no diagonal entry"));
+  CHECK(outcomeOf(empty, {.preconditioner = "none"}) == Outcome::NotPositiveDefinite);
+  CHECK_THROWS_WITH(solveWith(device, diagonalMatrix({1, 2, 3}), b, {}),
+                    "the right-hand side has 4 elements, and the matrix 3 rows");
+  CHECK_THROWS_WITH(solveWith(device, diagonalMatrix({1, 2, 3, 4}), {1, 2, NAN, 4}, {}),
+                    Catch::Contains("not finite"));
+}
+
+TEST_CASE("A tolerance below the roundoff ends as stagnated, with the best that was found") {
+  sk::Device device = sk::Device::native();
+  const SparseMatrix a = assemble(poisson({7, 5}));
+  std::vector<double> b;
+  for (int i = 0; i < 35; ++i) b.push_back(1.0 / (i + 3));
+  const Solution fine = solveWith(device, a, b, {.settings = {.tolerance = 1e-18}});
+  CHECK(fine.outcome == Outcome::Stagnated);
+  CHECK(fine.backwardError < 1e-15);
+  const Solution once = solveWith(device, a, b, {.settings = {.tolerance = 1e-12, .refines = false}});
+  CHECK(once.outcome == Outcome::Stagnated);
+  CHECK(once.residualRecurred <= 1e-12);
+  CHECK(once.residualTrue > 1e-9);
+}
+
+TEST_CASE("A right-hand side of zeros, and matrices of any magnitude, are solved") {
+  sk::Device device = sk::Device::native();
+  const SparseMatrix a = assemble(poisson({5, 5}));
+  const Solution zero = solveWith(device, a, std::vector<double>(25, 0.0), {});
+  CHECK(zero.outcome == Outcome::Converged);
+  CHECK(zero.iterations == 0);
+  CHECK(zero.x == std::vector<double>(25, 0.0));
+  for (const double magnitude : {1e-30, 1e30}) {
+    CAPTURE(magnitude);
+    const SparseMatrix tiny = scaled(a, magnitude);
+    const Solution s = solveWith(device, tiny, multiply(tiny, ones(25)), {});
+    CHECK(s.outcome == Outcome::Converged);
+    CHECK(std::abs(s.x[12] - 1.0) < 1e-7);
+    CHECK(solveWith(device, tiny, ones(25), {}).outcome == Outcome::Converged);
+  }
+  const SparseMatrix spread = diagonalMatrix({1e-30, 1e30, 1, -1e-20 * -1.0});
+  CHECK(solveWith(device, diagonalMatrix({1, 1e5, 1e-5, 3}), ones(4), {}).outcome == Outcome::Converged);
+  CHECK(operatorOf(spread).scale == 0x1p-100);
+}
+
+TEST_CASE("A matrix whose rows sum to zero is known to be singular") {
+  const Entry neumann[] = {{0, 0, 1}, {0, 1, -1}, {1, 0, -1}, {1, 1, 2}, {1, 2, -1}, {2, 1, -1}, {2, 2, 1}};
+  CHECK(operatorOf(assemble(3, 3, neumann)).hasConstantKernel);
+  CHECK(!operatorOf(assemble(poisson({3, 3}))).hasConstantKernel);
+}
+
+TEST_CASE("Asymmetry is told with its place") {
+  CHECK(asymmetry(assemble(poisson({3, 4}))).empty());
+  CHECK(asymmetry(convection(3)) == "(0, 1) is -0.6, and (1, 0) is -1.4");
+  CHECK_THROWS_WITH(operatorOf(assemble(2, 3, {})), Catch::Contains("2 x 3"));
+}
+
+}  // namespace
+}  // namespace linear

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "sparse.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace linear {
+
+namespace {
+
+void checkExtents(std::int64_t rows, std::int64_t columns) {
+  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+  if (rows < 0 || columns < 0 || rows > most || columns > most)
+    throw std::runtime_error(fmt::format(
+        "a matrix of {} x {} elements cannot be stored; extents are from 0 to {}", rows, columns, most));
+}
+
+/// Orders the entries from `begin` by their columns, and adds up those of one column. Returns how many are left.
+std::size_t finishRow(SparseMatrix& a, std::size_t begin, std::vector<std::pair<std::int32_t, double>>& row) {
+  std::stable_sort(row.begin(), row.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  std::size_t end = begin;
+  for (const auto& [column, value] : row) {
+    if (end > begin && a.column[end - 1] == column) {
+      a.value[end - 1] += value;
+    } else {
+      a.column[end] = column;
+      a.value[end] = value;
+      ++end;
+    }
+  }
+  return end;
+}
+
+}  // namespace
+
+SparseMatrix assemble(std::int64_t rows, std::int64_t columns, std::span<const Entry> entries,
+                      std::int64_t* duplicates) {
+  checkExtents(rows, columns);
+  std::vector<std::int64_t> starts(static_cast<std::size_t>(rows) + 1, 0);
+  for (const Entry& e : entries) {
+    if (e.row < 0 || e.row >= rows || e.column < 0 || e.column >= columns)
+      throw std::runtime_error(fmt::format("the entry at ({}, {}) is outside of a matrix of {} x {}", e.row,
+                                           e.column, rows, columns));
+    ++starts[static_cast<std::size_t>(e.row) + 1];
+  }
+  for (std::size_t i = 1; i < starts.size(); ++i) starts[i] += starts[i - 1];
+  std::vector<std::size_t> order(entries.size());  // by rows, in the order of the list
+  std::vector<std::int64_t> next(starts.begin(), starts.end() - 1);
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    order[static_cast<std::size_t>(next[static_cast<std::size_t>(entries[i].row)]++)] = i;
+
+  SparseMatrix a{.rows = rows, .columns = columns, .starts = {}, .column = {}, .value = {}};
+  a.starts.assign(static_cast<std::size_t>(rows) + 1, 0);
+  a.column.resize(entries.size());
+  a.value.resize(entries.size());
+  std::size_t end = 0;
+  std::vector<std::pair<std::int32_t, double>> row;
+  for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
+    row.clear();
+    for (auto k = static_cast<std::size_t>(starts[i]); k < static_cast<std::size_t>(starts[i + 1]); ++k)
+      row.emplace_back(static_cast<std::int32_t>(entries[order[k]].column), entries[order[k]].value);
+    end = finishRow(a, end, row);
+    a.starts[i + 1] = static_cast<std::int64_t>(end);
+  }
+  a.column.resize(end);
+  a.value.resize(end);
+  if (duplicates != nullptr) *duplicates = static_cast<std::int64_t>(entries.size() - end);
+  return a;
+}
+
+std::vector<double> multiply(const SparseMatrix& a, std::span<const double> x) {
+  std::vector<double> y(static_cast<std::size_t>(a.rows), 0.0);
+  for (std::size_t i = 0; i < y.size(); ++i)
+    for (auto k = static_cast<std::size_t>(a.starts[i]); k < static_cast<std::size_t>(a.starts[i + 1]); ++k)
+      y[i] += a.value[k] * x[static_cast<std::size_t>(a.column[k])];
+  return y;
+}
+
+SparseMatrix transpose(const SparseMatrix& a) {
+  SparseMatrix t{.rows = a.columns, .columns = a.rows, .starts = {}, .column = {}, .value = {}};
+  t.starts.assign(static_cast<std::size_t>(a.columns) + 1, 0);
+  for (const std::int32_t c : a.column) ++t.starts[static_cast<std::size_t>(c) + 1];
+  for (std::size_t i = 1; i < t.starts.size(); ++i) t.starts[i] += t.starts[i - 1];
+  t.column.resize(a.column.size());
+  t.value.resize(a.value.size());
+  std::vector<std::int64_t> next(t.starts.begin(), t.starts.end() - 1);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.rows); ++i)
+    for (auto k = static_cast<std::size_t>(a.starts[i]); k < static_cast<std::size_t>(a.starts[i + 1]); ++k) {
+      const auto at = static_cast<std::size_t>(next[static_cast<std::size_t>(a.column[k])]++);
+      t.column[at] = static_cast<std::int32_t>(i);
+      t.value[at] = a.value[k];
+    }
+  return t;
+}
+
+double infinityNorm(const SparseMatrix& a) {
+  double norm = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.rows); ++i) {
+    double sum = 0.0;
+    for (auto k = static_cast<std::size_t>(a.starts[i]); k < static_cast<std::size_t>(a.starts[i + 1]); ++k)
+      sum += std::abs(a.value[k]);
+    norm = std::max(norm, sum);
+  }
+  return norm;
+}
+
+std::vector<double> diagonal(const SparseMatrix& a) {
+  std::vector<double> d(static_cast<std::size_t>(std::min(a.rows, a.columns)), 0.0);
+  for (std::size_t i = 0; i < d.size(); ++i)
+    for (auto k = static_cast<std::size_t>(a.starts[i]); k < static_cast<std::size_t>(a.starts[i + 1]); ++k)
+      if (a.column[k] == static_cast<std::int32_t>(i)) d[i] = a.value[k];
+  return d;
+}
+
+std::string asymmetry(const SparseMatrix& a) {
+  if (a.rows != a.columns) return fmt::format("it has {} rows and {} columns", a.rows, a.columns);
+  const SparseMatrix t = transpose(a);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.rows); ++i) {
+    auto k = static_cast<std::size_t>(a.starts[i]), m = static_cast<std::size_t>(t.starts[i]);
+    const auto kEnd = static_cast<std::size_t>(a.starts[i + 1]),
+               mEnd = static_cast<std::size_t>(t.starts[i + 1]);
+    while (k < kEnd || m < mEnd) {
+      const std::int32_t inA = k < kEnd ? a.column[k] : std::numeric_limits<std::int32_t>::max();
+      const std::int32_t inT = m < mEnd ? t.column[m] : std::numeric_limits<std::int32_t>::max();
+      const std::int32_t column = std::min(inA, inT);
+      const double here = inA == column ? a.value[k++] : 0.0;
+      const double there = inT == column ? t.value[m++] : 0.0;
+      if (here != there)
+        return fmt::format("({}, {}) is {}, and ({}, {}) is {}", i, column, here, column, i, there);
+    }
+  }
+  return "";
+}
+
+std::string zeroDiagonal(const SparseMatrix& a) {
+  const std::vector<double> d = diagonal(a);
+  const auto zero = std::find(d.begin(), d.end(), 0.0);
+  return zero == d.end() ? "" : fmt::format("row {}", zero - d.begin());
+}
+
+}  // namespace linear

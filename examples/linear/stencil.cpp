@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "stencil.hpp"
+
+#include <stdexcept>
+
+#include "products.sk.hpp"
+
+namespace linear {
+
+namespace {
+
+/// Calls visit(element, neighbour, dimension) for both neighbours of every element that are inside of the grid.
+template <class Visit>
+void visitNeighbours(const sk::Shape& grid, Visit&& visit) {
+  std::int64_t below = grid.size();
+  for (std::size_t d = 0; d < static_cast<std::size_t>(grid.rank()); ++d) {
+    const std::int64_t extent = grid[static_cast<int>(d)];
+    if (extent == 0) return;
+    below /= extent;
+    for (std::int64_t i = 0; i < grid.size(); ++i) {
+      const std::int64_t at = i / below % extent;
+      if (at > 0) visit(i, i - below, d);
+      if (at + 1 < extent) visit(i, i + below, d);
+    }
+  }
+}
+
+class StencilMatrix : public Matrix {
+ public:
+  StencilMatrix(const Stencil& a, const Arithmetic& arithmetic)
+      : Matrix(arithmetic), grid_(a.grid), coefficients_(coefficientsOf(a)) {}
+
+  sk::Shape domain() const override { return grid_; }
+  void multiply(const Vector& x, Vector& y) override {
+    if (grid_.rank() == 2)
+      stencil2.with(options())(coefficients_, x, y);
+    else
+      stencil3.with(options())(coefficients_, x, y);
+  }
+  void multiply(const Vector& x, Vector& y, Vector& xy) override {
+    if (grid_.rank() == 2)
+      stencil2Dot.with(options())(coefficients_, x, y, xy);
+    else
+      stencil3Dot.with(options())(coefficients_, x, y, xy);
+  }
+  std::string layout() const override { return "stencil"; }
+  std::int64_t stored() const override { return 0; }
+  std::int64_t bytes() const override { return 0; }
+
+ private:
+  /// The kernels take the fastest dimension first.
+  static sk::float4 coefficientsOf(const Stencil& a) {
+    const auto c = [](double value) { return static_cast<float>(value); };
+    if (a.grid.rank() == 2) return {c(a.centre), c(a.along[1]), c(a.along[0]), 0.0f};
+    return {c(a.centre), c(a.along[2]), c(a.along[1]), c(a.along[0])};
+  }
+
+  sk::Shape grid_;
+  sk::float4 coefficients_;
+};
+
+}  // namespace
+
+Stencil poisson(const sk::Shape& grid) {
+  if (grid.rank() != 2 && grid.rank() != 3) throw std::runtime_error("a grid has two or three dimensions");
+  return {.grid = grid, .centre = 2.0 * grid.rank(), .along = {-1.0, -1.0, grid.rank() == 3 ? -1.0 : 0.0}};
+}
+
+std::vector<double> multiply(const Stencil& a, std::span<const double> x) {
+  std::vector<double> y(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] = a.centre * x[i];
+  visitNeighbours(a.grid, [&](std::int64_t i, std::int64_t j, std::size_t d) {
+    y[static_cast<std::size_t>(i)] += a.along[d] * x[static_cast<std::size_t>(j)];
+  });
+  return y;
+}
+
+SparseMatrix assemble(const Stencil& a) {
+  std::vector<Entry> entries;
+  for (std::int64_t i = 0; i < a.size(); ++i) entries.push_back({i, i, a.centre});
+  visitNeighbours(
+      a.grid, [&](std::int64_t i, std::int64_t j, std::size_t d) { entries.push_back({i, j, a.along[d]}); });
+  return assemble(a.size(), a.size(), entries);
+}
+
+std::unique_ptr<Matrix> makeMatrix(const Stencil& a, const Arithmetic& arithmetic) {
+  return std::make_unique<StencilMatrix>(a, arithmetic);
+}
+
+}  // namespace linear

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+//
+// The equations that a command line names: a matrix from a file or of a grid, and a right-hand side.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "layout.hpp"
+#include "operator.hpp"
+
+namespace linear {
+
+class System {
+ public:
+  /// `matrix` is a Matrix Market file, or "poisson:WxH" or "poisson:WxHxD" for Poisson's equation on a grid with fixed ends. The right-hand side
+  /// is a file, or A times ones if there is none. Throws std::runtime_error if one of them is wrong.
+  System(const std::string& matrix, const std::filesystem::path& rightHandSide);
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
+
+  const Operator& matrix() const { return operator_; }
+  const std::vector<double>& rightHandSide() const { return b_; }
+  /// Entries of the matrix that were given several times, and added up.
+  std::int64_t duplicates() const { return duplicates_; }
+  std::int64_t entries() const;
+  std::string description() const { return description_; }
+
+  /// Copies the scaled matrix to a device: a stencil where "auto" or "stencil" asks for a grid's layout.
+  std::unique_ptr<Matrix> makeMatrix(sk::Device& device, std::string_view layout,
+                                     const Arithmetic& arithmetic, std::vector<LayoutTrial>* trials) const;
+
+ private:
+  std::optional<Stencil> stencil_;
+  SparseMatrix sparse_;
+  Operator operator_;
+  std::vector<double> b_;
+  std::int64_t duplicates_ = 0;
+  std::string description_;
+};
+
+}  // namespace linear

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "support/text_file.hpp"
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace examples {
+
+std::string bytesOf(const std::filesystem::path& file, std::string_view what) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream bytes;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored) || !stream || !(bytes << stream.rdbuf())) {
+    // An empty file sets failbit, too.
+    if (std::filesystem::is_regular_file(file, ignored) && std::filesystem::file_size(file, ignored) == 0)
+      return {};
+    throw std::runtime_error(fmt::format("{} '{}' does not exist or cannot be read", what, file.string()));
+  }
+  return std::move(bytes).str();
+}
+
+void writeFile(const std::filesystem::path& file, std::string_view bytes) {
+  std::error_code ignored;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+  std::ofstream stream(file, std::ios::binary);
+  if (!(stream << bytes).flush()) throw std::runtime_error(fmt::format("cannot write '{}'", file.string()));
+}
+
+}  // namespace examples
