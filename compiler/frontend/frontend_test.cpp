@@ -99,6 +99,12 @@ TEST_CASE("gathers are indexed with x first", "[frontend]") {
         "int2 p = indexof(domain).xy;\nv = u[int2{p.x, p.y}] + u[p] + neighbor(u, int2{1, -1});\n");
 }
 
+TEST_CASE("a helper may repeat the boundary mode of a kernel's gather", "[frontend]") {
+  CHECK(lowered("float f(float4 w, [[border(-1)]] float u[][]) { return w.x * neighbor(u, 1, 0); }\n"
+                "kernel void k(float4 w, [[border(-1)]] float u[][], out float v<>) { v = f(w, u); }\n") ==
+        "v = f(w, u);\n");
+}
+
 TEST_CASE("literals are rounded once", "[frontend]") {
   // 1 + 2^-24 + 2^-54: through double it would be a tie and round to 1
   CHECK(inKernel("v = 1.00000005960464483090177;") == "v = 1.0000001;\n");

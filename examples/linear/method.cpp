@@ -82,6 +82,33 @@ class ConjugateGradients : public Method {
   Vector z_, p_, q_, rz_, next_, pq_, folded_;
 };
 
+/// x <- x + M (b - A x): what a preconditioner does by itself.
+class Stationary : public Method {
+ public:
+  Stationary(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner, const Arithmetic& arithmetic)
+      : Method(device, matrix, preconditioner, arithmetic),
+        b_(vector()),
+        z_(vector()),
+        q_(vector()),
+        rz_(sum()) {}
+
+ private:
+  void start() override {
+    r_.copyTo(b_);
+    dot.with(options_)(r_, r_, rr_);
+  }
+
+  void iterate() override {
+    precondition(r_, z_, rz_);
+    axpy.with(options_)(1.0f, z_, x_, x_);
+    matrix_.multiply(x_, q_);
+    subtractFrom.with(options_)(b_, q_, r_, rr_);
+    stationaryCheck.with(options_)(limit_, rr_, state_, done_);
+  }
+
+  Vector b_, z_, q_, rz_;
+};
+
 /// H. van der Vorst, "Bi-CGSTAB: a fast and smoothly converging variant of Bi-CG for the solution of nonsymmetric linear systems"
 /// (1992), preconditioned from the right.
 class BiconjugateGradients : public Method {
@@ -143,6 +170,7 @@ std::unique_ptr<Method> make(sk::Device& device, Matrix& matrix, Preconditioner*
 
 constexpr MethodKind methods[] = {
     {"cg", "conjugate gradients, for symmetric positive definite matrices", true, make<ConjugateGradients>},
+    {"stationary", "x + M (b - A x): the preconditioner by itself", false, make<Stationary>},
     {"bicgstab", "stabilised biconjugate gradients, for any matrix", false, make<BiconjugateGradients>},
 };
 

@@ -62,6 +62,7 @@ Operator operatorOf(const Stencil& a) {
   o.diagonal.assign(n, a.centre);
   o.rowSquares.assign(n, squares);
   o.jacobiBound = a.centre != 0.0 ? sum / std::abs(a.centre) : 0.0;
+  o.stencil = a;
   o.multiply = [a](std::span<const double> x) { return linear::multiply(a, x); };
   o.scale = powerOfTwo(o.infinityNorm);
   return o;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ struct Operator {
   /// Why the matrix is not symmetric; "" if it is.
   std::string asymmetry;
   bool hasConstantKernel = false;  ///< A 1 = 0, but for roundings: the matrix is singular
+  std::optional<Stencil> stencil;  ///< if the matrix is one
   /// y = A x in double precision.
   std::function<std::vector<double>(std::span<const double>)> multiply;
   /// A power of two: the matrix on the device is this times A, so that its largest row sum is from 1/2 to 1.

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "multigrid.hpp"
 #include "operator.hpp"
 #include "vectors.sk.hpp"
 
@@ -109,12 +110,25 @@ std::unique_ptr<Preconditioner> makeChebyshev(sk::Device& device, Matrix& matrix
   return std::make_unique<Chebyshev>(device, matrix, a, arithmetic);
 }
 
+template <Cycle cycle>
+std::unique_ptr<Preconditioner> makeGeometric(sk::Device& device, Matrix&, const Operator& a,
+                                              const Arithmetic& arithmetic) {
+  if (!a.stencil)
+    throw std::runtime_error(
+        "multigrid needs a grid, as of 'poisson:512x512'; for matrices of files take another preconditioner");
+  return makeMultigrid(device, scaled(*a.stencil, a.scale), arithmetic, {.cycle = cycle});
+}
+
 constexpr PreconditionerKind preconditioners[] = {
     {"none", "the residual as it is", makeNone},
     {"jacobi", "division by the diagonal", makeJacobi},
     {"spai0", "the best diagonal approximate inverse", makeSpai0},
     {"chebyshev", "four of Chebyshev's iterations after Jacobi's scaling, for symmetric matrices",
      makeChebyshev},
+    {"multigrid", "a V-cycle of geometric multigrid, for grids", makeGeometric<Cycle::V>},
+    {"w-cycle", "a W-cycle", makeGeometric<Cycle::W>},
+    {"f-cycle", "an F-cycle", makeGeometric<Cycle::F>},
+    {"full", "full multigrid: nested iteration with V-cycles", makeGeometric<Cycle::Full>},
 };
 
 }  // namespace

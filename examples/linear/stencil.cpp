@@ -28,7 +28,7 @@ void visitNeighbours(const sk::Shape& grid, Visit&& visit) {
 class StencilMatrix : public Matrix {
  public:
   StencilMatrix(const Stencil& a, const Arithmetic& arithmetic)
-      : Matrix(arithmetic), grid_(a.grid), coefficients_(coefficientsOf(a)) {}
+      : Matrix(arithmetic), grid_(a.grid), coefficients_(kernelCoefficients(a)) {}
 
   sk::Shape domain() const override { return grid_; }
   void multiply(const Vector& x, Vector& y) override {
@@ -48,18 +48,17 @@ class StencilMatrix : public Matrix {
   std::int64_t bytes() const override { return 0; }
 
  private:
-  /// The kernels take the fastest dimension first.
-  static sk::float4 coefficientsOf(const Stencil& a) {
-    const auto c = [](double value) { return static_cast<float>(value); };
-    if (a.grid.rank() == 2) return {c(a.centre), c(a.along[1]), c(a.along[0]), 0.0f};
-    return {c(a.centre), c(a.along[2]), c(a.along[1]), c(a.along[0])};
-  }
-
   sk::Shape grid_;
   sk::float4 coefficients_;
 };
 
 }  // namespace
+
+sk::float4 kernelCoefficients(const Stencil& a) {
+  const auto c = [](double value) { return static_cast<float>(value); };
+  if (a.grid.rank() == 2) return {c(a.centre), c(a.along[1]), c(a.along[0]), 0.0f};
+  return {c(a.centre), c(a.along[2]), c(a.along[1]), c(a.along[0])};
+}
 
 Stencil poisson(const sk::Shape& grid) {
   if (grid.rank() != 2 && grid.rank() != 3) throw std::runtime_error("a grid has two or three dimensions");

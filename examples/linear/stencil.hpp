@@ -25,6 +25,9 @@ struct Stencil {
   std::int64_t size() const { return grid.size(); }
 };
 
+/// Coefficients as kernels take them: of an element, and of its neighbours in the fastest, the next and the slowest dimension.
+sk::float4 kernelCoefficients(const Stencil& a);
+
 /// Minus the Laplacian times the square of the grid's spacing: 2 rank in the centre, -1 beside it.
 Stencil poisson(const sk::Shape& grid);
 

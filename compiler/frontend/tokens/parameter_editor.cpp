@@ -444,7 +444,11 @@ bool ParameterEditor::resolveAppendOutput(Parts& parts, FunctionKind kind) {
 void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) {
   const clang::SourceLocation place = parts.name.getLocation();
   ParamSyntax syntax = parts.syntax;
-  if (!parts.border.empty()) syntax.border = generateConstant(parts.type, borderValue(parts.border), place);
+  if (kind == FunctionKind::Helper) {
+    syntax.boundary = ir::Boundary::Clamp;   // the mode is that of the kernel's gather
+  } else if (!parts.border.empty()) {
+    syntax.border = generateConstant(parts.type, borderValue(parts.border), place);
+  }
   if (!parts.value.empty()) syntax.identity = generateConstant(parts.type, parts.value, place);
   if (syntax.rank > 0) indexed_.push_back({parts.name, syntax.rank});
   const clang::SourceLocation start = parts.type.front().getLocation();
