@@ -74,7 +74,7 @@ class Multigrid : public Preconditioner {
       correct2.with(options_)(coarse.u, u, u);
     else
       correct3.with(options_)(coarse.u, u, u);
-    smooth(at, b, u, settings_.after, 1, false);
+    smooth(at, b, u, settings_.after, settings_.isSymmetric ? 1 : 0, false);
   }
 
   /// Interpolates the solution for the coarser grid, and lets a V-cycle follow.

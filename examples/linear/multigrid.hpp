@@ -23,8 +23,10 @@ enum class Cycle {
 struct MultigridSettings {
   Cycle cycle = Cycle::V;
   int before = 1;  ///< red-black sweeps before the coarse grid's correction
-  int after =
-      1;  ///< after it, in the opposite order of colours: with as many as before, V-cycles are symmetric
+  int after = 1;  ///< after it
+  /// The sweeps after it take the colours in the opposite order: with as many sweeps as before, V-cycles are symmetric, as
+  /// conjugate gradients need them. They converge a little more slowly.
+  bool isSymmetric = true;
 };
 
 /// One cycle for z = A^-1 r, from z = 0. `a` is the matrix as the device has it. Throws std::runtime_error if its centre is 0, or

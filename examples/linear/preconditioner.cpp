@@ -116,19 +116,20 @@ std::unique_ptr<Preconditioner> makeGeometric(sk::Device& device, Matrix&, const
   if (!a.stencil)
     throw std::runtime_error(
         "multigrid needs a grid, as of 'poisson:512x512'; for matrices of files take another preconditioner");
-  return makeMultigrid(device, scaled(*a.stencil, a.scale), arithmetic, {.cycle = cycle});
+  return makeMultigrid(device, scaled(*a.stencil, a.scale), arithmetic,
+                       {.cycle = cycle, .isSymmetric = cycle == Cycle::V});
 }
 
 constexpr PreconditionerKind preconditioners[] = {
-    {"none", "the residual as it is", makeNone},
-    {"jacobi", "division by the diagonal", makeJacobi},
-    {"spai0", "the best diagonal approximate inverse", makeSpai0},
-    {"chebyshev", "four of Chebyshev's iterations after Jacobi's scaling, for symmetric matrices",
+    {"none", "the residual as it is", true, makeNone},
+    {"jacobi", "division by the diagonal", true, makeJacobi},
+    {"spai0", "the best diagonal approximate inverse", true, makeSpai0},
+    {"chebyshev", "four of Chebyshev's iterations after Jacobi's scaling, for symmetric matrices", true,
      makeChebyshev},
-    {"multigrid", "a V-cycle of geometric multigrid, for grids", makeGeometric<Cycle::V>},
-    {"w-cycle", "a W-cycle", makeGeometric<Cycle::W>},
-    {"f-cycle", "an F-cycle", makeGeometric<Cycle::F>},
-    {"full", "full multigrid: nested iteration with V-cycles", makeGeometric<Cycle::Full>},
+    {"multigrid", "a V-cycle of geometric multigrid, for grids", true, makeGeometric<Cycle::V>},
+    {"w-cycle", "a W-cycle of it", false, makeGeometric<Cycle::W>},
+    {"f-cycle", "an F-cycle of it", false, makeGeometric<Cycle::F>},
+    {"full", "full multigrid: nested iteration with V-cycles", false, makeGeometric<Cycle::Full>},
 };
 
 }  // namespace

@@ -25,6 +25,7 @@ class Preconditioner {
 struct PreconditionerKind {
   std::string_view name;  ///< of --preconditioner
   std::string_view does;
+  bool isSymmetric;  ///< z = M r with a symmetric M: what conjugate gradients need
   /// `matrix` outlives the preconditioner. Null for none. Throws std::runtime_error if the matrix does not allow it.
   std::unique_ptr<Preconditioner> (*make)(sk::Device& device, Matrix& matrix, const Operator& a,
                                           const Arithmetic& arithmetic);

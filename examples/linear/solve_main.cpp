@@ -105,10 +105,16 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--chart", s.svg, "draw the residual over the iterations to this file, as SVG");
 }
 
-void checkSymmetry(const linear::MethodKind& method, const linear::Operator& a) {
-  if (method.needsSymmetry && !a.asymmetry.empty())
+void checkSymmetry(const linear::MethodKind& method, const linear::PreconditionerKind& preconditioner,
+                   const linear::Operator& a) {
+  if (!method.needsSymmetry) return;
+  if (!a.asymmetry.empty())
     throw std::runtime_error(fmt::format(
         "the solver '{}' needs a symmetric matrix: {}; take --solver bicgstab", method.name, a.asymmetry));
+  if (!preconditioner.isSymmetric)
+    throw std::runtime_error(fmt::format(
+        "the solver '{}' needs a symmetric preconditioner, which '{}' is not; take --solver stationary",
+        method.name, preconditioner.name));
 }
 
 void solveSystem(examples::Application& app, Settings& s) {
@@ -123,7 +129,7 @@ void solveSystem(examples::Application& app, Settings& s) {
 
   const linear::System system(s.matrix, s.rightHandSide);
   const linear::Operator& a = system.matrix();
-  checkSymmetry(methodKind, a);
+  checkSymmetry(methodKind, preconditionerKind, a);
   if (system.duplicates() > 0)
     fmt::print(stderr, "solve: warning: {} entries are given several times, and were added up\n",
                system.duplicates());
