@@ -48,7 +48,7 @@ class DiagonalMatrix : public Matrix {
   }
   void multiply(const Vector& x, Vector& y, Vector& xy) override {
     if (value_.size() == 0) return Matrix::multiply(x, y, xy);
-    diagonalProductDot.with(options())(count_, value_, offset_, x, x, y, xy);
+    diagonalProductDot.with(foldOptions())(count_, value_, offset_, x, x, y, xy);
   }
   std::string layout() const override { return "diagonals"; }
   std::int64_t stored() const override { return value_.size(); }

@@ -31,7 +31,7 @@ class RowsMatrix : public Matrix {
   sk::Shape range() const override { return {rows_}; }
   using Matrix::multiply;
   void multiply(const Vector& x, Vector& y) override {
-    rowProduct.with(options())(rowsOf_(value_), rowsOf_(column_), x, y);
+    rowProduct.with(foldOptions())(rowsOf_(value_), rowsOf_(column_), x, y);
   }
   std::string layout() const override { return "rows"; }
   std::int64_t stored() const override { return value_.size(); }
@@ -71,7 +71,7 @@ class DenseMatrix : public Matrix {
   void multiply(const Vector& x, Vector& y) override {
     const sk::Shape shape = value_.shape();
     if (shape.size() == 0) return y.fill(0.0f);
-    denseProduct.with(options())(value_, x.reshape({1, shape[1]}), y.reshape({shape[0], 1}));
+    denseProduct.with(foldOptions())(value_, x.reshape({1, shape[1]}), y.reshape({shape[0], 1}));
   }
   std::string layout() const override { return "dense"; }
   std::int64_t stored() const override { return value_.size(); }

@@ -77,7 +77,8 @@ class SliceMatrix : public Matrix {
   }
   void multiply(const Vector& x, Vector& y, Vector& xy) override {
     if (value_.size() == 0) return Matrix::multiply(x, y, xy);
-    sliceProductDot.with(options())(static_cast<int>(height), slot_, start_, offset_, value_, x, x, y, xy);
+    sliceProductDot.with(foldOptions())(static_cast<int>(height), slot_, start_, offset_, value_, x, x, y,
+                                        xy);
   }
   std::string layout() const override { return "slices"; }
   std::int64_t stored() const override { return value_.size(); }

@@ -33,7 +33,7 @@ double Arithmetic::roundoff() const {
 
 void Matrix::multiply(const Vector& x, Vector& y, Vector& xy) {
   multiply(x, y);
-  dot.with(options())(x, y, xy);
+  dot.with(foldOptions())(x, y, xy);
 }
 
 }  // namespace linear

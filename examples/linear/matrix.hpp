@@ -19,7 +19,9 @@ struct Arithmetic {
   sk::Storage vectors = sk::Storage::Single;
   sk::Accumulate accumulate = sk::Accumulate::Default;
 
-  sk::CallOptions options() const { return {.accumulate = accumulate, .precision = precision}; }
+  /// Of calls that fold nothing, and of those that do.
+  sk::CallOptions options() const { return {.precision = precision}; }
+  sk::CallOptions foldOptions() const { return {.accumulate = accumulate, .precision = precision}; }
   /// Sums keep all bits that they are computed in.
   sk::Storage sums() const {
     if (precision == sk::Precision::Double) return sk::Storage::Double;
@@ -50,11 +52,13 @@ class Matrix {
   virtual std::int64_t bytes() const = 0;
 
  protected:
-  explicit Matrix(const Arithmetic& arithmetic) : options_(arithmetic.options()) {}
+  explicit Matrix(const Arithmetic& arithmetic)
+      : options_(arithmetic.options()), foldOptions_(arithmetic.foldOptions()) {}
   const sk::CallOptions& options() const { return options_; }
+  const sk::CallOptions& foldOptions() const { return foldOptions_; }
 
  private:
-  sk::CallOptions options_;
+  sk::CallOptions options_, foldOptions_;
 };
 
 }  // namespace linear

@@ -15,6 +15,7 @@ Method::Method(sk::Device& device, Matrix& matrix, Preconditioner* preconditione
       preconditioner_(preconditioner),
       arithmetic_(arithmetic),
       options_(arithmetic.options()),
+      foldOptions_(arithmetic.foldOptions()),
       x_(vector()),
       r_(vector()),
       rr_(sum()),
@@ -42,7 +43,7 @@ double Method::residualSquared() const { return rr_.readReals()[0]; }
 void Method::precondition(const Vector& r, Vector& z, Vector& rz) {
   if (preconditioner_ != nullptr) return preconditioner_->apply(r, z, rz);
   r.copyTo(z);
-  dot.with(options_)(r, z, rz);
+  dot.with(foldOptions_)(r, z, rz);
 }
 
 namespace {
@@ -65,14 +66,14 @@ class ConjugateGradients : public Method {
 
  private:
   void start() override {
-    dot.with(options_)(r_, r_, rr_);
+    dot.with(foldOptions_)(r_, r_, rr_);
     precondition(r_, p_, rz_);
   }
 
   void iterate() override {
     matrix_.multiply(p_, q_, pq_);
     const bool isPlain = preconditioner_ == nullptr;
-    cgStep.with(options_)(rz_, pq_, p_, q_, x_, r_, x_, r_, isPlain ? next_ : folded_);
+    cgStep.with(foldOptions_)(rz_, pq_, p_, q_, x_, r_, x_, r_, isPlain ? next_ : folded_);
     if (!isPlain) preconditioner_->apply(r_, z_, next_);
     cgDirection.with(options_)(next_, rz_, isPlain ? r_ : z_, p_, p_);
     cgCheck.with(options_)(limit_, isPlain ? next_ : folded_, pq_, next_, rr_, state_, done_);
@@ -95,14 +96,14 @@ class Stationary : public Method {
  private:
   void start() override {
     r_.copyTo(b_);
-    dot.with(options_)(r_, r_, rr_);
+    dot.with(foldOptions_)(r_, r_, rr_);
   }
 
   void iterate() override {
     precondition(r_, z_, rz_);
     axpy.with(options_)(1.0f, z_, x_, x_);
     matrix_.multiply(x_, q_);
-    subtractFrom.with(options_)(b_, q_, r_, rr_);
+    subtractFrom.with(foldOptions_)(b_, q_, r_, rr_);
     stationaryCheck.with(options_)(limit_, rr_, state_, done_);
   }
 
@@ -137,7 +138,7 @@ class BiconjugateGradients : public Method {
   void start() override {
     r_.copyTo(shadow_);
     r_.copyTo(p_);
-    dot.with(options_)(r_, r_, rr_);
+    dot.with(foldOptions_)(r_, r_, rr_);
     rr_.copyTo(rho_);
   }
 
@@ -146,13 +147,13 @@ class BiconjugateGradients : public Method {
     if (!isPlain) preconditioner_->apply(p_, pz_, unused_);
     const Vector& p = isPlain ? p_ : pz_;
     matrix_.multiply(p, v_);
-    dot.with(options_)(shadow_, v_, sv_);
+    dot.with(foldOptions_)(shadow_, v_, sv_);
     bicgHalf.with(options_)(rho_, sv_, r_, v_, s_);
     if (!isPlain) preconditioner_->apply(s_, sz_, unused_);
     const Vector& z = isPlain ? s_ : sz_;
     matrix_.multiply(z, t_);
-    dots.with(options_)(s_, t_, ts_, tt_);
-    bicgStep.with(options_)(rho_, sv_, ts_, tt_, p, z, s_, t_, shadow_, x_, x_, r_, rr_, next_);
+    dots.with(foldOptions_)(s_, t_, ts_, tt_);
+    bicgStep.with(foldOptions_)(rho_, sv_, ts_, tt_, p, z, s_, t_, shadow_, x_, x_, r_, rr_, next_);
     bicgDirection.with(options_)(next_, sv_, ts_, tt_, r_, p_, v_, p_);
     bicgCheck.with(options_)(limit_, rr_, next_, sv_, tt_, state_, done_);
     std::swap(rho_, next_);

@@ -49,7 +49,7 @@ class Method {
   Matrix& matrix_;
   Preconditioner* preconditioner_;
   Arithmetic arithmetic_;
-  sk::CallOptions options_;
+  sk::CallOptions options_, foldOptions_;
   Vector x_, r_;
   Vector rr_, limit_;
   sk::Stream<int> state_;

@@ -42,7 +42,7 @@ class Multigrid : public Preconditioner {
  public:
   Multigrid(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic,
             const MultigridSettings& settings)
-      : options_(arithmetic.options()), settings_(settings) {
+      : options_(arithmetic.options()), foldOptions_(arithmetic.foldOptions()), settings_(settings) {
     levels_.emplace_back(device, a, arithmetic);
     while (true) {
       const Stencil coarse = coarsened(levels_.back().stencil);
@@ -56,7 +56,7 @@ class Multigrid : public Preconditioner {
       nest(0, r, z);
     else
       cycle(0, r, z, settings_.cycle, true);
-    dot.with(options_)(r, z, rz);
+    dot.with(foldOptions_)(r, z, rz);
   }
 
  private:
@@ -120,7 +120,7 @@ class Multigrid : public Preconditioner {
   }
 
   std::vector<Level> levels_;
-  sk::CallOptions options_;
+  sk::CallOptions options_, foldOptions_;
   MultigridSettings settings_;
 };
 

@@ -39,14 +39,14 @@ Vector inverseDiagonal(sk::Device& device, const Matrix& matrix, const Operator&
 class Diagonal : public Preconditioner {
  public:
   Diagonal(Vector entries, const Arithmetic& arithmetic)
-      : entries_(std::move(entries)), options_(arithmetic.options()) {}
+      : entries_(std::move(entries)), foldOptions_(arithmetic.foldOptions()) {}
   void apply(const Vector& r, Vector& z, Vector& rz) override {
-    multiplyElements.with(options_)(entries_, r, z, rz);
+    multiplyElements.with(foldOptions_)(entries_, r, z, rz);
   }
 
  private:
   Vector entries_;
-  sk::CallOptions options_;
+  sk::CallOptions foldOptions_;
 };
 
 /// A fixed number of Chebyshev's iterations for D^-1 A z = D^-1 r from z = 0, for eigenvalues from bound / 30 to bound.
@@ -58,6 +58,7 @@ class Chebyshev : public Preconditioner {
         change_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
         product_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
         options_(arithmetic.options()),
+        foldOptions_(arithmetic.foldOptions()),
         middle_(a.jacobiBound * (1.0 + 1.0 / 30.0) / 2.0),
         radius_(a.jacobiBound * (1.0 - 1.0 / 30.0) / 2.0) {}
 
@@ -71,14 +72,14 @@ class Chebyshev : public Preconditioner {
                                    inverse_, r, product_, change_, z, change_, z);
       rho = next;
     }
-    dot.with(options_)(r, z, rz);
+    dot.with(foldOptions_)(r, z, rz);
   }
 
  private:
   static constexpr int steps = 4;
   Matrix& matrix_;
   Vector inverse_, change_, product_;
-  sk::CallOptions options_;
+  sk::CallOptions options_, foldOptions_;
   double middle_, radius_;
 };
 

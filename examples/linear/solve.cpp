@@ -30,6 +30,9 @@ double infinityNorm(std::span<const double> v) {
   return largest;
 }
 
+/// Iterations without a new least residual after which a method has stagnated.
+constexpr std::int64_t patience = 500;
+
 std::vector<double> residual(const Operator& a, std::span<const double> b, std::span<const double> x) {
   std::vector<double> r = a.multiply(x);
   for (std::size_t i = 0; i < r.size(); ++i) r[i] = b[i] - r[i];
@@ -89,6 +92,9 @@ class Refinement {
     method_.begin(r, reachable * reachable * squared);
     State state = Running;
     const double start = std::sqrt(squared);
+    double least = solution_.residualRecurred = normR / normB_;
+    std::int64_t leastAt = solution_.iterations;
+    const std::int64_t firstAt = solution_.iterations;
     while (state == Running && solution_.iterations < settings_.most) {
       const std::int64_t ran =
           method_.run(settings_.every, std::min(settings_.every, settings_.most - solution_.iterations));
@@ -97,7 +103,14 @@ class Refinement {
       solution_.residualRecurred = std::sqrt(std::abs(method_.residualSquared())) / start * normR / normB_;
       solution_.history.push_back({solution_.iterations, solution_.residualRecurred});
       if (settings_.progress) settings_.progress(solution_.iterations, solution_.residualRecurred);
-      if (ran == 0) break;
+      if (solution_.residualRecurred < least) {
+        least = solution_.residualRecurred;
+        leastAt = solution_.iterations;
+      }
+      // Plateaus grow with the number of iterations that a system needs.
+      if (ran == 0 ||
+          solution_.iterations - leastAt > std::max(patience, (solution_.iterations - firstAt) / 2))
+        break;
     }
     return state;
   }

@@ -21,8 +21,10 @@
 #include "preconditioner.hpp"
 #include "report.hpp"
 #include "solve.hpp"
+#include "study.hpp"
 #include "support/application.hpp"
 #include "support/progress.hpp"
+#include "support/stopwatch.hpp"
 #include "support/text_file.hpp"
 #include "system.hpp"
 
@@ -34,6 +36,7 @@ struct Settings {
   std::string solver = "cg", preconditioner = "jacobi", layout = "auto";
   std::string precision = "single", storage = "single", entries, accumulate = "compensated";
   linear::SolveSettings solve;
+  bool study = false;
 };
 
 template <class T>
@@ -100,6 +103,8 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30))
       ->capture_default_str();
   cli.add_flag("!--no-refinement", s.solve.refines, "run the method once, in its own precision");
+  cli.add_flag("--study", s.study,
+               "solve with every precision, storage and accumulation, and print what each attains");
   cli.add_option("--solution", s.solution, "write x to this Matrix Market file");
   cli.add_option("--json", s.json, "write what was reached to this file");
   cli.add_option("--chart", s.svg, "draw the residual over the iterations to this file, as SVG");
@@ -135,6 +140,14 @@ void solveSystem(examples::Application& app, Settings& s) {
                system.duplicates());
 
   sk::Device device(app.device());
+  if (s.study && a.size > 0) {
+    const examples::Stopwatch watch;
+    const std::string table =
+        linear::studyPrecisions(device, system, {methodKind, preconditionerKind, s.layout, s.solve});
+    app.report(fmt::format("study of {}", system.description()), device.name(), watch.milliseconds());
+    fmt::print("\n{}", table);
+    return;
+  }
   linear::Account account;
   account.system = system.description();
   account.unknowns = a.size;

@@ -151,6 +151,17 @@ TEST_CASE("A tolerance below the roundoff ends as stagnated, with the best that 
   CHECK(once.residualTrue > 1e-9);
 }
 
+TEST_CASE("A residual that falls no more ends the iterations") {
+  sk::Device device = sk::Device::native();
+  const SparseMatrix a = assemble(poisson({15, 15}));
+  // Vectors of 11 bits, and a tolerance that asks for 26.
+  const Solution s = solveWith(device, a, multiply(a, ones(225)),
+                               {.arithmetic = {.matrix = sk::Storage::Half, .vectors = sk::Storage::Half},
+                                .settings = {.refines = false}});
+  CHECK(s.outcome == Outcome::Stagnated);
+  CHECK(s.iterations < 2000);
+}
+
 TEST_CASE("A right-hand side of zeros, and matrices of any magnitude, are solved") {
   sk::Device device = sk::Device::native();
   const SparseMatrix a = assemble(poisson({5, 5}));

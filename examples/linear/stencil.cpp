@@ -39,9 +39,9 @@ class StencilMatrix : public Matrix {
   }
   void multiply(const Vector& x, Vector& y, Vector& xy) override {
     if (grid_.rank() == 2)
-      stencil2Dot.with(options())(coefficients_, x, y, xy);
+      stencil2Dot.with(foldOptions())(coefficients_, x, y, xy);
     else
-      stencil3Dot.with(options())(coefficients_, x, y, xy);
+      stencil3Dot.with(foldOptions())(coefficients_, x, y, xy);
   }
   std::string layout() const override { return "stencil"; }
   std::int64_t stored() const override { return 0; }
