@@ -2,6 +2,7 @@
 #include "matrix.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "vectors.sk.hpp"
 
@@ -34,6 +35,14 @@ double Arithmetic::roundoff() const {
 void Matrix::multiply(const Vector& x, Vector& y, Vector& xy) {
   multiply(x, y);
   dot.with(foldOptions())(x, y, xy);
+}
+
+void Matrix::fusedDirection(const Vector&, const Vector&, const Vector&, Vector&, Vector&) {
+  throw std::logic_error("this layout has no fused iterations");
+}
+
+void Matrix::fusedStep(const Vector&, const Vector&, const Vector&, Vector&, Vector&, Vector&) {
+  throw std::logic_error("this layout has no fused iterations");
 }
 
 }  // namespace linear

@@ -44,6 +44,14 @@ class Matrix {
   /// The same, and xy, of one element, becomes x . y. Only for square matrices.
   virtual void multiply(const Vector& x, Vector& y, Vector& xy);
 
+  /// Whether an iteration of conjugate gradients costs less in two passes, of which each computes A p.
+  virtual bool isFused() const { return false; }
+  /// p <- r + (rr / before) p, or r if before is 0, and pq, of one element, becomes p . A p.
+  virtual void fusedDirection(const Vector& rr, const Vector& before, const Vector& r, Vector& p, Vector& pq);
+  /// x <- x + (rr / pq) p and r <- r - (rr / pq) A p, and next, of one element, becomes r . r.
+  virtual void fusedStep(const Vector& rr, const Vector& pq, const Vector& p, Vector& x, Vector& r,
+                         Vector& next);
+
   /// The layout's name, as --layout takes it.
   virtual std::string layout() const = 0;
   /// Entries that the layout stores, those that only fill included.

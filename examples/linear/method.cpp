@@ -83,6 +83,36 @@ class ConjugateGradients : public Method {
   Vector z_, p_, q_, rz_, next_, pq_, folded_;
 };
 
+/// The same without a preconditioner, in two passes, for matrices that are not stored.
+class FusedConjugateGradients : public Method {
+ public:
+  FusedConjugateGradients(sk::Device& device, Matrix& matrix, const Arithmetic& arithmetic)
+      : Method(device, matrix, nullptr, arithmetic),
+        p_(vector()),
+        now_(sum()),
+        before_(sum()),
+        next_(sum()),
+        pq_(sum()) {}
+
+ private:
+  void start() override {
+    p_.fill(0.0f);
+    before_.fill(0.0f);
+    dot.with(foldOptions_)(r_, r_, now_);
+    now_.copyTo(rr_);
+  }
+
+  void iterate() override {
+    matrix_.fusedDirection(now_, before_, r_, p_, pq_);
+    matrix_.fusedStep(now_, pq_, p_, x_, r_, next_);
+    cgCheck.with(options_)(limit_, next_, pq_, next_, rr_, state_, done_);
+    std::swap(before_, now_);
+    std::swap(now_, next_);
+  }
+
+  Vector p_, now_, before_, next_, pq_;
+};
+
 /// x <- x + M (b - A x): what a preconditioner does by itself.
 class Stationary : public Method {
  public:
@@ -169,8 +199,15 @@ std::unique_ptr<Method> make(sk::Device& device, Matrix& matrix, Preconditioner*
   return std::make_unique<M>(device, matrix, preconditioner, arithmetic);
 }
 
+std::unique_ptr<Method> makeGradients(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner,
+                                      const Arithmetic& arithmetic) {
+  if (preconditioner == nullptr && matrix.isFused())
+    return std::make_unique<FusedConjugateGradients>(device, matrix, arithmetic);
+  return std::make_unique<ConjugateGradients>(device, matrix, preconditioner, arithmetic);
+}
+
 constexpr MethodKind methods[] = {
-    {"cg", "conjugate gradients, for symmetric positive definite matrices", true, make<ConjugateGradients>},
+    {"cg", "conjugate gradients, for symmetric positive definite matrices", true, makeGradients},
     {"stationary", "x + M (b - A x): the preconditioner by itself", false, make<Stationary>},
     {"bicgstab", "stabilised biconjugate gradients, for any matrix", false, make<BiconjugateGradients>},
 };

@@ -113,6 +113,25 @@ TEST_CASE("Devices that draw solve like native ones") {
   }
 }
 
+TEST_CASE("Fused iterations for stencils are those of a stored matrix") {
+  for (const sk::Shape& grid : {sk::Shape{9, 14}, sk::Shape{5, 6, 7}}) {
+    const Stencil stencil = poisson(grid);
+    const std::vector<double> b = multiply(stencil, ones(stencil.size()));
+    const Operator o = operatorOf(stencil);
+    for (const bool isDrawn : {false, true}) {
+      sk::Device device = isDrawn ? sk::Device(sk::DeviceOptions{.device = "software", .profile = "essl300"})
+                                  : sk::Device::native();
+      const auto stored = solveWith(device, assemble(stencil), b, {.preconditioner = "none"});
+      const std::unique_ptr<Matrix> matrix = makeMatrix(scaled(stencil, o.scale), Arithmetic{});
+      REQUIRE(matrix->isFused());
+      const auto method = rowNamed(methodKinds(), "cg", "solver").make(device, *matrix, nullptr, {});
+      const Solution fused = solve(*method, o, b, {}, {});
+      CHECK(fused.outcome == Outcome::Converged);
+      CHECK(std::abs(fused.iterations - stored.iterations) <= 2);
+    }
+  }
+}
+
 TEST_CASE("What cannot be solved says why") {
   sk::Device device = sk::Device::native();
   const std::vector<double> b = ones(4);

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "fused.sk.hpp"
 #include "products.sk.hpp"
 
 namespace linear {
@@ -42,6 +43,21 @@ class StencilMatrix : public Matrix {
       stencil2Dot.with(foldOptions())(coefficients_, x, y, xy);
     else
       stencil3Dot.with(foldOptions())(coefficients_, x, y, xy);
+  }
+  bool isFused() const override { return true; }
+  void fusedDirection(const Vector& rr, const Vector& before, const Vector& r, Vector& p,
+                      Vector& pq) override {
+    if (grid_.rank() == 2)
+      fusedDirection2.with(foldOptions())(coefficients_, rr, before, r, p, p, pq);
+    else
+      fusedDirection3.with(foldOptions())(coefficients_, rr, before, r, p, p, pq);
+  }
+  void fusedStep(const Vector& rr, const Vector& pq, const Vector& p, Vector& x, Vector& r,
+                 Vector& next) override {
+    if (grid_.rank() == 2)
+      fusedStep2.with(foldOptions())(coefficients_, rr, pq, p, x, r, x, r, next);
+    else
+      fusedStep3.with(foldOptions())(coefficients_, rr, pq, p, x, r, x, r, next);
   }
   std::string layout() const override { return "stencil"; }
   std::int64_t stored() const override { return 0; }
