@@ -140,6 +140,51 @@ class Stationary : public Method {
   Vector b_, z_, q_, rz_;
 };
 
+/// C. Paige and M. Saunders, "Solution of sparse indefinite systems of linear equations" (1975), with a positive definite
+/// preconditioner M (H. Elman, D. Silvester and A. Wathen, "Finite elements and fast iterative solvers", algorithm 4.1). The residual that it computes
+/// is measured by r . M r.
+class MinimalResiduals : public Method {
+ public:
+  MinimalResiduals(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner,
+                   const Arithmetic& arithmetic)
+      : Method(device, matrix, preconditioner, arithmetic),
+        z_(vector()),
+        zNext_(vector()),
+        q_(vector()),
+        vBefore_(vector()),
+        vNext_(vector()),
+        w_(vector()),
+        wBefore_(vector()),
+        zq_(sum()),
+        vz_(sum()),
+        numbers_(device.stream<Minres>({1}, arithmetic.sums())),
+        turned_(device.stream<Minres>({1}, arithmetic.sums())) {}
+
+ private:
+  void start() override {
+    for (Vector* v : {&vBefore_, &w_, &wBefore_}) v->fill(0.0f);
+    precondition(r_, z_, vz_);
+    minresStart.with(options_)(vz_, numbers_, rr_);
+  }
+
+  /// r_ is v of this step.
+  void iterate() override {
+    matrix_.multiply(z_, q_, zq_);
+    minresLanczos.with(options_)(numbers_, zq_, q_, r_, vBefore_, vNext_);
+    precondition(vNext_, zNext_, vz_);
+    minresRotate.with(options_)(limit_, numbers_, zq_, vz_, turned_, rr_, state_, done_);
+    minresStep.with(options_)(numbers_, turned_, z_, w_, wBefore_, x_, wBefore_, x_);
+    std::swap(w_, wBefore_);
+    std::swap(vBefore_, r_);
+    std::swap(r_, vNext_);
+    std::swap(z_, zNext_);
+    std::swap(numbers_, turned_);
+  }
+
+  Vector z_, zNext_, q_, vBefore_, vNext_, w_, wBefore_, zq_, vz_;
+  sk::Stream<Minres> numbers_, turned_;
+};
+
 /// H. van der Vorst, "Bi-CGSTAB: a fast and smoothly converging variant of Bi-CG for the solution of nonsymmetric linear systems"
 /// (1992), preconditioned from the right.
 class BiconjugateGradients : public Method {
@@ -208,6 +253,8 @@ std::unique_ptr<Method> makeGradients(sk::Device& device, Matrix& matrix, Precon
 
 constexpr MethodKind methods[] = {
     {"cg", "conjugate gradients, for symmetric positive definite matrices", true, makeGradients},
+    {"minres", "minimal residuals, for symmetric matrices that are not definite", true,
+     make<MinimalResiduals>},
     {"stationary", "x + M (b - A x): the preconditioner by itself", false, make<Stationary>},
     {"bicgstab", "stabilised biconjugate gradients, for any matrix", false, make<BiconjugateGradients>},
 };

@@ -30,7 +30,7 @@ double infinityNorm(std::span<const double> v) {
   return largest;
 }
 
-/// Iterations without a new least residual after which a method has stagnated.
+/// Iterations that make the residual less than a hundredth smaller, after which a method has stagnated.
 constexpr std::int64_t patience = 500;
 
 std::vector<double> residual(const Operator& a, std::span<const double> b, std::span<const double> x) {
@@ -103,7 +103,7 @@ class Refinement {
       solution_.residualRecurred = std::sqrt(std::abs(method_.residualSquared())) / start * normR / normB_;
       solution_.history.push_back({solution_.iterations, solution_.residualRecurred});
       if (settings_.progress) settings_.progress(solution_.iterations, solution_.residualRecurred);
-      if (solution_.residualRecurred < least) {
+      if (solution_.residualRecurred < 0.99 * least) {
         least = solution_.residualRecurred;
         leastAt = solution_.iterations;
       }

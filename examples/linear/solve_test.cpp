@@ -132,6 +132,35 @@ TEST_CASE("Fused iterations for stencils are those of a stored matrix") {
   }
 }
 
+TEST_CASE("Minimal residuals solve what is indefinite, and what is singular and compatible") {
+  SparseMatrix shifted = assemble(poisson({9, 11}));
+  for (std::size_t i = 0; i < 99; ++i)
+    for (auto k = static_cast<std::size_t>(shifted.starts[i]);
+         k < static_cast<std::size_t>(shifted.starts[i + 1]); ++k)
+      if (shifted.column[k] == static_cast<std::int32_t>(i))
+        shifted.value[k] -= 2.05;  // some eigenvalues are negative then
+  const std::vector<double> b = multiply(shifted, ones(99));
+  std::vector<Entry> ends;  // a line whose ends are free
+  for (std::int64_t i = 0; i + 1 < 30; ++i)
+    for (const Entry& e : {Entry{i, i, 1}, Entry{i + 1, i + 1, 1}, Entry{i, i + 1, -1}, Entry{i + 1, i, -1}})
+      ends.push_back(e);
+  const SparseMatrix free = assemble(30, 30, ends);
+  std::vector<double> balanced(30, 0.0);
+  balanced[3] = 1.0;
+  balanced[20] = -1.0;
+  for (const bool isDrawn : {false, true}) {
+    sk::Device device = isDrawn ? sk::Device(sk::DeviceOptions{.device = "software", .profile = "glsl330"})
+                                : sk::Device::native();
+    const Solution s = solveWith(device, shifted, b, {.solver = "minres", .preconditioner = "none"});
+    CHECK(s.outcome == Outcome::Converged);
+    CHECK(s.iterations < 400);
+    CHECK(solveWith(device, free, balanced, {.solver = "minres", .preconditioner = "jacobi"}).outcome ==
+          Outcome::Converged);
+  }
+  sk::Device device = sk::Device::native();
+  CHECK(solveWith(device, free, ones(30), {.solver = "minres"}).outcome == Outcome::Stagnated);
+}
+
 TEST_CASE("What cannot be solved says why") {
   sk::Device device = sk::Device::native();
   const std::vector<double> b = ones(4);
