@@ -123,6 +123,9 @@ class Stationary : public Method {
         q_(vector()),
         rz_(sum()) {}
 
+  /// Its residual is that of x, which its precision limits, and becomes smaller in each iteration before that.
+  std::int64_t patience() const override { return 32; }
+
  private:
   void start() override {
     r_.copyTo(b_);

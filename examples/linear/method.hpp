@@ -29,6 +29,8 @@ class Method {
   std::int64_t run(std::int64_t every, std::int64_t most);
 
   State state() const;
+  /// Iterations that make the residual less than a hundredth smaller, after which the method has stagnated.
+  virtual std::int64_t patience() const { return 500; }
   /// The squared residual that the method itself computes.
   double residualSquared() const;
   std::vector<double> solution() const { return x_.readReals(); }

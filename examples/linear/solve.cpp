@@ -30,8 +30,15 @@ double infinityNorm(std::span<const double> v) {
   return largest;
 }
 
-/// Iterations that make the residual less than a hundredth smaller, after which a method has stagnated.
-constexpr std::int64_t patience = 500;
+/// But for what rounding the elements and adding them may give.
+bool addsUpToZero(std::span<const double> b) {
+  double sum = 0.0, magnitudes = 0.0;
+  for (const double v : b) {
+    sum += v;
+    magnitudes += std::abs(v);
+  }
+  return std::abs(sum) <= 0x1p-40 * magnitudes;
+}
 
 std::vector<double> residual(const Operator& a, std::span<const double> b, std::span<const double> x) {
   std::vector<double> r = a.multiply(x);
@@ -61,6 +68,8 @@ class Refinement {
 
  private:
   Outcome outcome() {
+    if (a_.hasConstantKernel && a_.asymmetry.empty() && !addsUpToZero(b_))
+      return Outcome::SingularAndIncompatible;
     const double goal = settings_.tolerance * normB_;
     double left = normB_;
     while (left > goal) {
@@ -77,7 +86,7 @@ class Refinement {
       if (!isMuchBetter || !settings_.refines) return Outcome::Stagnated;
       ++solution_.restarts;
     }
-    return Outcome::Converged;
+    return a_.hasConstantKernel ? Outcome::SingularAndCompatible : Outcome::Converged;
   }
 
   /// Solves for residual_, to `goal` of its norm or to what the precision can give, and leaves the iterations' state.
@@ -109,7 +118,7 @@ class Refinement {
       }
       // Plateaus grow with the number of iterations that a system needs.
       if (ran == 0 ||
-          solution_.iterations - leastAt > std::max(patience, (solution_.iterations - firstAt) / 2))
+          solution_.iterations - leastAt > std::max(method_.patience(), (solution_.iterations - firstAt) / 2))
         break;
     }
     return state;
@@ -143,6 +152,8 @@ class Refinement {
 std::string_view nameOf(Outcome outcome) {
   switch (outcome) {
     case Outcome::Converged: return "converged";
+    case Outcome::SingularAndCompatible: return "singular and compatible";
+    case Outcome::SingularAndIncompatible: return "singular and incompatible";
     case Outcome::MostIterations: return "most iterations";
     case Outcome::Stagnated: return "stagnated";
     case Outcome::NotPositiveDefinite: return "not positive definite";

@@ -18,6 +18,8 @@ namespace linear {
 
 enum class Outcome {
   Converged,
+  SingularAndCompatible,  ///< converged; any constant may be added to x
+  SingularAndIncompatible,  ///< no x solves the equations: rows and columns add up to 0, and b does not
   MostIterations,
   Stagnated,  ///< the residual in double precision does not become smaller any more
   NotPositiveDefinite,

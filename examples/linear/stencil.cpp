@@ -17,11 +17,11 @@ void visitNeighbours(const sk::Shape& grid, Visit&& visit) {
   for (std::size_t d = 0; d < static_cast<std::size_t>(grid.rank()); ++d) {
     const std::int64_t extent = grid[static_cast<int>(d)];
     if (extent == 0) return;
+    const std::int64_t block = below;
     below /= extent;
-    for (std::int64_t i = 0; i < grid.size(); ++i) {
-      const std::int64_t at = i / below % extent;
-      if (at > 0) visit(i, i - below, d);
-      if (at + 1 < extent) visit(i, i + below, d);
+    for (std::int64_t first = 0; first < grid.size(); first += block) {
+      for (std::int64_t i = first + below; i < first + block; ++i) visit(i, i - below, d);
+      for (std::int64_t i = first; i < first + block - below; ++i) visit(i, i + below, d);
     }
   }
 }
