@@ -64,6 +64,12 @@ DeviceSettings settingsOf(const SceneTable& table) {
   DeviceSettings settings;
   if (const auto choice = table.choice("traversal", traversalNames))
     settings.traversal = static_cast<HowToTraverse>(*choice);
+  if (const auto nodes = table.integer("nodes", Range{2, wideChildren})) {
+    if (*nodes != 2 && *nodes != wideChildren) table.fail("nodes", "'nodes' have 2 or 8 children");
+    if (*nodes != 2 && settings.traversal == HowToTraverse::Skip)
+      table.fail("nodes", "links past what is missed are for 'nodes' of 2 children; choose another 'traversal'");
+    settings.nodes = static_cast<int>(*nodes);
+  }
   settings.intersection =
       static_cast<HowToIntersect>(table.choice("intersection", intersectionNames).value_or(0));
   settings.bvh.bins = static_cast<int>(table.integer("bins", Range{2, 64}).value_or(settings.bvh.bins));

@@ -34,6 +34,7 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   const bool isNative = device.name().starts_with("native");
   intersection_ = settings.intersection;
   traversal_ = settings.traversal.value_or(isNative ? HowToTraverse::Stack : HowToTraverse::Leaves);
+  width_ = settings.nodes.value_or(2);
   contracted_ = !isNative;
   hasTriangles_ = !model.triangles.empty();
   hasSpheres_ = !model.spheres.empty();
@@ -42,8 +43,21 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   planeCount_ = static_cast<int>(model.planes.size());
   firstPlane_ = model.planeId(0);
   planes_ = streamOf(device, planeLayout(model));
-  nodes_ = streamOf(device, traversal_ == HowToTraverse::Skip ? skipLayout(bvh_) : pairLayout(bvh_));
+  WideBvh wide;
+  std::vector<sk::float4> nodes;
+  if (width_ == wideChildren)
+    wide = widen(bvh_);
+  else
+    nodes = traversal_ == HowToTraverse::Skip ? skipLayout(bvh_) : pairLayout(bvh_);
+  nodes_ = streamOf(device, std::move(nodes));
+  wide_ = streamOf(device, std::move(wide.nodes));
+  children_ = streamOf(device, std::move(wide.children));
   shapes_ = streamOf(device, shapeLayout(bvh_.order, model));
+}
+
+unsigned DeviceScene::kernelTraversal() const {
+  // shape_test.sk: Stack, Leaves, Skip, and the first two of them for nodes of eight.
+  return static_cast<unsigned>(traversal_) + (width_ == wideChildren ? 3u : 0u);
 }
 
 std::vector<std::string> DeviceScene::account() const {

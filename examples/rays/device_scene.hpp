@@ -13,6 +13,7 @@
 #include "bvh.hpp"
 #include "bvh.sk.hpp"
 #include "model.hpp"
+#include "wide_bvh.hpp"
 
 namespace rays {
 
@@ -22,6 +23,7 @@ enum class HowToIntersect : std::uint8_t { Watertight, Moller };
 struct DeviceSettings {
   BvhSettings bvh{};
   std::optional<HowToTraverse> traversal{};  ///< none: what is faster on the device
+  std::optional<int> nodes{};  ///< children of a node, 2 or `wideChildren`; none: what is faster. Skip needs 2
   HowToIntersect intersection = HowToIntersect::Watertight;
 };
 
@@ -41,26 +43,36 @@ class DeviceScene {
   /// The arguments that all kernels begin with, up to `shapes`, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
-    kernel(static_cast<unsigned>(intersection_), static_cast<unsigned>(traversal_), contracted_,
+    kernel(static_cast<unsigned>(intersection_), kernelTraversal(), contracted_,
            hasTriangles_, hasSpheres_, hasPlanes_, nodeCount_, planeCount_, firstPlane_, planes_, nodes_,
-           shapes_, std::forward<More>(more)...);
+           wide_, children_, shapes_, std::forward<More>(more)...);
   }
 
   sk::Device& device() const { return *device_; }
   const Model& model() const { return *model_; }
   const Bvh& bvh() const { return bvh_; }
+  /// As the kernels know them: of two children or of eight, and once for each octant where there are links.
+  std::int64_t nodeCount() const {
+    return width_ == wideChildren ? wide_.size() / 4 : nodes_.size() / 2;
+  }
   std::vector<std::string> account() const;
 
  private:
+  /// kernels::Traversal.
+  unsigned kernelTraversal() const;
+
   sk::Device* device_;
   const Model* model_;
   Bvh bvh_;
   double milliseconds_ = 0.0;  ///< that building took
   HowToIntersect intersection_;
   HowToTraverse traversal_;
+  int width_;  ///< children of a node
   bool contracted_, hasTriangles_, hasSpheres_, hasPlanes_;
   int nodeCount_, planeCount_, firstPlane_;
   sk::Stream<sk::float4> planes_, nodes_, shapes_;
+  sk::Stream<sk::int4> wide_;
+  sk::Stream<std::int32_t> children_;
 };
 
 }  // namespace rays
