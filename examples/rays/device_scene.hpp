@@ -20,11 +20,20 @@ namespace rays {
 enum class HowToTraverse : std::uint8_t { Stack, Leaves, Skip };
 enum class HowToIntersect : std::uint8_t { Watertight, Moller };
 
+/// Paths followed by one kernel to their end, or by a call for each segment of all paths that are left.
+enum class PathMachine : std::uint8_t { Megakernel, Wavefront };
+
+/// Whether rays are brought into an order first, in which neighbours go the same way: by the place where they begin, then the signs of their
+/// directions; or by these signs first.
+enum class RaySort : std::uint8_t { None, Origin, Direction };
+
 struct DeviceSettings {
   BvhSettings bvh{};
   std::optional<HowToTraverse> traversal{};  ///< none: what is faster on the device
   std::optional<int> nodes{};  ///< children of a node, 2 or `wideChildren`; none: what is faster. Skip needs 2
   HowToIntersect intersection = HowToIntersect::Watertight;
+  PathMachine machine = PathMachine::Megakernel;
+  RaySort sort = RaySort::None;  ///< of lists of rays, and of the wavefront machine
 };
 
 /// A gather must not be empty, and what no kernel reads may hold anything.
@@ -35,6 +44,14 @@ sk::Stream<T> streamOf(sk::Device& device, std::vector<T> elements) {
   stream.write(elements);
   return stream;
 }
+
+/// What shading needs of shapes, in the order that hits count them in. Whoever owns them outlives it.
+struct ShapeView {
+  sk::Device& device;
+  const Model& model;
+  bool hasTriangles, hasSpheres;
+  const sk::Stream<sk::float4>&planes, &shapes;
+};
 
 class DeviceScene {
  public:
@@ -51,6 +68,7 @@ class DeviceScene {
   sk::Device& device() const { return *device_; }
   const Model& model() const { return *model_; }
   const Bvh& bvh() const { return bvh_; }
+  ShapeView view() const { return {*device_, *model_, hasTriangles_, hasSpheres_, planes_, shapes_}; }
   /// As the kernels know them: of two children or of eight, and once for each octant where there are links.
   std::int64_t nodeCount() const {
     return width_ == wideChildren ? wide_.size() / 4 : nodes_.size() / 2;

@@ -54,7 +54,7 @@ struct PathStreams {
 
 class MultipassRenderer : public Renderer {
  public:
-  MultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use,
+  MultipassRenderer(const ShapeView& scene, StreamTracer& tracer, const Picture& picture, Use use,
                     PassMeter* meter)
       : scene_(scene),
         tracer_(tracer),
@@ -116,7 +116,7 @@ class MultipassRenderer : public Renderer {
             [&] { kernels::addLight(found, shadowLight, paths.path, paths.path); });
   }
 
-  DeviceShapes& scene_;
+  ShapeView scene_;
   StreamTracer& tracer_;
   Picture picture_;
   Use use_;
@@ -131,7 +131,7 @@ std::unique_ptr<Renderer> makeBranchingRenderer(GridScene& scene, const Picture&
   return std::make_unique<BranchingRenderer>(scene, picture, use);
 }
 
-std::unique_ptr<Renderer> makeMultipassRenderer(DeviceShapes& scene, StreamTracer& tracer,
+std::unique_ptr<Renderer> makeMultipassRenderer(const ShapeView& scene, StreamTracer& tracer,
                                                 const Picture& picture, Use use, PassMeter* meter) {
   return std::make_unique<MultipassRenderer>(scene, tracer, picture, use, meter);
 }

@@ -11,6 +11,7 @@
 
 #include <sk/sk.hpp>
 
+#include "bench_scenes.hpp"
 #include "mesh.hpp"
 #include "model.hpp"
 #include "support/verification.hpp"
@@ -41,8 +42,6 @@ Findings studyEmbree(sk::Device& device, bool isSmall);
 
 /// A closed mesh in a ring on rough ground: 225,000 triangles, or few. The camera looks at all of it.
 Model speedModel(bool isSmall);
-/// From what these rays hit, in any direction about the normal, with the density of the cosine.
-std::vector<Ray> diffuseRays(const Model& model, std::span<const Ray> rays, std::span<const Hit> hits);
 /// How long a call takes: the processor's time on devices that run there, whatever else runs beside it; else the time that passes.
 double callMilliseconds(bool isProcessor, const std::function<void()>& call);
 

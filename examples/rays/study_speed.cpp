@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <random>
 #include <utility>
 
 #include <fmt/format.h>
@@ -88,23 +87,6 @@ double callMilliseconds(bool isProcessor, const std::function<void()>& call) {
   return isProcessor ? 1e3 * double(std::clock() - start) / CLOCKS_PER_SEC : stopwatch.milliseconds();
 }
 
-std::vector<Ray> diffuseRays(const Model& model, std::span<const Ray> rays, std::span<const Hit> hits) {
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal;
-  std::vector<Ray> next;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (hits[i].id < 0) continue;
-    const Triangle& t = model.triangles[static_cast<std::size_t>(hits[i].id)];
-    const auto a = examples::vecOf<double>(t.a), d = examples::vecOf<double>(rays[i].direction);
-    Vector n = normalized(cross(examples::vecOf<double>(t.b) - a, examples::vecOf<double>(t.c) - a));
-    if (dot(n, d) > 0) n = -1.0 * n;
-    const Vector point = examples::vecOf<double>(rays[i].origin) + double(hits[i].t) * d + 1e-5 * n;
-    const Vector anywhere = normalized(Vector{normal(random), normal(random), normal(random)});
-    next.push_back({.origin = toFloat3(point), .direction = toFloat3(normalized(n + 0.999 * anywhere))});
-  }
-  return next;
-}
-
 Model speedModel(bool isSmall) {
   Model model = modelOf(icosphere(isSmall ? 3 : 6, false));
   const auto add = [&](const Mesh& mesh, double scale, double y) {
@@ -136,7 +118,7 @@ Findings studySpeed(sk::Device& device, bool isSmall) {
       engine->closest(primary, hits);
       DeviceScene scene(device, model, settings);
       Streams first = streamsOf(device, primary),
-              second = streamsOf(device, diffuseRays(model, primary, hits));
+              second = streamsOf(device, diffuseRays(model, primary, hits, primary.size()));
       table.add({way.how == HowToIntersect::Watertight ? "watertight" : "moller",
                  std::string(nameOf(way.traversal)), fmt::format("{}", way.nodes), fmt::format("{}", leaf),
                  fmt::format("{}", scene.nodeCount()), fmt::format("{:.0f}", scene.bvh().cost),

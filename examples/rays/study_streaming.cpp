@@ -154,11 +154,11 @@ std::string tableOfUses(GridScene& scene, const Picture& picture, int runs) {
       const bool isBranching = machine == Machine::Branching;
       const std::unique_ptr<Renderer> renderer = isBranching
                                                      ? makeBranchingRenderer(scene, picture, use)
-                                                     : makeMultipassRenderer(scene, tracer, picture, use);
+                                                     : makeMultipassRenderer(scene.view(), tracer, picture, use);
       if (isBranching)
         meter.measure("all", 0, [&] { renderer->pass(0); });
       else
-        makeMultipassRenderer(scene, counted, picture, use, &meter)->pass(0);
+        makeMultipassRenderer(scene.view(), counted, picture, use, &meter)->pass(0);
       const sk::PassCount count = sumOf(meter);
       const double best = bestMilliseconds(scene.device, runs, [&] { renderer->pass(0); });
       table.add({std::string(names[static_cast<std::size_t>(use)]), isBranching ? "branching" : "multipass",
@@ -174,7 +174,7 @@ std::string tableOfKernels(GridScene& scene, const Picture& picture) {
   PassMeter meter(scene.device);
   GridTracer tracer(scene, {.machine = Machine::Multipass}, &meter);
   const std::unique_ptr<Renderer> renderer =
-      makeMultipassRenderer(scene, tracer, picture, Use::Paths, &meter);
+      makeMultipassRenderer(scene.view(), tracer, picture, Use::Paths, &meter);
   renderer->pass(0);
   meter.forget();
   renderer->pass(0);
@@ -214,7 +214,7 @@ Findings studyStreaming(sk::Device& device, bool isSmall) {
   GridScene scene(device, model, {}, HowToIntersect::Watertight);
   const Picture picture{.width = side, .height = side, .depth = 4};
   Findings findings;
-  findings.table = tableOfSteps(device, model, {primary, diffuseRays(model, primary, hits)}, runs) + "\n" +
+  findings.table = tableOfSteps(device, model, {primary, diffuseRays(model, primary, hits, primary.size())}, runs) + "\n" +
                    tableOfDials(scene, primary, runs) + "\n" + tableOfUses(scene, picture, runs) + "\n" +
                    tableOfKernels(scene, picture);
   findings.verifications.push_back(checkEngine(*engine, model, side, side));
