@@ -26,8 +26,10 @@ void add(Model& model, const Mesh& mesh, const Vector& scale, const Vector& at) 
 
 /// A sum of waves that go in different directions, from -1 to 1.
 double waves(const Vector& p, double frequency) {
-  return (std::sin(frequency * p.x + 1.3 * std::sin(frequency * p.y)) + std::sin(frequency * p.y + 0.7 * frequency * p.z) +
-          std::sin(1.1 * frequency * p.z - 0.4 * frequency * p.x)) / 3;
+  return (std::sin(frequency * p.x + 1.3 * std::sin(frequency * p.y)) +
+          std::sin(frequency * p.y + 0.7 * frequency * p.z) +
+          std::sin(1.1 * frequency * p.z - 0.4 * frequency * p.x)) /
+         3;
 }
 
 /// Moves each point away from the middle, or back.
@@ -48,10 +50,12 @@ Model interior(bool isSmall) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (int i = 0; i < 40; ++i) {
-    const double x = -1.8 + 0.4 * (i % 10), z = -0.75 + 0.5 * double(i / 10), tall = 0.15 + 0.2 * uniform(random);
+    const double x = -1.8 + 0.4 * (i % 10), z = -0.75 + 0.5 * double(i / 10),
+                 tall = 0.15 + 0.2 * uniform(random);
     add(model, box(), {0.16, tall, 0.16}, {x, 0.5 * tall, z});
     add(model, vase, {0.2, 0.3, 0.2}, {x, tall + 0.15, z});
-    add(model, ring, {0.3, 0.2 + 0.2 * uniform(random), 0.3}, {x + 0.1, 0.9 + 0.1 * uniform(random), z + 0.1});
+    add(model, ring, {0.3, 0.2 + 0.2 * uniform(random), 0.3},
+        {x + 0.1, 0.9 + 0.1 * uniform(random), z + 0.1});
   }
   model.camera.from = {-1.7, 0.75, 0.9};
   model.camera.to = {0.6, 0.35, -0.4};

@@ -85,7 +85,8 @@ DeviceSettings settingsOf(const SceneTable& table) {
   if (const auto nodes = table.integer("nodes", Range{2, wideChildren})) {
     if (*nodes != 2 && *nodes != wideChildren) table.fail("nodes", "'nodes' have 2 or 8 children");
     if (*nodes != 2 && settings.traversal == HowToTraverse::Skip)
-      table.fail("nodes", "links past what is missed are for 'nodes' of 2 children; choose another 'traversal'");
+      table.fail("nodes",
+                 "links past what is missed are for 'nodes' of 2 children; choose another 'traversal'");
     settings.nodes = static_cast<int>(*nodes);
   }
   settings.intersection =

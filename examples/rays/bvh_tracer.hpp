@@ -16,6 +16,9 @@ class BvhTracer : public StreamTracer {
   void find(bool anyHit, const sk::Stream<sk::float4>& from, const sk::Stream<sk::float4>& along,
             sk::Stream<kernels::Found>& found) override;
 
+  /// What rays are sorted by; there must be shapes.
+  sk::Stream<int> keys(const sk::Stream<sk::float4>& from, const sk::Stream<sk::float4>& along) const;
+
  private:
   DeviceScene& scene_;
   RaySort sort_;

@@ -24,7 +24,28 @@ Bvh built(const Model& model, const BvhSettings& settings) {
   return bvh;
 }
 
+struct Way {
+  HowToTraverse traversal;
+  int nodes;
+};
+
+/// What was fastest on devices of a kind in the study of speed (docs/rays.md).
+Way fastestOn(const sk::Device& device) {
+  if (device.name().starts_with("native")) return {HowToTraverse::Stack, wideChildren};
+  if (device.isSoftware()) return {HowToTraverse::Leaves, 2};
+  return {HowToTraverse::Stack, 2};
+}
+
 }  // namespace
+
+std::string_view nameOf(HowToTraverse way) {
+  switch (way) {
+    case HowToTraverse::Stack: return "stack";
+    case HowToTraverse::Leaves: return "leaves";
+    case HowToTraverse::Skip: return "skip";
+  }
+  return "";
+}
 
 DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSettings& settings)
     : device_(&device), model_(&model) {
@@ -33,8 +54,12 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   milliseconds_ = stopwatch.milliseconds();
   const bool isNative = device.name().starts_with("native");
   intersection_ = settings.intersection;
-  traversal_ = settings.traversal.value_or(isNative ? HowToTraverse::Stack : HowToTraverse::Leaves);
-  width_ = settings.nodes.value_or(2);
+  const Way fastest = fastestOn(device);
+  traversal_ = settings.traversal.value_or(fastest.traversal);
+  // Links are for two children, and there are at most as many wide nodes as others.
+  const bool canBeWide = traversal_ != HowToTraverse::Skip && bvh_.nodes.size() <= mostWideNodes;
+  width_ = settings.nodes.value_or(canBeWide ? fastest.nodes : 2);
+  isChosen_ = !settings.traversal && !settings.nodes;
   contracted_ = !isNative;
   hasTriangles_ = !model.triangles.empty();
   hasSpheres_ = !model.spheres.empty();
@@ -62,10 +87,12 @@ unsigned DeviceScene::kernelTraversal() const {
 
 std::vector<std::string> DeviceScene::account() const {
   if (bvh_.nodes.empty()) return {};
-  return {fmt::format(
-      "hierarchy: {} triangles, {} spheres in {} nodes, {} levels, expected cost {:.1f}, built in {:.0f} ms",
-      model_->triangles.size(), model_->spheres.size(), bvh_.nodes.size(), bvh_.depth, bvh_.cost,
-      milliseconds_)};
+  return {fmt::format("hierarchy: {} triangles, {} spheres in {} nodes, {} levels, expected cost {:.1f}, "
+                      "built in {:.0f} ms",
+                      model_->triangles.size(), model_->spheres.size(), bvh_.nodes.size(), bvh_.depth,
+                      bvh_.cost, milliseconds_),
+          fmt::format("rays go through nodes of {} children, traversal \"{}\"{}", width_, nameOf(traversal_),
+                      isChosen_ ? ", the fastest on such a device" : "")};
 }
 
 }  // namespace rays

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sk/sk.hpp>
@@ -18,6 +19,9 @@
 namespace rays {
 
 enum class HowToTraverse : std::uint8_t { Stack, Leaves, Skip };
+/// As scenes spell it.
+std::string_view nameOf(HowToTraverse way);
+
 enum class HowToIntersect : std::uint8_t { Watertight, Moller };
 
 /// Paths followed by one kernel to their end, or by a call for each segment of all paths that are left.
@@ -30,7 +34,8 @@ enum class RaySort : std::uint8_t { None, Origin, Direction };
 struct DeviceSettings {
   BvhSettings bvh{};
   std::optional<HowToTraverse> traversal{};  ///< none: what is faster on the device
-  std::optional<int> nodes{};  ///< children of a node, 2 or `wideChildren`; none: what is faster. Skip needs 2
+  std::optional<int>
+      nodes{};  ///< children of a node, 2 or `wideChildren`; none: what is faster. Skip needs 2
   HowToIntersect intersection = HowToIntersect::Watertight;
   PathMachine machine = PathMachine::Megakernel;
   RaySort sort = RaySort::None;  ///< of lists of rays, and of the wavefront machine
@@ -60,9 +65,9 @@ class DeviceScene {
   /// The arguments that all kernels begin with, up to `shapes`, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
-    kernel(static_cast<unsigned>(intersection_), kernelTraversal(), contracted_,
-           hasTriangles_, hasSpheres_, hasPlanes_, nodeCount_, planeCount_, firstPlane_, planes_, nodes_,
-           wide_, children_, shapes_, std::forward<More>(more)...);
+    kernel(static_cast<unsigned>(intersection_), kernelTraversal(), contracted_, hasTriangles_, hasSpheres_,
+           hasPlanes_, nodeCount_, planeCount_, firstPlane_, planes_, nodes_, wide_, children_, shapes_,
+           std::forward<More>(more)...);
   }
 
   sk::Device& device() const { return *device_; }
@@ -70,9 +75,7 @@ class DeviceScene {
   const Bvh& bvh() const { return bvh_; }
   ShapeView view() const { return {*device_, *model_, hasTriangles_, hasSpheres_, planes_, shapes_}; }
   /// As the kernels know them: of two children or of eight, and once for each octant where there are links.
-  std::int64_t nodeCount() const {
-    return width_ == wideChildren ? wide_.size() / 4 : nodes_.size() / 2;
-  }
+  std::int64_t nodeCount() const { return width_ == wideChildren ? wide_.size() / 4 : nodes_.size() / 2; }
   std::vector<std::string> account() const;
 
  private:
@@ -86,6 +89,7 @@ class DeviceScene {
   HowToIntersect intersection_;
   HowToTraverse traversal_;
   int width_;  ///< children of a node
+  bool isChosen_;  ///< both, because nothing was asked for
   bool contracted_, hasTriangles_, hasSpheres_, hasPlanes_;
   int nodeCount_, planeCount_, firstPlane_;
   sk::Stream<sk::float4> planes_, nodes_, shapes_;

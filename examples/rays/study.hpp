@@ -35,6 +35,8 @@ std::span<const Study> studies();
 Findings studyLeaks(sk::Device& device, bool isSmall);
 Findings studySpeed(sk::Device& device, bool isSmall);
 Findings studyStreaming(sk::Device& device, bool isSmall);
+Findings studyWavefront(sk::Device& device, bool isSmall);
+Findings studyEngines(sk::Device& device, bool isSmall);
 Findings studyRayEngine(sk::Device& device, bool isSmall);
 
 /// Embree on the same rays, where the program was built with it; throws std::runtime_error elsewhere.
@@ -44,6 +46,12 @@ Findings studyEmbree(sk::Device& device, bool isSmall);
 Model speedModel(bool isSmall);
 /// How long a call takes: the processor's time on devices that run there, whatever else runs beside it; else the time that passes.
 double callMilliseconds(bool isProcessor, const std::function<void()>& call);
+
+bool runsOnProcessor(const sk::Device& device);
+/// The best of some calls, each with the wait for it. They follow one that compiles and, on a GPU, others that raise its clock.
+double bestMilliseconds(sk::Device& device, int calls, const std::function<void()>& call);
+/// Millions of elements a second, likewise.
+double callRate(sk::Device& device, double elements, int calls, const std::function<void()>& call);
 
 /// Millions of rays a second through a hierarchy of default settings: the best of some calls, without the way to the device and back.
 double closestRate(sk::Device& device, const Model& model, std::span<const Ray> rays, int calls);

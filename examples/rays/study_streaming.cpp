@@ -22,20 +22,6 @@
 namespace rays {
 namespace {
 
-/// Of some runs, without the first, which compiles.
-double bestMilliseconds(sk::Device& device, int runs, const std::function<void()>& run) {
-  run();
-  device.finish();
-  double best = HUGE_VAL;
-  for (int i = 0; i < runs; ++i) {
-    best = std::min(best, milliseconds(device, [&] {
-                      run();
-                      device.finish();
-                    }));
-  }
-  return best;
-}
-
 std::string rateText(std::int64_t rays, double time) {
   return fmt::format("{:.2f}", double(rays) / time / 1e3);
 }
@@ -152,9 +138,9 @@ std::string tableOfUses(GridScene& scene, const Picture& picture, int runs) {
       PassMeter meter(scene.device);
       GridTracer counted(scene, {.machine = machine}, &meter), tracer(scene, {.machine = machine});
       const bool isBranching = machine == Machine::Branching;
-      const std::unique_ptr<Renderer> renderer = isBranching
-                                                     ? makeBranchingRenderer(scene, picture, use)
-                                                     : makeMultipassRenderer(scene.view(), tracer, picture, use);
+      const std::unique_ptr<Renderer> renderer =
+          isBranching ? makeBranchingRenderer(scene, picture, use)
+                      : makeMultipassRenderer(scene.view(), tracer, picture, use);
       if (isBranching)
         meter.measure("all", 0, [&] { renderer->pass(0); });
       else
@@ -214,9 +200,10 @@ Findings studyStreaming(sk::Device& device, bool isSmall) {
   GridScene scene(device, model, {}, HowToIntersect::Watertight);
   const Picture picture{.width = side, .height = side, .depth = 4};
   Findings findings;
-  findings.table = tableOfSteps(device, model, {primary, diffuseRays(model, primary, hits, primary.size())}, runs) + "\n" +
-                   tableOfDials(scene, primary, runs) + "\n" + tableOfUses(scene, picture, runs) + "\n" +
-                   tableOfKernels(scene, picture);
+  findings.table =
+      tableOfSteps(device, model, {primary, diffuseRays(model, primary, hits, primary.size())}, runs) + "\n" +
+      tableOfDials(scene, primary, runs) + "\n" + tableOfUses(scene, picture, runs) + "\n" +
+      tableOfKernels(scene, picture);
   findings.verifications.push_back(checkEngine(*engine, model, side, side));
   return findings;
 }

@@ -18,8 +18,8 @@ enum RayFloats {
 // Problem::ints: rays::WideBvh.
 enum RayInts { rayWideNodes, rayWideChildren };
 
-constexpr const char* rayPrograms[] = {"rays: interior, primary", "rays: interior, diffuse", "rays: organic mesh, primary",
-                                       "rays: organic mesh, diffuse"};
+constexpr const char* rayPrograms[] = {"rays: interior, primary", "rays: interior, diffuse",
+                                       "rays: organic mesh, primary", "rays: organic mesh, diffuse"};
 
 /// Integers are in floats with bits that are neither NaN nor denormal: this number is added to them.
 constexpr int rayIntBias = 0x40000001;

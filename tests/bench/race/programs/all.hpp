@@ -90,9 +90,9 @@ Problem meshDiffuseProblem(int log2);
 Check hallCheck(const Problem& problem);
 Check meshCheck(const Problem& problem);
 RACE_OURS(hall);
-RACE_OURS(hallPairs);
+RACE_OURS(hallOther);
 RACE_OURS(mesh);
-RACE_OURS(meshPairs);
+RACE_OURS(meshOther);
 
 #undef RACE_OURS
 

@@ -52,7 +52,6 @@ std::vector<Ray> raysOf(Scene scene, Kind kind, const Problem& p) {
   return rays::diffuseRays(model, primary, hits, primary.size());
 }
 
-
 template <Scene scene, Kind kind>
 Problem problemOf(int log2) {
   const Model& model = modelOf(scene);
@@ -187,11 +186,14 @@ class NearestHits final : public OurTask {
   sk::Stream<std::int32_t> id_;
 };
 
+/// `isOther`: not with the nodes that are chosen for the device, two-wide or eight-wide, but with the others.
 template <Scene scene>
 std::unique_ptr<Task> oursBy(sk::Device& device, const sk::CallOptions& options, const Problem& p,
-                             int nodes) {
-  return std::make_unique<NearestHits>(device, options, p, modelOf(scene),
-                                       rays::DeviceSettings{.nodes = nodes});
+                             bool isOther) {
+  const int others = device.name().starts_with("native") ? 2 : rays::wideChildren;
+  rays::DeviceSettings settings;
+  if (isOther) settings.nodes = others;
+  return std::make_unique<NearestHits>(device, options, p, modelOf(scene), settings);
 }
 
 }  // namespace
@@ -203,16 +205,16 @@ Problem meshDiffuseProblem(int log2) { return problemOf<Scene::Mesh, Kind::Diffu
 Check hallCheck(const Problem& p) { return checkOf<Scene::Hall>(p); }
 Check meshCheck(const Problem& p) { return checkOf<Scene::Mesh>(p); }
 std::unique_ptr<Task> hallOurs(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
-  return oursBy<Scene::Hall>(device, options, p, rays::wideChildren);
+  return oursBy<Scene::Hall>(device, options, p, false);
 }
-std::unique_ptr<Task> hallPairsOurs(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
-  return oursBy<Scene::Hall>(device, options, p, 2);
+std::unique_ptr<Task> hallOtherOurs(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
+  return oursBy<Scene::Hall>(device, options, p, true);
 }
 std::unique_ptr<Task> meshOurs(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
-  return oursBy<Scene::Mesh>(device, options, p, rays::wideChildren);
+  return oursBy<Scene::Mesh>(device, options, p, false);
 }
-std::unique_ptr<Task> meshPairsOurs(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
-  return oursBy<Scene::Mesh>(device, options, p, 2);
+std::unique_ptr<Task> meshOtherOurs(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
+  return oursBy<Scene::Mesh>(device, options, p, true);
 }
 
 }  // namespace race

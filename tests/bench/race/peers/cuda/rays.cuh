@@ -233,8 +233,8 @@ class RayTask final : public Task {
 
 void addRays(std::vector<Contender>& contenders) {
   for (const char* program : rayPrograms) {
-    contenders.push_back({program, "CUDA", [](const Problem& p) { return std::make_unique<RayTask>(p, true); }});
-    contenders.push_back({program, "CUDA two-wide", [](const Problem& p) { return std::make_unique<RayTask>(p, false); }});
+    contenders.push_back({program, "CUDA", [](const Problem& p) { return std::make_unique<RayTask>(p, false); }});
+    contenders.push_back({program, "CUDA eight-wide", [](const Problem& p) { return std::make_unique<RayTask>(p, true); }});
   }
 }
 

@@ -27,8 +27,8 @@ class EmbreeHits final : public Task {
     const std::size_t points = corners.size() / 3;
     std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, points),
                 corners.data(), corners.size() * sizeof(float));
-    auto* faces = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                                 RTC_FORMAT_UINT3, 12, points / 3));
+    auto* faces = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, points / 3));
     for (std::size_t i = 0; i < points; ++i) faces[i] = static_cast<unsigned>(i);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
@@ -55,7 +55,9 @@ class EmbreeHits final : public Task {
   std::vector<float> result() override { return result_; }
 
  private:
-  const float* origin(std::int64_t i) const { return &p_.floats[rayOrigins][static_cast<std::size_t>(4 * i)]; }
+  const float* origin(std::int64_t i) const {
+    return &p_.floats[rayOrigins][static_cast<std::size_t>(4 * i)];
+  }
   const float* direction(std::int64_t i) const {
     return &p_.floats[rayDirections][static_cast<std::size_t>(4 * i)];
   }
@@ -97,7 +99,8 @@ class EmbreeHits final : public Task {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcIntersect8(all, scene_, &context, &packet);
-    for (int k = 0; k < 8; ++k) note(first + k, packet.hit.geomID[k], packet.hit.primID[k], packet.ray.tfar[k]);
+    for (int k = 0; k < 8; ++k)
+      note(first + k, packet.hit.geomID[k], packet.hit.primID[k], packet.ray.tfar[k]);
     return 8;
   }
 

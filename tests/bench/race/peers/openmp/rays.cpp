@@ -42,7 +42,8 @@ float entry(const Ray& r, const Element& low, const Element& high, float most) {
   const float ax = (low.v.x - r.origin.x) * r.inverse.x, bx = (high.v.x - r.origin.x) * r.inverse.x;
   const float ay = (low.v.y - r.origin.y) * r.inverse.y, by = (high.v.y - r.origin.y) * r.inverse.y;
   const float az = (low.v.z - r.origin.z) * r.inverse.z, bz = (high.v.z - r.origin.z) * r.inverse.z;
-  const float from = std::max(std::max(std::min(ax, bx), std::min(ay, by)), std::max(std::min(az, bz), r.least));
+  const float from =
+      std::max(std::max(std::min(ax, bx), std::min(ay, by)), std::max(std::min(az, bz), r.least));
   const float to = std::min(std::min(std::max(ax, bx), std::max(ay, by)), std::min(std::max(az, bz), most));
   return from <= to * 1.000001f ? from : nowhere;
 }
