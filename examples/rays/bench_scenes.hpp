@@ -11,7 +11,7 @@
 
 namespace rays {
 
-/// Vases, rings and blocks between walls, where every ray hits something: 302,000 triangles, or few.
+/// Vases, rings and blocks between walls, where every ray hits something: 301,000 triangles, or few.
 Model interior(bool isSmall);
 
 /// A torus with bumps and folds: 70,000 triangles, or few.

@@ -76,12 +76,18 @@ class MultipassRenderer : public Renderer {
     });
     for (int segment = 0; paths.path.size() > 0; ++segment) {
       shade(sample, segment, paths);
-      PathStreams next(scene_.device, {0});
+      auto kept = scene_.device.stream<int>({0});
       metered(meter_, "end paths", paths.path.size(), [&] {
         kernels::deliverLight(paths.path, paths.along, paths.pixel, exposure_.radiance);
-        kernels::keepPaths(paths.from, paths.along, paths.path, paths.pixel, next.from, next.along, next.path,
-                           next.pixel);
+        kernels::keepPaths(paths.along, sk::iter(0, static_cast<int>(paths.path.size())), kept);
       });
+      PathStreams next(scene_.device, kept.shape());
+      if (kept.size() > 0) {
+        metered(meter_, "move paths", kept.size(), [&] {
+          kernels::movePaths(kept, paths.from, paths.along, paths.path, paths.pixel, next.from, next.along,
+                             next.path, next.pixel);
+        });
+      }
       paths = std::move(next);
     }
     exposure_.add();
