@@ -152,30 +152,9 @@ std::string PathTables::account() const {
                      without.empty() ? "nothing" : fmt::format("{}", fmt::join(without, ", ")));
 }
 
-Exposure::Exposure(sk::Device& device, const Picture& picture) {
-  const sk::Shape shape{picture.height, picture.width};
-  radiance = device.stream<sk::float3>(shape);
-  sum_ = device.stream<sk::double3>(shape);
-  mean_ = device.stream<sk::float3>(shape);
-  squares_ = device.stream<sk::double3>(shape);
-  sum_.fill({0, 0, 0});
-  squares_.fill({0, 0, 0});
-}
-
-void Exposure::add() {
-  kernels::accumulate(radiance, sum_, squares_, sum_, squares_);
-  ++passes_;
-}
-
-std::vector<sk::float3> Exposure::image() {
-  kernels::meanOf(sum_, static_cast<int>(std::max<std::int64_t>(passes_, 1)), mean_);
-  return mean_.read();
-}
-
-std::vector<sk::float3> Exposure::variance() {
-  if (passes_ < 2) return {};
-  kernels::varianceOf(sum_, squares_, static_cast<int>(passes_), mean_);
-  return mean_.read();
+void PathsRenderer::look(const Camera& camera) {
+  tables_.view = viewFor(camera, picture_);
+  exposure_.clear();
 }
 
 }  // namespace rays
