@@ -19,6 +19,7 @@
 #include "exposure.hpp"
 #include "hits_file.hpp"
 #include "layers.hpp"
+#include "live.hpp"
 #include "reference.hpp"
 #include "render.hpp"
 #include "scene.hpp"
@@ -44,6 +45,7 @@ struct Settings {
   bool small = false;
   std::string layers;
   bool strict = false;
+  bool window = false;
 };
 
 void addOptions(CLI::App& cli, Settings& s) {
@@ -72,6 +74,9 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--layers", s.layers,
                  "write FILE_depth.pfm, _normal.pfm, _albedo.pfm, _id.pfm, _variance.pfm and _samples.pfm "
                  "beside the picture");
+  cli.add_flag(
+      "--window", s.window,
+      "show it in a window while it becomes better: the mouse turns it, the wheel; space, r, +, -, q");
   std::string studies = "measure what choices are worth, and print a table:";
   for (const rays::Study& study : rays::studies())
     studies += fmt::format("\n  {:<11} {}", study.name, study.asks);
@@ -174,6 +179,13 @@ void makePicture(examples::Application& app, const Settings& s, const rays::Scen
   app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
 }
 
+void showPicture(examples::Application& app, const Settings& s, rays::Scene& scene) {
+  if (!s.resume.empty())
+    throw std::runtime_error("--window and --resume exclude each other: a window is not resumed");
+  rays::checkOutput(scene);
+  rays::runLive(scene, app.device());
+}
+
 void runStudy(examples::Application& app, const Settings& s) {
   std::string names;
   for (const rays::Study& study : rays::studies()) {
@@ -203,8 +215,9 @@ int main(int argc, char** argv) {
     if (!settings.rays.empty() && settings.hits.empty())
       throw std::runtime_error("--trace needs --hits, where its hits go");
     try {
-      const rays::Scene scene = sceneOf(settings);
+      rays::Scene scene = sceneOf(settings);
       if (!settings.hits.empty()) return writeHits(app, settings, scene);
+      if (settings.window) return showPicture(app, settings, scene);
       makePicture(app, settings, scene);
     } catch (const std::bad_alloc&) {
       throw std::runtime_error("the scene does not fit in memory; take smaller meshes or fewer instances");
