@@ -102,6 +102,20 @@ std::vector<Layer> layersOf(Engine& engine, const Model& model, const Picture& p
   return layers;
 }
 
+bool seesBacksAlone(Engine& engine, const Model& model) {
+  const std::vector<Ray> rays = primaryRays(model.camera, 8, 8);
+  std::vector<Hit> hits(rays.size());
+  engine.closest(rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].id < 0) return false;
+    const Seen seen = seenAt(model, rays[i], hits[i]);
+    const Scattering scattering = model.materials[static_cast<std::size_t>(seen.material)].scattering;
+    const bool isClear = scattering == Scattering::Glass || scattering == Scattering::Frosted;
+    if (isClear || dot(seen.normal, vecOf<double>(rays[i].direction)) <= 0) return false;
+  }
+  return true;
+}
+
 std::vector<Layer> layersOf(Exposure& exposure) {
   std::vector<Layer> layers;
   if (exposure.passes() >= 2) layers.push_back({.name = "variance", .pixels = exposure.variance()});

@@ -28,6 +28,9 @@ std::vector<Layer> layersOf(Exposure& exposure);
 /// (of the material, textures included), "id" (-1: nothing).
 std::vector<Layer> layersOf(Engine& engine, const Model& model, const Picture& picture);
 
+/// Whether all that the camera sees, by some rays, are backs of surfaces that are not glass, as inside of a wall.
+bool seesBacksAlone(Engine& engine, const Model& model);
+
 /// PREFIX_NAME.pfm for each. Throws std::runtime_error where a file cannot be written.
 void saveLayers(const std::string& prefix, const std::vector<Layer>& layers, const Picture& picture);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // rays: pictures and hits of scene files, by the engine that the scene asks for.
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 #include <sk/sk.hpp>
 
+#include "account.hpp"
 #include "camera.hpp"
 #include "engine.hpp"
 #include "exposure.hpp"
@@ -46,6 +48,7 @@ struct Settings {
   std::string layers;
   bool strict = false;
   bool window = false;
+  bool account = false;
 };
 
 void addOptions(CLI::App& cli, Settings& s) {
@@ -77,6 +80,8 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_flag(
       "--window", s.window,
       "show it in a window while it becomes better: the mouse turns it, the wheel; space, r, +, -, q");
+  cli.add_flag("--account", s.account,
+               "measure what it saves that kernels have nothing that the scene does not name");
   std::string studies = "measure what choices are worth, and print a table:";
   for (const rays::Study& study : rays::studies())
     studies += fmt::format("\n  {:<11} {}", study.name, study.asks);
@@ -156,6 +161,12 @@ void makePicture(examples::Application& app, const Settings& s, const rays::Scen
   const rays::Picture& picture = scene.picture;
   const std::unique_ptr<rays::Renderer> renderer = engine->renderer(picture);
   const rays::Rendering rendering = rays::render(*renderer, scene, {s.resume, device.name()});
+  const bool isBlack = std::ranges::all_of(
+      rendering.radiance, [](const sk::float3& r) { return r.x == 0 && r.y == 0 && r.z == 0; });
+  if (isBlack && rays::seesBacksAlone(*engine, scene.model))
+    fmt::print(stderr,
+               "rays: warning: the picture is black, and the camera sees nothing but the backs of surfaces; "
+               "is it inside of a wall?\n");
   const bool isExr = scene.output.picture.extension() == ".exr";
   std::vector<rays::Layer> layers;
   if (isExr || !s.layers.empty()) {
@@ -177,6 +188,10 @@ void makePicture(examples::Application& app, const Settings& s, const rays::Scen
     fmt::print("wrote {} layers, {}_*.pfm\n", layers.size(), s.layers);
   }
   app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
+  if (!s.account) return;
+  const rays::Account account = rays::accountFor(*engine, scene);
+  fmt::print("{}\n", account.text);
+  app.verified(account.agreement);
 }
 
 void showPicture(examples::Application& app, const Settings& s, rays::Scene& scene) {

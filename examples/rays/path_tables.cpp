@@ -43,6 +43,9 @@ constexpr std::array<std::string_view, 12> featureNames = {"mirrors",
                                                            "a lens",
                                                            "the sky's image"};
 
+/// A sky without an image is another kind of light, and not one that costs nothing.
+constexpr int everything = ((1 << featureNames.size()) - 1) & ~SkyImage;
+
 bool isBlack(const sk::float3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 int scatteringFeature(Scattering scattering) {
@@ -108,16 +111,19 @@ std::vector<sk::float4> cornersOf(const Model& model) {
 kernels::View viewFor(const Camera& camera, const Picture& picture) {
   const View view = viewOf(camera, std::max(picture.width, 1), std::max(picture.height, 1));
   const Vector x = normalized(view.across), y = normalized(view.down);
-  return {toFloat3(view.origin),           toFloat3(view.corner),
-          toFloat3(view.across),           toFloat3(view.down),
-          toFloat3(camera.lens * x),       toFloat3(camera.lens * y),
-          static_cast<float>(camera.focus)};
+  return {toFloat3(view.origin),
+          toFloat3(view.corner),
+          toFloat3(view.across),
+          toFloat3(view.down),
+          toFloat3(camera.lens * x),
+          toFloat3(camera.lens * y),
+          static_cast<float>(camera.focus > 0 ? camera.focus : 1.0)};
 }
 
 }  // namespace
 
 PathTables::PathTables(sk::Device& device, const Model& model, const Picture& picture)
-    : features(featuresOf(model)),
+    : features(featuresOf(model) | (picture.everything ? everything : 0)),
       sampling(picture.sampling),
       seed(picture.seed),
       view(viewFor(model.camera, picture)) {

@@ -21,6 +21,8 @@ namespace rays {
 
 namespace {
 
+/// Their sums take 100 bytes each, of the device's memory and, on file, of the host's.
+constexpr std::int64_t mostPixels = std::int64_t{1} << 26;
 /// What is darker than this part of white counts as so bright, where errors are compared with brightness.
 constexpr double darkest = 0.05;
 /// So that a run that is stopped loses no more than this.
@@ -102,6 +104,9 @@ void checkOutput(const Scene& scene) {
   if (scene.picture.width == 0 || scene.picture.height == 0)
     throw std::runtime_error(fmt::format("a picture of {} x {} pixels has none; give it a size",
                                          scene.picture.width, scene.picture.height));
+  if (std::int64_t{scene.picture.width} * scene.picture.height > mostPixels)
+    throw std::runtime_error(fmt::format("a picture of {} x {} pixels is too large; it may have {}",
+                                         scene.picture.width, scene.picture.height, mostPixels));
 }
 
 void saveRendering(const Rendering& rendering, const Scene& scene, const std::vector<Layer>& layers) {

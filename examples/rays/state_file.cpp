@@ -170,6 +170,8 @@ void saveState(const std::filesystem::path& file, const Identity& identity, cons
 }
 
 Gathered loadState(const std::filesystem::path& file, const Identity& identity) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) fail(file, "is no file; name another one");
   std::ifstream stream(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
   if (stream.bad() || bytes.empty()) fail(file, "cannot be read, or is empty");
