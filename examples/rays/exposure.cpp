@@ -27,7 +27,7 @@ void Exposure::clear() {
   list_ = {};
 }
 
-void Exposure::deliver() { kernels::deliver(pixels_, list_, radiance); }
+void Exposure::deliver() { kernels::deliverSamples(pixels_, list_, radiance); }
 
 void Exposure::add() {
   if (isSparse()) {

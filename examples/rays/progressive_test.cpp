@@ -23,14 +23,14 @@ namespace rays {
 namespace {
 
 /// A lamp over a floor with a box: shadows with soft edges, where samples differ, and a sky, where they do not.
-const std::string scene =
+const std::string lampScene =
     "[camera]\nfrom = [0, 1.2, 3]\nto = [0, 0.3, 0]\n[environment]\ncolour = [0.2, 0.3, 0.4]\n"
     "[[material]]\nname = \"white\"\n[[material]]\nname = \"lamp\"\nemission = [9, 9, 9]\n"
     "[[plane]]\nmaterial = \"white\"\n[[mesh]]\nshape = \"box\"\nmaterial = \"white\"\ntranslate = [0, 0.5, "
     "0]\n"
     "[[sphere]]\ncentre = [1.5, 2, 1]\nradius = 0.4\nmaterial = \"lamp\"\n";
 
-Scene sceneOf(const std::string& picture, const std::string& rest = scene) {
+Scene sceneOf(const std::string& picture, const std::string& rest = lampScene) {
   return readScene(examples::WrittenFile(picture + rest, "written_progressive.toml").path(), {});
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("a picture that goes on from a file is the one without a break, to the
   const examples::WrittenFile kept(
       fmt::format("[picture]\nsize = [12, 9]\nleast_samples = 2\nerror = {}\nsamples = 8\n",
                   isAdaptive ? 0.2 : 0.0) +
-          scene,
+          lampScene,
       "written_progressive_again.toml");
   Scene read = readScene(kept.path(), {});
   const Made whole = make(device, read);
@@ -188,7 +188,7 @@ TEST_CASE("sums go on from what was gathered, to the bit, on every device") {
 TEST_CASE("states of other pictures, and what is none, are refused") {
   sk::Device device = sk::Device::native();
   const std::string picture = "[picture]\nsize = [4, 3]\nsamples = 2\n";
-  const examples::WrittenFile kept(picture + scene, "written_progressive_again.toml");
+  const examples::WrittenFile kept(picture + lampScene, "written_progressive_again.toml");
   Scene read = readScene(kept.path(), {});
   const StateFile state;
   const Made first = make(device, read, state.path);
@@ -214,7 +214,7 @@ TEST_CASE("states of other pictures, and what is none, are refused") {
   other.model.triangles[0].a.x += 1;
   CHECK_THAT(messageOf(other, device.name()), Catch::Contains("meshes and images"));
   {
-    const examples::WrittenFile changed(picture + scene + "\n", "written_progressive_changed.toml");
+    const examples::WrittenFile changed(picture + lampScene + "\n", "written_progressive_changed.toml");
     other = read;
     other.file = changed.path();
     CHECK_THAT(messageOf(other, device.name()), Catch::Contains("scene text"));

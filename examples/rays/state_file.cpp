@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view format = "rays state 1";
 
-[[noreturn]] void fail(const std::filesystem::path& file, std::string_view what) {
+[[noreturn]] void refuseState(const std::filesystem::path& file, std::string_view what) {
   throw std::runtime_error(fmt::format("the state '{}' {}", file.string(), what));
 }
 
@@ -97,7 +97,7 @@ class Reader {
 
   template <class T>
   std::vector<T> take(std::size_t count) {
-    if (bytes_.size() / sizeof(T) < count) fail(file_, "ends too early; delete it to begin anew");
+    if (bytes_.size() / sizeof(T) < count) refuseState(file_, "ends too early; delete it to begin anew");
     std::vector<T> elements(count);
     std::memcpy(elements.data(), bytes_.data(), count * sizeof(T));
     bytes_.remove_prefix(count * sizeof(T));
@@ -123,10 +123,11 @@ void compare(const std::filesystem::path& file, std::string_view found, const Id
   for (const std::string& expected : wanted.lines) {
     if (!std::getline(lines, line)) line = "nothing";
     if (line != expected)
-      fail(file,
-           fmt::format(
-               "is of another picture: it has {}, and this one {}; name another file, or delete that one",
-               line, expected));
+      refuseState(
+          file,
+          fmt::format(
+              "is of another picture: it has {}, and this one {}; name another file, or delete that one",
+              line, expected));
   }
 }
 
@@ -166,29 +167,30 @@ void saveState(const std::filesystem::path& file, const Identity& identity, cons
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   stream.close();
   if (stream) std::filesystem::rename(beside, file, error);
-  if (!stream || error) fail(file, "cannot be written");
+  if (!stream || error) refuseState(file, "cannot be written");
 }
 
 Gathered loadState(const std::filesystem::path& file, const Identity& identity) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) fail(file, "is no file; name another one");
+  if (!std::filesystem::is_regular_file(file, ignored)) refuseState(file, "is no file; name another one");
   std::ifstream stream(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad() || bytes.empty()) fail(file, "cannot be read, or is empty");
-  if (!bytes.starts_with("rays state ")) fail(file, "is no state of a picture; name another file");
+  if (stream.bad() || bytes.empty()) refuseState(file, "cannot be read, or is empty");
+  if (!bytes.starts_with("rays state ")) refuseState(file, "is no state of a picture; name another file");
   if (!bytes.starts_with(std::string(format) + "\n"))
-    fail(file,
-         fmt::format("is of another version of this program, which reads '{}'; name another file", format));
+    refuseState(
+        file,
+        fmt::format("is of another version of this program, which reads '{}'; name another file", format));
   const std::size_t end = bytes.find("\n\n");
   if (end == std::string::npos || bytes.size() < end + 10)
-    fail(file, "ends too early; delete it to begin anew");
+    refuseState(file, "ends too early; delete it to begin anew");
   compare(file, std::string_view(bytes).substr(0, end), identity);
 
   const std::string_view all = std::string_view(bytes).substr(0, bytes.size() - 8);
   Hash hash;
   hash.addText(all);
   if (Reader(file, std::string_view(bytes).substr(all.size())).take<std::uint64_t>(1)[0] != hash.value())
-    fail(file, "is damaged; delete it to begin anew");
+    refuseState(file, "is damaged; delete it to begin anew");
   Reader reader(file, all.substr(end + 2));
   const std::vector<std::int64_t> sizes = reader.take<std::int64_t>(3);
   const auto pixels = static_cast<std::size_t>(sizes[1]);

@@ -20,7 +20,7 @@ struct Across {
 };
 
 // Newell's control points; z is up.
-constexpr std::array<std::array<Turn, 4>, 6> turned = {{
+constexpr std::array<std::array<Turn, 4>, 6> turnedPatches = {{
     {{{1.4, 0.784, 2.4}, {1.3375, 0.749, 2.53125}, {1.4375, 0.805, 2.53125}, {1.5, 0.84, 2.4}}},  // rim
     {{{1.5, 0.84, 2.4}, {1.75, 0.98, 1.875}, {2, 1.12, 1.35}, {2, 1.12, 0.9}}},                   // body
     {{{2, 1.12, 0.9}, {2, 1.12, 0.45}, {1.5, 0.84, 0.225}, {1.5, 0.84, 0.15}}},
@@ -28,7 +28,7 @@ constexpr std::array<std::array<Turn, 4>, 6> turned = {{
     {{{0.2, 0.112, 2.7}, {0.4, 0.224, 2.55}, {1.3, 0.728, 2.55}, {1.3, 0.728, 2.4}}},
     {{{1.5, 0.84, 0.15}, {1.5, 0.84, 0.075}, {1.425, 0.798, 0}, {0, 0, 0}}},  // bottom
 }};
-constexpr std::array<std::array<Across, 4>, 4> mirrored = {{
+constexpr std::array<std::array<Across, 4>, 4> mirroredPatches = {{
     {{{-1.6, 2.025, -1.5, 2.25, 0.3},  // handle
       {-2.3, 2.025, -2.5, 2.25, 0.3},
       {-2.7, 2.025, -3, 2.25, 0.3},
@@ -111,7 +111,7 @@ void addPatch(Mesh& mesh, const Patch& patch, int level) {
 
 Mesh teapot(int level) {
   Mesh mesh;
-  for (const std::array<Turn, 4>& rows : turned) {
+  for (const std::array<Turn, 4>& rows : turnedPatches) {
     Patch patch;
     for (std::size_t i = 0; i < 4; ++i) {
       const auto [r, k, z] = rows[i];
@@ -123,7 +123,7 @@ Mesh teapot(int level) {
         for (Vector& p : row) p = {p.y, -p.x, p.z};
     }
   }
-  for (const std::array<Across, 4>& rows : mirrored) {
+  for (const std::array<Across, 4>& rows : mirroredPatches) {
     Patch patch, mirror;
     for (std::size_t i = 0; i < 4; ++i) {
       const auto [x0, z0, x1, z1, w] = rows[i];
