@@ -23,12 +23,12 @@ namespace rays {
 enum class Sampling : std::uint8_t { Random, Sobol };
 
 struct Picture {
+  bool everything = false;  ///< compiles in what the scene does not name, too, to measure what that costs
   int width = 512;
   int height = 512;
   int depth = 8;  ///< segments of a path, the one from the camera included
   std::uint32_t seed = 1;
   Sampling sampling = Sampling::Sobol;  ///< independent numbers, or Sobol's with Owen's scrambling
-  bool everything = false;  ///< compiles in what the scene does not name, too, to measure what that costs
 };
 
 class Exposure;

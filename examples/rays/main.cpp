@@ -107,7 +107,7 @@ void applySize(const std::string& text, rays::Overrides& overrides) {
 
 rays::Scene sceneOf(const Settings& s) {
   rays::Overrides overrides{
-      .samples = s.samples, .seconds = s.seconds, .error = s.error, .engine = s.engine, .strict = s.strict};
+      .samples = s.samples, .seconds = s.seconds, .engine = s.engine, .strict = s.strict, .error = s.error};
   if (!s.size.empty()) applySize(s.size, overrides);
   rays::Scene scene = rays::readScene(s.scene, overrides);
   if (s.output) scene.output.picture = *s.output;

@@ -123,10 +123,11 @@ kernels::View viewFor(const Camera& camera, const Picture& picture) {
 }  // namespace
 
 PathTables::PathTables(sk::Device& device, const Model& model, const Picture& picture)
-    : features(featuresOf(model) | (picture.everything ? everything : 0)),
+    : features(featuresOf(model)),
       sampling(picture.sampling),
       seed(picture.seed),
       view(viewFor(model.camera, picture)) {
+  if (picture.everything) features |= everything;
   LightTable table = lightTable(model);
   setting = {{picture.width, picture.height},
              picture.depth,

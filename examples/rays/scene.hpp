@@ -44,9 +44,9 @@ struct Overrides {
   std::optional<int> width{}, height{};
   std::optional<std::int64_t> samples;
   std::optional<double> seconds;
-  std::optional<double> error{};
   std::string engine;
   bool strict = false;  ///< vertices that are not finite are an error
+  std::optional<double> error{};
 };
 
 /// Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong and the way out".

@@ -10,10 +10,10 @@ std::span<const Study> studies() {
   static constexpr std::array all = {
       Study{"leaks", "what tests of triangles miss at edges and vertices, and how exact their distances are",
             studyLeaks},
-      Study{"stopping", "what it saves that pixels stop when they are good enough, and what is wrong then",
-            studyStopping},
       Study{"speed", "rays per second by test, traversal and size of leaves", studySpeed},
       Study{"streaming", "what a uniform grid and each kernel of a multipass machine cost", studyStreaming},
+      Study{"stopping", "what it saves that pixels stop when they are good enough, and what is wrong then",
+            studyStopping},
       Study{"ray_engine", "what sizes of buckets and calls are worth, and not to wait", studyRayEngine},
       Study{"embree", "the same rays by Embree: rays per second, and hits that differ", studyEmbree},
   };

@@ -32,9 +32,9 @@ struct Study {
 std::span<const Study> studies();
 
 Findings studyLeaks(sk::Device& device, bool isSmall);
-Findings studyStopping(sk::Device& device, bool isSmall);
 Findings studySpeed(sk::Device& device, bool isSmall);
 Findings studyStreaming(sk::Device& device, bool isSmall);
+Findings studyStopping(sk::Device& device, bool isSmall);
 Findings studyRayEngine(sk::Device& device, bool isSmall);
 
 /// Embree on the same rays, where the program was built with it; throws std::runtime_error elsewhere.
