@@ -37,6 +37,7 @@ Findings studySpeed(sk::Device& device, bool isSmall);
 Findings studyStreaming(sk::Device& device, bool isSmall);
 Findings studyWavefront(sk::Device& device, bool isSmall);
 Findings studyEngines(sk::Device& device, bool isSmall);
+Findings studyStopping(sk::Device& device, bool isSmall);
 Findings studyRayEngine(sk::Device& device, bool isSmall);
 
 /// Embree on the same rays, where the program was built with it; throws std::runtime_error elsewhere.
