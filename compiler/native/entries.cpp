@@ -12,6 +12,7 @@
 #include "native/records.hpp"
 #include "native/slots.hpp"
 #include "native/wide_masks.hpp"
+#include "transforms/fold_identity.hpp"
 #include "transforms/predicate.hpp"
 
 namespace skc::native {
@@ -20,12 +21,6 @@ using namespace ir;
 using sk::native::EntryKind;
 
 namespace {
-
-bool hasIdentities(const Kernel& kernel) {
-  return std::ranges::none_of(kernel.params, [](const KernelParam& param) {
-    return param.role == ParamRole::Accumulator && param.identity == nullptr;
-  });
-}
 
 class EntryWriter {
  public:
