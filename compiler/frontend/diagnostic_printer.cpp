@@ -150,17 +150,20 @@ bool isMask(clang::QualType type) {
   return vector != nullptr && vector->getElementType()->isIntegerType();
 }
 
-/// True for the class of a gather parameter.
-bool isGather(clang::QualType type) {
+/// The classes of gather parameters and of variable outputs, in the prelude.
+constexpr llvm::StringRef gatherClass = "gather_", variableOutputClass = "variable_output";
+
+bool isOfClass(clang::QualType type, llvm::StringRef name) {
   const clang::CXXRecordDecl* record = type.isNull() ? nullptr : type->getAsCXXRecordDecl();
-  return record != nullptr && record->getIdentifier() != nullptr && record->getName().starts_with("gather_");
+  return record != nullptr && record->getIdentifier() != nullptr && record->getName().starts_with(name);
 }
 
+/// True if an argument of the diagnostic is the type of a gather.
 bool namesGather(const clang::Diagnostic& diagnostic) {
   for (unsigned i = 0; i < diagnostic.getNumArgs(); ++i) {
     if (diagnostic.getArgKind(i) != DiagnosticsEngine::ak_qualtype) continue;
-    if (isGather(clang::QualType::getFromOpaquePtr(reinterpret_cast<void*>(diagnostic.getRawArg(i)))))
-      return true;
+    const auto type = clang::QualType::getFromOpaquePtr(reinterpret_cast<void*>(diagnostic.getRawArg(i)));
+    if (isOfClass(type, gatherClass)) return true;
   }
   return false;
 }
@@ -208,6 +211,7 @@ Advice adviceOnConversion(const clang::Diagnostic& diagnostic) {
 
 Advice adviceOnCall(const clang::Diagnostic& diagnostic) {
   const std::string name = nameIn(diagnostic, 0);
+  if (name == "push") return {format(Diag::PushForm, {})};
   if (name == "neighbor") return {format(Diag::GatherArguments, {name, "an offset in each"})};
   if (name == "sample")
     return {format(Diag::GatherArguments, {name, "a position with a component for each"})};
@@ -228,10 +232,31 @@ Advice adviceOnMember(std::string_view member) {
   return {isKnown ? format(Diag::StreamMember, {member}) : std::string()};
 }
 
-bool isInGather(const clang::Diagnostic& diagnostic) {
+/// Advice on a member that a class of the prelude does not have.
+Advice adviceOnMissingMember(const clang::Diagnostic& diagnostic) {
   const auto* context = reinterpret_cast<const clang::DeclContext*>(diagnostic.getRawArg(1));
   const auto* type = llvm::dyn_cast_or_null<clang::NamedDecl>(context);
-  return type != nullptr && type->getName().starts_with("gather_");
+  if (type == nullptr || type->getIdentifier() == nullptr) return {};
+  if (type->getName().starts_with(gatherClass)) return adviceOnMember(nameIn(diagnostic, 0));
+  return {type->getName() == variableOutputClass ? format(Diag::PushForm, {}) : std::string()};
+}
+
+/// Advice on `y = x`, where y is a variable output: the prelude deletes that operator, and gives its class as the reason.
+Advice adviceOnDeleted(const clang::Diagnostic& diagnostic) {
+  for (unsigned i = 0; i < diagnostic.getNumArgs(); ++i) {
+    if (nameIn(diagnostic, i) == variableOutputClass) return {format(Diag::PushForm, {})};
+  }
+  return {};
+}
+
+/// Advice on assigning to an input, a uniform or another parameter that is constant.
+Advice adviceOnConstant(const clang::Diagnostic& diagnostic) {
+  for (unsigned i = 0; i < diagnostic.getNumArgs(); ++i) {
+    if (diagnostic.getArgKind(i) != DiagnosticsEngine::ak_nameddecl) continue;
+    const auto* decl = reinterpret_cast<const clang::NamedDecl*>(diagnostic.getRawArg(i));
+    if (llvm::isa<clang::ParmVarDecl>(decl)) return {format(Diag::ConstantAssigned, {decl->getName().str()})};
+  }
+  return {};
 }
 
 Advice adviceOn(const clang::Diagnostic& diagnostic) {
@@ -256,8 +281,9 @@ Advice adviceOn(const clang::Diagnostic& diagnostic) {
     case clang::diag::err_typecheck_expression_not_modifiable_lvalue: return adviceOnAssignment(diagnostic);
     case clang::diag::err_typecheck_member_reference_struct_union:
       return adviceOnMember(textOf(diagnostic, 1));
-    case clang::diag::err_no_member:
-      return isInGather(diagnostic) ? adviceOnMember(nameIn(diagnostic, 0)) : Advice();
+    case clang::diag::err_no_member: return adviceOnMissingMember(diagnostic);
+    case clang::diag::err_ovl_deleted_oper: return adviceOnDeleted(diagnostic);
+    case clang::diag::err_typecheck_assign_const: return adviceOnConstant(diagnostic);
     case clang::diag::err_ext_vector_component_name_illegal: return adviceOnMember(textOf(diagnostic));
     case clang::diag::err_for_range_invalid: return {format(Diag::RangeFor, {})};
     default: return {};

@@ -243,7 +243,7 @@ template <class T> struct scatter_4d {
   scatter_3d<T> operator[](int) const; scatter_3d<T> operator[](uint) const;
   scatter_3d<T> operator[](float) const; T& operator[](int4) const; T& operator[](float4) const;
 };
-template <class T> struct variable_output {};
+template <class T> struct variable_output { void operator=(const T&) = delete("variable_output"); };
 template <class T> struct __sk_same { using type = T; };
 template <class T> void push(variable_output<T> r, typename __sk_same<T>::type value);
 template <class M, class A, class B> decltype(A() + B()) select(M condition, A yes, B no);

@@ -95,6 +95,12 @@ bool isQualifier(const Token& token) {
   return isNamedWord(token, {"out", "inout", "reduce", "scan", "iter", "vout", "spec", "kernel"});
 }
 
+/// True for the `<` of a type: `sk::Scalar<float> k`.
+bool isTemplateArguments(const std::vector<Token>& parameter, std::size_t less) {
+  const std::size_t end = endOfList(parameter, less);
+  return end != 0 && isKind(parameter, end + 1, tok::identifier);
+}
+
 std::string repeated(std::string_view text, int times) {
   std::string result;
   for (int i = 0; i < times; ++i) result += text;
@@ -141,6 +147,7 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
   if (!takeAttributes(parameter, at, parts)) return;
   takeQualifier(parameter, at, parts);
   if (!takeDeclarator(parameter, at, parts)) return;
+  if (hasSecondQualifier(parts)) return;
   if (hasLateQualifier(parts)) return;
   if (!takeSuffix(parameter, at, parts)) return;
   if (kind != FunctionKind::Helper && parts.type.back().is(tok::amp)) {
@@ -236,7 +243,7 @@ bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, P
     const bool stream =
         parameter[i].is(tok::less) &&
         (i + 1 == parameter.size() || parameter[i + 1].isOneOf(tok::greater, tok::greaterequal) ||
-         (i > begin + 1 && parameter[i - 1].is(tok::identifier)));
+         (i > begin + 1 && parameter[i - 1].is(tok::identifier) && !isTemplateArguments(parameter, i)));
     if (stream || parameter[i].isOneOf(tok::l_square, tok::equal)) {
       end = i;
       break;
@@ -251,6 +258,15 @@ bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, P
                     parameter.begin() + static_cast<std::ptrdiff_t>(end) - 1);
   parts.name = parameter[end - 1];
   at = end;
+  return true;
+}
+
+/// True for `out reduce float r<>`, with a fix-it that removes the first qualifier.
+bool ParameterEditor::hasSecondQualifier(const Parts& parts) {
+  if (!parts.hasQualifier || parts.type.size() < 2 || !isQualifier(parts.type.front())) return false;
+  diagnostics_.report(Diag::QualifierTwice, locOf(parts.qualifier),
+                      {nameOf(parts.qualifier), nameOf(parts.type.front()), nameOf(parts.name)},
+                      {FixIt::remove(locOf(parts.qualifier), locOf(parts.qualifier))});
   return true;
 }
 

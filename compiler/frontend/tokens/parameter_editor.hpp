@@ -54,6 +54,7 @@ class ParameterEditor {
   bool takeBorder(const Tokens& parameter, std::size_t& at, Parts& parts);
   void takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts);
+  bool hasSecondQualifier(const Parts& parts);
   bool hasLateQualifier(const Parts& parts);
   bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
   static std::vector<FixIt> addedBrackets(const Parts& parts);
