@@ -96,8 +96,8 @@ def rate_text(run, seconds):
     """Work in a second: operations where they are many for each byte, else bytes."""
     operations, size = run["operations"], run["bytes"]
     if operations > 4 * size:
-        return f"{operations / seconds / 1e9:.3g} Gop/s"
-    return f"{size / seconds / 1e9:.3g} GB/s"
+        return f"{three_digits(operations / seconds / 1e9)} Gop/s"
+    return f"{three_digits(size / seconds / 1e9)} GB/s"
 
 
 def rates_table(found):
