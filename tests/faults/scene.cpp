@@ -44,6 +44,12 @@ void expect(bool isRight, const char* what) {
   if (!isRight) throw std::logic_error(what);
 }
 
+std::vector<std::int32_t> multiplesOf8(std::size_t count) {
+  std::vector<std::int32_t> made(count);
+  for (std::size_t i = 0; i < count; ++i) made[i] = static_cast<std::int32_t>(8 * i);
+  return made;
+}
+
 float sumOfNumbers(std::int64_t count) {
   float total = 0;
   for (std::int64_t i = 0; i < count; ++i) total += static_cast<float>(i % 7);
@@ -53,7 +59,10 @@ float sumOfNumbers(std::int64_t count) {
 }  // namespace
 
 Scene::Scene(sk::Device& on, std::int64_t rows)
-    : device(on), size(rows), fives(static_cast<std::size_t>(rows * 8), 5.0F) {
+    : device(on),
+      size(rows),
+      fives(static_cast<std::size_t>(rows * 8), 5.0F),
+      rowStarts(multiplesOf8(static_cast<std::size_t>(rows) + 1)) {
   x = device.stream<float>({size, 8});
   r = device.stream<float>({size, 8});
   s = device.stream<float>({size, 8});
@@ -142,6 +151,24 @@ const std::vector<Scenario>& scenarios() {
        [](Scene& of) { sum.with({.accumulate = sk::Accumulate::Exact})(of.x, of.part); }, false, false, true},
       {"scan", [](Scene& of) { running(of.x, of.r); }, false, true},
       {"scan in place", [](Scene& of) { running.with({.along = 0})(of.r, of.r); }, false, true},
+      {"call on strided views",
+       [](Scene& of) { scale(2.0F, sk::stride(of.x, {2, 1}), sk::stride(of.r, {2, 1})); }},
+      {"call with a folded output",
+       [](Scene& of) {
+         auto total = of.device.scalar<float>();
+         squares(1.0F, of.x, of.r, total);
+         expect(total.read() > sumOfNumbers(of.x.size()), "folded output");
+       },
+       false, false, true},
+      {"reduce rows",
+       [](Scene& of) {
+         auto starts = of.device.stream<std::int32_t>({of.size + 1});
+         starts.write(of.rowStarts);
+         const sk::Rows rows(starts);
+         sum(rows(of.x.reshape({of.size * 8})), of.part.reshape({of.size}));
+       },
+       false, false, true},
+      {"sort", [](Scene& of) { sk::sort(of.x, of.r); }, false, true},
       {"loop",
        [](Scene& of) {
          auto total = of.device.scalar<float>(0);

@@ -27,6 +27,7 @@ class Scene {
   sk::Device& device;
   const std::int64_t size;
   const std::vector<float> fives;  ///< as many as `x` has elements
+  const std::vector<std::int32_t> rowStarts;  ///< of `x`
   sk::Stream<float> x, r, s, box, part, pushed;
   sk::Stream<std::int32_t> indices, bins;
   sk::Stream<sk::float4> wide[6];

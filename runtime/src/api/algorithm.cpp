@@ -149,6 +149,18 @@ void permute(const StreamRegion& region, const Permutation& order) {
   dense.finish();
 }
 
+/// `values` may be null. If they cannot follow the keys, these are lost.
+void permuteBoth(const StreamRegion& keys, const StreamRegion* values, const Permutation& order) {
+  permute(keys, order);
+  if (values == nullptr) return;
+  try {
+    permute(*values, order);
+  } catch (...) {
+    keys.stream->isBroken = true;
+    throw;
+  }
+}
+
 }  // namespace
 
 void StreamState::permute(const StreamRegion& region, std::span<const std::int32_t> sources) {
@@ -180,8 +192,7 @@ void detail::sort(const StreamRegion& keys, const StreamRegion* values, const So
     const TraceScope traced(device.trace.get(), "call", "sk::sort");
     if (reorder(device, byKeys(options), keys, true, values)) return;
     const Permutation order = orderOf(keys, options);
-    permute(keys, order);
-    if (values != nullptr) permute(*values, order);
+    permuteBoth(keys, values, order);
   });
 }
 
@@ -209,8 +220,7 @@ std::int64_t detail::unique(const StreamRegion& keys, const StreamRegion* values
     const Permutation order = withKeys(keys, [&](const auto& all) {
       return firstOf(all.size(), count, [&](std::size_t i) { return i == 0 || !(all[i] == all[i - 1]); });
     });
-    permute(keys, order);
-    if (values != nullptr) permute(*values, order);
+    permuteBoth(keys, values, order);
     return count;
   });
 }

@@ -109,7 +109,7 @@ class FoldCall {
     if (isTogether()) return reduceResolved(call_);
     if (readsOutputs()) {
       map();
-      return foldAfter();
+      return orBreak(Role::Output, [&] { foldAfter(); });
     }
     std::vector<Argument> alone(call_.arguments.begin(), call_.arguments.end());
     for (std::size_t i = 0; i < alone.size(); ++i) {
@@ -118,12 +118,36 @@ class FoldCall {
     const ResolvedReduction fold = call_.of(call_.reduction, alone, {});
     if (!hasMap_ || !readsWritten(parts_.map, mapArguments_, call_, Role::Accumulator)) {
       reduceResolved(fold);
-      map();
+      orBreak(Role::Accumulator, [&] { map(); });
     } else if (!readsWritten(call_.reduction.fold, call_.arguments, call_, Role::Output)) {
       map();
-      reduceResolved(fold);
+      orBreak(Role::Output, [&] { reduceResolved(fold); });
     } else {
-      reduceByTemporaries(fold, [&] { map(); });
+      bool hasMapped = false;
+      orBreak(
+          Role::Output,
+          [&] {
+            reduceByTemporaries(fold, [&] {
+              map();
+              hasMapped = true;
+            });
+          },
+          hasMapped);
+    }
+  }
+
+  /// Runs a later part of the call. If it throws, marks what an earlier part has written, parameters of this role.
+  template <class Part>
+  void orBreak(Role written, Part&& part, const bool& hasWritten = true) const {
+    try {
+      part();
+    } catch (...) {
+      for (std::size_t i = 0; i < call_.arguments.size(); ++i) {
+        StreamState* const stream = call_.arguments[i].region.stream;
+        if (hasWritten && call_.reduction.fold.parameters[i].role == written && stream != nullptr)
+          stream->isBroken = true;
+      }
+      throw;
     }
   }
 

@@ -171,7 +171,7 @@ void reduceByTemporaries(const ResolvedReduction& call, const std::function<void
   }
   reduceResolved(call.of(call.reduction, all, {}));
   between();
-  bool hasBegun = false;
+  bool hasBegun = storesBeside(call);
   writeInSteps(call.reduction, call.arguments, hasBegun, [&] {
     for (const std::size_t i : results) {
       if (call.arguments[i].region.stream->copyFrom(all[i].region, call.arguments[i].region)) continue;

@@ -123,7 +123,7 @@ StreamState& liveStream(const StreamRegion& region, std::string_view context) {
 
 void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_view context) {
   const StreamState& stream = *region.stream;
-  if (!stream.isBroken || (isWritten && region.shape == stream.shape)) return;
+  if (!stream.isBroken || (isWritten && isWhole(region))) return;
   throw Error(
       fmt::format(
           "{}: the elements of this stream of shape {} are lost, since what wrote them has failed; write all "

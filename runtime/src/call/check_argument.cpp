@@ -7,6 +7,7 @@
 
 #include "call/iterator.hpp"
 #include "device/device_state.hpp"
+#include "device/region.hpp"
 #include "device/stream_state.hpp"
 #include "sk/limits.hpp"
 
@@ -91,7 +92,7 @@ StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const
          parameter.name, toString(region.shape), stream.shape.size());
   }
   const bool isWritten = parameter.role == Role::Output || parameter.role == Role::Accumulator;
-  if (stream.isBroken && !(isWritten && region.shape == stream.shape)) {
+  if (stream.isBroken && !(isWritten && isWhole(region))) {
     fail(Error::Kind::Lost, kernel,
          "the elements of '{}' are lost, since what wrote them has failed; write all of the stream first",
          parameter.name);

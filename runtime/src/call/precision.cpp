@@ -102,6 +102,8 @@ void reduceWide(const ResolvedReduction& call, const WideReduction& wide) {
     results.push_back(i);
   }
   call.device.reduce(call.of(wide.reduction, folded, doubles.values));
+  std::vector<Argument> finished = doubles.arguments;
+  for (const std::size_t i : results) finished.push_back(call.arguments[i]);
   if (call.isToValues()) {
     for (std::size_t k = 0; k < results.size(); ++k) {
       convertElements(*wide.reduction.fold.parameters[results[k]].element,
@@ -111,9 +113,9 @@ void reduceWide(const ResolvedReduction& call, const WideReduction& wide) {
     }
     return;
   }
-  std::vector<Argument> finished = doubles.arguments;
-  for (const std::size_t i : results) finished.push_back(call.arguments[i]);
-  call.device.run(resolveCall(wide.finish, finished, call.device.limits, call.options));
+  writeInSteps(reduction, call.arguments, storesBeside(call), [&] {
+    call.device.run(resolveCall(wide.finish, finished, call.device.limits, call.options));
+  });
 }
 
 }  // namespace sk

@@ -47,9 +47,18 @@ struct ResolvedReduction {
                        std::span<void* const> otherValues) const;
 };
 
+/// Whether the reduction stores elements to other outputs than its accumulators.
+inline bool storesBeside(const ResolvedReduction& call) {
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const bool isOutput = call.reduction.fold.parameters[i].role == program::Role::Output;
+    if (isOutput && call.arguments[i].region.stream != nullptr) return true;
+  }
+  return false;
+}
+
 /// Calls steps(), which write the result streams of a reduction one after the other. If an exception
-/// interrupts them, these streams are marked as broken. `hasBegun` must be true as soon as a step has written
-/// something.
+/// interrupts them, these streams and other outputs are marked as broken. `hasBegun` must be true as soon as a step, or
+/// the fold before, has written something.
 template <class Steps>
 void writeInSteps(const program::Reduction& reduction, std::span<const Argument> arguments,
                   const bool& hasBegun, Steps&& steps) {
@@ -57,8 +66,9 @@ void writeInSteps(const program::Reduction& reduction, std::span<const Argument>
     steps();
   } catch (...) {
     for (std::size_t i = 0; hasBegun && i < arguments.size(); ++i) {
-      const bool isResult = reduction.fold.parameters[i].role == program::Role::Accumulator;
-      if (isResult) arguments[i].region.stream->isBroken = true;
+      const program::Role role = reduction.fold.parameters[i].role;
+      const bool isWritten = role == program::Role::Accumulator || role == program::Role::Output;
+      if (isWritten && arguments[i].region.stream != nullptr) arguments[i].region.stream->isBroken = true;
     }
     throw;
   }

@@ -4,6 +4,8 @@
 #include "device/region.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <numeric>
 #include <string_view>
 #include <vector>
@@ -58,16 +60,29 @@ struct Dimension {
   std::int64_t extent, stride;
 };
 
+/// A list that does not allocate.
+class Dimensions {
+ public:
+  bool isEmpty() const { return count_ == 0; }
+  Dimension& back() { return dimensions_[count_ - 1]; }
+  void add(const Dimension& dimension) { dimensions_[count_++] = dimension; }
+  void removeBack() { --count_; }
+
+ private:
+  std::array<Dimension, 4> dimensions_{};
+  std::size_t count_ = 0;
+};
+
 /// The dimensions of a region, joined where one continues the next, without those of extent 1.
-std::vector<Dimension> joined(const StreamRegion& strides) {
-  std::vector<Dimension> dimensions;
+Dimensions joined(const StreamRegion& strides) {
+  Dimensions dimensions;
   for (int d = 0; d < strides.shape.rank(); ++d) {
     const Dimension next{strides.shape[d], strides.stride[d]};
     if (next.extent == 1) continue;
-    if (!dimensions.empty() && dimensions.back().stride == next.stride * next.extent) {
+    if (!dimensions.isEmpty() && dimensions.back().stride == next.stride * next.extent) {
       dimensions.back() = {dimensions.back().extent * next.extent, next.stride};
     } else {
-      dimensions.push_back(next);
+      dimensions.add(next);
     }
   }
   return dimensions;
@@ -75,14 +90,14 @@ std::vector<Dimension> joined(const StreamRegion& strides) {
 
 /// Sets the strides of `shape` so that it has the elements of these dimensions in the same order; false if there are
 /// none.
-bool divide(std::vector<Dimension> dimensions, const Shape& shape, Index& stride) {
+bool divide(Dimensions dimensions, const Shape& shape, Index& stride) {
   for (int d = shape.rank() - 1; d >= 0; --d) {
-    stride[d] = dimensions.empty() ? 1 : dimensions.back().stride;
+    stride[d] = dimensions.isEmpty() ? 1 : dimensions.back().stride;
     if (shape[d] == 1) continue;
     Dimension& last = dimensions.back();
     if (last.extent % shape[d] != 0) return false;
     last = {last.extent / shape[d], last.stride * shape[d]};
-    if (last.extent == 1) dimensions.pop_back();
+    if (last.extent == 1) dimensions.removeBack();
   }
   return true;
 }

@@ -65,11 +65,12 @@ bool LoopGate::open(BoundState& bound, std::span<const CommandLog::Groups> dispa
   for (const auto& [x, y] : dispatches) {
     contents.insert(contents.end(), {static_cast<GLuint>(x), static_cast<GLuint>(y), 1});
   }
-  bound.errors.setAside();
-  const auto create = [&](Buffer& buffer) {
+  const auto create = [&](Buffer& buffer) {  // may throw, and so comes before all bindings
     if (!buffer) buffer = Buffer(bound.deletions, [] { return generated(glGenBuffers); });
   };
   create(buffer_);
+  for (Answer& answer : answers_) create(answer.buffer);
+  bound.errors.setAside();
   bound.storage(buffer_.get());
   glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(contents.size() * sizeof(GLuint)),
                contents.data(), GL_DYNAMIC_COPY);
@@ -81,7 +82,6 @@ bool LoopGate::open(BoundState& bound, std::span<const CommandLog::Groups> dispa
     writeBuffer_ = boundBuffer(GL_COPY_WRITE_BUFFER_BINDING);
   }
   for (Answer& answer : answers_) {
-    create(answer.buffer);
     glBindBuffer(GL_COPY_WRITE_BUFFER, answer.buffer.get());
     glBufferData(GL_COPY_WRITE_BUFFER, gateStateBytes, nullptr, GL_STREAM_READ);
   }

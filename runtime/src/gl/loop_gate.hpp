@@ -34,13 +34,13 @@ class LoopGate {
   LoopGate() = default;
 
   /// Writes the counts of a draw, and of dispatches with these groups. Saves the application's bindings of indirect
-  /// buffers if `isGuest`. False, with nothing bound, if the driver fails; then `log` has its messages.
+  /// and copied buffers if `isGuest`. False, with nothing bound, if the driver fails; then `log` has its messages.
   bool open(BoundState& bound, std::span<const CommandLog::Groups> dispatches, bool isGuest,
             std::string& log);
   IndirectCounts counts() const;
   /// Ends an iteration: counts it if it ran, and tests the condition.
   void pass(BoundState& bound, const Condition& condition, GLuint sampler);
-  /// Queues a copy of the state, which the next but one call of this function overwrites.
+  /// Queues a copy of the state, which the next but one call of this function overwrites. Throws std::bad_alloc.
   void ask(BoundState& bound);
   /// The state as it was when it was last asked for, or the time before that. Waits for the device.
   State lastAnswer(BoundState& bound) const { return answer(bound, 0); }

@@ -299,13 +299,19 @@ class ReplayedLoop final : public LoopRunner {
       }
       gate_.ask(device_.bound);
     };
-    // the device has commands while the host waits for what it answered before
-    giveSome();
-    while (given < most && !state.isDone) {
+    try {
+      // the device has commands while the host waits for what it answered before
       giveSome();
-      state = gate_.answerBefore(device_.bound);
+      while (given < most && !state.isDone) {
+        giveSome();
+        state = gate_.answerBefore(device_.bound);
+      }
+      if (given == most || state.isDone) state = gate_.lastAnswer(device_.bound);
+    } catch (...) {
+      gate_.close(device_.bound);
+      for (const LoopState::Used& used : loop.used()) used.stream->isBroken = true;
+      throw;
     }
-    if (given == most || state.isDone) state = gate_.lastAnswer(device_.bound);
     gate_.close(device_.bound);
     count(*first, state.ran);
     place(loop, cycle_[(*first + static_cast<std::size_t>(state.ran)) % cycle_.size()].before);
