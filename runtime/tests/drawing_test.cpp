@@ -125,7 +125,7 @@ TEST_CASE("what a buffer cannot be filled with is told") {
         std::string::npos);
   CHECK(errorOf([&] { x.fillBuffer(0); }).find("has 0 bytes") != std::string::npos);
   CHECK(errorOf([&] { x.fillBuffer(buffer, 3); }) ==
-        "fillBuffer: the offset 3 is no multiple of 4 from 0 on");
+        "fillBuffer: the offset is 3; give a multiple of 4, and not a negative one");
   CHECK(errorOf([&] { x.fillBuffer(buffer, 0, 1); }) ==
         "fillBuffer: there is no plane 1; float has 1, from 0");
   Device native = Device::native();

@@ -134,10 +134,10 @@ TEST_CASE("transfers of another size") {
 
 TEST_CASE("shapes that are none, or too large") {
   Device device;
-  CHECK(errorOf([&] { device.stream<float>({4, -1}); }) == "shape {4, -1} is not one: an extent is negative");
+  CHECK(errorOf([&] { device.stream<float>({4, -1}); }) == "{4, -1} is not a shape: an extent is negative");
   constexpr std::int64_t huge = std::int64_t{1} << 62;
   CHECK(errorOf([&] { device.stream<float>({huge, huge, huge}); }) ==
-        "shape {4611686018427387904, 4611686018427387904, 4611686018427387904} is not one: the number of "
+        "{4611686018427387904, 4611686018427387904, 4611686018427387904} is not a shape: the number of "
         "elements does not "
         "fit in 63 bits");
   CHECK(errorOf([&] { device.stream<float>(std::numeric_limits<std::uint64_t>::max()); }) ==

@@ -387,7 +387,8 @@ TEST_CASE("streams are copied between storages, devices and precisions") {
   SECTION("other shapes are refused") {
     auto y = device.stream<float>({4});
     CHECK(errorOf([&] { x.copyTo(y); }) ==
-          "copyTo: the source has shape {5}, the target {4}; give them the same shape, by domain() for one");
+          "copyTo: the source has shape {5}, the target {4}; copy between equal shapes, such as a part of "
+          "one, domain(begin, end)");
     CHECK(errorOf([&] { Stream<float>().fill(1); }) == "fill: " + noStream);
     CHECK(errorOf([&] { x.copyTo(Stream<float>().domain({0}, {1})); }) == "domain: " + noStream);
   }

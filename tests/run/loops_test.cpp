@@ -193,9 +193,11 @@ TEST_CASE("what a loop cannot repeat is refused, and the device goes on") {
     CHECK_THAT(refusal([&] { device.record([] {}); }), Contains("record: the device is recording"));
     sk::Loop loop = device.record([&] { loops::add(1, x, x); });
     CHECK_THAT(refusal([&] { loop.repeat(1); }), Contains("a loop: the device is recording"));
-    CHECK_THAT(errorOf([&] { loop.repeat(-1); }), Contains("-1 is no number of iterations"));
+    CHECK_THAT(errorOf([&] { loop.repeat(-1); }), Contains("times is -1"));
     auto done = device.stream<bool>({2});
     CHECK_THAT(errorOf([&] { loop.until(done); }), Contains("has shape {2}"));
+    auto never = device.scalar<bool>(false);
+    CHECK_THAT(errorOf([&] { loop.until(never); }), Contains("no call of the loop writes the condition"));
     sk::Loop nothing;
     CHECK_THAT(errorOf([&] { nothing.repeat(1); }), Contains("device.record"));
     loop.repeat(2);

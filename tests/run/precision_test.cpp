@@ -416,7 +416,7 @@ TEST_CASE("what has no form is refused") {
         }).find("has no doubles of its own; call it in Precision::Extended") != std::string::npos);
   CHECK(errorOf([&] {
           precision::cancel.with({.accumulate = sk::Accumulate::Tree})(a, a, r);
-        }).find("it is no reduce") != std::string::npos);
+        }).find("it is not a reduce") != std::string::npos);
 }
 
 }  // namespace

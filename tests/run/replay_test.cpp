@@ -273,11 +273,14 @@ TEST_CASE("a device may end before its loops") {
   for (const char* profile : {"glsl330", "glsl430"}) {
     std::optional<sk::Device> device(sk::DeviceOptions{.profile = profile});
     auto x = device->stream<float>({24});
-    auto done = device->scalar<bool>(false);
+    auto done = device->stream<bool>({24});
     x.fill(1);
-    std::optional<sk::Loop> loop = device->record([&] { loops::smooth(x, x); });
+    std::optional<sk::Loop> loop = device->record([&] {
+      loops::smooth(x, x);
+      replay::above(x, 9, done);
+    });
     loop->repeat(5);
-    CHECK(loop->until(done, {.most = 9}) == 9);
+    CHECK(loop->until(done.domain({0}, {1}), {.most = 9}) == 9);
     device.reset();
     loop.reset();
   }

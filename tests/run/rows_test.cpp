@@ -508,7 +508,7 @@ TEST_CASE("later changes of the starts have no effect") {
 TEST_CASE("rows that cannot be, and wrong calls in rows, say why") {
   onEveryProfile([](sk::Device& device) {
     CHECK_THAT(errorOf([&] { sk::Rows(streamOf(device, Starts{0, 3, 7, 5, 9})); }),
-               Contains("row 2 starts at 7, and ends before at 5"));
+               Contains("row 2 starts at 7, but ends at 5"));
     CHECK_THAT(errorOf([&] { sk::Rows(streamOf(device, Starts{-1, 3})); }), Contains("row 0 starts at -1"));
     CHECK_THAT(errorOf([&] { sk::Rows(device.stream<int>({0})); }), Contains("the starts have shape {0}"));
     CHECK_THAT(errorOf([&] { sk::Rows(device.stream<int>({2, 2})); }),
@@ -521,12 +521,13 @@ TEST_CASE("rows that cannot be, and wrong calls in rows, say why") {
                Contains("row 2 ends at 9, but 'x' has 8 elements"));
     CHECK_THAT(errorOf([&] { rows::total(rows(x), few); }),
                Contains("there are 3 rows, but the output 's' has shape {8}; give it shape {3}"));
-    CHECK_THAT(errorOf([&] { (void)rows::total(rows(x)); }), Contains("give a stream for 's'"));
+    CHECK_THAT(errorOf([&] { (void)rows::total(rows(x)); }),
+               Contains("give a stream of as many elements for 's'"));
     CHECK_THAT(errorOf([&] { rows::total(rows(square), y); }), Contains("one dimension"));
     CHECK_THAT(errorOf([&] { rows::sumAndMost(rows(x), x, y, m); }),
-               Contains("'x' and 'y' are a stream and one in rows"));
+               Contains("'x' and 'y' are not both in rows"));
     CHECK_THAT(errorOf([&] { rows::sumAndMost(x, rows(x), y, m); }),
-               Contains("'x' and 'y' are a stream and one in rows"));
+               Contains("'x' and 'y' are not both in rows"));
     CHECK_THAT(errorOf([&] { rows::sumAndMost(rows(x), others(x), y, m); }), Contains("in different rows"));
     CHECK_THAT(errorOf([&] { rows::sumAndMost(rows(x), rows(few), y, m); }), Contains("shape"));
     CHECK_THAT(errorOf([&] { rows::twice(rows(x), few); }), Contains("'x' is in rows"));

@@ -385,9 +385,9 @@ TEST_CASE("wrong calls of scans say why") {
     CHECK_THAT(errorOf([&] { scans::prefix.with({.along = 1})(x, x); }),
                Contains("no dimension 1; along is 0 to 0"));
     CHECK_THAT(errorOf([&] { scans::prefix.with({.along = -1})(x, x); }), Contains("no dimension -1"));
-    CHECK_THAT(errorOf([&] { scans::twice.with(exclusive)(x, x); }), Contains("it is no scan"));
-    CHECK_THAT(errorOf([&] { scans::twice.with({.along = 0})(x, x); }), Contains("it is no scan"));
-    CHECK_THAT(errorOf([&] { (void)scans::total.with(exclusive)(x); }), Contains("it is no scan"));
+    CHECK_THAT(errorOf([&] { scans::twice.with(exclusive)(x, x); }), Contains("it is not a scan"));
+    CHECK_THAT(errorOf([&] { scans::twice.with({.along = 0})(x, x); }), Contains("it is not a scan"));
+    CHECK_THAT(errorOf([&] { (void)scans::total.with(exclusive)(x); }), Contains("it is not a scan"));
     CHECK_THAT(errorOf([&] { scans::sumAndMost(x, x, x, x); }), Contains("overlap"));
   });
 }

@@ -29,17 +29,22 @@ LoopState& stateOf(const detail::LoopOwner& loop) {
 void checkEnd(const LoopState& loop, const StreamRegion& done, const LoopEnd& end) {
   const StreamState& stream = liveStream(done, "until");
   if (stream.device != &loop.device()) {
-    throw Error("until: the condition is a stream of another device than the loop");
+    throw Error("until: the condition is on another device than the loop; compute it inside Device::record",
+                Error::Kind::Device);
   }
   if (done.shape.size() != 1) {
     throw Error(
         fmt::format("until: the condition has shape {}; give a stream of one bool", toString(done.shape)),
         Error::Kind::Shape);
   }
+  if (!loop.uses(done.stream)) {
+    throw Error(
+        "until: no call of the loop writes the condition, so that it never changes; compute it inside "
+        "Device::record, and assign it to a scalar or stream that exists before");
+  }
   if (end.every < 1 || end.most < 0) {
     throw Error(
-        fmt::format("until: a condition cannot be asked for every {} iterations, {} at the most; give "
-                    "numbers from 1 and from 0 on",
+        fmt::format("until: every is {} and most is {}; give 1 or more for every, and 0 or more for most",
                     end.every, end.most));
   }
 }
@@ -66,7 +71,7 @@ detail::LoopOwner detail::Recording::finish() {
 void Loop::repeat(std::int64_t times) {
   withHostMemory("repeat", [&] {
     LoopState& loop = stateOf(state_);
-    if (times < 0) throw Error(fmt::format("repeat: {} is no number of iterations", times));
+    if (times < 0) throw Error(fmt::format("repeat: times is {}; give 0 or more", times));
     const TraceScope traced(loop.device().trace.get(), "call", "loop");
     loop.run(times);
   });

@@ -24,7 +24,7 @@ void checkStarts(const std::vector<std::int32_t>& starts) {
   }
   for (std::size_t row = 0; row + 1 < starts.size(); ++row) {
     if (starts[row + 1] >= starts[row]) continue;
-    throw Error(fmt::format("rows: row {} starts at {}, and ends before at {}; starts must not decrease", row,
+    throw Error(fmt::format("rows: row {} starts at {}, but ends at {}; starts must not decrease", row,
                             starts[row], starts[row + 1]));
   }
 }
@@ -52,7 +52,7 @@ detail::RowsOwner detail::makeRows(const StreamRegion& region) {
 
 const RowsState& detail::checked(const RowsOwner& rows) {
   if (rows) return *rows;
-  throw Error("rows: they were moved from", Error::Kind::Lost);
+  throw Error("rows: they were moved from; make others, sk::Rows rows(starts)", Error::Kind::Lost);
 }
 
 std::int64_t Rows::count() const { return detail::checked(state_).rows(); }

@@ -75,7 +75,7 @@ const Kernel& chosenVariant(const DeviceState& device, const ResolvedCall& call)
 
 void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
   if (options.accumulate != Accumulate::Default) {
-    fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
+    fail(kernel, "it has no accumulator, since it is not a reduce; call it without Accumulate");
   }
   refuseScanOptions(kernel, options);
   std::optional<CheckedCall> checked = checkCall(kernel, arguments);

@@ -27,7 +27,7 @@ std::string toString(const Shape& shape) { return inBraces(shape); }
 std::string toString(const Index& index) { return inBraces(index); }
 
 void Shape::throwInvalid(const char* why) const {
-  throw Error(fmt::format("shape {} is not one: {}", toString(*this), why), Error::Kind::Shape);
+  throw Error(fmt::format("{} is not a shape: {}", toString(*this), why), Error::Kind::Shape);
 }
 
 void detail::throwExtentTooLarge() {

@@ -32,7 +32,7 @@ TEST_CASE("sizes of nothing") {
 }
 
 TEST_CASE("shapes that are none") {
-  CHECK_THROWS_WITH(Shape(-3), "shape {-3} is not one: an extent is negative");
+  CHECK_THROWS_WITH(Shape(-3), "{-3} is not a shape: an extent is negative");
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
   CHECK(Shape(most).size() == most);
   CHECK_THROWS_AS(Shape(most, 2), sk::Error);

@@ -356,10 +356,11 @@ void detail::copy(const StreamRegion& from, const StreamRegion& to) {
     StreamState& source = liveStream(from, "copyTo");
     StreamState& target = liveStream(to, "copyTo");
     if (from.shape != to.shape) {
-      throw Error(fmt::format("copyTo: the source has shape {}, the target {}; give them the same shape, by "
-                              "domain() for one",
-                              toString(from.shape), toString(to.shape)),
-                  Error::Kind::Shape);
+      throw Error(
+          fmt::format("copyTo: the source has shape {}, the target {}; copy between equal shapes, such "
+                      "as a part of one, domain(begin, end)",
+                      toString(from.shape), toString(to.shape)),
+          Error::Kind::Shape);
     }
     checkElementsOf(from, false, "copyTo");
     checkElementsOf(to, true, "copyTo");
@@ -404,7 +405,8 @@ void detail::fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t b
     checkElementsOf({state, {}, {}}, false, "fillBuffer");
     checkPlane(stream, plane, "fillBuffer");
     if (byteOffset < 0 || byteOffset % 4 != 0) {
-      throw Error(fmt::format("fillBuffer: the offset {} is no multiple of 4 from 0 on", byteOffset));
+      throw Error(fmt::format("fillBuffer: the offset is {}; give a multiple of 4, and not a negative one",
+                              byteOffset));
     }
     if (stream.shape.size() == 0) return;
     const TraceScope traced(stream.device->trace.get(), "transfer", "fillBuffer");

@@ -43,8 +43,7 @@ void checkDomain(const CallInRows& call, const RowsState& rows) {
   if (call.scan && (rows.begin() != 0 || rows.end() != size)) {
     fail(Error::Kind::Shape, fold,
          "the rows have elements {} to {}, and '{}' has {}; a scan has a result for each element, so give it "
-         "a view "
-         "of those in rows",
+         "a view of those in rows",
          rows.begin(), rows.end(), input, size);
   }
 }
@@ -81,7 +80,7 @@ const RowsState* rowsOf(const Kernel& fold, std::span<const Argument> arguments,
     } else if (arguments[i].rows != rows) {
       const bool isOneInRows = rows == nullptr || arguments[i].rows == nullptr;
       fail(fold, "'{}' and '{}' are {}; give all element inputs in the same rows, or none", first->name,
-           parameter.name, isOneInRows ? "a stream and one in rows" : "in different rows");
+           parameter.name, isOneInRows ? "not both in rows" : "in different rows");
     }
   }
   return rows;
@@ -98,7 +97,8 @@ Shape checkRows(const CallInRows& call, const RowsState& rows, const Shape& resu
   }
   checkDomain(call, rows);
   if (results.rank() == 0) {
-    fail(fold, "there is a result for each row; give a stream for '{}'", result);
+    fail(fold, "each of the {} rows has a result; give a stream of as many elements for '{}'", rows.rows(),
+         result);
   }
   const Shape expected = call.scan ? call.domain : Shape{rows.rows()};
   if (results != expected) {

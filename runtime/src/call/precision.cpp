@@ -47,8 +47,9 @@ void checkPlanes(const Reduction& plain, const Reduction& wide, const DeviceLimi
 }  // namespace
 
 void refuseScanOptions(const Kernel& kernel, const CallOptions& options) {
-  if (options.scan != Scan::Default) fail(kernel, "it is no scan; call it without Scan");
-  if (options.along) fail(kernel, "it is no scan, which alone goes along a dimension; call it without along");
+  if (options.scan != Scan::Default)
+    fail(kernel, "it is not a scan; call it without Scan, or declare it 'scan void'");
+  if (options.along) fail(kernel, "it is not a scan, so it goes along no dimension; call it without along");
 }
 
 const Reduction& halfVariant(const Reduction& reduction) {
@@ -101,9 +102,9 @@ void reduceWide(const ResolvedReduction& call, const WideReduction& wide) {
     folded[i] = doubles.add(*parameter.element);
     results.push_back(i);
   }
-  call.device.reduce(call.of(wide.reduction, folded, doubles.values));
   std::vector<Argument> finished = doubles.arguments;
   for (const std::size_t i : results) finished.push_back(call.arguments[i]);
+  call.device.reduce(call.of(wide.reduction, folded, doubles.values));
   if (call.isToValues()) {
     for (std::size_t k = 0; k < results.size(); ++k) {
       convertElements(*wide.reduction.fold.parameters[results[k]].element,

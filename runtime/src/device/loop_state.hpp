@@ -63,6 +63,8 @@ class LoopState {
     Shape shape;
   };
   std::span<const Used> used() const { return used_; }
+  /// Whether a recorded call uses the stream.
+  bool uses(const StreamState* stream) const;
 
  private:
   /// A stream, and the handle that held it when recording began.
@@ -73,8 +75,6 @@ class LoopState {
   void failIfLost() const;
   bool isRecording() const;
   void endRecording() noexcept;
-  bool uses(const StreamState* stream) const;
-  void dropUnused() noexcept;
   void findExchanges(std::span<const std::pair<StreamState*, StreamState*>> moved);
 
   DeviceState* device_;  ///< null after the device has ended

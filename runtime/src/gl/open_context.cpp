@@ -70,7 +70,7 @@ class Search {
       return false;
     }
     if (candidate.isSoftware && !wanted_.mayBeSoftware()) {
-      return failed(candidate.name, "it is no GPU");
+      return failed(candidate.name, "it is not a GPU");
     }
     if (wanted_.kind == WantedDevice::Kind::NumberedGpu) {
       if (candidate.kind != Kind::Device) {

@@ -57,7 +57,7 @@ std::string WantedDevice::whyNot(const Capabilities& capabilities) const {
     case Kind::Best: return "";
     case Kind::Gpu:
     case Kind::NumberedGpu:
-      return capabilities.isSoftware ? fmt::format("'{}' is no GPU", capabilities.renderer) : "";
+      return capabilities.isSoftware ? fmt::format("'{}' is not a GPU", capabilities.renderer) : "";
     case Kind::Software:
       return capabilities.isSoftware ? "" : fmt::format("'{}' is a GPU", capabilities.renderer);
     case Kind::Renderer:

@@ -28,7 +28,7 @@ TEST_CASE("what a device's name asks for") {
   CHECK(WantedDevice::parse("gl").kind == WantedDevice::Kind::Best);
   CHECK(WantedDevice::parse("GPU").whyNot(gpu).empty());
   CHECK(WantedDevice::parse("gpu:12").number == 12);
-  CHECK(WantedDevice::parse("gpu").whyNot(software) == "'llvmpipe (LLVM 15.0.6, 256 bits)' is no GPU");
+  CHECK(WantedDevice::parse("gpu").whyNot(software) == "'llvmpipe (LLVM 15.0.6, 256 bits)' is not a GPU");
   CHECK(WantedDevice::parse("software").whyNot(gpu) == "'NVIDIA H200/PCIe/SSE2' is a GPU");
   CHECK(WantedDevice::parse("Nvidia").whyNot(gpu).empty());
   CHECK(WantedDevice::parse("nvidia").whyNot(software) ==
