@@ -48,7 +48,7 @@ struct DeviceOptions {
   std::string profile = {};
   /// The largest width and height of a texture: larger extents are linearised, and larger streams use several
   /// layers. If 0, the environment variable SK_TEXTURE_LIMIT decides, and without it the device's limit,
-  /// which is the maximum in any case. For tests.
+  /// which is the maximum in any case. It shows how a program runs where textures are smaller.
   std::int32_t textureLimit = 0;
   /// "device": the device's own limits. "guaranteed": a pass reads and writes no more planes than every
   /// device of the profile can, which shows how a program runs elsewhere. If empty, the environment variable

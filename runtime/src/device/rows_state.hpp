@@ -32,7 +32,7 @@ class RowsState {
   std::int64_t end() const { return pieces().starts().back(); }
   /// The first row without elements; -1 if there is none.
   std::int64_t firstEmptyRow() const { return firstEmptyRow_; }
-  /// The first row that ends behind this many elements; -1 if there is none.
+  /// The first row that ends beyond this many elements; -1 if there is none.
   std::int64_t rowBeyond(std::int64_t elements) const;
 
   /// A level: rows of elements, or of the pieces of the level before. Each row of the last level is one piece.

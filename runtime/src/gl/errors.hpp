@@ -32,7 +32,6 @@ class Errors {
     isLost_ = isLost_ || glGetGraphicsResetStatus() != GL_NO_ERROR;
     return isLost_;
   }
-  void setLost() { isLost_ = true; }
 
  private:
   GLenum earlier_ = GL_NO_ERROR;

@@ -25,7 +25,6 @@ class ErrorStatistics {
   /// "not_finite" (the number of results that are not finite, which are excluded from the others).
   Json json() const;
   double max() const { return max_; }
-  std::size_t notFinite() const { return notFinite_; }
 
  private:
   std::size_t count_ = 0;
