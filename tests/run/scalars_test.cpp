@@ -95,6 +95,14 @@ TEST_CASE("scalars that are assigned to themselves, moved, and computed from the
     a *= a;
     a /= 5;
     CHECK(a.read() == 5);
+    a = 7;  // a number keeps the place, too
+    sk::Loop loop = device.record([&] {
+      a = a + 1;
+      a = a * 2.0;
+    });
+    loop.repeat(2);
+    CHECK(a.read() == 34);
+    a = 5;
     sk::Scalar<float> b = a + 1, c = std::move(b);
     CHECK_THAT(errorOf([&] { static_cast<void>(b + 1); }), Contains("holds no value"));
     b = c * 2;

@@ -29,8 +29,8 @@ using LoopOwner = Owner<LoopState, LoopDeleter>;
 /// How Loop::until ends.
 struct LoopEnd {
   /// A GPU gets this many iterations at a time. If it has OpenGL 4.3, it ends the loop by itself; otherwise the host
-  /// asks for the condition after them, which waits for the device. Of native devices, and renderers in software, it
-  /// asks after each iteration.
+  /// reads the condition after them, which waits for the device. On native devices and renderers in software, the host
+  /// reads it after each iteration.
   std::int64_t every = 16;
   std::int64_t most = 1000;  ///< the most iterations
 };
@@ -51,7 +51,7 @@ class Loop {
   /// Runs the calls until the only element of `done`, which they compute, is true after an iteration; `end.most`
   /// times at the most. Returns the number of iterations that have run. On a GPU with less than OpenGL 4.3 this is a
   /// multiple of `end.every` or `end.most`: iterations go on until the host asks. Throws sk::Error as repeat() does, or if
-  /// `done` has not one element, is on another device, or the numbers are less than 1 and 0.
+  /// `done` has not one element, is on another device or used by no call, or if end.every < 1 or end.most < 0.
   template <StreamOf<bool> S>
   std::int64_t until(const S& done, const LoopEnd& end = {}) {
     return until(regionOf(done), end);

@@ -44,14 +44,15 @@ class Rows {
  public:
   template <class S>
     requires std::is_same_v<typename S::value_type, std::int32_t>
-  explicit Rows(const S& starts) : state_(detail::makeRows(regionOf(starts))) {}
+  explicit Rows(const S& starts) : state_(detail::makeRows(regionOfStarts(starts))) {}
 
   /// The number of rows.
   std::int64_t count() const;
   /// The end of the last row: a stream in rows has at least as many elements.
   std::int64_t end() const;
 
-  /// A one-dimensional stream or view in these rows.
+  /// A one-dimensional stream or view in these rows, for one call. Throws sk::Error if the rows were moved from; the
+  /// call throws it if the stream is too short, or is on another device.
   template <class S>
     requires requires { typename S::value_type; }
   InRows<typename S::value_type> operator()(const S& stream) const {
@@ -59,6 +60,14 @@ class Rows {
   }
 
  private:
+  template <class S>
+  static StreamRegion regionOfStarts(const S& starts) {
+    static_assert(
+        requires { regionOf(starts); },
+        "StreamKernel: the starts of rows are a stream on the device; write them to a device.stream<int>()");
+    return regionOf(starts);
+  }
+
   detail::RowsOwner state_;
 };
 

@@ -108,8 +108,8 @@ Scalar<R> computed(ScalarOp op, const Operands&... operands) {
 }  // namespace detail
 
 /// A value of type T on a device. Device::scalar creates one; arithmetic with scalars and numbers makes others, of the
-/// values that its operands have at that time. Move-only. A scalar that was default-constructed or moved from can only
-/// be destroyed or moved to; everything else throws sk::Error.
+/// values that its operands have at that time. Move-only. A scalar that was default-constructed or moved from, or whose
+/// device has been destroyed, can only be destroyed or moved to; everything else throws sk::Error.
 template <ElementType T>
 class Scalar {
  public:
@@ -127,6 +127,13 @@ class Scalar {
     }
   }
   void assign(const T& value) { detail::fill(region(), &value); }
+  /// Like assign(): `a = 3.0f`.
+  template <class V>
+    requires(std::is_arithmetic_v<V> && std::is_arithmetic_v<T>)
+  Scalar& operator=(V value) {
+    assign(static_cast<T>(value));
+    return *this;
+  }
 
   /// Returns the value. Waits for the device.
   T read() const {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Streams are shaped, typed collections of elements on a device; views are boxes of a stream, every n-th element of
-// one, or its elements in another shape. Device::stream creates streams. The templates here wrap a few untyped functions; GL appears only in StreamTexture and
-// fillBuffer.
+// one, or its elements in another shape. Device::stream creates streams. The templates here wrap a few untyped
+// functions; GL appears only in StreamTexture and fillBuffer.
 #pragma once
 
 #include <cstddef>
@@ -328,6 +328,7 @@ template <class T>
 View<T> stride(const View<T>& view, const Index& steps, const Index& offsets = {}) {
   return View<T>(detail::strided(view.region(), steps, offsets));
 }
+
 /// Whether a reference to S may be an output: non-const streams, and writable views.
 template <class S>
 inline constexpr bool isWritable = false;

@@ -5,7 +5,10 @@
 cmake_policy(VERSION 3.25)
 
 string(REPLACE ":" ";-I" includes "-I${INCLUDES}")
-foreach(wrong RANGE 2)
+set(message_1 "the kernel writes this stream, but it is const")
+set(message_2 "${message_1}")
+set(message_3 "the starts of rows are a stream on the device")
+foreach(wrong RANGE 3)
   execute_process(
     COMMAND ${CXX} -std=c++20 -fsyntax-only -DWRONG=${wrong} ${includes} "${CMAKE_CURRENT_LIST_DIR}/calls.cpp"
     RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
@@ -15,7 +18,7 @@ foreach(wrong RANGE 2)
     endif()
   elseif(status EQUAL 0)
     message(FATAL_ERROR "WRONG=${wrong} compiles")
-  elseif(NOT text MATCHES "StreamKernel: the kernel writes this stream, but it is const")
+  elseif(NOT text MATCHES "StreamKernel: ${message_${wrong}}")
     message(FATAL_ERROR "WRONG=${wrong} is refused for another reason:\n${text}")
   endif()
 endforeach()
