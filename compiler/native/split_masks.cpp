@@ -13,24 +13,15 @@
 #include <llvm/IR/Instructions.h>
 #include <llvm/IR/PatternMatch.h>
 
+#include "native/mask_values.hpp"
+
 namespace skc::native {
 
 namespace {
 
-constexpr char attribute[] = "sk-split-masks";
+constexpr char splitMasksAttribute[] = "sk-split-masks";
 
 using Pieces = llvm::SmallVector<llvm::Value*, 4>;
-
-llvm::FixedVectorType* maskType(const llvm::Value& value) {
-  auto* const type = llvm::dyn_cast<llvm::FixedVectorType>(value.getType());
-  return type != nullptr && type->getElementType()->isIntegerTy(1) ? type : nullptr;
-}
-
-/// True if an instruction computes a mask from masks.
-bool isComputed(const llvm::Instruction& instruction) {
-  return llvm::isa<llvm::PHINode, llvm::FreezeInst, llvm::SelectInst>(instruction) ||
-         instruction.isBitwiseLogicOp();
-}
 
 class Splitter {
  public:
@@ -43,7 +34,7 @@ class Splitter {
     lanes_ = vectorBits / std::max(narrowest, 32U);
     for (llvm::Instruction& instruction : llvm::instructions(function)) {
       if (!isWide(instruction)) continue;
-      (isComputed(instruction) ? computed_ : sources_).insert(&instruction);
+      (isComputedMask(instruction) ? computed_ : sources_).insert(&instruction);
     }
   }
 
@@ -268,8 +259,8 @@ class Splitter {
 }  // namespace
 
 llvm::PreservedAnalyses SplitMasks::run(llvm::Function& function, llvm::FunctionAnalysisManager&) {
-  if (!function.hasFnAttribute(attribute)) return llvm::PreservedAnalyses::all();
-  const auto bits = static_cast<unsigned>(function.getFnAttributeAsParsedInteger(attribute));
+  if (!function.hasFnAttribute(splitMasksAttribute)) return llvm::PreservedAnalyses::all();
+  const auto bits = static_cast<unsigned>(function.getFnAttributeAsParsedInteger(splitMasksAttribute));
   if (!Splitter(function, bits).split()) return llvm::PreservedAnalyses::all();
   llvm::PreservedAnalyses kept;
   kept.preserveSet<llvm::CFGAnalyses>();
@@ -277,7 +268,7 @@ llvm::PreservedAnalyses SplitMasks::run(llvm::Function& function, llvm::Function
 }
 
 void markSplitMasks(llvm::Function& function, std::uint32_t vectorBits) {
-  function.addFnAttr(attribute, std::to_string(vectorBits));
+  function.addFnAttr(splitMasksAttribute, std::to_string(vectorBits));
 }
 
 }  // namespace skc::native

@@ -10,22 +10,13 @@
 #include <llvm/IR/Instructions.h>
 #include <llvm/IR/PatternMatch.h>
 
+#include "native/mask_values.hpp"
+
 namespace skc::native {
 
 namespace {
 
-constexpr char attribute[] = "sk-wide-masks";
-
-llvm::FixedVectorType* maskType(const llvm::Value& value) {
-  auto* const type = llvm::dyn_cast<llvm::FixedVectorType>(value.getType());
-  return type != nullptr && type->getElementType()->isIntegerTy(1) ? type : nullptr;
-}
-
-/// True if an instruction computes a mask from masks, which is done in words.
-bool isComputed(const llvm::Instruction& instruction) {
-  return llvm::isa<llvm::PHINode, llvm::FreezeInst, llvm::SelectInst>(instruction) ||
-         instruction.isBitwiseLogicOp();
-}
+constexpr char wideMasksAttribute[] = "sk-wide-masks";
 
 bool isUsedElsewhere(const llvm::Instruction& mask) {
   return llvm::any_of(mask.users(), [&](const llvm::User* user) {
@@ -40,7 +31,7 @@ class Widener {
     bool anyLivesOn = false;
     for (llvm::Instruction& instruction : llvm::instructions(function)) {
       if (maskType(instruction) == nullptr) continue;
-      if (isComputed(instruction)) {
+      if (isComputedMask(instruction)) {
         computed_.insert(&instruction);
       } else {
         sources_.push_back(&instruction);
@@ -214,13 +205,13 @@ class Widener {
 }  // namespace
 
 llvm::PreservedAnalyses WideMasks::run(llvm::Function& function, llvm::FunctionAnalysisManager&) {
-  if (!function.hasFnAttribute(attribute) || !Widener(function).widen())
+  if (!function.hasFnAttribute(wideMasksAttribute) || !Widener(function).widen())
     return llvm::PreservedAnalyses::all();
   llvm::PreservedAnalyses kept;
   kept.preserveSet<llvm::CFGAnalyses>();
   return kept;
 }
 
-void markWideMasks(llvm::Function& function) { function.addFnAttr(attribute); }
+void markWideMasks(llvm::Function& function) { function.addFnAttr(wideMasksAttribute); }
 
 }  // namespace skc::native
