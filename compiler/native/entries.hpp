@@ -37,6 +37,9 @@ struct EntrySource {
 llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, sk::native::EntryKind kind,
                            const std::string& name);
 
+/// True if every accumulator of a reduction has an identity.
+bool hasIdentities(const ir::Kernel& kernel);
+
 /// The kinds of entries that a kernel needs, apart from RunRows. A reduction needs Fold and FoldRows, Combine if it folds
 /// accumulators into accumulators, Identity if it has identities, and Scan if it `scans`. Any other kernel needs Run, and Borders
 /// if a gather has a border value. Either needs Apply if it scatters.

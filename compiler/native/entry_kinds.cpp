@@ -48,6 +48,12 @@ bool mayHoldFloats(const Module& module, const Kernel& kernel) {
   return true;
 }
 
+bool hasIdentities(const Kernel& kernel) {
+  return std::ranges::none_of(kernel.params, [](const KernelParam& param) {
+    return param.role == ParamRole::Accumulator && param.identity == nullptr;
+  });
+}
+
 std::vector<EntryKind> entriesOf(const Module& module, const Kernel& kernel, bool scans) {
   std::vector<EntryKind> kinds;
   if (kernel.reduction) {

@@ -80,6 +80,28 @@ TEST_CASE("a reduce to a stream folds each block, in order") {
   });
 }
 
+TEST_CASE("where there are thousands of rows, work groups fold two of them each") {
+  sk::Device& device = run_tests::device("glsl430", 0);
+  constexpr std::int64_t height = 2050, width = 512;
+  std::vector<int> elements(static_cast<std::size_t>(height * width)), expected(height);
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    elements[i] = valueAt<int>(static_cast<std::uint32_t>(i)) % 1000;
+    expected[i / width] += elements[i];
+  }
+  auto x = device.stream<int>({height, width});
+  x.write(elements);
+  auto sums = device.stream<int>({height, 1});
+  reduces::sumInt(x, sums);
+  CHECK(sums.read() == expected);
+  auto more = device.stream<int>({height + 2, 3});
+  more.fill(7);
+  auto middle = more.domain({1, 1}, {height + 1, 2});
+  reduces::sumInt(x, middle);
+  CHECK(middle.read() == expected);
+  CHECK(more.domain({0, 0}, {1, 3}).read() == std::vector<int>(3, 7));
+  CHECK(more.domain({height + 1, 0}, {height + 2, 3}).read() == std::vector<int>(3, 7));
+}
+
 TEST_CASE("an input of nothing fills its output with the identity") {
   onEveryLayout([](sk::Device& device) {
     auto sums = device.stream<float>({3, 1});

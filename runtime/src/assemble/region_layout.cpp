@@ -76,9 +76,12 @@ std::optional<TextureShape> linearTexture(std::int64_t count, const TextureLimit
   assert(count > 0 && limits.size > 0);
   if (count > mostElements) return std::nullopt;
   const auto divideUp = [&](int shift) { return static_cast<std::int32_t>(((count - 1) >> shift) + 1); };
+  constexpr int narrowest = 7;
   const int widest = std::bit_width(static_cast<std::uint32_t>(limits.size)) - 1;
-  int shift = 0;
-  while (shift < widest && std::int64_t{1} << (2 * shift) < count) ++shift;
+  int square = 0;
+  while (square < widest && std::int64_t{1} << (2 * square) < count) ++square;
+  int shift = std::min(square, narrowest);
+  while (shift < square && divideUp(shift) > limits.size) ++shift;
   if (divideUp(shift) <= limits.size) return TextureShape{1 << shift, divideUp(shift), 0};
   const auto unused = [&] { return (std::int64_t{divideUp(2 * shift)} << (2 * shift)) - count; };
   while (unused() > count / 8 && divideUp(2 * (shift - 1)) <= limits.layers) --shift;

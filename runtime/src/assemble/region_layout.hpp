@@ -74,9 +74,10 @@ struct TextureShape {
   bool operator==(const TextureShape&) const = default;
 };
 
-/// The texture of `count` linearised elements, from 1 to sk::mostElements. Its width is the smallest power of
-/// two not below sqrt(count) that fits. If that is too small, it has layers, of the largest size that leaves
-/// at most an eighth of the texels unused. Nullopt if that takes too many layers.
+/// The texture of `count` linearised elements, from 1 to sk::mostElements. Its width is a power of two: the smallest not
+/// below sqrt(count), or, where that is more than 128, the smallest from 128 on whose rows fit, so that work groups write
+/// whole rows (Function::Paired). If the largest texture is too small, it has layers, of the largest size that leaves at
+/// most an eighth of the texels unused. Nullopt if that takes too many layers.
 std::optional<TextureShape> linearTexture(std::int64_t count, const TextureLimits& limits);
 
 /// The layout of `count` elements in it, by number.

@@ -179,6 +179,7 @@ class GlDevice final : public DeviceState {
   gl::ValueBuffer values;
   gl::WorkBuffer groupStates;  ///< of dispatched append outputs
   gl::WorkBuffer tileResults;  ///< of scans in one pass
+  gl::WorkBuffer sortedWords;  ///< of sorts, between two digits
   gl::VertexArray vertexArray;
   const std::shared_ptr<PendingReads> pendingReads = std::make_shared<PendingReads>();
   TransferBuffers transferBuffers{bound.deletions};
@@ -222,6 +223,7 @@ class DeviceScope {
     }
     device.pool.trim();
     device.tileResults.trim();
+    device.sortedWords.trim();
     device.groupStates.trim();
     device.transferBuffers.trim();
     if (device.isSoftware()) native::restThreads();

@@ -13,6 +13,7 @@ std::string_view text(Function function) {
     case Function::Unravel4: return library::unravel4;
     case Function::Ravel: return library::ravel;
     case Function::Texel: return library::texel;
+    case Function::Paired: return library::paired;
     case Function::Divide: return library::divide;
     case Function::Row: return library::row;
     case Function::Layered: return library::layered;

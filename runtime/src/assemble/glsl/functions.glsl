@@ -43,6 +43,15 @@ ivec2 sk_texel(int sk_n, int sk_s) {
   return ivec2(sk_n & ((1 << sk_s) - 1), sk_n >> sk_s);
 }
 
+//// paired
+// A permutation of the numbers in each pair of rows of a texture of width 1 << h, 8 or more: of eight consecutive ones,
+// four are in either row. GPUs keep texels of two rows in one sector of memory, and a sector that invocations side by side
+// write only a part of takes as long as several.
+int sk_paired(int sk_n, int sk_h) {
+  int sk_i = sk_n & ((2 << sk_h) - 1);
+  return (sk_n - sk_i) | ((sk_i >> 2 & 1) << sk_h) | (sk_i >> 3 << 2) | (sk_i & 3);
+}
+
 //// divide
 // n / d for n >= 0 and d > 0, by floats, since software renderers divide integers one by one: the first quotient is off
 // by the rounding error of n, the second by less than 1.

@@ -62,6 +62,12 @@ TRANSLITERATED(
     texelText, ivec2 sk_texel(int sk_n, int sk_s) { return ivec2(sk_n & ((1 << sk_s) - 1), sk_n >> sk_s); })
 
 TRANSLITERATED(
+    pairedText, int sk_paired(int sk_n, int sk_h) {
+      int sk_i = sk_n & ((2 << sk_h) - 1);
+      return (sk_n - sk_i) | ((sk_i >> 2 & 1) << sk_h) | (sk_i >> 3 << 2) | (sk_i & 3);
+    })
+
+TRANSLITERATED(
     ravelText, int sk_ravel(ivec4 sk_i, ivec4 sk_s) {
       return sk_i.x * sk_s.x + sk_i.y * sk_s.y + sk_i.z * sk_s.z + sk_i.w * sk_s.w;
     })
@@ -160,6 +166,7 @@ TEST_CASE("the functions tested here are those that the assembler emits") {
   CHECK(essence(text(Function::Mirror)) == essence(glsl::mirrorText));
   CHECK(essence(text(Function::MirrorOnce)) == essence(glsl::mirrorOnceText));
   CHECK(essence(text(Function::Texel)) == essence(glsl::texelText));
+  CHECK(essence(text(Function::Paired)) == essence(glsl::pairedText));
   CHECK(essence(text(Function::Ravel)) == essence(glsl::ravelText));
   CHECK(essence(text(Function::Unravel2)) == essence(glsl::two::text));
   CHECK(essence(text(Function::Unravel3)) == essence(glsl::three::text));
@@ -202,5 +209,20 @@ TEST_CASE("an index and its number give one another") {
     if (n < 15) REQUIRE(glsl::sk_ravel(glsl::two::sk_unravel(n, strides), strides) == n);
     const glsl::ivec2 texel = glsl::sk_texel(n, 3);
     REQUIRE((texel.x < 8 && texel.y * 8 + texel.x == n));
+  }
+}
+
+TEST_CASE("of eight numbers in pairs of rows, four are in either row, and all numbers are taken once") {
+  for (const int shift : {2, 3, 7}) {
+    const int width = 1 << shift, pair = 2 * width;
+    std::vector<int> taken(static_cast<std::size_t>(3 * pair));
+    for (int n = 0; n < 3 * pair; ++n) {
+      const int number = glsl::sk_paired(n, shift);
+      REQUIRE(number / pair == n / pair);
+      ++taken[static_cast<std::size_t>(number)];
+      CHECK(number / width % 2 == n / 4 % 2);
+      CHECK(number % width == n % pair / 8 * 4 + n % 4);
+    }
+    CHECK(std::ranges::all_of(taken, [](int times) { return times == 1; }));
   }
 }

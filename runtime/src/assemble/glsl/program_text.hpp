@@ -29,6 +29,7 @@ enum class Function : std::uint8_t {
   Unravel4,
   Ravel,  ///< element number of an index
   Texel,  ///< texel of an element number
+  Paired,  ///< number of the element that is fetched or stored in another's place, to cover two rows of texels at once
   Divide,  ///< quotient of an element number
   Row,  ///< texel of an element number in a plane; requires Divide
   Layered,  ///< texel of a layered texture

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The programs of a radix sort by one digit of 8 bits (sort/radix_program.hpp). Words lie in linearised textures.
+// The programs of a radix sort by one digit of 8 bits (sort/radix_program.hpp). Words lie in linearised textures. Between
+// two digits, pairs lie in a buffer, if it is large enough (SK_FROM_BUFFER, SK_TO_BUFFER): the pairs of a tile that have
+// the same digit go to few neighbouring places, which fill whole sectors of memory there, but one row of each in a texture.
 //
 //   for each tile of 4096 keys: counts[digit, tile] = how many keys have this digit
 //   sums = the counts before, digit by digit and tile by tile
@@ -33,8 +35,19 @@ void sk_wait() {
   barrier();
 }
 
-//// countDigits
+#if defined(SK_FROM_BUFFER) || defined(SK_TO_BUFFER)
+layout(std430, binding = 0) buffer sk_buffer { uvec2 sk_stored[]; };
+uniform int sk_from;  // the number of the first pair that is read
+uniform int sk_to;    // and written
+#endif
+#ifdef SK_FROM_BUFFER
+uvec2 sk_wordAt(int n) { return sk_stored[sk_from + n]; }
+#else
 uniform usampler2D sk_keys;
+uvec2 sk_wordAt(int n) { return texelFetch(sk_keys, sk_texel(n, sk_keys_shift), 0).xy; }
+#endif
+
+//// countDigits
 layout(binding = 0) writeonly uniform uimage2D sk_counts;
 
 shared uint sk_count[256];
@@ -47,8 +60,7 @@ void main() {
   for (int k = 0; k < sk_run; ++k) {
     int n = tile * sk_tile + k * 256 + i;
     if (n < sk_length) {
-      uint key = texelFetch(sk_keys, sk_texel(n, sk_keys_shift), 0).x;
-      atomicAdd(sk_count[key >> sk_digit & 255u], 1u);
+      atomicAdd(sk_count[sk_wordAt(n).x >> sk_digit & 255u], 1u);
     }
   }
   sk_wait();
@@ -94,12 +106,21 @@ void main() {
 }
 
 //// moveKeys
-// With SK_PLACES, a texel holds a key and the place where it was at first. GPUs scatter few texels a cycle, so that one of
-// two words takes less time than two of one. With SK_FIRST, texels that are read hold a key only, whose place is its number.
-uniform usampler2D sk_keys;
+// With SK_PAIRS, a key goes with the place where it was at first. GPUs scatter few texels a cycle, so that one of
+// two words takes less time than two of one. With SK_FIRST, only keys are read, and the place of each is its number.
 uniform usampler2D sk_sums;
 uniform usampler2D sk_totals;  // of the tiles of sums, themselves summed
+#ifndef SK_TO_BUFFER
 layout(binding = 0) writeonly uniform uimage2D sk_moved;
+#endif
+
+void sk_put(int n, uvec2 word) {
+#ifdef SK_TO_BUFFER
+  sk_stored[sk_to + n] = word;
+#else
+  imageStore(sk_moved, sk_texel(n, sk_keys_shift), uvec4(word, 0u, 0u));
+#endif
+}
 
 // Marks of 8 rows and 256 digits, for even and odd steps; later the tile's words in the order of their ranks.
 shared uint sk_words[4096];
@@ -117,17 +138,17 @@ void main() {
   int count = min(sk_length - tile * sk_tile, sk_tile);
   uint keys[sk_run];
   uint ranks[sk_run];
-#ifdef SK_PLACES
+#ifdef SK_PAIRS
   uint places[sk_run];
 #endif
   for (int k = 0; k < sk_run; ++k) {
     int n = first + k * 32;
-    uvec2 texel = n < sk_length ? texelFetch(sk_keys, sk_texel(n, sk_keys_shift), 0).xy : uvec2(0xffffffffu);
-    keys[k] = texel.x;
+    uvec2 word = n < sk_length ? sk_wordAt(n) : uvec2(0xffffffffu);
+    keys[k] = word.x;
 #ifdef SK_FIRST
     places[k] = uint(n);
-#elif defined(SK_PLACES)
-    places[k] = texel.y;
+#elif defined(SK_PAIRS)
+    places[k] = word.y;
 #endif
     sk_words[k * 256 + i] = 0u;
   }
@@ -166,7 +187,7 @@ void main() {
   for (int k = 0; k < sk_run; ++k) sk_words[ranks[k]] = keys[k];
   sk_wait();
   for (int k = 0; k < sk_run; ++k) keys[k] = sk_words[k * 256 + i];
-#ifdef SK_PLACES
+#ifdef SK_PAIRS
   sk_wait();
   for (int k = 0; k < sk_run; ++k) sk_words[ranks[k]] = places[k];
   sk_wait();
@@ -175,11 +196,26 @@ void main() {
   for (int k = 0; k < sk_run; ++k) {
     int rank = k * 256 + i;
     if (rank >= count) continue;
-    ivec2 to = sk_texel(int(sk_moves[sk_digitOf(keys[k])]) + rank, sk_keys_shift);
-#ifdef SK_PLACES
-    imageStore(sk_moved, to, uvec4(keys[k], places[k], 0u, 0u));
+    int to = int(sk_moves[sk_digitOf(keys[k])]) + rank;
+#ifdef SK_PAIRS
+    sk_put(to, uvec2(keys[k], places[k]));
 #else
-    imageStore(sk_moved, to, uvec4(keys[k]));
+    sk_put(to, uvec2(keys[k]));
 #endif
+  }
+}
+
+//// storePairs
+// From the buffer to a texture, two rows at once where tiles consist of pairs of rows (sk_paired).
+layout(binding = 0) writeonly uniform uimage2D sk_moved;
+
+void main() {
+  int i = int(gl_LocalInvocationIndex), tile = sk_group();
+  if (tile >= sk_tiles) return;
+  bool isPaired = sk_keys_shift >= 2 && sk_tile % (2 << sk_keys_shift) == 0;
+  for (int k = 0; k < sk_run; ++k) {
+    int n = tile * sk_tile + k * 256 + i;
+    if (isPaired) n = sk_paired(n, sk_keys_shift);
+    if (n < sk_length) imageStore(sk_moved, sk_texel(n, sk_keys_shift), uvec4(sk_wordAt(n), 0u, 0u));
   }
 }

@@ -217,6 +217,10 @@ TEST_CASE("glslang accepts the programs of sorts, and of scans by runs and tiles
        {RadixStep::Count, RadixStep::Sum, RadixStep::Move, RadixStep::MoveFirst, RadixStep::MovePairs}) {
     programs.add(profile, radixProgram(profile, step));
   }
+  for (const RadixStep step : {RadixStep::CountPairs, RadixStep::MovePairs, RadixStep::StorePairs})
+    programs.add(profile,
+                 radixProgram(profile, step, {.reads = true, .writes = step == RadixStep::MovePairs}));
+  programs.add(profile, radixProgram(profile, RadixStep::MoveFirst, {.writes = true}));
   for (const Reduction* reduction : {&samples::sum, &samples::firstHit}) {
     for (const ScanPass scan : {ScanPass::Folds, ScanPass::Inclusive, ScanPass::Exclusive}) {
       if (scan == ScanPass::Exclusive && reduction == &samples::firstHit) continue;  // it has no identity

@@ -181,17 +181,17 @@ void FoldText::declareShared() {
   }
 }
 
-void FoldText::foldShared() {
+void FoldText::foldShared(int blocks) {
   const auto keep = [&](std::string_view indent) {
     for (const Parameter* accumulator : accumulators_) {
       statement(fmt::format("{}{}[sk_i] = {};", indent, sharedName(*accumulator), total(*accumulator)));
     }
   };
   keep("");
-  statement(fmt::format("for (int sk_s = 1; sk_s < {}; sk_s *= 2) {{", groupSize));
+  statement(fmt::format("for (int sk_s = {}; sk_s < {}; sk_s *= 2) {{", blocks, groupSize));
   statement("  memoryBarrierShared();");
   statement("  barrier();");
-  statement("  if ((sk_i & (2 * sk_s - 1)) == 0 && sk_i + sk_s < sk_runs) {");
+  statement(fmt::format("  if ((sk_i & (2 * sk_s - 1)) < {} && sk_i + sk_s < sk_runs) {{", blocks));
   statement("    " + calling(reduction_.combine, [&](std::size_t, std::size_t k) {
               return fmt::format("{}[sk_i + sk_s]", sharedName(*accumulators_[k]));
             }));

@@ -72,8 +72,9 @@ class FoldText {
   /// Declares the accumulators of all invocations of a group.
   void declareShared();
   /// Combines the accumulators of the first sk_runs invocations, in order, into those of the first one. sk_i is the
-  /// number of the invocation.
-  void foldShared();
+  /// number of the invocation. If there are several `blocks`, a power of two, invocation i combines those of i + blocks,
+  /// i + 2 * blocks and so on.
+  void foldShared(int blocks = 1);
 
   // ---- statements -------------------------------------------------------------------------------
 

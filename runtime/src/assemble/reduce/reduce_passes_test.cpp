@@ -100,6 +100,29 @@ TEST_CASE("work groups fold long runs part by part, whether all are as long or n
   CHECK(first(1025, 16411).texture == TextureShape{65, 65, 0});
 }
 
+TEST_CASE("work groups fold two rows each where there are many, and order does not count") {
+  const auto only = [](std::int32_t rows, bool inAnyOrder) {
+    const RegionLayout plane{.packed = true, .extent = {512, rows, 1, 1}};
+    const RegionLayout result{.extent = {1, rows, 1, 1}};
+    const Division division{.blocks = result.extent,
+                            .byIndex = true,
+                            .byTexel = true,
+                            .inAnyOrder = inAnyOrder,
+                            .inGroups = true,
+                            .byGroups = true};
+    const ReduceLimits limits{.texture = {32768, mostLayers}, .grouped = true};
+    const std::vector<ReducePass> passes = planReduction(plane, result, limits, division);
+    REQUIRE(passes.size() == 1);
+    return passes.front();
+  };
+  CHECK(only(4096, true).variant.twoBlocks);
+  CHECK(only(4096, true).draws == std::vector<Rect>{{0, 0, 1, 2048}});
+  for (const ReducePass& pass : {only(4096, false), only(4097, true), only(256, true)}) {
+    CHECK_FALSE(pass.variant.twoBlocks);
+    CHECK(pass.draws.front().height >= 256);
+  }
+}
+
 TEST_CASE("of a dispatched reduction to a value, the last pass alone writes to a buffer") {
   const RegionLayout plane{.extent = {1024, 1024, 1, 1}};
   const Division division{.blocks = {1, 1, 1, 1}, .inAnyOrder = true, .inGroups = true};

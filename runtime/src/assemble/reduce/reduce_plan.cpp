@@ -259,8 +259,21 @@ class Planner {
                      {"sk_item_shape", true, elements_}};
     setBlocks(pass, blockShape(), division_.blocks);
     setDomain(pass, pass.toResult ? result_ : partials(pass, runs));
+    if (pass.toResult && mayJoinBlocks()) {
+      pass.variant.twoBlocks = true;
+      pass.draws.front().height /= 2;
+    }
     left_ = runs;
     passes_.push_back(std::move(pass));
+  }
+
+  /// Whether work groups fold two blocks each: there are enough rows of blocks, a row of texels high each.
+  bool mayJoinBlocks() const {
+    constexpr std::int32_t enoughBlocks = 2048;
+    const std::int32_t rows = division_.blocks[1];
+    return division_.inAnyOrder && division_.byTexel && !result_.linear && !result_.strided &&
+           blocks_ >= enoughBlocks && rows % 2 == 0 && input_.extent[1] == rows &&
+           input_.extent[2] * input_.extent[3] == 1 && result_.extent == division_.blocks;
   }
 
   /// Adds a pass over the `left_` elements, texels or partial results of each block.

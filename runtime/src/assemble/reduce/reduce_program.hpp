@@ -87,6 +87,9 @@ struct ReduceVariant {
   /// it. 0: runs have no parts.
   std::uint8_t part = 0;
   bool grouped = false;  ///< Walk::Rows: a work group combines the results of its invocations
+  /// A work group folds two blocks, one above the other, whose results it stores apart: invocations side by side read texels
+  /// of both, as Function::Paired has them.
+  bool twoBlocks = false;
   /// Walk::GroupedPartials: an invocation folds every groupSize-th partial result, not consecutive ones.
   bool strided = false;
   bool toBuffer = false;  ///< the only element of the result goes to a buffer (ProgramText::storeInBuffer())

@@ -137,6 +137,8 @@ class ScanPlanner {
                      {"sk_width", false, {elements_.extent[0]}},
                      {"sk_item_shape", true, extent_},
                      {"sk_item_step", true, stridesOf(extent_)}};
+    if (level == 0 && source.unit == ScanUnit::Tile)
+      pass.uniforms.push_back({"sk_pairs", false, {pairedShift(source, scan != ScanPass::Folds)}});
     if (scan != ScanPass::Folds && level + 1 < levels_.size()) {
       const RegionLayout& carry = levels_[level + 1].layout;
       pass.variant.carried = true;
@@ -144,6 +146,17 @@ class ScanPlanner {
       pass.uniforms.push_back({"sk_carry_shift", false, {carry.shift}});
     }
     return pass;
+  }
+
+  /// The shift of the elements' texture, and of the results', if each tile consists of pairs of rows of both; else 0.
+  std::int32_t pairedShift(const Level& elements, bool writes) const {
+    const auto isPaired = [&](const RegionLayout& region) {
+      const std::int32_t pair = 2 << region.shift;
+      return region.linear && region.shift >= 2 && firstNumber(region) % pair == 0 &&
+             elements.folded() % pair == 0;
+    };
+    if (lines_ > 1 || access_.byIndex || !isPaired(elements_)) return 0;
+    return !writes || (isPaired(result_) && result_.shift == elements_.shift) ? elements_.shift : 0;
   }
 
   static void setTarget(ReducePass& pass, const Level& level) {

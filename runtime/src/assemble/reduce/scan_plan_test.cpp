@@ -51,6 +51,26 @@ TEST_CASE("a line is scanned in tiles, in one pass or three") {
   CHECK(!tile.scans[0].variant.chained);  // there is nothing before its only tile
 }
 
+TEST_CASE("tiles of whole pairs of rows are fetched and stored two rows at once") {
+  constexpr std::int32_t count = 1 << 24;
+  const ScanAccess access{
+      .byIndex = false, .byTexel = true, .elementRun = 4, .partialRun = 16, .chained = true};
+  const auto pairs = [&](const RegionLayout& result) {
+    const ScanPlan scan = planScan(packedLine(count), result, dispatched, {count, 1}, access, false);
+    for (const UniformValue& uniform : scan.scans.back().uniforms) {
+      if (uniform.name == "sk_pairs") return uniform.value[0];
+    }
+    return -1;
+  };
+  RegionLayout result = packedLine(count);
+  CHECK(pairs(result) == result.shift);
+  RegionLayout shifted = result;
+  shifted.origin[0] = 4 << result.shift;  // one row
+  CHECK(pairs(shifted) == 0);
+  ++result.shift;
+  CHECK(pairs(result) == 0);
+}
+
 TEST_CASE("more groups than fit into a row are dispatched in rows") {
   constexpr std::int32_t count = 40000 * 4096;
   const ScanPlan scan =

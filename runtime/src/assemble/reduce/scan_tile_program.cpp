@@ -18,6 +18,9 @@ using program::Reduction;
 
 namespace {
 
+/// The tiles that a group looks at together.
+constexpr std::int32_t lookWindow = 64;
+
 class TileScanText : ScanText {
  public:
   TileScanText(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant)
@@ -163,12 +166,22 @@ class TileScanText : ScanText {
     return name;
   }
 
+  /// The item of the tile that an invocation fetches or stores in step sk_k. Neighbouring ones take neighbouring items,
+  /// or, where a tile is of pairs of rows (ScanPlanner), those of both rows.
+  std::string itemOfInvocation() {
+    const std::string item = fmt::format("sk_k * {} + sk_i", tileGroup);
+    if (isOfPartials(variant_.walk) || !isOneLine()) return item;
+    integers({"sk_pairs"});
+    program_.require(Function::Paired);
+    return fmt::format("sk_pairs > 0 ? sk_paired({}, sk_pairs) : {}", item, item);
+  }
+
   /// Fetches the items of all runs, neighbouring ones by neighbouring invocations.
   void loadTile(const Parameter& input) {
     const auto i = static_cast<std::size_t>(&input - kernel_.parameters.data());
     const std::string tile = tileOf(*accumulators_.front());
     statement(fmt::format("for (int sk_k = 0; sk_k < {}; ++sk_k) {{", run()));
-    statement(fmt::format("  int sk_n = sk_k * {} + sk_i;", tileGroup));
+    statement(fmt::format("  int sk_n = {};", itemOfInvocation()));
     statement("  if (sk_n < sk_left) {");
     const std::string number = numberOf(fmt::format("sk_tile * {} + sk_n", tileGroup * run()));
     moveTo(number, "    ");
@@ -432,16 +445,16 @@ class TileScanText : ScanText {
     program_.function(fmt::format("void sk_publish(int sk_t, uint sk_flag{})", parameters), lines);
   }
 
-  /// Sets sk_before to the fold of the tiles before. Each invocation looks at one of them: fewer at a time would keep a
-  /// large GPU waiting, as the front of tiles whose results are known advances by as many in each look. Their results
-  /// take the place of the totals of runs in shared memory.
+  /// Sets sk_before to the fold of the tiles before. Some invocations look at one of them each: fewer would keep a large GPU
+  /// waiting, as the front of tiles whose results are known advances by as many in each look, and with more, the looks of
+  /// all groups at the same few words hold up each other. Results take the place of the totals of runs in shared memory.
   void lookBack(const std::vector<Parameter>& written) {
     integers({"sk_patience"});
     statement("  bool sk_hasBefore = false;");
     statement("  for (int sk_at = sk_tile - 1, sk_tries = 0; sk_at >= 0;) {");
-    statement(fmt::format("    if (sk_i == 0) sk_nearest = sk_missing = {};", tileGroup));
+    statement(fmt::format("    if (sk_i == 0) sk_nearest = sk_missing = {};", lookWindow));
     wait("    ");
-    statement("    if (sk_i <= sk_at) {");
+    statement(fmt::format("    if (sk_i < min({}, sk_at + 1)) {{", lookWindow));
     readWindow();
     statement("    }");
     wait("    ");
@@ -549,7 +562,7 @@ class TileScanText : ScanText {
   void storeTile(const std::vector<Parameter>& written) {
     wait();
     statement(fmt::format("for (int sk_k = 0; sk_k < {}; ++sk_k) {{", run()));
-    statement(fmt::format("  int sk_n = sk_k * {} + sk_i;", tileGroup));
+    statement(fmt::format("  int sk_n = {};", itemOfInvocation()));
     statement("  if (sk_n < sk_left) {");
     const int items = tileGroup * run();
     storeItem(written, fmt::format("sk_tile * {} + sk_n", items), "    ", [&](const Parameter& result) {

@@ -4,6 +4,7 @@
 // scalable radix sorting", 2011). Sorting by each digit in turn, lowest first, sorts by all of them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -21,11 +22,19 @@ enum class RadixStep : std::uint8_t {
   Move,  ///< keys, sums and totals to keys
   MoveFirst,  ///< the same to pairs of keys and their numbers: the places where they came from
   MovePairs,  ///< pairs, sums and totals to pairs
+  CountPairs,  ///< Count of the keys of pairs in the buffer
+  StorePairs,  ///< pairs from the buffer to a texture
+};
+inline constexpr std::size_t radixSteps = 7;
+
+/// Where a step has its pairs: in the buffer at binding 0, from number sk_from and sk_to on, or in textures.
+struct RadixStorage {
+  bool reads = false, writes = false;  ///< it reads them from the buffer, writes them to it
 };
 
 /// The program of a step. It is dispatched in rows of 2^15 groups (tileGroup's), one for each tile, and has the uniforms
-/// sk_rect, sk_length, sk_tiles, sk_keys_shift, sk_counts_shift, sk_totals_shift and sk_digit; its samplers are sk_keys,
-/// of keys or pairs, sk_counts, sk_sums and sk_totals. All textures are linearised.
-std::string radixProgram(const Profile& profile, RadixStep step);
+/// sk_rect, sk_length, sk_tiles, sk_keys_shift, sk_counts_shift, sk_totals_shift, sk_digit, sk_from and sk_to; its samplers
+/// are sk_keys, of keys or pairs, sk_counts, sk_sums and sk_totals. All textures are linearised.
+std::string radixProgram(const Profile& profile, RadixStep step, RadixStorage storage = {});
 
 }  // namespace sk::assemble

@@ -24,6 +24,7 @@
 namespace sk {
 
 using assemble::RadixStep;
+using assemble::RadixStorage;
 using assemble::Rect;
 using assemble::RegionLayout;
 using program::Parameter;
@@ -69,10 +70,11 @@ struct Uniform {
   std::int32_t value;
 };
 
-/// Dispatches a group for each tile.
+/// Dispatches a group for each tile. Words in the buffer take the place of the first that is read or written, which is null.
 void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name, std::span<Words* const> read,
                    std::span<Words* const> written, std::span<const Uniform> uniforms, std::int32_t tiles) {
-  AppendProgram& program = device.sortPrograms.of(step);
+  const RadixStorage storage{.reads = read.front() == nullptr, .writes = written.front() == nullptr};
+  AppendProgram& program = device.sortPrograms.of(step, storage);
   constexpr std::int32_t mostInRow = std::int32_t{1} << assemble::groupRowShift;
   const Rect groups{0, 0, std::min(tiles, mostInRow), divideUp(tiles, mostInRow)};
   const std::int64_t bytes =
@@ -81,9 +83,16 @@ void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name, std:
                          std::size_t{assemble::radixTile} * 4);
   device.bound.program(program.program().name());
   int unit = 0;
-  for (Words* words : read) unit = bindPlanes(device, words->planes(), unit);
+  for (Words* words : read) {
+    if (words == nullptr) {
+      ++unit;
+    } else {
+      unit = bindPlanes(device, words->planes(), unit);
+    }
+  }
   unit = 0;
   for (Words* words : written) {
+    if (words == nullptr) break;
     const gl::Texture& texture = words->plane().texture;
     device.bound.image(unit++, texture.name(), texture.format().internalFormat);
   }
@@ -92,6 +101,7 @@ void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name, std:
   program.set(device.bound, "sk_rect", gl::Int4{groups.x, groups.y, groups.width, groups.height});
   if (std::exchange(device.hasDrawn, false)) gl::finishDraws(device.bound);
   gl::dispatch(device.bound, groups.width, groups.height);
+  if (storage.writes) gl::finishStorage(device.bound);
 }
 
 /// Sorts words, or pairs of words and the places that they come from, digit by digit.
@@ -107,28 +117,19 @@ class WordSort {
         totalSums_(device, divideUp(tiles_ * assemble::radixDigits, assemble::radixTile)),
         all_(device, 1),
         keys(device, count) {
-    if (keepsPlaces) {
-      pairs.emplace(device, count, wordPairs());
-      moved_.emplace(device, count, wordPairs());
-    } else {
-      moved_.emplace(device, count);
-    }
+    if (keepsPlaces) pairs.emplace(device, count, wordPairs());
+    if (!takesBuffer()) moved_.emplace(device, count, keepsPlaces ? wordPairs() : words());
   }
 
   /// Sorts `keys` to `pairs`, or to `keys` if there are no pairs.
-  void sort() {
-    sortBy(0, true);
-    sortByRest();
-  }
+  void sort() { sortByAll(true); }
   /// Sorts `pairs`.
-  void sortAgain() {
-    sortBy(0, false);
-    sortByRest();
-  }
+  void sortAgain() { sortByAll(false); }
 
   /// Divides `keys`, each 0 or 1, to `pairs`. Returns the number of zeros; waits for the device.
   std::int64_t divide() {
     sortBy(0, true);
+    storePairs();
     const TraceScope traced(device_.trace.get(), "transfer", "read number of elements");
     const std::int32_t ones = tiles_;  // the sum before the ones of the first tile
     const std::uint32_t inTile = read(sums_, ones);
@@ -138,9 +139,28 @@ class WordSort {
   }
 
  private:
-  void sortByRest() {
+  void sortByAll(bool fromKeys) {
     constexpr int digits = 4;  // of 8 bits in a word
-    for (int digit = 1; digit < digits; ++digit) sortBy(digit, !pairs);
+    for (int digit = 0; digit < digits; ++digit) sortBy(digit, digit == 0 ? fromKeys : !pairs);
+    storePairs();
+  }
+
+  /// Takes memory for two arrays of pairs besides the textures; false if the device's buffers are too small, or if a loop
+  /// records the commands, which it could not repeat. Single words are moved as fast from texture to texture.
+  bool takesBuffer() {
+    const std::int64_t bytes = std::int64_t{count_} * 16;
+    inBuffer_ = pairs && !device_.bound.isLogged() && bytes <= device_.capabilities.storageBytes &&
+                device_.sortedWords.bind(device_.bound, static_cast<std::size_t>(bytes));
+    return inBuffer_;
+  }
+
+  /// Brings sorted pairs from the buffer to `pairs`.
+  void storePairs() {
+    if (!inBuffer_) return;
+    Words& to = *pairs;
+    run(RadixStep::StorePairs, "store keys", {nullptr}, {&to},
+        {{"sk_keys_shift", to.shift()}, {"sk_length", count_}, {"sk_from", current_}}, tiles_);
+    isStored_ = false;
   }
 
   void sortBy(int digit, bool readsKeys) {
@@ -149,16 +169,20 @@ class WordSort {
     const Uniform totalShift{"sk_totals_shift", totals_.shift()}, length{"sk_length", count_};
     const std::int32_t counts = tiles_ * assemble::radixDigits;
     const std::int32_t groups = divideUp(counts, assemble::radixTile);
-    Words& from = readsKeys ? keys : *pairs;
-    run(RadixStep::Count, "count digits", {&from}, {&counts_}, {shift, keyShift, countShift, length}, tiles_);
+    Words* const from = isStored_ ? nullptr : readsKeys ? &keys : &*pairs;
+    const std::int32_t to = isStored_ && current_ == 0 ? count_ : 0;
+    run(isStored_ ? RadixStep::CountPairs : RadixStep::Count, "count digits", {from}, {&counts_},
+        {shift, keyShift, countShift, length, {"sk_from", current_}}, tiles_);
     run(RadixStep::Sum, "sum counts", {&counts_}, {&sums_, &totals_},
         {{"sk_length", counts}, countShift, totalShift}, groups);
     run(RadixStep::Sum, "sum counts", {&totals_}, {&totalSums_, &all_},
         {{"sk_length", groups}, {"sk_counts_shift", totals_.shift()}, {"sk_totals_shift", all_.shift()}}, 1);
     const RadixStep move = !pairs ? RadixStep::Move : readsKeys ? RadixStep::MoveFirst : RadixStep::MovePairs;
-    run(move, "move keys", {&from, &sums_, &totalSums_}, {&*moved_},
-        {shift, keyShift, countShift, totalShift, length}, tiles_);
-    (pairs ? *pairs : keys).swap(*moved_);
+    run(move, "move keys", {from, &sums_, &totalSums_}, {inBuffer_ ? nullptr : &*moved_},
+        {shift, keyShift, countShift, totalShift, length, {"sk_from", current_}, {"sk_to", to}}, tiles_);
+    current_ = to;
+    isStored_ = inBuffer_;
+    if (!inBuffer_) (pairs ? *pairs : keys).swap(*moved_);
   }
 
   void run(RadixStep step, std::string_view name, std::initializer_list<Words*> read,
@@ -186,7 +210,10 @@ class WordSort {
   std::optional<Words> pairs;  ///< of keys and places; if it keeps places
 
  private:
-  std::optional<Words> moved_;
+  std::optional<Words> moved_;  ///< without a buffer
+  bool inBuffer_ = false;  ///< pairs lie in the buffer between two digits
+  bool isStored_ = false;  ///< the current pairs lie there, from number current_ on
+  std::int32_t current_ = 0;
 };
 
 /// The streams of a reordering. New elements are in new planes until all passes have run.
@@ -376,12 +403,15 @@ class StreamSort {
 
 }  // namespace
 
-AppendProgram& SortPrograms::of(RadixStep step) {
-  std::unique_ptr<AppendProgram>& known = programs_[static_cast<std::size_t>(step)];
+AppendProgram& SortPrograms::of(RadixStep step, RadixStorage storage) {
+  const std::size_t number =
+      4 * static_cast<std::size_t>(step) + (storage.reads ? 2 : 0) + (storage.writes ? 1 : 0);
+  std::unique_ptr<AppendProgram>& known = programs_[number];
   if (known) return *known;
   std::string log;
   gl::Program program =
-      ProgramBuild(device_, {{}, assemble::radixProgram(device_.computeProfile, step)}).finish(device_, log);
+      ProgramBuild(device_, {{}, assemble::radixProgram(device_.computeProfile, step, storage)})
+          .finish(device_, log);
   if (!program) {
     device_.throwIfLost();
     throw Error(fmt::format("the driver of '{}' refuses a program of sk::sort:\n{}",
@@ -409,8 +439,12 @@ bool maySortByDispatches(const GlDevice& device, const Reordering& reordering) {
   constexpr std::int64_t most = std::int64_t{assemble::radixTile} * assemble::radixTile *
                                 (assemble::radixTile / assemble::radixDigits);  // the totals are one tile
   if (!isStoredSo || count > most) return false;
-  const auto texture = assemble::linearTexture(count, device.textureLimits());
-  return texture && texture->layers == 0;
+  const auto isFlat = [&](std::int64_t words) {
+    const auto texture = assemble::linearTexture(words, device.textureLimits());
+    return texture && texture->layers == 0;
+  };
+  const std::int64_t tiles = (count - 1) / assemble::radixTile + 1;
+  return isFlat(count) && isFlat(tiles * assemble::radixDigits);
 }
 
 std::int64_t sortByDispatches(GlDevice& device, const Reordering& reordering) {

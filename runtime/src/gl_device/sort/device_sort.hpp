@@ -21,12 +21,11 @@ class SortPrograms {
  public:
   explicit SortPrograms(GlDevice& device) : device_(device) {}
   /// Throws sk::Error if the driver rejects it.
-  AppendProgram& of(assemble::RadixStep step);
+  AppendProgram& of(assemble::RadixStep step, assemble::RadixStorage storage = {});
 
  private:
-  static constexpr std::size_t steps = 5;
   GlDevice& device_;
-  std::array<std::unique_ptr<AppendProgram>, steps> programs_;
+  std::array<std::unique_ptr<AppendProgram>, 4 * assemble::radixSteps> programs_;  ///< for each RadixStorage
 };
 
 /// Whether streams can be sorted by dispatches: the keys are stored as they are declared, or as halves, and temporaries

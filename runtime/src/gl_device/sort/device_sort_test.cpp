@@ -2,6 +2,7 @@
 //
 // Promises: streams that are sorted by dispatches end with the same bits as those that the host sorts. Runs on a
 // software renderer, where by default the host sorts.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -22,8 +23,9 @@
 namespace sk {
 namespace {
 
-std::unique_ptr<GlDevice> open(bool sorts) {
-  const DeviceChoices choices{.target = Target::Compute, .sortsByDispatches = sorts};
+std::unique_ptr<GlDevice> open(bool sorts, int textureLimit = 0) {
+  const DeviceChoices choices{
+      .textureLimit = textureLimit, .target = Target::Compute, .sortsByDispatches = sorts};
   return std::make_unique<GlDevice>(gl::openContext({"software", gl::Api::Gl}), choices);
 }
 
@@ -167,6 +169,17 @@ TEST_CASE("more tiles than one sum holds are sorted") {
   const Data keys = dataOf(keysOf<std::int32_t>(n)), values = dataOf(iota(n));
   compare(devices, Algorithm::Sort, keys, &values, {n});
   compare(devices, Algorithm::Partition, keys, &values, {n});
+}
+
+TEST_CASE("the host sorts where the counts of digits need a texture with layers") {
+  const std::unique_ptr<GlDevice> device = open(true, 8);
+  const Data keys = dataOf(keysOf<std::int32_t>(40));
+  const auto stream = streamOf(*device, keys, {40});
+  detail::sort(detail::wholeRegion(stream.get()), nullptr, {});
+  std::vector<std::int32_t> sorted = keysOf<std::int32_t>(40), read(40);
+  std::ranges::sort(sorted);
+  stream->read(detail::wholeRegion(stream.get()), reinterpret_cast<std::byte*>(read.data()));
+  CHECK(read == sorted);
 }
 
 TEST_CASE("flags of each type divide values by dispatches as by the host") {
