@@ -14,7 +14,9 @@ function(sk_compile_options target)
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # g++ 12 sees overlapping copies in "a" + std::string() that are not there (GCC bug 105651)
-    target_compile_options(${target} PRIVATE -Wno-restrict)
+    # and collects garbage in a heap of 128 MB again and again: with 500 MB, sources that are compiled together take a tenth less
+    # time and a tenth more memory
+    target_compile_options(${target} PRIVATE -Wno-restrict --param=ggc-min-heapsize=500000)
   endif()
 endfunction()
 

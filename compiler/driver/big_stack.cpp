@@ -10,13 +10,13 @@ namespace {
 
 constexpr std::size_t stackBytes = std::size_t{512} << 20;   // address space; only used pages cost memory
 
-struct Job {
+struct StackJob {
   const std::function<int()>* work;
   int status = 1;
 };
 
 void* runJob(void* pointer) {
-  auto* job = static_cast<Job*>(pointer);
+  auto* job = static_cast<StackJob*>(pointer);
   job->status = (*job->work)();
   return nullptr;
 }
@@ -24,7 +24,7 @@ void* runJob(void* pointer) {
 }  // namespace
 
 int withBigStack(const std::function<int()>& work) {
-  Job job{&work};
+  StackJob job{&work};
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_t thread{};

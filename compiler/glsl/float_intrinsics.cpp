@@ -9,17 +9,17 @@ namespace {
 
 using Defined = sk::program::Intrinsic;
 
-struct Row {
+struct FloatIntrinsic {
   ir::Intrinsic intrinsic;
   Defined defined;
   std::string_view enumerator;
 };
 
 #define SKC_DEFINED(Name) \
-  Row { ir::Intrinsic::Name, Defined::Name, #Name }
+  FloatIntrinsic { ir::Intrinsic::Name, Defined::Name, #Name }
 #define SKC_SYNONYM(Name, Other) \
-  Row { ir::Intrinsic::Name, Defined::Other, #Other }
-constexpr std::array rows = {
+  FloatIntrinsic { ir::Intrinsic::Name, Defined::Other, #Other }
+constexpr std::array floatIntrinsics = {
     SKC_DEFINED(Sin),   SKC_DEFINED(Cos),        SKC_DEFINED(Tan),      SKC_DEFINED(Asin),
     SKC_DEFINED(Acos),  SKC_DEFINED(Atan),       SKC_DEFINED(Atan2),    SKC_SYNONYM(AtanYX, Atan2),
     SKC_DEFINED(Sinh),  SKC_DEFINED(Cosh),       SKC_DEFINED(Tanh),     SKC_DEFINED(Asinh),
@@ -38,19 +38,19 @@ constexpr std::array rows = {
 
 std::optional<Defined> definedIntrinsic(const ir::IntrinsicCall& call) {
   const auto isFloat = [](const ir::ExprPtr& arg) { return arg->type.arithmeticType().isFloat(); };
-  const auto row = std::ranges::find(rows, call.intrinsic, &Row::intrinsic);
-  if (row == rows.end() || !std::ranges::all_of(call.args, isFloat)) return std::nullopt;
+  const auto row = std::ranges::find(floatIntrinsics, call.intrinsic, &FloatIntrinsic::intrinsic);
+  if (row == floatIntrinsics.end() || !std::ranges::all_of(call.args, isFloat)) return std::nullopt;
   return row->defined;
 }
 
 std::optional<Defined> definedOfDoubles(ir::Intrinsic intrinsic) {
-  const auto row = std::ranges::find(rows, intrinsic, &Row::intrinsic);
-  if (row == rows.end() || row->defined > Defined::Pow) return std::nullopt;
+  const auto row = std::ranges::find(floatIntrinsics, intrinsic, &FloatIntrinsic::intrinsic);
+  if (row == floatIntrinsics.end() || row->defined > Defined::Pow) return std::nullopt;
   return row->defined;
 }
 
 std::string_view enumerator(Defined intrinsic) {
-  return std::ranges::find(rows, intrinsic, &Row::defined)->enumerator;
+  return std::ranges::find(floatIntrinsics, intrinsic, &FloatIntrinsic::defined)->enumerator;
 }
 
 std::string functionName(Defined intrinsic) {

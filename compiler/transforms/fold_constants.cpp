@@ -37,9 +37,9 @@ bool roundsFloats(const Expr& expr) {
 
 enum class Floats : std::uint8_t { Compute, Leave };
 
-class State {
+class ConstantFolder {
  public:
-  State(const Module& module, Floats floats) : module_(module), floats_(floats) {}
+  ConstantFolder(const Module& module, Floats floats) : module_(module), floats_(floats) {}
 
   void expression(ExprPtr& expr) {
     rewriteExprs(expr, [&](ExprPtr& slot) { fold(slot); });
@@ -236,14 +236,14 @@ class Propagation {
 }  // namespace
 
 void foldConstants(Module& module, Diagnostics&) {
-  State state(module, Floats::Compute);
+  ConstantFolder state(module, Floats::Compute);
   for (Constant& constant : module.constants) state.expression(constant.value);
   for (Function& function : module.functions) state.block(function.body);
 }
 
 void foldWholeNumbers(const Module& module, Function& function) {
   Propagation(module, function).run();
-  State(module, Floats::Leave).block(function.body);
+  ConstantFolder(module, Floats::Leave).block(function.body);
 }
 
 }  // namespace skc

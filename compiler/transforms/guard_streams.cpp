@@ -18,11 +18,11 @@ using namespace ir;
 
 /// For each variable of a function, its value in terms of the kernel's Spec variables; null if it depends on
 /// anything else.
-using Values = std::vector<ExprPtr>;
+using PassedValues = std::vector<ExprPtr>;
 
 /// Each call is analysed separately. If a program has more calls than this along its call tree, all its
 /// streams count as needed.
-constexpr int mostCalls = 2000;
+constexpr int mostAnalysedCalls = 2000;
 
 bool isFollowed(BinaryOp op, Type operands) {
   const bool givesBool = isComparison(op) || op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr;
@@ -63,7 +63,7 @@ class UseAnalysis {
 
   std::vector<AnyOf> run() {
     const Function& entry = module_.functions[kernel_.entry];
-    Values values(entry.variables.size());
+    PassedValues values(entry.variables.size());
     for (VarId i = 0; i < kernel_.params.size(); ++i) {
       if (kernel_.params[i].role == ParamRole::Spec) values[i] = varRef(entry, i);
     }
@@ -77,12 +77,12 @@ class UseAnalysis {
     const Function& function;
     bool isEntry;
     std::vector<bool> changed;
-    Values values;
+    PassedValues values;
   };
 
-  void analyse(FunctionId id, Values values, const Expr& guard) {
+  void analyse(FunctionId id, PassedValues values, const Expr& guard) {
     const Function& function = module_.functions[id];
-    if (++calls_ > mostCalls) {
+    if (++calls_ > mostAnalysedCalls) {
       for (AnyOf& use : uses_) use.add(*literal(true));
       return;
     }
@@ -219,7 +219,7 @@ class UseAnalysis {
   }
 
   void call(Frame& frame, FunctionId callee, const std::vector<ExprPtr>& args, const Expr& guard) {
-    Values values(module_.functions[callee].variables.size());
+    PassedValues values(module_.functions[callee].variables.size());
     for (std::size_t i = 0; i < args.size(); ++i) values[i] = value(frame, *args[i]);
     analyse(callee, std::move(values), guard);
   }
@@ -264,7 +264,7 @@ class UseAnalysis {
   int calls_ = 0;
 };
 
-bool isStream(const KernelParam& param) {
+bool mayBeOmitted(const KernelParam& param) {
   return param.role == ParamRole::Input || param.role == ParamRole::Output || param.role == ParamRole::Gather;
 }
 
@@ -277,7 +277,7 @@ void guardStreams(Module& module, Diagnostics&) {
     if (!hasSpec) continue;
     std::vector<AnyOf> uses = UseAnalysis(module, kernel).run();
     for (std::size_t i = 0; i < uses.size(); ++i) {
-      if (isStream(kernel.params[i])) kernel.params[i].neededIf = uses[i].take();
+      if (mayBeOmitted(kernel.params[i])) kernel.params[i].neededIf = uses[i].take();
     }
   }
 }

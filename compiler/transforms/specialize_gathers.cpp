@@ -50,9 +50,9 @@ void forEachCall(Block& block, Fn&& fn) {
   });
 }
 
-class State {
+class GatherSpecializer {
  public:
-  explicit State(Module& module) : module_(module), uses_(module.functions.size()) {}
+  explicit GatherSpecializer(Module& module) : module_(module), uses_(module.functions.size()) {}
 
   void run() {
     for (Kernel& kernel : module_.kernels) specialize(kernel);
@@ -180,6 +180,6 @@ class State {
 
 }  // namespace
 
-void specializeGathers(Module& module, Diagnostics&) { State(module).run(); }
+void specializeGathers(Module& module, Diagnostics&) { GatherSpecializer(module).run(); }
 
 }  // namespace skc

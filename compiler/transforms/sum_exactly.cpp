@@ -93,9 +93,9 @@ Digits addDigits(SynthesizedKernel& synthesized, const Format& format, ParamRole
   return digits;
 }
 
-class State {
+class ExactSummation {
  public:
-  explicit State(Module& module) : module_(module) {}
+  explicit ExactSummation(Module& module) : module_(module) {}
 
   void sum(KernelId id, const ScalarSum& scalar) {
     const bool areProducts = hasProducts(id, scalar);
@@ -272,7 +272,7 @@ std::vector<ScalarSum> scalarSums(const Module& module, KernelId id) {
 }  // namespace
 
 void sumExactly(Module& module, Diagnostics&) {
-  State state(module);
+  ExactSummation state(module);
   const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     const Kernel& kernel = module.kernels[id];

@@ -29,9 +29,9 @@ ExprPtr inDouble(ExprPtr value) {
   return convert(Scalar::Double, std::move(value));
 }
 
-class State {
+class DoubleSummation {
  public:
-  State(Module& module, KernelId id, std::vector<FloatSum> sums)
+  DoubleSummation(Module& module, KernelId id, std::vector<FloatSum> sums)
       : module_(module), id_(id), sums_(std::move(sums)) {}
 
   void make() {
@@ -180,7 +180,7 @@ void sumInDoubles(Module& module, Diagnostics&) {
       combined.accumulator = sameAccumulator(kernel, sum.accumulator, combine);
       return isWhole(module, kernel, sum) && isWhole(module, combine, combined);
     });
-    if (areWhole) State(module, id, std::move(sums)).make();
+    if (areWhole) DoubleSummation(module, id, std::move(sums)).make();
   }
 }
 

@@ -194,10 +194,19 @@ started_by_cpp = re.compile(r'\b(?:popen|system|runProgram|run)\(\s*\{?"([a-z][a
 started_by_python = re.compile(r'(?:run|which|output)\(\[?\s*"([a-z][a-z0-9.+_-]*)"')
 
 
+here_document = re.compile(r"""(?<!<)(<<-?\s*(['"]?)(\w+)\2[^\n]*\n)(.*?)^\t*\3$""", re.S | re.M)
+
+
 def without_texts(script):
-    """A shell script without comments and quoted text, but with the commands in quotes: "$(dirname x)"."""
+    """A shell script without comments, here-documents and quoted text, but with the commands in quotes: "$(dirname x)"."""
     quoted = re.compile(r"""\\.|(?<!\S)\#[^\n]*|\$?'(?:[^'])*'|"(?:\\.|[^"\\])*\"""", re.S)
-    return quoted.sub(lambda text: "".join(re.findall(r"\$\([^\s()]+", text[0])), script)
+
+    def commands_in(text):
+        return "".join(re.findall(r"\$\([^\s()]+", text))
+
+    # a here-document first: it may have a single quote
+    script = here_document.sub(lambda text: text[1] + ("" if text[2] else commands_in(text[4])), script)
+    return quoted.sub(lambda text: commands_in(text[0]), script)
 
 
 def scripts():

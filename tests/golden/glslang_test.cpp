@@ -3,7 +3,9 @@
 // glslang, the reference compiler of GLSL, takes every program that skc writes for the .sk files of
 // this repository, in every profile.
 #include <algorithm>
+#include <map>
 #include <set>
+#include <sstream>
 
 #include <catch2/catch.hpp>
 
@@ -29,8 +31,9 @@ std::vector<fs::path> kernelFiles() {
 }
 
 /// Prints the programs of all files by one run of skc.
-std::vector<std::string> programsOf(const std::vector<fs::path>& files, const std::string& profile) {
-  std::string command = "'" SK_SKC "' --emit=glsl --profile=" + profile;
+std::vector<std::string> programsOf(const std::vector<fs::path>& files, const std::string& profile,
+                                    const std::string& options = "") {
+  std::string command = "'" SK_SKC "' --emit=glsl --profile=" + profile + options;
   for (const fs::path& file : files) command += " '" + file.string() + "'";
   const Outcome outcome = run(SK_SOURCE_FOLDER, command);
   INFO(outcome.errors);
@@ -39,17 +42,44 @@ std::vector<std::string> programsOf(const std::vector<fs::path>& files, const st
   return glslang::programsOf(outcome.output);
 }
 
+/// A program without what versions of GLSL begin with, and without the numbers of its lines, which that moves.
+std::string withoutHeader(const std::string& program) {
+  std::istringstream lines(program);
+  std::string rest;
+  for (std::string line; std::getline(lines, line);) {
+    const bool isHeader =
+        line.starts_with("#version") || line.starts_with("#line") || line.starts_with("precision highp ") ||
+        line.find(" for essl300: ") != std::string::npos || line.find(" for glsl330: ") != std::string::npos;
+    if (!isHeader) rest += line + "\n";
+  }
+  return rest;
+}
+
 }  // namespace
+
+// Tests that run large programs rely on it, and leave one of the two profiles out (onEveryDoubleConfig).
+TEST_CASE("on essl300, programs are those of glsl330 with another header") {
+  const std::vector<fs::path> files = {fs::path(SK_SOURCE_FOLDER) / "tests/run/precision.sk"};
+  const auto desktop = programsOf(files, "glsl330", " --precision=extended");
+  const auto embedded = programsOf(files, "essl300", " --precision=extended");
+  REQUIRE(desktop.size() == embedded.size());
+  CHECK(desktop.size() >= 20);
+  for (std::size_t i = 0; i < desktop.size(); ++i)
+    CHECK(withoutHeader(desktop[i]) == withoutHeader(embedded[i]));
+}
 
 TEST_CASE("glslang takes every program of every .sk file") {
   const std::vector<fs::path> files = kernelFiles();
   CHECK(files.size() >= 20);
+  std::map<std::string, std::vector<std::string>> all;  // by profile
   for (const fs::path& file : files) {
     INFO(file.string());
-    CHECK(!programsOf({file}, "glsl330").empty());
+    const std::vector<std::string> ofFile = programsOf({file}, "glsl330");
+    CHECK(!ofFile.empty());
+    all["glsl330"].insert(all["glsl330"].end(), ofFile.begin(), ofFile.end());
   }
-  for (const std::string profile : {"glsl330", "glsl430", "essl300"}) {
-    const std::vector<std::string> programs = programsOf(files, profile);
+  for (const char* profile : {"glsl430", "essl300"}) all[profile] = programsOf(files, profile);
+  for (const auto& [profile, programs] : all) {
     const auto complaints = glslang::complaintsOf(programs);
     for (std::size_t i = 0; i < programs.size(); ++i) {
       for (const glslang::Complaint& complaint : complaints[i]) {

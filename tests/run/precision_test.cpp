@@ -158,7 +158,7 @@ TEST_CASE("append outputs, bits and narrow types") {
 }
 
 TEST_CASE("reduces") {
-  onEveryLayout([](sk::Device& device) {
+  onEveryProfile([](sk::Device& device) {
     const std::vector<float> x = numbers(5000, 7, -1, 1);
     double exact = 0, product = 1;
     for (const float v : x) exact += v;
@@ -335,8 +335,10 @@ TEST_CASE("exact and compensated sums are of floats") {
   });
 }
 
+// The functions are the same text on every profile, and large; numerics.double_intrinsics measures each of them.
 TEST_CASE("sines and exponentials, on doubles inside") {
-  onEveryProfile([](sk::Device& device) {
+  for (const char* profile : {"glsl330", "native"}) {
+    sk::Device& device = run_tests::device(profile);
     const std::vector<float> x = numbers(1000, 21, -40, 40);
     std::vector<double> sines, powers;
     for (const float v : x) {
@@ -349,7 +351,7 @@ TEST_CASE("sines and exponentials, on doubles inside") {
       checkRounded(r.read(), sines);
       checkRounded(p.read(), powers);
     }
-  });
+  }
 }
 
 TEST_CASE("elements are interpolated in doubles") {

@@ -38,13 +38,13 @@ std::vector<Argument> argumentsOf(std::span<const std::uint8_t> operands,
   return own;
 }
 
-bool isWritten(Role role) { return role == Role::Output || role == Role::Accumulator; }
+bool isStored(Role role) { return role == Role::Output || role == Role::Accumulator; }
 
 /// Whether a kernel reads a stream that parameters of this role of the fold write.
 bool readsWritten(const Kernel& reader, std::span<const Argument> own, const ResolvedReduction& call,
                   Role written) {
   for (std::size_t i = 0; i < own.size(); ++i) {
-    if (isWritten(reader.parameters[i].role) || own[i].region.stream == nullptr) continue;
+    if (isStored(reader.parameters[i].role) || own[i].region.stream == nullptr) continue;
     for (std::size_t k = 0; k < call.arguments.size(); ++k) {
       if (call.reduction.fold.parameters[k].role == written &&
           call.arguments[k].region.stream == own[i].region.stream)
@@ -171,7 +171,7 @@ class FoldCall {
     for (std::size_t i = 0; i < after.parameters.size(); ++i) {
       const Argument& argument = call_.arguments[parts_.afterOperands[i]];
       const Parameter& whole = call_.reduction.fold.parameters[parts_.afterOperands[i]];
-      if (isWritten(whole.role) || argument.region.stream == nullptr) continue;
+      if (isStored(whole.role) || argument.region.stream == nullptr) continue;
       for (std::size_t k = 0; k < call_.arguments.size(); ++k) {
         if (call_.reduction.fold.parameters[k].role == Role::Output &&
             call_.arguments[k].region.stream == argument.region.stream)

@@ -94,7 +94,7 @@ bool hasIndexedViewports(const Capabilities& c) { return c.api == Api::Gl && c.v
 
 bool hasFeedbackPause(const Capabilities& c) { return c.api == Api::Es || c.version >= 40; }
 
-GLint integerOf(GLenum name) {
+GLint savedInteger(GLenum name) {
   GLint value = 0;
   glGetIntegerv(name, &value);
   return value;
@@ -148,11 +148,11 @@ SavedState::SavedState(const Capabilities& capabilities, BoundState& bound)
   for (std::size_t i = 0; i < toggles.size(); ++i) {
     toggles_[i] = has(toggles[i].needs, capabilities) && glIsEnabled(toggles[i].name) == GL_TRUE;
   }
-  program_ = integerOf(GL_CURRENT_PROGRAM);
-  vertexArray_ = integerOf(GL_VERTEX_ARRAY_BINDING);
-  drawFramebuffer_ = integerOf(GL_DRAW_FRAMEBUFFER_BINDING);
-  readFramebuffer_ = integerOf(GL_READ_FRAMEBUFFER_BINDING);
-  activeUnit_ = integerOf(GL_ACTIVE_TEXTURE);
+  program_ = savedInteger(GL_CURRENT_PROGRAM);
+  vertexArray_ = savedInteger(GL_VERTEX_ARRAY_BINDING);
+  drawFramebuffer_ = savedInteger(GL_DRAW_FRAMEBUFFER_BINDING);
+  readFramebuffer_ = savedInteger(GL_READ_FRAMEBUFFER_BINDING);
+  activeUnit_ = savedInteger(GL_ACTIVE_TEXTURE);
   saveViewport();
   saveDrawBuffers();
   saveTransfer();
@@ -189,8 +189,8 @@ void SavedState::saveViewport() {
     glGetFloatv(GL_VIEWPORT, viewport_.data());
   }
   if (capabilities_.hasClipControl) {
-    clipOrigin_ = integerOf(GL_CLIP_ORIGIN);
-    clipDepth_ = integerOf(GL_CLIP_DEPTH_MODE);
+    clipOrigin_ = savedInteger(GL_CLIP_ORIGIN);
+    clipDepth_ = savedInteger(GL_CLIP_DEPTH_MODE);
   }
   if (capabilities_.api == Api::Gl) {
     glGetIntegerv(GL_POLYGON_MODE, polygonMode_.data());
@@ -254,14 +254,14 @@ void SavedState::saveTransfer() {
       glGetIntegerv(pixelParameters[i].name, &pixelStore_[i]);
     }
   }
-  packBuffer_ = integerOf(GL_PIXEL_PACK_BUFFER_BINDING);
-  unpackBuffer_ = integerOf(GL_PIXEL_UNPACK_BUFFER_BINDING);
+  packBuffer_ = savedInteger(GL_PIXEL_PACK_BUFFER_BINDING);
+  unpackBuffer_ = savedInteger(GL_PIXEL_UNPACK_BUFFER_BINDING);
   if (capabilities_.api == Api::Gl) {
-    clampReadColor_ = integerOf(GL_CLAMP_READ_COLOR);
+    clampReadColor_ = savedInteger(GL_CLAMP_READ_COLOR);
   }
   if (capabilities_.isCompatibility) {
-    clampFragmentColor_ = integerOf(GL_CLAMP_FRAGMENT_COLOR);
-    clampVertexColor_ = integerOf(GL_CLAMP_VERTEX_COLOR);
+    clampFragmentColor_ = savedInteger(GL_CLAMP_FRAGMENT_COLOR);
+    clampVertexColor_ = savedInteger(GL_CLAMP_VERTEX_COLOR);
     for (std::size_t i = 0; i < pixelTransfers.size(); ++i) {
       glGetFloatv(pixelTransfers[i].name, &pixelTransfer_[i]);
     }
@@ -290,8 +290,8 @@ void SavedState::restoreTransfer() const {
 
 // Active transform feedback would capture a draw, and forbids changing the program.
 void SavedState::pauseFeedback() {
-  if (hasFeedbackPause(capabilities_) && integerOf(GL_TRANSFORM_FEEDBACK_ACTIVE) != 0 &&
-      integerOf(GL_TRANSFORM_FEEDBACK_PAUSED) == 0) {
+  if (hasFeedbackPause(capabilities_) && savedInteger(GL_TRANSFORM_FEEDBACK_ACTIVE) != 0 &&
+      savedInteger(GL_TRANSFORM_FEEDBACK_PAUSED) == 0) {
     glPauseTransformFeedback();
     isFeedbackPaused_ = true;
   }

@@ -128,8 +128,8 @@ class Coalesce {
 
 }  // namespace
 
-void coalesce(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block,
-              bool isScan) {
+void coalesce(const program::Kernel& kernel, std::span<native::Operand> operands, Extents& domain,
+              Extents& block, bool isScan) {
   constexpr std::int64_t longest = std::int64_t{1} << 31;   // indices are ints
   const bool isCounted = domain[0] * domain[1] * domain[2] * domain[3] < longest;
   if (isCounted && isPositionIndependent(kernel, operands))

@@ -10,7 +10,6 @@ namespace sk {
 
 namespace {
 
-using native::Argument;
 using native::Operand;
 using program::Role;
 
@@ -24,8 +23,8 @@ bool isSmall(const Operand& operand) {
   return last <= std::numeric_limits<std::int32_t>::max();
 }
 
-Argument argumentOf(const Operand& operand) {
-  Argument argument{};
+native::Argument argumentOf(const Operand& operand) {
+  native::Argument argument{};
   argument.components = operand.components.empty() ? nullptr : operand.components.data();
   argument.first = operand.first;
   std::ranges::copy(operand.extent, argument.extent);
@@ -52,7 +51,7 @@ CodeFrame::CodeFrame(const program::Kernel& kernel, const native::Call& call,
     // object code applies the boundary mode to the indices of a gather and then reads, even if its stream is
     // omitted
     if (parameter.role == Role::Gather && isEmpty(call.operands[i])) {
-      Argument& zero = arguments_.emplace_back(argumentOf({}));
+      native::Argument& zero = arguments_.emplace_back(argumentOf({}));
       zero.stride[0] = 1;
       zero.components = zeroArrays(kernel);
     } else {

@@ -6,14 +6,13 @@
 #include <type_traits>
 #include <utility>
 
+#include "native/memory.hpp"
 #include "native/scalars.hpp"
 #include "native/slot_arrays.hpp"
 
 namespace sk {
 
 namespace {
-
-constexpr std::size_t cacheLine = 64;
 
 std::vector<std::size_t> accumulatorBytes(std::span<const program::Parameter> parameters, RealType real) {
   std::vector<std::size_t> all;

@@ -14,7 +14,6 @@ namespace sk {
 
 namespace {
 
-constexpr std::size_t cacheLine = 64;
 constexpr std::size_t smallPage = std::size_t{1} << 12;
 constexpr std::size_t largePage = std::size_t{1} << 21;
 

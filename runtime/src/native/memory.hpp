@@ -12,6 +12,9 @@
 
 namespace sk {
 
+/// Bytes of a cache line, as aligned memory takes them.
+inline constexpr std::size_t cacheLine = 64;
+
 /// Frees memory that begins `before` bytes before the pointer.
 struct Freeing {
   std::size_t before = 0;

@@ -6,18 +6,17 @@
 #include <functional>
 #include <limits>
 
+#include "native/memory.hpp"
+
 namespace sk {
 
 namespace {
 
-using native::Argument;
 using native::Extents;
 using native::Range;
 using program::Boundary;
 using program::Parameter;
 using program::Role;
-
-constexpr std::size_t cacheLine = 64;
 
 /// Applies the boundary mode to an index; -1 if the element is the border value.
 std::int64_t broughtInside(Boundary boundary, std::int64_t i, std::int64_t n) {
@@ -36,7 +35,7 @@ std::int64_t broughtInside(Boundary boundary, std::int64_t i, std::int64_t n) {
 }
 
 /// The index in an input for an index in the domain.
-std::int64_t ownIndex(const Argument& input, std::size_t d, std::int64_t index) {
+std::int64_t ownIndex(const native::Argument& input, std::size_t d, std::int64_t index) {
   const std::int64_t multiplied = index * input.multiply[d];
   return input.divide[d] == 1 ? multiplied : multiplied / input.divide[d];
 }
@@ -89,7 +88,7 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
                          const native::Slot& slot, RealType real) {
   const Parameter& parameter = kernel.parameters[slot.parameter];
   const native::Operand& operand = call.operands[slot.parameter];
-  const Argument& argument = frame.arguments()[slot.parameter];
+  const native::Argument& argument = frame.arguments()[slot.parameter];
   Slot& added = slots_.emplace_back();
   added.kind = slot.isOutput != 0               ? Kind::Output
                : parameter.role == Role::Gather ? Kind::Gather
@@ -260,7 +259,7 @@ void SlotArrays::findRows(const Slot& slot, const Extents& first, Row* rows) con
 
 /// The slot's row for the domain's row at `y` in the plane of `first`.
 SlotArrays::Row SlotArrays::rowAt(const Slot& slot, Extents first, std::int64_t y) {
-  const Argument& argument = *slot.argument;
+  const native::Argument& argument = *slot.argument;
   first[1] = y;
   Row row{argument.first, false};
   if (slot.kind == SlotLayout::Kind::Gather) {
@@ -344,7 +343,7 @@ void SlotArrays::storeStrided(std::size_t row, std::size_t s, std::int64_t x, st
 void SlotArrays::stageInput(std::size_t row, std::size_t s, std::int64_t x, const Length& length,
                             std::int64_t step) {
   const Slot& slot = layout_.slots()[s];
-  const Argument& argument = *slot.argument;
+  const native::Argument& argument = *slot.argument;
   const std::int64_t count = length.count;
   const std::int64_t stride = argument.stride[0];
   const auto numberAt = [&](std::int64_t i) {

@@ -116,7 +116,7 @@ const Kernel pushes = kernelOf("a trial of pushes",
                                "  if ((floatBitsToInt(x) & 1) == 0) sk_push_r(x);\n"
                                "}\n",
                                pushParameters);
-const program::Reduction sum = [] {
+const program::Reduction sumOfFloats = [] {
   program::Reduction reduction{};
   reduction.fold =
       kernelOf("a trial of reduces", "void sk_trial(float x, inout float r) { r += x; }\n", sumParameters);
@@ -190,7 +190,7 @@ class Trial {
         float total = 0;
         const std::array<void*, 1> results{&total};
         return device_.reduce(
-            {device_, sum, std::array{x, Argument{}}, shape_, oneBlock(shape_), results, options});
+            {device_, sumOfFloats, std::array{x, Argument{}}, shape_, oneBlock(shape_), results, options});
       }
     }
   }

@@ -31,7 +31,8 @@ std::string nameOf(const PassRecord& pass) {
 /// The arguments of both slices of a pass.
 std::string argumentsOf(const PassRecord& pass) {
   return fmt::format(R"(,"kernel":{},"pass":"{}","domain":{},"bytes read":{},"bytes written":{})",
-                     quoted(pass.kernel), pass.kind, quoted(pass.domain), pass.bytesRead, pass.bytesWritten);
+                     jsonString(pass.kernel), pass.kind, jsonString(pass.domain), pass.bytesRead,
+                     pass.bytesWritten);
 }
 
 }  // namespace
@@ -49,7 +50,7 @@ Trace::Time Trace::now() {
 
 Trace::Trace(const std::string& file, std::string_view device)
     : file_(file), deviceTrack_(file_.openTrack(device)) {
-  counter_ = quoted(fmt::format("bytes, {} ({})", device, deviceTrack_));
+  counter_ = jsonString(fmt::format("bytes, {} ({})", device, deviceTrack_));
 }
 
 Trace::~Trace() { write(); }
@@ -106,9 +107,10 @@ void Trace::close() noexcept {
 void Trace::addSlice(std::int64_t track, std::string_view category, std::string_view name, Time begin,
                      Time end, std::string_view arguments) {
   if (!arguments.empty()) arguments.remove_prefix(1);
-  addEvent(fmt::format(
-      R"({{"name":{},"cat":"{}","ph":"X","pid":{},"tid":{},"ts":{},"dur":{},"args":{{{}}}}})", quoted(name),
-      category, ::getpid(), track, microseconds(begin), microseconds(end - begin), arguments));
+  addEvent(
+      fmt::format(R"({{"name":{},"cat":"{}","ph":"X","pid":{},"tid":{},"ts":{},"dur":{},"args":{{{}}}}})",
+                  jsonString(name), category, ::getpid(), track, microseconds(begin),
+                  microseconds(end - begin), arguments));
 }
 
 void Trace::addEvent(std::string_view event) {
@@ -136,11 +138,11 @@ void Trace::write() noexcept {
 }
 
 void TraceScope::addText(std::string_view name, std::string_view text) const {
-  trace_->open_.back().arguments += fmt::format(",{}:{}", quoted(name), quoted(text));
+  trace_->open_.back().arguments += fmt::format(",{}:{}", jsonString(name), jsonString(text));
 }
 
 void TraceScope::addNumber(std::string_view name, std::int64_t number) const {
-  trace_->open_.back().arguments += fmt::format(",{}:{}", quoted(name), number);
+  trace_->open_.back().arguments += fmt::format(",{}:{}", jsonString(name), number);
 }
 
 }  // namespace sk

@@ -43,7 +43,7 @@ std::string headOfProcess() {
   return fmt::format(
       "{{\"displayTimeUnit\":\"ns\",\"otherData\":{{\"process\":\"{} {}\"}},\"traceEvents\":[\n"
       "{{\"name\":\"process_name\",\"ph\":\"M\",\"pid\":{},\"args\":{{\"name\":{}}}}}",
-      ::getpid(), startOfProcess(), ::getpid(), quoted(program_invocation_short_name));
+      ::getpid(), startOfProcess(), ::getpid(), jsonString(program_invocation_short_name));
 }
 
 /// Locks the file against other threads and processes, if the file system supports it.
@@ -78,7 +78,7 @@ std::string withProcess(std::string name) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
+std::string jsonString(std::string_view text) {
   std::string json = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -122,7 +122,7 @@ std::int64_t TraceFile::openTrack(std::string_view name) {
   const Lock lock(file_);
   const std::int64_t number = firstTrack + ::lseek(file_, 0, SEEK_END);
   put(fmt::format(R"({{"name":"thread_name","ph":"M","pid":{},"tid":{},"args":{{"name":{}}}}})", ::getpid(),
-                  number, quoted(name)));
+                  number, jsonString(name)));
   return number;
 }
 

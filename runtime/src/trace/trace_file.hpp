@@ -13,7 +13,7 @@
 namespace sk {
 
 /// Quotes a text as a JSON string.
-std::string quoted(std::string_view text);
+std::string jsonString(std::string_view text);
 
 class TraceFile {
  public:

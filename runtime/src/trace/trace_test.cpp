@@ -47,8 +47,8 @@ class File {
 }  // namespace
 
 TEST_CASE("a text as a JSON string") {
-  CHECK(quoted("heat::diffuse") == "\"heat::diffuse\"");
-  CHECK(quoted("a \"b\" \\ c\n") == "\"a \\\"b\\\" \\\\ c\\u000a\"");
+  CHECK(jsonString("heat::diffuse") == "\"heat::diffuse\"");
+  CHECK(jsonString("a \"b\" \\ c\n") == "\"a \\\"b\\\" \\\\ c\\u000a\"");
 }
 
 TEST_CASE("the file of a trace is whole after each write, and after the process that began it joins in") {

@@ -33,11 +33,12 @@ inline sk::Device& deviceOf(const DoubleConfig& config) {
   return found->second;
 }
 
-/// Calls test(device, config) for every configuration.
+/// Calls test(device, config) for every configuration. Pairs on glsl330 are left out: the programs are those of essl300 with
+/// another header (tests/golden/glslang_test.cpp).
 template <class Test>
 void onEveryDoubleConfig(const Test& test) {
-  for (const DoubleConfig& config : {DoubleConfig{"glsl330", "native"}, DoubleConfig{"glsl330", "pairs"},
-                                     DoubleConfig{"essl300", "pairs"}, DoubleConfig{"native", "native"}}) {
+  for (const DoubleConfig& config : {DoubleConfig{"glsl330", "native"}, DoubleConfig{"essl300", "pairs"},
+                                     DoubleConfig{"native", "native"}}) {
     INFO(config.profile << " with " << config.doubles << " doubles");
     test(deviceOf(config), config);
   }

@@ -16,7 +16,7 @@ namespace sk {
 
 namespace {
 
-constexpr const char* whatFor = "the sums of what a kernel pushes";
+constexpr const char* whatForSums = "the sums of what a kernel pushes";
 
 const program::Element& sums() { return ElementTraits<int4>::element(); }
 
@@ -28,9 +28,9 @@ HistoPyramid::HistoPyramid(GlDevice& device, RenderTarget& counts, const Layout&
                                   device.textureLimits())),
       odd_(device),
       even_(device) {
-  odd_.planes = device.acquirePlanes(sums(), plan_.odd, whatFor);
+  odd_.planes = device.acquirePlanes(sums(), plan_.odd, whatForSums);
   if (plan_.even.height > 0) {
-    even_.planes = device.acquirePlanes(sums(), plan_.even, whatFor);
+    even_.planes = device.acquirePlanes(sums(), plan_.even, whatForSums);
   }
   draw(plan_.levels.front(), counts, true, 0);
   for (std::size_t level = 2; level <= plan_.levels.size(); ++level) {
@@ -70,7 +70,7 @@ std::int32_t HistoPyramid::total() {
 }
 
 std::vector<RenderTarget> HistoPyramid::totalTexture() {
-  std::vector<RenderTarget> total = device_.acquirePlanes(sums(), {1, 1}, whatFor);
+  std::vector<RenderTarget> total = device_.acquirePlanes(sums(), {1, 1}, whatForSums);
   gl::Framebuffer& from = ofLevel(plan_.levels.size()).framebufferIn(device_.bound);
   const GLuint to = total.front().framebufferIn(device_.bound).name();
   std::int32_t row = plan_.levels.back().row;

@@ -32,22 +32,18 @@ using program::Role;
 
 namespace {
 
-constexpr const char* whatFor = "a sort";
-
-const program::Element& words() { return ElementTraits<std::uint32_t>::element(); }
+constexpr const char* whatForSort = "a sort";
 
 std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a - 1) / b + 1; }
 
-const program::Element& wordPairs() { return ElementTraits<uint2>::element(); }
-
 /// A linearised texture of words, or of pairs of them.
-class Words {
+class WordTexture {
  public:
-  Words(GlDevice& device, std::int32_t count, const program::Element& element = words())
+  WordTexture(GlDevice& device, std::int32_t count, const program::Element& element = sortWords())
       : texture_(*assemble::linearTexture(count, device.textureLimits())),
         shift_(assemble::linearLayout(count, texture_).shift),
         lease_(device) {
-    lease_.planes = device.acquirePlanes(element, texture_, whatFor);
+    lease_.planes = device.acquirePlanes(element, texture_, whatForSort);
   }
 
   std::int32_t shift() const { return shift_; }
@@ -57,7 +53,7 @@ class Words {
   RegionLayout layoutOf(const assemble::Index4& extent) const {
     return {.linear = true, .extent = extent, .stride = assemble::stridesOf(extent), .shift = shift_};
   }
-  void swap(Words& other) noexcept { std::swap(lease_.planes, other.lease_.planes); }
+  void swap(WordTexture& other) noexcept { std::swap(lease_.planes, other.lease_.planes); }
 
  private:
   assemble::TextureShape texture_;
@@ -71,8 +67,9 @@ struct Uniform {
 };
 
 /// Dispatches a group for each tile. Words in the buffer take the place of the first that is read or written, which is null.
-void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name, std::span<Words* const> read,
-                   std::span<Words* const> written, std::span<const Uniform> uniforms, std::int32_t tiles) {
+void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name,
+                   std::span<WordTexture* const> read, std::span<WordTexture* const> written,
+                   std::span<const Uniform> uniforms, std::int32_t tiles) {
   const RadixStorage storage{.reads = read.front() == nullptr, .writes = written.front() == nullptr};
   AppendProgram& program = device.sortPrograms.of(step, storage);
   constexpr std::int32_t mostInRow = std::int32_t{1} << assemble::groupRowShift;
@@ -83,7 +80,7 @@ void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name, std:
                          std::size_t{assemble::radixTile} * 4);
   device.bound.program(program.program().name());
   int unit = 0;
-  for (Words* words : read) {
+  for (WordTexture* words : read) {
     if (words == nullptr) {
       ++unit;
     } else {
@@ -91,7 +88,7 @@ void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name, std:
     }
   }
   unit = 0;
-  for (Words* words : written) {
+  for (WordTexture* words : written) {
     if (words == nullptr) break;
     const gl::Texture& texture = words->plane().texture;
     device.bound.image(unit++, texture.name(), texture.format().internalFormat);
@@ -117,8 +114,8 @@ class WordSort {
         totalSums_(device, divideUp(tiles_ * assemble::radixDigits, assemble::radixTile)),
         all_(device, 1),
         keys(device, count) {
-    if (keepsPlaces) pairs.emplace(device, count, wordPairs());
-    if (!takesBuffer()) moved_.emplace(device, count, keepsPlaces ? wordPairs() : words());
+    if (keepsPlaces) pairs.emplace(device, count, sortWordPairs());
+    if (!takesBuffer()) moved_.emplace(device, count, keepsPlaces ? sortWordPairs() : sortWords());
   }
 
   /// Sorts `keys` to `pairs`, or to `keys` if there are no pairs.
@@ -157,7 +154,7 @@ class WordSort {
   /// Brings sorted pairs from the buffer to `pairs`.
   void storePairs() {
     if (!inBuffer_) return;
-    Words& to = *pairs;
+    WordTexture& to = *pairs;
     run(RadixStep::StorePairs, "store keys", {nullptr}, {&to},
         {{"sk_keys_shift", to.shift()}, {"sk_length", count_}, {"sk_from", current_}}, tiles_);
     isStored_ = false;
@@ -169,7 +166,7 @@ class WordSort {
     const Uniform totalShift{"sk_totals_shift", totals_.shift()}, length{"sk_length", count_};
     const std::int32_t counts = tiles_ * assemble::radixDigits;
     const std::int32_t groups = divideUp(counts, assemble::radixTile);
-    Words* const from = isStored_ ? nullptr : readsKeys ? &keys : &*pairs;
+    WordTexture* const from = isStored_ ? nullptr : readsKeys ? &keys : &*pairs;
     const std::int32_t to = isStored_ && current_ == 0 ? count_ : 0;
     run(isStored_ ? RadixStep::CountPairs : RadixStep::Count, "count digits", {from}, {&counts_},
         {shift, keyShift, countShift, length, {"sk_from", current_}}, tiles_);
@@ -185,14 +182,14 @@ class WordSort {
     if (!inBuffer_) (pairs ? *pairs : keys).swap(*moved_);
   }
 
-  void run(RadixStep step, std::string_view name, std::initializer_list<Words*> read,
-           std::initializer_list<Words*> written, std::initializer_list<Uniform> uniforms,
+  void run(RadixStep step, std::string_view name, std::initializer_list<WordTexture*> read,
+           std::initializer_list<WordTexture*> written, std::initializer_list<Uniform> uniforms,
            std::int32_t tiles) {
     dispatchTiles(device_, step, name, {read.begin(), read.size()}, {written.begin(), written.size()},
                   {uniforms.begin(), uniforms.size()}, tiles);
   }
 
-  std::uint32_t read(Words& words, std::int32_t number) {
+  std::uint32_t read(WordTexture& words, std::int32_t number) {
     std::uint32_t word = 0;
     RenderTarget& plane = words.plane();
     plane.framebufferIn(device_.bound)
@@ -203,14 +200,14 @@ class WordSort {
 
   GlDevice& device_;
   const std::int32_t count_, tiles_;
-  Words counts_, sums_, totals_, totalSums_, all_;
+  WordTexture counts_, sums_, totals_, totalSums_, all_;
 
  public:
-  Words keys;
-  std::optional<Words> pairs;  ///< of keys and places; if it keeps places
+  WordTexture keys;
+  std::optional<WordTexture> pairs;  ///< of keys and places; if it keeps places
 
  private:
-  std::optional<Words> moved_;  ///< without a buffer
+  std::optional<WordTexture> moved_;  ///< without a buffer
   bool inBuffer_ = false;  ///< pairs lie in the buffer between two digits
   bool isStored_ = false;  ///< the current pairs lie there, from number current_ on
   std::int32_t current_ = 0;
@@ -269,10 +266,10 @@ class StreamSort {
       makeWords(wordKernel(scalar_, isDescending()), {&sort.keys});
       return sort.sort();
     }
-    Words upper(device_, count_);
+    WordTexture upper(device_, count_);
     makeWords(wordKernel(scalar_, isDescending()), {&sort.keys, &upper});
     sort.sort();
-    Words byUpper(device_, count_, wordPairs());
+    WordTexture byUpper(device_, count_, sortWordPairs());
     const Operand operands[] = {operandOf(*sort.pairs), operandOf(upper), {}};
     runOver(upperWordKernel(), operands, byUpper);
     sort.pairs->swap(byUpper);
@@ -280,23 +277,23 @@ class StreamSort {
   }
 
   void findRepeats(WordSort& sort) {
-    Words lower(device_, count_);
+    WordTexture lower(device_, count_);
     if (!hasTwoWords(scalar_)) {
       makeWords(wordKernel(scalar_, false), {&lower});
       const Operand operands[] = {operandOf(lower), operandOf(lower), {}};
       return runOver(repeatKernel(scalar_), operands, sort.keys);
     }
-    Words upper(device_, count_);
+    WordTexture upper(device_, count_);
     makeWords(wordKernel(scalar_, false), {&lower, &upper});
     const Operand operands[] = {operandOf(lower), operandOf(lower), operandOf(upper), operandOf(upper), {}};
     runOver(repeatKernel(scalar_), operands, sort.keys);
   }
 
   /// Makes words of the keys.
-  void makeWords(const program::Kernel& kernel, std::initializer_list<Words*> to) {
+  void makeWords(const program::Kernel& kernel, std::initializer_list<WordTexture*> to) {
     std::vector<Operand> operands{regionOperand({.region = reordering_.keys}, reordering_.keys.shape)};
     std::vector<RenderTarget*> targets;
-    for (Words* words : to) {
+    for (WordTexture* words : to) {
       operands.emplace_back();
       targets.push_back(&words->plane());
     }
@@ -305,15 +302,15 @@ class StreamSort {
   }
 
   /// The words as a stream of one dimension.
-  Operand operandOf(Words& words) const {
+  Operand operandOf(WordTexture& words) const {
     return {.regionLayout = words.layoutOf({count_, 1, 1, 1}), .planes = words.planes()};
   }
   /// The words as a stream with the shape of the keys.
-  Operand shapedOperandOf(Words& words) const {
+  Operand shapedOperandOf(WordTexture& words) const {
     return {.regionLayout = words.layoutOf(extent_), .planes = words.planes()};
   }
 
-  void runOver(const program::Kernel& kernel, std::span<const Operand> operands, Words& to) {
+  void runOver(const program::Kernel& kernel, std::span<const Operand> operands, WordTexture& to) {
     const RegionLayout domain = to.layoutOf({count_, 1, 1, 1});
     RenderTarget* const targets[] = {&to.plane()};
     runKernel(device_, kernel, operands, domain, assemble::drawnTexels(domain), targets);

@@ -18,16 +18,15 @@
 
 namespace sk {
 
+const program::Element& sortWords() { return ElementTraits<std::uint32_t>::element(); }
+const program::Element& sortWordPairs() { return ElementTraits<uint2>::element(); }
+
 namespace {
 
 using program::Element;
 using program::Kernel;
 using program::Parameter;
 using program::Role;
-using program::Scalar;
-
-const Element& words() { return ElementTraits<std::uint32_t>::element(); }
-const Element& wordPairs() { return ElementTraits<uint2>::element(); }
 
 /// A kernel and what it refers to. Its entry is the only function `sort_kernel`.
 struct SortKernel {
@@ -81,29 +80,29 @@ std::string_view indexFunction(int rank) {
 }
 
 /// The element of a key or a flag; uint if there is none of this type.
-const Element& elementOf(Scalar scalar) {
+const Element& elementOf(program::Scalar scalar) {
   switch (scalar) {
-    case Scalar::Int: return ElementTraits<std::int32_t>::element();
-    case Scalar::Float: return ElementTraits<float>::element();
-    case Scalar::Bool: return ElementTraits<bool>::element();
-    case Scalar::Uint:
-    case Scalar::Double:
-    case Scalar::Half:
-    case Scalar::Char:
-    case Scalar::Uchar:
-    case Scalar::Short:
-    case Scalar::Ushort:
-    case Scalar::Unorm8:
-    case Scalar::Snorm8:
-    case Scalar::Unorm16:
-    case Scalar::Snorm16: break;
+    case program::Scalar::Int: return ElementTraits<std::int32_t>::element();
+    case program::Scalar::Float: return ElementTraits<float>::element();
+    case program::Scalar::Bool: return ElementTraits<bool>::element();
+    case program::Scalar::Uint:
+    case program::Scalar::Double:
+    case program::Scalar::Half:
+    case program::Scalar::Char:
+    case program::Scalar::Uchar:
+    case program::Scalar::Short:
+    case program::Scalar::Ushort:
+    case program::Scalar::Unorm8:
+    case program::Scalar::Snorm8:
+    case program::Scalar::Unorm16:
+    case program::Scalar::Snorm16: break;
   }
-  return words();
+  return sortWords();
 }
 
 }  // namespace
 
-const Kernel& wordKernel(Scalar keys, bool isDescending) {
+const Kernel& wordKernel(program::Scalar keys, bool isDescending) {
   const std::string_view inverted = isDescending ? "~" : "";
   if (hasTwoWords(keys)) {
     return kept(fmt::format("void sort_kernel(uvec2 k, out uint lower, out uint upper) {{\n"
@@ -115,10 +114,10 @@ const Kernel& wordKernel(Scalar keys, bool isDescending) {
                             "  upper = isNan ? 0xffffffffu : {0}r.y;\n"
                             "}}\n",
                             inverted),
-                {input("k", wordPairs()), output("lower", words()), output("upper", words())});
+                {input("k", sortWordPairs()), output("lower", sortWords()), output("upper", sortWords())});
   }
   const Element& element = elementOf(keys);
-  if (keys == Scalar::Float) {
+  if (keys == program::Scalar::Float) {
     return kept(fmt::format("void sort_kernel(float k, out uint r) {{\n"
                             "  uint b = floatBitsToUint(k), m = b & 0x7fffffffu;\n"
                             "  if (m == 0u) b = 0u;\n"
@@ -126,15 +125,15 @@ const Kernel& wordKernel(Scalar keys, bool isDescending) {
                             "  r = m > 0x7f800000u ? 0xffffffffu : {}b;\n"
                             "}}\n",
                             inverted),
-                {input("k", element), output("r", words())});
+                {input("k", element), output("r", sortWords())});
   }
   return kept(fmt::format("void sort_kernel({} k, out uint r) {{ r = {}(uint(k){}); }}\n", element.glsl,
-                          inverted, keys == Scalar::Int ? " ^ 0x80000000u" : ""),
-              {input("k", element), output("r", words())});
+                          inverted, keys == program::Scalar::Int ? " ^ 0x80000000u" : ""),
+              {input("k", element), output("r", sortWords())});
 }
 
-const Kernel& repeatKernel(Scalar keys) {
-  const bool isFloating = keys == Scalar::Float || keys == Scalar::Double;
+const Kernel& repeatKernel(program::Scalar keys) {
+  const bool isFloating = keys == program::Scalar::Float || keys == program::Scalar::Double;
   const std::string_view isNumber = isFloating ? " && k != 0xffffffffu" : "";
   if (!hasTwoWords(keys)) {
     return kept(fmt::format("void sort_kernel(uint k, out uint r) {{\n"
@@ -142,7 +141,7 @@ const Kernel& repeatKernel(Scalar keys) {
                             "  r = n > 0 && sk_at_x(n - 1) == k{} ? 1u : 0u;\n"
                             "}}\n",
                             isNumber),
-                {input("k", words()), gather("x", words(), 1), output("r", words())}, true);
+                {input("k", sortWords()), gather("x", sortWords(), 1), output("r", sortWords())}, true);
   }
   return kept(
       "void sort_kernel(uint k, uint l, out uint r) {\n"
@@ -150,38 +149,38 @@ const Kernel& repeatKernel(Scalar keys) {
       "  bool isNan = (k & l) == 0xffffffffu;\n"
       "  r = n > 0 && sk_at_x(n - 1) == k && sk_at_y(n - 1) == l && !isNan ? 1u : 0u;\n"
       "}\n",
-      {input("k", words()), gather("x", words(), 1), input("l", words()), gather("y", words(), 1),
-       output("r", words())},
+      {input("k", sortWords()), gather("x", sortWords(), 1), input("l", sortWords()),
+       gather("y", sortWords(), 1), output("r", sortWords())},
       true);
 }
 
-const Kernel& flagKernel(Scalar flags) {
+const Kernel& flagKernel(program::Scalar flags) {
   const Element& element = elementOf(flags);
   return kept(
       fmt::format("void sort_kernel({0} k, out uint r) {{ r = k == {0}(0) ? 1u : 0u; }}\n", element.glsl),
-      {input("k", element), output("r", words())});
+      {input("k", element), output("r", sortWords())});
 }
 
 const Kernel& moveKernel(const program::Field& field, int rank) {
   const Element& element = *copyKernel(field).parameters[0].element;
   return kept(fmt::format("// {}\n{}void sort_kernel(uvec2 k, out {} r) {{ r = {}; }}\n", element.name,
                           indexFunction(rank), element.glsl, elementAt(rank)),
-              {input("k", wordPairs()), gather("x", element, rank), output("r", element)});
+              {input("k", sortWordPairs()), gather("x", element, rank), output("r", element)});
 }
 
 const Kernel& upperWordKernel() {
   return kept("void sort_kernel(uvec2 k, out uvec2 r) { r = uvec2(sk_at_x(int(k.y)), k.y); }\n",
-              {input("k", wordPairs()), gather("x", words(), 1), output("r", wordPairs())});
+              {input("k", sortWordPairs()), gather("x", sortWords(), 1), output("r", sortWordPairs())});
 }
 
-const Kernel& restoreKernel(Scalar keys, bool isDescending, bool fromPairs, int rank) {
+const Kernel& restoreKernel(program::Scalar keys, bool isDescending, bool fromPairs, int rank) {
   const Element& element = elementOf(keys);
   const std::string_view inverted = isDescending ? "~" : "";
-  if (keys != Scalar::Float) {
-    const Element& from = fromPairs ? wordPairs() : words();
+  if (keys != program::Scalar::Float) {
+    const Element& from = fromPairs ? sortWordPairs() : sortWords();
     return kept(fmt::format("void sort_kernel({0} k, out {1} r) {{ r = {1}({2}k{3}{4}); }}\n", from.glsl,
                             element.glsl, inverted, fromPairs ? ".x" : "",
-                            keys == Scalar::Int ? " ^ 0x80000000u" : ""),
+                            keys == program::Scalar::Int ? " ^ 0x80000000u" : ""),
                 {input("k", from), output("r", element)});
   }
   return kept(fmt::format("{}void sort_kernel(uvec2 k, out float r) {{\n"
@@ -190,12 +189,12 @@ const Kernel& restoreKernel(Scalar keys, bool isDescending, bool fromPairs, int 
                           "  r = k.x == 0xffffffffu || b == 0u ? {} : uintBitsToFloat(b);\n"
                           "}}\n",
                           indexFunction(rank), inverted, elementAt(rank)),
-              {input("k", wordPairs()), gather("x", element, rank), output("r", element)});
+              {input("k", sortWordPairs()), gather("x", element, rank), output("r", element)});
 }
 
 const Kernel& placeKernel() {
   return kept("void sort_kernel(uvec2 k, out int r) { r = int(k.y); }\n",
-              {input("k", wordPairs()), output("r", elementOf(Scalar::Int))});
+              {input("k", sortWordPairs()), output("r", elementOf(program::Scalar::Int))});
 }
 
 }  // namespace sk

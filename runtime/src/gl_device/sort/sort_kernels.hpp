@@ -9,6 +9,10 @@
 
 namespace sk {
 
+/// The element of what is sorted: a word, or the pair of a word and the place where it came from.
+const program::Element& sortWords();
+const program::Element& sortWordPairs();
+
 /// Whether keys of this type have two words, a lower and an upper one.
 inline bool hasTwoWords(program::Scalar keys) { return keys == program::Scalar::Double; }
 
