@@ -146,6 +146,12 @@ bool FoldResults::areRows() const {
   });
 }
 
+bool FoldResults::areRoundedRows() const {
+  return std::ranges::all_of(arrays_, [](const Array& array) {
+    return array.array != nullptr && array.operand->stride[0] == 1 && array.isRounded;
+  });
+}
+
 std::byte* FoldResults::at(std::size_t scalar, const Extents& block) const {
   const Array& array = arrays_[scalar];
   std::int64_t number = array.operand->first;
