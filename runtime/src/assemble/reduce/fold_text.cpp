@@ -214,6 +214,15 @@ void FoldText::vectors(std::initializer_list<std::string_view> uniforms) {
   for (const std::string_view uniform : uniforms) program_.uniform("ivec4", uniform);
 }
 
+std::string FoldText::unravel(std::string_view number, std::string_view strides) {
+  if (variant_.axes == 1) return fmt::format("ivec4({}, 0, 0, 0)", number);
+  program_.require(variant_.axes == 2   ? Function::Unravel2
+                   : variant_.axes == 3 ? Function::Unravel3
+                                        : Function::Unravel4);
+  vectors({strides});
+  return fmt::format("sk_unravel({}, {})", number, strides);
+}
+
 std::string FoldText::finish(std::string_view comment) {
   if (profile_.stage == Stage::Compute)
     program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);

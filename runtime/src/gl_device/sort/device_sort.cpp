@@ -72,7 +72,7 @@ struct Uniform {
 /// Dispatches a group for each tile.
 void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name, std::span<Words* const> read,
                    std::span<Words* const> written, std::span<const Uniform> uniforms, std::int32_t tiles) {
-  AppendProgram& program = device.sortPrograms.of(step);
+  IntegerProgram& program = device.sortPrograms.of(step);
   constexpr std::int32_t mostInRow = std::int32_t{1} << assemble::groupRowShift;
   const Rect groups{0, 0, std::min(tiles, mostInRow), divideUp(tiles, mostInRow)};
   const std::int64_t bytes =
@@ -376,8 +376,8 @@ class StreamSort {
 
 }  // namespace
 
-AppendProgram& SortPrograms::of(RadixStep step) {
-  std::unique_ptr<AppendProgram>& known = programs_[static_cast<std::size_t>(step)];
+IntegerProgram& SortPrograms::of(RadixStep step) {
+  std::unique_ptr<IntegerProgram>& known = programs_[static_cast<std::size_t>(step)];
   if (known) return *known;
   std::string log;
   gl::Program program =
@@ -388,7 +388,7 @@ AppendProgram& SortPrograms::of(RadixStep step) {
                             device_.capabilities.renderer, log),
                 Error::Kind::Compile);
   }
-  known = std::make_unique<AppendProgram>(std::move(program));
+  known = std::make_unique<IntegerProgram>(std::move(program));
   const gl::Program& linked = known->program();
   device_.bound.program(linked.name());
   int unit = 0;

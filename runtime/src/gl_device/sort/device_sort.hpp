@@ -10,7 +10,7 @@
 
 #include "assemble/sort/radix_program.hpp"
 #include "device/reordering.hpp"
-#include "gl_device/append/append_programs.hpp"
+#include "gl_device/program/integer_program.hpp"
 
 namespace sk {
 
@@ -21,12 +21,12 @@ class SortPrograms {
  public:
   explicit SortPrograms(GlDevice& device) : device_(device) {}
   /// Throws sk::Error if the driver rejects it.
-  AppendProgram& of(assemble::RadixStep step);
+  IntegerProgram& of(assemble::RadixStep step);
 
  private:
   static constexpr std::size_t steps = 5;
   GlDevice& device_;
-  std::array<std::unique_ptr<AppendProgram>, steps> programs_;
+  std::array<std::unique_ptr<IntegerProgram>, steps> programs_;
 };
 
 /// Whether streams can be sorted by dispatches: the keys are stored as they are declared, or as halves, and temporaries
