@@ -6,6 +6,7 @@
 #include <bit>
 #include <deque>
 #include <optional>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -228,11 +229,12 @@ class RandomFold::Run {
     std::size_t first = 0;
     for (const Result& result : results_) {
       const std::vector<Words> parts(wanted.begin() + static_cast<std::ptrdiff_t>(first),
-                                     wanted.begin() + static_cast<std::ptrdiff_t>(first + result.words));
-      first += result.words;
-      Words got(static_cast<std::size_t>(result.region.shape.size()) * result.words);
-      sk::detail::read(result.region, got.data(), got.size() / result.words);
-      if (const std::string wrong = firstWrong(result.name, got, woven(parts)); !wrong.empty()) return wrong;
+                                     wanted.begin() + static_cast<std::ptrdiff_t>(first + result.scalars.size()));
+      first += result.scalars.size();
+      Words got(static_cast<std::size_t>(result.region.shape.size()) * result.scalars.size());
+      sk::detail::read(result.region, got.data(), got.size() / result.scalars.size());
+      if (const std::string wrong = firstWrong(result.name, got, woven(parts), result.scalars); !wrong.empty())
+        return wrong;
     }
     return {};
   }
@@ -241,7 +243,7 @@ class RandomFold::Run {
   struct Result {
     std::string name;
     sk::StreamRegion region;
-    std::size_t words;  ///< of an element
+    std::vector<Scalar> scalars;  ///< of an element
   };
 
   void call() {
@@ -260,7 +262,7 @@ class RandomFold::Run {
       results.push_back(&got[i]);
     arguments_.resize(arguments_.size() + results.size());
     sk::reduce(compiled_, arguments_, results, fold_.options_);
-    return firstWrong("the values", got, woven(expected));
+    return firstWrong("the values", got, woven(expected), fold_.made_.accumulators);
   }
 
   /// The words of several lists, element by element.
@@ -272,8 +274,18 @@ class RandomFold::Run {
     return all;
   }
 
-  static std::string firstWrong(const std::string& name, const Words& got, const Words& expected) {
-    const auto [wrong, right] = std::ranges::mismatch(got, expected);
+  /// A sum of nothing but -0 is -0 or 0, depending on what it starts from.
+  static bool agree(std::uint32_t a, std::uint32_t b, Scalar scalar) {
+    return a == b || (scalar == Scalar::Float && ((a | b) << 1) == 0);
+  }
+
+  /// `scalars` are those of an element.
+  static std::string firstWrong(const std::string& name, const Words& got, const Words& expected,
+                                std::span<const Scalar> scalars) {
+    std::size_t word = 0;
+    const auto [wrong, right] = std::ranges::mismatch(got, expected, [&](std::uint32_t a, std::uint32_t b) {
+      return agree(a, b, scalars[word++ % scalars.size()]);
+    });
     if (wrong == got.end() && right == expected.end()) return {};
     if (wrong == got.end() || right == expected.end())
       return fmt::format("{}: {} words, not {}\n", name, got.size(), expected.size());
@@ -334,7 +346,8 @@ class RandomFold::Run {
       const std::string name{compiled_.fold.parameters[arguments_.size()].name};
       const sk::StreamRegion region = isFirst && fold_.isInPlace_ ? firstInput_ : place(shape);
       arguments_.push_back({.region = region});
-      results_.push_back({name, region, areRecord ? scalars.size() : 1});
+      const auto first = scalars.begin() + static_cast<std::ptrdiff_t>(i);
+      results_.push_back({name, region, {first, areRecord ? scalars.end() : first + 1}});
     }
   }
 
