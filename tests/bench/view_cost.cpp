@@ -23,7 +23,8 @@ struct Streams {
         small(device.stream<float>({side / 2, side / 2})),
         wide(device.stream<float>({side, side})),
         volume(device.stream<float>({3, side / 2, side})) {
-    for (sk::Stream<float>* stream : {&x, &y, &small, &wide, &volume}) stream->write(ramp(stream->size(), 0.37f));
+    for (sk::Stream<float>* stream : {&x, &y, &small, &wide, &volume})
+      stream->write(ramp(stream->size(), 0.37f));
   }
   sk::View<float> columns() { return sk::stride(wide, {1, 2}); }
   sk::View<float> quarter(int row, int column) { return sk::stride(wide, {2, 2}, {row, column}); }
@@ -34,8 +35,8 @@ struct Streams {
 
 }  // namespace
 
-void viewCosts(sk::Device& device, std::string_view name, sk::Target target, int rounds, double sampleMilliseconds,
-               Report& report) {
+void viewCosts(sk::Device& device, std::string_view name, sk::Target target, int rounds,
+               double sampleMilliseconds, Report& report) {
   Streams s(device);
   const sk::CallOptions options{.target = target};
   const auto plus = add.with(options);
@@ -56,16 +57,19 @@ void viewCosts(sk::Device& device, std::string_view name, sk::Target target, int
   const auto addDense = [&] { plus(1.5f, s.x, s.y); };
   compared("y = x + c, x every second column", [&] { plus(1.5f, s.columns(), s.y); }, addDense);
   compared("y = x + c, y every second column", [&] { plus(1.5f, s.x, s.columns()); }, addDense);
-  compared("y = x + c, both the same columns, in place", [&] { plus(1.5f, s.columns(), s.columns()); },
-           [&] { plus(1.5f, s.x, s.x); });
-  compared("y = exp(sin(x)) * cos(x), y every second column", [&] { curve(s.x, s.columns()); },
-           [&] { curve(s.x, s.y); });
+  compared(
+      "y = x + c, both the same columns, in place", [&] { plus(1.5f, s.columns(), s.columns()); },
+      [&] { plus(1.5f, s.x, s.x); });
+  compared(
+      "y = exp(sin(x)) * cos(x), y every second column", [&] { curve(s.x, s.columns()); },
+      [&] { curve(s.x, s.y); });
   compared("a sum of every second column", [&] { total(s.columns()); }, [&] { total(s.x); });
-  compared("the mean of four inputs, each every second row and column, against a gather",
-           [&] {
-             meanOfFour.with(options)(s.quarter(0, 0), s.quarter(0, 1), s.quarter(1, 0), s.quarter(1, 1), s.small);
-           },
-           [&] { meanOfSquare.with(options)(s.wide, s.small); });
+  compared(
+      "the mean of four inputs, each every second row and column, against a gather",
+      [&] {
+        meanOfFour.with(options)(s.quarter(0, 0), s.quarter(0, 1), s.quarter(1, 0), s.quarter(1, 1), s.small);
+      },
+      [&] { meanOfSquare.with(options)(s.wide, s.small); });
   compared("y = x + c, x a plane in another shape", [&] { plus(1.5f, s.plane(), s.y); }, addDense);
   compared("y = x + c, y a plane in another shape", [&] { plus(1.5f, s.x, s.plane()); }, addDense);
 }

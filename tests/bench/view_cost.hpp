@@ -13,7 +13,7 @@ namespace bench {
 
 /// Rows "view: CALL, on NAME", whose value is how many times as long the call takes: by the clock on a GPU, in processor
 /// time elsewhere.
-void viewCosts(sk::Device& device, std::string_view name, sk::Target target, int rounds, double sampleMilliseconds,
-               Report& report);
+void viewCosts(sk::Device& device, std::string_view name, sk::Target target, int rounds,
+               double sampleMilliseconds, Report& report);
 
 }  // namespace bench

@@ -98,7 +98,8 @@ std::string glslComplaint(const skc::ir::Module& module) {
 
 /// Calls differenceOn(device, unit) for each GL device.
 template <class DifferenceOn>
-std::string glDifference(const skc::ir::Module& module, bool dispatches, Kept& kept, DifferenceOn&& differenceOn) {
+std::string glDifference(const skc::ir::Module& module, bool dispatches, Kept& kept,
+                         DifferenceOn&& differenceOn) {
   const skc::emit::Program& program = kept.programs.emplace_back(module);
   if (!kept.gl) kept.gl.emplace();
   std::vector<sk::Device*> devices{&kept.gl->many, &kept.gl->few, &kept.gl->fewOfMany};

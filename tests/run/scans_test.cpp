@@ -424,7 +424,8 @@ TEST_CASE("long lines across short rows are scanned and folded, with or without 
     std::vector<int> products(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) products[i] = x[i] * y[i];
     for (const bool isExclusive : {false, true}) {
-      const sk::CallOptions options{.scan = isExclusive ? sk::Scan::Exclusive : sk::Scan::Inclusive, .along = 0};
+      const sk::CallOptions options{.scan = isExclusive ? sk::Scan::Exclusive : sk::Scan::Inclusive,
+                                    .along = 0};
       scans::products.with(options)(in, other, out);
       CHECK(out.read() == scanned(products, 0, times, isExclusive, shape, 0));
       scans::prefix.with(options)(sk::stride(larger, {1, 2}), out);

@@ -140,7 +140,8 @@ class Coalesce {
     for (std::size_t i = 0; i < operands_.size(); ++i) {
       if (!isElement(i) && !isResult(i)) continue;
       Operand& operand = operands_[i];
-      for (Extents* extents : {&operand.stride, &operand.extent, &operand.multiply, &operand.divide}) turned(*extents);
+      for (Extents* extents : {&operand.stride, &operand.extent, &operand.multiply, &operand.divide})
+        turned(*extents);
     }
     turned(domain_);
     turned(block_);

@@ -85,8 +85,12 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
           ? functionOf<native::ValuesFunction>(entryOf(reduction.fold, EntryKind::Identity, choice))
           : nullptr;
   const Entry& scan = entryOf(reduction.fold, EntryKind::Scan, choice);
-  const ScanProgram scanProgram{program, bound<native::ScanFunction>(scan, frame), identities,
-                                call.scan->isExclusive, call.scan->combinesRuns, false};
+  const ScanProgram scanProgram{program,
+                                bound<native::ScanFunction>(scan, frame),
+                                identities,
+                                call.scan->isExclusive,
+                                call.scan->combinesRuns,
+                                false};
   if (call.rows != nullptr) {
     scanRows(scanProgram, rowsOf(), *call.rows, results);
     return;

@@ -73,7 +73,8 @@ class BlockGroups {
 
   /// The number of blocks that are folded side by side: at most `most`, and fewer where threads would be left without a
   /// group. Blocks do not depend on each other, and so neither do results on this.
-  static std::int64_t sideBySide(const native::Extents& domain, const native::Extents& block, std::int64_t most) {
+  static std::int64_t sideBySide(const native::Extents& domain, const native::Extents& block,
+                                 std::int64_t most) {
     constexpr std::int64_t least = 32;  // so that vectors, and the lines of caches, are full
     std::int64_t blocks = 1, elements = 1;
     for (std::size_t d = 0; d < 4; ++d) {

@@ -41,18 +41,27 @@ struct Operator {
 constexpr std::uint32_t top = 0x80000000u, infinity = 0x7f800000u;
 constexpr Operator::Identity zero{"0", 0}, unsignedZero{"0u", 0}, none{"", 0};
 constexpr Operator operators[] = {
-    {"{0} += {1}", zero, unsignedZero, {"0.0f", 0},
+    {"{0} += {1}",
+     zero,
+     unsignedZero,
+     {"0.0f", 0},
      [](std::uint32_t a, std::uint32_t b, Scalar scalar) {
        return scalar == Scalar::Float ? wordOf(asFloat(a) + asFloat(b)) : a + b;
      },
      true},
-    {"{0} = max({0}, {1})", {"-2147483647 - 1", top}, unsignedZero, {"", infinity | top},
+    {"{0} = max({0}, {1})",
+     {"-2147483647 - 1", top},
+     unsignedZero,
+     {"", infinity | top},
      [](std::uint32_t a, std::uint32_t b, Scalar scalar) {
        if (scalar == Scalar::Float) return asFloat(a) < asFloat(b) ? b : a;
        return scalar == Scalar::Int ? (asInt(a) < asInt(b) ? b : a) : std::max(a, b);
      },
      true},
-    {"{0} = min({0}, {1})", {"2147483647", ~top}, {"4294967295u", ~0u}, {"", infinity},
+    {"{0} = min({0}, {1})",
+     {"2147483647", ~top},
+     {"4294967295u", ~0u},
+     {"", infinity},
      [](std::uint32_t a, std::uint32_t b, Scalar scalar) {
        if (scalar == Scalar::Float) return asFloat(b) < asFloat(a) ? b : a;
        return scalar == Scalar::Int ? (asInt(b) < asInt(a) ? b : a) : std::min(a, b);
@@ -61,7 +70,10 @@ constexpr Operator operators[] = {
     {"{0} *= {1}", {"1", 1}, {"1u", 1}, none, [](std::uint32_t a, std::uint32_t b, Scalar) { return a * b; }},
     {"{0} ^= {1}", zero, unsignedZero, none, [](std::uint32_t a, std::uint32_t b, Scalar) { return a ^ b; }},
     {"{0} |= {1}", zero, unsignedZero, none, [](std::uint32_t a, std::uint32_t b, Scalar) { return a | b; }},
-    {"{0} &= {1}", {"-1", ~0u}, {"4294967295u", ~0u}, none,
+    {"{0} &= {1}",
+     {"-1", ~0u},
+     {"4294967295u", ~0u},
+     none,
      [](std::uint32_t a, std::uint32_t b, Scalar) { return a & b; }},
 };
 
@@ -114,7 +126,8 @@ constexpr Condition conditions[] = {
 };
 
 std::uint32_t integerOf(Scalar scalar, std::uint32_t word) {
-  return scalar == Scalar::Float ? static_cast<std::uint32_t>(static_cast<std::int32_t>(asFloat(word))) : word;
+  return scalar == Scalar::Float ? static_cast<std::uint32_t>(static_cast<std::int32_t>(asFloat(word)))
+                                 : word;
 }
 
 // ---- programs --------------------------------------------------------------------------------------
@@ -217,7 +230,8 @@ class OperatorFold {
     }
     if (made_.outputs.empty() || !random_.chance(1, 2)) return;
     body_ += filled("  o0 ^= {0}({2});\n", made_.outputs[0]);
-    steps_.push_back({.isOutput = true, .at = 0, .scalar = made_.outputs[0], .by = &operators[4], .term = &integers[1]});
+    steps_.push_back(
+        {.isOutput = true, .at = 0, .scalar = made_.outputs[0], .by = &operators[4], .term = &integers[1]});
   }
 
   void addStep(std::size_t number) {
@@ -225,7 +239,8 @@ class OperatorFold {
     const Term& term = termFor(scalar);
     Step step{.isOutput = false, .at = number, .scalar = scalar, .by = by_[number], .term = &term};
     step.looksUpA = &term == &floats[2];
-    std::string line = fmt::format(fmt::runtime(by_[number]->text), nameOfAccumulator(number), filled(term.text, scalar));
+    std::string line =
+        fmt::format(fmt::runtime(by_[number]->text), nameOfAccumulator(number), filled(term.text, scalar));
     if (random_.chance(1, 4)) {
       step.isCounted = true;
       line = fmt::format("for (int i = 0; i < ({} & 3); ++i) {}", integers_[0], line);
@@ -265,7 +280,8 @@ class OperatorFold {
 
   std::string text() {
     const bool canSay = canSayIdentities();
-    const bool says = canSay && (!random_.chance(1, 4) || (made_.accumulatorIsRecord && made_.kind == FoldKind::Scan));
+    const bool says =
+        canSay && (!random_.chance(1, 4) || (made_.accumulatorIsRecord && made_.kind == FoldKind::Scan));
     std::string text;
     if (made_.accumulatorIsRecord) {
       text += "struct R {\n";
@@ -279,8 +295,9 @@ class OperatorFold {
     const std::string_view word = made_.kind == FoldKind::Scan     ? "scan"
                                   : made_.kind == FoldKind::Reduce ? "reduce"
                                                                    : "kernel";
-    text += fmt::format("{} void random(uint c, int g[], {} x0<>, {} x1<>{}{}) {{\n{}}}\n", word, nameOf(made_.inputs[0]),
-                        nameOf(made_.inputs[1]), outputs, accumulatorsText(says), body_);
+    text +=
+        fmt::format("{} void random(uint c, int g[], {} x0<>, {} x1<>{}{}) {{\n{}}}\n", word,
+                    nameOf(made_.inputs[0]), nameOf(made_.inputs[1]), outputs, accumulatorsText(says), body_);
     if (says && random_.chance(1, 5)) text += overload();
     return text;
   }
@@ -295,8 +312,8 @@ class OperatorFold {
       body += fmt::format("  {};\n", fmt::format(fmt::runtime(by_[i]->text), nameOfAccumulator(i), part));
     }
     if (made_.accumulatorIsRecord) parts = "R p<>";
-    return fmt::format("{} void random({}{}) {{\n{}}}\n", made_.kind == FoldKind::Scan ? "scan" : "reduce", parts,
-                       accumulatorsText(true), body);
+    return fmt::format("{} void random({}{}) {{\n{}}}\n", made_.kind == FoldKind::Scan ? "scan" : "reduce",
+                       parts, accumulatorsText(true), body);
   }
 
   FoldText& made_;
@@ -315,18 +332,18 @@ void makeMaps(FoldText& made, Random& random) {
   const bool isKernel = made.kind == FoldKind::Kernel;
   if (isKernel) made.outputs = {Scalar::Uint};
   const std::string_view word = made.kind == FoldKind::Scan ? "scan" : "reduce";
-  const auto parameters =
-      made.accumulatorIsRecord
-          ? fmt::format("{} R s<> = R{{1u, 0u}}", word)
-          : fmt::format("{0} uint s0<> = 1u, {0} uint s1<> = 0u", word);
+  const auto parameters = made.accumulatorIsRecord
+                              ? fmt::format("{} R s<> = R{{1u, 0u}}", word)
+                              : fmt::format("{0} uint s0<> = 1u, {0} uint s1<> = 0u", word);
   const std::string_view inputs = made.inputIsRecord ? "R x<>" : "uint x0<>, uint x1<>";
   const std::string_view body = made.accumulatorIsRecord ? "  s = R{s.m0 * x.m0, s.m1 * x.m0 + x.m1};\n"
                                                          : "  s0 *= x0;\n  s1 = s1 * x0 + x1;\n";
   if (made.inputIsRecord) made.text = "struct R {\n  uint m0;\n  uint m1;\n};\n";
   const std::string fold = fmt::format("{} void random({}, {}) {{\n{}}}\n", word, inputs, parameters, body);
   if (isKernel) {
-    made.text += fmt::format("kernel void random({}, out uint o0<>, {}) {{\n  o0 = {} + {};\n{}}}\n", inputs, parameters,
-                             made.inputIsRecord ? "x.m0" : "x0", made.inputIsRecord ? "x.m1" : "x1", body);
+    made.text +=
+        fmt::format("kernel void random({}, out uint o0<>, {}) {{\n  o0 = {} + {};\n{}}}\n", inputs,
+                    parameters, made.inputIsRecord ? "x.m0" : "x0", made.inputIsRecord ? "x.m1" : "x1", body);
   }
   made.text += fold;
   made.fold = [isKernel](Words& accumulators, FoldText::Element& element) {
@@ -351,11 +368,13 @@ void makeLeast(FoldText& made, Random& random) {
   const std::string doubled = isKernel ? fmt::format("  o0 = {0} + {0};\n", value) : "";
   if (made.inputIsRecord) {
     made.text = fmt::format(
-        "struct R {{\n  {} m0;\n  {} m1;\n}};\n{} void random(R x<>{}, {} R s<>) {{\n{}  if (x.m0 < s.m0) s = x;\n}}\n",
+        "struct R {{\n  {} m0;\n  {} m1;\n}};\n{} void random(R x<>{}, {} R s<>) {{\n{}  if (x.m0 < s.m0) s "
+        "= x;\n}}\n",
         first, second, kind, output, word, doubled);
   } else {
     made.text = fmt::format(
-        "{0} void random({1} x0<>, {2} x1<>{3}, {4} {1} s0<>, {4} {2} s1<>) {{\n{5}  if (x0 < s0) {{\n    s0 = x0;\n    "
+        "{0} void random({1} x0<>, {2} x1<>{3}, {4} {1} s0<>, {4} {2} s1<>) {{\n{5}  if (x0 < s0) {{\n    s0 "
+        "= x0;\n    "
         "s1 = x1;\n  }}\n}}\n",
         kind, first, second, output, word, doubled);
   }

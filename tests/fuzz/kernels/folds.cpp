@@ -100,7 +100,8 @@ void RandomFold::chooseRows(Random& random) {
   std::int32_t at = made_.kind == FoldKind::Scan ? 0 : random.between(0, 5);
   starts_.push_back(at);
   for (int left = random.between(1, random.pick(std::array{1, 30, 3000})); left > 0; --left) {
-    const int count = random.chance(1, 4) ? least : random.between(least, random.chance(1, 8) ? most : std::min(most, 9));
+    const int count =
+        random.chance(1, 4) ? least : random.between(least, random.chance(1, 8) ? most : std::min(most, 9));
     if (at + count > mostFolded) break;
     starts_.push_back(at += count);
   }
@@ -112,16 +113,19 @@ void RandomFold::chooseRows(Random& random) {
 void RandomFold::chooseOptions(Random& random) {
   if (made_.kind == FoldKind::Scan && !made_.identities.empty() && random.chance(1, 3))
     options_.scan = sk::Scan::Exclusive;
-  static constexpr sk::Accumulate ways[] = {sk::Accumulate::Default, sk::Accumulate::Tree, sk::Accumulate::Compensated,
-                                            sk::Accumulate::Extended, sk::Accumulate::Exact};
+  static constexpr sk::Accumulate ways[] = {sk::Accumulate::Default, sk::Accumulate::Tree,
+                                            sk::Accumulate::Compensated, sk::Accumulate::Extended,
+                                            sk::Accumulate::Exact};
   if (made_.sumsFloats) options_.accumulate = random.pick(ways);
-  static constexpr Placement placements[] = {Placement::Whole, Placement::Whole, Placement::Whole, Placement::Box,
-                                             Placement::Strided};
+  static constexpr Placement placements[] = {Placement::Whole, Placement::Whole, Placement::Whole,
+                                             Placement::Box, Placement::Strided};
   for (std::size_t i = 0; i < made_.inputs.size() + made_.outputs.size() + made_.accumulators.size(); ++i)
     placements_.push_back(random.pick(placements));
   const std::vector<Scalar>& written = made_.kind == FoldKind::Kernel ? made_.outputs : made_.accumulators;
-  isInPlace_ = made_.kind != FoldKind::Reduce && made_.inputIsRecord == (made_.kind == FoldKind::Scan && made_.accumulatorIsRecord) &&
-               (made_.inputIsRecord ? written == made_.inputs : written[0] == made_.inputs[0]) && random.chance(1, 3);
+  isInPlace_ = made_.kind != FoldKind::Reduce &&
+               made_.inputIsRecord == (made_.kind == FoldKind::Scan && made_.accumulatorIsRecord) &&
+               (made_.inputIsRecord ? written == made_.inputs : written[0] == made_.inputs[0]) &&
+               random.chance(1, 3);
 }
 
 void RandomFold::fill(Random& random) {
@@ -142,7 +146,8 @@ std::string RandomFold::described() const {
   if (options_.accumulate != sk::Accumulate::Default)
     text += fmt::format(", accumulation {}", static_cast<int>(options_.accumulate));
   if (isInPlace_) text += ", in place";
-  for (const Placement placement : placements_) text += placement == Placement::Whole ? "" : placement == Placement::Box ? ", a box" : ", strided";
+  for (const Placement placement : placements_)
+    text += placement == Placement::Whole ? "" : placement == Placement::Box ? ", a box" : ", strided";
   return text + "\n";
 }
 
@@ -228,12 +233,14 @@ class RandomFold::Run {
     wanted.insert(wanted.end(), expected.accumulators.begin(), expected.accumulators.end());
     std::size_t first = 0;
     for (const Result& result : results_) {
-      const std::vector<Words> parts(wanted.begin() + static_cast<std::ptrdiff_t>(first),
-                                     wanted.begin() + static_cast<std::ptrdiff_t>(first + result.scalars.size()));
+      const std::vector<Words> parts(
+          wanted.begin() + static_cast<std::ptrdiff_t>(first),
+          wanted.begin() + static_cast<std::ptrdiff_t>(first + result.scalars.size()));
       first += result.scalars.size();
       Words got(static_cast<std::size_t>(result.region.shape.size()) * result.scalars.size());
       sk::detail::read(result.region, got.data(), got.size() / result.scalars.size());
-      if (const std::string wrong = firstWrong(result.name, got, woven(parts), result.scalars); !wrong.empty())
+      if (const std::string wrong = firstWrong(result.name, got, woven(parts), result.scalars);
+          !wrong.empty())
         return wrong;
     }
     return {};
@@ -292,13 +299,16 @@ class RandomFold::Run {
     return fmt::format("{}, word {}: {:#x}, not {:#x}\n", name, wrong - got.begin(), *wrong, *right);
   }
 
-  const sk::program::Element& nextElement() const { return *compiled_.fold.parameters[arguments_.size()].element; }
+  const sk::program::Element& nextElement() const {
+    return *compiled_.fold.parameters[arguments_.size()].element;
+  }
 
   /// A stream of the next parameter's elements that are placed as the next argument's are.
   sk::StreamRegion place(const sk::Shape& shape) {
     Untyped::element = &nextElement();
     const Placement placement = fold_.placements_[placed_++];
-    if (placement == Placement::Whole || shape.size() == 0) return streams_.emplace_back(device_.stream<Untyped>(shape)).region();
+    if (placement == Placement::Whole || shape.size() == 0)
+      return streams_.emplace_back(device_.stream<Untyped>(shape)).region();
     sk::Shape larger = shape;
     sk::Index begin = sk::Index::origin(shape.rank()), end = begin, steps = begin, offsets = begin;
     for (int d = 0; d < shape.rank(); ++d) {
@@ -309,21 +319,24 @@ class RandomFold::Run {
       larger = larger.with(d, placement == Placement::Box ? shape[d] + 3 : shape[d] * steps[d]);
     }
     const sk::StreamRegion whole = streams_.emplace_back(device_.stream<Untyped>(larger)).region();
-    return placement == Placement::Box ? sk::detail::partOf(whole, begin, end) : sk::detail::strided(whole, steps, offsets);
+    return placement == Placement::Box ? sk::detail::partOf(whole, begin, end)
+                                       : sk::detail::strided(whole, steps, offsets);
   }
 
   void addUniforms() {
     if (!fold_.made_.takesUniforms) return;
     arguments_.push_back({.value = &fold_.factor_});
     Untyped::element = &nextElement();
-    const sk::StreamRegion table = streams_.emplace_back(device_.stream<Untyped>(sk::Shape(tableLength))).region();
+    const sk::StreamRegion table =
+        streams_.emplace_back(device_.stream<Untyped>(sk::Shape(tableLength))).region();
     sk::detail::write(table, fold_.table_.data(), tableLength);
     arguments_.push_back({.region = table});
   }
 
   void addInputs() {
     if (fold_.to_ == To::Rows) {
-      starts_.emplace(device_.stream<std::int32_t>(sk::Shape(static_cast<std::int64_t>(fold_.starts_.size()))));
+      starts_.emplace(
+          device_.stream<std::int32_t>(sk::Shape(static_cast<std::int64_t>(fold_.starts_.size()))));
       starts_->write(fold_.starts_);
       rows_.emplace(*starts_);
     }

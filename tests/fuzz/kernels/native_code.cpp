@@ -44,7 +44,8 @@ class TemporaryFolder {
 /// are hidden, as an application's are.
 const sk::native::Code* const* load(const std::string& object, const std::vector<KernelRequest>& requests) {
   const TemporaryFolder folder;
-  const std::string file = (folder.path() / "random.o").string(), table = (folder.path() / "codes.c").string(),
+  const std::string file = (folder.path() / "random.o").string(),
+                    table = (folder.path() / "codes.c").string(),
                     library = (folder.path() / "random.so").string();
   std::ofstream(file, std::ios::binary) << object;
   std::string declared, listed;
@@ -55,9 +56,11 @@ const sk::native::Code* const* load(const std::string& object, const std::vector
   std::ofstream(table) << declared << "const char *const codes[] = {\n" << listed << "};\n";
   const std::string command =
       SK_LINKER " -shared -fPIC -o '" + library + "' -x c '" + table + "' -x none '" + file + "' -lm";
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("the object file cannot be linked: " + command);
+  if (std::system(command.c_str()) != 0)
+    throw std::runtime_error("the object file cannot be linked: " + command);
   void* const loaded = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (loaded == nullptr) throw std::runtime_error(std::string("the native code cannot be loaded: ") + dlerror());
+  if (loaded == nullptr)
+    throw std::runtime_error(std::string("the native code cannot be loaded: ") + dlerror());
   return static_cast<const sk::native::Code* const*>(dlsym(loaded, "codes"));
 }
 
@@ -68,9 +71,10 @@ skc::emit::Program withNativeCode(const skc::ir::Module& module, const std::stri
       skc::emit::emitStub(module, skc::emit::Program(module), "random.sk", {}).native;
   skc::native::Options options;
   if (!level.empty()) options.levels = {level};
-  const sk::native::Code* const* const codes = load(
-      skc::native::compile(module, requests, skc::driver::compileLibrary, options, skc::native::Output::Object),
-      requests);
+  const sk::native::Code* const* const codes =
+      load(skc::native::compile(module, requests, skc::driver::compileLibrary, options,
+                                skc::native::Output::Object),
+           requests);
   std::map<skc::ir::KernelId, std::size_t> best;  // a reduce may also be requested as one that only combines
   for (std::size_t i = 0; i < requests.size(); ++i) {
     const auto [found, isNew] = best.try_emplace(requests[i].kernel, i);

@@ -12,8 +12,8 @@ namespace sk {
 using assemble::PointStep;
 
 std::unique_ptr<IntegerProgram> AppendPrograms::build(const std::string& vertexSource,
-                                                     const std::string& fragmentSource,
-                                                     std::string_view what) {
+                                                      const std::string& fragmentSource,
+                                                      std::string_view what) {
   std::string log;
   gl::Program program = ProgramBuild(device_, {vertexSource, fragmentSource}).finish(device_, log);
   if (!program) {
@@ -38,7 +38,7 @@ IntegerProgram& AppendPrograms::pyramid(const assemble::PyramidTextures& texture
 }
 
 IntegerProgram& AppendPrograms::points(const program::Parameter& appendOutput, PointStep step,
-                                      const assemble::PointTextures& textures) {
+                                       const assemble::PointTextures& textures) {
   std::unique_ptr<IntegerProgram>& cached = points_[{&appendOutput, step, textures}];
   if (!cached) {
     const std::string vertexSource = assemble::hasPoints(step)

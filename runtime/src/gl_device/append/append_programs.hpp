@@ -31,13 +31,13 @@ class AppendPrograms {
   /// planes of the list's values, or of the stored elements; then come the results of earlier steps. Throws
   /// sk::Error if the driver rejects it.
   IntegerProgram& points(const program::Parameter& appendOutput, assemble::PointStep step,
-                        const assemble::PointTextures& textures);
+                         const assemble::PointTextures& textures);
 
  private:
   using PointKey = std::tuple<const program::Parameter*, assemble::PointStep, assemble::PointTextures>;
 
   std::unique_ptr<IntegerProgram> build(const std::string& vertexSource, const std::string& fragmentSource,
-                                       std::string_view what);
+                                        std::string_view what);
 
   GlDevice& device_;
   std::map<assemble::PyramidTextures, std::unique_ptr<IntegerProgram>> pyramids_;

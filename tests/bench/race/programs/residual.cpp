@@ -75,7 +75,8 @@ Problem residualProblem(int log2) {
 Check residualCheck(const Problem& p) {
   Check check{somePlaces(p.size()), {}, 1e-3};
   const auto at = [&](std::int64_t i) {
-    return p.floats[1][static_cast<std::size_t>(i)] - double{residualStep} * p.floats[0][static_cast<std::size_t>(i)];
+    return p.floats[1][static_cast<std::size_t>(i)] -
+           double{residualStep} * p.floats[0][static_cast<std::size_t>(i)];
   };
   for (const std::int64_t place : check.places) check.values.push_back(at(place));
   double square = 0;
@@ -89,7 +90,8 @@ std::unique_ptr<Task> residualOurs(sk::Device& device, const sk::CallOptions& op
   return std::make_unique<Residual>(device, options, p);
 }
 
-std::unique_ptr<Task> residualInTwoCalls(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
+std::unique_ptr<Task> residualInTwoCalls(sk::Device& device, const sk::CallOptions& options,
+                                         const Problem& p) {
   return std::make_unique<ResidualInTwoCalls>(device, options, p);
 }
 
