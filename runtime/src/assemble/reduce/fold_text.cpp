@@ -18,7 +18,8 @@ namespace {
 
 /// The layout of the texels that invocations or groups compute. Those that store results by themselves have none.
 DomainLayout layoutOf(const ReduceVariant& variant) {
-  const bool hasTexel = variant.unit == ScanUnit::Item || variant.scan == ScanPass::Folds;
+  const bool hasTexel = (variant.unit == ScanUnit::Item || variant.scan == ScanPass::Folds) &&
+                        variant.rows != RowPass::Groups;  // whose invocations write texels of other numbers
   return {hasTexel ? variant.domain : Domain::Linear, variant.domainView, variant.domainRank,
           variant.domainLayered};
 }
