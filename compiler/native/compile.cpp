@@ -189,6 +189,7 @@ class Compilation {
                              uniformity ? &*uniformity : nullptr,
                              rowPlan,
                              block.rows,
+                             table.isReordered,
                              codegen,
                              level,
                              debug_ ? &*debug_ : nullptr};

@@ -9,7 +9,6 @@
 #include "native/debug_info.hpp"
 #include "native/function_code.hpp"
 #include "native/leaves.hpp"
-#include "native/records.hpp"
 #include "native/slots.hpp"
 #include "native/split_masks.hpp"
 #include "native/wide_masks.hpp"
@@ -159,7 +158,7 @@ class EntryWriter {
   void run(std::uint32_t rows) {
     begin(2, 0);
     streams_.begin(function_->getArg(0), function_->getArg(1), prologue_);
-    if (isReordered(s_.module, s_.kernel)) streams_.numberRecords();
+    if (s_.numbersRecords) streams_.numberRecords();
     llvm::Value* const count = streams_.chunkCount();
     loop(number(0), count, l_.count(), [&](llvm::Value* element) {
       streams_.moveTo(element);

@@ -28,6 +28,7 @@ struct EntrySource {
   const analysis::Uniformity* uniformity;  ///< null with one lane
   const RowPlan* rowPlan;  ///< null except for RunRows
   std::uint32_t rows;  ///< rows computed together
+  bool numbersRecords;  ///< records carry the numbers of their elements (Code::isReordered)
   CodegenOptions options;
   CpuLevel level;
   DebugInfo* debug;

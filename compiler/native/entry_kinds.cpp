@@ -7,7 +7,6 @@
 
 #include "ir/reach.hpp"
 #include "native/leaves.hpp"
-#include "native/records.hpp"
 #include "transforms/fold_identity.hpp"
 
 namespace skc::native {

@@ -79,8 +79,8 @@ static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program
 template <class Storage>
 class Builder {
  public:
-  Builder(const Module& module, GlslTargets targets, Storage& storage)
-      : module_(module), types_(module), targets_(targets), storage_(storage) {}
+  Builder(const Module& module, GlslTargets targets, const CodeOf& codeOf, Storage& storage)
+      : module_(module), types_(module), targets_(targets), codeOf_(codeOf), storage_(storage) {}
 
   void run() {
     for (const std::string& source : module_.sources) storage_.sources.push_back(storage_.keep(source));
@@ -197,7 +197,8 @@ class Builder {
             .intrinsics = storage_.intrinsics.emplace_back(polyfills.intrinsics()),
             .tables = tables,
             .drawn = targets_.fragment && !kernel.isNativeOnly,
-            .dispatched = targets_.compute && !kernel.isNativeOnly};
+            .dispatched = targets_.compute && !kernel.isNativeOnly,
+            .code = codeOf_ ? codeOf_(static_cast<KernelId>(&kernel - module_.kernels.data())) : nullptr};
   }
 
   /// The GLSL for Reduction::addition.
@@ -426,13 +427,15 @@ class Builder {
   const Module& module_;
   TypeNames types_;
   const GlslTargets targets_;
+  const CodeOf& codeOf_;
   Storage& storage_;
 };
 
 }  // namespace
 
-Program::Program(const Module& module, GlslTargets targets) : storage_(std::make_unique<Storage>()) {
-  Builder<Storage>(module, targets, *storage_).run();
+Program::Program(const Module& module, GlslTargets targets, const CodeOf& codeOf)
+    : storage_(std::make_unique<Storage>()) {
+  Builder<Storage>(module, targets, codeOf, *storage_).run();
 }
 Program::Program(Program&&) noexcept = default;
 Program& Program::operator=(Program&&) noexcept = default;

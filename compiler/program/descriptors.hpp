@@ -4,6 +4,7 @@
 // stub prints this object, and --emit=glsl passes it to the assembler.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -28,10 +29,13 @@ struct GlslTargets {
   bool compute = true;
 };
 
+/// The native code of a kernel, or null. Only those who run a Program have it: the stub prints symbols instead.
+using CodeOf = std::function<const sk::native::Code*(ir::KernelId)>;
+
 /// Built from a module that has passed runTransforms. Move-only; views into it stay valid.
 class Program {
  public:
-  explicit Program(const ir::Module& module, GlslTargets targets = {});
+  explicit Program(const ir::Module& module, GlslTargets targets = {}, const CodeOf& codeOf = {});
   Program(Program&&) noexcept;
   Program& operator=(Program&&) noexcept;
   ~Program();

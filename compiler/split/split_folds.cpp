@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ir/declared_kernels.hpp"
 #include "ir/walk.hpp"
 #include "split/cost.hpp"
 #include "split/demand.hpp"
@@ -165,10 +166,9 @@ class State {
 
 void splitFolds(Module& module, Diagnostics& diagnostics) {
   State state(module, diagnostics);
-  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
-  for (KernelId id = 0; id < declared; ++id) {
+  forEachDeclaredKernel(module, [&](KernelId id) {
     if (foldsBesideOutputs(module.kernels[id])) state.split(id);
-  }
+  });
 }
 
 }  // namespace skc::split

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ir/build.hpp"
+#include "ir/declared_kernels.hpp"
 #include "ir/walk.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
@@ -221,14 +222,13 @@ class CompensatedVariantBuilder {
 }  // namespace
 
 void compensateSums(Module& module, Diagnostics&) {
-  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
-  for (KernelId id = 0; id < declared; ++id) {
+  forEachDeclaredKernel(module, [&](KernelId id) {
     const Kernel& kernel = module.kernels[id];
     // Runs of this variant start from identities, because a first element has no error to start with.
-    if (!kernel.reduction || kernel.isSynthesized || !hasIdentities(kernel)) continue;
+    if (!kernel.reduction || kernel.isSynthesized || !hasIdentities(kernel)) return;
     std::vector<FloatSum> sums = floatSums(module, id);
     if (!sums.empty()) CompensatedVariantBuilder(module, id, std::move(sums)).make();
-  }
+  });
 }
 
 }  // namespace skc

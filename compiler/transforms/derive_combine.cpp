@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ir/build.hpp"
+#include "ir/declared_kernels.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"
 #include "ir/reach.hpp"
@@ -250,10 +251,9 @@ class State {
 
 void deriveCombine(Module& module, Diagnostics& diagnostics) {
   State state(module, diagnostics);
-  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
-  for (KernelId id = 0; id < declared; ++id) {
+  forEachDeclaredKernel(module, [&](KernelId id) {
     if (module.kernels[id].reduction) state.derive(id);
-  }
+  });
 }
 
 }  // namespace skc

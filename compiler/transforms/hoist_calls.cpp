@@ -58,7 +58,8 @@ class Hoister {
       return choice(slot, *n, before);
     }
     if (auto* n = std::get_if<Binary>(&slot->node);
-        n != nullptr && (n->op == BinaryOp::LogicalAnd || n->op == BinaryOp::LogicalOr) && isLong(*n->rhs)) {
+        n != nullptr && slot->type.isScalar() &&
+        (n->op == BinaryOp::LogicalAnd || n->op == BinaryOp::LogicalOr) && isLong(*n->rhs)) {
       return logical(slot, *n, before);
     }
     forEachOperand(*slot, [&](ExprPtr& operand) { expression(operand, before); });

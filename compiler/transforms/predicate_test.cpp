@@ -276,6 +276,20 @@ FunctionId addEndless(Module& module) {
   return addFunction(module, std::move(endless), std::move(body));
 }
 
+TEST_CASE("both operands of a vector's logical operator are computed") {
+  Sample s;
+  const FunctionId endless = addEndless(s.module);
+  const Type pair = Type::of(Scalar::Bool, 2);
+  const VarId are = s.k.local("are", pair);
+  ExprPtr either = binary(BinaryOp::LogicalOr, construct(pair, exprs(s.isSmall(), literal(true))),
+                          construct(pair, exprs(call(s.module, endless, exprs(s.k.ref(s.x))))));
+  CHECK(s.predicated(block(assign(s.k.ref(s.r), literal(0)), declare(are, std::move(either)))) == R"({
+  r = 0;
+  bool2 are = bool2{x < 3, true} || bool2{endless(x, active)};
+}
+)");
+}
+
 TEST_CASE("a call that may not end stays behind its condition") {
   Sample s;
   const FunctionId endless = addEndless(s.module);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ir/build.hpp"
+#include "ir/declared_kernels.hpp"
 #include "ir/quantize.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
@@ -179,20 +180,19 @@ bool computesFloats(const Module& module, const Kernel& kernel) {
 }  // namespace
 
 void roundHalves(Module& module, Diagnostics&) {
-  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
-  for (KernelId id = 0; id < declared; ++id) {
+  forEachDeclaredKernel(module, [&](KernelId id) {
     const bool readsOutputs = module.kernels[id].isPart && module.kernels[id].reduction;
     if (module.kernels[id].isSynthesized || readsOutputs || !computesFloats(module, module.kernels[id]))
-      continue;
+      return;
     const std::optional<KernelId> combine =
         module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
     const KernelId half = roundKernel(module, id);
     module.kernels[id].variants.half = half;
-    if (!combine) continue;
+    if (!combine) return;
     const KernelId halfCombine = *combine == id ? half : roundKernel(module, *combine);
     module.kernels[half].reduction->combine = halfCombine;
     module.kernels[halfCombine].reduction->combine = halfCombine;
-  }
+  });
 }
 
 }  // namespace skc

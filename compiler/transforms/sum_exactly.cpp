@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
+#include "ir/declared_kernels.hpp"
 #include "ir/walk.hpp"
 #include "transforms/exact_term.hpp"
 #include "transforms/float_sums.hpp"
@@ -273,14 +274,13 @@ std::vector<ScalarSum> scalarSums(const Module& module, KernelId id) {
 
 void sumExactly(Module& module, Diagnostics&) {
   ExactSummation state(module);
-  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
-  for (KernelId id = 0; id < declared; ++id) {
+  forEachDeclaredKernel(module, [&](KernelId id) {
     const Kernel& kernel = module.kernels[id];
-    if (!kernel.reduction || kernel.isSynthesized) continue;
+    if (!kernel.reduction || kernel.isSynthesized) return;
     // otherwise other statements use the accumulators, which the variant with digits does not have
-    if (!recogniseFold(kernel, module.functions[kernel.entry])) continue;
+    if (!recogniseFold(kernel, module.functions[kernel.entry])) return;
     for (const ScalarSum& sum : scalarSums(module, id)) state.sum(id, sum);
-  }
+  });
 }
 
 }  // namespace skc

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ir/build.hpp"
+#include "ir/declared_kernels.hpp"
 #include "ir/walk.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
@@ -169,10 +170,9 @@ bool isWhole(const Module& module, const Kernel& kernel, const FloatSum& sum) {
 }  // namespace
 
 void sumInDoubles(Module& module, Diagnostics&) {
-  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
-  for (KernelId id = 0; id < declared; ++id) {
+  forEachDeclaredKernel(module, [&](KernelId id) {
     const Kernel& kernel = module.kernels[id];
-    if (!kernel.parts || !kernel.reduction->compensated || kernel.isSynthesized) continue;
+    if (!kernel.parts || !kernel.reduction->compensated || kernel.isSynthesized) return;
     std::vector<FloatSum> sums = floatSums(module, id);
     const Kernel& combine = module.kernels[*kernel.reduction->combine];
     const bool areWhole = std::ranges::all_of(sums, [&](const FloatSum& sum) {
@@ -181,7 +181,7 @@ void sumInDoubles(Module& module, Diagnostics&) {
       return isWhole(module, kernel, sum) && isWhole(module, combine, combined);
     });
     if (areWhole) DoubleSummation(module, id, std::move(sums)).make();
-  }
+  });
 }
 
 }  // namespace skc

@@ -7,6 +7,7 @@
 
 #include "ir/assigned.hpp"
 #include "ir/build.hpp"
+#include "ir/declared_kernels.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "transforms/copy_functions.hpp"
@@ -98,12 +99,11 @@ void addVariants(Module& module, KernelId id, VarId spec) {
 }  // namespace
 
 void unrollSpecLoops(Module& module, Diagnostics&) {
-  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
-  for (KernelId id = 0; id < declared; ++id) {
+  forEachDeclaredKernel(module, [&](KernelId id) {
     const Kernel& kernel = module.kernels[id];
-    if (kernel.isSynthesized || kernel.reduction) continue;
+    if (kernel.isSynthesized || kernel.reduction) return;
     if (const std::optional<VarId> spec = boundOfLoops(module, kernel)) addVariants(module, id, *spec);
-  }
+  });
 }
 
 }  // namespace skc

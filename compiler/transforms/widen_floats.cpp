@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
+#include "ir/declared_kernels.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "transforms/copy_functions.hpp"
@@ -307,12 +308,11 @@ void widenFloats(Module& module, Diagnostics&) {
   WideTypes types(module);
   std::map<ConstantId, ConstantId> constants;
   Widener widener(module, types, constants);
-  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
-  for (KernelId id = 0; id < declared; ++id) {
+  forEachDeclaredKernel(module, [&](KernelId id) {
     const bool readsOutputs = module.kernels[id].isPart && module.kernels[id].reduction;  // those are rounded
     if (module.kernels[id].isSynthesized || readsOutputs ||
         !computesFloats(module, types, module.kernels[id]))
-      continue;
+      return;
     UnsupportedOperations obstacles(module, types);
     std::string obstacle = obstacles.of(module.kernels[id]);
     const std::optional<KernelId> combine =
@@ -320,18 +320,18 @@ void widenFloats(Module& module, Diagnostics&) {
     if (combine && obstacle.empty()) obstacle = obstacles.of(module.kernels[*combine]);
     if (!obstacle.empty()) {
       module.kernels[id].variants.whyNotWide = std::move(obstacle);
-      continue;
+      return;
     }
     const KernelId wide = widener.widen(id, true);
     module.kernels[id].variants.wide = wide;
-    if (!combine) continue;
+    if (!combine) return;
     // partial results are doubles, so even a fold that combines its own results has another variant for them
     const KernelId wideCombine = widener.widen(*combine, false);
     module.kernels[wide].reduction->combine = wideCombine;
     module.kernels[wideCombine].reduction->combine = wideCombine;
     const KernelId finish = widener.finish(id);
     module.kernels[wide].reduction->finish = finish;
-  }
+  });
 }
 
 }  // namespace skc

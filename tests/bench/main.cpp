@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -25,6 +26,7 @@
 #include "report.hpp"
 #include "rounds.hpp"
 #include "side_by_side.hpp"
+#include "view_cost.hpp"
 
 namespace {
 
@@ -37,6 +39,7 @@ struct Settings {
   std::vector<std::string> compiler = {SK_BENCH_CXX, "-std=c++20", "-O2", "-I" SK_BENCH_INCLUDE};
   std::filesystem::path json;
   bool check = false;
+  bool withoutCompiler = false;
 };
 
 /// What the host spends on a call that the device has next to nothing to do for. Waiting is left out.
@@ -72,6 +75,20 @@ void sumTime(sk::Device& device, const Settings& settings, bench::Report& report
               time,
               {},
               fmt::format("{:.3g} GB/s", 4.0 * side * side / (time.median * 1e6))});
+}
+
+/// Natively, drawn, and dispatched where the device can.
+void viewCosts(sk::Device& device, const Settings& settings, bench::Report& report) {
+  const auto on = [&](sk::Device& where, std::string_view name, sk::Target target) {
+    bench::viewCosts(where, name, target, settings.rounds, settings.sampleMilliseconds, report);
+  };
+  sk::Device native = sk::Device::native();
+  on(native, "native", sk::Target::Default);
+  on(device, "fragment", sk::Target::Fragment);
+  try {
+    on(device, "compute", sk::Target::Compute);
+  } catch (const sk::Error&) {  // a device without compute programs
+  }
 }
 
 void compileTimes(const Settings& settings, bench::Report& report) {
@@ -110,8 +127,9 @@ int measureAll(const Settings& settings) {
   hostCost(device, settings, report);
   bench::loopCosts(device, settings.rounds, report);
   sumTime(device, settings, report);
+  viewCosts(device, settings, report);
   bench::warmStart(settings.device, std::min(settings.rounds, 9), report);
-  compileTimes(settings, report);
+  if (!settings.withoutCompiler) compileTimes(settings, report);
   fmt::print("\n{}\n", report.allPassed() ? "every bar holds" : "a bar is missed");
   if (!settings.json.empty()) {
     std::ofstream file(settings.json);
@@ -138,6 +156,7 @@ int main(int argc, char** argv) {
   cli.add_option("--json", s.json, "write the results to this file as well");
   cli.add_option("--skc", s.skc, "the compiler (default: this build's)");
   cli.add_option("--sources", s.sources, "folder of the examples, whose .sk files are compiled");
+  cli.add_flag("--without-compiler", s.withoutCompiler, "leave out how long compilers take");
   cli.add_flag("--check", s.check, "exit status 1 where a bar is missed");
   CLI11_PARSE(cli, argc, argv);
   try {

@@ -55,7 +55,7 @@ def print_tables(found):
 
 
 def update(path, machine, found, held):
-    """Replaces what is between the marks; a mark names a table: `bars`, or `held`, those of them that were measured; `machine`, `steps`, `rates`, or
+    """Replaces what is between the marks; a mark names a table: `bars`, or `held`, those of them that were measured; `machine`, `steps`, `rates`, `views`, `loops`, or
     one of our contenders, behind the name of another machine if that is given."""
     with open(path, encoding="utf-8") as file:
         text = file.read()
@@ -75,6 +75,11 @@ def update(path, machine, found, held):
             body = found.machine_text() + "\n"
         elif name == "steps":
             body = results.markdown(*results.steps_table(found))
+        elif name in ("views", "loops"):
+            head, rows = results.views_table(found) if name == "views" else results.loops_table(found)
+            if not rows:
+                return match.group(0)  # sk_bench was left out
+            body = results.markdown(head, rows)
         elif name in found.ours():
             body = results.markdown(*results.table_of(found, name, largest_only=True))
         else:

@@ -2,6 +2,7 @@
 """Results of benchmarks, read from JSON, and tables of them."""
 import json
 import math
+import re
 import statistics
 
 
@@ -152,6 +153,38 @@ def steps_table(found):
                         + [three_digits(1 / s) if s else "" for s in seconds]
                         + [f"{best}: " + ", ".join(ratio_text(r[1]) for r in ratios if r)])
     return ["steps of", "cells"] + [f"{name}, a second" for name in contenders] + ["our best over the peer's"], rows
+
+
+VIEW = re.compile(r"view: (.*), on (\w+)")
+
+
+def views_table(found):
+    """What a call on views takes, over the same on streams of their shape, of the rows of sk_bench."""
+    costs = {}  # call -> device -> ratio
+    for row in found.document.get("results", []):
+        match = VIEW.fullmatch(row["name"])
+        if match:
+            costs.setdefault(match.group(1), {})[match.group(2)] = row["median"]
+    devices = list(dict.fromkeys(device for of_call in costs.values() for device in of_call))
+    rows = [[call] + [f"{of_call[device]:.2g}" if device in of_call else "" for device in devices]
+            for call, of_call in costs.items()]
+    return ["call"] + devices, rows
+
+
+LOOP = re.compile(r"(a repeated .*) on '(\w+)', (\d+ x \d+), host")
+
+
+def loops_table(found):
+    """Microseconds of the host for an iteration of a loop of one call, of the rows of sk_bench."""
+    costs = {}
+    for row in found.document.get("results", []):
+        match = LOOP.fullmatch(row["name"])
+        if match:
+            costs.setdefault((match.group(1), match.group(3)), {})[match.group(2)] = row["median"]
+    devices = list(dict.fromkeys(device for of_call in costs.values() for device in of_call))
+    rows = [[call, elements] + [three_digits(of_call[device]) if device in of_call else "" for device in devices]
+            for (call, elements), of_call in costs.items()]
+    return ["us for each iteration of", "elements"] + devices, rows
 
 
 def is_step(program):

@@ -2,22 +2,28 @@
 #include "rounds.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 namespace bench {
 namespace {
 
-/// Milliseconds for `times` times.
-double sample(const Contender& contender, int times) {
-  const auto start = std::chrono::steady_clock::now();
-  contender(times);
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+double millisecondsNow(Time clock) {
+  timespec now{};
+  clock_gettime(clock == Time::Wall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
-int timesFor(const Contender& contender, double milliseconds) {
+/// Milliseconds for `times` times.
+double sample(const Contender& contender, int times, Time clock = Time::Wall) {
+  const double start = millisecondsNow(clock);
+  contender(times);
+  return millisecondsNow(clock) - start;
+}
+
+int timesFor(const Contender& contender, double milliseconds, Time clock = Time::Wall) {
   sample(contender, 1);  // compiles
-  const double once = sample(contender, 1);
+  const double once = sample(contender, 1, clock);
   return std::clamp(static_cast<int>(std::lround(milliseconds / std::max(once, 1e-3))), 1, 100'000);
 }
 
@@ -35,13 +41,14 @@ Quartiles quartilesOf(std::vector<double> values) {
 }
 
 void compare(const Contender& ours, const Contender& theirs, int rounds, double sampleMilliseconds,
-             Comparison& all) {
-  const int times = std::max(timesFor(ours, sampleMilliseconds), timesFor(theirs, sampleMilliseconds));
+             Comparison& all, Time clock) {
+  const int times =
+      std::max(timesFor(ours, sampleMilliseconds, clock), timesFor(theirs, sampleMilliseconds, clock));
   for (int round = 0; round < rounds; ++round) {
     // A B, B A, A B ...: what slows down or warms up in a round favours neither.
     const bool oursFirst = round % 2 == 0;
-    const double first = sample(oursFirst ? ours : theirs, times) / times;
-    const double second = sample(oursFirst ? theirs : ours, times) / times;
+    const double first = sample(oursFirst ? ours : theirs, times, clock) / times;
+    const double second = sample(oursFirst ? theirs : ours, times, clock) / times;
     all.ours.push_back(oursFirst ? first : second);
     all.theirs.push_back(oursFirst ? second : first);
     all.ratios.push_back(all.ours.back() / all.theirs.back());

@@ -79,6 +79,18 @@ def dot(log2):
     return Work(lambda: (x @ y).item(), lambda result: abs(result / expected() - 1), 1e-3)
 
 
+def residual(log2):
+    q, r = numbers(1 << log2, seed=1), numbers(1 << log2, seed=2)
+    rn = torch.empty_like(r)
+    expected = lambda: torch.square(r.double() - 0.75 * q.double()).sum().item()
+
+    def run():
+        torch.sub(r, q, alpha=0.75, out=rn)
+        return rn @ rn
+
+    return Work(run, lambda result: abs(result.item() / expected() - 1), 1e-3)
+
+
 def five_points(u):
     p = padded(u)
     return u + 0.2 * (p[1:-1, :-2] + p[1:-1, 2:] + p[:-2, 1:-1] + p[2:, 1:-1] - 4 * u)
@@ -226,6 +238,7 @@ PROGRAMS = [
     ("saxpy", "floats", (12, 16, 20, 24, 26, 28), lambda n: (2 * n, 12 * n), saxpy),
     ("sum", "floats", (12, 16, 20, 24, 26, 28), lambda n: (n, 4 * n), total),
     ("dot", "floats", (12, 16, 20, 24), lambda n: (2 * n, 8 * n), dot),
+    ("folded output", "floats", (12, 16, 20, 24), lambda n: (4 * n, 12 * n), residual),
     ("5-point stencil", "floats", (12, 16, 20, 24, 26, 28), lambda n: (6 * n, 8 * n), stencil(five_points)),
     ("9-point stencil", "floats", (12, 16, 20, 24), lambda n: (11 * n, 8 * n), stencil(nine_points)),
     ("mandelbrot", "pixels", (12, 16, 20), lambda n: (0, 4 * n), mandelbrot),

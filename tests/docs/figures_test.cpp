@@ -88,6 +88,14 @@ TEST_CASE("docs/performance.md has tables of what was measured", "[figures]") {
       CHECK(std::regex_match(row, program));
     }
   }
+  // Call, perhaps the elements of a stream, and a figure for each device.
+  static const std::regex cost(R"(\| [^|]+ \|( \d+ x \d+ \|)?( \d[\d.e+-]* \|)+)");
+  for (const char* table : {"views", "h100 views", "h100 loops"}) {
+    for (const std::string& row : rowsOf(text, table)) {
+      INFO(row);
+      CHECK(std::regex_match(row, cost));
+    }
+  }
   // What, how much, what was measured, whether it holds.
   static const std::regex bar(R"(\| [^|]+ \| [^|]+ \| (\S[^|]* \| (yes|NO)|not measured \| ) \|)");
   for (const std::string& row : rowsOf(text, "bars")) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // fuzz_kernels: compiles random correct kernels in this process, checks their GLSL with glslang, runs them on both fragment
-// profiles, and compares their results with their meaning (kernels/model.hpp). Every eighth is a scan (kernels/scans.hpp),
-// which is also dispatched. Kernel N of a seed is always the same. The exit status is 1 after a finding, but crashes of
-// the GL driver are counted separately.
+// profiles and as native code, and compares their results with their meaning (kernels/model.hpp). Three of eight are scans,
+// reduces, and kernels with folded outputs (kernels/folds.hpp), which are also dispatched. Kernel N of a seed is always the
+// same. The exit status is 1 after a finding, but crashes of the GL driver are counted separately.
 #include <csignal>
 #include <deque>
 #include <filesystem>
@@ -22,7 +22,8 @@
 #include "glsl.hpp"
 #include "isolation.hpp"
 #include "kernels/device_run.hpp"
-#include "kernels/scans.hpp"
+#include "kernels/folds.hpp"
+#include "kernels/native_code.hpp"
 #include "program/descriptors.hpp"
 
 namespace {
@@ -32,72 +33,125 @@ using skc::driver::Emit;
 
 struct Options : fuzz::Command {
   Options() { count = 100, seconds = 120; }
-  bool withoutDevice = false;
+  bool withoutGl = false, withoutNative = false;
 };
 
-/// The devices of a child process: with the device's own limits, and both fragment profiles with the guaranteed limits.
-struct Devices {
+/// The GL devices of a child process: with the device's own limits, and both fragment profiles with the guaranteed limits.
+struct GlDevices {
   sk::Device many{sk::DeviceOptions{.profile = "glsl330", .limits = "device"}};
   sk::Device few{sk::DeviceOptions{.profile = "essl300", .textureLimit = 64, .limits = "guaranteed"}};
   sk::Device fewOfMany{sk::DeviceOptions{.profile = "glsl330", .textureLimit = 64, .limits = "guaranteed"}};
-  sk::Device dispatching{sk::DeviceOptions{.profile = "glsl430"}};  ///< for scans
+  sk::Device dispatching{sk::DeviceOptions{.profile = "glsl430"}};  ///< for folds
 
   void release() {
     for (sk::Device* device : {&many, &few, &fewOfMany, &dispatching}) device->release();
   }
 };
 
+struct NativeDevices {
+  sk::Device native{sk::DeviceOptions{.device = "native"}};
+  sk::Device reference{sk::DeviceOptions{.device = "reference"}};
+
+  void release() {
+    for (sk::Device* device : {&native, &reference}) device->release();
+  }
+};
+
 /// What a child keeps between kernels: devices identify descriptors by their addresses.
 struct Kept {
   std::deque<skc::emit::Program> programs;
-  std::optional<Devices> devices;
+  std::optional<GlDevices> gl;
+  std::optional<NativeDevices> native;
+
+  void release() {
+    if (gl) gl->release();
+    if (native) native->release();
+  }
 };
 
-/// Every eighth program is a scan.
-bool isScan(std::uint64_t number) { return number % 8 == 7; }
-
-std::string textOf(const Options& options, std::uint64_t number) {
-  return isScan(number) ? fuzz::RandomScan(options.seed, number).text()
-                        : fuzz::RandomKernel(options.seed, number).text();
+/// Three of eight programs fold.
+std::optional<fuzz::FoldKind> foldKindOf(std::uint64_t number) {
+  switch (number % 8) {
+    case 2: return fuzz::FoldKind::Reduce;
+    case 4: return fuzz::FoldKind::Kernel;
+    case 7: return fuzz::FoldKind::Scan;
+    default: return std::nullopt;
+  }
 }
 
-/// Compiles a program and checks its GLSL. Calls differenceOn(device, unit) for each of the devices.
-template <class DifferenceOn>
-std::string check(const Options& options, const std::string& text, bool dispatches, Kept& kept,
-                  DifferenceOn&& differenceOn) {
-  skc::driver::Options compiling;
-  const auto [module, messages] = skc::driver::translateText(compiling, "random.sk", text);
-  if (!module) return "refused: " + messages;
+std::string textOf(const Options& options, std::uint64_t number) {
+  const auto kind = foldKindOf(number);
+  return kind ? fuzz::RandomFold(options.seed, number, *kind).text()
+              : fuzz::RandomKernel(options.seed, number).text();
+}
+
+std::string glslComplaint(const skc::ir::Module& module) {
+  skc::driver::Options options;
+  options.emit = Emit::Glsl;
   std::vector<std::string> listings;
-  compiling.emit = Emit::Glsl;
   for (const char* profile : {"glsl330", "essl300"}) {
-    compiling.profile = profile;
-    listings.push_back(emitText(compiling, *module));
+    options.profile = profile;
+    listings.push_back(emitText(options, module));
   }
-  if (const std::string complaint = fuzz::glslComplaint(listings); !complaint.empty()) return complaint;
-  if (options.withoutDevice) return {};
-  const skc::emit::Program& program = kept.programs.emplace_back(*module);
-  if (!kept.devices) kept.devices.emplace();
-  std::vector<sk::Device*> devices{&kept.devices->many, &kept.devices->few, &kept.devices->fewOfMany};
-  if (dispatches) devices.push_back(&kept.devices->dispatching);
+  return fuzz::glslComplaint(listings);
+}
+
+/// Calls differenceOn(device, unit) for each GL device.
+template <class DifferenceOn>
+std::string glDifference(const skc::ir::Module& module, bool dispatches, Kept& kept,
+                         DifferenceOn&& differenceOn) {
+  const skc::emit::Program& program = kept.programs.emplace_back(module);
+  if (!kept.gl) kept.gl.emplace();
+  std::vector<sk::Device*> devices{&kept.gl->many, &kept.gl->few, &kept.gl->fewOfMany};
+  if (dispatches) devices.push_back(&kept.gl->dispatching);
   for (sk::Device* device : devices) {
     const std::string wrong = differenceOn(*device, program.units()[0]);
     if (wrong.empty()) continue;
-    const bool isLimited = device == &kept.devices->few || device == &kept.devices->fewOfMany;
+    const bool isLimited = device == &kept.gl->few || device == &kept.gl->fewOfMany;
     return std::string(device->profile()) + (isLimited ? ", guaranteed limits: " : ": ") + wrong;
   }
   return {};
 }
 
+/// Calls differenceOn(device, unit) for each native device, with code for one level of the CPU.
+template <class DifferenceOn>
+std::string nativeDifference(const skc::ir::Module& module, std::uint64_t number, Kept& kept,
+                             DifferenceOn&& differenceOn) {
+  static const std::vector<std::string> levels = fuzz::supportedLevels();
+  const std::string& level = levels[number % levels.size()];
+  const skc::emit::Program& program = kept.programs.emplace_back(fuzz::withNativeCode(module, level));
+  if (!kept.native) kept.native.emplace();
+  for (sk::Device* device : {&kept.native->native, &kept.native->reference}) {
+    const std::string wrong = differenceOn(*device, program.units()[0]);
+    if (wrong.empty()) continue;
+    return (device == &kept.native->native ? "native, " : "reference, ") + level + ": " + wrong;
+  }
+  return {};
+}
+
+/// Compiles a program, checks its GLSL, and calls differenceOn(device, unit) for each device.
+template <class DifferenceOn>
+std::string check(const Options& options, std::uint64_t number, const std::string& text, Kept& kept,
+                  DifferenceOn&& differenceOn) {
+  const auto [module, messages] = skc::driver::translateText({}, "random.sk", text);
+  if (!module) return "refused: " + messages;
+  if (const std::string complaint = glslComplaint(*module); !complaint.empty()) return complaint;
+  std::string wrong;
+  if (!options.withoutNative) wrong = nativeDifference(*module, number, kept, differenceOn);
+  if (!options.withoutGl && wrong.empty())
+    wrong = glDifference(*module, foldKindOf(number).has_value(), kept, differenceOn);
+  return wrong;
+}
+
 std::string check(const Options& options, std::uint64_t number, Kept& kept) {
-  if (isScan(number)) {
-    const fuzz::RandomScan scan(options.seed, number);
-    return check(options, scan.text(), true, kept, [&](sk::Device& device, const skc::emit::Unit& unit) {
-      return scan.difference(device, *unit.reduction);
+  if (const auto kind = foldKindOf(number)) {
+    const fuzz::RandomFold fold(options.seed, number, *kind);
+    return check(options, number, fold.text(), kept, [&](sk::Device& device, const skc::emit::Unit& unit) {
+      return fold.difference(device, *unit.reduction);
     });
   }
   const fuzz::RandomKernel kernel(options.seed, number);
-  return check(options, kernel.text(), false, kept, [&](sk::Device& device, const skc::emit::Unit& unit) {
+  return check(options, number, kernel.text(), kept, [&](sk::Device& device, const skc::emit::Unit& unit) {
     return fuzz::difference(device, unit.kernel, kernel);
   });
 }
@@ -144,7 +198,7 @@ int fuzzKernels(const Options& options) {
       } catch (const std::exception& error) {
         verdict.finding = std::string("throws ") + error.what();
       }
-      if (kept.devices) kept.devices->release();  // the next kernel runs on another thread
+      kept.release();  // the next kernel runs on another thread
       return 0;
     });
     verdict.tally = verdict.finding.empty() ? "agree" : "do not";
@@ -170,8 +224,8 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"fuzz_kernels: compares random kernels with what they mean", "fuzz_kernels"};
   options.addTo(app, "kernel");
-  app.add_flag("--without-device", options.withoutDevice,
-               "Compile them and show them to glslang, but do not run them");
+  app.add_flag("--without-gl", options.withoutGl, "Show their GLSL to glslang, but do not run it");
+  app.add_flag("--without-native", options.withoutNative, "Do not run native code");
   CLI11_PARSE(app, argc, argv);
   return fuzz::guarded("fuzz_kernels", [&] { return fuzzKernels(options); });
 }

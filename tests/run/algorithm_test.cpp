@@ -19,20 +19,12 @@
 #include "error_of.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
+#include "support/streams.hpp"
 
 namespace run_tests {
 namespace {
 
 using Catch::Matchers::Contains;
-
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values, sk::Shape shape = {},
-                       sk::Storage storage = sk::Storage::Default) {
-  auto stream = device.stream<T>(
-      shape.rank() == 0 ? sk::Shape{static_cast<std::int64_t>(values.size())} : shape, storage);
-  stream.write(values);
-  return stream;
-}
 
 std::vector<int> iota(std::size_t count) {
   std::vector<int> numbers(count);

@@ -18,19 +18,12 @@
 #include "sk/native/parallel.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
+#include "support/streams.hpp"
 
 namespace run_tests {
 namespace {
 
 using Catch::Matchers::Contains;
-
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values, sk::Shape shape = {}) {
-  auto stream =
-      device.stream<T>(shape.rank() == 0 ? sk::Shape{static_cast<std::int64_t>(values.size())} : shape);
-  stream.write(values);
-  return stream;
-}
 
 std::vector<int> numbers(std::size_t count, int seed = 1) {
   std::vector<int> x;

@@ -14,18 +14,12 @@
 #include "loops.sk.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
+#include "support/streams.hpp"
 
 namespace run_tests {
 namespace {
 
 using Catch::Matchers::Contains;
-
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
-  auto stream = device.stream<T>({static_cast<std::int64_t>(values.size())});
-  stream.write(values);
-  return stream;
-}
 
 std::vector<float> wave(int count) {
   std::vector<float> x;

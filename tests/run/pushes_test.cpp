@@ -211,6 +211,17 @@ TEST_CASE("helpers push in the order of the calls") {
   });
 }
 
+TEST_CASE("pushes behind a return are none") {
+  onEveryLayout([](sk::Device& device) {
+    std::vector<int> list(4001);
+    for (std::size_t i = 0; i < list.size(); ++i) list[i] = static_cast<int>(i);
+    auto x = device.stream<int>({4001}), r = device.stream<int>({0});
+    x.write(list);
+    once(x, r);
+    CHECK(r.read() == list);
+  });
+}
+
 TEST_CASE("pushes that do not fit say so") {
   sk::Device& device = run_tests::device("glsl330");
   auto x = device.stream<int>({8});

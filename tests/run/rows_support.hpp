@@ -8,15 +8,9 @@
 #include <vector>
 
 #include "sk/sk.hpp"
+#include "support/streams.hpp"
 
 namespace run_tests {
-
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
-  auto stream = device.stream<T>({static_cast<std::int64_t>(values.size())});
-  stream.write(values);
-  return stream;
-}
 
 using Starts = std::vector<std::int32_t>;
 

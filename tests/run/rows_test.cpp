@@ -288,6 +288,19 @@ TEST_CASE("views are in rows, and results may be views") {
   });
 }
 
+TEST_CASE("the results of many short rows may be a part of a stream that is new") {
+  onEveryProfile([](sk::Device& device) {
+    const Starts starts = startsOf(randomLengths(1545, 1));
+    const sk::Rows rows(streamOf(device, starts));
+    auto out = device.stream<int>({1553});
+    out.fill(7);
+    const auto x = streamOf(device, numbers(sizeOf(starts)));
+    rows::total(rows(x), out.domain({1}, {1546}));
+    CHECK(out.domain({1}, {1546}).read() == foldedRows(starts, x.read(), 0, plus));
+    CHECK(out.domain({1546}, {1553}).read() == std::vector<int>(7, 7));
+  });
+}
+
 TEST_CASE("a row is folded into the stream that it is in, and a result may be read") {
   onEveryProfile([](sk::Device& device) {
     const std::vector<int> x = numbers(64);

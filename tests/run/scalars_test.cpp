@@ -15,6 +15,7 @@
 #include "scalars.sk.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
+#include "support/streams.hpp"
 
 namespace run_tests {
 namespace {
@@ -28,13 +29,6 @@ bool isSame(double a, double b) { return a == b || (std::isnan(a) && std::isnan(
 
 /// GPUs round roots to some 2 units in the last place.
 bool isClose(float a, float b) { return isSame(a, b) || std::abs(a - b) <= 4e-7f * std::abs(b); }
-
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
-  auto stream = device.stream<T>({static_cast<std::int64_t>(values.size())});
-  stream.write(values);
-  return stream;
-}
 
 TEST_CASE("operations with floats") {
   onEveryProfile([](sk::Device& device) {

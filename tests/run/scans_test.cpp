@@ -18,6 +18,7 @@
 #include "sk/native/parallel.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
+#include "support/streams.hpp"
 
 namespace run_tests {
 namespace {
@@ -25,14 +26,6 @@ namespace {
 using Catch::Matchers::Contains;
 
 constexpr sk::CallOptions exclusive{.scan = sk::Scan::Exclusive};
-
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values, sk::Shape shape = {}) {
-  auto stream =
-      device.stream<T>(shape.rank() == 0 ? sk::Shape{static_cast<std::int64_t>(values.size())} : shape);
-  stream.write(values);
-  return stream;
-}
 
 std::vector<int> numbers(std::size_t count, unsigned seed = 1) {
   std::mt19937 random(seed);
@@ -394,19 +387,55 @@ TEST_CASE("wrong calls of scans say why") {
 
 TEST_CASE("the bits of a scan do not depend on the number of threads") {
   sk::Device& native = device("native");
-  const std::vector<float> x = cancelling(1 << 20);
-  const auto in = streamOf(native, x, {1 << 10, 1 << 10});
-  for (const int along : {-1, 0, 1}) {
-    sk::CallOptions options{.accumulate = sk::Accumulate::Tree};
-    if (along >= 0) options.along = along;
-    auto some = native.stream<float>({1 << 10, 1 << 10}), one = native.stream<float>({1 << 10, 1 << 10});
-    scans::sums.with(options)(in, some);
-    // a loop inside another one has a single thread
-    sk::native::inParallel(2, 1 << 20, sk::native::Deal::Evenly, [&](sk::native::Range range) {
-      if (range.begin == 0) scans::sums.with(options)(in, one);
-    });
-    const std::vector<float> a = some.read(), b = one.read();
-    CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
+  const std::vector<float> x = cancelling(1 << 18);
+  for (const sk::Shape& shape : {sk::Shape{1 << 9, 1 << 9}, sk::Shape{1 << 16, 4}, sk::Shape{2, 1 << 17}}) {
+    const auto in = streamOf(native, x, shape);
+    for (const sk::Accumulate how : {sk::Accumulate::Tree, sk::Accumulate::Compensated}) {
+      for (const int along : {-1, 0, 1}) {
+        sk::CallOptions options{.accumulate = how};
+        if (along >= 0) options.along = along;
+        auto some = native.stream<float>(shape), one = native.stream<float>(shape);
+        scans::sums.with(options)(in, some);
+        // a loop inside another one has a single thread
+        sk::native::inParallel(2, 1 << 20, sk::native::Deal::Evenly, [&](sk::native::Range range) {
+          if (range.begin == 0) scans::sums.with(options)(in, one);
+        });
+        const std::vector<float> a = some.read(), b = one.read();
+        CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("long lines across short rows are scanned and folded, with or without the element itself") {
+  sk::Device& native = device("native");
+  for (const int width : {2, 3, 8, 9}) {
+    INFO("width " << width);
+    const sk::Shape shape{20000 / width, width};
+    const std::vector<int> x = numbers(static_cast<std::size_t>(shape.size())), y = numbers(x.size(), 2);
+    const auto in = streamOf(native, x, shape), other = streamOf(native, y, shape);
+    const auto larger = [&] {
+      auto all = native.stream<int>({shape[0], 2 * width});
+      sk::stride(all, {1, 2}).write(x);
+      return all;
+    }();
+    auto out = native.stream<int>(shape);
+    const auto times = [](int s, int a) { return s + a; };
+    std::vector<int> products(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) products[i] = x[i] * y[i];
+    for (const bool isExclusive : {false, true}) {
+      const sk::CallOptions options{.scan = isExclusive ? sk::Scan::Exclusive : sk::Scan::Inclusive,
+                                    .along = 0};
+      scans::products.with(options)(in, other, out);
+      CHECK(out.read() == scanned(products, 0, times, isExclusive, shape, 0));
+      scans::prefix.with(options)(sk::stride(larger, {1, 2}), out);
+      CHECK(out.read() == scanned(x, 0, times, isExclusive, shape, 0));
+    }
+    auto totals = native.stream<int>({1, width});
+    scans::total(in, totals);
+    std::vector<int> expected(static_cast<std::size_t>(width));
+    for (std::size_t i = 0; i < x.size(); ++i) expected[i % expected.size()] += x[i];
+    CHECK(totals.read() == expected);
   }
 }
 

@@ -360,7 +360,7 @@ struct CompensatedReduction {
   std::span<const CompensatedSum> sums;
   /// The plain variant in doubles is as good: doubles represent its terms exactly, each an input, an element of a gather,
   /// or a product of two such floats.
-  bool inDoubles = false;
+  bool addsDoubles = false;
 };
 
 /// A variant of a reduction that adds one scalar of an accumulator without rounding. The fold of `reduction`

@@ -120,7 +120,7 @@ bool foldsInDoubles(const ResolvedReduction& call) {
 bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& second) {
   // without rows, gathers would have to be copied to doubles
   const bool readsInputs = !call.reduction.term.factors.empty() || call.rows != nullptr;
-  return second.inDoubles && readsInputs && call.device.sumsInDoubles() &&
+  return second.addsDoubles && readsInputs && call.device.sumsInDoubles() &&
          std::ranges::none_of(call.arguments, [](const Argument& argument) {
            return argument.region.stream != nullptr && argument.region.stream->storage >= Storage::Extended;
          });

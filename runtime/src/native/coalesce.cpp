@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace sk {
 
@@ -44,6 +45,12 @@ class Coalesce {
       : kernel_(kernel), operands_(operands), domain_(domain), block_(block), isScan_(isScan) {}
 
   void run() {
+    merge();
+    if (areLinesAcrossShortRows()) turn();
+  }
+
+ private:
+  void merge() {
     while (domain_[1] * domain_[2] * domain_[3] != 1) {
       if (domain_[1] == 1) {
         dropAll(1);
@@ -57,7 +64,6 @@ class Coalesce {
     }
   }
 
- private:
   bool isElement(std::size_t i) const {
     const Role role = kernel_.parameters[i].role;
     return (role == Role::Input || role == Role::Output || (isScan_ && role == Role::Accumulator)) &&
@@ -117,6 +123,28 @@ class Coalesce {
     drop(block_, 0, 1);
     domain_[0] *= width;
     block_[0] *= blockWidth;
+  }
+
+  /// True if blocks are lines along y, and so few of them lie side by side that folding these together gains less than
+  /// long rows do.
+  bool areLinesAcrossShortRows() const {
+    constexpr std::int64_t few = 8, shortest = 64;
+    const bool counts = std::ranges::any_of(
+        kernel_.parameters, [](const Parameter& parameter) { return parameter.role == Role::Iterator; });
+    return !counts && domain_[0] > 1 && domain_[0] <= few && block_[0] == 1 && block_[1] == domain_[1] &&
+           block_[1] > shortest && block_[2] == 1 && block_[3] == 1;
+  }
+  /// Makes rows of lines along y. The blocks keep their order, because there is one along y.
+  void turn() {
+    const auto turned = [](Extents& extents) { std::swap(extents[0], extents[1]); };
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      if (!isElement(i) && !isResult(i)) continue;
+      Operand& operand = operands_[i];
+      for (Extents* extents : {&operand.stride, &operand.extent, &operand.multiply, &operand.divide})
+        turned(*extents);
+    }
+    turned(domain_);
+    turned(block_);
   }
 
   const program::Kernel& kernel_;

@@ -2,7 +2,8 @@
 //
 // Coalesces dimensions, so that native loops have fewer and longer rows: dimensions that are contiguous in
 // all streams of a call become one, if the kernel uses no indices or extents. This changes how elements
-// are counted, never their order.
+// are counted, never their order in a block. Blocks that are long lines across short rows become rows, whose pieces
+// go to different threads.
 #pragma once
 
 #include <span>

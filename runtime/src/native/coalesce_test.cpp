@@ -94,5 +94,32 @@ TEST_CASE("of a reduction, whole rows of a block become one, and results move al
   CHECK(tiles.domain == Extents{4, 6, 1, 1});
 }
 
+TEST_CASE("of a reduction, few long lines across rows become rows") {
+  const auto lines = [](std::int64_t width, std::int64_t height) {
+    Case made(stream(width, height, width), stream(width, 1, width));
+    made.parameters[1].role = Role::Accumulator;
+    made.block = {1, height, 1, 1};
+    return made;
+  };
+  Case few = lines(3, 1000);
+  few.coalesce();
+  CHECK(few.domain == Extents{1000, 3, 1, 1});
+  CHECK(few.block == Extents{1000, 1, 1, 1});
+  CHECK(few.operands[0].stride[0] == 3);
+  CHECK(few.operands[0].stride[1] == 1);
+  CHECK(few.operands[1].stride[1] == 1);
+  Case many = lines(9, 1000);
+  many.coalesce();
+  CHECK(many.domain == Extents{9, 1000, 1, 1});
+  Case two = lines(3, 1000);
+  two.block[1] = 500;
+  two.coalesce();
+  CHECK(two.domain == Extents{3, 1000, 1, 1});
+  Case asks = lines(3, 1000);
+  asks.parameters[0].usesIndex = true;
+  asks.coalesce();
+  CHECK(asks.domain == Extents{3, 1000, 1, 1});
+}
+
 }  // namespace
 }  // namespace sk

@@ -33,6 +33,17 @@ SK_FOR_V3 inline void widen(const float* at, Doubles& wide) {
 #endif
 }
 
+/// Rounds to floats.
+SK_FOR_V3 inline void narrow(const Doubles& wide, float* to) {
+  using Floats [[gnu::vector_size(16)]] = float;
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+  const Floats floats = __builtin_ia32_cvtpd2ps256(wide);
+#else
+  const Floats floats = __builtin_convertvector(wide, Floats);
+#endif
+  std::memcpy(to, &floats, sizeof floats);
+}
+
 /// sum += x * y. The product is exact, so that there is one rounding, fused or not. Fused, it leaves the
 /// adders free on CPUs that also use them to convert to double.
 SK_FOR_V3 inline void addProduct(const Doubles& x, const Doubles& y, Doubles& sum) {

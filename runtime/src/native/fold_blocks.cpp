@@ -73,7 +73,7 @@ constexpr std::size_t mostInGroups = 8;
 
 void foldGroups(const FoldProgram& program, const Extents& domain, const Extents& block, Deal deal,
                 const FoldResults& results) {
-  const BlockGroups groups(domain, block, groupOf(program.shape));
+  const BlockGroups groups(domain, block, BlockGroups::sideBySide(domain, block, groupOf(program.shape)));
   native::inParallel(groups.count(), groups.elementsOfOne(), deal, [&](Range range) {
     GroupFolder folder(program, block);
     for (std::int64_t group = range.begin; group < range.end; ++group) {
@@ -143,6 +143,12 @@ void FoldResults::store(const Extents& block, const StateColumns& columns, std::
 bool FoldResults::areRows() const {
   return std::ranges::all_of(arrays_, [](const Array& array) {
     return array.array != nullptr && array.operand->stride[0] == 1 && !array.isRounded;
+  });
+}
+
+bool FoldResults::areRoundedRows() const {
+  return std::ranges::all_of(arrays_, [](const Array& array) {
+    return array.array != nullptr && array.operand->stride[0] == 1 && array.isRounded;
   });
 }
 

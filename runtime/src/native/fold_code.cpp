@@ -47,7 +47,7 @@ void checkWithoutOutputs(const program::Reduction& reduction, const FoldProgram&
 }  // namespace
 
 void foldCode(const program::Reduction& reduction, const native::ReduceCall& call, const CodeChoice& choice) {
-  if (!call.scan && call.rows == nullptr && sumsFloats(reduction, call.fold, choice)) {
+  if (call.rows == nullptr && sumsFloats(reduction, call.fold, choice)) {
     sumFloats(reduction, call, choice);
     return;
   }
@@ -85,8 +85,12 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
           ? functionOf<native::ValuesFunction>(entryOf(reduction.fold, EntryKind::Identity, choice))
           : nullptr;
   const Entry& scan = entryOf(reduction.fold, EntryKind::Scan, choice);
-  const ScanProgram scanProgram{program, bound<native::ScanFunction>(scan, frame), identities,
-                                call.scan->isExclusive, call.scan->combinesRuns};
+  const ScanProgram scanProgram{program,
+                                bound<native::ScanFunction>(scan, frame),
+                                identities,
+                                call.scan->isExclusive,
+                                call.scan->combinesRuns,
+                                false};
   if (call.rows != nullptr) {
     scanRows(scanProgram, rowsOf(), *call.rows, results);
     return;

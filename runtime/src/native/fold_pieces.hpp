@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "native/call.hpp"
+#include "sk/native/parallel.hpp"
 
 namespace sk {
 
@@ -68,6 +69,21 @@ class BlockGroups {
   BlockGroups(const native::Extents& domain, const native::Extents& block, std::int64_t longest)
       : block_(block), longest_(longest) {
     for (std::size_t d = 0; d < 4; ++d) blocks_[d] = domain[d] / block_[d];
+  }
+
+  /// The number of blocks that are folded side by side: at most `most`, and fewer where threads would be left without a
+  /// group. Blocks do not depend on each other, and so neither do results on this.
+  static std::int64_t sideBySide(const native::Extents& domain, const native::Extents& block,
+                                 std::int64_t most) {
+    constexpr std::int64_t least = 32;  // so that vectors, and the lines of caches, are full
+    std::int64_t blocks = 1, elements = 1;
+    for (std::size_t d = 0; d < 4; ++d) {
+      blocks *= domain[d] / block[d];
+      elements *= block[d];
+    }
+    const std::int64_t threads = native::threadsFor(blocks, elements);
+    const std::int64_t ofThread = (blocks + threads - 1) / threads;
+    return std::clamp((ofThread + least - 1) / least * least, least, std::max(least, most));
   }
 
   /// True if blocks are so narrow that a row of the domain crosses many of them.

@@ -56,6 +56,8 @@ class FoldResults {
 
   /// True if all results are stored as they are, and neighbouring blocks' without gaps.
   bool areRows() const;
+  /// True if all results are doubles that are stored as floats, and neighbouring blocks' without gaps.
+  bool areRoundedRows() const;
   /// The address of a scalar of a block's result, if it is stored.
   std::byte* at(std::size_t scalar, const native::Extents& block) const;
 

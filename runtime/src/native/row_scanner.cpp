@@ -19,7 +19,7 @@ std::int64_t longestCall(const SlotLayout& layout, bool areRows) {
 RowScanner::RowScanner(const ScanProgram& program, const FoldResults& results)
     : program_(program),
       results_(results),
-      areRows_(results.areRows()),
+      areRows_(program.storesFloats || results.areRows()),
       longest_(longestCall(program.fold.layout, areRows_)),
       arrays_(program.fold.layout, mostStaged, mostStaged),
       scratch_(program.fold.shape, areRows_ ? 0 : mostStaged),

@@ -157,7 +157,8 @@ class LineScanner {
 
 void scanLines(const ScanProgram& program, const Extents& domain, const Extents& block,
                const FoldResults& results) {
-  const BlockGroups groups(domain, block, groupOf(program.fold.shape));
+  const BlockGroups groups(domain, block,
+                           BlockGroups::sideBySide(domain, block, groupOf(program.fold.shape)));
   native::inParallel(groups.count(), groups.elementsOfOne(), dealOf(program), [&](Range range) {
     LineScanner scanner(program, block, results);
     for (std::int64_t group = range.begin; group < range.end; ++group) {

@@ -15,6 +15,7 @@ struct ScanProgram {
   native::ValuesFunction* identities;  ///< null if neither an exclusive scan nor `combinesRuns` needs them
   bool isExclusive;
   bool combinesRuns;  ///< see native::ScanOf
+  bool storesFloats;  ///< `scan` rounds doubles to floats: results are FoldResults::areRoundedRows()
 };
 
 /// Identities side by side.

@@ -9,6 +9,8 @@
 #include "native/factor_kernel.hpp"
 #include "native/float_vectors.hpp"
 #include "native/fold_program.hpp"
+#include "native/scan_blocks.hpp"
+#include "native/scan_floats.hpp"
 
 namespace sk {
 
@@ -17,11 +19,6 @@ namespace {
 using native::Chunk;
 using native::Frame;
 using native::Level;
-
-/// The frame of the functions below.
-struct SumFrame : Frame {
-  double start;  ///< the identity; -0, which changes no term, if seeded
-};
 
 /// The columns of a leaf: sideOf() for one double.
 constexpr std::int64_t side = 32;
@@ -150,8 +147,7 @@ Bound<native::CombineFunction> combination() {
   return {&addColumns, 1, nullptr};
 }
 
-double startOf(const program::Reduction& reduction, const CodeFrame& frame, const CodeChoice& choice) {
-  if (reduction.seeded) return -0.0;
+double identityOf(const program::Reduction& reduction, const CodeFrame& frame, const CodeChoice& choice) {
   double identity = 0;
   void* const values[] = {&identity};
   const native::Entry& entry = entryOf(reduction.fold, native::EntryKind::Identity, choice);
@@ -171,17 +167,26 @@ void sumFloats(const program::Reduction& reduction, const native::ReduceCall& ca
                const CodeChoice& choice) {
   const FactorKernel term(reduction.fold, reduction.term.factors, call.fold);
   const CodeFrame frame(term.kernel(), term.call());
-  const SumFrame sumFrame{*frame.get(), startOf(reduction, CodeFrame(reduction.fold, call.fold), choice)};
+  const double identity = identityOf(reduction, CodeFrame(reduction.fold, call.fold), choice);
+  const SumFrame sumFrame{*frame.get(), reduction.seeded ? -0.0 : identity, identity};
   const SlotLayout layout(term.kernel(), term.call(), frame, {.real = RealType::Float});
   const StateShape shape({sizeof(double)});
   const FoldResults results(reduction.fold.parameters, call.fold.operands, shape);
-  foldBlocks({.layout = layout,
-              .shape = shape,
-              .fold = {sumOf(reduction.term.factors.size()), 1, &sumFrame},
-              .combine = combination(),
-              .isCommutative = true,
-              .isUneven = false},
-             call.fold.domain, call.block, results);
+  const std::size_t factors = reduction.term.factors.size();
+  const FoldProgram program{.layout = layout,
+                            .shape = shape,
+                            .fold = {sumOf(factors), 1, &sumFrame},
+                            .combine = combination(),
+                            .isCommutative = true,
+                            .isUneven = false};
+  if (!call.scan) {
+    foldBlocks(program, call.fold.domain, call.block, results);
+    return;
+  }
+  const bool storesFloats = results.areRoundedRows();
+  const Bound<native::ScanFunction> scan{floatScan(factors, storesFloats, hasWideVectors()), 1, &sumFrame};
+  const ScanProgram scanProgram{program, scan, &storeIdentity, call.scan->isExclusive, false, storesFloats};
+  scanBlocks(scanProgram, call.fold.domain, call.block, results);
 }
 
 }  // namespace sk

@@ -13,7 +13,7 @@ namespace sk {
 /// True if a call in doubles only sums the contents of float streams.
 bool sumsFloats(const program::Reduction& reduction, const native::Call& fold, const CodeChoice& choice);
 
-/// Sums each block of the domain to one element of the accumulator's operand. No block is empty.
+/// Sums each block of the domain to one element of the accumulator's operand, or scans it. No block is empty.
 void sumFloats(const program::Reduction& reduction, const native::ReduceCall& call, const CodeChoice& choice);
 
 }  // namespace sk

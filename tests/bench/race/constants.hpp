@@ -54,6 +54,9 @@ constexpr ClothLink clothLinks[12] = {
     {0, 2, 2 * clothCell, clothBend},   {0, -2, 2 * clothCell, clothBend},
 };
 
+/// A step of conjugate gradients: rn = r - residualStep q.
+constexpr float residualStep = 0.75f;
+
 /// Entries in a row of the sparse matrix, on average.
 constexpr int sparseRow = 16;
 

@@ -8,23 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "kernels/untyped.hpp"
 #include "sk/call.hpp"
 #include "sk/scalar_bytes.hpp"
-
-namespace {
-
-/// Stands for an element type that only the descriptors know. Streams are made with the current `element`.
-struct Untyped {
-  static const sk::program::Element* element;
-};
-const sk::program::Element* Untyped::element = nullptr;
-
-}  // namespace
-
-template <>
-struct sk::ElementTraits<Untyped> {
-  static const sk::program::Element& element() { return *Untyped::element; }
-};
 
 namespace fuzz {
 namespace {

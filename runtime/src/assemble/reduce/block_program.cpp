@@ -54,15 +54,6 @@ class BlockText : FoldText {
     statement(fmt::format("ivec4 sk_corner = {} * sk_block_shape;", unravel("sk_block", "sk_blocks_step")));
   }
 
-  std::string unravel(std::string_view number, std::string_view strides) {
-    if (variant_.axes == 1) return fmt::format("ivec4({}, 0, 0, 0)", number);
-    program_.require(variant_.axes == 2   ? Function::Unravel2
-                     : variant_.axes == 3 ? Function::Unravel3
-                                          : Function::Unravel4);
-    vectors({strides});
-    return fmt::format("sk_unravel({}, {})", number, strides);
-  }
-
   /// If order matters, an invocation folds consecutive items.
   void foldItems() {
     startFromIdentities();

@@ -18,7 +18,8 @@ namespace {
 
 /// The layout of the texels that invocations or groups compute. Those that store results by themselves have none.
 DomainLayout layoutOf(const ReduceVariant& variant) {
-  const bool hasTexel = variant.unit == ScanUnit::Item || variant.scan == ScanPass::Folds;
+  const bool hasTexel = (variant.unit == ScanUnit::Item || variant.scan == ScanPass::Folds) &&
+                        variant.rows != RowPass::Groups;  // whose invocations write texels of other numbers
   return {hasTexel ? variant.domain : Domain::Linear, variant.domainView, variant.domainRank,
           variant.domainLayered};
 }
@@ -212,6 +213,15 @@ void FoldText::integers(std::initializer_list<std::string_view> uniforms) {
 
 void FoldText::vectors(std::initializer_list<std::string_view> uniforms) {
   for (const std::string_view uniform : uniforms) program_.uniform("ivec4", uniform);
+}
+
+std::string FoldText::unravel(std::string_view number, std::string_view strides) {
+  if (variant_.axes == 1) return fmt::format("ivec4({}, 0, 0, 0)", number);
+  program_.require(variant_.axes == 2   ? Function::Unravel2
+                   : variant_.axes == 3 ? Function::Unravel3
+                                        : Function::Unravel4);
+  vectors({strides});
+  return fmt::format("sk_unravel({}, {})", number, strides);
 }
 
 std::string FoldText::finish(std::string_view comment) {

@@ -81,6 +81,8 @@ class FoldText {
   void integers(std::initializer_list<std::string_view> uniforms);
   void vectors(std::initializer_list<std::string_view> uniforms);
   void statement(std::string_view line) { program_.statement(margin_ + std::string(line)); }
+  /// The index with this number in a box of ReduceVariant::axes dimensions, given the uniform with its strides.
+  std::string unravel(std::string_view number, std::string_view strides);
   /// Stores the accumulators, and returns the program.
   std::string finish(const std::vector<program::Parameter>& written, std::string_view comment) {
     for (const program::Parameter& parameter : written) store(program_, parameter, total(parameter));

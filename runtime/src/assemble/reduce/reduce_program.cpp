@@ -291,15 +291,6 @@ class ReductionText : FoldText {
     step_.push_back(here);
   }
 
-  std::string unravel(std::string_view number, std::string_view strides) {
-    if (variant_.axes == 1) return fmt::format("ivec4({}, 0, 0, 0)", number);
-    program_.require(variant_.axes == 2   ? Function::Unravel2
-                     : variant_.axes == 3 ? Function::Unravel3
-                                          : Function::Unravel4);
-    vectors({strides});
-    return fmt::format("sk_unravel({}, {})", number, strides);
-  }
-
   // ---- the fold ---------------------------------------------------------------------------------
 
   /// Folds an element, or the elements of a packed texel from component `first` on.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device/append/append_programs.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "assemble/assemble.hpp"
@@ -13,19 +11,9 @@ namespace sk {
 
 using assemble::PointStep;
 
-gl::IntUniform& AppendProgram::find(std::string_view name, bool isVector) {
-  const auto found = std::find_if(uniforms_.begin(), uniforms_.end(),
-                                  [&](const auto& known) { return known.first == name; });
-  if (found != uniforms_.end()) {
-    return found->second;
-  }
-  const std::string owned(name);
-  return uniforms_.emplace_back(owned, gl::IntUniform(program_.location(owned), isVector)).second;
-}
-
-std::unique_ptr<AppendProgram> AppendPrograms::build(const std::string& vertexSource,
-                                                     const std::string& fragmentSource,
-                                                     std::string_view what) {
+std::unique_ptr<IntegerProgram> AppendPrograms::build(const std::string& vertexSource,
+                                                      const std::string& fragmentSource,
+                                                      std::string_view what) {
   std::string log;
   gl::Program program = ProgramBuild(device_, {vertexSource, fragmentSource}).finish(device_, log);
   if (!program) {
@@ -35,11 +23,11 @@ std::unique_ptr<AppendProgram> AppendPrograms::build(const std::string& vertexSo
                 Error::Kind::Compile);
   }
   device_.bound.program(program.name());
-  return std::make_unique<AppendProgram>(std::move(program));
+  return std::make_unique<IntegerProgram>(std::move(program));
 }
 
-AppendProgram& AppendPrograms::pyramid(const assemble::PyramidTextures& textures) {
-  std::unique_ptr<AppendProgram>& cached = pyramids_[textures];
+IntegerProgram& AppendPrograms::pyramid(const assemble::PyramidTextures& textures) {
+  std::unique_ptr<IntegerProgram>& cached = pyramids_[textures];
   if (!cached) {
     auto appendProgram = build(assemble::vertexProgram(device_.profile),
                                assemble::pyramidProgram(device_.profile, textures), "sums of counts");
@@ -49,9 +37,9 @@ AppendProgram& AppendPrograms::pyramid(const assemble::PyramidTextures& textures
   return *cached;
 }
 
-AppendProgram& AppendPrograms::points(const program::Parameter& appendOutput, PointStep step,
-                                      const assemble::PointTextures& textures) {
-  std::unique_ptr<AppendProgram>& cached = points_[{&appendOutput, step, textures}];
+IntegerProgram& AppendPrograms::points(const program::Parameter& appendOutput, PointStep step,
+                                       const assemble::PointTextures& textures) {
+  std::unique_ptr<IntegerProgram>& cached = points_[{&appendOutput, step, textures}];
   if (!cached) {
     const std::string vertexSource = assemble::hasPoints(step)
                                          ? assemble::pointVertexProgram(device_.profile, textures)

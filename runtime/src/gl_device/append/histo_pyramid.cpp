@@ -42,7 +42,7 @@ HistoPyramid::HistoPyramid(GlDevice& device, RenderTarget& counts, const Layout&
 void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below, bool ofCounts,
                         std::int32_t belowRow) {
   const assemble::TextureShape& shape = below.texture.shape();
-  AppendProgram& program =
+  IntegerProgram& program =
       device_.appendPrograms.pyramid({ofCounts, below.texture.isLayered(), plan_.isLayered()});
   const auto number = static_cast<std::size_t>(&level - plan_.levels.data()) + 1;
   device_.bound.program(program.program().name());

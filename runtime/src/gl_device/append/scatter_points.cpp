@@ -111,8 +111,8 @@ void Scatterer::takeFloats(PlanesLease& lease, int width) {
 /// Binds planes from unit 2 on, behind the two of a list, or of the elements. Returns the next unit.
 int Scatterer::bindAfterElements(std::span<RenderTarget> planes) { return bindPlanes(device_, planes, 2); }
 
-AppendProgram& Scatterer::programOf(PointStep step) {
-  AppendProgram& program =
+IntegerProgram& Scatterer::programOf(PointStep step) {
+  IntegerProgram& program =
       device_.appendPrograms.points(appendOutput_, step, {listLayout_.layered, regionLayout_.layered});
   device_.bound.program(program.program().name());
   program.set(device_.bound, "sk_domain_shift", regionLayout_.shift);
@@ -130,7 +130,7 @@ DrawTarget Scatterer::target(std::span<RenderTarget> planes) {
 /// Draws every point to every layer: it is clipped in all layers but its own.
 void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> targets, std::int32_t first,
                        std::int32_t count) {
-  AppendProgram& program = programOf(step);
+  IntegerProgram& program = programOf(step);
   const DrawTarget drawn = target(targets);
   bindPlanes(device_, list_, 0);
   const gl::Texture& texture = targets.front().texture;
@@ -154,7 +154,7 @@ void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> 
 
 /// Draws a step over the region. Steps that draw to the elements' own planes do not read them.
 void Scatterer::region(PointStep step, std::span<RenderTarget> targets) {
-  AppendProgram& program = programOf(step);
+  IntegerProgram& program = programOf(step);
   const DrawTarget drawn = target(targets);
   bindPlanes(device_, planes_, 1);
   const PassScope traced(device_, {appendOutput_.name, "scatter"}, std::span<const RenderTarget>(planes_),

@@ -36,7 +36,7 @@ class Scatterer {
   int width() const { return appendOutput_.element->fields.front().width; }
   void takeFloats(PlanesLease& lease, int width);
   int bindAfterElements(std::span<RenderTarget> planes);
-  AppendProgram& programOf(assemble::PointStep step);
+  IntegerProgram& programOf(assemble::PointStep step);
   DrawTarget target(std::span<RenderTarget> planes);
   void points(assemble::PointStep step, gl::Blend blend, std::span<RenderTarget> targets, std::int32_t first,
               std::int32_t count);

@@ -71,7 +71,7 @@ void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name,
                    std::span<WordTexture* const> read, std::span<WordTexture* const> written,
                    std::span<const Uniform> uniforms, std::int32_t tiles) {
   const RadixStorage storage{.reads = read.front() == nullptr, .writes = written.front() == nullptr};
-  AppendProgram& program = device.sortPrograms.of(step, storage);
+  IntegerProgram& program = device.sortPrograms.of(step, storage);
   constexpr std::int32_t mostInRow = std::int32_t{1} << assemble::groupRowShift;
   const Rect groups{0, 0, std::min(tiles, mostInRow), divideUp(tiles, mostInRow)};
   const std::int64_t bytes =
@@ -400,10 +400,10 @@ class StreamSort {
 
 }  // namespace
 
-AppendProgram& SortPrograms::of(RadixStep step, RadixStorage storage) {
+IntegerProgram& SortPrograms::of(RadixStep step, RadixStorage storage) {
   const std::size_t number =
       4 * static_cast<std::size_t>(step) + (storage.reads ? 2 : 0) + (storage.writes ? 1 : 0);
-  std::unique_ptr<AppendProgram>& known = programs_[number];
+  std::unique_ptr<IntegerProgram>& known = programs_[number];
   if (known) return *known;
   std::string log;
   gl::Program program =
@@ -415,7 +415,7 @@ AppendProgram& SortPrograms::of(RadixStep step, RadixStorage storage) {
                             device_.capabilities.renderer, log),
                 Error::Kind::Compile);
   }
-  known = std::make_unique<AppendProgram>(std::move(program));
+  known = std::make_unique<IntegerProgram>(std::move(program));
   const gl::Program& linked = known->program();
   device_.bound.program(linked.name());
   int unit = 0;

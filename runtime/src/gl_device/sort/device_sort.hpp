@@ -10,7 +10,7 @@
 
 #include "assemble/sort/radix_program.hpp"
 #include "device/reordering.hpp"
-#include "gl_device/append/append_programs.hpp"
+#include "gl_device/program/integer_program.hpp"
 
 namespace sk {
 
@@ -21,11 +21,11 @@ class SortPrograms {
  public:
   explicit SortPrograms(GlDevice& device) : device_(device) {}
   /// Throws sk::Error if the driver rejects it.
-  AppendProgram& of(assemble::RadixStep step, assemble::RadixStorage storage = {});
+  IntegerProgram& of(assemble::RadixStep step, assemble::RadixStorage storage = {});
 
  private:
   GlDevice& device_;
-  std::array<std::unique_ptr<AppendProgram>, 4 * assemble::radixSteps> programs_;  ///< for each RadixStorage
+  std::array<std::unique_ptr<IntegerProgram>, 4 * assemble::radixSteps> programs_;  ///< for each RadixStorage
 };
 
 /// Whether streams can be sorted by dispatches: the keys are stored as they are declared, or as halves, and temporaries

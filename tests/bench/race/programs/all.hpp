@@ -79,6 +79,12 @@ Problem clothProblem(int log2);
 Check clothCheck(const Problem& problem);
 RACE_OURS(cloth);
 
+Problem residualProblem(int log2);
+Check residualCheck(const Problem& problem);
+RACE_OURS(residual);
+std::unique_ptr<Task> residualInTwoCalls(sk::Device& device, const sk::CallOptions& options,
+                                         const Problem& problem);
+
 Problem sparseProblem(int log2);
 Check sparseCheck(const Problem& problem);
 RACE_OURS(sparse);

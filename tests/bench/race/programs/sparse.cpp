@@ -15,48 +15,48 @@ namespace {
 
 constexpr std::int64_t band = 4096;  // columns
 
-class Sparse final : public OurTask {
+/// What both ways of computing it have in common.
+class SparseTask : public OurTask {
  public:
-  Sparse(sk::Device& device, const sk::CallOptions& options, const Problem& p)
+  std::vector<float> result() override { return y_.read(); }
+
+ protected:
+  SparseTask(sk::Device& device, const Problem& p)
       : OurTask(device),
-        sparse_(kernels::sparse.with(options)),
         starts_(filled<std::int32_t>({p.size() + 1}, p.ints[0])),
         columns_(filled<std::int32_t>({static_cast<std::int64_t>(p.ints[1].size())}, p.ints[1])),
         values_(filled<float>({static_cast<std::int64_t>(p.floats[0].size())}, p.floats[0])),
         x_(filled<float>({p.size()}, p.floats[1])),
         y_(device.stream<float>({p.size()})) {}
 
-  std::vector<float> result() override { return y_.read(); }
+  sk::Stream<std::int32_t> starts_, columns_;
+  sk::Stream<float> values_, x_, y_;
+};
+
+class Sparse final : public SparseTask {
+ public:
+  Sparse(sk::Device& device, const sk::CallOptions& options, const Problem& p)
+      : SparseTask(device, p), sparse_(kernels::sparse.with(options)) {}
 
  private:
   void once() override { sparse_(starts_, columns_, values_, x_, y_); }
 
   kernels::SparseKernel sparse_;
-  sk::Stream<std::int32_t> starts_, columns_;
-  sk::Stream<float> values_, x_, y_;
 };
 
 /// The rows are prepared once, as a solver does. Sums are plain, as the peers' are.
-class SparseInRows final : public OurTask {
+class SparseInRows final : public SparseTask {
  public:
   SparseInRows(sk::Device& device, const sk::CallOptions& options, const Problem& p)
-      : OurTask(device),
+      : SparseTask(device, p),
         sparse_(kernels::sparseRow.with(options).with({.accumulate = sk::Accumulate::Tree})),
-        rows_(filled<std::int32_t>({p.size() + 1}, p.ints[0])),
-        columns_(filled<std::int32_t>({static_cast<std::int64_t>(p.ints[1].size())}, p.ints[1])),
-        values_(filled<float>({static_cast<std::int64_t>(p.floats[0].size())}, p.floats[0])),
-        x_(filled<float>({p.size()}, p.floats[1])),
-        y_(device.stream<float>({p.size()})) {}
-
-  std::vector<float> result() override { return y_.read(); }
+        rows_(starts_) {}
 
  private:
   void once() override { sparse_(rows_(values_), rows_(columns_), x_, y_); }
 
   kernels::SparseRowReduce sparse_;
   sk::Rows rows_;
-  sk::Stream<std::int32_t> columns_;
-  sk::Stream<float> values_, x_, y_;
 };
 
 }  // namespace

@@ -14,6 +14,7 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   add("sum", one, sumOpenMp);
   add("compensated sum", one, compensatedSumOpenMp);
   add("dot", one, dotOpenMp);
+  add("folded output", [](const Problem& p) { return p.size() + 1; }, residualOpenMp);
   add("5-point stencil", asMany, heatOpenMp);
   add("9-point stencil", asMany, binomialOpenMp);
   add("mandelbrot", asMany, mandelbrotOpenMp);
