@@ -295,7 +295,7 @@ class SourceWriter {
     list("CompensatedSum", name + "Sums", sums);
     text_ += fmt::format(
         "constexpr CompensatedReduction {}Compensated = {{{}Reduction, {}Kernel, {}Sums, {}}};\n\n", name,
-        names.fold, names.finish, name, made.inDoubles);
+        names.fold, names.finish, name, made.addsDoubles);
   }
 
   /// Prints the constant NAMEExact.

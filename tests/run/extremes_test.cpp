@@ -92,12 +92,16 @@ TEST_CASE("a loop ends with its first iteration, or at most") {
   onEveryProfile([](sk::Device& device) {
     auto x = device.stream<int>({5});
     auto done = device.scalar<bool>();
-    sk::Loop loop = device.record([&] { extremes::add(1, x, x); });
+    auto steps = device.scalar<int>(0), last = device.scalar<int>(1);
+    sk::Loop loop = device.record([&] {
+      extremes::add(1, x, x);
+      steps += 1;
+      done = steps == last;
+    });
     x.fill(0);
-    done.assign(true);
     CHECK(loop.until(done, {.every = 5, .most = 1000}) == 1);
     CHECK(x.read() == std::vector<int>(5, 1));
-    done.assign(false);
+    last.assign(-1);  // never
     CHECK(loop.until(done, {.every = 5, .most = 33}) == 33);
     CHECK(loop.until(done, {.every = 50, .most = 1}) == 1);
     CHECK(x.read() == std::vector<int>(5, 35));

@@ -15,7 +15,7 @@ namespace {
 using native::Chunk;
 using native::Frame;
 
-constexpr std::int64_t together = 2 * doublesPerVector;
+constexpr std::int64_t scannedTogether = 2 * doublesPerVector;
 
 /// The sum of each element and those before it. -0 changes no sum.
 [[gnu::always_inline]] inline void sumsOf(Doubles& x) {
@@ -69,7 +69,7 @@ struct AnyVectors {
 template <class... Factors>
 [[gnu::always_inline]] inline void readLast(double* terms, std::int64_t i, std::int64_t count,
                                             const Factors*... factors) {
-  std::fill_n(terms, together, -0.0);
+  std::fill_n(terms, scannedTogether, -0.0);
   for (std::int64_t k = 0; i + k < count; ++k) terms[k] = (double{factors[i + k]} * ...);
 }
 
@@ -79,7 +79,7 @@ template <class Vectors, bool isExclusive, class Result, class... Factors>
                                              const Factors*... factors) {
   Doubles carry{start, start, start, start}, first, second;
   std::int64_t i = 0;
-  for (; i + together <= count; i += together) {
+  for (; i + scannedTogether <= count; i += scannedTogether) {
     Vectors::read(first, i, factors...);
     Vectors::read(second, i + doublesPerVector, factors...);
     scanEight<isExclusive>(first, second, carry);
@@ -87,8 +87,8 @@ template <class Vectors, bool isExclusive, class Result, class... Factors>
     Vectors::store(second, results + i + doublesPerVector);
   }
   if (i < count) {
-    double terms[together];
-    Result sums[together];
+    double terms[scannedTogether];
+    Result sums[scannedTogether];
     readLast(terms, i, count, factors...);
     std::memcpy(&first, terms, sizeof first);
     std::memcpy(&second, terms + doublesPerVector, sizeof second);
