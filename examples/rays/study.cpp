@@ -10,6 +10,9 @@ std::span<const Study> studies() {
   static constexpr std::array all = {
       Study{"leaks", "what tests of triangles miss at edges and vertices, and how exact their distances are",
             studyLeaks},
+      Study{"light", "means of pictures that are known, by each way to reach lights", studyLight},
+      Study{"convergence", "how fast errors fall with independent samples and with Sobol's",
+            studyConvergence},
       Study{"speed", "rays per second by test, traversal and size of leaves", studySpeed},
       Study{"streaming", "what a uniform grid and each kernel of a multipass machine cost", studyStreaming},
       Study{"ray_engine", "what sizes of buckets and calls are worth, and not to wait", studyRayEngine},
