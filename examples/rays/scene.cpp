@@ -150,7 +150,8 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   Scene scene;
   scene.name = file.stem().string();
   scene.title = root.text("title").value_or(scene.name);
-  Reading reading{.folder = file.parent_path(), .strict = overrides.strict};
+  Reading reading{
+      .folder = file.parent_path(), .strict = overrides.strict, .mostLevel = overrides.mostLevel};
   readMaterials(root, reading, scene.model);
   readShapes(root, reading, scene.model);
   readLights(root, scene.model);

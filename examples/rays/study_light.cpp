@@ -29,7 +29,7 @@ bool isBounded(const KnownPicture& picture, Strategy strategy) {
 }  // namespace
 
 Findings studyLight(sk::Device& device, bool isSmall) {
-  const Effort effort = isSmall ? Effort{.side = 24, .samples = 12} : Effort{};
+  const Effort effort = isSmall ? Effort{.side = 32, .samples = 32} : Effort{};
   examples::Table table({"picture", "known", "both", "lights alone", "surfaces alone"});
   examples::Verification known("standard errors between a mean and what is known", 4.0,
                                "one in 16,000 is larger by chance, and the numbers are fixed");
