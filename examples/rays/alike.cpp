@@ -42,6 +42,7 @@ std::vector<Mode> allModes() {
           bvhMode("bvh, stack", {.traversal = HowToTraverse::Stack}),
           bvhMode("bvh, leaves", {.traversal = HowToTraverse::Leaves}),
           bvhMode("bvh, skip", {.traversal = HowToTraverse::Skip}),
+          bvhMode("bvh, in doubles", {.precision = sk::Precision::Double}),
           bvhMode("bvh, moller", {.intersection = HowToIntersect::Moller}),
           streamingMode("streaming, branching", {}),
           streamingMode("streaming, multipass", {.machine = Machine::Multipass}),

@@ -18,6 +18,7 @@ using examples::SceneTable;
 
 constexpr std::array<std::string_view, 3> traversalNames = {"stack", "leaves", "skip"};
 constexpr std::array<std::string_view, 2> intersectionNames = {"watertight", "moller"};
+constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
 /// Rays of one call; more come in several.
 constexpr std::size_t batch = std::size_t{1} << 20;
 
@@ -66,6 +67,7 @@ DeviceSettings settingsOf(const SceneTable& table) {
     settings.traversal = static_cast<HowToTraverse>(*choice);
   settings.intersection =
       static_cast<HowToIntersect>(table.choice("intersection", intersectionNames).value_or(0));
+  if (table.choice("precision", precisionNames).value_or(0) == 1) settings.precision = sk::Precision::Double;
   settings.bvh.bins = static_cast<int>(table.integer("bins", Range{2, 64}).value_or(settings.bvh.bins));
   settings.bvh.leaf = static_cast<int>(table.integer("leaf", Range{1, 7}).value_or(settings.bvh.leaf));
   return settings;

@@ -33,6 +33,7 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   milliseconds_ = stopwatch.milliseconds();
   const bool isNative = device.name().starts_with("native");
   intersection_ = settings.intersection;
+  precision_ = settings.precision;
   traversal_ = settings.traversal.value_or(isNative ? HowToTraverse::Stack : HowToTraverse::Leaves);
   contracted_ = !isNative;
   hasTriangles_ = !model.triangles.empty();

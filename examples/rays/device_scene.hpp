@@ -23,6 +23,8 @@ struct DeviceSettings {
   BvhSettings bvh{};
   std::optional<HowToTraverse> traversal{};  ///< none: what is faster on the device
   HowToIntersect intersection = HowToIntersect::Watertight;
+  /// Single or Double. Numbers of shapes travel in floats, which halves would round.
+  sk::Precision precision = sk::Precision::Single;
 };
 
 /// A gather must not be empty, and what no kernel reads may hold anything.
@@ -41,9 +43,10 @@ class DeviceScene {
   /// The arguments that all kernels begin with, up to `shapes`, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
-    kernel(static_cast<unsigned>(intersection_), static_cast<unsigned>(traversal_), contracted_,
-           hasTriangles_, hasSpheres_, hasPlanes_, nodeCount_, planeCount_, firstPlane_, planes_, nodes_,
-           shapes_, std::forward<More>(more)...);
+    kernel.with({.precision = precision_})(static_cast<unsigned>(intersection_),
+                                           static_cast<unsigned>(traversal_), contracted_, hasTriangles_,
+                                           hasSpheres_, hasPlanes_, nodeCount_, planeCount_, firstPlane_,
+                                           planes_, nodes_, shapes_, std::forward<More>(more)...);
   }
 
   sk::Device& device() const { return *device_; }
@@ -57,6 +60,7 @@ class DeviceScene {
   Bvh bvh_;
   double milliseconds_ = 0.0;  ///< that building took
   HowToIntersect intersection_;
+  sk::Precision precision_;
   HowToTraverse traversal_;
   bool contracted_, hasTriangles_, hasSpheres_, hasPlanes_;
   int nodeCount_, planeCount_, firstPlane_;

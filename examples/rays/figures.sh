@@ -9,7 +9,7 @@ set -euo pipefail
 program=$(realpath "$1")
 shift
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
-(($# > 0)) || set -- leaks light convergence speed streaming ray_engine
+(($# > 0)) || set -- leaks light convergence precision sums speed streaming ray_engine
 export OMP_NUM_THREADS=1  # rates are those of one core
 for study in "$@"; do
   if ! output=$("$program" --study "$study" --device native); then

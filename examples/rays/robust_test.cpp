@@ -242,6 +242,25 @@ TEST_CASE("directions with zeros of either sign, of any length and of denormal c
   }
 }
 
+TEST_CASE("distances in doubles are right to the last bit of a float") {
+  const Model model = rays::modelOf(icosphere(2, false));
+  const std::vector<Ray> rays = raysToEdges(model, {}, 2000, 59);
+  for (const char* name : {"native", "glsl330"}) {
+    sk::Device device = name == std::string("native")
+                            ? sk::Device::native()
+                            : sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
+    const std::vector<Hit> hits =
+        traceRays(*makeBvhEngine(device, model, {.precision = sk::Precision::Double}), model, rays);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      REQUIRE(hits[i].id >= 0);
+      const double t = meet(model.triangles[static_cast<std::size_t>(hits[i].id)], rays[i]).t;
+      worst = std::max(worst, std::abs(hits[i].t - t) / t);
+    }
+    CHECK(worst < 0x1.01p-24);
+  }
+}
+
 TEST_CASE("rays from points of surfaces leave on the side to which they go") {
   // From hits on a ball, a thousandth of its radius beside them at most: outwards nothing is met, inwards the other side.
   sk::Device device = sk::Device::native();

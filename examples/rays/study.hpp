@@ -36,6 +36,8 @@ Findings studyLeaks(sk::Device& device, bool isSmall);
 Findings studyAlike(sk::Device& device, bool isSmall);
 Findings studyLight(sk::Device& device, bool isSmall);
 Findings studyConvergence(sk::Device& device, bool isSmall);
+Findings studyPrecision(sk::Device& device, bool isSmall);
+Findings studySums(sk::Device& device, bool isSmall);
 Findings studySpeed(sk::Device& device, bool isSmall);
 Findings studyStreaming(sk::Device& device, bool isSmall);
 Findings studyRayEngine(sk::Device& device, bool isSmall);
