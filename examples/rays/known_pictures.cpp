@@ -32,7 +32,7 @@ Material floorMaterial() { return {.name = "floor", .colour = grey(albedo)}; }
 
 /// A camera that sees one point, under an angle that no lamp below stands in.
 void look(Model& model, Vector from, Vector to) {
-  model.camera = {.from = from, .to = to, .up = {0.1, 1, 0.2}, .fieldOfView = 0.02, .focus = 1};
+  model.camera = {.from = from, .to = to, .up = {0.1, 1, 0.2}, .fieldOfView = 0.0005, .focus = 1};
 }
 
 /// The floor y = 0 of this material, seen at the origin.
@@ -179,7 +179,7 @@ std::vector<KnownPicture> knownPictures() {
   all.push_back(polygonAbove("a square of light above", square));
   all.push_back(
       polygonAbove("a triangle of light, aside, of two sides", {tilted[0], tilted[2], tilted[1]}, true));
-  all.push_back(sphereAbove("a sphere of light", {0.6, 1, -0.5}, 0.3, floorMaterial()));
+  all.push_back(sphereAbove("a sphere of light", {1.1, 1, -0.9}, 0.3, floorMaterial()));
   all.push_back(sphereAbove("a small sphere, low", {-2, 0.4, 1}, 0.2, floorMaterial()));
   all.push_back(sunAbove());
   all.push_back(allAbove({all[0], all[2], all[3], all[4]}));

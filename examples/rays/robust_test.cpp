@@ -213,7 +213,10 @@ TEST_CASE("directions with zeros of either sign, of any length and of denormal c
         for (const double longer : {1.0, 0x1p+60, 0x1p-60}) {
           const auto by = [&](float c) { return static_cast<float>(c * longer); };
           if (by(x) == 0 && by(y) == 0 && by(z) == 0) continue;
-          for (const sk::float3& from : {sk::float3{0, 0, 0}, sk::float3{0.25f, -0.0f, 0.125f}}) {
+          for (const sk::float3& from :
+               {sk::float3{0, 0, 0}, sk::float3{0.25f, -0.0f, 0.125f}, sk::float3{0.5f, 0, 0.125f}}) {
+            // Outwards from the wall, at a distance that may round to less than 0, there may be nothing.
+            if (from.x == 0.5f && x > 0) continue;
             rays.push_back({.origin = from, .direction = {by(x), by(y), by(z)}});
             positive.push_back({.origin = from, .direction = {by(x) + 0.0f, by(y) + 0.0f, by(z) + 0.0f}});
           }

@@ -35,10 +35,10 @@ Findings studyAlike(sk::Device&, bool isSmall) {
       Place{"native", sk::Device::native()},
       Place{"fragment", sk::Device(sk::DeviceOptions{.device = "software", .profile = "glsl330"})},
       Place{"compute", sk::Device(sk::DeviceOptions{.device = "software", .profile = "glsl430"})}};
-  const Overrides overrides{.width = isSmall ? 8 : 32,
-                            .height = isSmall ? 6 : 24,
+  const Overrides overrides{.width = isSmall ? 8 : 24,
+                            .height = isSmall ? 6 : 16,
                             .samples = isSmall ? 2 : 8,
-                            .mostLevel = isSmall ? 1 : 3};
+                            .mostLevel = isSmall ? 1 : 2};
   std::vector<std::filesystem::path> files = sceneFiles(sceneFolder());
   if (isSmall) files.resize(1);
   const std::vector<Mode> modes = allModes();
