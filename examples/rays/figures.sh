@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# figures.sh RAYS [STUDY...]: runs the studies (all but embree, which needs cmake -DSK_EMBREE=ON, unless some are named) on the device native and writes their tables
-# into docs/rays.md, between the marks <!-- rays study NAME --> and <!-- /rays -->.
-# Takes a minute; tables of speeds count the time of the processor, not what passes.
+# figures.sh RAYS [STUDY...]: runs the studies (all but embree, which needs cmake -DSK_EMBREE=ON, and alike, which takes ten minutes, unless some are named)
+# on the device native and writes their tables into docs/rays.md, between the marks <!-- rays study NAME --> and <!-- /rays -->.
+# Takes some minutes; tables of speeds count the time of the processor, not what passes.
 set -euo pipefail
 (($# > 0)) || { echo "usage: figures.sh RAYS [STUDY...]" >&2; exit 1; }
 program=$(realpath "$1")
