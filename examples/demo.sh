@@ -79,7 +79,7 @@ example lattice "$examples/lattice/scenes/boiling.toml" --size "${size}x$((size 
 example lattice "$examples/lattice/scenes/boiling_3d.toml" --size "$((size * 3 / 16))x$((size / 6))x$((size * 3 / 16))"
 example lattice "$examples/lattice/scenes/stirred.toml" --size "${size}x$((size * 3 / 8))" --steps "$steps" --csv stirred.csv
 example lattice "$examples/lattice/scenes/rolls.toml" --size "${size}x$((size / 8))" --steps "$steps"
-example rays "$examples/rays/scenes/rings.toml" --size "$((size * 5 / 8))x$((size * 3 / 8))" --samples "$((steps / 160 + 1))" --output rays_rings.png
+example rays "$examples/rays/scenes/rings.toml" --size "$((size * 5 / 8))x$((size * 3 / 8))" --samples "$((steps / 40 + 1))" --error 0.1 --output rays_rings.png
 
 echo
 awk -F '\t' '

@@ -11,7 +11,9 @@
 #include "native/leaves.hpp"
 #include "native/records.hpp"
 #include "native/slots.hpp"
+#include "native/split_masks.hpp"
 #include "native/wide_masks.hpp"
+#include "transforms/fold_identity.hpp"
 #include "transforms/predicate.hpp"
 
 namespace skc::native {
@@ -20,12 +22,6 @@ using namespace ir;
 using sk::native::EntryKind;
 
 namespace {
-
-bool hasIdentities(const Kernel& kernel) {
-  return std::ranges::none_of(kernel.params, [](const KernelParam& param) {
-    return param.role == ParamRole::Accumulator && param.identity == nullptr;
-  });
-}
 
 class EntryWriter {
  public:
@@ -71,7 +67,11 @@ class EntryWriter {
       function_->setUWTableKind(llvm::UWTableKind::Default);  // AppendBuffer::grow may throw
     }
     setLevel(*function_, s_.level);
-    if (!s_.level.hasMaskRegisters) markWideMasks(*function_);
+    if (s_.level.hasMaskRegisters) {
+      markSplitMasks(*function_, s_.level.vectorBits);
+    } else {
+      markWideMasks(*function_);
+    }
     prologue_ = llvm::BasicBlock::Create(b_.getContext(), "entry", function_);
     llvm::BasicBlock* const start = llvm::BasicBlock::Create(b_.getContext(), "start", function_);
     b_.SetInsertPoint(start);

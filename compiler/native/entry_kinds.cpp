@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // Which entries the object code of a kernel has.
+#include "native/entries.hpp"
+
 #include <algorithm>
 
-#include "native/entries.hpp"
 #include "ir/reach.hpp"
-#include "native/debug_info.hpp"
-#include "native/function_code.hpp"
 #include "native/leaves.hpp"
 #include "native/records.hpp"
-#include "native/slots.hpp"
-#include "native/wide_masks.hpp"
-#include "transforms/predicate.hpp"
+#include "transforms/fold_identity.hpp"
 
 namespace skc::native {
 namespace {

@@ -12,6 +12,18 @@ namespace skc::native {
 
 using namespace ir;
 
+namespace {
+
+/// True if a condition is `uniform && AnyLane(mask)`.
+bool endsInAnyLane(const Expr& condition) {
+  const auto* const both = std::get_if<Binary>(&condition.node);
+  if (both == nullptr || both->op != BinaryOp::LogicalAnd) return false;
+  const auto* const any = std::get_if<IntrinsicCall>(&both->rhs->node);
+  return any != nullptr && any->intrinsic == Intrinsic::AnyLane;
+}
+
+}  // namespace
+
 CallResult inlineCall(const KernelContext& context, FunctionId function,
                       const std::vector<Parts>& arguments) {
   return FunctionCode(context, function).write({arguments}).front();
@@ -172,7 +184,10 @@ void FunctionCode::write(const Loop& n) {
   branch(n.kind == LoopKind::DoWhile ? body : test);
   b.SetInsertPoint(test);
   if (n.cond) {
-    b.CreateCondBr(condition(*n.cond), body, end);
+    llvm::BranchInst* const jump = b.CreateCondBr(condition(*n.cond), body, end);
+    // without this, LLVM makes two jumps of `count < most && AnyLane(live)`, and tests the lanes' words one by one
+    if (endsInAnyLane(*n.cond))
+      jump->setMetadata(llvm::LLVMContext::MD_unpredictable, llvm::MDNode::get(b.getContext(), {}));
   } else {
     branch(body);
   }

@@ -89,6 +89,43 @@ bool onlyGathers(const Module& module, const Kernel& kernel) {
   return some && all;
 }
 
+/// True if a loop of the kernel reads streams at indices or offsets of its own.
+bool readsInLoops(const Module& module, const Kernel& kernel) {
+  bool found = false;
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    walkStmts(module.functions[id].body, [&](const Stmt& stmt) {
+      const auto* loop = std::get_if<Loop>(&stmt.node);
+      if (loop == nullptr) return;
+      walkExprs(loop->body, [&](const Expr& expr) {
+        found = found || std::holds_alternative<GatherRead>(expr.node) ||
+                std::holds_alternative<NeighborRead>(expr.node) ||
+                std::holds_alternative<Sample>(expr.node) || std::holds_alternative<Call>(expr.node);
+      });
+      walkStmts(loop->body,
+                [&](const Stmt& inner) { found = found || std::holds_alternative<CallStmt>(inner.node); });
+    });
+  }
+  return found;
+}
+
+/// The number of vectors in which a kernel with data-dependent loops computes elements. The operations of an iteration
+/// wait for each other: a second vector, and where nothing is read in loops a third and a fourth, fill the time, as
+/// long as what differs between lanes leaves half of the registers for intermediate results.
+std::uint32_t vectorsOfLoops(const Module& module, const Kernel& kernel, std::size_t scalars,
+                             std::uint32_t registers) {
+  constexpr std::size_t few = 16;
+  if (scalars > few) return 1;
+  if (readsInLoops(module, kernel)) return 2;
+  const Uniformity uniformity(module, kernel);
+  std::size_t varying = 0;
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    const auto count = static_cast<VarId>(module.functions[id].variables.size());
+    for (VarId variable = 0; variable < count; ++variable)
+      varying += static_cast<std::size_t>(std::ranges::count(uniformity.of(id, variable), Shape::Varying));
+  }
+  return 4 * varying <= registers / 2 ? 4 : 2;
+}
+
 /// The number of vectors, of `bytes` each, in which accumulators are folded side by side. Several vectors
 /// read memory in order and do not wait for each other's additions. The runtime has 256 bytes of columns per
 /// scalar: one scalar uses them all, so that a leaf is read sequentially; several use half of them, because
@@ -135,10 +172,8 @@ std::uint32_t laneCount(const Module& module, const Kernel& kernel, sk::native::
     for (const Variable& variable : module.functions[id].variables)
       scalars += componentCount(module, variable.type);
   }
-  // a chain of dependent operations leaves execution units idle; a second vector fills them
-  constexpr std::size_t few = 16;
-  const bool waits = analysis::streamUses(module, kernel).loops;
-  if (waits) return scalars <= few ? 2 * one : one;
+  if (analysis::streamUses(module, kernel).loops)
+    return one * vectorsOfLoops(module, kernel, scalars, level.vectorRegisters);
   const bool foldsInAnyOrder =
       kind == sk::native::EntryKind::Fold && kernel.reduction && kernel.reduction->commutative;
   if (foldsInAnyOrder && foldsBesideOutputs(kernel))

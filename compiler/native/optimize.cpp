@@ -7,6 +7,7 @@
 #include <llvm/Support/Error.h>
 
 #include "native/carried_values.hpp"
+#include "native/split_masks.hpp"
 #include "native/wide_masks.hpp"
 
 namespace skc::native {
@@ -19,7 +20,7 @@ constexpr char pipeline[] =
     "function("
     "sroa<modify-cfg>,early-cse<memssa>,simplifycfg,instcombine<no-verify-fixpoint>,"  // variables become registers
     "loop-mssa(loop-rotate,licm),"
-    "gvn,carried-values,instcombine<no-verify-fixpoint>,simplifycfg,adce,wide-masks)";
+    "gvn,carried-values,instcombine<no-verify-fixpoint>,simplifycfg,adce,wide-masks,split-masks)";
 
 }  // namespace
 
@@ -38,6 +39,7 @@ void optimize(llvm::Module& module, llvm::TargetMachine& machine) {
                                              llvm::ArrayRef<llvm::PassBuilder::PipelineElement>) {
     if (name == "carried-values") return list.addPass(CarriedValues()), true;
     if (name == "wide-masks") return list.addPass(WideMasks()), true;
+    if (name == "split-masks") return list.addPass(SplitMasks()), true;
     return false;
   });
   llvm::ModulePassManager passes;

@@ -131,13 +131,15 @@ class Widener {
   }
 
   /// Makes users that are not computed in words take the mask from the words. `everywhere` is false for masks
-  /// of comparisons, whose users in the same block stay.
+  /// of comparisons, whose users in the same block stay, but for tests of masks that have words anyway.
   void replaceUses(llvm::Instruction& mask, bool everywhere) {
     llvm::SmallSetVector<llvm::Instruction*, 8> users;
+    const bool hasWords = words_.contains(&mask) || isUsedElsewhere(mask);
     for (llvm::User* const user : mask.users()) {
       auto* const instruction = llvm::cast<llvm::Instruction>(user);
-      if (!computed_.contains(instruction) && (everywhere || instruction->getParent() != mask.getParent()))
-        users.insert(instruction);
+      const bool takesWords =
+          everywhere || instruction->getParent() != mask.getParent() || (hasWords && isAnyTest(*instruction));
+      if (!computed_.contains(instruction) && takesWords) users.insert(instruction);
     }
     users.remove_if([&](llvm::Instruction* user) { return words_.contains(&mask) && words_[&mask] == user; });
     for (llvm::Instruction* const user : users) {
@@ -149,15 +151,19 @@ class Widener {
     }
   }
 
+  /// True if `user` tests whether any bit is set.
+  static bool isAnyTest(const llvm::Instruction& user) {
+    using namespace llvm::PatternMatch;
+    return llvm::isa<llvm::BitCastInst>(user) && user.getType()->isIntegerTy() &&
+           llvm::all_of(user.users(), [](const llvm::User* comparison) {
+             const auto* const test = llvm::dyn_cast<llvm::ICmpInst>(comparison);
+             return test != nullptr && test->isEquality() && match(test->getOperand(1), m_Zero());
+           });
+  }
+
   /// Turns a test whether any bit is set into a test of the words; false if `user` is no such test.
   bool replaceAnyTest(llvm::Instruction& user, llvm::Value* wide) {
-    using namespace llvm::PatternMatch;
-    if (!llvm::isa<llvm::BitCastInst>(user) || !user.getType()->isIntegerTy()) return false;
-    const auto isZeroTest = [](const llvm::User* comparison) {
-      const auto* const test = llvm::dyn_cast<llvm::ICmpInst>(comparison);
-      return test != nullptr && test->isEquality() && match(test->getOperand(1), m_Zero());
-    };
-    if (!llvm::all_of(user.users(), isZeroTest)) return false;
+    if (!isAnyTest(user)) return false;
     llvm::Value* const any = b_.CreateOrReduce(wide);
     for (llvm::User* const comparison : llvm::make_early_inc_range(user.users())) {
       auto* const test = llvm::cast<llvm::ICmpInst>(comparison);

@@ -12,6 +12,7 @@
 #include "ir/walk.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
+#include "transforms/fold_identity.hpp"
 #include "transforms/fold_pattern.hpp"
 #include "transforms/sum_terms.hpp"
 #include "transforms/synthesized_kernel.hpp"
@@ -217,19 +218,13 @@ class CompensatedVariantBuilder {
   std::vector<FloatSum> sums_;
 };
 
-/// Needed because runs of this variant start from identities: a first element has no error to start with.
-bool hasIdentities(const Kernel& kernel) {
-  return std::ranges::all_of(kernel.params, [](const KernelParam& param) {
-    return param.role != ParamRole::Accumulator || param.identity;
-  });
-}
-
 }  // namespace
 
 void compensateSums(Module& module, Diagnostics&) {
   const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     const Kernel& kernel = module.kernels[id];
+    // Runs of this variant start from identities, because a first element has no error to start with.
     if (!kernel.reduction || kernel.isSynthesized || !hasIdentities(kernel)) continue;
     std::vector<FloatSum> sums = floatSums(module, id);
     if (!sums.empty()) CompensatedVariantBuilder(module, id, std::move(sums)).make();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "transforms/fold_identity.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "ir/build.hpp"
@@ -67,6 +68,12 @@ bool isIdempotent(FoldOp op) {
   const BinaryOp binary = std::get<BinaryOp>(op);
   return binary == BinaryOp::BitAnd || binary == BinaryOp::BitOr || binary == BinaryOp::LogicalAnd ||
          binary == BinaryOp::LogicalOr;
+}
+
+bool hasIdentities(const Kernel& kernel) {
+  return std::ranges::none_of(kernel.params, [](const KernelParam& param) {
+    return param.role == ParamRole::Accumulator && param.identity == nullptr;
+  });
 }
 
 }  // namespace skc

@@ -15,4 +15,7 @@ ir::ExprPtr neutralOf(FoldOp op, ir::Scalar scalar);
 /// result, but the result is always the same.
 bool isIdempotent(FoldOp op);
 
+/// True if every accumulator of a reduce has an identity.
+bool hasIdentities(const ir::Kernel& kernel);
+
 }  // namespace skc

@@ -17,6 +17,7 @@
 #include "transforms/blend_cost.hpp"
 #include "transforms/hoist_calls.hpp"
 #include "transforms/predicate_function.hpp"
+#include "transforms/split_counters.hpp"
 
 namespace skc {
 
@@ -90,7 +91,12 @@ void predicate(Module& module) {
   for (const Kernel& kernel : module.kernels) {
     const std::vector<FunctionId> functions = functionsOf(module, kernel);
     for (const FunctionId id : functions) hoistCalls(module.functions[id], isLong);
-    const analysis::Uniformity uniformity(module, kernel);
+    std::optional<analysis::Uniformity> known(std::in_place, module, kernel);
+    bool isSplit = false;
+    for (const FunctionId id : functions)
+      isSplit = splitCounters(module.functions[id], id, *known) || isSplit;
+    if (isSplit) known.emplace(module, kernel);
+    const analysis::Uniformity& uniformity = *known;
     BlendCost cost(module);
     const PredicateContext context{module, uniformity,
                                    maskedFunctions(module, kernel, uniformity, cost, functions), isLong};

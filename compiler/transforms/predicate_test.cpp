@@ -136,6 +136,37 @@ TEST_CASE("a loop runs until all lanes have left it, and its counter stays unifo
   CHECK(entryMask(s.module, s.module.kernels.front()) == 3U);
 }
 
+TEST_CASE("a counter that is read after its loop has a uniform copy inside") {
+  Sample s;
+  const VarId n = s.k.local("n", intType);
+  CHECK(s.predicated(
+            block(declare(n, literal(2)),
+                  whileLoop(binary(BinaryOp::LogicalAnd, binary(BinaryOp::Less, s.k.ref(n), s.k.ref(s.u)),
+                                   binary(BinaryOp::Less, s.k.ref(n), s.k.ref(s.x))),
+                            block(assign(s.k.ref(n), BinaryOp::Add, literal(3)))),
+                  assign(s.k.ref(s.r), s.k.ref(n)))) == R"({
+  int n = 2;
+  int count = 2;
+  for (bool live = active && count < x; count < u && AnyLane(live); live = live && count < x) {
+    count += 3;
+    n = live ? n + 3 : n;
+  }
+  r = n;
+}
+)");
+}
+
+TEST_CASE("a counter that lanes change in different iterations has no copy") {
+  Sample s;
+  const VarId n = s.k.local("n", intType);
+  CHECK(s.predicated(block(declare(n, literal(0)),
+                           whileLoop(binary(BinaryOp::Less, s.k.ref(n), s.k.ref(s.x)),
+                                     block(ifStmt(s.isSmall(), block(continueStmt())),
+                                           assign(s.k.ref(n), BinaryOp::Add, literal(1)))),
+                           assign(s.k.ref(s.r), s.k.ref(n))))
+            .find("count") == std::string::npos);
+}
+
 TEST_CASE("a lane that goes on with the next round keeps what the others change in this one") {
   Sample s;
   const VarId i = s.k.local("i", intType);

@@ -42,7 +42,7 @@ struct BvhNode {
 
 struct BvhSettings {
   int bins = 16;  ///< places that are tried along an axis
-  int leaf = 4;  ///< shapes in a leaf at most, but where all boxes are alike
+  int leaf = 2;  ///< shapes in a leaf at most, but where all boxes are alike
   double visit = 1.0;  ///< cost of a node relative to that of a shape
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "camera.hpp"
 
+#include <algorithm>
 #include <numbers>
 #include <stdexcept>
 
@@ -30,6 +31,26 @@ std::vector<Ray> primaryRays(const Camera& camera, int width, int height) {
     }
   }
   return rays;
+}
+
+Camera turned(const Camera& camera, double right, double upwards) {
+  const Vector up = normalized(camera.up), out = camera.from - camera.to;
+  const double distance = length(out), height = std::asin(std::clamp(dot(normalized(out), up), -1.0, 1.0));
+  const double steepest = std::numbers::pi / 2 - 0.01;
+  const double to = std::clamp(height + upwards, -steepest, steepest);
+  // Of the plane that `up` stands on: the direction of the camera, and the one to its right.
+  const Vector flat = normalized(out - dot(out, up) * up), aside = cross(up, flat);
+  const Vector around = std::cos(right) * flat + std::sin(right) * aside;
+  Camera moved = camera;
+  moved.from = camera.to + distance * (std::cos(to) * around + std::sin(to) * up);
+  return moved;
+}
+
+Camera approached(const Camera& camera, double factor) {
+  Camera moved = camera;
+  moved.from = camera.to + factor * (camera.from - camera.to);
+  moved.focus *= factor;
+  return moved;
 }
 
 }  // namespace rays

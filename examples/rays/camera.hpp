@@ -20,4 +20,11 @@ View viewOf(const Camera& camera, int width, int height);
 /// Row by row from the top left, through the centres of pixels. The camera's lens does not count.
 std::vector<Ray> primaryRays(const Camera& camera, int width, int height);
 
+/// The camera carried about the point that it looks at: to the right by an angle about `up`, then upwards, in radians. It stays 0.01 away from looking
+/// along `up`.
+Camera turned(const Camera& camera, double right, double upwards);
+
+/// The camera at another distance from what it looks at, and so is what is sharp.
+Camera approached(const Camera& camera, double factor);
+
 }  // namespace rays

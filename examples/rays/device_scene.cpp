@@ -24,7 +24,28 @@ Bvh built(const Model& model, const BvhSettings& settings) {
   return bvh;
 }
 
+struct Way {
+  HowToTraverse traversal;
+  int nodes;
+};
+
+/// What was fastest on devices of a kind in the study of speed (docs/rays.md).
+Way fastestOn(const sk::Device& device) {
+  if (device.name().starts_with("native")) return {HowToTraverse::Stack, wideChildren};
+  if (device.isSoftware()) return {HowToTraverse::Leaves, 2};
+  return {HowToTraverse::Stack, 2};
+}
+
 }  // namespace
+
+std::string_view nameOf(HowToTraverse way) {
+  switch (way) {
+    case HowToTraverse::Stack: return "stack";
+    case HowToTraverse::Leaves: return "leaves";
+    case HowToTraverse::Skip: return "skip";
+  }
+  return "";
+}
 
 DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSettings& settings)
     : device_(&device), model_(&model) {
@@ -34,7 +55,12 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   const bool isNative = device.name().starts_with("native");
   intersection_ = settings.intersection;
   precision_ = settings.precision;
-  traversal_ = settings.traversal.value_or(isNative ? HowToTraverse::Stack : HowToTraverse::Leaves);
+  const Way fastest = fastestOn(device);
+  traversal_ = settings.traversal.value_or(fastest.traversal);
+  // Links are for two children, and there are at most as many wide nodes as others.
+  const bool canBeWide = traversal_ != HowToTraverse::Skip && bvh_.nodes.size() <= mostWideNodes;
+  width_ = settings.nodes.value_or(canBeWide ? fastest.nodes : 2);
+  isChosen_ = !settings.traversal && !settings.nodes;
   contracted_ = !isNative;
   hasTriangles_ = !model.triangles.empty();
   hasSpheres_ = !model.spheres.empty();
@@ -43,16 +69,31 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   planeCount_ = static_cast<int>(model.planes.size());
   firstPlane_ = model.planeId(0);
   planes_ = streamOf(device, planeLayout(model));
-  nodes_ = streamOf(device, traversal_ == HowToTraverse::Skip ? skipLayout(bvh_) : pairLayout(bvh_));
+  WideBvh wide;
+  std::vector<sk::float4> nodes;
+  if (width_ == wideChildren)
+    wide = widen(bvh_);
+  else
+    nodes = traversal_ == HowToTraverse::Skip ? skipLayout(bvh_) : pairLayout(bvh_);
+  nodes_ = streamOf(device, std::move(nodes));
+  wide_ = streamOf(device, std::move(wide.nodes));
+  children_ = streamOf(device, std::move(wide.children));
   shapes_ = streamOf(device, shapeLayout(bvh_.order, model));
+}
+
+unsigned DeviceScene::kernelTraversal() const {
+  // shape_test.sk: Stack, Leaves, Skip, and the first two of them for nodes of eight.
+  return static_cast<unsigned>(traversal_) + (width_ == wideChildren ? 3u : 0u);
 }
 
 std::vector<std::string> DeviceScene::account() const {
   if (bvh_.nodes.empty()) return {};
-  return {fmt::format(
-      "hierarchy: {} triangles, {} spheres in {} nodes, {} levels, expected cost {:.1f}, built in {:.0f} ms",
-      model_->triangles.size(), model_->spheres.size(), bvh_.nodes.size(), bvh_.depth, bvh_.cost,
-      milliseconds_)};
+  return {fmt::format("hierarchy: {} triangles, {} spheres in {} nodes, {} levels, expected cost {:.1f}, "
+                      "built in {:.0f} ms",
+                      model_->triangles.size(), model_->spheres.size(), bvh_.nodes.size(), bvh_.depth,
+                      bvh_.cost, milliseconds_),
+          fmt::format("rays go through nodes of {} children, traversal \"{}\"{}", width_, nameOf(traversal_),
+                      isChosen_ ? ", the fastest on such a device" : "")};
 }
 
 }  // namespace rays

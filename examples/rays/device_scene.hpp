@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sk/sk.hpp>
@@ -13,18 +14,33 @@
 #include "bvh.hpp"
 #include "bvh.sk.hpp"
 #include "model.hpp"
+#include "wide_bvh.hpp"
 
 namespace rays {
 
 enum class HowToTraverse : std::uint8_t { Stack, Leaves, Skip };
+/// As scenes spell it.
+std::string_view nameOf(HowToTraverse way);
+
 enum class HowToIntersect : std::uint8_t { Watertight, Moller };
+
+/// Paths followed by one kernel to their end, or by a call for each segment of all paths that are left.
+enum class PathMachine : std::uint8_t { Megakernel, Wavefront };
+
+/// Whether rays are brought into an order first, in which neighbours go the same way: by the place where they begin, then the signs of their
+/// directions; or by these signs first.
+enum class RaySort : std::uint8_t { None, Origin, Direction };
 
 struct DeviceSettings {
   BvhSettings bvh{};
   std::optional<HowToTraverse> traversal{};  ///< none: what is faster on the device
+  std::optional<int>
+      nodes{};  ///< children of a node, 2 or `wideChildren`; none: what is faster. Skip needs 2
   HowToIntersect intersection = HowToIntersect::Watertight;
   /// Single or Double. Numbers of shapes travel in floats, which halves would round.
   sk::Precision precision = sk::Precision::Single;
+  PathMachine machine = PathMachine::Megakernel;
+  RaySort sort = RaySort::None;  ///< of lists of rays, and of the wavefront machine
 };
 
 /// A gather must not be empty, and what no kernel reads may hold anything.
@@ -36,6 +52,14 @@ sk::Stream<T> streamOf(sk::Device& device, std::vector<T> elements) {
   return stream;
 }
 
+/// What shading needs of shapes, in the order that hits count them in. Whoever owns them outlives it.
+struct ShapeView {
+  sk::Device& device;
+  const Model& model;
+  bool hasTriangles, hasSpheres;
+  const sk::Stream<sk::float4>&planes, &shapes;
+};
+
 class DeviceScene {
  public:
   DeviceScene(sk::Device& device, const Model& model, const DeviceSettings& settings);
@@ -43,18 +67,24 @@ class DeviceScene {
   /// The arguments that all kernels begin with, up to `shapes`, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
-    kernel.with({.precision = precision_})(static_cast<unsigned>(intersection_),
-                                           static_cast<unsigned>(traversal_), contracted_, hasTriangles_,
-                                           hasSpheres_, hasPlanes_, nodeCount_, planeCount_, firstPlane_,
-                                           planes_, nodes_, shapes_, std::forward<More>(more)...);
+    kernel.with({.precision = precision_})(static_cast<unsigned>(intersection_), kernelTraversal(),
+                                           contracted_, hasTriangles_, hasSpheres_, hasPlanes_, nodeCount_,
+                                           planeCount_, firstPlane_, planes_, nodes_, wide_, children_,
+                                           shapes_, std::forward<More>(more)...);
   }
 
   sk::Device& device() const { return *device_; }
   const Model& model() const { return *model_; }
   const Bvh& bvh() const { return bvh_; }
+  ShapeView view() const { return {*device_, *model_, hasTriangles_, hasSpheres_, planes_, shapes_}; }
+  /// As the kernels know them: of two children or of eight, and once for each octant where there are links.
+  std::int64_t nodeCount() const { return width_ == wideChildren ? wide_.size() / 4 : nodes_.size() / 2; }
   std::vector<std::string> account() const;
 
  private:
+  /// kernels::Traversal.
+  unsigned kernelTraversal() const;
+
   sk::Device* device_;
   const Model* model_;
   Bvh bvh_;
@@ -62,9 +92,13 @@ class DeviceScene {
   HowToIntersect intersection_;
   sk::Precision precision_;
   HowToTraverse traversal_;
+  int width_;  ///< children of a node
+  bool isChosen_;  ///< both, because nothing was asked for
   bool contracted_, hasTriangles_, hasSpheres_, hasPlanes_;
   int nodeCount_, planeCount_, firstPlane_;
   sk::Stream<sk::float4> planes_, nodes_, shapes_;
+  sk::Stream<sk::int4> wide_;
+  sk::Stream<std::int32_t> children_;
 };
 
 }  // namespace rays

@@ -14,6 +14,7 @@ struct DeviceShapes {
   /// Both must outlive it.
   DeviceShapes(sk::Device& onDevice, const Model& ofModel);
 
+  ShapeView view() const { return {device, model, hasTriangles, hasSpheres, planes, shapes}; }
   bool hasShapes() const { return hasTriangles || hasSpheres; }
 
   sk::Device& device;

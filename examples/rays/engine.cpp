@@ -4,6 +4,7 @@
 #include <array>
 
 #include "bvh_engine.hpp"
+#include "exposure.hpp"
 #include "ray_engine.hpp"
 #include "streaming_engine.hpp"
 
@@ -17,5 +18,9 @@ std::span<const EngineKind> engineKinds() {
   };
   return kinds;
 }
+
+std::vector<sk::float3> Renderer::image() { return exposure().image(); }
+
+std::vector<sk::float3> Renderer::variance() { return exposure().variance(); }
 
 }  // namespace rays

@@ -30,6 +30,7 @@ enum class Strategy : std::uint8_t {
 };
 
 struct Picture {
+  bool everything = false;  ///< compiles in what the scene does not name, too, to measure what that costs
   int width = 512;
   int height = 512;
   int depth = 8;  ///< segments of a path, the one from the camera included
@@ -38,18 +39,25 @@ struct Picture {
   Strategy strategy = Strategy::Both;
 };
 
-/// A picture that becomes better with each pass: one more sample for each pixel.
+class Exposure;
+
+/// A picture that becomes better with each pass: one more sample for each pixel that still wants one.
 class Renderer {
  public:
   virtual ~Renderer() = default;
-  /// Adds sample `index` of every pixel; the same index makes the same sample.
+  /// Adds sample `index` of every active pixel; the same index makes the same sample.
   virtual void pass(std::int64_t index) = 0;
-  /// The mean of all passes so far: radiance, row by row from the top. Waits for the device.
-  virtual std::vector<sk::float3> image() = 0;
-  /// The variance of that mean, for the samples as independent ones; empty where the engine does not measure it.
-  virtual std::vector<sk::float3> variance() { return {}; }
+  /// The samples of all passes so far (exposure.hpp).
+  virtual Exposure& exposure() = 0;
+  /// Begins anew with another camera, in the model's lengths.
+  virtual void look(const Camera& camera) = 0;
   /// Lines for the report: what this picture required, and what it would have cost otherwise.
   virtual std::vector<std::string> account() { return {}; }
+
+  /// The mean of all passes so far: radiance, row by row from the top. Waits for the device.
+  std::vector<sk::float3> image();
+  /// The variance of that mean, for the samples as independent ones; empty before there are two.
+  std::vector<sk::float3> variance();
 };
 
 class Engine {

@@ -70,7 +70,8 @@ TEST_CASE("hits are those of loops in double precision, on every device and by e
   for (const char* name : {"native", "glsl330", "essl300", "glsl430"}) {
     sk::Device device = profileDevice(name);
     for (const char* settings :
-         {"traversal = \"stack\"\n", "traversal = \"leaves\"\n", "traversal = \"skip\"\nleaf = 1\n"}) {
+         {"traversal = \"stack\"\n", "traversal = \"leaves\"\n", "traversal = \"skip\"\nleaf = 1\n",
+          "nodes = 8\ntraversal = \"stack\"\n", "nodes = 8\ntraversal = \"leaves\"\nleaf = 1\n"}) {
       INFO(name << ": " << settings);
       const std::unique_ptr<Engine> engine = engineOf(device, model, settings);
       std::vector<Hit> hits(rays.size());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "camera.hpp"
 #include "raster_file.hpp"
@@ -83,7 +84,10 @@ std::vector<Layer> layersOf(Engine& engine, const Model& model, const Picture& p
   const std::vector<Ray> rays = primaryRays(model.camera, picture.width, picture.height);
   std::vector<Hit> hits(rays.size());
   engine.closest(rays, hits);
-  std::vector<Layer> layers = {{"depth", {}}, {"normal", {}}, {"albedo", {}}, {"id", {}}};
+  std::vector<Layer> layers = {{.name = "depth", .isSingle = true},
+                               {.name = "normal"},
+                               {.name = "albedo"},
+                               {.name = "id", .isSingle = true}};
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool isHit = hits[i].id >= 0;
     const Seen seen = isHit ? seenAt(model, rays[i], hits[i]) : Seen{};
@@ -91,9 +95,33 @@ std::vector<Layer> layersOf(Engine& engine, const Model& model, const Picture& p
     layers[1].pixels.push_back(toFloat3(isBehind ? -1.0 * seen.normal : seen.normal));
     layers[2].pixels.push_back(isHit ? albedoOf(model, seen) : grey(0));
     layers[3].pixels.push_back(grey(static_cast<float>(hits[i].id)));
+    layers[3].whole.push_back(hits[i].id);
   }
   toSceneLengths(model, hits);
   for (const Hit& hit : hits) layers[0].pixels.push_back(grey(hit.t));
+  return layers;
+}
+
+bool seesBacksAlone(Engine& engine, const Model& model) {
+  const std::vector<Ray> rays = primaryRays(model.camera, 8, 8);
+  std::vector<Hit> hits(rays.size());
+  engine.closest(rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].id < 0) return false;
+    const Seen seen = seenAt(model, rays[i], hits[i]);
+    const Scattering scattering = model.materials[static_cast<std::size_t>(seen.material)].scattering;
+    const bool isClear = scattering == Scattering::Glass || scattering == Scattering::Frosted;
+    if (isClear || dot(seen.normal, vecOf<double>(rays[i].direction)) <= 0) return false;
+  }
+  return true;
+}
+
+std::vector<Layer> layersOf(Exposure& exposure) {
+  std::vector<Layer> layers;
+  if (exposure.passes() >= 2) layers.push_back({.name = "variance", .pixels = exposure.variance()});
+  Layer samples{.name = "samples", .isSingle = true, .whole = exposure.counts()};
+  for (const int count : samples.whole) samples.pixels.push_back(grey(static_cast<float>(count)));
+  layers.push_back(std::move(samples));
   return layers;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // rays: pictures and hits of scene files, by the engine that the scene asks for.
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -14,10 +15,13 @@
 #include <fmt/format.h>
 #include <sk/sk.hpp>
 
+#include "account.hpp"
 #include "camera.hpp"
 #include "engine.hpp"
+#include "exposure.hpp"
 #include "hits_file.hpp"
 #include "layers.hpp"
+#include "live.hpp"
 #include "reference.hpp"
 #include "render.hpp"
 #include "scene.hpp"
@@ -37,10 +41,14 @@ struct Settings {
   std::optional<std::filesystem::path> output;
   std::optional<std::int64_t> samples;
   std::optional<double> seconds;
+  std::optional<double> error;
+  std::filesystem::path resume;
   std::string study;
   bool small = false;
   std::string layers;
   bool strict = false;
+  bool window = false;
+  bool account = false;
 };
 
 void addOptions(CLI::App& cli, Settings& s) {
@@ -54,14 +62,26 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->check(CLI::Range(1, 1'000'000));
   cli.add_option("--seconds", s.seconds, "end after this time, whatever samples there are")
       ->check(CLI::Range(0.0, 1e7));
-  cli.add_option("--output", s.output, "the picture, .png or .pfm, in place of the scene's");
+  cli.add_option("--error", s.error,
+                 "stop pixels whose 95 % interval is within this part of their brightness; 0: none; in place "
+                 "of the scene's")
+      ->check(CLI::Range(0.0, 1.0));
+  cli.add_option(
+      "--resume", s.resume,
+      "go on from this file where it exists, and keep it up to date; to the bit as without a break");
+  cli.add_option("--output", s.output, "the picture, .png, .pfm or .exr, in place of the scene's");
   cli.add_option("--hits", s.hits,
                  "no picture: write x,y,id,t,u,v of the rays through the pixels' centres to this file");
   cli.add_option("--trace", s.rays,
                  "with --hits: the rays of this file, lines of ox oy oz dx dy dz [tmin tmax]");
-  cli.add_option(
-      "--layers", s.layers,
-      "write FILE_depth.pfm, _normal.pfm, _albedo.pfm, _id.pfm and _variance.pfm beside the picture");
+  cli.add_option("--layers", s.layers,
+                 "write FILE_depth.pfm, _normal.pfm, _albedo.pfm, _id.pfm, _variance.pfm and _samples.pfm "
+                 "beside the picture");
+  cli.add_flag(
+      "--window", s.window,
+      "show it in a window while it becomes better: the mouse turns it, the wheel; space, r, +, -, q");
+  cli.add_flag("--account", s.account,
+               "measure what it saves that kernels have nothing that the scene does not name");
   std::string studies = "measure what choices are worth, and print a table:";
   for (const rays::Study& study : rays::studies())
     studies += fmt::format("\n  {:<11} {}", study.name, study.asks);
@@ -87,7 +107,7 @@ void applySize(const std::string& text, rays::Overrides& overrides) {
 
 rays::Scene sceneOf(const Settings& s) {
   rays::Overrides overrides{
-      .samples = s.samples, .seconds = s.seconds, .engine = s.engine, .strict = s.strict};
+      .samples = s.samples, .seconds = s.seconds, .engine = s.engine, .strict = s.strict, .error = s.error};
   if (!s.size.empty()) applySize(s.size, overrides);
   rays::Scene scene = rays::readScene(s.scene, overrides);
   if (s.output) scene.output.picture = *s.output;
@@ -119,28 +139,66 @@ void writeHits(examples::Application& app, const Settings& s, const rays::Scene&
     app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
 }
 
+/// How many samples pixels took, and what stopping early saved.
+std::string samplesText(const rays::Rendering& rendering, const rays::Scene& scene) {
+  std::string text;
+  if (rendering.resumed > 0) text += fmt::format("went on from sample {}; ", rendering.resumed);
+  if (scene.output.error == 0.0) return text + fmt::format("{} samples in each pixel", rendering.samples);
+  const auto pixels = double(scene.picture.width) * scene.picture.height;
+  return text + fmt::format(
+                    "{:.1f} samples a pixel on average and {} at most, {:.0f} % fewer than {} everywhere; "
+                    "{:.1f} % of the pixels "
+                    "may be off by more than {}",
+                    rendering.perPixel, rendering.samples,
+                    100 * (1 - rendering.perPixel / double(rendering.samples)), rendering.samples,
+                    100 * double(rendering.unfinished) / pixels, scene.output.error);
+}
+
 void makePicture(examples::Application& app, const Settings& s, const rays::Scene& scene) {
   rays::checkOutput(scene);
   sk::Device device(app.device());
   const std::unique_ptr<rays::Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
   const rays::Picture& picture = scene.picture;
   const std::unique_ptr<rays::Renderer> renderer = engine->renderer(picture);
-  const rays::Rendering rendering = rays::render(*renderer, scene);
-  rays::saveRendering(rendering, scene);
+  const rays::Rendering rendering = rays::render(*renderer, scene, {s.resume, device.name()});
+  const bool isBlack = std::ranges::all_of(
+      rendering.radiance, [](const sk::float3& r) { return r.x == 0 && r.y == 0 && r.z == 0; });
+  if (isBlack && rays::seesBacksAlone(*engine, scene.model))
+    fmt::print(stderr,
+               "rays: warning: the picture is black, and the camera sees nothing but the backs of surfaces; "
+               "is it inside of a wall?\n");
+  const bool isExr = scene.output.picture.extension() == ".exr";
+  std::vector<rays::Layer> layers;
+  if (isExr || !s.layers.empty()) {
+    layers = rays::layersOf(*engine, scene.model, picture);
+    for (rays::Layer& layer : rays::layersOf(renderer->exposure())) layers.push_back(std::move(layer));
+  }
+  rays::saveRendering(rendering, scene, layers);
   app.report(
       fmt::format("{}, {} x {}, {} samples", scene.name, picture.width, picture.height, rendering.samples),
       device.name(), rendering.milliseconds);
   for (const std::string& line : engine->account()) fmt::print("{}\n", line);
   for (const std::string& line : renderer->account()) fmt::print("{}\n", line);
-  fmt::print("wrote {}\n", scene.output.picture.string());
+  fmt::print("{}\n", samplesText(rendering, scene));
+  fmt::print("wrote {}{}\n", scene.output.picture.string(),
+             isExr ? fmt::format(" with {} layers", layers.size()) : "");
+  if (!s.resume.empty()) fmt::print("wrote {}, from which more samples can go on\n", s.resume.string());
   if (!s.layers.empty()) {
-    std::vector<rays::Layer> layers = rays::layersOf(*engine, scene.model, picture);
-    if (std::vector<sk::float3> variance = renderer->variance(); !variance.empty())
-      layers.push_back({"variance", std::move(variance)});
     rays::saveLayers(s.layers, layers, picture);
     fmt::print("wrote {} layers, {}_*.pfm\n", layers.size(), s.layers);
   }
   app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
+  if (!s.account) return;
+  const rays::Account account = rays::accountFor(*engine, scene);
+  fmt::print("{}\n", account.text);
+  app.verified(account.agreement);
+}
+
+void showPicture(examples::Application& app, const Settings& s, rays::Scene& scene) {
+  if (!s.resume.empty())
+    throw std::runtime_error("--window and --resume exclude each other: a window is not resumed");
+  rays::checkOutput(scene);
+  rays::runLive(scene, app.device());
 }
 
 void runStudy(examples::Application& app, const Settings& s) {
@@ -172,8 +230,9 @@ int main(int argc, char** argv) {
     if (!settings.rays.empty() && settings.hits.empty())
       throw std::runtime_error("--trace needs --hits, where its hits go");
     try {
-      const rays::Scene scene = sceneOf(settings);
+      rays::Scene scene = sceneOf(settings);
       if (!settings.hits.empty()) return writeHits(app, settings, scene);
+      if (settings.window) return showPicture(app, settings, scene);
       makePicture(app, settings, scene);
     } catch (const std::bad_alloc&) {
       throw std::runtime_error("the scene does not fit in memory; take smaller meshes or fewer instances");

@@ -9,29 +9,22 @@
 namespace rays {
 namespace {
 
-class PathRenderer : public Renderer {
+class PathRenderer : public PathsRenderer {
  public:
   PathRenderer(DeviceScene& scene, const Picture& picture)
-      : scene_(scene), tables_(scene.device(), scene.model(), picture), exposure_(scene.device(), picture) {}
+      : PathsRenderer(scene.device(), scene.model(), picture), scene_(scene) {}
 
   void pass(std::int64_t index) override {
-    PathTables& t = tables_;
-    scene_.call(kernels::followPaths, t.features, static_cast<unsigned>(t.sampling), t.view, t.setting,
-                static_cast<std::uint32_t>(index), t.seed, t.materials, t.corners, t.lights, t.sky, t.texels,
-                t.textures, exposure_.radiance);
-    exposure_.add();
+    const PathTables& t = tables_;
+    passBy([&](sk::Stream<sk::float3>& radiance) {
+      scene_.call(kernels::followPaths, features(), static_cast<unsigned>(t.sampling), t.view, t.setting,
+                  static_cast<std::uint32_t>(index), t.seed, t.materials, t.corners, t.lights, t.sky,
+                  t.texels, t.textures, pixels(), radiance);
+    });
   }
-
-  std::vector<sk::float3> image() override { return exposure_.image(); }
-
-  std::vector<sk::float3> variance() override { return exposure_.variance(); }
-
-  std::vector<std::string> account() override { return {tables_.account()}; }
 
  private:
   DeviceScene& scene_;
-  PathTables tables_;
-  Exposure exposure_;
 };
 
 }  // namespace

@@ -43,6 +43,9 @@ constexpr std::array<std::string_view, 12> featureNames = {"mirrors",
                                                            "a lens",
                                                            "the sky's image"};
 
+/// A sky without an image is another kind of light, and not one that costs nothing.
+constexpr int everything = ((1 << featureNames.size()) - 1) & ~SkyImage;
+
 bool isBlack(const sk::float3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 int scatteringFeature(Scattering scattering) {
@@ -118,10 +121,13 @@ std::vector<sk::float4> cornersOf(const Model& model) {
 kernels::View viewFor(const Camera& camera, const Picture& picture) {
   const View view = viewOf(camera, std::max(picture.width, 1), std::max(picture.height, 1));
   const Vector x = normalized(view.across), y = normalized(view.down);
-  return {toFloat3(view.origin),           toFloat3(view.corner),
-          toFloat3(view.across),           toFloat3(view.down),
-          toFloat3(camera.lens * x),       toFloat3(camera.lens * y),
-          static_cast<float>(camera.focus)};
+  return {toFloat3(view.origin),
+          toFloat3(view.corner),
+          toFloat3(view.across),
+          toFloat3(view.down),
+          toFloat3(camera.lens * x),
+          toFloat3(camera.lens * y),
+          static_cast<float>(camera.focus > 0 ? camera.focus : 1.0)};
 }
 
 }  // namespace
@@ -131,6 +137,7 @@ PathTables::PathTables(sk::Device& device, const Model& model, const Picture& pi
       sampling(picture.sampling),
       seed(picture.seed),
       view(viewFor(model.camera, picture)) {
+  if (picture.everything) features |= everything;
   LightTable table = lightTable(model);
   setting = {{picture.width, picture.height},
              picture.depth,
@@ -162,30 +169,9 @@ std::string PathTables::account() const {
                      without.empty() ? "nothing" : fmt::format("{}", fmt::join(without, ", ")));
 }
 
-Exposure::Exposure(sk::Device& device, const Picture& picture) {
-  const sk::Shape shape{picture.height, picture.width};
-  radiance = device.stream<sk::float3>(shape);
-  sum_ = device.stream<sk::double3>(shape);
-  mean_ = device.stream<sk::float3>(shape);
-  squares_ = device.stream<sk::double3>(shape);
-  sum_.fill({0, 0, 0});
-  squares_.fill({0, 0, 0});
-}
-
-void Exposure::add() {
-  kernels::accumulate(radiance, sum_, squares_, sum_, squares_);
-  ++passes_;
-}
-
-std::vector<sk::float3> Exposure::image() {
-  kernels::meanOf(sum_, static_cast<int>(std::max<std::int64_t>(passes_, 1)), mean_);
-  return mean_.read();
-}
-
-std::vector<sk::float3> Exposure::variance() {
-  if (passes_ < 2) return {};
-  kernels::varianceOf(sum_, squares_, static_cast<int>(passes_), mean_);
-  return mean_.read();
+void PathsRenderer::look(const Camera& camera) {
+  tables_.view = viewFor(camera, picture_);
+  exposure_.clear();
 }
 
 }  // namespace rays

@@ -10,6 +10,7 @@
 #include <sk/sk.hpp>
 
 #include "engine.hpp"
+#include "exposure.hpp"
 #include "model.hpp"
 #include "path.sk.hpp"
 
@@ -30,22 +31,44 @@ struct PathTables {
   sk::Stream<sk::int4> textures;
 };
 
-/// The mean of samples of a picture, which are summed in double precision.
-class Exposure {
+/// What renderers of paths share: all but the way of a pass.
+class PathsRenderer : public Renderer {
  public:
-  Exposure(sk::Device& device, const Picture& picture);
+  PathsRenderer(sk::Device& device, const Model& model, const Picture& picture)
+      : tables_(device, model, picture),
+        exposure_(device, picture),
+        picture_(picture),
+        noPixels_(device.stream<sk::int2>({1})) {}
 
-  /// A sample of each pixel, for kernels to write before `add`.
-  sk::Stream<sk::float3> radiance;
-  void add();
-  std::vector<sk::float3> image();
-  /// As Renderer::variance.
-  std::vector<sk::float3> variance();
+  void look(const Camera& camera) override;
+  Exposure& exposure() override { return exposure_; }
+  std::vector<std::string> account() override { return {tables_.account()}; }
+
+ protected:
+  /// The features of the tables, with a list of pixels where some have stopped.
+  int features() const { return tables_.features | (exposure_.isSparse() ? listed : 0); }
+  /// That list, or what stands for it where kernels do not read it.
+  const sk::Stream<sk::int2>& pixels() const { return exposure_.isSparse() ? exposure_.pixels() : noPixels_; }
+  /// Calls `follow(radiance)`, a kernel that makes a path of each element, for the active pixels, and adds the samples.
+  template <class Follow>
+  void passBy(Follow&& follow) {
+    if (!exposure_.isSparse()) {
+      follow(exposure_.radiance);
+    } else if (exposure_.activePixels() > 0) {
+      follow(exposure_.list());
+      exposure_.deliver();
+    }
+    exposure_.add();
+  }
+
+  PathTables tables_;
+  Exposure exposure_;
 
  private:
-  std::int64_t passes_ = 0;
-  sk::Stream<sk::double3> sum_, squares_;
-  sk::Stream<sk::float3> mean_;
+  static constexpr int listed = 16384;  ///< as in scattering.sk
+
+  Picture picture_;
+  sk::Stream<sk::int2> noPixels_;
 };
 
 }  // namespace rays

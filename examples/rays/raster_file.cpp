@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "exr_file.hpp"
 #include "support/picture.hpp"
 
 namespace rays {
@@ -64,6 +65,7 @@ Raster loadPfm(const std::filesystem::path& file) {
 
 Raster loadRaster(const std::filesystem::path& file) {
   if (file.extension() == ".pfm") return loadPfm(file);
+  if (file.extension() == ".exr") return loadExr(file);
   const examples::Picture picture = examples::loadPicture(file);
   std::vector<float> linear(static_cast<std::size_t>(picture.white) + 1);
   for (std::size_t i = 0; i < linear.size(); ++i)

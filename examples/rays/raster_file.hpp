@@ -10,7 +10,7 @@
 
 namespace rays {
 
-/// .pfm as it is; PNG, JPEG and what else stb_image reads is decoded from sRGB. Throws std::runtime_error with the file's name.
+/// .pfm and .exr as they are; PNG, JPEG and what else stb_image reads is decoded from sRGB. Throws std::runtime_error with the file's name.
 Raster loadRaster(const std::filesystem::path& file);
 
 /// Creates the file's folder. Throws std::runtime_error where the file cannot be written.

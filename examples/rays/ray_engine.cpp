@@ -91,7 +91,7 @@ class OctreeEngine : public RayEngine, public StreamTracer {
   }
 
   std::unique_ptr<Renderer> renderer(const Picture& picture) override {
-    return makeMultipassRenderer(shapes_, *this, picture, Use::Paths);
+    return makeMultipassRenderer(shapes_.view(), *this, picture, Use::Paths);
   }
 
   const BucketCount& count() const override { return count_; }

@@ -3,9 +3,12 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <string>
 
+#include "camera.hpp"
 #include "hits_file.hpp"
+#include "layers.hpp"
 #include "support/written_file.hpp"
 
 namespace rays {
@@ -72,6 +75,36 @@ TEST_CASE("vertices that are not finite are named and left out, or an error") {
   Overrides strict;
   strict.strict = true;
   CHECK_THAT(messageOf(text, strict), Catch::Contains("a vertex is not finite"));
+}
+
+TEST_CASE("a camera inside of a wall sees backs alone") {
+  sk::Device device = sk::Device::native();
+  const auto sees = [&](const std::string& text) {
+    const Scene scene = read(text + "[[mesh]]\nshape = \"box\"\nmaterial = \"m\"\n");
+    return seesBacksAlone(*scene.engines.at("bvh")(device, scene.model), scene.model);
+  };
+  const std::string inside = "[camera]\nfrom = [0.1, 0, 0]\nto = [0, 0, 1]\n",
+                    beside = "[camera]\nfrom = [0, 0, 3]\n";
+  const std::string wall = "[[material]]\nname = \"m\"\n", glass = wall + "type = \"glass\"\n";
+  CHECK(sees(inside + wall));
+  CHECK_FALSE(sees(inside + glass));
+  CHECK_FALSE(sees(beside + wall));
+}
+
+TEST_CASE("a camera is carried about what it looks at") {
+  Camera camera;
+  camera.from = {0, 0, 5};
+  camera.focus = 5;
+  const Camera right = turned(camera, std::numbers::pi / 2, 0);
+  CHECK(length(right.from - Vector{5, 0, 0}) < 1e-12);
+  CHECK(length(turned(camera, 0, std::numbers::pi / 6).from - Vector{0, 2.5, 5 * std::sqrt(0.75)}) < 1e-12);
+  // Never over the top, where it would look along `up`.
+  const Camera top = turned(camera, 0, 9);
+  CHECK(top.from.y < 5);
+  CHECK(length(top.from) == Approx(5));
+  CHECK_NOTHROW(viewOf(top, 4, 3));
+  CHECK(approached(camera, 0.5).from.z == 2.5);
+  CHECK(approached(camera, 0.5).focus == 2.5);
 }
 
 TEST_CASE("an empty mesh is reported") {

@@ -1,33 +1,49 @@
 // SPDX-License-Identifier: MIT
 //
-// From passes to a file: as many as there are samples or seconds, then tone mapping.
+// From passes to a file: as many as there are samples or seconds, or until the picture is good enough; then tone mapping.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include <sk/types.hpp>
 
 #include "engine.hpp"
+#include "layers.hpp"
 #include "scene.hpp"
 
 namespace rays {
 
 struct Rendering {
   std::vector<sk::float3> radiance;
-  std::int64_t samples = 0;
-  double milliseconds = 0.0;
+  std::int64_t samples = 0;  ///< of a pixel that has not stopped
+  std::int64_t resumed = 0;  ///< of those, how many were on file
+  double perPixel = 0.0;  ///< samples, on average
+  std::int64_t unfinished = 0;  ///< pixels that may be farther off than the error which was asked for
+  double milliseconds = 0.0;  ///< of this run
 };
 
-/// Shows progress. Pictures without pixels need no pass.
-Rendering render(Renderer& renderer, const Scene& scene);
+/// Where a picture goes on from, and what is kept up to date while it is made.
+struct Resuming {
+  std::filesystem::path state{};
+  std::string device{};  ///< its name
+};
+
+/// Shows progress. Pictures without pixels need no pass. With `scene.output.error`, pixels are asked at `isLook`. Throws what state_file.hpp throws.
+Rendering render(Renderer& renderer, const Scene& scene, const Resuming& resuming = {});
+
+/// Whether pixels are asked after so many samples if they are good enough: at `least`, and then at 2^k and 3 * 2^k. Each look is one more
+/// chance to stop by accident, so that there are few.
+bool isLook(std::int64_t samples, std::int64_t least);
 
 /// A component of radiance as sRGB in [0, 1]. Filmic: the curve that K. Narkowicz fitted to ACES (2015).
 float toneMapped(float radiance, const Output& output);
 
-/// PNG or PFM, by the name's ending. Throws std::runtime_error where it is another one, where the picture has no pixels and where the
+/// PNG, PFM or OpenEXR, by the name's ending, the last with `layers`. Throws std::runtime_error where it is another one, where the picture has no pixels and where the
 /// file cannot be written.
-void saveRendering(const Rendering& rendering, const Scene& scene);
+void saveRendering(const Rendering& rendering, const Scene& scene, const std::vector<Layer>& layers = {});
 
 /// Throws what `saveRendering` would throw for the ending or the size, before anything is rendered.
 void checkOutput(const Scene& scene);

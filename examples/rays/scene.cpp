@@ -118,6 +118,8 @@ void readPicture(const SceneTable& root, const Overrides& overrides, Scene& scen
     picture.strategy = static_cast<Strategy>(table->choice("strategy", strategyNames).value_or(0));
     output.samples = table->integer("samples", Range{1, 1e6}).value_or(output.samples);
     output.seconds = table->number("seconds", Range{0.0, 1e7}).value_or(output.seconds);
+    output.error = table->number("error", Range{0.0, 1.0}).value_or(output.error);
+    output.least = static_cast<int>(table->integer("least_samples", Range{2, 1e6}).value_or(output.least));
     output.exposure = table->number("exposure", Range{1e-6, 1e6}).value_or(output.exposure);
     output.tone = static_cast<ToneMap>(table->choice("tone", toneNames).value_or(0));
     if (const auto file = table->text("output")) output.picture = *file;
@@ -126,6 +128,7 @@ void readPicture(const SceneTable& root, const Overrides& overrides, Scene& scen
   if (overrides.height) picture.height = *overrides.height;
   if (overrides.samples) output.samples = *overrides.samples;
   if (overrides.seconds) output.seconds = *overrides.seconds;
+  if (overrides.error) output.error = *overrides.error;
 }
 
 /// Every engine reads its table, so that a scene may hold settings of several.
@@ -148,6 +151,7 @@ void readEngines(const SceneTable& root, const Overrides& overrides, Scene& scen
 Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   const SceneTable root = examples::loadScene(file);
   Scene scene;
+  scene.file = file;
   scene.name = file.stem().string();
   scene.title = root.text("title").value_or(scene.name);
   Reading reading{

@@ -18,14 +18,17 @@ namespace rays {
 enum class ToneMap : std::uint8_t { Linear, Filmic };
 
 struct Output {
-  std::filesystem::path picture;  ///< .png or .pfm
+  std::filesystem::path picture;  ///< .png, .pfm or .exr
   ToneMap tone = ToneMap::Linear;
   double exposure = 1.0;
   std::int64_t samples = 64;
   double seconds = 0.0;  ///< ends the samples early; 0: it does not
+  double error = 0.0;  ///< stops pixels that are good enough (exposure.hpp); 0: all get all samples
+  int least = 32;  ///< samples before a pixel may stop
 };
 
 struct Scene {
+  std::filesystem::path file;
   std::string name;  ///< of the file, without its ending
   std::string title;
   Model model;
@@ -43,6 +46,7 @@ struct Overrides {
   std::optional<double> seconds{};
   std::string engine{};
   bool strict = false;  ///< vertices that are not finite are an error
+  std::optional<double> error{};
   int mostLevel = 1000;  ///< the detail of computed shapes is lowered to this level
 };
 

@@ -11,9 +11,11 @@
 
 #include <fmt/format.h>
 
+#include "marching_cubes.hpp"
 #include "mesh.hpp"
 #include "raster_file.hpp"
 #include "shapes.hpp"
+#include "teapot.hpp"
 
 namespace rays {
 namespace {
@@ -21,8 +23,8 @@ namespace {
 using examples::Range;
 using examples::SceneTable;
 
-constexpr std::array<std::string_view, 6> shapeNames = {"quad",   "box",   "sponge",
-                                                        "sphere", "torus", "terrain"};
+constexpr std::array<std::string_view, 8> shapeNames = {"quad",  "box",     "sponge", "sphere",
+                                                        "torus", "terrain", "gyroid", "teapot"};
 /// Ids are ints, and so are three times them.
 constexpr std::int64_t mostTriangles = std::int64_t{1} << 28;
 
@@ -108,6 +110,14 @@ Mesh computedMesh(const SceneTable& table, std::size_t shape, int mostLevel) {
       const auto seed = static_cast<std::uint32_t>(whole("seed", 1, 0, 2147483647));
       return terrain(level, table.number("height", Range{0, 100}).value_or(0.3), seed);
     }
+    case 6: {
+      // Natively, so that all devices see the same triangles.
+      sk::Device device = sk::Device::native();
+      const int cells = std::min(whole("cells", 96, 8, 400), 8 << std::min(mostLevel, 20));
+      return gyroid(device, cells, table.number("turns", Range{0.25, 32}).value_or(3.0),
+                    table.number("thickness", Range{0.02, 1.4}).value_or(0.3));
+    }
+    case 7: return teapot(std::min(whole("level", 12, 1, 256), mostLevel));
     default: throw std::logic_error("a shape without a mesh");
   }
 }

@@ -10,33 +10,23 @@
 namespace rays {
 namespace {
 
-class BranchingRenderer : public Renderer {
+class BranchingRenderer : public PathsRenderer {
  public:
   BranchingRenderer(GridScene& scene, const Picture& picture, Use use)
-      : scene_(scene),
-        use_(use),
-        tables_(scene.device, scene.model, picture),
-        exposure_(scene.device, picture) {}
+      : PathsRenderer(scene.device, scene.model, picture), scene_(scene), use_(use) {}
 
   void pass(std::int64_t index) override {
     const PathTables& t = tables_;
-    scene_.call(kernels::followPathsInGrid, t.features, static_cast<unsigned>(t.sampling),
-                static_cast<unsigned>(use_), t.view, t.setting, static_cast<std::uint32_t>(index), t.seed,
-                t.materials, t.corners, t.lights, t.sky, t.texels, t.textures, exposure_.radiance);
-    exposure_.add();
+    passBy([&](sk::Stream<sk::float3>& radiance) {
+      scene_.call(kernels::followPathsInGrid, features(), static_cast<unsigned>(t.sampling),
+                  static_cast<unsigned>(use_), t.view, t.setting, static_cast<std::uint32_t>(index), t.seed,
+                  t.materials, t.corners, t.lights, t.sky, t.texels, t.textures, pixels(), radiance);
+    });
   }
-
-  std::vector<sk::float3> image() override { return exposure_.image(); }
-
-  std::vector<sk::float3> variance() override { return exposure_.variance(); }
-
-  std::vector<std::string> account() override { return {tables_.account()}; }
 
  private:
   GridScene& scene_;
   Use use_;
-  PathTables tables_;
-  Exposure exposure_;
 };
 
 /// Paths that have not ended, in the order of their pixels.
@@ -52,46 +42,45 @@ struct PathStreams {
   sk::Stream<sk::int2> pixel;
 };
 
-class MultipassRenderer : public Renderer {
+class MultipassRenderer : public PathsRenderer {
  public:
-  MultipassRenderer(DeviceShapes& scene, StreamTracer& tracer, const Picture& picture, Use use,
+  MultipassRenderer(const ShapeView& scene, StreamTracer& tracer, const Picture& picture, Use use,
                     PassMeter* meter)
-      : scene_(scene),
+      : PathsRenderer(scene.device, scene.model, picture),
+        scene_(scene),
         tracer_(tracer),
-        picture_(picture),
+        depth_(picture.depth),
         use_(use),
-        meter_(meter),
-        tables_(scene.device, scene.model, picture),
-        exposure_(scene.device, picture) {}
+        meter_(meter) {}
 
   void pass(std::int64_t index) override {
     const PathTables& t = tables_;
     const auto sample = static_cast<std::uint32_t>(index);
-    const std::int64_t count = std::int64_t{picture_.width} * picture_.height;
+    const std::int64_t count = exposure_.activePixels();
     PathStreams paths(scene_.device, {count});
     metered(meter_, "generate", count, [&] {
-      kernels::generatePaths(t.features, static_cast<unsigned>(t.sampling), t.view, t.setting, sample, t.seed,
-                             sk::iter(0, static_cast<int>(count)), paths.from, paths.along, paths.path,
-                             paths.pixel);
+      kernels::generatePaths(features(), static_cast<unsigned>(t.sampling), t.view, t.setting, sample, t.seed,
+                             pixels(), sk::iter(0, static_cast<int>(count)), paths.from, paths.along,
+                             paths.path, paths.pixel);
     });
     for (int segment = 0; paths.path.size() > 0; ++segment) {
       shade(sample, segment, paths);
-      PathStreams next(scene_.device, {0});
+      auto kept = scene_.device.stream<int>({0});
       metered(meter_, "end paths", paths.path.size(), [&] {
         kernels::deliverLight(paths.path, paths.along, paths.pixel, exposure_.radiance);
-        kernels::keepPaths(paths.from, paths.along, paths.path, paths.pixel, next.from, next.along, next.path,
-                           next.pixel);
+        kernels::keepPaths(paths.along, sk::iter(0, static_cast<int>(paths.path.size())), kept);
       });
+      PathStreams next(scene_.device, kept.shape());
+      if (kept.size() > 0) {
+        metered(meter_, "move paths", kept.size(), [&] {
+          kernels::movePaths(kept, paths.from, paths.along, paths.path, paths.pixel, next.from, next.along,
+                             next.path, next.pixel);
+        });
+      }
       paths = std::move(next);
     }
     exposure_.add();
   }
-
-  std::vector<sk::float3> image() override { return exposure_.image(); }
-
-  std::vector<sk::float3> variance() override { return exposure_.variance(); }
-
-  std::vector<std::string> account() override { return {tables_.account()}; }
 
  private:
   /// Traces the rays of a segment, and those to lights.
@@ -110,19 +99,17 @@ class MultipassRenderer : public Renderer {
                           paths.from, paths.along, found, paths.pixel, paths.path, paths.from, paths.along,
                           paths.path, shadowFrom, shadowAlong, shadowLight);
     });
-    if (t.setting.lights == 0 || use_ == Use::RayCasting || segment + 1 == picture_.depth) return;
+    if (t.setting.lights == 0 || use_ == Use::RayCasting || segment + 1 == depth_) return;
     tracer_.find(true, shadowFrom, shadowAlong, found);
     metered(meter_, "add light", paths.from.size(),
             [&] { kernels::addLight(found, shadowLight, paths.path, paths.path); });
   }
 
-  DeviceShapes& scene_;
+  ShapeView scene_;
   StreamTracer& tracer_;
-  Picture picture_;
+  int depth_;
   Use use_;
   PassMeter* meter_;
-  PathTables tables_;
-  Exposure exposure_;
 };
 
 }  // namespace
@@ -131,7 +118,7 @@ std::unique_ptr<Renderer> makeBranchingRenderer(GridScene& scene, const Picture&
   return std::make_unique<BranchingRenderer>(scene, picture, use);
 }
 
-std::unique_ptr<Renderer> makeMultipassRenderer(DeviceShapes& scene, StreamTracer& tracer,
+std::unique_ptr<Renderer> makeMultipassRenderer(const ShapeView& scene, StreamTracer& tracer,
                                                 const Picture& picture, Use use, PassMeter* meter) {
   return std::make_unique<MultipassRenderer>(scene, tracer, picture, use, meter);
 }

@@ -18,8 +18,12 @@ std::span<const Study> studies() {
             studyPrecision},
       Study{"sums", "what sums of a million samples lose in floats", studySums},
       Study{"speed", "rays per second by test, traversal and size of leaves", studySpeed},
+      Study{"wavefront", "paths by one kernel or by queues, and what sorting rays is worth", studyWavefront},
       Study{"streaming", "what a uniform grid and each kernel of a multipass machine cost", studyStreaming},
+      Study{"stopping", "what it saves that pixels stop when they are good enough, and what is wrong then",
+            studyStopping},
       Study{"ray_engine", "what sizes of buckets and calls are worth, and not to wait", studyRayEngine},
+      Study{"engines", "the three engines on the scenes of the benchmarks", studyEngines},
       Study{"embree", "the same rays by Embree: rays per second, and hits that differ", studyEmbree},
   };
   return all;

@@ -11,6 +11,7 @@
 
 #include <sk/sk.hpp>
 
+#include "bench_scenes.hpp"
 #include "mesh.hpp"
 #include "model.hpp"
 #include "support/verification.hpp"
@@ -40,6 +41,9 @@ Findings studyPrecision(sk::Device& device, bool isSmall);
 Findings studySums(sk::Device& device, bool isSmall);
 Findings studySpeed(sk::Device& device, bool isSmall);
 Findings studyStreaming(sk::Device& device, bool isSmall);
+Findings studyWavefront(sk::Device& device, bool isSmall);
+Findings studyEngines(sk::Device& device, bool isSmall);
+Findings studyStopping(sk::Device& device, bool isSmall);
 Findings studyRayEngine(sk::Device& device, bool isSmall);
 
 /// Embree on the same rays, where the program was built with it; throws std::runtime_error elsewhere.
@@ -47,10 +51,14 @@ Findings studyEmbree(sk::Device& device, bool isSmall);
 
 /// A closed mesh in a ring on rough ground: 225,000 triangles, or few. The camera looks at all of it.
 Model speedModel(bool isSmall);
-/// From what these rays hit, in any direction about the normal, with the density of the cosine.
-std::vector<Ray> diffuseRays(const Model& model, std::span<const Ray> rays, std::span<const Hit> hits);
 /// How long a call takes: the processor's time on devices that run there, whatever else runs beside it; else the time that passes.
 double callMilliseconds(bool isProcessor, const std::function<void()>& call);
+
+bool runsOnProcessor(const sk::Device& device);
+/// The best of some calls, each with the wait for it. They follow one that compiles and, on a GPU, others that raise its clock.
+double bestMilliseconds(sk::Device& device, int calls, const std::function<void()>& call);
+/// Millions of elements a second, likewise.
+double callRate(sk::Device& device, double elements, int calls, const std::function<void()>& call);
 
 /// Millions of rays a second through a hierarchy of default settings: the best of some calls, without the way to the device and back.
 double closestRate(sk::Device& device, const Model& model, std::span<const Ray> rays, int calls);

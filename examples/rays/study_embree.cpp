@@ -132,7 +132,7 @@ Findings studyEmbree(sk::Device& device, bool isSmall) {
   const std::vector<Ray> primary = primaryRays(model.camera, side, side);
   std::vector<Hit> hits(primary.size());
   engine->closest(primary, hits);
-  const std::vector<Ray> diffuse = diffuseRays(model, primary, hits);
+  const std::vector<Ray> diffuse = diffuseRays(model, primary, hits, primary.size());
   std::vector<Hit> diffuseHits(diffuse.size());
   engine->closest(diffuse, diffuseHits);
 

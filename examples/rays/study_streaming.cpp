@@ -22,20 +22,6 @@
 namespace rays {
 namespace {
 
-/// Of some runs, without the first, which compiles.
-double bestMilliseconds(sk::Device& device, int runs, const std::function<void()>& run) {
-  run();
-  device.finish();
-  double best = HUGE_VAL;
-  for (int i = 0; i < runs; ++i) {
-    best = std::min(best, milliseconds(device, [&] {
-                      run();
-                      device.finish();
-                    }));
-  }
-  return best;
-}
-
 std::string rateText(std::int64_t rays, double time) {
   return fmt::format("{:.2f}", double(rays) / time / 1e3);
 }
@@ -152,13 +138,13 @@ std::string tableOfUses(GridScene& scene, const Picture& picture, int runs) {
       PassMeter meter(scene.device);
       GridTracer counted(scene, {.machine = machine}, &meter), tracer(scene, {.machine = machine});
       const bool isBranching = machine == Machine::Branching;
-      const std::unique_ptr<Renderer> renderer = isBranching
-                                                     ? makeBranchingRenderer(scene, picture, use)
-                                                     : makeMultipassRenderer(scene, tracer, picture, use);
+      const std::unique_ptr<Renderer> renderer =
+          isBranching ? makeBranchingRenderer(scene, picture, use)
+                      : makeMultipassRenderer(scene.view(), tracer, picture, use);
       if (isBranching)
         meter.measure("all", 0, [&] { renderer->pass(0); });
       else
-        makeMultipassRenderer(scene, counted, picture, use, &meter)->pass(0);
+        makeMultipassRenderer(scene.view(), counted, picture, use, &meter)->pass(0);
       const sk::PassCount count = sumOf(meter);
       const double best = bestMilliseconds(scene.device, runs, [&] { renderer->pass(0); });
       table.add({std::string(names[static_cast<std::size_t>(use)]), isBranching ? "branching" : "multipass",
@@ -174,7 +160,7 @@ std::string tableOfKernels(GridScene& scene, const Picture& picture) {
   PassMeter meter(scene.device);
   GridTracer tracer(scene, {.machine = Machine::Multipass}, &meter);
   const std::unique_ptr<Renderer> renderer =
-      makeMultipassRenderer(scene, tracer, picture, Use::Paths, &meter);
+      makeMultipassRenderer(scene.view(), tracer, picture, Use::Paths, &meter);
   renderer->pass(0);
   meter.forget();
   renderer->pass(0);
@@ -214,9 +200,10 @@ Findings studyStreaming(sk::Device& device, bool isSmall) {
   GridScene scene(device, model, {}, HowToIntersect::Watertight);
   const Picture picture{.width = side, .height = side, .depth = 4};
   Findings findings;
-  findings.table = tableOfSteps(device, model, {primary, diffuseRays(model, primary, hits)}, runs) + "\n" +
-                   tableOfDials(scene, primary, runs) + "\n" + tableOfUses(scene, picture, runs) + "\n" +
-                   tableOfKernels(scene, picture);
+  findings.table =
+      tableOfSteps(device, model, {primary, diffuseRays(model, primary, hits, primary.size())}, runs) + "\n" +
+      tableOfDials(scene, primary, runs) + "\n" + tableOfUses(scene, picture, runs) + "\n" +
+      tableOfKernels(scene, picture);
   findings.verifications.push_back(checkEngine(*engine, model, side, side));
   return findings;
 }

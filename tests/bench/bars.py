@@ -18,6 +18,20 @@ RATIOS = [
     ("compute", ["saxpy", "5-point stencil"], ["copy"], 0.95, HUGE),
     ("compute", ["sum"], ["PyTorch", "CUB"], 0.95, HUGE),
 ]
+PRIMARY = ["rays: interior, primary", "rays: organic mesh, primary"]
+DIFFUSE = ["rays: interior, diffuse", "rays: organic mesh, diffuse"]
+RATIOS += [
+    ("native", PRIMARY, ["Embree"], 0.6, LARGE),
+    ("native", DIFFUSE, ["Embree"], 0.35, LARGE),
+    ("compute", PRIMARY + DIFFUSE, ["CUDA"], 1.0, LARGE),
+]
+# Our contender, programs, elements a second in millions, whether the renderer is in software.
+RATES = [
+    ("fragment", PRIMARY, 3, True),
+    ("fragment", DIFFUSE, 1, True),
+    ("compute", PRIMARY, 2000, False),
+    ("compute", DIFFUSE, 1000, False),
+]
 BEST_OF_ALL = ("mandelbrot", ["OpenMP", "PoCL", "OpenCL", "GLSL"], 1.0)
 COMPENSATED = 1.1  # times the plain sum's time, natively and on a GPU
 LINEAR = ["saxpy", "sum", "5-point stencil"]
@@ -32,6 +46,9 @@ def judge(found):
         if ours in found.ours() and set(peers) & set(found.peers()):
             for program in programs:
                 rows.append(ratio_row(found, program, [ours], peers, least, smallest))
+    for ours, programs, least, in_software in RATES:
+        rows += [rate_row(found, program, ours, least) for program in programs
+                 if found.sizes(program) and ours in found.ours() and is_software(found) == in_software]
     program, peers, least = BEST_OF_ALL
     rows.append(ratio_row(found, program, found.ours(), peers, least, LARGE))
     rows.append(compensated_row(found, "native"))
@@ -72,6 +89,21 @@ def ratio_row(found, program, ours, peers, least, smallest):
     if worst is None:
         return [name, f"at least {least}", NOT_MEASURED, ""]
     return [name, f"at least {least}", worst[1], verdict(round(worst[0], 2) >= least)]
+
+
+def is_software(found):
+    return any("llvmpipe" in (machine.get("renderer") or "") for machine in found.document["machines"])
+
+
+def rate_row(found, program, ours, least):
+    """Elements a second at the largest size, in millions."""
+    name, needed = f"{program}: {ours}'s rate", f"at least {least} M/s"
+    log2 = found.sizes(program)[-1]
+    seconds = found.seconds((program, log2), ours)
+    if seconds is None:
+        return [name, needed, NOT_MEASURED, ""]
+    rate = 2.0 ** log2 / seconds / 1e6
+    return [name, needed, f"{results.three_digits(rate)} M/s at 2^{log2}", verdict(rate >= least)]
 
 
 def compensated_row(found, ours):

@@ -55,8 +55,8 @@ def print_tables(found):
 
 
 def update(path, machine, found, held):
-    """Replaces what is between the marks; a mark names a table: `bars`, `machine`, `steps`, or one of our contenders, behind the name
-    of another machine if that is given."""
+    """Replaces what is between the marks; a mark names a table: `bars`, or `held`, those of them that were measured; `machine`, `steps`, `rates`, or
+    one of our contenders, behind the name of another machine if that is given."""
     with open(path, encoding="utf-8") as file:
         text = file.read()
 
@@ -67,6 +67,10 @@ def update(path, machine, found, held):
         name = mark[len(machine):].strip()
         if name == "bars":
             body = results.markdown(bars.head, held)
+        elif name == "held":
+            body = results.markdown(bars.head, [row for row in held if row[2] != bars.NOT_MEASURED])
+        elif name == "rates":
+            body = results.markdown(*results.rates_table(found))
         elif name == "machine":
             body = found.machine_text() + "\n"
         elif name == "steps":

@@ -100,6 +100,21 @@ def rate_text(run, seconds):
     return f"{size / seconds / 1e9:.3g} GB/s"
 
 
+def rates_table(found):
+    """Head and rows: a row for each contender, a column for each program: millions of elements a second at its largest size."""
+    programs = found.programs()
+    contenders = dict.fromkeys(run["contender"] for run in found.document["runs"])
+    rows = []
+    for contender in contenders:
+        row = [contender]
+        for program in programs:
+            log2 = found.sizes(program)[-1]
+            seconds = found.seconds((program, log2), contender)
+            row.append("" if seconds is None else three_digits(2.0 ** log2 / seconds / 1e6))
+        rows.append(row)
+    return ["M/s"] + programs, rows
+
+
 def table_of(found, ours, largest_only=False):
     """Head and rows: a row for each problem that `ours` took part in, a column for each peer."""
     peers = [peer for peer in found.peers()

@@ -48,6 +48,22 @@ products=$("$skc" --emit=llvm --target-triple=x86_64-linux-gnu --levels=x86-64-v
 # Without registers for masks, those of loops stay the words that comparisons give.
 "$skc" --emit=asm --target-triple=x86_64-linux-gnu --levels=x86-64-v3 kernel.sk >kernel.s
 ! sed -n '/_escape\.run\.v3:/,/retq/p' kernel.s | grep -q vpackss || { echo "broken: masks of a loop are packed to bytes"; exit 1; }
+# With them, each vector has a mask of its own, and lanes need not be counted one by one: no mask is packed or taken apart.
+"$skc" --emit=asm --target-triple=x86_64-linux-gnu --levels=x86-64-v4 kernel.sk |
+  sed -n '/_escape\.run\.v4:/,/retq/p' >escape.s
+! grep -qE 'kunpck|kshift|vpmovm2' escape.s || { echo "broken: masks of a loop are packed or taken apart"; exit 1; }
+# The number of steps is the same in all lanes that are left: integers are compared before the loop alone.
+compared=$(grep -c 'vpcmp' escape.s)
+((compared == 2)) || { echo "broken: $compared comparisons of integers, where 2 find the lanes that have elements"; exit 1; }
+# Where few variables differ between lanes, four vectors hide how long each operation takes.
+printf '%s\n' 'kernel void grow(float x<>, int most, out int steps<>) {
+  float y = x;
+  steps = 0;
+  while (steps < most && y < 100) { y = y * y + 1; ++steps; }
+}' >kernel.sk
+products=$("$skc" --emit=asm --target-triple=x86_64-linux-gnu --levels=x86-64-v4 kernel.sk |
+  sed -n '/_grow\.run\.v4:/,/retq/p' | grep -c vmulps)
+((products == 4)) || { echo "broken: $products vectors in a loop that 4 hide the latency of"; exit 1; }
 vectorised vmulps 'kernel void multiply(float a[][], float b[][], out float c<>) {
   int2 p = indexof(c).xy;
   c = 0;

@@ -18,7 +18,7 @@ class CallMemory {
   std::pmr::memory_resource* get() { return &resource_; }
 
  private:
-  alignas(std::max_align_t) std::byte first_[4096];
+  alignas(std::max_align_t) std::byte first_[16384];
   std::pmr::monotonic_buffer_resource resource_{first_, sizeof first_};
 };
 

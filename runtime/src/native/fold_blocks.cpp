@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "native/call_memory.hpp"
 #include "native/fold_pieces.hpp"
 #include "native/fold_program.hpp"
 #include "native/leaf_folder.hpp"
@@ -25,9 +26,9 @@ class GroupFolder {
  public:
   GroupFolder(const FoldProgram& program, const Extents& block)
       : block_(block),
-        leaves_(program),
-        combiner_(combinerOf(program)),
-        runs_(program.shape, combiner_, groupOf(program.shape)) {}
+        leaves_(program, memory_.get()),
+        combiner_(combinerOf(program, memory_.get())),
+        runs_(program.shape, combiner_, groupOf(program.shape), memory_.get()) {}
 
   /// Folds `count` neighbouring blocks from `first` on, one per column.
   const StateColumns& fold(const Extents& first, std::int64_t count) {
@@ -60,6 +61,7 @@ class GroupFolder {
   }
 
   Extents block_;
+  CallMemory memory_;
   LeafFolder leaves_;
   ColumnCombiner combiner_;
   StateRuns runs_;
@@ -85,9 +87,10 @@ void foldGroups(const FoldProgram& program, const Extents& domain, const Extents
 /// Combines the partial results of each block's pieces, in order.
 void combinePieces(const FoldProgram& program, const BlockPieces& pieces,
                    const std::vector<std::byte>& states, const FoldResults& results) {
-  ColumnCombiner combiner = combinerOf(program);
-  StateRuns runs(program.shape, combiner, 1);
-  StateColumns columns(program.shape, groupOf(program.shape));
+  CallMemory memory;
+  ColumnCombiner combiner = combinerOf(program, memory.get());
+  StateRuns runs(program.shape, combiner, 1, memory.get());
+  StateColumns columns(program.shape, groupOf(program.shape), memory.get());
   const std::int64_t ofBlock = pieces.ofBlock();
   std::int64_t together = 0;
   for (std::int64_t piece = 0; piece < pieces.count(); piece += together) {

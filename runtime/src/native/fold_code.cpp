@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "call/fold_check_setting.hpp"
+#include "native/call_memory.hpp"
 #include "native/check_fold.hpp"
 #include "native/code_frame.hpp"
 #include "native/fold_program.hpp"
@@ -52,10 +53,11 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
   }
   const Entry& fold = entryOf(reduction.fold, EntryKind::Fold, choice);
   const Entry& combine = entryOf(reduction.combine, EntryKind::Combine, choice);
-  const CodeFrame frame(reduction.fold, call.fold);
-  const CodeFrame combineFrame(reduction.combine, call.combine);
+  CallMemory memory;
+  const CodeFrame frame(reduction.fold, call.fold, memory.get());
+  const CodeFrame combineFrame(reduction.combine, call.combine, memory.get());
   const SlotLayout layout(reduction.fold, call.fold, frame,
-                          call.holdsFloats ? CodeChoice{.real = RealType::Float} : choice);
+                          call.holdsFloats ? CodeChoice{.real = RealType::Float} : choice, memory.get());
   const StateShape shape(reduction.fold.parameters, choice.real);
   const FoldResults results(reduction.fold.parameters, call.fold.operands, shape);
   const FoldProgram program{.layout = layout,

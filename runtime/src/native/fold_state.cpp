@@ -2,6 +2,7 @@
 #include "native/fold_state.hpp"
 
 #include <cstring>
+#include <memory>
 #include <type_traits>
 #include <utility>
 
@@ -33,16 +34,16 @@ StateShape::StateShape(std::vector<std::size_t> bytes) : bytes_(std::move(bytes)
   for (const std::size_t scalar : bytes_) total_ += scalar;
 }
 
-StateColumns::StateColumns(const StateShape& shape, std::int64_t most)
-    : shape_(&shape), arrays_(shape.scalars()) {
+StateColumns::StateColumns(const StateShape& shape, std::int64_t most, std::pmr::memory_resource* memory)
+    : shape_(&shape), arrays_(shape.scalars(), memory), bytes_(memory) {
   const auto room = [&](std::size_t scalar) {
     const std::size_t bytes = static_cast<std::size_t>(most + native::mostLanes) * shape.bytesOf(scalar);
     return (bytes + cacheLine - 1) / cacheLine * cacheLine;
   };
   std::size_t total = cacheLine;
   for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) total += room(scalar);
-  bytes_ = std::make_unique<std::byte[]>(total);  // zeroed, because code reads beyond the columns
-  void* next = bytes_.get();
+  bytes_.resize(total);  // zeroed, because code reads beyond the columns
+  void* next = bytes_.data();
   next = std::align(cacheLine, total - cacheLine, next, total);
   for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {
     arrays_[scalar] = next;
@@ -102,12 +103,12 @@ void StateColumns::unpack(std::int64_t column, const std::byte* bytes) {
 }
 
 ColumnCombiner::ColumnCombiner(const StateShape& shape, native::CombineFunction* function, std::int64_t lanes,
-                               const native::Frame* frame)
+                               const native::Frame* frame, std::pmr::memory_resource* memory)
     : function_(function),
       lanes_(lanes),
       frame_(frame),
-      kept_(shape, lanes),
-      later_(shape.scalars()),
+      kept_(shape, lanes, memory),
+      later_(shape.scalars(), memory),
       shape_(shape) {}
 
 void ColumnCombiner::combine(StateColumns& state, const StateColumns& later, std::int64_t first,
@@ -138,8 +139,8 @@ void ColumnCombiner::gather(StateColumns& state, std::int64_t count, std::int64_
 }
 
 StateColumns& StateRuns::next() {
-  if (runs_.size() == leaves_.size()) runs_.push_back(std::make_unique<StateColumns>(shape_, most_));
-  return *runs_[leaves_.size()];
+  if (runs_.size() == leaves_.size()) runs_.emplace_back(shape_, most_, runs_.get_allocator().resource());
+  return runs_[leaves_.size()];
 }
 
 void StateRuns::add(std::int64_t leaves) {
@@ -150,12 +151,12 @@ void StateRuns::add(std::int64_t leaves) {
 StateColumns& StateRuns::take() {
   while (leaves_.size() > 1) merge();
   leaves_.clear();
-  return *runs_[0];
+  return runs_[0];
 }
 
 void StateRuns::merge() {
   const std::size_t last = leaves_.size() - 1;
-  combiner_.combine(*runs_[last - 1], *runs_[last], 0, columns_);
+  combiner_.combine(runs_[last - 1], runs_[last], 0, columns_);
   leaves_[last - 1] += leaves_[last];
   leaves_.pop_back();
 }

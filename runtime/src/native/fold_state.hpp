@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -52,7 +52,10 @@ class StateShape {
 /// last column.
 class StateColumns {
  public:
-  StateColumns(const StateShape& shape, std::int64_t most);
+  /// `memory` must outlive the columns.
+  StateColumns(const StateShape& shape, std::int64_t most,
+               std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+  StateColumns(StateColumns&&) noexcept = default;
 
   void* const* arrays() const { return arrays_.data(); }
   std::byte* at(std::size_t scalar, std::int64_t column) const {
@@ -72,15 +75,16 @@ class StateColumns {
 
  private:
   const StateShape* shape_;
-  std::vector<void*> arrays_;
-  std::unique_ptr<std::byte[]> bytes_;
+  std::pmr::vector<void*> arrays_;
+  std::pmr::vector<std::byte> bytes_;
 };
 
 /// Combines columns with a reduction's object code. Columns beyond the last do not change.
 class ColumnCombiner {
  public:
   ColumnCombiner(const StateShape& shape, native::CombineFunction* function, std::int64_t lanes,
-                 const native::Frame* frame);
+                 const native::Frame* frame,
+                 std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
   /// Folds `count` columns of `later` from number `first` on into the first columns of `state`. Both may be
   /// the same.
@@ -97,7 +101,7 @@ class ColumnCombiner {
   std::int64_t lanes_;
   const native::Frame* frame_;
   StateColumns kept_;
-  std::vector<void*> later_;
+  std::pmr::vector<void*> later_;
   const StateShape& shape_;
 };
 
@@ -106,8 +110,9 @@ class ColumnCombiner {
 class StateRuns {
  public:
   /// Results have at most `most` columns.
-  StateRuns(const StateShape& shape, ColumnCombiner& combiner, std::int64_t most)
-      : shape_(shape), combiner_(combiner), most_(most), columns_(most) {}
+  StateRuns(const StateShape& shape, ColumnCombiner& combiner, std::int64_t most,
+            std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : shape_(shape), combiner_(combiner), most_(most), columns_(most), runs_(memory), leaves_(memory) {}
 
   /// Uses only the first `count` columns from here on.
   void useColumns(std::int64_t count) { columns_ = count; }
@@ -131,8 +136,8 @@ class StateRuns {
   ColumnCombiner& combiner_;
   std::int64_t most_;
   std::int64_t columns_;
-  std::vector<std::unique_ptr<StateColumns>> runs_;
-  std::vector<std::int64_t> leaves_;
+  std::pmr::vector<StateColumns> runs_;
+  std::pmr::vector<std::int64_t> leaves_;
 };
 
 }  // namespace sk

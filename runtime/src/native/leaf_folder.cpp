@@ -14,12 +14,12 @@ std::int64_t mostPlaced(const StateShape& shape) {
 
 }  // namespace
 
-LeafFolder::LeafFolder(const FoldProgram& program)
+LeafFolder::LeafFolder(const FoldProgram& program, std::pmr::memory_resource* memory)
     : program_(program),
       longest_(program.layout.isDirect() ? std::numeric_limits<std::int64_t>::max() : mostStaged),
       arrays_(program.layout, mostPlaced(program.shape), mostPlaced(program.shape)),
-      some_(program.shape, sideOf(program.shape)),
-      rest_(program.shape.scalars()) {
+      some_(program.shape, sideOf(program.shape), memory),
+      rest_(program.shape.scalars(), memory) {
   chunk_.arrays = arrays_.get();
 }
 

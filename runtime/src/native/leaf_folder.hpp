@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory_resource>
 #include <vector>
 
 #include "native/fold_program.hpp"
@@ -17,7 +18,8 @@ enum class Start : std::uint8_t { New, Continued };
 /// Each thread has its own.
 class LeafFolder {
  public:
-  explicit LeafFolder(const FoldProgram& program);
+  explicit LeafFolder(const FoldProgram& program,
+                      std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
   /// Elements are in the row of this one from here on.
   void moveToRow(const native::Extents& first);
@@ -58,7 +60,7 @@ class LeafFolder {
   std::int64_t longest_;
   SlotArrays arrays_;
   StateColumns some_;
-  std::vector<void*> rest_;
+  std::pmr::vector<void*> rest_;
   native::Chunk chunk_{};
 };
 

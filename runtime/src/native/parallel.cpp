@@ -75,14 +75,24 @@ Range partOf(std::int64_t count, std::int64_t number, std::int64_t parts) {
   return {count * number / parts, count * (number + 1) / parts};
 }
 
+/// The number of parts that threads take as they come: so many that all of them end at about the same time, of which none
+/// is much shorter than what is worth a thread.
+std::int64_t partsFor(std::int64_t count, std::int64_t cost, std::int64_t threads) {
+  constexpr std::int64_t few = 16, many = 64;
+  const std::optional<std::int64_t> work = checkedProduct(count, cost);
+  const std::int64_t worthIt = work ? *work / (4 * worthAThread) : many * threads;
+  return std::min(count, std::clamp(worthIt, few * threads, many * threads));
+}
+
 /// ThreadSanitizer does not check these loops either, because the compiler passes variables to threads in
 /// memory.
-SK_UNSEEN_BY_TSAN void runOnThreads(std::int64_t count, int threads, Deal deal, Guarded& guarded) {
+SK_UNSEEN_BY_TSAN void runOnThreads(std::int64_t count, std::int64_t cost, int threads, Deal deal,
+                                    Guarded& guarded) {
   if (deal == Deal::Evenly) {
 #pragma omp parallel num_threads(threads)
     guarded(partOf(count, omp_get_thread_num(), omp_get_num_threads()));
   } else {
-    const std::int64_t parts = std::min<std::int64_t>(count, std::int64_t{threads} * 16);
+    const std::int64_t parts = partsFor(count, cost, threads);
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (std::int64_t part = 0; part < parts; ++part) guarded(partOf(count, part, parts));
   }
@@ -105,7 +115,7 @@ void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(v
   }
   haveThreads = true;
   Guarded guarded(work, context);
-  runOnThreads(count, threads, deal, guarded);
+  runOnThreads(count, cost, threads, deal, guarded);
   guarded.finish();
 }
 

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <memory_resource>
 
+#include "native/call_memory.hpp"
 #include "native/fold_pieces.hpp"
 #include "native/fold_program.hpp"
 #include "native/leaf_folder.hpp"
@@ -19,8 +21,9 @@ inline std::int64_t powerUpTo(std::int64_t number) {
   return static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(number)));
 }
 
-inline ColumnCombiner combinerOf(const FoldProgram& program) {
-  return {program.shape, program.combine.function, program.combine.lanes, program.combine.frame};
+inline ColumnCombiner combinerOf(const FoldProgram& program,
+                                 std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
+  return {program.shape, program.combine.function, program.combine.lanes, program.combine.frame, memory};
 }
 
 /// Folds pieces of blocks, one after the other. Each thread has its own.
@@ -30,14 +33,14 @@ class PieceFolder {
       : program_(program),
         pieces_(pieces),
         side_(sideOf(program.shape)),
-        leaves_(program),
-        combiner_(combinerOf(program)),
-        runs_(program.shape, combiner_, 1),
-        columnRuns_(program.shape, combiner_, side_),
-        rest_(program.shape, side_),
+        leaves_(program, memory_.get()),
+        combiner_(combinerOf(program, memory_.get())),
+        runs_(program.shape, combiner_, 1, memory_.get()),
+        columnRuns_(program.shape, combiner_, side_, memory_.get()),
+        rest_(program.shape, side_, memory_.get()),
         group_(program.isCommutative ? mostLeaves * side_ : groupOf(program.shape)),
-        leafColumns_(program.shape, group_),
-        orderedColumns_(program.shape, program.isCommutative ? 0 : group_) {}
+        leafColumns_(program.shape, group_, memory_.get()),
+        orderedColumns_(program.shape, program.isCommutative ? 0 : group_, memory_.get()) {}
 
   /// Folds a piece of a block, which has at least one element, to one column.
   const StateColumns& fold(const native::Extents& block, std::int64_t piece);
@@ -66,6 +69,7 @@ class PieceFolder {
 
   const FoldProgram& program_;
   const BlockPieces& pieces_;
+  CallMemory memory_;
   std::int64_t side_;
   LeafFolder leaves_;
   ColumnCombiner combiner_;

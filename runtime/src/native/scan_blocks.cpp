@@ -79,10 +79,10 @@ class PieceScan {
   void findCarries(Range some) {
     for (std::int64_t piece = some.begin; piece < some.end; ++piece) {
       std::byte* const state = stateOf(piece, some.begin);
-      later_.unpack(0, state);
       if (startsBlock(piece)) {
-        std::swap(carry_, later_);
+        carry_.unpack(0, state);
       } else {
+        later_.unpack(0, state);
         carry_.pack(0, state);
         if (!endsBlock(piece)) combiner_.combine(carry_, later_, 0, 1);
       }

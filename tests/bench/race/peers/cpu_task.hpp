@@ -40,5 +40,6 @@ inline Contender onCpu(const char* program, const char* name, std::int64_t (*res
 
 inline std::int64_t one(const Problem&) { return 1; }
 inline std::int64_t asMany(const Problem& problem) { return problem.size(); }
+inline std::int64_t twoEach(const Problem& problem) { return 2 * problem.size(); }
 
 }  // namespace race

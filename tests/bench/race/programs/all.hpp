@@ -83,6 +83,17 @@ Problem sparseProblem(int log2);
 Check sparseCheck(const Problem& problem);
 RACE_OURS(sparse);
 
+Problem hallPrimaryProblem(int log2);
+Problem hallDiffuseProblem(int log2);
+Problem meshPrimaryProblem(int log2);
+Problem meshDiffuseProblem(int log2);
+Check hallCheck(const Problem& problem);
+Check meshCheck(const Problem& problem);
+RACE_OURS(hall);
+RACE_OURS(hallOther);
+RACE_OURS(mesh);
+RACE_OURS(meshOther);
+
 #undef RACE_OURS
 
 }  // namespace race

@@ -195,8 +195,11 @@ class CubTask final : public Task {
 }  // namespace
 }  // namespace race
 
+#include "peers/cuda/rays.cuh"
+
 RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   using namespace race;
+  addRays(contenders);
   int devices = 0;
   check(cudaGetDeviceCount(&devices));
   contenders.push_back({"saxpy", "CUDA", [](const Problem& p) {

@@ -20,6 +20,7 @@ void addGlslPeers(const std::string& renderer, Field& field);
 enum class Packing : int { Scalar = 1, Packed = 4 };
 
 // Each program's own. `context` outlives the tasks.
+void addGlslRays(const bench::PlainContext& context, std::vector<Contender>& contenders);
 void addGlslSaxpy(const bench::PlainContext& context, std::vector<Contender>& contenders);
 void addGlslSums(const bench::PlainContext& context, std::vector<Contender>& contenders);
 void addGlslStencils(const bench::PlainContext& context, std::vector<Contender>& contenders);

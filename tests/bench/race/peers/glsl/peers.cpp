@@ -20,6 +20,7 @@ void addGlslPeers(const std::string& renderer, Field& field) {
   addGlslSaxpy(*context, field.contenders);
   addGlslSums(*context, field.contenders);
   addGlslStencils(*context, field.contenders);
+  addGlslRays(*context, field.contenders);
   addGlslMandelbrot(*context, field.contenders);
 }
 

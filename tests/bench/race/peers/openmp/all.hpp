@@ -29,6 +29,7 @@ std::unique_ptr<Task> boilingOpenMp(const Problem& p);
 std::unique_ptr<Task> convectionOpenMp(const Problem& p);
 std::unique_ptr<Task> reactionStepOpenMp(const Problem& p);
 std::unique_ptr<Task> clothOpenMp(const Problem& p);
+void raysOpenMp(const Problem& p, float* hits);
 void sparseOpenMp(const Problem& p, float* y);
 
 }  // namespace race

@@ -3,6 +3,7 @@
 // The list of the peers written with OpenMP.
 #include "peers/cpu_task.hpp"
 #include "peers/openmp/all.hpp"
+#include "rays_layout.hpp"
 
 RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   using namespace race;
@@ -30,5 +31,6 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   contenders.push_back({"convection step", "OpenMP", convectionOpenMp});
   contenders.push_back({"reaction step", "OpenMP", reactionStepOpenMp});
   contenders.push_back({"cloth step", "OpenMP", clothOpenMp});
+  for (const char* program : rayPrograms) add(program, twoEach, raysOpenMp);
   add("sparse matrix", asMany, sparseOpenMp);
 }

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+//
+// What a scene's kernels cost beside those that have everything a scene may name, measured on the scene itself.
+#pragma once
+
+#include <string>
+
+#include "engine.hpp"
+#include "scene.hpp"
+#include "support/verification.hpp"
+
+namespace rays {
+
+struct Account {
+  std::string text;  ///< one line
+  /// Both make one picture: what is left out is what the scene does not use.
+  examples::Verification agreement;
+};
+
+/// Renders some samples of the picture with both kernels, in turn.
+Account accountFor(Engine& engine, const Scene& scene);
+
+}  // namespace rays

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+//
+// What a picture has gathered: sums of samples, how many there are in each pixel, and which pixels still want some.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "engine.hpp"
+
+namespace rays {
+
+/// When a pixel is good enough: half the 95 % interval of each component is at most `error` of the largest component, or of `least` where the
+/// pixel is darker than that. The same must hold for its neighbours.
+struct Tolerance {
+  double error = 0.0;
+  double least = 0.0;  ///< radiance
+};
+
+/// All that a picture goes on from, pixel by pixel in row-major order. `counts` and `active` are empty as long as no pixel has stopped.
+struct Gathered {
+  std::int64_t passes = 0;
+  std::vector<sk::double3> sums, squares;
+  std::vector<int> counts, active;
+
+  friend bool operator==(const Gathered&, const Gathered&) = default;
+};
+
+class Exposure {
+ public:
+  Exposure(sk::Device& device, const Picture& picture);
+
+  /// A sample of each pixel, for kernels to write before `add`; what stopped pixels have there does not count.
+  sk::Stream<sk::float3> radiance;
+
+  /// Whether some pixels have stopped. Kernels then need samples of `pixels` (x, y) alone, in row-major order, and of as many as that.
+  bool isSparse() const { return bool(active_); }
+  const sk::Stream<sk::int2>& pixels() const { return pixels_; }
+  std::int64_t activePixels() const { return isSparse() ? pixels_.size() : radiance.size(); }
+  /// Where kernels write one sample for each of `pixels`, which `deliver` brings to `radiance`.
+  sk::Stream<sk::float3>& list() { return list_; }
+  void deliver();
+
+  void add();
+  /// Stops pixels that are good enough, and returns how many are not. Needs two samples at least.
+  std::int64_t narrow(const Tolerance& tolerance);
+  /// Begins anew.
+  void clear();
+
+  std::int64_t passes() const { return passes_; }
+  /// The mean of each pixel. Waits for the device, as all that follow.
+  std::vector<sk::float3> image();
+  /// Of that mean, for the samples as independent ones; empty before there are two.
+  std::vector<sk::float3> variance();
+  std::vector<int> counts();
+  Gathered gathered();
+  /// Throws std::logic_error where the sizes are not the picture's.
+  void restore(const Gathered& gathered);
+
+ private:
+  /// Of the picture's shape, or one for all pixels.
+  const sk::Stream<int>& countStream();
+  void listPixels();
+
+  sk::Device* device_;
+  std::int64_t passes_ = 0;
+  sk::Stream<sk::double3> sum_, squares_;
+  sk::Stream<sk::float3> mean_, list_;
+  sk::Stream<int> passCount_, counts_, active_;
+  sk::Stream<sk::int2> pixels_;
+};
+
+}  // namespace rays
