@@ -20,14 +20,14 @@ namespace rays {
 namespace {
 
 /// Rays that are there at once.
-constexpr std::size_t batch = 1'000'000;
+constexpr std::size_t raysAtOnce = 1'000'000;
 
 std::int64_t countLeaks(Engine& engine, const Model& model, Vector moved, std::size_t count) {
   std::int64_t leaks = 0;
-  for (std::size_t first = 0; first < count; first += batch) {
-    const auto seed = static_cast<unsigned>(11 + first / batch);
+  for (std::size_t first = 0; first < count; first += raysAtOnce) {
+    const auto seed = static_cast<unsigned>(11 + first / raysAtOnce);
     const std::vector<Hit> hits =
-        traceRays(engine, model, raysToEdges(model, moved, std::min(batch, count - first), seed));
+        traceRays(engine, model, raysToEdges(model, moved, std::min(raysAtOnce, count - first), seed));
     leaks += std::ranges::count_if(hits, [](const Hit& hit) { return hit.id < 0; });
   }
   return leaks;
