@@ -22,6 +22,7 @@ constexpr std::array<std::string_view, 3> traversalNames = {"stack", "leaves", "
 constexpr std::array<std::string_view, 2> machineNames = {"megakernel", "wavefront"};
 constexpr std::array<std::string_view, 3> sortNames = {"none", "origin", "direction"};
 constexpr std::array<std::string_view, 2> intersectionNames = {"watertight", "moller"};
+constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
 /// Rays of one call; more come in several.
 constexpr std::size_t batch = std::size_t{1} << 20;
 
@@ -93,6 +94,7 @@ DeviceSettings settingsOf(const SceneTable& table) {
       static_cast<HowToIntersect>(table.choice("intersection", intersectionNames).value_or(0));
   settings.machine = static_cast<PathMachine>(table.choice("machine", machineNames).value_or(0));
   settings.sort = static_cast<RaySort>(table.choice("sort", sortNames).value_or(0));
+  if (table.choice("precision", precisionNames).value_or(0) == 1) settings.precision = sk::Precision::Double;
   settings.bvh.bins = static_cast<int>(table.integer("bins", Range{2, 64}).value_or(settings.bvh.bins));
   settings.bvh.leaf = static_cast<int>(table.integer("leaf", Range{1, 7}).value_or(settings.bvh.leaf));
   return settings;

@@ -12,7 +12,7 @@
 
 namespace rays {
 
-/// [bvh]: traversal = "stack", "leaves" or "skip", intersection = "watertight" or "moller", bins, leaf.
+/// [bvh]: traversal = "stack", "leaves" or "skip", intersection = "watertight" or "moller", precision = "single" or "double", bins, leaf.
 MakeEngine readBvhEngine(const std::optional<examples::SceneTable>& settings);
 
 /// The engine itself, for tests and studies.

@@ -54,6 +54,7 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   milliseconds_ = stopwatch.milliseconds();
   const bool isNative = device.name().starts_with("native");
   intersection_ = settings.intersection;
+  precision_ = settings.precision;
   const Way fastest = fastestOn(device);
   traversal_ = settings.traversal.value_or(fastest.traversal);
   // Links are for two children, and there are at most as many wide nodes as others.

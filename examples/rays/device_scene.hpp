@@ -37,6 +37,8 @@ struct DeviceSettings {
   std::optional<int>
       nodes{};  ///< children of a node, 2 or `wideChildren`; none: what is faster. Skip needs 2
   HowToIntersect intersection = HowToIntersect::Watertight;
+  /// Single or Double. Numbers of shapes travel in floats, which halves would round.
+  sk::Precision precision = sk::Precision::Single;
   PathMachine machine = PathMachine::Megakernel;
   RaySort sort = RaySort::None;  ///< of lists of rays, and of the wavefront machine
 };
@@ -65,9 +67,10 @@ class DeviceScene {
   /// The arguments that all kernels begin with, up to `shapes`, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
-    kernel(static_cast<unsigned>(intersection_), kernelTraversal(), contracted_, hasTriangles_, hasSpheres_,
-           hasPlanes_, nodeCount_, planeCount_, firstPlane_, planes_, nodes_, wide_, children_, shapes_,
-           std::forward<More>(more)...);
+    kernel.with({.precision = precision_})(static_cast<unsigned>(intersection_), kernelTraversal(),
+                                           contracted_, hasTriangles_, hasSpheres_, hasPlanes_, nodeCount_,
+                                           planeCount_, firstPlane_, planes_, nodes_, wide_, children_,
+                                           shapes_, std::forward<More>(more)...);
   }
 
   sk::Device& device() const { return *device_; }
@@ -87,6 +90,7 @@ class DeviceScene {
   Bvh bvh_;
   double milliseconds_ = 0.0;  ///< that building took
   HowToIntersect intersection_;
+  sk::Precision precision_;
   HowToTraverse traversal_;
   int width_;  ///< children of a node
   bool isChosen_;  ///< both, because nothing was asked for

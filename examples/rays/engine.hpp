@@ -22,6 +22,13 @@ namespace rays {
 
 enum class Sampling : std::uint8_t { Random, Sobol };
 
+/// How paths reach what could be met by chance and by asking for it: lights with a surface, discs of suns, images of the sky.
+enum class Strategy : std::uint8_t {
+  Both,      ///< both ways, weighted by the power heuristic
+  Lights,    ///< only by rays to points of lights
+  Surfaces,  ///< only by rays that surfaces scatter
+};
+
 struct Picture {
   bool everything = false;  ///< compiles in what the scene does not name, too, to measure what that costs
   int width = 512;
@@ -29,6 +36,7 @@ struct Picture {
   int depth = 8;  ///< segments of a path, the one from the camera included
   std::uint32_t seed = 1;
   Sampling sampling = Sampling::Sobol;  ///< independent numbers, or Sobol's with Owen's scrambling
+  Strategy strategy = Strategy::Both;
 };
 
 class Exposure;

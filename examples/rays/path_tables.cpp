@@ -59,6 +59,16 @@ int scatteringFeature(Scattering scattering) {
   return 0;
 }
 
+/// Bits that choose between ways to reach a light, beside those of the scene.
+int strategyBits(Strategy strategy) {
+  switch (strategy) {
+    case Strategy::Both: return 0;
+    case Strategy::Lights: return 4096;
+    case Strategy::Surfaces: return 8192;
+  }
+  return 0;
+}
+
 int featuresOf(const Model& model) {
   int features = 0;
   std::vector<bool> isUsed(model.materials.size());
@@ -123,7 +133,7 @@ kernels::View viewFor(const Camera& camera, const Picture& picture) {
 }  // namespace
 
 PathTables::PathTables(sk::Device& device, const Model& model, const Picture& picture)
-    : features(featuresOf(model)),
+    : features(featuresOf(model) | strategyBits(picture.strategy)),
       sampling(picture.sampling),
       seed(picture.seed),
       view(viewFor(model.camera, picture)) {

@@ -120,6 +120,8 @@ TEST_CASE("errors in scenes name the line and the column") {
              Catch::Contains(":2:1: ") && Catch::Contains("did you mean 'field_of_view'"));
   CHECK_THAT(messageOf("engine = \"bvhh\"\n"), Catch::Contains("did you mean 'bvh'"));
   CHECK_THAT(messageOf("[bvh]\nlaef = 3\n"), Catch::Contains("did you mean 'leaf'"));
+  CHECK_THAT(messageOf("[bvh]\nprecision = \"half\"\n"), Catch::Contains("precision"));
+  CHECK_THAT(messageOf("[picture]\nstrategy = \"light\"\n"), Catch::Contains("did you mean 'lights'"));
   CHECK_THAT(messageOf("[[mesh]]\nshape = \"cube\"\n"), Catch::Contains("there is no shape 'cube'"));
   CHECK_THAT(messageOf("[[mesh]]\n"), Catch::Contains("'file' is missing"));
   CHECK_THAT(messageOf("[[mesh]]\nfile = \"none.obj\"\n"),

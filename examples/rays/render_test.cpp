@@ -14,6 +14,7 @@
 
 #include "layers.hpp"
 #include "light_table.hpp"
+#include "path_tables.hpp"
 #include "raster_file.hpp"
 #include "scene.hpp"
 #include "support/written_file.hpp"
@@ -286,6 +287,15 @@ TEST_CASE("the variance is that of the mean") {
   const double within = estimateOf(renderer->variance()).mean;
   // All pixels see one point: they differ by what each of them says that it may be off by. 256 of them tell that to a tenth.
   CHECK(within == Approx(between.error * between.error * 256).epsilon(0.35));
+}
+
+TEST_CASE("sums of many samples stay what they are") {
+  sk::Device device = sk::Device::native();
+  Exposure exposure(device, {.width = 1, .height = 1});
+  exposure.radiance.fill({0.1f, 0.1f, 0.1f});
+  // A sum of floats would be off by a thousandth by now, and by a hundredth after a million.
+  for (int i = 0; i < 50'000; ++i) exposure.add();
+  CHECK(exposure.image()[0].x == 0.1f);
 }
 
 TEST_CASE("Sobol's numbers converge faster than independent ones") {

@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 5> scatteringNames = {"diffuse", "mirror"
 constexpr std::array<std::string_view, 2> lightNames = {"point", "sun"};
 constexpr std::array<std::string_view, 2> toneNames = {"linear", "filmic"};
 constexpr std::array<std::string_view, 2> samplingNames = {"random", "sobol"};
+constexpr std::array<std::string_view, 3> strategyNames = {"both", "lights", "surfaces"};
 
 Material readMaterial(const SceneTable& table, const Reading& reading, Model& model) {
   Material m;
@@ -114,6 +115,7 @@ void readPicture(const SceneTable& root, const Overrides& overrides, Scene& scen
     picture.depth = static_cast<int>(table->integer("depth", Range{1, 1000}).value_or(picture.depth));
     picture.seed = static_cast<std::uint32_t>(table->integer("seed", Range{0, 65535}).value_or(picture.seed));
     picture.sampling = static_cast<Sampling>(table->choice("sampling", samplingNames).value_or(1));
+    picture.strategy = static_cast<Strategy>(table->choice("strategy", strategyNames).value_or(0));
     output.samples = table->integer("samples", Range{1, 1e6}).value_or(output.samples);
     output.seconds = table->number("seconds", Range{0.0, 1e7}).value_or(output.seconds);
     output.error = table->number("error", Range{0.0, 1.0}).value_or(output.error);
@@ -152,7 +154,8 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   scene.file = file;
   scene.name = file.stem().string();
   scene.title = root.text("title").value_or(scene.name);
-  Reading reading{.folder = file.parent_path(), .strict = overrides.strict};
+  Reading reading{
+      .folder = file.parent_path(), .strict = overrides.strict, .mostLevel = overrides.mostLevel};
   readMaterials(root, reading, scene.model);
   readShapes(root, reading, scene.model);
   readLights(root, scene.model);

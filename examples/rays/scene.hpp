@@ -42,11 +42,12 @@ struct Scene {
 /// What the command line says in place of the file.
 struct Overrides {
   std::optional<int> width{}, height{};
-  std::optional<std::int64_t> samples;
-  std::optional<double> seconds;
-  std::string engine;
+  std::optional<std::int64_t> samples{};
+  std::optional<double> seconds{};
+  std::string engine{};
   bool strict = false;  ///< vertices that are not finite are an error
   std::optional<double> error{};
+  int mostLevel = 1000;  ///< the detail of computed shapes is lowered to this level
 };
 
 /// Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong and the way out".

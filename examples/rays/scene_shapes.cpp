@@ -88,31 +88,36 @@ struct Named {
   bool ownMaterials = false;
 };
 
-Mesh computedMesh(const SceneTable& table, std::size_t shape) {
+Mesh computedMesh(const SceneTable& table, std::size_t shape, int mostLevel) {
   const auto whole = [&](std::string_view key, std::int64_t otherwise, double least, double most) {
     return static_cast<int>(table.integer(key, Range{least, most}).value_or(otherwise));
   };
   switch (shape) {
     case 0: return quad();
     case 1: return box();
-    case 2: return sponge(whole("level", 3, 0, 5));
-    case 3: return icosphere(whole("level", 4, 0, 8), table.flag("smooth").value_or(true));
+    case 2: return sponge(std::min(whole("level", 3, 0, 5), mostLevel));
+    case 3:
+      return icosphere(std::min(whole("level", 4, 0, 8), mostLevel), table.flag("smooth").value_or(true));
     case 4: {
-      const int around = whole("around", 64, 3, 4096), across = whole("across", 32, 3, 4096);
+      // As many triangles as other shapes have at that level, or nearly.
+      const int most = 3 << std::min(mostLevel, 20);
+      const int around = std::min(whole("around", 64, 3, 4096), 2 * most),
+                across = std::min(whole("across", 32, 3, 4096), most);
       return torus(around, across, table.number("tube", Range{1e-3, 0.25}).value_or(0.15));
     }
     case 5: {
-      const int level = whole("level", 7, 0, 11);
+      const int level = std::min(whole("level", 7, 0, 11), mostLevel);
       const auto seed = static_cast<std::uint32_t>(whole("seed", 1, 0, 2147483647));
       return terrain(level, table.number("height", Range{0, 100}).value_or(0.3), seed);
     }
     case 6: {
       // Natively, so that all devices see the same triangles.
       sk::Device device = sk::Device::native();
-      return gyroid(device, whole("cells", 96, 8, 400), table.number("turns", Range{0.25, 32}).value_or(3.0),
+      const int cells = std::min(whole("cells", 96, 8, 400), 8 << std::min(mostLevel, 20));
+      return gyroid(device, cells, table.number("turns", Range{0.25, 32}).value_or(3.0),
                     table.number("thickness", Range{0.02, 1.4}).value_or(0.3));
     }
-    case 7: return teapot(whole("level", 12, 1, 256));
+    case 7: return teapot(std::min(whole("level", 12, 1, 256), mostLevel));
     default: throw std::logic_error("a shape without a mesh");
   }
 }
@@ -121,7 +126,7 @@ Mesh meshOf(const SceneTable& table, const Reading& reading, bool wantsMaterials
   const auto shape = table.choice("shape", shapeNames);
   const auto file = table.text("file");
   if (shape && file) refuse(table, "shape", "and 'file' exclude each other");
-  if (shape) return computedMesh(table, *shape);
+  if (shape) return computedMesh(table, *shape, reading.mostLevel);
   if (!file) refuse(table, "file", "is missing; name an OBJ or PLY file, or a 'shape'");
   const std::filesystem::path path = reading.folder / *file;
   std::error_code ignored;
@@ -256,7 +261,7 @@ void readRound(const SceneTable& root, const Reading& reading, Model& model) {
     const double radius = table.number("radius", positiveLength).value_or(1.0);
     const auto level = static_cast<int>(table.integer("level", Range{0, 6}).value_or(3));
     const std::int32_t material = materialNumber(table, "material", reading);
-    for (Sphere sphere : sphereFlake(centre, radius, level)) {
+    for (Sphere sphere : sphereFlake(centre, radius, std::min(level, reading.mostLevel))) {
       sphere.material = material;
       model.spheres.push_back(sphere);
     }

@@ -17,6 +17,7 @@ namespace rays {
 struct Reading {
   std::filesystem::path folder;  ///< that files are relative to
   bool strict = false;
+  int mostLevel = 1000;  ///< detail of shapes that have levels
   std::map<std::string, std::int32_t, std::less<>> materials{};  ///< by name
   std::vector<std::string> warnings{};
 };

@@ -33,6 +33,12 @@ struct Study {
 std::span<const Study> studies();
 
 Findings studyLeaks(sk::Device& device, bool isSmall);
+/// Every scene by every mode on every device; the given one does not matter.
+Findings studyAlike(sk::Device& device, bool isSmall);
+Findings studyLight(sk::Device& device, bool isSmall);
+Findings studyConvergence(sk::Device& device, bool isSmall);
+Findings studyPrecision(sk::Device& device, bool isSmall);
+Findings studySums(sk::Device& device, bool isSmall);
 Findings studySpeed(sk::Device& device, bool isSmall);
 Findings studyStreaming(sk::Device& device, bool isSmall);
 Findings studyWavefront(sk::Device& device, bool isSmall);
