@@ -24,13 +24,13 @@ Bvh built(const Model& model, const BvhSettings& settings) {
   return bvh;
 }
 
-struct Way {
+struct TraversalDefault {
   HowToTraverse traversal;
   int nodes;
 };
 
 /// What was fastest on devices of a kind in the study of speed (docs/rays.md).
-Way fastestOn(const sk::Device& device) {
+TraversalDefault fastestOn(const sk::Device& device) {
   if (device.name().starts_with("native")) return {HowToTraverse::Stack, wideChildren};
   if (device.isSoftware()) return {HowToTraverse::Leaves, 2};
   return {HowToTraverse::Stack, 2};
@@ -55,7 +55,7 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   const bool isNative = device.name().starts_with("native");
   intersection_ = settings.intersection;
   precision_ = settings.precision;
-  const Way fastest = fastestOn(device);
+  const TraversalDefault fastest = fastestOn(device);
   traversal_ = settings.traversal.value_or(fastest.traversal);
   // Links are for two children, and there are at most as many wide nodes as others.
   const bool canBeWide = traversal_ != HowToTraverse::Skip && bvh_.nodes.size() <= mostWideNodes;

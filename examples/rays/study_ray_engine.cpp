@@ -18,14 +18,14 @@
 namespace rays {
 namespace {
 
-struct Way {
+struct EngineCase {
   const char* name;
   RayEngineSettings settings;
 };
 
 /// Each dial on its own, about the defaults.
-std::vector<Way> waysOf() {
-  std::vector<Way> ways = {{"as it comes", {}}};
+std::vector<EngineCase> waysOf() {
+  std::vector<EngineCase> ways = {{"as it comes", {}}};
   for (const int bucket : {64, 1024, 4096}) ways.push_back({"bucket", {.bucket = bucket}});
   for (const int shapes : {1, 4, 16}) ways.push_back({"shapes a call", {.shapesPerCall = shapes}});
   for (const int flights : {0, 1, 16}) ways.push_back({"in flight", {.inFlight = flights}});
@@ -36,7 +36,7 @@ std::vector<Way> waysOf() {
 }
 
 /// The best of some runs, rays to the device and hits back included.
-double bestMilliseconds(const sk::Device& device, Engine& engine, const std::vector<Ray>& rays, int runs) {
+double bestOfEngine(const sk::Device& device, Engine& engine, const std::vector<Ray>& rays, int runs) {
   std::vector<Hit> hits(rays.size());
   engine.closest(rays, hits);  // compiles
   double best = HUGE_VAL;
@@ -62,12 +62,12 @@ Findings studyRayEngine(sk::Device& device, bool isSmall) {
   examples::Table table({"dial", "bucket", "shapes a call", "in flight", "cache", "calls",
                          "tests a ray, primary", "diffuse", "Mtests/s", "primary, Mrays/s",
                          "diffuse, Mrays/s"});
-  for (const Way& way : waysOf()) {
+  for (const EngineCase& way : waysOf()) {
     const RayEngineSettings& s = way.settings;
     const std::unique_ptr<RayEngine> engine = makeRayEngine(device, model, s);
-    const double first = bestMilliseconds(device, *engine, primary, runs);
+    const double first = bestOfEngine(device, *engine, primary, runs);
     const BucketCount one = engine->count();
-    const double second = bestMilliseconds(device, *engine, diffuse, runs);
+    const double second = bestOfEngine(device, *engine, diffuse, runs);
     const BucketCount both = engine->count();
     const auto trials = double(runs + 1);
     const double testsOne = double(one.tests) / trials, testsTwo = double(both.tests - one.tests) / trials;
@@ -81,8 +81,8 @@ Findings studyRayEngine(sk::Device& device, bool isSmall) {
   }
   const auto addEngine = [&](const char* name, Engine& engine) {
     table.add({name, "-", "-", "-", "-", "-", "-", "-", "-",
-               rate(primary, bestMilliseconds(device, engine, primary, runs)),
-               rate(diffuse, bestMilliseconds(device, engine, diffuse, runs))});
+               rate(primary, bestOfEngine(device, engine, primary, runs)),
+               rate(diffuse, bestOfEngine(device, engine, diffuse, runs))});
   };
   addEngine("a grid, branching", *makeStreamingEngine(device, model, {}));
   addEngine("a hierarchy of boxes", *hierarchy);
