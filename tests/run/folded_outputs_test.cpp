@@ -533,7 +533,7 @@ TEST_CASE("what a folded output cannot be is refused before anything runs") {
     CHECK_THAT(errorOf([&] {
                  folded::count.with({.scan = sk::Scan::Exclusive})(x, y, ok, other, device.stream<int>({1}));
                }),
-               Contains("no scan"));
+               Contains("is not a scan"));
     CHECK_THAT(errorOf([&] {
                  folded::count.with({.accumulate = sk::Accumulate::Exact})(x, y, ok, other,
                                                                            device.stream<int>({1}));

@@ -587,9 +587,8 @@ TEST_CASE("the bits of sums in rows do not depend on the number of threads") {
       rows::sums.with({.accumulate = how})(rows(in), each);
     };
     call(some, someEach);
-    // a loop inside another one has a single thread
     sk::native::inParallel(2, 1 << 20, sk::native::Deal::Evenly, [&](sk::native::Range range) {
-      if (range.begin == 0) call(one, oneEach);
+      if (range.begin == 0) call(one, oneEach);  // a loop inside another one has a single thread
     });
     const std::vector<float> a = some.read(), b = one.read(), c = someEach.read(), d = oneEach.read();
     CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
