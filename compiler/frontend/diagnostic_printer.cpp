@@ -11,10 +11,10 @@
 #include <clang/AST/DeclCXX.h>
 #include <clang/AST/DeclarationName.h>
 #include <clang/AST/Type.h>
-#include <clang/Basic/SourceManager.h>
 #include <clang/Basic/DiagnosticLex.h>
 #include <clang/Basic/DiagnosticParse.h>
 #include <clang/Basic/DiagnosticSema.h>
+#include <clang/Basic/SourceManager.h>
 #include <clang/Frontend/TextDiagnostic.h>
 #include <clang/Lex/Lexer.h>
 #include <fmt/format.h>

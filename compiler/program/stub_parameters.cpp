@@ -41,7 +41,7 @@ std::string parameterText(const Module& module, const std::string& unit, const s
   constexpr std::string_view scatterOps[] = {"Store", "Add", "Min", "Max"};
   constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
   const std::string element = declared.type.kind == Type::Kind::Array ? "&" + elementName(unit, param)
-                                                                : elementOf(module, declared.type);
+                                                                      : elementOf(module, declared.type);
   std::string text =
       fmt::format("{{.name = \"{}\", .symbol = \"{}\", .role = Role::{}, .element = {}", param.name,
                   param.symbol, roles[static_cast<std::size_t>(param.role)], element);

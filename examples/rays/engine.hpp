@@ -24,8 +24,8 @@ enum class Sampling : std::uint8_t { Random, Sobol };
 
 /// How paths reach what could be met by chance and by asking for it: lights with a surface, discs of suns, images of the sky.
 enum class Strategy : std::uint8_t {
-  Both,      ///< both ways, weighted by the power heuristic
-  Lights,    ///< only by rays to points of lights
+  Both,  ///< both ways, weighted by the power heuristic
+  Lights,  ///< only by rays to points of lights
   Surfaces,  ///< only by rays that surfaces scatter
 };
 

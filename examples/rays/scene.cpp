@@ -154,8 +154,7 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   scene.file = file;
   scene.name = file.stem().string();
   scene.title = root.text("title").value_or(scene.name);
-  Reading reading{
-      .folder = file.parent_path(), .strict = overrides.strict, .mostLevel = overrides.mostLevel};
+  Reading reading{.folder = file.parent_path(), .strict = overrides.strict, .mostLevel = overrides.mostLevel};
   readMaterials(root, reading, scene.model);
   readShapes(root, reading, scene.model);
   readLights(root, scene.model);

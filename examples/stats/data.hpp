@@ -32,7 +32,7 @@ struct CsvOptions {
 Data readCsv(const std::filesystem::path& file, const CsvOptions& options);
 
 enum class BinaryOrder : std::uint8_t {
-  Rows,     ///< the first row's numbers, then the second's
+  Rows,  ///< the first row's numbers, then the second's
   Columns,  ///< the first column's numbers, then the second's
 };
 

@@ -157,8 +157,9 @@ TEST_CASE("a loop gives the commands again that change something") {
     });
     loop.repeat(7);
     const bool isDispatched = profile == "glsl430";
-    const Names one = isDispatched ? Names{"glBindTexture", "glBindImageTexture", "glDispatchCompute", "glMemoryBarrier"}
-                                   : Names{"glBindTexture", "glBindFramebuffer", "glDrawArrays"};
+    const Names one =
+        isDispatched ? Names{"glBindTexture", "glBindImageTexture", "glDispatchCompute", "glMemoryBarrier"}
+                     : Names{"glBindTexture", "glBindFramebuffer", "glDrawArrays"};
     Names expected;
     for (int i = 0; i < 5; ++i) expected.insert(expected.end(), one.begin(), one.end());
     Names given = callsOf([&] { loop.repeat(5); });
@@ -166,9 +167,9 @@ TEST_CASE("a loop gives the commands again that change something") {
     CHECK(given == expected);
     Loop same = device.record([&] { saxpy()(2.0f, of.x, of.s, of.r); });
     same.repeat(3);
-    CHECK(callsOf([&] { same.repeat(2); }) ==
-          (isDispatched ? Names{"glDispatchCompute", "glMemoryBarrier", "glDispatchCompute", "glMemoryBarrier"}
-                        : Names{"glDrawArrays", "glDrawArrays"}));
+    CHECK(callsOf([&] { same.repeat(2); }) == (isDispatched ? Names{"glDispatchCompute", "glMemoryBarrier",
+                                                                    "glDispatchCompute", "glMemoryBarrier"}
+                                                            : Names{"glDrawArrays", "glDrawArrays"}));
   }
 }
 

@@ -109,7 +109,8 @@ void compileTimes(const Settings& settings, bench::Report& report) {
   }
   report.add({"from a kernel and a sum to objects: skc, and C++",
               "ms",
-              bench::editTime(settings.skc, settings.compiler, SK_BENCH_SMALL, folder, std::min(settings.rounds, 10)),
+              bench::editTime(settings.skc, settings.compiler, SK_BENCH_SMALL, folder,
+                              std::min(settings.rounds, 10)),
               1000.0,
               {}});
   std::filesystem::remove_all(folder);

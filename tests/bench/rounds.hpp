@@ -28,7 +28,7 @@ enum class Time : std::uint8_t { Wall, Processor };
 /// What two contenders took, round by round.
 struct Comparison {
   std::vector<double> ratios;  ///< ours over theirs
-  std::vector<double> ours;    ///< milliseconds for doing it once
+  std::vector<double> ours;  ///< milliseconds for doing it once
   std::vector<double> theirs;
 };
 

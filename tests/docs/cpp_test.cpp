@@ -20,7 +20,8 @@ using docs::Block;
 
 std::string compilerCommand() {
   return SK_DOCS_COMPILER +
-         fmt::format(" -O0 -I '{0}/runtime/include' -I '{0}/runtime/src' -I '{0}/compiler' -I .", SK_DOCS_SOURCE);
+         fmt::format(" -O0 -I '{0}/runtime/include' -I '{0}/runtime/src' -I '{0}/compiler' -I .",
+                     SK_DOCS_SOURCE);
 }
 
 /// Runs a command that must succeed.
@@ -36,7 +37,8 @@ const fs::path& kernelFolder() {
     const fs::path made = docs::workFolder("kernels");
     docs::writeNamedFiles(made);
     make("skc *.sk", made);
-    make(fmt::format("for file in *.sk.cpp; do {} -c $file -o $file.o || exit 1; done", compilerCommand()), made);
+    make(fmt::format("for file in *.sk.cpp; do {} -c $file -o $file.o || exit 1; done", compilerCommand()),
+         made);
     return made;
   }();
   return folder;

@@ -48,7 +48,8 @@ std::vector<Row> rowsOf(const std::string& table) {
 
 std::string lineOf(const Row& row, const std::vector<std::size_t>& columns) {
   std::string line = "|";
-  for (const std::size_t column : columns) line += fmt::format(" {} |", column < row.size() ? row[column] : "");
+  for (const std::size_t column : columns)
+    line += fmt::format(" {} |", column < row.size() ? row[column] : "");
   return line + "\n";
 }
 
@@ -67,7 +68,8 @@ std::string excerpt(const std::string& choice, const std::string& source) {
   std::vector<std::size_t> columns;
   for (const std::string& column : split(choice.substr(semicolon + 2), ',')) {
     const auto at = std::ranges::find(table.front(), column);
-    if (at == table.front().end()) throw std::runtime_error(fmt::format("'{}' has no column '{}'", name, column));
+    if (at == table.front().end())
+      throw std::runtime_error(fmt::format("'{}' has no column '{}'", name, column));
     columns.push_back(static_cast<std::size_t>(at - table.front().begin()));
   }
   std::string text = lineOf(table.front(), columns) + "|";

@@ -52,7 +52,8 @@ std::vector<std::string> rowsOf(const std::string& text, const std::string& name
 
 TEST_CASE("README.md shows rows of docs/performance.md as they stand there", "[figures]") {
   const std::string readme = docs::readFile(std::filesystem::path(SK_DOCS_SOURCE) / "README.md");
-  const std::string source = docs::readFile(std::filesystem::path(SK_DOCS_SOURCE) / "docs" / "performance.md");
+  const std::string source =
+      docs::readFile(std::filesystem::path(SK_DOCS_SOURCE) / "docs" / "performance.md");
   CHECK(readme.find("<!-- excerpt ") != std::string::npos);
   CHECK(docs::withExcerpts(readme, source) == readme);
 }
@@ -60,7 +61,8 @@ TEST_CASE("README.md shows rows of docs/performance.md as they stand there", "[f
 TEST_CASE("README.md's errors of sums stand in docs/accuracy.md", "[figures]") {
   const docs::Document readme = docs::readDocument(SK_DOCS_SOURCE, "README.md");
   const std::string accuracy = docs::readFile(std::filesystem::path(SK_DOCS_SOURCE) / "docs" / "accuracy.md");
-  const std::size_t table = accuracy.find("\nsum, illconditioned: 4194304 numbers that cancel but for 10^-12");
+  const std::size_t table =
+      accuracy.find("\nsum, illconditioned: 4194304 numbers that cancel but for 10^-12");
   REQUIRE(table != std::string::npos);
   const std::string measured = accuracy.substr(table, accuracy.find("```", table) - table);
   static const std::regex row(R"(\| (tree|compensated|exact) \| ([\d.]+) \| ([\d.e+-]+) \|)");

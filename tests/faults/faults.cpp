@@ -280,11 +280,12 @@ struct PlainEgl<place, R (*)(A...)> {
   HOOK(glBindBufferBase)                                                                                     \
   HOOK(glBindBufferRange)                                                                                    \
   HOOK(glBindFramebuffer)                                                                                    \
-  HOOK(glBindImageTexture) HOOK(glBindSampler) HOOK(glBindTexture) HOOK(glBindVertexArray) HOOK(             \
-      glBlendEquation) HOOK(glBlendEquationSeparate) HOOK(glBlendEquationSeparatei) HOOK(glBlendFunc)        \
-      HOOK(glBlendFuncSeparate) HOOK(glBlendFuncSeparatei) HOOK(glClampColor) HOOK(glClipControl) HOOK(      \
-          glClipControlEXT) HOOK(glColorMask) HOOK(glColorMaski) HOOK(glDetachShader) HOOK(glDisable)        \
-          HOOK(glDisablei) HOOK(glDrawBuffers) HOOK(glEnable) HOOK(glEnablei) HOOK(glFinish) HOOK(glFlush)   \
+  HOOK(glBindImageTexture)                                                                                   \
+  HOOK(glBindSampler) HOOK(glBindTexture) HOOK(glBindVertexArray) HOOK(glBlendEquation) HOOK(                \
+      glBlendEquationSeparate) HOOK(glBlendEquationSeparatei) HOOK(glBlendFunc) HOOK(glBlendFuncSeparate)    \
+      HOOK(glBlendFuncSeparatei) HOOK(glClampColor) HOOK(glClipControl) HOOK(glClipControlEXT)               \
+          HOOK(glColorMask) HOOK(glColorMaski) HOOK(glDetachShader) HOOK(glDisable) HOOK(glDisablei) HOOK(   \
+              glDrawBuffers) HOOK(glEnable) HOOK(glEnablei) HOOK(glFinish) HOOK(glFlush)                     \
               HOOK(glFramebufferTexture2D) HOOK(glFramebufferTextureLayer) HOOK(glGetBooleani_v) HOOK(       \
                   glGetBooleanv) HOOK(glGetBufferParameteri64v) HOOK(glGetBufferSubData) HOOK(glGetFloati_v) \
                   HOOK(glGetFloatv) HOOK(glGetInteger64i_v) HOOK(glGetInteger64v) HOOK(glGetIntegeri_v)      \
@@ -310,15 +311,16 @@ struct PlainEgl<place, R (*)(A...)> {
                                                                           HOOK(glViewportIndexedf)           \
                                                                               HOOK(glViewportIndexedfv)
 
-#define PLAIN_EGL_FUNCTIONS                                                                \
-  HOOK(eglBindAPI)                                                                         \
-  HOOK(eglChooseConfig)                                                                    \
-  HOOK(eglCreatePbufferSurface)                                                            \
-  HOOK(eglDestroySurface)                                                                  \
-  HOOK(eglGetCurrentContext)                                                               \
-  HOOK(eglGetCurrentDisplay)                                                               \
-  HOOK(eglGetCurrentSurface) HOOK(eglGetDisplay) HOOK(eglGetError) HOOK(eglGetProcAddress) \
-      HOOK(eglInitialize) HOOK(eglMakeCurrent) HOOK(eglQueryAPI) HOOK(eglQueryString)
+#define PLAIN_EGL_FUNCTIONS                                                                              \
+  HOOK(eglBindAPI)                                                                                       \
+  HOOK(eglChooseConfig)                                                                                  \
+  HOOK(eglCreatePbufferSurface)                                                                          \
+  HOOK(eglDestroySurface)                                                                                \
+  HOOK(eglGetCurrentContext)                                                                             \
+  HOOK(eglGetCurrentDisplay)                                                                             \
+  HOOK(eglGetCurrentSurface)                                                                             \
+  HOOK(eglGetDisplay) HOOK(eglGetError) HOOK(eglGetProcAddress) HOOK(eglInitialize) HOOK(eglMakeCurrent) \
+      HOOK(eglQueryAPI) HOOK(eglQueryString)
 
 }  // namespace
 

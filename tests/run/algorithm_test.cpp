@@ -234,7 +234,8 @@ TEST_CASE("calls of algorithms that make no sense are errors") {
   CHECK_THAT(errorOf([&] { sk::order(none); }), Contains("sk::order: there is no stream"));
   CHECK_THAT(errorOf([&] { sk::unique(keys, few); }), Contains("sk::unique: keys have shape"));
   CHECK_THAT(errorOf([&] { sk::partition(keys, few); }), Contains("sk::partition: flags have shape"));
-  CHECK_THAT(errorOf([&] { gl.record([&] { sk::sort(keys); }); }), Contains("sk::sort: the device is recording"));
+  CHECK_THAT(errorOf([&] { gl.record([&] { sk::sort(keys); }); }),
+             Contains("sk::sort: the device is recording"));
   CHECK(keys.read() == std::vector<int>{3, 1, 2});
 }
 

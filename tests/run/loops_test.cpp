@@ -201,7 +201,8 @@ TEST_CASE("what a loop cannot repeat is refused, and the device goes on") {
 
 TEST_CASE("a loop refuses a stream that has another shape, and a device that has ended") {
   std::optional<sk::Device> device(sk::Device::native());
-  auto n = streamOf<int>(*device, {1, 2, 3}), even = device->stream<int>({3}), halves = device->stream<int>({3});
+  auto n = streamOf<int>(*device, {1, 2, 3}), even = device->stream<int>({3}),
+       halves = device->stream<int>({3});
   sk::Loop loop = device->record([&] { loops::halve(even, halves); });
   loops::evens(n, even);
   CHECK_THAT(errorOf([&] { loop.repeat(1); }), Contains("a stream of shape {3} has shape {1} now"));

@@ -17,9 +17,9 @@
 
 #include "error_of.hpp"
 #include "rows.sk.hpp"
+#include "rows_support.hpp"
 #include "sk/native/parallel.hpp"
 #include "sk/sk.hpp"
-#include "rows_support.hpp"
 #include "support/devices.hpp"
 
 namespace run_tests {

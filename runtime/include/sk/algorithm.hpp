@@ -52,8 +52,7 @@ struct TypedStreams {
 /// each other and come last.
 template <class S>
 concept SortKeys =
-    detail::AnyStream<S> &&
-    detail::isOneOf<detail::ElementOf<S>, std::int32_t, std::uint32_t, float, double>;
+    detail::AnyStream<S> && detail::isOneOf<detail::ElementOf<S>, std::int32_t, std::uint32_t, float, double>;
 
 /// Sorts the keys, ascending unless the options say otherwise.
 template <SortKeys Keys>

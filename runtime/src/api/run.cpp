@@ -60,7 +60,8 @@ void record(DeviceState& device, const ResolvedCall& call) {
   for (const program::Parameter& parameter : call.kernel.parameters) {
     if (parameter.role != program::Role::VariableOutput) continue;
     fail(call.kernel,
-         "'{}' is a variable output, and how many elements are pushed to it is not known before it runs; call the "
+         "'{}' is a variable output, and how many elements are pushed to it is not known before it runs; "
+         "call the "
          "kernel outside of Device::record",
          parameter.name);
   }

@@ -12,7 +12,6 @@ namespace sk {
 
 namespace {
 
-
 std::uint32_t componentOf(const void* ends, int width, int end, int component) {
   std::uint32_t bits = 0;
   std::memcpy(&bits, static_cast<const std::byte*>(ends) + std::size_t{4} * (end * width + component), 4);

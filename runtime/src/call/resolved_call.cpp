@@ -75,7 +75,8 @@ const program::Plan* planFor(const Kernel& kernel, const assemble::SpecValues& s
 ResolvedCall resolveCall(const Kernel& kernel, std::span<const Argument> arguments,
                          const DeviceLimits& limits, const CallOptions& options) {
   const assemble::SpecValues specs = specsOf(kernel, arguments);
-  return {kernel, arguments, options, specs, domainOf(kernel, arguments, specs), planFor(kernel, specs, limits)};
+  return {
+      kernel, arguments, options, specs, domainOf(kernel, arguments, specs), planFor(kernel, specs, limits)};
 }
 
 ResolvedCall ResolvedCall::of(const Kernel& variant, const DeviceLimits& limits) const {

@@ -81,7 +81,8 @@ void LoopState::finish() {
   std::vector<std::pair<StreamState*, StreamState*>> moved;  // what a handle held before, and holds now
   for (const Held& before : held_) {
     const auto found = now.find(before.holder);
-    if (found != now.end() && found->second != before.stream) moved.emplace_back(before.stream, found->second);
+    if (found != now.end() && found->second != before.stream)
+      moved.emplace_back(before.stream, found->second);
   }
   findExchanges(moved);
   std::vector<std::pair<detail::StreamOwner*, StreamState*>> holders;
@@ -105,10 +106,11 @@ void LoopState::findExchanges(std::span<const std::pair<StreamState*, StreamStat
     }
     if (before->shape != after->shape || before->element != after->element ||
         before->storage != after->storage) {
-      throw Error(fmt::format("record: streams of shapes {} and {}, or of other storage, were swapped; a loop "
-                              "exchanges elements only of streams that are made alike",
-                              toString(before->shape), toString(after->shape)),
-                  Error::Kind::Shape);
+      throw Error(
+          fmt::format("record: streams of shapes {} and {}, or of other storage, were swapped; a loop "
+                      "exchanges elements only of streams that are made alike",
+                      toString(before->shape), toString(after->shape)),
+          Error::Kind::Shape);
     }
     use(before);
   }
@@ -135,10 +137,11 @@ void LoopState::checkBeforeRun() const {
   for (const Used& used : used_) {
     used.stream->settle();
     if (used.stream->shape != used.shape) {
-      throw Error(fmt::format("a loop: a stream of shape {} has shape {} now, since a kernel has pushed to it; "
-                              "record the calls again",
-                              toString(used.shape), toString(used.stream->shape)),
-                  Error::Kind::Shape);
+      throw Error(
+          fmt::format("a loop: a stream of shape {} has shape {} now, since a kernel has pushed to it; "
+                      "record the calls again",
+                      toString(used.shape), toString(used.stream->shape)),
+          Error::Kind::Shape);
     }
     checkElementsOf({used.stream, {}, {}}, false, "a loop");
   }

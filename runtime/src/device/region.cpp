@@ -183,7 +183,8 @@ bool overlap(const StreamRegion& a, const StreamRegion& b) {
       const std::int64_t most = region.extent[d] - 1;
       if (most == 0) continue;
       const auto same = std::ranges::find(steps, region.stride[d], &DimensionSteps::length);
-      DimensionSteps& added = same == steps.end() ? steps.emplace_back(DimensionSteps{region.stride[d], 0, 0}) : *same;
+      DimensionSteps& added =
+          same == steps.end() ? steps.emplace_back(DimensionSteps{region.stride[d], 0, 0}) : *same;
       (isNegative ? added.least : added.most) += isNegative ? -most : most;
     }
   };

@@ -44,7 +44,8 @@ class BoundState {
   }
   /// Array textures have a separate binding on each unit.
   void texture(int unit, GLuint name, bool isArray) {
-    note({.kind = isArray ? Command::Kind::ArrayTexture : Command::Kind::Texture, .unit = unit, .name = name});
+    note(
+        {.kind = isArray ? Command::Kind::ArrayTexture : Command::Kind::Texture, .unit = unit, .name = name});
     if ((isArray ? arrayTextures_ : textures_)[static_cast<std::size_t>(unit)] != name) {
       bindTexture(unit, name, isArray);
     }

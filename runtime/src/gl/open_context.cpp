@@ -55,7 +55,8 @@ class Search {
             "{}; tried without a window:{}\n"
             "  what can be done: install a driver (for software rendering on Debian: apt-get install libegl1 "
             "libgl1 libgles2 libgl1-mesa-dri); let the user read and write /dev/dri/renderD*; choose another "
-            "device by SK_DEVICE (gpu, gpu:N, software, native, or a part of a renderer's name); see what EGL "
+            "device by SK_DEVICE (gpu, gpu:N, software, native, or a part of a renderer's name); see what "
+            "EGL "
             "itself says by EGL_LOG_LEVEL=debug; or adopt the context of a window (sk::Device::adopt)",
             what, attempts_),
         Error::Kind::Device);

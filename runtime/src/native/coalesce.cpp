@@ -158,7 +158,7 @@ class Coalesce {
 
 void coalesce(const program::Kernel& kernel, std::span<native::Operand> operands, Extents& domain,
               Extents& block, bool isScan) {
-  constexpr std::int64_t longest = std::int64_t{1} << 31;   // indices are ints
+  constexpr std::int64_t longest = std::int64_t{1} << 31;  // indices are ints
   const bool isCounted = domain[0] * domain[1] * domain[2] * domain[3] < longest;
   if (isCounted && isPositionIndependent(kernel, operands))
     Coalesce(kernel, operands, domain, block, isScan).run();

@@ -14,7 +14,6 @@ namespace sk {
 
 namespace {
 
-
 /// Copies `count` values of Bytes bytes from one stride to another.
 template <std::size_t Bytes>
 void copyStrided(const std::byte* from, std::size_t fromStride, std::byte* to, std::size_t toStride,

@@ -130,7 +130,8 @@ struct ScalarValues {
 template <class Float, class Double>
 class Evaluation {
  public:
-  Evaluation(const ScalarPass& pass, ScalarValues& values) : pass_(pass), reads_(values.reads), steps_(values.steps) {}
+  Evaluation(const ScalarPass& pass, ScalarValues& values)
+      : pass_(pass), reads_(values.reads), steps_(values.steps) {}
 
   void run() {
     reads_.clear();

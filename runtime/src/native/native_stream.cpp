@@ -158,18 +158,17 @@ void permuteValues(const void* from, void* to, std::span<const std::int32_t> sou
                    std::span<const std::int64_t> places) {
   const T* const before = static_cast<const T*>(from);
   T* const after = static_cast<T*>(to);
-  native::inParallel(static_cast<std::int64_t>(sources.size()), 2, native::Deal::Evenly,
-                     [&](native::Range range) {
-                       for (auto i = static_cast<std::size_t>(range.begin);
-                            i < static_cast<std::size_t>(range.end); ++i) {
-                         const auto source = static_cast<std::size_t>(sources[i]);
-                         if (places.empty()) {
-                           after[i] = before[source];
-                         } else {
-                           after[places[i]] = before[places[source]];
-                         }
-                       }
-                     });
+  native::inParallel(
+      static_cast<std::int64_t>(sources.size()), 2, native::Deal::Evenly, [&](native::Range range) {
+        for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end); ++i) {
+          const auto source = static_cast<std::size_t>(sources[i]);
+          if (places.empty()) {
+            after[i] = before[source];
+          } else {
+            after[places[i]] = before[places[source]];
+          }
+        }
+      });
 }
 
 }  // namespace

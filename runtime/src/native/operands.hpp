@@ -94,7 +94,8 @@ class Operands {
   void beginAgain() {
     for (const Held& held : held_) copyHeld(held);
     for (const Lent& lent : lent_) {
-      list_[lent.operand].components = (lent.isSpare ? lent.stream->spare() : lent.stream->components).arrays();
+      list_[lent.operand].components =
+          (lent.isSpare ? lent.stream->spare() : lent.stream->components).arrays();
     }
     for (NativeStream* const stream : writtenInPlace_) stream->isBroken = true;
   }

@@ -327,7 +327,7 @@ void SlotArrays::storeOutputs(std::int64_t x, std::int64_t count, std::int64_t r
 }
 
 void SlotArrays::storeStrided(std::size_t row, std::size_t s, std::int64_t x, std::int64_t count,
-                             std::int64_t step) {
+                              std::int64_t step) {
   const Slot& slot = layout_.slots()[s];
   const std::int64_t stride = slot.argument->stride[0];
   const std::int64_t first = rowOf(row, s).first + x * stride;

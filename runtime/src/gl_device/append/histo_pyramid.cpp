@@ -52,7 +52,8 @@ void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below
   program.set(device_.bound, "sk_row", level.row);
   if (ofCounts) {
     program.set(device_.bound, "sk_below_width", shape.width);
-    program.set(device_.bound, "sk_below_shift", std::bit_width(static_cast<std::uint32_t>(shape.height)) - 1);
+    program.set(device_.bound, "sk_below_shift",
+                std::bit_width(static_cast<std::uint32_t>(shape.height)) - 1);
   } else {
     program.set(device_.bound, "sk_below_row", belowRow);
   }

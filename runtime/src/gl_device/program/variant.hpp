@@ -27,7 +27,7 @@ struct Operand {
   assemble::RegionLayout regionLayout = {};
   std::span<RenderTarget> planes = {};
   IteratorStep step = {};
-  int rank = 0;         ///< iterators: rank of the domain
+  int rank = 0;  ///< iterators: rank of the domain
   bool fitted = false;  ///< inputs with another program::Fit than Same
   /// Fitted inputs: k > 0 if each element serves k consecutive indices, -k if every k-th element is read.
   assemble::Index4 ratio = {1, 1, 1, 1};
