@@ -80,7 +80,7 @@ std::optional<TextureShape> linearTexture(std::int64_t count, const TextureLimit
   const int widest = std::bit_width(static_cast<std::uint32_t>(limits.size)) - 1;
   int square = 0;
   while (square < widest && std::int64_t{1} << (2 * square) < count) ++square;
-  int shift = std::min(square, narrowest);
+  int shift = limits.isNarrow ? std::min(square, narrowest) : square;
   while (shift < square && divideUp(shift) > limits.size) ++shift;
   if (divideUp(shift) <= limits.size) return TextureShape{1 << shift, divideUp(shift), 0};
   const auto unused = [&] { return (std::int64_t{divideUp(2 * shift)} << (2 * shift)) - count; };

@@ -64,6 +64,9 @@ std::uint8_t decodedRank(const RegionLayout& region);
 struct TextureLimits {
   std::int32_t size;  ///< width and height
   std::int32_t layers;  ///< of an array texture
+  /// Whether linearised textures are narrow. GPUs keep neighbouring texels of two rows in one sector of memory, and work groups that write whole
+  /// rows fill sectors (Function::Paired). Renderers in software take a fifth to a half longer to draw them.
+  bool isNarrow = false;
 };
 
 /// The size of a texture.
@@ -75,8 +78,7 @@ struct TextureShape {
 };
 
 /// The texture of `count` linearised elements, from 1 to sk::mostElements. Its width is a power of two: the smallest not
-/// below sqrt(count), or, where that is more than 128, the smallest from 128 on whose rows fit, so that work groups write
-/// whole rows (Function::Paired). If the largest texture is too small, it has layers, of the largest size that leaves at
+/// below sqrt(count), or, if that is more than 128 and textures are narrow, the smallest from 128 on whose rows fit. If the largest texture is too small, it has layers, of the largest size that leaves at
 /// most an eighth of the texels unused. Nullopt if that takes too many layers.
 std::optional<TextureShape> linearTexture(std::int64_t count, const TextureLimits& limits);
 

@@ -21,8 +21,8 @@ RegionLayout linearStream(const Index4& extent) {
   return regionLayout;
 }
 
-std::int32_t widthOf(std::int64_t count, std::int32_t size) {
-  return linearTexture(count, {size, 256})->width;
+std::int32_t widthOf(std::int64_t count, std::int32_t size, bool isNarrow = false) {
+  return linearTexture(count, {size, 256, isNarrow})->width;
 }
 
 /// How often each texel is drawn.
@@ -44,8 +44,12 @@ TEST_CASE("the texture of a linearised stream is as wide as a power of two, and 
   CHECK(widthOf(4, 8192) == 2);
   CHECK(widthOf(5, 8192) == 4);
   CHECK(widthOf(1 << 14, 8192) == 128);
-  CHECK(widthOf(1 << 20, 8192) == 128);
-  CHECK(widthOf((1 << 20) + 1, 8192) == 256);
+  CHECK(widthOf(1 << 20, 8192) == 1024);
+  CHECK(widthOf((1 << 20) + 1, 8192) == 2048);
+  CHECK(widthOf(1 << 14, 8192, true) == 128);
+  CHECK(widthOf(1 << 20, 8192, true) == 128);
+  CHECK(widthOf((1 << 20) + 1, 8192, true) == 256);
+  CHECK(widthOf(1 << 26, 8192, true) == 1 << 13);
   CHECK(widthOf(1 << 26, 8192) == 1 << 13);
   CHECK(widthOf(1 << 26, 10000) == 1 << 13);
   CHECK(linearTexture(1 << 26, {4096, 256}) == TextureShape{4096, 4096, 4});

@@ -113,7 +113,9 @@ class GlDevice final : public DeviceState {
   /// Whether the application also draws in the context, so that each call must restore its state.
   bool isGuest() const { return context.isAdopted() || sharesContext_; }
 
-  assemble::TextureLimits textureLimits() const { return {limits.textureSize, limits.textureLayers}; }
+  assemble::TextureLimits textureLimits() const {
+    return {limits.textureSize, limits.textureLayers, capabilities.hasCompute && !capabilities.isSoftware};
+  }
 
   /// Throws sk::Error if the device cannot run the kernel with these options. No DeviceScope may be open.
   void checkOptions(const program::Kernel& kernel, const CallOptions& options);

@@ -11,7 +11,7 @@ using namespace sk::assemble;
 
 namespace {
 
-constexpr ReduceLimits dispatched{.texture = {16384, 256}, .fanIn = scanRun, .grouped = true};
+constexpr ReduceLimits dispatched{.texture = {16384, 256, true}, .fanIn = scanRun, .grouped = true};
 
 RegionLayout packedLine(std::int32_t count) {
   RegionLayout layout = linearLayout(count / lanes, *linearTexture(count / lanes, dispatched.texture));
