@@ -24,8 +24,17 @@ Method::Method(sk::Device& device, Matrix& matrix, Preconditioner* preconditione
       done_(device.stream<bool>({1})) {}
 
 void Method::begin(std::span<const double> rightHandSide, double limit) {
-  x_.fill(0.0f);
   r_.writeReals(rightHandSide);
+  startWithin(limit);
+}
+
+void Method::begin(const Vector& rightHandSide, double limit) {
+  rightHandSide.copyTo(r_);
+  startWithin(limit);
+}
+
+void Method::startWithin(double limit) {
+  x_.fill(0.0f);
   limit_.writeReals(std::array{limit});
   state_.fill(Running);
   start();

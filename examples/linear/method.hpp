@@ -25,6 +25,8 @@ class Method {
 
   /// Begins with x = 0. Iterations end when the squared residual is at most `limit`.
   void begin(std::span<const double> rightHandSide, double limit);
+  /// The same with a right-hand side on the device, of the matrix' domain.
+  void begin(const Vector& rightHandSide, double limit);
   /// Iterates until the state is no longer Running, and `most` times at the most. Returns how often.
   std::int64_t run(std::int64_t every, std::int64_t most);
 
@@ -34,6 +36,8 @@ class Method {
   /// The squared residual that the method itself computes.
   double residualSquared() const;
   std::vector<double> solution() const { return x_.readReals(); }
+  /// The solution on the device, until the next begin().
+  const Vector& x() const { return x_; }
 
  protected:
   Method(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner, const Arithmetic& arithmetic);
@@ -58,6 +62,9 @@ class Method {
   sk::Stream<bool> done_;
 
  private:
+  /// From r_.
+  void startWithin(double limit);
+
   sk::Loop loop_;
 };
 

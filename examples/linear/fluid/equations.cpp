@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "equations.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "momentum.sk.hpp"
+
+namespace fluid {
+
+namespace {
+
+std::int32_t kindOf(Side side) {
+  switch (side) {
+    case Side::Periodic: return Fluid;
+    case Side::Wall:
+    case Side::Inflow: return Solid;
+    case Side::Slip: return Slip;
+    case Side::Outflow: return Outflow;
+  }
+  return Solid;
+}
+
+Box boxOf(const Model& m) {
+  const auto extent = [&](int d) {
+    return m.isPeriodic(d) ? 0 : static_cast<std::int32_t>(m.cells[static_cast<std::size_t>(d)]);
+  };
+  const auto kind = [&](std::size_t side) { return kindOf(m.sides[side]); };
+  return {{extent(0), extent(1), extent(2)}, {kind(0), kind(2), kind(4)}, {kind(1), kind(3), kind(5)}};
+}
+
+class PressureMatrix : public linear::Matrix {
+ public:
+  PressureMatrix(const GridArguments& grid, const linear::Arithmetic& arithmetic)
+      : Matrix(arithmetic), grid_(grid) {}
+  sk::Shape domain() const override { return grid_.shape; }
+  void multiply(const linear::Vector& x, linear::Vector& y) override {
+    pressureProduct.with(options())(grid_.bounds, grid_.isSpace, grid_.box, grid_.cell, x, y);
+  }
+  void multiply(const linear::Vector& x, linear::Vector& y, linear::Vector& xy) override {
+    pressureProductDot.with(foldOptions())(grid_.bounds, grid_.isSpace, grid_.box, grid_.cell, x, y, xy);
+  }
+  std::string layout() const override { return "stencil"; }
+  std::int64_t stored() const override { return 0; }
+  std::int64_t bytes() const override { return 0; }
+
+ private:
+  const GridArguments& grid_;
+};
+
+/// Calls visit(row, column, coefficient) for every entry; what flows out has no column: -1.
+template <class Visit>
+void visitEntries(const Model& m, const std::vector<std::int8_t>& cells, Visit&& visit) {
+  const sk::Shape shape = m.shape();
+  const std::array<std::int64_t, 3> n = {shape[2], shape[1], shape[0]};
+  std::int64_t row = 0;
+  for (std::int64_t z = 0; z < n[2]; ++z) {
+    for (std::int64_t y = 0; y < n[1]; ++y) {
+      for (std::int64_t x = 0; x < n[0]; ++x, ++row) {
+        if (cells[static_cast<std::size_t>(row)] != Fluid) {
+          visit(row, row, 1.0);
+          continue;
+        }
+        for (int d = 0; d < m.rank(); ++d) {
+          for (const int sign : {-1, 1}) {
+            std::array<std::int64_t, 3> at = {x, y, z};
+            auto& moved = at[static_cast<std::size_t>(d)];
+            moved = (moved + sign + n[static_cast<std::size_t>(d)]) % n[static_cast<std::size_t>(d)];
+            const std::int64_t column = m.index(at);
+            const std::int8_t kind = cells[static_cast<std::size_t>(column)];
+            if (kind == Outflow) visit(row, row, 2.0);
+            if (kind != Fluid) continue;
+            visit(row, row, 1.0);
+            visit(row, column, -1.0);
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+GridArguments::GridArguments(sk::Device& device, const Model& model)
+    : bounds(static_cast<unsigned>(model.bounds())),
+      isSpace(model.isSpace()),
+      box(boxOf(model)),
+      shape(model.shape()),
+      cell(device.stream<std::int8_t>(bounds == Anywhere ? shape : sk::Shape{1, 1, 1})) {
+  if (bounds == Anywhere) cell.write(cellsOf(model));
+}
+
+std::unique_ptr<linear::Matrix> makePressureMatrix(const GridArguments& grid,
+                                                   const linear::Arithmetic& arithmetic) {
+  return std::make_unique<PressureMatrix>(grid, arithmetic);
+}
+
+linear::Operator pressureOperator(const Model& model, const std::vector<std::int8_t>& cells) {
+  linear::Operator o;
+  o.size = static_cast<std::int64_t>(cells.size());
+  o.diagonal.assign(cells.size(), 0.0);
+  o.rowSquares.assign(cells.size(), 0.0);
+  std::vector<double> sums(cells.size(), 0.0);
+  visitEntries(model, cells, [&](std::int64_t row, std::int64_t column, double value) {
+    const auto i = static_cast<std::size_t>(row);
+    sums[i] += std::abs(value);
+    if (column == row)
+      o.diagonal[i] += value;
+    else
+      o.rowSquares[i] += value * value;
+  });
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    // A fluid cell that is closed in on all sides: the residual is 0 there, and stays so.
+    if (o.diagonal[i] == 0.0) o.diagonal[i] = 1.0;
+    o.rowSquares[i] += o.diagonal[i] * o.diagonal[i];
+    o.infinityNorm = std::max(o.infinityNorm, sums[i]);
+    o.jacobiBound = std::max(o.jacobiBound, sums[i] / o.diagonal[i]);
+  }
+  o.multiply = [model, cells](std::span<const double> x) {
+    std::vector<double> y(x.size(), 0.0);
+    visitEntries(model, cells, [&](std::int64_t row, std::int64_t column, double value) {
+      y[static_cast<std::size_t>(row)] += value * x[static_cast<std::size_t>(column)];
+    });
+    return y;
+  };
+  return o;
+}
+
+ViscousMatrix::ViscousMatrix(sk::Device& device, const GridArguments& grid, int axis,
+                             const linear::Arithmetic& arithmetic)
+    : Matrix(arithmetic), grid_(grid), axis_(axis), c_(device.stream<float>({1}, arithmetic.sums())) {}
+
+void ViscousMatrix::setCoefficient(double c) { c_.writeReals(std::array{c}); }
+
+void ViscousMatrix::multiply(const linear::Vector& x, linear::Vector& y) {
+  const auto product = [&](const auto& kernel) {
+    kernel.with(options())(grid_.bounds, grid_.isSpace, grid_.box, c_, grid_.cell, x, y);
+  };
+  if (axis_ == 0) product(viscousProduct_0);
+  if (axis_ == 1) product(viscousProduct_1);
+  if (axis_ == 2) product(viscousProduct_2);
+}
+
+}  // namespace fluid

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+//
+// The two systems of equations of a step, as matrices for the solvers of examples/linear: neither is stored.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "matrix.hpp"
+#include "model.hpp"
+#include "operator.hpp"
+#include "preconditioner.hpp"
+#include "pressure.sk.hpp"
+
+namespace fluid {
+
+/// A model's grid as kernels take it.
+struct GridArguments {
+  GridArguments(sk::Device& device, const Model& model);
+
+  unsigned bounds;
+  bool isSpace;
+  Box box;
+  sk::Shape shape;
+  sk::Stream<std::int8_t> cell;  ///< of one element, which nobody reads, unless obstacles are anywhere
+};
+
+/// Minus the Laplacian of pressures times the square of the spacing. `grid` must outlive it.
+std::unique_ptr<linear::Matrix> makePressureMatrix(const GridArguments& grid, const linear::Arithmetic& arithmetic);
+/// The same on the host, for preconditioners and checks. `cells` are those of cellsOf().
+linear::Operator pressureOperator(const Model& model, const std::vector<std::int8_t>& cells);
+
+/// 1 - c times the Laplacian of a velocity along an axis.
+class ViscousMatrix : public linear::Matrix {
+ public:
+  /// `grid` must outlive it.
+  ViscousMatrix(sk::Device& device, const GridArguments& grid, int axis, const linear::Arithmetic& arithmetic);
+  /// c is viscosity times time step over the square of the spacing. Recorded loops follow it.
+  void setCoefficient(double c);
+
+  sk::Shape domain() const override { return grid_.shape; }
+  using Matrix::multiply;
+  void multiply(const linear::Vector& x, linear::Vector& y) override;
+  std::string layout() const override { return "stencil"; }
+  std::int64_t stored() const override { return 0; }
+  std::int64_t bytes() const override { return 0; }
+
+ private:
+  const GridArguments& grid_;
+  int axis_;
+  linear::Vector c_;
+};
+
+}  // namespace fluid

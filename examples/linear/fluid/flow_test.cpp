@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "flow.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "scene.hpp"
+#include "support/written_file.hpp"
+#include "vortices.hpp"
+
+namespace fluid {
+namespace {
+
+/// Everything at once, in a channel with a ball in it.
+Model everything(bool isSpace) {
+  Model m;
+  m.cells = {14, 10, isSpace ? 8 : 1};
+  m.spacing = 0.1;
+  m.sides = {Side::Inflow, Side::Outflow, Side::Wall, Side::Slip, Side::Periodic, Side::Periodic};
+  m.sideVelocity[0] = {1.0, 0.0, 0.0};
+  m.sideVelocity[2] = {0.3, 0.0, 0.0};
+  m.obstacles.push_back({Sphere{{0.6, 0.5, 0.4}, 0.2}, {}});
+  m.sources.push_back({Shape{Sphere{{0.25, 0.3, 0.4}, 0.15}, {}}, 1.0, 2.0});
+  m.viscosity = Viscosity{0.01};
+  m.buoyancy = Buoyancy{1.0, 0.0, 0.5};
+  m.hasSmoke = m.hasHeat = true;
+  m.timeStep = 0.06;
+  m.tolerance = 2e-6;
+  return m;
+}
+
+struct Fields {
+  std::vector<double> velocity, smoke, heat;
+};
+
+Fields stepped(sk::Device& device, const Model& model, int steps) {
+  Flow flow(device, model, {1.0, 0.0, 0.0});
+  for (int i = 0; i < steps; ++i) flow.step();
+  Fields f;
+  for (int axis = 0; axis < model.rank(); ++axis) std::ranges::copy(flow.velocity(axis), std::back_inserter(f.velocity));
+  if (model.hasSmoke) f.smoke = flow.values(Scalar::Smoke);
+  if (model.hasHeat) f.heat = flow.values(Scalar::Heat);
+  return f;
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  REQUIRE(a.size() == b.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+/// Two steps, each of whose projections stops at the tolerance: its error is at most tolerance * n / pi root mean square (run.cpp), and no element's is more
+/// than the root of the number of cells times that.
+double bound(const Model& m) {
+  const auto cells = static_cast<double>(m.shape().size());
+  return 2.0 * m.tolerance * 14.0 / 3.14 * std::sqrt(cells);
+}
+
+TEST_CASE("all parts at once do the same drawn, dispatched, natively and in double precision") {
+  for (const bool isSpace : {false, true}) {
+    const Model model = everything(isSpace);
+    sk::Device reference = sk::Device::reference(), native = sk::Device::native();
+    const Fields expected = stepped(reference, model, 2);
+    const auto compare = [&](sk::Device& device) {
+      const Fields found = stepped(device, model, 2);
+      CHECK(distance(found.velocity, expected.velocity) <= bound(model));
+      CHECK(distance(found.smoke, expected.smoke) <= bound(model));
+      CHECK(distance(found.heat, expected.heat) <= 2.0 * bound(model));
+    };
+    compare(native);
+    // Drawing and dispatching assemble the same bodies; one of them each for a plane and for space.
+    sk::Device gl(sk::DeviceOptions{.device = "software", .profile = isSpace ? "glsl430" : "glsl330"});
+    compare(gl);
+  }
+}
+
+TEST_CASE("sides that follow from an index are those that a stream of cells has") {
+  sk::Device device = sk::Device::native();
+  for (const bool isSpace : {false, true}) {
+    Model around = everything(isSpace);
+    around.obstacles.clear();
+    Model anywhere = around;
+    anywhere.obstacles.push_back({Sphere{{-5.0, 0.0, 0.0}, 0.1}, {}});
+    REQUIRE(around.bounds() == Around);
+    REQUIRE(anywhere.bounds() == Anywhere);
+    for (const Scheme scheme : {Scheme::SemiLagrangian, Scheme::Bfecc, Scheme::Central}) {
+      around.scheme = anywhere.scheme = scheme;
+      const Fields a = stepped(device, around, 2), b = stepped(device, anywhere, 2);
+      CHECK(a.velocity == b.velocity);
+      CHECK(a.smoke == b.smoke);
+    }
+  }
+}
+
+TEST_CASE("the matrix of pressures is that of the host, symmetric and not negative") {
+  sk::Device device = sk::Device::native();
+  for (const bool isSpace : {false, true}) {
+    const Model model = everything(isSpace);
+    const std::vector<std::int8_t> cells = cellsOf(model);
+    const linear::Operator o = pressureOperator(model, cells);
+    const GridArguments grid(device, model);
+    const auto matrix = makePressureMatrix(grid, {});
+    std::mt19937 random(3);
+    const auto vector = [&] {
+      std::vector<double> v;
+      for (const std::int8_t cell : cells) v.push_back(cell == Fluid ? random() % 9 - 4.0 : 0.0);
+      return v;
+    };
+    const std::vector<double> x = vector(), z = vector();
+    auto sx = device.stream<float>(model.shape()), sy = device.stream<float>(model.shape());
+    auto xy = device.stream<float>({1});
+    sx.writeReals(x);
+    matrix->multiply(sx, sy, xy);
+    const std::vector<double> y = o.multiply(x), az = o.multiply(z);
+    CHECK(sy.readReals() == y);  // small integers are exact
+    double xAx = 0.0, zAx = 0.0, xAz = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      xAx += x[i] * y[i];
+      zAx += z[i] * y[i];
+      xAz += x[i] * az[i];
+    }
+    CHECK(xy.readReals()[0] == xAx);
+    CHECK(xAx > 0.0);
+    CHECK(zAx == xAz);
+  }
+}
+
+TEST_CASE("a projection takes the divergence away, and tells both residuals") {
+  sk::Device device = sk::Device::native();
+  const Model model = everything(true);
+  Flow flow(device, model, {1.0, 0.4, 0.2});
+  const double before = flow.divergence();
+  const Projection p = flow.project();
+  CHECK(p.reached);
+  CHECK(p.before == Approx(before).epsilon(1e-5));
+  CHECK(p.after == Approx(flow.divergence()).margin(1e-5));
+  CHECK(p.after < 1e-4 * before);
+  CHECK(p.residual <= model.tolerance);
+  CHECK(p.recurred == Approx(p.residual).epsilon(0.5));
+  // Nothing is left to do.
+  CHECK(flow.project().iterations == 0);
+}
+
+TEST_CASE("a flow that does not change along z is that of a plane") {
+  sk::Device device = sk::Device::native();
+  const Vortices vortices;
+  for (const Scheme scheme : {Scheme::MacCormack, Scheme::Central}) {
+    const auto error = [&](std::int64_t depth) {
+      Model model = vortexModel(vortices, 12, scheme, sk::Precision::Double, depth);
+      model.timeStep = 0.1;
+      Flow flow = vortexFlow(device, vortices, model);
+      for (int i = 0; i < 3; ++i) flow.step();
+      return errorOf(vortices, flow);
+    };
+    CHECK(error(4) == Approx(error(1)).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("implicit viscosity is explicit viscosity in short steps") {
+  sk::Device device = sk::Device::native();
+  Model model = everything(false);
+  model.sources.clear();
+  model.buoyancy.reset();
+  model.hasSmoke = model.hasHeat = false;
+  model.precision = sk::Precision::Double;
+  model.tolerance = 1e-9;
+  const auto difference = [&](double dt) {
+    model.timeStep = dt;
+    model.viscosity = Viscosity{0.05, false};
+    const Fields explicitly = stepped(device, model, 1);
+    model.viscosity->isImplicit = true;
+    return distance(stepped(device, model, 1).velocity, explicitly.velocity);
+  };
+  // Both are of first order: what they differ by in one step goes with the square of its length.
+  const double longer = difference(2e-3), shorter = difference(1e-3);
+  CHECK(longer > 0.0);
+  CHECK(std::log2(longer / shorter) == Approx(2.0).margin(0.1));
+}
+
+TEST_CASE("what a scene does without has no streams") {
+  sk::Device device = sk::Device::native();
+  Model model = vortexModel(Vortices{.viscosity = 0.0}, 8, Scheme::SemiLagrangian, sk::Precision::Single);
+  CHECK(Flow(device, model).streams() == 6);  // two components twice, the divergence, the pressure
+  CHECK_THROWS_WITH(Flow(device, model).stream(Scalar::Smoke), "the scene has no smoke");
+  CHECK(operatorsOf(model) == "projection, convection by semi-Lagrangian");
+  model.scheme = Scheme::MacCormack;
+  CHECK(Flow(device, model).streams() == 8);
+}
+
+TEST_CASE("a number that is not finite is named with its step and cell") {
+  sk::Device device = sk::Device::native();
+  const Model model = everything(false);
+  Flow flow(device, model);
+  flow.step();
+  std::vector<double> v = flow.velocity(1);
+  v[static_cast<std::size_t>(model.index({7, 8, 0}))] = std::numeric_limits<double>::quiet_NaN();
+  flow.writeVelocity(1, v);
+  CHECK_THROWS_WITH(flow.step(), Catch::Contains("step 1: v is not finite in cell (7, 8)"));
+}
+
+std::string messageOf(const std::string& text) {
+  const examples::WrittenFile file(text, "written_flow.toml");
+  try {
+    readScene(file.path(), {});
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST_CASE("what is wrong with a scene is said with its place and a way out") {
+  using Catch::Contains;
+  const std::string grid = "[grid]\nsize = [16, 16]\n";
+  CHECK(messageOf(grid) == "none");
+  CHECK_THAT(messageOf(""), Contains("'grid' is missing"));
+  CHECK_THAT(messageOf("[grid]\nsise = [16, 16]\n"), Contains("size"));
+  CHECK_THAT(messageOf(grid + "spacng = 1.0\n"), Contains(":3:1:") && Contains("did you mean 'spacing'?"));
+  CHECK_THAT(messageOf("[grid]\nsize = [0, 16]\n"), Contains("whole numbers from 2 to 16384"));
+  CHECK_THAT(messageOf("[grid]\nsize = [16384, 16384]\n"), Contains("more than 2^26 cells"));
+  CHECK_THAT(messageOf("[grid]\nsize = [16, nan]\n"), Contains("nan"));
+  CHECK_THAT(messageOf(grid + "[viscosity]\nvalue = -0.1\n"), Contains("value"));
+  CHECK_THAT(messageOf(grid + "[viscosity]\nvalue = 1.0\n[run]\ntime_step = 0.1\n"), Contains("is not stable"));
+  CHECK_THAT(messageOf(grid + "[[obstacle]]\ncentre = [0.5, 0.5]\nradius = 9.0\n"), Contains("leave no fluid"));
+  CHECK_THAT(messageOf(grid + "[boundary]\nleft = \"inflow\"\nleft_velocity = [1.0, 0.0]\n"),
+             Contains("incompatible: more flows in through 'left'") && Contains("\"outflow\""));
+  CHECK_THAT(messageOf(grid + "[boundary]\nleft = \"inflow\"\nleft_velocity = [-1.0, 0.0]\n"),
+             Contains("does not point into the grid"));
+  CHECK_THAT(messageOf(grid + "[boundary]\ntop_velocity = [1.0, 0.5]\n"), Contains("goes through a wall"));
+  CHECK_THAT(messageOf(grid + "[boundary]\nleft = \"periodic\"\n"), Contains("'right' is not periodic, but left is"));
+  CHECK_THAT(messageOf(grid + "[view]\nfield = \"smoke\"\n"), Contains("no source has any"));
+  // An obstacle between inflow and outflow leaves the inflow's part without a way out.
+  CHECK_THAT(messageOf(grid + "[boundary]\nleft = \"inflow\"\nleft_velocity = [1.0, 0.0]\nright = \"outflow\"\n"
+                              "[[obstacle]]\nlow = [0.4, -1.0]\nhigh = [0.6, 2.0]\n"),
+             Contains("incompatible"));
+}
+
+}  // namespace
+}  // namespace fluid

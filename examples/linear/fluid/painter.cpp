@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "painter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "support/colormap.hpp"
+#include "support/figure.hpp"
+#include "view.sk.hpp"
+
+namespace fluid {
+
+namespace {
+
+constexpr std::array<const char*, 4> labels = {"smoke", "temperature", "vorticity", "speed"};
+
+/// A stream without the layer around the grid.
+template <class T>
+auto inner(sk::Stream<T>& stream, const Model& m) {
+  const auto first = [&](int d) { return m.isPeriodic(d) ? std::int64_t{0} : std::int64_t{1}; };
+  const auto& n = m.cells;
+  return stream.domain({first(2), first(1), first(0)}, {first(2) + n[2], first(1) + n[1], first(0) + n[0]});
+}
+
+struct View3 {
+  Camera rays;
+  std::int64_t width, height;  ///< pixels
+};
+
+/// Parallel rays from above, all of the grid in a picture so many pixels wide.
+View3 cameraFor(const Model& m, const View& view, double pixels) {
+  const double turn = view.turn, tilt = view.tilt;
+  const auto w = static_cast<double>(m.cells[0]), h = static_cast<double>(m.cells[1]),
+             d = static_cast<double>(m.cells[2]);
+  const Triple right = {std::cos(turn), 0.0, std::sin(turn)};
+  const Triple ahead = {-std::sin(turn) * std::cos(tilt), -std::sin(tilt), std::cos(turn) * std::cos(tilt)};
+  const Triple up = {-std::sin(turn) * std::sin(tilt), std::cos(tilt), std::cos(turn) * std::sin(tilt)};
+  const auto reach = [&](const Triple& axis) {
+    return 0.52 * (w * std::abs(axis[0]) + h * std::abs(axis[1]) + d * std::abs(axis[2]));
+  };
+  const auto vector = [](const Triple& axis, double length) {
+    return sk::float3{static_cast<float>(axis[0] * length), static_cast<float>(axis[1] * length),
+                      static_cast<float>(axis[2] * length)};
+  };
+  const double across = reach(right), along = reach(up);
+  const auto height = static_cast<std::int64_t>(2 * std::lround(0.5 * pixels * std::min(along / across, 2.0)));
+  return {{vector({0.5 * (w - 1), 0.5 * (h - 1), 0.5 * (d - 1)}, 1.0), vector(right, across), vector(up, along),
+           vector(ahead, 1.0)},
+          static_cast<std::int64_t>(pixels),
+          height};
+}
+
+}  // namespace
+
+Painter::Painter(sk::Device& device, const Scene& scene)
+    : device_(device),
+      scene_(scene),
+      colours_(examples::colormap(scene.view.colours, 256)),
+      palette_(device.stream<sk::float3>({256})),
+      covered_(device.stream<float>(scene.model.obstacles.empty() ? sk::Shape{1, 1, 1} : scene.model.shape())) {
+  palette_.write(colours_);
+  if (!scene.model.obstacles.empty()) covered_.writeReals(coverageOf(scene.model));
+}
+
+examples::Image Painter::plane(Flow& flow) {
+  const Model& m = scene_.model;
+  const auto derived = [&]() -> sk::Stream<float>& {
+    if (!derived_) derived_.emplace(device_.stream<float>(m.shape()));
+    return *derived_;
+  };
+  sk::Stream<float>* shown = nullptr;
+  switch (scene_.view.shown) {
+    case Shown::Smoke: shown = &flow.stream(Scalar::Smoke); break;
+    case Shown::Temperature: shown = &flow.stream(Scalar::Heat); break;
+    case Shown::Speed:
+      shown = &derived();
+      speedOf(flow.velocityStream(0), flow.velocityStream(1), *shown);
+      break;
+    case Shown::Vorticity:
+      shown = &derived();
+      vorticityOf(static_cast<float>(1.0 / m.spacing), flow.velocityStream(0), flow.velocityStream(1), *shown);
+      break;
+  }
+  const auto field = inner(*shown, m).reshape({m.cells[1], m.cells[0]});
+  const std::vector<double> values = field.readReals();
+  const auto [least, most] = std::ranges::minmax_element(values);
+  low_ = scene_.view.low.value_or(*least);
+  high_ = scene_.view.high.value_or(*most);
+  if (scene_.view.shown == Shown::Vorticity && !scene_.view.low && !scene_.view.high) {
+    high_ = std::max(std::abs(low_), std::abs(high_));
+    low_ = -high_;
+  }
+  if (!(high_ > low_)) high_ = low_ + std::max(1e-6, 1e-3 * std::abs(low_));
+  const int zoom = scene_.view.zoom > 0
+                       ? scene_.view.zoom
+                       : static_cast<int>(std::clamp<std::int64_t>(1024 / std::max(m.cells[0], m.cells[1]), 1, 64));
+  auto colour = device_.stream<sk::float3>({m.cells[1] * zoom, m.cells[0] * zoom});
+  const auto draw = [&](const auto& covered) {
+    fluid::paint(!m.obstacles.empty(), palette_, static_cast<float>(low_), static_cast<float>(high_),
+                 1.0f / static_cast<float>(zoom), field, covered, colour);
+  };
+  if (m.obstacles.empty())
+    draw(sk::none);
+  else
+    draw(inner(covered_, m).reshape({m.cells[1], m.cells[0]}));
+  return examples::imageOf(static_cast<int>(colour.shape()[1]), static_cast<int>(colour.shape()[0]), colour.read());
+}
+
+examples::Image Painter::space(Flow& flow) {
+  constexpr int finer = 2;  // rays for each pixel, in each direction
+  const Model& m = scene_.model;
+  const View3 camera = cameraFor(m, scene_.view, 720.0 * finer);
+  const bool hasObstacles = !m.obstacles.empty(), glows = scene_.view.glows;
+  Air air{};
+  const double norm = std::sqrt(0.5 * 0.5 + 1.0 + 0.55 * 0.55);
+  air.toLight = {static_cast<float>(-0.5 / norm), static_cast<float>(1.0 / norm), static_cast<float>(-0.55 / norm)};
+  air.thickness = static_cast<float>(10.0 * scene_.view.thickness / static_cast<double>(m.cells[1]));
+  air.cells = {static_cast<float>(m.cells[0]), static_cast<float>(m.cells[1]), static_cast<float>(m.cells[2])};
+  if (!light_) light_.emplace(device_.stream<float>({m.cells[2], m.cells[1], m.cells[0]}));
+  const auto smoke = inner(flow.stream(Scalar::Smoke), m);
+  double hottest = 1e-30;
+  for (const Source& source : m.sources) hottest = std::max(hottest, source.temperature);
+  auto colour = device_.stream<sk::float3>({camera.height, camera.width});
+  const auto draw = [&](const auto& covered) {
+    illuminate(hasObstacles, air, smoke, covered, *light_);
+    if (glows)
+      march(hasObstacles, true, air, camera.rays, palette_, static_cast<float>(hottest), smoke, *light_, covered,
+            inner(flow.stream(Scalar::Heat), m), colour);
+    else
+      march(hasObstacles, false, air, camera.rays, palette_, 1.0f, smoke, *light_, covered, sk::none, colour);
+  };
+  if (hasObstacles)
+    draw(inner(covered_, m));
+  else
+    draw(covered_);
+  return examples::reduced(
+      examples::imageOf(static_cast<int>(camera.width), static_cast<int>(camera.height), colour.read()), finer);
+}
+
+examples::Image Painter::paint(Flow& flow, const std::string& moment) {
+  if (scene_.model.isSpace()) return examples::figure(space(flow), {scene_.title, "", moment});
+  const examples::Image image = plane(flow);
+  const std::string label = labels[static_cast<std::size_t>(scene_.view.shown)];
+  return examples::figure(image, {scene_.title, "", moment}, examples::ColourBar{colours_, low_, high_, label});
+}
+
+}  // namespace fluid

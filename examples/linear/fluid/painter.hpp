@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// Pictures of a flow: computed on its device, titled on the host.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flow.hpp"
+#include "scene.hpp"
+#include "support/image.hpp"
+
+namespace fluid {
+
+class Painter {
+ public:
+  Painter(sk::Device& device, const Scene& scene);
+
+  /// The flow as it is now, with a title and, of planes, a bar of its colours; `moment` stands below it.
+  examples::Image paint(Flow& flow, const std::string& moment);
+
+ private:
+  examples::Image plane(Flow& flow);
+  examples::Image space(Flow& flow);
+
+  sk::Device& device_;
+  const Scene& scene_;
+  std::vector<sk::float3> colours_;
+  sk::Stream<sk::float3> palette_;
+  sk::Stream<float> covered_;  ///< of one element if there are no obstacles
+  std::optional<sk::Stream<float>> derived_, light_;
+  double low_ = 0.0, high_ = 1.0;
+};
+
+}  // namespace fluid

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "painter.hpp"
+#include "support/film.hpp"
+#include "support/progress.hpp"
+#include "support/stopwatch.hpp"
+
+namespace fluid {
+
+namespace {
+
+class Pictures {
+ public:
+  Pictures(sk::Device& device, const Scene& scene) : scene_(scene) {
+    const std::filesystem::path& output = scene.record.output;
+    if (output.empty()) return;
+    painter_ = std::make_unique<Painter>(device, scene);
+    if (scene.record.frames > 1 || output.extension() != ".png")
+      film_ = std::make_unique<examples::Film>(output, scene.record.framesPerSecond);
+  }
+
+  void add(Flow& flow) {
+    if (!painter_) return;
+    const Model& m = scene_.model;
+    std::string moment = m.isSpace() ? fmt::format("{} x {} x {} cells", m.cells[0], m.cells[1], m.cells[2])
+                                     : fmt::format("{} x {} cells", m.cells[0], m.cells[1]);
+    moment += fmt::format("   {}   step {}   time {:.3g}", schemeNames()[static_cast<std::size_t>(m.scheme)],
+                          flow.steps(), flow.time());
+    const examples::Image image = painter_->paint(flow, moment);
+    if (film_)
+      film_->add(image);
+    else
+      examples::savePng(scene_.record.output, image);
+    ++count_;
+  }
+  void finish() {
+    if (film_ && count_ > 0) film_->finish();
+  }
+  int count() const { return count_; }
+
+ private:
+  const Scene& scene_;
+  std::unique_ptr<Painter> painter_;
+  std::unique_ptr<examples::Film> film_;
+  int count_ = 0;
+};
+
+class Numbers {
+ public:
+  explicit Numbers(const std::filesystem::path& path) : path_(path.string()) {
+    if (path.empty()) return;
+    file_.open(path);
+    write("step,time,time_step,cfl,speed,divergence_before,divergence_after,residual,iterations,energy");
+  }
+  void add(const Step& s, const Flow& flow) {
+    if (path_.empty()) return;
+    const Projection& p = s.projection;
+    write(fmt::format("{},{:.9g},{:.9g},{:.4g},{:.9g},{:.4g},{:.4g},{:.4g},{},{:.9g}", flow.steps(), flow.time(),
+                      s.timeStep, s.cfl, s.speed, p.before, p.after, p.residual, p.iterations, flow.kineticEnergy()));
+  }
+
+ private:
+  void write(const std::string& row) {
+    if (!(file_ << row << '\n').flush()) throw std::runtime_error(fmt::format("cannot write '{}'", path_));
+  }
+  std::string path_;
+  std::ofstream file_;
+};
+
+/// The fields of a flow, as the device holds them.
+struct State {
+  std::vector<std::vector<double>> velocity;
+  std::vector<double> smoke, heat;
+};
+
+State stateOf(Flow& flow) {
+  State state;
+  for (int axis = 0; axis < flow.model().rank(); ++axis) state.velocity.push_back(flow.velocity(axis));
+  if (flow.model().hasSmoke) state.smoke = flow.values(Scalar::Smoke);
+  if (flow.model().hasHeat) state.heat = flow.values(Scalar::Heat);
+  return state;
+}
+
+void write(Flow& flow, const State& state) {
+  for (int axis = 0; axis < flow.model().rank(); ++axis)
+    flow.writeVelocity(axis, state.velocity[static_cast<std::size_t>(axis)]);
+  if (flow.model().hasSmoke) flow.write(Scalar::Smoke, state.smoke);
+  if (flow.model().hasHeat) flow.write(Scalar::Heat, state.heat);
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+/// One step of the same model from the same state, on the device and in double precision on the host, both with a small tolerance.
+std::vector<examples::Verification> checkStep(sk::Device& device, const Model& scene, const State& state, double dt) {
+  constexpr double tolerance = 4e-6;
+  Model model = scene;
+  model.timeStep = dt;
+  model.tolerance = std::min(tolerance, scene.tolerance);
+  Model precise = model;
+  precise.precision = sk::Precision::Double;
+  precise.tolerance = 0.01 * model.tolerance;
+  sk::Device reference = sk::Device::reference();
+  Flow here(device, model), there(reference, precise);
+  write(here, state);
+  write(there, state);
+  const Step step = here.step();
+  there.step();
+  const State a = stateOf(here), b = stateOf(there);
+
+  const double longest = static_cast<double>(*std::ranges::max_element(model.cells));
+  const double scale = std::max({step.speed, step.projection.before * model.spacing, 1e-30});
+  // ||G A^-1 r||^2 = r . A^-1 r is at most ||r||^2 divided by the least eigenvalue, (pi / n)^2 in a box.
+  examples::Verification velocity(
+      "a step's velocity against double precision, root mean square",
+      model.tolerance * longest / std::numbers::pi + 64.0 * examples::roundoff,
+      fmt::format("the tolerance {:.0e} over the least eigenvalue's root, pi / {:.0f}, and 64 roundings", model.tolerance, longest));
+  for (std::size_t axis = 0; axis < a.velocity.size(); ++axis)
+    velocity.note(static_cast<std::int64_t>(axis), distance(a.velocity[axis], b.velocity[axis]) / scale);
+  std::vector<examples::Verification> found{velocity};
+  if (!a.smoke.empty() || !a.heat.empty()) {
+    examples::Verification scalars(
+        "smoke and heat carried, against double precision, root mean square", 8.0 * longest * examples::roundoff,
+        "positions of up to as many cells as the grid is long are rounded, and slopes are at most 1 a cell");
+    for (const auto& [x, y] : {std::pair{&a.smoke, &b.smoke}, std::pair{&a.heat, &b.heat}}) {
+      double largest = 1e-30;
+      for (const double value : *y) largest = std::max(largest, std::abs(value));
+      if (!y->empty()) scalars.note(0, distance(*x, *y) / largest);
+    }
+    found.push_back(scalars);
+  }
+  return found;
+}
+
+}  // namespace
+
+Flow begin(sk::Device& device, const Scene& scene) {
+  Flow flow(device, scene.model, scene.initial.velocity);
+  if (scene.initial.noise > 0.0) {
+    std::mt19937 random(scene.initial.random);
+    const std::vector<std::int8_t> cells = cellsOf(scene.model);
+    for (int axis = 0; axis < scene.model.rank(); ++axis) {
+      std::vector<double> values = flow.velocity(axis);
+      // Inside of fluid; faces of walls are given, and the layer and obstacles are no fluid.
+      const std::vector<double> given = givenVelocity(scene.model, axis, {1e30, 1e30, 1e30});
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const double part = random() / 2147483648.0 - 1.0;
+        if (given[i] == 1e30) values[i] += scene.initial.noise * part;
+      }
+      flow.writeVelocity(axis, values);
+    }
+  }
+  flow.project();
+  return flow;
+}
+
+Outcome run(sk::Device& device, const Scene& scene) {
+  Outcome outcome;
+  Flow flow = begin(device, scene);
+  outcome.streams = flow.streams();
+  Pictures pictures(device, scene);
+  Numbers numbers(scene.record.csv);
+  const int frames = scene.record.frames;
+  if (frames > 1) pictures.add(flow);
+  int frame = 1;
+  State beforeLast;
+  {
+    examples::Progress progress(scene.name, scene.steps);
+    for (std::int64_t i = 1; i <= scene.steps; ++i) {
+      const bool isLast = i == scene.steps;
+      if (isLast) {
+        beforeLast = stateOf(flow);
+        device.countPasses(true);
+      }
+      const examples::Stopwatch watch;
+      try {
+        outcome.last = flow.step();
+        if (isLast) flow.requireFinite();
+      } catch (...) {
+        pictures.finish();  // what there is stays, as a whole file
+        throw;
+      }
+      device.finish();
+      outcome.milliseconds += watch.milliseconds();
+      if (isLast) {
+        const sk::PassCount count = device.passCount();
+        device.countPasses(false);
+        outcome.passes = static_cast<double>(count.passes);
+        outcome.bytes = static_cast<double>(count.bytesRead + count.bytesWritten);
+      }
+      const Step& s = outcome.last;
+      outcome.shortest = std::min(outcome.shortest, s.timeStep);
+      outcome.longest = std::max(outcome.longest, s.timeStep);
+      outcome.largestCfl = std::max(outcome.largestCfl, s.cfl);
+      outcome.iterations += s.projection.iterations;
+      outcome.missed += s.projection.reached ? 0 : 1;
+      numbers.add(s, flow);
+      const bool isDue = frames > 1 ? frame < frames && scene.steps * frame / (frames - 1) <= i : isLast;
+      if (isDue) {
+        progress.clear();
+        pictures.add(flow);
+        ++frame;
+      }
+      progress.update(i);
+    }
+  }
+  pictures.finish();
+  outcome.steps = flow.steps();
+  outcome.time = flow.time();
+  outcome.pictures = pictures.count();
+
+  examples::Verification divergence(
+      "root mean square of div u * h over the speed, in double precision", scene.model.tolerance + 4.0 * examples::roundoff,
+      "the tolerance of the projection, and the rounding of velocities");
+  const double scale = std::max({outcome.last.speed, outcome.last.projection.before * scene.model.spacing, 1e-30});
+  if (outcome.last.projection.reached) divergence.note(0, flow.divergenceMean() / scale);
+  else divergence.note(0, outcome.last.projection.residual);
+  outcome.verifications.push_back(divergence);
+  for (examples::Verification& v : checkStep(device, scene.model, beforeLast, outcome.last.timeStep))
+    outcome.verifications.push_back(std::move(v));
+  return outcome;
+}
+
+}  // namespace fluid

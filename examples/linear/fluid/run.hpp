@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// A scene from its start to its last step, with pictures and numbers on the way, and the last step against double precision.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flow.hpp"
+#include "scene.hpp"
+#include "support/verification.hpp"
+
+namespace fluid {
+
+struct Outcome {
+  std::int64_t steps = 0;
+  double time = 0.0, milliseconds = 0.0;
+  double shortest = 1e300, longest = 0.0;  ///< time steps
+  double largestCfl = 0.0;
+  std::int64_t iterations = 0, missed = 0;  ///< of projections; steps that did not reach the tolerance
+  Step last;
+  int streams = 0, pictures = 0;
+  double passes = 0.0, bytes = 0.0;  ///< of the last step
+  std::vector<examples::Verification> verifications;
+};
+
+/// The start of a scene: noise, if it has any, and no divergence.
+Flow begin(sk::Device& device, const Scene& scene);
+
+/// Throws std::runtime_error, "step N: ...", if a field is not finite; pictures that were made before are kept.
+Outcome run(sk::Device& device, const Scene& scene);
+
+}  // namespace fluid
