@@ -261,7 +261,7 @@ void Flow::carryOne(int axis, double step, const sk::Stream<float>& from, sk::St
   };
   // Paths end inside of the grid: scalars at centres, so that nothing of the layer comes in.
   const float margin = axis == 3 ? 1.0f : 0.5f;
-  Carrier c{static_cast<float>(step), {}, {}};
+  Carrier c{static_cast<float>(step), 2, {}, {}};
   const auto ends = [&](int d, float& low, float& high) {
     low = model_.isPeriodic(d) ? -1e6f : margin;
     high = model_.isPeriodic(d) ? 1e6f : static_cast<float>(model_.cells[at(d)]) + 1.0f - margin;
@@ -354,6 +354,17 @@ std::pair<double, double> Flow::measureInflows() {
   return {most, squares};
 }
 
+/// Behind walls without friction and outflows; nothing is done in a model that has neither.
+void Flow::extendVelocity() {
+  const auto isOpen = [](Side side) { return side == Side::Slip || side == Side::Outflow; };
+  if (std::ranges::none_of(model_.sides, isOpen)) return;
+  for (int axis = 0; axis < model_.rank(); ++axis) {
+    sk::Stream<float>& v = velocity_[at(axis)];
+    const auto call = [&](const auto& kernel) { kernel.with(options_)(grid_.box, v, v); };
+    forAxis(axis, call, extend_0, extend_1, extend_2);
+  }
+}
+
 /// From the pressure of the step before, and then what is left of the divergence.
 Projection Flow::project(std::size_t stage, double speed) {
   Projection report;
@@ -376,6 +387,7 @@ Projection Flow::project(std::size_t stage, double speed) {
     linear::axpy.with(options_)(1.0f, method_->x(), pressure_[stage], pressure_[stage]);
     std::tie(most, squares) = measureInflows();
   }
+  extendVelocity();
   report.after = most / model_.spacing;
   report.residual = std::sqrt(squares / cells) / scale;
   report.reached = report.residual <= model_.tolerance;

@@ -91,6 +91,7 @@ class Flow {
   Projection project(std::size_t stage, double speed);
   std::pair<double, double> measureInflows();
   void subtract(const sk::Stream<float>& q);
+  void extendVelocity();
 
   sk::Device& device_;
   Model model_;

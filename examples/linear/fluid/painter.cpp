@@ -113,8 +113,10 @@ examples::Image Painter::space(Flow& flow) {
   const View3 camera = cameraFor(m, scene_.view, 720.0 * finer);
   const bool hasObstacles = !m.obstacles.empty(), glows = scene_.view.glows;
   Air air{};
-  const double norm = std::sqrt(0.5 * 0.5 + 1.0 + 0.55 * 0.55);
-  air.toLight = {static_cast<float>(-0.5 / norm), static_cast<float>(1.0 / norm), static_cast<float>(-0.55 / norm)};
+  const Triple sun = {-0.45, 1.0, -0.35};
+  const double norm = std::sqrt(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]);
+  air.toLight = {static_cast<float>(sun[0] / norm), static_cast<float>(sun[1] / norm),
+                 static_cast<float>(sun[2] / norm)};
   air.thickness = static_cast<float>(10.0 * scene_.view.thickness / static_cast<double>(m.cells[1]));
   air.cells = {static_cast<float>(m.cells[0]), static_cast<float>(m.cells[1]), static_cast<float>(m.cells[2])};
   if (!light_) light_.emplace(device_.stream<float>({m.cells[2], m.cells[1], m.cells[0]}));

@@ -32,5 +32,6 @@ Findings studyTime(sk::Device& device, bool small);
 Findings studyEnergy(sk::Device& device, bool small);
 Findings studyCavity(sk::Device& device, bool small);
 Findings studyPoiseuille(sk::Device& device, bool small);
+Findings studyCost(sk::Device& device, bool small);
 
 }  // namespace fluid
