@@ -36,10 +36,10 @@ class PressureMatrix : public linear::Matrix {
       : Matrix(arithmetic), grid_(grid) {}
   sk::Shape domain() const override { return grid_.shape; }
   void multiply(const linear::Vector& x, linear::Vector& y) override {
-    pressureProduct.with(options())(grid_.bounds, grid_.isSpace, grid_.box, grid_.cell, x, y);
+    pressureProduct.with(options())(grid_.bounds, grid_.isSpace, grid_.box, grid_.faces, x, y);
   }
   void multiply(const linear::Vector& x, linear::Vector& y, linear::Vector& xy) override {
-    pressureProductDot.with(foldOptions())(grid_.bounds, grid_.isSpace, grid_.box, grid_.cell, x, y, xy);
+    pressureProductDot.with(foldOptions())(grid_.bounds, grid_.isSpace, grid_.box, grid_.faces, x, y, xy);
   }
   std::string layout() const override { return "stencil"; }
   std::int64_t stored() const override { return 0; }
@@ -49,35 +49,50 @@ class PressureMatrix : public linear::Matrix {
   const GridArguments& grid_;
 };
 
-/// Calls visit(row, column, coefficient) for every entry; what flows out has no column: -1.
+/// Calls visit(cell, neighbour, face) for the faces of all cells that are fluid: below and above along x, y and, in space, z.
 template <class Visit>
-void visitEntries(const Model& m, const std::vector<std::int8_t>& cells, Visit&& visit) {
+void visitFaces(const Model& m, const std::vector<std::int8_t>& cells, Visit&& visit) {
   const sk::Shape shape = m.shape();
   const std::array<std::int64_t, 3> n = {shape[2], shape[1], shape[0]};
-  std::int64_t row = 0;
+  std::int64_t cell = 0;
   for (std::int64_t z = 0; z < n[2]; ++z) {
     for (std::int64_t y = 0; y < n[1]; ++y) {
-      for (std::int64_t x = 0; x < n[0]; ++x, ++row) {
-        if (cells[static_cast<std::size_t>(row)] != Fluid) {
-          visit(row, row, 1.0);
-          continue;
-        }
-        for (int d = 0; d < m.rank(); ++d) {
-          for (const int sign : {-1, 1}) {
-            std::array<std::int64_t, 3> at = {x, y, z};
-            auto& moved = at[static_cast<std::size_t>(d)];
-            moved = (moved + sign + n[static_cast<std::size_t>(d)]) % n[static_cast<std::size_t>(d)];
-            const std::int64_t column = m.index(at);
-            const std::int8_t kind = cells[static_cast<std::size_t>(column)];
-            if (kind == Outflow) visit(row, row, 2.0);
-            if (kind != Fluid) continue;
-            visit(row, row, 1.0);
-            visit(row, column, -1.0);
-          }
+      for (std::int64_t x = 0; x < n[0]; ++x, ++cell) {
+        if (cells[static_cast<std::size_t>(cell)] != Fluid) continue;
+        for (int face = 0; face < 2 * m.rank(); ++face) {
+          std::array<std::int64_t, 3> at = {x, y, z};
+          const auto axis = static_cast<std::size_t>(face / 2);
+          at[axis] = (at[axis] + (face % 2 == 0 ? -1 : 1) + n[axis]) % n[axis];
+          visit(cell, m.index(at), face);
         }
       }
     }
   }
+}
+
+std::vector<int> facesOf(const Model& m, const std::vector<std::int8_t>& cells) {
+  std::vector<int> faces(cells.size(), 0);
+  visitFaces(m, cells, [&](std::int64_t cell, std::int64_t neighbour, int face) {
+    const int kind = cells[static_cast<std::size_t>(neighbour)];
+    if (kind == Fluid || kind == Outflow) faces[static_cast<std::size_t>(cell)] |= kind << (2 * face);
+  });
+  return faces;
+}
+
+/// Calls visit(row, column, coefficient) for every entry, several times for diagonal ones; what flows out has no column.
+template <class Visit>
+void visitEntries(const Model& m, const std::vector<std::int8_t>& cells, Visit&& visit) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto row = static_cast<std::int64_t>(i);
+    if (cells[i] != Fluid) visit(row, row, 1.0);
+  }
+  visitFaces(m, cells, [&](std::int64_t row, std::int64_t column, int) {
+    const std::int8_t kind = cells[static_cast<std::size_t>(column)];
+    if (kind == Outflow) visit(row, row, 2.0);
+    if (kind != Fluid) return;
+    visit(row, row, 1.0);
+    visit(row, column, -1.0);
+  });
 }
 
 }  // namespace
@@ -87,8 +102,12 @@ GridArguments::GridArguments(sk::Device& device, const Model& model)
       isSpace(model.isSpace()),
       box(boxOf(model)),
       shape(model.shape()),
-      cell(device.stream<std::int8_t>(bounds == Anywhere ? shape : sk::Shape{1, 1, 1})) {
-  if (bounds == Anywhere) cell.write(cellsOf(model));
+      cell(device.stream<std::int8_t>(bounds == Anywhere ? shape : sk::Shape{1, 1, 1})),
+      faces(device.stream<int>(cell.shape())) {
+  if (bounds != Anywhere) return;
+  const std::vector<std::int8_t> cells = cellsOf(model);
+  cell.write(cells);
+  faces.write(facesOf(model, cells));
 }
 
 std::unique_ptr<linear::Matrix> makePressureMatrix(const GridArguments& grid,

@@ -25,11 +25,15 @@ struct GridArguments {
   bool isSpace;
   Box box;
   sk::Shape shape;
-  sk::Stream<std::int8_t> cell;  ///< of one element, which nobody reads, unless obstacles are anywhere
+  // Of one element, which nobody reads, unless obstacles are anywhere.
+  sk::Stream<std::int8_t> cell;
+  sk::Stream<int>
+      faces;  ///< of fluid cells: two bits for the cell beyond each face, below and above along x, y and z
 };
 
 /// Minus the Laplacian of pressures times the square of the spacing. `grid` must outlive it.
-std::unique_ptr<linear::Matrix> makePressureMatrix(const GridArguments& grid, const linear::Arithmetic& arithmetic);
+std::unique_ptr<linear::Matrix> makePressureMatrix(const GridArguments& grid,
+                                                   const linear::Arithmetic& arithmetic);
 /// The same on the host, for preconditioners and checks. `cells` are those of cellsOf().
 linear::Operator pressureOperator(const Model& model, const std::vector<std::int8_t>& cells);
 
@@ -37,7 +41,8 @@ linear::Operator pressureOperator(const Model& model, const std::vector<std::int
 class ViscousMatrix : public linear::Matrix {
  public:
   /// `grid` must outlive it.
-  ViscousMatrix(sk::Device& device, const GridArguments& grid, int axis, const linear::Arithmetic& arithmetic);
+  ViscousMatrix(sk::Device& device, const GridArguments& grid, int axis,
+                const linear::Arithmetic& arithmetic);
   /// c is viscosity times time step over the square of the spacing. Recorded loops follow it.
   void setCoefficient(double c);
 

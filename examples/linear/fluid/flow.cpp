@@ -68,8 +68,8 @@ Held heldBy(const Model& m) {
           smoke = source.smoke;
           heat = source.temperature;
         }
-        const bool isLayer = (layerX && (x == 0 || x > m.cells[0])) || (layerY && (y == 0 || y > m.cells[1])) ||
-                             (layerZ && (z == 0 || z > m.cells[2]));
+        const bool isLayer = (layerX && (x == 0 || x > m.cells[0])) ||
+                             (layerY && (y == 0 || y > m.cells[1])) || (layerZ && (z == 0 || z > m.cells[2]));
         held.weight.push_back(isLayer ? 0.0 : weight);
         held.smoke.push_back(smoke);
         held.heat.push_back(heat);
@@ -86,7 +86,7 @@ Flow::Flow(sk::Device& device, const Model& model, const Triple& inside)
       model_(model),
       arithmetic_(arithmeticFor(model.precision)),
       options_(arithmetic_.options()),
-      grid_(device, model_),
+      grid_(std::make_unique<GridArguments>(device, model_)),
       inflow_(makeStream()) {
   if (const std::string wrong = contradiction(model); !wrong.empty())
     throw std::runtime_error(fmt::format("the flow {}", wrong));
@@ -103,7 +103,7 @@ Flow::Flow(sk::Device& device, const Model& model, const Triple& inside)
     pressure_.push_back(makeStream());
     pressure_.back().fill(0.0f);
   }
-  matrix_ = makePressureMatrix(grid_, arithmetic_);
+  matrix_ = makePressureMatrix(*grid_, arithmetic_);
   const auto& kind = linear::rowNamed(linear::preconditionerKinds(), "chebyshev", "preconditioner");
   preconditioner_ = kind.make(device, *matrix_, pressureOperator(model, cells), arithmetic_);
   const auto& gradients = linear::rowNamed(linear::methodKinds(), "cg", "solver");
@@ -131,14 +131,14 @@ Flow::Flow(sk::Device& device, const Model& model, const Triple& inside)
   if (model.viscosity && model.viscosity->isImplicit) {
     change_.emplace(makeStream());
     for (int axis = 0; axis < model.rank(); ++axis) {
-      viscous_.push_back(std::make_unique<ViscousMatrix>(device, grid_, axis, arithmetic_));
+      viscous_.push_back(std::make_unique<ViscousMatrix>(device, *grid_, axis, arithmetic_));
       diffusion_.push_back(gradients.make(device, *viscous_.back(), nullptr, arithmetic_));
     }
   }
 }
 
 sk::Stream<float> Flow::makeStream() const {
-  return device_.stream<float>(grid_.shape, storageFor(model_.precision));
+  return device_.stream<float>(grid_->shape, storageFor(model_.precision));
 }
 
 sk::Stream<float>& Flow::stream(Scalar scalar) {
@@ -157,7 +157,7 @@ int Flow::streams() const {
   const auto count = [](const auto&... optional) { return (0 + ... + (optional.has_value() ? 1 : 0)); };
   return static_cast<int>(velocity_.size() + next_.size() + begun_.size() + pressure_.size()) + 1 +
          count(smoke_, heat_, heldSmoke_, heldHeat_, sourceWeight_, there_, back_, change_) +
-         (grid_.bounds == Anywhere ? 1 : 0);
+         (grid_->bounds == Anywhere ? 2 : 0);  // cells and their faces
 }
 
 // ---- a step ------------------------------------------------------------------------------------------------
@@ -165,9 +165,10 @@ int Flow::streams() const {
 double Flow::surveyOne(const sk::Stream<float>& stream, const char* name) {
   const auto [most, broken] = survey.with(options_)(stream);
   if (broken == std::numeric_limits<int>::max()) return most;
-  const std::int64_t w = grid_.shape[2], h = grid_.shape[1];
+  const std::int64_t w = grid_->shape[2], h = grid_->shape[1];
   const std::int64_t x = broken % w, y = broken / w % h, z = broken / (w * h);
-  const std::string cell = model_.isSpace() ? fmt::format("({}, {}, {})", x, y, z) : fmt::format("({}, {})", x, y);
+  const std::string cell =
+      model_.isSpace() ? fmt::format("({}, {}, {})", x, y, z) : fmt::format("({}, {})", x, y);
   throw std::runtime_error(
       fmt::format("step {}: {} is not finite in cell {}; take a smaller time step, or a scheme other than "
                   "central differences",
@@ -189,15 +190,17 @@ double Flow::chosenTimeStep(double speed) const {
   for (const double f : model_.force) acceleration = std::max(acceleration, std::abs(f));
   if (model_.buoyancy) {
     for (const Source& s : model_.sources)
-      acceleration = std::max(acceleration, std::abs(model_.buoyancy->lift * (s.temperature - model_.buoyancy->ambient)) +
-                                                std::abs(model_.buoyancy->sink * s.smoke));
+      acceleration = std::max(acceleration,
+                              std::abs(model_.buoyancy->lift * (s.temperature - model_.buoyancy->ambient)) +
+                                  std::abs(model_.buoyancy->sink * s.smoke));
   }
   // A flow that begins at rest is as fast, after a step, as its forces make it.
   double scale = std::max(speed, std::sqrt(acceleration * model_.spacing));
   if (scale == 0.0) scale = 1.0;
   double dt = model_.cfl * model_.spacing / scale;
   if (model_.viscosity && !model_.viscosity->isImplicit)
-    dt = std::min(dt, 0.9 * model_.spacing * model_.spacing / (2.0 * model_.rank() * model_.viscosity->value));
+    dt =
+        std::min(dt, 0.9 * model_.spacing * model_.spacing / (2.0 * model_.rank() * model_.viscosity->value));
   return dt;
 }
 
@@ -208,7 +211,8 @@ Step Flow::step(double longest) {
   const double dt = report.timeStep;
   report.cfl = report.speed * dt / model_.spacing;
   holdSources();
-  const bool acts = model_.buoyancy || (model_.viscosity && !model_.viscosity->isImplicit) || model_.force != Triple{};
+  const bool acts =
+      model_.buoyancy || (model_.viscosity && !model_.viscosity->isImplicit) || model_.force != Triple{};
   if (model_.scheme == Scheme::Central) {
     for (int axis = 0; axis < model_.rank(); ++axis) velocity_[at(axis)].copyTo(begun_[at(axis)]);
     transport(dt);
@@ -243,8 +247,7 @@ void Flow::transport(double dt) {
     std::swap(**scalar, inflow_);
   }
   if (model_.scheme == Scheme::Central) return;
-  for (int axis = 0; axis < model_.rank(); ++axis)
-    carryOne(axis, step, velocity_[at(axis)], next_[at(axis)]);
+  for (int axis = 0; axis < model_.rank(); ++axis) carryOne(axis, step, velocity_[at(axis)], next_[at(axis)]);
   std::swap(velocity_, next_);
 }
 
@@ -273,16 +276,16 @@ void Flow::carryOne(int axis, double step, const sk::Stream<float>& from, sk::St
   returning.step = -c.step;
   call([&](const auto& carry, const auto& correct) {
     if (model_.scheme == Scheme::SemiLagrangian) {
-      carry.with(options_)(grid_.bounds, grid_.isSpace, grid_.box, c, grid_.cell, velocity_[0], velocity_[1],
-                           along(2), from, to);
+      carry.with(options_)(grid_->bounds, grid_->isSpace, grid_->box, c, grid_->cell, velocity_[0],
+                           velocity_[1], along(2), from, to);
       return;
     }
-    carry.with(options_)(grid_.bounds, grid_.isSpace, grid_.box, c, grid_.cell, velocity_[0], velocity_[1],
-                         along(2), from, *there_);
-    carry.with(options_)(grid_.bounds, grid_.isSpace, grid_.box, returning, grid_.cell, velocity_[0],
+    carry.with(options_)(grid_->bounds, grid_->isSpace, grid_->box, c, grid_->cell, velocity_[0],
+                         velocity_[1], along(2), from, *there_);
+    carry.with(options_)(grid_->bounds, grid_->isSpace, grid_->box, returning, grid_->cell, velocity_[0],
                          velocity_[1], along(2), *there_, *back_);
-    correct.with(options_)(grid_.bounds, grid_.isSpace, model_.scheme == Scheme::Bfecc, grid_.box, c, grid_.cell,
-                           velocity_[0], velocity_[1], along(2), from, *there_, *back_, to);
+    correct.with(options_)(grid_->bounds, grid_->isSpace, model_.scheme == Scheme::Bfecc, grid_->box, c,
+                           grid_->cell, velocity_[0], velocity_[1], along(2), from, *there_, *back_, to);
   });
 }
 
@@ -303,13 +306,15 @@ void Flow::accelerate(double dt, bool convects, double keep) {
     }
     if (isLaden && isUp) m.sink = static_cast<float>(dt * model_.buoyancy->sink);
     m.keep = static_cast<float>(keep);
-    const auto heat = isHeated && isUp ? sk::Optional<sk::In<float>>(*heat_) : sk::Optional<sk::In<float>>(sk::none);
-    const auto smoke = isLaden && isUp ? sk::Optional<sk::In<float>>(*smoke_) : sk::Optional<sk::In<float>>(sk::none);
+    const auto heat =
+        isHeated && isUp ? sk::Optional<sk::In<float>>(*heat_) : sk::Optional<sk::In<float>>(sk::none);
+    const auto smoke =
+        isLaden && isUp ? sk::Optional<sk::In<float>>(*smoke_) : sk::Optional<sk::In<float>>(sk::none);
     const sk::Stream<float>& base = keep != 0.0 ? begun_[at(axis)] : velocity_[at(axis)];
     const auto call = [&](const auto& kernel) {
-      kernel.with(options_)(grid_.bounds, grid_.isSpace, convects, isViscous, isHeated && isUp, isLaden && isUp,
-                            grid_.box, m, grid_.cell, velocity_[at(axis)], along((axis + 1) % 3),
-                            along((axis + 2) % 3), heat, smoke, base, next_[at(axis)]);
+      kernel.with(options_)(grid_->bounds, grid_->isSpace, convects, isViscous, isHeated && isUp,
+                            isLaden && isUp, grid_->box, m, grid_->cell, velocity_[at(axis)],
+                            along((axis + 1) % 3), along((axis + 2) % 3), heat, smoke, base, next_[at(axis)]);
     };
     forAxis(axis, call, accelerate_0, accelerate_1, accelerate_2);
   }
@@ -325,8 +330,8 @@ void Flow::diffuse(double dt, double speed) {
   for (int axis = 0; axis < model_.rank(); ++axis) {
     sk::Stream<float>& v = velocity_[at(axis)];
     const auto call = [&](const auto& kernel) {
-      kernel.with(options_)(grid_.bounds, grid_.isSpace, false, true, false, false, grid_.box, m, grid_.cell, v,
-                            sk::none, sk::none, sk::none, sk::none, v, *change_);
+      kernel.with(options_)(grid_->bounds, grid_->isSpace, false, true, false, false, grid_->box, m,
+                            grid_->cell, v, sk::none, sk::none, sk::none, sk::none, v, *change_);
     };
     forAxis(axis, call, accelerate_0, accelerate_1, accelerate_2);
     linear::axpy.with(options_)(-1.0f, v, *change_, *change_);
@@ -340,16 +345,16 @@ void Flow::diffuse(double dt, double speed) {
 
 void Flow::subtract(const sk::Stream<float>& q) {
   if (model_.isSpace())
-    subtractSlopes.with(options_)(grid_.bounds, true, grid_.box, grid_.cell, q, velocity_[0], velocity_[1],
+    subtractSlopes.with(options_)(grid_->bounds, true, grid_->box, grid_->cell, q, velocity_[0], velocity_[1],
                                   velocity_[2], velocity_[0], velocity_[1], velocity_[2]);
   else
-    subtractSlopes.with(options_)(grid_.bounds, false, grid_.box, grid_.cell, q, velocity_[0], velocity_[1],
-                                  sk::none, velocity_[0], velocity_[1], sk::none);
+    subtractSlopes.with(options_)(grid_->bounds, false, grid_->box, grid_->cell, q, velocity_[0],
+                                  velocity_[1], sk::none, velocity_[0], velocity_[1], sk::none);
 }
 
 std::pair<double, double> Flow::measureInflows() {
-  inflows.with(options_)(grid_.bounds, grid_.isSpace, grid_.box, grid_.cell, velocity_[0], velocity_[1], along(2),
-                         inflow_);
+  inflows.with(options_)(grid_->bounds, grid_->isSpace, grid_->box, grid_->cell, velocity_[0], velocity_[1],
+                         along(2), inflow_);
   const auto [most, squares] = magnitudes.with(arithmetic_.foldOptions())(inflow_);
   return {most, squares};
 }
@@ -360,7 +365,7 @@ void Flow::extendVelocity() {
   if (std::ranges::none_of(model_.sides, isOpen)) return;
   for (int axis = 0; axis < model_.rank(); ++axis) {
     sk::Stream<float>& v = velocity_[at(axis)];
-    const auto call = [&](const auto& kernel) { kernel.with(options_)(grid_.box, v, v); };
+    const auto call = [&](const auto& kernel) { kernel.with(options_)(grid_->box, v, v); };
     forAxis(axis, call, extend_0, extend_1, extend_2);
   }
 }
@@ -397,18 +402,18 @@ Projection Flow::project(std::size_t stage, double speed) {
 // ---- what there is ------------------------------------------------------------------------------------------
 
 double Flow::divergence() {
-  sk::Stream<float> exact = device_.stream<float>(grid_.shape, sk::Storage::Double);
-  inflows.with(inDouble)(grid_.bounds, grid_.isSpace, grid_.box, grid_.cell, velocity_[0], velocity_[1], along(2),
-                         exact);
+  sk::Stream<float> exact = device_.stream<float>(grid_->shape, sk::Storage::Double);
+  inflows.with(inDouble)(grid_->bounds, grid_->isSpace, grid_->box, grid_->cell, velocity_[0], velocity_[1],
+                         along(2), exact);
   double most = 0.0;
   for (const double d : exact.readReals()) most = std::max(most, std::abs(d));
   return most / model_.spacing;
 }
 
 double Flow::divergenceMean() {
-  sk::Stream<float> exact = device_.stream<float>(grid_.shape, sk::Storage::Double);
-  inflows.with(inDouble)(grid_.bounds, grid_.isSpace, grid_.box, grid_.cell, velocity_[0], velocity_[1], along(2),
-                         exact);
+  sk::Stream<float> exact = device_.stream<float>(grid_->shape, sk::Storage::Double);
+  inflows.with(inDouble)(grid_->bounds, grid_->isSpace, grid_->box, grid_->cell, velocity_[0], velocity_[1],
+                         along(2), exact);
   double sum = 0.0;
   for (const double d : exact.readReals()) sum += d * d;
   return std::sqrt(sum / static_cast<double>(fluid_));

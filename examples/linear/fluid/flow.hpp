@@ -25,7 +25,8 @@ namespace fluid {
 struct Projection {
   double before = 0.0, after = 0.0;
   std::int64_t iterations = 0;
-  double residual = 0.0;  ///< root mean square of div u * spacing over the largest speed, from the velocities themselves
+  double residual =
+      0.0;  ///< root mean square of div u * spacing over the largest speed, from the velocities themselves
   double recurred = 0.0;  ///< the same as the solver computed it
   bool reached = true;  ///< the tolerance
 };
@@ -71,7 +72,7 @@ class Flow {
   double kineticEnergy() const;  ///< of all faces, with density 1
   double total(Scalar scalar);  ///< times the volume of a cell
   std::pair<double, double> range(Scalar scalar);
-  const GridArguments& grid() const { return grid_; }
+  const GridArguments& grid() const { return *grid_; }
 
   int streams() const;
 
@@ -97,9 +98,10 @@ class Flow {
   Model model_;
   linear::Arithmetic arithmetic_;
   sk::CallOptions options_;
-  GridArguments grid_;
+  std::unique_ptr<GridArguments> grid_;  ///< matrices refer to it, also after the flow has moved
   std::int64_t fluid_;
-  std::vector<sk::Stream<float>> velocity_, next_, begun_;  ///< begun: the velocity before a step of two stages
+  std::vector<sk::Stream<float>> velocity_, next_,
+      begun_;  ///< begun: the velocity before a step of two stages
   std::optional<sk::Stream<float>> smoke_, heat_, heldSmoke_, heldHeat_, sourceWeight_;
   std::optional<sk::Stream<float>> there_, back_, change_;
   sk::Stream<float> inflow_;

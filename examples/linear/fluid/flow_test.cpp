@@ -41,7 +41,8 @@ Fields stepped(sk::Device& device, const Model& model, int steps) {
   Flow flow(device, model, {1.0, 0.0, 0.0});
   for (int i = 0; i < steps; ++i) flow.step();
   Fields f;
-  for (int axis = 0; axis < model.rank(); ++axis) std::ranges::copy(flow.velocity(axis), std::back_inserter(f.velocity));
+  for (int axis = 0; axis < model.rank(); ++axis)
+    std::ranges::copy(flow.velocity(axis), std::back_inserter(f.velocity));
   if (model.hasSmoke) f.smoke = flow.values(Scalar::Smoke);
   if (model.hasHeat) f.heat = flow.values(Scalar::Heat);
   return f;
@@ -247,19 +248,23 @@ TEST_CASE("what is wrong with a scene is said with its place and a way out") {
   CHECK_THAT(messageOf("[grid]\nsize = [16384, 16384]\n"), Contains("more than 2^26 cells"));
   CHECK_THAT(messageOf("[grid]\nsize = [16, nan]\n"), Contains("nan"));
   CHECK_THAT(messageOf(grid + "[viscosity]\nvalue = -0.1\n"), Contains("value"));
-  CHECK_THAT(messageOf(grid + "[viscosity]\nvalue = 1.0\n[run]\ntime_step = 0.1\n"), Contains("is not stable"));
-  CHECK_THAT(messageOf(grid + "[[obstacle]]\ncentre = [0.5, 0.5]\nradius = 9.0\n"), Contains("leave no fluid"));
+  CHECK_THAT(messageOf(grid + "[viscosity]\nvalue = 1.0\n[run]\ntime_step = 0.1\n"),
+             Contains("is not stable"));
+  CHECK_THAT(messageOf(grid + "[[obstacle]]\ncentre = [0.5, 0.5]\nradius = 9.0\n"),
+             Contains("leave no fluid"));
   CHECK_THAT(messageOf(grid + "[boundary]\nleft = \"inflow\"\nleft_velocity = [1.0, 0.0]\n"),
              Contains("incompatible: more flows in through 'left'") && Contains("\"outflow\""));
   CHECK_THAT(messageOf(grid + "[boundary]\nleft = \"inflow\"\nleft_velocity = [-1.0, 0.0]\n"),
              Contains("does not point into the grid"));
   CHECK_THAT(messageOf(grid + "[boundary]\ntop_velocity = [1.0, 0.5]\n"), Contains("goes through a wall"));
-  CHECK_THAT(messageOf(grid + "[boundary]\nleft = \"periodic\"\n"), Contains("'right' is not periodic, but left is"));
+  CHECK_THAT(messageOf(grid + "[boundary]\nleft = \"periodic\"\n"),
+             Contains("'right' is not periodic, but left is"));
   CHECK_THAT(messageOf(grid + "[view]\nfield = \"smoke\"\n"), Contains("no source has any"));
   // An obstacle between inflow and outflow leaves the inflow's part without a way out.
-  CHECK_THAT(messageOf(grid + "[boundary]\nleft = \"inflow\"\nleft_velocity = [1.0, 0.0]\nright = \"outflow\"\n"
-                              "[[obstacle]]\nlow = [0.4, -1.0]\nhigh = [0.6, 2.0]\n"),
-             Contains("incompatible"));
+  CHECK_THAT(
+      messageOf(grid + "[boundary]\nleft = \"inflow\"\nleft_velocity = [1.0, 0.0]\nright = \"outflow\"\n"
+                       "[[obstacle]]\nlow = [0.4, -1.0]\nhigh = [0.6, 2.0]\n"),
+      Contains("incompatible"));
 }
 
 }  // namespace

@@ -32,18 +32,23 @@ struct Settings {
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "what flows: a TOML file, as in examples/linear/fluid/scenes");
   std::string studies = "compare with solutions that are known, and print a table:";
-  for (const fluid::Study& study : fluid::studies()) studies += fmt::format("\n  {:<13} {}", study.name, study.asks);
+  for (const fluid::Study& study : fluid::studies())
+    studies += fmt::format("\n  {:<13} {}", study.name, study.asks);
   cli.add_option("--study", s.study, studies);
   cli.add_flag("--small", s.small, "a study in seconds, coarser");
-  cli.add_option("--size", s.size, "cells, WxH or WxHxD, in place of the scene's; the width of what is simulated stays");
+  cli.add_option("--size", s.size,
+                 "cells, WxH or WxHxD, in place of the scene's; the width of what is simulated stays");
   cli.add_option("--steps", s.steps, "steps, in place of the scene's")->check(CLI::Range(1, 1'000'000'000));
-  cli.add_option("--scheme", s.scheme, "semi-lagrangian, maccormack, bfecc or central, in place of the scene's")
+  cli.add_option("--scheme", s.scheme,
+                 "semi-lagrangian, maccormack, bfecc or central, in place of the scene's")
       ->check(CLI::IsMember({"semi-lagrangian", "maccormack", "bfecc", "central"}));
   cli.add_option("--precision", s.precision, "single or double, in place of the scene's")
       ->check(CLI::IsMember({"single", "double"}));
-  cli.add_option("--output", s.output, "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
+  cli.add_option("--output", s.output,
+                 "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
   cli.add_option("--frames", s.frames, "pictures, evenly spaced in steps")->check(CLI::Range(1, 99999));
-  cli.add_option("--csv", s.csv, "a file for time step, speed, divergence, iterations and energy of each step");
+  cli.add_option("--csv", s.csv,
+                 "a file for time step, speed, divergence, iterations and energy of each step");
 }
 
 std::vector<std::int64_t> sizeOf(const std::string& text) {
@@ -56,8 +61,10 @@ std::vector<std::int64_t> sizeOf(const std::string& text) {
     size.push_back(isNumber ? std::stoll(number) : 0);
     at = end + 1;
   }
-  if (size.size() < 2 || size.size() > 3 || std::ranges::any_of(size, [](auto n) { return n < 2 || n > 16384; }))
-    throw std::runtime_error(fmt::format("--size: '{}' is no size; write WxH or WxHxD, each from 2 to 16384", text));
+  if (size.size() < 2 || size.size() > 3 ||
+      std::ranges::any_of(size, [](auto n) { return n < 2 || n > 16384; }))
+    throw std::runtime_error(
+        fmt::format("--size: '{}' is no size; write WxH or WxHxD, each from 2 to 16384", text));
   return size;
 }
 
@@ -116,16 +123,19 @@ void simulate(examples::Application& app, const Settings& s) {
   app.report(fmt::format("{}, {}, {} steps", scene.name, size, o.steps), device.name(), o.milliseconds);
   fmt::print("computed: {}\nleft out: {}\n", fluid::operatorsOf(m), leftOut(m));
   fmt::print("a step: {} streams, {:.0f} passes, {:.1f} MB\n", o.streams, o.passes, o.bytes / 1e6);
-  fmt::print("time {:.4g}, steps of {:.3g} to {:.3g} ({}), CFL number at most {:.2f}\n", o.time, o.shortest, o.longest,
-             m.timeStep ? "as the scene says" : "chosen for the CFL number", o.largestCfl);
+  fmt::print("time {:.4g}, steps of {:.3g} to {:.3g} ({}), CFL number at most {:.2f}\n", o.time, o.shortest,
+             o.longest, m.timeStep ? "as the scene says" : "chosen for the CFL number", o.largestCfl);
   const fluid::Projection& p = o.last.projection;
-  fmt::print("max |div u| {:.3g} before the last projection, {:.3g} after it; residual {:.2g} true, {:.2g} recurred; {:.1f} "
-             "iterations a step\n",
-             p.before, p.after, p.residual, p.recurred,
-             static_cast<double>(o.iterations) / static_cast<double>(std::max<std::int64_t>(o.steps, 1)));
+  fmt::print(
+      "max |div u| {:.3g} before the last projection, {:.3g} after it; residual {:.2g} true, {:.2g} "
+      "recurred; {:.1f} "
+      "iterations a step\n",
+      p.before, p.after, p.residual, p.recurred,
+      static_cast<double>(o.iterations) / static_cast<double>(std::max<std::int64_t>(o.steps, 1)));
   if (o.missed > 0)
-    fmt::print("{} steps did not reach the tolerance {:.1g} in {} iterations; take a larger one, or more of them\n",
-               o.missed, m.tolerance, m.mostIterations);
+    fmt::print(
+        "{} steps did not reach the tolerance {:.1g} in {} iterations; take a larger one, or more of them\n",
+        o.missed, m.tolerance, m.mostIterations);
   if (o.pictures > 0) fmt::print("wrote {}\n", scene.record.output.string());
   if (!scene.record.csv.empty()) fmt::print("wrote {}\n", scene.record.csv.string());
   for (const examples::Verification& verification : o.verifications) app.verified(verification);
@@ -135,7 +145,8 @@ void simulate(examples::Application& app, const Settings& s) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  examples::Application app("fluid", "Incompressible flows in planes and in space: Navier and Stokes' equations from scene files.");
+  examples::Application app(
+      "fluid", "Incompressible flows in planes and in space: Navier and Stokes' equations from scene files.");
   addOptions(app.options(), settings);
   return app.run(argc, argv, [&] {
     if (!settings.study.empty()) return study(app, settings);

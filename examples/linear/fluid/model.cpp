@@ -16,7 +16,8 @@ constexpr std::array<const char*, 6> sideNames = {"left", "right", "bottom", "to
 
 Place extents(const Model& m) {
   Place n{};
-  for (int d = 0; d < 3; ++d) n[static_cast<std::size_t>(d)] = m.cells[static_cast<std::size_t>(d)] + (m.isPeriodic(d) ? 0 : 2);
+  for (int d = 0; d < 3; ++d)
+    n[static_cast<std::size_t>(d)] = m.cells[static_cast<std::size_t>(d)] + (m.isPeriodic(d) ? 0 : 2);
   return n;
 }
 
@@ -104,7 +105,8 @@ class Parts {
     }
     if (hasOutflow || std::abs(inflow) <= 1e-9 * magnitudes) return "";
     return fmt::format(
-        "is incompatible: more flows {} through '{}' than through the other sides, and what is incompressible "
+        "is incompatible: more flows {} through '{}' than through the other sides, and what is "
+        "incompressible "
         "has no place for it; make one of the sides \"outflow\"",
         inflow > 0.0 ? "in" : "out", sideNames[static_cast<std::size_t>(through)]);
   }
@@ -203,8 +205,7 @@ std::vector<double> coverageOf(const Model& m) {
 
 std::string contradiction(const Model& model) {
   const std::vector<std::int8_t> cells = cellsOf(model);
-  if (fluidCells(cells) == 0)
-    return "leave no fluid: they fill every cell of the grid; make them smaller";
+  if (fluidCells(cells) == 0) return "leave no fluid: they fill every cell of the grid; make them smaller";
   return Parts(model).contradiction();
 }
 

@@ -70,7 +70,8 @@ struct Model {
   bool hasHeat = false;
   double cfl = 1.0;  ///< what the time step is chosen for, if none is given
   std::optional<double> timeStep;
-  double tolerance = 1e-4;  ///< of the root mean square of divergence * spacing, as a part of the largest speed
+  double tolerance =
+      1e-4;  ///< of the root mean square of divergence * spacing, as a part of the largest speed
   int mostIterations = 2000;
   sk::Precision precision = sk::Precision::Single;
 

@@ -44,9 +44,10 @@ View3 cameraFor(const Model& m, const View& view, double pixels) {
                       static_cast<float>(axis[2] * length)};
   };
   const double across = reach(right), along = reach(up);
-  const auto height = static_cast<std::int64_t>(2 * std::lround(0.5 * pixels * std::min(along / across, 2.0)));
-  return {{vector({0.5 * (w - 1), 0.5 * (h - 1), 0.5 * (d - 1)}, 1.0), vector(right, across), vector(up, along),
-           vector(ahead, 1.0)},
+  const auto height =
+      static_cast<std::int64_t>(2 * std::lround(0.5 * pixels * std::min(along / across, 2.0)));
+  return {{vector({0.5 * (w - 1), 0.5 * (h - 1), 0.5 * (d - 1)}, 1.0), vector(right, across),
+           vector(up, along), vector(ahead, 1.0)},
           static_cast<std::int64_t>(pixels),
           height};
 }
@@ -58,7 +59,8 @@ Painter::Painter(sk::Device& device, const Scene& scene)
       scene_(scene),
       colours_(examples::colormap(scene.view.colours, 256)),
       palette_(device.stream<sk::float3>({256})),
-      covered_(device.stream<float>(scene.model.obstacles.empty() ? sk::Shape{1, 1, 1} : scene.model.shape())) {
+      covered_(
+          device.stream<float>(scene.model.obstacles.empty() ? sk::Shape{1, 1, 1} : scene.model.shape())) {
   palette_.write(colours_);
   if (!scene.model.obstacles.empty()) covered_.writeReals(coverageOf(scene.model));
 }
@@ -79,7 +81,8 @@ examples::Image Painter::plane(Flow& flow) {
       break;
     case Shown::Vorticity:
       shown = &derived();
-      vorticityOf(static_cast<float>(1.0 / m.spacing), flow.velocityStream(0), flow.velocityStream(1), *shown);
+      vorticityOf(static_cast<float>(1.0 / m.spacing), flow.velocityStream(0), flow.velocityStream(1),
+                  *shown);
       break;
   }
   const auto field = inner(*shown, m).reshape({m.cells[1], m.cells[0]});
@@ -92,9 +95,10 @@ examples::Image Painter::plane(Flow& flow) {
     low_ = -high_;
   }
   if (!(high_ > low_)) high_ = low_ + std::max(1e-6, 1e-3 * std::abs(low_));
-  const int zoom = scene_.view.zoom > 0
-                       ? scene_.view.zoom
-                       : static_cast<int>(std::clamp<std::int64_t>(1024 / std::max(m.cells[0], m.cells[1]), 1, 64));
+  const int zoom =
+      scene_.view.zoom > 0
+          ? scene_.view.zoom
+          : static_cast<int>(std::clamp<std::int64_t>(1024 / std::max(m.cells[0], m.cells[1]), 1, 64));
   auto colour = device_.stream<sk::float3>({m.cells[1] * zoom, m.cells[0] * zoom});
   const auto draw = [&](const auto& covered) {
     fluid::paint(!m.obstacles.empty(), palette_, static_cast<float>(low_), static_cast<float>(high_),
@@ -104,7 +108,8 @@ examples::Image Painter::plane(Flow& flow) {
     draw(sk::none);
   else
     draw(inner(covered_, m).reshape({m.cells[1], m.cells[0]}));
-  return examples::imageOf(static_cast<int>(colour.shape()[1]), static_cast<int>(colour.shape()[0]), colour.read());
+  return examples::imageOf(static_cast<int>(colour.shape()[1]), static_cast<int>(colour.shape()[0]),
+                           colour.read());
 }
 
 examples::Image Painter::space(Flow& flow) {
@@ -118,7 +123,8 @@ examples::Image Painter::space(Flow& flow) {
   air.toLight = {static_cast<float>(sun[0] / norm), static_cast<float>(sun[1] / norm),
                  static_cast<float>(sun[2] / norm)};
   air.thickness = static_cast<float>(10.0 * scene_.view.thickness / static_cast<double>(m.cells[1]));
-  air.cells = {static_cast<float>(m.cells[0]), static_cast<float>(m.cells[1]), static_cast<float>(m.cells[2])};
+  air.cells = {static_cast<float>(m.cells[0]), static_cast<float>(m.cells[1]),
+               static_cast<float>(m.cells[2])};
   if (!light_) light_.emplace(device_.stream<float>({m.cells[2], m.cells[1], m.cells[0]}));
   const auto smoke = inner(flow.stream(Scalar::Smoke), m);
   double hottest = 1e-30;
@@ -127,8 +133,8 @@ examples::Image Painter::space(Flow& flow) {
   const auto draw = [&](const auto& covered) {
     illuminate(hasObstacles, air, smoke, covered, *light_);
     if (glows)
-      march(hasObstacles, true, air, camera.rays, palette_, static_cast<float>(hottest), smoke, *light_, covered,
-            inner(flow.stream(Scalar::Heat), m), colour);
+      march(hasObstacles, true, air, camera.rays, palette_, static_cast<float>(hottest), smoke, *light_,
+            covered, inner(flow.stream(Scalar::Heat), m), colour);
     else
       march(hasObstacles, false, air, camera.rays, palette_, 1.0f, smoke, *light_, covered, sk::none, colour);
   };
@@ -137,14 +143,16 @@ examples::Image Painter::space(Flow& flow) {
   else
     draw(covered_);
   return examples::reduced(
-      examples::imageOf(static_cast<int>(camera.width), static_cast<int>(camera.height), colour.read()), finer);
+      examples::imageOf(static_cast<int>(camera.width), static_cast<int>(camera.height), colour.read()),
+      finer);
 }
 
 examples::Image Painter::paint(Flow& flow, const std::string& moment) {
   if (scene_.model.isSpace()) return examples::figure(space(flow), {scene_.title, "", moment});
   const examples::Image image = plane(flow);
   const std::string label = labels[static_cast<std::size_t>(scene_.view.shown)];
-  return examples::figure(image, {scene_.title, "", moment}, examples::ColourBar{colours_, low_, high_, label});
+  return examples::figure(image, {scene_.title, "", moment},
+                          examples::ColourBar{colours_, low_, high_, label});
 }
 
 }  // namespace fluid

@@ -66,8 +66,9 @@ class Numbers {
   void add(const Step& s, const Flow& flow) {
     if (path_.empty()) return;
     const Projection& p = s.projection;
-    write(fmt::format("{},{:.9g},{:.9g},{:.4g},{:.9g},{:.4g},{:.4g},{:.4g},{},{:.9g}", flow.steps(), flow.time(),
-                      s.timeStep, s.cfl, s.speed, p.before, p.after, p.residual, p.iterations, flow.kineticEnergy()));
+    write(fmt::format("{},{:.9g},{:.9g},{:.4g},{:.9g},{:.4g},{:.4g},{:.4g},{},{:.9g}", flow.steps(),
+                      flow.time(), s.timeStep, s.cfl, s.speed, p.before, p.after, p.residual, p.iterations,
+                      flow.kineticEnergy()));
   }
 
  private:
@@ -106,7 +107,8 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 /// One step of the same model from the same state, on the device and in double precision on the host, both with a small tolerance.
-std::vector<examples::Verification> checkStep(sk::Device& device, const Model& scene, const State& state, double dt) {
+std::vector<examples::Verification> checkStep(sk::Device& device, const Model& scene, const State& state,
+                                              double dt) {
   constexpr double tolerance = 4e-6;
   Model model = scene;
   model.timeStep = dt;
@@ -128,13 +130,15 @@ std::vector<examples::Verification> checkStep(sk::Device& device, const Model& s
   examples::Verification velocity(
       "a step's velocity against double precision, root mean square",
       model.tolerance * longest / std::numbers::pi + 64.0 * examples::roundoff,
-      fmt::format("the tolerance {:.0e} over the least eigenvalue's root, pi / {:.0f}, and 64 roundings", model.tolerance, longest));
+      fmt::format("the tolerance {:.0e} over the least eigenvalue's root, pi / {:.0f}, and 64 roundings",
+                  model.tolerance, longest));
   for (std::size_t axis = 0; axis < a.velocity.size(); ++axis)
     velocity.note(static_cast<std::int64_t>(axis), distance(a.velocity[axis], b.velocity[axis]) / scale);
   std::vector<examples::Verification> found{velocity};
   if (!a.smoke.empty() || !a.heat.empty()) {
     examples::Verification scalars(
-        "smoke and heat carried, against double precision, root mean square", 8.0 * longest * examples::roundoff,
+        "smoke and heat carried, against double precision, root mean square",
+        8.0 * longest * examples::roundoff,
         "positions of up to as many cells as the grid is long are rounded, and slopes are at most 1 a cell");
     for (const auto& [x, y] : {std::pair{&a.smoke, &b.smoke}, std::pair{&a.heat, &b.heat}}) {
       double largest = 1e-30;
@@ -223,12 +227,15 @@ Outcome run(sk::Device& device, const Scene& scene) {
   outcome.time = flow.time();
   outcome.pictures = pictures.count();
 
-  examples::Verification divergence(
-      "root mean square of div u * h over the speed, in double precision", scene.model.tolerance + 4.0 * examples::roundoff,
-      "the tolerance of the projection, and the rounding of velocities");
-  const double scale = std::max({outcome.last.speed, outcome.last.projection.before * scene.model.spacing, 1e-30});
-  if (outcome.last.projection.reached) divergence.note(0, flow.divergenceMean() / scale);
-  else divergence.note(0, outcome.last.projection.residual);
+  examples::Verification divergence("root mean square of div u * h over the speed, in double precision",
+                                    scene.model.tolerance + 4.0 * examples::roundoff,
+                                    "the tolerance of the projection, and the rounding of velocities");
+  const double scale =
+      std::max({outcome.last.speed, outcome.last.projection.before * scene.model.spacing, 1e-30});
+  if (outcome.last.projection.reached)
+    divergence.note(0, flow.divergenceMean() / scale);
+  else
+    divergence.note(0, outcome.last.projection.residual);
   outcome.verifications.push_back(divergence);
   for (examples::Verification& v : checkStep(device, scene.model, beforeLast, outcome.last.timeStep))
     outcome.verifications.push_back(std::move(v));

@@ -27,8 +27,8 @@ constexpr std::int64_t mostCells = std::int64_t{1} << 26;
 constexpr std::array<std::string_view, 4> schemes = {"semi-lagrangian", "maccormack", "bfecc", "central"};
 constexpr std::array<std::string_view, 5> sides = {"periodic", "wall", "slip", "inflow", "outflow"};
 constexpr std::array<std::string_view, 6> sideNames = {"left", "right", "bottom", "top", "back", "front"};
-constexpr std::array<std::string_view, 6> velocityNames = {"left_velocity", "right_velocity", "bottom_velocity",
-                                                           "top_velocity",  "back_velocity",  "front_velocity"};
+constexpr std::array<std::string_view, 6> velocityNames = {
+    "left_velocity", "right_velocity", "bottom_velocity", "top_velocity", "back_velocity", "front_velocity"};
 constexpr std::array<std::string_view, 2> obstacleKinds = {"wall", "slip"};
 constexpr std::array<std::string_view, 4> shownNames = {"smoke", "temperature", "vorticity", "speed"};
 constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
@@ -42,7 +42,8 @@ constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
 std::optional<Triple> triple(const SceneTable& table, std::string_view key) {
   const auto numbers = table.numbers(key, -1, anything);
   if (!numbers) return std::nullopt;
-  if (numbers->size() < 2 || numbers->size() > 3) refuse(table, key, "has two or three numbers, along x, y and z");
+  if (numbers->size() < 2 || numbers->size() > 3)
+    refuse(table, key, "has two or three numbers, along x, y and z");
   return Triple{(*numbers)[0], (*numbers)[1], numbers->size() > 2 ? (*numbers)[2] : 0.0};
 }
 
@@ -52,13 +53,15 @@ void readGrid(const SceneTable& table, const Overrides& overrides, Model& model)
   if (size->size() < 2 || size->size() > 3) refuse(table, "size", "is width, height and, in space, depth");
   for (std::size_t d = 0; d < size->size(); ++d) {
     const double n = (*size)[d];
-    if (n < 2 || n > 16384 || n != std::floor(n)) refuse(table, "size", "takes whole numbers from 2 to 16384");
+    if (n < 2 || n > 16384 || n != std::floor(n))
+      refuse(table, "size", "takes whole numbers from 2 to 16384");
     model.cells[d] = static_cast<std::int64_t>(n);
   }
   model.spacing = table.number("spacing", positive).value_or(1.0 / static_cast<double>(model.cells[0]));
   if (!overrides.size.empty()) {
     if (overrides.size.size() != size->size())
-      refuse(table, "size", fmt::format("has {} extents, and --size {}", size->size(), overrides.size.size()));
+      refuse(table, "size",
+             fmt::format("has {} extents, and --size {}", size->size(), overrides.size.size()));
     const double width = model.spacing * static_cast<double>(model.cells[0]);
     std::ranges::copy(overrides.size, model.cells.begin());
     model.spacing = width / static_cast<double>(model.cells[0]);
@@ -74,25 +77,30 @@ void readSide(const SceneTable& table, std::size_t side, Model& model) {
   const auto velocity = triple(table, velocityNames[side]);
   const Side is = model.sides[side];
   if (is == Side::Inflow && !velocity)
-    refuse(table, sideNames[side], fmt::format("is an inflow without a velocity; give {}", velocityNames[side]));
+    refuse(table, sideNames[side],
+           fmt::format("is an inflow without a velocity; give {}", velocityNames[side]));
   if (!velocity) return;
   if (is != Side::Inflow && is != Side::Wall)
-    refuse(table, velocityNames[side], fmt::format("is for a wall or an inflow, and {} is neither", sideNames[side]));
+    refuse(table, velocityNames[side],
+           fmt::format("is for a wall or an inflow, and {} is neither", sideNames[side]));
   const double across = (*velocity)[side / 2] * (side % 2 == 0 ? 1.0 : -1.0);
   if (is == Side::Inflow && across <= 0.0)
     refuse(table, velocityNames[side], "does not point into the grid; what flows out takes an \"outflow\"");
   if (is == Side::Wall && across != 0.0)
-    refuse(table, velocityNames[side], "goes through a wall, which moves along itself only; make it an \"inflow\"");
+    refuse(table, velocityNames[side],
+           "goes through a wall, which moves along itself only; make it an \"inflow\"");
   model.sideVelocity[side] = *velocity;
 }
 
 void readBoundary(const SceneTable& table, Model& model) {
-  for (std::size_t side = 0; side < 2 * static_cast<std::size_t>(model.rank()); ++side) readSide(table, side, model);
+  for (std::size_t side = 0; side < 2 * static_cast<std::size_t>(model.rank()); ++side)
+    readSide(table, side, model);
   for (std::size_t low = 0; low < 6; low += 2)
     if ((model.sides[low] == Side::Periodic) != (model.sides[low + 1] == Side::Periodic)) {
       const std::size_t closed = model.sides[low] == Side::Periodic ? low + 1 : low;
-      refuse(table, sideNames[closed], fmt::format("is not periodic, but {} is; both are, or none",
-                                                   sideNames[closed ^ std::size_t{1}]));
+      refuse(
+          table, sideNames[closed],
+          fmt::format("is not periodic, but {} is; both are, or none", sideNames[closed ^ std::size_t{1}]));
     }
   if (const auto kind = table.choice("obstacles", obstacleKinds)) model.obstaclesSlip = *kind == 1;
 }
@@ -116,7 +124,8 @@ Shape readShape(const SceneTable& table) {
 void readSources(const SceneTable& table, Model& model) {
   for (const SceneTable& t : table.tables("source")) {
     const auto smoke = t.number("smoke", Range{0.0, 1e6}), temperature = t.number("temperature", anything);
-    if (!smoke && !temperature) refuse(t, "smoke", "is missing; a source holds smoke, a temperature, or both");
+    if (!smoke && !temperature)
+      refuse(t, "smoke", "is missing; a source holds smoke, a temperature, or both");
     model.hasSmoke |= smoke.has_value();
     model.hasHeat |= temperature.has_value();
     model.sources.push_back({readShape(t), smoke.value_or(0.0), temperature.value_or(0.0)});
@@ -128,8 +137,7 @@ void readBuoyancy(const SceneTable& table, Model& model) {
   b.lift = table.number("lift", anything).value_or(0.0);
   b.ambient = table.number("ambient", anything).value_or(0.0);
   b.sink = table.number("sink", anything).value_or(0.0);
-  if (b.lift != 0.0 && !model.hasHeat)
-    refuse(table, "lift", "acts on temperatures, and no source has one");
+  if (b.lift != 0.0 && !model.hasHeat) refuse(table, "lift", "acts on temperatures, and no source has one");
   if (b.sink != 0.0 && !model.hasSmoke) refuse(table, "sink", "acts on smoke, and no source has any");
   model.buoyancy = b;
 }
@@ -141,7 +149,8 @@ void readViscosity(const SceneTable& table, Model& model) {
   v.value = *value;
   v.isImplicit = table.flag("implicit").value_or(false);
   if (v.isImplicit && model.scheme == Scheme::Central)
-    refuse(table, "implicit", "goes with the other schemes; central differences take the viscosity explicitly");
+    refuse(table, "implicit",
+           "goes with the other schemes; central differences take the viscosity explicitly");
   if (v.value > 0.0) model.viscosity = v;
 }
 
@@ -151,7 +160,8 @@ void readRun(const SceneTable& table, const Overrides& overrides, Scene& scene) 
   model.cfl = table.number("cfl", Range{1e-6, 100.0}).value_or(model.scheme == Scheme::Central ? 0.7 : 1.5);
   model.timeStep = table.number("time_step", positive);
   model.tolerance = table.number("tolerance", Range{1e-12, 0.1}).value_or(model.tolerance);
-  model.mostIterations = static_cast<int>(table.integer("most_iterations", Range{1, 1e6}).value_or(model.mostIterations));
+  model.mostIterations =
+      static_cast<int>(table.integer("most_iterations", Range{1, 1e6}).value_or(model.mostIterations));
   if (const auto precision = table.choice("precision", precisionNames))
     model.precision = *precision == 0 ? sk::Precision::Single : sk::Precision::Double;
   if (overrides.precision) model.precision = *overrides.precision;
@@ -159,9 +169,10 @@ void readRun(const SceneTable& table, const Overrides& overrides, Scene& scene) 
   const double longest = model.spacing * model.spacing / (2.0 * model.rank() * model.viscosity->value);
   if (*model.timeStep > longest)
     refuse(table, "time_step",
-           fmt::format("{:g} is not stable: viscosity allows {:.6g} (h^2 / ({} viscosity)); take a smaller one, or "
-                       "implicit = true in [viscosity]",
-                       *model.timeStep, longest, 2 * model.rank()));
+           fmt::format(
+               "{:g} is not stable: viscosity allows {:.6g} (h^2 / ({} viscosity)); take a smaller one, or "
+               "implicit = true in [viscosity]",
+               *model.timeStep, longest, 2 * model.rank()));
 }
 
 void readView(const SceneTable& table, Scene& scene) {
@@ -169,8 +180,9 @@ void readView(const SceneTable& table, Scene& scene) {
   const Model& model = scene.model;
   if (const auto shown = table.choice("field", shownNames)) v.shown = static_cast<Shown>(*shown);
   if ((v.shown == Shown::Smoke && !model.hasSmoke) || (v.shown == Shown::Temperature && !model.hasHeat))
-    refuse(table, "field", fmt::format("'{}' is not in this scene: no source has any",
-                                       shownNames[static_cast<std::size_t>(v.shown)]));
+    refuse(table, "field",
+           fmt::format("'{}' is not in this scene: no source has any",
+                       shownNames[static_cast<std::size_t>(v.shown)]));
   if (model.isSpace() && v.shown != Shown::Smoke)
     refuse(table, "field", "is of planes; in space, smoke is drawn");
   if (const auto colours = table.text("colours")) v.colours = *colours;
@@ -221,7 +233,8 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
     readGrid(*t, overrides, model);
   else
     refuse(table, "grid", "is missing: the table [grid] has the size");
-  for (std::size_t side = 0; side < 2 * static_cast<std::size_t>(model.rank()); ++side) model.sides[side] = Side::Wall;
+  for (std::size_t side = 0; side < 2 * static_cast<std::size_t>(model.rank()); ++side)
+    model.sides[side] = Side::Wall;
   if (const auto t = table.table("convection"))
     if (const auto scheme = t->choice("scheme", schemes)) model.scheme = static_cast<Scheme>(*scheme);
   if (overrides.scheme) model.scheme = *overrides.scheme;
@@ -242,7 +255,8 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   table.finish();
   if (const std::string wrong = contradiction(model); !wrong.empty()) {
     const char* key = wrong.starts_with("leave") ? "obstacle" : "boundary";
-    table.fail(key, fmt::format("{} {}", wrong.starts_with("leave") ? "the obstacles" : "the boundary", wrong));
+    table.fail(key,
+               fmt::format("{} {}", wrong.starts_with("leave") ? "the obstacles" : "the boundary", wrong));
   }
   return scene;
 }

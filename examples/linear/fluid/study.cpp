@@ -8,7 +8,8 @@ namespace fluid {
 namespace {
 
 constexpr std::array<Study, 6> all = {{
-    {"taylor_green", "the error of vortices whose solution is known, and the order of convergence", studyTaylorGreen},
+    {"taylor_green", "the error of vortices whose solution is known, and the order of convergence",
+     studyTaylorGreen},
     {"time", "the order of convergence in time", studyTime},
     {"energy", "what schemes of convection do to the energy of a flow without viscosity", studyEnergy},
     {"cavity", "a cavity with a moving lid, against Ghia, Ghia and Shin (1982)", studyCavity},

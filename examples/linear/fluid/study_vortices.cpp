@@ -30,16 +30,19 @@ double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
 Findings studyTaylorGreen(sk::Device& device, bool small) {
   const Vortices vortices;
-  const std::vector<std::int64_t> sizes = small ? std::vector<std::int64_t>{16, 32} : std::vector<std::int64_t>{16, 32, 64, 128};
+  const std::vector<std::int64_t> sizes =
+      small ? std::vector<std::int64_t>{16, 32} : std::vector<std::int64_t>{16, 32, 64, 128};
   examples::Table table({"convection", "cells", "steps", "error", "order"});
-  examples::Verification reached("order of central differences, below 2", 0.2,
-                                 "both space and time are of second order; coarse grids are not yet asymptotic");
+  examples::Verification reached(
+      "order of central differences, below 2", 0.2,
+      "both space and time are of second order; coarse grids are not yet asymptotic");
   for (const Scheme scheme : {Scheme::SemiLagrangian, Scheme::MacCormack, Scheme::Bfecc, Scheme::Central}) {
     double before = 0.0;
     for (const std::int64_t n : sizes) {
       // The largest speed is 2: n / 4 steps in a time of 1 are a CFL number of 1.3; central differences take half of that.
       const int steps = static_cast<int>(scheme == Scheme::Central ? n / 2 : n / 4);
-      const Flow flow = run(device, vortices, vortexModel(vortices, n, scheme, sk::Precision::Double), 1.0, steps);
+      const Flow flow =
+          run(device, vortices, vortexModel(vortices, n, scheme, sk::Precision::Double), 1.0, steps);
       const double error = errorOf(vortices, flow);
       const bool isFirst = before == 0.0;
       table.add({std::string(schemeNames[static_cast<std::size_t>(scheme)]), fmt::format("{0} x {0}", n),
@@ -59,7 +62,8 @@ Findings studyTime(sk::Device& device, bool small) {
   const int finest = small ? 128 : 1024;
   const Flow exact = run(device, vortices, model, 1.0, finest);
   examples::Table table({"steps", "time step", "CFL number", "difference", "order"});
-  examples::Verification reached("order in time, below 2", 0.2, "Heun's method; the finest step is taken for the limit");
+  examples::Verification reached("order in time, below 2", 0.2,
+                                 "Heun's method; the finest step is taken for the limit");
   double before = 0.0;
   for (int steps = small ? 8 : 16; steps <= finest / 8; steps *= 2) {
     const Flow flow = run(device, vortices, model, 1.0, steps);
@@ -99,9 +103,10 @@ Findings studyEnergy(sk::Device& device, bool small) {
       // Heun's method multiplies the energy of a wave of frequency f by 1 + (f dt)^4 / 4. The winds carry the vortices, whose wave number is 1 along both axes,
       // with f = 1.5, and they are 2 parts in 7 of the energy.
       const double angle = 1.5 / steps;
-      examples::Verification v(fmt::format("energy after {} steps of central differences, change", steps),
-                               2.0 / 7.0 * steps * std::pow(angle, 4) / 4.0 + 1e-7,
-                               "space adds none; Heun's method adds (f dt)^4 / 4 a step, and the projection its tolerance");
+      examples::Verification v(
+          fmt::format("energy after {} steps of central differences, change", steps),
+          2.0 / 7.0 * steps * std::pow(angle, 4) / 4.0 + 1e-7,
+          "space adds none; Heun's method adds (f dt)^4 / 4 a step, and the projection its tolerance");
       v.note(steps, std::abs(change));
       verifications.push_back(v);
     }
