@@ -18,7 +18,7 @@ namespace {
 /// Everything at once, in a channel with a ball in it.
 Model everything(bool isSpace) {
   Model m;
-  m.cells = {isSpace ? 11 : 14, 10, isSpace ? 6 : 1};
+  m.cells = {isSpace ? 11 : 13, 10, isSpace ? 6 : 1};
   m.spacing = 0.1;
   m.sides = {Side::Inflow, Side::Outflow, Side::Wall, Side::Slip, Side::Periodic, Side::Periodic};
   m.sideVelocity[0] = {1.0, 0.0, 0.0};
@@ -59,14 +59,12 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 /// than the root of the number of cells times that.
 double bound(const Model& m) {
   const auto cells = static_cast<double>(m.shape().size());
-  return 2.0 * m.tolerance * 14.0 / 3.14 * std::sqrt(cells);
+  return 2.0 * m.tolerance * 13.0 / 3.14 * std::sqrt(cells);
 }
 
-TEST_CASE("all parts at once do the same drawn, dispatched, natively and in double precision") {
+TEST_CASE("all parts at once do the same natively and in double precision") {
   for (const bool isSpace : {false, true}) {
     Model model = everything(isSpace);
-    // Correcting is tried in a plane: a program of it in space takes llvmpipe a second to compile.
-    if (isSpace) model.scheme = Scheme::SemiLagrangian;
     sk::Device reference = sk::Device::reference(), native = sk::Device::native();
     const Fields expected = stepped(reference, model, 2);
     const auto compare = [&](sk::Device& device) {
@@ -76,9 +74,28 @@ TEST_CASE("all parts at once do the same drawn, dispatched, natively and in doub
       CHECK(distance(found.heat, expected.heat) <= 2.0 * bound(model));
     };
     compare(native);
-    // Drawing and dispatching assemble the same bodies; one of them each for a plane and for space.
+  }
+}
+
+TEST_CASE("a flow does the same drawn, dispatched and in double precision") {
+  // Each program takes llvmpipe a tenth of a second to compile: a flow is drawn in a plane, and dispatched in space with fewer parts. The example on a
+  // device with GL has viscosity and central differences.
+  for (const bool isSpace : {false, true}) {
+    Model model = everything(isSpace);
+    model.viscosity.reset();
+    model.buoyancy.reset();
+    model.hasHeat = false;
+    if (isSpace) {
+      model.scheme = Scheme::SemiLagrangian;
+      model.sources.clear();
+      model.hasSmoke = false;
+    }
+    sk::Device reference = sk::Device::reference();
+    const Fields expected = stepped(reference, model, 2);
     sk::Device gl(sk::DeviceOptions{.device = "software", .profile = isSpace ? "glsl430" : "glsl330"});
-    compare(gl);
+    const Fields found = stepped(gl, model, 2);
+    CHECK(distance(found.velocity, expected.velocity) <= bound(model));
+    CHECK(distance(found.smoke, expected.smoke) <= bound(model));
   }
 }
 

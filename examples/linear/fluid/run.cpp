@@ -60,6 +60,7 @@ class Numbers {
  public:
   explicit Numbers(const std::filesystem::path& path) : path_(path.string()) {
     if (path.empty()) return;
+    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
     file_.open(path);
     write("step,time,time_step,cfl,speed,divergence_before,divergence_after,residual,iterations,energy");
   }
