@@ -227,7 +227,8 @@ TEST_CASE("walls without friction do not brake a stream along them") {
     flow.project();
     for (int i = 0; i < 5; ++i) flow.step();
     const std::vector<double> u = flow.velocity(0);
-    for (std::int64_t y = 1; y <= 6; ++y)
+    // The layer behind the walls has the stream's velocity, too: paths that end near a wall read it.
+    for (std::int64_t y = 0; y <= 7; ++y)
       for (std::int64_t x = 1; x <= 9; ++x)
         CHECK(u[static_cast<std::size_t>(model.index({x, y, 0}))] == Approx(1.0).margin(1e-5));
   }

@@ -12,8 +12,6 @@ namespace {
 
 using Place = std::array<std::int64_t, 3>;
 
-constexpr std::array<const char*, 6> sideNames = {"left", "right", "bottom", "top", "back", "front"};
-
 Place extents(const Model& m) {
   Place n{};
   for (int d = 0; d < 3; ++d)

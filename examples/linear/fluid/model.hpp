@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sk/sk.hpp>
@@ -20,6 +21,9 @@ using Triple = std::array<double, 3>;
 
 enum class Scheme { SemiLagrangian, MacCormack, Bfecc, Central };
 enum class Side { Periodic, Wall, Slip, Inflow, Outflow };
+/// In the order of Model::sides.
+inline constexpr std::array<std::string_view, 6> sideNames = {"left", "right", "bottom",
+                                                              "top",  "back",  "front"};
 
 struct Sphere {
   Triple centre{};

@@ -26,8 +26,7 @@ constexpr std::int64_t mostCells = std::int64_t{1} << 26;
 
 constexpr std::array<std::string_view, 4> schemes = {"semi-lagrangian", "maccormack", "bfecc", "central"};
 constexpr std::array<std::string_view, 5> sides = {"periodic", "wall", "slip", "inflow", "outflow"};
-constexpr std::array<std::string_view, 6> sideNames = {"left", "right", "bottom", "top", "back", "front"};
-constexpr std::array<std::string_view, 6> velocityNames = {
+constexpr std::array<std::string_view, 6> velocityKeys = {
     "left_velocity", "right_velocity", "bottom_velocity", "top_velocity", "back_velocity", "front_velocity"};
 constexpr std::array<std::string_view, 2> obstacleKinds = {"wall", "slip"};
 constexpr std::array<std::string_view, 4> shownNames = {"smoke", "temperature", "vorticity", "speed"};
@@ -74,20 +73,20 @@ void readGrid(const SceneTable& table, const Overrides& overrides, Model& model)
 void readSide(const SceneTable& table, std::size_t side, Model& model) {
   const auto kind = table.choice(sideNames[side], sides);
   model.sides[side] = kind ? static_cast<Side>(*kind) : Side::Wall;
-  const auto velocity = triple(table, velocityNames[side]);
+  const auto velocity = triple(table, velocityKeys[side]);
   const Side is = model.sides[side];
   if (is == Side::Inflow && !velocity)
     refuse(table, sideNames[side],
-           fmt::format("is an inflow without a velocity; give {}", velocityNames[side]));
+           fmt::format("is an inflow without a velocity; give {}", velocityKeys[side]));
   if (!velocity) return;
   if (is != Side::Inflow && is != Side::Wall)
-    refuse(table, velocityNames[side],
+    refuse(table, velocityKeys[side],
            fmt::format("is for a wall or an inflow, and {} is neither", sideNames[side]));
   const double across = (*velocity)[side / 2] * (side % 2 == 0 ? 1.0 : -1.0);
   if (is == Side::Inflow && across <= 0.0)
-    refuse(table, velocityNames[side], "does not point into the grid; what flows out takes an \"outflow\"");
+    refuse(table, velocityKeys[side], "does not point into the grid; what flows out takes an \"outflow\"");
   if (is == Side::Wall && across != 0.0)
-    refuse(table, velocityNames[side],
+    refuse(table, velocityKeys[side],
            "goes through a wall, which moves along itself only; make it an \"inflow\"");
   model.sideVelocity[side] = *velocity;
 }
