@@ -13,6 +13,7 @@
 
 #include "assemble/append/append_groups.hpp"
 #include "assemble/append/append_passes.hpp"
+#include "assemble/append/record_program.hpp"
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/append/point_program.hpp"
 #include "assemble/assemble.hpp"
@@ -111,22 +112,18 @@ std::string groupListing(const Profile& profile, const sk::program::Kernel& kern
     if (work == sk::assemble::Work::Groups || isOwned)
       programs.push_back(sk::assemble::kernelProgram(profile, kernel, variant));
   }
+  for (const sk::program::Parameter& parameter : kernel.parameters) {
+    if (sk::assemble::isListed(parameter, order)) {
+      const bool isCounted = true;
+      programs.push_back(sk::assemble::recordProgram(profile, parameter, isCounted));
+    }
+  }
   return skc::join(programs, "\n");
 }
 
 /// All programs of a kernel with append outputs: counting, the sums of counts, each list, and its points.
 std::string appendListing(const Profile& profile, const sk::program::Kernel& kernel) {
-  const bool mayGroup =
-      std::all_of(kernel.parameters.begin(), kernel.parameters.end(), [&](const auto& parameter) {
-        return !sk::assemble::isAppendOutput(parameter) ||
-               sk::assemble::mayGroup(parameter, kernel.options.order);
-      });
-  if (profile.stage == sk::assemble::Stage::Compute && mayGroup) return groupListing(profile, kernel);
-  if (profile.stage == sk::assemble::Stage::Compute) {
-    return appendListing(*sk::assemble::findProfile("glsl330"), kernel) +
-           fmt::format("\n// {} combines what compute programs cannot combine in order, and is drawn\n",
-                       kernel.name);
-  }
+  if (profile.stage == sk::assemble::Stage::Compute) return groupListing(profile, kernel);
   sk::assemble::Variant variant = plainVariant(kernel);
   std::vector<std::string> programs;
   variant.task.work = sk::assemble::Work::Counts;

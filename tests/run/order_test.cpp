@@ -249,22 +249,111 @@ TEST_CASE("floats are added in any order only where that is asked for") {
     order::add.with({.order = Order::Any})(streamOf<float>(device, x), streamOf<int>(device, at), r);
     CHECK(r.read() == sums);
   });
-  sk::Device& device = run_tests::device("glsl430");
-  const auto x = streamOf<float>(device, {1, 2});
-  auto r = streamOf<float>(device, {0, 0});
-  const auto at = streamOf<int>(device, {1, 1});
-  CHECK_THROWS_WITH(order::add.with(dispatched)(x, at, r),
-                    Catch::Contains("order::add") && Catch::Contains("Order::Any"));
-  order::add.with(loosely)(x, at, r);
-  order::addLoosely.with(dispatched)(x, at, r);
-  CHECK(r.read() == std::vector<float>{0, 6});
-  CHECK_THROWS_AS(order::addLoosely.with({.target = Target::Compute, .order = Order::Kept})(x, at, r),
-                  sk::Error);
   sk::Device configured({.profile = "glsl430", .configuration = file.path});
   const auto y = streamOf<float>(configured, {1, 2});
   auto s = streamOf<float>(configured, {0, 0});
   order::add.with(dispatched)(y, streamOf<int>(configured, {1, 1}), s);
   CHECK(s.read() == std::vector<float>{0, 3});
+}
+
+// Sums are rounded at each step here, so that another order has other bits.
+TEST_CASE("compute programs add floats in the order of the elements") {
+  sk::Device& device = run_tests::device("glsl430");
+  for (const auto& [size, bins] : {std::pair{1, 3}, {255, 7}, {4099, 1}, {70000, 300}, {70000, 70001}, {66000, 3}}) {
+    INFO("size " << size << ", bins " << bins);
+    const std::vector<int> at = targets(size, bins + 2);  // some of them outside
+    std::vector<float> x, sums(static_cast<std::size_t>(bins), 0.1F);
+    for (int i = 0; i < size; ++i) x.push_back(static_cast<float>(valueOf(i)) * 0.37F);
+    const std::vector<float> before = sums;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (at[i] >= 0 && at[i] < bins) sums[static_cast<std::size_t>(at[i])] += x[i];
+    }
+    const auto xs = streamOf<float>(device, x);
+    const auto ats = streamOf<int>(device, at);
+    auto r = streamOf<float>(device, before), s = streamOf<float>(device, before);
+    order::add.with(dispatched)(xs, ats, r);
+    CHECK(r.read() == sums);
+    order::add.with({.target = Target::Fragment})(xs, ats, s);
+    CHECK(s.read() == sums);
+  }
+}
+
+TEST_CASE("compute programs combine vectors in the order of the elements, and in views") {
+  sk::Device& device = run_tests::device("glsl430");
+  const int size = 5003;
+  std::vector<sk::float3> x, sums(6 * 9, {1, 2, 3});
+  std::vector<sk::int2> at;
+  std::vector<int> ints = values(size), line;
+  std::vector<sk::float2> pairs, most(40, {-7, 0.5F});
+  std::vector<sk::int4> least(40, {5, 6, 7, 8});
+  for (int i = 0; i < size; ++i) {
+    const float f = static_cast<float>(valueOf(i)) / 7;
+    x.push_back({f, f / 3, -f});
+    at.push_back({i * 7 % 8 - 1, i * 3 % 5});
+    line.push_back(i * 11 % 42 - 1);
+    pairs.push_back({f, -2 * f});
+    if (at.back().x >= 0 && at.back().x < 6 && at.back().y < 4) {
+      sk::float3& old = sums[static_cast<std::size_t>((at.back().y + 1) * 9 + at.back().x + 2)];
+      old = {old.x + f, old.y + f / 3, old.z - f};
+    }
+    if (line.back() < 0 || line.back() >= 40) continue;
+    const auto n = static_cast<std::size_t>(line.back());
+    most[n] = {std::max(most[n].x, f), std::max(most[n].y, -2 * f)};
+    const int v = ints[static_cast<std::size_t>(i)];
+    least[n] = {std::min(least[n].x, v), std::min(least[n].y, -v), std::min(least[n].z, v + 1),
+                std::min(least[n].w, v & 7)};
+  }
+  const auto lines = streamOf<int>(device, line);
+  for (const Order kept : {Order::Kept, Order::Any}) {
+    const sk::CallOptions options{.target = Target::Compute, .order = kept};
+    auto r = device.stream<sk::float3>({6, 9});
+    r.write(std::vector<sk::float3>(54, {1, 2, 3}));
+    order::addVectors.with(options)(streamOf<sk::float3>(device, x), streamOf<sk::int2>(device, at),
+                                    r.domain({1, 2}, {5, 8}));
+    if (kept == Order::Kept) CHECK(r.read() == sums);
+    auto s = streamOf<sk::float2>(device, std::vector<sk::float2>(40, {-7, 0.5F}));
+    order::highestVectors.with(options)(streamOf<sk::float2>(device, pairs), lines, s);
+    CHECK(s.read() == most);
+    auto t = streamOf<sk::int4>(device, std::vector<sk::int4>(40, {5, 6, 7, 8}));
+    order::lowestInts.with(options)(streamOf<int>(device, ints), lines, t);
+    CHECK(t.read() == least);
+  }
+}
+
+TEST_CASE("records of several outputs, of any number, beside pushes") {
+  sk::Device& device = run_tests::device("glsl430");
+  const int size = 3001;
+  std::vector<int> n, odds;
+  std::vector<float> sums(50), before;
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = static_cast<float>(i) / 9;
+  before = sums;
+  for (int i = 0; i < size; ++i) {
+    n.push_back(i * 13 % 31);
+    if (n.back() % 2 != 0) odds.push_back(n.back());
+    for (int k = 0; k < (n.back() & 7); ++k)
+      sums[static_cast<std::size_t>((i * 5 + k * 3) % 50)] +=
+          before[static_cast<std::size_t>(k)] + 1.0F / static_cast<float>(n.back() + k + 1);
+  }
+  for (const Target target : {Target::Compute, Target::Fragment}) {
+    auto r = streamOf<float>(device, before);
+    auto odd = device.stream<int>({0});
+    auto first = device.stream<float>({size});
+    order::addOften.with({.target = target})(streamOf<int>(device, n), r, r, odd, first);
+    CHECK(r.read() == sums);
+    CHECK(odd.read() == odds);
+    CHECK(first.read() == std::vector<float>(size, before[0]));
+  }
+  std::vector<std::vector<float>> results;
+  std::vector<float> x;
+  for (int i = 0; i < size; ++i) x.push_back(static_cast<float>(valueOf(i)) / 7);
+  for (const Target target : {Target::Compute, Target::Fragment}) {
+    auto r = streamOf<float>(device, before), s = streamOf<float>(device, before);
+    order::addTwice.with({.target = target})(streamOf<float>(device, x), streamOf<int>(device, targets(size, 53)), r, s);
+    results.push_back(r.read());
+    results.push_back(s.read());
+  }
+  CHECK(results[0] == results[2]);
+  CHECK(results[1] == results[3]);
 }
 
 TEST_CASE("what compute programs cannot scatter to is drawn, or refused") {

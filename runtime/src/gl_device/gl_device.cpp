@@ -171,18 +171,15 @@ bool GlDevice::computesInPairs(const CallOptions& options) const {
          (requiresPairs || !capabilities.isSoftware || profile.doubles == assemble::Doubles::Pairs);
 }
 
-bool GlDevice::mayDispatch(const program::Kernel& kernel, const CallOptions& options) const {
-  return capabilities.hasCompute && kernel.dispatched &&
-         std::ranges::all_of(kernel.parameters, [&](const program::Parameter& parameter) {
-           return !assemble::isAppendOutput(parameter) || assemble::mayGroup(parameter, options.order);
-         });
+bool GlDevice::mayDispatch(const program::Kernel& kernel) const {
+  return capabilities.hasCompute && kernel.dispatched;
 }
 
 assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, KernelClass kernels,
                                   const CallOptions& options) {
   using assemble::Stage;
   const Target wanted = options.target != Target::Default ? options.target : target;
-  if (!mayDispatch(kernel, options)) return Stage::Fragment;
+  if (!mayDispatch(kernel)) return Stage::Fragment;
   if (!kernel.drawn || wanted == Target::Compute) return Stage::Compute;
   if (wanted == Target::Fragment) return Stage::Fragment;
   return fasterFor(kernels);
@@ -328,13 +325,6 @@ void GlDevice::checkTarget(const program::Kernel& kernel, const CallOptions& opt
   }
   if (mustDispatch && !kernel.dispatched) {
     fail(Error::Kind::Compile, kernel, "it has no compute programs; {}", compileForBoth);
-  }
-  if (mustDispatch && !mayDispatch(kernel, options)) {
-    fail(Error::Kind::Device, kernel,
-         "compute programs combine only single numbers of 32 bits in a scatter output, and add floats only "
-         "with Order::Any; "
-         "{}",
-         wayOut);
   }
   if (requested == Target::Fragment && !kernel.drawn) {
     fail(Error::Kind::Compile, kernel, "it has no fragment programs; {}", compileForBoth);

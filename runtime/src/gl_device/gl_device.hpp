@@ -197,7 +197,7 @@ class GlDevice final : public DeviceState {
  private:
   bool computesInPairs(const CallOptions& options) const;
   assemble::Stage fasterFor(KernelClass kernels);
-  bool mayDispatch(const program::Kernel& kernel, const CallOptions& options) const;
+  bool mayDispatch(const program::Kernel& kernel) const;
   /// Throws sk::Error if a kernel cannot run on the target that a call requests.
   void checkTarget(const program::Kernel& kernel, const CallOptions& options) const;
   void needExactSums(const program::Kernel& kernel);

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/append/append_groups.hpp"
 #include "assemble/append/append_passes.hpp"
 #include "call/block_grid.hpp"
 #include "call/resolved_reduction.hpp"
@@ -55,6 +56,15 @@ constexpr std::array<Parameter, 2> loopParameters{
 constexpr std::array<Parameter, 2> scatterParameters{
     {{.name = "x", .symbol = "x", .role = Role::Input, .element = &floats, .usesIndex = true},
      {.name = "r", .symbol = "r", .role = Role::Scatter, .element = &floats, .rank = 2, .pushes = 1}}};
+constexpr std::array<Parameter, 2> orderedParameters{
+    {{.name = "x", .symbol = "x", .role = Role::Input, .element = &floats, .usesIndex = true},
+     {.name = "r",
+      .symbol = "r",
+      .role = Role::Scatter,
+      .element = &floats,
+      .rank = 2,
+      .scatter = program::ScatterOp::Add,
+      .pushes = 1}}};
 constexpr std::array<Parameter, 2> pushParameters{
     {{.name = "x", .symbol = "x", .role = Role::Input, .element = &floats},
      {.name = "r", .symbol = "r", .role = Role::VariableOutput, .element = &floats, .pushes = 1}}};
@@ -111,6 +121,9 @@ const Kernel loops = [] {
 const Kernel scatters =
     kernelOf("a trial of scatters", "void sk_trial(float x) { sk_put_r(sk_index_x().yx ^ 5, x); }\n",
              scatterParameters);
+const Kernel orderedScatters =
+    kernelOf("a trial of scatters in order",
+             "void sk_trial(float x) { sk_put_r((sk_index_x().yx ^ 5) & ~1, x); }\n", orderedParameters);
 const Kernel pushes = kernelOf("a trial of pushes",
                                "void sk_trial(float x) {\n"
                                "  if ((floatBitsToInt(x) & 1) == 0) sk_push_r(x);\n"
@@ -160,8 +173,17 @@ class Trial {
   /// Scatters take a software renderer long.
   static Shape shapeFor(const GlDevice& device, KernelClass kernels) {
     if (!device.capabilities.isSoftware) return {2048, 2048};
-    return kernels == KernelClass::Pushes || kernels == KernelClass::Scatters ? Shape{256, 256}
-                                                                              : Shape{1024, 1024};
+    switch (kernels) {
+      case KernelClass::Pushes:
+      case KernelClass::Scatters:
+      case KernelClass::OrderedScatters: return {256, 256};
+      case KernelClass::Elements:
+      case KernelClass::Neighbours:
+      case KernelClass::Gathers:
+      case KernelClass::Loops:
+      case KernelClass::Reduces: break;
+    }
+    return {1024, 1024};
   }
 
   double seconds(Target target) {
@@ -186,6 +208,7 @@ class Trial {
         return device_.runUnchecked(
             pushes, std::array{x, Argument{.region = detail::wholeRegion(list_.get())}}, options);
       case KernelClass::Scatters: return device_.runUnchecked(scatters, two, options);
+      case KernelClass::OrderedScatters: return device_.runUnchecked(orderedScatters, two, options);
       case KernelClass::Reduces: {
         float total = 0;
         const std::array<void*, 1> results{&total};
@@ -212,6 +235,7 @@ std::string_view nameOf(KernelClass kernels) {
     case KernelClass::Reduces: return "reduces";
     case KernelClass::Pushes: return "pushes";
     case KernelClass::Scatters: return "scatters";
+    case KernelClass::OrderedScatters: return "ordered-scatters";
   }
   return {};
 }
@@ -219,6 +243,8 @@ std::string_view nameOf(KernelClass kernels) {
 KernelClass classOf(const Kernel& kernel, Order order) {
   const auto any = [&](auto&& asks) { return std::ranges::any_of(kernel.parameters, asks); };
   if (any(assemble::isAppendOutput)) {
+    if (any([&](const Parameter& parameter) { return assemble::isListed(parameter, order); }))
+      return KernelClass::OrderedScatters;
     const bool pushes =
         any([](const Parameter& parameter) { return parameter.role == Role::VariableOutput; });
     return pushes && order != Order::Any ? KernelClass::Pushes : KernelClass::Scatters;

@@ -26,8 +26,9 @@ enum class KernelClass : std::uint8_t {
   Reduces,
   Pushes,  ///< has variable outputs, whose order is kept
   Scatters,  ///< has scatter outputs, or variable outputs in any order
+  OrderedScatters,  ///< has scatter outputs whose values are combined in order: sums of floats, or vectors
 };
-inline constexpr std::size_t kernelClasses = 7;
+inline constexpr std::size_t kernelClasses = 8;
 
 std::string_view nameOf(KernelClass kernels);
 

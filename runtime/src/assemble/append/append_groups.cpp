@@ -112,7 +112,7 @@ uint sk_take(uint sk_k, uint sk_own) {
 )";
 
 /// Orders the bits of floats, -0 below 0. A NaN that is stored gives way to any value, and one that is given is ignored.
-constexpr std::string_view orderOfFloats = R"(
+constexpr std::string_view orderOfFloatBits = R"(
 bool sk_is_nan(uint b) { return (b & 0x7fffffffu) > 0x7f800000u; }
 uint sk_key(uint b) { return (b & 0x80000000u) != 0u ? ~b : b | 0x80000000u; }
 bool sk_below(uint a, uint b) { return sk_is_nan(b) || (!sk_is_nan(a) && sk_key(a) < sk_key(b)); }
@@ -141,18 +141,23 @@ const Field* scalarField(const Parameter& scatter) {
   return isOne ? &field : nullptr;
 }
 
+/// The part of a program that stores a list's planes, or shares memory with them, takes this many bytes for an entry.
+std::size_t bytesOfEntry(const Parameter& pushed) {
+  return bytesOf(*pushed.element) + (pushed.role == Role::Scatter ? sizeof(std::uint32_t) : 0);
+}
+
 }  // namespace
 
-GroupPlan planGroups(const Kernel& kernel, bool isPacked) {
+GroupPlan planGroups(const Kernel& kernel, bool isPacked, Order order) {
   const int elements = isPacked ? lanes : 1;
   const int most = mostOfInvocation / elements;
   std::size_t bytesPerElement = 0;
   bool pushesOnce = true;
   for (const Parameter& parameter : kernel.parameters) {
-    if (parameter.role != Role::VariableOutput) continue;
+    if (!isPushed(parameter, order)) continue;
     if (parameter.pushes < 0) return {most, false};
     pushesOnce = pushesOnce && parameter.pushes <= 1;
-    bytesPerElement += bytesOf(*parameter.element) * static_cast<std::size_t>(parameter.pushes);
+    bytesPerElement += bytesOfEntry(parameter) * static_cast<std::size_t>(parameter.pushes);
   }
   for (int rounds = most; rounds > 1; rounds /= 2) {
     const std::size_t bytes = bytesPerElement * static_cast<std::size_t>(elements * rounds * appendGroup);
@@ -161,12 +166,24 @@ GroupPlan planGroups(const Kernel& kernel, bool isPacked) {
   return {most, false};
 }
 
-bool mayGroup(const Parameter& appendOutput, Order order) {
-  if (appendOutput.role == Role::VariableOutput || appendOutput.scatter == ScatterOp::Store) return true;
+bool isListed(const Parameter& appendOutput, Order order) {
+  if (appendOutput.role != Role::Scatter || appendOutput.scatter == ScatterOp::Store) return false;
   const Field* const field = scalarField(appendOutput);
-  if (field == nullptr) return false;
-  if (field->scalar == Scalar::Int || field->scalar == Scalar::Uint) return true;
-  return field->scalar == Scalar::Float && (appendOutput.scatter != ScatterOp::Add || order == Order::Any);
+  if (field == nullptr) return true;
+  return field->scalar == Scalar::Float && appendOutput.scatter == ScatterOp::Add && order != Order::Any;
+}
+
+bool isPushed(const Parameter& appendOutput, Order order) {
+  return appendOutput.role == Role::VariableOutput || isListed(appendOutput, order);
+}
+
+std::string_view orderOfFloats() { return orderOfFloatBits; }
+
+bool isPair(const Parameter& listed) { return scalarField(listed) != nullptr; }
+
+std::size_t imagesOf(const Parameter& appendOutput, Order order) {
+  const bool hasTargets = isListed(appendOutput, order) && !isPair(appendOutput);
+  return appendOutput.element->fields.size() + (hasTargets ? 1 : 0);
 }
 
 bool hasOwners(const Parameter& scatter, Order order) {
@@ -179,30 +196,61 @@ GroupText::GroupText(ProgramText& program, DomainText& domain, const Kernel& ker
     : program_(program),
       domain_(domain),
       variant_(variant),
-      plan_(planGroups(kernel, variant.domainPacked)) {}
+      plan_(planGroups(kernel, variant.domainPacked, order())) {}
 
 // ---- functions that the body calls ---------------------------------------------------------------
 
 void GroupText::define(const Parameter& appendOutput, const StreamAccess& access) {
-  if (appendOutput.role == Role::Scatter) return definePut(appendOutput, access);
+  if (!isPushed(appendOutput, order())) return definePut(appendOutput, access);
   if (variant_.task.work == Work::Owners) return program_.function(signatureOf(appendOutput), {});
-  definePush(appendOutput);
+  if (appendOutput.role == Role::Scatter) return defineRecord(appendOutput, access);
+  definePush(appendOutput, signatureOf(appendOutput));
 }
 
-void GroupText::definePush(const Parameter& appendOutput) {
+void GroupText::definePush(const Parameter& appendOutput, std::string_view signature) {
   const std::size_t first = program_.outputCount();
-  declareOutputs(program_, appendOutput);
+  const bool isRecord = appendOutput.role == Role::Scatter;
+  if (isRecord) program_.output(isPair(appendOutput) ? "uvec2" : "uint", named("record", appendOutput));
+  if (!isRecord || !isPair(appendOutput)) declareOutputs(program_, appendOutput);
   program_.storeLater(first);
-  const Pushed pushed{&appendOutput, first, program_.outputCount()};
+  const Pushed pushed{&appendOutput, first, program_.outputCount(), isRecord};
   pushed_.push_back(pushed);
-  if (plan_.isHeld) return holdPushed(pushed);
+  if (plan_.isHeld) return holdPushed(pushed, signature);
   program_.variable("uint", named("at", appendOutput));
-  program_.functionOf(
-      fmt::format("void {}({} sk_v)", named("keep", appendOutput), appendOutput.element->glsl),
-      [&] { keepPushed(pushed); });
-  program_.function(signatureOf(appendOutput),
-                    {fmt::format("if (sk_storing) {}(sk_v);", named("keep", appendOutput)),
+  program_.functionOf(fmt::format("void {}({}{} sk_v)", named("keep", appendOutput),
+                                  isRecord ? "uint sk_key, " : "", appendOutput.element->glsl),
+                      [&] { keepPushed(pushed); });
+  program_.function(signature,
+                    {fmt::format("if (sk_storing) {}({}sk_v);", named("keep", appendOutput), isRecord ? "sk_key, " : ""),
                      fmt::format("++{};", named("at", appendOutput))});
+}
+
+/// Records hold the number of the texel to combine with, and the value.
+void GroupText::defineRecord(const Parameter& scatter, const StreamAccess& access) {
+  const std::string add = named("add", scatter);
+  definePush(scatter, fmt::format("void {}(uint sk_key, {} sk_v)", add, scatter.element->glsl));
+  const std::string texel = targetTexel(program_, scatter, access);
+  const std::string owners = program_.uniform("ivec4", named("owners", scatter));
+  program_.function(signatureOf(scatter),
+                    {fmt::format("if (!({})) return;", isInside(program_, scatter)),
+                     fmt::format("ivec2 sk_to = {};", texel),
+                     fmt::format("{}(uint(sk_to.y * {}.y + sk_to.x), sk_v);", add, owners)});
+}
+
+/// Sets the outputs of a list's entry to `sk_v`, and those of a record to `sk_key`, too.
+void GroupText::storePushed(const Pushed& pushed) {
+  const Parameter& parameter = *pushed.parameter;
+  if (pushed.isRecord && isPair(parameter)) {
+    return program_.statement(
+        fmt::format("{} = uvec2(sk_key, floatBitsToUint(sk_v));", named("record", parameter)));
+  }
+  if (pushed.isRecord) program_.statement(named("record", parameter) + " = sk_key;");
+  store(program_, parameter, "sk_v");
+}
+
+/// The shift of the list's layout. `sk_shift_P` belongs to what a scatter output P combines with.
+std::string GroupText::shiftOf(const Pushed& pushed) {
+  return named(pushed.isRecord ? "list_shift" : "shift", *pushed.parameter);
 }
 
 std::string GroupText::stagedName(const Pushed& pushed, std::size_t plane) {
@@ -219,11 +267,11 @@ void GroupText::declareStaged(const Pushed& pushed) {
 
 /// Holds what the element of `sk_slot` pushes. Slots are constants once loops are unrolled and functions inlined, so that
 /// values stay in registers.
-void GroupText::holdPushed(const Pushed& pushed) {
+void GroupText::holdPushed(const Pushed& pushed, std::string_view signature) {
   const Parameter& parameter = *pushed.parameter;
   program_.require(Function::Texel);
   program_.uniform("int", named("room", parameter));
-  program_.uniform("int", named("shift", parameter));
+  program_.uniform("int", shiftOf(pushed));
   declareStaged(pushed);
   program_.variable("int", "sk_slot");
   program_.variable("uint", named("bits", parameter));
@@ -231,8 +279,8 @@ void GroupText::holdPushed(const Pushed& pushed) {
     program_.variable(program_.outputAt(pushed.first + plane).type,
                       fmt::format("sk_held{}_{}[{}]", plane, parameter.symbol, slots()));
   }
-  program_.functionOf(signatureOf(parameter), [&] {
-    store(program_, parameter, "sk_v");
+  program_.functionOf(signature, [&] {
+    storePushed(pushed);
     for (std::size_t plane = 0; plane < pushed.end - pushed.first; ++plane) {
       program_.statement(fmt::format("sk_held{}_{}[sk_slot] = {};", plane, parameter.symbol,
                                      program_.outputAt(pushed.first + plane).name));
@@ -247,9 +295,9 @@ void GroupText::keepPushed(const Pushed& pushed) {
   const std::string at = named("at", parameter);
   program_.require(Function::Texel);
   const std::string room = program_.uniform("int", named("room", parameter));
-  const std::string shift = program_.uniform("int", named("shift", parameter));
+  const std::string shift = program_.uniform("int", shiftOf(pushed));
   if (!plan_.isStaged) program_.statement(fmt::format("if ({} >= uint({})) return;", at, room));
-  store(program_, parameter, "sk_v");
+  storePushed(pushed);
   if (!plan_.isStaged) {
     for (const std::string& line :
          program_.storesOf(pushed.first, pushed.end, fmt::format("sk_texel(int({}), {})", at, shift))) {
@@ -267,7 +315,7 @@ void GroupText::keepPushed(const Pushed& pushed) {
 void GroupText::definePut(const Parameter& scatter, const StreamAccess& access) {
   const std::string texel = targetTexel(program_, scatter, access);
   const std::string inside = fmt::format("if (!({})) return;", isInside(program_, scatter));
-  const bool isOwned = hasOwners(scatter, variant_.task.scattersInAnyOrder ? Order::Any : Order::Kept);
+  const bool isOwned = hasOwners(scatter, order());
   if (isOwned) declareStates();
   if (variant_.task.work == Work::Owners) {
     if (!isOwned) return program_.function(signatureOf(scatter), {});
@@ -283,7 +331,7 @@ void GroupText::definePut(const Parameter& scatter, const StreamAccess& access) 
     const bool isInt = scalar == Scalar::Int;
     program_.output(isInt ? "int" : "uint", named("atomic", scatter));
     program_.makeAtomic(first, isInt ? "r32i" : "r32ui");
-    if (scalar == Scalar::Float && scatter.scatter != ScatterOp::Add) program_.functions(orderOfFloats);
+    if (scalar == Scalar::Float && scatter.scatter != ScatterOp::Add) program_.functions(orderOfFloats());
   }
   program_.storeLater(first);
   program_.functionOf(signatureOf(scatter), [&] {
@@ -408,7 +456,7 @@ std::string GroupText::copiesOfStaged() const {
       text += fmt::format("    {} = {}[sk_i];\n", program_.outputAt(pushed.first + plane).name,
                           stagedName(pushed, plane));
     }
-    const std::string place = fmt::format("sk_texel(int(sk_to), sk_shift_{})", parameter.symbol);
+    const std::string place = fmt::format("sk_texel(int(sk_to), {})", shiftOf(pushed));
     for (const std::string& line : program_.storesOf(pushed.first, pushed.end, place))
       text += "    " + line + "\n";
     return text + "  }\n";

@@ -18,11 +18,14 @@
 //
 // Order::Any takes the place in the list by one addition per group, without looking back. Scatter outputs are stored to by atomic
 // operations. Of several plain stores to an element the last one wins: an earlier pass (Work::Owners) finds
-// the last element that stores to each.
+// the last element that stores to each. What no atomic operation combines in order, sums of floats and all vectors, is
+// pushed to a list of records, which are then sorted by their targets and combined one after the other
+// (append/record_program.hpp).
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "assemble/assemble.hpp"
@@ -40,10 +43,20 @@ struct GroupPlan {
   bool isStaged;  ///< pushes go through shared memory
   bool isHeld = false;  ///< and are held by invocations: the kernel runs once
 };
-GroupPlan planGroups(const program::Kernel& kernel, bool isPacked);
+GroupPlan planGroups(const program::Kernel& kernel, bool isPacked, Order order);
 
-/// Whether compute programs can store to this append output. In a sum of floats the order counts: `order` must give it up.
-bool mayGroup(const program::Parameter& appendOutput, Order order);
+/// Whether this is a scatter output that combines values, but not by atomic operations: those have one component, and add floats
+/// in any order only. It pushes records in place of values.
+bool isListed(const program::Parameter& appendOutput, Order order);
+/// Whether this append output pushes to a list: a variable output, or records.
+bool isPushed(const program::Parameter& appendOutput, Order order);
+/// Whether a record, of a target and a value, is a pair of words: the value is one float. Else records have a plane of targets, and
+/// then that of the values.
+bool isPair(const program::Parameter& listed);
+/// GLSL functions of the bits of floats: whether the first is below or above the second (sk_below, sk_above).
+std::string_view orderOfFloats();
+/// The images that an append output writes.
+std::size_t imagesOf(const program::Parameter& appendOutput, Order order);
 /// Whether its elements have owners: of several stores to an element, the last one wins. Elements of several components have
 /// them in any order, too, so that none consists of parts of two.
 bool hasOwners(const program::Parameter& appendOutput, Order order);
@@ -76,10 +89,15 @@ class GroupText {
   struct Pushed {
     const program::Parameter* parameter;
     std::size_t first, end;  ///< its planes among the program's outputs
+    bool isRecord;  ///< of a scatter output
   };
-  void definePush(const program::Parameter& appendOutput);
+  Order order() const { return variant_.task.scattersInAnyOrder ? Order::Any : Order::Kept; }
+  void definePush(const program::Parameter& appendOutput, std::string_view signature);
+  void defineRecord(const program::Parameter& scatter, const StreamAccess& access);
+  void storePushed(const Pushed& pushed);
+  static std::string shiftOf(const Pushed& pushed);
   void keepPushed(const Pushed& pushed);
-  void holdPushed(const Pushed& pushed);
+  void holdPushed(const Pushed& pushed, std::string_view signature);
   void declareStaged(const Pushed& pushed);
   void definePut(const program::Parameter& scatter, const StreamAccess& access);
   void putAtomically(const program::Parameter& scatter, const std::string& image);

@@ -22,7 +22,7 @@ GroupPlan planFor(const program::Element& element, std::int32_t pushes, bool isP
       .name = "r", .symbol = "r", .role = Role::VariableOutput, .element = &element, .pushes = pushes}};
   program::Kernel kernel;
   kernel.parameters = parameters;
-  return planGroups(kernel, isPacked);
+  return planGroups(kernel, isPacked, Order::Kept);
 }
 
 Parameter scatterOf(const program::Element& element, ScatterOp operation) {
@@ -48,13 +48,13 @@ TEST_CASE("pushes go through shared memory if a tile's fit there") {
   CHECK(isPlan(planFor(floats, 0, false), 8, false));
 }
 
-TEST_CASE("what compute programs combine") {
+TEST_CASE("what compute programs combine by way of records") {
   for (const Order order : {Order::Kept, Order::Any}) {
-    CHECK(mayGroup(scatterOf(pairs, ScatterOp::Store), order));
-    CHECK_FALSE(mayGroup(scatterOf(pairs, ScatterOp::Add), order));
-    CHECK(mayGroup(scatterOf(ints, ScatterOp::Add), order));
-    CHECK(mayGroup(scatterOf(floats, ScatterOp::Max), order));
-    CHECK(mayGroup(scatterOf(floats, ScatterOp::Add), order) == (order == Order::Any));
+    CHECK_FALSE(isListed(scatterOf(pairs, ScatterOp::Store), order));
+    CHECK(isListed(scatterOf(pairs, ScatterOp::Add), order));
+    CHECK_FALSE(isListed(scatterOf(ints, ScatterOp::Add), order));
+    CHECK_FALSE(isListed(scatterOf(floats, ScatterOp::Max), order));
+    CHECK(isListed(scatterOf(floats, ScatterOp::Add), order) == (order == Order::Kept));
     CHECK(hasOwners(scatterOf(pairs, ScatterOp::Store), order));
     CHECK(hasOwners(scatterOf(ints, ScatterOp::Store), order) == (order == Order::Kept));
     CHECK_FALSE(hasOwners(scatterOf(ints, ScatterOp::Add), order));

@@ -126,7 +126,8 @@ class AppendCall {
     std::int64_t length = elements * appendOutput.pushes;
     if (counts != nullptr) {
       pyramid.emplace(device_, *counts, layout_);
-      if (hasRoom(appendOutput, elements, device_.limits.textureSize)) {
+      if (appendOutput.role == Role::VariableOutput &&
+          hasRoom(appendOutput, elements, device_.limits.textureSize)) {
         list->total.planes = pyramid->totalTexture();
       } else {
         length = pyramid->total();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "gl/commands.hpp"
 #include "gl_device/append/append_operands.hpp"
 #include "gl_device/append/histo_pyramid.hpp"
+#include "gl_device/append/listed_scatter.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/pass/output_targets.hpp"
@@ -31,15 +33,17 @@ using assemble::Work;
 using program::Parameter;
 using program::Role;
 
-/// The list of a variable output.
+/// The list of a variable output, or of the records of a scatter output.
 struct GroupList {
   explicit GroupList(GlDevice& device) : planes(device), total(device) {}
 
   std::size_t parameter = 0;
+  bool isOfRecords = false;
   std::int64_t length = -1;  ///< entries that it has room for; -1: the pushes must be counted
   Layout layout;
   PlanesLease planes;
   PlanesLease total;  ///< a texture of one texel whose fourth channel is the number of pushes
+  std::optional<ListedScatter> records;  ///< in place of `planes`, unless there are none
 };
 
 /// A scatter output.
@@ -58,9 +62,11 @@ class AppendDispatch {
     const std::int64_t elements = call.domain.size();
     for (std::size_t i = 0; i < call.arguments.size(); ++i) {
       const Parameter& parameter = call.kernel.parameters[i];
-      if (parameter.role == Role::VariableOutput) {
+      const bool isOfRecords = isScattered(call, i) && assemble::isListed(parameter, call.options.order);
+      if (parameter.role == Role::VariableOutput || isOfRecords) {
         lists_.push_back(std::make_unique<GroupList>(device));
         lists_.back()->parameter = i;
+        lists_.back()->isOfRecords = isOfRecords;
         if (hasRoom(parameter, elements, device.limits.textureSize))
           lists_.back()->length = elements * parameter.pushes;
       } else if (isScattered(call, i)) {
@@ -77,9 +83,14 @@ class AppendDispatch {
         words_ * 4 > device_.capabilities.storageBytes || words_ > INT32_MAX) {
       return false;
     }
-    return std::ranges::all_of(targets_, [&](const auto& target) {
+    const auto mayScatter = [&](const auto& target) {
       return !operands_[target->parameter].regionLayout.layered && isOnlyWriter(target->parameter);
-    });
+    };
+    const auto maySort = [&](const auto& list) {
+      return !list->isOfRecords ||
+             (mayScatter(list) && ListedScatter::isPossible(device_, std::max<std::int64_t>(list->length, 1)));
+    };
+    return std::ranges::all_of(targets_, mayScatter) && std::ranges::all_of(lists_, maySort);
   }
 
   /// Returns false, before anything has an effect, if the lists need layers.
@@ -91,13 +102,14 @@ class AppendDispatch {
     if (isCounted) countPushes(program);
     for (const auto& list : lists_) {
       list->layout = listLayout(list->length, device_.textureLimits());
-      if (list->layout.whole.layered) return false;
+      const bool isPossible = !list->isOfRecords || ListedScatter::isPossible(device_, std::max<std::int64_t>(list->length, 1));
+      if (list->layout.whole.layered || !isPossible) return false;
     }
     OutputTargets outputs(device_, call_.kernel, call_.arguments, call_.specs, operands_, layout_.whole,
                           layout_);
     for (const auto& target : targets_) copyIfRead(*target);
     for (const auto& list : lists_) takePlanes(*list);
-    if (!isCounted) bindStates();
+    isCounted ? bindStatesAgain() : bindStates();
     findOwners();
     outputs.begin();
     for (const auto& target : targets_) {
@@ -110,9 +122,13 @@ class AppendDispatch {
       dispatch(program, task_, GroupStep::Scan);
       dispatch(program, task_, GroupStep::Store, &outputs);
     }
-    outputs.putInPlace();
+    outputs.copy();
+    for (const auto& list : lists_) combineRecords(*list);
+    outputs.exchange();
     for (const auto& target : targets_) settleTarget(*target);
-    for (const auto& list : lists_) settleList(*list);
+    for (const auto& list : lists_) {
+      if (!list->isOfRecords) settleList(*list);
+    }
     return true;
   }
 
@@ -136,12 +152,21 @@ class AppendDispatch {
     const bool isAny = call_.options.order == Order::Any;
     const auto hasLength = [](const auto& list) { return list->length >= 0; };
     task_ = {.work = Work::Groups,
-             .scattersInAnyOrder = isAny && !targets_.empty(),
+             .scattersInAnyOrder = isAny && hasScatters(),
              .pushesInAnyOrder =
                  isAny && !lists_.empty() && plan().isHeld && std::ranges::all_of(lists_, hasLength)};
   }
 
-  assemble::GroupPlan plan() const { return assemble::planGroups(call_.kernel, layout_.whole.packed); }
+  bool hasScatters() const {
+    return !targets_.empty() || std::ranges::any_of(lists_, [](const auto& list) { return list->isOfRecords; });
+  }
+  /// As programs see it, whose variant says it of scatter outputs alone.
+  Order order() const {
+    return call_.options.order == Order::Any && hasScatters() ? Order::Any : Order::Kept;
+  }
+  assemble::GroupPlan plan() const {
+    return assemble::planGroups(call_.kernel, layout_.whole.packed, order());
+  }
 
   /// Small domains are divided into enough tiles to occupy the device.
   std::int32_t rounds() const {
@@ -162,21 +187,22 @@ class AppendDispatch {
   /// Lays out the buffer of states: those of tiles, then owners.
   void countStates() {
     words_ = assemble::wordsBeforeStates + tiles() * static_cast<std::int64_t>(lists_.size());
-    const Order order = task_.scattersInAnyOrder ? Order::Any : Order::Kept;
     for (const auto& target : targets_) {
-      if (!assemble::hasOwners(call_.kernel.parameters[target->parameter], order)) continue;
+      if (!assemble::hasOwners(call_.kernel.parameters[target->parameter], order())) continue;
       const assemble::TextureShape& texture = streamOf(target->parameter).layout.texture;
       target->firstOwner = words_ - assemble::wordsBeforeStates;
       words_ += std::int64_t{texture.width} * texture.height;
     }
   }
 
+  std::size_t imagesOf(const Parameter& written) const { return assemble::imagesOf(written, order()); }
+
   std::size_t imageCount() const {
     std::size_t count = lists_.size();
     for (std::size_t i = 0; i < operands_.size(); ++i) {
       const Parameter& parameter = call_.kernel.parameters[i];
       const bool isWritten = parameter.role == Role::Output || assemble::isAppendOutput(parameter);
-      if (isWritten && assemble::isNeeded(parameter, call_.specs)) count += parameter.element->fields.size();
+      if (isWritten && assemble::isNeeded(parameter, call_.specs)) count += imagesOf(parameter);
     }
     return count;
   }
@@ -219,10 +245,14 @@ class AppendDispatch {
   /// Whether a work group may wait for another. Software renderers end loops that take long.
   bool mayWait() const { return task_.pushesInAnyOrder || !device_.capabilities.isSoftware; }
 
+  std::size_t bytesOfStates() const { return static_cast<std::size_t>(words_) * sizeof(std::uint32_t); }
+
+  /// The room for records may have taken the buffer's binding.
+  void bindStatesAgain() { device_.groupStates.bind(device_.bound, bytesOfStates()); }
+
   void bindStates() {
-    const std::size_t bytes = static_cast<std::size_t>(words_) * sizeof(std::uint32_t);
-    if (device_.groupStates.bind(device_.bound, bytes)) {
-      gl::WorkBuffer::clear(bytes);
+    if (device_.groupStates.bind(device_.bound, bytesOfStates())) {
+      gl::WorkBuffer::clear(bytesOfStates());
       return;
     }
     device_.throwIfLost();
@@ -244,6 +274,12 @@ class AppendDispatch {
 
   void takePlanes(GroupList& list) {
     if (list.length == 0) return;
+    if (list.isOfRecords) {
+      const bool isKnown = hasRoomFor(list);
+      list.records.emplace(device_, call_.kernel.parameters[list.parameter], static_cast<std::int32_t>(list.length),
+                           isKnown ? &list.total.planes.front() : nullptr);
+      return;
+    }
     list.planes.add(*call_.kernel.parameters[list.parameter].element, list.layout.texture,
                     "what a kernel pushes");
   }
@@ -277,7 +313,10 @@ class AppendDispatch {
   void setAppend(KernelProgram::Append& append) {
     for (const auto& list : lists_) {
       if (list->parameter != append.parameter) continue;
-      append.layout.set(device_.bound, list->layout.whole);
+      append.layout.set(device_.bound, list->isOfRecords ? operands_[list->parameter].regionLayout : list->layout.whole);
+      append.listShift.set(device_.bound, list->layout.whole.shift);
+      if (list->isOfRecords)
+        append.owners.set(device_.bound, {0, streamOf(list->parameter).layout.texture.width, 0, 0});
       append.room.set(device_.bound, static_cast<std::int32_t>(std::max<std::int64_t>(list->length, 0)));
     }
     for (const auto& target : targets_) {
@@ -300,13 +339,18 @@ class AppendDispatch {
       const bool isWritten = parameter.role == Role::Output || assemble::isAppendOutput(parameter);
       if (!isWritten || !assemble::isNeeded(parameter, call_.specs)) continue;
       if (outputs != nullptr) bindPlanesOf(i, drawn[i], unit);
-      unit += static_cast<int>(parameter.element->fields.size());
+      unit += static_cast<int>(imagesOf(parameter));
     }
     for (const auto& list : lists_) bindImage(unit++, list->total.planes.front());
   }
 
   void bindPlanesOf(std::size_t i, std::span<RenderTarget> drawn, int unit) {
     const Parameter& parameter = call_.kernel.parameters[i];
+    for (const auto& list : lists_) {
+      if (list->parameter != i || !list->records) continue;
+      for (const RenderTarget* plane : list->records->planes()) bindImage(unit++, *plane);
+      return;
+    }
     if (parameter.role == Role::Scatter) {
       for (const auto& target : targets_) {
         if (target->parameter == i)
@@ -338,9 +382,21 @@ class AppendDispatch {
     stream.setWritten();
   }
 
+  /// Whether the list has room for all that may come, so that only the device knows how many entries it has.
+  bool hasRoomFor(const GroupList& list) const {
+    return hasRoom(call_.kernel.parameters[list.parameter], call_.domain.size(), device_.limits.textureSize);
+  }
+
+  void combineRecords(GroupList& list) {
+    if (!list.records) return;
+    GlStream& stream = streamOf(list.parameter);
+    stream.isBroken = true;
+    list.records->combine(stream);
+    stream.setWritten();
+  }
+
   void settleList(GroupList& list) noexcept {
-    const bool isKnown =
-        !hasRoom(call_.kernel.parameters[list.parameter], call_.domain.size(), device_.limits.textureSize);
+    const bool isKnown = !hasRoomFor(list);
     streamOf(list.parameter)
         .replaceElements(list.planes.planes, std::move(list.layout),
                          isKnown ? nullptr : &list.total.planes.front());

@@ -53,10 +53,9 @@ std::vector<Operand> appendOperands(const ResolvedCall& call) {
   return operands;
 }
 
-bool hasRoom(const Parameter& variableOutput, std::int64_t elements, std::int32_t textureSize) {
+bool hasRoom(const Parameter& pushed, std::int64_t elements, std::int32_t textureSize) {
   const std::int64_t most = std::int64_t{textureSize} * textureSize / 2;
-  return variableOutput.role == Role::VariableOutput && variableOutput.pushes >= 0 &&
-         variableOutput.pushes <= mostRoom && elements * variableOutput.pushes <= most;
+  return pushed.pushes >= 0 && pushed.pushes <= mostRoom && elements * pushed.pushes <= most;
 }
 
 void failForPushes(const program::Kernel& kernel, const Parameter& appendOutput) {

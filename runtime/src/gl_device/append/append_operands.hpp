@@ -21,11 +21,11 @@ void unpackWritten(const ResolvedCall& call);
 /// One operand per argument; those of variable outputs are empty.
 std::vector<Operand> appendOperands(const ResolvedCall& call);
 
-/// If elements push at most this often to a variable output, its list has room for the largest possible
+/// If elements push at most this often, a list has room for the largest possible
 /// number of entries, and the call does not wait for their number.
 inline constexpr std::int32_t mostRoom = 4;
-/// Whether a variable output's list has that room on a device whose textures have this size.
-bool hasRoom(const program::Parameter& variableOutput, std::int64_t elements, std::int32_t textureSize);
+/// Whether the list of a variable output, or of records, has that room on a device whose textures have this size.
+bool hasRoom(const program::Parameter& pushed, std::int64_t elements, std::int32_t textureSize);
 
 /// Throws sk::Error: there are more pushes than sk::mostPushes.
 [[noreturn]] void failForPushes(const program::Kernel& kernel, const program::Parameter& appendOutput);

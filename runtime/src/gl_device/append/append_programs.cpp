@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/append/record_program.hpp"
 #include "assemble/assemble.hpp"
 #include "gl_device/gl_device.hpp"
 #include "sk/error.hpp"
@@ -61,6 +62,18 @@ IntegerProgram& AppendPrograms::points(const program::Parameter& appendOutput, P
       program.setSampler(name, unit++);
     }
     cached = std::move(appendProgram);
+  }
+  return *cached;
+}
+
+IntegerProgram& AppendPrograms::records(const program::Parameter& scatter, bool isCounted) {
+  std::unique_ptr<IntegerProgram>& cached = records_[{&scatter, isCounted}];
+  if (!cached) {
+    auto program =
+        build({}, assemble::recordProgram(device_.computeProfile, scatter, isCounted), scatter.name);
+    int unit = 0;
+    for (const char* name : {"sk_keys", "sk_count", "sk_values"}) program->program().setSampler(name, unit++);
+    cached = std::move(program);
   }
   return *cached;
 }

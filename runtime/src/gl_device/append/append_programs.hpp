@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "assemble/append/histo_pyramid.hpp"
@@ -32,6 +33,9 @@ class AppendPrograms {
   /// sk::Error if the driver rejects it.
   IntegerProgram& points(const program::Parameter& appendOutput, assemble::PointStep step,
                          const assemble::PointTextures& textures);
+  /// The program that combines the records of a scatter output (assemble/append/record_program.hpp). Its texture units: 0 sk_keys, 1
+  /// sk_count, 2 sk_values. Throws sk::Error if the driver rejects it.
+  IntegerProgram& records(const program::Parameter& scatter, bool isCounted);
 
  private:
   using PointKey = std::tuple<const program::Parameter*, assemble::PointStep, assemble::PointTextures>;
@@ -42,6 +46,7 @@ class AppendPrograms {
   GlDevice& device_;
   std::map<assemble::PyramidTextures, std::unique_ptr<IntegerProgram>> pyramids_;
   std::map<PointKey, std::unique_ptr<IntegerProgram>> points_;
+  std::map<std::pair<const program::Parameter*, bool>, std::unique_ptr<IntegerProgram>> records_;
 };
 
 }  // namespace sk

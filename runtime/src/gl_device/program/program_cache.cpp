@@ -216,6 +216,7 @@ void ProgramCache::findAppendUniforms(KernelProgram& result, const program::Kern
         {i,
          LayoutUniforms(result.program, fmt::format("sk_*_{}", parameter.symbol)),
          {result.program.location(fmt::format("sk_room_{}", parameter.symbol)), false},
+         {result.program.location(fmt::format("sk_list_shift_{}", parameter.symbol)), false},
          {result.program.location(fmt::format("sk_owners_{}", parameter.symbol)), true}});
   }
 }

@@ -65,6 +65,7 @@ struct KernelProgram {
     std::size_t parameter;
     LayoutUniforms layout;  ///< of the list, or of the scatter output
     gl::IntUniform room;  ///< the entries that the list has room for
+    gl::IntUniform listShift;  ///< log2 of the width of a list of records
     gl::IntUniform owners;  ///< the first owner in the buffer of states, and the texels in a row
   };
 

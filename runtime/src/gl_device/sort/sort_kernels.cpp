@@ -192,6 +192,10 @@ const Kernel& restoreKernel(program::Scalar keys, bool isDescending, bool fromPa
               {input("k", sortWordPairs()), gather("x", element, rank), output("r", element)});
 }
 
+const Kernel& lastWordKernel(const Element& words) {
+  return kept(fmt::format("void sort_kernel(out {0} r) {{ r = {0}(0xffffffffu); }}\n", words.glsl), {output("r", words)});
+}
+
 const Kernel& placeKernel() {
   return kept("void sort_kernel(uvec2 k, out int r) { r = int(k.y); }\n",
               {input("k", sortWordPairs()), output("r", elementOf(program::Scalar::Int))});

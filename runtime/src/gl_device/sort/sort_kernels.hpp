@@ -31,6 +31,8 @@ const program::Kernel& upperWordKernel();
 /// (word) or ((word, place)) -> the int or uint key of a word; ((word, place), keys[]) -> the float key, which is taken from
 /// its place if it is a NaN or a zero, whose words do not say which. The keys have one dimension or, by rank 4, any.
 const program::Kernel& restoreKernel(program::Scalar keys, bool isDescending, bool fromPairs, int rank);
+/// () -> the largest word, or a pair of it, of the element sortWords() or sortWordPairs().
+const program::Kernel& lastWordKernel(const program::Element& words);
 /// ((word, place)) -> the place as an int.
 const program::Kernel& placeKernel();
 

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#include "gl_device/sort/word_sort.hpp"
+
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "assemble/reduce/scan_tiles.hpp"
+#include "gl/commands.hpp"
+#include "gl_device/pass/pass.hpp"
+#include "gl_device/pass/pass_trace.hpp"
+#include "gl_device/sort/device_sort.hpp"
+#include "sk/error.hpp"
+
+namespace sk {
+
+using assemble::RadixStep;
+using assemble::RadixStorage;
+using assemble::Rect;
+
+namespace {
+
+std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a - 1) / b + 1; }
+
+}  // namespace
+
+WordSort::WordSort(GlDevice& device, std::int32_t count, Of of)
+    : device_(device),
+      count_(count),
+      tiles_(divideUp(count, assemble::radixTile)),
+      counts_(device, tiles_ * assemble::radixDigits),
+      sums_(device, tiles_ * assemble::radixDigits),
+      totals_(device, divideUp(tiles_ * assemble::radixDigits, assemble::radixTile)),
+      totalSums_(device, divideUp(tiles_ * assemble::radixDigits, assemble::radixTile)),
+      all_(device, 1) {
+  if (of != Of::Pairs) keys.emplace(device, count);
+  if (of != Of::Keys) pairs.emplace(device, count, sortWordPairs());
+  if (!takesBuffer()) moved_.emplace(device, count, pairs ? sortWordPairs() : sortWords());
+}
+
+bool WordSort::isPossible(const GlDevice& device, std::int64_t count) {
+  constexpr std::int64_t most = std::int64_t{assemble::radixTile} * assemble::radixTile *
+                                (assemble::radixTile / assemble::radixDigits);  // the totals are one tile
+  if (count > most) return false;
+  const auto isFlat = [&](std::int64_t words) {
+    const auto texture = assemble::linearTexture(words, device.textureLimits());
+    return texture && texture->layers == 0;
+  };
+  const std::int64_t tiles = (count - 1) / assemble::radixTile + 1;
+  return isFlat(count) && isFlat(tiles * assemble::radixDigits);
+}
+
+std::int64_t WordSort::divide() {
+  sortBy(0, true);
+  storePairs();
+  const TraceScope traced(device_.trace.get(), "transfer", "read number of elements");
+  const std::int32_t ones = tiles_;  // the sum before the ones of the first tile
+  const std::uint32_t inTile = read(sums_, ones);
+  const std::uint32_t before = read(totalSums_, ones / assemble::radixTile);
+  device_.throwPendingError();
+  return std::int64_t{inTile} + before;
+}
+
+void WordSort::sortByAll(bool fromKeys, int bits) {
+  if (inBuffer_) bindBuffer();  // others may have used its binding meanwhile
+  const int digits = std::max(1, (bits + 7) / 8);  // of 8 bits
+  for (int digit = 0; digit < digits; ++digit) sortBy(digit, digit == 0 ? fromKeys : !pairs);
+  storePairs();
+}
+
+/// Takes memory for two arrays of pairs besides the textures; false if the device's buffers are too small, or if a loop
+/// records the commands, which it could not repeat. Single words are moved as fast from texture to texture.
+bool WordSort::takesBuffer() {
+  const std::int64_t bytes = std::int64_t{count_} * 16;
+  inBuffer_ =
+      pairs && !device_.bound.isLogged() && bytes <= device_.capabilities.storageBytes && bindBuffer();
+  return inBuffer_;
+}
+
+bool WordSort::bindBuffer() {
+  return device_.sortedWords.bind(device_.bound, static_cast<std::size_t>(count_) * 16);
+}
+
+/// Brings sorted pairs from the buffer to `pairs`.
+void WordSort::storePairs() {
+  if (!inBuffer_) return;
+  WordTexture& to = *pairs;
+  run(RadixStep::StorePairs, "store keys", {nullptr}, {&to},
+      {{"sk_keys_shift", to.shift()}, {"sk_length", count_}, {"sk_from", current_}}, tiles_);
+  isStored_ = false;
+}
+
+void WordSort::sortBy(int digit, bool readsKeys) {
+  const Uniform shift{"sk_digit", 8 * digit};
+  const Uniform keyShift{"sk_keys_shift", (keys ? *keys : *pairs).shift()}, countShift{"sk_counts_shift", counts_.shift()};
+  const Uniform totalShift{"sk_totals_shift", totals_.shift()}, length{"sk_length", count_};
+  const std::int32_t counts = tiles_ * assemble::radixDigits;
+  const std::int32_t groups = divideUp(counts, assemble::radixTile);
+  WordTexture* const from = isStored_ ? nullptr : readsKeys ? &*keys : &*pairs;
+  const std::int32_t to = isStored_ && current_ == 0 ? count_ : 0;
+  run(isStored_ ? RadixStep::CountPairs : RadixStep::Count, "count digits", {from}, {&counts_},
+      {shift, keyShift, countShift, length, {"sk_from", current_}}, tiles_);
+  run(RadixStep::Sum, "sum counts", {&counts_}, {&sums_, &totals_},
+      {{"sk_length", counts}, countShift, totalShift}, groups);
+  run(RadixStep::Sum, "sum counts", {&totals_}, {&totalSums_, &all_},
+      {{"sk_length", groups}, {"sk_counts_shift", totals_.shift()}, {"sk_totals_shift", all_.shift()}}, 1);
+  const RadixStep move = !pairs ? RadixStep::Move : readsKeys ? RadixStep::MoveFirst : RadixStep::MovePairs;
+  run(move, "move keys", {from, &sums_, &totalSums_}, {inBuffer_ ? nullptr : &*moved_},
+      {shift, keyShift, countShift, totalShift, length, {"sk_from", current_}, {"sk_to", to}}, tiles_);
+  current_ = to;
+  isStored_ = inBuffer_;
+  if (!inBuffer_) (pairs ? *pairs : *keys).swap(*moved_);
+}
+
+/// Dispatches a group for each tile. Words in the buffer take the place of the first that is read or written, which is null.
+void WordSort::run(RadixStep step, std::string_view name, std::initializer_list<WordTexture*> read,
+                   std::initializer_list<WordTexture*> written, std::initializer_list<Uniform> uniforms,
+                   std::int32_t tiles) {
+  const RadixStorage storage{.reads = *read.begin() == nullptr, .writes = *written.begin() == nullptr};
+  IntegerProgram& program = device_.sortPrograms.of(step, storage);
+  constexpr std::int32_t mostInRow = std::int32_t{1} << assemble::groupRowShift;
+  const Rect groups{0, 0, std::min(tiles, mostInRow), divideUp(tiles, mostInRow)};
+  const std::int64_t bytes =
+      std::int64_t{tiles} * assemble::radixTile * 4 * static_cast<std::int64_t>(read.size());
+  const PassScope traced(device_, {name, "sort", "dispatch"}, bytes, std::span<const Rect>(&groups, 1),
+                         std::size_t{assemble::radixTile} * 4);
+  device_.bound.program(program.program().name());
+  int unit = 0;
+  for (WordTexture* words : read) {
+    if (words == nullptr) {
+      ++unit;
+    } else {
+      unit = bindPlanes(device_, words->planes(), unit);
+    }
+  }
+  unit = 0;
+  for (WordTexture* words : written) {
+    if (words == nullptr) break;
+    const gl::Texture& texture = words->plane().texture;
+    device_.bound.image(unit++, texture.name(), texture.format().internalFormat);
+  }
+  for (const Uniform& uniform : uniforms) program.set(device_.bound, uniform.name, uniform.value);
+  program.set(device_.bound, "sk_tiles", tiles);
+  program.set(device_.bound, "sk_rect", gl::Int4{groups.x, groups.y, groups.width, groups.height});
+  if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(device_.bound);
+  gl::dispatch(device_.bound, groups.width, groups.height);
+  if (storage.writes) gl::finishStorage(device_.bound);
+}
+
+std::uint32_t WordSort::read(WordTexture& words, std::int32_t number) {
+  std::uint32_t word = 0;
+  RenderTarget& plane = words.plane();
+  plane.framebufferIn(device_.bound)
+      .read(device_.bound, plane.texture.format().tight, number & ((1 << words.shift()) - 1),
+            number >> words.shift(), 1, 1, &word);
+  return word;
+}
+
+IntegerProgram& SortPrograms::of(RadixStep step, RadixStorage storage) {
+  const std::size_t number =
+      4 * static_cast<std::size_t>(step) + (storage.reads ? 2 : 0) + (storage.writes ? 1 : 0);
+  std::unique_ptr<IntegerProgram>& known = programs_[number];
+  if (known) return *known;
+  std::string log;
+  gl::Program program =
+      ProgramBuild(device_, {{}, assemble::radixProgram(device_.computeProfile, step, storage)})
+          .finish(device_, log);
+  if (!program) {
+    device_.throwIfLost();
+    throw Error(fmt::format("the driver of '{}' refuses a program of sk::sort:\n{}",
+                            device_.capabilities.renderer, log),
+                Error::Kind::Compile);
+  }
+  known = std::make_unique<IntegerProgram>(std::move(program));
+  const gl::Program& linked = known->program();
+  device_.bound.program(linked.name());
+  int unit = 0;
+  if (step == RadixStep::Sum) {
+    linked.setSampler("sk_counts", unit);
+  } else {
+    for (const char* name : {"sk_keys", "sk_sums", "sk_totals"}) linked.setSampler(name, unit++);
+  }
+  return *known;
+}
+
+}  // namespace sk
