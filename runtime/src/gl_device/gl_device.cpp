@@ -175,13 +175,17 @@ bool GlDevice::mayDispatch(const program::Kernel& kernel) const {
   return capabilities.hasCompute && kernel.dispatched;
 }
 
+// The dozen dispatches of a sort take an H100 150 us for few records, as long as it draws 2^16 of them.
+constexpr std::int64_t fewestSorted = std::int64_t{1} << 16;
+
 assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, KernelClass kernels,
-                                  const CallOptions& options) {
+                                  const CallOptions& options, std::int64_t elements) {
   using assemble::Stage;
   const Target wanted = options.target != Target::Default ? options.target : target;
   if (!mayDispatch(kernel)) return Stage::Fragment;
   if (!kernel.drawn || wanted == Target::Compute) return Stage::Compute;
   if (wanted == Target::Fragment) return Stage::Fragment;
+  if (kernels == KernelClass::OrderedScatters && elements < fewestSorted) return Stage::Fragment;
   return fasterFor(kernels);
 }
 

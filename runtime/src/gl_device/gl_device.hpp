@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -131,7 +132,9 @@ class GlDevice final : public DeviceState {
   void selectPrograms(const CallOptions& options, assemble::Stage stage);
   /// The stage that runs a kernel, or the fold of a reduction, in a call with these options. May measure
   /// which one is faster. No DeviceScope may be open.
-  assemble::Stage stageOf(const program::Kernel& kernel, KernelClass kernels, const CallOptions& options);
+  /// `elements` is the size of the domain, where it counts.
+  assemble::Stage stageOf(const program::Kernel& kernel, KernelClass kernels, const CallOptions& options,
+                          std::int64_t elements = std::numeric_limits<std::int64_t>::max());
   ProgramCache& programs() { return *programs_; }
   /// Selects fragment programs for a call that compute programs cannot run. Throws sk::Error if the kernel has none.
   void selectDrawnPrograms(const program::Kernel& kernel, const CallOptions& options);

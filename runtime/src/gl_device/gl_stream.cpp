@@ -14,6 +14,7 @@
 #include "gl_device/transfer/buffered_transfer.hpp"
 #include "gl_device/transfer/copy_kernel.hpp"
 #include "gl_device/transfer/pending_read.hpp"
+#include "gl_device/transfer/merge_texels.hpp"
 #include "gl_device/transfer/transfer.hpp"
 #include "sk/error.hpp"
 #include "support/convert_elements.hpp"
@@ -255,20 +256,27 @@ bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   // copies from and to strided regions read single elements, packed or not
   const bool isFromStrides = regionLayoutOf(from, source.layout).strided;
   const bool isToStrides = regionLayoutOf(to, layout).strided;
-  if (!isWholeTexels(to) || (!isFromStrides && !isWholeTexels(from))) {
+  const bool isMerged =
+      mayMerge(owner(), regionLayoutOf(from, source.layout), regionLayoutOf(to, layout));
+  if (isMerged) {
+    // elements between those of the region stay in their texels
+  } else if (!isWholeTexels(to) || (!isFromStrides && !isWholeTexels(from))) {
     if (!isFromStrides && !isToStrides) source.unpack();
     unpack();
   }
   const RegionLayout place = regionLayoutOf(to, layout);
   const RegionLayout sourcePlace = regionLayoutOf(from, source.layout);
-  prepareCopy(owner(), held(), sourcePlace, place);
+  isMerged ? prepareMerge(owner(), held(), sourcePlace, place)
+           : prepareCopy(owner(), held(), sourcePlace, place);
   PlanesLease before(owner());
   if (&source == this) {  // the regions may overlap: reads from a copy of the stream
     before.planes = acquirePlanesFor(layout);
     copyRegion(owner(), held(), planes, layout.whole, before.planes, layout.whole);
   }
   isBroken = true;
-  copyRegion(owner(), held(), &source == this ? before.planes : source.planes, sourcePlace, planes, place);
+  const std::span<RenderTarget> read = &source == this ? before.planes : source.planes;
+  isMerged ? mergeTexels(owner(), held(), read, sourcePlace, planes.front(), place)
+           : copyRegion(owner(), held(), read, sourcePlace, planes, place);
   setWritten();
   return true;
 }
