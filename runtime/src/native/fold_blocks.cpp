@@ -3,6 +3,8 @@
 // The loops around reductions. A block of the domain is divided into pieces, which are folded by themselves
 // and then combined in order; narrow blocks are folded side by side.
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 #include <vector>
 
@@ -30,12 +32,12 @@ class GroupFolder {
         combiner_(combinerOf(program, memory_.get())),
         runs_(program.shape, combiner_, groupOf(program.shape), memory_.get()) {}
 
-  /// Folds `count` neighbouring blocks from `first` on, one per column.
-  const StateColumns& fold(const Extents& first, std::int64_t count) {
+  /// Folds these rows of `count` neighbouring blocks from `first` on, one per column.
+  const StateColumns& fold(const Extents& first, std::int64_t count, Range rows) {
     runs_.useColumns(count);
-    Extents in{};
-    const std::int64_t rows = block_[1] * block_[2] * block_[3];
-    for (std::int64_t row = 0; row < rows; ++row) {
+    Extents in{0, rows.begin % block_[1], rows.begin / block_[1] % block_[2],
+               rows.begin / block_[1] / block_[2]};
+    for (std::int64_t row = rows.begin; row < rows.end; ++row) {
       foldRow(first, in, count);
       for (std::size_t d = 1; d < 4 && ++in[d] == block_[d]; ++d) in[d] = 0;
     }
@@ -71,15 +73,86 @@ class GroupFolder {
 /// Larger accumulators gain little if blocks are folded side by side.
 constexpr std::size_t mostInGroups = 8;
 
+/// Divides the rows of blocks into pieces of whole leaves, a power of 2 of them, and fewer at the end. Combined in order, they give
+/// the tree of all leaves, so that results do not depend on the pieces.
+class LeafPieces {
+ public:
+  LeafPieces(const Extents& block, std::int64_t columns)
+      : rows_(block[1] * block[2] * block[3]), ofLeaf_(std::max<std::int64_t>(leafRounds / block[0], 1)) {
+    constexpr std::uint64_t elements = 1 << 15;  // of a piece: some tens of microseconds
+    const auto ofPiece = elements / static_cast<std::uint64_t>(columns * leafRounds);
+    const auto most = static_cast<std::int64_t>(std::bit_floor(std::max<std::uint64_t>(ofPiece, 1)));
+    const bool areWhole = leafRounds % block[0] == 0;
+    for (std::int64_t left = (rows_ + ofLeaf_ - 1) / ofLeaf_; left > 0 && areWhole; left -= leaves_.back())
+      leaves_.push_back(std::min(most, static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(left)))));
+    if (!areWhole) leaves_.push_back(0);
+    first_.push_back(0);
+    for (const std::int64_t leaves : leaves_) first_.push_back(first_.back() + leaves * ofLeaf_);
+    first_.back() = rows_;
+  }
+
+  std::int64_t count() const { return static_cast<std::int64_t>(leaves_.size()); }
+  std::int64_t leavesOf(std::int64_t piece) const { return leaves_[static_cast<std::size_t>(piece)]; }
+  Range rowsOf(std::int64_t piece) const {
+    const auto number = static_cast<std::size_t>(piece);
+    return {first_[number], first_[number + 1]};
+  }
+  std::int64_t rows() const { return rows_; }
+
+ private:
+  std::int64_t rows_, ofLeaf_;  ///< of a block, and of a leaf
+  std::vector<std::int64_t> leaves_, first_;  ///< of each piece; and its first row, and the end
+};
+
+/// Folds pieces of each group, which all threads take, where there are too few groups for them.
+void foldPiecesOfGroups(const FoldProgram& program, const Extents& block, const BlockGroups& groups,
+                        const LeafPieces& pieces, Deal deal, const FoldResults& results) {
+  const std::size_t bytes = program.shape.bytes();
+  const std::int64_t longest = groups.lengthFrom({});
+  std::vector<std::byte> states(static_cast<std::size_t>(groups.count() * pieces.count() * longest) * bytes);
+  const auto stateOf = [&](std::int64_t piece, std::int64_t column) {
+    return states.data() + static_cast<std::size_t>(piece * longest + column) * bytes;
+  };
+  native::inParallel(
+      groups.count() * pieces.count(), groups.elementsOfOne() / pieces.count(), deal, [&](Range range) {
+        GroupFolder folder(program, block);
+        for (std::int64_t piece = range.begin; piece < range.end; ++piece) {
+          const Extents first = groups.firstOf(piece / pieces.count());
+          const std::int64_t count = groups.lengthFrom(first);
+          const StateColumns& state = folder.fold(first, count, pieces.rowsOf(piece % pieces.count()));
+          for (std::int64_t k = 0; k < count; ++k) state.pack(k, stateOf(piece, k));
+        }
+      });
+  CallMemory memory;
+  ColumnCombiner combiner = combinerOf(program, memory.get());
+  StateRuns runs(program.shape, combiner, groupOf(program.shape), memory.get());
+  for (std::int64_t group = 0; group < groups.count(); ++group) {
+    const Extents first = groups.firstOf(group);
+    const std::int64_t count = groups.lengthFrom(first);
+    runs.useColumns(count);
+    for (std::int64_t piece = 0; piece < pieces.count(); ++piece) {
+      for (std::int64_t k = 0; k < count; ++k)
+        runs.next().unpack(k, stateOf(group * pieces.count() + piece, k));
+      runs.add(pieces.leavesOf(piece));
+    }
+    results.store(first, runs.take(), count);
+  }
+}
+
 void foldGroups(const FoldProgram& program, const Extents& domain, const Extents& block, Deal deal,
                 const FoldResults& results) {
   const BlockGroups groups(domain, block, BlockGroups::sideBySide(domain, block, groupOf(program.shape)));
+  const LeafPieces pieces(block, groups.lengthFrom({}));
+  const std::int64_t threads = native::threadsFor(groups.count() * pieces.count(),
+                                                  std::max<std::int64_t>(groups.elementsOfOne() / pieces.count(), 1));
+  if (pieces.count() > 1 && groups.count() < threads)
+    return foldPiecesOfGroups(program, block, groups, pieces, deal, results);
   native::inParallel(groups.count(), groups.elementsOfOne(), deal, [&](Range range) {
     GroupFolder folder(program, block);
     for (std::int64_t group = range.begin; group < range.end; ++group) {
       const Extents first = groups.firstOf(group);
       const std::int64_t count = groups.lengthFrom(first);
-      results.store(first, folder.fold(first, count), count);
+      results.store(first, folder.fold(first, count, {0, pieces.rows()}), count);
     }
   });
 }
