@@ -2,6 +2,7 @@
 #include "driver/plan_listing.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/reduce/scan_plan.hpp"
 #include "ir/print.hpp"
+#include "sk/options.hpp"
 #include "split/cost.hpp"
 #include "split/demand.hpp"
 #include "support/text.hpp"
@@ -41,6 +43,7 @@ class PlanPrinter {
       } else {
         kernel.isScan ? printScan() : kernel.reduction ? printReduce() : printKernel(kernel);
       }
+      printScatters(kernel);
       for (const LoopNote& loop : kernel.loops) printLoop(loop);
     }
     return std::move(text_);
@@ -68,6 +71,18 @@ class PlanPrinter {
       text_ += fmt::format("  with nothing saved the cost were {:.0f}\n", plan->costWithoutTemporaries);
     }
     for (const Bundle& bundle : plan->bundles) printBundle(kernel, bundle);
+  }
+
+  /// Prints which scatter outputs combine values by sorted records in compute programs (assemble::isListed).
+  void printScatters(const Kernel& kernel) {
+    const bool isKept = kernel.choices.order != static_cast<std::uint8_t>(sk::Order::Any);
+    for (const KernelParam& param : kernel.params) {
+      if (param.role != ParamRole::Scatter || param.scatter == ScatterOp::Store) continue;
+      const bool isOrdered = param.type.isFloat() && param.scatter == ScatterOp::Add && isKept;
+      if (param.type.isVector() || isOrdered) {
+        text_ += fmt::format("  {} combines values in order: drawn, as points; dispatched, as sorted records\n", param.name);
+      }
+    }
   }
 
   void printPass(const Kernel& kernel, const Plan& plan, std::size_t number) {

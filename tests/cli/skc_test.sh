@@ -119,6 +119,9 @@ cat >devices.json <<'JSON'
 JSON
 run 0 --emit=plan large.sk
 prints 'glsl330: 8 draw buffers'
+echo 'kernel void deposit(int at<>, float x<>, out float sums[], out int counts[]) { sums[at] += x; ++counts[at]; }' >deposit.sk
+run 0 --emit=plan deposit.sk
+prints 'sums combines values in order: drawn, as points; dispatched, as sorted records'
 run 0 --emit=plan --device=devices.json large.sk
 prints 'wide: 8 draw buffers'
 prints 'narrow: 5 draw buffers'

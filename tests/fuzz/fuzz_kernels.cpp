@@ -4,6 +4,7 @@
 // profiles and as native code, and compares their results with their meaning (kernels/model.hpp). Three of eight are scans,
 // reduces, and kernels with folded outputs (kernels/folds.hpp), which are also dispatched. Kernel N of a seed is always the
 // same. The exit status is 1 after a finding, but crashes of the GL driver are counted separately.
+#include <algorithm>
 #include <csignal>
 #include <deque>
 #include <filesystem>
@@ -41,7 +42,7 @@ struct GlDevices {
   sk::Device many{sk::DeviceOptions{.profile = "glsl330", .limits = "device"}};
   sk::Device few{sk::DeviceOptions{.profile = "essl300", .textureLimit = 64, .limits = "guaranteed"}};
   sk::Device fewOfMany{sk::DeviceOptions{.profile = "glsl330", .textureLimit = 64, .limits = "guaranteed"}};
-  sk::Device dispatching{sk::DeviceOptions{.profile = "glsl430"}};  ///< for folds
+  sk::Device dispatching{sk::DeviceOptions{.profile = "glsl430"}};  ///< for folds and append outputs
 
   void release() {
     for (sk::Device* device : {&many, &few, &fewOfMany, &dispatching}) device->release();
@@ -96,14 +97,20 @@ std::string glslComplaint(const skc::ir::Module& module) {
   return fuzz::glslComplaint(listings);
 }
 
+bool appends(const sk::program::Kernel& kernel) {
+  return std::ranges::any_of(kernel.parameters, [](const sk::program::Parameter& parameter) {
+    return parameter.role == sk::program::Role::VariableOutput || parameter.role == sk::program::Role::Scatter;
+  });
+}
+
 /// Calls differenceOn(device, unit) for each GL device.
 template <class DifferenceOn>
-std::string glDifference(const skc::ir::Module& module, bool dispatches, Kept& kept,
+std::string glDifference(const skc::ir::Module& module, bool folds, Kept& kept,
                          DifferenceOn&& differenceOn) {
   const skc::emit::Program& program = kept.programs.emplace_back(module);
   if (!kept.gl) kept.gl.emplace();
   std::vector<sk::Device*> devices{&kept.gl->many, &kept.gl->few, &kept.gl->fewOfMany};
-  if (dispatches) devices.push_back(&kept.gl->dispatching);
+  if (folds || appends(program.units()[0].kernel)) devices.push_back(&kept.gl->dispatching);
   for (sk::Device* device : devices) {
     const std::string wrong = differenceOn(*device, program.units()[0]);
     if (wrong.empty()) continue;

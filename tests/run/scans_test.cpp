@@ -407,6 +407,28 @@ TEST_CASE("the bits of a scan do not depend on the number of threads") {
   }
 }
 
+// Pieces of columns are combined in the order that their leaves have in one piece. 16 elements are a leaf, so that each length
+// ends with another number of leaves.
+TEST_CASE("the bits of sums of few columns do not depend on the number of threads") {
+  sk::Device& native = device("native");
+  for (const sk::Shape& shape : {sk::Shape{20000, 9}, sk::Shape{8191, 24}, sk::Shape{5003, 60}, sk::Shape{4097, 63}}) {
+    INFO(sk::toString(shape));
+    const auto in = streamOf(native, cancelling(static_cast<std::size_t>(shape.size())), shape);
+    for (const sk::Accumulate how : {sk::Accumulate::Tree, sk::Accumulate::Compensated}) {
+      for (const std::int64_t width : {shape[1], shape[1] / 3}) {
+        auto some = native.stream<float>({1, width}), one = native.stream<float>({1, width});
+        scans::totalOfFloats.with({.accumulate = how})(in, some);
+        // a loop inside another one has a single thread
+        sk::native::inParallel(2, 1 << 20, sk::native::Deal::Evenly, [&](sk::native::Range range) {
+          if (range.begin == 0) scans::totalOfFloats.with({.accumulate = how})(in, one);
+        });
+        const std::vector<float> a = some.read(), b = one.read();
+        CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
+      }
+    }
+  }
+}
+
 TEST_CASE("long lines across short rows are scanned and folded, with or without the element itself") {
   sk::Device& native = device("native");
   for (const int width : {2, 3, 8, 9}) {
