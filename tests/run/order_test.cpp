@@ -76,6 +76,14 @@ TEST_CASE("work groups push in order, and all of it in any order") {
   CHECK(r.size() == static_cast<std::int64_t>(odd(plane.domain({3, 1}, {60, 50}).read()).size()));
 }
 
+TEST_CASE("kernels that push use library functions") {
+  sk::Device& device = run_tests::device("glsl430");
+  const auto at = streamOf<float>(device, {0.25F, 1.25F, 2.75F, 0.5F, 4});
+  auto r = device.stream<float>({0});
+  order::pick.with(dispatched)(at, at, r);
+  CHECK(r.read() == std::vector<float>{1.25F, 0.5F, 4});
+}
+
 TEST_CASE("any order changes no number of pushes anywhere") {
   onEveryProfile([](sk::Device& device) {
     const std::vector<int> list = values(20011);

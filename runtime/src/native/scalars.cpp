@@ -48,10 +48,14 @@ void copyScalars(const Steps& from, ScalarBytes bytes, std::byte* to, std::int64
       const Read value = readAt<Held, Read>(from.array, from.index);
       for (std::int64_t i = 0; i < count; ++i) writeAt(to, i, value);
     } else {
-      std::int64_t index = from.index;
-      for (std::int64_t i = 0; i < count; ++i, index += from.stride) {
-        writeAt(to, i, readAt<Held, Read>(from.array, index));
+      // what is written may overlap `from`, as far as compilers know
+      const std::byte* const first = from.array + from.index * static_cast<std::int64_t>(sizeof(Held));
+      const std::int64_t stride = from.stride;
+      if (stride == 2) {  // a constant becomes vectors
+        for (std::int64_t i = 0; i < count; ++i) writeAt(to, i, readAt<Held, Read>(first, 2 * i));
+        return;
       }
+      for (std::int64_t i = 0; i < count; ++i) writeAt(to, i, readAt<Held, Read>(first, stride * i));
     }
   });
 }

@@ -72,9 +72,9 @@ uint sk_look(uint sk_k, uint sk_own) {{
   uint sk_before = 0u;
   for (uint sk_end = sk_tile; sk_end > 0u; sk_end -= {group}u) {{
     if (sk_t == 0u) {{
-      sk_low = 0u;
-      sk_high = 0u;
-      sk_nearest = {group}u;
+      sk_look_low = 0u;
+      sk_look_high = 0u;
+      sk_look_nearest = {group}u;
     }}
     sk_meet();
     uint sk_seen = 0u;
@@ -82,16 +82,16 @@ uint sk_look(uint sk_k, uint sk_own) {{
       do {{
         sk_seen = sk_state[(sk_end - 1u - sk_t) * {outputs}u + sk_k];
       }} while (sk_seen == 0u);
-      if (sk_seen >= 0x80000000u) atomicMin(sk_nearest, sk_t);
+      if (sk_seen >= 0x80000000u) atomicMin(sk_look_nearest, sk_t);
     }}
     sk_meet();
-    if (sk_t < sk_end && sk_t <= sk_nearest) {{
-      atomicAdd(sk_low, sk_seen & 0xffffu);
-      atomicAdd(sk_high, sk_seen >> 16 & 0x3fffu);
+    if (sk_t < sk_end && sk_t <= sk_look_nearest) {{
+      atomicAdd(sk_look_low, sk_seen & 0xffffu);
+      atomicAdd(sk_look_high, sk_seen >> 16 & 0x3fffu);
     }}
     sk_meet();
-    sk_before = sk_sum(sk_before, sk_high < 0x2000u ? min((sk_high << 16) + sk_low, {limit}u) : {limit}u);
-    bool sk_done = sk_nearest < {group}u;
+    sk_before = sk_sum(sk_before, sk_look_high < 0x2000u ? min((sk_look_high << 16) + sk_look_low, {limit}u) : {limit}u);
+    bool sk_done = sk_look_nearest < {group}u;
     sk_meet();
     if (sk_done) break;
   }}
@@ -103,9 +103,9 @@ uint sk_look(uint sk_k, uint sk_own) {{
 /// Takes places for a tile's pushes as groups come.
 constexpr std::string_view takePlace = R"(
 uint sk_take(uint sk_k, uint sk_own) {
-  if (gl_LocalInvocationIndex == 0u) sk_low = atomicAdd(sk_state[sk_k], sk_own);
+  if (gl_LocalInvocationIndex == 0u) sk_look_low = atomicAdd(sk_state[sk_k], sk_own);
   sk_meet();
-  uint sk_place = sk_low;
+  uint sk_place = sk_look_low;
   sk_meet();
   return sk_place;
 }
@@ -559,7 +559,7 @@ std::string GroupText::mainOfPushes() const {
   const bool inAnyOrder = variant_.task.pushesInAnyOrder;
   program_.variable("shared uint", fmt::format("sk_counts[{}]", plan_.rounds * appendGroup));
   program_.variable("shared uint", fmt::format("sk_sums[{}]", appendGroup));
-  program_.variable("shared uint", "sk_tile, sk_low, sk_high, sk_nearest");
+  program_.variable("shared uint", "sk_tile, sk_look_low, sk_look_high, sk_look_nearest");
   std::string text = filled(scanOfCounts, plan_.rounds, pushed_.size());
   text +=
       inAnyOrder ? std::string(takePlace) : filled(lookBack, plan_.rounds, pushed_.size()) + scanOfTiles();

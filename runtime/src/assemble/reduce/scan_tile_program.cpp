@@ -430,7 +430,7 @@ class TileScanText : ScanText {
     const std::size_t words = 2 * accumulators_.size();
     program_.buffer("coherent volatile buffer sk_chain {\n  uint sk_ticket;\n  uint sk_states[];\n}");
     program_.variable("shared int", "sk_taken");
-    program_.variable("shared int", "sk_nearest");
+    program_.variable("shared int", "sk_look_nearest");
     program_.variable("shared int", "sk_missing");
     std::string parameters;
     std::vector<std::string> lines;
@@ -452,14 +452,14 @@ class TileScanText : ScanText {
     integers({"sk_patience"});
     statement("  bool sk_hasBefore = false;");
     statement("  for (int sk_at = sk_tile - 1, sk_tries = 0; sk_at >= 0;) {");
-    statement(fmt::format("    if (sk_i == 0) sk_nearest = sk_missing = {};", lookWindow));
+    statement(fmt::format("    if (sk_i == 0) sk_look_nearest = sk_missing = {};", lookWindow));
     wait("    ");
     statement(fmt::format("    if (sk_i < min({}, sk_at + 1)) {{", lookWindow));
     readWindow();
     statement("    }");
     wait("    ");
-    statement("    int sk_ready = min(sk_nearest + 1, sk_missing);");
-    statement("    bool sk_isFound = sk_nearest < sk_missing;");
+    statement("    int sk_ready = min(sk_look_nearest + 1, sk_missing);");
+    statement("    bool sk_isFound = sk_look_nearest < sk_missing;");
     foldWindow();
     statement("    if (sk_ready > 0) {");
     takeBefore("0", "      ");
@@ -495,7 +495,7 @@ class TileScanText : ScanText {
                             sharedName(*accumulators_[k]), accumulators_[k]->element->glsl, k, k));
     }
     statement("      if (sk_flag == 0u) atomicMin(sk_missing, sk_i);");
-    statement("      if (sk_flag == 2u) atomicMin(sk_nearest, sk_i);");
+    statement("      if (sk_flag == 2u) atomicMin(sk_look_nearest, sk_i);");
   }
 
   /// Folds the first sk_ready results of the window, of which later ones are of earlier tiles, to the first.
