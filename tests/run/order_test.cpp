@@ -84,6 +84,14 @@ TEST_CASE("kernels that push use library functions") {
   CHECK(r.read() == std::vector<float>{1.25F, 0.5F, 4});
 }
 
+TEST_CASE("an output that nothing is pushed to is empty") {
+  sk::Device& device = run_tests::device("glsl430");
+  auto r = device.stream<int>({0}), nothing = device.stream<int>({3});
+  order::pushTwice.with(dispatched)(streamOf<int>(device, {5, 6, 7}), r, nothing);
+  CHECK(r.read() == std::vector<int>{5, -5, 6, -6, 7, -7});
+  CHECK(nothing.size() == 0);
+}
+
 TEST_CASE("any order changes no number of pushes anywhere") {
   onEveryProfile([](sk::Device& device) {
     const std::vector<int> list = values(20011);

@@ -258,7 +258,8 @@ std::string GroupText::stagedName(const Pushed& pushed, std::size_t plane) {
 }
 
 void GroupText::declareStaged(const Pushed& pushed) {
-  const int entries = plan_.rounds * appendGroup * elementsOfTexel() * std::max(pushed.parameter->pushes, 1);
+  const int entries =
+      std::max(plan_.rounds * appendGroup * elementsOfTexel() * pushed.parameter->pushes, 1);
   for (std::size_t plane = 0; plane < pushed.end - pushed.first; ++plane) {
     program_.variable("shared " + program_.outputAt(pushed.first + plane).type,
                       fmt::format("{}[{}]", stagedName(pushed, plane), entries));
