@@ -13,9 +13,9 @@
 
 #include "assemble/append/append_groups.hpp"
 #include "assemble/append/append_passes.hpp"
-#include "assemble/append/record_program.hpp"
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/append/point_program.hpp"
+#include "assemble/append/record_program.hpp"
 #include "assemble/assemble.hpp"
 #include "assemble/program/plans.hpp"
 #include "assemble/reduce/reduce_plan.hpp"

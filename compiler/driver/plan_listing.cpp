@@ -80,7 +80,8 @@ class PlanPrinter {
       if (param.role != ParamRole::Scatter || param.scatter == ScatterOp::Store) continue;
       const bool isOrdered = param.type.isFloat() && param.scatter == ScatterOp::Add && isKept;
       if (param.type.isVector() || isOrdered) {
-        text_ += fmt::format("  {} combines values in order: drawn, as points; dispatched, as sorted records\n", param.name);
+        text_ += fmt::format(
+            "  {} combines values in order: drawn, as points; dispatched, as sorted records\n", param.name);
       }
     }
   }

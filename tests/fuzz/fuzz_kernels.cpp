@@ -99,14 +99,14 @@ std::string glslComplaint(const skc::ir::Module& module) {
 
 bool appends(const sk::program::Kernel& kernel) {
   return std::ranges::any_of(kernel.parameters, [](const sk::program::Parameter& parameter) {
-    return parameter.role == sk::program::Role::VariableOutput || parameter.role == sk::program::Role::Scatter;
+    return parameter.role == sk::program::Role::VariableOutput ||
+           parameter.role == sk::program::Role::Scatter;
   });
 }
 
 /// Calls differenceOn(device, unit) for each GL device.
 template <class DifferenceOn>
-std::string glDifference(const skc::ir::Module& module, bool folds, Kept& kept,
-                         DifferenceOn&& differenceOn) {
+std::string glDifference(const skc::ir::Module& module, bool folds, Kept& kept, DifferenceOn&& differenceOn) {
   const skc::emit::Program& program = kept.programs.emplace_back(module);
   if (!kept.gl) kept.gl.emplace();
   std::vector<sk::Device*> devices{&kept.gl->many, &kept.gl->few, &kept.gl->fewOfMany};

@@ -275,7 +275,8 @@ TEST_CASE("floats are added in any order only where that is asked for") {
 // Sums are rounded at each step here, so that another order has other bits.
 TEST_CASE("compute programs add floats in the order of the elements") {
   sk::Device& device = run_tests::device("glsl430");
-  for (const auto& [size, bins] : {std::pair{1, 3}, {255, 7}, {4099, 1}, {70000, 300}, {70000, 70001}, {66000, 3}}) {
+  for (const auto& [size, bins] :
+       {std::pair{1, 3}, {255, 7}, {4099, 1}, {70000, 300}, {70000, 70001}, {66000, 3}}) {
     INFO("size " << size << ", bins " << bins);
     const std::vector<int> at = targets(size, bins + 2);  // some of them outside
     std::vector<float> x, sums(static_cast<std::size_t>(bins), 0.1F);
@@ -364,7 +365,8 @@ TEST_CASE("records of several outputs, of any number, beside pushes") {
   for (int i = 0; i < size; ++i) x.push_back(static_cast<float>(valueOf(i)) / 7);
   for (const Target target : {Target::Compute, Target::Fragment}) {
     auto r = streamOf<float>(device, before), s = streamOf<float>(device, before);
-    order::addTwice.with({.target = target})(streamOf<float>(device, x), streamOf<int>(device, targets(size, 53)), r, s);
+    order::addTwice.with({.target = target})(streamOf<float>(device, x),
+                                             streamOf<int>(device, targets(size, 53)), r, s);
     results.push_back(r.read());
     results.push_back(s.read());
   }

@@ -411,7 +411,8 @@ TEST_CASE("the bits of a scan do not depend on the number of threads") {
 // ends with another number of leaves.
 TEST_CASE("the bits of sums of few columns do not depend on the number of threads") {
   sk::Device& native = device("native");
-  for (const sk::Shape& shape : {sk::Shape{20000, 9}, sk::Shape{8191, 24}, sk::Shape{5003, 60}, sk::Shape{4097, 63}}) {
+  for (const sk::Shape& shape :
+       {sk::Shape{20000, 9}, sk::Shape{8191, 24}, sk::Shape{5003, 60}, sk::Shape{4097, 63}}) {
     INFO(sk::toString(shape));
     const auto in = streamOf(native, cancelling(static_cast<std::size_t>(shape.size())), shape);
     for (const sk::Accumulate how : {sk::Accumulate::Tree, sk::Accumulate::Compensated}) {

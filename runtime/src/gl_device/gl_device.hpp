@@ -6,8 +6,8 @@
 
 #include <array>
 #include <cstddef>
-#include <map>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string_view>

@@ -13,8 +13,8 @@
 #include "gl_device/pass/pass.hpp"
 #include "gl_device/transfer/buffered_transfer.hpp"
 #include "gl_device/transfer/copy_kernel.hpp"
-#include "gl_device/transfer/pending_read.hpp"
 #include "gl_device/transfer/merge_texels.hpp"
+#include "gl_device/transfer/pending_read.hpp"
 #include "gl_device/transfer/transfer.hpp"
 #include "sk/error.hpp"
 #include "support/convert_elements.hpp"
@@ -256,8 +256,7 @@ bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   // copies from and to strided regions read single elements, packed or not
   const bool isFromStrides = regionLayoutOf(from, source.layout).strided;
   const bool isToStrides = regionLayoutOf(to, layout).strided;
-  const bool isMerged =
-      mayMerge(owner(), regionLayoutOf(from, source.layout), regionLayoutOf(to, layout));
+  const bool isMerged = mayMerge(owner(), regionLayoutOf(from, source.layout), regionLayoutOf(to, layout));
   if (isMerged) {
     // elements between those of the region stay in their texels
   } else if (!isWholeTexels(to) || (!isFromStrides && !isWholeTexels(from))) {

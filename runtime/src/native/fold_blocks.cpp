@@ -84,7 +84,8 @@ class LeafPieces {
     const auto most = static_cast<std::int64_t>(std::bit_floor(std::max<std::uint64_t>(ofPiece, 1)));
     const bool areWhole = leafRounds % block[0] == 0;
     for (std::int64_t left = (rows_ + ofLeaf_ - 1) / ofLeaf_; left > 0 && areWhole; left -= leaves_.back())
-      leaves_.push_back(std::min(most, static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(left)))));
+      leaves_.push_back(
+          std::min(most, static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(left)))));
     if (!areWhole) leaves_.push_back(0);
     first_.push_back(0);
     for (const std::int64_t leaves : leaves_) first_.push_back(first_.back() + leaves * ofLeaf_);
@@ -143,8 +144,8 @@ void foldGroups(const FoldProgram& program, const Extents& domain, const Extents
                 const FoldResults& results) {
   const BlockGroups groups(domain, block, BlockGroups::sideBySide(domain, block, groupOf(program.shape)));
   const LeafPieces pieces(block, groups.lengthFrom({}));
-  const std::int64_t threads = native::threadsFor(groups.count() * pieces.count(),
-                                                  std::max<std::int64_t>(groups.elementsOfOne() / pieces.count(), 1));
+  const std::int64_t threads = native::threadsFor(
+      groups.count() * pieces.count(), std::max<std::int64_t>(groups.elementsOfOne() / pieces.count(), 1));
   if (pieces.count() > 1 && groups.count() < threads)
     return foldPiecesOfGroups(program, block, groups, pieces, deal, results);
   native::inParallel(groups.count(), groups.elementsOfOne(), deal, [&](Range range) {

@@ -20,11 +20,6 @@ using program::ScatterOp;
 
 namespace {
 
-/// Pushes of up to this many bytes in a tile go through shared memory.
-constexpr std::size_t stagedBytes = std::size_t{16} << 10;
-/// The most elements that an invocation computes: with more, it holds so many values that fewer groups run side by side.
-constexpr int mostOfInvocation = 8;
-
 constexpr std::string_view meeting = R"(
 void sk_meet() {
   memoryBarrierShared();
@@ -124,73 +119,9 @@ std::string filled(std::string_view text, int rounds, std::size_t outputs) {
                      fmt::arg("group", appendGroup), fmt::arg("outputs", outputs));
 }
 
-/// Bytes of a staged element.
-std::size_t bytesOf(const program::Element& element) {
-  std::size_t bytes = 0;
-  for (const Field& field : element.fields) {
-    const int width = field.width == 3 ? 4 : field.width;
-    bytes += static_cast<std::size_t>(width) * (field.scalar == Scalar::Double ? 8 : 4);
-  }
-  return bytes;
-}
-
-/// The only field of an element that is one scalar, which no two invocations can each store a part of; else null.
-const Field* scalarField(const Parameter& scatter) {
-  const Field& field = scatter.element->fields.front();
-  const bool isOne = scatter.element->fields.size() == 1 && field.path.empty() && field.width == 1;
-  return isOne ? &field : nullptr;
-}
-
-/// The part of a program that stores a list's planes, or shares memory with them, takes this many bytes for an entry.
-std::size_t bytesOfEntry(const Parameter& pushed) {
-  return bytesOf(*pushed.element) + (pushed.role == Role::Scatter ? sizeof(std::uint32_t) : 0);
-}
-
 }  // namespace
 
-GroupPlan planGroups(const Kernel& kernel, bool isPacked, Order order) {
-  const int elements = isPacked ? lanes : 1;
-  const int most = mostOfInvocation / elements;
-  std::size_t bytesPerElement = 0;
-  bool pushesOnce = true;
-  for (const Parameter& parameter : kernel.parameters) {
-    if (!isPushed(parameter, order)) continue;
-    if (parameter.pushes < 0) return {most, false};
-    pushesOnce = pushesOnce && parameter.pushes <= 1;
-    bytesPerElement += bytesOfEntry(parameter) * static_cast<std::size_t>(parameter.pushes);
-  }
-  for (int rounds = most; rounds > 1; rounds /= 2) {
-    const std::size_t bytes = bytesPerElement * static_cast<std::size_t>(elements * rounds * appendGroup);
-    if (bytes <= stagedBytes) return {rounds, bytes > 0, bytes > 0 && pushesOnce};
-  }
-  return {most, false};
-}
-
-bool isListed(const Parameter& appendOutput, Order order) {
-  if (appendOutput.role != Role::Scatter || appendOutput.scatter == ScatterOp::Store) return false;
-  const Field* const field = scalarField(appendOutput);
-  if (field == nullptr) return true;
-  return field->scalar == Scalar::Float && appendOutput.scatter == ScatterOp::Add && order != Order::Any;
-}
-
-bool isPushed(const Parameter& appendOutput, Order order) {
-  return appendOutput.role == Role::VariableOutput || isListed(appendOutput, order);
-}
-
 std::string_view orderOfFloats() { return orderOfFloatBits; }
-
-bool isPair(const Parameter& listed) { return scalarField(listed) != nullptr; }
-
-std::size_t imagesOf(const Parameter& appendOutput, Order order) {
-  const bool hasTargets = isListed(appendOutput, order) && !isPair(appendOutput);
-  return appendOutput.element->fields.size() + (hasTargets ? 1 : 0);
-}
-
-bool hasOwners(const Parameter& scatter, Order order) {
-  if (scatter.role != Role::Scatter || scatter.scatter != ScatterOp::Store) return false;
-  const Field* const field = scalarField(scatter);
-  return order != Order::Any || field == nullptr || field->scalar == Scalar::Double;
-}
 
 GroupText::GroupText(ProgramText& program, DomainText& domain, const Kernel& kernel, const Variant& variant)
     : program_(program),
@@ -220,9 +151,9 @@ void GroupText::definePush(const Parameter& appendOutput, std::string_view signa
   program_.functionOf(fmt::format("void {}({}{} sk_v)", named("keep", appendOutput),
                                   isRecord ? "uint sk_key, " : "", appendOutput.element->glsl),
                       [&] { keepPushed(pushed); });
-  program_.function(signature,
-                    {fmt::format("if (sk_storing) {}({}sk_v);", named("keep", appendOutput), isRecord ? "sk_key, " : ""),
-                     fmt::format("++{};", named("at", appendOutput))});
+  program_.function(signature, {fmt::format("if (sk_storing) {}({}sk_v);", named("keep", appendOutput),
+                                            isRecord ? "sk_key, " : ""),
+                                fmt::format("++{};", named("at", appendOutput))});
 }
 
 /// Records hold the number of the texel to combine with, and the value.
@@ -258,8 +189,7 @@ std::string GroupText::stagedName(const Pushed& pushed, std::size_t plane) {
 }
 
 void GroupText::declareStaged(const Pushed& pushed) {
-  const int entries =
-      std::max(plan_.rounds * appendGroup * elementsOfTexel() * pushed.parameter->pushes, 1);
+  const int entries = std::max(plan_.rounds * appendGroup * elementsOfTexel() * pushed.parameter->pushes, 1);
   for (std::size_t plane = 0; plane < pushed.end - pushed.first; ++plane) {
     program_.variable("shared " + program_.outputAt(pushed.first + plane).type,
                       fmt::format("{}[{}]", stagedName(pushed, plane), entries));

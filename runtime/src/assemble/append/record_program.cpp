@@ -49,9 +49,14 @@ std::string recordProgram(const Profile& profile, const program::Parameter& scat
   std::string text = fmt::format("{}\n{}{}", profile.version, isPair(scatter) ? "#define SK_PAIRS\n" : "",
                                  isCounted ? "#define SK_COUNTED\n" : "");
   text += fmt::format(
-      "#define SK_VALUE {}\n#define SK_SWIZZLE {}\n#define SK_SAMPLER {}sampler2D\n#define SK_IMAGE {}image2D\n"
+      "#define SK_VALUE {}\n#define SK_SWIZZLE {}\n#define SK_SAMPLER {}sampler2D\n#define SK_IMAGE "
+      "{}image2D\n"
       "#define SK_FORMAT {}32{}\n#define SK_TEXEL(v) {}vec4(v{})\n",
-      type, swizzles[width], kind, kind, channels[width], isFloat ? "f" : kind == "u" ? "ui" : "i", kind, rests[width]);
+      type, swizzles[width], kind, kind, channels[width],
+      isFloat       ? "f"
+      : kind == "u" ? "ui"
+                    : "i",
+      kind, rests[width]);
   text += combination(scatter, type);
   return text + std::string(library::combineRecords);
 }

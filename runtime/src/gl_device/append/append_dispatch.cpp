@@ -88,7 +88,8 @@ class AppendDispatch {
     };
     const auto maySort = [&](const auto& list) {
       return !list->isOfRecords ||
-             (mayScatter(list) && ListedScatter::isPossible(device_, std::max<std::int64_t>(list->length, 1)));
+             (mayScatter(list) &&
+              ListedScatter::isPossible(device_, std::max<std::int64_t>(list->length, 1)));
     };
     return std::ranges::all_of(targets_, mayScatter) && std::ranges::all_of(lists_, maySort);
   }
@@ -102,7 +103,8 @@ class AppendDispatch {
     if (isCounted) countPushes(program);
     for (const auto& list : lists_) {
       list->layout = listLayout(list->length, device_.textureLimits());
-      const bool isPossible = !list->isOfRecords || ListedScatter::isPossible(device_, std::max<std::int64_t>(list->length, 1));
+      const bool isPossible =
+          !list->isOfRecords || ListedScatter::isPossible(device_, std::max<std::int64_t>(list->length, 1));
       if (list->layout.whole.layered || !isPossible) return false;
     }
     OutputTargets outputs(device_, call_.kernel, call_.arguments, call_.specs, operands_, layout_.whole,
@@ -158,7 +160,8 @@ class AppendDispatch {
   }
 
   bool hasScatters() const {
-    return !targets_.empty() || std::ranges::any_of(lists_, [](const auto& list) { return list->isOfRecords; });
+    return !targets_.empty() ||
+           std::ranges::any_of(lists_, [](const auto& list) { return list->isOfRecords; });
   }
   /// As programs see it, whose variant says it of scatter outputs alone.
   Order order() const {
@@ -276,7 +279,8 @@ class AppendDispatch {
     if (list.length == 0) return;
     if (list.isOfRecords) {
       const bool isKnown = hasRoomFor(list);
-      list.records.emplace(device_, call_.kernel.parameters[list.parameter], static_cast<std::int32_t>(list.length),
+      list.records.emplace(device_, call_.kernel.parameters[list.parameter],
+                           static_cast<std::int32_t>(list.length),
                            isKnown ? &list.total.planes.front() : nullptr);
       return;
     }
@@ -313,7 +317,8 @@ class AppendDispatch {
   void setAppend(KernelProgram::Append& append) {
     for (const auto& list : lists_) {
       if (list->parameter != append.parameter) continue;
-      append.layout.set(device_.bound, list->isOfRecords ? operands_[list->parameter].regionLayout : list->layout.whole);
+      append.layout.set(device_.bound,
+                        list->isOfRecords ? operands_[list->parameter].regionLayout : list->layout.whole);
       append.listShift.set(device_.bound, list->layout.whole.shift);
       if (list->isOfRecords)
         append.owners.set(device_.bound, {0, streamOf(list->parameter).layout.texture.width, 0, 0});

@@ -22,8 +22,7 @@ ListedScatter::ListedScatter(GlDevice& device, const program::Parameter& scatter
       scatter_(scatter),
       length_(length),
       count_(count),
-      sort_(device, length,
-            assemble::isPair(scatter) ? WordSort::Of::Pairs : WordSort::Of::KeysAndPlaces),
+      sort_(device, length, assemble::isPair(scatter) ? WordSort::Of::Pairs : WordSort::Of::KeysAndPlaces),
       values_(device) {
   const bool isPair = assemble::isPair(scatter);
   if (!isPair) {
@@ -57,9 +56,8 @@ void ListedScatter::combine(GlStream& stream) {
   const std::int32_t tiles = (length_ - 1) / assemble::recordTile + 1;
   constexpr std::int32_t mostInRow = std::int32_t{1} << assemble::groupRowShift;
   const assemble::Rect groups{0, 0, std::min(tiles, mostInRow), (tiles - 1) / mostInRow + 1};
-  const PassScope traced(device_, {scatter_.name, "combine records", "dispatch"},
-                         std::int64_t{length_} * 8, std::span<const assemble::Rect>(&groups, 1),
-                         std::size_t{assemble::recordTile} * 4);
+  const PassScope traced(device_, {scatter_.name, "combine records", "dispatch"}, std::int64_t{length_} * 8,
+                         std::span<const assemble::Rect>(&groups, 1), std::size_t{assemble::recordTile} * 4);
   device_.bound.program(program.program().name());
   bindPlanes(device_, sort_.pairs->planes(), 0);
   if (count_ != nullptr) bindPlanes(device_, {count_, 1}, 1);

@@ -19,7 +19,8 @@ class ListedScatter {
  public:
   /// Makes room for `length` records. `count` is a texture of one texel whose fourth channel is their number, once the kernel has
   /// run; null if there are `length`. Throws sk::Error if memory is exhausted or the driver rejects a program.
-  ListedScatter(GlDevice& device, const program::Parameter& scatter, std::int32_t length, RenderTarget* count);
+  ListedScatter(GlDevice& device, const program::Parameter& scatter, std::int32_t length,
+                RenderTarget* count);
 
   /// Whether a device sorts so many records.
   static bool isPossible(const GlDevice& device, std::int64_t length) {

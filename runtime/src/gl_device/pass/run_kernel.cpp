@@ -178,8 +178,8 @@ void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> argu
 
 void GlDevice::runUnchecked(const ResolvedCall& called) {
   const ResolvedCall call = called.of(precisionVariant(called.kernel, called.options), limits);
-  const assemble::Stage stage = stageOf(call.kernel, classOf(call.kernel, call.options.order), call.options,
-                                        call.domain.size());
+  const assemble::Stage stage =
+      stageOf(call.kernel, classOf(call.kernel, call.options.order), call.options, call.domain.size());
   const DeviceScope scope(*this);
   const gl::LabelGroup group(labels, called.kernel.name);
   selectPrograms(call.options, stage);

@@ -193,7 +193,8 @@ const Kernel& restoreKernel(program::Scalar keys, bool isDescending, bool fromPa
 }
 
 const Kernel& lastWordKernel(const Element& words) {
-  return kept(fmt::format("void sort_kernel(out {0} r) {{ r = {0}(0xffffffffu); }}\n", words.glsl), {output("r", words)});
+  return kept(fmt::format("void sort_kernel(out {0} r) {{ r = {0}(0xffffffffu); }}\n", words.glsl),
+              {output("r", words)});
 }
 
 const Kernel& placeKernel() {

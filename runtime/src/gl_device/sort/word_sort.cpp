@@ -93,7 +93,8 @@ void WordSort::storePairs() {
 
 void WordSort::sortBy(int digit, bool readsKeys) {
   const Uniform shift{"sk_digit", 8 * digit};
-  const Uniform keyShift{"sk_keys_shift", (keys ? *keys : *pairs).shift()}, countShift{"sk_counts_shift", counts_.shift()};
+  const Uniform keyShift{"sk_keys_shift", (keys ? *keys : *pairs).shift()},
+      countShift{"sk_counts_shift", counts_.shift()};
   const Uniform totalShift{"sk_totals_shift", totals_.shift()}, length{"sk_length", count_};
   const std::int32_t counts = tiles_ * assemble::radixDigits;
   const std::int32_t groups = divideUp(counts, assemble::radixTile);

@@ -64,10 +64,11 @@ std::string valuesOf(const Columns& columns, bool fromTexel) {
   std::string text;
   for (std::int32_t j = 0; j < columns.perTexel; ++j) {
     const std::int32_t component = columns.first + j * columns.step;
-    const std::string element = !fromTexel ? fmt::format("sk_at_x(ivec2(k + {}, y))", j)
+    const std::string element = !fromTexel                  ? fmt::format("sk_at_x(ivec2(k + {}, y))", j)
                                 : columns.perTexel == lanes ? fmt::format("v[{}]", j)
-                                : columns.perTexel == 1     ? "v[k & 3]"
-                                                            : fmt::format("(k & 2) == 0 ? v[{}] : v[{}]", j, j + 2);
+                                : columns.perTexel == 1
+                                    ? "v[k & 3]"
+                                    : fmt::format("(k & 2) == 0 ? v[{}] : v[{}]", j, j + 2);
     text += fmt::format("  r[{}] = {};\n", component, element);
   }
   return text;
@@ -80,13 +81,15 @@ const Kernel& mergeKernel(const program::Element& element, const Columns& column
   // the texels' bits, not the values that they stand for
   const program::Element& one = *copyKernel(element.fields.front()).parameters[0].element;
   const program::Element& four = assemble::fourOf(one.fields.front().scalar);
-  std::string body = fmt::format("// {}\nvoid sk_merge(out {} r) {{\n  ivec2 t = sk_index().xy;\n", one.name, four.glsl);
+  std::string body =
+      fmt::format("// {}\nvoid sk_merge(out {} r) {{\n  ivec2 t = sk_index().xy;\n", one.name, four.glsl);
   if (rows > 1) {
     body += fmt::format("  int y = int(uint(t.y) / {}u);\n  if (y * {} != t.y) discard;\n", rows, rows);
   } else {
     body += "  int y = t.y;\n";
   }
-  body += fmt::format("  int k = t.x * {} + {};\n  r = {}(0);\n", columns.perTexel, columns.before, four.glsl);
+  body +=
+      fmt::format("  int k = t.x * {} + {};\n  r = {}(0);\n", columns.perTexel, columns.before, four.glsl);
   if (fromTexel) body += fmt::format("  {} v = sk_at_x(ivec2(k >> 2, y));\n", four.glsl);
   body += valuesOf(columns, fromTexel) + "}\n";
   const std::lock_guard lock(mutex);
@@ -94,7 +97,12 @@ const Kernel& mergeKernel(const program::Element& element, const Columns& column
   if (known) return known->kernel;
   known = std::make_unique<MergeKernel>();
   known->body = body;
-  known->parameters = {{{.name = "x", .symbol = "x", .role = Role::Gather, .element = fromTexel ? &four : &one, .rank = 2, .usesAt = true},
+  known->parameters = {{{.name = "x",
+                         .symbol = "x",
+                         .role = Role::Gather,
+                         .element = fromTexel ? &four : &one,
+                         .rank = 2,
+                         .usesAt = true},
                         {.name = "r", .symbol = "r", .role = Role::Output, .element = &four}}};
   known->kernel.name = "merge";
   known->kernel.entry = "sk_merge";

@@ -22,6 +22,7 @@ void prepareMerge(GlDevice& device, const program::Element& element, const assem
 
 /// Copies the elements of `source`, which lies in `from`, to `target` in `to`. Both hold scalars of type `element`.
 void mergeTexels(GlDevice& device, const program::Element& element, std::span<RenderTarget> from,
-                 const assemble::RegionLayout& source, RenderTarget& to, const assemble::RegionLayout& target);
+                 const assemble::RegionLayout& source, RenderTarget& to,
+                 const assemble::RegionLayout& target);
 
 }  // namespace sk
