@@ -11,7 +11,6 @@
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/reduce/scan_plan.hpp"
 #include "ir/print.hpp"
-#include "sk/options.hpp"
 #include "split/cost.hpp"
 #include "split/demand.hpp"
 #include "support/text.hpp"
