@@ -80,6 +80,7 @@ example lattice "$examples/lattice/scenes/boiling_3d.toml" --size "$((size * 3 /
 example lattice "$examples/lattice/scenes/stirred.toml" --size "${size}x$((size * 3 / 8))" --steps "$steps" --csv stirred.csv
 example lattice "$examples/lattice/scenes/rolls.toml" --size "${size}x$((size / 8))" --steps "$steps"
 example rays "$examples/rays/scenes/rings.toml" --size "$((size * 5 / 8))x$((size * 3 / 8))" --samples "$((steps / 40 + 1))" --error 0.1 --output rays_rings.png
+example smooth "$examples/linear/smooth/scenes/sphere.toml" -o smooth_sphere.png
 example solve "poisson:${size}x${size}" --preconditioner multigrid --every 1
 example fluid "$examples/linear/fluid/scenes/plume.toml" --size "$((size * 3 / 16))x$((size / 4))" --steps "$((steps / 40))"
 

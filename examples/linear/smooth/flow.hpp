@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+//
+// Implicit mean-curvature flow (M. Desbrun, M. Meyer, P. Schroeder and A. Barr, "Implicit fairing of irregular meshes using diffusion and
+// curvature flow", 1999): points move by the Laplacian of their positions on the surface, which is minus twice the mean curvature along the
+// normal. A sphere's radius becomes sqrt(r^2 - 4 t).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "sparse.hpp"
+#include "surface.hpp"
+
+namespace smooth {
+
+struct FlowSettings {
+  double timeStep = 1e-3;  ///< a squared length
+  bool keepsVolume = false;  ///< scales about the centre after each step, for closed surfaces
+  bool fixesBoundary = true;  ///< otherwise boundaries shrink, too
+  std::string layout = "auto";  ///< of the matrix, as solve --layout takes it
+  double tolerance = 1e-8;  ///< of a step's true residual
+};
+
+/// The entries of (M + dt L) x' = M x: L has the cotangents' weights, M a third of the area of each face at its points.
+struct Equations {
+  linear::SparseMatrix matrix;  ///< M + dt L; rows of points that stay are a multiple of the identity's
+  linear::SparseMatrix laplacian;  ///< dt L; empty rows for points that stay
+};
+Equations equationsOf(const Surface& surface, const Faults& faults, const FlowSettings& settings);
+
+struct StepReport {
+  std::int64_t iterations = 0;  ///< of three solves, for x, y and z
+  double residual = 0.0;  ///< the largest of their true residuals, as a part of the right-hand side
+  double volume = 0.0;
+  double area = 0.0;
+};
+
+class Flow {
+ public:
+  /// Throws std::runtime_error if the surface has no face with an area, or if its volume cannot be kept.
+  Flow(sk::Device& device, Surface surface, const FlowSettings& settings);
+
+  /// Throws std::runtime_error if the equations are not solved to the tolerance.
+  StepReport step();
+
+  const Surface& surface() const { return surface_; }
+  const Faults& faults() const { return faults_; }
+  /// The layout in use; settings.layout before the first step.
+  const std::string& layout() const { return layout_; }
+
+ private:
+  void restoreVolume();
+
+  sk::Device& device_;
+  Surface surface_;
+  FlowSettings settings_;
+  Faults faults_;
+  std::string layout_;
+  double volume_;
+  std::int64_t steps_ = 0;
+};
+
+}  // namespace smooth

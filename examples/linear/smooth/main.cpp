@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+//
+// smooth: implicit mean-curvature flow of a mesh or of a scene's surface.
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <sk/sk.hpp>
+
+#include "flow.hpp"
+#include "picture.hpp"
+#include "support/application.hpp"
+#include "support/figure.hpp"
+#include "support/image.hpp"
+#include "support/progress.hpp"
+#include "support/scene_file.hpp"
+#include "support/stopwatch.hpp"
+
+namespace {
+
+struct Settings {
+  std::filesystem::path input, obj, picture;
+  std::optional<std::int64_t> steps;
+  std::optional<double> timeStep;
+  std::optional<std::string> layout;
+};
+
+struct Scene {
+  std::string name;
+  smooth::Surface surface;
+  smooth::FlowSettings flow;
+  std::int64_t steps = 10;
+};
+
+constexpr std::array<std::string_view, 2> shapes = {"sphere", "torus"};
+constexpr std::array<std::string_view, 2> boundaries = {"fixed", "free"};
+constexpr examples::Range positive{1e-12, 1e12};
+
+smooth::Surface readSurface(const examples::SceneTable& table, const std::filesystem::path& folder) {
+  smooth::Surface surface;
+  if (const auto file = table.text("file")) {
+    if (table.has("shape")) table.fail("shape", "a surface has a file or a shape, and this one has both");
+    surface = smooth::loadObj(folder / *file);
+  } else {
+    const auto shape = table.choice("shape", shapes);
+    if (!shape) table.fail("shape", "a surface has a file or a shape, \"sphere\" or \"torus\"");
+    const double radius = table.number("radius", positive).value_or(1.0);
+    if (*shape == 0) {
+      surface = smooth::sphere(static_cast<int>(table.integer("level", {0, 8}).value_or(4)), radius);
+    } else {
+      surface = smooth::torus(static_cast<int>(table.integer("around", {3, 4096}).value_or(96)),
+                              static_cast<int>(table.integer("across", {3, 4096}).value_or(48)), radius,
+                              table.number("tube", positive).value_or(0.4 * radius));
+    }
+  }
+  const double noise = table.number("noise", {0.0, 1e12}).value_or(0.0);
+  smooth::addNoise(surface, noise,
+                   static_cast<std::uint32_t>(table.integer("seed", {0, 4294967295.0}).value_or(1)));
+  return surface;
+}
+
+Scene readScene(const std::filesystem::path& file) {
+  const examples::SceneTable table = examples::loadScene(file);
+  Scene scene;
+  scene.name = table.text("title").value_or(file.stem().string());
+  const auto surface = table.table("surface");
+  if (!surface) table.fail("surface", "a scene has a table [surface]");
+  scene.surface = readSurface(*surface, file.parent_path());
+  if (const auto flow = table.table("flow")) {
+    smooth::FlowSettings& f = scene.flow;
+    f.timeStep = flow->number("time_step", positive).value_or(f.timeStep);
+    f.keepsVolume = flow->flag("keep_volume").value_or(false);
+    f.fixesBoundary = flow->choice("boundary", boundaries).value_or(0) == 0;
+    f.tolerance = flow->number("tolerance", {1e-14, 0.1}).value_or(f.tolerance);
+    f.layout = flow->text("layout").value_or(f.layout);
+    scene.steps = flow->integer("steps", {1, 1e9}).value_or(scene.steps);
+  }
+  table.finish();
+  return scene;
+}
+
+void run(examples::Application& app, const Settings& s) {
+  Scene scene;
+  if (s.input.extension() == ".obj") {
+    scene.name = s.input.filename().string();
+    scene.surface = smooth::loadObj(s.input);
+  } else {
+    scene = readScene(s.input);
+  }
+  if (s.steps) scene.steps = *s.steps;
+  if (s.timeStep) scene.flow.timeStep = *s.timeStep;
+  if (s.layout) scene.flow.layout = *s.layout;
+
+  sk::Device device(app.device());
+  smooth::Flow flow(device, scene.surface, scene.flow);
+  const std::string faults = smooth::textOf(flow.faults());
+  examples::Verification verification("||b - A x|| / ||b|| of each step, in double precision",
+                                      scene.flow.tolerance, "the tolerance");
+  fmt::print("{:>6} {:>12} {:>12} {:>10} {:>10}\n", "step", "volume", "area", "iterations", "residual");
+  fmt::print("{:>6} {:>12.6g} {:>12.6g}\n", 0, smooth::volumeOf(scene.surface),
+             smooth::areaOf(scene.surface));
+  const examples::Stopwatch watch;
+  examples::Progress progress("smooth", scene.steps);
+  for (std::int64_t i = 1; i <= scene.steps; ++i) {
+    const smooth::StepReport report = flow.step();
+    progress.clear();
+    fmt::print("{:>6} {:>12.6g} {:>12.6g} {:>10} {:>10.2g}\n", i, report.volume, report.area,
+               report.iterations, report.residual);
+    progress.update(i);
+    verification.note(i, report.residual);
+  }
+  progress.clear();
+  app.report(fmt::format("{}, {} vertices, {} steps of {:.3g}, layout {}", scene.name,
+                         scene.surface.points.size(), scene.steps, scene.flow.timeStep, flow.layout()),
+             device.name(), watch.milliseconds());
+  fmt::print("{}", faults);
+  if (!s.obj.empty()) smooth::saveObj(s.obj, flow.surface());
+  if (!s.picture.empty()) {
+    constexpr int size = 640;
+    examples::Image both = examples::plainImage(2 * size, size, {0, 0, 0});
+    examples::paste(both, smooth::pictureOf(scene.surface, scene.surface, size), 0, 0);
+    examples::paste(both, smooth::pictureOf(flow.surface(), scene.surface, size), size, 0);
+    examples::savePng(
+        s.picture, examples::figure(both, {.title = scene.name,
+                                           .subtitle = "before and after mean-curvature flow",
+                                           .footnote = fmt::format("{} vertices, {} steps of {:.3g}",
+                                                                   scene.surface.points.size(), scene.steps,
+                                                                   scene.flow.timeStep)}));
+  }
+  app.verified(verification);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  examples::Application app("smooth", "Smooths surfaces by implicit mean-curvature flow.");
+  CLI::App& cli = app.options();
+  cli.add_option("input", settings.input,
+                 "a mesh, .obj, or a scene, .toml, as in examples/linear/smooth/scenes");
+  cli.add_option("--steps", settings.steps, "in place of the scene's; 10 of a mesh")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
+  cli.add_option("--time-step", settings.timeStep,
+                 "a squared length, in place of the scene's; 0.001 of a mesh")
+      ->check(CLI::Range(1e-12, 1e12));
+  cli.add_option("--layout", settings.layout, "of the matrix, as solve --layout takes it");
+  cli.add_option("--obj", settings.obj, "file for the surface at the end");
+  cli.add_option("-o,--output", settings.picture, "picture of the surface before and after, .png");
+  return app.run(argc, argv, [&] {
+    if (settings.input.empty())
+      throw std::runtime_error("no surface is named; try examples/linear/smooth/scenes/sphere.toml");
+    run(app, settings);
+  });
+}
