@@ -19,8 +19,9 @@ namespace {
 static_assert(sizeof(Entry) == 16 && offsetof(Entry, kind) == 8 && offsetof(Entry, lanes) == 12 &&
               offsetof(Entry, rows) == 13);
 static_assert(sizeof(Slot) == 6);
-static_assert(sizeof(Code) == 32 && offsetof(Code, entries) == 8 && offsetof(Code, slotCount) == 24 &&
-              offsetof(Code, isReordered) == 29 && offsetof(Code, isLight) == 30);
+static_assert(sizeof(Code) == 40 && offsetof(Code, entries) == 8 && offsetof(Code, slotCount) == 24 &&
+              offsetof(Code, isReordered) == 29 && offsetof(Code, isLight) == 30 &&
+              offsetof(Code, sharedGathers) == 32);
 
 class TableData {
  public:
@@ -31,6 +32,9 @@ class TableData {
   }
   llvm::Constant* word(std::uint64_t value) {
     return llvm::ConstantInt::get(llvm::Type::getInt32Ty(context_), value);
+  }
+  llvm::Constant* longWord(std::uint64_t value) {
+    return llvm::ConstantInt::get(llvm::Type::getInt64Ty(context_), value);
   }
   llvm::Constant* record(const std::vector<llvm::Constant*>& members) {
     return llvm::ConstantStruct::getAnon(context_, members);
@@ -71,7 +75,7 @@ void writeCodeTable(llvm::Module& code, const CodeTable& table) {
   llvm::Constant* const value =
       c.record({c.word(Code::currentVersion), c.word(entries.size()), c.array(entries), c.array(slots),
                 c.word(slots.size()), c.byte(table.isUneven ? 1 : 0), c.byte(table.isReordered ? 1 : 0),
-                c.byte(table.isLight ? 1 : 0)});
+                c.byte(table.isLight ? 1 : 0), c.longWord(table.sharedGathers)});
   auto* const global = new llvm::GlobalVariable(code, value->getType(), true,
                                                 llvm::GlobalValue::ExternalLinkage, value, table.symbol);
   global->setVisibility(llvm::GlobalValue::HiddenVisibility);

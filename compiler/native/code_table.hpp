@@ -29,6 +29,7 @@ struct CodeTable {
   bool isUneven;
   bool isReordered;
   bool isLight;
+  std::uint64_t sharedGathers = 0;  ///< bits of parameters (Code::sharedGathers)
 };
 
 void writeCodeTable(llvm::Module& code, const CodeTable& table);

@@ -148,7 +148,10 @@ class Compilation {
     const Kernel& kernel = module.kernels[request.kernel];
     if (request.isCold || !options_.optimizes || options_.lanes == 1) return;
     const RowPlan plan(module, kernel);
-    if (!plan.pays(analysis::Uniformity(module, kernel))) return;
+    const std::set<std::uint32_t> shared = plan.sharedGathers(analysis::Uniformity(module, kernel));
+    if (shared.empty()) return;
+    for (const std::uint32_t gather : shared)
+      table.sharedGathers |= gather < 64 ? std::uint64_t{1} << gather : 0;
     const bool contracts = mayContract(request, EntryKind::RunRows);
     for (const CpuLevel& level : target_.levels()) {
       if (blockFor(level, plan.carried()).rows == 1) continue;

@@ -89,24 +89,25 @@ bool RowPlan::isEmittedOnce(const Stmt& stmt) const {
 
 bool RowPlan::isShared(const Expr& expr) const { return rows_.of(kernel_.entry, expr) == Shape::Uniform; }
 
-bool RowPlan::pays(const Uniformity& lanes) const {
+std::set<std::uint32_t> RowPlan::sharedGathers(const Uniformity& lanes) const {
+  std::set<std::uint32_t> shared;
   const bool isElementwise =
       !kernel_.reduction && std::ranges::none_of(kernel_.params, [](const KernelParam& p) {
         return p.role == ParamRole::VariableOutput || p.role == ParamRole::Scatter;
       });
-  if (!isElementwise || rows_.returnsEarly(kernel_.entry)) return false;
-  bool saves = false;
+  if (!isElementwise || rows_.returnsEarly(kernel_.entry)) return shared;
   forEachLoopEmittedOnce(*this, entry_.body, [&](const Stmt& loop) {
     for (const Stmt& stmt : std::get<Loop>(loop.node).body) {
       forEachOperand(stmt, [&](const ExprPtr& operand) {
         walkExprs(*operand, [&](const Expr& expr) {
-          saves = saves || (std::holds_alternative<GatherRead>(expr.node) && isShared(expr) &&
-                            lanes.of(kernel_.entry, expr) != Shape::Uniform);
+          const auto* n = std::get_if<GatherRead>(&expr.node);
+          if (n != nullptr && isShared(expr) && lanes.of(kernel_.entry, expr) != Shape::Uniform)
+            shared.insert(n->stream.id);
         });
       });
     }
   });
-  return saves;
+  return shared;
 }
 
 std::uint32_t RowPlan::carried() const {

@@ -24,9 +24,9 @@ class RowPlan {
  public:
   RowPlan(const ir::Module& module, const ir::Kernel& kernel);
 
-  /// True if computing rows together saves loads: a loop that all rows run through together reads vectors
-  /// that they share.
-  bool pays(const analysis::Uniformity& lanes) const;
+  /// The gathers of which a loop that all rows run through together reads vectors that they share. Computing
+  /// rows together saves loads if there is one.
+  std::set<std::uint32_t> sharedGathers(const analysis::Uniformity& lanes) const;
   /// The number of scalars that each row carries from one iteration of such loops to the next.
   std::uint32_t carried() const;
 

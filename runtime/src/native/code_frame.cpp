@@ -61,6 +61,10 @@ CodeFrame::CodeFrame(const program::Kernel& kernel, const native::Call& call,
   frame_.arguments = arguments_.data();
 }
 
+void CodeFrame::redirect(std::size_t parameter, const Operand& operand) {
+  arguments_[parameter] = argumentOf(operand);
+}
+
 /// One element of zeros, for any gather of the kernel.
 void* const* CodeFrame::zeroArrays(const program::Kernel& kernel) {
   alignas(mostScalarBytes) static constexpr std::byte zero[mostScalarBytes] = {};

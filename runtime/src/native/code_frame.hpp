@@ -22,6 +22,8 @@ class CodeFrame {
   CodeFrame& operator=(const CodeFrame&) = delete;
 
   const native::Frame* get() const { return &frame_; }
+  /// Lets a parameter read another stream.
+  void redirect(std::size_t parameter, const native::Operand& operand);
   std::span<const native::Argument> arguments() const { return arguments_; }
 
  private:

@@ -11,6 +11,7 @@
 #include "native/chunk_runner.hpp"
 #include "native/code_frame.hpp"
 #include "native/domain_pieces.hpp"
+#include "native/padded_rows.hpp"
 #include "native/push_parts.hpp"
 #include "native/push_rooms.hpp"
 #include "native/record_buffer.hpp"
@@ -42,6 +43,7 @@ class CodeRun {
         layout_(kernel, call, frame_, choice, memory_.get()),
         pieces_(call.domain, kernel.code->isUneven != 0),
         blocks_(call.domain, rowsEntry_ == nullptr ? 1 : rowsEntry_->rows),
+        padded_(kernel, call, rowsEntry_ == nullptr ? 1 : rowsEntry_->rows),
         isRecorded_(has(Role::VariableOutput) || has(Role::Scatter)) {}
 
   void run() {
@@ -73,6 +75,7 @@ class CodeRun {
     if (rowsEntry_ == nullptr) {
       visitPieces({0, pieces_.count()}, *runner_, atOnce);
     } else {
+      padded_.copyInto(frame_);
       visitBlocks({0, blocks_.count()}, *runner_);
     }
   }
@@ -109,7 +112,8 @@ class CodeRun {
     return std::min(ChunkRunner::rowsAtOnce(layout_), static_cast<std::size_t>(call_.domain[1]));
   }
 
-  void runBlocks() const {
+  void runBlocks() {
+    padded_.copyInto(frame_);
     native::inParallel(blocks_.count(), costOfBlock(), Deal::AsTheyCome, [&](Range range) {
       ChunkRunner runner(layout_, *rowsEntry_, frame_.get());
       visitBlocks(range, runner);
@@ -255,6 +259,7 @@ class CodeRun {
   SlotLayout layout_;
   DomainPieces pieces_;
   RowBlocks blocks_;  ///< for rowsEntry_
+  PaddedRows padded_;
   bool isRecorded_;
   std::optional<ChunkRunner> runner_;  ///< of runAgain()
 };

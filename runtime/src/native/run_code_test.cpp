@@ -184,6 +184,65 @@ TEST_CASE("the index in an input that is stretched is right for every element") 
   for (std::int32_t i = 0; i < 30; ++i) CHECK(r[static_cast<std::size_t>(i)] == i / 3);
 }
 
+// ---- rows together ---------------------------------------------------------------------------------
+
+constexpr std::uint8_t rowsTogether = 4;
+std::int64_t pitchSeen;  ///< of the gather that `gatherRows` reads
+
+std::int64_t rowOf(std::int64_t x, std::int64_t y, std::int64_t rows) { return (5 * x + y) % rows; }
+
+void gatherRows(const Frame* frame, const Chunk* chunks) {
+  const native::Argument& from = frame->arguments[0];
+  const auto* const b = static_cast<const float*>(from.components[0]) + from.first;
+  pitchSeen = from.stride[1];
+  for (std::size_t k = 0; k < rowsTogether; ++k) {
+    const std::int64_t x = chunks[k].first[0], y = chunks[k].first[1];
+    for (std::int64_t i = 0; i < inGroups(chunks[k].count); ++i) {
+      const std::int64_t column = std::min(x + i, from.extent[0] - 1);
+      arrayOf<float>(&chunks[k], 0)[i] = b[rowOf(column, y, from.extent[1]) * from.stride[1] + column];
+    }
+  }
+}
+
+void gatherNothing(const Frame*, const Chunk*) {}
+
+TEST_CASE("gathers that all rows share are copied where their rows share sets of the caches") {
+  TestKernel f;
+  program::Parameter& gather = f.add(Role::Gather);
+  gather.rank = 2;
+  gather.usesAt = true;
+  f.add(Role::Output);
+  f.slot(1);
+  f.entries = {entry(EntryKind::Run, &gatherNothing), entry(EntryKind::RunRows, &gatherRows)};
+  f.entries[1].rows = rowsTogether;
+  f.finish();
+  const std::int64_t rows = 256, width = 1000;  // a view of rows that are a page long, or a little longer
+  for (const std::int64_t pitch : {1024, 1040}) {
+    for (const std::uint64_t shared : {0, 1}) {
+      for (const std::int64_t height : {63, 257}) {
+        f.code.sharedGathers = shared;
+        std::vector<float> b = someFloats(pitch * rows + 7);
+        std::vector<float> r(static_cast<std::size_t>(width * height));
+        TestOperands operands;
+        Operand& view = operands.add(b, {width, rows, 1, 1});
+        view.first = 7;
+        view.stride[1] = pitch;
+        operands.add(r, {width, height, 1, 1});
+        runCode(f.kernel, operands.call({width, height, 1, 1}), {});
+        std::vector<float> expected;
+        for (std::int64_t y = 0; y < height; ++y)
+          for (std::int64_t x = 0; x < width; ++x)
+            expected.push_back(b[static_cast<std::size_t>(7 + rowOf(x, y, rows) * pitch + x)]);
+        CAPTURE(pitch, shared, height);
+        CHECK(r == expected);
+        const bool isCopied = pitch == 1024 && shared == 1 && height == 257;
+        CHECK((pitchSeen != pitch) == isCopied);
+        CHECK((isCopied ? pitchSeen * 4 % 2048 != 0 : true));
+      }
+    }
+  }
+}
+
 // ---- neighbours ------------------------------------------------------------------------------------
 
 constexpr std::uint8_t stencilReach = 2;

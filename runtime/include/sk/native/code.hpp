@@ -147,7 +147,7 @@ struct Entry {
 
 /// The native code of one kernel.
 struct Code {
-  static constexpr std::uint32_t currentVersion = 4;
+  static constexpr std::uint32_t currentVersion = 5;
   std::uint32_t version;
   std::uint32_t entryCount;
   const Entry* entries;
@@ -159,6 +159,8 @@ struct Code {
   /// numbers.
   std::uint8_t isReordered;
   std::uint8_t isLight;  ///< computing an element takes less time than recording what it scatters
+  /// Bit i: loops of the RunRows entries read vectors of parameter i, a gather, which all of their rows share.
+  std::uint64_t sharedGathers;
 };
 
 }  // namespace sk::native
