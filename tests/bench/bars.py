@@ -33,6 +33,19 @@ RATES = [
     ("compute", DIFFUSE, 1000, False),
 ]
 BEST_OF_ALL = ("mandelbrot", ["OpenMP", "PoCL", "OpenCL", "GLSL"], 1.0)
+RATIOS += [
+    ("native", ["power-law matrix"], ["Eigen", "OpenMP"], 1.0, LARGE),
+    ("native", ["conjugate gradients"], ["Eigen"], 4.0, 24),
+]
+# Our contender, program, the program whose bytes a second it is measured by, least part of them, log2 of the size of both.
+BANDWIDTHS = [("native", "5-point matrix", "saxpy", 0.9, 24)]
+# Our contender, program, log2 of the size, what a run is so many of, most seconds for one.
+TIMES = [
+    ("native", "conjugate gradients", 16, (128, "iteration"), 60e-6),
+    ("native", "conjugate gradients", 24, (16, "iteration"), 1 / 47),
+    ("native", "full multigrid, 128^3", 21, (1, "run"), 0.25),
+    ("native", "multigrid-CG, 150^3", 22, (1, "run"), 1.0),
+]
 COMPENSATED = 1.1  # times the plain sum's time, natively and on a GPU
 LINEAR = ["saxpy", "sum", "5-point stencil"]
 EXPONENT = 1.1  # of the size, in the time, from LARGE on: caches end on the way
@@ -51,6 +64,8 @@ def judge(found):
                  if found.sizes(program) and ours in found.ours() and is_software(found) == in_software]
     program, peers, least = BEST_OF_ALL
     rows.append(ratio_row(found, program, found.ours(), peers, least, LARGE))
+    rows += [bandwidth_row(found, *bar) for bar in BANDWIDTHS if found.sizes(bar[1])]
+    rows += [time_row(found, *bar) for bar in TIMES if found.sizes(bar[1])]
     rows.append(compensated_row(found, "native"))
     if "PyTorch" in found.peers():
         rows.append(compensated_row(found, "compute"))
@@ -104,6 +119,29 @@ def rate_row(found, program, ours, least):
         return [name, needed, NOT_MEASURED, ""]
     rate = 2.0 ** log2 / seconds / 1e6
     return [name, needed, f"{results.three_digits(rate)} M/s at 2^{log2}", verdict(rate >= least)]
+
+
+def bandwidth_row(found, ours, program, yardstick, least, log2):
+    """The bytes of a program in a second, as a part of those of another one."""
+    name, needed = f"{program}: {ours}'s bandwidth over that of {yardstick}", f"at least {least}"
+    rates = []
+    for each in (program, yardstick):
+        seconds = found.seconds((each, log2), ours)
+        if seconds is None:
+            return [name, needed, NOT_MEASURED, ""]
+        rates.append(found.problems[(each, log2)][ours]["bytes"] / seconds)
+    part = rates[0] / rates[1]
+    return [name, needed, f"{part:.2f} at 2^{log2}", verdict(round(part, 2) >= least)]
+
+
+def time_row(found, ours, program, log2, parts, most):
+    """Seconds of a part of a run."""
+    count, part = parts
+    name, needed = f"{program}: {ours}'s time for one {part}, 2^{log2}", f"at most {results.time_text(most)}"
+    seconds = found.seconds((program, log2), ours)
+    if seconds is None:
+        return [name, needed, NOT_MEASURED, ""]
+    return [name, needed, results.time_text(seconds / count), verdict(seconds / count <= most)]
 
 
 def compensated_row(found, ours):

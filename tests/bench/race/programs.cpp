@@ -26,6 +26,11 @@ Work gemmWork(double n) { return {2 * n * columnsOf(n), 4 * (2 * n + columnsOf(n
 Work sortWork(double n) { return {n * std::log2(n), 8 * n}; }
 Work sortPairsWork(double n) { return {n * std::log2(n), 16 * n}; }
 Work bodiesWork(double n) { return {20 * n * n, 28 * n}; }
+/// Conjugate gradients in two passes, without a stored matrix.
+Work gradientsWork(double n) {
+  const double steps = gradientSteps(n);
+  return {23 * n * steps, 32 * n * steps, steps};
+}
 Work fourierWork(double n) { return {5 * n * std::log2(n), 16 * n}; }
 
 }  // namespace
@@ -173,6 +178,32 @@ const std::vector<Program>& programs() {
        sparseProblem,
        sparseCheck,
        sparseOurs},
+      {"power-law matrix",
+       "rows",
+       {20},
+       {},
+       each<2 * powerLawRow, 8 * powerLawRow + 12>,
+       powerLawProblem,
+       powerLawCheck,
+       sparseOurs},
+      {"5-point matrix", "rows", {24}, {}, each<10, 28>, diagonalsProblem, sparseCheck, diagonalsOurs},
+      {"conjugate gradients",
+       "unknowns",
+       {16, 24},
+       {},
+       gradientsWork,
+       gradientsProblem,
+       gradientsCheck,
+       gradientsOurs},
+      {"full multigrid, 128^3", "unknowns", {21}, {}, each<0, 8>, nestedProblem, nestedCheck, nestedOurs},
+      {"multigrid-CG, 150^3",
+       "unknowns (rounded up)",
+       {22},
+       {},
+       each<0, 8>,
+       cycledProblem,
+       cycledCheck,
+       cycledOurs},
       {"rays: interior, primary",
        "rays",
        {20},

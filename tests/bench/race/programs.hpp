@@ -27,6 +27,7 @@ struct Check {
 struct Work {
   double operations;  ///< of floats; 0 where there are none to speak of
   double bytes;  ///< read and written once
+  double passes = 1;  ///< over the same memory, whose bytes are counted in each
 };
 
 using MakeOurs = std::unique_ptr<Task> (*)(sk::Device& device, const sk::CallOptions& options,

@@ -161,7 +161,8 @@ void Session::runProblem(const Program& program, int log2, bool withPeers) {
   fmt::print("{}, 2^{} {}\n", program.name, log2, program.element);
   std::fflush(stdout);
   // Everybody has arrays of his own, and there are the problem's and those that go to a check.
-  const double needed = program.work(sizeOf(log2)).bytes * static_cast<double>(entries.size() + 2);
+  const Work expected = program.work(sizeOf(log2));
+  const double needed = expected.bytes / expected.passes * static_cast<double>(entries.size() + 2);
   if (needed > availableMemory()) {
     fmt::print("  left out: {:.3g} GB of memory are needed, more than there is\n", needed / 1e9);
     return;

@@ -88,6 +88,20 @@ std::unique_ptr<Task> residualInTwoCalls(sk::Device& device, const sk::CallOptio
 Problem sparseProblem(int log2);
 Check sparseCheck(const Problem& problem);
 RACE_OURS(sparse);
+Problem powerLawProblem(int log2);
+Check powerLawCheck(const Problem& problem);
+
+Problem diagonalsProblem(int log2);
+RACE_OURS(diagonals);
+Problem gradientsProblem(int log2);
+Check gradientsCheck(const Problem& problem);
+RACE_OURS(gradients);
+Problem nestedProblem(int log2);
+Check nestedCheck(const Problem& problem);
+RACE_OURS(nested);
+Problem cycledProblem(int log2);
+Check cycledCheck(const Problem& problem);
+RACE_OURS(cycled);
 
 Problem hallPrimaryProblem(int log2);
 Problem hallDiffuseProblem(int log2);

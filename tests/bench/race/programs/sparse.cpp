@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// A sparse matrix, in compressed rows of 8 to 24 entries in a band, times a vector. ints: starts of rows, columns;
-// floats: values, x.
+// A sparse matrix, in compressed rows of 8 to 24 entries in a band, or with lengths by a power law and columns everywhere,
+// times a vector. ints: starts of rows, columns; floats: values, x.
 #include "programs/sparse.sk.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "constants.hpp"
 #include "our_task.hpp"
@@ -85,6 +86,36 @@ Problem sparseProblem(int log2) {
   p.floats = {numbers(starts.back(), 1), numbers(n, 2)};
   p.ints = {std::move(starts), std::move(columns)};
   return p;
+}
+
+Problem powerLawProblem(int log2) {
+  Problem p = grid(log2);
+  const std::int64_t n = p.size();
+  std::vector<std::int32_t> starts = {0}, columns;
+  for (const float part : numbers(n, 5)) {
+    const auto longest = static_cast<double>(std::min<std::int64_t>(n, 1 << 16));
+    const double length = 4 * std::pow(1.0 - double{part}, -1 / 1.2);
+    starts.push_back(starts.back() + static_cast<std::int32_t>(std::min(length, longest)));
+  }
+  const std::vector<float> places = numbers(starts.back(), 4);
+  for (std::size_t row = 0; row + 1 < starts.size(); ++row) {
+    const std::int32_t begin = starts[row], end = starts[row + 1];
+    const std::int64_t part = n / (end - begin);  // of the columns, with one entry
+    for (std::int32_t i = begin; i < end; ++i) {
+      const float inPart = places[static_cast<std::size_t>(i)] * static_cast<float>(part);
+      columns.push_back(static_cast<std::int32_t>((i - begin) * part + static_cast<std::int64_t>(inPart)));
+    }
+  }
+  p.floats = {numbers(starts.back(), 1), numbers(n, 2)};
+  p.ints = {std::move(starts), std::move(columns)};
+  return p;
+}
+
+/// Plain sums of tens of thousands of numbers in order are that far off.
+Check powerLawCheck(const Problem& p) {
+  Check check = sparseCheck(p);
+  check.tolerance = 1e-4;
+  return check;
 }
 
 Check sparseCheck(const Problem& p) {

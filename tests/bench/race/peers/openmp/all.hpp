@@ -32,5 +32,7 @@ std::unique_ptr<Task> clothOpenMp(const Problem& p);
 void raysOpenMp(const Problem& p, float* hits);
 void residualOpenMp(const Problem& p, float* result);
 void sparseOpenMp(const Problem& p, float* y);
+std::unique_ptr<Task> diagonalsOpenMp(const Problem& p);
+std::unique_ptr<Task> gradientsOpenMp(const Problem& p);
 
 }  // namespace race

@@ -34,4 +34,7 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   contenders.push_back({"cloth step", "OpenMP", clothOpenMp});
   for (const char* program : rayPrograms) add(program, twoEach, raysOpenMp);
   add("sparse matrix", asMany, sparseOpenMp);
+  add("power-law matrix", asMany, sparseOpenMp);
+  contenders.push_back({"5-point matrix", "OpenMP", diagonalsOpenMp});
+  contenders.push_back({"conjugate gradients", "OpenMP", gradientsOpenMp});
 }
