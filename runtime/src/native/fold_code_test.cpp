@@ -22,6 +22,7 @@ using native::EntryKind;
 using native::Extents;
 using native::Frame;
 using native::Operand;
+using program::Boundary;
 using program::Role;
 
 /// Calls fold(column, round, element number) for all elements of a fold, in whole groups of columns.
@@ -238,7 +239,7 @@ TEST_CASE("identities are stored where there is no element, in arrays of their o
 
 // ---- folds that use indices and neighbours --------------------------------------------------------
 
-/// Sums x * (1 + its index) and the neighbour to the right of each element, modulo 2^32.
+/// Sums x * (1 + its index), the neighbour to the right of each element, and five times the one below it, modulo 2^32.
 void placeFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_t columns,
                std::int64_t rounds, std::int64_t leaves, std::int64_t starts) {
   auto* total = static_cast<std::uint32_t*>(state[0]);
@@ -248,6 +249,7 @@ void placeFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_
     const std::int64_t index = chunk->first[0] + i * chunk->step + 1000 * chunk->first[1];
     auto term = static_cast<std::uint32_t>(static_cast<std::int64_t>(x[i]) * (1 + index));
     term += static_cast<std::uint32_t>(static_cast<std::int64_t>(arrayOf<float>(chunk, 1)[i + 1]));
+    term += 5 * static_cast<std::uint32_t>(static_cast<std::int64_t>(arrayOf<float>(chunk, 2)[i]));
     total[k] = (starts != 0 && round == 0 ? 0 : total[k]) + term;
   });
 }
@@ -258,14 +260,17 @@ void addWords(const Frame*, void* const* state, void* const* later, std::int64_t
 }
 
 TEST_CASE("a fold knows the index and the neighbours of each element, in blocks of every shape") {
+  const Boundary boundary = GENERATE(Boundary::Clamp, Boundary::Wrap);
   TestKernel fold, combine;
   fold.add(Role::Input);
   program::Parameter& gather = fold.add(Role::Gather);
   gather.rank = 2;
   gather.usesNear = true;
+  gather.boundary = boundary;
   fold.add(Role::Accumulator, intElement);
   fold.slot(0);
   fold.slot(1, 1);
+  fold.slot(1, 0, 1);
   fold.entries = {entry(EntryKind::Fold, &placeFold)};
   combine.entries = {entry(EntryKind::Combine, &addWords)};
   program::Reduction reduction{};
@@ -284,12 +289,16 @@ TEST_CASE("a fold knows the index and the neighbours of each element, in blocks 
     foldCode(reduction, {operands.call(shape.domain), {{}, {1, 1, 1, 1}, {}}, shape.block}, {});
     for (std::int64_t row = 0; row < shape.domain[1]; ++row) {
       for (std::int64_t i = 0; i < shape.domain[0]; ++i) {
-        const auto at = [&](std::int64_t k) {
-          return static_cast<std::int64_t>(
-              x[static_cast<std::size_t>(row * shape.domain[0] + std::min(k, shape.domain[0] - 1))]);
+        const auto inside = [&](std::int64_t k, std::int64_t extent) {
+          return boundary == Boundary::Wrap ? k % extent : std::min(k, extent - 1);
+        };
+        const auto at = [&](std::int64_t k, std::int64_t y) {
+          return static_cast<std::int64_t>(x[static_cast<std::size_t>(
+              inside(y, shape.domain[1]) * shape.domain[0] + inside(k, shape.domain[0]))]);
         };
         expected[static_cast<std::size_t>(row / shape.block[1] * blocks[0] + i / shape.block[0])] +=
-            static_cast<std::uint32_t>(at(i) * (1 + i + 1000 * row) + at(i + 1));
+            static_cast<std::uint32_t>(at(i, row) * (1 + i + 1000 * row) + at(i + 1, row) +
+                                       5 * at(i, row + 1));
       }
     }
     CAPTURE(shape.domain[0], shape.domain[1], shape.block[0], shape.block[1]);

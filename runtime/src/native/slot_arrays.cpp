@@ -221,6 +221,10 @@ SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t
 }
 
 void SlotArrays::moveTo(const Extents& first, std::size_t wanted, std::size_t placed) {
+  const bool isNext = wanted_ == 1 && wanted == 1 && placed_ == 1 && placed == 1 && first[1] == at_[1] + 1 &&
+                      first[2] == at_[2] && first[3] == at_[3];
+  at_ = first;
+  if (isNext) return moveToNext();
   wanted_ = wanted;
   placed_ = placed;
   isAnyOutside_ = false;
@@ -239,6 +243,25 @@ void SlotArrays::moveTo(const Extents& first, std::size_t wanted, std::size_t pl
       for (std::size_t k = 0; k < placed; ++k)
         to[k * width].first = array.held + rows[k * slots].first * array.bytes.held;
     }
+  }
+}
+
+/// Moves one row down to `at_`: finds out only where an index leaves the stream, or repeats.
+void SlotArrays::moveToNext() {
+  isAnyOutside_ = false;
+  for (std::size_t s = 0; s < slots_; ++s) {
+    const Slot& slot = layout_.slots()[s];
+    Row& row = rows_[s];
+    const std::int64_t before = row.first;
+    if (slot.evenRows.begin <= at_[1] && at_[1] < slot.evenRows.end) {
+      row.first += slot.rowStep;
+    } else {
+      row = rowAt(slot, at_, at_[1]);
+    }
+    isAnyOutside_ = isAnyOutside_ || row.isOutside;
+    if (!slot.isInPlace) continue;
+    for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a)
+      inRow_[a].first += (row.first - before) * layout_.arrays()[a].bytes.held;
   }
 }
 

@@ -177,6 +177,7 @@ class SlotArrays {
     std::int64_t bytes;  ///< size of an element; 0 for scratch memory
   };
 
+  void moveToNext();
   static Row rowAt(const Slot& slot, native::Extents first, std::int64_t y);
   void findRows(const Slot& slot, const native::Extents& first, Row* rows) const;
   Row& rowOf(std::size_t row, std::size_t slot) { return rows_[row * slots_ + slot]; }
@@ -202,6 +203,7 @@ class SlotArrays {
   const SlotLayout& layout_;
   std::size_t slots_, width_;  ///< number of slots, and of arrays of a row
   std::size_t wanted_ = 0, placed_ = 0;  ///< numbers of rows
+  native::Extents at_{};  ///< an element of the first row
   CallMemory memory_;
   std::pmr::vector<Row> rows_;
   std::pmr::vector<ArrayRow> inRow_;
