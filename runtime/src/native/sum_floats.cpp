@@ -12,6 +12,10 @@
 #include "native/scan_blocks.hpp"
 #include "native/scan_floats.hpp"
 
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+#endif
+
 namespace sk {
 
 namespace {
@@ -44,6 +48,44 @@ SK_FOR_V3 void addTerm(Doubles& sum, std::int64_t i, const float* x, const float
   addProduct(first, second, sum);
 }
 
+/// How many doubles the code for a CPU adds together.
+enum class Width { One, Four, Eight };
+
+#if defined(__x86_64__) && defined(__GNUC__)
+/// Marks functions that are called only on CPUs of x86-64-v4.
+#define SK_FOR_V4 [[gnu::target("arch=x86-64-v4")]]
+
+/// GCC 12 warns about the intrinsic without a mask.
+SK_FOR_V4 inline __m512d widenEight(const float* at) {
+  return _mm512_maskz_cvtps_pd(static_cast<__mmask8>(0xff), _mm256_loadu_ps(at));
+}
+SK_FOR_V4 inline void addEight(__m512d& sum, std::int64_t i, const float* x) {
+  sum = _mm512_add_pd(widenEight(x + i), sum);
+}
+/// The product is exact, so that there is one rounding, fused or not.
+SK_FOR_V4 inline void addEight(__m512d& sum, std::int64_t i, const float* x, const float* y) {
+  sum = _mm512_fmadd_pd(widenEight(x + i), widenEight(y + i), sum);
+}
+
+/// Sums a leaf of whole columns, on CPUs with 512-bit vectors: in half the operations that 256 bits take.
+template <class... Factors>
+SK_FOR_V4 void sumWideLeaf(double* columns, double start, std::int64_t rounds, const Factors*... factors) {
+  constexpr std::int64_t vectors = side / 8;
+  __m512d sums[vectors];
+#pragma GCC unroll 16
+  for (__m512d& sum : sums) sum = _mm512_set1_pd(start);
+  for (std::int64_t round = 0; round < rounds; ++round) {
+    const std::int64_t first = round * side;
+    for (std::int64_t ahead = 0; ahead < side; ahead += 16) {
+      (__builtin_prefetch(factors + first + ahead + fetchedAhead), ...);
+    }
+#pragma GCC unroll 16
+    for (std::int64_t v = 0; v < vectors; ++v) addEight(sums[v], first + v * 8, factors...);
+  }
+  std::memcpy(columns, sums, sizeof sums);
+}
+#endif
+
 /// Sums a leaf of whole columns, on CPUs with 256-bit vectors.
 template <class... Factors>
 SK_FOR_V3 void sumLeaf(double* columns, double start, std::int64_t rounds, const Factors*... factors) {
@@ -74,7 +116,7 @@ struct Division {
   std::int64_t columns, rounds, leaves, starts;
 };
 
-template <bool isWide, class... Factors>
+template <Width width, class... Factors>
 void sum(const Frame* frame, double* sums, const Division& division, const Factors*... factors) {
   const double start = static_cast<const SumFrame*>(frame)->start;
   const auto [columns, rounds, leaves, starts] = division;
@@ -82,11 +124,15 @@ void sum(const Frame* frame, double* sums, const Division& division, const Facto
   for (std::int64_t leaf = 0; leaf < leaves; ++leaf, reversed = nextReversed(reversed, leaves)) {
     double* const own = sums + reversed * columns;
     const std::int64_t first = leaf * rounds * columns;
-    if constexpr (isWide) {
-      if (columns == side && starts != 0) {
-        sumLeaf(own, start, rounds, factors + first...);
+    if (width != Width::One && columns == side && starts != 0) {
+#if defined(__x86_64__) && defined(__GNUC__)
+      if constexpr (width == Width::Eight) {
+        sumWideLeaf(own, start, rounds, factors + first...);
         continue;
       }
+#endif
+      sumLeaf(own, start, rounds, factors + first...);
+      continue;
     }
     if (starts != 0) std::fill_n(own, columns, start);
     sumAny(own, columns, rounds, factors + first...);
@@ -98,30 +144,39 @@ const float* factorOf(const Chunk* chunk, std::size_t number) {
   return static_cast<const float*>(chunk->arrays[number]);
 }
 
-template <bool isWide>
+template <Width width>
 void sumOfOne(const Frame* frame, const Chunk* chunk, void* const* state, std::int64_t columns,
               std::int64_t rounds, std::int64_t leaves, std::int64_t starts) {
-  sum<isWide>(frame, static_cast<double*>(state[0]), {columns, rounds, leaves, starts}, factorOf(chunk, 0));
+  sum<width>(frame, static_cast<double*>(state[0]), {columns, rounds, leaves, starts}, factorOf(chunk, 0));
 }
-template <bool isWide>
+template <Width width>
 void sumOfProducts(const Frame* frame, const Chunk* chunk, void* const* state, std::int64_t columns,
                    std::int64_t rounds, std::int64_t leaves, std::int64_t starts) {
-  sum<isWide>(frame, static_cast<double*>(state[0]), {columns, rounds, leaves, starts}, factorOf(chunk, 0),
-              factorOf(chunk, 1));
+  sum<width>(frame, static_cast<double*>(state[0]), {columns, rounds, leaves, starts}, factorOf(chunk, 0),
+             factorOf(chunk, 1));
 }
 
-/// True if the functions for 256-bit vectors run on this CPU.
-bool hasWideVectors() {
+/// The widest functions that run on this CPU.
+Width widthOfCpu() {
 #if defined(__x86_64__) && defined(__GNUC__)
-  return levelOfCpu() >= Level::V3;
-#else
-  return false;
+  if (levelOfCpu() >= Level::V3) return levelOfCpu() >= Level::V4 ? Width::Eight : Width::Four;
 #endif
+  return Width::One;
 }
+/// True if the functions for 256-bit vectors run on this CPU.
+bool hasWideVectors() { return widthOfCpu() != Width::One; }
 
+template <Width width>
 native::FoldFunction* sumOf(std::size_t factors) {
-  if (hasWideVectors()) return factors == 1 ? &sumOfOne<true> : &sumOfProducts<true>;
-  return factors == 1 ? &sumOfOne<false> : &sumOfProducts<false>;
+  return factors == 1 ? &sumOfOne<width> : &sumOfProducts<width>;
+}
+native::FoldFunction* sumOf(std::size_t factors) {
+  switch (widthOfCpu()) {
+    case Width::One: break;
+    case Width::Four: return sumOf<Width::Four>(factors);
+    case Width::Eight: return sumOf<Width::Eight>(factors);
+  }
+  return sumOf<Width::One>(factors);
 }
 
 void addColumns(const Frame*, void* const* state, void* const* later, std::int64_t columns) {
