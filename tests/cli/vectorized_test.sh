@@ -70,7 +70,8 @@ vectorised vmulps 'kernel void multiply(float a[][], float b[][], out float c<>)
   for (int k = 0; k < extentof(a).x; ++k) c += a[p.y][k] * b[k][p.x];
 }'
 # The vectors that all rows share are those of b, whose bit says so (Code::sharedGathers).
-"$skc" --emit=llvm --target-triple=x86_64-linux-gnu --levels=x86-64-v3 kernel.sk | grep -q '_multiply = hidden constant .*, i64 2 }' ||
+"$skc" --emit=llvm --target-triple=x86_64-linux-gnu --levels=x86-64-v3 kernel.sk >kernel.ll
+grep -q '_multiply = hidden constant .*, i64 2 }' kernel.ll ||
   { echo "broken: the code does not say that rows of a product of matrices share b"; exit 1; }
 vectorised vmulps 'kernel void leap(int by, [[wrap]] float a[], out float r<>) {
   int i = indexof(r).x;
