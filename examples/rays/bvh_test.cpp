@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "bvh_engine.hpp"
-#include "scene.hpp"
+#include "picture_test.hpp"
 #include "shapes.hpp"
 #include "soup_test.hpp"
 #include "study.hpp"
-#include "support/written_file.hpp"
 #include "wide_bvh.hpp"
 
 namespace rays {
@@ -178,14 +177,7 @@ through = [0, -0.3, 0]
 material = "grey"
 )";
   const auto imageBy = [&](sk::Device& device, const std::string& settings) {
-    const examples::WrittenFile file(scene + std::string("[bvh]\n") + settings, "written_wavefront.toml");
-    const Scene read = readScene(file.path(), {});
-    const std::unique_ptr<Engine> engine = read.engines.at("bvh")(device, read.model);
-    const std::unique_ptr<Renderer> renderer = engine->renderer(read.picture);
-    for (int i = 0; i < 2; ++i) renderer->pass(i);
-    std::vector<float> parts;
-    for (const sk::float3& p : renderer->image()) parts.insert(parts.end(), {p.x, p.y, p.z});
-    return parts;
+    return pictureBy(device, scene + std::string("[bvh]\n") + settings, "written_wavefront.toml", "bvh", 2);
   };
   sk::Device native = sk::Device::native();
   const std::vector<float> expected = imageBy(native, "machine = \"megakernel\"\n");
@@ -198,7 +190,7 @@ material = "grey"
     sum += double(expected[i]);
     difference += double(drawn[i]) - double(expected[i]);
   }
-  // Of 768 paths, few go another way because of a rounding.
+  // Roundings send a few of the 768 paths another way.
   CHECK(std::abs(difference) < 0.01 * sum);
 }
 
