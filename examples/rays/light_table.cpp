@@ -163,4 +163,8 @@ LightTable lightTable(const Model& model) {
   return table;
 }
 
+bool hasLight(const Model& model) {
+  return lightTable(model).count > 0 || luminance(model.environment.colour) > 0;
+}
+
 }  // namespace rays

@@ -35,4 +35,7 @@ struct LightTable {
 
 LightTable lightTable(const Model& model);
 
+/// Returns false if every picture of the model is black: no light, no shape that emits, and a black environment.
+bool hasLight(const Model& model);
+
 }  // namespace rays

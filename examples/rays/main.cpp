@@ -2,7 +2,9 @@
 //
 // rays: pictures and hits of scene files, by the engine that the scene asks for.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -21,6 +23,7 @@
 #include "exposure.hpp"
 #include "hits_file.hpp"
 #include "layers.hpp"
+#include "light_table.hpp"
 #include "live.hpp"
 #include "reference.hpp"
 #include "render.hpp"
@@ -51,6 +54,11 @@ struct Settings {
   bool account = false;
 };
 
+/// CLI::Range lets NaN pass, since NaN is neither below nor above its bounds.
+std::string refuseNan(const std::string& text) {
+  return std::isnan(std::strtod(text.c_str(), nullptr)) ? fmt::format("'{}' is no number", text) : "";
+}
+
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "what to see: a TOML file, as in examples/rays/scenes");
   std::string engines = "in place of the scene's:";
@@ -61,11 +69,13 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--samples", s.samples, "for each pixel, in place of the scene's")
       ->check(CLI::Range(1, 1'000'000));
   cli.add_option("--seconds", s.seconds, "end after this time, whatever samples there are")
-      ->check(CLI::Range(0.0, 1e7));
+      ->check(CLI::Range(0.0, 1e7))
+      ->check(refuseNan);
   cli.add_option("--error", s.error,
                  "stop pixels whose 95 % interval is within this part of their brightness; 0: none; in place "
                  "of the scene's")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(CLI::Range(0.0, 1.0))
+      ->check(refuseNan);
   cli.add_option(
       "--resume", s.resume,
       "go on from this file where it exists, and keep it up to date; to the bit as without a break");
@@ -163,7 +173,11 @@ void makePicture(examples::Application& app, const Settings& s, const rays::Scen
   const rays::Rendering rendering = rays::render(*renderer, scene, {s.resume, device.name()});
   const bool isBlack = std::ranges::all_of(
       rendering.radiance, [](const sk::float3& r) { return r.x == 0 && r.y == 0 && r.z == 0; });
-  if (isBlack && rays::seesBacksAlone(*engine, scene.model))
+  if (isBlack && !rays::hasLight(scene.model))
+    fmt::print(stderr,
+               "rays: warning: the picture is black, because the scene has no light; add a [[light]], an "
+               "[environment] or a material with 'emission'\n");
+  else if (isBlack && rays::seesBacksAlone(*engine, scene.model))
     fmt::print(stderr,
                "rays: warning: the picture is black, and the camera sees nothing but the backs of surfaces; "
                "is it inside of a wall?\n");

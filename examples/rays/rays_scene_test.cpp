@@ -9,6 +9,7 @@
 #include "camera.hpp"
 #include "hits_file.hpp"
 #include "layers.hpp"
+#include "light_table.hpp"
 #include "support/written_file.hpp"
 
 namespace rays {
@@ -113,6 +114,17 @@ TEST_CASE("an empty mesh is reported") {
   CHECK(scene.model.triangles.empty());
   REQUIRE(scene.warnings.size() == 1);
   CHECK_THAT(scene.warnings[0], Catch::Contains("the mesh has no faces"));
+}
+
+TEST_CASE("a scene without light is told from one with any") {
+  CHECK_FALSE(hasLight(read("").model));
+  CHECK_FALSE(hasLight(read("[[sphere]]\n[[material]]\nname = \"white\"\n").model));
+  CHECK(hasLight(read("[environment]\ncolour = [0, 0, 1]\n").model));
+  CHECK(hasLight(read("[[light]]\ntype = \"sun\"\n").model));
+  CHECK(hasLight(read("[[light]]\nintensity = [1, 0, 0]\n").model));
+  const char* lamp = "[[material]]\nname = \"lamp\"\nemission = [1, 1, 1]\n";
+  CHECK_FALSE(hasLight(read(lamp).model));
+  CHECK(hasLight(read(std::string(lamp) + "[[sphere]]\nmaterial = \"lamp\"\n").model));
 }
 
 TEST_CASE("errors in scenes name the line and the column") {
