@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What a scene's kernels cost beside those that have everything a scene may name, measured on the scene itself.
+// Compares the cost of a scene's specialized kernels with kernels that support every feature, measured on the scene itself.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Whether pictures by different engines, machines and devices are one picture but for noise.
+// Compares pictures by different engines, machines and devices: they may differ by noise alone.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct Mode {
 /// Every engine, and of each every machine and every way through the scene. The first is the default.
 std::vector<Mode> allModes();
 
-/// What a mode makes of a scene.
+/// The picture of a scene by one mode.
 struct Result {
   std::vector<sk::float3> radiance;
   std::vector<sk::float3> variance;  ///< of the pixels' means

@@ -29,7 +29,7 @@ struct Bounds {
 };
 
 Bounds boundsOf(const Triangle& triangle);
-/// By 2^-20 of the radius more, since the sphere's test rounds more often than boxes do.
+/// Larger by 2^-20 of the radius, since the sphere's test rounds more often than the test of boxes.
 Bounds boundsOf(const Sphere& sphere);
 
 /// A leaf has `count` > 0 shapes from `first` on in Bvh::order; else its children are nodes `first` and `first` + 1.

@@ -38,7 +38,7 @@ Camera turned(const Camera& camera, double right, double upwards) {
   const double distance = length(out), height = std::asin(std::clamp(dot(normalized(out), up), -1.0, 1.0));
   const double steepest = std::numbers::pi / 2 - 0.01;
   const double to = std::clamp(height + upwards, -steepest, steepest);
-  // Of the plane that `up` stands on: the direction of the camera, and the one to its right.
+  // Both lie in the plane perpendicular to `up`: the direction to the camera, and the direction to its right.
   const Vector flat = normalized(out - dot(out, up) * up), aside = cross(up, flat);
   const Vector around = std::cos(right) * flat + std::sin(right) * aside;
   Camera moved = camera;

@@ -14,7 +14,7 @@ struct View {
   Vector origin, corner, across, down;
 };
 
-/// Throws std::runtime_error where the camera looks nowhere or along its own `up`.
+/// Throws std::runtime_error if `from` equals `to`, or if the camera looks along its `up`.
 View viewOf(const Camera& camera, int width, int height);
 
 /// Row by row from the top left, through the centres of pixels. The camera's lens does not count.
@@ -24,7 +24,7 @@ std::vector<Ray> primaryRays(const Camera& camera, int width, int height);
 /// along `up`.
 Camera turned(const Camera& camera, double right, double upwards);
 
-/// The camera at another distance from what it looks at, and so is what is sharp.
+/// Moves the camera to another distance from its target, and the plane in focus with it.
 Camera approached(const Camera& camera, double factor);
 
 }  // namespace rays

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Pearson's test of counts against what a density lets expect.
+// Pearson's chi-square test of counts against the counts that a density predicts.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace rays {
 
 /// How many standard deviations chi square is above its mean, by the cube root that makes it nearly normal (E. Wilson and M. Hilferty, 1931).
-/// `expected` are probabilities; what they lack to 1 is a bin of its own, and so is all that fewer than 5 are expected of. Infinite where
-/// something was counted that cannot be.
+/// `expected` are probabilities. What they lack to 1 is one more bin, and bins with fewer than 5 expected counts are merged into one. Infinite if
+/// an impossible bin has counts.
 inline double chiSquareDeviation(const std::vector<double>& counts, const std::vector<double>& expected) {
   const double n = std::accumulate(counts.begin(), counts.end(), 0.0);
   double chiSquare = 0.0, restCount = 0.0, restExpected = 0.0;
@@ -44,7 +44,7 @@ class SquareBins {
   explicit SquareBins(int side)
       : side_(side), counts_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side)) {}
 
-  /// Outside of the square, the nearest bin counts.
+  /// Points outside the square count in the nearest bin.
   void add(double x, double y) {
     const auto bin = [&](double c) { return std::clamp(static_cast<int>(c * side_), 0, side_ - 1); };
     ++counts_[static_cast<std::size_t>(bin(y) * side_ + bin(x))];

@@ -19,7 +19,7 @@
 namespace rays {
 
 enum class HowToTraverse : std::uint8_t { Stack, Leaves, Skip };
-/// As scenes spell it.
+/// Returns the name that scene files use.
 std::string_view nameOf(HowToTraverse way);
 
 enum class HowToIntersect : std::uint8_t { Watertight, Moller };
@@ -27,8 +27,8 @@ enum class HowToIntersect : std::uint8_t { Watertight, Moller };
 /// Paths followed by one kernel to their end, or by a call for each segment of all paths that are left.
 enum class PathMachine : std::uint8_t { Megakernel, Wavefront };
 
-/// Whether rays are brought into an order first, in which neighbours go the same way: by the place where they begin, then the signs of their
-/// directions; or by these signs first.
+/// How rays are sorted before they are traced, so that neighbours go the same way: by the cell of the origin and then the signs of the direction
+/// (Origin), or by the signs first (Direction).
 enum class RaySort : std::uint8_t { None, Origin, Direction };
 
 struct DeviceSettings {
@@ -37,13 +37,13 @@ struct DeviceSettings {
   std::optional<int>
       nodes{};  ///< children of a node, 2 or `wideChildren`; none: what is faster. Skip needs 2
   HowToIntersect intersection = HowToIntersect::Watertight;
-  /// Single or Double. Numbers of shapes travel in floats, which halves would round.
+  /// Single or Double. Numbers of shapes are stored in the bits of floats, which halves would round.
   sk::Precision precision = sk::Precision::Single;
   PathMachine machine = PathMachine::Megakernel;
   RaySort sort = RaySort::None;  ///< of lists of rays, and of the wavefront machine
 };
 
-/// A gather must not be empty, and what no kernel reads may hold anything.
+/// Uploads the elements. An empty list becomes one element, because a gather must not be empty.
 template <class T>
 sk::Stream<T> streamOf(sk::Device& device, std::vector<T> elements) {
   if (elements.empty()) elements.push_back(T{});
@@ -52,7 +52,7 @@ sk::Stream<T> streamOf(sk::Device& device, std::vector<T> elements) {
   return stream;
 }
 
-/// What shading needs of shapes, in the order that hits count them in. Whoever owns them outlives it.
+/// The shapes that shading reads, in the order in which hits number them. A view; the owner must outlive it.
 struct ShapeView {
   sk::Device& device;
   const Model& model;
@@ -77,7 +77,7 @@ class DeviceScene {
   const Model& model() const { return *model_; }
   const Bvh& bvh() const { return bvh_; }
   ShapeView view() const { return {*device_, *model_, hasTriangles_, hasSpheres_, planes_, shapes_}; }
-  /// As the kernels know them: of two children or of eight, and once for each octant where there are links.
+  /// The number of nodes on the device: with two or eight children, and once per octant for links.
   std::int64_t nodeCount() const { return width_ == wideChildren ? wide_.size() / 4 : nodes_.size() / 2; }
   std::vector<std::string> account() const;
 

@@ -22,7 +22,7 @@ namespace rays {
 
 enum class Sampling : std::uint8_t { Random, Sobol };
 
-/// How paths reach what could be met by chance and by asking for it: lights with a surface, discs of suns, images of the sky.
+/// How paths reach lights with an extent (surfaces, discs of suns, images of the sky): by sampling the light, by scattered rays that meet it, or both.
 enum class Strategy : std::uint8_t {
   Both,  ///< both ways, weighted by the power heuristic
   Lights,  ///< only by rays to points of lights
@@ -49,14 +49,14 @@ class Renderer {
   virtual void pass(std::int64_t index) = 0;
   /// The samples of all passes so far (exposure.hpp).
   virtual Exposure& exposure() = 0;
-  /// Begins anew with another camera, in the model's lengths.
+  /// Discards all samples and continues with another camera, in the model's units of length.
   virtual void look(const Camera& camera) = 0;
   /// Lines for the report: what this picture required, and what it would have cost otherwise.
   virtual std::vector<std::string> account() { return {}; }
 
   /// The mean of all passes so far: radiance, row by row from the top. Waits for the device.
   std::vector<sk::float3> image();
-  /// The variance of that mean, for the samples as independent ones; empty before there are two.
+  /// The variance of image(), if the samples count as independent; empty before there are two.
   std::vector<sk::float3> variance();
 };
 
@@ -64,10 +64,10 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  /// The nearest hit of each ray; of hits at one distance, the one with the least id. As many hits as rays. The greatest
+  /// Finds the nearest hit of each ray, and the least id among hits at one distance. `hits` has the size of `rays`. The greatest
   /// component of a ray's direction lies between 1/2 and 4 (traceRays in trace.hpp sees to that).
   virtual void closest(std::span<const Ray> rays, std::span<Hit> hits) = 0;
-  /// 1 where anything is hit, else 0.
+  /// Sets `blocked` to 1 for rays that hit anything, else to 0.
   virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) = 0;
   /// Throws std::runtime_error where the engine does not know something that the scene names.
   virtual std::unique_ptr<Renderer> renderer(const Picture& picture) = 0;

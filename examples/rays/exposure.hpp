@@ -19,7 +19,7 @@ struct Tolerance {
   double least = 0.0;  ///< radiance
 };
 
-/// All that a picture goes on from, pixel by pixel in row-major order. `counts` and `active` are empty as long as no pixel has stopped.
+/// The state from which a picture can be resumed, pixel by pixel in row-major order. `counts` and `active` are empty until a pixel has stopped.
 struct Gathered {
   std::int64_t passes = 0;
   std::vector<sk::double3> sums, squares;
@@ -32,27 +32,27 @@ class Exposure {
  public:
   Exposure(sk::Device& device, const Picture& picture);
 
-  /// A sample of each pixel, for kernels to write before `add`; what stopped pixels have there does not count.
+  /// One sample of each pixel, which kernels write before `add`; the elements of stopped pixels are ignored.
   sk::Stream<sk::float3> radiance;
 
-  /// Whether some pixels have stopped. Kernels then need samples of `pixels` (x, y) alone, in row-major order, and of as many as that.
+  /// True if some pixels have stopped. Kernels then sample only the `activePixels()` pixels listed in `pixels()` (x, y), in row-major order.
   bool isSparse() const { return bool(active_); }
   const sk::Stream<sk::int2>& pixels() const { return pixels_; }
   std::int64_t activePixels() const { return isSparse() ? pixels_.size() : radiance.size(); }
-  /// Where kernels write one sample for each of `pixels`, which `deliver` brings to `radiance`.
+  /// Kernels write one sample for each of `pixels()` here, and `deliver` scatters them to `radiance`.
   sk::Stream<sk::float3>& list() { return list_; }
   void deliver();
 
   void add();
   /// Stops pixels that are good enough, and returns how many are not. Needs two samples at least.
   std::int64_t narrow(const Tolerance& tolerance);
-  /// Begins anew.
+  /// Discards all samples.
   void clear();
 
   std::int64_t passes() const { return passes_; }
   /// The mean of each pixel. Waits for the device, as all that follow.
   std::vector<sk::float3> image();
-  /// Of that mean, for the samples as independent ones; empty before there are two.
+  /// The variance of image(), if the samples count as independent; empty before there are two.
   std::vector<sk::float3> variance();
   std::vector<int> counts();
   Gathered gathered();
@@ -60,7 +60,7 @@ class Exposure {
   void restore(const Gathered& gathered);
 
  private:
-  /// Of the picture's shape, or one for all pixels.
+  /// The number of samples of each pixel; one element if it is the same for all pixels.
   const sk::Stream<int>& countStream();
   void listPixels();
 

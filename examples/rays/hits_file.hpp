@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Rays from a text file and hits to a table, so that anyone can compare with a tracer of theirs.
+// Reads rays from a text file and writes hits to a table, so that they can be compared with those of another tracer.
 #pragma once
 
 #include <filesystem>

@@ -19,7 +19,7 @@ namespace rays {
 
 struct KnownPicture {
   std::string name;
-  /// Of the camera, materials, shapes and lights; lengths are those of a scene file.
+  /// Holds camera, materials, shapes and lights; its lengths are in the units of the scene file.
   Model model{};
   double radiance = 0.0;  ///< NaN: not known, so that ways to compute it can only agree
   int depth = 2;  ///< segments of paths

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What stands beside a picture for whoever works on with it: distance, normal, albedo and id of what each pixel's centre sees, the
-// variance of its mean, and how many samples that has. Any engine has them.
+// Auxiliary images for compositing and denoising: distance, normal, albedo and id of what each pixel's centre sees, the variance of its mean, and
+// its number of samples. Every engine provides them.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ std::vector<Layer> layersOf(Exposure& exposure);
 /// (of the material, textures included), "id" (-1: nothing).
 std::vector<Layer> layersOf(Engine& engine, const Model& model, const Picture& picture);
 
-/// Whether all that the camera sees, by some rays, are backs of surfaces that are not glass, as inside of a wall.
+/// Returns true if a sample of the camera's rays meets only the backs of opaque surfaces, as it does from within a wall.
 bool seesBacksAlone(Engine& engine, const Model& model);
 
 /// PREFIX_NAME.pfm for each. Throws std::runtime_error where a file cannot be written.

@@ -126,7 +126,7 @@ void runLive(Scene& scene, const std::string& name) {
   std::int64_t samples = 0;
   double passMilliseconds = 1.0;
   while (window.isOpen()) {
-    // As many samples as 50 ms allow, because showing them costs time, too.
+    // A frame takes the samples that fit into 50 ms, because showing them costs time, too.
     const auto due = static_cast<std::int64_t>(50.0 / passMilliseconds);
     const std::int64_t end = std::min(samples + std::clamp<std::int64_t>(due, 1, 16), scene.output.samples);
     if (!show.paused && samples < end) {

@@ -22,8 +22,8 @@ const CubeTable& cubeTable();
 /// edge is 3 times that of the point where it begins, plus its axis. Where the field's border is not below 0, each two triangles share an edge.
 std::vector<sk::int3> surfaceOf(sk::Device& device, const sk::Stream<float>& field);
 
-/// The wall along the gyroid sin x cos y + sin y cos z + sin z cos x = 0, within a ball 0.96 wide, of so many cells along each side of
-/// the cube from -1/2 to 1/2. It repeats `turns` times over this cube; `thickness` bounds its function. With normals. Closed.
+/// A closed wall along the gyroid sin x cos y + sin y cos z + sin z cos x = 0, with normals, cut to a ball of diameter 0.96. The cube from -1/2 to
+/// 1/2 has `cells` cells along each side and `turns` periods of the surface; the wall is where the function's magnitude is below `thickness`.
 Mesh gyroid(sk::Device& device, int cells, double turns, double thickness);
 
 }  // namespace rays

@@ -51,7 +51,7 @@ struct Triangle {
   std::int32_t material = 0;
 };
 
-/// What shading wants to know of a triangle's corners; normals are zero where the mesh has none.
+/// Normals and texture coordinates of a triangle's corners; normals are zero if the mesh has none.
 struct Corners {
   std::array<sk::float3, 3> normals{};
   std::array<sk::float2, 3> texture{};
@@ -117,7 +117,7 @@ struct Model {
   }
 };
 
-/// Points from `least` to `most` times the direction count, both included.
+/// Hits count from `least` to `most` times the direction, both included.
 struct Ray {
   sk::float3 origin{};
   float least = 0.0f;

@@ -13,7 +13,7 @@
 
 namespace rays {
 
-/// What a call costs a device on the processor, whatever else runs beside it; of other devices the time that passes.
+/// Milliseconds of a call: the processor's time on native and software devices, the wall clock's on others.
 double milliseconds(const sk::Device& device, const std::function<void()>& call);
 
 class PassMeter {

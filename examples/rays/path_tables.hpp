@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What kernels that follow paths need beside shapes: what the scene has, its camera, materials, lights and textures, on a device.
+// The arguments of kernels that follow paths, apart from shapes: the scene's features, camera, materials, lights and textures, on a device.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ class PathsRenderer : public Renderer {
  protected:
   /// The features of the tables, with a list of pixels where some have stopped.
   int features() const { return tables_.features | (exposure_.isSparse() ? listed : 0); }
-  /// That list, or what stands for it where kernels do not read it.
+  /// The list of active pixels, or a placeholder if kernels do not read it.
   const sk::Stream<sk::int2>& pixels() const { return exposure_.isSparse() ? exposure_.pixels() : noPixels_; }
   /// Calls `follow(radiance)`, a kernel that makes a path of each element, for the active pixels, and adds the samples.
   template <class Follow>

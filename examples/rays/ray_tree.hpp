@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Rays in buckets of rays that are much alike, by a tree over their five dimensions: where they begin, and in which direction they go
+// Groups coherent rays into buckets by a tree over their five dimensions, origin and direction
 // (J. Arvo and D. Kirk, "Fast ray tracing by ray classification", 1987). A bucket that overflows splits, unless all its rays are the same.
 #pragma once
 
@@ -24,7 +24,7 @@ class RayTree {
   void insert(std::uint32_t ray);
   /// Rays that are in the tree.
   std::size_t size() const { return size_; }
-  /// Takes a bucket out, one of the fullest. None is empty while there are rays.
+  /// Removes and returns one of the fullest buckets. It is never empty while the tree has rays.
   std::vector<std::uint32_t> take();
 
  private:

@@ -14,7 +14,7 @@ namespace {
 using examples::vecOf;
 
 constexpr double clearlyInside = 1e-3;
-/// Of rays with shapes.
+/// Limits the tests of rays against shapes that a verification may take.
 constexpr std::size_t mostTests = 20'000'000;
 
 Vector at(const Ray& ray, double t) { return vecOf<double>(ray.origin) + t * vecOf<double>(ray.direction); }

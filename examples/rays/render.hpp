@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// From passes to a file: as many as there are samples or seconds, or until the picture is good enough; then tone mapping.
+// Renders passes until the samples, the seconds or the error are reached, then maps tones and writes a file.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ struct Resuming {
 /// Shows progress. Pictures without pixels need no pass. With `scene.output.error`, pixels are asked at `isLook`. Throws what state_file.hpp throws.
 Rendering render(Renderer& renderer, const Scene& scene, const Resuming& resuming = {});
 
-/// Whether pixels are asked after so many samples if they are good enough: at `least`, and then at 2^k and 3 * 2^k. Each look is one more
-/// chance to stop by accident, so that there are few.
+/// Returns true if pixels may stop after `samples` samples: at `least`, 2^k and 3 * 2^k. Each look is one more chance to stop by accident, so
+/// there are few.
 bool isLook(std::int64_t samples, std::int64_t least);
 
 /// A component of radiance as sRGB in [0, 1]. Filmic: the curve that K. Narkowicz fitted to ACES (2015).

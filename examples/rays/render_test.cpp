@@ -36,7 +36,7 @@ std::vector<sk::float3> radianceOf(sk::Device& device, const std::string& text) 
   return render(*engine->renderer(scene.picture), scene).radiance;
 }
 
-/// Of the green of all pixels, which count as samples of one number.
+/// Estimates the mean of the green component; each pixel counts as one sample of it.
 Estimate estimateOf(const std::vector<sk::float3>& pixels) {
   Estimate e;
   double squares = 0.0;

@@ -236,7 +236,7 @@ TEST_CASE("directions with zeros of either sign, of any length and of denormal c
     // The end of the ray is on the wall.
     double worst = 0.0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      // So many times a direction of denormal numbers is no float.
+      // The distance in units of a denormal direction may exceed every float.
       if (std::isinf(hits[i].t) && length(vecOf<double>(rays[i].direction)) < 0x1p-126) continue;
       const auto p = vecOf<double>(rays[i].origin) + double(hits[i].t) * vecOf<double>(rays[i].direction);
       worst = std::max(worst, std::abs(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - 0.5));

@@ -293,7 +293,7 @@ TEST_CASE("a sky's image is sampled in proportion to its pixels, which are unifo
   CHECK(within.deviationFromUniform() < bound);
   CHECK(worst < 1e-3);
 
-  // A ray that meets the sky by chance is told the same density.
+  // skyRadiance returns the same density for a ray that meets the sky by chance.
   const LightTable table = lightTable(model);
   sk::Stream<sk::float4> sky = streamOf(device, table.sky);
   sk::Stream<sk::float3> at = streamOf(device, directions);

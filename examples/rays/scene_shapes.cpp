@@ -35,7 +35,7 @@ struct Transform {
 
   Vector point(Vector p) const { return turned(p) + move; }
   Vector turned(Vector p) const { return {dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)}; }
-  /// Of a normal: the matrix of cofactors, which is the inverse's transpose but for its length.
+  /// Normals transform by the matrix of cofactors, which is the transpose of the inverse up to a factor.
   Vector normal(Vector n) const {
     return {dot(cross(rows[1], rows[2]), n), dot(cross(rows[2], rows[0]), n),
             dot(cross(rows[0], rows[1]), n)};
@@ -99,7 +99,7 @@ Mesh computedMesh(const SceneTable& table, std::size_t shape, int mostLevel) {
     case 3:
       return icosphere(std::min(whole("level", 4, 0, 8), mostLevel), table.flag("smooth").value_or(true));
     case 4: {
-      // As many triangles as other shapes have at that level, or nearly.
+      // At a given level a torus has about as many triangles as the other shapes.
       const int most = 3 << std::min(mostLevel, 20);
       const int around = std::min(whole("around", 64, 3, 4096), 2 * most),
                 across = std::min(whole("across", 32, 3, 4096), most);
@@ -216,7 +216,7 @@ Named readMesh(const SceneTable& table, std::size_t number, Reading& reading, Mo
   return named;
 }
 
-/// Of a table that may name another material than the mesh itself.
+/// Returns the material that the table names, or nullopt where it leaves the choice to the mesh.
 std::optional<std::int32_t> materialOf(const SceneTable& table, const Reading& reading) {
   return table.has("material") ? std::optional(materialNumber(table, "material", reading)) : std::nullopt;
 }

@@ -18,7 +18,7 @@ namespace {
 
 using examples::vecOf;
 
-/// Whether each edge of a triangle is there as often in the other direction.
+/// Returns true if every directed edge occurs as often as its reverse.
 bool isClosed(const std::vector<sk::int3>& triangles) {
   std::map<std::pair<int, int>, int> balance;
   for (const sk::int3& t : triangles) {
@@ -133,7 +133,7 @@ TEST_CASE("the teapot is 1 wide, stands on the ground and shows its outside") {
         Approx(1).epsilon(0.06));  // control points of the handle and the spout lie outside of them
   CHECK(most.z == Approx(-least.z));
   CHECK(agreement(mesh) > 0.98);
-  // Of the body alone, whose profile turned is about this large; an inside that shows would count less.
+  // The profile of the body, turned about its axis, encloses about this volume; inverted triangles would lower it.
   CHECK(volumeOf(mesh) == Approx(0.105).epsilon(0.15));
 }
 

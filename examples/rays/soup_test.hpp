@@ -18,7 +18,7 @@ struct SoupSize {
   int planes = 1;
 };
 
-/// Shapes within the cube from -1 to 1, with ids in an order that is not that of the triangles.
+/// Random shapes within the cube from -1 to 1, whose ids are a permutation of the triangles' order.
 inline Model soup(const SoupSize& size) {
   std::mt19937 random(11);
   const auto within = [&](float low, float high) { return low + (high - low) * float(random()) * 0x1p-32f; };
@@ -38,7 +38,7 @@ inline Model soup(const SoupSize& size) {
   return model;
 }
 
-/// From inside and outside, some of them short, some along an axis.
+/// Random rays from inside and outside of the cube; some are short, some run along an axis.
 inline std::vector<Ray> raysAtRandom(int count) {
   std::mt19937 random(17);
   const auto within = [&](float low, float high) { return low + (high - low) * float(random()) * 0x1p-32f; };

@@ -36,7 +36,7 @@ class Hash {
     }
     for (; i < bytes.size(); ++i) mix(static_cast<std::uint64_t>(bytes[i]));
   }
-  /// Of structs of numbers of 4 bytes, between which nothing lies.
+  /// T is a struct of 4-byte numbers without padding, so that equal elements have equal bytes.
   template <class T>
   void addAll(const std::vector<T>& elements) {
     add(std::as_bytes(std::span(elements)));

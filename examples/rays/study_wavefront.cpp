@@ -24,7 +24,8 @@ namespace {
 constexpr std::array sorts = {std::pair{RaySort::None, "none"}, std::pair{RaySort::Origin, "origin"},
                               std::pair{RaySort::Direction, "direction"}};
 
-/// Of the rays as they come; of rays sorted in each call; of rays that are sorted already.
+/// Millions of rays a second: `whole` includes the sort, if there is one; `sortedBefore` traces rays that were sorted beforehand (NaN without
+/// a sort).
 struct Rates {
   double whole, sortedBefore;
 };

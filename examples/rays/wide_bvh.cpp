@@ -12,7 +12,7 @@ namespace rays {
 namespace {
 
 constexpr int steps = 255;
-/// Of 255 steps: what kernels may be off, when they compute distances from bytes.
+/// Kernels compute distances from bytes, with an error below this part of a node's 255 steps.
 constexpr double room = 0x1p-20;
 constexpr std::int32_t nothing = -8;
 
