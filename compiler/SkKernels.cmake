@@ -17,6 +17,9 @@ cmake_policy(VERSION 3.25)
 # also links sk::runtime. With the option --quad the target also links libquadmath, where __float128
 # is another type than long double.
 #
+# The variable SK_LEVELS names the levels of the CPU that native code is compiled for, as skc's --levels does: native, for
+# programs that run on this machine alone, compiles soonest. Without it, native code has all levels.
+#
 # An object library must be linked by what uses it: $<TARGET_OBJECTS:...> has only what CMake compiles.
 function(sk_add_kernels target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "TARGETS;INCLUDE_DIRECTORIES;OPTIONS")
@@ -57,6 +60,9 @@ function(sk_native_options list)
       string(TOLOWER "${CMAKE_SYSTEM_PROCESSOR}-${CMAKE_SYSTEM_NAME}-gnu" triple)
       list(APPEND options "--target-triple=${triple}")
     endif()
+  endif()
+  if(SK_LEVELS AND NOT "${options}" MATCHES "--levels")
+    list(APPEND options "--levels=${SK_LEVELS}")
   endif()
   set(${list} ${options} PARENT_SCOPE)
 endfunction()

@@ -23,7 +23,7 @@ enum class Output : std::uint8_t { Object, Assembly, Llvm };
 
 struct Options {
   std::string triple = {};  ///< empty: the host
-  std::vector<std::string> levels = {};  ///< CPU levels, as levelNames() has them; empty: all
+  std::vector<std::string> levels = {};  ///< CPU levels, as levelNames() has them, or "native"; empty: all
   std::uint32_t lanes = 0;  ///< elements computed together; 0: chosen per kernel
   bool debugInfo = false;  ///< describes lines and variables of the .sk file
   bool optimizes = true;  ///< false: variables stay in memory, where debuggers find them

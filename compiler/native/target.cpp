@@ -98,16 +98,28 @@ const llvm::Target& findTarget(const std::string& triple) {
   return *target;
 }
 
-std::vector<CpuLevel> chosenLevels(const std::string& triple, const std::vector<std::string>& names) {
+/// The best of the target's levels that this machine has.
+std::string_view levelOfThisMachine(const std::string& triple) {
+  if (llvm::Triple(triple).getArch() != llvm::Triple(llvm::sys::getProcessTriple()).getArch()) {
+    throw Error(fmt::format("level 'native' is this machine's, which target '{}' is not; name its levels", triple));
+  }
+  const std::span<const CpuLevel> known = levelsOf(triple);
+  return std::ranges::find(known, known.size() == 1 ? Level::Base : sk::native::levelOfHardware(), &CpuLevel::level)->name;
+}
+
+std::vector<CpuLevel> chosenLevels(const std::string& triple, std::vector<std::string> names) {
   const std::span<const CpuLevel> known = levelsOf(triple);
   if (names.empty()) return {known.begin(), known.end()};
+  for (std::string& name : names) {
+    if (name == "native") name = levelOfThisMachine(triple);
+  }
   for (const std::string& name : names) {
     if (std::ranges::find(known, name, &CpuLevel::name) != known.end()) continue;
     std::string list;
     for (const CpuLevel& level : known) list += fmt::format("{}{}", list.empty() ? "" : ", ", level.name);
     throw Error(known.size() == 1
                     ? fmt::format("target '{}' has no levels of the CPU; leave out --levels", triple)
-                    : fmt::format("unknown level '{}' of the CPU; use one of {}", name, list));
+                    : fmt::format("unknown level '{}' of the CPU; use one of {}, or native", name, list));
   }
   std::vector<CpuLevel> chosen;
   for (const CpuLevel& level : known) {

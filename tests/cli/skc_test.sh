@@ -170,6 +170,13 @@ run 0 -Iinclude -o unneeded --target=fragment,compute --target-triple=quantum-un
 silent
 refuses "unknown level 'x86-64-v9' of the CPU; use one of x86-64, x86-64-v3, x86-64-v4" \
   --target-triple=x86_64-linux-gnu --levels=x86-64,x86-64-v9 heat.sk
+other=aarch64-linux-gnu
+[[ $(uname -m) != aarch64 ]] || other=x86_64-linux-gnu
+refuses "level 'native' is this machine's" --target-triple="$other" --levels=native heat.sk
+run 0 -Iinclude -o here --levels=native heat.sk
+if [[ $(uname -m) == x86_64 ]]; then
+  (($(stat -c %s here/heat.sk.o) < $(stat -c %s heat.sk.o))) || broken "--levels=native is no smaller than all levels"
+fi
 refuses 'leave out --levels' --target-triple=aarch64-linux-gnu --levels=x86-64 heat.sk
 for lanes in 3 128; do
   refuses "$lanes lanes are not possible; use a power of 2 from 1 to 64" --lanes=$lanes heat.sk

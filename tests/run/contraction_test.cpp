@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include "contraction.sk.hpp"
+#include "sk/native/code.hpp"
 #include "sk/sk.hpp"
 #include "support/configuration_file.hpp"
 #include "support/devices.hpp"
@@ -25,7 +26,7 @@ bool codeFuses() {
 #if defined(SK_FUSES_NOTHING)
   return false;
 #elif defined(__x86_64__)
-  return __builtin_cpu_supports("x86-64-v3") != 0;
+  return sk::native::levelOfHardware() >= sk::native::Level::V3;
 #elif defined(__aarch64__)
   return true;
 #else

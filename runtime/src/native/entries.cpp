@@ -18,6 +18,7 @@ using native::Code;
 using native::Entry;
 using native::EntryKind;
 using native::Level;
+using native::levelOfHardware;
 
 std::span<const Entry> entriesOf(const Code& code) { return {code.entries, code.entryCount}; }
 
@@ -67,16 +68,6 @@ std::string_view nameOf(RealType real) {
        "its native code was compiled for {} and later CPUs alone, which this one is not (or SK_CPU says so); "
        "compile its .sk file with skc --levels=x86-64,...",
        nameOf(lowest->level));
-}
-
-Level levelOfHardware() {
-#if defined(__x86_64__) && defined(__GNUC__)
-  return __builtin_cpu_supports("x86-64-v4")   ? Level::V4
-         : __builtin_cpu_supports("x86-64-v3") ? Level::V3
-                                               : Level::Base;
-#else
-  return Level::Base;
-#endif
 }
 
 }  // namespace

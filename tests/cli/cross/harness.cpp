@@ -60,20 +60,10 @@ double someReal(std::int64_t i) {
   return std::ldexp(static_cast<double>((i * 7919 + 4000037) % 4093 - 2000), -8);
 }
 
-Level levelOfCpu() {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("x86-64-v4")   ? Level::V4
-         : __builtin_cpu_supports("x86-64-v3") ? Level::V3
-                                               : Level::Base;
-#else
-  return Level::Base;
-#endif
-}
-
 std::vector<const Entry*> entriesOf(const Code& code, EntryKind kind, Real real) {
   std::vector<const Entry*> found;
   for (const Entry& entry : std::span(code.entries, code.entryCount)) {
-    const bool runs = entry.level <= levelOfCpu() && entry.isContracted == 0;
+    const bool runs = entry.level <= levelOfHardware() && entry.isContracted == 0;
     if (entry.kind == kind && entry.real == real && runs) found.push_back(&entry);
   }
   return found;

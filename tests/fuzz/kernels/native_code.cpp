@@ -13,11 +13,14 @@
 #include "driver/native_library.hpp"
 #include "native/native.hpp"
 #include "program/stub.hpp"
+#include "sk/native/code.hpp"
 
 namespace fuzz {
 namespace {
 
 namespace fs = std::filesystem;
+using sk::native::Level;
+using sk::native::levelOfHardware;
 using skc::native::KernelRequest;
 
 /// A folder that is removed again.
@@ -90,8 +93,8 @@ std::vector<std::string> supportedLevels() {
   std::vector<std::string> levels;
 #if defined(__x86_64__) && defined(__GNUC__)
   levels.emplace_back("x86-64");
-  if (__builtin_cpu_supports("x86-64-v3")) levels.emplace_back("x86-64-v3");
-  if (__builtin_cpu_supports("x86-64-v4")) levels.emplace_back("x86-64-v4");
+  if (levelOfHardware() >= Level::V3) levels.emplace_back("x86-64-v3");
+  if (levelOfHardware() >= Level::V4) levels.emplace_back("x86-64-v4");
 #else
   levels.emplace_back();
 #endif

@@ -135,6 +135,17 @@ enum class Real : std::uint8_t { Float, Double, Quad };  ///< represents the lan
 /// one level.
 enum class Level : std::uint8_t { Base, V3, V4 };
 
+/// The highest level of this machine's CPU.
+inline Level levelOfHardware() {
+#if defined(__x86_64__) && defined(__GNUC__)
+  return __builtin_cpu_supports("x86-64-v4")   ? Level::V4
+         : __builtin_cpu_supports("x86-64-v3") ? Level::V3
+                                               : Level::Base;
+#else
+  return Level::Base;
+#endif
+}
+
 struct Entry {
   void (*function)();  ///< its type depends on `kind`
   EntryKind kind;
