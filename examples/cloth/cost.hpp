@@ -12,7 +12,7 @@
 
 namespace examples {
 
-/// Of one model: all for one step.
+/// What one step of a model costs.
 struct Cost {
   int streams = 0;
   double passes = 0;

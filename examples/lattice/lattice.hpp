@@ -79,7 +79,7 @@ class Lattice {
 /// The largest component of a velocity anywhere.
 double fastestOf(Lattice& lattice);
 
-/// Of the tables that a device has, the one that the model's density is looked up in.
+/// The reports on those tables of the device in which the model looks up its density.
 std::vector<sk::TableReport> tablesOf(const Model& model, const sk::Device& device);
 
 }  // namespace examples

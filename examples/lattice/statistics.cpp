@@ -36,7 +36,7 @@ struct Islands {
   std::vector<double> outlines;  ///< edges between cells
 };
 
-/// Of the cells where `inside` is true.
+/// The connected regions of the cells where `inside` is true.
 Islands islandsOf(std::int64_t width, std::int64_t height, const std::vector<bool>& inside) {
   Islands islands;
   std::vector<bool> seen(inside.size(), false);

@@ -31,7 +31,7 @@ std::vector<double> warmDisc(const Grid& g) {
   return values;
 }
 
-/// Of doubles, so exactly that its own roundings do not show.
+/// The sum of the values, with rounding errors that are negligible in doubles.
 double totalOf(const std::vector<double>& values) {
   return static_cast<double>(std::accumulate(values.begin(), values.end(), 0.0L));
 }

@@ -45,7 +45,7 @@ using GlFramebuffer = GlName<gl_remove::framebuffer>;
 using GlVertexArray = GlName<gl_remove::vertexArray>;
 using GlProgram = GlName<gl_remove::program>;
 
-/// Of so many bytes, undefined where `data` is null.
+/// A buffer of `bytes` bytes, with undefined contents if `data` is null.
 GlBuffer makeBuffer(std::int64_t bytes, const void* data, GLenum usage);
 GlVertexArray makeVertexArray();
 /// One level, linear, clamped to its edges. A depth texture compares, as a sampler2DShadow wants it, and is 1 outside.
@@ -53,7 +53,7 @@ GlTexture makeTexture(GLenum internalFormat, GLenum format, GLenum type, int wid
 GlTexture makeDepthTexture(int width, int height);
 /// A texture of a buffer's texels, for samplerBuffer.
 GlTexture makeBufferTexture(GLenum internalFormat, GLuint buffer);
-/// Of a colour texture (0: none) and a depth texture. Throws std::runtime_error where the driver cannot draw to them.
+/// A framebuffer with a colour texture (0: none) and a depth texture. Throws std::runtime_error if the driver cannot draw to them.
 GlFramebuffer makeFramebuffer(GLuint colour, GLuint depth);
 /// GLSL 3.30; every part is put behind the #version line. Throws std::runtime_error with the driver's message.
 GlProgram makeProgram(std::string_view vertex, std::string_view fragment);

@@ -29,7 +29,7 @@ struct Image {
 
 /// One colour everywhere; components are sRGB-encoded, in [0, 1].
 Image plainImage(int width, int height, const sk::float3& colour);
-/// Of width * height pixels in [0, 1] that are sRGB-encoded already (what is outside is clamped, NaN is black).
+/// An image of width * height sRGB-encoded pixels in [0, 1]; values outside are clamped, and NaN becomes black.
 Image imageOf(int width, int height, std::span<const sk::float3> pixels);
 /// Each pixel the mean of factor x factor ones, as light: the second half of supersampling. Sizes are multiples of the factor.
 Image reduced(const Image& image, int factor);

@@ -28,7 +28,7 @@ class SceneTable {
  public:
   bool has(std::string_view key) const;
   std::optional<SceneTable> table(std::string_view key) const;
-  /// Of [[key]], in the order of the file; none is an empty list.
+  /// The tables [[key]] in the order of the file; an empty list if there are none.
   std::vector<SceneTable> tables(std::string_view key) const;
 
   /// Integers are numbers, too. NaN and infinities are refused.

@@ -39,7 +39,7 @@ class Window {
   struct Size {
     int width, height;
   };
-  /// Of what is drawn to, in pixels; changes with the window.
+  /// The size of the framebuffer in pixels; changes with the window.
   Size size() const;
 
  private:
