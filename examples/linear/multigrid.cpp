@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -15,6 +16,8 @@ namespace linear {
 namespace {
 
 constexpr std::int64_t smallest = 3;  ///< extents that are not halved
+/// Dimensions are halved whose coefficient is at least this part of the largest: point smoothing leaves errors along weaker couplings.
+constexpr double strong = 0.25;
 constexpr int sweepsOnCoarsest = 8;  ///< of at most 3 elements along each dimension
 
 sk::Shape shapeOf(std::span<const std::int64_t> extents) {
@@ -130,9 +133,12 @@ Stencil coarsened(const Stencil& a) {
   Stencil coarse = a;
   std::array<std::int64_t, 3> extents{};
   const auto rank = static_cast<std::size_t>(a.grid.rank());
+  double strongest = 0.0;
+  for (std::size_t d = 0; d < rank; ++d)
+    if (a.grid[static_cast<int>(d)] > smallest) strongest = std::max(strongest, std::abs(a.along[d]));
   for (std::size_t d = 0; d < rank; ++d) {
     const std::int64_t n = a.grid[static_cast<int>(d)];
-    extents[d] = n > smallest ? n / 2 : n;
+    extents[d] = n > smallest && std::abs(a.along[d]) >= strong * strongest ? n / 2 : n;
     const double ratio = static_cast<double>(extents[d] + 1) / static_cast<double>(n + 1);
     coarse.along[d] = a.along[d] * ratio * ratio;
     coarse.centre += 2.0 * (a.along[d] - coarse.along[d]);

@@ -35,8 +35,8 @@ std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const Stencil&
                                               const Arithmetic& arithmetic,
                                               const MultigridSettings& settings);
 
-/// The stencil for a grid with half the elements along each dimension that has more than three: coefficients go with the square of the
-/// distance between elements.
+/// The stencil for a grid with half the elements along each dimension that has more than three, and whose coefficient is at least a quarter of
+/// the largest of these (semi-coarsening; Trottenberg et al., section 5.1): coefficients go with the square of the distance between elements.
 Stencil coarsened(const Stencil& a);
 
 }  // namespace linear

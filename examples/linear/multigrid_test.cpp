@@ -2,6 +2,7 @@
 //
 // What multigrid promises: a rate of convergence that does not depend on the grid, a symmetric preconditioner, nested iteration down to
 // the discretisation's error.
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
@@ -65,6 +66,19 @@ TEST_CASE("V(2,1)-cycles converge at one rate on every grid") {
   }
   CHECK(rateOf(device, poisson({15, 16, 17}), {.before = 2, .after = 1, .isSymmetric = false}) < 0.3);
   CHECK(rateOf(device, poisson({1, 1}), {}) < 0.01);
+}
+
+TEST_CASE("V(2,1)-cycles converge as fast where one dimension couples more strongly") {
+  sk::Device device = sk::Device::native();
+  for (const double ratio : {1e-3, 0.1, 10.0, 1e3}) {
+    CAPTURE(ratio);
+    const Stencil plane = poisson({45, 52}, std::array{1.0, ratio});
+    CHECK(rateOf(device, plane, {.before = 2, .after = 1, .isSymmetric = false}) < 0.2);
+    const Stencil solid = poisson({12, 14, 17}, std::array{1.0, ratio, 1.0});
+    CHECK(rateOf(device, solid, {.before = 2, .after = 1, .isSymmetric = false}) < 0.3);
+  }
+  CHECK_THROWS_WITH(poisson({3, 4}, std::array{1.0}), Catch::Contains("as many diffusivities, not 1"));
+  CHECK_THROWS_WITH(poisson({3, 4}, std::array{1.0, -2.0}), Catch::Contains("which -2 is not"));
 }
 
 TEST_CASE("A V-cycle is a symmetric preconditioner") {

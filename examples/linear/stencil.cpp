@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "stencil.hpp"
 
+#include <cmath>
 #include <stdexcept>
+
+#include <fmt/format.h>
 
 #include "fused.sk.hpp"
 #include "products.sk.hpp"
@@ -79,6 +82,22 @@ sk::float4 kernelCoefficients(const Stencil& a) {
 Stencil poisson(const sk::Shape& grid) {
   if (grid.rank() != 2 && grid.rank() != 3) throw std::runtime_error("a grid has two or three dimensions");
   return {.grid = grid, .centre = 2.0 * grid.rank(), .along = {-1.0, -1.0, grid.rank() == 3 ? -1.0 : 0.0}};
+}
+
+Stencil poisson(const sk::Shape& grid, std::span<const double> diffusivity) {
+  Stencil a = poisson(grid);
+  if (diffusivity.size() != static_cast<std::size_t>(grid.rank()))
+    throw std::runtime_error(fmt::format("a grid of {} dimensions needs as many diffusivities, not {}",
+                                         grid.rank(), diffusivity.size()));
+  a.centre = 0.0;
+  for (std::size_t d = 0; d < diffusivity.size(); ++d) {
+    if (!std::isfinite(diffusivity[d]) || diffusivity[d] <= 0.0)
+      throw std::runtime_error(
+          fmt::format("a diffusivity is finite and above 0, which {} is not", diffusivity[d]));
+    a.along[d] = -diffusivity[d];
+    a.centre += 2.0 * diffusivity[d];
+  }
+  return a;
 }
 
 std::vector<double> multiply(const Stencil& a, std::span<const double> x) {

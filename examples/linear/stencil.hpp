@@ -30,6 +30,9 @@ sk::float4 kernelCoefficients(const Stencil& a);
 
 /// Minus the Laplacian times the square of the grid's spacing: 2 rank in the centre, -1 beside it.
 Stencil poisson(const sk::Shape& grid);
+/// The same with a diffusivity for each dimension, 0 being the slowest. Throws std::runtime_error unless as many as the grid has dimensions are
+/// finite and above 0.
+Stencil poisson(const sk::Shape& grid, std::span<const double> diffusivity);
 
 std::vector<double> multiply(const Stencil& a, std::span<const double> x);
 SparseMatrix assemble(const Stencil& a);

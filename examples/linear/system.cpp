@@ -36,11 +36,33 @@ sk::Shape gridOf(std::string_view text) {
       fmt::format("'{}{}' is no grid; write {}WxH or {}WxHxD", gridPrefix, text, gridPrefix, gridPrefix));
 }
 
+/// "GRID" or "GRID:X,Y" or "GRID:X,Y,Z", with diffusivities in the order of the grid's extents.
+Stencil stencilOf(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  const sk::Shape grid = gridOf(text.substr(0, colon));
+  if (colon == std::string_view::npos) return poisson(grid);
+  std::vector<double> diffusivity;
+  std::string_view rest = text.substr(colon + 1);
+  while (true) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+    if (error != std::errc() || (!rest.empty() && rest.front() != ','))
+      throw std::runtime_error(
+          fmt::format("'{}{}' has no numbers after its grid; write one diffusivity for each dimension, as in "
+                      "{}64x64:1,1000",
+                      gridPrefix, text, gridPrefix));
+    diffusivity.insert(diffusivity.begin(), value);
+    if (rest.empty()) return poisson(grid, diffusivity);
+    rest.remove_prefix(1);
+  }
+}
+
 }  // namespace
 
 System::System(const std::string& matrix, const std::filesystem::path& rightHandSide) : description_(matrix) {
   if (matrix.starts_with(gridPrefix)) {
-    stencil_ = poisson(gridOf(std::string_view(matrix).substr(gridPrefix.size())));
+    stencil_ = stencilOf(std::string_view(matrix).substr(gridPrefix.size()));
     constexpr std::int64_t most = 0x7fffffff;
     if (stencil_->size() > most)
       throw std::runtime_error(fmt::format("a grid of {} elements is too large; at most {} can be solved",

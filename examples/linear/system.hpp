@@ -16,7 +16,8 @@ namespace linear {
 
 class System {
  public:
-  /// `matrix` is a Matrix Market file, or "poisson:WxH" or "poisson:WxHxD" for Poisson's equation on a grid with fixed ends. The right-hand side
+  /// `matrix` is a Matrix Market file, or "poisson:WxH" or "poisson:WxHxD" for Poisson's equation on a grid with fixed ends; ":X,Y" or
+  /// ":X,Y,Z" after it are diffusivities along the dimensions, in the order of the extents. The right-hand side
   /// is a file, or A times ones if there is none. Throws std::runtime_error if one of them is wrong.
   System(const std::string& matrix, const std::filesystem::path& rightHandSide);
   System(const System&) = delete;
