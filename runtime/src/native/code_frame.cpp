@@ -10,20 +10,19 @@ namespace sk {
 
 namespace {
 
-using native::Operand;
 using program::Role;
 
-bool isEmpty(const Operand& operand) {
+bool isEmpty(const native::Operand& operand) {
   return operand.components.empty() || std::ranges::count(operand.extent, 0) > 0;
 }
 
-bool isSmall(const Operand& operand) {
+bool isSmall(const native::Operand& operand) {
   std::int64_t last = operand.first;
   for (std::size_t d = 0; d < 4; ++d) last += (operand.extent[d] - 1) * operand.stride[d];
   return last <= std::numeric_limits<std::int32_t>::max();
 }
 
-native::Argument argumentOf(const Operand& operand) {
+native::Argument argumentOf(const native::Operand& operand) {
   native::Argument argument{};
   argument.components = operand.components.empty() ? nullptr : operand.components.data();
   argument.first = operand.first;
@@ -61,7 +60,7 @@ CodeFrame::CodeFrame(const program::Kernel& kernel, const native::Call& call,
   frame_.arguments = arguments_.data();
 }
 
-void CodeFrame::redirect(std::size_t parameter, const Operand& operand) {
+void CodeFrame::redirect(std::size_t parameter, const native::Operand& operand) {
   arguments_[parameter] = argumentOf(operand);
 }
 

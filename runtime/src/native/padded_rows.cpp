@@ -10,16 +10,15 @@
 namespace sk {
 
 using native::Extents;
-using native::Operand;
 
 namespace {
 
 constexpr std::int64_t padding = 2 * cacheLine;
 
-std::int64_t rowsOf(const Operand& from) { return from.extent[1] * from.extent[2] * from.extent[3]; }
+std::int64_t rowsOf(const native::Operand& from) { return from.extent[1] * from.extent[2] * from.extent[3]; }
 
 /// True if the rows of some scalar's array share few sets of a cache, and do not all fit there.
-bool hasConflicts(const Operand& from, const std::vector<std::size_t>& bytes) {
+bool hasConflicts(const native::Operand& from, const std::vector<std::size_t>& bytes) {
   constexpr std::int64_t halfPage = 2048;
   constexpr std::int64_t enough = 1 << 20;  // half of a core's second-level cache
   return std::ranges::any_of(bytes, [&](std::size_t size) {
@@ -30,7 +29,7 @@ bool hasConflicts(const Operand& from, const std::vector<std::size_t>& bytes) {
 
 /// True if copying takes little time beside the call: many blocks of rows read the gather, and it is not much larger than
 /// the domain, whose elements are all computed.
-bool pays(const Operand& from, const Extents& domain, std::int64_t rows) {
+bool pays(const native::Operand& from, const Extents& domain, std::int64_t rows) {
   constexpr std::int64_t fewestBlocks = 16;
   constexpr std::int64_t mostPerElement = 4;
   const std::int64_t elements = domain[0] * domain[1] * domain[2] * domain[3];
@@ -41,7 +40,7 @@ bool pays(const Operand& from, const Extents& domain, std::int64_t rows) {
 
 PaddedRows::PaddedRows(const program::Kernel& kernel, const native::Call& call, std::int64_t rows) {
   for (std::size_t i = 0; i < std::min<std::size_t>(call.operands.size(), 64); ++i) {
-    const Operand& from = call.operands[i];
+    const native::Operand& from = call.operands[i];
     if ((kernel.code->sharedGathers >> i & 1) == 0 || from.components.empty()) continue;
     std::vector<std::size_t> bytes;
     forEachScalar(*kernel.parameters[i].element, RealType::Float,
@@ -62,7 +61,7 @@ void PaddedRows::copyInto(CodeFrame& frame) {
         copy.memory.push_back(allocated(static_cast<std::size_t>(elements) * bytes));
         copy.arrays.push_back(copy.memory.back().get());
       }
-      Operand to = copy.from;
+      native::Operand to = copy.from;
       to.components = copy.arrays;
       to.first = 0;
       to.stride = copy.stride;
@@ -73,7 +72,7 @@ void PaddedRows::copyInto(CodeFrame& frame) {
 }
 
 void PaddedRows::copyRows(const Copy& copy, std::size_t scalar) {
-  const Operand& from = copy.from;
+  const native::Operand& from = copy.from;
   const auto bytes = static_cast<std::int64_t>(copy.bytes[scalar]);
   const auto* const source = static_cast<const std::byte*>(from.components[scalar]);
   std::byte* const target = copy.memory[scalar].get();
