@@ -31,7 +31,7 @@ shows '^6	  return twice \+ 1;$'                    # in a function that the ker
 shows '^#1 .*heat \(.*heat\.sk:21$'
 shows '^twice = \{21, 17, 25, 21\}$'
 
-address=$(nm "$program" | sed -n 's/^\([0-9a-f]*\) t .*_heat\.run$/\1/p')
+address=$(nm "$program" | sed -n 's/^\([0-9a-f]*\) t .*_heat\.run.*$/\1/p' | head -n 1)
 line=$(addr2line -e "$program" "$address")
 [[ $line == */debugger/heat.sk:9 ]] || { echo "broken: addr2line has $line"; exit 1; }
 echo "a debugger sees the kernel's lines and variables"
