@@ -85,6 +85,7 @@ class PointMatrix : public Matrix {
     y.fill(0.0f);
     if (value_.size() != 0) pointProduct.with(options())(value_, row_, column_, x, y);
   }
+  bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "points"; }
   std::int64_t stored() const override { return value_.size(); }
   std::int64_t bytes() const override { return 12 * value_.size(); }
@@ -138,6 +139,7 @@ class BucketMatrix : public Matrix {
     if (hasEmptyRows_ || buckets_.empty()) y.fill(0.0f);
     for (Bucket& b : buckets_) bucketProduct.with(options())(b.length, b.value, b.column, b.row, x, y);
   }
+  bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "buckets"; }
   std::int64_t stored() const override {
     std::int64_t sum = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "vectors.sk.hpp"
 
@@ -35,6 +36,14 @@ double Arithmetic::roundoff() const {
 void Matrix::multiply(const Vector& x, Vector& y, Vector& xy) {
   multiply(x, y);
   dot.with(foldOptions())(x, y, xy);
+}
+
+void Matrix::multiplyIn(const Arithmetic& arithmetic, const Vector& x, Vector& y) {
+  const sk::CallOptions options = std::exchange(options_, arithmetic.options());
+  const sk::CallOptions foldOptions = std::exchange(foldOptions_, arithmetic.foldOptions());
+  multiply(x, y);
+  options_ = options;
+  foldOptions_ = foldOptions;
 }
 
 void Matrix::fusedDirection(const Vector&, const Vector&, const Vector&, Vector&, Vector&) {

@@ -19,7 +19,7 @@ struct Arithmetic {
   sk::Storage vectors = sk::Storage::Single;
   sk::Accumulate accumulate = sk::Accumulate::Default;
 
-  /// Of calls that fold nothing, and of those that do.
+  /// Options of calls without folded outputs; reductions and calls that fold take foldOptions().
   sk::CallOptions options() const { return {.precision = precision}; }
   sk::CallOptions foldOptions() const { return {.accumulate = accumulate, .precision = precision}; }
   /// Sums keep all bits that they are computed in.
@@ -43,6 +43,12 @@ class Matrix {
   virtual void multiply(const Vector& x, Vector& y) = 0;
   /// The same, and xy, of one element, becomes x . y. Only for square matrices.
   virtual void multiply(const Vector& x, Vector& y, Vector& xy);
+
+  /// y = A x, computed in another arithmetic than the matrix was made for: its entries stay as they are stored.
+  void multiplyIn(const Arithmetic& arithmetic, const Vector& x, Vector& y);
+
+  /// Whether products in doubles are possible: results of reduces are rounded to floats, and scatter outputs hold floats.
+  virtual bool multipliesInDoubles() const { return true; }
 
   /// Whether an iteration of conjugate gradients costs less in two passes, of which each computes A p.
   virtual bool isFused() const { return false; }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// Iterative methods on a device: from x = 0, iterations that a sk::Loop repeats without the host. What limits them, what
-// comes of them, and when to begin anew is decided in solve.hpp.
+// Iterative methods on a device: from x = 0, iterations that a sk::Loop repeats without the host. solve.hpp decides what limits them, what
+// came of them, and when they begin anew.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include <sk/sk.hpp>
 
@@ -27,17 +28,23 @@ class Method {
   void begin(std::span<const double> rightHandSide, double limit);
   /// The same with a right-hand side on the device, of the matrix' domain.
   void begin(const Vector& rightHandSide, double limit);
-  /// Iterates until the state is no longer Running, and `most` times at the most. Returns how often.
-  std::int64_t run(std::int64_t every, std::int64_t most);
+  /// The same for a right-hand side that has been written to rightHandSide().
+  void begin(double limit);
+  Vector& rightHandSide() { return r_; }
+  /// Iterates until the state is no longer Running. Returns after about `every` iterations, or after `left`, with their number.
+  virtual std::int64_t run(std::int64_t every, std::int64_t left);
 
   State state() const;
   /// Iterations that make the residual less than a hundredth smaller, after which the method has stagnated.
   virtual std::int64_t patience() const { return 500; }
   /// The squared residual that the method itself computes.
   double residualSquared() const;
-  std::vector<double> solution() const { return x_.readReals(); }
-  /// The solution on the device, until the next begin().
-  const Vector& x() const { return x_; }
+  /// What the iterations so far have come to, on the device.
+  virtual const Vector& x() { return x_; }
+  std::vector<double> solution() { return x().readReals(); }
+
+  sk::Device& device() const { return device_; }
+  Matrix& matrix() const { return matrix_; }
 
  protected:
   Method(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner, const Arithmetic& arithmetic);
@@ -63,19 +70,48 @@ class Method {
 
  private:
   /// From r_.
-  void startWithin(double limit);
 
   sk::Loop loop_;
+};
+
+/// What some methods need besides a matrix.
+struct MethodSettings {
+  int restart = 30;  ///< steps after which gmres begins anew
+  double omega = 1.0;  ///< relaxation factor of sor, between 0 and 2
+  const Operator* a = nullptr;  ///< the matrix on the host, for sor; must outlive the method's construction
+};
+
+struct MethodParts {
+  sk::Device& device;
+  Matrix& matrix;
+  Preconditioner* preconditioner;  ///< null for none
+  const Arithmetic& arithmetic;
+  MethodSettings settings;
 };
 
 struct MethodKind {
   std::string_view name;  ///< of --solver
   std::string_view does;
   bool needsSymmetry;
-  std::unique_ptr<Method> (*make)(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner,
-                                  const Arithmetic& arithmetic);
+  int vectors;  ///< that it allocates, for estimates of memory; gmres has one more for each step
+  std::unique_ptr<Method> (*create)(const MethodParts& parts);
+
+  std::unique_ptr<Method> make(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner,
+                               const Arithmetic& arithmetic, const MethodSettings& settings = {}) const {
+    return create({device, matrix, preconditioner, arithmetic, settings});
+  }
 };
 
 std::span<const MethodKind> methodKinds();
+
+std::unique_ptr<Method> makeGradients(const MethodParts& parts);
+std::unique_ptr<Method> makePipelinedGradients(const MethodParts& parts);
+std::unique_ptr<Method> makeMinimalResiduals(const MethodParts& parts);
+std::unique_ptr<Method> makeGeneralizedMinimalResiduals(const MethodParts& parts);
+std::unique_ptr<Method> makeBiconjugateGradients(const MethodParts& parts);
+std::unique_ptr<Method> makeStationary(const MethodParts& parts);
+/// Throws std::runtime_error if a diagonal entry is 0 or omega is not between 0 and 2.
+std::unique_ptr<Method> makeRelaxation(const MethodParts& parts);
+std::unique_ptr<Method> makeChebyshevIteration(const MethodParts& parts);
 
 }  // namespace linear

@@ -41,7 +41,7 @@ Operator operatorOf(const SparseMatrix& a) {
     o.rowSquares.push_back(squares);
     if (o.diagonal[i] != 0.0) o.jacobiBound = std::max(o.jacobiBound, sum / std::abs(o.diagonal[i]));
   }
-  o.asymmetry = asymmetry(a);
+  o.sparse = &a;
   o.multiply = [&a](std::span<const double> x) { return linear::multiply(a, x); };
   o.hasConstantKernel = annihilatesOnes(o);
   o.scale = powerOfTwo(o.infinityNorm);
@@ -67,6 +67,12 @@ Operator operatorOf(const Stencil& a) {
   o.scale = powerOfTwo(o.infinityNorm);
   return o;
 }
+
+std::string findAsymmetry(const Operator& a) {
+  return a.asymmetry.empty() && a.sparse != nullptr ? asymmetry(*a.sparse) : a.asymmetry;
+}
+
+SparseMatrix sparseOf(const Operator& a) { return a.sparse != nullptr ? *a.sparse : assemble(*a.stencil); }
 
 SparseMatrix scaled(SparseMatrix a, double scale) {
   for (double& v : a.value) v *= scale;

@@ -23,10 +23,11 @@ struct Operator {
   std::vector<double> rowSquares;  ///< the sum of squares of each row
   /// The largest of (sum of magnitudes of a row) / |diagonal|: bounds the eigenvalues of the matrix after Jacobi's scaling.
   double jacobiBound = 0.0;
-  /// Why the matrix is not symmetric; "" if it is.
+  /// Why the matrix is not symmetric, where that is known without looking at its entries; findAsymmetry looks.
   std::string asymmetry;
   bool hasConstantKernel = false;  ///< A 1 = 0, but for roundings: the matrix is singular
   std::optional<Stencil> stencil;  ///< if the matrix is one
+  const SparseMatrix* sparse = nullptr;  ///< if it is not
   /// y = A x in double precision.
   std::function<std::vector<double>(std::span<const double>)> multiply;
   /// A power of two: the matrix on the device is this times A, so that its largest row sum is from 1/2 to 1.
@@ -36,6 +37,11 @@ struct Operator {
 /// `a` must outlive the operator. Throws std::runtime_error if the matrix is not square or has entries that are not finite.
 Operator operatorOf(const SparseMatrix& a);
 Operator operatorOf(const Stencil& a);
+
+/// A place where the matrix differs from its transpose; "" if it is symmetric.
+std::string findAsymmetry(const Operator& a);
+/// The entries of the matrix, those of a stencil written out.
+SparseMatrix sparseOf(const Operator& a);
 
 /// The matrix times a power of two.
 SparseMatrix scaled(SparseMatrix a, double scale);

@@ -11,20 +11,12 @@
 
 #include "multigrid.hpp"
 #include "operator.hpp"
+#include "relaxation.hpp"
 #include "vectors.sk.hpp"
 
 namespace linear {
 
 namespace {
-
-void checkDiagonal(const Operator& a, std::string_view name) {
-  const auto zero = std::ranges::find(a.diagonal, 0.0);
-  if (zero != a.diagonal.end())
-    throw std::runtime_error(
-        fmt::format("row {} has no diagonal entry, or 0, and the preconditioner '{}' divides by it; take "
-                    "'spai0' or 'none'",
-                    zero - a.diagonal.begin() + 1, name));
-}
 
 /// 1 / diagonal of the matrix on the device, which is scaled.
 Vector inverseDiagonal(sk::Device& device, const Matrix& matrix, const Operator& a,
@@ -83,54 +75,54 @@ class Chebyshev : public Preconditioner {
   double middle_, radius_;
 };
 
-std::unique_ptr<Preconditioner> makeNone(sk::Device&, Matrix&, const Operator&, const Arithmetic&) {
+std::unique_ptr<Preconditioner> makeNone(const PreconditionerParts&) {
   return nullptr;
 }
 
-std::unique_ptr<Preconditioner> makeJacobi(sk::Device& device, Matrix& matrix, const Operator& a,
-                                           const Arithmetic& arithmetic) {
-  checkDiagonal(a, "jacobi");
-  return std::make_unique<Diagonal>(inverseDiagonal(device, matrix, a, arithmetic), arithmetic);
+std::unique_ptr<Preconditioner> makeJacobi(const PreconditionerParts& parts) {
+  checkDiagonal(parts.a, "the preconditioner 'jacobi'");
+  return std::make_unique<Diagonal>(inverseDiagonal(parts.device, parts.matrix, parts.a, parts.arithmetic),
+                                    parts.arithmetic);
 }
 
 /// The diagonal matrix M with the least ||I - M A|| in Frobenius' norm (O. Broeker and M. Grote, "Sparse approximate inverse
 /// smoothers for geometric and algebraic multigrid", 2002).
-std::unique_ptr<Preconditioner> makeSpai0(sk::Device& device, Matrix& matrix, const Operator& a,
-                                          const Arithmetic& arithmetic) {
-  std::vector<double> entries(a.diagonal.size());
+std::unique_ptr<Preconditioner> makeSpai0(const PreconditionerParts& parts) {
+  std::vector<double> entries(parts.a.diagonal.size());
   for (std::size_t i = 0; i < entries.size(); ++i)
-    entries[i] = a.rowSquares[i] > 0.0 ? a.diagonal[i] / a.rowSquares[i] / a.scale : 0.0;
-  Vector stream = device.stream<float>(matrix.domain(), arithmetic.vectors);
+    entries[i] = parts.a.rowSquares[i] > 0.0 ? parts.a.diagonal[i] / parts.a.rowSquares[i] / parts.a.scale : 0.0;
+  Vector stream = parts.device.stream<float>(parts.matrix.domain(), parts.arithmetic.vectors);
   stream.writeReals(entries);
-  return std::make_unique<Diagonal>(std::move(stream), arithmetic);
+  return std::make_unique<Diagonal>(std::move(stream), parts.arithmetic);
 }
 
-std::unique_ptr<Preconditioner> makeChebyshev(sk::Device& device, Matrix& matrix, const Operator& a,
-                                              const Arithmetic& arithmetic) {
-  checkDiagonal(a, "chebyshev");
-  return std::make_unique<Chebyshev>(device, matrix, a, arithmetic);
+std::unique_ptr<Preconditioner> makeChebyshev(const PreconditionerParts& parts) {
+  checkDiagonal(parts.a, "the preconditioner 'chebyshev'");
+  return std::make_unique<Chebyshev>(parts.device, parts.matrix, parts.a, parts.arithmetic);
 }
 
 template <Cycle cycle>
-std::unique_ptr<Preconditioner> makeGeometric(sk::Device& device, Matrix&, const Operator& a,
-                                              const Arithmetic& arithmetic) {
-  if (!a.stencil)
+std::unique_ptr<Preconditioner> makeGeometric(const PreconditionerParts& parts) {
+  if (!parts.a.stencil)
     throw std::runtime_error(
         "multigrid needs a grid, as of 'poisson:512x512'; for matrices of files take another preconditioner");
-  return makeMultigrid(device, scaled(*a.stencil, a.scale), arithmetic,
+  return makeMultigrid(parts.device, scaled(*parts.a.stencil, parts.a.scale), parts.arithmetic,
                        {.cycle = cycle, .isSymmetric = cycle == Cycle::V});
 }
 
 constexpr PreconditionerKind preconditioners[] = {
-    {"none", "the residual as it is", true, makeNone},
-    {"jacobi", "division by the diagonal", true, makeJacobi},
-    {"spai0", "the best diagonal approximate inverse", true, makeSpai0},
-    {"chebyshev", "four of Chebyshev's iterations after Jacobi's scaling, for symmetric matrices", true,
-     makeChebyshev},
-    {"multigrid", "a V-cycle of geometric multigrid, for grids", true, makeGeometric<Cycle::V>},
-    {"w-cycle", "a W-cycle of it", false, makeGeometric<Cycle::W>},
-    {"f-cycle", "an F-cycle of it", false, makeGeometric<Cycle::F>},
-    {"full", "full multigrid: nested iteration with V-cycles", false, makeGeometric<Cycle::Full>},
+    {"none", "the residual as it is", true, false, makeNone},
+    {"jacobi", "division by the diagonal", true, false, makeJacobi},
+    {"spai0", "the best diagonal approximate inverse", true, false, makeSpai0},
+    {"chebyshev", "four of Chebyshev's iterations after Jacobi's scaling, for symmetric matrices", true, true, makeChebyshev},
+    {"sor", "a sweep of over-relaxation, by groups of rows", false, false, makeSor},
+    {"ssor", "a sweep forwards and one backwards", true, false, makeSsor},
+    {"ic0", "incomplete Cholesky factors on the matrix's own pattern", true, true, makeIncompleteCholesky},
+    {"ilu0", "incomplete LU factors on the matrix's own pattern", false, false, makeIncompleteLu},
+    {"multigrid", "a V-cycle of geometric multigrid, for grids", true, false, makeGeometric<Cycle::V>},
+    {"w-cycle", "a W-cycle of it", false, false, makeGeometric<Cycle::W>},
+    {"f-cycle", "an F-cycle of it", false, false, makeGeometric<Cycle::F>},
+    {"full", "full multigrid: nested iteration with V-cycles", false, false, makeGeometric<Cycle::Full>},
 };
 
 }  // namespace

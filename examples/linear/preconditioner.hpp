@@ -22,13 +22,33 @@ class Preconditioner {
   virtual void apply(const Vector& r, Vector& z, Vector& rz) = 0;
 };
 
+struct PreconditionerSettings {
+  double omega = 1.0;  ///< relaxation factor of sor and ssor, between 0 and 2
+  /// Of sor, ssor, ic0 and ilu0: "colours" needs few calls, "levels" fewer iterations (ordering.hpp).
+  std::string_view ordering = "colours";
+};
+
+struct PreconditionerParts {
+  sk::Device& device;
+  Matrix& matrix;  ///< outlives the preconditioner
+  const Operator& a;
+  const Arithmetic& arithmetic;
+  PreconditionerSettings settings;
+};
+
 struct PreconditionerKind {
   std::string_view name;  ///< of --preconditioner
   std::string_view does;
-  bool isSymmetric;  ///< z = M r with a symmetric M: what conjugate gradients need
-  /// `matrix` outlives the preconditioner. Null for none. Throws std::runtime_error if the matrix does not allow it.
-  std::unique_ptr<Preconditioner> (*make)(sk::Device& device, Matrix& matrix, const Operator& a,
-                                          const Arithmetic& arithmetic);
+  bool isSymmetric;  ///< z = M r with a symmetric M for symmetric matrices: what conjugate gradients need
+  bool needsSymmetry;  ///< of the matrix
+  /// Null for none. Throws std::runtime_error if the matrix does not allow it.
+  std::unique_ptr<Preconditioner> (*create)(const PreconditionerParts& parts);
+
+  std::unique_ptr<Preconditioner> make(sk::Device& device, Matrix& matrix, const Operator& a,
+                                       const Arithmetic& arithmetic,
+                                       const PreconditionerSettings& settings = {}) const {
+    return create({device, matrix, a, arithmetic, settings});
+  }
 };
 
 std::span<const PreconditionerKind> preconditionerKinds();

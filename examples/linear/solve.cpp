@@ -3,26 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <memory>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "residual.hpp"
 #include "support/stopwatch.hpp"
 
 namespace linear {
 
 namespace {
-
-/// Scaled by the largest element, so that squares neither overflow nor vanish.
-double norm(std::span<const double> v) {
-  double largest = 0.0;
-  for (const double x : v) largest = std::max(largest, std::abs(x));
-  if (largest == 0.0 || !std::isfinite(largest)) return largest;
-  double sum = 0.0;
-  for (const double x : v) sum += (x / largest) * (x / largest);
-  return largest * std::sqrt(sum);
-}
 
 double infinityNorm(std::span<const double> v) {
   double largest = 0.0;
@@ -40,45 +31,51 @@ bool addsUpToZero(std::span<const double> b) {
   return std::abs(sum) <= 0x1p-40 * magnitudes;
 }
 
-std::vector<double> residual(const Operator& a, std::span<const double> b, std::span<const double> x) {
-  std::vector<double> r = a.multiply(x);
-  for (std::size_t i = 0; i < r.size(); ++i) r[i] = b[i] - r[i];
-  return r;
-}
-
 /// One solve after the other for what is left of b.
 class Refinement {
  public:
   Refinement(Method& method, const Operator& a, std::span<const double> b, const Arithmetic& arithmetic,
              const SolveSettings& settings)
-      : method_(method), a_(a), b_(b), arithmetic_(arithmetic), settings_(settings), normB_(norm(b)) {}
+      : method_(method),
+        a_(a),
+        b_(b),
+        arithmetic_(arithmetic),
+        settings_(settings),
+        residual_(makeResidual(method.device(), method.matrix(), a, arithmetic)) {}
 
   Solution run() {
     const examples::Stopwatch watch;
-    solution_.x.assign(b_.size(), 0.0);
-    residual_.assign(b_.begin(), b_.end());
+    const double largestB = infinityNorm(b_);
+    // A power of two, as a.scale is: only the storage rounds.
+    const int exponent = largestB > 0.0 ? std::ilogb(largestB) : 0;
+    std::vector<double> scaled(b_.begin(), b_.end());
+    for (double& v : scaled) v = std::ldexp(v, -exponent);
+    norms_ = residual_->start(scaled);
+    normB_ = norms_.two;
     solution_.outcome = outcome();
-    const double normR = norm(residual_);
-    solution_.residualTrue = normB_ > 0.0 ? normR / normB_ : 0.0;
-    const double scale = a_.infinityNorm * infinityNorm(solution_.x) + infinityNorm(b_);
-    solution_.backwardError = scale > 0.0 ? infinityNorm(residual_) / scale : 0.0;
+    solution_.residualTrue = normB_ > 0.0 ? norms_.two / normB_ : 0.0;
+    const double scale = a_.scale * a_.infinityNorm * residual_->largestOfSolution() +
+                         std::ldexp(largestB, -exponent);
+    solution_.backwardError = scale > 0.0 ? norms_.infinity / scale : 0.0;
+    solution_.x = residual_->solution();
+    for (double& v : solution_.x) v = std::ldexp(v * a_.scale, exponent);
+    solution_.residualPlace = residual_->place();
     solution_.seconds = watch.milliseconds() / 1000.0;
     return std::move(solution_);
   }
 
  private:
   Outcome outcome() {
-    if (a_.hasConstantKernel && a_.asymmetry.empty() && !addsUpToZero(b_))
+    if (a_.hasConstantKernel && !addsUpToZero(b_) && findAsymmetry(a_).empty())
       return Outcome::SingularAndIncompatible;
     const double goal = settings_.tolerance * normB_;
-    double left = normB_;
-    while (left > goal) {
+    while (norms_.two > goal) {
+      const double left = norms_.two;
       const State state = solveOnce(goal / left);
-      const double reached = addIfBetter(left);
+      const double reached = addIfBetter();
       const bool isBetter = reached < left;
       const bool isMuchBetter = reached < 0.5 * left;
-      left = std::min(left, reached);
-      if (left <= goal) break;
+      if (norms_.two <= goal) break;
       if (state == NotFinite && !isMuchBetter) return Outcome::NotFinite;
       if (state == NotPositive && !isMuchBetter) return Outcome::NotPositiveDefinite;
       if (state == Breakdown && !isBetter) return Outcome::Breakdown;
@@ -89,27 +86,24 @@ class Refinement {
     return a_.hasConstantKernel ? Outcome::SingularAndCompatible : Outcome::Converged;
   }
 
-  /// Solves for residual_, to `goal` of its norm or to what the precision can give, and leaves the iterations' state.
+  /// Solves for the residual, to `goal` of its norm or to what the precision can give, and leaves the iterations' state.
   State solveOnce(double goal) {
-    const double normR = norm(residual_);
-    // A power of two, so that only the storage rounds.
-    factor_ = std::ldexp(1.0, -std::ilogb(infinityNorm(residual_)));
-    std::vector<double> r(residual_.size());
-    for (std::size_t i = 0; i < r.size(); ++i) r[i] = factor_ * residual_[i];
+    factor_ = std::ldexp(1.0, -std::ilogb(norms_.infinity));
+    residual_->writeTo(method_.rightHandSide(), factor_);
     const double reachable = settings_.refines ? std::max(goal / 2.0, 64.0 * arithmetic_.roundoff()) : goal;
-    const double squared = norm(r) * norm(r);
-    method_.begin(r, reachable * reachable * squared);
-    State state = Running;
-    const double start = std::sqrt(squared);
-    double least = solution_.residualRecurred = normR / normB_;
+    const double start = factor_ * norms_.two;
+    const double limit = reachable * start;
+    method_.begin(limit * limit);
+    State state = method_.state();
+    double least = solution_.residualRecurred = norms_.two / normB_;
     std::int64_t leastAt = solution_.iterations;
     const std::int64_t firstAt = solution_.iterations;
     while (state == Running && solution_.iterations < settings_.most) {
-      const std::int64_t ran =
-          method_.run(settings_.every, std::min(settings_.every, settings_.most - solution_.iterations));
+      const std::int64_t ran = method_.run(settings_.every, settings_.most - solution_.iterations);
       state = method_.state();
       solution_.iterations += ran;
-      solution_.residualRecurred = std::sqrt(std::abs(method_.residualSquared())) / start * normR / normB_;
+      solution_.residualRecurred =
+          std::sqrt(std::abs(method_.residualSquared())) / start * norms_.two / normB_;
       solution_.history.push_back({solution_.iterations, solution_.residualRecurred});
       if (settings_.progress) settings_.progress(solution_.iterations, solution_.residualRecurred);
       if (solution_.residualRecurred < 0.99 * least) {
@@ -125,15 +119,12 @@ class Refinement {
   }
 
   /// Adds the method's solution where that makes the residual smaller. Returns the residual's norm with it.
-  double addIfBetter(double left) {
-    std::vector<double> x = method_.solution();
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = solution_.x[i] + x[i] * (a_.scale / factor_);
-    std::vector<double> r = residual(a_, b_, x);
-    const double reached = norm(r);
-    if (!(reached < left)) return std::isfinite(reached) ? reached : left;
-    solution_.x = std::move(x);
-    residual_ = std::move(r);
-    return reached;
+  double addIfBetter() {
+    const Norms reached = residual_->attempt(method_.x(), 1.0 / factor_);
+    if (!(reached.two < norms_.two)) return std::isfinite(reached.two) ? reached.two : norms_.two;
+    residual_->accept();
+    norms_ = reached;
+    return reached.two;
   }
 
   Method& method_;
@@ -141,9 +132,10 @@ class Refinement {
   std::span<const double> b_;
   const Arithmetic& arithmetic_;
   const SolveSettings& settings_;
-  double normB_;
+  std::unique_ptr<Residual> residual_;
+  Norms norms_;  ///< of the residual now
+  double normB_ = 0.0;
   double factor_ = 1.0;
-  std::vector<double> residual_;
   Solution solution_;
 };
 

@@ -53,6 +53,7 @@ struct Solution {
   double residualTrue = 0.0;  ///< ||b - A x|| / ||b||, computed in double precision; 2-norms
   double residualRecurred = 0.0;  ///< the same, as the method computed it last
   double backwardError = 0.0;  ///< ||b - A x|| / (||A|| ||x|| + ||b||); infinity norms
+  std::string_view residualPlace = "host";  ///< where the true residual was computed: "device" or "host"
   double seconds = 0.0;
   std::vector<HistoryPoint> history;
 };

@@ -20,6 +20,7 @@
 #include "named.hpp"
 #include "preconditioner.hpp"
 #include "report.hpp"
+#include "residual.hpp"
 #include "solve.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
@@ -35,6 +36,9 @@ struct Settings {
   std::filesystem::path rightHandSide, solution, json, svg;
   std::string solver = "cg", preconditioner = "jacobi", layout = "auto";
   std::string precision = "single", storage = "single", entries, accumulate = "compensated";
+  std::string ordering = "colours";
+  int restart = 30;
+  double omega = 1.0;
   linear::SolveSettings solve;
   bool study = false;
 };
@@ -79,6 +83,16 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--preconditioner", s.preconditioner,
                  described("what the residual is multiplied by:", linear::preconditionerKinds()))
       ->capture_default_str();
+  cli.add_option("--restart", s.restart, "steps after which gmres begins anew")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  cli.add_option("--omega", s.omega, "the relaxation factor of sor and ssor, between 0 and 2")
+      ->capture_default_str();
+  cli.add_option("--ordering", s.ordering,
+                 "of the rows for sor, ssor, ic0 and ilu0:\n  colours     few groups of rows, each of which is "
+                 "a call\n  levels      the order of the matrix, which needs fewer iterations")
+      ->check(CLI::IsMember({"colours", "levels"}))
+      ->capture_default_str();
   cli.add_option(
          "--layout", s.layout,
          described(
@@ -111,16 +125,26 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--chart", s.svg, "draw the residual over the iterations to this file, as SVG");
 }
 
-void checkSymmetry(const linear::MethodKind& method, const linear::PreconditionerKind& preconditioner,
+/// Before anything is copied to a device.
+void checkPreconditioner(const linear::MethodKind& method, const linear::PreconditionerKind& preconditioner) {
+  if (method.needsSymmetry && !preconditioner.isSymmetric)
+    throw std::runtime_error(fmt::format(
+        "the solver '{}' needs a symmetric preconditioner, which '{}' is not; take --solver {}", method.name,
+        preconditioner.name, preconditioner.name == "ilu0" || preconditioner.name == "sor" ? "gmres" : "stationary"));
+}
+
+void checkSymmetry(sk::Device& device, linear::Matrix& matrix, const linear::Arithmetic& arithmetic,
+                   const linear::MethodKind& method, const linear::PreconditionerKind& preconditioner,
                    const linear::Operator& a) {
-  if (!method.needsSymmetry) return;
-  if (!a.asymmetry.empty())
+  if (!method.needsSymmetry && !preconditioner.needsSymmetry) return;
+  const std::string asymmetry = linear::asymmetryOnDevice(device, matrix, a, arithmetic);
+  if (asymmetry.empty()) return;
+  if (method.needsSymmetry)
     throw std::runtime_error(fmt::format(
-        "the solver '{}' needs a symmetric matrix: {}; take --solver bicgstab", method.name, a.asymmetry));
-  if (!preconditioner.isSymmetric)
-    throw std::runtime_error(fmt::format(
-        "the solver '{}' needs a symmetric preconditioner, which '{}' is not; take --solver stationary",
-        method.name, preconditioner.name));
+        "the solver '{}' needs a symmetric matrix: {}; take --solver gmres or bicgstab", method.name, asymmetry));
+  throw std::runtime_error(
+      fmt::format("the preconditioner '{}' needs a symmetric matrix: {}; take --preconditioner ilu0",
+                  preconditioner.name, asymmetry));
 }
 
 void solveSystem(examples::Application& app, Settings& s) {
@@ -135,7 +159,7 @@ void solveSystem(examples::Application& app, Settings& s) {
 
   const linear::System system(s.matrix, s.rightHandSide);
   const linear::Operator& a = system.matrix();
-  checkSymmetry(methodKind, preconditionerKind, a);
+  checkPreconditioner(methodKind, preconditionerKind);
   if (system.duplicates() > 0)
     fmt::print(stderr, "solve: warning: {} entries are given several times, and were added up\n",
                system.duplicates());
@@ -158,10 +182,12 @@ void solveSystem(examples::Application& app, Settings& s) {
   if (a.size > 0) {
     const std::unique_ptr<linear::Matrix> matrix =
         system.makeMatrix(device, s.layout, arithmetic, &account.trials);
-    const std::unique_ptr<linear::Preconditioner> preconditioner =
-        preconditionerKind.make(device, *matrix, a, arithmetic);
+    checkSymmetry(device, *matrix, arithmetic, methodKind, preconditionerKind, a);
+    const std::unique_ptr<linear::Preconditioner> preconditioner = preconditionerKind.make(
+        device, *matrix, a, arithmetic, {.omega = s.omega, .ordering = s.ordering});
     const std::unique_ptr<linear::Method> method =
-        methodKind.make(device, *matrix, preconditioner.get(), arithmetic);
+        methodKind.make(device, *matrix, preconditioner.get(), arithmetic,
+                        {.restart = s.restart, .omega = s.omega, .a = &a});
     account.layout = matrix->layout();
     account.stored = matrix->stored();
     examples::Progress progress("solve", s.solve.most);

@@ -130,7 +130,8 @@ std::string asymmetry(const SparseMatrix& a) {
       const double here = inA == column ? a.value[k++] : 0.0;
       const double there = inT == column ? t.value[m++] : 0.0;
       if (here != there)
-        return fmt::format("({}, {}) is {}, and ({}, {}) is {}", i, column, here, column, i, there);
+        return fmt::format("entry ({}, {}) is {}, and ({}, {}) is {}", i + 1, column + 1, here, column + 1,
+                           i + 1, there);
     }
   }
   return "";

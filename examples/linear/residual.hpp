@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+//
+// The residual b - A x in double precision, and the x that solves have added up: on the device, where it has doubles of its own, else on all threads of the
+// host. Everything is scaled by powers of two: A as on the device, and b so that its largest element is from 1 to 2.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "matrix.hpp"
+#include "operator.hpp"
+
+namespace linear {
+
+struct Norms {
+  double two = 0.0;
+  double infinity = 0.0;
+};
+
+class Residual {
+ public:
+  virtual ~Residual() = default;
+
+  /// Begins with x = 0.
+  virtual Norms start(std::span<const double> b) = 0;
+  /// The norms of the residual for x + scale * step. Nothing changes until accept().
+  virtual Norms attempt(const Vector& step, double scale) = 0;
+  virtual void accept() = 0;
+  /// r = scale * residual, rounded to what r is stored in.
+  virtual void writeTo(Vector& r, double scale) = 0;
+  virtual double largestOfSolution() const = 0;
+  virtual std::vector<double> solution() = 0;
+  /// "device" or "host".
+  virtual std::string_view place() const = 0;
+};
+
+/// `matrix` is a.scale * A on the device. If it stores every entry exactly and multiplies in doubles, it serves; otherwise the device gets a second copy of the
+/// matrix. Both must outlive the residual.
+std::unique_ptr<Residual> makeResidual(sk::Device& device, Matrix& matrix, const Operator& a,
+                                       const Arithmetic& arithmetic);
+
+/// Computing and storing everything in doubles.
+Arithmetic doubleArithmetic();
+/// Whether the device computes in doubles of its own.
+bool hasDoubles(sk::Device& device);
+
+/// Why the matrix is not symmetric; "" if it is. The device compares u . A v with v . A u for random u and v, in doubles if it has them; only if they
+/// differ by more than rounding explains, the host looks for the place. Misses differences below about 2^-45, without doubles 2^-16, of the largest row sum.
+std::string asymmetryOnDevice(sk::Device& device, Matrix& matrix, const Operator& a, const Arithmetic& arithmetic);
+
+}  // namespace linear
