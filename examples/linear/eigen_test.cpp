@@ -98,11 +98,12 @@ std::vector<double> wavy(std::int64_t n) {
 }
 
 TEST_CASE("Solutions are Eigen's, on devices of every precision") {
-  const SparseMatrix anisotropic = transport(11, 9, 1e-3, 0.0), windy = transport(11, 9, 1.0, 0.4);
-  const std::vector<double> b = wavy(99);
+  const SparseMatrix anisotropic = transport(7, 5, 1e-3, 0.0), windy = transport(7, 5, 1.0, 0.4);
+  const std::vector<double> b = wavy(35);
   for (const char* name : {"native", "reference", "reference:quad"}) {
     sk::Device device(name);
-    for (const std::string_view solver : {"cg", "pipelined", "chebyshev", "minres", "gmres", "bicgstab", "sor"}) {
+    for (const std::string_view solver :
+         {"cg", "pipelined", "chebyshev", "minres", "gmres", "bicgstab", "sor"}) {
       CAPTURE(name, solver);
       const bool isSymmetric = rowNamed(methodKinds(), solver, "solver").needsSymmetry;
       const SparseMatrix& a = isSymmetric ? anisotropic : windy;
@@ -119,7 +120,9 @@ TEST_CASE("Incomplete factors and sweeps need fewer iterations, in either order"
   const SparseMatrix a = assemble(poisson({31, 29}));
   const std::vector<double> b = wavy(a.rows);
   const auto iterations = [&](std::string_view preconditioner, std::string_view ordering) {
-    const Solution s = solveWith(device, a, b, {.preconditioner = preconditioner, .settings = {.tolerance = 1e-6, .every = 1}, .ordering = ordering});
+    const Solution s =
+        solveWith(device, a, b,
+                  {.preconditioner = preconditioner, .settings = {.tolerance = 1e-6}, .ordering = ordering});
     CHECK(s.outcome == Outcome::Converged);
     return s.iterations;
   };
@@ -132,7 +135,8 @@ TEST_CASE("Incomplete factors and sweeps need fewer iterations, in either order"
   CHECK(iterations("ic0", "levels") < iterations("ic0", "colours"));
 }
 
-TEST_CASE("Orderings separate rows that depend on each other, and factors are exact where nothing is dropped") {
+TEST_CASE(
+    "Orderings separate rows that depend on each other, and factors are exact where nothing is dropped") {
   const SparseMatrix a = transport(7, 5, 1.0, 0.3);
   CHECK(colours(a).groups() == 2);
   CHECK(levels(a).groups() == 11);  // the diagonals of the grid
@@ -148,7 +152,8 @@ TEST_CASE("Orderings separate rows that depend on each other, and factors are ex
   const Eigen::MatrixXd expected = dense(line);
   CHECK(factorise(line, true) == -1);
   const Eigen::MatrixXd factors = dense(line);
-  const Eigen::MatrixXd lower = factors.triangularView<Eigen::UnitLower>(), upper = factors.triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd lower = factors.triangularView<Eigen::UnitLower>(),
+                        upper = factors.triangularView<Eigen::Upper>();
   CHECK((lower * upper - expected).norm() <= 1e-14);
   SparseMatrix negative = scaled(transport(3, 3, 1.0, 0.0), -1.0);
   CHECK(factorise(negative, true) == 0);
@@ -165,7 +170,8 @@ TEST_CASE("Ill-conditioned systems report what they have reached") {
       CAPTURE(solver, s.residualTrue);
       CHECK((s.outcome == Outcome::Converged) == (s.residualTrue <= 1e-8));
       CHECK(s.residualTrue < 1e-4);
-      CHECK((vectorOf(b) - dense(a) * vectorOf(s.x)).norm() <= 1.001 * s.residualTrue * vectorOf(b).norm() + 1e-15);
+      CHECK((vectorOf(b) - dense(a) * vectorOf(s.x)).norm() <=
+            1.001 * s.residualTrue * vectorOf(b).norm() + 1e-15);
     }
   }
   // Conditions of 1e30 that a diagonal scaling takes away.
@@ -182,11 +188,13 @@ TEST_CASE("Singular, indefinite and tiny systems end with the outcome that they 
   sk::Device device = sk::Device::native();
   SparseMatrix shifted = transport(9, 7, 1.0, 0.0);
   for (std::size_t i = 0; i < 63; ++i)
-    for (auto k = static_cast<std::size_t>(shifted.starts[i]); k < static_cast<std::size_t>(shifted.starts[i + 1]); ++k)
+    for (auto k = static_cast<std::size_t>(shifted.starts[i]);
+         k < static_cast<std::size_t>(shifted.starts[i + 1]); ++k)
       if (shifted.column[k] == static_cast<std::int32_t>(i)) shifted.value[k] -= 2.05;
   for (const std::string_view solver : {"minres", "gmres"}) {
     CAPTURE(solver);
-    const Solution s = solveWith(device, shifted, wavy(63), {.solver = solver, .preconditioner = "none", .method = {.restart = 63}});
+    const Solution s = solveWith(device, shifted, wavy(63),
+                                 {.solver = solver, .preconditioner = "none", .method = {.restart = 63}});
     CHECK(s.outcome == Outcome::Converged);
     checkSolution(shifted, wavy(63), s);
   }
@@ -197,18 +205,21 @@ TEST_CASE("Singular, indefinite and tiny systems end with the outcome that they 
                     Catch::Contains("is not positive definite"));
 
   const Entry zero[] = {{0, 1, 1.0}, {1, 0, 1.0}};
-  CHECK_THROWS_WITH(solveWith(device, assemble(2, 2, zero), {1, 2}, {.solver = "sor", .preconditioner = "none"}),
-                    Catch::Contains("row 1 has no diagonal entry"));
-  CHECK_THROWS_WITH(solveWith(device, assemble(2, 2, zero), {1, 2}, {.solver = "gmres", .preconditioner = "ilu0"}),
-                    Catch::Contains("pivot of 0 in row 1"));
+  CHECK_THROWS_WITH(
+      solveWith(device, assemble(2, 2, zero), {1, 2}, {.solver = "sor", .preconditioner = "none"}),
+      Catch::Contains("row 1 has no diagonal entry"));
+  CHECK_THROWS_WITH(
+      solveWith(device, assemble(2, 2, zero), {1, 2}, {.solver = "gmres", .preconditioner = "ilu0"}),
+      Catch::Contains("pivot of 0 in row 1"));
   CHECK(solveWith(device, assemble(2, 2, zero), {1, 2}, {.solver = "gmres", .preconditioner = "none"}).x ==
         std::vector<double>{2, 1});
   const Entry one{0, 0, -3.0};
   for (const MethodKind& kind : methodKinds()) {
     if (kind.needsSymmetry && kind.name != "minres") continue;  // -3 is not positive
     CAPTURE(kind.name);
-    const Solution s = solveWith(device, assemble(1, 1, std::span(&one, 1)), {6.0},
-                                 {.solver = kind.name, .preconditioner = kind.name == "minres" ? "none" : "jacobi"});
+    const Solution s =
+        solveWith(device, assemble(1, 1, std::span(&one, 1)), {6.0},
+                  {.solver = kind.name, .preconditioner = kind.name == "minres" ? "none" : "jacobi"});
     CHECK(s.x == std::vector<double>{-2.0});
   }
 }
@@ -251,10 +262,12 @@ TEST_CASE("The device finds asymmetry, and the host its place") {
 TEST_CASE("Residuals are those of double precision, wherever they are computed") {
   const SparseMatrix a = hilbert(20);  // entries that floats do not have
   const Operator o = operatorOf(a);
-  const std::vector<double> b = wavy(20), x = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
+  const std::vector<double> b = wavy(20),
+                            x = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
   const Eigen::VectorXd expected = vectorOf(b) - o.scale * (dense(a) * vectorOf(x));
   for (const bool isDrawn : {false, true}) {
-    sk::Device device = isDrawn ? sk::Device(sk::DeviceOptions{.device = "software", .profile = "essl300"}) : sk::Device::native();
+    sk::Device device = isDrawn ? sk::Device(sk::DeviceOptions{.device = "software", .profile = "essl300"})
+                                : sk::Device::native();
     for (const std::string_view layout : {"rows", "slices", "dense", "diagonals"}) {
       CAPTURE(isDrawn, layout);
       const auto matrix = makeMatrix(device, scaled(a, o.scale), layout, {});

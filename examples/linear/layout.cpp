@@ -35,22 +35,6 @@ constexpr LayoutKind layouts[] = {
     {"dense", "all elements", makeDense, isMostlyFull},
 };
 
-double secondsOf(sk::Device& device, Matrix& matrix, const Arithmetic& arithmetic) {
-  Vector x = device.stream<float>(matrix.domain(), arithmetic.vectors);
-  Vector y = device.stream<float>(matrix.range(), arithmetic.vectors);
-  x.fill(1.0f);
-  double best = 0.0;
-  for (int i = 0; i < 4; ++i) {  // the first builds programs
-    device.finish();
-    const examples::Stopwatch watch;
-    matrix.multiply(x, y);
-    device.finish();
-    const double seconds = watch.milliseconds() / 1000.0;
-    if (i == 1 || (i > 1 && seconds < best)) best = seconds;
-  }
-  return best;
-}
-
 }  // namespace
 
 std::span<const LayoutKind> layoutKinds() { return layouts; }
@@ -65,6 +49,22 @@ std::vector<std::int64_t> diagonalsOf(const SparseMatrix& a, std::size_t most) {
       if (at == found.end() || *at != offset) found.insert(at, offset);
     }
   return found;
+}
+
+double secondsOf(sk::Device& device, Matrix& matrix, const Arithmetic& arithmetic) {
+  Vector x = device.stream<float>(matrix.domain(), arithmetic.vectors);
+  Vector y = device.stream<float>(matrix.range(), arithmetic.vectors);
+  x.fill(1.0f);
+  double best = 0.0;
+  for (int i = 0; i < 4; ++i) {  // the first builds programs
+    device.finish();
+    const examples::Stopwatch watch;
+    matrix.multiply(x, y);
+    device.finish();
+    const double seconds = watch.milliseconds() / 1000.0;
+    if (i == 1 || (i > 1 && seconds < best)) best = seconds;
+  }
+  return best;
 }
 
 std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const SparseMatrix& a, std::string_view layout,

@@ -33,6 +33,9 @@ struct LayoutTrial {
   double seconds = 0.0;
 };
 
+/// The time of one product, the best of three.
+double secondsOf(sk::Device& device, Matrix& matrix, const Arithmetic& arithmetic);
+
 /// Copies a matrix to the device in the named layout. "auto" tries those that suit the matrix, and takes the one whose product is
 /// the fastest; `trials` receives their times. Throws std::runtime_error for an unknown name, with the known ones.
 std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const SparseMatrix& a, std::string_view layout,

@@ -52,7 +52,7 @@ class DiagonalMatrix : public Matrix {
   }
   std::string layout() const override { return "diagonals"; }
   std::int64_t stored() const override { return value_.size(); }
-  std::int64_t bytes() const override { return 4 * value_.size(); }
+  std::int64_t bytes() const override { return entryBytes() * value_.size(); }
 
  private:
   int count_;
@@ -88,7 +88,7 @@ class PointMatrix : public Matrix {
   bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "points"; }
   std::int64_t stored() const override { return value_.size(); }
-  std::int64_t bytes() const override { return 12 * value_.size(); }
+  std::int64_t bytes() const override { return (entryBytes() + 8) * value_.size(); }
 
  private:
   std::int64_t rows_, columns_;
@@ -146,7 +146,7 @@ class BucketMatrix : public Matrix {
     for (const Bucket& b : buckets_) sum += b.value.size();
     return sum;
   }
-  std::int64_t bytes() const override { return 8 * stored() + 4 * rows_; }
+  std::int64_t bytes() const override { return (entryBytes() + 4) * stored() + 4 * rows_; }
 
  private:
   std::int64_t rows_, columns_;

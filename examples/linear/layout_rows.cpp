@@ -36,7 +36,7 @@ class RowsMatrix : public Matrix {
   bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "rows"; }
   std::int64_t stored() const override { return value_.size(); }
-  std::int64_t bytes() const override { return 8 * value_.size() + 4 * rows_; }
+  std::int64_t bytes() const override { return (entryBytes() + 4) * value_.size() + 4 * rows_; }
 
  private:
   static sk::Stream<int> startsOf(sk::Device& device, const SparseMatrix& a) {
@@ -77,7 +77,7 @@ class DenseMatrix : public Matrix {
   bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "dense"; }
   std::int64_t stored() const override { return value_.size(); }
-  std::int64_t bytes() const override { return 4 * value_.size(); }
+  std::int64_t bytes() const override { return entryBytes() * value_.size(); }
 
  private:
   Vector value_;

@@ -83,7 +83,7 @@ class SliceMatrix : public Matrix {
   std::string layout() const override { return "slices"; }
   std::int64_t stored() const override { return value_.size(); }
   std::int64_t bytes() const override {
-    return (4 + static_cast<std::int64_t>(sizeof(Offset))) * value_.size() +
+    return (entryBytes() + static_cast<std::int64_t>(sizeof(Offset))) * value_.size() +
            4 * (slot_.size() + start_.size());
   }
 

@@ -33,6 +33,17 @@ double Arithmetic::roundoff() const {
   return std::max(computed, stored);
 }
 
+std::int64_t bytesOf(sk::Storage storage) {
+  switch (storage) {
+    case sk::Storage::Half: return 2;
+    case sk::Storage::Default:
+    case sk::Storage::Single: return 4;
+    case sk::Storage::Extended:
+    case sk::Storage::Double: return 8;
+  }
+  return 0;
+}
+
 void Matrix::multiply(const Vector& x, Vector& y, Vector& xy) {
   multiply(x, y);
   dot.with(foldOptions())(x, y, xy);

@@ -31,6 +31,9 @@ struct Arithmetic {
   double roundoff() const;
 };
 
+/// Bytes of a float in a stream.
+std::int64_t bytesOf(sk::Storage storage);
+
 class Matrix {
  public:
   virtual ~Matrix() = default;
@@ -67,12 +70,16 @@ class Matrix {
 
  protected:
   explicit Matrix(const Arithmetic& arithmetic)
-      : options_(arithmetic.options()), foldOptions_(arithmetic.foldOptions()) {}
+      : options_(arithmetic.options()),
+        foldOptions_(arithmetic.foldOptions()),
+        entryBytes_(bytesOf(arithmetic.matrix)) {}
+  std::int64_t entryBytes() const { return entryBytes_; }
   const sk::CallOptions& options() const { return options_; }
   const sk::CallOptions& foldOptions() const { return foldOptions_; }
 
  private:
   sk::CallOptions options_, foldOptions_;
+  std::int64_t entryBytes_;
 };
 
 }  // namespace linear

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Methods of conjugate gradients.
+#include <algorithm>
 #include <utility>
 
 #include "krylov.sk.hpp"
@@ -76,7 +77,7 @@ class FusedConjugateGradients : public Method {
 };
 
 /// P. Ghysels and W. Vanroose, "Hiding global synchronization latency in the preconditioned conjugate gradient algorithm" (2014). Recurrences for A p and its
-/// like drift away from what they stand for, so all of them are computed anew from x every `period` iterations (S. Cools and W. Vanroose, "The
+/// like drift away from what they stand for, so all of them are computed anew from x every `period_` iterations (S. Cools and W. Vanroose, "The
 /// communication-hiding pipelined BiCGstab method ...", 2016; the residual replacement of H. van der Vorst and Q. Ye, 2000).
 class PipelinedGradients : public Method {
  public:
@@ -103,15 +104,13 @@ class PipelinedGradients : public Method {
   }
 
   std::int64_t run(std::int64_t every, std::int64_t left) override {
-    const std::int64_t ran = Method::run(every, left);
+    const std::int64_t ran = Method::run(std::min(every, period_), left);
     since_ += ran;
-    if (since_ >= period && state() == Running) replace();
+    if (since_ >= period_ && state() == Running) replace();
     return ran;
   }
 
  private:
-  static constexpr std::int64_t period = 48;
-
   bool isPlain() const { return preconditioner_ == nullptr; }
 
   void start() override {
@@ -176,6 +175,7 @@ class PipelinedGradients : public Method {
 
   Vector b_, u_, w_, m_, n_, z_, q_, s_, p_;
   Vector folded_, gamma_, next_, delta_, alpha_, alphaNext_, beta_, unused_;
+  const std::int64_t period_ = arithmetic_.roundoff() > 0x1p-40 ? 16 : 64;
   std::int64_t since_ = 0;
 };
 

@@ -190,8 +190,7 @@ class GeneralizedMinimalResiduals : public Method {
       const Vector* v = &basis_[static_cast<std::size_t>(k)];
       gmresCombine4.with(options_)(k, y_, v[0], v[1], v[2], v[3], u_, u_);
     }
-    for (; k < steps; ++k)
-      gmresCombine.with(options_)(k, y_, basis_[static_cast<std::size_t>(k)], u_, u_);
+    for (; k < steps; ++k) gmresCombine.with(options_)(k, y_, basis_[static_cast<std::size_t>(k)], u_, u_);
     if (preconditioner_ != nullptr) preconditioner_->apply(u_, z_, unused_);
     axpy.with(options_)(1.0f, preconditioner_ != nullptr ? z_ : u_, x_, x_);
   }

@@ -75,9 +75,7 @@ class Chebyshev : public Preconditioner {
   double middle_, radius_;
 };
 
-std::unique_ptr<Preconditioner> makeNone(const PreconditionerParts&) {
-  return nullptr;
-}
+std::unique_ptr<Preconditioner> makeNone(const PreconditionerParts&) { return nullptr; }
 
 std::unique_ptr<Preconditioner> makeJacobi(const PreconditionerParts& parts) {
   checkDiagonal(parts.a, "the preconditioner 'jacobi'");
@@ -90,7 +88,8 @@ std::unique_ptr<Preconditioner> makeJacobi(const PreconditionerParts& parts) {
 std::unique_ptr<Preconditioner> makeSpai0(const PreconditionerParts& parts) {
   std::vector<double> entries(parts.a.diagonal.size());
   for (std::size_t i = 0; i < entries.size(); ++i)
-    entries[i] = parts.a.rowSquares[i] > 0.0 ? parts.a.diagonal[i] / parts.a.rowSquares[i] / parts.a.scale : 0.0;
+    entries[i] =
+        parts.a.rowSquares[i] > 0.0 ? parts.a.diagonal[i] / parts.a.rowSquares[i] / parts.a.scale : 0.0;
   Vector stream = parts.device.stream<float>(parts.matrix.domain(), parts.arithmetic.vectors);
   stream.writeReals(entries);
   return std::make_unique<Diagonal>(std::move(stream), parts.arithmetic);
@@ -114,7 +113,8 @@ constexpr PreconditionerKind preconditioners[] = {
     {"none", "the residual as it is", true, false, makeNone},
     {"jacobi", "division by the diagonal", true, false, makeJacobi},
     {"spai0", "the best diagonal approximate inverse", true, false, makeSpai0},
-    {"chebyshev", "four of Chebyshev's iterations after Jacobi's scaling, for symmetric matrices", true, true, makeChebyshev},
+    {"chebyshev", "four of Chebyshev's iterations after Jacobi's scaling, for symmetric matrices", true, true,
+     makeChebyshev},
     {"sor", "a sweep of over-relaxation, by groups of rows", false, false, makeSor},
     {"ssor", "a sweep forwards and one backwards", true, false, makeSsor},
     {"ic0", "incomplete Cholesky factors on the matrix's own pattern", true, true, makeIncompleteCholesky},

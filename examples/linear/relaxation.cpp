@@ -78,7 +78,8 @@ struct Permutation {
 
 class RowsRelaxer : public Relaxer {
  public:
-  RowsRelaxer(sk::Device& device, const SparseMatrix& a, const Ordering& ordering, const Arithmetic& arithmetic)
+  RowsRelaxer(sk::Device& device, const SparseMatrix& a, const Ordering& ordering,
+              const Arithmetic& arithmetic)
       : permutation_(device, ordering),
         rows_(device, a, ordering, Part::OffDiagonal, inverses(a), arithmetic),
         b_(device.stream<float>({a.rows}, arithmetic.vectors)),
@@ -103,9 +104,7 @@ class RowsRelaxer : public Relaxer {
     }
   }
 
-  void store(Vector& x) override {
-    permute.with(options_)(permutation_.back, x_, x.reshape(x_.shape()));
-  }
+  void store(Vector& x) override { permute.with(options_)(permutation_.back, x_, x.reshape(x_.shape())); }
 
   static std::vector<double> inverses(const SparseMatrix& a) {
     std::vector<double> d = diagonal(a);

@@ -16,7 +16,8 @@ namespace {
 
 bool isExact(double v, sk::Storage storage) {
   switch (storage) {
-    case sk::Storage::Half: return std::abs(v) <= 65504.0 && std::ldexp(std::round(std::ldexp(v, 24)), -24) == v &&
+    case sk::Storage::Half:
+      return std::abs(v) <= 65504.0 && std::ldexp(std::round(std::ldexp(v, 24)), -24) == v &&
              (v == 0.0 || std::ldexp(v, 10 - std::ilogb(v)) == std::round(std::ldexp(v, 10 - std::ilogb(v))));
     case sk::Storage::Default:
     case sk::Storage::Single: return static_cast<double>(static_cast<float>(v)) == v;
@@ -42,8 +43,9 @@ std::vector<std::unique_ptr<Matrix>> exactMatrices(sk::Device& device, const Mat
     return sum;
   }
   const auto isKept = [&](double v) { return isExact(v * a.scale, arithmetic.matrix); };
-  const bool areKept = a.sparse != nullptr ? std::ranges::all_of(a.sparse->value, isKept)
-                                           : isKept(a.stencil->centre) && std::ranges::all_of(a.stencil->along, isKept);
+  const bool areKept = a.sparse != nullptr
+                           ? std::ranges::all_of(a.sparse->value, isKept)
+                           : isKept(a.stencil->centre) && std::ranges::all_of(a.stencil->along, isKept);
   if (!areKept || !matrix.multipliesInDoubles())
     sum.push_back(makeMatrix(device, scaled(sparseOf(a), a.scale),
                              matrix.multipliesInDoubles() ? matrix.layout() : "slices", doubleArithmetic()));
@@ -85,9 +87,7 @@ class DeviceResidual : public Residual {
     largest_ = largestX_.readReals()[0];
   }
 
-  void writeTo(Vector& r, double scale) override {
-    scaleTo.with(options_)(static_cast<float>(scale), r_, r);
-  }
+  void writeTo(Vector& r, double scale) override { scaleTo.with(options_)(static_cast<float>(scale), r_, r); }
 
   double largestOfSolution() const override { return largest_; }
   std::vector<double> solution() override { return x_.readReals(); }

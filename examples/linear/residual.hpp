@@ -51,6 +51,7 @@ bool hasDoubles(sk::Device& device);
 
 /// Why the matrix is not symmetric; "" if it is. The device compares u . A v with v . A u for random u and v, in doubles if it has them; only if they
 /// differ by more than rounding explains, the host looks for the place. Misses differences below about 2^-45, without doubles 2^-16, of the largest row sum.
-std::string asymmetryOnDevice(sk::Device& device, Matrix& matrix, const Operator& a, const Arithmetic& arithmetic);
+std::string asymmetryOnDevice(sk::Device& device, Matrix& matrix, const Operator& a,
+                              const Arithmetic& arithmetic);
 
 }  // namespace linear

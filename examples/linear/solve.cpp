@@ -54,8 +54,8 @@ class Refinement {
     normB_ = norms_.two;
     solution_.outcome = outcome();
     solution_.residualTrue = normB_ > 0.0 ? norms_.two / normB_ : 0.0;
-    const double scale = a_.scale * a_.infinityNorm * residual_->largestOfSolution() +
-                         std::ldexp(largestB, -exponent);
+    const double scale =
+        a_.scale * a_.infinityNorm * residual_->largestOfSolution() + std::ldexp(largestB, -exponent);
     solution_.backwardError = scale > 0.0 ? norms_.infinity / scale : 0.0;
     solution_.x = residual_->solution();
     for (double& v : solution_.x) v = std::ldexp(v * a_.scale, exponent);

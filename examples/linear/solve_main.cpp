@@ -40,7 +40,8 @@ struct Settings {
   int restart = 30;
   double omega = 1.0;
   linear::SolveSettings solve;
-  bool study = false;
+  std::string study;
+  CLI::Option* studyOption = nullptr;  ///< may have been given without a name
 };
 
 template <class T>
@@ -88,9 +89,10 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->capture_default_str();
   cli.add_option("--omega", s.omega, "the relaxation factor of sor and ssor, between 0 and 2")
       ->capture_default_str();
-  cli.add_option("--ordering", s.ordering,
-                 "of the rows for sor, ssor, ic0 and ilu0:\n  colours     few groups of rows, each of which is "
-                 "a call\n  levels      the order of the matrix, which needs fewer iterations")
+  cli.add_option(
+         "--ordering", s.ordering,
+         "of the rows for sor, ssor, ic0 and ilu0:\n  colours     few groups of rows, each of which is "
+         "a call\n  levels      the order of the matrix, which needs fewer iterations")
       ->check(CLI::IsMember({"colours", "levels"}))
       ->capture_default_str();
   cli.add_option(
@@ -118,8 +120,11 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30))
       ->capture_default_str();
   cli.add_flag("!--no-refinement", s.solve.refines, "run the method once, in its own precision");
-  cli.add_flag("--study", s.study,
-               "solve with every precision, storage and accumulation, and print what each attains");
+  s.studyOption = cli.add_option("--study", s.study,
+                                 described("print tables: with a matrix, what each precision, storage and "
+                                           "accumulation attains; without one, NAME:",
+                                           linear::studyKinds()))
+                      ->expected(0, 1);
   cli.add_option("--solution", s.solution, "write x to this Matrix Market file");
   cli.add_option("--json", s.json, "write what was reached to this file");
   cli.add_option("--chart", s.svg, "draw the residual over the iterations to this file, as SVG");
@@ -128,9 +133,10 @@ void addOptions(CLI::App& cli, Settings& s) {
 /// Before anything is copied to a device.
 void checkPreconditioner(const linear::MethodKind& method, const linear::PreconditionerKind& preconditioner) {
   if (method.needsSymmetry && !preconditioner.isSymmetric)
-    throw std::runtime_error(fmt::format(
-        "the solver '{}' needs a symmetric preconditioner, which '{}' is not; take --solver {}", method.name,
-        preconditioner.name, preconditioner.name == "ilu0" || preconditioner.name == "sor" ? "gmres" : "stationary"));
+    throw std::runtime_error(
+        fmt::format("the solver '{}' needs a symmetric preconditioner, which '{}' is not; take --solver {}",
+                    method.name, preconditioner.name,
+                    preconditioner.name == "ilu0" || preconditioner.name == "sor" ? "gmres" : "stationary"));
 }
 
 void checkSymmetry(sk::Device& device, linear::Matrix& matrix, const linear::Arithmetic& arithmetic,
@@ -140,8 +146,9 @@ void checkSymmetry(sk::Device& device, linear::Matrix& matrix, const linear::Ari
   const std::string asymmetry = linear::asymmetryOnDevice(device, matrix, a, arithmetic);
   if (asymmetry.empty()) return;
   if (method.needsSymmetry)
-    throw std::runtime_error(fmt::format(
-        "the solver '{}' needs a symmetric matrix: {}; take --solver gmres or bicgstab", method.name, asymmetry));
+    throw std::runtime_error(
+        fmt::format("the solver '{}' needs a symmetric matrix: {}; take --solver gmres or bicgstab",
+                    method.name, asymmetry));
   throw std::runtime_error(
       fmt::format("the preconditioner '{}' needs a symmetric matrix: {}; take --preconditioner ilu0",
                   preconditioner.name, asymmetry));
@@ -165,7 +172,7 @@ void solveSystem(examples::Application& app, Settings& s) {
                system.duplicates());
 
   sk::Device device(app.device());
-  if (s.study && a.size > 0) {
+  if (s.studyOption->count() > 0 && a.size > 0) {
     const examples::Stopwatch watch;
     const std::string table =
         linear::studyPrecisions(device, system, {methodKind, preconditionerKind, s.layout, s.solve});
@@ -183,11 +190,10 @@ void solveSystem(examples::Application& app, Settings& s) {
     const std::unique_ptr<linear::Matrix> matrix =
         system.makeMatrix(device, s.layout, arithmetic, &account.trials);
     checkSymmetry(device, *matrix, arithmetic, methodKind, preconditionerKind, a);
-    const std::unique_ptr<linear::Preconditioner> preconditioner = preconditionerKind.make(
-        device, *matrix, a, arithmetic, {.omega = s.omega, .ordering = s.ordering});
-    const std::unique_ptr<linear::Method> method =
-        methodKind.make(device, *matrix, preconditioner.get(), arithmetic,
-                        {.restart = s.restart, .omega = s.omega, .a = &a});
+    const std::unique_ptr<linear::Preconditioner> preconditioner =
+        preconditionerKind.make(device, *matrix, a, arithmetic, {.omega = s.omega, .ordering = s.ordering});
+    const std::unique_ptr<linear::Method> method = methodKind.make(
+        device, *matrix, preconditioner.get(), arithmetic, {.restart = s.restart, .omega = s.omega, .a = &a});
     account.layout = matrix->layout();
     account.stored = matrix->stored();
     examples::Progress progress("solve", s.solve.most);
@@ -213,6 +219,15 @@ void solveSystem(examples::Application& app, Settings& s) {
   app.verified(verification);
 }
 
+void study(examples::Application& app, std::string_view name) {
+  const linear::StudyKind& kind = linear::rowNamed(linear::studyKinds(), name, "study");
+  sk::Device device(app.device());
+  const examples::Stopwatch watch;
+  const std::string table = kind.run(device);
+  app.report(fmt::format("study of {}", kind.does), device.name(), watch.milliseconds());
+  fmt::print("\n{}", table);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -221,6 +236,7 @@ int main(int argc, char** argv) {
                             "Solves systems of linear equations, and says what has really been reached.");
   addOptions(app.options(), settings);
   return app.run(argc, argv, [&] {
+    if (settings.matrix.empty() && !settings.study.empty()) return study(app, settings.study);
     if (settings.matrix.empty())
       throw std::runtime_error("no matrix is named; try poisson:256x256, or a Matrix Market file");
     try {

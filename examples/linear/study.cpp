@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "layout.hpp"
+#include "named.hpp"
 #include "support/table.hpp"
 
 namespace linear {
@@ -36,20 +38,135 @@ const Case cases[] = {
     {"double", "double", "compensated", arithmeticOf(Double, sk::Storage::Double, sk::Accumulate::Default)},
 };
 
-Solution solveWith(sk::Device& device, const System& system, const StudyChoices& choices,
-                   const Arithmetic& arithmetic, bool refines) {
-  const std::unique_ptr<Matrix> matrix = system.makeMatrix(device, choices.layout, arithmetic, nullptr);
-  const std::unique_ptr<Preconditioner> preconditioner =
-      choices.preconditioner.make(device, *matrix, system.matrix(), arithmetic);
-  const std::unique_ptr<Method> method =
-      choices.method.make(device, *matrix, preconditioner.get(), arithmetic);
-  SolveSettings settings = choices.settings;
-  settings.refines = refines;
-  solve(*method, system.matrix(), system.rightHandSide(), arithmetic, settings);  // builds programs
-  return solve(*method, system.matrix(), system.rightHandSide(), arithmetic, settings);
+struct Run {
+  std::string_view method = "cg", preconditioner = "jacobi", layout = "auto", ordering = "colours";
+  Arithmetic arithmetic = {};
+  SolveSettings settings = {};
+  double omega = 1.0;
+};
+
+struct Reached {
+  Solution solution;
+  std::string layout;
+  double productSeconds = 0.0;
+  double bytes = 0.0;  ///< of the matrix, for each unknown and product
+};
+
+/// Solves twice, since the first time builds programs, and returns the second.
+Reached reached(sk::Device& device, const System& system, const Run& run) {
+  const Operator& a = system.matrix();
+  const std::unique_ptr<Matrix> matrix = system.makeMatrix(device, run.layout, run.arithmetic, nullptr);
+  const auto preconditioner =
+      rowNamed(preconditionerKinds(), run.preconditioner, "preconditioner")
+          .make(device, *matrix, a, run.arithmetic, {.omega = run.omega, .ordering = run.ordering});
+  const auto method =
+      rowNamed(methodKinds(), run.method, "solver")
+          .make(device, *matrix, preconditioner.get(), run.arithmetic, {.omega = run.omega, .a = &a});
+  Reached r;
+  for (int i = 0; i < 2; ++i)
+    r.solution = solve(*method, a, system.rightHandSide(), run.arithmetic, run.settings);
+  r.layout = matrix->layout();
+  r.productSeconds = secondsOf(device, *matrix, run.arithmetic);
+  r.bytes = static_cast<double>(matrix->bytes()) / static_cast<double>(a.size);
+  return r;
 }
 
+Solution solveWith(sk::Device& device, const System& system, const StudyChoices& choices,
+                   const Arithmetic& arithmetic, bool refines) {
+  Run run{.method = choices.method.name,
+          .preconditioner = choices.preconditioner.name,
+          .layout = choices.layout,
+          .arithmetic = arithmetic,
+          .settings = choices.settings};
+  run.settings.refines = refines;
+  return reached(device, system, run).solution;
+}
+
+std::string number(double v) { return fmt::format("{:.1e}", v); }
+std::string milliseconds(double seconds) { return fmt::format("{:.3g}", seconds * 1000.0); }
+
+std::string precisions(sk::Device& device) {
+  const System system("poisson:63x63", {});
+  return studyPrecisions(device, system,
+                         {rowNamed(methodKinds(), "cg", "solver"),
+                          rowNamed(preconditionerKinds(), "jacobi", "preconditioner"),
+                          "auto",
+                          {}});
+}
+
+std::string solvers(sk::Device& device) {
+  const System system("poisson:63x63", {});
+  examples::Table table(
+      {"solver", "preconditioner", "outcome", "iterations", "residual", "ms", "us for an iteration"});
+  const Run runs[] = {{.method = "cg", .preconditioner = "none"},
+                      {.method = "pipelined", .preconditioner = "none"},
+                      {.method = "minres", .preconditioner = "none"},
+                      {.method = "chebyshev", .preconditioner = "none"},
+                      {.method = "bicgstab", .preconditioner = "none"},
+                      {.method = "gmres", .preconditioner = "none"},
+                      {.method = "gmres", .preconditioner = "multigrid"},
+                      {.method = "sor", .preconditioner = "none", .omega = 1.9},
+                      {.method = "stationary", .preconditioner = "multigrid"}};
+  for (const Run& run : runs) {
+    const Solution s = reached(device, system, run).solution;
+    table.add({std::string(run.method), std::string(run.preconditioner), std::string(nameOf(s.outcome)),
+               std::to_string(s.iterations), number(s.residualTrue), milliseconds(s.seconds),
+               fmt::format("{:.3g}",
+                           s.seconds * 1e6 / static_cast<double>(std::max<std::int64_t>(1, s.iterations)))});
+  }
+  return table.markdown();
+}
+
+std::string preconditioners(sk::Device& device) {
+  const System system("poisson:63x63", {});
+  examples::Table table({"preconditioner", "ordering", "outcome", "iterations", "residual", "ms"});
+  for (const PreconditionerKind& kind : preconditionerKinds()) {
+    if (!kind.isSymmetric) continue;
+    const bool isOrdered = kind.name == "ssor" || kind.name == "ic0";
+    for (const std::string_view ordering : {"colours", "levels"}) {
+      if (!isOrdered && ordering == "levels") continue;
+      const Solution s =
+          reached(device, system, {.preconditioner = kind.name, .ordering = ordering}).solution;
+      table.add({std::string(kind.name), isOrdered ? std::string(ordering) : "",
+                 std::string(nameOf(s.outcome)), std::to_string(s.iterations), number(s.residualTrue),
+                 milliseconds(s.seconds)});
+    }
+  }
+  return table.markdown();
+}
+
+std::string layoutsOfGrids(sk::Device& device) {
+  const System system("poisson:128x128", {});
+  examples::Table table(
+      {"layout", "entries in", "bytes for an unknown", "ms for a product", "iterations", "residual", "ms"});
+  for (const std::string_view layout : {"stencil", "diagonals", "slices", "rows", "buckets", "points"})
+    for (const sk::Storage entries : {sk::Storage::Single, sk::Storage::Half}) {
+      if (layout == "stencil" && entries == sk::Storage::Half) continue;
+      Arithmetic arithmetic;
+      arithmetic.matrix = entries;
+      const Reached r = reached(
+          device, system, {.layout = layout, .arithmetic = arithmetic, .settings = {.tolerance = 1e-6}});
+      table.add({std::string(layout),
+                 layout == "stencil"            ? ""
+                 : entries == sk::Storage::Half ? "half"
+                                                : "single",
+                 fmt::format("{:.3g}", r.bytes), milliseconds(r.productSeconds),
+                 std::to_string(r.solution.iterations), number(r.solution.residualTrue),
+                 milliseconds(r.solution.seconds)});
+    }
+  return table.markdown();
+}
+
+constexpr StudyKind studies[] = {
+    {"precision", "precisions, storages and accumulations, with and without refinement", precisions},
+    {"solvers", "every solver, for Poisson's equation", solvers},
+    {"preconditioners", "every symmetric preconditioner, with conjugate gradients", preconditioners},
+    {"layouts", "every layout of a sparse matrix, with entries in floats and halves", layoutsOfGrids},
+};
+
 }  // namespace
+
+std::span<const StudyKind> studyKinds() { return studies; }
 
 std::string studyPrecisions(sk::Device& device, const System& system, const StudyChoices& choices) {
   examples::Table table({"computed in", "stored as", "sums", "refined", "outcome", "iterations", "residual",

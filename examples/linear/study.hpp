@@ -4,7 +4,9 @@
 // iterations and its time.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "method.hpp"
 #include "preconditioner.hpp"
@@ -23,5 +25,15 @@ struct StudyChoices {
 /// Solves the system with every choice, once without and once with refinement. Returns a table in Markdown, and a line that names
 /// the cheapest choice within the tolerance. Choices that the device does not have are left out.
 std::string studyPrecisions(sk::Device& device, const System& system, const StudyChoices& choices);
+
+/// A study of systems of its own, whose table docs/linear.md shows.
+struct StudyKind {
+  std::string_view name;  ///< of --study
+  std::string_view does;
+  /// A table in Markdown.
+  std::string (*run)(sk::Device& device);
+};
+
+std::span<const StudyKind> studyKinds();
 
 }  // namespace linear
