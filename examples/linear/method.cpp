@@ -40,9 +40,24 @@ void Method::begin(double limit) {
   start();
 }
 
-std::int64_t Method::run(std::int64_t every, std::int64_t left) {
+std::int64_t Method::run(std::int64_t every, std::int64_t most) {
+  if (!hasCycles()) return repeat(every, most);
+  std::int64_t ran = 0;
+  while (ran < most) {
+    const std::int64_t now = advance(every, most - ran);
+    ran += now;
+    if (now == 0 || state() != Running) break;
+  }
+  return ran;
+}
+
+std::int64_t Method::advance(std::int64_t every, std::int64_t most) {
+  return repeat(every, std::min(every, most));
+}
+
+std::int64_t Method::repeat(std::int64_t every, std::int64_t most) {
   if (!loop_) loop_ = device_.record([&] { iterate(); });
-  return loop_.until(done_, {.every = every, .most = std::min(every, left)});
+  return loop_.until(done_, {.every = every, .most = most});
 }
 
 State Method::state() const { return static_cast<State>(state_.read()[0]); }

@@ -31,8 +31,10 @@ class Method {
   /// The same for a right-hand side that has been written to rightHandSide().
   void begin(double limit);
   Vector& rightHandSide() { return r_; }
-  /// Iterates until the state is no longer Running. Returns after about `every` iterations, or after `left`, with their number.
-  virtual std::int64_t run(std::int64_t every, std::int64_t left);
+  /// Iterates until the state is no longer Running, and `most` times at the most. Returns how often.
+  std::int64_t run(std::int64_t every, std::int64_t most);
+  /// The same, but returns after about `every` iterations: after a whole cycle, if the method has such.
+  virtual std::int64_t advance(std::int64_t every, std::int64_t most);
 
   State state() const;
   /// Iterations that make the residual less than a hundredth smaller, after which the method has stagnated.
@@ -57,6 +59,8 @@ class Method {
   /// Computes everything that an iteration needs, from r_, with x_ = 0.
   virtual void start() = 0;
   virtual void iterate() = 0;
+  /// Whether something happens between two calls of advance().
+  virtual bool hasCycles() const { return false; }
 
   sk::Device& device_;
   Matrix& matrix_;
@@ -69,7 +73,7 @@ class Method {
   sk::Stream<bool> done_;
 
  private:
-  /// From r_.
+  std::int64_t repeat(std::int64_t every, std::int64_t most);
 
   sk::Loop loop_;
 };

@@ -103,14 +103,15 @@ class PipelinedGradients : public Method {
     q_ = vector();
   }
 
-  std::int64_t run(std::int64_t every, std::int64_t left) override {
-    const std::int64_t ran = Method::run(std::min(every, period_), left);
+  std::int64_t advance(std::int64_t every, std::int64_t most) override {
+    const std::int64_t ran = Method::advance(std::min(every, period_), most);
     since_ += ran;
     if (since_ >= period_ && state() == Running) replace();
     return ran;
   }
 
  private:
+  bool hasCycles() const override { return true; }
   bool isPlain() const { return preconditioner_ == nullptr; }
 
   void start() override {

@@ -132,10 +132,10 @@ class GeneralizedMinimalResiduals : public Method {
       columns_.push_back(parts.device.stream<float>({restart_ + 1}, arithmetic_.sums()));
   }
 
-  std::int64_t run(std::int64_t, std::int64_t left) override {
+  std::int64_t advance(std::int64_t, std::int64_t most) override {
     steps_.fill(0);
-    if (left < restart_) {
-      device_.record([&] { cycle(static_cast<int>(left)); }).repeat(1);
+    if (most < restart_) {
+      device_.record([&] { cycle(static_cast<int>(most)); }).repeat(1);
     } else {
       if (!cycle_) cycle_ = device_.record([&] { iterate(); });
       cycle_.repeat(1);
@@ -151,6 +151,7 @@ class GeneralizedMinimalResiduals : public Method {
   }
 
   void iterate() override { cycle(restart_); }
+  bool hasCycles() const override { return true; }
 
   void cycle(int steps) {
     gmresNormalise.with(options_)(residual_, r_, basis_[0]);

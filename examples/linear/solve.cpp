@@ -99,7 +99,7 @@ class Refinement {
     std::int64_t leastAt = solution_.iterations;
     const std::int64_t firstAt = solution_.iterations;
     while (state == Running && solution_.iterations < settings_.most) {
-      const std::int64_t ran = method_.run(settings_.every, settings_.most - solution_.iterations);
+      const std::int64_t ran = method_.advance(settings_.every, settings_.most - solution_.iterations);
       state = method_.state();
       solution_.iterations += ran;
       solution_.residualRecurred =
