@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "support/scene_file.hpp"
+
+namespace waves {
+
+namespace {
+
+using examples::Range;
+using examples::SceneTable;
+
+constexpr Range positive{1e-12, 1e12};
+constexpr std::int64_t mostCells = std::int64_t{1} << 26;
+constexpr std::array<std::string_view, 2> schemes = {"crank-nicolson", "backward-euler"};
+constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
+
+/// A sentence that begins with the name of a key.
+[[noreturn]] void refuse(const SceneTable& table, std::string_view key, std::string_view what) {
+  table.fail(key, fmt::format("'{}' {}", key, what));
+}
+
+void readWater(const SceneTable& table, const Overrides& overrides, Model& m) {
+  const auto size = table.numbers("size", 2);
+  if (!size) refuse(table, "size", "is missing: cells along x and y");
+  for (const double n : *size)
+    if (n < 2 || n > 16384 || n != std::floor(n)) refuse(table, "size", "takes whole numbers from 2 to 16384");
+  m.width = static_cast<std::int64_t>((*size)[0]);
+  m.height = static_cast<std::int64_t>((*size)[1]);
+  const double width = table.number("width", positive).value_or(1.0);
+  if (!overrides.size.empty()) {
+    m.width = overrides.size[0];
+    m.height = overrides.size[1];
+  }
+  if (m.width * m.height > mostCells) refuse(table, "size", "makes more than 2^26 cells; take fewer");
+  m.spacing = width / static_cast<double>(m.width);
+  m.speed = table.number("speed", positive).value_or(1.0);
+}
+
+void readRun(const SceneTable& table, Scene& scene) {
+  Model& m = scene.model;
+  scene.steps = table.integer("steps", Range{1, 1e9}).value_or(scene.steps);
+  m.timeStep = table.number("time_step", positive).value_or(m.timeStep);
+  if (const auto scheme = table.choice("scheme", schemes)) m.scheme = static_cast<Scheme>(*scheme);
+  m.tolerance = table.number("tolerance", Range{1e-15, 0.1}).value_or(m.tolerance);
+  m.mostIterations = static_cast<int>(table.integer("most_iterations", Range{1, 1e6}).value_or(m.mostIterations));
+  if (const auto precision = table.choice("precision", precisionNames))
+    m.precision = *precision == 0 ? sk::Precision::Single : sk::Precision::Double;
+}
+
+Drop readDrop(const SceneTable& table) {
+  const auto centre = table.numbers("centre", 2, Range{-1e12, 1e12});
+  if (!centre) refuse(table, "centre", "is missing: where the drop falls, x and y");
+  const auto radius = table.number("radius", positive);
+  if (!radius) refuse(table, "radius", "of the drop is missing");
+  return {.x = (*centre)[0],
+          .y = (*centre)[1],
+          .radius = *radius,
+          .depth = table.number("depth", Range{-1e6, 1e6}).value_or(0.2 * *radius),
+          .time = table.number("time", Range{0.0, 1e12}).value_or(0.0)};
+}
+
+void readRecord(const SceneTable& table, Record& r) {
+  if (const auto output = table.text("output")) r.output = *output;
+  r.frames = static_cast<int>(table.integer("frames", Range{1, 99999}).value_or(r.frames));
+  r.framesPerSecond = static_cast<int>(table.integer("frames_per_second", Range{1, 120}).value_or(r.framesPerSecond));
+  if (const auto csv = table.text("csv")) r.csv = *csv;
+}
+
+void readView(const SceneTable& table, View& v) {
+  if (const auto pixels = table.numbers("pixels", 2)) {
+    for (const double n : *pixels)
+      if (n < 16 || n > 8192 || n != std::floor(n)) refuse(table, "pixels", "takes whole numbers from 16 to 8192");
+    v.width = static_cast<int>((*pixels)[0]);
+    v.height = static_cast<int>((*pixels)[1]);
+  }
+  v.turn = table.number("turn", Range{-10.0, 10.0}).value_or(v.turn);
+  v.tilt = table.number("tilt", Range{0.15, 1.5}).value_or(v.tilt);
+  v.distance = table.number("distance", Range{0.2, 10.0}).value_or(v.distance);
+  v.depth = table.number("depth", Range{0.01, 4.0}).value_or(v.depth);
+  v.tiles = table.number("tiles", Range{1.0, 200.0}).value_or(v.tiles);
+  v.exaggeration = table.number("exaggeration", Range{0.0, 100.0}).value_or(v.exaggeration);
+}
+
+}  // namespace
+
+std::span<const std::string_view> schemeNames() { return schemes; }
+
+Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
+  const SceneTable table = examples::loadScene(file);
+  Scene scene;
+  Model& m = scene.model;
+  scene.name = file.stem().string();
+  scene.title = table.text("title").value_or(scene.name);
+  if (const auto t = table.table("water"))
+    readWater(*t, overrides, m);
+  else
+    refuse(table, "water", "is missing: the table [water] has the size");
+  m.timeStep = m.spacing / m.speed;
+  if (const auto t = table.table("run")) readRun(*t, scene);
+  if (overrides.scheme) m.scheme = *overrides.scheme;
+  if (overrides.precision) m.precision = *overrides.precision;
+  if (overrides.steps) scene.steps = *overrides.steps;
+  for (const SceneTable& t : table.tables("drop")) scene.drops.push_back(readDrop(t));
+  if (scene.drops.empty()) refuse(table, "drop", "is missing: without a [[drop]] the water stays flat");
+  std::ranges::stable_sort(scene.drops, {}, &Drop::time);
+  scene.record.output = scene.name + ".png";
+  if (const auto t = table.table("record")) readRecord(*t, scene.record);
+  if (const auto t = table.table("view")) readView(*t, scene.view);
+  table.finish();
+  if (!std::isfinite(static_cast<float>(m.lambdaSquared())) || m.lambdaSquared() > 1e8)
+    table.fail("run", fmt::format("a time step of {:g} carries waves over more than 10000 cells; take a smaller "
+                                  "'time_step'", m.timeStep));
+  return scene;
+}
+
+void add(const Drop& drop, const Model& m, std::vector<double>& heights) {
+  for (std::int64_t y = 0; y < m.height; ++y)
+    for (std::int64_t x = 0; x < m.width; ++x) {
+      const double dx = (static_cast<double>(x) + 0.5) * m.spacing - drop.x,
+                   dy = (static_cast<double>(y) + 0.5) * m.spacing - drop.y;
+      const double s = (dx * dx + dy * dy) / (drop.radius * drop.radius);
+      heights[static_cast<std::size_t>(y * m.width + x)] -= drop.depth * (1.0 - s) * std::exp(-s);
+    }
+}
+
+}  // namespace waves

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+//
+// Scenes of water: TOML files, read to a model, the drops that fall into it, and what to make of them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surface.hpp"
+
+namespace waves {
+
+/// Presses a dent with a rim of the same volume into the surface: -depth (1 - s) exp(-s), s = (distance / radius)^2.
+struct Drop {
+  double x = 0.0, y = 0.0, radius = 0.0, depth = 0.0;
+  double time = 0.0;  ///< it falls before the first step that begins then or later
+};
+
+struct Record {
+  std::filesystem::path output;  ///< empty: no picture
+  int frames = 1;
+  int framesPerSecond = 25;
+  std::filesystem::path csv;
+};
+
+struct View {
+  int width = 960, height = 600;            ///< pixels
+  double turn = 0.5, tilt = 0.6;            ///< of the camera, in radians
+  double distance = 1.0;                    ///< of the camera, where 1 shows the pool and its edge
+  double depth = 0.25;                      ///< of the pool, as a part of its width
+  double tiles = 16.0;                      ///< along the pool's width
+  double exaggeration = 1.0;                ///< of heights
+};
+
+struct Scene {
+  std::string name, title;
+  Model model;
+  std::vector<Drop> drops;  ///< by their times
+  std::int64_t steps = 200;
+  Record record;
+  View view;
+};
+
+/// What a command line says in place of the file.
+struct Overrides {
+  std::vector<std::int64_t> size;  ///< cells along x and y; width of the pool and time step stay
+  std::optional<std::int64_t> steps;
+  std::optional<Scheme> scheme;
+  std::optional<sk::Precision> precision;
+};
+
+/// As scenes write them.
+std::span<const std::string_view> schemeNames();
+
+/// Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong and the way out".
+Scene readScene(const std::filesystem::path& file, const Overrides& overrides);
+
+/// Adds a drop to heights, row-major.
+void add(const Drop& drop, const Model& model, std::vector<double>& heights);
+
+}  // namespace waves

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+//
+// The studies of `waves --study NAME`, in tables of Markdown that the documentation shows.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "support/verification.hpp"
+#include "surface.hpp"
+
+namespace waves {
+
+struct Findings {
+  std::string table;
+  std::vector<examples::Verification> verifications;
+};
+
+struct Study {
+  std::string_view name;
+  std::string_view asks;  ///< what it finds out
+  Findings (*run)(sk::Device& device, bool small);  ///< small: for tests, coarse and quick
+};
+
+std::span<const Study> studies();
+
+/// A standing wave with so many half waves along x and y.
+struct Mode {
+  int x = 1, y = 0;
+};
+
+/// Of a mode: its angular frequency, and what its amplitude is multiplied by in each step.
+struct Oscillation {
+  double frequency = 0.0, gain = 1.0;
+};
+
+std::vector<double> heightsOf(const Mode& mode, const Model& model);
+/// Of the wave equation.
+double exactFrequency(const Mode& mode, const Model& model);
+/// Of the scheme: an eigenvalue of its step on the eigenvectors of the discrete Laplacian.
+Oscillation schemeOscillation(const Mode& mode, const Model& model);
+
+struct Measured {
+  Oscillation oscillation;
+  double residual = 0.0;    ///< the largest of all steps
+};
+/// From the amplitudes in a time series of a simulation, which fit a(n+1) = 2 g cos(w dt) a(n) - g^2 a(n-1).
+Measured measure(sk::Device& device, const Model& model, const Mode& mode, std::int64_t steps);
+
+Findings studyDispersion(sk::Device& device, bool small);
+Findings studyEnergy(sk::Device& device, bool small);
+
+}  // namespace waves
