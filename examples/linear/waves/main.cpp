@@ -32,7 +32,8 @@ struct Settings {
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "a pool and its drops: a TOML file, as in examples/linear/waves/scenes");
   std::string studies = "compare with what is known, and print a table:";
-  for (const waves::Study& study : waves::studies()) studies += fmt::format("\n  {:<11} {}", study.name, study.asks);
+  for (const waves::Study& study : waves::studies())
+    studies += fmt::format("\n  {:<11} {}", study.name, study.asks);
   cli.add_option("--study", s.study, studies);
   cli.add_flag("--small", s.small, "a study in seconds, coarser");
   cli.add_option("--size", s.size, "cells, WxH, in place of the scene's; the pool's width stays");
@@ -41,7 +42,8 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->check(CLI::IsMember({"crank-nicolson", "backward-euler"}));
   cli.add_option("--precision", s.precision, "single or double, in place of the scene's")
       ->check(CLI::IsMember({"single", "double"}));
-  cli.add_option("--output", s.output, "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
+  cli.add_option("--output", s.output,
+                 "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
   cli.add_option("--frames", s.frames, "pictures, evenly spaced in steps")->check(CLI::Range(1, 99999));
   cli.add_option("--csv", s.csv, "a file for time, iterations, residual and energy of each step");
 }
@@ -96,16 +98,20 @@ void simulate(examples::Application& app, const Settings& s) {
   const waves::Model& m = scene.model;
   sk::Device device(app.device());
   const waves::Outcome o = waves::run(device, scene);
-  app.report(fmt::format("{}, {} x {}, {} steps", scene.name, m.width, m.height, o.steps), device.name(), o.milliseconds);
-  fmt::print("{}, time {:.4g}, Courant number {:.3g}\n", waves::schemeNames()[static_cast<std::size_t>(m.scheme)],
-             o.time, std::sqrt(m.lambdaSquared()));
-  fmt::print("{:.1f} iterations a step, {} at most; residual at most {:.2g}, of the last step {:.2g} in double precision\n",
-             static_cast<double>(o.iterations) / static_cast<double>(o.steps), o.mostIterations, o.residual,
-             o.residualLast);
+  app.report(fmt::format("{}, {} x {}, {} steps", scene.name, m.width, m.height, o.steps), device.name(),
+             o.milliseconds);
+  fmt::print("{}, time {:.4g}, Courant number {:.3g}\n",
+             waves::schemeNames()[static_cast<std::size_t>(m.scheme)], o.time, std::sqrt(m.lambdaSquared()));
+  fmt::print(
+      "{:.1f} iterations a step, {} at most; residual at most {:.2g}, of the last step {:.2g} in double "
+      "precision\n",
+      static_cast<double>(o.iterations) / static_cast<double>(o.steps), o.mostIterations, o.residual,
+      o.residualLast);
   fmt::print("energy {:.6g}, changed by {:+.2g} of it, besides what drops brought\n", o.energy, o.drift);
   if (o.missed > 0)
-    fmt::print("{} steps did not reach the tolerance {:.1g} in {} iterations; take a larger one, or more of them\n",
-               o.missed, m.tolerance, m.mostIterations);
+    fmt::print(
+        "{} steps did not reach the tolerance {:.1g} in {} iterations; take a larger one, or more of them\n",
+        o.missed, m.tolerance, m.mostIterations);
   if (o.pictures > 0) fmt::print("wrote {}\n", scene.record.output.string());
   if (!scene.record.csv.empty()) fmt::print("wrote {}\n", scene.record.csv.string());
   for (const examples::Verification& verification : o.verifications) app.verified(verification);

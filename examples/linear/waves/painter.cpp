@@ -44,15 +44,19 @@ Camera cameraOf(const Scene& scene, const Pool& pool) {
   c.ahead = vector(ax, ay, az);
   c.right = vector(spread * std::cos(v.turn), -spread * std::sin(v.turn), 0.0);
   const double up = spread * v.height / v.width;
-  c.up = vector(up * std::sin(v.turn) * std::sin(v.tilt), up * std::cos(v.turn) * std::sin(v.tilt), up * std::cos(v.tilt));
+  c.up = vector(up * std::sin(v.turn) * std::sin(v.tilt), up * std::cos(v.turn) * std::sin(v.tilt),
+                up * std::cos(v.tilt));
   return c;
 }
 
 /// Texels of the floor, rows first: about as many as cells, and enough for a picture.
 sk::Shape floorShape(const Model& m) {
-  const double finest = static_cast<double>(std::clamp<std::int64_t>(2 * std::max(m.width, m.height), 64, 768)) /
-                        static_cast<double>(std::max(m.width, m.height));
-  const auto extent = [&](std::int64_t n) { return std::max<std::int64_t>(std::llround(static_cast<double>(n) * finest), 2); };
+  const double finest =
+      static_cast<double>(std::clamp<std::int64_t>(2 * std::max(m.width, m.height), 64, 768)) /
+      static_cast<double>(std::max(m.width, m.height));
+  const auto extent = [&](std::int64_t n) {
+    return std::max<std::int64_t>(std::llround(static_cast<double>(n) * finest), 2);
+  };
   return {extent(m.height), extent(m.width)};
 }
 
@@ -66,8 +70,10 @@ Painter::Painter(sk::Device& device, const Scene& scene)
   photons.reserve(static_cast<std::size_t>(shape.size()));
   for (std::int64_t y = 0; y < shape[0]; ++y)
     for (std::int64_t x = 0; x < shape[1]; ++x)
-      photons.push_back(vector((static_cast<double>(x) + 0.5) / static_cast<double>(shape[1]),
-                               (static_cast<double>(y) + 0.5) / static_cast<double>(shape[0]) * static_cast<double>(pool.size.y), 1.0));
+      photons.push_back(vector(
+          (static_cast<double>(x) + 0.5) / static_cast<double>(shape[1]),
+          (static_cast<double>(y) + 0.5) / static_cast<double>(shape[0]) * static_cast<double>(pool.size.y),
+          1.0));
   photons_ = device.stream<sk::float3>(shape);
   photons_.write(photons);
 }
@@ -76,7 +82,8 @@ examples::Image Painter::paint(const Surface& surface) {
   const Pool pool = poolOf(scene_);
   const View& v = scene_.view;
   light_.fill(0.0f);
-  shine(pool, 1.0f / static_cast<float>(photonsAcross * photonsAcross), photons_, surface.heightStream(), light_);
+  shine(pool, 1.0f / static_cast<float>(photonsAcross * photonsAcross), photons_, surface.heightStream(),
+        light_);
   auto colour = device_.stream<sk::float3>({std::int64_t{v.height} * finer, std::int64_t{v.width} * finer});
   look(pool, cameraOf(scene_, pool), surface.heightStream(), light_, colour);
   return examples::reduced(examples::imageOf(v.width * finer, v.height * finer, colour.read()), finer);

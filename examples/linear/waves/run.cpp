@@ -34,8 +34,8 @@ class Pictures {
     const Model& m = scene_.model;
     const std::string moment =
         fmt::format("{} x {} cells   {}   Courant number {:.3g}   step {}   time {:.3g}", m.width, m.height,
-                    schemeNames()[static_cast<std::size_t>(m.scheme)], std::sqrt(m.lambdaSquared()), surface.steps(),
-                    surface.time());
+                    schemeNames()[static_cast<std::size_t>(m.scheme)], std::sqrt(m.lambdaSquared()),
+                    surface.steps(), surface.time());
     const examples::Image image = examples::figure(painter_->paint(surface), {scene_.title, "", moment});
     if (film_)
       film_->add(image);
@@ -116,9 +116,10 @@ examples::Verification checkStep(sk::Device& device, const Model& model, const s
   const Step step = here.step();
   there.step();
   // ||A^-1|| is 1, so that w is off by at most its residual, and the new heights by 1 / theta times that.
-  examples::Verification v("a step's heights against double precision, 2-norm",
-                           (std::max(model.tolerance, model.attainable()) + 8.0 * model.roundoff()) / model.theta(),
-                           "the tolerance over theta, since the inverse of the matrix has the norm 1, and roundings");
+  examples::Verification v(
+      "a step's heights against double precision, 2-norm",
+      (std::max(model.tolerance, model.attainable()) + 8.0 * model.roundoff()) / model.theta(),
+      "the tolerance over theta, since the inverse of the matrix has the norm 1, and roundings");
   v.note(0, distance(here.heights(), there.heights()) / std::max(step.length, 1e-300));
   return v;
 }
@@ -193,8 +194,9 @@ Outcome run(sk::Device& device, const Scene& scene) {
   residual.note(outcome.steps, outcome.residualLast);
   outcome.verifications.push_back(residual);
   if (m.scheme == Scheme::CrankNicolson) {
-    examples::Verification energy("change of the energy", outcome.driftBound,
-                                  "8 Courant numbers times the residual over the energy's root, summed over all steps");
+    examples::Verification energy(
+        "change of the energy", outcome.driftBound,
+        "8 Courant numbers times the residual over the energy's root, summed over all steps");
     energy.note(outcome.steps, std::abs(outcome.drift));
     outcome.verifications.push_back(energy);
   }

@@ -15,10 +15,12 @@ namespace waves {
 struct Outcome {
   std::int64_t steps = 0;
   double time = 0.0, milliseconds = 0.0;
-  std::int64_t iterations = 0, mostIterations = 0, missed = 0;  ///< most: of one step; missed: steps short of the tolerance
+  std::int64_t iterations = 0, mostIterations = 0,
+               missed = 0;  ///< most: of one step; missed: steps short of the tolerance
   double residual = 0.0;  ///< the largest ||b - A w|| / ||b|| of all steps
   double residualLast = 0.0;  ///< of the last step, in double precision
-  double energy = 0.0, drift = 0.0, driftBound = 0.0;  ///< without what drops bring; drift and bound are parts of the energy at the end
+  double energy = 0.0, drift = 0.0,
+         driftBound = 0.0;  ///< without what drops bring; drift and bound are parts of the energy at the end
   int pictures = 0;
   std::vector<examples::Verification> verifications;
 };

@@ -30,7 +30,8 @@ void readWater(const SceneTable& table, const Overrides& overrides, Model& m) {
   const auto size = table.numbers("size", 2);
   if (!size) refuse(table, "size", "is missing: cells along x and y");
   for (const double n : *size)
-    if (n < 2 || n > 16384 || n != std::floor(n)) refuse(table, "size", "takes whole numbers from 2 to 16384");
+    if (n < 2 || n > 16384 || n != std::floor(n))
+      refuse(table, "size", "takes whole numbers from 2 to 16384");
   m.width = static_cast<std::int64_t>((*size)[0]);
   m.height = static_cast<std::int64_t>((*size)[1]);
   const double width = table.number("width", positive).value_or(1.0);
@@ -49,7 +50,8 @@ void readRun(const SceneTable& table, Scene& scene) {
   m.timeStep = table.number("time_step", positive).value_or(m.timeStep);
   if (const auto scheme = table.choice("scheme", schemes)) m.scheme = static_cast<Scheme>(*scheme);
   m.tolerance = table.number("tolerance", Range{1e-15, 0.1}).value_or(m.tolerance);
-  m.mostIterations = static_cast<int>(table.integer("most_iterations", Range{1, 1e6}).value_or(m.mostIterations));
+  m.mostIterations =
+      static_cast<int>(table.integer("most_iterations", Range{1, 1e6}).value_or(m.mostIterations));
   if (const auto precision = table.choice("precision", precisionNames))
     m.precision = *precision == 0 ? sk::Precision::Single : sk::Precision::Double;
 }
@@ -69,14 +71,16 @@ Drop readDrop(const SceneTable& table) {
 void readRecord(const SceneTable& table, Record& r) {
   if (const auto output = table.text("output")) r.output = *output;
   r.frames = static_cast<int>(table.integer("frames", Range{1, 99999}).value_or(r.frames));
-  r.framesPerSecond = static_cast<int>(table.integer("frames_per_second", Range{1, 120}).value_or(r.framesPerSecond));
+  r.framesPerSecond =
+      static_cast<int>(table.integer("frames_per_second", Range{1, 120}).value_or(r.framesPerSecond));
   if (const auto csv = table.text("csv")) r.csv = *csv;
 }
 
 void readView(const SceneTable& table, View& v) {
   if (const auto pixels = table.numbers("pixels", 2)) {
     for (const double n : *pixels)
-      if (n < 16 || n > 8192 || n != std::floor(n)) refuse(table, "pixels", "takes whole numbers from 16 to 8192");
+      if (n < 16 || n > 8192 || n != std::floor(n))
+        refuse(table, "pixels", "takes whole numbers from 16 to 8192");
     v.width = static_cast<int>((*pixels)[0]);
     v.height = static_cast<int>((*pixels)[1]);
   }
@@ -115,8 +119,10 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   if (const auto t = table.table("view")) readView(*t, scene.view);
   table.finish();
   if (!std::isfinite(static_cast<float>(m.lambdaSquared())) || m.lambdaSquared() > 1e8)
-    table.fail("run", fmt::format("a time step of {:g} carries waves over more than 10000 cells; take a smaller "
-                                  "'time_step'", m.timeStep));
+    table.fail("run",
+               fmt::format("a time step of {:g} carries waves over more than 10000 cells; take a smaller "
+                           "'time_step'",
+                           m.timeStep));
   return scene;
 }
 

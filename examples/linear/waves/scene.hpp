@@ -29,12 +29,12 @@ struct Record {
 };
 
 struct View {
-  int width = 960, height = 600;            ///< pixels
-  double turn = 0.5, tilt = 0.6;            ///< of the camera, in radians
-  double distance = 1.0;                    ///< of the camera, where 1 shows the pool and its edge
-  double depth = 0.25;                      ///< of the pool, as a part of its width
-  double tiles = 16.0;                      ///< along the pool's width
-  double exaggeration = 1.0;                ///< of heights
+  int width = 960, height = 600;  ///< pixels
+  double turn = 0.5, tilt = 0.6;  ///< of the camera, in radians
+  double distance = 1.0;  ///< of the camera, where 1 shows the pool and its edge
+  double depth = 0.25;  ///< of the pool, as a part of its width
+  double tiles = 16.0;  ///< along the pool's width
+  double exaggeration = 1.0;  ///< of heights
 };
 
 struct Scene {

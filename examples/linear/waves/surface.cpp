@@ -19,8 +19,7 @@ namespace {
 constexpr std::int64_t iterationsBetweenLooks = 2;
 
 linear::Arithmetic arithmeticFor(sk::Precision precision) {
-  const sk::Storage storage =
-      precision == sk::Precision::Double ? sk::Storage::Double : sk::Storage::Single;
+  const sk::Storage storage = precision == sk::Precision::Double ? sk::Storage::Double : sk::Storage::Single;
   return {.precision = precision, .matrix = storage, .vectors = storage};
 }
 
@@ -31,7 +30,9 @@ class WaveMatrix : public linear::Matrix {
         shape_({model.height, model.width}),
         k_(static_cast<float>(model.coefficient())) {}
   sk::Shape domain() const override { return shape_; }
-  void multiply(const linear::Vector& x, linear::Vector& y) override { waveProduct.with(options())(k_, x, y); }
+  void multiply(const linear::Vector& x, linear::Vector& y) override {
+    waveProduct.with(options())(k_, x, y);
+  }
   void multiply(const linear::Vector& x, linear::Vector& y, linear::Vector& xy) override {
     waveProductDot.with(foldOptions())(k_, x, y, xy);
   }
@@ -70,7 +71,10 @@ double Model::lambdaSquared() const {
 double Model::roundoff() const { return precision == sk::Precision::Double ? 0x1p-53 : 0x1p-24; }
 
 Surface::Surface(sk::Device& device, const Model& model)
-    : device_(device), model_(model), arithmetic_(arithmeticFor(model.precision)), sum_(device.stream<float>({1}, arithmetic_.sums())) {
+    : device_(device),
+      model_(model),
+      arithmetic_(arithmeticFor(model.precision)),
+      sum_(device.stream<float>({1}, arithmetic_.sums())) {
   requirePositive("width", static_cast<double>(model.width));
   requirePositive("height", static_cast<double>(model.height));
   requirePositive("spacing", model.spacing);
@@ -82,7 +86,8 @@ Surface::Surface(sk::Device& device, const Model& model)
     s->fill(0.0f);
   }
   matrix_ = std::make_unique<WaveMatrix>(model_, arithmetic_);
-  method_ = linear::rowNamed(linear::methodKinds(), "cg", "solver").make(device, *matrix_, nullptr, arithmetic_);
+  method_ =
+      linear::rowNamed(linear::methodKinds(), "cg", "solver").make(device, *matrix_, nullptr, arithmetic_);
 }
 
 sk::Stream<float> Surface::stream() const {
@@ -125,7 +130,8 @@ Step Surface::step() {
     step.iterations = method_->run(iterationsBetweenLooks, model_.mostIterations);
     linear::axpy.with(arithmetic_.options())(1.0f, method_->x(), w_, w_);
   }
-  advance.with(fold)(theta, static_cast<float>(model_.lambdaSquared()), k, w_, b_, u_, q_, un_, qn_, change_, sum_);
+  advance.with(fold)(theta, static_cast<float>(model_.lambdaSquared()), k, w_, b_, u_, q_, un_, qn_, change_,
+                     sum_);
   const double left = sum_.readReals()[0];
   std::swap(u_, un_);
   std::swap(q_, qn_);
@@ -152,8 +158,8 @@ double Surface::energyBound(const Step& step, double energy) const {
   const double scale = model_.spacing / model_.timeStep, lambda = std::sqrt(model_.lambdaSquared());
   const double root = std::sqrt(energy) / scale;  // of the energy in the units of q
   const double residual = step.residual * step.length, rounding = model_.roundoff() * step.length;
-  const double change =
-      8.0 * lambda * root * (residual + 2.0 * (1.0 + lambda) * rounding) + 4.0 * model_.roundoff() * root * root;
+  const double change = 8.0 * lambda * root * (residual + 2.0 * (1.0 + lambda) * rounding) +
+                        4.0 * model_.roundoff() * root * root;
   return scale * scale * change;
 }
 

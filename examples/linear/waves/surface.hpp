@@ -20,9 +20,9 @@ enum class Scheme { CrankNicolson, BackwardEuler };
 
 struct Model {
   std::int64_t width = 128, height = 128;  ///< cells
-  double spacing = 1.0 / 128.0;            ///< h
-  double speed = 1.0;                      ///< c, of waves
-  double timeStep = 1.0 / 128.0;           ///< dt
+  double spacing = 1.0 / 128.0;  ///< h
+  double speed = 1.0;  ///< c, of waves
+  double timeStep = 1.0 / 128.0;  ///< dt
   Scheme scheme = Scheme::CrankNicolson;
   double tolerance = 1e-6;  ///< of ||b - A w|| / ||b|| in each step
   int mostIterations = 200;  ///< of each step
@@ -42,8 +42,8 @@ struct Model {
 struct Step {
   std::int64_t iterations = 0;
   double residual = 0.0;  ///< ||b - A w|| / ||b||, of the w that the step has used
-  double length = 0.0;    ///< ||b||
-  bool reached = true;    ///< the tolerance, or the least residual that the precision allows
+  double length = 0.0;  ///< ||b||
+  bool reached = true;  ///< the tolerance, or the least residual that the precision allows
 };
 
 class Surface {

@@ -157,11 +157,13 @@ std::string messageOf(const std::string& text) {
 
 TEST_CASE("what is wrong with a scene of water is said with its place and a way out") {
   using Catch::Contains;
-  const std::string water = "[water]\nsize = [16, 16]\n", drop = "[[drop]]\ncentre = [0.5, 0.5]\nradius = 0.1\n";
+  const std::string water = "[water]\nsize = [16, 16]\n",
+                    drop = "[[drop]]\ncentre = [0.5, 0.5]\nradius = 0.1\n";
   CHECK(messageOf(water + drop) == "none");
   CHECK_THAT(messageOf(""), Contains("'water' is missing"));
   CHECK_THAT(messageOf(water), Contains("'drop' is missing"));
-  CHECK_THAT(messageOf(water + "spead = 1.0\n" + drop), Contains(":3:1:") && Contains("did you mean 'speed'?"));
+  CHECK_THAT(messageOf(water + "spead = 1.0\n" + drop),
+             Contains(":3:1:") && Contains("did you mean 'speed'?"));
   CHECK_THAT(messageOf("[water]\nsize = [-16, 16]\n" + drop), Contains("whole numbers from 2 to 16384"));
   CHECK_THAT(messageOf("[water]\nsize = [16384, 16384]\n" + drop), Contains("more than 2^26 cells"));
   CHECK_THAT(messageOf(water + "speed = nan\n" + drop), Contains(":3:") && Contains("speed"));
