@@ -83,7 +83,7 @@ example rays "$examples/rays/scenes/rings.toml" --size "$((size * 5 / 8))x$((siz
 example smooth "$examples/linear/smooth/scenes/sphere.toml" -o smooth_sphere.png
 example solve "poisson:${size}x${size}" --preconditioner multigrid --every 1
 example fluid "$examples/linear/fluid/scenes/plume.toml" --size "$((size * 3 / 16))x$((size / 4))" --steps "$((steps / 40))"
-example waves "$examples/linear/waves/scenes/drops.toml" --size "$((size / 4))x$((size * 7 / 36))" --steps 28
+example waves "$examples/linear/waves/scenes/drops.toml" --size "$((size / 4))x$((size * 7 / 36))" --steps 28 --pixels "${size}x$((size * 5 / 8))"
 
 echo
 awk -F '\t' '

@@ -22,7 +22,7 @@ namespace {
 
 struct Settings {
   std::filesystem::path scene, csv;
-  std::string study, size, scheme, precision;
+  std::string study, size, pixels, scheme, precision;
   std::optional<std::int64_t> steps;
   std::optional<std::filesystem::path> output;
   std::optional<int> frames;
@@ -44,11 +44,13 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->check(CLI::IsMember({"single", "double"}));
   cli.add_option("--output", s.output,
                  "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
+  cli.add_option("--pixels", s.pixels, "of a picture without its title, WxH, in place of the scene's");
   cli.add_option("--frames", s.frames, "pictures, evenly spaced in steps")->check(CLI::Range(1, 99999));
   cli.add_option("--csv", s.csv, "a file for time, iterations, residual and energy of each step");
 }
 
-std::vector<std::int64_t> sizeOf(const std::string& text) {
+std::vector<std::int64_t> sizeOf(const char* option, const std::string& text, std::int64_t least,
+                                 std::int64_t most) {
   const std::size_t x = text.find('x');
   std::vector<std::int64_t> size;
   for (const std::string& number : {text.substr(0, x), x == std::string::npos ? "" : text.substr(x + 1)}) {
@@ -56,14 +58,15 @@ std::vector<std::int64_t> sizeOf(const std::string& text) {
         !number.empty() && number.size() <= 5 && number.find_first_not_of("0123456789") == std::string::npos;
     size.push_back(isNumber ? std::stoll(number) : 0);
   }
-  if (std::ranges::any_of(size, [](auto n) { return n < 2 || n > 16384; }))
-    throw std::runtime_error(fmt::format("--size: '{}' is no size; write WxH, each from 2 to 16384", text));
+  if (std::ranges::any_of(size, [&](auto n) { return n < least || n > most; }))
+    throw std::runtime_error(
+        fmt::format("{}: '{}' is no size; write WxH, each from {} to {}", option, text, least, most));
   return size;
 }
 
 waves::Scene sceneOf(const Settings& s) {
   waves::Overrides overrides;
-  if (!s.size.empty()) overrides.size = sizeOf(s.size);
+  if (!s.size.empty()) overrides.size = sizeOf("--size", s.size, 2, 16384);
   overrides.steps = s.steps;
   const auto names = waves::schemeNames();
   if (!s.scheme.empty())
@@ -71,6 +74,11 @@ waves::Scene sceneOf(const Settings& s) {
   if (s.precision == "single") overrides.precision = sk::Precision::Single;
   if (s.precision == "double") overrides.precision = sk::Precision::Double;
   waves::Scene scene = waves::readScene(s.scene, overrides);
+  if (!s.pixels.empty()) {
+    const std::vector<std::int64_t> pixels = sizeOf("--pixels", s.pixels, 16, 8192);
+    scene.view.width = static_cast<int>(pixels[0]);
+    scene.view.height = static_cast<int>(pixels[1]);
+  }
   if (s.output) scene.record.output = *s.output;
   if (s.frames) scene.record.frames = *s.frames;
   if (!s.csv.empty()) scene.record.csv = s.csv;
