@@ -117,7 +117,7 @@ std::string solvers(sk::Device& device) {
   return table.markdown();
 }
 
-std::string preconditioners(sk::Device& device) {
+std::string preconditionerTable(sk::Device& device) {
   const System system("poisson:63x63", {});
   examples::Table table({"preconditioner", "ordering", "outcome", "iterations", "residual", "ms"});
   for (const PreconditionerKind& kind : preconditionerKinds()) {
@@ -160,7 +160,7 @@ std::string layoutsOfGrids(sk::Device& device) {
 constexpr StudyKind studies[] = {
     {"precision", "precisions, storages and accumulations, with and without refinement", precisions},
     {"solvers", "every solver, for Poisson's equation", solvers},
-    {"preconditioners", "every symmetric preconditioner, with conjugate gradients", preconditioners},
+    {"preconditioners", "every symmetric preconditioner, with conjugate gradients", preconditionerTable},
     {"layouts", "every layout of a sparse matrix, with entries in floats and halves", layoutsOfGrids},
 };
 
