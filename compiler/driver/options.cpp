@@ -152,10 +152,12 @@ void addNativeOptions(CLI::App& app, Words& words) {
   app.add_option("--target-triple", options.triple,
                  "Compile native code for this system, such as aarch64-linux-gnu (default: this machine's)")
       ->type_name("TRIPLE");
-  app.add_option("--levels", options.levels,
-                 fmt::format("Compile native code for these levels of the CPU (default: all). Those of x86-64: {}; native: "
-                             "this machine's",
-                             fmt::join(native::levelNames("x86_64-linux-gnu"), ", ")))
+  app.add_option(
+         "--levels", options.levels,
+         fmt::format(
+             "Compile native code for these levels of the CPU (default: all). Those of x86-64: {}; native: "
+             "this machine's",
+             fmt::join(native::levelNames("x86_64-linux-gnu"), ", ")))
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("LIST");

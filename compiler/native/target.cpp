@@ -101,10 +101,13 @@ const llvm::Target& findTarget(const std::string& triple) {
 /// The best of the target's levels that this machine has.
 std::string_view levelOfThisMachine(const std::string& triple) {
   if (llvm::Triple(triple).getArch() != llvm::Triple(llvm::sys::getProcessTriple()).getArch()) {
-    throw Error(fmt::format("level 'native' is this machine's, which target '{}' is not; name its levels", triple));
+    throw Error(
+        fmt::format("level 'native' is this machine's, which target '{}' is not; name its levels", triple));
   }
   const std::span<const CpuLevel> known = levelsOf(triple);
-  return std::ranges::find(known, known.size() == 1 ? Level::Base : sk::native::levelOfHardware(), &CpuLevel::level)->name;
+  return std::ranges::find(known, known.size() == 1 ? Level::Base : sk::native::levelOfHardware(),
+                           &CpuLevel::level)
+      ->name;
 }
 
 std::vector<CpuLevel> chosenLevels(const std::string& triple, std::vector<std::string> names) {

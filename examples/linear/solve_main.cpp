@@ -75,7 +75,8 @@ std::string described(std::string head, const Kinds& kinds) {
 
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("matrix", s.matrix,
-                 "a Matrix Market file, or poisson:WxH or poisson:WxHxD for Poisson's equation on a grid; poisson:WxH:X,Y has these "
+                 "a Matrix Market file, or poisson:WxH or poisson:WxHxD for Poisson's equation on a grid; "
+                 "poisson:WxH:X,Y has these "
                  "diffusivities along its dimensions");
   cli.add_option("--rhs", s.rightHandSide,
                  "the right-hand side, a Matrix Market file; A times ones if there is none");

@@ -273,54 +273,54 @@ struct PlainEgl<place, R (*)(A...)> {
   static R call(A... arguments) { return Hook<place>::real(arguments...); }
 };
 
-#define PLAIN_FUNCTIONS                                                                                      \
-  HOOK(glActiveTexture)                                                                                      \
-  HOOK(glAttachShader)                                                                                       \
-  HOOK(glBindBuffer)                                                                                         \
-  HOOK(glBindBufferBase)                                                                                     \
-  HOOK(glBindBufferRange)                                                                                    \
-  HOOK(glBindFramebuffer)                                                                                    \
-  HOOK(glBindImageTexture)                                                                                   \
-  HOOK(glBindSampler) HOOK(glBindTexture) HOOK(glBindVertexArray) HOOK(glBlendEquation) HOOK(                \
-      glBlendEquationSeparate) HOOK(glBlendEquationSeparatei) HOOK(glBlendFunc) HOOK(glBlendFuncSeparate)    \
-      HOOK(glBlendFuncSeparatei) HOOK(glClampColor) HOOK(glClipControl) HOOK(glClipControlEXT)               \
-          HOOK(glColorMask) HOOK(glColorMaski) HOOK(glDetachShader) HOOK(glDisable) HOOK(glDisablei) HOOK(   \
-              glDrawBuffers) HOOK(glEnable) HOOK(glEnablei) HOOK(glFinish) HOOK(glFlush)                     \
-              HOOK(glFramebufferTexture2D) HOOK(glFramebufferTextureLayer) HOOK(glGetBooleani_v) HOOK(       \
-                  glGetBooleanv) HOOK(glGetBufferParameteri64v) HOOK(glGetBufferSubData) HOOK(glGetFloati_v) \
-                  HOOK(glGetFloatv) HOOK(glGetInteger64i_v) HOOK(glGetInteger64v) HOOK(glGetIntegeri_v)      \
-                      HOOK(glGetIntegerv) HOOK(glGetProgramBinary) HOOK(glGetProgramInfoLog) HOOK(           \
-                          glGetProgramiv) HOOK(glGetQueryObjectui64v) HOOK(glGetQueryObjectuiv)              \
-                          HOOK(glGetQueryiv) HOOK(glGetShaderInfoLog) HOOK(glGetShaderiv) HOOK(              \
-                              glGetString) HOOK(glGetUniformLocation) HOOK(glIsEnabled) HOOK(glIsEnabledi)   \
-                              HOOK(glMemoryBarrier) HOOK(glObjectLabel) HOOK(glPauseTransformFeedback) HOOK( \
-                                  glPixelStorei) HOOK(glPixelTransferf) HOOK(glPointSize)                    \
-                                  HOOK(glPolygonMode) HOOK(glPopDebugGroup) HOOK(glProgramParameteri) HOOK(  \
-                                      glPushDebugGroup) HOOK(glQueryCounter) HOOK(glReadBuffer)              \
-                                      HOOK(glReadPixels) HOOK(glResumeTransformFeedback) HOOK(               \
-                                          glSamplerParameteri) HOOK(glShaderSource) HOOK(glTexParameteri)    \
-                                          HOOK(glUniform1f) HOOK(glUniform1fv) HOOK(glUniform1i) HOOK(       \
-                                              glUniform1iv) HOOK(glUniform1uiv) HOOK(glUniform2fv)           \
-                                              HOOK(glUniform2iv) HOOK(glUniform2ui) HOOK(glUniform2uiv)      \
-                                                  HOOK(glUniform3fv) HOOK(glUniform3iv) HOOK(glUniform3uiv)  \
-                                                      HOOK(glUniform4fv) HOOK(glUniform4iv)                  \
-                                                          HOOK(glUniform4uiv) HOOK(glUniformMatrix2fv)       \
-                                                              HOOK(glUniformMatrix3fv)                       \
-                                                                  HOOK(glUniformMatrix4fv)                   \
-                                                                      HOOK(glUseProgram) HOOK(glViewport)    \
-                                                                          HOOK(glViewportIndexedf)           \
-                                                                              HOOK(glViewportIndexedfv)
+#define PLAIN_FUNCTIONS                                                                                     \
+  HOOK(glActiveTexture)                                                                                     \
+  HOOK(glAttachShader)                                                                                      \
+  HOOK(glBindBuffer)                                                                                        \
+  HOOK(glBindBufferBase)                                                                                    \
+  HOOK(glBindBufferRange)                                                                                   \
+  HOOK(glBindFramebuffer)                                                                                   \
+  HOOK(glBindImageTexture)                                                                                  \
+  HOOK(glBindSampler)                                                                                       \
+  HOOK(glBindTexture) HOOK(glBindVertexArray) HOOK(glBlendEquation) HOOK(glBlendEquationSeparate) HOOK(     \
+      glBlendEquationSeparatei) HOOK(glBlendFunc) HOOK(glBlendFuncSeparate) HOOK(glBlendFuncSeparatei)      \
+      HOOK(glClampColor) HOOK(glClipControl) HOOK(glClipControlEXT) HOOK(glColorMask) HOOK(                 \
+          glColorMaski) HOOK(glDetachShader) HOOK(glDisable) HOOK(glDisablei) HOOK(glDrawBuffers)           \
+          HOOK(glEnable) HOOK(glEnablei) HOOK(glFinish) HOOK(glFlush) HOOK(glFramebufferTexture2D) HOOK(    \
+              glFramebufferTextureLayer) HOOK(glGetBooleani_v) HOOK(glGetBooleanv)                          \
+              HOOK(glGetBufferParameteri64v) HOOK(glGetBufferSubData) HOOK(glGetFloati_v) HOOK(             \
+                  glGetFloatv) HOOK(glGetInteger64i_v) HOOK(glGetInteger64v) HOOK(glGetIntegeri_v)          \
+                  HOOK(glGetIntegerv) HOOK(glGetProgramBinary) HOOK(glGetProgramInfoLog) HOOK(              \
+                      glGetProgramiv) HOOK(glGetQueryObjectui64v) HOOK(glGetQueryObjectuiv)                 \
+                      HOOK(glGetQueryiv) HOOK(glGetShaderInfoLog) HOOK(glGetShaderiv) HOOK(                 \
+                          glGetString) HOOK(glGetUniformLocation) HOOK(glIsEnabled) HOOK(glIsEnabledi)      \
+                          HOOK(glMemoryBarrier) HOOK(glObjectLabel) HOOK(glPauseTransformFeedback) HOOK(    \
+                              glPixelStorei) HOOK(glPixelTransferf) HOOK(glPointSize) HOOK(glPolygonMode)   \
+                              HOOK(glPopDebugGroup) HOOK(glProgramParameteri) HOOK(glPushDebugGroup)        \
+                                  HOOK(glQueryCounter) HOOK(glReadBuffer) HOOK(glReadPixels)                \
+                                      HOOK(glResumeTransformFeedback) HOOK(glSamplerParameteri) HOOK(       \
+                                          glShaderSource) HOOK(glTexParameteri) HOOK(glUniform1f)           \
+                                          HOOK(glUniform1fv) HOOK(glUniform1i) HOOK(glUniform1iv) HOOK(     \
+                                              glUniform1uiv) HOOK(glUniform2fv) HOOK(glUniform2iv)          \
+                                              HOOK(glUniform2ui) HOOK(glUniform2uiv) HOOK(glUniform3fv)     \
+                                                  HOOK(glUniform3iv) HOOK(glUniform3uiv) HOOK(glUniform4fv) \
+                                                      HOOK(glUniform4iv) HOOK(glUniform4uiv)                \
+                                                          HOOK(glUniformMatrix2fv) HOOK(glUniformMatrix3fv) \
+                                                              HOOK(glUniformMatrix4fv) HOOK(glUseProgram)   \
+                                                                  HOOK(glViewport) HOOK(glViewportIndexedf) \
+                                                                      HOOK(glViewportIndexedfv)
 
-#define PLAIN_EGL_FUNCTIONS                                                                              \
-  HOOK(eglBindAPI)                                                                                       \
-  HOOK(eglChooseConfig)                                                                                  \
-  HOOK(eglCreatePbufferSurface)                                                                          \
-  HOOK(eglDestroySurface)                                                                                \
-  HOOK(eglGetCurrentContext)                                                                             \
-  HOOK(eglGetCurrentDisplay)                                                                             \
-  HOOK(eglGetCurrentSurface)                                                                             \
-  HOOK(eglGetDisplay) HOOK(eglGetError) HOOK(eglGetProcAddress) HOOK(eglInitialize) HOOK(eglMakeCurrent) \
-      HOOK(eglQueryAPI) HOOK(eglQueryString)
+#define PLAIN_EGL_FUNCTIONS                                                                            \
+  HOOK(eglBindAPI)                                                                                     \
+  HOOK(eglChooseConfig)                                                                                \
+  HOOK(eglCreatePbufferSurface)                                                                        \
+  HOOK(eglDestroySurface)                                                                              \
+  HOOK(eglGetCurrentContext)                                                                           \
+  HOOK(eglGetCurrentDisplay)                                                                           \
+  HOOK(eglGetCurrentSurface)                                                                           \
+  HOOK(eglGetDisplay)                                                                                  \
+  HOOK(eglGetError) HOOK(eglGetProcAddress) HOOK(eglInitialize) HOOK(eglMakeCurrent) HOOK(eglQueryAPI) \
+      HOOK(eglQueryString)
 
 }  // namespace
 
