@@ -83,7 +83,7 @@ StepReport Flow::step() {
   const auto method = linear::rowNamed(linear::methodKinds(), "cg", "solver")
                           .make(device_, *matrix, preconditioner.get(), arithmetic);
   StepReport report;
-  for (double Vector::* const component : {&Vector::x, &Vector::y, &Vector::z}) {
+  for (double Vector::*const component : {&Vector::x, &Vector::y, &Vector::z}) {
     std::vector<double> x;
     for (const Vector& p : surface_.points) x.push_back(p.*component);
     // For the change of x, so that the tolerance is that of the change.
@@ -98,8 +98,9 @@ StepReport Flow::step() {
     for (std::size_t i = 0; i < x.size(); ++i) surface_.points[i].*component += change.x[i];
     report.iterations += change.iterations;
     report.residual = std::max(report.residual, change.residualTrue);
+    report.secondsSolving += change.seconds;
   }
-  faults_ = inspect(surface_);
+  inspectAreas(surface_, faults_);
   if (settings_.keepsVolume) restoreVolume();
   report.volume = volumeOf(surface_);
   report.area = areaOf(surface_);

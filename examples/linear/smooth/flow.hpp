@@ -36,6 +36,7 @@ struct StepReport {
   double residual = 0.0;  ///< the largest of their true residuals, as a part of the right-hand side
   double volume = 0.0;
   double area = 0.0;
+  double secondsSolving = 0.0;  ///< of the step, in the three solves; the rest assembles, and copies the matrix to the device
 };
 
 class Flow {

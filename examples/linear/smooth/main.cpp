@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// smooth: implicit mean-curvature flow of a mesh or of a scene's surface.
+// smooth: implicit mean-curvature flow of a mesh or of a scene's surface, and studies of it.
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -14,6 +14,7 @@
 
 #include "flow.hpp"
 #include "picture.hpp"
+#include "study.hpp"
 #include "support/application.hpp"
 #include "support/figure.hpp"
 #include "support/image.hpp"
@@ -28,6 +29,8 @@ struct Settings {
   std::optional<std::int64_t> steps;
   std::optional<double> timeStep;
   std::optional<std::string> layout;
+  std::string study;
+  bool small = false;
 };
 
 struct Scene {
@@ -121,7 +124,7 @@ void run(examples::Application& app, const Settings& s) {
   fmt::print("{}", faults);
   if (!s.obj.empty()) smooth::saveObj(s.obj, flow.surface());
   if (!s.picture.empty()) {
-    constexpr int size = 640;
+    constexpr int size = 400;
     examples::Image both = examples::plainImage(2 * size, size, {0, 0, 0});
     examples::paste(both, smooth::pictureOf(scene.surface, scene.surface, size), 0, 0);
     examples::paste(both, smooth::pictureOf(flow.surface(), scene.surface, size), size, 0);
@@ -133,6 +136,22 @@ void run(examples::Application& app, const Settings& s) {
                                                                    scene.flow.timeStep)}));
   }
   app.verified(verification);
+}
+
+void study(examples::Application& app, const Settings& s) {
+  std::string names;
+  for (const smooth::Study& study : smooth::studies()) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
+    if (study.name != s.study) continue;
+    sk::Device device(app.device());
+    const examples::Stopwatch watch;
+    const smooth::Findings findings = study.run(device, s.small);
+    app.report(fmt::format("{}: {}", study.name, study.asks), device.name(), watch.milliseconds());
+    fmt::print("\n{}\n", findings.table);
+    for (const examples::Verification& verification : findings.verifications) app.verified(verification);
+    return;
+  }
+  throw std::runtime_error(fmt::format("no study is called '{}'; there are {}", s.study, names));
 }
 
 }  // namespace
@@ -151,7 +170,13 @@ int main(int argc, char** argv) {
   cli.add_option("--layout", settings.layout, "of the matrix, as solve --layout takes it");
   cli.add_option("--obj", settings.obj, "file for the surface at the end");
   cli.add_option("-o,--output", settings.picture, "picture of the surface before and after, .png");
+  std::string studies = "measure flows whose solution is known, and print tables:";
+  for (const smooth::Study& study : smooth::studies())
+    studies += fmt::format("\n  {:<9} {}", study.name, study.asks);
+  cli.add_option("--study", settings.study, studies);
+  cli.add_flag("--small", settings.small, "a study in a second, coarser");
   return app.run(argc, argv, [&] {
+    if (!settings.study.empty()) return study(app, settings);
     if (settings.input.empty())
       throw std::runtime_error("no surface is named; try examples/linear/smooth/scenes/sphere.toml");
     run(app, settings);

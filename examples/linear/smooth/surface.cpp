@@ -45,17 +45,26 @@ void addLine(std::string& text, const std::vector<Number>& faults, std::string_v
 
 }  // namespace
 
-Faults inspect(const Surface& s) {
-  Faults faults;
-  std::map<std::pair<std::int32_t, std::int32_t>, int> edges;
+void inspectAreas(const Surface& s, Faults& faults) {
+  faults.degenerate.clear();
+  faults.isolated.clear();
   std::vector<bool> used(s.points.size(), false);
   for (std::size_t f = 0; f < s.faces.size(); ++f) {
-    const Triangle& face = s.faces[f];
-    if (isDegenerate(s, face)) {
+    if (isDegenerate(s, s.faces[f])) {
       faults.degenerate.push_back(static_cast<std::int64_t>(f));
     } else {
-      for (const std::int32_t i : face) used[static_cast<std::size_t>(i)] = true;
+      for (const std::int32_t i : s.faces[f]) used[static_cast<std::size_t>(i)] = true;
     }
+  }
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (!used[i]) faults.isolated.push_back(static_cast<std::int32_t>(i));
+}
+
+Faults inspect(const Surface& s) {
+  Faults faults;
+  inspectAreas(s, faults);
+  std::map<std::pair<std::int32_t, std::int32_t>, int> edges;
+  for (const Triangle& face : s.faces) {
     // A face that names a point twice has no inside, which an edge could bound.
     if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) continue;
     for (std::size_t i = 0; i < 3; ++i) ++edges[std::minmax(face[i], face[(i + 1) % 3])];
@@ -68,8 +77,6 @@ Faults inspect(const Surface& s) {
     faults.boundary[static_cast<std::size_t>(edge.first)] = true;
     faults.boundary[static_cast<std::size_t>(edge.second)] = true;
   }
-  for (std::size_t i = 0; i < used.size(); ++i)
-    if (!used[i]) faults.isolated.push_back(static_cast<std::int32_t>(i));
   return faults;
 }
 

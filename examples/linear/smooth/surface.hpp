@@ -33,6 +33,8 @@ struct Faults {
 };
 
 Faults inspect(const Surface& surface);
+/// Inspects anew what depends on positions, degenerate faces and isolated points; edges stay what they are while points move.
+void inspectAreas(const Surface& surface, Faults& faults);
 /// A line for each kind of fault, with its first numbers, which count from 1 as in OBJ files; "" if there is none.
 std::string textOf(const Faults& faults);
 
