@@ -60,11 +60,15 @@ Drop readDrop(const SceneTable& table) {
   const auto centre = table.numbers("centre", 2, Range{-1e12, 1e12});
   if (!centre) refuse(table, "centre", "is missing: where the drop falls, x and y");
   const auto radius = table.number("radius", positive);
-  if (!radius) refuse(table, "radius", "of the drop is missing");
+  const auto depth = table.number("depth", Range{-1e6, 1e6});
+  if (!radius) {
+    table.finish();  // a misspelt key is the better message
+    refuse(table, "radius", "of the drop is missing");
+  }
   return {.x = (*centre)[0],
           .y = (*centre)[1],
           .radius = *radius,
-          .depth = table.number("depth", Range{-1e6, 1e6}).value_or(0.2 * *radius),
+          .depth = depth.value_or(0.2 * *radius),
           .time = table.number("time", Range{0.0, 1e12}).value_or(0.0)};
 }
 
