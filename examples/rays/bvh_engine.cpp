@@ -23,6 +23,7 @@ constexpr std::array<std::string_view, 2> machineNames = {"megakernel", "wavefro
 constexpr std::array<std::string_view, 3> sortNames = {"none", "origin", "direction"};
 constexpr std::array<std::string_view, 2> intersectionNames = {"watertight", "moller"};
 constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
+constexpr std::array<std::string_view, 2> storageNames = {"single", "half"};
 /// Rays of one call; more come in several.
 constexpr std::size_t batch = std::size_t{1} << 20;
 
@@ -68,6 +69,8 @@ class BvhEngine : public Engine {
   }
 
   std::vector<std::string> account() override { return scene_.account(); }
+  const Model& model() const override { return scene_.model(); }
+  std::vector<std::string> warnings() const override { return scene_.warnings(); }
 
  private:
   static Hit hitOf(const kernels::Found& f) {
@@ -95,6 +98,7 @@ DeviceSettings settingsOf(const SceneTable& table) {
   settings.machine = static_cast<PathMachine>(table.choice("machine", machineNames).value_or(0));
   settings.sort = static_cast<RaySort>(table.choice("sort", sortNames).value_or(0));
   if (table.choice("precision", precisionNames).value_or(0) == 1) settings.precision = sk::Precision::Double;
+  settings.storage = static_cast<VertexStorage>(table.choice("storage", storageNames).value_or(0));
   settings.bvh.bins = static_cast<int>(table.integer("bins", Range{2, 64}).value_or(settings.bvh.bins));
   settings.bvh.leaf = static_cast<int>(table.integer("leaf", Range{1, 7}).value_or(settings.bvh.leaf));
   return settings;

@@ -36,7 +36,22 @@ TraversalDefault fastestOn(const sk::Device& device) {
   return {HowToTraverse::Stack, 2};
 }
 
+/// A copy where shapes are to be rounded, else none.
+std::unique_ptr<Model> copyToRound(const Model& model, VertexStorage storage) {
+  return storage == VertexStorage::Half ? std::make_unique<Model>(model) : nullptr;
+}
+
 }  // namespace
+
+ShapeStreams::ShapeStreams(sk::Device& device, std::span<const std::uint32_t> order, const Model& model,
+                           VertexStorage storage)
+    : inHalves(storage == VertexStorage::Half) {
+  HalfLayout layout;
+  if (inHalves) layout = halfLayout(order, model);
+  floats = streamOf(device, inHalves ? std::vector<sk::float4>{} : shapeLayout(order, model));
+  halves = streamOf(device, std::move(layout.rows));
+  numbers = streamOf(device, std::move(layout.numbers));
+}
 
 std::string_view nameOf(HowToTraverse way) {
   switch (way) {
@@ -47,8 +62,12 @@ std::string_view nameOf(HowToTraverse way) {
   return "";
 }
 
-DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSettings& settings)
-    : device_(&device), model_(&model) {
+DeviceScene::DeviceScene(sk::Device& device, const Model& given, const DeviceSettings& settings)
+    : device_(&device),
+      rounded_(copyToRound(given, settings.storage)),
+      model_(rounded_ ? rounded_.get() : &given) {
+  if (rounded_) rounding_ = roundToHalves(*rounded_);
+  const Model& model = *model_;
   const examples::Stopwatch stopwatch;
   bvh_ = built(model, settings.bvh);
   milliseconds_ = stopwatch.milliseconds();
@@ -78,7 +97,12 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& model, const DeviceSet
   nodes_ = streamOf(device, std::move(nodes));
   wide_ = streamOf(device, std::move(wide.nodes));
   children_ = streamOf(device, std::move(wide.children));
-  shapes_ = streamOf(device, shapeLayout(bvh_.order, model));
+  shapes_.emplace(device, bvh_.order, model, settings.storage);
+}
+
+unsigned DeviceScene::kernelTest() const {
+  // shape_test.sk: both tests in floats, then both in halves.
+  return static_cast<unsigned>(intersection_) + (shapes_->inHalves ? 2u : 0u);
 }
 
 unsigned DeviceScene::kernelTraversal() const {
@@ -88,12 +112,28 @@ unsigned DeviceScene::kernelTraversal() const {
 
 std::vector<std::string> DeviceScene::account() const {
   if (bvh_.nodes.empty()) return {};
-  return {fmt::format("hierarchy: {} triangles, {} spheres in {} nodes, {} levels, expected cost {:.1f}, "
-                      "built in {:.0f} ms",
-                      model_->triangles.size(), model_->spheres.size(), bvh_.nodes.size(), bvh_.depth,
-                      bvh_.cost, milliseconds_),
-          fmt::format("rays go through nodes of {} children, traversal \"{}\"{}", width_, nameOf(traversal_),
-                      isChosen_ ? ", the fastest on such a device" : "")};
+  std::vector<std::string> lines = {
+      fmt::format("hierarchy: {} triangles, {} spheres in {} nodes, {} levels, expected cost {:.1f}, "
+                  "built in {:.0f} ms",
+                  model_->triangles.size(), model_->spheres.size(), bvh_.nodes.size(), bvh_.depth, bvh_.cost,
+                  milliseconds_),
+      fmt::format("rays go through nodes of {} children, traversal \"{}\"{}", width_, nameOf(traversal_),
+                  isChosen_ ? ", the fastest on such a device" : "")};
+  if (rounded_)
+    lines.push_back(fmt::format(
+        "shapes are in halves, {} bytes each in place of {}; the farthest vertex is {:.2g} from where the "
+        "file "
+        "has it",
+        bytesOfShape(VertexStorage::Half), bytesOfShape(VertexStorage::Single), rounding_.farthest));
+  return lines;
+}
+
+std::vector<std::string> DeviceScene::warnings() const {
+  if (rounding_.collapsed == 0) return {};
+  return {
+      fmt::format("halves leave {} of {} triangles without an area, so that no ray meets them; storage = "
+                  "\"single\" keeps them",
+                  rounding_.collapsed, model_->triangles.size())};
 }
 
 }  // namespace rays

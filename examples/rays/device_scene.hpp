@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +16,7 @@
 #include "bvh.hpp"
 #include "bvh.sk.hpp"
 #include "model.hpp"
+#include "vertex_storage.hpp"
 #include "wide_bvh.hpp"
 
 namespace rays {
@@ -37,8 +40,9 @@ struct DeviceSettings {
   std::optional<int>
       nodes{};  ///< children of a node, 2 or `wideChildren`; none: what is faster. Skip needs 2
   HowToIntersect intersection = HowToIntersect::Watertight;
-  /// Single or Double. Numbers of shapes are stored in the bits of floats, which halves would round.
+  /// Single or Double. Boxes and links are stored in the bits of floats, which halves would round.
   sk::Precision precision = sk::Precision::Single;
+  VertexStorage storage = VertexStorage::Single;
   PathMachine machine = PathMachine::Megakernel;
   RaySort sort = RaySort::None;  ///< of lists of rays, and of the wavefront machine
 };
@@ -52,41 +56,62 @@ sk::Stream<T> streamOf(sk::Device& device, std::vector<T> elements) {
   return stream;
 }
 
+/// Shapes on a device: either floats as `shapeLayout` has them, or rows of halves and numbers as `halfLayout` has them. Kernels read only
+/// the ones that `inHalves` names; the others have one element.
+struct ShapeStreams {
+  ShapeStreams(sk::Device& device, std::span<const std::uint32_t> order, const Model& model,
+               VertexStorage storage = VertexStorage::Single);
+
+  bool inHalves;
+  sk::Stream<sk::float4> floats;
+  sk::Stream<sk::half4> halves;
+  sk::Stream<sk::int2> numbers;
+};
+
 /// The shapes that shading reads, in the order in which hits number them. A view; the owner must outlive it.
 struct ShapeView {
   sk::Device& device;
   const Model& model;
   bool hasTriangles, hasSpheres;
-  const sk::Stream<sk::float4>&planes, &shapes;
+  const sk::Stream<sk::float4>& planes;
+  const ShapeStreams& shapes;
 };
 
 class DeviceScene {
  public:
+  /// The model must outlive it. A model in halves is rounded first.
   DeviceScene(sk::Device& device, const Model& model, const DeviceSettings& settings);
 
-  /// The arguments that all kernels begin with, up to `shapes`, and then `more`.
+  /// The arguments that all kernels begin with, up to the shapes, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
-    kernel.with({.precision = precision_})(static_cast<unsigned>(intersection_), kernelTraversal(),
-                                           contracted_, hasTriangles_, hasSpheres_, hasPlanes_, nodeCount_,
-                                           planeCount_, firstPlane_, planes_, nodes_, wide_, children_,
-                                           shapes_, std::forward<More>(more)...);
+    kernel.with({.precision = precision_})(kernelTest(), kernelTraversal(), contracted_, hasTriangles_,
+                                           hasSpheres_, hasPlanes_, nodeCount_, planeCount_, firstPlane_,
+                                           planes_, nodes_, wide_, children_, shapes_->floats,
+                                           shapes_->halves, shapes_->numbers, std::forward<More>(more)...);
   }
 
   sk::Device& device() const { return *device_; }
+  /// What is traced: the given model, or its copy that is rounded to halves.
   const Model& model() const { return *model_; }
   const Bvh& bvh() const { return bvh_; }
-  ShapeView view() const { return {*device_, *model_, hasTriangles_, hasSpheres_, planes_, shapes_}; }
+  ShapeView view() const { return {*device_, *model_, hasTriangles_, hasSpheres_, planes_, *shapes_}; }
   /// The number of nodes on the device: with two or eight children, and once per octant for links.
   std::int64_t nodeCount() const { return width_ == wideChildren ? wide_.size() / 4 : nodes_.size() / 2; }
   std::vector<std::string> account() const;
+  /// What rounding to halves has lost.
+  std::vector<std::string> warnings() const;
 
  private:
+  /// kernels::ShapeTest.
+  unsigned kernelTest() const;
   /// kernels::Traversal.
   unsigned kernelTraversal() const;
 
   sk::Device* device_;
+  std::unique_ptr<Model> rounded_;  ///< where shapes are in halves
   const Model* model_;
+  Rounding rounding_;
   Bvh bvh_;
   double milliseconds_ = 0.0;  ///< that building took
   HowToIntersect intersection_;
@@ -96,7 +121,8 @@ class DeviceScene {
   bool isChosen_;  ///< both, because nothing was asked for
   bool contracted_, hasTriangles_, hasSpheres_, hasPlanes_;
   int nodeCount_, planeCount_, firstPlane_;
-  sk::Stream<sk::float4> planes_, nodes_, shapes_;
+  sk::Stream<sk::float4> planes_, nodes_;
+  std::optional<ShapeStreams> shapes_;
   sk::Stream<sk::int4> wide_;
   sk::Stream<std::int32_t> children_;
 };

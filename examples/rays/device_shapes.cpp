@@ -6,6 +6,15 @@
 #include <vector>
 
 namespace rays {
+namespace {
+
+std::vector<std::uint32_t> ownOrder(const Model& model) {
+  std::vector<std::uint32_t> order(model.triangles.size() + model.spheres.size());
+  std::iota(order.begin(), order.end(), 0u);
+  return order;
+}
+
+}  // namespace
 
 DeviceShapes::DeviceShapes(sk::Device& onDevice, const Model& ofModel)
     : device(onDevice),
@@ -16,10 +25,7 @@ DeviceShapes::DeviceShapes(sk::Device& onDevice, const Model& ofModel)
       hasPlanes(!ofModel.planes.empty()),
       planeCount(static_cast<int>(ofModel.planes.size())),
       firstPlane(ofModel.planeId(0)),
-      planes(streamOf(onDevice, planeLayout(ofModel))) {
-  std::vector<std::uint32_t> order(model.triangles.size() + model.spheres.size());
-  std::iota(order.begin(), order.end(), 0u);
-  shapes = streamOf(device, shapeLayout(order, model));
-}
+      planes(streamOf(onDevice, planeLayout(ofModel))),
+      shapes(onDevice, ownOrder(ofModel), ofModel) {}
 
 }  // namespace rays

@@ -22,7 +22,8 @@ struct DeviceShapes {
   bool contracted;  ///< the device may contract products and sums
   bool hasTriangles, hasSpheres, hasPlanes;
   int planeCount, firstPlane;
-  sk::Stream<sk::float4> planes, shapes;
+  sk::Stream<sk::float4> planes;
+  ShapeStreams shapes;
 };
 
 }  // namespace rays

@@ -73,6 +73,10 @@ class Engine {
   virtual std::unique_ptr<Renderer> renderer(const Picture& picture) = 0;
   /// Lines for the report: sizes of what was built, time that it took.
   virtual std::vector<std::string> account() { return {}; }
+  /// The model that hits are those of. It may differ from the given one by roundings that the scene has asked for.
+  virtual const Model& model() const = 0;
+  /// Sentences for the user about what the scene loses by its settings.
+  virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 /// An engine for a model, which must outlive it.

@@ -19,11 +19,12 @@ struct GridScene : DeviceShapes {
   GridScene(sk::Device& onDevice, const Model& ofModel, const GridSettings& settings,
             HowToIntersect howToIntersect);
 
-  /// The arguments that kernels with a whole way through the grid begin with, up to `shapes`, and then `more`.
+  /// The arguments that kernels with a whole way through the grid begin with, up to the shapes, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
     kernel(static_cast<unsigned>(intersection), contracted, hasTriangles, hasSpheres, hasPlanes, grid,
-           planeCount, firstPlane, planes, cells, lists, shapes, std::forward<More>(more)...);
+           planeCount, firstPlane, planes, cells, lists, shapes.floats, shapes.halves, shapes.numbers,
+           std::forward<More>(more)...);
   }
 
   HowToIntersect intersection;

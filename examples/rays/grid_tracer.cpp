@@ -32,8 +32,10 @@ void GridTracer::findByPasses(bool anyHit, const FloatStream& allFrom, const Flo
   FloatStream ownFrom, ownAlong;
   const FloatStream *from = &allFrom, *along = &allAlong;
   const auto deliver = [&] {
-    metered(meter_, "deliver", travel.size(),
-            [&] { kernels::deliver(s.hasSpheres && !anyHit, s.shapes, *from, *along, travel, ray, found); });
+    metered(meter_, "deliver", travel.size(), [&] {
+      kernels::deliver(s.hasSpheres && !anyHit, s.shapes.floats, s.shapes.halves, s.shapes.numbers, *from,
+                       *along, travel, ray, found);
+    });
   };
   for (;;) {
     sk::int2 goOn;
@@ -64,7 +66,8 @@ void GridTracer::round(bool anyHit, const FloatStream& from, const FloatStream& 
   GridScene& s = scene_;
   metered(meter_, "intersect", travel.size(), [&] {
     kernels::intersectLists(static_cast<unsigned>(s.intersection), s.contracted, s.hasTriangles, s.hasSpheres,
-                            anyHit, settings_.tests, s.lists, s.shapes, from, along, travel, travel);
+                            anyHit, settings_.tests, s.lists, s.shapes.floats, s.shapes.halves,
+                            s.shapes.numbers, from, along, travel, travel);
   });
   metered(meter_, "traverse", travel.size(),
           [&] { kernels::traverseCells(s.grid, s.cells, from, along, travel, travel); });

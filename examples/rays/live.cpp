@@ -120,6 +120,7 @@ void runLive(Scene& scene, const std::string& name) {
   const bool hosted = name == "native" || name.starts_with("reference");
   sk::Device device = hosted ? sk::Device(name) : sk::Device::adopt();
   const std::unique_ptr<Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
+  for (const std::string& warning : engine->warnings()) fmt::print(stderr, "rays: warning: {}\n", warning);
   const std::unique_ptr<Renderer> renderer = engine->renderer(picture);
   Screen screen(picture.width, picture.height);
   Show show;

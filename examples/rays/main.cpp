@@ -125,9 +125,15 @@ rays::Scene sceneOf(const Settings& s) {
   return scene;
 }
 
+std::unique_ptr<rays::Engine> engineOf(sk::Device& device, const rays::Scene& scene) {
+  std::unique_ptr<rays::Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
+  for (const std::string& warning : engine->warnings()) fmt::print(stderr, "rays: warning: {}\n", warning);
+  return engine;
+}
+
 void writeHits(examples::Application& app, const Settings& s, const rays::Scene& scene) {
   sk::Device device(app.device());
-  const std::unique_ptr<rays::Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
+  const std::unique_ptr<rays::Engine> engine = engineOf(device, scene);
   const bool fromFile = !s.rays.empty();
   const rays::Picture& picture = scene.picture;
   const examples::Stopwatch stopwatch;
@@ -146,7 +152,7 @@ void writeHits(examples::Application& app, const Settings& s, const rays::Scene&
   for (const std::string& line : engine->account()) fmt::print("{}\n", line);
   fmt::print("wrote {}\n", s.hits.string());
   if (!fromFile && !hits.empty())
-    app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
+    app.verified(rays::checkEngine(*engine, engine->model(), picture.width, picture.height));
 }
 
 /// How many samples pixels took, and what stopping early saved.
@@ -167,7 +173,7 @@ std::string samplesText(const rays::Rendering& rendering, const rays::Scene& sce
 void makePicture(examples::Application& app, const Settings& s, const rays::Scene& scene) {
   rays::checkOutput(scene);
   sk::Device device(app.device());
-  const std::unique_ptr<rays::Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
+  const std::unique_ptr<rays::Engine> engine = engineOf(device, scene);
   const rays::Picture& picture = scene.picture;
   const std::unique_ptr<rays::Renderer> renderer = engine->renderer(picture);
   const rays::Rendering rendering = rays::render(*renderer, scene, {s.resume, device.name()});
@@ -177,14 +183,14 @@ void makePicture(examples::Application& app, const Settings& s, const rays::Scen
     fmt::print(stderr,
                "rays: warning: the picture is black, because the scene has no light; add a [[light]], an "
                "[environment] or a material with 'emission'\n");
-  else if (isBlack && rays::seesBacksAlone(*engine, scene.model))
+  else if (isBlack && rays::seesBacksAlone(*engine, engine->model()))
     fmt::print(stderr,
                "rays: warning: the picture is black, and the camera sees nothing but the backs of surfaces; "
                "is it inside of a wall?\n");
   const bool isExr = scene.output.picture.extension() == ".exr";
   std::vector<rays::Layer> layers;
   if (isExr || !s.layers.empty()) {
-    layers = rays::layersOf(*engine, scene.model, picture);
+    layers = rays::layersOf(*engine, engine->model(), picture);
     for (rays::Layer& layer : rays::layersOf(renderer->exposure())) layers.push_back(std::move(layer));
   }
   rays::saveRendering(rendering, scene, layers);
@@ -201,7 +207,7 @@ void makePicture(examples::Application& app, const Settings& s, const rays::Scen
     rays::saveLayers(s.layers, layers, picture);
     fmt::print("wrote {} layers, {}_*.pfm\n", layers.size(), s.layers);
   }
-  app.verified(rays::checkEngine(*engine, scene.model, picture.width, picture.height));
+  app.verified(rays::checkEngine(*engine, engine->model(), picture.width, picture.height));
   if (!s.account) return;
   const rays::Account account = rays::accountFor(*engine, scene);
   fmt::print("{}\n", account.text);

@@ -95,6 +95,7 @@ class OctreeEngine : public RayEngine, public StreamTracer {
   }
 
   const BucketCount& count() const override { return count_; }
+  const Model& model() const override { return shapes_.model; }
 
   std::vector<std::string> account() override {
     return {
@@ -166,7 +167,8 @@ class OctreeEngine : public RayEngine, public StreamTracer {
                          slot.along, slot.found);
     test(octree_.shapesOf(bundle), slot);
     if (shapes_.hasSpheres)
-      kernels::finishBucket(shapes_.shapes, slot.from, slot.along, slot.found, slot.found);
+      kernels::finishBucket(shapes_.shapes.floats, shapes_.shapes.halves, shapes_.shapes.numbers, slot.from,
+                            slot.along, slot.found, slot.found);
     count_.rays += static_cast<std::int64_t>(bucket.size());
     ++count_.buckets;
     sk::Future<kernels::Found> found = slot.found.readAsync();
@@ -180,8 +182,9 @@ class OctreeEngine : public RayEngine, public StreamTracer {
       std::array<int, mostShapes> chosen{};
       std::copy_n(shapes.begin() + static_cast<std::ptrdiff_t>(first), count, chosen.begin());
       kernels::testBucket(static_cast<unsigned>(settings_.test), shapes_.contracted, shapes_.hasTriangles,
-                          shapes_.hasSpheres, static_cast<int>(count), chosen, shapes_.shapes, normals_,
-                          slot.from, slot.along, slot.found, slot.found);
+                          shapes_.hasSpheres, static_cast<int>(count), chosen, shapes_.shapes.floats,
+                          shapes_.shapes.halves, shapes_.shapes.numbers, normals_, slot.from, slot.along,
+                          slot.found, slot.found);
       ++count_.calls;
     }
     count_.tests += static_cast<std::int64_t>(shapes.size()) * settings_.bucket;

@@ -59,6 +59,8 @@ class StreamingEngine : public Engine {
     return {scene_.size};
   }
 
+  const Model& model() const override { return scene_.model; }
+
  private:
   sk::Stream<kernels::Found> find(bool anyHit, std::span<const Ray> rays) {
     const auto [from, along] = uploadRays(scene_.device, rays);

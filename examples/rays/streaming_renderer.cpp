@@ -93,7 +93,8 @@ class MultipassRenderer : public PathsRenderer {
     auto shadowFrom = device.stream<sk::float4>(shape), shadowAlong = device.stream<sk::float4>(shape);
     auto shadowLight = device.stream<sk::float3>(shape);
     metered(meter_, "shade", paths.from.size(), [&] {
-      kernels::shadePaths(scene_.hasTriangles, scene_.hasSpheres, scene_.planes, scene_.shapes, t.features,
+      kernels::shadePaths(scene_.hasTriangles, scene_.hasSpheres, scene_.shapes.inHalves, scene_.planes,
+                          scene_.shapes.floats, scene_.shapes.halves, scene_.shapes.numbers, t.features,
                           static_cast<unsigned>(t.sampling), static_cast<unsigned>(use_), t.setting, sample,
                           t.seed, segment, t.materials, t.corners, t.lights, t.sky, t.texels, t.textures,
                           paths.from, paths.along, found, paths.pixel, paths.path, paths.from, paths.along,
