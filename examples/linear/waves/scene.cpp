@@ -61,6 +61,7 @@ Drop readDrop(const SceneTable& table) {
   if (!centre) refuse(table, "centre", "is missing: where the drop falls, x and y");
   const auto radius = table.number("radius", positive);
   const auto depth = table.number("depth", Range{-1e6, 1e6});
+  const auto time = table.number("time", Range{0.0, 1e12});
   if (!radius) {
     table.finish();  // a misspelt key is the better message
     refuse(table, "radius", "of the drop is missing");
@@ -69,7 +70,7 @@ Drop readDrop(const SceneTable& table) {
           .y = (*centre)[1],
           .radius = *radius,
           .depth = depth.value_or(0.2 * *radius),
-          .time = table.number("time", Range{0.0, 1e12}).value_or(0.0)};
+          .time = time.value_or(0.0)};
 }
 
 void readRecord(const SceneTable& table, Record& r) {
