@@ -81,7 +81,7 @@ struct DeviceLimits {
 
 /// The result of a trial with one class of kernels (docs/runtime.md, Targets).
 struct TargetTrial {
-  /// "elements", "neighbours", "gathers", "loops", "reduces", "pushes" or "scatters"
+  /// "elements", "neighbours", "gathers", "loops", "reduces", "pushes", "scatters" or "ordered-scatters"
   std::string_view kernels;
   double computeOverFragment;  ///< time of compute programs divided by time of fragment programs
 };
