@@ -24,7 +24,7 @@ class Preconditioner {
 
 struct PreconditionerSettings {
   double omega = 1.0;  ///< relaxation factor of sor and ssor, between 0 and 2
-  /// Of sor, ssor, ic0 and ilu0: "colours" needs few calls, "levels" fewer iterations (ordering.hpp).
+  /// The order of rows in sor, ssor, ic0 and ilu0: "colours" needs few calls, "levels" fewer iterations (ordering.hpp).
   std::string_view ordering = "colours";
 };
 

@@ -47,7 +47,7 @@ class PathsRenderer : public Renderer {
  protected:
   /// The features of the tables, with a list of pixels where some have stopped.
   int features() const { return tables_.features | (exposure_.isSparse() ? listed : 0); }
-  /// The list of active pixels, or a placeholder if kernels do not read it.
+  /// The list of active pixels; a stream of one element if all pixels are active, since kernels do not read it then.
   const sk::Stream<sk::int2>& pixels() const { return exposure_.isSparse() ? exposure_.pixels() : noPixels_; }
   /// Calls `follow(radiance)`, a kernel that makes a path of each element, for the active pixels, and adds the samples.
   template <class Follow>

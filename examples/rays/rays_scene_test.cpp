@@ -116,7 +116,7 @@ TEST_CASE("an empty mesh is reported") {
   CHECK_THAT(scene.warnings[0], Catch::Contains("the mesh has no faces"));
 }
 
-TEST_CASE("a scene without light is told from one with any") {
+TEST_CASE("a scene is known to have no light only if no light, sky or surface emits") {
   CHECK_FALSE(hasLight(read("").model));
   CHECK_FALSE(hasLight(read("[[sphere]]\n[[material]]\nname = \"white\"\n").model));
   CHECK(hasLight(read("[environment]\ncolour = [0, 0, 1]\n").model));

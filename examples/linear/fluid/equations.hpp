@@ -25,7 +25,7 @@ struct GridArguments {
   bool isSpace;
   Box box;
   sk::Shape shape;
-  // Of one element, which nobody reads, unless obstacles are anywhere.
+  // Both streams have one element, which kernels do not read, if the model has no obstacles.
   sk::Stream<std::int8_t> cell;
   sk::Stream<int>
       faces;  ///< of fluid cells: two bits for the cell beyond each face, below and above along x, y and z

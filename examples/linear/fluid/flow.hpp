@@ -21,7 +21,7 @@
 
 namespace fluid {
 
-/// Of one projection. Divergences are the largest |div u|, in 1 / time.
+/// The result of one projection. Divergences are the largest |div u|, in 1 / time.
 struct Projection {
   double before = 0.0, after = 0.0;
   std::int64_t iterations = 0;

@@ -28,7 +28,7 @@ struct View3 {
   std::int64_t width, height;  ///< pixels
 };
 
-/// Parallel rays from above, all of the grid in a picture so many pixels wide.
+/// A parallel projection from above that shows the whole grid; `width` is that of the picture in pixels.
 View3 cameraFor(const Model& m, const View& view, double pixels) {
   const double turn = view.turn, tilt = view.tilt;
   const auto w = static_cast<double>(m.cells[0]), h = static_cast<double>(m.cells[1]),

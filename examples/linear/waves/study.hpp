@@ -28,25 +28,25 @@ struct Study {
 
 std::span<const Study> studies();
 
-/// A standing wave with so many half waves along x and y.
+/// A standing wave with `x` and `y` half waves along the two dimensions.
 struct Mode {
   int x = 1, y = 0;
 };
 
-/// Of a mode: its angular frequency, and what its amplitude is multiplied by in each step.
+/// The angular frequency of a mode, and the factor of its amplitude in each step.
 struct Oscillation {
   double frequency = 0.0, gain = 1.0;
 };
 
 std::vector<double> heightsOf(const Mode& mode, const Model& model);
-/// Of the wave equation.
+/// The mode's angular frequency by the wave equation.
 double exactFrequency(const Mode& mode, const Model& model);
-/// Of the scheme: an eigenvalue of its step on the eigenvectors of the discrete Laplacian.
+/// The mode's oscillation by the scheme: an eigenvalue of its step on an eigenvector of the discrete Laplacian.
 Oscillation schemeOscillation(const Mode& mode, const Model& model);
 
 struct Measured {
   Oscillation oscillation;
-  double residual = 0.0;    ///< the largest of all steps
+  double residual = 0.0;  ///< the largest of all steps
 };
 /// From the amplitudes in a time series of a simulation, which fit a(n+1) = 2 g cos(w dt) a(n) - g^2 a(n-1).
 Measured measure(sk::Device& device, const Model& model, const Mode& mode, std::int64_t steps);

@@ -62,7 +62,7 @@ constexpr int sparseRow = 16;
 /// The same of the matrix whose rows have lengths by a power law: the share of rows with k entries or more falls as 1 / k^1.2, from 4 entries on.
 constexpr int powerLawRow = 20;
 
-/// Iterations of conjugate gradients in one run, for grids of so many elements.
+/// Iterations of conjugate gradients in one run, for grids of this number of elements.
 constexpr int gradientSteps(double elements) { return elements > 1 << 20 ? 16 : 128; }
 
 }  // namespace race

@@ -14,7 +14,7 @@ namespace {
 
 /// Pushes of up to this many bytes in a tile go through shared memory.
 constexpr std::size_t stagedBytes = std::size_t{16} << 10;
-/// The most elements that an invocation computes: with more, it holds so many values that fewer groups run side by side.
+/// The most elements that an invocation computes. With more, it needs more registers, and fewer groups run side by side.
 constexpr int mostOfInvocation = 8;
 
 /// Bytes of a staged element.

@@ -22,7 +22,7 @@ class ListedScatter {
   ListedScatter(GlDevice& device, const program::Parameter& scatter, std::int32_t length,
                 RenderTarget* count);
 
-  /// Whether a device sorts so many records.
+  /// Whether a device sorts this number of records.
   static bool isPossible(const GlDevice& device, std::int64_t length) {
     return WordSort::isPossible(device, length);
   }

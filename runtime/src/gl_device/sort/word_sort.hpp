@@ -55,7 +55,7 @@ class WordSort {
   };
   WordSort(GlDevice& device, std::int32_t count, Of of);
 
-  /// Whether a device sorts so many words: temporaries for all of them fit into textures without layers.
+  /// Whether a device sorts this number of words: temporaries for all of them fit into textures without layers.
   static bool isPossible(const GlDevice& device, std::int64_t count);
 
   /// Sorts by the lowest `bits` bits of words: `keys` to `pairs`, or to `keys` if there are no pairs, or `pairs`.
