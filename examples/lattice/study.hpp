@@ -11,7 +11,7 @@
 
 #include <sk/sk.hpp>
 
-#include "support/verification.hpp"
+#include "support/study.hpp"
 
 namespace examples {
 
@@ -24,17 +24,6 @@ class MarkdownTable {
 
  private:
   std::string text_;
-};
-
-struct Findings {
-  std::string table;
-  std::vector<Verification> verifications;
-};
-
-struct Study {
-  std::string_view name;
-  std::string_view asks;  ///< what it finds out
-  Findings (*run)(sk::Device& device, bool small);  ///< small: for tests, coarse and quick
 };
 
 std::span<const Study> studies();

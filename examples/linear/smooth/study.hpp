@@ -11,20 +11,12 @@
 
 #include <sk/sk.hpp>
 
-#include "support/verification.hpp"
+#include "support/study.hpp"
 
 namespace smooth {
 
-struct Findings {
-  std::string table;  ///< one or more tables, with an empty line between two of them
-  std::vector<examples::Verification> verifications;
-};
-
-struct Study {
-  std::string_view name;
-  std::string_view asks;  ///< what it finds out
-  Findings (*run)(sk::Device& device, bool small);  ///< small: for tests, coarse and quick
-};
+using examples::Findings;
+using examples::Study;
 
 std::span<const Study> studies();
 
