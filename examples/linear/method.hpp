@@ -39,6 +39,8 @@ class Method {
   State state() const;
   /// Iterations that make the residual less than a hundredth smaller, after which the method has stagnated.
   virtual std::int64_t patience() const { return 500; }
+  /// Runs in a row that may leave x no better before the solver gives up: more than one if each run starts differently.
+  virtual int attempts() const { return 1; }
   /// The squared residual that the method itself computes.
   double residualSquared() const;
   /// What the iterations so far have come to, on the device.

@@ -69,6 +69,7 @@ class Refinement {
     if (a_.hasConstantKernel && !addsUpToZero(b_) && findAsymmetry(a_).empty())
       return Outcome::SingularAndIncompatible;
     const double goal = settings_.tolerance * normB_;
+    int fruitless = 0;
     while (norms_.two > goal) {
       const double left = norms_.two;
       const State state = solveOnce(goal / left);
@@ -76,6 +77,12 @@ class Refinement {
       const bool isBetter = reached < left;
       const bool isMuchBetter = reached < 0.5 * left;
       if (norms_.two <= goal) break;
+      fruitless = isMuchBetter ? 0 : fruitless + 1;
+      if (settings_.refines && fruitless > 0 && fruitless < method_.attempts() &&
+          solution_.iterations < settings_.most) {
+        ++solution_.restarts;
+        continue;
+      }
       if (state == NotFinite && !isMuchBetter) return Outcome::NotFinite;
       if (state == NotPositive && !isMuchBetter) return Outcome::NotPositiveDefinite;
       if (state == Breakdown && !isBetter) return Outcome::Breakdown;
