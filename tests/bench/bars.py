@@ -43,7 +43,7 @@ BANDWIDTHS = [("native", "5-point matrix", "saxpy", 0.9, 24)]
 TIMES = [
     ("native", "conjugate gradients", 16, (128, "iteration"), 60e-6),
     ("native", "conjugate gradients", 24, (16, "iteration"), 1 / 47),
-    ("native", "full multigrid, 128^3", 21, (1, "run"), 0.25),
+    ("native", "full multigrid on a cube", 21, (1, "run"), 0.25),
     ("native", "multigrid-CG, 150^3", 22, (1, "run"), 1.0),
 ]
 COMPENSATED = 1.1  # times the plain sum's time, natively and on a GPU

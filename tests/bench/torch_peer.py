@@ -196,24 +196,95 @@ def reaction(log2):
     return Work(lambda: ten_steps(u, v), check, 1e-5, compiles=(ten_steps, u, v))
 
 
-def sparse(log2):
-    n = 1 << log2
-    entries = 8 + (numbers(n, seed=3) * 17).long().clamp(max=16)
-    starts = torch.cat([torch.zeros(1, dtype=torch.long, device=DEVICE), torch.cumsum(entries, 0)])
-    width = min(4096, n)
-    rows = torch.repeat_interleave(torch.arange(n, device=DEVICE), entries)
-    # One entry in each part of the row's band.
-    part = width // entries[rows]
-    number = torch.arange(int(starts[-1]), device=DEVICE) - starts[rows]
-    place = (numbers(int(starts[-1]), seed=4) * part).long().minimum(part - 1)
-    columns = (rows - width // 2).clamp(0, n - width) + number * part + place
-    values, x = numbers(int(starts[-1]), seed=1), numbers(n, seed=2)
+def product(starts, columns, values, tolerance, moves=None):
+    """A matrix in compressed rows, times a vector, by cuSPARSE on a GPU."""
+    n = starts.numel() - 1
+    x = numbers(n, seed=2)
     a = torch.sparse_csr_tensor(starts.int(), columns.int(), values, (n, n))
     def check(result):
         expected = torch.zeros(n, dtype=torch.double, device=DEVICE)
+        rows = torch.repeat_interleave(torch.arange(n, device=DEVICE), starts[1:] - starts[:-1])
         expected.index_add_(0, rows, values.double() * x.double()[columns])
         return relative_error(result, expected)
-    return Work(lambda: a @ x, check, 1e-5)
+    return Work(lambda: a @ x, check, tolerance, moves=moves)
+
+
+def starts_of(entries):
+    return torch.cat([torch.zeros(1, dtype=torch.long, device=DEVICE), torch.cumsum(entries, 0)])
+
+
+def spread(starts, width, first):
+    """Columns: one in each of the parts, as many as the row has entries, of `width` columns from `first` of each row on."""
+    entries = starts[1:] - starts[:-1]
+    rows = torch.repeat_interleave(torch.arange(entries.numel(), device=DEVICE), entries)
+    part = width // entries[rows]
+    number = torch.arange(int(starts[-1]), device=DEVICE) - starts[rows]
+    place = (numbers(int(starts[-1]), seed=4) * part).long().minimum(part - 1)
+    return first[rows] + number * part + place
+
+
+def sparse(log2):
+    n = 1 << log2
+    starts = starts_of(8 + (numbers(n, seed=3) * 17).long().clamp(max=16))
+    width = min(4096, n)
+    first = (torch.arange(n, device=DEVICE) - width // 2).clamp(0, n - width)
+    return product(starts, spread(starts, width, first), numbers(int(starts[-1]), seed=1), 1e-5)
+
+
+def power_law(log2):
+    n = 1 << log2
+    lengths = (4 * (1 - numbers(n, seed=5).double()) ** (-1 / 1.2)).clamp(max=min(n, 1 << 16)).long()
+    starts = starts_of(lengths)
+    columns = spread(starts, n, torch.zeros(n, dtype=torch.long, device=DEVICE))
+    return product(starts, columns, numbers(int(starts[-1]), seed=1), 1e-4)
+
+
+def five_diagonals(log2):
+    """Where the neighbours of each element of a grid are, in compressed rows, and which of five numbers is whose."""
+    rows, columns = grid(log2)
+    n = rows * columns
+    i = torch.arange(n, device=DEVICE)
+    x, y = i % columns, i // columns
+    true = torch.ones_like(i, dtype=torch.bool)
+    inside = torch.stack([y > 0, x > 0, true, x + 1 < columns, y + 1 < rows], 1)
+    places = i[:, None] + torch.tensor([-columns, -1, 0, 1, columns], device=DEVICE)
+    return starts_of(inside.sum(1)), places[inside], inside
+
+
+def five_point_matrix(log2):
+    starts, columns, inside = five_diagonals(log2)
+    return product(starts, columns, numbers(5 << log2, seed=1).view(-1, 5)[inside], 1e-5,
+                   moves=copy_of(7 * (1 << log2) // 2))
+
+
+def gradient_steps(n):
+    return 16 if n > 1 << 20 else 128
+
+
+def gradients(log2):
+    """Iterations of conjugate gradients for Poisson's equation, without a question to the device."""
+    n = 1 << log2
+    steps = gradient_steps(n)
+    starts, columns, inside = five_diagonals(log2)
+    values = torch.tensor([-1.0, -1.0, 4.0, -1.0, -1.0], device=DEVICE).expand(n, 5)[inside]
+    b = numbers(n, seed=6)
+
+    def solve(kind):
+        a = torch.sparse_csr_tensor(starts.int(), columns.int(), values.to(kind), (n, n))
+
+        def run():
+            r = b.to(kind)
+            x, p, rr = torch.zeros_like(r), r.clone(), r @ r
+            for _ in range(steps):
+                q = a @ p
+                alpha = rr / (p @ q)
+                x.addcmul_(p, alpha)
+                r = r.addcmul(q, -alpha)
+                rr, before = r @ r, rr
+                p = torch.addcmul(r, p, rr / before)
+            return x
+        return run
+    return Work(solve(torch.float), lambda result: relative_error(result, solve(torch.double)()), 1e-2)
 
 
 def mandelbrot(log2):
@@ -231,6 +302,11 @@ def mandelbrot(log2):
         return steps
     check = lambda result: (result != escape(real.double(), imaginary.double())).double().mean().item()
     return Work(lambda: escape(real, imaginary), check, 0.05)
+
+
+def gradients_work(n):
+    steps = gradient_steps(n)
+    return 23 * n * steps, 32 * n * steps
 
 
 # Program, element, sizes, operations and bytes of n elements (as programs.cpp has them), work.
@@ -252,6 +328,9 @@ PROGRAMS = [
     ("fft", "complex numbers", (12, 16, 20), lambda n: (5 * n * math.log2(n), 16 * n), fourier),
     ("gray-scott", "elements", (12, 16, 20), lambda n: (240 * n, 160 * n), reaction),
     ("sparse matrix", "rows", (12, 16, 20), lambda n: (32 * n, 140 * n), sparse),
+    ("power-law matrix", "rows", (20,), lambda n: (40 * n, 172 * n), power_law),
+    ("5-point matrix", "rows", (24,), lambda n: (10 * n, 28 * n), five_point_matrix),
+    ("conjugate gradients", "unknowns", (16, 24), gradients_work, gradients),
 ]
 
 

@@ -195,7 +195,7 @@ const std::vector<Program>& programs() {
        gradientsProblem,
        gradientsCheck,
        gradientsOurs},
-      {"full multigrid, 128^3", "unknowns", {21}, {}, each<0, 8>, nestedProblem, nestedCheck, nestedOurs},
+      {"full multigrid on a cube", "unknowns", {21}, {}, each<0, 8>, nestedProblem, nestedCheck, nestedOurs},
       {"multigrid-CG, 150^3",
        "unknowns (rounded up)",
        {22},

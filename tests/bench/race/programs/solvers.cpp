@@ -5,8 +5,8 @@
 //
 // * diagonals: a 5-point matrix with numbers of its own in each row, times a vector. ints and floats as in sparse.cpp.
 // * gradients: iterations of conjugate gradients for Poisson's equation on a grid. floats: the right-hand side.
-// * nested: cycles of full multigrid for Poisson's equation on 128^3 elements, which must reach the error of the discretisation. floats: the
-//   right-hand side, the square of the spacing included, for the solution sin(pi x) sin(pi y) sin(pi z) on the unit cube.
+// * nested: cycles of full multigrid for Poisson's equation on a cube of elements, which must reach the error of the discretisation. floats:
+//   the right-hand side, the square of the spacing included, for the solution sin(pi x) sin(pi y) sin(pi z) on the unit cube.
 // * cycled: conjugate gradients with multigrid on 150^3 elements, to a residual of 1e-8 in double precision. The solution is ones.
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,6 @@
 namespace race {
 namespace {
 
-constexpr std::int64_t nestedExtent = 128;
 /// After the first cycle, the error is 30 times that of the discretisation; after the second, it is that.
 constexpr std::int64_t nestedCycles = 2;
 constexpr std::int64_t cycledExtent = 150;
@@ -82,7 +81,7 @@ class Gradients final : public OurTask {
         matrix_(linear::makeMatrix(linear::poisson({p.rows, p.columns}), plainSums)),
         method_(linear::rowNamed(linear::methodKinds(), "cg", "solver")
                     .make(device, *matrix_, nullptr, plainSums)),
-        b_(p.floats[0].begin(), p.floats[0].end()) {}
+        b_(filled<float>(matrix_->domain(), p.floats[0])) {}
 
   std::vector<float> result() override {
     const std::vector<double> x = method_->solution();
@@ -99,30 +98,41 @@ class Gradients final : public OurTask {
   std::int64_t steps_;
   std::unique_ptr<linear::Matrix> matrix_;
   std::unique_ptr<linear::Method> method_;
-  std::vector<double> b_;
+  linear::Vector b_;
 };
 
-/// sin(pi x) sin(pi y) sin(pi z) at element i of the grid.
-double bump(std::int64_t i) {
-  const auto sine = [](std::int64_t k) {
-    return std::sin(std::numbers::pi * static_cast<double>(k + 1) / (nestedExtent + 1));
-  };
-  return sine(i % nestedExtent) * sine(i / nestedExtent % nestedExtent) *
-         sine(i / nestedExtent / nestedExtent);
-}
+/// The elements along each side of the cube.
+std::int64_t sideOf(const Problem& p) { return p.rows; }
+
+/// sin(pi x) sin(pi y) sin(pi z) on a cube of elements.
+class Bump {
+ public:
+  explicit Bump(std::int64_t side) {
+    for (std::int64_t k = 1; k <= side; ++k)
+      sines_.push_back(std::sin(std::numbers::pi * static_cast<double>(k) / static_cast<double>(side + 1)));
+  }
+
+  double operator()(std::int64_t i) const {
+    const auto side = static_cast<std::int64_t>(sines_.size());
+    return sines_[at(i % side)] * sines_[at(i / side % side)] * sines_[at(i / side / side)];
+  }
+
+ private:
+  std::vector<double> sines_;
+};
 
 /// Corrections by full multigrid, each of what the ones before have left.
 class Nested final : public OurTask {
  public:
   Nested(sk::Device& device, const Problem& p)
       : OurTask(device),
-        stencil_(linear::poisson({nestedExtent, nestedExtent, nestedExtent})),
+        stencil_(linear::poisson({sideOf(p), sideOf(p), sideOf(p)})),
         matrix_(linear::makeMatrix(stencil_, plainSums)),
         multigrid_(linear::makeMultigrid(device, stencil_, plainSums,
                                          {.cycle = linear::Cycle::Full, .isSymmetric = false})),
         method_(linear::rowNamed(linear::methodKinds(), "stationary", "solver")
                     .make(device, *matrix_, multigrid_.get(), plainSums)),
-        b_(p.floats[0].begin(), p.floats[0].end()) {}
+        b_(filled<float>(matrix_->domain(), p.floats[0])) {}
 
   std::vector<float> result() override {
     const std::vector<double> x = method_->solution();
@@ -139,7 +149,7 @@ class Nested final : public OurTask {
   std::unique_ptr<linear::Matrix> matrix_;
   std::unique_ptr<linear::Preconditioner> multigrid_;
   std::unique_ptr<linear::Method> method_;
-  std::vector<double> b_;
+  linear::Vector b_;
 };
 
 class Cycled final : public OurTask {
@@ -239,19 +249,23 @@ std::unique_ptr<Task> gradientsOurs(sk::Device& device, const sk::CallOptions& o
   return std::make_unique<Gradients>(device, p);
 }
 
-Problem nestedProblem(int) {
+Problem nestedProblem(int log2) {
   Problem p;
-  p.rows = nestedExtent;
-  p.columns = nestedExtent * nestedExtent;
-  const double factor = 3 * std::pow(std::numbers::pi / (nestedExtent + 1), 2);
+  p.rows = std::int64_t{1} << (log2 / 3);
+  p.columns = p.rows * p.rows;
+  const double factor = 3 * std::pow(std::numbers::pi / static_cast<double>(p.rows + 1), 2);
+  const Bump bump(p.rows);
   p.floats.resize(1);
+  p.floats[0].reserve(at(p.size()));
   for (std::int64_t i = 0; i < p.size(); ++i) p.floats[0].push_back(static_cast<float>(factor * bump(i)));
   return p;
 }
 
 /// The equations of the grid have a solution that is too large by (pi h)^2 / 12. Twice that is allowed.
 Check nestedCheck(const Problem& p) {
-  Check check{somePlaces(p.size()), {}, 2 * std::pow(std::numbers::pi / (nestedExtent + 1), 2) / 12};
+  const Bump bump(sideOf(p));
+  Check check{
+      somePlaces(p.size()), {}, 2 * std::pow(std::numbers::pi / static_cast<double>(sideOf(p) + 1), 2) / 12};
   for (const std::int64_t i : check.places) check.values.push_back(bump(i));
   return check;
 }
