@@ -17,7 +17,7 @@ using namespace run_tests;
 
 TEST_CASE("control flow means what it means in C++") {
   const Samples<int> samples = pairsOf(-6, 21);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     SharedCases<int, int> cases(device, samples);
 #define CHECK_CASE(name) cases.check(#name, control::run_##name, control::name);
     CONTROL_FLOW_CASES(CHECK_CASE)
@@ -28,7 +28,7 @@ TEST_CASE("a kernel may return early, and its outputs are variables until then")
   std::vector<int> x;
   for (int i = -3; i < 20; ++i) x.push_back(i);
   const auto count = static_cast<std::int64_t>(x.size());
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     const auto input = streamOf<int>(device, x);
     auto a = device.stream<int>({count});
     auto b = device.stream<int>({count});
@@ -61,7 +61,7 @@ TEST_CASE("an index outside an array takes the nearest element") {
   const int most = std::numeric_limits<int>::max(), least = std::numeric_limits<int>::min();
   const std::vector<int> x = {0, 1, 2, 3, 4, 5, 100, most, -1, -2, least};
   const auto count = static_cast<std::int64_t>(x.size());
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto written = device.stream<int>({count}), read = device.stream<int>({count});
     control::nearestElement(streamOf<int>(device, x), written, read);
     CHECK(difference(read.read(), [&](std::size_t i) {

@@ -23,7 +23,7 @@ TEST_CASE("conversions are those of C++") {
   const Samples<float> floatSamples = pairsOf(floats);
   const Samples<int> intSamples = pairsOf(-20, 21);
 #define CHECK_CASE(name) cases.check(#name, conversions::run_##name, conversions::name);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     {
       SharedCases<int, float> cases(device, floatSamples);
       FLOAT_TO_INT_CASES(CHECK_CASE)
@@ -42,7 +42,7 @@ TEST_CASE("conversions are those of C++") {
 TEST_CASE("integers beyond 2^24 become the nearest float") {
   const std::vector<int> ints = {16777216,   16777217,        16777219, -16777217,
                                  2147483647, -2147483647 - 1, 1 << 30};
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     const auto x = streamOf<int>(device, ints);
     const auto zero = streamOf<int>(device, {7}, std::vector<int>(7, 0));
     auto r = device.stream<float>({7});
@@ -61,7 +61,7 @@ TEST_CASE("vectors are converted by components") {
     n.back().z = 0;
   }
   const auto count = static_cast<std::int64_t>(f.size());
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto toFloat = device.stream<sk::float4>({count});
     auto toInt = device.stream<sk::int4>({count});
     auto toUint = device.stream<sk::uint4>({count});

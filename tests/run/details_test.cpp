@@ -14,7 +14,7 @@ using details::Thing;
 using sk::bool3, sk::float2, sk::float4, sk::int3;
 
 TEST_CASE("constants may call intrinsics and constexpr functions, and may be tables of structs") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto r = device.stream<float4>({2});
     auto row = device.stream<details::Row>({2});
     auto n = device.stream<int3>({2});
@@ -32,7 +32,7 @@ TEST_CASE("constants may call intrinsics and constexpr functions, and may be tab
 }
 
 TEST_CASE("enumerations are uniforms, elements and members") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     constexpr unsigned red = 0, green = 5, blue = 6;
     const auto from = streamOf<unsigned>(device, {green, green, red});
     auto things = device.stream<Thing>({3});
@@ -47,7 +47,7 @@ TEST_CASE("enumerations are uniforms, elements and members") {
 }
 
 TEST_CASE("vectors have the aliases that one gives them") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto r = device.stream<float4>({1});
     auto c = device.stream<int3>({1});
     details::aliases(streamOf<float2>(device, {{1, 2}}), r, c);
@@ -62,7 +62,7 @@ TEST_CASE("bool vectors combine by components") {
     a.push_back({(i & 1) != 0, (i & 2) != 0, (i & 4) != 0});
     b.push_back({(i & 8) != 0, (i & 16) != 0, (i & 32) != 0});
   }
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto r = device.stream<bool3>({64}), s = device.stream<bool3>({64}), t = device.stream<bool3>({64}),
          u = device.stream<bool3>({64});
     details::bits(streamOf<bool3>(device, a), streamOf<bool3>(device, b), r, s, t, u);
@@ -80,7 +80,7 @@ TEST_CASE("bool vectors combine by components") {
 }
 
 TEST_CASE("folds by fmin and fmax, and their identities") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     const auto x = values<float>(1021);
     const float least = *std::min_element(x.begin(), x.end());
     CHECK(details::nearest(streamOf<float>(device, x)) == least);
@@ -92,7 +92,7 @@ TEST_CASE("folds by fmin and fmax, and their identities") {
 }
 
 TEST_CASE("a sum of nothing but -0 keeps its sign where it starts from an element") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     const auto zeros = streamOf<float>(device, std::vector<float>(37, -0.0f));
     CHECK(std::signbit(details::sumOfElements(zeros)));
     CHECK(!std::signbit(details::sumFromZero(zeros)));

@@ -12,7 +12,7 @@ using namespace run_tests;
 
 TEST_CASE("effects in expressions happen when and as often as in C++") {
   const Samples<int> samples = pairsOf(-6, 9);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     SharedCases<int, int> cases(device, samples);
 #define CHECK_CASE(name) cases.check(#name, effects::run_##name, effects::name);
     EFFECTS_CASES(CHECK_CASE)

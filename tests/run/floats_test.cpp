@@ -30,7 +30,7 @@ bool agree(const float& a, const float& b) {
 TEST_CASE("infinity, NaN and signed zeros") {
   const Samples<float> samples = pairsOf(special);
 #define CHECK_CASE(name) cases.check(#name, floats::run_##name, floats::name);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     {
       SharedCases<int, float> cases(device, samples);
       FLOAT_TO_INT_CASES(CHECK_CASE)

@@ -13,7 +13,7 @@ using namespace run_tests;
 
 TEST_CASE("helper functions, templates, constants and names are those of C++") {
   const Samples<int> samples = pairsOf(-6, 12);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     SharedCases<int, int> cases(device, samples);
 #define CHECK_CASE(name) cases.check(#name, functions::run_##name, functions::name);
     FUNCTION_CASES(CHECK_CASE)

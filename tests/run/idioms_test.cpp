@@ -16,7 +16,7 @@ const std::vector<float> x = values<float>(count);
 }  // namespace
 
 TEST_CASE("newer C++ is understood") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto r = device.stream<float>({count});
     auto s = device.stream<int4>({count});
     idioms::modern(streamOf<float>(device, x), r, s);
@@ -30,7 +30,7 @@ TEST_CASE("newer C++ is understood") {
 TEST_CASE("tables of vectors and structs are constants") {
   std::vector<int> n;
   for (int i = 0; i < 12; ++i) n.push_back(i);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto r = device.stream<float3>({12});
     auto s = device.stream<float4>({12});
     idioms::tables(streamOf<int>(device, n), r, s);
@@ -49,7 +49,7 @@ TEST_CASE("tables of vectors and structs are constants") {
 }
 
 TEST_CASE("outputs and their members may be passed by reference") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto r = device.stream<float>({count});
     auto p = device.stream<idioms::Point>({count});
     auto q = device.stream<float4>({count});
@@ -65,7 +65,7 @@ TEST_CASE("outputs and their members may be passed by reference") {
 }
 
 TEST_CASE("names of GLSL's types and functions, and letters beyond ASCII, are free") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto r = device.stream<float4>({count});
     idioms::names(streamOf<float>(device, x), r);
     CHECK(difference(r.read(), [](std::size_t i) {
@@ -81,7 +81,7 @@ TEST_CASE("bools in structs keep their components") {
   std::vector<idioms::Flags> flags;
   for (unsigned i = 0; i < 16; ++i)
     flags.push_back({{(i & 1) != 0, (i & 2) != 0, (i & 4) != 0}, {i, 2 * i}, (i & 8) != 0});
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     const auto input = streamOf<idioms::Flags>(device, flags);
     auto output = device.stream<idioms::Flags>({16});
     idioms::flags(input, output);

@@ -23,7 +23,7 @@ const std::vector<int> ints = {
 
 TEST_CASE("int arithmetic is that of C++") {
   const Samples<int> samples = pairsOf(ints);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     SharedCases<int, int> cases(device, samples);
 #define CHECK_CASE(name) cases.check(#name, integers::run_##name, integers::name);
     INT_CASES(CHECK_CASE)
@@ -32,7 +32,7 @@ TEST_CASE("int arithmetic is that of C++") {
 
 TEST_CASE("uint arithmetic is that of C++: it wraps") {
   const Samples<std::uint32_t> samples = pairsOf(std::vector<std::uint32_t>(ints.begin(), ints.end()));
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     SharedCases<std::uint32_t, std::uint32_t> cases(device, samples);
     UINT_CASES(CHECK_CASE)
   });

@@ -23,7 +23,7 @@ const std::vector<int> n = [] {
 }  // namespace
 
 TEST_CASE("names that GLSL or C++ have taken are nobody's trouble") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto r = device.stream<float>({count}), s = device.stream<float>({count});
     texture(streamOf<float>(device, x), 3, streamOf<float>(device, y), r, s);
     CHECK(difference(r.read(), [](std::size_t i) { return x[i] + 3; }) == "");
@@ -41,7 +41,7 @@ TEST_CASE("names that GLSL or C++ have taken are nobody's trouble") {
 }
 
 TEST_CASE("overloads are chosen by the types of the streams") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     const auto xs = streamOf<float>(device, x), ys = streamOf<float>(device, y);
     const auto ns = streamOf<int>(device, n);
     std::vector<float2> p;
@@ -68,7 +68,7 @@ TEST_CASE("overloads are chosen by the types of the streams") {
 }
 
 TEST_CASE("one name may stand in several namespaces and files") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     const auto xs = streamOf<float>(device, x);
     auto r = device.stream<float>({count}), s = device.stream<float>({count});
     scale(0.5f, xs, r);
@@ -103,7 +103,7 @@ TEST_CASE("one name may stand in several namespaces and files") {
 }
 
 TEST_CASE("a struct of a file that two .sk files include is one type") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto shared = device.stream<Shared>({count});
     auto r = device.stream<float>({count});
     makeShared(streamOf<float>(device, x), shared);
@@ -114,7 +114,7 @@ TEST_CASE("a struct of a file that two .sk files include is one type") {
 }
 
 TEST_CASE("kernels call kernels and reduces, and know their streams within") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     const sk::Shape shape{7, 70};
     const HostArray<float> input(shape,
                                  [](std::size_t i) { return valueAt<float>(static_cast<std::uint32_t>(i)); });
@@ -149,7 +149,7 @@ TEST_CASE("kernels call kernels and reduces, and know their streams within") {
 }
 
 TEST_CASE("an element is converted to what the kernel that is called takes") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto r = device.stream<float>({count});
     calls::converted(streamOf<int>(device, n), r);
     CHECK(difference(r.read(), [](std::size_t i) { return static_cast<float>(2 * n[i]); }) == "");
@@ -157,7 +157,7 @@ TEST_CASE("an element is converted to what the kernel that is called takes") {
 }
 
 TEST_CASE("an output may be read once it is written") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto a = device.stream<float>({count});
     auto b = device.stream<float2>({count});
     calls::reads(streamOf<float>(device, x), a, b);

@@ -103,7 +103,7 @@ TEST_CASE("where there are thousands of rows, work groups fold two of them each"
 }
 
 TEST_CASE("an input of nothing fills its output with the identity") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     auto sums = device.stream<float>({3, 1});
     reduces::product(device.stream<float>({3, 0}), sums);
     CHECK(sums.read() == std::vector<float>{1, 1, 1});
@@ -116,7 +116,7 @@ TEST_CASE("an input of nothing fills its output with the identity") {
 }
 
 TEST_CASE("views are folded, and folded into") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     for (const auto& [shape, begin, end] :
          {std::tuple{sk::Shape{900}, sk::Index{7}, sk::Index{883}},
           std::tuple{sk::Shape{40, 80}, sk::Index{3, 5}, sk::Index{33, 77}},
@@ -150,7 +150,7 @@ TEST_CASE("views are folded, and folded into") {
 }
 
 TEST_CASE("a chain of kernels and reduces: variance of rows, then the largest") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     const HostArray<float> x({31, 61}, smallAt);
     const auto stream = x.on(device);
     auto moments = device.stream<reduces::Moments>({31, 1});

@@ -110,7 +110,7 @@ TEST_CASE("bits and bools fold") {
 }
 
 TEST_CASE("how partial results combine follows from the body, or from an overload") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     check<float>(device, "squares", smallAt, reduces::squares, 0.0f, [](float& r, float x) { r += x * x; });
     check<float2>(
         device, "sumSwapped", [](std::size_t i) { return float2{smallAt(i), smallAt(i + 1)}; },
@@ -141,7 +141,7 @@ TEST_CASE("how partial results combine follows from the body, or from an overloa
 }
 
 TEST_CASE("a fold means the same whether a helper function, a kernel or the reduce itself writes it") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     for (const std::int64_t n : {1, 4, 1021}) {
       const HostArray<float> a({n}, smallAt);
       const auto stream = a.on(device);
@@ -161,7 +161,7 @@ TEST_CASE("a fold means the same whether a helper function, a kernel or the redu
 }
 
 TEST_CASE("structs fold: the nearest, the first of the greatest") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     for (const sk::Shape& shape : fewShapes) {
       INFO("shape " << sk::toString(shape));
       std::vector<reduces::Hit> hits;

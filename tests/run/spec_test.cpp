@@ -25,7 +25,7 @@ std::vector<float> numbered(const sk::Shape& shape, float first) {
 }  // namespace
 
 TEST_CASE("an input that is switched off may be left out") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     for (const sk::Shape& shape : shapes) {
       INFO("shape " << sk::toString(shape));
       auto x = streamOf<float>(device, shape, numbered(shape, 1));
@@ -44,7 +44,7 @@ TEST_CASE("an input that is switched off may be left out") {
 }
 
 TEST_CASE("what is given and not needed is not looked at") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto x = streamOf<float>(device, {3}, {1, 2, 3});
     auto other = device.stream<float>({5, 5});
     auto r = device.stream<float>({3});
@@ -58,7 +58,7 @@ TEST_CASE("what is given and not needed is not looked at") {
 }
 
 TEST_CASE("outputs and gathers that a switch leaves out") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     auto x = streamOf<float>(device, {70}, numbered({70}, 1));
     auto y = streamOf<float>(device, {70}, numbered({70}, 2));
     auto sum = device.stream<float>({70});
@@ -83,7 +83,7 @@ TEST_CASE("outputs and gathers that a switch leaves out") {
 }
 
 TEST_CASE("each value is exactly itself") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto r = device.stream<float>({1});
     const auto value = [&](int i, unsigned u, float f, unsigned edge) {
       spec::values(i, u, f, edge, r);
@@ -101,7 +101,7 @@ TEST_CASE("each value is exactly itself") {
 }
 
 TEST_CASE("conditions go through functions, locals and early returns") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto a = streamOf<float>(device, {3}, {1, 2, 3});
     auto b = streamOf<float>(device, {4}, {10, 20, 30, 40});
     auto r = device.stream<float>({3});
@@ -118,7 +118,7 @@ TEST_CASE("conditions go through functions, locals and early returns") {
 }
 
 TEST_CASE("several flags") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto x = streamOf<float>(device, {1}, {1});
     auto y = streamOf<float>(device, {1}, {10});
     auto z = streamOf<float>(device, {1}, {100});
@@ -134,7 +134,7 @@ TEST_CASE("several flags") {
 }
 
 TEST_CASE("structs are left out as a whole") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     auto x = streamOf<float>(device, {67}, numbered({67}, 0));
     auto r = device.stream<float>({67});
     spec::shade(false, x, sk::none, sk::none, r, sk::none);

@@ -12,7 +12,7 @@ using namespace run_tests;
 
 TEST_CASE("structs and arrays are those of C++") {
   const Samples<int> samples = pairsOf(-6, 12);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     SharedCases<int, int> cases(device, samples);
 #define CHECK_CASE(name) cases.check(#name, structs::run_##name, structs::name);
     STRUCT_CASES(CHECK_CASE)

@@ -9,7 +9,7 @@
 using namespace run_tests;
 
 TEST_CASE("instances of a kernel are one overload set") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto f = streamOf<float>(device, {3}, {1.5F, 2, -4});
     auto i = streamOf<int>(device, {3}, {1, 16777217, -4});
     templates::axpy(0.5F, f, f, f);
@@ -25,7 +25,7 @@ TEST_CASE("instances of a kernel are one overload set") {
 }
 
 TEST_CASE("borders and identities are of the instance's type") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto f = streamOf<float>(device, {3}, {1, 2, 3});
     auto u = streamOf<unsigned>(device, {3}, {1, 2, 4000000000U});
     templates::shifted(f, 1, f);
@@ -43,7 +43,7 @@ TEST_CASE("borders and identities are of the instance's type") {
 }
 
 TEST_CASE("what a call does not tell is in the name") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto a = streamOf<float>(device, {5}, {1, 2, 3, 4, 5});
     auto r = device.stream<float>({5});
     templates::blur_1_false(a, r);
@@ -62,7 +62,7 @@ TEST_CASE("what a call does not tell is in the name") {
 }
 
 TEST_CASE("specialisations, and instances that only kernels call") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto b = streamOf<bool>(device, {2}, {1, 0});
     templates::negate(b, b);
     CHECK(b.read() == std::vector<std::uint8_t>{0, 1});

@@ -58,7 +58,7 @@ TEST_CASE("uniform arrays of narrow types") {
 }
 
 TEST_CASE("uniform arrays of matrices, and of structs with them") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto i = streamOf<int>(device, {0, 1});
     const std::array<sk::float3x3, 2> m = {sk::float3x3{{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}},
                                            sk::float3x3{{{-1, 0, 0}, {0, -2, 0}, {0, 0, -3}}}};
@@ -76,7 +76,7 @@ TEST_CASE("uniform arrays of matrices, and of structs with them") {
 }
 
 TEST_CASE("arrays in uniform structs") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     auto i = streamOf<int>(device, {2}, {0, 10});
     auto r = device.stream<float>({2});
     uniforms::Filter filter{{{{1, 0}, 2}, {{3, 0}, 5}, {{7, 0}, 11}}, 3, {true, false, true, false, false}};

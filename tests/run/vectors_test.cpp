@@ -38,7 +38,7 @@ sk::Stream<T> made(sk::Device& device) {
 TEST_CASE("swizzles read components in any order") {
   const auto v = values<float4>(count);
   const auto n = values<int3>(count);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = made<float4>(device), b = made<float4>(device);
     auto c = made<int4>(device);
     auto d = made<float>(device);
@@ -65,7 +65,7 @@ TEST_CASE("swizzles and parts can be assigned to") {
   const auto v = values<float4>(count);
   auto n = values<int2>(count);
   for (auto& k : n) k = {k.x & 1023, k.y & 1023};
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = made<float4>(device), b = made<float4>(device), c = made<float4>(device);
     auto d = made<int2>(device);
     vectors::stores(streamOf<float4>(device, v), streamOf<int2>(device, n), a, b, c, d);
@@ -97,7 +97,7 @@ TEST_CASE("components can be chosen by a number that is not constant") {
   const auto v = values<float4>(count);
   auto n = values<int>(count);
   for (int& k : n) k &= 0xffff;
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = made<float4>(device);
     auto b = made<float>(device);
     auto c = made<int3>(device);
@@ -138,7 +138,7 @@ TEST_CASE("vectors are made of scalars and vectors") {
   const auto v = values<float2>(count);
   auto n = values<int>(count);
   for (int& k : n) k = k % 1000;
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = made<float4>(device), b = made<float4>(device), c = made<float4>(device);
     auto d = made<int4>(device);
     vectors::constructors(streamOf<float2>(device, v), streamOf<int>(device, n), a, b, c, d);
@@ -162,7 +162,7 @@ TEST_CASE("vectors are made of scalars and vectors") {
 TEST_CASE("operators work by components, and with scalars") {
   const auto v = values<float4>(count), w = values<float4>(count, 1);
   const auto s = values<float>(count, 2);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = made<float4>(device), b = made<float4>(device), c = made<float4>(device),
          d = made<float4>(device);
     vectors::floats(streamOf<float4>(device, v), streamOf<float4>(device, w), streamOf<float>(device, s), a,
@@ -193,7 +193,7 @@ TEST_CASE("integer operators work by components, and with scalars") {
     for (int4& k : *list) k = by4([](int p) { return p % 100000; }, k);
   }
   for (int& k : s) k &= 0xffff;
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = made<int4>(device), b = made<int4>(device), c = made<int4>(device), d = made<int4>(device);
     vectors::ints(streamOf<int4>(device, v), streamOf<int4>(device, w), streamOf<int>(device, s), a, b, c, d);
     const auto expect = [&](const auto& f) {
@@ -221,7 +221,7 @@ TEST_CASE("integer operators work by components, and with scalars") {
 TEST_CASE("uint operators wrap by components") {
   const auto v = values<uint4>(count), w = values<uint4>(count, 1);
   const auto s = values<std::uint32_t>(count, 2);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = made<uint4>(device), b = made<uint4>(device);
     vectors::uints(streamOf<uint4>(device, v), streamOf<uint4>(device, w), streamOf<std::uint32_t>(device, s),
                    a, b);
@@ -248,7 +248,7 @@ TEST_CASE("comparisons of vectors give masks by components") {
     if (i % 3 == 0) w[i].z = v[i].z;
     if (i % 7 == 0) w[i] = v[i];
   }
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = made<bool4>(device);
     auto b = made<int4>(device), c = made<int4>(device);
     auto d = made<float4>(device);
@@ -294,7 +294,7 @@ TEST_CASE("vectors of integers and bools are compared and selected") {
     for (int3& k : *list) k = by3([](int p) { return p % 8; }, k);
   }
   const auto p = values<bool4>(count), q = values<bool4>(count, 1);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = made<int3>(device), c = made<int3>(device);
     auto b = made<bool3>(device);
     auto d = made<uint3>(device);
@@ -340,7 +340,7 @@ TEST_CASE("vectors of integers and bools are compared and selected") {
 
 TEST_CASE("vectors are made with parentheses by qualified names, and for constants") {
   const auto v = values<float2>(50);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = device.stream<float4>({50});
     auto b = device.stream<float2>({50});
     vectors::qualified(streamOf<float2>(device, v), a, b);
@@ -356,7 +356,7 @@ TEST_CASE("vectors are made with parentheses by qualified names, and for constan
 TEST_CASE("variables and aliases of vectors are made with parentheses") {
   const auto v = values<float2>(50);
   const auto n = values<int>(50, 1);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = device.stream<float4>({50});
     auto b = device.stream<int2>({50});
     auto c = device.stream<float2>({50});

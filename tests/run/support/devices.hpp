@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// The devices that a test program runs on, each opened once: native code, and all profiles, with their own texture limits
-// and with small ones, under which most shapes are linearised or need several layers.
+// The devices that a test program runs on, each opened once: native code, and profiles with their own texture limits and with
+// small ones, under which most shapes are linearised or need several layers.
+//
+// Most of a test's time goes into the driver's compiler, so a test runs on no more devices than its promise needs:
+//   - onGlAndNative: what a kernel's body computes. The emitter writes one body for all profiles, and tests/golden has glslang
+//     compile it in each of them.
+//   - onEveryProfile: what the runtime or the assembler does for fragment programs and for compute programs.
+//   - onSomeLayouts: the same, where it also matters how the elements of streams are addressed.
+//   - onEveryLayout: the address arithmetic itself, once for each role of a stream in a call.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,39 +27,63 @@ inline constexpr int smallLimits[] = {64, 8};
 /// The device with a profile ("glsl330", "glsl430", "essl300", "native") and its own texture limit (0) or a smaller one.
 sk::Device& device(std::string_view profile, int textureLimit = 0);
 
-/// Calls test(device) on every profile: for tests of what a kernel computes.
-template <class Test>
-void onEveryProfile(const Test& test) {
-  for (const std::string profile : {"glsl330", "glsl430", "essl300", "native"}) {
-    INFO("profile " << profile);
-    test(device(profile));
-  }
-}
-
 /// A profile with a texture limit.
 struct Layout {
   const char* profile;
   int textureLimit;
 };
 
-/// Every layout with fragment programs, and whole and layered streams with compute programs. Most of a test's time goes
-/// into the driver's compiler, so essl300 is left out: its programs differ from those of glsl330 only in the header and in
-/// precision qualifiers. Samplers of layers are the only ones without a default precision; run.layers tests them.
+/// Every layout with fragment programs, and whole and layered streams with compute programs. The programs of essl300 are
+/// those of glsl330 with another header (tests/golden/glslang_test.cpp). Samplers of layers are the only ones whose precision
+/// has no default there; run.layers tests them.
 inline constexpr Layout layouts[] = {{"glsl330", 0},
                                      {"glsl330", smallLimits[0]},
                                      {"glsl330", smallLimits[1]},
                                      {"glsl430", 0},
                                      {"glsl430", smallLimits[1]}};
 
-/// Calls test(device) on every layout, and natively: for tests of where elements lie.
+/// A diagonal of targets and addressing: fragment programs with planes and with layers, compute programs with linearised
+/// streams. The other combinations put the same functions for elements into the same frames.
+inline constexpr Layout someLayouts[] = {{"glsl330", 0}, {"glsl330", smallLimits[1]}, {"glsl430", smallLimits[0]}};
+
+namespace detail {
+
 template <class Test>
-void onEveryLayout(const Test& test) {
-  for (const Layout& layout : layouts) {
+void onLayouts(std::span<const Layout> chosen, const Test& test) {
+  for (const Layout& layout : chosen) {
     INFO("profile " << layout.profile << ", texture limit " << layout.textureLimit);
     test(device(layout.profile, layout.textureLimit));
   }
   INFO("native");
   test(device("native"));
+}
+
+}  // namespace detail
+
+/// Calls test(device) on GL and natively: for tests of what a kernel's body computes. essl300 has the strictest compilers.
+template <class Test>
+void onGlAndNative(const Test& test) {
+  constexpr Layout one[] = {{"essl300", 0}};
+  detail::onLayouts(one, test);
+}
+
+/// Calls test(device) on the smallest fragment profile, on the compute profile and natively. onSomeLayouts has glsl330.
+template <class Test>
+void onEveryProfile(const Test& test) {
+  constexpr Layout targets[] = {{"essl300", 0}, {"glsl430", 0}};
+  detail::onLayouts(targets, test);
+}
+
+/// Calls test(device) on a sample of the layouts, and natively: for tests of calls whose streams may lie anywhere.
+template <class Test>
+void onSomeLayouts(const Test& test) {
+  detail::onLayouts(someLayouts, test);
+}
+
+/// Calls test(device) on every layout, and natively: for tests of where elements lie.
+template <class Test>
+void onEveryLayout(const Test& test) {
+  detail::onLayouts(layouts, test);
 }
 
 }  // namespace run_tests
