@@ -49,7 +49,7 @@ TEST_CASE("products, sums and comparisons of matrices") {
     const auto a = listOf(count, matrixAt);
     const auto b = listOf(count, [](std::uint32_t i) { return i % 3 == 0 ? matrixAt(i) : matrixAt(i + 50); });
     const auto v = listOf(count, [](std::uint32_t i) { return float2{smallAt(i), smallAt(i + 9)}; });
-    onEveryLayout([&](sk::Device& device) {
+    onSomeLayouts([&](sk::Device& device) {
       auto ab = device.stream<float2x2>({count});
       auto scaled = device.stream<float2x2>({count});
       auto av = device.stream<float2>({count});
@@ -80,7 +80,7 @@ TEST_CASE("rows and elements, read and written at any index") {
     return m;
   });
   const auto numbers = listOf(count, [](std::uint32_t i) { return static_cast<int>(i); });
-  onEveryLayout([&](sk::Device& device) {
+  onSomeLayouts([&](sk::Device& device) {
     auto r = device.stream<float3x3>({count});
     auto row = device.stream<float3>({count});
     auto e = device.stream<float>({count});
@@ -104,7 +104,7 @@ TEST_CASE("rows and elements, read and written at any index") {
 
 TEST_CASE("matrices from a number, rows, or numbers") {
   const std::vector<float> x = {0, 1, -3, 7.5f};
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto diagonal = device.stream<sk::float4x4>({4});
     auto rows = device.stream<sk::float3x3>({4});
     auto numbers = device.stream<float2x2>({4});
@@ -130,7 +130,7 @@ TEST_CASE("transposes, inverses and determinants") {
     m[3] = {0, 0, 0, 1.0f + static_cast<float>(i % 3)};
     return m;
   });
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto t = device.stream<sk::float4x4>({64});
     auto d = device.stream<float>({64});
     matrices::inverses(streamOf<sk::float4x4>(device, a), t, d);
@@ -182,7 +182,7 @@ TEST_CASE("matrices in structs and uniforms, gathered, in place and on views") {
       r.turn = product(also, r.turn);
       return r;
     };
-    onEveryLayout([&](sk::Device& device) {
+    onSomeLayouts([&](sk::Device& device) {
       auto stream = streamOf<matrices::Pose>(device, p);
       auto r = device.stream<matrices::Pose>({count});
       if (count > 3) {
@@ -247,7 +247,7 @@ TEST_CASE("a product of matrices keeps its order") {
 
 TEST_CASE("constant matrices and arrays of them") {
   const auto v = listOf(31, [](std::uint32_t i) { return float2{smallAt(i), smallAt(i + 4)}; });
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto r = device.stream<float2>({31});
     matrices::turned(streamOf<float2>(device, v), r);
     CHECK(difference(r.read(), [&](std::size_t i) {

@@ -144,10 +144,12 @@ void checkOne(sk::Device& device, std::uint32_t seed) {
 
 }  // namespace
 
+// Each fold may need programs of its own on GL, whose compilation takes most of the time.
 TEST_CASE("random folds") {
   for (std::uint32_t seed = 0; seed < 120; ++seed) {
-    const Layout& layout = layouts[seed % std::size(layouts)];
-    checkOne(run_tests::device(layout.profile, layout.textureLimit), seed);
     checkOne(run_tests::device("native"), seed);
+    if (seed % 4 != 0) continue;
+    const Layout& layout = someLayouts[seed / 4 % std::size(someLayouts)];
+    checkOne(run_tests::device(layout.profile, layout.textureLimit), seed);
   }
 }

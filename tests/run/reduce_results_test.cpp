@@ -57,7 +57,7 @@ sk::Device& narrowDevice(const std::string& profile) {
 }  // namespace
 
 TEST_CASE("several accumulators come as a tuple, or as streams") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     for (const sk::Shape& shape : shapes) {
       INFO(sk::toString(shape));
       const HostArray<float> x(shape, smallAt);
@@ -89,7 +89,7 @@ TEST_CASE("several accumulators come as a tuple, or as streams") {
 }
 
 TEST_CASE("accumulators of several types, in order, combined by an overload or by themselves") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     for (const sk::Shape& shape : shapes) {
       INFO(sk::toString(shape));
       const HostArray<std::uint32_t> x(shape, bitsAt);
@@ -153,7 +153,7 @@ TEST_CASE("the index is the element's in its input, in views and for blocks, too
 }
 
 TEST_CASE("places of several inputs, of which some repeat, and the weights that they choose") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     const HostArray<std::uint32_t> x({14, 50}, bitsAt),
         y({1, 50}, [](std::size_t i) { return bitsAt(i + 5); });
     std::uint32_t expected = 0;
@@ -214,7 +214,7 @@ TEST_CASE("more planes than a pass writes") {
 }
 
 TEST_CASE("products of matrices keep the order of 10007 factors") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     const std::int64_t n = device.limits().textureSize <= smallLimits[0] ? 4093 : 10007;
     const HostArray<float2x2> m({n}, [](std::size_t i) {
       const auto at = [&](std::size_t k) { return static_cast<float>(bitsAt(4 * i + k) % 251u); };
@@ -291,7 +291,7 @@ TEST_CASE("narrow types fold as they do in C++") {
 }
 
 TEST_CASE("instances of templates") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     const auto [sum, most] =
         results::both(streamOf<int>(device, {1, 2, 3, 4}), streamOf<int>(device, {5, 6, -7, 8}));
     CHECK((sum == 5 + 12 - 21 + 32 && most == 8));
@@ -302,7 +302,7 @@ TEST_CASE("instances of templates") {
 }
 
 TEST_CASE("streams of fewer dimensions take what remains without extents of 1") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     const HostArray<float> x({20, 90}, smallAt);
     const auto stream = x.on(device);
     const auto compare = [&](const sk::Shape& shape, const sk::Shape& meant) {

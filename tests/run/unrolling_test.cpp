@@ -58,7 +58,7 @@ TEST_CASE(
     "an index that is a neighbor's means the same for every boundary, and beside every shape of the gather") {
   for (const sk::Shape shape : {sk::Shape{9, 12}, sk::Shape{4, 5}, sk::Shape{20, 31}}) {
     const std::vector<int> x = values<int>(shape.size());
-    onEveryLayout([&](sk::Device& device) {
+    onSomeLayouts([&](sk::Device& device) {
       auto a = device.stream<int>(shape);
       auto r = device.stream<int4>({9, 12}), s = device.stream<int4>({9, 12});
       a.write(x);

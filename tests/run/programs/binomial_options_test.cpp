@@ -69,7 +69,7 @@ std::vector<Option> options(std::int64_t count) {
 }  // namespace
 
 TEST_CASE("binomial options: calls and puts, European and American") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     for (const auto& [count, steps] : {std::pair{0, 4}, {1, 1}, {67, 16}, {101, 128}}) {
       INFO(count << " options, " << steps << " steps");
       const Market market{0.06, 0.3, 0.75, steps};
@@ -85,7 +85,7 @@ TEST_CASE("binomial options: calls and puts, European and American") {
 }
 
 TEST_CASE("binomial options: a table of spots and strikes") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     const Market market{0.03, 0.2, 1, 32};
     const auto given = options(7 * 13);
     auto worth = device.stream<float>({7, 13});
@@ -100,7 +100,7 @@ TEST_CASE("binomial options: a table of spots and strikes") {
 // J. C. Hull, "Options, futures, and other derivatives": spot and strike 50, 10% interest, 40% volatility, five months, five
 // steps of one month. The book gives 4.49.
 TEST_CASE("binomial options: a textbook's American put") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     const Market market{0.1, 0.4, 5.0 / 12, 5};
     auto worth = device.stream<float>({1});
     binomial_options::price(lattice(market), streamOf<Option>(device, {{50, 50, false, true}}), worth);

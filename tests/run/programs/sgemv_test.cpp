@@ -59,20 +59,20 @@ void checkOnePass(sk::Device& device, std::int64_t rows, std::int64_t columns) {
 }  // namespace
 
 TEST_CASE("sgemv: a product for each element, and a sum over each row") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     for (const auto& [rows, columns] : shapes) checkSteps(device, rows, columns);
     for (const auto& [rows, columns] : {std::pair{0, 0}, {0, 5}, {5, 0}}) checkSteps(device, rows, columns);
   });
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     for (const auto& [rows, columns] : largeShapes) checkSteps(device, rows, columns);
   });
 }
 
 TEST_CASE("sgemv: in one pass") {
-  onEveryLayout([](sk::Device& device) {
+  onSomeLayouts([](sk::Device& device) {
     for (const auto& [rows, columns] : shapes) checkOnePass(device, rows, columns);
   });
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     for (const auto& [rows, columns] : largeShapes) checkOnePass(device, rows, columns);
   });
 }
