@@ -45,7 +45,7 @@ TEST_CASE("structs of narrow types and matrices are pushed and scattered") {
     at.push_back((i * 100) % count);
     placed[static_cast<std::size_t>(at.back())] = dotAt(i);
   }
-  onSomeLayouts([&](sk::Device& device) {
+  onDrawnLayouts([&](sk::Device& device) {
     const auto d = streamOf<Dot>(device, dots);
     auto r = device.stream<Dot>({0}), s = device.stream<Dot>({count});
     append_outputs::kept(d, r);
@@ -66,7 +66,7 @@ TEST_CASE("what is pushed or stored in a narrow type is converted to it") {
     x.push_back({c, 100, -100, 7});
     y.push_back(static_cast<std::int16_t>(i * 331));
   }
-  onSomeLayouts([&](sk::Device& device) {
+  onDrawnLayouts([&](sk::Device& device) {
     auto r = device.stream<sk::char4>({12, 20});
     auto s = device.stream<std::int16_t>({12, 20});
     auto t = device.stream<std::uint8_t>({0});
@@ -96,7 +96,7 @@ TEST_CASE("templates with append outputs, for each value of a constant") {
     h.push_back({half(v), half(-v), half(1.0f)});
     m.push_back({{{v, 1, 2}, {3, v, 4}, {5, 6, -v}}});
   }
-  onSomeLayouts([&](sk::Device& device) {
+  onDrawnLayouts([&](sk::Device& device) {
     auto r = device.stream<float>({0});
     auto s = device.stream<sk::half3>({0});
     auto t = device.stream<sk::float3x3>({0});
@@ -124,7 +124,7 @@ TEST_CASE("scatters of templates") {
     sums[k] += u.back();
     pairs[k] = {pairs[k].x + i, pairs[k].y - i};
   }
-  onSomeLayouts([&](sk::Device& device) {
+  onDrawnLayouts([&](sk::Device& device) {
     const auto a = streamOf<int>(device, at);
     auto r = streamOf<std::uint32_t>(device, std::vector<std::uint32_t>(7));
     auto s = streamOf<int2>(device, std::vector<int2>(7));
@@ -137,7 +137,7 @@ TEST_CASE("scatters of templates") {
 
 TEST_CASE("append outputs of a domain that only iterators know") {
   constexpr std::int64_t height = 9, width = 13;
-  onSomeLayouts([&](sk::Device& device) {
+  onDrawnLayouts([&](sk::Device& device) {
     for (const unsigned kind : {0u, 1u, 2u}) {   // Pushes, Sums, Both
       INFO("kind " << kind);
       auto r = device.stream<float3>({0});

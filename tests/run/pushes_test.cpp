@@ -10,7 +10,7 @@
 
 namespace {
 
-using run_tests::onEveryLayout, run_tests::onSomeLayouts;
+using run_tests::onEveryLayout, run_tests::onDrawnLayouts;
 
 constexpr std::int64_t sizes[] = {0, 1, 2, 4, 5, 63, 64, 65, 257, 1009, 4001};
 
@@ -46,7 +46,7 @@ TEST_CASE("what is pushed comes out in order") {
 }
 
 TEST_CASE("a stream that was pushed to is a stream like any other") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     const std::vector<float> list = values(1009);
     auto x = device.stream<float>({1009});
     x.write(list);
@@ -67,7 +67,7 @@ TEST_CASE("a stream that was pushed to is a stream like any other") {
 }
 
 TEST_CASE("an old view of a stream that has become smaller is told") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     auto x = device.stream<float>({100});
     x.write(std::vector<float>(100, -1.0F));
     const auto view = x.domain({90}, {100});
@@ -79,7 +79,7 @@ TEST_CASE("an old view of a stream that has become smaller is told") {
 }
 
 TEST_CASE("any number of structs an element") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const std::int64_t height : {1, 7, 70}) {
       const std::int64_t width = 13;
       std::vector<int> counts;
@@ -108,7 +108,7 @@ TEST_CASE("any number of structs an element") {
 }
 
 TEST_CASE("several variable outputs, and an ordinary one beside them") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const std::int64_t size : {std::int64_t{0}, std::int64_t{1}, std::int64_t{1009}}) {
       std::vector<int> list, even, twice;
       std::vector<sk::float3> odd;
@@ -134,7 +134,7 @@ TEST_CASE("several variable outputs, and an ordinary one beside them") {
 }
 
 TEST_CASE("nothing, everything, and more than everything") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     std::vector<std::uint32_t> list, four;
     for (std::uint32_t i = 0; i < 300; ++i) {
       const std::uint32_t x = i * 2654435761u;
@@ -155,7 +155,7 @@ TEST_CASE("nothing, everything, and more than everything") {
 }
 
 TEST_CASE("indices of four dimensions, with an input that repeats") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     auto a = device.stream<sk::int4>({2, 3, 5, 7});
     auto b = device.stream<int>({1, 3, 1, 1});
     std::vector<sk::int4> as, expected;
@@ -176,7 +176,7 @@ TEST_CASE("indices of four dimensions, with an input that repeats") {
 }
 
 TEST_CASE("helpers push in the order of the calls") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const std::int64_t size : sizes) {
       INFO("size " << size);
       std::vector<int> list, r, s, counts;
@@ -212,7 +212,7 @@ TEST_CASE("helpers push in the order of the calls") {
 }
 
 TEST_CASE("pushes behind a return are none") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     std::vector<int> list(4001);
     for (std::size_t i = 0; i < list.size(); ++i) list[i] = static_cast<int>(i);
     auto x = device.stream<int>({4001}), r = device.stream<int>({0});

@@ -13,7 +13,7 @@
 
 namespace {
 
-using run_tests::onEveryLayout, run_tests::onSomeLayouts;
+using run_tests::onEveryLayout, run_tests::onDrawnLayouts;
 
 constexpr std::int64_t sizes[] = {0, 1, 2, 67, 1009, 4001};
 
@@ -67,7 +67,7 @@ void compare(sk::Device& device, const Kernel& kernel, const std::vector<T>& x, 
 }
 
 TEST_CASE("sums and extremes of one component") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const std::int64_t size : sizes) {
       INFO("size " << size);
       const std::vector<int> ints = anyBits<int>(size, 1), someInts = anyBits<int>(53, 2);
@@ -87,7 +87,7 @@ TEST_CASE("sums and extremes of one component") {
 }
 
 TEST_CASE("sums and extremes of vectors") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const std::int64_t size : {std::int64_t{1}, std::int64_t{1009}}) {
       std::vector<sk::int3> ints(static_cast<std::size_t>(size));
       std::vector<sk::int2> pairs(ints.size());
@@ -125,7 +125,7 @@ TEST_CASE("sums and extremes of vectors") {
 }
 
 TEST_CASE("more sums at one place than a float can count") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     if (device.limits().textureSize < 1024) return;
     const std::int64_t count = 300007;
     std::vector<unsigned> x(static_cast<std::size_t>(count), 0u);
@@ -144,7 +144,7 @@ TEST_CASE("more sums at one place than a float can count") {
 }
 
 TEST_CASE("the last store wins, of structs too, and the rest stays") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     const std::vector<int> at = indicesInto(211, 700, 9);
     std::vector<int> last(211, -1);
     for (std::size_t i = 0; i < at.size(); ++i) {
@@ -208,7 +208,7 @@ TEST_CASE("every rank, and views") {
 }
 
 TEST_CASE("several scatters an element, beside an output") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     const int n = 1009;
     const std::vector<float> x = eighths(n, 11);
     std::vector<float> halves(n, 1.0F), twice;
@@ -238,7 +238,7 @@ TEST_CASE("several scatters an element, beside an output") {
 }
 
 TEST_CASE("as many scatters as an element says") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     std::vector<int> count(257), expected(64, 0);
     for (int i = 0; i < 257; ++i) {
       count[static_cast<std::size_t>(i)] = i % 4 == 0 ? i % 23 : 0;
@@ -256,7 +256,7 @@ TEST_CASE("as many scatters as an element says") {
 }
 
 TEST_CASE("reading and writing one stream, and nothing at all") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const std::int64_t size : sizes) {
       std::vector<int> list = anyBits<int>(size, 12);
       auto r = device.stream<int>({size});
@@ -271,7 +271,7 @@ TEST_CASE("reading and writing one stream, and nothing at all") {
 }
 
 TEST_CASE("helpers scatter for their kernels") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const std::int64_t size : sizes) {
       INFO("size " << size);
       const std::vector<int> at = indicesInto(67, size, 21);
@@ -314,7 +314,7 @@ TEST_CASE("helpers scatter for their kernels") {
 }
 
 TEST_CASE("a sparse matrix times a vector") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     const std::vector<sk::int2> cell = {{0, 0}, {2, 0}, {1, 1}, {0, 2}, {1, 2}, {2, 2}};
     auto cells = device.stream<sk::int2>({6});
     auto values = device.stream<float>({6});

@@ -111,8 +111,7 @@ void onViews(sk::Device& device, const std::vector<Case>& chosen, const Test& te
 template <class Test>
 void onEveryView(const Test& test) {
   onEveryLayout([&](sk::Device& one) {
-    const bool takesAll = &one == &device("native") || &one == &device("glsl330");
-    onViews(one, takesAll ? cases() : sampleCases(), test);
+    onViews(one, takesAllCases(one) ? cases() : sampleCases(), test);
   });
 }
 
@@ -263,7 +262,7 @@ TEST_CASE("views are reduced and scanned, and hold the results") {
 }
 
 TEST_CASE("views are scattered to, and their elements pushed") {
-  onSomeViews([](sk::Device& device, sk::Stream<int>& stream, sk::View<int> view, const Model& model) {
+  const auto test = [](sk::Device& device, sk::Stream<int>& stream, sk::View<int> view, const Model& model) {
     std::vector<int> all = counted(stream.size());
     const std::vector<int> elements = model.of(all);
     auto odd = device.stream<int>({1});
@@ -284,7 +283,12 @@ TEST_CASE("views are scattered to, and their elements pushed") {
       all[static_cast<std::size_t>(model.numbers[1])] += 100;
     }
     CHECK(stream.read() == all);
+  };
+  onDrawnLayouts([&](sk::Device& one) {
+    onViews(one, &one == &device("native") ? cases() : sampleCases(), test);
   });
+  // compute programs: a plane and a line
+  for (const Case& what : {sampleCases()[0], sampleCases()[2]}) onViews(device("glsl430"), {what}, test);
 }
 
 }  // namespace

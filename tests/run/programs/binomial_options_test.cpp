@@ -69,7 +69,7 @@ std::vector<Option> options(std::int64_t count) {
 }  // namespace
 
 TEST_CASE("binomial options: calls and puts, European and American") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const auto& [count, steps] : {std::pair{0, 4}, {1, 1}, {67, 16}, {101, 128}}) {
       INFO(count << " options, " << steps << " steps");
       const Market market{0.06, 0.3, 0.75, steps};

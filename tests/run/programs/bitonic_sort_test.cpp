@@ -32,7 +32,7 @@ const std::vector<std::int64_t> sizes = {0, 1, 2, 3, 7, 8, 63, 64, 65, 256, 1021
 }  // namespace
 
 TEST_CASE("bitonic sort: keys of every length are sorted") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const std::int64_t n : sizes) {
       INFO(n << " keys");
       auto keys = values<float>(n);
@@ -54,7 +54,7 @@ TEST_CASE("bitonic sort: more keys than a row of a texture has texels") {
 }
 
 TEST_CASE("bitonic sort: equal keys keep their order") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const std::int64_t n : sizes) {
       INFO(n << " items");
       std::vector<float> keys;
@@ -88,7 +88,7 @@ TEST_CASE("bitonic sort: NaN comes last, and nothing is lost") {
     if (std::isnan(a) || std::isnan(b)) return !std::isnan(a) && std::isnan(b);
     return a < b || (a == b && std::signbit(a) && !std::signbit(b));
   });
-  onSomeLayouts([&](sk::Device& device) {
+  onDrawnLayouts([&](sk::Device& device) {
     auto stream = streamOf<float>(device, keys);
     sort(stream);
     const auto result = stream.read();

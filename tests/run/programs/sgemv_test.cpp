@@ -59,7 +59,7 @@ void checkOnePass(sk::Device& device, std::int64_t rows, std::int64_t columns) {
 }  // namespace
 
 TEST_CASE("sgemv: a product for each element, and a sum over each row") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const auto& [rows, columns] : shapes) checkSteps(device, rows, columns);
     for (const auto& [rows, columns] : {std::pair{0, 0}, {0, 5}, {5, 0}}) checkSteps(device, rows, columns);
   });
@@ -69,7 +69,7 @@ TEST_CASE("sgemv: a product for each element, and a sum over each row") {
 }
 
 TEST_CASE("sgemv: in one pass") {
-  onSomeLayouts([](sk::Device& device) {
+  onDrawnLayouts([](sk::Device& device) {
     for (const auto& [rows, columns] : shapes) checkOnePass(device, rows, columns);
   });
   onGlAndNative([](sk::Device& device) {

@@ -8,6 +8,8 @@
 //     compile it in each of them.
 //   - onEveryProfile: what the runtime or the assembler does for fragment programs and for compute programs.
 //   - onSomeLayouts: the same, where it also matters how the elements of streams are addressed.
+//   - onDrawnLayouts: the same for append outputs and scatters, which run.order and the tests on every layout dispatch: their
+//     compute programs have barriers, and take the compiler ten times as long as others.
 //   - onEveryLayout: the address arithmetic itself, once for each role of a stream in a call.
 #pragma once
 
@@ -46,6 +48,15 @@ inline constexpr Layout layouts[] = {{"glsl330", 0},
 /// streams. The other combinations put the same functions for elements into the same frames.
 inline constexpr Layout someLayouts[] = {{"glsl330", 0}, {"glsl330", smallLimits[1]}, {"glsl430", smallLimits[0]}};
 
+/// Fragment programs with planes and with layers.
+inline constexpr Layout drawnLayouts[] = {{"glsl330", 0}, {"glsl330", smallLimits[1]}};
+
+/// True on the devices that take full lists of cases: native code, where they cost nothing, and whole planes on GL. The other
+/// devices take a sample with a case for each kind of text that the assembler writes.
+inline bool takesAllCases(const sk::Device& one) {
+  return &one == &device("native") || &one == &device("glsl330");
+}
+
 namespace detail {
 
 template <class Test>
@@ -78,6 +89,13 @@ void onEveryProfile(const Test& test) {
 template <class Test>
 void onSomeLayouts(const Test& test) {
   detail::onLayouts(someLayouts, test);
+}
+
+/// Calls test(device) on a sample of the layouts with fragment programs, and natively: for tests of append outputs and of
+/// whole algorithms.
+template <class Test>
+void onDrawnLayouts(const Test& test) {
+  detail::onLayouts(drawnLayouts, test);
 }
 
 /// Calls test(device) on every layout, and natively: for tests of where elements lie.
