@@ -26,7 +26,7 @@ void onEveryLimit(const Test& test) {
   };
   for (const auto& [profile, limits, texture] :
        {Limits{"glsl330", "guaranteed", 0}, Limits{"glsl330", "device", 0},
-        Limits{"glsl330", "guaranteed", smallLimits[1]}, Limits{"essl300", "guaranteed", smallLimits[1]}}) {
+        Limits{"essl300", "guaranteed", smallLimits[1]}}) {
     INFO("profile " << profile << ", limits " << limits << ", texture limit " << texture);
     sk::Device device({.profile = profile, .textureLimit = texture, .limits = limits});
     test(device);

@@ -141,8 +141,9 @@ void checkTime(sk::Device& device, const Mode& mode, const Read& read, const Nea
 TEST_CASE("gathers of rank 3 read any index, in every boundary mode") {
   using namespace gather_ranks;
   onSomeLayouts([](sk::Device& device) {
-    checkSpace(device, {"clamp", clampIndex}, space_clamp, space_near_clamp, space_stencil_clamp);
     checkSpace(device, {"wrap", wrapIndex}, space_wrap, space_near_wrap, space_stencil_wrap);
+    if (!takesAllCases(device)) return;  // modes are text about indices, not about layouts
+    checkSpace(device, {"clamp", clampIndex}, space_clamp, space_near_clamp, space_stencil_clamp);
     checkSpace(device, {"mirror", mirrorIndex}, space_mirror, space_near_mirror, space_stencil_mirror);
     checkSpace(device, {"border", borderIndex}, space_border, space_near_border, space_stencil_border);
   });
@@ -151,8 +152,9 @@ TEST_CASE("gathers of rank 3 read any index, in every boundary mode") {
 TEST_CASE("gathers of rank 4 read any index, in every boundary mode") {
   using namespace gather_ranks;
   onSomeLayouts([](sk::Device& device) {
-    checkTime(device, {"clamp", clampIndex}, time_clamp, time_near_clamp);
     checkTime(device, {"wrap", wrapIndex}, time_wrap, time_near_wrap);
+    if (!takesAllCases(device)) return;  // modes are text about indices, not about layouts
+    checkTime(device, {"clamp", clampIndex}, time_clamp, time_near_clamp);
     checkTime(device, {"mirror", mirrorIndex}, time_mirror, time_near_mirror);
     checkTime(device, {"border", borderIndex}, time_border, time_near_border);
   });

@@ -104,8 +104,9 @@ void checkMode(sk::Device& device, const char* mode, Inside inside, const Row& r
 
 TEST_CASE("an index may be any int, and the boundary mode says what it gives outside") {
   onEveryLayout([](sk::Device& device) {
-    checkMode(device, "clamp", clampIndex, gathers::row_clamp, gathers::plane_clamp);
     checkMode(device, "wrap", wrapIndex, gathers::row_wrap, gathers::plane_wrap);
+    if (!takesAllCases(device)) return;  // modes are text about indices, not about layouts
+    checkMode(device, "clamp", clampIndex, gathers::row_clamp, gathers::plane_clamp);
     checkMode(device, "mirror", mirrorIndex, gathers::row_mirror, gathers::plane_mirror);
     checkMode(device, "border", borderIndex, gathers::row_border, gathers::plane_border);
   });
@@ -180,8 +181,9 @@ void checkFloatIndices(sk::Device& device, const char* mode, Inside inside, cons
 
 TEST_CASE("a float index names the nearest element") {
   onSomeLayouts([](sk::Device& device) {
-    checkFloatIndices(device, "clamp", clampIndex, gathers::float_clamp);
     checkFloatIndices(device, "wrap", wrapIndex, gathers::float_wrap);
+    if (!takesAllCases(device)) return;  // modes are text about indices, not about layouts
+    checkFloatIndices(device, "clamp", clampIndex, gathers::float_clamp);
     checkFloatIndices(device, "mirror", mirrorIndex, gathers::float_mirror);
     checkFloatIndices(device, "border", borderIndex, gathers::float_border);
   });
@@ -230,8 +232,9 @@ void checkStencils(sk::Device& device, const char* mode, Inside inside, const Pl
 
 TEST_CASE("neighbours may lie beyond the end, further than the extent even") {
   onSomeLayouts([](sk::Device& device) {
-    checkStencils(device, "clamp", clampIndex, gathers::stencil_clamp, gathers::line_clamp);
     checkStencils(device, "wrap", wrapIndex, gathers::stencil_wrap, gathers::line_wrap);
+    if (!takesAllCases(device)) return;  // modes are text about indices, not about layouts
+    checkStencils(device, "clamp", clampIndex, gathers::stencil_clamp, gathers::line_clamp);
     checkStencils(device, "mirror", mirrorIndex, gathers::stencil_mirror, gathers::line_mirror);
     checkStencils(device, "border", borderIndex, gathers::stencil_border, gathers::line_border);
   });

@@ -52,7 +52,7 @@ std::string differenceBy(double absolute, const std::vector<float4>& actual, con
 
 TEST_CASE("geometry") {
   const auto u = values<float4>(count, 1), v = values<float4>(count, 2);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = device.stream<float4>({count}), b = device.stream<float4>({count});
     auto c = device.stream<float4>({count}), d = device.stream<float4>({count});
     intrinsics::geometry(streamOf<float4>(device, u), streamOf<float4>(device, v), a, b, c, d);
@@ -91,7 +91,7 @@ TEST_CASE("scalars may stand among the vectors of an intrinsic") {
     const double t = std::clamp((v - low) / (high - low), 0.0, 1.0);
     return t * t * (3 - 2 * t);
   };
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = device.stream<float4>({count}), b = device.stream<float4>({count});
     auto c = device.stream<float4>({count}), d = device.stream<float4>({count});
     intrinsics::scalars(streamOf<float4>(device, x), streamOf<float>(device, s), a, b, c, d);
@@ -138,7 +138,7 @@ TEST_CASE("modf, frexp and sincos give both their parts") {
   x[0] = {0, -0.0f, 1, -1};
   x[1] = {3.4e38f, -1.2e-38f, 16777215, -0.5f};
   x[2] = {1.5f, -2.75f, 1024, 1e-30f};
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = device.stream<float4>({count}), b = device.stream<float4>({count}),
          c = device.stream<float4>({count});
     auto d = device.stream<int4>({count});
@@ -194,7 +194,7 @@ TEST_CASE("ldexp scales by powers of two to both ends") {
   const auto agree = [](float a, float b) {
     return a == b || (std::fabs(b) < 1.1754944e-38f && std::fabs(a) <= std::fabs(b));
   };
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = device.stream<float4>({size});
     auto b = device.stream<float2>({size});
     auto c = device.stream<float>({size});
@@ -226,7 +226,7 @@ TEST_CASE("bits are moved unchanged, and classes of floats told") {
                                        {nan, 1, infinity, -0.0f},
                                        {1, nan, nan, 2},
                                        {-nan, infinity, 1e-30f, -infinity}};
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     const auto bits = [](float v) { return std::bit_cast<std::uint32_t>(v); };
     auto a = device.stream<int4>({count});
     auto b = device.stream<uint4>({count});
@@ -279,7 +279,7 @@ TEST_CASE("integers have abs, sign, min, max and clamp") {
     for (int4& v : *list) v = by4([](int k) { return k % 20; }, v);
   }
   const auto u = values<uint4>(count, 8), w = values<uint4>(count, 9);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = device.stream<int4>({count}), b = device.stream<int4>({count});
     auto c = device.stream<int4>({count}), d = device.stream<int4>({count});
     intrinsics::ints(streamOf<int4>(device, x), streamOf<int4>(device, y), a, b, c, d);
@@ -321,7 +321,7 @@ TEST_CASE("comparisons by name give bool vectors") {
     y[k].y = x[k].y;
     j[k].x = i[k].x;
   }
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = device.stream<bool3>({count}), b = device.stream<bool3>({count}),
          c = device.stream<bool3>({count});
     auto d = device.stream<int4>({count});

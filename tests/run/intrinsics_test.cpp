@@ -76,7 +76,7 @@ struct Bounds {
 }  // namespace
 
 TEST_CASE("functions of one float") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     Outputs out(device);
     const auto check = [&](const char* name, const auto& kernel, double (*reference)(double),
                            const Bounds& b) {
@@ -99,7 +99,7 @@ TEST_CASE("functions of one float") {
 }
 
 TEST_CASE("functions of two floats, and of a vector and a float") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     Outputs out(device);
     const auto second = spread(0.25, 4, 2);
     const auto ys = streamOf<float4>(device, second);
@@ -134,7 +134,7 @@ TEST_CASE("functions of two floats, and of a vector and a float") {
 }
 
 TEST_CASE("functions of three floats") {
-  onEveryProfile([](sk::Device& device) {
+  onGlAndNative([](sk::Device& device) {
     Outputs out(device);
     const auto second = spread(-1, 1, 4), third = spread(1, 3, 5);
     using Reference = double (*)(double, double, double);
@@ -168,7 +168,7 @@ TEST_CASE("an intrinsic of a constant is what the device computes") {
     if (std::string_view(rows[i].name) == "acosh") x[i] = 1.6f;
   }
   const auto size = static_cast<std::int64_t>(rows.size());
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto folded = device.stream<float>({size}), computed = device.stream<float>({size});
     intrinsics::constants(streamOf<float>(device, x), folded, computed);
     const auto a = folded.read(), b = computed.read();

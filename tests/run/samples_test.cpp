@@ -122,8 +122,9 @@ void checkMode(sk::Device& device, Inside inside, const Line& line, const Plane&
 TEST_CASE("sample interpolates in every rank, with the boundary mode applied to each neighbour") {
   using namespace samples;
   onSomeLayouts([](sk::Device& device) {
-    checkMode(device, clampIndex, line_clamp, plane_clamp, space_clamp, time_clamp);
     checkMode(device, wrapIndex, line_wrap, plane_wrap, space_wrap, time_wrap);
+    if (!takesAllCases(device)) return;  // modes are text about indices, not about layouts
+    checkMode(device, clampIndex, line_clamp, plane_clamp, space_clamp, time_clamp);
     checkMode(device, mirrorIndex, line_mirror, plane_mirror, space_mirror, time_mirror);
     checkMode(device, borderIndex, line_border, plane_border, space_border, time_border);
   });

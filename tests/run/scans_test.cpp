@@ -76,9 +76,12 @@ TEST_CASE("integers of any length are scanned, with or without the element itsel
 
 TEST_CASE("streams are scanned as a whole or along each dimension") {
   onEveryProfile([](sk::Device& device) {
-    for (const sk::Shape& shape : {sk::Shape{50}, sk::Shape{1, 1}, sk::Shape{37, 41}, sk::Shape{3, 5000},
-                                   sk::Shape{5000, 3}, sk::Shape{1, 70}, sk::Shape{70, 1}, sk::Shape{5, 6, 7},
-                                   sk::Shape{3, 1, 700}, sk::Shape{2, 3, 4, 5}, sk::Shape{3, 70, 1, 90}}) {
+    const bool isNative = &device == &run_tests::device("native");
+    const std::vector<sk::Shape> all = {{50},    {1, 1},      {37, 41},     {3, 5000},     {5000, 3},     {1, 70},
+                                        {70, 1}, {5, 6, 7},   {3, 1, 700},  {2, 3, 4, 5},  {3, 70, 1, 90}};
+    // GL compiles programs for each rank and direction: a sample has all of them, and lines of one pass and of several.
+    const std::vector<sk::Shape> some = {{37, 41}, {3, 5000}, {5, 6, 7}, {3, 70, 1, 90}};
+    for (const sk::Shape& shape : isNative ? all : some) {
       const std::vector<int> x = numbers(static_cast<std::size_t>(shape.size()));
       const auto in = streamOf(device, x, shape);
       auto out = device.stream<int>(shape);
@@ -94,6 +97,7 @@ TEST_CASE("streams are scanned as a whole or along each dimension") {
           auto own = streamOf(device, x, shape);
           scans::prefix.with(options)(own, own);
           CHECK(own.read() == expected);
+          if (!isNative && shape.rank() > 2) continue;  // another fold in the same programs
           scans::smallest.with(options)(in, out);
           const auto least = [](int a, int b) { return std::min(a, b); };
           CHECK(out.read() == scanned(x, std::numeric_limits<int>::max(), least, isExclusive, shape, along));
@@ -262,6 +266,8 @@ TEST_CASE("exact sums go along each dimension") {
     auto out = device.stream<float>(shape);
     for (const int along : {0, 1}) {
       for (const bool isExclusive : {false, true}) {
+        // large programs: on GL, each direction and each kind once
+        if (isExclusive != (along == 1) && &device != &run_tests::device("native")) continue;
         scans::sums.with(sk::CallOptions{.accumulate = sk::Accumulate::Exact,
                                          .scan = isExclusive ? sk::Scan::Exclusive : sk::Scan::Inclusive,
                                          .along = along})(in, out);

@@ -14,7 +14,7 @@ using sk::int4;
 TEST_CASE("an unrolled blur has the bits of its loop") {
   for (const sk::Shape shape : {sk::Shape{13, 24}, sk::Shape{5, 7}}) {
     const std::vector<float> x = values<float>(shape.size());
-    onEveryProfile([&](sk::Device& device) {
+    onGlAndNative([&](sk::Device& device) {
       auto a = device.stream<float>(shape), r = device.stream<float>(shape), s = device.stream<float>(shape);
       a.write(x);
       unrolling::unrolled_2(a, r);
@@ -26,7 +26,7 @@ TEST_CASE("an unrolled blur has the bits of its loop") {
 
 TEST_CASE("loops that a specialisation constant bounds have the bits of loops with arguments") {
   const std::vector<float> x = values<float>(11 * 24);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = device.stream<float>({11, 24}), r = device.stream<float>({11, 24}),
          s = device.stream<float>({11, 24});
     a.write(x);
@@ -71,7 +71,7 @@ TEST_CASE(
 
 TEST_CASE("iterations that are left early leave what they should") {
   const std::vector<float> x = values<float>(101);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto a = streamOf<float>(device, x);
     auto r = device.stream<float>({101}), s = device.stream<float>({101});
     unrolling::leaving(a, r);
@@ -82,7 +82,7 @@ TEST_CASE("iterations that are left early leave what they should") {
 
 TEST_CASE("elements of local arrays keep their numbers") {
   const std::vector<float> x = values<float>(50);
-  onEveryProfile([&](sk::Device& device) {
+  onGlAndNative([&](sk::Device& device) {
     auto r = device.stream<float>({50});
     unrolling::median(streamOf<float>(device, x), r);
     CHECK(difference(r.read(), [&](std::size_t i) {
