@@ -59,44 +59,70 @@ void compareHits(const std::vector<Hit>& got, const std::vector<Hit>& expected, 
   }
 }
 
-/// Every way of an engine against the hierarchy of boxes.
-void compareEngines(sk::Device& device, const Model& model, const std::vector<Ray>& rays,
-                    const std::string& intersection) {
-  const std::string test = fmt::format("intersection = '{}'\n", intersection);
-  const std::unique_ptr<Engine> bvh = engineOf(device, model, "bvh", test);
-  const std::vector<Hit> hits = hitsOf(*bvh, rays);
-  const std::vector<std::uint8_t> shadows = shadowsOf(*bvh, rays);
-  for (const char* machine : {"branching", "multipass"}) {
-    INFO(machine);
-    const auto streaming =
-        engineOf(device, model, "streaming", fmt::format("machine = '{}'\n{}", machine, test));
-    compareHits(hitsOf(*streaming, rays), hits);
-    CHECK(shadowsOf(*streaming, rays) == shadows);
+/// Hits and shadows by the hierarchy of boxes, natively, which others must find.
+struct Expected {
+  Expected(const Model& model, const std::vector<Ray>& rays, const std::string& test) {
+    sk::Device device = sk::Device::native();
+    const std::unique_ptr<Engine> bvh = engineOf(device, model, "bvh", test);
+    hits = hitsOf(*bvh, rays);
+    shadows = shadowsOf(*bvh, rays);
   }
-  const auto buckets = engineOf(device, model, "ray_engine", test);
-  compareHits(hitsOf(*buckets, rays), hits);
-  CHECK(shadowsOf(*buckets, rays) == shadows);
+  std::vector<Hit> hits;
+  std::vector<std::uint8_t> shadows;
+};
+
+/// An engine, and of "streaming" a machine.
+struct Way {
+  const char *engine, *machine;
+};
+constexpr Way inOneKernel{"streaming", "machine = 'branching'\n"},
+    inPasses{"streaming", "machine = 'multipass'\n"}, inBuckets{"ray_engine", ""};
+
+void compareEngine(sk::Device& device, const Model& model, const std::vector<Ray>& rays, const Way& way,
+                   const std::string& test, const Expected& expected, float bound = 0x1p-20f) {
+  INFO(way.engine << ' ' << way.machine);
+  const std::unique_ptr<Engine> engine = engineOf(device, model, way.engine, way.machine + test);
+  compareHits(hitsOf(*engine, rays), expected.hits, bound);
+  CHECK(shadowsOf(*engine, rays) == expected.shadows);
+}
+
+void compareEnginesNatively(const Model& model, const std::vector<Ray>& rays,
+                            const std::string& intersection) {
+  const std::string test = fmt::format("intersection = '{}'\n", intersection);
+  const Expected expected(model, rays, test);
+  sk::Device device = sk::Device::native();
+  for (const Way& way : {inOneKernel, inPasses, inBuckets})
+    compareEngine(device, model, rays, way, test, expected);
 }
 
 TEST_CASE("all engines find the same hits and shadows, on every device") {
   const Model model = soup({});
   const std::vector<Ray> rays = raysAtRandom(1500);
-  for (const char* name : {"native", "glsl330", "glsl430", "essl300"}) {
-    INFO(name);
-    sk::Device device = deviceOf(name);
-    compareEngines(device, model, rays, "moller");
+  compareEnginesNatively(model, rays, "moller");
+  // Drawn and dispatched kernels differ most where they append: in the machine of many passes. It and the other ways are on one profile each.
+  const std::string test = "intersection = 'moller'\n";
+  const Expected expected(model, rays, test);
+  struct OnGl {
+    const char* profile;
+    Way way;
+  };
+  for (const auto& [profile, way] :
+       {OnGl{"glsl330", inPasses}, {"glsl430", inPasses}, {"glsl430", inOneKernel}, {"essl300", inBuckets}}) {
+    INFO(profile);
+    sk::Device device = deviceOf(profile);
+    // Drivers round a test of a triangle as a different test, with which native code computes t.
+    compareEngine(device, model, rays, way, test, expected, 1e-5f);
   }
 }
 
 TEST_CASE("engines agree on scenes with one kind of shape, or none, or a single cell") {
-  sk::Device device = sk::Device::native();
   const std::vector<Ray> rays = raysAtRandom(300);
   for (const SoupSize& size :
        {SoupSize{100, 0, 0}, SoupSize{0, 30, 0}, SoupSize{0, 0, 2}, SoupSize{0, 0, 0}, SoupSize{1, 0, 0}}) {
     INFO(size.triangles << " triangles, " << size.spheres << " spheres, " << size.planes << " planes");
     const Model model = soup(size);
-    compareEngines(device, model, rays, "watertight");
-    compareEngines(device, model, {}, "watertight");
+    compareEnginesNatively(model, rays, "watertight");
+    compareEnginesNatively(model, {}, "watertight");
   }
 }
 

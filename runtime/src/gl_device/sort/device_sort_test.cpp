@@ -147,6 +147,7 @@ constexpr Algorithm byKeys[] = {Algorithm::Sort, Algorithm::SortDescending, Algo
 
 TEST_CASE("keys of each type are sorted by dispatches as by the host") {
   Devices devices;
+  // Each algorithm with and without values, for a type of each kind: words that give the keys back, floats, and two words.
   const auto compareAll = [&](const Data& keys, const Shape& shape) {
     const Data values = dataOf(iota(shape.size()));
     for (const Algorithm algorithm : byKeys) {
@@ -154,13 +155,21 @@ TEST_CASE("keys of each type are sorted by dispatches as by the host") {
       if (algorithm != Algorithm::Order) compare(devices, algorithm, keys, nullptr, shape);
     }
   };
-  for (const std::int64_t n : {1, 13, 4096, 4097}) compareAll(dataOf(keysOf<float>(n)), {n});
-  for (const std::int64_t n : {2, 4099}) compareAll(dataOf(keysOf<std::int32_t>(n)), {n});
-  compareAll(dataOf(keysOf<std::uint32_t>(4099)), {4099});
+  // What differs between types of a kind is how a key becomes a word, and back.
+  const auto compareSome = [&](const Data& keys, const Shape& shape) {
+    const Data values = dataOf(iota(shape.size()));
+    compare(devices, Algorithm::SortDescending, keys, nullptr, shape);
+    compare(devices, Algorithm::Unique, keys, &values, shape);
+  };
+  // Drivers compile a program once for each kind of texture sizes, so that all but the first have two tiles.
+  for (const std::int64_t n : {1, 13, 4096}) compareSome(dataOf(keysOf<float>(n)), {n});
+  compareAll(dataOf(keysOf<float>(4097)), {4097});
+  compareAll(dataOf(keysOf<std::int32_t>(4099)), {4099});
+  compareSome(dataOf(keysOf<std::uint32_t>(4099)), {4099});
   compareAll(dataOf(keysOf<double>(4099)), {4099});
-  compareAll(dataOf(keysOf<float>(70 * 128)), {70, 128});  // packed
-  compareAll(dataOf(keysOf<double>(7 * 6 * 5)), {7, 6, 5});
-  compareAll(dataOf(std::vector<int>(8200, -3)), {8200});
+  compareSome(dataOf(keysOf<float>(33 * 128)), {33, 128});  // packed
+  compareSome(dataOf(keysOf<double>(7 * 6 * 5)), {7, 6, 5});
+  compareSome(dataOf(std::vector<int>(4100, -3)), {4100});
 }
 
 TEST_CASE("more tiles than one sum holds are sorted") {
