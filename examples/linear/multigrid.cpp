@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,11 +19,53 @@ namespace {
 constexpr std::int64_t smallest = 3;  ///< extents that are not halved
 /// Dimensions are halved whose coefficient is at least this part of the largest: point smoothing leaves errors along weaker couplings.
 constexpr double strong = 0.25;
-constexpr int sweepsOnCoarsest = 8;  ///< of at most 3 elements along each dimension
 
 sk::Shape shapeOf(std::span<const std::int64_t> extents) {
   if (extents.size() == 2) return {extents[0], extents[1]};
   return {extents[0], extents[1], extents[2]};
+}
+
+/// The inverse of a small matrix, row by row, by Gauss-Jordan elimination with row pivots. For a matrix whose kernel are the constants, the pseudo-inverse:
+/// (A + J)^-1 - J with J = 1 1^T / n, which removes the mean of what it is applied to. So only this grid projects: the transfers between grids keep sums.
+std::vector<double> inverseOf(const Stencil& a) {
+  const auto n = static_cast<std::size_t>(a.size());
+  const double shift = hasConstantKernel(a) ? a.centre / static_cast<double>(n) : 0.0;
+  std::vector<double> m(n * n, shift), inverse(n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    m[i * n + i] += a.centre;
+    inverse[i * n + i] = 1.0;
+  }
+  visitNeighbours(a, [&](std::int64_t i, std::int64_t j, std::size_t d) {
+    m[static_cast<std::size_t>(i) * n + static_cast<std::size_t>(j)] += a.along[d];
+  });
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < n; ++i)
+      if (std::abs(m[i * n + k]) > std::abs(m[pivot * n + k])) pivot = i;
+    if (std::abs(m[pivot * n + k]) <= 0x1p-44 * std::abs(a.centre))
+      throw std::runtime_error(
+          "multigrid's coarsest grid has a singular matrix; take another preconditioner");
+    for (std::size_t j = 0; j < n; ++j) {
+      std::swap(m[k * n + j], m[pivot * n + j]);
+      std::swap(inverse[k * n + j], inverse[pivot * n + j]);
+    }
+    const double divisor = m[k * n + k];
+    for (std::size_t j = 0; j < n; ++j) {
+      m[k * n + j] /= divisor;
+      inverse[k * n + j] /= divisor;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const double factor = m[i * n + k];
+      if (i == k || factor == 0.0) continue;
+      for (std::size_t j = 0; j < n; ++j) {
+        m[i * n + j] -= factor * m[k * n + j];
+        inverse[i * n + j] -= factor * inverse[k * n + j];
+      }
+    }
+  }
+  if (shift != 0.0)
+    for (double& v : inverse) v -= 1.0 / (shift * static_cast<double>(n * n));
+  return inverse;
 }
 
 /// A grid of the hierarchy.
@@ -30,6 +73,8 @@ struct Level {
   Level(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic)
       : stencil(a),
         coefficients(kernelCoefficients(a)),
+        low(kernelEnds(a).low),
+        high(kernelEnds(a).high),
         u(device.stream<float>(a.grid, arithmetic.vectors)),
         b(device.stream<float>(a.grid, arithmetic.vectors)),
         r(device.stream<float>(a.grid, arithmetic.vectors)) {}
@@ -37,7 +82,7 @@ struct Level {
   bool isPlane() const { return stencil.grid.rank() == 2; }
 
   Stencil stencil;
-  sk::float4 coefficients;
+  sk::float4 coefficients, low, high;
   Vector u, b, r;
 };
 
@@ -52,6 +97,9 @@ class Multigrid : public Preconditioner {
       if (coarse.grid == levels_.back().stencil.grid) break;
       levels_.emplace_back(device, coarse, arithmetic);
     }
+    const Stencil& coarsest = levels_.back().stencil;
+    inverse_ = device.stream<float>({coarsest.size(), coarsest.size()}, arithmetic.vectors);
+    inverse_.writeReals(inverseOf(coarsest));
   }
 
   void apply(const Vector& r, Vector& z, Vector& rz) override {
@@ -65,7 +113,7 @@ class Multigrid : public Preconditioner {
  private:
   /// One cycle for u; what u holds does not count if `isZero`.
   void cycle(std::size_t at, const Vector& b, Vector& u, Cycle kind, bool isZero) {
-    if (at + 1 == levels_.size()) return smooth(at, b, u, sweepsOnCoarsest, 0, isZero);
+    if (at + 1 == levels_.size()) return solve(b, u);
     smooth(at, b, u, settings_.before, 0, isZero);
     Level& level = levels_[at];
     Level& coarse = levels_[at + 1];
@@ -74,27 +122,32 @@ class Multigrid : public Preconditioner {
     if (kind == Cycle::W) cycle(at + 1, coarse.b, coarse.u, Cycle::W, false);
     if (kind == Cycle::F) cycle(at + 1, coarse.b, coarse.u, Cycle::V, false);
     if (level.isPlane())
-      correct2.with(options_)(coarse.u, u, u);
+      correct2.with(options_)(level.low, level.high, coarse.u, u, u);
     else
-      correct3.with(options_)(coarse.u, u, u);
+      correct3.with(options_)(level.low, level.high, coarse.u, u, u);
     smooth(at, b, u, settings_.after, settings_.isSymmetric ? 1 : 0, false);
+  }
+
+  void solve(const Vector& b, Vector& u) {
+    const std::int64_t n = inverse_.shape()[0];
+    solveCoarsest.with(options_)(static_cast<int>(n), inverse_, b.reshape({n}), u.reshape({n}));
   }
 
   /// Interpolates the solution for the coarser grid, and lets a V-cycle follow.
   void nest(std::size_t at, const Vector& b, Vector& u) {
-    if (at + 1 == levels_.size()) return smooth(at, b, u, sweepsOnCoarsest, 0, true);
+    if (at + 1 == levels_.size()) return solve(b, u);
     Level& level = levels_[at];
     Level& coarse = levels_[at + 1];
     if (level.isPlane())
-      restrict2.with(options_)(b, coarse.b);
+      restrict2.with(options_)(level.low, level.high, b, coarse.b);
     else
-      restrict3.with(options_)(b, coarse.b);
+      restrict3.with(options_)(level.low, level.high, b, coarse.b);
     // A cycle on this grid overwrites the right-hand sides of the coarser ones, which are no longer needed by then.
     nest(at + 1, coarse.b, coarse.u);
     if (level.isPlane())
-      interpolate2.with(options_)(coarse.u, u);
+      interpolate2.with(options_)(level.low, level.high, coarse.u, u);
     else
-      interpolate3.with(options_)(coarse.u, u);
+      interpolate3.with(options_)(level.low, level.high, coarse.u, u);
     cycle(at, b, u, Cycle::V, false);
   }
 
@@ -104,25 +157,26 @@ class Multigrid : public Preconditioner {
     for (int half = 0; half < 2 * sweeps; ++half) {
       const int colour = (half + firstColour) & 1;
       if (isZero && half == 0)
-        relaxZero.with(options_)(colour, level.coefficients, b, u);
+        relaxZero.with(options_)(colour, level.coefficients, level.low, level.high, b, u);
       else if (level.isPlane())
-        relax2.with(options_)(colour, level.coefficients, u, b, u);
+        relax2.with(options_)(colour, level.coefficients, level.low, level.high, u, b, u);
       else
-        relax3.with(options_)(colour, level.coefficients, u, b, u);
+        relax3.with(options_)(colour, level.coefficients, level.low, level.high, u, b, u);
     }
   }
 
   void restrictResidual(Level& level, const Vector& b, const Vector& u, Vector& coarse) {
     if (level.isPlane()) {
-      residual2.with(options_)(level.coefficients, u, b, level.r);
-      restrict2.with(options_)(level.r, coarse);
+      residual2.with(options_)(level.coefficients, level.low, level.high, u, b, level.r);
+      restrict2.with(options_)(level.low, level.high, level.r, coarse);
     } else {
-      residual3.with(options_)(level.coefficients, u, b, level.r);
-      restrict3.with(options_)(level.r, coarse);
+      residual3.with(options_)(level.coefficients, level.low, level.high, u, b, level.r);
+      restrict3.with(options_)(level.low, level.high, level.r, coarse);
     }
   }
 
   std::vector<Level> levels_;
+  Vector inverse_;  ///< of the coarsest grid's matrix, which has at most 3 elements along each dimension
   sk::CallOptions options_, foldOptions_;
   MultigridSettings settings_;
 };
@@ -138,8 +192,11 @@ Stencil coarsened(const Stencil& a) {
     if (a.grid[static_cast<int>(d)] > smallest) strongest = std::max(strongest, std::abs(a.along[d]));
   for (std::size_t d = 0; d < rank; ++d) {
     const std::int64_t n = a.grid[static_cast<int>(d)];
-    extents[d] = n > smallest && std::abs(a.along[d]) >= strong * strongest ? n / 2 : n;
-    const double ratio = static_cast<double>(extents[d] + 1) / static_cast<double>(n + 1);
+    // The spacing at most doubles: restriction reads four elements along a dimension.
+    const std::int64_t half = a.ends[d] == Ends{} ? n / 2 : (n + 1) / 2;
+    extents[d] = n > smallest && std::abs(a.along[d]) >= strong * strongest ? half : n;
+    const double ratio =
+        static_cast<double>(doubleLength(a, d, extents[d])) / static_cast<double>(doubleLength(a, d, n));
     coarse.along[d] = a.along[d] * ratio * ratio;
     coarse.centre += 2.0 * (a.along[d] - coarse.along[d]);
   }

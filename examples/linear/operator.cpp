@@ -49,21 +49,44 @@ Operator operatorOf(const SparseMatrix& a) {
 }
 
 Operator operatorOf(const Stencil& a) {
-  double sum = std::abs(a.centre), squares = a.centre * a.centre;
-  for (int d = 0; d < a.grid.rank(); ++d) {
-    const double c = a.along[static_cast<std::size_t>(d)];
-    sum += 2 * std::abs(c);
-    squares += 2 * c * c;
-  }
   const auto n = static_cast<std::size_t>(a.size());
   Operator o;
   o.size = a.size();
-  o.infinityNorm = sum;
   o.diagonal.assign(n, a.centre);
-  o.rowSquares.assign(n, squares);
-  o.jacobiBound = a.centre != 0.0 ? sum / std::abs(a.centre) : 0.0;
+  o.hasConstantKernel = hasConstantKernel(a);
   o.stencil = a;
   o.multiply = [a](std::span<const double> x) { return linear::multiply(a, x); };
+  if (isDirichlet(a)) {  // no visit of every element, for the inner ones bound the others
+    double sum = std::abs(a.centre), squares = a.centre * a.centre;
+    for (int d = 0; d < a.grid.rank(); ++d) {
+      const double c = a.along[static_cast<std::size_t>(d)];
+      sum += 2 * std::abs(c);
+      squares += 2 * c * c;
+    }
+    o.infinityNorm = sum;
+    o.rowSquares.assign(n, squares);
+    o.jacobiBound = a.centre != 0.0 ? sum / std::abs(a.centre) : 0.0;
+    o.scale = powerOfTwo(o.infinityNorm);
+    return o;
+  }
+  std::vector<double> sums(n, 0.0);  // of the magnitudes beside the diagonal
+  o.rowSquares.assign(n, 0.0);
+  visitNeighbours(a, [&](std::int64_t i, std::int64_t j, std::size_t d) {
+    const double c = a.along[d];
+    const auto row = static_cast<std::size_t>(i);
+    if (i == j) {
+      o.diagonal[row] += c;
+    } else {
+      sums[row] += std::abs(c);
+      o.rowSquares[row] += c * c;
+    }
+  });
+  for (std::size_t i = 0; i < n; ++i) {
+    sums[i] += std::abs(o.diagonal[i]);
+    o.rowSquares[i] += o.diagonal[i] * o.diagonal[i];
+    o.infinityNorm = std::max(o.infinityNorm, sums[i]);
+    if (o.diagonal[i] != 0.0) o.jacobiBound = std::max(o.jacobiBound, sums[i] / std::abs(o.diagonal[i]));
+  }
   o.scale = powerOfTwo(o.infinityNorm);
   return o;
 }

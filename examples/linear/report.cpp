@@ -23,6 +23,9 @@ std::string textOf(const Account& account, const Solution& solution) {
       out,
       "\nresidual {:.3g} (in double precision; {:.3g} as the method computed it), backward error {:.3g}\n",
       solution.residualTrue, solution.residualRecurred, solution.backwardError);
+  if (solution.removedMean != 0.0)
+    fmt::format_to(out, "the right-hand side's mean {:.6g} was removed, for no x reaches a constant\n",
+                   solution.removedMean);
   return text;
 }
 
@@ -34,6 +37,7 @@ std::string jsonOf(const Account& account, const Solution& solution) {
   json["residual_true"] = solution.residualTrue;
   json["residual_recurred"] = solution.residualRecurred;
   json["backward_error"] = solution.backwardError;
+  json["removed_mean"] = solution.removedMean;
   json["seconds"] = solution.seconds;
   json["layout"] = account.layout;
   json["fill"] = account.fill();

@@ -28,7 +28,7 @@ struct Account {
 };
 
 std::string textOf(const Account& account, const Solution& solution);
-/// An object with outcome, iterations, restarts, residual_true, residual_recurred, backward_error, seconds, layout, fill and device. Numbers
+/// An object with outcome, iterations, restarts, residual_true, residual_recurred, backward_error, removed_mean, seconds, layout, fill and device. Numbers
 /// that are not finite are null.
 std::string jsonOf(const Account& account, const Solution& solution);
 

@@ -43,9 +43,10 @@ std::vector<std::unique_ptr<Matrix>> exactMatrices(sk::Device& device, const Mat
     return sum;
   }
   const auto isKept = [&](double v) { return isExact(v * a.scale, arithmetic.matrix); };
-  const bool areKept = a.sparse != nullptr
-                           ? std::ranges::all_of(a.sparse->value, isKept)
-                           : isKept(a.stencil->centre) && std::ranges::all_of(a.stencil->along, isKept);
+  const bool areKept =
+      a.sparse == nullptr && isDirichlet(*a.stencil)
+          ? isKept(a.stencil->centre) && std::ranges::all_of(a.stencil->along, isKept)
+          : std::ranges::all_of(a.sparse != nullptr ? a.sparse->value : assemble(*a.stencil).value, isKept);
   if (!areKept || !matrix.multipliesInDoubles())
     sum.push_back(makeMatrix(device, scaled(sparseOf(a), a.scale),
                              matrix.multipliesInDoubles() ? matrix.layout() : "slices", doubleArithmetic()));

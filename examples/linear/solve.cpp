@@ -21,6 +21,12 @@ double infinityNorm(std::span<const double> v) {
   return largest;
 }
 
+double meanOf(std::span<const double> v) {
+  double sum = 0.0;
+  for (const double x : v) sum += x;
+  return sum / static_cast<double>(v.size());
+}
+
 /// But for what rounding the elements and adding them may give.
 bool addsUpToZero(std::span<const double> b) {
   double sum = 0.0, magnitudes = 0.0;
@@ -45,10 +51,17 @@ class Refinement {
 
   Solution run() {
     const examples::Stopwatch watch;
-    const double largestB = infinityNorm(b_);
+    std::vector<double> scaled(b_.begin(), b_.end());
+    const bool isProjected = a_.hasConstantKernel && a_.stencil;
+    if (isProjected) {
+      solution_.removedMean = meanOf(b_);
+      for (double& v : scaled) v -= solution_.removedMean;
+      // What rounding leaves of a constant is no right-hand side.
+      if (infinityNorm(scaled) <= 0x1p-44 * infinityNorm(b_)) std::ranges::fill(scaled, 0.0);
+    }
+    const double largestB = infinityNorm(scaled);
     // A power of two, as a.scale is: only the storage rounds.
     const int exponent = largestB > 0.0 ? std::ilogb(largestB) : 0;
-    std::vector<double> scaled(b_.begin(), b_.end());
     for (double& v : scaled) v = std::ldexp(v, -exponent);
     norms_ = residual_->start(scaled);
     normB_ = norms_.two;
@@ -59,6 +72,10 @@ class Refinement {
     solution_.backwardError = scale > 0.0 ? norms_.infinity / scale : 0.0;
     solution_.x = residual_->solution();
     for (double& v : solution_.x) v = std::ldexp(v * a_.scale, exponent);
+    if (isProjected) {
+      const double mean = meanOf(solution_.x);
+      for (double& v : solution_.x) v -= mean;
+    }
     solution_.residualPlace = residual_->place();
     solution_.seconds = watch.milliseconds() / 1000.0;
     return std::move(solution_);
@@ -66,7 +83,7 @@ class Refinement {
 
  private:
   Outcome outcome() {
-    if (a_.hasConstantKernel && !addsUpToZero(b_) && findAsymmetry(a_).empty())
+    if (a_.hasConstantKernel && !a_.stencil && !addsUpToZero(b_) && findAsymmetry(a_).empty())
       return Outcome::SingularAndIncompatible;
     const double goal = settings_.tolerance * normB_;
     int fruitless = 0;

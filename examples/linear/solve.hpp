@@ -18,7 +18,7 @@ namespace linear {
 
 enum class Outcome {
   Converged,
-  SingularAndCompatible,  ///< converged; any constant may be added to x
+  SingularAndCompatible,  ///< converged; any constant may be added to x. Grids drop the mean of b
   SingularAndIncompatible,  ///< no x solves the equations: rows and columns add up to 0, and b does not
   MostIterations,
   Stagnated,  ///< the residual in double precision does not become smaller any more
@@ -54,6 +54,8 @@ struct Solution {
   double residualRecurred = 0.0;  ///< the same, as the method computed it last
   double backwardError = 0.0;  ///< ||b - A x|| / (||A|| ||x|| + ||b||); infinity norms
   std::string_view residualPlace = "host";  ///< where the true residual was computed: "device" or "host"
+  /// On singular grids, the mean of b: no x reaches a constant. It was removed, and the residual is that of the rest; x has the mean 0.
+  double removedMean = 0.0;
   double seconds = 0.0;
   std::vector<HistoryPoint> history;
 };

@@ -77,7 +77,8 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("matrix", s.matrix,
                  "a Matrix Market file, or poisson:WxH or poisson:WxHxD for Poisson's equation on a grid; "
                  "poisson:WxH:X,Y has these "
-                 "diffusivities along its dimensions");
+                 "diffusivities along its dimensions, and poisson:WxH:periodic,dirichlet-neumann these ends "
+                 "(dirichlet, neumann or periodic)");
   cli.add_option("--rhs", s.rightHandSide,
                  "the right-hand side, a Matrix Market file; A times ones if there is none");
   cli.add_option("--solver", s.solver, described("the method:", linear::methodKinds()))

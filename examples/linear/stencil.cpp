@@ -1,30 +1,39 @@
 // SPDX-License-Identifier: MIT
 #include "stencil.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "fused.sk.hpp"
+#include "grids.sk.hpp"
 #include "products.sk.hpp"
 
 namespace linear {
 
 namespace {
 
-/// Calls visit(element, neighbour, dimension) for both neighbours of every element that are inside of the grid.
+/// visitNeighbours() for any callable, which is inlined.
 template <class Visit>
-void visitNeighbours(const sk::Shape& grid, Visit&& visit) {
-  std::int64_t below = grid.size();
-  for (std::size_t d = 0; d < static_cast<std::size_t>(grid.rank()); ++d) {
-    const std::int64_t extent = grid[static_cast<int>(d)];
+void visitAll(const Stencil& a, Visit&& visit) {
+  std::int64_t below = a.grid.size();
+  for (std::size_t d = 0; d < static_cast<std::size_t>(a.grid.rank()); ++d) {
+    const std::int64_t extent = a.grid[static_cast<int>(d)];
     if (extent == 0) return;
     const std::int64_t block = below;
     below /= extent;
-    for (std::int64_t first = 0; first < grid.size(); first += block) {
+    const std::int64_t last = block - below;
+    for (std::int64_t first = 0; first < a.grid.size(); first += block) {
       for (std::int64_t i = first + below; i < first + block; ++i) visit(i, i - below, d);
-      for (std::int64_t i = first; i < first + block - below; ++i) visit(i, i + below, d);
+      for (std::int64_t i = first; i < first + last; ++i) visit(i, i + below, d);
+      for (std::int64_t i = first; i < first + below; ++i) {
+        if (a.ends[d].low == Side::Neumann) visit(i, i, d);
+        if (a.ends[d].low == Side::Periodic) visit(i, i + last, d);
+        if (a.ends[d].high == Side::Neumann) visit(i + last, i + last, d);
+        if (a.ends[d].high == Side::Periodic) visit(i + last, i, d);
+      }
     }
   }
 }
@@ -71,7 +80,84 @@ class StencilMatrix : public Matrix {
   sk::float4 coefficients_;
 };
 
+/// The same for other ends.
+class EndedMatrix : public Matrix {
+ public:
+  EndedMatrix(const Stencil& a, const Arithmetic& arithmetic)
+      : Matrix(arithmetic), grid_(a.grid), coefficients_(kernelCoefficients(a)), ends_(kernelEnds(a)) {}
+
+  using Matrix::multiply;
+  sk::Shape domain() const override { return grid_; }
+  void multiply(const Vector& x, Vector& y) override {
+    if (grid_.rank() == 2)
+      stencilEnds2.with(options())(coefficients_, ends_.low, ends_.high, x, y);
+    else
+      stencilEnds3.with(options())(coefficients_, ends_.low, ends_.high, x, y);
+  }
+  std::string layout() const override { return "stencil"; }
+  std::int64_t stored() const override { return 0; }
+  std::int64_t bytes() const override { return 0; }
+
+ private:
+  sk::Shape grid_;
+  sk::float4 coefficients_;
+  KernelEnds ends_;
+};
+
 }  // namespace
+
+std::int64_t doubleLength(const Stencil& a, std::size_t d, std::int64_t extent) {
+  const auto of = [](Side side) { return side == Side::Dirichlet ? 1 : 0; };
+  return 2 * extent + of(a.ends[d].low) + of(a.ends[d].high);
+}
+
+bool isDirichlet(const Stencil& a) {
+  return std::ranges::all_of(a.ends, [](const Ends& ends) { return ends == Ends{}; });
+}
+
+bool hasConstantKernel(const Stencil& a) {
+  double sum = a.centre, magnitude = std::abs(a.centre);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(a.grid.rank()); ++d) {
+    if (a.ends[d].low == Side::Dirichlet || a.ends[d].high == Side::Dirichlet) return false;
+    sum += 2.0 * a.along[d];
+    magnitude += 2.0 * std::abs(a.along[d]);
+  }
+  return std::abs(sum) <= 0x1p-44 * magnitude;
+}
+
+KernelEnds kernelEnds(const Stencil& a) {
+  const auto rank = static_cast<std::size_t>(a.grid.rank());
+  const auto code = [&](std::size_t axis, Side Ends::* side) {
+    if (axis >= rank) return 0.0f;
+    const std::size_t d = rank - 1 - axis;
+    switch (a.ends[d].*side) {
+      case Side::Dirichlet: return 0.0f;
+      case Side::Neumann: return 1.0f;
+      // One element is its own neighbour, as at Neumann ends, and part of the diagonal.
+      case Side::Periodic: return a.grid[static_cast<int>(d)] == 1 ? 1.0f : 2.0f;
+    }
+    return 0.0f;
+  };
+  return {{code(0, &Ends::low), code(1, &Ends::low), code(2, &Ends::low), 0.0f},
+          {code(0, &Ends::high), code(1, &Ends::high), code(2, &Ends::high), 0.0f}};
+}
+
+Stencil withEnds(Stencil a, std::span<const Ends> ends) {
+  if (ends.size() != static_cast<std::size_t>(a.grid.rank()))
+    throw std::runtime_error(fmt::format("a grid of {} dimensions needs as many pairs of ends, not {}",
+                                         a.grid.rank(), ends.size()));
+  for (std::size_t d = 0; d < ends.size(); ++d) {
+    if ((ends[d].low == Side::Periodic) != (ends[d].high == Side::Periodic))
+      throw std::runtime_error("one end of a dimension is periodic, and the other is not");
+    a.ends[d] = ends[d];
+  }
+  return a;
+}
+
+void visitNeighbours(const Stencil& a,
+                     const std::function<void(std::int64_t, std::int64_t, std::size_t)>& visit) {
+  visitAll(a, visit);
+}
 
 sk::float4 kernelCoefficients(const Stencil& a) {
   const auto c = [](double value) { return static_cast<float>(value); };
@@ -103,7 +189,7 @@ Stencil poisson(const sk::Shape& grid, std::span<const double> diffusivity) {
 std::vector<double> multiply(const Stencil& a, std::span<const double> x) {
   std::vector<double> y(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) y[i] = a.centre * x[i];
-  visitNeighbours(a.grid, [&](std::int64_t i, std::int64_t j, std::size_t d) {
+  visitAll(a, [&](std::int64_t i, std::int64_t j, std::size_t d) {
     y[static_cast<std::size_t>(i)] += a.along[d] * x[static_cast<std::size_t>(j)];
   });
   return y;
@@ -112,12 +198,12 @@ std::vector<double> multiply(const Stencil& a, std::span<const double> x) {
 SparseMatrix assemble(const Stencil& a) {
   std::vector<Entry> entries;
   for (std::int64_t i = 0; i < a.size(); ++i) entries.push_back({i, i, a.centre});
-  visitNeighbours(
-      a.grid, [&](std::int64_t i, std::int64_t j, std::size_t d) { entries.push_back({i, j, a.along[d]}); });
+  visitAll(a, [&](std::int64_t i, std::int64_t j, std::size_t d) { entries.push_back({i, j, a.along[d]}); });
   return assemble(a.size(), a.size(), entries);
 }
 
 std::unique_ptr<Matrix> makeMatrix(const Stencil& a, const Arithmetic& arithmetic) {
+  if (!isDirichlet(a)) return std::make_unique<EndedMatrix>(a, arithmetic);
   return std::make_unique<StencilMatrix>(a, arithmetic);
 }
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "system.hpp"
 
+#include <cctype>
 #include <charconv>
+#include <random>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "matrix_market.hpp"
+#include "named.hpp"
 
 namespace linear {
 
@@ -36,26 +39,80 @@ sk::Shape gridOf(std::string_view text) {
       fmt::format("'{}{}' is no grid; write {}WxH or {}WxHxD", gridPrefix, text, gridPrefix, gridPrefix));
 }
 
-/// "GRID" or "GRID:X,Y" or "GRID:X,Y,Z", with diffusivities in the order of the grid's extents.
-Stencil stencilOf(std::string_view text) {
-  const std::size_t colon = text.find(':');
-  const sk::Shape grid = gridOf(text.substr(0, colon));
-  if (colon == std::string_view::npos) return poisson(grid);
-  std::vector<double> diffusivity;
-  std::string_view rest = text.substr(colon + 1);
+std::vector<std::string_view> split(std::string_view text, char at) {
+  std::vector<std::string_view> parts;
   while (true) {
+    const std::size_t end = text.find(at);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+/// "X,Y" or "X,Y,Z", in the order of the grid's extents.
+std::vector<double> diffusivities(std::string_view text, std::string_view whole) {
+  std::vector<double> diffusivity;
+  for (const std::string_view part : split(text, ',')) {
     double value = 0.0;
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-    if (error != std::errc() || (!rest.empty() && rest.front() != ','))
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc() || end != part.data() + part.size())
       throw std::runtime_error(
           fmt::format("'{}{}' has no numbers after its grid; write one diffusivity for each dimension, as in "
                       "{}64x64:1,1000",
-                      gridPrefix, text, gridPrefix));
+                      gridPrefix, whole, gridPrefix));
     diffusivity.insert(diffusivity.begin(), value);
-    if (rest.empty()) return poisson(grid, diffusivity);
-    rest.remove_prefix(1);
   }
+  return diffusivity;
+}
+
+Side sideNamed(std::string_view name) {
+  struct Row {
+    std::string_view name;
+    Side side;
+  };
+  static constexpr Row sides[] = {
+      {"dirichlet", Side::Dirichlet}, {"neumann", Side::Neumann}, {"periodic", Side::Periodic}};
+  return rowNamed(std::span<const Row>(sides), name, "end of a grid").side;
+}
+
+/// "END" or "LOW-HIGH" for each dimension, in the order of the extents, or once for all.
+std::vector<Ends> endsNamed(std::string_view text, int rank) {
+  std::vector<Ends> ends;
+  for (const std::string_view part : split(text, ',')) {
+    const std::vector<std::string_view> names = split(part, '-');
+    if (names.size() > 2)
+      throw std::runtime_error(
+          fmt::format("'{}' are more than two ends; write LOW-HIGH for a dimension", part));
+    ends.insert(ends.begin(), {sideNamed(names.front()), sideNamed(names.back())});
+  }
+  if (ends.size() == 1) ends.resize(static_cast<std::size_t>(rank), ends[0]);
+  return ends;
+}
+
+/// "GRID", and ":X,Y" or ":X,Y,Z" and ":END,END" or ":END,END,END" after it.
+Stencil stencilOf(std::string_view text) {
+  const std::vector<std::string_view> parts = split(text, ':');
+  Stencil a = poisson(gridOf(parts[0]));
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const bool isWord = !parts[i].empty() && std::isalpha(static_cast<unsigned char>(parts[i][0])) != 0;
+    const auto before = a.ends;
+    if (isWord) {
+      a = withEnds(a, endsNamed(parts[i], a.grid.rank()));
+    } else {
+      a = poisson(a.grid, diffusivities(parts[i], text));
+      a.ends = before;
+    }
+  }
+  return a;
+}
+
+/// From -1 to 1.
+std::vector<double> uniformNoise(std::size_t n) {
+  std::minstd_rand random(1);
+  std::vector<double> v(n);
+  for (double& x : v)
+    x = 2.0 * static_cast<double>(random()) / static_cast<double>(std::minstd_rand::max()) - 1.0;
+  return v;
 }
 
 }  // namespace
@@ -75,8 +132,10 @@ System::System(const std::string& matrix, const std::filesystem::path& rightHand
     operator_ = operatorOf(sparse_);
   }
   const auto n = static_cast<std::size_t>(operator_.size);
-  b_ = rightHandSide.empty() ? operator_.multiply(std::vector<double>(n, 1.0))
-                             : readMarketVector(rightHandSide);
+  const bool isSingularGrid = stencil_ && operator_.hasConstantKernel;
+  b_ = !rightHandSide.empty()
+           ? readMarketVector(rightHandSide)
+           : operator_.multiply(isSingularGrid ? uniformNoise(n) : std::vector<double>(n, 1.0));
 }
 
 std::int64_t System::entries() const {

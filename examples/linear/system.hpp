@@ -16,9 +16,10 @@ namespace linear {
 
 class System {
  public:
-  /// `matrix` is a Matrix Market file, or "poisson:WxH" or "poisson:WxHxD" for Poisson's equation on a grid with fixed ends; ":X,Y" or
-  /// ":X,Y,Z" after it are diffusivities along the dimensions, in the order of the extents. The right-hand side
-  /// is a file, or A times ones if there is none. Throws std::runtime_error if one of them is wrong.
+  /// `matrix` is a Matrix Market file, or "poisson:WxH" or "poisson:WxHxD" for Poisson's equation on a grid; ":X,Y" or
+  /// ":X,Y,Z" after it are diffusivities along the dimensions, in the order of the extents, and ":periodic,dirichlet-neumann" are the ends, one pair or one word for both, for
+  /// each dimension or for all. The right-hand side
+  /// is a file, or A times ones if there is none; on singular grids, A times random numbers. Throws std::runtime_error if one of them is wrong.
   System(const std::string& matrix, const std::filesystem::path& rightHandSide);
   System(const System&) = delete;
   System& operator=(const System&) = delete;
