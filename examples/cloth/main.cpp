@@ -3,7 +3,6 @@
 // cloth: a scene of cloth, bodies and wind from a file; its run in numbers, pictures, a film or a window.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -25,6 +24,7 @@
 #include "simulation.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
+#include "support/extents.hpp"
 #include "table_file.hpp"
 
 namespace {
@@ -50,7 +50,7 @@ struct Settings {
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "a scene, as those in examples/cloth/scenes");
   std::string names;
-  for (const examples::Study& study : examples::studies())
+  for (const examples::ClothStudy& study : examples::studies())
     names += fmt::format("\n  {:<10} {}", study.name, study.asks);
   cli.add_option("--study", s.study, "in place of a scene, a table of the numerics:" + names);
   cli.add_option("--precision", s.precision,
@@ -107,14 +107,8 @@ std::int64_t stepsToCheck(const examples::Scene& scene, const Settings& s) {
 }
 
 examples::PictureSize sizeOf(const std::string& text) {
-  int width = 0, height = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 || height < 16 ||
-      width > 8192 || height > 8192) {
-    throw std::runtime_error(
-        fmt::format("--size: '{}' is no size; write 1280x720, 16 to 8192 pixels each", text));
-  }
-  return {width, height};
+  const std::vector<std::int64_t> size = examples::extentsOf("--size", text, {16, 8192});
+  return {static_cast<int>(size[0]), static_cast<int>(size[1])};
 }
 
 /// Films are drawn in the device's own context where it has one.
@@ -176,7 +170,7 @@ int main(int argc, char** argv) {
   addOptions(app.options(), settings);
   return app.run(argc, argv, [&] {
     if (settings.study.empty()) return runScene(app, settings);
-    const examples::Study& study = examples::findStudy(settings.study);
+    const examples::ClothStudy& study = examples::findStudy(settings.study);
     sk::Device device(app.device());
     fmt::print("{}", study.run(device));
   });

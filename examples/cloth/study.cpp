@@ -8,8 +8,8 @@
 
 namespace examples {
 
-const std::vector<Study>& studies() {
-  static const std::vector<Study> all = {
+const std::vector<ClothStudy>& studies() {
+  static const std::vector<ClothStudy> all = {
       {"fall", "does a point fall as far as it should, however small the step?", studyFall},
       {"pendulum", "is the period of a pendulum the closed form's?", studyPendulum},
       {"catenary", "does a chain hang in a catenary?", studyCatenary},
@@ -21,9 +21,9 @@ const std::vector<Study>& studies() {
   return all;
 }
 
-const Study& findStudy(std::string_view name) {
+const ClothStudy& findStudy(std::string_view name) {
   std::string names;
-  for (const Study& study : studies()) {
+  for (const ClothStudy& study : studies()) {
     if (study.name == name) return study;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
   }

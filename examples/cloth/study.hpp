@@ -15,16 +15,16 @@
 
 namespace examples {
 
-struct Study {
+struct ClothStudy {
   std::string_view name;
   std::string_view asks;
   std::string (*run)(sk::Device& device);
 };
 
 /// All of them, in the order of the documentation.
-const std::vector<Study>& studies();
+const std::vector<ClothStudy>& studies();
 /// Throws std::runtime_error, listing the names, for an unknown one.
-const Study& findStudy(std::string_view name);
+const ClothStudy& findStudy(std::string_view name);
 
 std::string studyFall(sk::Device& device);
 std::string studyPendulum(sk::Device& device);

@@ -20,70 +20,36 @@
 #include "scene.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
-#include "support/stopwatch.hpp"
+#include "support/extents.hpp"
+#include "support/record.hpp"
 
 namespace {
 
 struct Settings {
   std::filesystem::path scene;
-  std::string study;
   std::string size;
   std::optional<std::int64_t> steps;
   std::optional<double> settle;
   std::string precision;
-  std::optional<std::filesystem::path> output;
-  std::filesystem::path csv;
-  std::optional<int> frames;
   bool account = true;
-  bool small = false;
   bool window = false;
 };
 
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "what to run: a TOML file, as in examples/lattice/scenes");
-  std::string studies = "measure the numerics, and print a table:";
-  for (const examples::Study& study : examples::studies())
-    studies += fmt::format("\n  {:<13} {}", study.name, study.asks);
-  cli.add_option("--study", s.study, studies);
-  cli.add_flag("--small", s.small, "a study in seconds, coarser");
   cli.add_option("--size", s.size, "cells, WxH or WxHxD, in place of the scene's");
   cli.add_option("--steps", s.steps, "steps, in place of the scene's")->check(CLI::Range(1, 1'000'000'000));
   cli.add_option("--until-settled", s.settle, "end when no field changes by more than this in a step")
       ->check(CLI::Range(0.0, 1e12));
   cli.add_option("--precision", s.precision, "half, single, extended or double, in place of the scene's")
       ->check(CLI::IsMember({"half", "single", "extended", "double"}));
-  cli.add_option("--output", s.output,
-                 "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
-  cli.add_option("--frames", s.frames, "pictures, evenly spaced in time")->check(CLI::Range(1, 99999));
-  cli.add_option("--csv", s.csv, "a file for means, extremes, Nusselt number ... while it runs");
   cli.add_flag("--window", s.window, "show it in a window while it runs: space, s, f, +, -, r, q");
   cli.add_flag("!--no-account", s.account, "leave out what the full model would have cost");
 }
 
-/// "256x128" and "64x64x64".
-std::vector<std::int64_t> sizeOf(const std::string& text) {
-  std::vector<std::int64_t> size;
-  std::size_t at = 0;
-  while (at <= text.size()) {
-    const std::size_t end = std::min(text.find('x', at), text.size());
-    const std::string number = text.substr(at, end - at);
-    const bool isNumber =
-        !number.empty() && number.size() <= 5 && number.find_first_not_of("0123456789") == std::string::npos;
-    const std::int64_t n = isNumber ? std::stoll(number) : 0;
-    if (n < 1 || n > 32768)
-      throw std::runtime_error(
-          fmt::format("--size: '{}' is no size; write WxH or WxHxD, each from 1 to 32768", text));
-    size.push_back(n);
-    at = end + 1;
-  }
-  if (size.size() < 2 || size.size() > 3)
-    throw std::runtime_error(fmt::format("--size: '{}' is no size; write WxH or WxHxD", text));
-  return size;
-}
-
-examples::Scene sceneOf(const Settings& s) {
+examples::Scene sceneOf(const Settings& s, const examples::RecordOptions& record) {
   examples::Overrides overrides;
-  if (!s.size.empty()) overrides.size = sizeOf(s.size);
+  if (!s.size.empty()) overrides.size = examples::extentsOf("--size", s.size, {1, 32768, 3});
   overrides.steps = s.steps;
   overrides.settle = s.settle;
   if (s.precision == "half") overrides.precision = sk::Precision::Half;
@@ -91,9 +57,7 @@ examples::Scene sceneOf(const Settings& s) {
   if (s.precision == "extended") overrides.precision = sk::Precision::Extended;
   if (s.precision == "double") overrides.precision = sk::Precision::Double;
   examples::Scene scene = examples::readScene(s.scene, overrides);
-  if (s.output) scene.record.output = *s.output;
-  if (s.frames) scene.record.frames = *s.frames;
-  if (!s.csv.empty()) scene.record.csv = s.csv;
+  record.apply(scene.record);
   return scene;
 }
 
@@ -102,24 +66,7 @@ std::string sizeText(const examples::Grid& g) {
                      : fmt::format("{} x {}", g.width, g.height);
 }
 
-void study(examples::Application& app, const Settings& s) {
-  std::string names;
-  for (const examples::Study& study : examples::studies()) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
-    if (study.name != s.study) continue;
-    sk::Device device(app.device());
-    const examples::Stopwatch stopwatch;
-    const examples::Findings findings = study.run(device, s.small);
-    app.report(fmt::format("{}: {}", study.name, study.asks), device.name(), stopwatch.milliseconds());
-    fmt::print("\n{}\n", findings.table);
-    for (const examples::Verification& verification : findings.verifications) app.verified(verification);
-    return;
-  }
-  throw std::runtime_error(fmt::format("no study is called '{}'; there are {}", s.study, names));
-}
-
-void simulate(examples::Application& app, const Settings& s) {
-  const examples::Scene scene = sceneOf(s);
+void simulate(examples::Application& app, const examples::Scene& scene, const Settings& s) {
   if (s.window) return examples::runLive(scene, app.device());
   sk::Device device(app.device());
   examples::Lattice lattice(device, scene.model);
@@ -147,8 +94,7 @@ void simulate(examples::Application& app, const Settings& s) {
                table.measured);
     tableError = std::max(tableError, table.predicted);
   }
-  if (outcome.frames > 0) fmt::print("wrote {}\n", scene.record.output.string());
-  if (!scene.record.csv.empty()) fmt::print("wrote {}\n", scene.record.csv.string());
+  examples::printWritten(scene.record, outcome.frames);
   app.verified(examples::checkStep(scene.model, outcome.beforeLast, outcome.last, tableError));
   if (!s.account) return;
   const examples::Account account = examples::accountFor(device, scene, outcome.beforeLast);
@@ -163,10 +109,12 @@ int main(int argc, char** argv) {
   examples::Application app(
       "lattice", "Boiling, convection, reaction with diffusion: coupled map lattices from scene files.");
   addOptions(app.options(), settings);
+  const examples::StudyOptions study(app, "measure the numerics", examples::studies());
+  const examples::RecordOptions record(app.options(), "means, extremes, Nusselt number ... while it runs");
   return app.run(argc, argv, [&] {
-    if (!settings.study.empty()) return study(app, settings);
+    if (study.isGiven()) return study.run();
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/lattice/scenes/boiling.toml");
-    simulate(app, settings);
+    simulate(app, sceneOf(settings, record), settings);
   });
 }

@@ -9,6 +9,7 @@
 
 #include "flow.sk.hpp"
 #include "observe.sk.hpp"
+#include "support/box_view.hpp"
 #include "support/colormap.hpp"
 #include "view.sk.hpp"
 
@@ -19,38 +20,6 @@ int zoomFor(const Scene& scene) {
   if (scene.view.zoom > 0) return scene.view.zoom;
   const std::int64_t side = std::max(scene.model.grid.width, scene.model.grid.height);
   return static_cast<int>(std::clamp<std::int64_t>(1024 / side, 1, 64));
-}
-
-struct Camera {
-  lattice::Camera rays;
-  std::int64_t width, height;  ///< pixels
-};
-
-/// From a little above, turned by a third of a right angle, all of the lattice in a picture so many pixels wide.
-Camera cameraFor(const Grid& g, double pixels) {
-  constexpr double turn = 0.55, tilt = 0.32;
-  const auto w = static_cast<double>(g.width), h = static_cast<double>(g.height),
-             d = static_cast<double>(g.depth);
-  const std::array<double, 3> right = {std::cos(turn), 0.0, std::sin(turn)};
-  const std::array<double, 3> ahead = {-std::sin(turn) * std::cos(tilt), -std::sin(tilt),
-                                       std::cos(turn) * std::cos(tilt)};
-  const std::array<double, 3> up = {-std::sin(turn) * std::sin(tilt), std::cos(tilt),
-                                    std::cos(turn) * std::sin(tilt)};
-  const auto reach = [&](const std::array<double, 3>& axis) {
-    return 0.52 * (w * std::abs(axis[0]) + h * std::abs(axis[1]) + d * std::abs(axis[2]));
-  };
-  const auto vector = [](const std::array<double, 3>& axis, double length) {
-    return sk::float3{static_cast<float>(axis[0] * length), static_cast<float>(axis[1] * length),
-                      static_cast<float>(axis[2] * length)};
-  };
-  const double across = reach(right), along = reach(up);
-  const auto height =
-      static_cast<std::int64_t>(2 * std::lround(0.5 * pixels * std::min(along / across, 2.0)));
-  const sk::float3 middle = {static_cast<float>(0.5 * (w - 1)), static_cast<float>(0.5 * (h - 1)),
-                             static_cast<float>(0.5 * (d - 1))};
-  return {{middle, vector(right, across), vector(up, along), vector(ahead, 1.0)},
-          static_cast<std::int64_t>(pixels),
-          height};
 }
 
 }  // namespace
@@ -105,11 +74,13 @@ sk::Stream<sk::float3> Painter::plane(sk::Stream<float>& field, Values values) {
 }
 
 sk::Stream<sk::float3> Painter::bubbles(Lattice& lattice, Values values, int finer) {
-  const Camera camera = cameraFor(scene_.model.grid, 960.0 * finer);
-  auto colour = device_.stream<sk::float3>({camera.height, camera.width});
+  const Grid& g = scene_.model.grid;
+  const BoxView view = boxView({g.width, g.height, g.depth}, 0.55, 0.32, 960L * finer);
+  const lattice::Camera camera = {view.middle, view.right, view.up, view.ahead};
+  auto colour = device_.stream<sk::float3>({view.height, view.width});
   lattice::march(palette_, static_cast<float>(values.low), static_cast<float>(values.high),
-                 static_cast<float>(scene_.model.boilingPoint), camera.rays,
-                 lattice.stream(Field::Temperature), colour);
+                 static_cast<float>(scene_.model.boilingPoint), camera, lattice.stream(Field::Temperature),
+                 colour);
   return colour;
 }
 

@@ -2,17 +2,14 @@
 #include "run.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <memory>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "limits.hpp"
 #include "painter.hpp"
-#include "support/film.hpp"
-#include "support/image.hpp"
 #include "support/progress.hpp"
+#include "support/record.hpp"
 #include "support/stopwatch.hpp"
 
 namespace examples {
@@ -26,19 +23,10 @@ std::string placeOf(const Grid& g, std::int64_t cell) {
 /// Rows of numbers, reduced on the device.
 class Numbers {
  public:
-  Numbers(const std::filesystem::path& path, const Model& model)
-      : model_(model), path_(path.string()), file_(path) {
-    std::string head = "step,time";
-    for (const Field field : fieldsOf(model)) {
-      const char* name = nameOf(field);
-      head += fmt::format(",{0}_mean,{0}_min,{0}_max", name);
-    }
-    if (model.flow) head += ",nusselt,kinetic_energy";
-    if (model.boils()) head += ",vapour";
-    write(head);
-  }
+  Numbers(const std::filesystem::path& path, const Model& model) : model_(model), file_(path, heads(model)) {}
 
   void add(std::int64_t step, Lattice& lattice) {
+    if (!file_.isWanted()) return;
     const double dt =
         model_.reaction && !model_.hasTemperature() ? model_.reaction->timeStep : model_.timeStep;
     std::string row = fmt::format("{},{:.9g}", step, static_cast<double>(step) * dt);
@@ -48,58 +36,32 @@ class Numbers {
     }
     if (model_.flow) row += fmt::format(",{:.9g},{:.9g}", lattice.nusselt(), lattice.kineticEnergy());
     if (model_.boils()) row += fmt::format(",{:.9g}", lattice.vapour());
-    write(row);
+    file_.add(row);
   }
 
  private:
-  void write(const std::string& row) {
-    if (!(file_ << row << '\n').flush()) throw std::runtime_error(fmt::format("cannot write '{}'", path_));
+  static std::string heads(const Model& model) {
+    std::string head = "step,time";
+    for (const Field field : fieldsOf(model)) head += fmt::format(",{0}_mean,{0}_min,{0}_max", nameOf(field));
+    if (model.flow) head += ",nusselt,kinetic_energy";
+    if (model.boils()) head += ",vapour";
+    return head;
   }
 
   const Model& model_;
-  std::string path_;
-  std::ofstream file_;
+  CsvFile file_;
 };
 
-/// Pictures where the scene wants some.
-class Pictures {
- public:
-  Pictures(sk::Device& device, const Scene& scene) : scene_(scene), painter_(device, scene) {
-    if (scene.record.output.empty()) return;
-    if (scene.record.frames > 1 || scene.record.output.extension() != ".png")
-      film_ = std::make_unique<Film>(scene.record.output, scene.record.framesPerSecond);
-  }
-
-  void add(std::int64_t step, Lattice& lattice) {
-    if (scene_.record.output.empty()) return;
-    const Image image = painter_.paint(lattice, moment(step));
-    if (film_)
-      film_->add(image);
-    else
-      savePng(scene_.record.output, image);
-    ++count_;
-  }
-  void finish() {
-    if (film_ && count_ > 0) film_->finish();
-  }
-  int count() const { return count_; }
-
- private:
-  std::string moment(std::int64_t step) const {
-    const Grid& g = scene_.model.grid;
-    std::string text = g.isSpace() ? fmt::format("{} x {} x {} cells", g.width, g.height, g.depth)
-                                   : fmt::format("{} x {} cells", g.width, g.height);
-    if (const auto& flow = scene_.model.flow)
-      text += fmt::format("   Ra = {:g}, Pr = {:g}", flow->rayleigh, flow->prandtl);
-    if (const auto& r = scene_.model.reaction) text += fmt::format("   F = {:g}, k = {:g}", r->feed, r->kill);
-    return text + fmt::format("   step {}", step);
-  }
-
-  const Scene& scene_;
-  Painter painter_;
-  std::unique_ptr<Film> film_;
-  int count_ = 0;
-};
+/// The text below a picture.
+std::string captionOf(const Model& model, std::int64_t step) {
+  const Grid& g = model.grid;
+  std::string text = g.isSpace() ? fmt::format("{} x {} x {} cells", g.width, g.height, g.depth)
+                                 : fmt::format("{} x {} cells", g.width, g.height);
+  if (const auto& flow = model.flow)
+    text += fmt::format("   Ra = {:g}, Pr = {:g}", flow->rayleigh, flow->prandtl);
+  if (const auto& r = model.reaction) text += fmt::format("   F = {:g}, k = {:g}", r->feed, r->kill);
+  return text + fmt::format("   step {}", step);
+}
 
 /// The next multiple of `every` after `step`; never, where it is 0.
 std::int64_t nextOf(std::int64_t step, std::int64_t every, std::int64_t never) {
@@ -120,35 +82,24 @@ void requireFinite(Lattice& lattice, std::int64_t step) {
 Outcome runScene(sk::Device& device, const Scene& scene, Lattice& lattice) {
   Outcome outcome;
   const std::int64_t steps = scene.steps;
-  const int frames = scene.record.frames;
   const std::int64_t every =
-      scene.record.every > 0 ? scene.record.every : std::max<std::int64_t>(1, steps / 100);
-  Pictures pictures(device, scene);
-  std::unique_ptr<Numbers> numbers;
-  if (!scene.record.csv.empty()) {
-    numbers = std::make_unique<Numbers>(scene.record.csv, scene.model);
-    numbers->add(0, lattice);
-  }
+      scene.csvInterval > 0 ? scene.csvInterval : std::max<std::int64_t>(1, steps / 100);
+  Painter painter(device, scene);
+  Pictures pictures(scene.record);
+  Numbers numbers(scene.record.csv, scene.model);
+  numbers.add(0, lattice);
   Progress progress(scene.name, steps);
-  const auto checkFinite = [&](std::int64_t at) {
-    try {
-      requireFinite(lattice, at);
-    } catch (...) {
-      pictures.finish();  // what there is stays, as a whole file
-      throw;
-    }
+  const auto addPicture = [&](std::int64_t step) {
+    pictures.add(painter.paint(lattice, captionOf(scene.model, step)));
   };
-  checkFinite(0);
-  if (frames > 1) pictures.add(0, lattice);
-  const auto frameStep = [&](int frame) { return frames > 1 ? steps * frame / (frames - 1) : steps; };
-  int frame = 1;
+  requireFinite(lattice, 0);
+  if (pictures.wantsStart()) addPicture(0);
   std::int64_t step = 0;
   while (step < steps && !outcome.settled) {
     const std::int64_t never = steps;
     const std::int64_t check = scene.settling ? nextOf(step, scene.settling->every, never) : never;
     std::int64_t end = std::min({steps, step + 4096, nextOf(step, every, never), check});
-    while (frame < frames && frameStep(frame) <= step) ++frame;
-    if (frame < frames) end = std::min(end, std::max(frameStep(frame), step + 1));
+    if (pictures.isWanted()) end = std::min(end, std::max(pictures.nextStep(steps), step + 1));
 
     const Stopwatch stopwatch;
     const bool isLast = end == steps;
@@ -172,12 +123,14 @@ Outcome runScene(sk::Device& device, const Scene& scene, Lattice& lattice) {
     outcome.milliseconds += (isLast ? rest : stopwatch).milliseconds();
     step = end;
 
-    const bool frameDue = frame < frames && frameStep(frame) == step;
-    if (step % every == 0 || frameDue || step == steps || outcome.settled) checkFinite(step);
-    if (numbers && (step % every == 0 || step == steps || outcome.settled)) numbers->add(step, lattice);
-    if (frameDue || ((step == steps || outcome.settled) && frames == 1)) {
+    const bool isEnd = step == steps || outcome.settled;
+    const bool frameDue = pictures.isDue(step, steps) ||
+                          (isEnd && pictures.isWanted() && scene.record.frames == 1 && pictures.count() == 0);
+    if (step % every == 0 || frameDue || isEnd) requireFinite(lattice, step);
+    if (step % every == 0 || isEnd) numbers.add(step, lattice);
+    if (frameDue) {
       progress.clear();
-      pictures.add(step, lattice);
+      addPicture(step);
     }
     progress.update(step);
   }

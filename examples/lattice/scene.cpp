@@ -28,27 +28,22 @@ constexpr std::array<std::string_view, 4> precisionNames = {"half", "single", "e
 constexpr std::array<sk::Precision, 4> precisions = {sk::Precision::Half, sk::Precision::Single,
                                                      sk::Precision::Extended, sk::Precision::Double};
 
-/// What is wrong with a key, or with its absence, as a sentence that begins with its name.
-[[noreturn]] void refuse(const SceneTable& table, std::string_view key, std::string_view what) {
-  table.fail(key, fmt::format("'{}' {}", key, what));
-}
-
 Grid readGrid(const SceneTable& table, const Overrides& overrides) {
   Grid grid;
   if (const auto size = table.numbers("size", -1)) {
-    if (size->empty() || size->size() > 3) refuse(table, "size", "is width, height and, in space, depth");
+    if (size->empty() || size->size() > 3) table.refuse("size", "is width, height and, in space, depth");
     const std::array<std::int64_t*, 3> extents = {&grid.width, &grid.height, &grid.depth};
     for (std::size_t i = 0; i < size->size(); ++i) {
       const double n = (*size)[i];
       if (n < 1 || n > 32768 || n != std::floor(n))
-        refuse(table, "size", "takes whole numbers from 1 to 32768");
+        table.refuse("size", "takes whole numbers from 1 to 32768");
       *extents[i] = static_cast<std::int64_t>(n);
     }
   }
   if (!overrides.size.empty()) grid.width = overrides.size[0];
   if (overrides.size.size() > 1) grid.height = overrides.size[1];
   if (overrides.size.size() > 2) grid.depth = overrides.size[2];
-  if (grid.cells() > std::int64_t{1} << 28) refuse(table, "size", "makes more than 2^28 cells; take fewer");
+  if (grid.cells() > std::int64_t{1} << 28) table.refuse("size", "makes more than 2^28 cells; take fewer");
   grid.spacing = table.number("spacing", positive).value_or(1.0);
   return grid;
 }
@@ -67,28 +62,28 @@ Boundary readBoundary(const SceneTable& table, bool isSpace) {
     b.edges[side] = edge(keys[side], side < 2 ? sides : Edge::Wrap);
     const auto temperature = table.number(warmths[side], anything);
     if (temperature && b.edges[side] != Edge::Wall) {
-      refuse(table, warmths[side], fmt::format("is only for a wall; say {} = \"wall\"", keys[side]));
+      table.refuse(warmths[side], fmt::format("is only for a wall; say {} = \"wall\"", keys[side]));
     }
     if (!temperature && b.edges[side] == Edge::Wall) {
-      refuse(table, keys[side], fmt::format("is a wall without a temperature; give {}", warmths[side]));
+      table.refuse(keys[side], fmt::format("is a wall without a temperature; give {}", warmths[side]));
     }
     b.temperatures[side] = temperature.value_or(0.0);
   }
   const auto together = [&](std::size_t one, std::size_t other) {
     if ((b.edges[one] == Edge::Wrap) != (b.edges[other] == Edge::Wrap)) {
-      refuse(table, keys[b.edges[one] == Edge::Wrap ? other : one],
-             fmt::format("is closed, but {} wraps; both sides wrap or none does",
-                         keys[b.edges[one] == Edge::Wrap ? one : other]));
+      table.refuse(keys[b.edges[one] == Edge::Wrap ? other : one],
+                   fmt::format("is closed, but {} wraps; both sides wrap or none does",
+                               keys[b.edges[one] == Edge::Wrap ? one : other]));
     }
   };
   together(Boundary::Left, Boundary::Right);
   together(Boundary::Bottom, Boundary::Top);
   if (isSpace) {
     if (b.edges[Boundary::Left] == Edge::Wall || b.edges[Boundary::Right] == Edge::Wall)
-      refuse(table, "sides",
-             "has walls, which a lattice in space has at the bottom and top only; insulate it");
+      table.refuse("sides",
+                   "has walls, which a lattice in space has at the bottom and top only; insulate it");
     if (b.edges[Boundary::Left] != b.edges[Boundary::Right])
-      refuse(table, "left", "differs from right; in space, both are alike");
+      table.refuse("left", "differs from right; in space, both are alike");
     b.closedZ = b.closedX();
   }
   return b;
@@ -97,9 +92,9 @@ Boundary readBoundary(const SceneTable& table, bool isSpace) {
 Diffusion readDiffusion(const SceneTable& table, const Model& model) {
   const auto rate = table.number("rate", fromZero);
   const auto epsilon = table.number("epsilon", Range{0.0, 1e6});
-  if (rate && epsilon) refuse(table, "epsilon", "says the same as rate; give one of them");
+  if (rate && epsilon) table.refuse("epsilon", "says the same as rate; give one of them");
   if (!rate && !epsilon)
-    refuse(table, "rate", "is missing; give rate, or epsilon, the part of a cell that a step mixes");
+    table.refuse("rate", "is missing; give rate, or epsilon, the part of a cell that a step mixes");
   const double h = model.grid.spacing;
   const double neighbours = model.grid.isSpace() ? 6.0 : 4.0;
   return {rate ? *rate : *epsilon * h * h / (neighbours * model.timeStep)};
@@ -117,7 +112,7 @@ Reaction readReaction(const SceneTable& table) {
   Reaction r;
   const auto feed = table.number("feed", Range{0.0, 1.0}), kill = table.number("kill", Range{0.0, 1.0});
   if (const auto name = table.text("class")) {
-    if (feed || kill) refuse(table, "class", "sets feed and kill; give either it or them");
+    if (feed || kill) table.refuse("class", "sets feed and kill; give either it or them");
     try {
       const Pattern& pattern = findPattern(*name);
       r.feed = pattern.feed;
@@ -126,8 +121,8 @@ Reaction readReaction(const SceneTable& table) {
       table.fail("class", error.what());
     }
   } else {
-    if (!feed) refuse(table, "feed", "is missing; give feed and kill, or a class of patterns");
-    if (!kill) refuse(table, "kill", "is missing; give feed and kill, or a class of patterns");
+    if (!feed) table.refuse("feed", "is missing; give feed and kill, or a class of patterns");
+    if (!kill) table.refuse("kill", "is missing; give feed and kill, or a class of patterns");
     r.feed = *feed;
     r.kill = *kill;
   }
@@ -141,17 +136,17 @@ Reaction readReaction(const SceneTable& table) {
 
 void readFlow(const SceneTable& table, Model& model) {
   if (model.grid.isSpace())
-    refuse(table, "rayleigh", "is of a flow, which only a plane lattice has; give two extents");
+    table.refuse("rayleigh", "is of a flow, which only a plane lattice has; give two extents");
   const auto rayleigh = table.number("rayleigh", Range{1e-6, 1e12});
   if (!rayleigh)
-    refuse(table, "rayleigh", "is missing: buoyancy over friction and conduction; 1708 is where rolls begin");
+    table.refuse("rayleigh", "is missing: buoyancy over friction and conduction; 1708 is where rolls begin");
   const double prandtl = table.number("prandtl", Range{1e-3, 1e4}).value_or(0.71);
   const double sound = table.number("sound", Range{1e-3, 1e6}).value_or(3.0);
   const bool slip = table.flag("slip").value_or(false);
   const auto wall = [&](Boundary::Side side) { return model.boundary.edges[side] == Edge::Wall; };
   if (!(wall(Boundary::Bottom) && wall(Boundary::Top)) && !(wall(Boundary::Left) && wall(Boundary::Right)))
-    refuse(table, "rayleigh", "needs two walls that face each other; give bottom and top, or left and right");
-  if (!model.boundary.closedY()) refuse(table, "rayleigh", "needs a floor; close bottom and top");
+    table.refuse("rayleigh", "needs two walls that face each other; give bottom and top, or left and right");
+  if (!model.boundary.closedY()) table.refuse("rayleigh", "needs a floor; close bottom and top");
   setConvection(model, *rayleigh, prandtl, sound, slip);
 }
 
@@ -179,29 +174,18 @@ Settling readSettling(const SceneTable& table) {
   return s;
 }
 
-Record readRecord(const SceneTable& table, const std::string& name) {
-  Record r;
-  r.output = table.text("output").value_or(name + ".png");
-  r.frames = static_cast<int>(table.integer("frames", Range{1, 99999}).value_or(1));
-  r.framesPerSecond = static_cast<int>(table.integer("frames_per_second", Range{1, 120}).value_or(25));
-  r.csv = table.text("csv").value_or("");
-  r.every = table.integer("every", Range{1, 1e12}).value_or(0);
-  return r;
-}
-
 View readView(const SceneTable& table, const Model& model) {
   View v;
   v.shown = model.reaction ? Shown::V : model.grid.isSpace() ? Shown::Bubbles : Shown::Temperature;
   if (const auto shown = table.choice("field", shownNames)) v.shown = static_cast<Shown>(*shown);
   if (!has(model, v.shown)) {
-    refuse(table, "field",
-           fmt::format("'{}' is not in this scene, whose operators do not make it",
-                       shownNames[static_cast<std::size_t>(v.shown)]));
+    table.refuse("field", fmt::format("'{}' is not in this scene, whose operators do not make it",
+                                      shownNames[static_cast<std::size_t>(v.shown)]));
   }
   v.colours = table.text("colours").value_or(v.colours);
   v.low = table.number("low", anything);
   v.high = table.number("high", anything);
-  if (v.low && v.high && *v.low >= *v.high) refuse(table, "high", "is not above low");
+  if (v.low && v.high && *v.low >= *v.high) table.refuse("high", "is not above low");
   v.relief = table.number("relief", Range{0.0, 1000.0}).value_or(0.0);
   v.zoom = static_cast<int>(table.integer("zoom", Range{1, 64}).value_or(0));
   v.mirror = table.flag("mirror").value_or(false);
@@ -211,9 +195,8 @@ View readView(const SceneTable& table, const Model& model) {
 void refuseUnstable(const SceneTable& run, const Model& model) {
   for (const Limit& limit : limitsOf(model)) {
     if (limit.holds()) continue;
-    refuse(run, "time_step",
-           fmt::format("{:g} is not stable: {} allows {:.6g} ({}); take a smaller one", limit.chosen,
-                       limit.of, limit.largest, limit.formula));
+    run.refuse("time_step", fmt::format("{:g} is not stable: {} allows {:.6g} ({}); take a smaller one",
+                                        limit.chosen, limit.of, limit.largest, limit.formula));
   }
 }
 
@@ -249,12 +232,12 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   if (const auto grid = table.table("grid"))
     model.grid = readGrid(*grid, overrides);
   else
-    refuse(table, "grid", "is missing: the table [grid] has the size");
+    table.refuse("grid", "is missing: the table [grid] has the size");
   if (const auto boundary = table.table("boundary"))
     model.boundary = readBoundary(*boundary, model.grid.isSpace());
 
   const auto run = table.table("run");
-  if (!run) refuse(table, "run", "is missing: the table [run] has the steps");
+  if (!run) table.refuse("run", "is missing: the table [run] has the steps");
   scene.steps = run->integer("steps", Range{1, 1e12}).value_or(scene.steps);
   if (overrides.steps) scene.steps = *overrides.steps;
   const auto timeStep = run->number("time_step", fromZero);
@@ -276,9 +259,9 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   }
   if (const auto t = table.table("reaction")) model.reaction = readReaction(*t);
   if (model.reaction && model.grid.isSpace())
-    refuse(table, "reaction", "is for a plane lattice; give two extents");
+    table.refuse("reaction", "is for a plane lattice; give two extents");
   if (const auto t = table.table("flow")) {
-    if (model.diffusion) refuse(table, "diffusion", "follows from the numbers of the flow; leave it out");
+    if (model.diffusion) table.refuse("diffusion", "follows from the numbers of the flow; leave it out");
     readFlow(*t, model);
     if (!timeStep) {
       for (const Limit& limit : limitsOf(model))
@@ -286,16 +269,16 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
     }
   }
   if (fieldsOf(model).empty()) {
-    refuse(table, "grid",
-           "has no operator to step it; add [diffusion], [buoyancy], [latent_heat], [reaction] or [flow]");
+    table.refuse(
+        "grid",
+        "has no operator to step it; add [diffusion], [buoyancy], [latent_heat], [reaction] or [flow]");
   }
   refuseUnstable(*run, model);
 
   if (const auto t = table.table("initial")) scene.initial = readInitial(*t);
-  if (const auto t = table.table("record"))
-    scene.record = readRecord(*t, scene.name);
-  else
-    scene.record.output = scene.name + ".png";
+  const auto record = table.table("record");
+  scene.record = readRecord(record, scene.name);
+  if (record) scene.csvInterval = record->integer("every", Range{1, 1e12}).value_or(0);
   if (const auto t = table.table("view"))
     scene.view = readView(*t, model);
   else

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "model.hpp"
+#include "support/record.hpp"
 
 namespace examples {
 
@@ -36,14 +37,6 @@ struct Settling {
   std::int64_t every = 32;
 };
 
-struct Record {
-  std::filesystem::path output;  ///< a picture, or a film where there are several frames
-  int frames = 1;
-  int framesPerSecond = 25;
-  std::filesystem::path csv;
-  std::int64_t every = 0;  ///< steps from one row of numbers to the next; 0: a hundredth of the run
-};
-
 /// What a picture shows: a field, or what is made of some.
 enum class Shown : std::uint8_t { Temperature, U, V, Speed, Vorticity, Pressure, Bubbles };
 
@@ -64,6 +57,7 @@ struct Scene {
   std::int64_t steps = 1000;
   std::optional<Settling> settling;
   Record record;
+  std::int64_t csvInterval = 0;  ///< steps between two rows of numbers; 0: a hundredth of the run
   View view;
 };
 

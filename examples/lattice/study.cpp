@@ -3,9 +3,6 @@
 
 #include <array>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 namespace examples {
 namespace {
 
@@ -22,17 +19,6 @@ constexpr std::array<Study, 8> all = {{
 }};
 
 }  // namespace
-
-MarkdownTable::MarkdownTable(const std::vector<std::string>& heads) {
-  add(heads);
-  text_ += "|";
-  for (std::size_t i = 0; i < heads.size(); ++i) text_ += "---|";
-  text_ += "\n";
-}
-
-void MarkdownTable::add(const std::vector<std::string>& cells) {
-  text_ += fmt::format("| {} |\n", fmt::join(cells, " | "));
-}
 
 std::span<const Study> studies() { return all; }
 

@@ -12,19 +12,9 @@
 #include <sk/sk.hpp>
 
 #include "support/study.hpp"
+#include "support/table.hpp"
 
 namespace examples {
-
-/// A table in Markdown. Cells of rows, as many as heads.
-class MarkdownTable {
- public:
-  explicit MarkdownTable(const std::vector<std::string>& heads);
-  void add(const std::vector<std::string>& cells);
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
 
 std::span<const Study> studies();
 

@@ -67,8 +67,8 @@ Drift driftOf(sk::Device& device, const Model& model, std::int64_t steps) {
 
 Findings studyConservation(sk::Device& device, bool small) {
   const std::int64_t n = small ? 64 : 128, steps = small ? 500 : 5000;
-  MarkdownTable table({"lattice", "precision", "steps", "heat lost or gained", "random roundings",
-                       "bound 8 n u", "compensated sum off by", "plain sum off by"});
+  Table table({"lattice", "precision", "steps", "heat lost or gained", "random roundings", "bound 8 n u",
+               "compensated sum off by", "plain sum off by"});
   Verification verification("heat lost or gained, over its bound", 1.0,
                             "every rounding of every step to one side");
   const auto add = [&](const char* name, Model model) {
@@ -97,13 +97,13 @@ Findings studyConservation(sk::Device& device, bool small) {
   flow.flow = Flow{.viscosity = 1e-3, .lift = 1.0, .sound = 3.0, .damping = 0.2};
   flow.timeStep = 0.15 / static_cast<double>(n);
   add("insulated, the disc rising in a flow", flow);
-  return {table.text(), {verification}};
+  return {table.markdown(), {verification}};
 }
 
 Findings studyBroken(sk::Device& device, bool small) {
   const std::int64_t n = small ? 32 : 64;
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  MarkdownTable table({"operators", "put into the middle cell", "what the run says"});
+  Table table({"operators", "put into the middle cell", "what the run says"});
   Verification verification("broken fields that were told", 0.0,
                             "each must be, at the cell, field and step where it is seen first");
   const auto add = [&](const char* name, const Model& model, Field field, double value, const char* text,
@@ -145,7 +145,7 @@ Findings studyBroken(sk::Device& device, bool small) {
   flow.flow = Flow{.viscosity = 1e-3, .lift = 1.0, .sound = 3.0, .damping = 0.2};
   add("convection", flow, Field::Pressure, infinity, "infinity", 1);
   add("convection", flow, Field::VelocityX, 1e25, "1e25, whose square overflows", 2);
-  return {table.text(), {verification}};
+  return {table.markdown(), {verification}};
 }
 
 }  // namespace examples

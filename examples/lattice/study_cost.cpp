@@ -64,14 +64,14 @@ Findings studyStopping(sk::Device& device, bool small) {
       if (round > 0) times[i].push_back(stopwatch.milliseconds());
     }
   }
-  MarkdownTable table({"asked", "time over never asking"});
+  Table table({"asked", "time over never asking"});
   for (std::size_t i = 1; i < lattices.size(); ++i) {
     std::vector<double> ratios;
     for (std::size_t r = 0; r < times[i].size(); ++r) ratios.push_back(times[i][r] / times[0][r]);
     table.add({everies[i - 1] == 1 ? "every step" : fmt::format("every {} steps", everies[i - 1]),
                fmt::format("{:.2f}", median(ratios))});
   }
-  return {table.text(), {}};
+  return {table.markdown(), {}};
 }
 
 Findings studyTables(sk::Device& device, bool small) {
@@ -98,7 +98,7 @@ Findings studyTables(sk::Device& device, bool small) {
       if (round > 0) times[i].push_back(stopwatch.milliseconds());
     }
   }
-  MarkdownTable table({"tanh", "error predicted", "error measured", "time of a step over computing"});
+  Table table({"tanh", "error predicted", "error measured", "time of a step over computing"});
   Verification verification("measured errors of tables over predicted ones", 1.0,
                             "the prediction is a bound");
   for (std::size_t i = 0; i < lattices.size(); ++i) {
@@ -110,7 +110,7 @@ Findings studyTables(sk::Device& device, bool small) {
                reports.empty() ? "-" : fmt::format("{:.1e}", reports.front().measured),
                fmt::format("{:.2f}", median(ratios))});
   }
-  return {table.text(), {verification}};
+  return {table.markdown(), {verification}};
 }
 
 }  // namespace examples

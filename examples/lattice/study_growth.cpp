@@ -89,7 +89,7 @@ struct Course {
   double unit;  ///< of time, a step
 };
 
-void follow(const Course& c, MarkdownTable& table, Verification& verification) {
+void follow(const Course& c, Table& table, Verification& verification) {
   std::vector<double> times, apart;
   for (std::int64_t step = 0; step < c.steps;) {
     c.pair.advance(c.every);
@@ -122,8 +122,8 @@ void follow(const Course& c, MarkdownTable& table, Verification& verification) {
 }  // namespace
 
 Findings studyGrowth(sk::Device& device, bool small) {
-  MarkdownTable table({"scene", "precision", "apart after 10 %, 40 % and all of the run (rms)",
-                       "rate of growth (r^2)", "mean", "wavelength, cells", "Nusselt number", "kind"});
+  Table table({"scene", "precision", "apart after 10 %, 40 % and all of the run (rms)",
+               "rate of growth (r^2)", "mean", "wavelength, cells", "Nusselt number", "kind"});
   Verification verification("statistics in single against double, relative", small ? 0.2 : 0.1,
                             "what averages over so few wavelengths and times vary by");
   for (const char* name : {"epsilon", "mu"}) {
@@ -152,7 +152,7 @@ Findings studyGrowth(sk::Device& device, bool small) {
     Pair pair(device, m, initial, Field::Temperature);
     follow({"convection, Ra = 10^6", pair, 60'000, 200, 20'000, m.timeStep}, table, verification);
   }
-  return {table.text(), {verification}};
+  return {table.markdown(), {verification}};
 }
 
 }  // namespace examples

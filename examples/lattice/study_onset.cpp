@@ -63,8 +63,8 @@ Crossing measure(sk::Device& device, std::int64_t height, std::int64_t width, bo
 }  // namespace
 
 Findings studyOnset(sk::Device& device, bool small) {
-  MarkdownTable table({"plates", "cells of the height", "k", "rate below", "rate above", "begins at Ra",
-                       "theory", "off by", "order"});
+  Table table({"plates", "cells of the height", "k", "rate below", "rate above", "begins at Ra", "theory",
+               "off by", "order"});
   std::vector<Verification> verifications;
   for (const bool slip : {false, true}) {
     const int widthOverHeight = slip ? 3 : 2;
@@ -99,7 +99,7 @@ Findings studyOnset(sk::Device& device, bool small) {
     verifications.push_back(off);
     verifications.push_back(converges);
   }
-  return {table.text(), verifications};
+  return {table.markdown(), verifications};
 }
 
 Findings studyCavity(sk::Device& device, bool small) {
@@ -109,7 +109,7 @@ Findings studyCavity(sk::Device& device, bool small) {
   // G. de Vahl Davis, "Natural convection of air in a square cavity: a bench mark numerical solution", Int. J. Numerical
   // Methods in Fluids 3 (1983); he gives an error below 0.1 % for the smallest, and below 1 % for 10^6.
   constexpr Case known[] = {{1e3, 1.118}, {1e4, 2.243}, {1e5, 4.519}, {1e6, 8.800}};
-  MarkdownTable table({"Ra", "cells", "steps", "Nusselt number", "extrapolated", "de Vahl Davis", "off by"});
+  Table table({"Ra", "cells", "steps", "Nusselt number", "extrapolated", "de Vahl Davis", "off by"});
   Verification verification("Nusselt numbers, extrapolated, against de Vahl Davis, relative",
                             small ? 2e-2 : 1e-2, "1 % is what he gives for the largest");
   for (const Case& c : known) {
@@ -151,7 +151,7 @@ Findings studyCavity(sk::Device& device, bool small) {
       last = nusselt;
     }
   }
-  return {table.text(), {verification}};
+  return {table.markdown(), {verification}};
 }
 
 }  // namespace examples

@@ -74,7 +74,7 @@ std::vector<Case> cases() {
 Findings studyStability(sk::Device& device, bool small) {
   const int steps = small ? 2000 : 8000;
   const int halvings = 16;
-  MarkdownTable table({"operator", "largest dt found", "theory", "formula", "found / theory"});
+  Table table({"operator", "largest dt found", "theory", "formula", "found / theory"});
   Verification verification("largest stable steps against theory, relative", small ? 2e-3 : 5e-4,
                             "a wave must grow a hundred times within the steps that are tried");
   for (Case& c : cases()) {
@@ -89,7 +89,7 @@ Findings studyStability(sk::Device& device, bool small) {
                fmt::format("{:.4f}", low / limit.largest)});
     verification.compare(0, low / limit.largest, 1.0);
   }
-  return {table.text(), {verification}};
+  return {table.markdown(), {verification}};
 }
 
 }  // namespace examples

@@ -30,6 +30,7 @@
 #include "scene.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
+#include "support/extents.hpp"
 #include "support/stopwatch.hpp"
 #include "trace.hpp"
 
@@ -46,8 +47,6 @@ struct Settings {
   std::optional<double> seconds;
   std::optional<double> error;
   std::filesystem::path resume;
-  std::string study;
-  bool small = false;
   std::string layers;
   bool strict = false;
   bool window = false;
@@ -92,33 +91,17 @@ void addOptions(CLI::App& cli, Settings& s) {
       "show it in a window while it becomes better: the mouse turns it, the wheel; space, r, +, -, q");
   cli.add_flag("--account", s.account,
                "measure what it saves that kernels have nothing that the scene does not name");
-  std::string studies = "measure what choices are worth, and print a table:";
-  for (const rays::Study& study : rays::studies())
-    studies += fmt::format("\n  {:<11} {}", study.name, study.asks);
-  cli.add_option("--study", s.study, studies);
-  cli.add_flag("--small", s.small, "a study in seconds, with fewer rays");
   cli.add_flag("--strict", s.strict, "vertices that are not finite are an error");
-}
-
-void applySize(const std::string& text, rays::Overrides& overrides) {
-  const std::size_t x = text.find('x');
-  const auto number = [&](const std::string& digits) {
-    const bool isNumber =
-        !digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == std::string::npos;
-    const int n = isNumber ? std::stoi(digits) : -1;
-    if (n < 0 || n > 32768)
-      throw std::runtime_error(fmt::format("--size: '{}' is no size; write WxH, each from 0 to 32768", text));
-    return n;
-  };
-  if (x == std::string::npos) number("");
-  overrides.width = number(text.substr(0, x));
-  overrides.height = number(text.substr(x + 1));
 }
 
 rays::Scene sceneOf(const Settings& s) {
   rays::Overrides overrides{
       .samples = s.samples, .seconds = s.seconds, .engine = s.engine, .strict = s.strict, .error = s.error};
-  if (!s.size.empty()) applySize(s.size, overrides);
+  if (!s.size.empty()) {
+    const std::vector<std::int64_t> size = examples::extentsOf("--size", s.size, {0, 32768});
+    overrides.width = static_cast<int>(size[0]);
+    overrides.height = static_cast<int>(size[1]);
+  }
   rays::Scene scene = rays::readScene(s.scene, overrides);
   if (s.output) scene.output.picture = *s.output;
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "rays: warning: {}\n", warning);
@@ -221,30 +204,15 @@ void showPicture(examples::Application& app, const Settings& s, rays::Scene& sce
   rays::runLive(scene, app.device());
 }
 
-void runStudy(examples::Application& app, const Settings& s) {
-  std::string names;
-  for (const rays::Study& study : rays::studies()) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
-    if (study.name != s.study) continue;
-    sk::Device device(app.device());
-    const examples::Stopwatch stopwatch;
-    const rays::Findings findings = study.run(device, s.small);
-    app.report(fmt::format("{}: {}", study.name, study.asks), device.name(), stopwatch.milliseconds());
-    fmt::print("\n{}\n", findings.table);
-    for (const examples::Verification& verification : findings.verifications) app.verified(verification);
-    return;
-  }
-  throw std::runtime_error(fmt::format("no study is called '{}'; there are {}", s.study, names));
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   Settings settings;
   examples::Application app("rays", "Pictures and hits of scene files by tracing rays.");
   addOptions(app.options(), settings);
+  const examples::StudyOptions study(app, "measure what choices are worth", rays::studies());
   return app.run(argc, argv, [&] {
-    if (!settings.study.empty()) return runStudy(app, settings);
+    if (study.isGiven()) return study.run();
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/rays/scenes/cornell.toml");
     if (!settings.rays.empty() && settings.hits.empty())

@@ -14,21 +14,12 @@
 #include "bench_scenes.hpp"
 #include "mesh.hpp"
 #include "model.hpp"
-#include "support/verification.hpp"
+#include "support/study.hpp"
 
 namespace rays {
 
-struct Findings {
-  std::string table;  ///< in Markdown, which docs/rays.md shows
-  std::vector<examples::Verification> verifications{};
-};
-
-struct Study {
-  std::string_view name;
-  std::string_view asks;  ///< for --help
-  /// `isSmall`: in seconds, with fewer rays.
-  Findings (*run)(sk::Device& device, bool isSmall);
-};
+using examples::Findings;
+using examples::Study;
 
 std::span<const Study> studies();
 

@@ -217,6 +217,10 @@ void SceneTable::fail(std::string_view key, std::string_view message) const {
   failAt(document_->name, node != nullptr ? node->source().begin : access.table().source().begin, message);
 }
 
+void SceneTable::refuse(std::string_view key, std::string_view what) const {
+  fail(key, fmt::format("'{}' {}", key, what));
+}
+
 void SceneTable::finish() const { checkKnown(document_->name, Access{*this, {}}.table(), document_->asked); }
 
 SceneTable loadScene(const std::filesystem::path& file) {

@@ -43,6 +43,8 @@ class SceneTable {
 
   /// Throws where something else is wrong with a key, or with its absence.
   [[noreturn]] void fail(std::string_view key, std::string_view message) const;
+  /// As `fail`, with a sentence that begins with the name of the key.
+  [[noreturn]] void refuse(std::string_view key, std::string_view what) const;
   /// Throws for the first key, of this table or one below, that nobody has asked for.
   void finish() const;
 

@@ -9,6 +9,12 @@
 
 namespace examples {
 
+double distance(std::span<const double> a, std::span<const double> b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum);
+}
+
 double sumBound(std::int64_t n) {
   constexpr std::int64_t run = 32;
   double passes = 1;

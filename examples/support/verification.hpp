@@ -5,12 +5,16 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace examples {
 
 /// Half the distance from 1 to the next float: the largest relative error of one rounding.
 inline constexpr double roundoff = 0x1p-24;
+
+/// The 2-norm of a - b, which have the same length.
+double distance(std::span<const double> a, std::span<const double> b);
 
 /// The largest error of a device's sum of n numbers, as a part of the sum of their sizes: each pass of the
 /// reduction adds up runs of 32, and n is run down to 1 in log32 n passes (N. Higham, "The accuracy of

@@ -11,22 +11,11 @@ namespace fluid {
 
 namespace {
 
-std::int32_t kindOf(Side side) {
-  switch (side) {
-    case Side::Periodic: return Fluid;
-    case Side::Wall:
-    case Side::Inflow: return Solid;
-    case Side::Slip: return Slip;
-    case Side::Outflow: return Outflow;
-  }
-  return Solid;
-}
-
 Box boxOf(const Model& m) {
   const auto extent = [&](int d) {
     return m.isPeriodic(d) ? 0 : static_cast<std::int32_t>(m.cells[static_cast<std::size_t>(d)]);
   };
-  const auto kind = [&](std::size_t side) { return kindOf(m.sides[side]); };
+  const auto kind = [&](std::size_t side) { return static_cast<std::int32_t>(cellOf(m.sides[side])); };
   return {{extent(0), extent(1), extent(2)}, {kind(0), kind(2), kind(4)}, {kind(1), kind(3), kind(5)}};
 }
 

@@ -16,26 +16,19 @@
 #include "scene.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
-#include "support/stopwatch.hpp"
+#include "support/extents.hpp"
+#include "support/record.hpp"
 
 namespace {
 
 struct Settings {
-  std::filesystem::path scene, csv;
-  std::string study, size, scheme, precision;
+  std::filesystem::path scene;
+  std::string size, scheme, precision;
   std::optional<std::int64_t> steps;
-  std::optional<std::filesystem::path> output;
-  std::optional<int> frames;
-  bool small = false;
 };
 
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "what flows: a TOML file, as in examples/linear/fluid/scenes");
-  std::string studies = "compare with solutions that are known, and print a table:";
-  for (const fluid::Study& study : fluid::studies())
-    studies += fmt::format("\n  {:<13} {}", study.name, study.asks);
-  cli.add_option("--study", s.study, studies);
-  cli.add_flag("--small", s.small, "a study in seconds, coarser");
   cli.add_option("--size", s.size,
                  "cells, WxH or WxHxD, in place of the scene's; the width of what is simulated stays");
   cli.add_option("--steps", s.steps, "steps, in place of the scene's")->check(CLI::Range(1, 1'000'000'000));
@@ -44,33 +37,11 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->check(CLI::IsMember({"semi-lagrangian", "maccormack", "bfecc", "central"}));
   cli.add_option("--precision", s.precision, "single or double, in place of the scene's")
       ->check(CLI::IsMember({"single", "double"}));
-  cli.add_option("--output", s.output,
-                 "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
-  cli.add_option("--frames", s.frames, "pictures, evenly spaced in steps")->check(CLI::Range(1, 99999));
-  cli.add_option("--csv", s.csv,
-                 "a file for time step, speed, divergence, iterations and energy of each step");
 }
 
-std::vector<std::int64_t> sizeOf(const std::string& text) {
-  std::vector<std::int64_t> size;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find('x', at), text.size());
-    const std::string number = text.substr(at, end - at);
-    const bool isNumber =
-        !number.empty() && number.size() <= 5 && number.find_first_not_of("0123456789") == std::string::npos;
-    size.push_back(isNumber ? std::stoll(number) : 0);
-    at = end + 1;
-  }
-  if (size.size() < 2 || size.size() > 3 ||
-      std::ranges::any_of(size, [](auto n) { return n < 2 || n > 16384; }))
-    throw std::runtime_error(
-        fmt::format("--size: '{}' is no size; write WxH or WxHxD, each from 2 to 16384", text));
-  return size;
-}
-
-fluid::Scene sceneOf(const Settings& s) {
+fluid::Scene sceneOf(const Settings& s, const examples::RecordOptions& record) {
   fluid::Overrides overrides;
-  if (!s.size.empty()) overrides.size = sizeOf(s.size);
+  if (!s.size.empty()) overrides.size = examples::extentsOf("--size", s.size, {2, 16384, 3});
   overrides.steps = s.steps;
   const auto names = fluid::schemeNames();
   if (!s.scheme.empty())
@@ -78,26 +49,8 @@ fluid::Scene sceneOf(const Settings& s) {
   if (s.precision == "single") overrides.precision = sk::Precision::Single;
   if (s.precision == "double") overrides.precision = sk::Precision::Double;
   fluid::Scene scene = fluid::readScene(s.scene, overrides);
-  if (s.output) scene.record.output = *s.output;
-  if (s.frames) scene.record.frames = *s.frames;
-  if (!s.csv.empty()) scene.record.csv = s.csv;
+  record.apply(scene.record);
   return scene;
-}
-
-void study(examples::Application& app, const Settings& s) {
-  std::string names;
-  for (const fluid::Study& study : fluid::studies()) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
-    if (study.name != s.study) continue;
-    sk::Device device(app.device());
-    const examples::Stopwatch watch;
-    const fluid::Findings findings = study.run(device, s.small);
-    app.report(fmt::format("{}: {}", study.name, study.asks), device.name(), watch.milliseconds());
-    fmt::print("\n{}\n", findings.table);
-    for (const examples::Verification& verification : findings.verifications) app.verified(verification);
-    return;
-  }
-  throw std::runtime_error(fmt::format("no study is called '{}'; there are {}", s.study, names));
 }
 
 /// What a scene does without, and is therefore neither compiled nor stored.
@@ -113,14 +66,12 @@ std::string leftOut(const fluid::Model& m) {
   return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-void simulate(examples::Application& app, const Settings& s) {
-  const fluid::Scene scene = sceneOf(s);
+void simulate(examples::Application& app, const fluid::Scene& scene) {
   const fluid::Model& m = scene.model;
   sk::Device device(app.device());
   const fluid::Outcome o = fluid::run(device, scene);
-  const std::string size = m.isSpace() ? fmt::format("{} x {} x {}", m.cells[0], m.cells[1], m.cells[2])
-                                       : fmt::format("{} x {}", m.cells[0], m.cells[1]);
-  app.report(fmt::format("{}, {}, {} steps", scene.name, size, o.steps), device.name(), o.milliseconds);
+  app.report(fmt::format("{}, {}, {} steps", scene.name, fluid::sizeText(m), o.steps), device.name(),
+             o.milliseconds);
   fmt::print("computed: {}\nleft out: {}\n", fluid::operatorsOf(m), leftOut(m));
   fmt::print("a step: {} streams, {:.0f} passes, {:.1f} MB\n", o.streams, o.passes, o.bytes / 1e6);
   fmt::print("time {:.4g}, steps of {:.3g} to {:.3g} ({}), CFL number at most {:.2f}\n", o.time, o.shortest,
@@ -136,8 +87,7 @@ void simulate(examples::Application& app, const Settings& s) {
     fmt::print(
         "{} steps did not reach the tolerance {:.1g} in {} iterations; take a larger one, or more of them\n",
         o.missed, m.tolerance, m.mostIterations);
-  if (o.pictures > 0) fmt::print("wrote {}\n", scene.record.output.string());
-  if (!scene.record.csv.empty()) fmt::print("wrote {}\n", scene.record.csv.string());
+  examples::printWritten(scene.record, o.pictures);
   for (const examples::Verification& verification : o.verifications) app.verified(verification);
 }
 
@@ -148,10 +98,13 @@ int main(int argc, char** argv) {
   examples::Application app(
       "fluid", "Incompressible flows in planes and in space: Navier and Stokes' equations from scene files.");
   addOptions(app.options(), settings);
+  const examples::StudyOptions study(app, "compare with solutions that are known", fluid::studies());
+  const examples::RecordOptions record(app.options(),
+                                       "time step, speed, divergence, iterations and energy of each step");
   return app.run(argc, argv, [&] {
-    if (!settings.study.empty()) return study(app, settings);
+    if (study.isGiven()) return study.run();
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/linear/fluid/scenes/plume.toml");
-    simulate(app, settings);
+    simulate(app, sceneOf(settings, record));
   });
 }

@@ -40,17 +40,6 @@ int sideAt(const Model& m, const Place& at) {
   return side;
 }
 
-Cell cellOf(Side side) {
-  switch (side) {
-    case Side::Periodic: return Fluid;
-    case Side::Wall:
-    case Side::Inflow: return Solid;
-    case Side::Slip: return Slip;
-    case Side::Outflow: return Outflow;
-  }
-  return Solid;
-}
-
 Place wrapped(Place at, const Place& n) {
   for (std::size_t d = 0; d < 3; ++d) at[d] = (at[d] + n[d]) % n[d];
   return at;
@@ -157,6 +146,22 @@ Bounds Model::bounds() const {
   for (int d = 0; d < rank(); ++d)
     if (!isPeriodic(d)) return Around;
   return Nowhere;
+}
+
+Cell cellOf(Side side) {
+  switch (side) {
+    case Side::Periodic: return Fluid;
+    case Side::Wall:
+    case Side::Inflow: return Solid;
+    case Side::Slip: return Slip;
+    case Side::Outflow: return Outflow;
+  }
+  return Solid;
+}
+
+std::string sizeText(const Model& m) {
+  return m.isSpace() ? fmt::format("{} x {} x {}", m.cells[0], m.cells[1], m.cells[2])
+                     : fmt::format("{} x {}", m.cells[0], m.cells[1]);
 }
 
 std::string operatorsOf(const Model& m) {

@@ -91,6 +91,11 @@ struct Model {
   bool carriesHeat() const { return hasHeat; }
 };
 
+/// What a cell in the layer at a side is.
+Cell cellOf(Side side);
+
+/// "64 x 48", or "64 x 48 x 32" in space.
+std::string sizeText(const Model& model);
 /// "heat, smoke, viscosity, obstacles ...": what is computed, for people.
 std::string operatorsOf(const Model& model);
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "support/box_view.hpp"
 #include "support/colormap.hpp"
 #include "support/figure.hpp"
 #include "view.sk.hpp"
@@ -21,35 +22,6 @@ auto inner(sk::Stream<T>& stream, const Model& m) {
   const auto first = [&](int d) { return m.isPeriodic(d) ? std::int64_t{0} : std::int64_t{1}; };
   const auto& n = m.cells;
   return stream.domain({first(2), first(1), first(0)}, {first(2) + n[2], first(1) + n[1], first(0) + n[0]});
-}
-
-struct View3 {
-  Camera rays;
-  std::int64_t width, height;  ///< pixels
-};
-
-/// A parallel projection from above that shows the whole grid; `width` is that of the picture in pixels.
-View3 cameraFor(const Model& m, const View& view, double pixels) {
-  const double turn = view.turn, tilt = view.tilt;
-  const auto w = static_cast<double>(m.cells[0]), h = static_cast<double>(m.cells[1]),
-             d = static_cast<double>(m.cells[2]);
-  const Triple right = {std::cos(turn), 0.0, std::sin(turn)};
-  const Triple ahead = {-std::sin(turn) * std::cos(tilt), -std::sin(tilt), std::cos(turn) * std::cos(tilt)};
-  const Triple up = {-std::sin(turn) * std::sin(tilt), std::cos(tilt), std::cos(turn) * std::sin(tilt)};
-  const auto reach = [&](const Triple& axis) {
-    return 0.52 * (w * std::abs(axis[0]) + h * std::abs(axis[1]) + d * std::abs(axis[2]));
-  };
-  const auto vector = [](const Triple& axis, double length) {
-    return sk::float3{static_cast<float>(axis[0] * length), static_cast<float>(axis[1] * length),
-                      static_cast<float>(axis[2] * length)};
-  };
-  const double across = reach(right), along = reach(up);
-  const auto height =
-      static_cast<std::int64_t>(2 * std::lround(0.5 * pixels * std::min(along / across, 2.0)));
-  return {{vector({0.5 * (w - 1), 0.5 * (h - 1), 0.5 * (d - 1)}, 1.0), vector(right, across),
-           vector(up, along), vector(ahead, 1.0)},
-          static_cast<std::int64_t>(pixels),
-          height};
 }
 
 }  // namespace
@@ -115,7 +87,8 @@ examples::Image Painter::plane(Flow& flow) {
 examples::Image Painter::space(Flow& flow) {
   constexpr int finer = 2;  // rays for each pixel, in each direction
   const Model& m = scene_.model;
-  const View3 camera = cameraFor(m, scene_.view, 720.0 * finer);
+  const examples::BoxView view = examples::boxView(m.cells, scene_.view.turn, scene_.view.tilt, 720L * finer);
+  const Camera camera = {view.middle, view.right, view.up, view.ahead};
   const bool hasObstacles = !m.obstacles.empty(), glows = scene_.view.glows;
   Air air{};
   const Triple sun = {-0.45, 1.0, -0.35};
@@ -129,22 +102,21 @@ examples::Image Painter::space(Flow& flow) {
   const auto smoke = inner(flow.stream(Scalar::Smoke), m);
   double hottest = 1e-30;
   for (const Source& source : m.sources) hottest = std::max(hottest, source.temperature);
-  auto colour = device_.stream<sk::float3>({camera.height, camera.width});
+  auto colour = device_.stream<sk::float3>({view.height, view.width});
   const auto draw = [&](const auto& covered) {
     illuminate(hasObstacles, air, smoke, covered, *light_);
     if (glows)
-      march(hasObstacles, true, air, camera.rays, palette_, static_cast<float>(hottest), smoke, *light_,
-            covered, inner(flow.stream(Scalar::Heat), m), colour);
+      march(hasObstacles, true, air, camera, palette_, static_cast<float>(hottest), smoke, *light_, covered,
+            inner(flow.stream(Scalar::Heat), m), colour);
     else
-      march(hasObstacles, false, air, camera.rays, palette_, 1.0f, smoke, *light_, covered, sk::none, colour);
+      march(hasObstacles, false, air, camera, palette_, 1.0f, smoke, *light_, covered, sk::none, colour);
   };
   if (hasObstacles)
     draw(inner(covered_, m));
   else
     draw(covered_);
   return examples::reduced(
-      examples::imageOf(static_cast<int>(camera.width), static_cast<int>(camera.height), colour.read()),
-      finer);
+      examples::imageOf(static_cast<int>(view.width), static_cast<int>(view.height), colour.read()), finer);
 }
 
 examples::Image Painter::paint(Flow& flow, const std::string& moment) {

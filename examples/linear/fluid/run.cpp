@@ -3,82 +3,38 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
-#include <stdexcept>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "painter.hpp"
-#include "support/film.hpp"
 #include "support/progress.hpp"
+#include "support/record.hpp"
 #include "support/stopwatch.hpp"
 
 namespace fluid {
 
 namespace {
 
-class Pictures {
- public:
-  Pictures(sk::Device& device, const Scene& scene) : scene_(scene) {
-    const std::filesystem::path& output = scene.record.output;
-    if (output.empty()) return;
-    painter_ = std::make_unique<Painter>(device, scene);
-    if (scene.record.frames > 1 || output.extension() != ".png")
-      film_ = std::make_unique<examples::Film>(output, scene.record.framesPerSecond);
-  }
+/// The text below a picture.
+std::string captionOf(const Flow& flow) {
+  const Model& m = flow.model();
+  return fmt::format("{} cells   {}   step {}   time {:.3g}", sizeText(m),
+                     schemeNames()[static_cast<std::size_t>(m.scheme)], flow.steps(), flow.time());
+}
 
-  void add(Flow& flow) {
-    if (!painter_) return;
-    const Model& m = scene_.model;
-    std::string moment = m.isSpace() ? fmt::format("{} x {} x {} cells", m.cells[0], m.cells[1], m.cells[2])
-                                     : fmt::format("{} x {} cells", m.cells[0], m.cells[1]);
-    moment += fmt::format("   {}   step {}   time {:.3g}", schemeNames()[static_cast<std::size_t>(m.scheme)],
-                          flow.steps(), flow.time());
-    const examples::Image image = painter_->paint(flow, moment);
-    if (film_)
-      film_->add(image);
-    else
-      examples::savePng(scene_.record.output, image);
-    ++count_;
-  }
-  void finish() {
-    if (film_ && count_ > 0) film_->finish();
-  }
-  int count() const { return count_; }
+constexpr const char* csvHeads =
+    "step,time,time_step,cfl,speed,divergence_before,divergence_after,residual,iterations,energy";
 
- private:
-  const Scene& scene_;
-  std::unique_ptr<Painter> painter_;
-  std::unique_ptr<examples::Film> film_;
-  int count_ = 0;
-};
-
-class Numbers {
- public:
-  explicit Numbers(const std::filesystem::path& path) : path_(path.string()) {
-    if (path.empty()) return;
-    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
-    file_.open(path);
-    write("step,time,time_step,cfl,speed,divergence_before,divergence_after,residual,iterations,energy");
-  }
-  void add(const Step& s, const Flow& flow) {
-    if (path_.empty()) return;
-    const Projection& p = s.projection;
-    write(fmt::format("{},{:.9g},{:.9g},{:.4g},{:.9g},{:.4g},{:.4g},{:.4g},{},{:.9g}", flow.steps(),
-                      flow.time(), s.timeStep, s.cfl, s.speed, p.before, p.after, p.residual, p.iterations,
-                      flow.kineticEnergy()));
-  }
-
- private:
-  void write(const std::string& row) {
-    if (!(file_ << row << '\n').flush()) throw std::runtime_error(fmt::format("cannot write '{}'", path_));
-  }
-  std::string path_;
-  std::ofstream file_;
-};
+std::string csvRow(const Step& s, const Flow& flow) {
+  const Projection& p = s.projection;
+  return fmt::format("{},{:.9g},{:.9g},{:.4g},{:.9g},{:.4g},{:.4g},{:.4g},{},{:.9g}", flow.steps(),
+                     flow.time(), s.timeStep, s.cfl, s.speed, p.before, p.after, p.residual, p.iterations,
+                     flow.kineticEnergy());
+}
 
 /// The fields of a flow, as the device holds them.
 struct State {
@@ -101,10 +57,8 @@ void write(Flow& flow, const State& state) {
   if (flow.model().hasHeat) flow.write(Scalar::Heat, state.heat);
 }
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum / static_cast<double>(a.size()));
+double rootMeanSquare(const std::vector<double>& a, const std::vector<double>& b) {
+  return examples::distance(a, b) / std::sqrt(static_cast<double>(a.size()));
 }
 
 /// One step of the same model from the same state, on the device and in double precision on the host, both with a small tolerance.
@@ -134,7 +88,8 @@ std::vector<examples::Verification> checkStep(sk::Device& device, const Model& s
       fmt::format("the tolerance {:.0e} over the least eigenvalue's root, pi / {:.0f}, and 64 roundings",
                   model.tolerance, longest));
   for (std::size_t axis = 0; axis < a.velocity.size(); ++axis)
-    velocity.note(static_cast<std::int64_t>(axis), distance(a.velocity[axis], b.velocity[axis]) / scale);
+    velocity.note(static_cast<std::int64_t>(axis),
+                  rootMeanSquare(a.velocity[axis], b.velocity[axis]) / scale);
   std::vector<examples::Verification> found{velocity};
   if (!a.smoke.empty() || !a.heat.empty()) {
     examples::Verification scalars(
@@ -144,7 +99,7 @@ std::vector<examples::Verification> checkStep(sk::Device& device, const Model& s
     for (const auto& [x, y] : {std::pair{&a.smoke, &b.smoke}, std::pair{&a.heat, &b.heat}}) {
       double largest = 1e-30;
       for (const double value : *y) largest = std::max(largest, std::abs(value));
-      if (!y->empty()) scalars.note(0, distance(*x, *y) / largest);
+      if (!y->empty()) scalars.note(0, rootMeanSquare(*x, *y) / largest);
     }
     found.push_back(scalars);
   }
@@ -177,11 +132,11 @@ Outcome run(sk::Device& device, const Scene& scene) {
   Outcome outcome;
   Flow flow = begin(device, scene);
   outcome.streams = flow.streams();
-  Pictures pictures(device, scene);
-  Numbers numbers(scene.record.csv);
-  const int frames = scene.record.frames;
-  if (frames > 1) pictures.add(flow);
-  int frame = 1;
+  examples::Pictures pictures(scene.record);
+  examples::CsvFile csv(scene.record.csv, csvHeads);
+  std::optional<Painter> painter;
+  if (pictures.isWanted()) painter.emplace(device, scene);
+  if (pictures.wantsStart()) pictures.add(painter->paint(flow, captionOf(flow)));
   State beforeLast;
   {
     examples::Progress progress(scene.name, scene.steps);
@@ -192,13 +147,8 @@ Outcome run(sk::Device& device, const Scene& scene) {
         device.countPasses(true);
       }
       const examples::Stopwatch watch;
-      try {
-        outcome.last = flow.step();
-        if (isLast) flow.requireFinite();
-      } catch (...) {
-        pictures.finish();  // what there is stays, as a whole file
-        throw;
-      }
+      outcome.last = flow.step();
+      if (isLast) flow.requireFinite();
       device.finish();
       outcome.milliseconds += watch.milliseconds();
       if (isLast) {
@@ -213,12 +163,10 @@ Outcome run(sk::Device& device, const Scene& scene) {
       outcome.largestCfl = std::max(outcome.largestCfl, s.cfl);
       outcome.iterations += s.projection.iterations;
       outcome.missed += s.projection.reached ? 0 : 1;
-      numbers.add(s, flow);
-      const bool isDue = frames > 1 ? frame < frames && scene.steps * frame / (frames - 1) <= i : isLast;
-      if (isDue) {
+      if (csv.isWanted()) csv.add(csvRow(s, flow));
+      if (pictures.isDue(i, scene.steps)) {
         progress.clear();
-        pictures.add(flow);
-        ++frame;
+        pictures.add(painter->paint(flow, captionOf(flow)));
       }
       progress.update(i);
     }

@@ -32,42 +32,35 @@ constexpr std::array<std::string_view, 2> obstacleKinds = {"wall", "slip"};
 constexpr std::array<std::string_view, 4> shownNames = {"smoke", "temperature", "vorticity", "speed"};
 constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
 
-/// A sentence that begins with the name of a key.
-[[noreturn]] void refuse(const SceneTable& table, std::string_view key, std::string_view what) {
-  table.fail(key, fmt::format("'{}' {}", key, what));
-}
-
 /// Two or three numbers; the third is 0 if it is missing.
 std::optional<Triple> triple(const SceneTable& table, std::string_view key) {
   const auto numbers = table.numbers(key, -1, anything);
   if (!numbers) return std::nullopt;
   if (numbers->size() < 2 || numbers->size() > 3)
-    refuse(table, key, "has two or three numbers, along x, y and z");
+    table.refuse(key, "has two or three numbers, along x, y and z");
   return Triple{(*numbers)[0], (*numbers)[1], numbers->size() > 2 ? (*numbers)[2] : 0.0};
 }
 
 void readGrid(const SceneTable& table, const Overrides& overrides, Model& model) {
   const auto size = table.numbers("size", -1);
-  if (!size) refuse(table, "size", "is missing: cells along x, y and, in space, z");
-  if (size->size() < 2 || size->size() > 3) refuse(table, "size", "is width, height and, in space, depth");
+  if (!size) table.refuse("size", "is missing: cells along x, y and, in space, z");
+  if (size->size() < 2 || size->size() > 3) table.refuse("size", "is width, height and, in space, depth");
   for (std::size_t d = 0; d < size->size(); ++d) {
     const double n = (*size)[d];
-    if (n < 2 || n > 16384 || n != std::floor(n))
-      refuse(table, "size", "takes whole numbers from 2 to 16384");
+    if (n < 2 || n > 16384 || n != std::floor(n)) table.refuse("size", "takes whole numbers from 2 to 16384");
     model.cells[d] = static_cast<std::int64_t>(n);
   }
   model.spacing = table.number("spacing", positive).value_or(1.0 / static_cast<double>(model.cells[0]));
   if (!overrides.size.empty()) {
     if (overrides.size.size() != size->size())
-      refuse(table, "size",
-             fmt::format("has {} extents, and --size {}", size->size(), overrides.size.size()));
+      table.refuse("size", fmt::format("has {} extents, and --size {}", size->size(), overrides.size.size()));
     const double width = model.spacing * static_cast<double>(model.cells[0]);
     std::ranges::copy(overrides.size, model.cells.begin());
     model.spacing = width / static_cast<double>(model.cells[0]);
   }
   // The layer included; in three factors, none of which overflows.
   if ((model.cells[0] + 2) * (model.cells[1] + 2) * (model.cells[2] + 2) > mostCells)
-    refuse(table, "size", "makes more than 2^26 cells; take fewer");
+    table.refuse("size", "makes more than 2^26 cells; take fewer");
 }
 
 void readSide(const SceneTable& table, std::size_t side, Model& model) {
@@ -76,18 +69,18 @@ void readSide(const SceneTable& table, std::size_t side, Model& model) {
   const auto velocity = triple(table, velocityKeys[side]);
   const Side is = model.sides[side];
   if (is == Side::Inflow && !velocity)
-    refuse(table, sideNames[side],
-           fmt::format("is an inflow without a velocity; give {}", velocityKeys[side]));
+    table.refuse(sideNames[side],
+                 fmt::format("is an inflow without a velocity; give {}", velocityKeys[side]));
   if (!velocity) return;
   if (is != Side::Inflow && is != Side::Wall)
-    refuse(table, velocityKeys[side],
-           fmt::format("is for a wall or an inflow, and {} is neither", sideNames[side]));
+    table.refuse(velocityKeys[side],
+                 fmt::format("is for a wall or an inflow, and {} is neither", sideNames[side]));
   const double across = (*velocity)[side / 2] * (side % 2 == 0 ? 1.0 : -1.0);
   if (is == Side::Inflow && across <= 0.0)
-    refuse(table, velocityKeys[side], "does not point into the grid; what flows out takes an \"outflow\"");
+    table.refuse(velocityKeys[side], "does not point into the grid; what flows out takes an \"outflow\"");
   if (is == Side::Wall && across != 0.0)
-    refuse(table, velocityKeys[side],
-           "goes through a wall, which moves along itself only; make it an \"inflow\"");
+    table.refuse(velocityKeys[side],
+                 "goes through a wall, which moves along itself only; make it an \"inflow\"");
   model.sideVelocity[side] = *velocity;
 }
 
@@ -97,9 +90,8 @@ void readBoundary(const SceneTable& table, Model& model) {
   for (std::size_t low = 0; low < 6; low += 2)
     if ((model.sides[low] == Side::Periodic) != (model.sides[low + 1] == Side::Periodic)) {
       const std::size_t closed = model.sides[low] == Side::Periodic ? low + 1 : low;
-      refuse(
-          table, sideNames[closed],
-          fmt::format("is not periodic, but {} is; both are, or none", sideNames[closed ^ std::size_t{1}]));
+      table.refuse(sideNames[closed], fmt::format("is not periodic, but {} is; both are, or none",
+                                                  sideNames[closed ^ std::size_t{1}]));
     }
   if (const auto kind = table.choice("obstacles", obstacleKinds)) model.obstaclesSlip = *kind == 1;
 }
@@ -112,7 +104,7 @@ Shape readShape(const SceneTable& table) {
     shape.sphere = Sphere{*centre, *radius};
   } else if (low && high && !centre && !radius) {
     for (std::size_t d = 0; d < 2; ++d)
-      if ((*low)[d] >= (*high)[d]) refuse(table, "high", "is not above low");
+      if ((*low)[d] >= (*high)[d]) table.refuse("high", "is not above low");
     shape.brick = Brick{*low, *high};
   } else {
     table.fail("centre", "a shape is a centre and a radius, or the corners low and high");
@@ -123,8 +115,7 @@ Shape readShape(const SceneTable& table) {
 void readSources(const SceneTable& table, Model& model) {
   for (const SceneTable& t : table.tables("source")) {
     const auto smoke = t.number("smoke", Range{0.0, 1e6}), temperature = t.number("temperature", anything);
-    if (!smoke && !temperature)
-      refuse(t, "smoke", "is missing; a source holds smoke, a temperature, or both");
+    if (!smoke && !temperature) t.refuse("smoke", "is missing; a source holds smoke, a temperature, or both");
     model.hasSmoke |= smoke.has_value();
     model.hasHeat |= temperature.has_value();
     model.sources.push_back({readShape(t), smoke.value_or(0.0), temperature.value_or(0.0)});
@@ -136,20 +127,20 @@ void readBuoyancy(const SceneTable& table, Model& model) {
   b.lift = table.number("lift", anything).value_or(0.0);
   b.ambient = table.number("ambient", anything).value_or(0.0);
   b.sink = table.number("sink", anything).value_or(0.0);
-  if (b.lift != 0.0 && !model.hasHeat) refuse(table, "lift", "acts on temperatures, and no source has one");
-  if (b.sink != 0.0 && !model.hasSmoke) refuse(table, "sink", "acts on smoke, and no source has any");
+  if (b.lift != 0.0 && !model.hasHeat) table.refuse("lift", "acts on temperatures, and no source has one");
+  if (b.sink != 0.0 && !model.hasSmoke) table.refuse("sink", "acts on smoke, and no source has any");
   model.buoyancy = b;
 }
 
 void readViscosity(const SceneTable& table, Model& model) {
   Viscosity v;
   const auto value = table.number("value", fromZero);
-  if (!value) refuse(table, "value", "is missing: the kinematic viscosity");
+  if (!value) table.refuse("value", "is missing: the kinematic viscosity");
   v.value = *value;
   v.isImplicit = table.flag("implicit").value_or(false);
   if (v.isImplicit && model.scheme == Scheme::Central)
-    refuse(table, "implicit",
-           "goes with the other schemes; central differences take the viscosity explicitly");
+    table.refuse("implicit",
+                 "goes with the other schemes; central differences take the viscosity explicitly");
   if (v.value > 0.0) model.viscosity = v;
 }
 
@@ -167,11 +158,12 @@ void readRun(const SceneTable& table, const Overrides& overrides, Scene& scene) 
   if (!model.timeStep || !model.viscosity || model.viscosity->isImplicit) return;
   const double longest = model.spacing * model.spacing / (2.0 * model.rank() * model.viscosity->value);
   if (*model.timeStep > longest)
-    refuse(table, "time_step",
-           fmt::format(
-               "{:g} is not stable: viscosity allows {:.6g} (h^2 / ({} viscosity)); take a smaller one, or "
-               "implicit = true in [viscosity]",
-               *model.timeStep, longest, 2 * model.rank()));
+    table.refuse(
+        "time_step",
+        fmt::format(
+            "{:g} is not stable: viscosity allows {:.6g} (h^2 / ({} viscosity)); take a smaller one, or "
+            "implicit = true in [viscosity]",
+            *model.timeStep, longest, 2 * model.rank()));
 }
 
 void readView(const SceneTable& table, Scene& scene) {
@@ -179,11 +171,10 @@ void readView(const SceneTable& table, Scene& scene) {
   const Model& model = scene.model;
   if (const auto shown = table.choice("field", shownNames)) v.shown = static_cast<Shown>(*shown);
   if ((v.shown == Shown::Smoke && !model.hasSmoke) || (v.shown == Shown::Temperature && !model.hasHeat))
-    refuse(table, "field",
-           fmt::format("'{}' is not in this scene: no source has any",
-                       shownNames[static_cast<std::size_t>(v.shown)]));
+    table.refuse("field", fmt::format("'{}' is not in this scene: no source has any",
+                                      shownNames[static_cast<std::size_t>(v.shown)]));
   if (model.isSpace() && v.shown != Shown::Smoke)
-    refuse(table, "field", "is of planes; in space, smoke is drawn");
+    table.refuse("field", "is of planes; in space, smoke is drawn");
   if (const auto colours = table.text("colours")) v.colours = *colours;
   try {
     examples::colormap(v.colours, 2);
@@ -192,13 +183,13 @@ void readView(const SceneTable& table, Scene& scene) {
   }
   v.low = table.number("low", anything);
   v.high = table.number("high", anything);
-  if (v.low && v.high && *v.low >= *v.high) refuse(table, "high", "is not above low");
+  if (v.low && v.high && *v.low >= *v.high) table.refuse("high", "is not above low");
   v.zoom = static_cast<int>(table.integer("zoom", Range{1, 64}).value_or(0));
   v.turn = table.number("turn", Range{-10.0, 10.0}).value_or(v.turn);
   v.tilt = table.number("tilt", Range{0.02, 1.5}).value_or(v.tilt);
   v.thickness = table.number("thickness", Range{1e-3, 1e4}).value_or(v.thickness);
   v.glows = table.flag("glows").value_or(false);
-  if (v.glows && !model.hasHeat) refuse(table, "glows", "is of heat, and no source has a temperature");
+  if (v.glows && !model.hasHeat) table.refuse("glows", "is of heat, and no source has a temperature");
 }
 
 Initial readInitial(const SceneTable& table) {
@@ -207,15 +198,6 @@ Initial readInitial(const SceneTable& table) {
   i.noise = table.number("noise", fromZero).value_or(0.0);
   i.random = static_cast<std::uint32_t>(table.integer("random", Range{0, 4294967295.0}).value_or(1));
   return i;
-}
-
-Record readRecord(const SceneTable& table, const std::string& name) {
-  Record r;
-  r.output = table.text("output").value_or(name + ".png");
-  r.frames = static_cast<int>(table.integer("frames", Range{1, 99999}).value_or(1));
-  r.framesPerSecond = static_cast<int>(table.integer("frames_per_second", Range{1, 120}).value_or(25));
-  r.csv = table.text("csv").value_or("");
-  return r;
 }
 
 }  // namespace
@@ -231,7 +213,7 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   if (const auto t = table.table("grid"))
     readGrid(*t, overrides, model);
   else
-    refuse(table, "grid", "is missing: the table [grid] has the size");
+    table.refuse("grid", "is missing: the table [grid] has the size");
   for (std::size_t side = 0; side < 2 * static_cast<std::size_t>(model.rank()); ++side)
     model.sides[side] = Side::Wall;
   if (const auto t = table.table("convection"))
@@ -245,12 +227,11 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   if (const auto t = table.table("force")) model.force = triple(*t, "acceleration").value_or(model.force);
   if (const auto t = table.table("run")) readRun(*t, overrides, scene);
   if (const auto t = table.table("initial")) scene.initial = readInitial(*t);
-  scene.record.output = scene.name + ".png";
-  if (const auto t = table.table("record")) scene.record = readRecord(*t, scene.name);
+  scene.record = examples::readRecord(table.table("record"), scene.name);
   scene.view.shown = model.hasSmoke ? Shown::Smoke : Shown::Speed;
   if (const auto t = table.table("view")) readView(*t, scene);
   if (model.isSpace() && !model.hasSmoke && !scene.record.output.empty())
-    refuse(table, "source", "is missing: a picture in space shows smoke; or say output = \"\" in [record]");
+    table.refuse("source", "is missing: a picture in space shows smoke; or say output = \"\" in [record]");
   table.finish();
   if (const std::string wrong = contradiction(model); !wrong.empty()) {
     const char* key = wrong.starts_with("leave") ? "obstacle" : "boundary";

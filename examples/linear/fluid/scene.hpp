@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "model.hpp"
+#include "support/record.hpp"
 
 namespace fluid {
 
@@ -19,13 +20,6 @@ struct Initial {
   Triple velocity{};
   double noise = 0.0;  ///< largest random part of each component
   std::uint32_t random = 1;
-};
-
-struct Record {
-  std::filesystem::path output;  ///< empty: no picture
-  int frames = 1;
-  int framesPerSecond = 25;
-  std::filesystem::path csv;
 };
 
 enum class Shown { Smoke, Temperature, Vorticity, Speed };
@@ -45,7 +39,7 @@ struct Scene {
   Model model;
   Initial initial;
   std::int64_t steps = 100;
-  Record record;
+  examples::Record record;
   View view;
 };
 

@@ -29,8 +29,6 @@ struct Settings {
   std::optional<std::int64_t> steps;
   std::optional<double> timeStep;
   std::optional<std::string> layout;
-  std::string study;
-  bool small = false;
 };
 
 struct Scene {
@@ -138,22 +136,6 @@ void run(examples::Application& app, const Settings& s) {
   app.verified(verification);
 }
 
-void study(examples::Application& app, const Settings& s) {
-  std::string names;
-  for (const smooth::Study& study : smooth::studies()) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
-    if (study.name != s.study) continue;
-    sk::Device device(app.device());
-    const examples::Stopwatch watch;
-    const smooth::Findings findings = study.run(device, s.small);
-    app.report(fmt::format("{}: {}", study.name, study.asks), device.name(), watch.milliseconds());
-    fmt::print("\n{}\n", findings.table);
-    for (const examples::Verification& verification : findings.verifications) app.verified(verification);
-    return;
-  }
-  throw std::runtime_error(fmt::format("no study is called '{}'; there are {}", s.study, names));
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -170,13 +152,9 @@ int main(int argc, char** argv) {
   cli.add_option("--layout", settings.layout, "of the matrix, as solve --layout takes it");
   cli.add_option("--obj", settings.obj, "file for the surface at the end");
   cli.add_option("-o,--output", settings.picture, "picture of the surface before and after, .png");
-  std::string studies = "measure flows whose solution is known, and print tables:";
-  for (const smooth::Study& study : smooth::studies())
-    studies += fmt::format("\n  {:<9} {}", study.name, study.asks);
-  cli.add_option("--study", settings.study, studies);
-  cli.add_flag("--small", settings.small, "a study in a second, coarser");
+  const examples::StudyOptions study(app, "measure flows whose solution is known", smooth::studies());
   return app.run(argc, argv, [&] {
-    if (!settings.study.empty()) return study(app, settings);
+    if (study.isGiven()) return study.run();
     if (settings.input.empty())
       throw std::runtime_error("no surface is named; try examples/linear/smooth/scenes/sphere.toml");
     run(app, settings);

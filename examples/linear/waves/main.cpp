@@ -16,57 +16,31 @@
 #include "scene.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
-#include "support/stopwatch.hpp"
+#include "support/extents.hpp"
+#include "support/record.hpp"
 
 namespace {
 
 struct Settings {
-  std::filesystem::path scene, csv;
-  std::string study, size, pixels, scheme, precision;
+  std::filesystem::path scene;
+  std::string size, pixels, scheme, precision;
   std::optional<std::int64_t> steps;
-  std::optional<std::filesystem::path> output;
-  std::optional<int> frames;
-  bool small = false;
 };
 
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "a pool and its drops: a TOML file, as in examples/linear/waves/scenes");
-  std::string studies = "compare with what is known, and print a table:";
-  for (const waves::Study& study : waves::studies())
-    studies += fmt::format("\n  {:<11} {}", study.name, study.asks);
-  cli.add_option("--study", s.study, studies);
-  cli.add_flag("--small", s.small, "a study in seconds, coarser");
   cli.add_option("--size", s.size, "cells, WxH, in place of the scene's; the pool's width stays");
   cli.add_option("--steps", s.steps, "steps, in place of the scene's")->check(CLI::Range(1, 1'000'000'000));
   cli.add_option("--scheme", s.scheme, "crank-nicolson or backward-euler, in place of the scene's")
       ->check(CLI::IsMember({"crank-nicolson", "backward-euler"}));
   cli.add_option("--precision", s.precision, "single or double, in place of the scene's")
       ->check(CLI::IsMember({"single", "double"}));
-  cli.add_option("--output", s.output,
-                 "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
   cli.add_option("--pixels", s.pixels, "of a picture without its title, WxH, in place of the scene's");
-  cli.add_option("--frames", s.frames, "pictures, evenly spaced in steps")->check(CLI::Range(1, 99999));
-  cli.add_option("--csv", s.csv, "a file for time, iterations, residual and energy of each step");
 }
 
-std::vector<std::int64_t> sizeOf(const char* option, const std::string& text, std::int64_t least,
-                                 std::int64_t most) {
-  const std::size_t x = text.find('x');
-  std::vector<std::int64_t> size;
-  for (const std::string& number : {text.substr(0, x), x == std::string::npos ? "" : text.substr(x + 1)}) {
-    const bool isNumber =
-        !number.empty() && number.size() <= 5 && number.find_first_not_of("0123456789") == std::string::npos;
-    size.push_back(isNumber ? std::stoll(number) : 0);
-  }
-  if (std::ranges::any_of(size, [&](auto n) { return n < least || n > most; }))
-    throw std::runtime_error(
-        fmt::format("{}: '{}' is no size; write WxH, each from {} to {}", option, text, least, most));
-  return size;
-}
-
-waves::Scene sceneOf(const Settings& s) {
+waves::Scene sceneOf(const Settings& s, const examples::RecordOptions& record) {
   waves::Overrides overrides;
-  if (!s.size.empty()) overrides.size = sizeOf("--size", s.size, 2, 16384);
+  if (!s.size.empty()) overrides.size = examples::extentsOf("--size", s.size, {2, 16384});
   overrides.steps = s.steps;
   const auto names = waves::schemeNames();
   if (!s.scheme.empty())
@@ -75,34 +49,15 @@ waves::Scene sceneOf(const Settings& s) {
   if (s.precision == "double") overrides.precision = sk::Precision::Double;
   waves::Scene scene = waves::readScene(s.scene, overrides);
   if (!s.pixels.empty()) {
-    const std::vector<std::int64_t> pixels = sizeOf("--pixels", s.pixels, 16, 8192);
+    const std::vector<std::int64_t> pixels = examples::extentsOf("--pixels", s.pixels, {16, 8192});
     scene.view.width = static_cast<int>(pixels[0]);
     scene.view.height = static_cast<int>(pixels[1]);
   }
-  if (s.output) scene.record.output = *s.output;
-  if (s.frames) scene.record.frames = *s.frames;
-  if (!s.csv.empty()) scene.record.csv = s.csv;
+  record.apply(scene.record);
   return scene;
 }
 
-void study(examples::Application& app, const Settings& s) {
-  std::string names;
-  for (const waves::Study& study : waves::studies()) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
-    if (study.name != s.study) continue;
-    sk::Device device(app.device());
-    const examples::Stopwatch watch;
-    const waves::Findings findings = study.run(device, s.small);
-    app.report(fmt::format("{}: {}", study.name, study.asks), device.name(), watch.milliseconds());
-    fmt::print("\n{}\n", findings.table);
-    for (const examples::Verification& verification : findings.verifications) app.verified(verification);
-    return;
-  }
-  throw std::runtime_error(fmt::format("no study is called '{}'; there are {}", s.study, names));
-}
-
-void simulate(examples::Application& app, const Settings& s) {
-  const waves::Scene scene = sceneOf(s);
+void simulate(examples::Application& app, const waves::Scene& scene) {
   const waves::Model& m = scene.model;
   sk::Device device(app.device());
   const waves::Outcome o = waves::run(device, scene);
@@ -120,8 +75,7 @@ void simulate(examples::Application& app, const Settings& s) {
     fmt::print(
         "{} steps did not reach the tolerance {:.1g} in {} iterations; take a larger one, or more of them\n",
         o.missed, m.tolerance, m.mostIterations);
-  if (o.pictures > 0) fmt::print("wrote {}\n", scene.record.output.string());
-  if (!scene.record.csv.empty()) fmt::print("wrote {}\n", scene.record.csv.string());
+  examples::printWritten(scene.record, o.pictures);
   for (const examples::Verification& verification : o.verifications) app.verified(verification);
 }
 
@@ -131,10 +85,12 @@ int main(int argc, char** argv) {
   Settings settings;
   examples::Application app("waves", "Waves of a water surface: an implicit wave equation from scene files.");
   addOptions(app.options(), settings);
+  const examples::StudyOptions study(app, "compare with what is known", waves::studies());
+  const examples::RecordOptions record(app.options(), "time, iterations, residual and energy of each step");
   return app.run(argc, argv, [&] {
-    if (!settings.study.empty()) return study(app, settings);
+    if (study.isGiven()) return study.run();
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/linear/waves/scenes/drops.toml");
-    simulate(app, settings);
+    simulate(app, sceneOf(settings, record));
   });
 }

@@ -3,79 +3,35 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <memory>
-#include <stdexcept>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "painter.hpp"
 #include "support/figure.hpp"
-#include "support/film.hpp"
 #include "support/progress.hpp"
+#include "support/record.hpp"
 #include "support/stopwatch.hpp"
 
 namespace waves {
 
 namespace {
 
-class Pictures {
- public:
-  Pictures(sk::Device& device, const Scene& scene) : scene_(scene) {
-    const std::filesystem::path& output = scene.record.output;
-    if (output.empty()) return;
-    painter_ = std::make_unique<Painter>(device, scene);
-    if (scene.record.frames > 1 || output.extension() != ".png")
-      film_ = std::make_unique<examples::Film>(output, scene.record.framesPerSecond);
-  }
+examples::Image pictureOf(Painter& painter, const Scene& scene, const Surface& surface) {
+  const Model& m = scene.model;
+  const std::string moment = fmt::format("{} x {} cells   {}   Courant number {:.3g}   step {}   time {:.3g}",
+                                         m.width, m.height, schemeNames()[static_cast<std::size_t>(m.scheme)],
+                                         std::sqrt(m.lambdaSquared()), surface.steps(), surface.time());
+  return examples::figure(painter.paint(surface), {scene.title, "", moment});
+}
 
-  void add(const Surface& surface) {
-    if (!painter_) return;
-    const Model& m = scene_.model;
-    const std::string moment =
-        fmt::format("{} x {} cells   {}   Courant number {:.3g}   step {}   time {:.3g}", m.width, m.height,
-                    schemeNames()[static_cast<std::size_t>(m.scheme)], std::sqrt(m.lambdaSquared()),
-                    surface.steps(), surface.time());
-    const examples::Image image = examples::figure(painter_->paint(surface), {scene_.title, "", moment});
-    if (film_)
-      film_->add(image);
-    else
-      examples::savePng(scene_.record.output, image);
-    ++count_;
-  }
-  void finish() {
-    if (film_ && count_ > 0) film_->finish();
-  }
-  int count() const { return count_; }
+constexpr const char* csvHeads = "step,time,iterations,residual,energy";
 
- private:
-  const Scene& scene_;
-  std::unique_ptr<Painter> painter_;
-  std::unique_ptr<examples::Film> film_;
-  int count_ = 0;
-};
-
-class Numbers {
- public:
-  explicit Numbers(const std::filesystem::path& path) : path_(path.string()) {
-    if (path.empty()) return;
-    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
-    file_.open(path);
-    write("step,time,iterations,residual,energy");
-  }
-  void add(const Step& s, const Surface& surface) {
-    if (path_.empty()) return;
-    write(fmt::format("{},{:.9g},{},{:.4g},{:.9g}", surface.steps(), surface.time(), s.iterations, s.residual,
-                      surface.energy()));
-  }
-
- private:
-  void write(const std::string& row) {
-    if (!(file_ << row << '\n').flush()) throw std::runtime_error(fmt::format("cannot write '{}'", path_));
-  }
-  std::string path_;
-  std::ofstream file_;
-};
+std::string csvRow(const Step& s, const Surface& surface) {
+  return fmt::format("{},{:.9g},{},{:.4g},{:.9g}", surface.steps(), surface.time(), s.iterations, s.residual,
+                     surface.energy());
+}
 
 /// The energy between drops, each of which begins a stretch of its own.
 class Energies {
@@ -93,12 +49,6 @@ class Energies {
   const Surface& surface_;
   double start_, drift_ = 0.0, bound_ = 0.0;
 };
-
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum);
-}
 
 /// One step from the same state on the device and in double precision on the host.
 examples::Verification checkStep(sk::Device& device, const Model& model, const std::vector<double>& heights,
@@ -120,7 +70,7 @@ examples::Verification checkStep(sk::Device& device, const Model& model, const s
       "a step's heights against double precision, 2-norm",
       (std::max(model.tolerance, model.attainable()) + 8.0 * model.roundoff()) / model.theta(),
       "the tolerance over theta, since the inverse of the matrix has the norm 1, and roundings");
-  v.note(0, distance(here.heights(), there.heights()) / std::max(step.length, 1e-300));
+  v.note(0, examples::distance(here.heights(), there.heights()) / std::max(step.length, 1e-300));
   return v;
 }
 
@@ -131,10 +81,10 @@ Outcome run(sk::Device& device, const Scene& scene) {
   Outcome outcome;
   Surface surface(device, m);
   Energies energies(surface);
-  Pictures pictures(device, scene);
-  Numbers numbers(scene.record.csv);
-  const int frames = scene.record.frames;
-  int frame = 1;
+  examples::Pictures pictures(scene.record);
+  examples::CsvFile csv(scene.record.csv, csvHeads);
+  std::optional<Painter> painter;
+  if (pictures.isWanted()) painter.emplace(device, scene);
   auto drop = scene.drops.begin();
   std::vector<double> heights, velocities;
   {
@@ -148,19 +98,13 @@ Outcome run(sk::Device& device, const Scene& scene) {
         surface.writeHeights(heights);
         energies.begin();
       }
-      if (frames > 1 && i == 1) pictures.add(surface);
+      if (i == 1 && pictures.wantsStart()) pictures.add(pictureOf(*painter, scene, surface));
       if (isLast) {
         heights = surface.heights();
         velocities = surface.velocities();
       }
-      Step step;
       const examples::Stopwatch watch;
-      try {
-        step = surface.step();
-      } catch (...) {
-        pictures.finish();  // what there is stays, as a whole file
-        throw;
-      }
+      const Step step = surface.step();
       device.finish();
       outcome.milliseconds += watch.milliseconds();
       energies.add(step);
@@ -168,11 +112,10 @@ Outcome run(sk::Device& device, const Scene& scene) {
       outcome.mostIterations = std::max(outcome.mostIterations, step.iterations);
       outcome.residual = std::max(outcome.residual, step.residual);
       outcome.missed += step.reached ? 0 : 1;
-      numbers.add(step, surface);
-      if (frames > 1 ? frame < frames && scene.steps * frame / (frames - 1) <= i : isLast) {
+      if (csv.isWanted()) csv.add(csvRow(step, surface));
+      if (pictures.isDue(i, scene.steps)) {
         progress.clear();
-        pictures.add(surface);
-        ++frame;
+        pictures.add(pictureOf(*painter, scene, surface));
       }
       progress.update(i);
     }

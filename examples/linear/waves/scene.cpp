@@ -21,17 +21,11 @@ constexpr std::int64_t mostCells = std::int64_t{1} << 26;
 constexpr std::array<std::string_view, 2> schemes = {"crank-nicolson", "backward-euler"};
 constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
 
-/// A sentence that begins with the name of a key.
-[[noreturn]] void refuse(const SceneTable& table, std::string_view key, std::string_view what) {
-  table.fail(key, fmt::format("'{}' {}", key, what));
-}
-
 void readWater(const SceneTable& table, const Overrides& overrides, Model& m) {
   const auto size = table.numbers("size", 2);
-  if (!size) refuse(table, "size", "is missing: cells along x and y");
+  if (!size) table.refuse("size", "is missing: cells along x and y");
   for (const double n : *size)
-    if (n < 2 || n > 16384 || n != std::floor(n))
-      refuse(table, "size", "takes whole numbers from 2 to 16384");
+    if (n < 2 || n > 16384 || n != std::floor(n)) table.refuse("size", "takes whole numbers from 2 to 16384");
   m.width = static_cast<std::int64_t>((*size)[0]);
   m.height = static_cast<std::int64_t>((*size)[1]);
   const double width = table.number("width", positive).value_or(1.0);
@@ -39,7 +33,7 @@ void readWater(const SceneTable& table, const Overrides& overrides, Model& m) {
     m.width = overrides.size[0];
     m.height = overrides.size[1];
   }
-  if (m.width * m.height > mostCells) refuse(table, "size", "makes more than 2^26 cells; take fewer");
+  if (m.width * m.height > mostCells) table.refuse("size", "makes more than 2^26 cells; take fewer");
   m.spacing = width / static_cast<double>(m.width);
   m.speed = table.number("speed", positive).value_or(1.0);
 }
@@ -58,13 +52,13 @@ void readRun(const SceneTable& table, Scene& scene) {
 
 Drop readDrop(const SceneTable& table) {
   const auto centre = table.numbers("centre", 2, Range{-1e12, 1e12});
-  if (!centre) refuse(table, "centre", "is missing: where the drop falls, x and y");
+  if (!centre) table.refuse("centre", "is missing: where the drop falls, x and y");
   const auto radius = table.number("radius", positive);
   const auto depth = table.number("depth", Range{-1e6, 1e6});
   const auto time = table.number("time", Range{0.0, 1e12});
   if (!radius) {
     table.finish();  // a misspelt key is the better message
-    refuse(table, "radius", "of the drop is missing");
+    table.refuse("radius", "of the drop is missing");
   }
   return {.x = (*centre)[0],
           .y = (*centre)[1],
@@ -73,19 +67,11 @@ Drop readDrop(const SceneTable& table) {
           .time = time.value_or(0.0)};
 }
 
-void readRecord(const SceneTable& table, Record& r) {
-  if (const auto output = table.text("output")) r.output = *output;
-  r.frames = static_cast<int>(table.integer("frames", Range{1, 99999}).value_or(r.frames));
-  r.framesPerSecond =
-      static_cast<int>(table.integer("frames_per_second", Range{1, 120}).value_or(r.framesPerSecond));
-  if (const auto csv = table.text("csv")) r.csv = *csv;
-}
-
 void readView(const SceneTable& table, View& v) {
   if (const auto pixels = table.numbers("pixels", 2)) {
     for (const double n : *pixels)
       if (n < 16 || n > 8192 || n != std::floor(n))
-        refuse(table, "pixels", "takes whole numbers from 16 to 8192");
+        table.refuse("pixels", "takes whole numbers from 16 to 8192");
     v.width = static_cast<int>((*pixels)[0]);
     v.height = static_cast<int>((*pixels)[1]);
   }
@@ -110,17 +96,16 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   if (const auto t = table.table("water"))
     readWater(*t, overrides, m);
   else
-    refuse(table, "water", "is missing: the table [water] has the size");
+    table.refuse("water", "is missing: the table [water] has the size");
   m.timeStep = m.spacing / m.speed;
   if (const auto t = table.table("run")) readRun(*t, scene);
   if (overrides.scheme) m.scheme = *overrides.scheme;
   if (overrides.precision) m.precision = *overrides.precision;
   if (overrides.steps) scene.steps = *overrides.steps;
   for (const SceneTable& t : table.tables("drop")) scene.drops.push_back(readDrop(t));
-  if (scene.drops.empty()) refuse(table, "drop", "is missing: without a [[drop]] the water stays flat");
+  if (scene.drops.empty()) table.refuse("drop", "is missing: without a [[drop]] the water stays flat");
   std::ranges::stable_sort(scene.drops, {}, &Drop::time);
-  scene.record.output = scene.name + ".png";
-  if (const auto t = table.table("record")) readRecord(*t, scene.record);
+  scene.record = examples::readRecord(table.table("record"), scene.name);
   if (const auto t = table.table("view")) readView(*t, scene.view);
   table.finish();
   if (!std::isfinite(static_cast<float>(m.lambdaSquared())) || m.lambdaSquared() > 1e8)

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "support/record.hpp"
 #include "surface.hpp"
 
 namespace waves {
@@ -19,13 +20,6 @@ namespace waves {
 struct Drop {
   double x = 0.0, y = 0.0, radius = 0.0, depth = 0.0;
   double time = 0.0;  ///< it falls before the first step that begins then or later
-};
-
-struct Record {
-  std::filesystem::path output;  ///< empty: no picture
-  int frames = 1;
-  int framesPerSecond = 25;
-  std::filesystem::path csv;
 };
 
 struct View {
@@ -42,7 +36,7 @@ struct Scene {
   Model model;
   std::vector<Drop> drops;  ///< by their times
   std::int64_t steps = 200;
-  Record record;
+  examples::Record record;
   View view;
 };
 

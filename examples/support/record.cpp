@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "support/record.hpp"
+
+#include <stdexcept>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace examples {
+
+Record readRecord(const std::optional<SceneTable>& table, std::string_view name) {
+  Record r;
+  r.output = fmt::format("{}.png", name);
+  if (!table) return r;
+  if (const auto output = table->text("output")) r.output = *output;
+  r.frames = static_cast<int>(table->integer("frames", Range{1, 99999}).value_or(r.frames));
+  r.framesPerSecond =
+      static_cast<int>(table->integer("frames_per_second", Range{1, 120}).value_or(r.framesPerSecond));
+  if (const auto csv = table->text("csv")) r.csv = *csv;
+  return r;
+}
+
+RecordOptions::RecordOptions(CLI::App& cli, std::string_view columns) {
+  cli.add_option("--output", output_, "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
+  cli.add_option("--frames", frames_, "pictures, evenly spaced in steps")->check(CLI::Range(1, 99999));
+  cli.add_option("--csv", csv_, fmt::format("a file for {}", columns));
+}
+
+void RecordOptions::apply(Record& record) const {
+  if (output_) record.output = *output_;
+  if (frames_) record.frames = *frames_;
+  if (!csv_.empty()) record.csv = csv_;
+}
+
+Pictures::Pictures(const Record& record) : record_(record) {
+  if (isWanted() && (record.frames > 1 || record.output.extension() != ".png"))
+    film_ = std::make_unique<Film>(record.output, record.framesPerSecond);
+}
+
+Pictures::~Pictures() {
+  try {
+    finish();
+  } catch (...) {  // the error that ended the run is the one to report
+  }
+}
+
+std::int64_t Pictures::nextStep(std::int64_t steps) const {
+  if (record_.frames < 2 || count_ >= record_.frames) return steps;
+  return steps * count_ / (record_.frames - 1);
+}
+
+bool Pictures::isDue(std::int64_t step, std::int64_t steps) const {
+  return isWanted() && count_ < record_.frames && nextStep(steps) <= step;
+}
+
+void Pictures::add(const Image& image) {
+  if (film_)
+    film_->add(image);
+  else
+    savePng(record_.output, image);
+  ++count_;
+}
+
+void Pictures::finish() {
+  if (const std::unique_ptr<Film> film = std::move(film_); film && count_ > 0) film->finish();
+}
+
+CsvFile::CsvFile(const std::filesystem::path& file, std::string_view heads) : name_(file.string()) {
+  if (!isWanted()) return;
+  std::error_code ignored;  // a file that cannot be written is reported by `add`
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+  file_.open(file);
+  add(heads);
+}
+
+void CsvFile::add(std::string_view row) {
+  if (!isWanted()) return;
+  if (!(file_ << row << '\n').flush()) throw std::runtime_error(fmt::format("cannot write '{}'", name_));
+}
+
+void printWritten(const Record& record, int pictures) {
+  if (pictures > 0) fmt::print("wrote {}\n", record.output.string());
+  if (!record.csv.empty()) fmt::print("wrote {}\n", record.csv.string());
+}
+
+}  // namespace examples

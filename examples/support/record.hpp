@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+//
+// What a run writes while it proceeds: pictures at even intervals and rows of numbers, as a scene's [record] or the command line asks.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+
+#include "support/film.hpp"
+#include "support/image.hpp"
+#include "support/scene_file.hpp"
+
+namespace examples {
+
+struct Record {
+  std::filesystem::path output;  ///< a picture, or a film if there are several frames; empty: neither
+  int frames = 1;  ///< 1: the end of the run; more: evenly spaced from its start to its end
+  int framesPerSecond = 25;  ///< of a film
+  std::filesystem::path csv{};  ///< empty: no numbers
+};
+
+/// Reads output, frames, frames_per_second and csv of the table [record]. `name` is the scene's; its picture is NAME.png by default.
+Record readRecord(const std::optional<SceneTable>& table, std::string_view name);
+
+/// The options --output, --frames and --csv, which take precedence over the scene.
+class RecordOptions {
+ public:
+  /// Adds the options, of which `columns` describes the file of --csv. This object must outlive the parsing.
+  RecordOptions(CLI::App& cli, std::string_view columns);
+  void apply(Record& record) const;
+
+ private:
+  std::optional<std::filesystem::path> output_;
+  std::optional<int> frames_;
+  std::filesystem::path csv_;
+};
+
+/// The pictures of a run, in one PNG file or a film. A run that throws keeps the pictures that were added, in a complete file.
+class Pictures {
+ public:
+  /// Creates the film. Throws std::runtime_error if the file cannot be written.
+  explicit Pictures(const Record& record);
+  ~Pictures();
+  Pictures(const Pictures&) = delete;
+  Pictures& operator=(const Pictures&) = delete;
+
+  /// False if the record has no output; nothing may be added then.
+  bool isWanted() const { return !record_.output.empty(); }
+  /// Whether the start of the run is the first frame.
+  bool wantsStart() const { return isWanted() && record_.frames > 1; }
+  /// The step that the next frame shows, in a run of `steps` steps; `steps` after the last frame.
+  std::int64_t nextStep(std::int64_t steps) const;
+  /// Whether a frame is due after `step` of `steps` steps.
+  bool isDue(std::int64_t step, std::int64_t steps) const;
+  void add(const Image& image);
+  /// Completes the film. Throws std::runtime_error if that fails.
+  void finish();
+  int count() const { return count_; }
+
+ private:
+  Record record_;
+  std::unique_ptr<Film> film_;
+  int count_ = 0;
+};
+
+/// Lines of comma-separated values, each of which is on file when `add` returns.
+class CsvFile {
+ public:
+  /// Creates the file, and its folder if there is none. An empty path: no file, and `add` does nothing.
+  CsvFile(const std::filesystem::path& file, std::string_view heads);
+  bool isWanted() const { return !name_.empty(); }
+  /// Throws std::runtime_error if the file cannot be written.
+  void add(std::string_view row);
+
+ private:
+  std::string name_;
+  std::ofstream file_;
+};
+
+/// Prints which files a run wrote.
+void printWritten(const Record& record, int pictures);
+
+}  // namespace examples
