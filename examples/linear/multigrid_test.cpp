@@ -179,7 +179,7 @@ TEST_CASE(
 }
 
 /// Devices that compute in all ways: natively, by fragments, by compute shaders.
-std::vector<sk::Device> devices() {
+std::vector<sk::Device> gridDevices() {
   std::vector<sk::Device> all;
   all.push_back(sk::Device::native());
   for (const char* profile : {"essl300", "glsl430"})
@@ -188,7 +188,7 @@ std::vector<sk::Device> devices() {
 }
 
 TEST_CASE("Multigrid computes alike on every device") {
-  std::vector<sk::Device> all = devices();
+  std::vector<sk::Device> all = gridDevices();
   for (const Stencil& a :
        {poisson({13, 18}), poissonWith({13, 17}, {turned, ring}), poissonWith({13, 18}, {ring, mirrors})}) {
     std::vector<double> r = randomVector(a.size(), 5);
@@ -233,7 +233,7 @@ TEST_CASE("Products have the eigenvectors that the ends of the grid give") {
   const std::vector<std::vector<Ends>> cases = {
       {mirrors, ring},   {mixed, mirrors},       {ring, turned},          {fixedEnds, mirrors},
       {ring, fixedEnds}, {mirrors, ring, mixed}, {turned, mirrors, ring}, {ring, mixed, fixedEnds}};
-  std::vector<sk::Device> all = devices();
+  std::vector<sk::Device> all = gridDevices();
   for (sk::Device& device : all)
     for (const std::vector<Ends>& ends : cases) {
       const bool isPlane = ends.size() == 2;
@@ -281,7 +281,7 @@ Solution solved(sk::Device& device, const Stencil& a, const std::vector<double>&
 }
 
 TEST_CASE("Singular grids drop the mean of the right-hand side, and tell it") {
-  for (sk::Device& device : devices()) {
+  for (sk::Device& device : gridDevices()) {
     if (device.profile() == "essl300") continue;  // drawn cycles are checked above
     CAPTURE(device.profile());
     const Stencil a = poissonWith({13, 11}, {mirrors, ring});

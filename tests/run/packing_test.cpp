@@ -285,19 +285,21 @@ TEST_CASE("reduces of blocks, and of views, of packed streams") {
 }
 
 TEST_CASE("what is pushed and scattered from packed streams, and to them") {
-  sameAsNative([](sk::Device& one, Results& results) {
-    const sk::Shape shape{9, 16};
-    auto x = filled<float>(one, shape);
-    auto at = filled<int>(one, shape, 6);
-    auto pushed = one.stream<float>({4});
-    packing::positive(x, pushed);
-    results.add(pushed);
-    auto target = filled<float>(one, {100}, 2);
-    packing::spread(x, at, target);
-    results.add(target);
-    packing::add(target, target, target);
-    results.add(target);
-  }, drawnLayouts);
+  sameAsNative(
+      [](sk::Device& one, Results& results) {
+        const sk::Shape shape{9, 16};
+        auto x = filled<float>(one, shape);
+        auto at = filled<int>(one, shape, 6);
+        auto pushed = one.stream<float>({4});
+        packing::positive(x, pushed);
+        results.add(pushed);
+        auto target = filled<float>(one, {100}, 2);
+        packing::spread(x, at, target);
+        results.add(target);
+        packing::add(target, target, target);
+        results.add(target);
+      },
+      drawnLayouts);
 }
 
 TEST_CASE("a packed stream gives a texture of its elements") {

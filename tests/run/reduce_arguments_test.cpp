@@ -20,7 +20,7 @@ float otherAt(std::size_t i) { return smallAt(i + 100003); }
 std::uint32_t bitsAt(std::size_t i) { return valueAt<std::uint32_t>(static_cast<std::uint32_t>(i)); }
 
 const std::vector<sk::Shape> allShapes = {{1},      {31},     {1021},     {4093},
-                                       {13, 17}, {1, 200}, {5, 7, 11}, {2, 3, 5, 7}};
+                                          {13, 17}, {1, 200}, {5, 7, 11}, {2, 3, 5, 7}};
 
 /// Every shape, or a line and a plane of several passes each: the other ranks read elements by the same functions.
 std::vector<sk::Shape> shapesOn(const sk::Device& device) {

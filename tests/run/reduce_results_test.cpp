@@ -23,7 +23,7 @@ float distinctAt(std::size_t i) {
 }
 
 const std::vector<sk::Shape> allShapes = {{1},      {2},      {33},     {1021},     {4093},
-                                       {13, 17}, {1, 200}, {200, 1}, {5, 7, 11}, {2, 3, 5, 7}};
+                                          {13, 17}, {1, 200}, {200, 1}, {5, 7, 11}, {2, 3, 5, 7}};
 
 /// Every shape, or a line and a plane of several passes each: the other ranks read elements by the same functions.
 std::vector<sk::Shape> shapesOn(const sk::Device& device) {

@@ -77,8 +77,8 @@ TEST_CASE("integers of any length are scanned, with or without the element itsel
 TEST_CASE("streams are scanned as a whole or along each dimension") {
   onEveryProfile([](sk::Device& device) {
     const bool isNative = &device == &run_tests::device("native");
-    const std::vector<sk::Shape> all = {{50},    {1, 1},      {37, 41},     {3, 5000},     {5000, 3},     {1, 70},
-                                        {70, 1}, {5, 6, 7},   {3, 1, 700},  {2, 3, 4, 5},  {3, 70, 1, 90}};
+    const std::vector<sk::Shape> all = {{50},    {1, 1},    {37, 41},    {3, 5000},    {5000, 3},     {1, 70},
+                                        {70, 1}, {5, 6, 7}, {3, 1, 700}, {2, 3, 4, 5}, {3, 70, 1, 90}};
     // GL compiles programs for each rank and direction: a sample has all of them, and lines of one pass and of several.
     const std::vector<sk::Shape> some = {{37, 41}, {3, 5000}, {5, 6, 7}, {3, 70, 1, 90}};
     for (const sk::Shape& shape : isNative ? all : some) {

@@ -110,17 +110,14 @@ void onViews(sk::Device& device, const std::vector<Case>& chosen, const Test& te
 /// Every case natively and in planes, and a sample of them on every other layout: for tests of the address arithmetic.
 template <class Test>
 void onEveryView(const Test& test) {
-  onEveryLayout([&](sk::Device& one) {
-    onViews(one, takesAllCases(one) ? cases() : sampleCases(), test);
-  });
+  onEveryLayout([&](sk::Device& one) { onViews(one, takesAllCases(one) ? cases() : sampleCases(), test); });
 }
 
 /// Every case natively, and a sample of them on a sample of the layouts: for tests of what else is done with views.
 template <class Test>
 void onSomeViews(const Test& test) {
-  onSomeLayouts([&](sk::Device& one) {
-    onViews(one, &one == &device("native") ? cases() : sampleCases(), test);
-  });
+  onSomeLayouts(
+      [&](sk::Device& one) { onViews(one, &one == &device("native") ? cases() : sampleCases(), test); });
 }
 
 TEST_CASE("the host reads, writes and fills views") {
@@ -284,9 +281,8 @@ TEST_CASE("views are scattered to, and their elements pushed") {
     }
     CHECK(stream.read() == all);
   };
-  onDrawnLayouts([&](sk::Device& one) {
-    onViews(one, &one == &device("native") ? cases() : sampleCases(), test);
-  });
+  onDrawnLayouts(
+      [&](sk::Device& one) { onViews(one, &one == &device("native") ? cases() : sampleCases(), test); });
   // compute programs: a plane and a line
   for (const Case& what : {sampleCases()[0], sampleCases()[2]}) onViews(device("glsl430"), {what}, test);
 }

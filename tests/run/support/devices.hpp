@@ -46,7 +46,8 @@ inline constexpr Layout layouts[] = {{"glsl330", 0},
 
 /// A diagonal of targets and addressing: fragment programs with planes and with layers, compute programs with linearised
 /// streams. The other combinations put the same functions for elements into the same frames.
-inline constexpr Layout someLayouts[] = {{"glsl330", 0}, {"glsl330", smallLimits[1]}, {"glsl430", smallLimits[0]}};
+inline constexpr Layout someLayouts[] = {
+    {"glsl330", 0}, {"glsl330", smallLimits[1]}, {"glsl430", smallLimits[0]}};
 
 /// Fragment programs with planes and with layers.
 inline constexpr Layout drawnLayouts[] = {{"glsl330", 0}, {"glsl330", smallLimits[1]}};
