@@ -11,6 +11,7 @@
 
 #include "layout.hpp"
 #include "stencil.hpp"
+#include "test_devices.hpp"
 
 namespace linear {
 namespace {
@@ -61,18 +62,10 @@ std::vector<double> productOf(sk::Device& device, Matrix& matrix, const std::vec
   return out.readReals();
 }
 
-std::vector<sk::Device> devices() {
-  std::vector<sk::Device> all;
-  all.push_back(sk::Device::native());
-  for (const char* profile : {"glsl330", "essl300"})
-    all.emplace_back(sk::DeviceOptions{.device = "software", .profile = profile});
-  return all;
-}
-
 TEST_CASE("Every layout multiplies alike on every device") {
   const SparseMatrix square = irregular(67, 67), wide = irregular(41, 83);
   const SparseMatrix grid = assemble(poisson({7, 11}));
-  for (sk::Device& device : devices()) {
+  for (sk::Device& device : testDevices()) {
     CAPTURE(device.profile());
     for (const LayoutKind& kind : layoutKinds()) {
       CAPTURE(kind.name);
@@ -113,7 +106,7 @@ TEST_CASE("A folded product is x . A x") {
     expected += x[i] * y[i];
     magnitudes += std::abs(x[i] * y[i]);
   }
-  for (sk::Device& device : devices()) {
+  for (sk::Device& device : testDevices()) {
     CAPTURE(device.profile());
     for (const LayoutKind& kind : layoutKinds()) {
       CAPTURE(kind.name);
@@ -129,7 +122,7 @@ TEST_CASE("A folded product is x . A x") {
 }
 
 TEST_CASE("Stencils are their matrices") {
-  for (sk::Device& device : devices()) {
+  for (sk::Device& device : testDevices()) {
     CAPTURE(device.profile());
     for (const sk::Shape& grid : {sk::Shape{1, 1}, sk::Shape{13, 7}, sk::Shape{3, 5, 7}}) {
       Stencil stencil = poisson(grid);

@@ -60,7 +60,7 @@ class MinimalResiduals : public Method {
 
 /// H. van der Vorst, "Bi-CGSTAB: a fast and smoothly converging variant of Bi-CG for the solution of nonsymmetric linear systems"
 /// (1992), preconditioned from the right. The shadow vector is random, as in P. Sonneveld and M. van Gijzen, "IDR(s)" (2008). The customary one, r itself, is
-/// almost orthogonal to the vectors that matter where r lies at the inflow of a convection: residuals of 1e9 ||b|| follow, and leave nothing of x in floats.
+/// almost orthogonal to the vectors that matter where r lies at the inflow of a convection: residuals of millions of ||b|| follow, and leave nothing of x in floats.
 class BiconjugateGradients : public Method {
  public:
   explicit BiconjugateGradients(const MethodParts& parts)

@@ -17,6 +17,7 @@
 #include "solve.hpp"
 #include "stencil.hpp"
 #include "system.hpp"
+#include "test_devices.hpp"
 
 namespace linear {
 namespace {
@@ -178,17 +179,8 @@ TEST_CASE(
   }
 }
 
-/// Devices that compute in all ways: natively, by fragments, by compute shaders.
-std::vector<sk::Device> gridDevices() {
-  std::vector<sk::Device> all;
-  all.push_back(sk::Device::native());
-  for (const char* profile : {"essl300", "glsl430"})
-    all.emplace_back(sk::DeviceOptions{.device = "software", .profile = profile});
-  return all;
-}
-
 TEST_CASE("Multigrid computes alike on every device") {
-  std::vector<sk::Device> all = gridDevices();
+  std::vector<sk::Device> all = testDevices();
   for (const Stencil& a :
        {poisson({13, 18}), poissonWith({13, 17}, {turned, ring}), poissonWith({13, 18}, {ring, mirrors})}) {
     std::vector<double> r = randomVector(a.size(), 5);
@@ -233,7 +225,7 @@ TEST_CASE("Products have the eigenvectors that the ends of the grid give") {
   const std::vector<std::vector<Ends>> cases = {
       {mirrors, ring},   {mixed, mirrors},       {ring, turned},          {fixedEnds, mirrors},
       {ring, fixedEnds}, {mirrors, ring, mixed}, {turned, mirrors, ring}, {ring, mixed, fixedEnds}};
-  std::vector<sk::Device> all = gridDevices();
+  std::vector<sk::Device> all = testDevices();
   for (sk::Device& device : all)
     for (const std::vector<Ends>& ends : cases) {
       const bool isPlane = ends.size() == 2;
@@ -281,7 +273,7 @@ Solution solved(sk::Device& device, const Stencil& a, const std::vector<double>&
 }
 
 TEST_CASE("Singular grids drop the mean of the right-hand side, and tell it") {
-  for (sk::Device& device : gridDevices()) {
+  for (sk::Device& device : testDevices()) {
     if (device.profile() == "essl300") continue;  // drawn cycles are checked above
     CAPTURE(device.profile());
     const Stencil a = poissonWith({13, 11}, {mirrors, ring});

@@ -80,7 +80,8 @@ void addOptions(CLI::App& cli, Settings& s) {
                  "diffusivities along its dimensions, and poisson:WxH:periodic,dirichlet-neumann these ends "
                  "(dirichlet, neumann or periodic)");
   cli.add_option("--rhs", s.rightHandSide,
-                 "the right-hand side, a Matrix Market file; A times ones if there is none");
+                 "the right-hand side, a Matrix Market file; without one, A times ones, or A times random "
+                 "numbers on a singular grid");
   cli.add_option("--solver", s.solver, described("the method:", linear::methodKinds()))
       ->capture_default_str();
   cli.add_option("--preconditioner", s.preconditioner,

@@ -15,35 +15,26 @@ namespace linear {
 
 namespace {
 
-/// visitNeighbours() for any callable, which is inlined.
-template <class Visit>
-void visitAll(const Stencil& a, Visit&& visit) {
-  std::int64_t below = a.grid.size();
-  for (std::size_t d = 0; d < static_cast<std::size_t>(a.grid.rank()); ++d) {
-    const std::int64_t extent = a.grid[static_cast<int>(d)];
-    if (extent == 0) return;
-    const std::int64_t block = below;
-    below /= extent;
-    const std::int64_t last = block - below;
-    for (std::int64_t first = 0; first < a.grid.size(); first += block) {
-      for (std::int64_t i = first + below; i < first + block; ++i) visit(i, i - below, d);
-      for (std::int64_t i = first; i < first + last; ++i) visit(i, i + below, d);
-      for (std::int64_t i = first; i < first + below; ++i) {
-        if (a.ends[d].low == Side::Neumann) visit(i, i, d);
-        if (a.ends[d].low == Side::Periodic) visit(i, i + last, d);
-        if (a.ends[d].high == Side::Neumann) visit(i + last, i + last, d);
-        if (a.ends[d].high == Side::Periodic) visit(i + last, i, d);
-      }
-    }
-  }
-}
-
-class StencilMatrix : public Matrix {
+/// What matrices that are not stored have in common.
+class UnstoredMatrix : public Matrix {
  public:
-  StencilMatrix(const Stencil& a, const Arithmetic& arithmetic)
+  UnstoredMatrix(const Stencil& a, const Arithmetic& arithmetic)
       : Matrix(arithmetic), grid_(a.grid), coefficients_(kernelCoefficients(a)) {}
 
   sk::Shape domain() const override { return grid_; }
+  std::string layout() const override { return "stencil"; }
+  std::int64_t stored() const override { return 0; }
+  std::int64_t bytes() const override { return 0; }
+
+ protected:
+  sk::Shape grid_;
+  sk::float4 coefficients_;
+};
+
+/// The elements beyond all ends are 0.
+class DirichletMatrix : public UnstoredMatrix {
+ public:
+  using UnstoredMatrix::UnstoredMatrix;
   void multiply(const Vector& x, Vector& y) override {
     if (grid_.rank() == 2)
       stencil2.with(options())(coefficients_, x, y);
@@ -71,36 +62,22 @@ class StencilMatrix : public Matrix {
     else
       fusedStep3.with(foldOptions())(coefficients_, rr, pq, p, x, r, x, r, next);
   }
-  std::string layout() const override { return "stencil"; }
-  std::int64_t stored() const override { return 0; }
-  std::int64_t bytes() const override { return 0; }
-
- private:
-  sk::Shape grid_;
-  sk::float4 coefficients_;
 };
 
-/// The same for other ends.
-class EndedMatrix : public Matrix {
+class EndedMatrix : public UnstoredMatrix {
  public:
   EndedMatrix(const Stencil& a, const Arithmetic& arithmetic)
-      : Matrix(arithmetic), grid_(a.grid), coefficients_(kernelCoefficients(a)), ends_(kernelEnds(a)) {}
+      : UnstoredMatrix(a, arithmetic), ends_(kernelEnds(a)) {}
 
   using Matrix::multiply;
-  sk::Shape domain() const override { return grid_; }
   void multiply(const Vector& x, Vector& y) override {
     if (grid_.rank() == 2)
       stencilEnds2.with(options())(coefficients_, ends_.low, ends_.high, x, y);
     else
       stencilEnds3.with(options())(coefficients_, ends_.low, ends_.high, x, y);
   }
-  std::string layout() const override { return "stencil"; }
-  std::int64_t stored() const override { return 0; }
-  std::int64_t bytes() const override { return 0; }
 
  private:
-  sk::Shape grid_;
-  sk::float4 coefficients_;
   KernelEnds ends_;
 };
 
@@ -154,11 +131,6 @@ Stencil withEnds(Stencil a, std::span<const Ends> ends) {
   return a;
 }
 
-void visitNeighbours(const Stencil& a,
-                     const std::function<void(std::int64_t, std::int64_t, std::size_t)>& visit) {
-  visitAll(a, visit);
-}
-
 sk::float4 kernelCoefficients(const Stencil& a) {
   const auto c = [](double value) { return static_cast<float>(value); };
   if (a.grid.rank() == 2) return {c(a.centre), c(a.along[1]), c(a.along[0]), 0.0f};
@@ -189,7 +161,7 @@ Stencil poisson(const sk::Shape& grid, std::span<const double> diffusivity) {
 std::vector<double> multiply(const Stencil& a, std::span<const double> x) {
   std::vector<double> y(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) y[i] = a.centre * x[i];
-  visitAll(a, [&](std::int64_t i, std::int64_t j, std::size_t d) {
+  visitNeighbours(a, [&](std::int64_t i, std::int64_t j, std::size_t d) {
     y[static_cast<std::size_t>(i)] += a.along[d] * x[static_cast<std::size_t>(j)];
   });
   return y;
@@ -198,13 +170,14 @@ std::vector<double> multiply(const Stencil& a, std::span<const double> x) {
 SparseMatrix assemble(const Stencil& a) {
   std::vector<Entry> entries;
   for (std::int64_t i = 0; i < a.size(); ++i) entries.push_back({i, i, a.centre});
-  visitAll(a, [&](std::int64_t i, std::int64_t j, std::size_t d) { entries.push_back({i, j, a.along[d]}); });
+  visitNeighbours(
+      a, [&](std::int64_t i, std::int64_t j, std::size_t d) { entries.push_back({i, j, a.along[d]}); });
   return assemble(a.size(), a.size(), entries);
 }
 
 std::unique_ptr<Matrix> makeMatrix(const Stencil& a, const Arithmetic& arithmetic) {
   if (!isDirichlet(a)) return std::make_unique<EndedMatrix>(a, arithmetic);
-  return std::make_unique<StencilMatrix>(a, arithmetic);
+  return std::make_unique<DirichletMatrix>(a, arithmetic);
 }
 
 }  // namespace linear

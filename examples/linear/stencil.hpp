@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -68,8 +67,27 @@ Stencil withEnds(Stencil a, std::span<const Ends> ends);
 
 /// Calls visit(element, neighbour, d) for both neighbours of every element in each dimension d: an element at a Neumann end is its own neighbour, and nothing is
 /// beyond a Dirichlet end.
-void visitNeighbours(const Stencil& a,
-                     const std::function<void(std::int64_t, std::int64_t, std::size_t)>& visit);
+template <class Visit>
+void visitNeighbours(const Stencil& a, Visit&& visit) {
+  std::int64_t below = a.grid.size();
+  for (std::size_t d = 0; d < static_cast<std::size_t>(a.grid.rank()); ++d) {
+    const std::int64_t extent = a.grid[static_cast<int>(d)];
+    if (extent == 0) return;
+    const std::int64_t block = below;
+    below /= extent;
+    const std::int64_t last = block - below;
+    for (std::int64_t first = 0; first < a.grid.size(); first += block) {
+      for (std::int64_t i = first + below; i < first + block; ++i) visit(i, i - below, d);
+      for (std::int64_t i = first; i < first + last; ++i) visit(i, i + below, d);
+      for (std::int64_t i = first; i < first + below; ++i) {
+        if (a.ends[d].low == Side::Neumann) visit(i, i, d);
+        if (a.ends[d].low == Side::Periodic) visit(i, i + last, d);
+        if (a.ends[d].high == Side::Neumann) visit(i + last, i + last, d);
+        if (a.ends[d].high == Side::Periodic) visit(i + last, i, d);
+      }
+    }
+  }
+}
 
 std::vector<double> multiply(const Stencil& a, std::span<const double> x);
 SparseMatrix assemble(const Stencil& a);

@@ -42,7 +42,7 @@ sk::Stream<T> output(sk::Device& device, std::size_t count) {
 
 TEST_CASE("copies, magnitudes and negations keep denormals, zeros and infinities to the bit") {
   const Floats x{1e-45F, 1.17e-38F, -1e-45F, 0.0F, -0.0F, inf, -inf, 1.5F};
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto same = output<float>(device, x.size());
     auto positive = output<float>(device, x.size());
     auto negative = output<float>(device, x.size());
@@ -57,7 +57,7 @@ TEST_CASE("copies, magnitudes and negations keep denormals, zeros and infinities
 }
 
 TEST_CASE("arithmetic keeps denormals, or takes them as zeros throughout") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto product = output<float>(device, 1);
     auto sum = output<float>(device, 1);
     denormals(streamOf<float>(device, {denormal}), product, sum);
@@ -75,7 +75,7 @@ TEST_CASE("any bits go through a kernel that copies") {
   }
   x[0] = {std::bit_cast<float>(0x7fc12345U), std::bit_cast<float>(0xff812345U), inf,
           -0.0F};  // the second is a signalling NaN
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto same = output<sk::float4>(device, x.size());
     copies4(streamOf<sk::float4>(device, x), same);
     const auto got = same.read();
@@ -85,7 +85,7 @@ TEST_CASE("any bits go through a kernel that copies") {
 
 TEST_CASE("quotients by zero and differences of infinities are those of IEEE 754") {
   const Floats x{1, -1, 0, inf, inf, -inf}, y{0, 0, 0, inf, 0, 1};
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto r = output<sk::float4>(device, x.size());
     ieee(streamOf<float>(device, x), streamOf<float>(device, y), r);
     const auto got = r.read();
@@ -101,7 +101,7 @@ TEST_CASE("quotients by zero and differences of infinities are those of IEEE 754
 
 // GLSL lets a compiler simplify x * 0 and x - x to 0; native code gives NaN for both.
 TEST_CASE("NaN and infinity times a literal zero are NaN, or 0 where the driver folds that") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto product = output<float>(device, 2);
     auto difference = output<float>(device, 2);
     auto test = output<std::int32_t>(device, 2);
@@ -118,7 +118,7 @@ TEST_CASE("NaN and infinity times a literal zero are NaN, or 0 where the driver 
 TEST_CASE("minima and maxima drop a NaN, and put -0 below 0") {
   const Floats x{nan, -nan, 1, 1, nan, 0.0F, -0.0F, inf, -inf, 2, -inf};
   const Floats y{1, 1, nan, -nan, nan, -0.0F, 0.0F, nan, nan, 1, inf};
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto r = output<sk::float4>(device, x.size());
     auto s = output<sk::float4>(device, x.size());
     order(streamOf<float>(device, x), streamOf<float>(device, y), r, s);
@@ -148,7 +148,7 @@ TEST_CASE("minima and maxima drop a NaN, and put -0 below 0") {
 }
 
 TEST_CASE("tests of NaN and infinity ask the bits") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto r = output<sk::int4>(device, 5);
     tests(streamOf<float>(device, {nan, inf, -inf, 0, Limits::max()}), r);
     CHECK(r.read() ==
@@ -157,7 +157,7 @@ TEST_CASE("tests of NaN and infinity ask the bits") {
 }
 
 TEST_CASE("mixes are exact at both ends") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto r = output<float>(device, 5);
     mixes(streamOf<float>(device, {1e8F, 1e8F, inf, -3e38F, 1}), streamOf<float>(device, {1, 1, 1, 3e38F, 3}),
           streamOf<float>(device, {1, 0, 0, 1, 0.25F}), r);
@@ -167,7 +167,7 @@ TEST_CASE("mixes are exact at both ends") {
 
 TEST_CASE("fractions are below 1, halves go to the even neighbour") {
   const Floats x{-1e-9F, 0.75F, -0.25F, nan, inf, 2.5F, 0.5F, 1.0F};
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto r = output<sk::float4>(device, x.size());
     fractions(streamOf<float>(device, x), 0.0F, 0.0F, r);
     const auto got = r.read();
@@ -189,7 +189,7 @@ TEST_CASE("fractions are below 1, halves go to the even neighbour") {
 TEST_CASE("lengths neither overflow nor vanish") {
   const std::vector<sk::float3> v{{1e30F, 0, 0}, {3e-30F, 4e-30F, 0}, {0, 0, 0},
                                   {inf, 1, 0},   {1, nan, 0},         {-inf, nan, 0}};
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto l = output<float>(device, v.size());
     auto d = output<float>(device, v.size());
     auto n = output<sk::float3>(device, v.size());
@@ -211,7 +211,7 @@ TEST_CASE("lengths neither overflow nor vanish") {
 
 // Dot products are not scaled: the result is 0 if the device's products do not overflow, else inf - inf.
 TEST_CASE("dot products of 1e30 are 0 or NaN") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto r = output<float>(device, 2);
     dots(streamOf<sk::float2>(device, {{1e30F, 1e30F}, {3, 4}}),
          streamOf<sk::float2>(device, {{1e30F, -1e30F}, {3, 4}}), r);
@@ -223,7 +223,7 @@ TEST_CASE("dot products of 1e30 are 0 or NaN") {
 TEST_CASE("quotients by zero and shifts past the width") {
   const Ints a{7, -7, least, 1, 5, -9, least}, b{0, 0, -1, 33, -1, 4, 1};
   const std::vector<std::uint32_t> c{7, 9, 1, 2, 3, all, all}, d{0, 2, 32, 35, 1, 10, all};
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto r = output<sk::int4>(device, a.size());
     auto s = output<sk::uint4>(device, a.size());
     divisions(streamOf<std::int32_t>(device, a), streamOf<std::int32_t>(device, b),
@@ -262,7 +262,7 @@ TEST_CASE("quotients by zero and shifts past the width") {
 TEST_CASE("what an integer cannot hold becomes the nearest that it can, and NaN 0") {
   const Floats x{3e9F,  -3e9F,         nan,  -nan,          inf,           -inf,
                  -1.5F, 4294967040.0F, 5e9F, 2147483648.0F, 2147483520.0F, -0.9F};
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto i = output<std::int32_t>(device, x.size());
     auto u = output<std::uint32_t>(device, x.size());
     auto v = output<sk::int3>(device, x.size());
@@ -279,7 +279,7 @@ TEST_CASE("what an integer cannot hold becomes the nearest that it can, and NaN 
 TEST_CASE("doubles likewise") {
   const double huge = std::numeric_limits<double>::infinity();
   const std::vector<double> x{3e9, -3e9, std::nan(""), huge, -huge, -1.5, -1e-20, 0.75};
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto i = output<std::int32_t>(device, x.size());
     auto u = output<std::uint32_t>(device, x.size());
     auto low = output<double>(device, x.size());
@@ -294,7 +294,7 @@ TEST_CASE("doubles likewise") {
 }
 
 TEST_CASE("an index outside a vector is the nearest component") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto r = output<float>(device, 4);
     auto w = output<sk::float4>(device, 4);
     const std::vector<sk::float4> v(4, {1, 2, 3, 4});
@@ -305,7 +305,7 @@ TEST_CASE("an index outside a vector is the nearest component") {
 }
 
 TEST_CASE("an index outside a gather is the nearest element or the border, and NaN is some index") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const auto a = streamOf<float>(device, {5, 6, 7});
     auto r = output<float>(device, 5);
     const auto i = streamOf<std::int32_t>(device, {-1, 3, least, most, 1});
@@ -320,7 +320,7 @@ TEST_CASE("an index outside a gather is the nearest element or the border, and N
 
 // A sample multiplies both neighbours by their weights, even by a weight of 0.
 TEST_CASE("a gather reads beside NaN exactly; a sample there may be NaN") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const auto a = streamOf<float>(device, {1, nan, 3, 4});
     auto r = output<float>(device, 3);
     fetch(a, streamOf<std::int32_t>(device, {0, 2, 3}), r);
@@ -333,7 +333,7 @@ TEST_CASE("a gather reads beside NaN exactly; a sample there may be NaN") {
 }
 
 TEST_CASE("every length: none, one, primes, and past what a float counts") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     for (const std::int64_t n : {0, 1, 2, 1021, 4093, 65537}) {
       INFO(n);
       auto r = device.stream<std::int32_t>({n});
@@ -353,13 +353,13 @@ TEST_CASE("every length: none, one, primes, and past what a float counts") {
 }
 
 TEST_CASE("a stream that no device can hold is refused by its size") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     CHECK_THROWS_AS(device.stream<sk::float4>({std::int64_t{1} << 24, std::int64_t{1} << 24}), sk::Error);
   });
 }
 
 TEST_CASE("a stream that is read and written is read as it was") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto a = streamOf<float>(device, {1, 2, 3, 4});
     shifted(a, a);
     CHECK(a.read() == Floats{2, 3, 4, 4});
@@ -367,7 +367,7 @@ TEST_CASE("a stream that is read and written is read as it was") {
 }
 
 TEST_CASE("constants and computed values agree, but that a device may take denormals as 0") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto constant = output<float>(device, 1);
     auto computed = output<float>(device, 1);
     folded(streamOf<float>(device, {1e-20F}), constant, computed);
@@ -379,7 +379,7 @@ TEST_CASE("constants and computed values agree, but that a device may take denor
 }
 
 TEST_CASE("eight outputs of eight types") {
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto a = output<float>(device, 2);
     auto b = output<sk::float2>(device, 2);
     auto c = output<sk::float4>(device, 2);

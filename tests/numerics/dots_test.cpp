@@ -20,7 +20,7 @@
 namespace numerics {
 namespace {
 
-using run_tests::onEveryProfile;
+using run_tests::onEveryTarget;
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 constexpr double u = 0x1p-24;
@@ -51,7 +51,7 @@ TEST_CASE("ill-conditioned dot products, exact to the bit") {
     addAll(sum, pairs.x, pairs.y);
     INFO("condition " << sum.condition());
     CHECK(sum.condition() > wanted / 100);
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       const auto x = streamOf(device, pairs.x);
       const auto y = streamOf(device, pairs.y);
       CHECK(bits(dots::dot.with(exact)(x, y)) == bits(sum.rounded()));
@@ -67,12 +67,12 @@ TEST_CASE("any floats at all, whose products overflow and underflow") {
     const std::vector<float> y = anyFloats(n, static_cast<unsigned>(n) + 1);
     TrueSum sum;
     addAll(sum, x, y);
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       INFO(n << " elements");
       CHECK(bits(exactDot(device, x, y)) == bits(sum.rounded()));
     });
   }
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     CHECK(exactDot(device, {1e38F, 1e38F, 2}, {1e38F, -1e38F, 3}) == 6.0F);
     const std::vector<float> tiny(1 << 12, 0x1p-75F);  // each square is 2^-150, half the smallest denormal
     CHECK(dots::squares.with(exact)(streamOf(device, tiny)) == 0x1p-138F);
@@ -122,7 +122,7 @@ TEST_CASE("vectors' dot products, products by component, differences of products
   const auto withinBound = [](const TrueSum& sum, float result) {
     return sum.errorOf(result) <= (u + 400 * u * u * sum.condition()) * std::fabs(sum.value());
   };
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const auto c = dots::componentwise.with(compensated)(streamOf(device, v), streamOf(device, a.y));
     CHECK(withinBound(first, c.x));
     CHECK(withinBound(second, c.y));
@@ -148,7 +148,7 @@ TEST_CASE("products that are chosen, put into vectors and added in one call") {
     const auto withinBound = [](const TrueSum& sum, float result) {
       return sum.errorOf(result) <= (u + 400 * u * u * sum.condition()) * std::fabs(sum.value());
     };
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       const auto x = streamOf(device, pairs.x);
       const auto y = streamOf(device, pairs.y);
       const sk::float3 sum = dots::chosen.with(compensated)(x, y);
@@ -176,7 +176,7 @@ TEST_CASE("products in members, in a loop over a gather, beside others that the 
     const auto withinBound = [](const TrueSum& sum, float result) {
       return sum.errorOf(result) <= (u + 400 * u * u * sum.condition()) * std::fabs(sum.value());
     };
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       const dots::Products p = dots::members.with(compensated)(
           streamOf(device, pairs.x), streamOf(device, pairs.y), streamOf(device, table));
       CHECK(withinBound(dot, p.dots.x));
@@ -196,7 +196,7 @@ TEST_CASE("products of expressions beside terms that are none, in members, under
     all.add(-y);
     if (x > 0) positive.addProduct(x - 1, y);
   }
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const dots::Parts p = dots::parts.with(exact)(streamOf(device, pairs.x), streamOf(device, pairs.y));
     CHECK(bits(p.all) == bits(all.rounded()));
     CHECK(bits(p.positive) == bits(positive.rounded()));
@@ -204,7 +204,7 @@ TEST_CASE("products of expressions beside terms that are none, in members, under
 }
 
 TEST_CASE("compensated products at the ends of the range") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto dot = [&](const std::vector<float>& x, const std::vector<float>& y) {
       return dots::dot.with(compensated)(streamOf(device, x), streamOf(device, y));
     };
@@ -219,7 +219,7 @@ TEST_CASE("compensated products at the ends of the range") {
 }
 
 TEST_CASE("products of infinities, zeros and NaN") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     CHECK(exactDot(device, {inf, 1}, {2, 3}) == inf);
     CHECK(exactDot(device, {inf, 1}, {-2, 3}) == -inf);
     CHECK(bits(exactDot(device, {inf, 1}, {0, 3})) == 0x7fc00000U);

@@ -155,7 +155,7 @@ double nativeBound(std::string_view name) {
 TEST_CASE("functions of one float, over all of them") {
   for (const Case& one : cases) {
     const std::vector<float> x = inputs(one.ranges, static_cast<std::uint32_t>(&one - cases) + 1);
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       const Worst error = one.measure(device, x);
       INFO(one.name << ": " << error.error << " ulp: " << error.where);
       CHECK(error.error <=
@@ -198,7 +198,7 @@ TEST_CASE("powers and angles, over all pairs of floats") {
                                   pairs("near 1", {{0.99, 1.01}}, {{-8000, 8000}}, 32),
                                   pairs("whole", {{-20, 20}}, {{-3, 3}}, 33)};
   for (const Pairs& one : all) {
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       const double ours = device.profile() == "native" ? 1.0 : 1.5;
       const Worst power =
           worst(device, of_pow, [](double a, double b) { return std::pow(a, b); }, one.x, one.y);
@@ -226,7 +226,7 @@ TEST_CASE("the special cases of C99") {
       y.push_back(b);
     }
   }
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const auto n = static_cast<std::int64_t>(x.size());
     auto power = device.stream<float>({n});
     auto angle = device.stream<float>({n});
@@ -255,7 +255,7 @@ TEST_CASE("the special cases of C99") {
 
 TEST_CASE("zeros keep their sign") {
   const std::vector<float> x(side * side, -0.0F);
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const auto in = streamOf<float>(device, {side, side}, x);
     auto r = device.stream<float>({side, side});
     const auto keepsSign = [&](const auto& kernel) {
@@ -282,7 +282,7 @@ TEST_CASE("lengths of all vectors") {
     };
     v.push_back({part(0), part(1), part(2)});
   }
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const auto n = static_cast<std::int64_t>(v.size());
     auto l = device.stream<float>({n});
     auto d = device.stream<float>({n});
@@ -309,7 +309,7 @@ TEST_CASE("lengths of all vectors") {
 TEST_CASE("vectors, functions of two results and reductions call the same functions") {
   const std::vector<sk::float4> x{{0.1F, 20.0F, -3.0F, 88.0F}, {1e8F, 1e-3F, 0.5F, -100.0F}};
   const std::vector<float> y{1.5F, -2.5F, 3.25F, 0.001F};
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto e = device.stream<sk::float4>({2});
     auto s = device.stream<sk::float3>({2});
     auto c = device.stream<sk::float2>({2});
@@ -328,7 +328,7 @@ TEST_CASE("vectors, functions of two results and reductions call the same functi
 
 TEST_CASE("a call may ask for the device's own functions") {
   const std::vector<float> x{0.5F, 1.0F, 2.0F, 3.0F};
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const auto in = streamOf<float>(device, x);
     auto r = device.stream<float>({4});
     of_exp.with({.intrinsics = sk::Intrinsics::Fast})(in, r);

@@ -22,7 +22,7 @@
 namespace numerics {
 namespace {
 
-using run_tests::onEveryProfile;
+using run_tests::onEveryTarget;
 
 constexpr double u = 0x1p-24;
 constexpr float inf = std::numeric_limits<float>::infinity();
@@ -62,7 +62,7 @@ TEST_CASE("ill-conditioned sums: exact to the bit, compensated within its bound"
     for (const float v : x) sum.add(v);
     INFO("condition " << sum.condition());
     CHECK(sum.condition() > wanted / 100);
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       CHECK(bits(exactSum(device, x)) == bits(sum.rounded()));
       const float second = sums::sum.with(compensated)(streamOf(device, x));
       CHECK(sum.errorOf(second) <= (u + 400 * u * u * sum.condition()) * std::fabs(sum.value()));
@@ -73,7 +73,7 @@ TEST_CASE("ill-conditioned sums: exact to the bit, compensated within its bound"
 TEST_CASE("any floats at all, of every exponent") {
   for (const std::size_t n : {1U, 2U, 3U, 31U, 32U, 33U, 1021U, 4093U, 65537U}) {
     const std::vector<float> x = anyFloats(n, static_cast<unsigned>(n));
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       INFO(n << " elements");
       CHECK(bits(exactSum(device, x)) == bits(trueSum(x)));
     });
@@ -102,14 +102,14 @@ TEST_CASE("small sums, where the denormals are, and ties") {
                                                {-0x1.fffffep127F, -0x1p103F},
                                                {0x1p127F, 0x1p127F, -0x1p104F}};
   for (const std::vector<float>& x : all) {
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       INFO(x[0] << " and " << x.size() - 1 << " more");
       CHECK(bits(exactSum(device, x)) == bits(trueSum(x)));
     });
   }
   std::vector<float> many;
   for (const float v : anyFloats(5000, 3)) many.push_back(std::bit_cast<float>(bits(v) & 0x807fffffU));
-  onEveryProfile([&](sk::Device& device) { CHECK(bits(exactSum(device, many)) == bits(trueSum(many))); });
+  onEveryTarget([&](sk::Device& device) { CHECK(bits(exactSum(device, many)) == bits(trueSum(many))); });
 }
 
 TEST_CASE("long sums of zeros, and what is not finite among many") {
@@ -151,7 +151,7 @@ TEST_CASE("order and shape change no bit") {
   std::mt19937 random(1);
   for (int round = 0; round < 4; ++round) {
     std::shuffle(x.begin(), x.end(), random);
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       for (const sk::Shape& shape : {sk::Shape(5040), sk::Shape(1, 5040), sk::Shape(5040, 1),
                                      sk::Shape(72, 70), sk::Shape(9, 8, 70), sk::Shape(2, 3, 7, 120)}) {
         CHECK(bits(sums::sum.with(exact)(streamOf(device, x, shape))) == expected);
@@ -164,7 +164,7 @@ TEST_CASE("order and shape change no bit") {
 TEST_CASE("Kahan's killers, and what cancels in another order") {
   std::vector<float> x = {1e8F, 1, -1e8F};
   std::sort(x.begin(), x.end());
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     do {
       CHECK(exactSum(device, x) == 1.0F);
       CHECK(sums::sum.with(compensated)(streamOf(device, x)) == 1.0F);
@@ -188,7 +188,7 @@ TEST_CASE("2^24 + 1 ones and tenths") {
 }
 
 TEST_CASE("infinities and NaN, as IEEE 754 adds them") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     CHECK(exactSum(device, {1, inf, -3e38F}) == inf);
     CHECK(exactSum(device, {1, -inf, 3e38F, -inf}) == -inf);
     CHECK(bits(exactSum(device, {inf, 1, -inf})) == 0x7fc00000U);
@@ -200,7 +200,7 @@ TEST_CASE("infinities and NaN, as IEEE 754 adds them") {
 }
 
 TEST_CASE("partial sums overflow, and the sum does not") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     CHECK(exactSum(device, {3e38F, 3e38F, -3e38F, -3e38F}) == 0.0F);
     std::vector<float> x(4096, 3.4e38F);
     std::fill(x.begin() + 2048, x.end(), -3.4e38F);
@@ -212,7 +212,7 @@ TEST_CASE("partial sums overflow, and the sum does not") {
 }
 
 TEST_CASE("zeros, and no element") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     CHECK(bits(exactSum(device, {-0.0F, -0.0F})) == bits(-0.0F));
     CHECK(bits(exactSum(device, {-0.0F, 0.0F})) == 0);
     CHECK(bits(exactSum(device, {1.0F, -1.0F})) == 0);
@@ -222,7 +222,7 @@ TEST_CASE("zeros, and no element") {
 }
 
 TEST_CASE("an identity adds nothing") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     CHECK(sums::sumFrom.with(exact)(streamOf<float>(device, {0x1p30F, 1, -0x1p30F})) == 1.0F);
     CHECK(sums::sumFrom.with(exact)(streamOf(device, std::vector<float>(1000, 0.25F))) == 250.0F);
   });
@@ -251,7 +251,7 @@ TEST_CASE("sums beside other accumulators, with a uniform and an early return") 
   for (const float v : x) {
     if (v != 0) sum.addProduct(3, v - 1), ++n;  // v - 1 is rounded, the product is not
   }
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const auto [total, most, count] = sums::sumBeside.with(exact)(streamOf(device, x), 3.0F);
     CHECK(bits(total) == bits(sum.rounded()));
     CHECK(most == *std::max_element(x.begin(), x.end()));
@@ -266,7 +266,7 @@ TEST_CASE("several summands an element, in a loop, from a gather") {
   for (const float v : x) {
     for (const float w : weights) sum.addProduct(v, w);
   }
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const auto w = streamOf(device, weights);
     CHECK(bits(sums::sumGathered.with(exact)(streamOf(device, x), w)) == bits(sum.rounded()));
   });
@@ -298,7 +298,7 @@ TEST_CASE("several terms of members, which an element may leave out") {
       less.add(-y[i]);
     }
   }
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const sums::Signs s = sums::signs.with(exact)(streamOf(device, x), streamOf(device, y));
     CHECK(s.n == 2003);
     CHECK(bits(s.positive) == bits(positive.rounded()));
@@ -321,7 +321,7 @@ TEST_CASE("ill-conditioned sums of members, combined by the compiler and by the 
       return expected.errorOf(result) <=
              (u + 400 * u * u * expected.condition()) * std::fabs(expected.value());
     };
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       const auto stream = streamOf(device, x);
       const sums::Moments m = sums::moments.with(compensated)(stream);
       CHECK(withinBound(sum, m.sum.x));
@@ -346,7 +346,7 @@ TEST_CASE("ill-conditioned sums of members, combined by the compiler and by the 
 }
 
 TEST_CASE("infinities in members, and what cancels there") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto sum = [&](const std::vector<float>& x) {
       return sums::totals.with(compensated)(streamOf(device, x));
     };

@@ -100,7 +100,7 @@ std::vector<T> keysOf(std::size_t count, unsigned seed = 3) {
 }
 
 TEST_CASE("keys of any length are sorted, with values or without, and equal keys keep their order") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const std::size_t n : {0U, 1U, 2U, 13U, 4099U, 40009U}) checkSort(device, keysOf<float>(n));
     checkSort(device, keysOf<int>(4099));
     checkSort(device, keysOf<std::uint32_t>(4099));
@@ -109,7 +109,7 @@ TEST_CASE("keys of any length are sorted, with values or without, and equal keys
 }
 
 TEST_CASE("sorted, reversed and equal keys are sorted") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     std::vector<int> keys = iota(3001);
     checkSort(device, keys);
     std::ranges::reverse(keys);
@@ -119,7 +119,7 @@ TEST_CASE("sorted, reversed and equal keys are sorted") {
 }
 
 TEST_CASE("streams of any rank are sorted as rows, and views without what is around them") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     checkSort(device, keysOf<int>(24 * 31), {24, 31});
     checkSort(device, keysOf<float>(5 * 6 * 7), {5, 6, 7});
     const std::vector<int> all = keysOf<int>(20 * 30);
@@ -134,7 +134,7 @@ TEST_CASE("streams of any rank are sorted as rows, and views without what is aro
 }
 
 TEST_CASE("values of any element type follow their keys") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<int> keys = keysOf<int>(997), order = orderOf(keys, false);
     std::vector<algorithms::Particle> particles;
     std::vector<std::uint8_t> bools;
@@ -173,7 +173,7 @@ TEST_CASE("keys are compared as they are stored") {
 }
 
 TEST_CASE("unique brings the first of equal neighbours to the front") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const std::size_t n : {0U, 1U, 4099U}) {
       std::vector<float> keys = keysOf<float>(n);
       for (std::size_t i = 1; i < n; ++i) keys[i] = i % 3 == 0 ? keys[i] : keys[i - 1];
@@ -194,7 +194,7 @@ TEST_CASE("unique brings the first of equal neighbours to the front") {
 }
 
 TEST_CASE("partition brings flagged values to the front in their order") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const std::size_t n : {0U, 1U, 2U, 4099U}) {
       const std::vector<int> flags = keysOf<int>(n);
       std::vector<std::uint8_t> bools;

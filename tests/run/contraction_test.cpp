@@ -125,7 +125,7 @@ TEST_CASE("sums are contracted in a plain tree alone") {
 
 TEST_CASE("other devices take the choice, and ignore it") {
   const Squares in;
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const auto results = resultsOf(device, contraction::residue.with({.contraction = Contraction::Fast}), in);
     for (std::size_t i = 0; i < results.size(); ++i) {
       const bool isEither = results[i] == 0 || results[i] == in.lost[i];

@@ -33,7 +33,7 @@ TEST_CASE("declared streams have the extents that their names are given, and the
 }
 
 TEST_CASE("declared streams are streams like all others") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     declared::DeclaredStreams s(device, 5, 7, 1);
     const auto u = values<float>(35);
     s.field.write(u);

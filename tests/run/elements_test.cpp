@@ -161,7 +161,7 @@ void checkUniforms(sk::Device& device, const Kernel& kernel) {
 }  // namespace
 
 TEST_CASE("uniforms of every type reach the kernel") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     checkUniforms<float>(device, streams::uniform_float);
     checkUniforms<int>(device, streams::uniform_int);
     checkUniforms<std::uint32_t>(device, streams::uniform_uint);

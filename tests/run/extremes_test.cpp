@@ -51,7 +51,7 @@ TEST_CASE("more elements than floats can count are scanned, pushed and sorted") 
 
 TEST_CASE("a million rows without elements, and one row with all") {
   constexpr std::int64_t rows = 1'000'000;
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     std::vector<std::int32_t> starts(rows + 1, 0);
     std::fill(starts.begin() + rows / 3 + 1, starts.end(), 100003);
     const sk::Rows one(streamOf(device, starts));
@@ -69,7 +69,7 @@ TEST_CASE("a million rows without elements, and one row with all") {
 }
 
 TEST_CASE("keys that are all NaN, infinite, or zeros of both signs are sorted") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const auto& [a, b] : {std::pair{nan, nan}, {inf, -inf}, {-0.0F, 0.0F}, {nan, -0.0F}}) {
       INFO(a << " and " << b);
       std::vector<float> list(5003);
@@ -89,7 +89,7 @@ TEST_CASE("keys that are all NaN, infinite, or zeros of both signs are sorted") 
 }
 
 TEST_CASE("a loop ends with its first iteration, or at most") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto x = device.stream<int>({5});
     auto done = device.scalar<bool>();
     auto steps = device.scalar<int>(0), last = device.scalar<int>(1);

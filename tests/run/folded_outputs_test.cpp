@@ -39,7 +39,7 @@ std::vector<float> floats(std::size_t count, int seed = 1) {
 }
 
 TEST_CASE("a step of conjugate gradients gives what a kernel and a reduce give") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const std::size_t n : {1U, 3U, 64U, 4099U, 300000U}) {
       INFO(n << " elements");
       const auto p = streamOf(device, floats(n, 1)), q = streamOf(device, floats(n, 2));
@@ -65,7 +65,7 @@ TEST_CASE("a step of conjugate gradients gives what a kernel and a reduce give")
 }
 
 TEST_CASE("several accumulators fold each block of streams of any shape") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     struct Case {
       sk::Shape domain, blocks;
     };
@@ -106,7 +106,7 @@ TEST_CASE("several accumulators fold each block of streams of any shape") {
 }
 
 TEST_CASE("the first element may be what a fold starts from") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const int n : {1, 5, 20000}) {
       INFO(n << " elements");
       std::vector<folded::Hit> hits;
@@ -128,7 +128,7 @@ TEST_CASE("the first element may be what a fold starts from") {
 }
 
 TEST_CASE("order is kept, and an overload combines partial results") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const std::size_t n : {1U, 40U, 17U * 256U, 70001U}) {
       INFO(n << " elements");
       const std::vector<int> x = numbers(n);
@@ -150,7 +150,7 @@ TEST_CASE("order is kept, and an overload combines partial results") {
 }
 
 TEST_CASE("a kernel that calls one folds the element, into an accumulator or a variable") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto q = streamOf(device, floats(500, 1)), r = streamOf(device, floats(500, 2));
     auto rn = device.stream<float>({500}), square = device.stream<float>({500});
     auto sum = device.scalar<float>(), rr = device.scalar<float>();
@@ -169,7 +169,7 @@ TEST_CASE("a kernel that calls one folds the element, into an accumulator or a v
 }
 
 TEST_CASE("stencils, borders, iterators, indices, arrays and gathers") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> u = floats(60 * 130);
     auto in = streamOf(device, u, {60, 130}), v = device.stream<float>({60, 130});
     auto change = device.scalar<float>();
@@ -222,7 +222,7 @@ TEST_CASE("stencils, borders, iterators, indices, arrays and gathers") {
 }
 
 TEST_CASE("constants for a call switch off a fold and its streams") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto x = streamOf(device, std::vector<int>{1, 2, 3});
     const auto extra = streamOf(device, std::vector<int>{10, 20, 30});
     auto y = device.stream<int>({3});
@@ -238,7 +238,7 @@ TEST_CASE("constants for a call switch off a fold and its streams") {
 }
 
 TEST_CASE("streams may be read and written in one call") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const std::size_t n : {7U, 5000U, 70000U}) {
       INFO(n << " elements");
       const std::vector<float> x(n, 1.5f);
@@ -276,7 +276,7 @@ TEST_CASE("streams may be read and written in one call") {
 }
 
 TEST_CASE("inputs repeat, and views are read and written") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto u = streamOf(device, floats(40 * 30), {40, 30});
     const std::vector<float> before = u.read();
     const auto row = streamOf(device, std::vector<float>{4}, {1, 1});
@@ -301,7 +301,7 @@ TEST_CASE("inputs repeat, and views are read and written") {
 }
 
 TEST_CASE("outputs may be every other element of a stream") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     constexpr std::int64_t width = 1500;
     auto wide = streamOf(device, std::vector<float>(4 * 2 * width, 7.0f), {4, 2 * width});
     auto odd = sk::stride(wide, {1, 2}, {0, 1});
@@ -324,7 +324,7 @@ TEST_CASE("outputs may be every other element of a stream") {
 }
 
 TEST_CASE("an empty domain folds to the identity") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto x = device.stream<int>({0});
     auto y = device.stream<int>({0});
     auto total = device.scalar<int>(5), most = device.scalar<int>(5), positive = device.scalar<int>(5);
@@ -339,7 +339,7 @@ TEST_CASE("an empty domain folds to the identity") {
 }
 
 TEST_CASE("sums are as accurate as those of reduces") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     constexpr int n = 40000;
     std::vector<float> x(n, 0.1f);
     const double exact = n * double{0.1f};
@@ -373,7 +373,7 @@ TEST_CASE("sums are as accurate as those of reduces") {
 }
 
 TEST_CASE("infinities and NaN are folded as they are") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     std::vector<float> x(5000, 1.0f);
     x[4321] = infinity;
@@ -392,7 +392,7 @@ TEST_CASE("infinities and NaN are folded as they are") {
 }
 
 TEST_CASE("elements of every kind are folded beside outputs of every kind") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     constexpr std::int64_t n = 3001;
     std::vector<float> x;
     std::vector<sk::float4> vectors;
@@ -441,7 +441,7 @@ TEST_CASE("elements of every kind are folded beside outputs of every kind") {
 }
 
 TEST_CASE("results are stored in the precision of their streams") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto x = streamOf(device, std::vector<float>(300, 0.5f));
     for (const sk::Storage storage : {sk::Storage::Half, sk::Storage::Extended}) {
       auto y = device.stream<float>({300}, storage);
@@ -455,7 +455,7 @@ TEST_CASE("results are stored in the precision of their streams") {
 }
 
 TEST_CASE("a loop repeats steps whose scalars stay on the device") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     constexpr std::int64_t n = 257;
     const auto p = streamOf(device, std::vector<float>(n, 1.0f));
     auto x = streamOf(device, std::vector<float>(n, 0.0f)), r = streamOf(device, std::vector<float>(n, 8.0f));
@@ -502,7 +502,7 @@ TEST_CASE("natively, a folded sum has the bits of a reduce, for any number of th
 }
 
 TEST_CASE("a kernel that only gathers folds, also exactly") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto p = streamOf(device, std::vector<float>{1, 2, 4, 8, 16});
     auto q = device.stream<float>({5});
     for (const sk::Accumulate accumulate :
@@ -516,7 +516,7 @@ TEST_CASE("a kernel that only gathers folds, also exactly") {
 }
 
 TEST_CASE("what a folded output cannot be is refused before anything runs") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto x = streamOf(device, std::vector<int>{1, 2, 3, 4, 5, 6});
     auto y = streamOf(device, std::vector<int>(6, 9));
     auto total = device.stream<int>({4});

@@ -165,7 +165,7 @@ TEST_CASE("iterators in views, in place, and in kernels that call kernels") {
 }
 
 TEST_CASE("iterators that do not fit are refused") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto f = device.stream<float>({4, 5});
     auto i = device.stream<int>({4, 5});
     auto u = device.stream<unsigned>({4, 5});

@@ -11,7 +11,7 @@
 #include "support/devices.hpp"
 
 TEST_CASE("many remainders in one kernel compile, and are exact") {
-  run_tests::onEveryProfile([](sk::Device& device) {
+  run_tests::onEveryTarget([](sk::Device& device) {
     std::vector<float> x(1000);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>(i) * 0.375F - 20;
     auto in = device.stream<float>({1000}), out = device.stream<float>({1000});

@@ -28,7 +28,7 @@ std::vector<float> wave(int count) {
 }
 
 TEST_CASE("a loop swaps the streams that its calls swap") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const int times : {0, 1, 2, 7}) {
       INFO(times << " iterations");
       auto u = streamOf(device, wave(101)), v = streamOf(device, wave(101));
@@ -50,7 +50,7 @@ TEST_CASE("a loop swaps the streams that its calls swap") {
 }
 
 TEST_CASE("calls before and after a swap, and on views, use the streams that they name then") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto u = streamOf(device, wave(16)), v = streamOf(device, wave(16));
     auto a = streamOf(device, wave(16)), b = streamOf(device, wave(16));
     const auto calls = [](auto& from, auto& to) {
@@ -69,7 +69,7 @@ TEST_CASE("calls before and after a swap, and on views, use the streams that the
 }
 
 TEST_CASE("a loop rotates three streams") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto rotate = [](auto& a, auto& b, auto& c) {
       std::swap(a, b);
       std::swap(b, c);
@@ -96,7 +96,7 @@ TEST_CASE("a loop rotates three streams") {
 }
 
 TEST_CASE("a loop repeats every kind of call") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto x = streamOf<float>(device, {1, 2, 3, 4}), kept = streamOf<float>(device, {0, 0, 0, 0});
     auto sum = device.stream<float>({1});
     auto n = streamOf<int>(device, {1, 1, 2, 3});
@@ -126,7 +126,7 @@ TEST_CASE("a loop repeats every kind of call") {
 }
 
 TEST_CASE("a loop ends after the iteration that makes its condition true") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto x = streamOf<float>(device, {0, 0});
     auto sum = device.stream<float>({1});
     auto done = device.stream<bool>({1});
@@ -149,7 +149,7 @@ TEST_CASE("a loop ends after the iteration that makes its condition true") {
 }
 
 TEST_CASE("a loop keeps the streams of its calls") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto result = streamOf<float>(device, {0, 0, 0});
     std::optional<sk::Loop> loop, second;
     {
@@ -170,7 +170,7 @@ TEST_CASE("a loop keeps the streams of its calls") {
 }
 
 TEST_CASE("what a loop cannot repeat is refused, and the device goes on") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto x = streamOf<float>(device, {1, 2, 3}), longer = device.stream<float>({4});
     auto n = streamOf<int>(device, {1, 2, 3}), pushed = device.stream<int>({3});
     const auto refusal = [&](auto&& calls) { return errorOf([&] { device.record(calls); }); };

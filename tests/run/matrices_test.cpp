@@ -224,11 +224,11 @@ TEST_CASE("a product of matrices keeps its order") {
       expected = wrapped(product(expected, m));
       turns.push_back({m});
     }
-    onEveryProfile([&](sk::Device& device) {
+    onEveryTarget([&](sk::Device& device) {
       CHECK(matrices::turnAll(streamOf<matrices::Turn>(device, turns)).m == expected);
     });
   }
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     // 10,007 factors whose product never grows: a quarter turn between two shears.
     std::vector<float2x2> a;
     float2x2 expected{{{1, 0}, {0, 1}}};

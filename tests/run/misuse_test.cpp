@@ -52,7 +52,7 @@ TEST_CASE("inputs of another shape") {
 }
 
 TEST_CASE("gathers of another rank, or of nothing") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto table = device.stream<float>({4, 4}), weights = device.stream<float>({9});
     auto x = device.stream<float>({5}), r = device.stream<float>({5});
     CHECK(errorOf([&] { misuse::lookup(weights, weights, x, r); }) ==

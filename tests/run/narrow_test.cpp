@@ -140,7 +140,7 @@ sk::unorm8 unormAt(std::size_t i) {
 }  // namespace
 
 TEST_CASE("floats become the nearest value of a narrow type") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     checkTo<sk::half>(device, narrow::toHalf, floatsForHalf(), nearestHalf);
     checkTo<sk::unorm8>(device, narrow::toUnorm8, floatsFor<sk::unorm8>(), nearestNormalized<sk::unorm8>);
     checkTo<sk::snorm8>(device, narrow::toSnorm8, floatsFor<sk::snorm8>(), nearestNormalized<sk::snorm8>);
@@ -150,7 +150,7 @@ TEST_CASE("floats become the nearest value of a narrow type") {
 }
 
 TEST_CASE("integers wrap as in C") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     checkWrap<std::int8_t>(device, narrow::toChar);
     checkWrap<std::uint8_t>(device, narrow::toUchar);
     checkWrap<std::int16_t>(device, narrow::toShort);
@@ -159,7 +159,7 @@ TEST_CASE("integers wrap as in C") {
 }
 
 TEST_CASE("every value of a narrow type is read as it is, and comes back bit for bit") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     checkFrom<float>(device, narrow::fromHalf, everyHalf());
     checkFrom<float>(device, narrow::fromUnorm8, everyNormalized<sk::unorm8>());
     checkFrom<float>(device, narrow::fromSnorm8, everyNormalized<sk::snorm8>());
@@ -368,7 +368,7 @@ TEST_CASE("reduces over narrow types") {
 }
 
 TEST_CASE("empty reduces of narrow types give the identity") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     CHECK(narrow::wrapped(device.stream<std::uint8_t>({0})) == 0);
     CHECK(narrow::brightest(device.stream<sk::unorm8x4>({0})) == sk::unorm8x4{0.0f, 0.0f, 0.0f, 0.0f});
   });

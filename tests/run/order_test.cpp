@@ -94,7 +94,7 @@ TEST_CASE("an output that nothing is pushed to is empty") {
 }
 
 TEST_CASE("any order changes no number of pushes anywhere") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<int> list = values(20011);
     auto r = device.stream<int>({0});
     order::keepOdd.with({.order = Order::Any})(streamOf<int>(device, list), r);
@@ -255,7 +255,7 @@ TEST_CASE("a dispatch that reads what it stores to reads the old elements") {
 
 TEST_CASE("floats are added in any order only where that is asked for") {
   const ConfigurationFile file("[kernels.\"order::add\"]\norder = \"any\"\n");
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     std::vector<float> x, sums(9, 1);
     const std::vector<int> at = targets(2000, 9);
     for (std::size_t i = 0; i < at.size(); ++i) {

@@ -73,7 +73,7 @@ TEST_CASE("what floats lose, wider ones keep") {
 
 TEST_CASE("functions, arrays, gathers and constants") {
   sk::Device reference = sk::Device::reference();
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     const std::vector<float> x = numbers(777, 3, -2, 2);
     const std::array<float, 4> c = {0.3F, -1.7F, 2.1F, 0.9F};
     const auto run = [&](sk::Device& on, Precision precision) {
@@ -99,7 +99,7 @@ TEST_CASE("functions, arrays, gathers and constants") {
 
 TEST_CASE("structs and vectors") {
   sk::Device reference = sk::Device::reference();
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     std::vector<precision::Body> bodies;
     std::vector<sk::float3> forces;
     for (int i = 0; i < 50; ++i) {
@@ -128,7 +128,7 @@ TEST_CASE("structs and vectors") {
 }
 
 TEST_CASE("append outputs, bits and narrow types") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> a = numbers(300, 5, 0, 9);
     for (const Precision precision : widePrecisions(device)) {
       auto pushed = device.stream<float>({300});
@@ -158,7 +158,7 @@ TEST_CASE("append outputs, bits and narrow types") {
 }
 
 TEST_CASE("reduces") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = numbers(5000, 7, -1, 1);
     double exact = 0, product = 1;
     for (const float v : x) exact += v;
@@ -185,7 +185,7 @@ TEST_CASE("reduces") {
 }
 
 TEST_CASE("reduces to streams, and of vectors") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = numbers(3000, 9, -1, 1);
     auto xs = device.stream<float>({3, 1000});
     xs.write(x);
@@ -217,7 +217,7 @@ TEST_CASE("reduces to streams, and of vectors") {
 float toHalf(double x) { return static_cast<float>(sk::half(static_cast<float>(x))); }
 
 TEST_CASE("halves round every operation") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> a = numbers(500, 11, -30, 30);
     const std::vector<float> b = numbers(500, 12, -30, 30);
     auto r = device.stream<float>({500});
@@ -249,7 +249,7 @@ TEST_CASE("halves are the same natively") {
 }
 
 TEST_CASE("what computes no floats is the same in every precision") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto r = device.stream<std::int32_t>({3});
     precision::integers.with({.precision = Precision::Extended})(streamOf<std::int32_t>(device, {1, 2, 3}),
                                                                  r);
@@ -259,7 +259,7 @@ TEST_CASE("what computes no floats is the same in every precision") {
 }
 
 TEST_CASE("a declaration chooses where a call does not") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> a = numbers(100, 1, 1e4F, 1e6F);
     const std::vector<float> b = numbers(100, 2, -1, 1);
     const auto as = streamOf(device, a);
@@ -326,7 +326,7 @@ TEST_CASE("nearly right names in a file are mistakes, names of other programs ar
 }
 
 TEST_CASE("exact and compensated sums are of floats") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto x = streamOf<float>(device, {1, 2});
     for (const auto accumulate : {sk::Accumulate::Exact, sk::Accumulate::Compensated}) {
       const auto both = precision::sum.with({.accumulate = accumulate, .precision = Precision::Extended});

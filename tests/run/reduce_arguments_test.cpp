@@ -103,7 +103,7 @@ TEST_CASE("inputs of different types") {
 }
 
 TEST_CASE("uniforms, arrays and structs of them among them") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const HostArray<float> x({4093}, smallAt);
     const auto stream = x.on(device);
     float sum = 0, weighed = 0;

@@ -256,7 +256,7 @@ TEST_CASE("products of matrices keep the order of 10007 factors") {
 }
 
 TEST_CASE("narrow types fold as they do in C++") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const HostArray<float> x({4093}, [](std::size_t i) { return static_cast<float>(bitsAt(i) % 90u); });
     int sum = 0;
     float most = 0, least = 100;

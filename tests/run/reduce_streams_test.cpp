@@ -173,7 +173,7 @@ TEST_CASE("a chain of kernels and reduces: variance of rows, then the largest") 
 }
 
 TEST_CASE("sums of floats that round stay within the bound of their tree") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     // N. J. Higham, "The accuracy of floating point summation" (1993): |error| <= d u sum|x| if no element
     // passes through more than d additions; up to 3 levels of up to 64 elements each give d < 256.
     constexpr double u = 5.9604644775390625e-8;
@@ -190,7 +190,7 @@ TEST_CASE("sums of floats that round stay within the bound of their tree") {
 }
 
 TEST_CASE("infinity survives a sum, and unlike infinities give NaN") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     std::vector<float> x(1021, 1.0f);
     x[700] = INFINITY;
     CHECK(reduces::sum(streamOf<float>(device, x)) == INFINITY);

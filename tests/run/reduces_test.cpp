@@ -52,7 +52,7 @@ T bitsAt(std::size_t i) {
 }  // namespace
 
 TEST_CASE("sums, products, minima and maxima of every type") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     check<float>(device, "sum", smallAt, reduces::sum, 0.0f, [](float& r, float x) { r += x; });
     check<int>(device, "sumInt", bitsAt<int>, reduces::sumInt, 0, [](int& r, int x) {
       r = static_cast<int>(static_cast<unsigned>(r) + static_cast<unsigned>(x));
@@ -84,7 +84,7 @@ TEST_CASE("sums, products, minima and maxima of every type") {
 }
 
 TEST_CASE("bits and bools fold") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     check<std::uint32_t>(
         device, "allBits", [](std::size_t i) { return ~(i % 700 == 3 ? 1u << (i % 32) : 0u); },
         reduces::allBits, ~0u, [](std::uint32_t& r, std::uint32_t x) { r &= x; });
@@ -223,7 +223,7 @@ TEST_CASE("order is kept where it matters") {
 }
 
 TEST_CASE("an empty stream gives the identity, or an error where there is none") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const sk::Shape& shape : {sk::Shape{0}, sk::Shape{0, 5}, sk::Shape{3, 0, 4}}) {
       INFO("shape " << sk::toString(shape));
       CHECK(reduces::sum(device.stream<float>(shape)) == 0);

@@ -82,7 +82,7 @@ TEST_CASE("a loop that is run in parts is its calls") {
 }
 
 TEST_CASE("what happens to streams between two runs of a loop") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     Moved calls(device), repeated(device);
     sk::Loop loop = device.record([&] { repeated.call(); });
     sk::Loop other = device.record([&] {
@@ -171,7 +171,7 @@ TEST_CASE("drawn and dispatched calls end with their loop") {
 }
 
 TEST_CASE("a condition may be an element of a larger stream, and belong to no call") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto x = device.stream<float>({1, 8});
     auto flags = device.stream<bool>({2, 8});
     flags.fill(false);
@@ -215,7 +215,7 @@ std::vector<float> solveOnHost(const std::vector<float>& b, float tolerance, std
 }
 
 TEST_CASE("conjugate gradients, whose scalars never leave the device") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     constexpr std::int64_t n = 32;
     constexpr float tolerance = 1e-8f;
     std::vector<float> load;
@@ -254,7 +254,7 @@ TEST_CASE("conjugate gradients, whose scalars never leave the device") {
 }
 
 TEST_CASE("a loop counts the passes of its iterations, however it runs them") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto x = device.stream<float>({24});
     x.fill(1);
     sk::Loop loop = device.record([&] { loops::smooth(x, x); });

@@ -83,7 +83,7 @@ std::vector<std::vector<int>> manyLengths() {
 }
 
 TEST_CASE("each row is folded to an element, whatever its length is") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const std::vector<int>& lengths : manyLengths()) {
       const Starts starts = startsOf(lengths);
       INFO(rowsIn(starts) << " rows, " << starts.back() << " elements");
@@ -100,7 +100,7 @@ TEST_CASE("each row is folded to an element, whatever its length is") {
 }
 
 TEST_CASE("without rows there is nothing to do") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const sk::Rows rows(streamOf(device, Starts{3}));
     auto x = streamOf(device, numbers(5));
     auto none = device.stream<int>({0});
@@ -117,7 +117,7 @@ TEST_CASE("without rows there is nothing to do") {
 }
 
 TEST_CASE("a sparse matrix times a vector") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const Starts starts = startsOf(randomLengths(3000, 70, 3));
     std::mt19937 random(4);
     std::vector<float> values, x;
@@ -158,7 +158,7 @@ TEST_CASE("a sparse matrix times a vector") {
 }
 
 TEST_CASE("the elements of a row are folded in order") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     std::mt19937 random(5);
     const Starts starts = startsOf({0, 1, 40, 70000, 3, 33, 0, 2000});
     std::vector<rows::Map> x(sizeOf(starts));
@@ -182,7 +182,7 @@ TEST_CASE("the elements of a row are folded in order") {
 }
 
 TEST_CASE("rows have several accumulators, structs, vectors, bools and doubles") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const Starts starts = startsOf(randomLengths(700, 90, 9));
     const std::size_t n = sizeOf(starts);
     const std::vector<int> x = numbers(n), y = numbers(n, 2);
@@ -236,7 +236,7 @@ TEST_CASE("rows have several accumulators, structs, vectors, bools and doubles")
 }
 
 TEST_CASE("neighbours, iterators and uniforms are those of the stream") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const Starts starts = startsOf({5, 0, 100, 1, 40});
     const std::size_t n = sizeOf(starts);
     const std::vector<int> x = numbers(n);
@@ -261,7 +261,7 @@ TEST_CASE("neighbours, iterators and uniforms are those of the stream") {
 }
 
 TEST_CASE("views are in rows, and results may be views") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const Starts starts = startsOf(randomLengths(500, 40, 11));
     const std::vector<int> all = numbers(sizeOf(starts) + 30);
     const auto stream = streamOf(device, all);
@@ -289,7 +289,7 @@ TEST_CASE("views are in rows, and results may be views") {
 }
 
 TEST_CASE("the results of many short rows may be a part of a stream that is new") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const Starts starts = startsOf(randomLengths(1545, 1));
     const sk::Rows rows(streamOf(device, starts));
     auto out = device.stream<int>({1553});
@@ -302,7 +302,7 @@ TEST_CASE("the results of many short rows may be a part of a stream that is new"
 }
 
 TEST_CASE("a row is folded into the stream that it is in, and a result may be read") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<int> x = numbers(64);
     auto stream = streamOf(device, x);
     const Starts starts = startsOf({60, 0, 4});
@@ -342,7 +342,7 @@ TEST_CASE("rows lie in any layout of textures") {
 }
 
 TEST_CASE("each row is scanned on its own") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const std::vector<int>& lengths : manyLengths()) {
       const Starts starts = startsOf(lengths);
       INFO(rowsIn(starts) << " rows, " << starts.back() << " elements");
@@ -359,7 +359,7 @@ TEST_CASE("each row is scanned on its own") {
 }
 
 TEST_CASE("without an identity, a row starts from its first element") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const Starts starts = startsOf({1, 50, 3000, 2});
     std::vector<rows::Hit> hits;
     std::vector<float> x;
@@ -400,7 +400,7 @@ std::vector<float> cancelling(std::size_t count) {
 }
 
 TEST_CASE("sums of floats in rows are compensated, plain, exact or in other precisions") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const Starts starts = startsOf({3, 0, 40, 33000, 1, 900});
     const std::vector<float> x = cancelling(sizeOf(starts));
     constexpr double u = 0x1p-24;
@@ -451,7 +451,7 @@ TEST_CASE("sums of floats in rows are compensated, plain, exact or in other prec
 }
 
 TEST_CASE("infinities and NaN stay in their rows") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     constexpr float inf = std::numeric_limits<float>::infinity();
     std::vector<float> x(300, 1.0F);
     x[10] = inf;
@@ -471,7 +471,7 @@ TEST_CASE("infinities and NaN stay in their rows") {
 }
 
 TEST_CASE("streams with other storages are in rows") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const Starts starts = startsOf(randomLengths(100, 60, 2));
     const std::vector<int> x = numbers(sizeOf(starts));
     const sk::Rows rows(streamOf(device, starts));
@@ -488,7 +488,7 @@ TEST_CASE("streams with other storages are in rows") {
 // ---- other calls
 
 TEST_CASE("a loop repeats calls in rows, also after the rows are gone") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const Starts starts = startsOf(randomLengths(50, 70, 2));
     const std::vector<int> x = numbers(sizeOf(starts));
     const auto in = streamOf(device, x);
@@ -507,7 +507,7 @@ TEST_CASE("a loop repeats calls in rows, also after the rows are gone") {
 }
 
 TEST_CASE("later changes of the starts have no effect") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<int> x = numbers(10);
     auto starts = streamOf(device, Starts{0, 4, 10});
     const sk::Rows rows(starts);
@@ -519,7 +519,7 @@ TEST_CASE("later changes of the starts have no effect") {
 }
 
 TEST_CASE("rows that cannot be, and wrong calls in rows, say why") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     CHECK_THAT(errorOf([&] { sk::Rows(streamOf(device, Starts{0, 3, 7, 5, 9})); }),
                Contains("row 2 starts at 7, but ends at 5"));
     CHECK_THAT(errorOf([&] { sk::Rows(streamOf(device, Starts{-1, 3})); }), Contains("row 0 starts at -1"));

@@ -163,7 +163,7 @@ TEST_CASE("sample rounds a few times for each dimension") {
   for (std::uint32_t i = 0; i < count; ++i) {
     x.push_back({static_cast<float>(hashed(i)) * 4e-9f, static_cast<float>(hashed(i + 99999)) * 3e-9f});
   }
-  onEveryProfile([&](sk::Device& device) {
+  onEveryTarget([&](sk::Device& device) {
     auto r = device.stream<float2>({count});
     samples::plane_wrap(a.on(device), streamOf<float2>(device, x), r);
     const auto read = r.read();

@@ -31,7 +31,7 @@ bool isSame(double a, double b) { return a == b || (std::isnan(a) && std::isnan(
 bool isClose(float a, float b) { return isSame(a, b) || std::abs(a - b) <= 4e-7f * std::abs(b); }
 
 TEST_CASE("operations with floats") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const auto& [x, y] :
          {std::pair{6.0f, 1.5f}, {-2.0f, 8.0f}, {0.0f, 0.0f}, {1.0f, infinity}, {3.0f, nan}}) {
       INFO(x << " and " << y);
@@ -62,7 +62,7 @@ TEST_CASE("operations with floats") {
 }
 
 TEST_CASE("comparisons and roots at the extremes") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto one = device.scalar<float>(1), none = device.scalar<float>(nan);
     const auto zero = device.scalar<float>(0), minus = device.scalar<float>(-0.0f);
     CHECK((!(none < one) && !(none >= one) && !(none == none) && none != none).read());
@@ -81,7 +81,7 @@ TEST_CASE("comparisons and roots at the extremes") {
 }
 
 TEST_CASE("scalars that are assigned to themselves, moved, and computed from themselves") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto a = device.scalar<float>(3);
     a.assign(a);
     a += a;
@@ -126,7 +126,7 @@ TEST_CASE("scalars that are assigned to themselves, moved, and computed from the
 }
 
 TEST_CASE("operations with doubles and integers") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto third = device.scalar<double>(1.0 / 3);
     CHECK((third * 3 - 1e-9).read() == Approx(1 - 1e-9).epsilon(1e-13));
     CHECK(sqrt(third * third).read() == Approx(1.0 / 3).epsilon(1e-13));
@@ -153,7 +153,7 @@ TEST_CASE("operations with doubles and integers") {
 }
 
 TEST_CASE("an operation uses the values of its time") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto a = device.scalar<float>(3), b = device.scalar<float>(4);
     sk::Scalar<float> sum = a + b, product = a * b;
     a.assign(b);
@@ -193,7 +193,7 @@ TEST_CASE("an operation uses the values of its time") {
 }
 
 TEST_CASE("scalars are results and uniforms") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto x = streamOf<float>(device, {1, 2, 3, 4});
     auto y = device.stream<float>({4});
     auto total = device.scalar<float>();
@@ -213,7 +213,7 @@ TEST_CASE("scalars are results and uniforms") {
 }
 
 TEST_CASE("a loop repeats operations with scalars") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto x = streamOf<float>(device, {1, 2, 3, 2});
     auto old = device.scalar<float>(1), now = device.scalar<float>(), ratio = device.scalar<float>();
     auto done = device.scalar<bool>();

@@ -57,7 +57,7 @@ std::vector<T> scanned(const std::vector<X>& x, const T& identity, const Fold& f
 const auto plus = [](auto a, auto b) { return a + b; };
 
 TEST_CASE("integers of any length are scanned, with or without the element itself") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const std::size_t n : {0U, 1U, 2U, 13U, 65537U, 1048579U}) {
       INFO(n << " elements");
       const std::vector<int> x = numbers(n);
@@ -75,7 +75,7 @@ TEST_CASE("integers of any length are scanned, with or without the element itsel
 }
 
 TEST_CASE("streams are scanned as a whole or along each dimension") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const bool isNative = &device == &run_tests::device("native");
     const std::vector<sk::Shape> all = {{50},    {1, 1},    {37, 41},    {3, 5000},    {5000, 3},     {1, 70},
                                         {70, 1}, {5, 6, 7}, {3, 1, 700}, {2, 3, 4, 5}, {3, 70, 1, 90}};
@@ -108,7 +108,7 @@ TEST_CASE("streams are scanned as a whole or along each dimension") {
 }
 
 TEST_CASE("a scan has several accumulators, each in place of an input") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<int> x = numbers(70001, 1), y = numbers(70001, 2);
     const auto most = [](int a, int b) { return std::max(a, b); };
     constexpr int least = std::numeric_limits<int>::min();
@@ -124,7 +124,7 @@ TEST_CASE("a scan has several accumulators, each in place of an input") {
 }
 
 TEST_CASE("structs are combined by an overload") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<int> x = numbers(40001);
     for (const int along : {-1, 0}) {
       auto out = device.stream<scans::Run>({40001});
@@ -145,7 +145,7 @@ TEST_CASE("structs are combined by an overload") {
 }
 
 TEST_CASE("elements are folded in order") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     std::mt19937 random(5);
     const auto isSame = [](const std::vector<scans::Map>& a, const std::vector<scans::Map>& b) {
       return std::ranges::equal(a, b, [](auto p, auto q) { return p.a == q.a && p.b == q.b; });
@@ -170,7 +170,7 @@ TEST_CASE("elements are folded in order") {
 }
 
 TEST_CASE("without an identity, a scan starts from the first element") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     std::vector<scans::Hit> x;
     for (const int i : numbers(200 * 200))
       x.push_back({static_cast<float>(i * i + 7), static_cast<int>(x.size())});
@@ -189,7 +189,7 @@ TEST_CASE("without an identity, a scan starts from the first element") {
 }
 
 TEST_CASE("a maximum is of the elements so far") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     constexpr float inf = std::numeric_limits<float>::infinity();
     std::vector<float> x;
     for (const int i : numbers(40000)) x.push_back(static_cast<float>(i) - 20);
@@ -232,7 +232,7 @@ bool areWithin(const std::vector<float>& got, const std::vector<float>& x, doubl
 }
 
 TEST_CASE("sums of floats are compensated, plain or exact") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = cancelling(100003);
     const auto in = streamOf(device, x);
     auto out = device.stream<float>({100003});
@@ -259,7 +259,7 @@ TEST_CASE("sums of floats are compensated, plain or exact") {
 }
 
 TEST_CASE("exact sums go along each dimension") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const sk::Shape shape{300, 70};
     const std::vector<float> x = cancelling(static_cast<std::size_t>(shape.size()));
     const auto in = streamOf(device, x, shape);
@@ -281,7 +281,7 @@ TEST_CASE("exact sums go along each dimension") {
 }
 
 TEST_CASE("halves are scanned in half precision") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> ones(1000, 1.0F);
     auto out = device.stream<float>({1000});
     scans::sums.with({.precision = sk::Precision::Half})(streamOf(device, ones), out);
@@ -293,7 +293,7 @@ TEST_CASE("halves are scanned in half precision") {
 }
 
 TEST_CASE("infinities and NaN go on") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     constexpr float inf = std::numeric_limits<float>::infinity();
     std::vector<float> x(50000, 1.0F);
     x[20000] = inf;
@@ -313,7 +313,7 @@ TEST_CASE("infinities and NaN go on") {
 // ---- what is read and written
 
 TEST_CASE("views are scanned, also to places that overlap them") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<int> x = numbers(300 * 300);
     std::vector<int> part;
     for (std::size_t row = 10; row < 210; ++row)
@@ -338,7 +338,7 @@ TEST_CASE("views are scanned, also to places that overlap them") {
 }
 
 TEST_CASE("inputs of other shapes, gathers, iterators and indices can be scanned") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<int> x = numbers(200 * 210), row = numbers(210, 2);
     std::vector<int> products(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) products[i] = x[i] * row[i % 210];
@@ -373,7 +373,7 @@ TEST_CASE("inputs of other shapes, gathers, iterators and indices can be scanned
 }
 
 TEST_CASE("wrong calls of scans say why") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto x = device.stream<int>({10}), y = device.stream<int>({9});
     auto h = device.stream<scans::Hit>({10});
     x.fill(1);

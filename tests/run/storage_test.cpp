@@ -93,7 +93,7 @@ TEST_CASE("doubles keep what is computed in doubles") {
 }
 
 TEST_CASE("numbers beyond float get in and out") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto s = device.stream<sk::float3>({2}, Storage::Double);
     const std::vector<double> values = {0.1, 1.0 / 3, -2e-5, 1e10 / 7, 5, 6.25};
     s.writeReals(values);
@@ -104,7 +104,7 @@ TEST_CASE("numbers beyond float get in and out") {
 }
 
 TEST_CASE("structs, vectors, gathers and reduces") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const Storage storage : {Storage::Half, Storage::Extended, Storage::Double}) {
       std::vector<precision::Body> bodies = {{{1.5F, -2, 0.25F}, 2, 7}, {{8, 9, -10}, 0.5F, 8}};
       auto b = device.stream<precision::Body>({2}, storage);

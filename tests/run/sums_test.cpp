@@ -70,7 +70,7 @@ TEST_CASE("a sum has one rounding, and the square of the others") {
 }
 
 TEST_CASE("the plain tree is there for the asking") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = cancelling(30000, 4);
     const float plain = sums::sum.with({.accumulate = sk::Accumulate::Tree})(streamOf(device, x));
     CHECK(std::fabs(plain - 0.125) <= 20 * u * magnitudes(x));
@@ -80,14 +80,14 @@ TEST_CASE("the plain tree is there for the asking") {
 }
 
 TEST_CASE("one million times 0.1") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x(1 << 20, 0.1F);
     CHECK(sums::sum(streamOf(device, x)) == 0.1F * static_cast<float>(1 << 20));
   });
 }
 
 TEST_CASE("vectors, and products of two streams") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> a = cancelling(2000, 5);
     const std::vector<float> ones(a.size(), 1.0F);
     CHECK(std::fabs(sums::dot(streamOf(device, a), streamOf(device, ones)) - 0.125) <=
@@ -102,7 +102,7 @@ TEST_CASE("vectors, and products of two streams") {
 }
 
 TEST_CASE("components by number") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = cancelling(2000, 8);
     const sk::float2 total =
         sums::indexed.with({.accumulate = sk::Accumulate::Compensated})(streamOf(device, x));
@@ -112,7 +112,7 @@ TEST_CASE("components by number") {
 }
 
 TEST_CASE("sums beside other accumulators, with an early return") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     std::vector<float> x = cancelling(1000, 6);
     const std::size_t numbers = x.size();
     x.insert(x.begin() + 7, std::numeric_limits<float>::quiet_NaN());
@@ -149,7 +149,7 @@ TEST_CASE("sums of rows, into a view of a larger stream") {
 }
 
 TEST_CASE("infinities stay, an empty sum is 0") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     CHECK(sums::sum(streamOf<float>(device, {1, inf, 2})) == inf);
     CHECK(sums::sum(streamOf<float>(device, {1, -inf, 2})) == -inf);
     CHECK(sums::sum(streamOf<float>(device, {3e38F, 3e38F})) == inf);
@@ -159,7 +159,7 @@ TEST_CASE("infinities stay, an empty sum is 0") {
 }
 
 TEST_CASE("members of structs, nested ones, beside other members") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = cancelling(3000, 21);
     const std::size_t n = x.size();
     const std::vector<float> halves(n, 0.5F);
@@ -178,7 +178,7 @@ TEST_CASE("members of structs, nested ones, beside other members") {
 }
 
 TEST_CASE("components that are sums, others that are not, and chains in a loop") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = cancelling(3000, 22);
     const sums::Mixed m = sums::mixed(streamOf(device, x));
     CHECK(std::fabs(m.v.x - 0.125) <= bound(0.125, magnitudes(x), x.size()));
@@ -190,7 +190,7 @@ TEST_CASE("components that are sums, others that are not, and chains in a loop")
 }
 
 TEST_CASE("a struct that folds itself starts with its first element") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = cancelling(1000, 23);
     std::vector<sums::Pair> pairs;
     for (const float v : x) pairs.push_back({v, {-0.0F, 2 * v}});
@@ -231,7 +231,7 @@ TEST_CASE("members of structs in streams, into a view of a larger one") {
 }
 
 TEST_CASE("sums that a specialisation switches off") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = cancelling(500, 24);
     const auto stream = streamOf(device, x);
     const sums::Pair one = sums::chosen(stream, sk::none, false);
@@ -244,7 +244,7 @@ TEST_CASE("sums that a specialisation switches off") {
 }
 
 TEST_CASE("the author's combination, where it adds") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = cancelling(3000, 25);
     const auto weights = streamOf<float>(device, {1, -0.5F});
     const auto stream = streamOf(device, x);
@@ -260,7 +260,7 @@ TEST_CASE("the author's combination, where it adds") {
 }
 
 TEST_CASE("the author's combination, where it does more") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = cancelling(3000, 26);
     const sums::Variance v = sums::variance(streamOf(device, x));
     CHECK(v.n == static_cast<float>(x.size()));

@@ -62,7 +62,7 @@ sk::TableReport reportOf(const sk::Device& device, const std::string& function) 
 }
 
 TEST_CASE("a linear table's error is what theory says, and what the device tells") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = ramp(-4, 4, 30000);
     const double error = largestError(x, called(device, table::bells, x), bell);
     const sk::TableReport report = reportOf(device, "table::bell");
@@ -80,7 +80,7 @@ TEST_CASE("a linear table's error is what theory says, and what the device tells
 }
 
 TEST_CASE("a cubic one's is below what floats round") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = ramp(0, 6.2831853F, 30000);
     auto r = device.stream<float>({30000});
     auto s = device.stream<float>({30000});
@@ -96,7 +96,7 @@ TEST_CASE("a cubic one's is below what floats round") {
 }
 
 TEST_CASE("arguments outside the range count as its ends, and NaN stays NaN") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> got =
         called(device, table::bells, {-4, -4.001F, -1e30F, -infinity, 4, 4.001F, 1e30F, infinity, nan});
     for (std::size_t i = 0; i + 1 < got.size(); ++i) {
@@ -108,7 +108,7 @@ TEST_CASE("arguments outside the range count as its ends, and NaN stays NaN") {
 }
 
 TEST_CASE("tables are continuous where intervals meet") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     std::vector<float> x;
     for (int i = 1; i < 256; ++i) {
       const float node = static_cast<float>(i) * (6.2831853F / 256);
@@ -132,7 +132,7 @@ TEST_CASE("a table of many intervals lies in several rows") {
 }
 
 TEST_CASE("a call, a declaration and a precision compute the function") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::vector<float> x = ramp(-4, 4, 1000);
     const std::vector<float> looked = called(device, table::bells, x);
     const auto isComputed = [&](const auto& kernel) {
@@ -186,7 +186,7 @@ TEST_CASE("the reference computes every function") {
 }
 
 TEST_CASE("a function that is not finite in its range has no table") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const std::string error = errorOf([&] { called(device, table::poles, {1}); });
     CHECK(error.find("the table of 'table::pole' over [-1, 1]: its value at 0 is") != std::string::npos);
     CHECK(called(device, table::poles.with({.tables = sk::Tables::Off}), {2}) == std::vector<float>{0.5F});
@@ -195,7 +195,7 @@ TEST_CASE("a function that is not finite in its range has no table") {
 }
 
 TEST_CASE("ranges that floats cannot divide have no table") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto isNamed = [&](const auto& kernel, const std::string& what) {
       const std::string error = errorOf([&] { called(device, kernel, {0, 1e38F}); });
       return error.find(what) != std::string::npos &&

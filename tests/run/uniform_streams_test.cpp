@@ -54,7 +54,7 @@ TEST_CASE("a stream of one element stands for a uniform, in every layout") {
 }
 
 TEST_CASE("uniforms of every kind come from streams, some of them beside values") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto x = streamOf<float>(device, {1, 2, 3, 4, 5});
     auto doubles = device.stream<double>({5});
     auto lines = device.stream<scalars::Line>({1});
@@ -82,7 +82,7 @@ TEST_CASE("uniforms of every kind come from streams, some of them beside values"
 }
 
 TEST_CASE("reductions, scans and append outputs take uniforms from streams") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto x = streamOf<float>(device, std::vector<float>(5000, 0.5f));
     const auto half = streamOf<float>(device, {0.25f});
     CHECK(scalars::weighted(half, x) == 625);
@@ -116,7 +116,7 @@ TEST_CASE("reductions, scans and append outputs take uniforms from streams") {
 }
 
 TEST_CASE("uniforms come from streams in every storage and precision, and in several passes") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto x = streamOf<float>(device, {1, 3});
     auto y = device.stream<float>({2});
     for (const sk::Storage storage : {sk::Storage::Half, sk::Storage::Extended, sk::Storage::Double}) {
@@ -150,7 +150,7 @@ TEST_CASE("uniforms come from streams in every storage and precision, and in sev
 }
 
 TEST_CASE("a loop reads a uniform's stream in each iteration") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto a = streamOf<float>(device, {1}), x = streamOf<float>(device, {2});
     sk::Loop loop = device.record([&] {
       scalars::scale(a, x, x);
@@ -162,7 +162,7 @@ TEST_CASE("a loop reads a uniform's stream in each iteration") {
 }
 
 TEST_CASE("other streams are refused as uniforms") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     const auto x = streamOf<float>(device, {1, 3});
     auto y = device.stream<float>({2});
     CHECK_THAT(errorOf([&] { scalars::scale(x, x, y); }),

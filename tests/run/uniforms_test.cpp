@@ -13,7 +13,7 @@
 using namespace run_tests;
 
 TEST_CASE("uniform arrays") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto a = streamOf<float>(device, {4}, {1, 2, 4, 8});
     auto r = device.stream<float>({4});
     uniforms::convolve(std::array<float, 3>{1, 10, 100}, a, r);
@@ -34,7 +34,7 @@ TEST_CASE("uniform arrays") {
 }
 
 TEST_CASE("uniform arrays of narrow types") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto i = streamOf<int>(device, {-1, 0, 1, 2, 3, 4});
     auto x = streamOf<float>(device, {-1, 0, 1, 2, 3, 4});
     const sk::half w[3] = {0.5f, -2.25f, 1024.0f};
@@ -89,7 +89,7 @@ TEST_CASE("arrays in uniform structs") {
 }
 
 TEST_CASE("uniforms arrive bit by bit, and again when they change") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto k = streamOf<int>(device, {2}, {0, 1});
     auto r = device.stream<sk::int4>({2});
     auto s = device.stream<sk::int4>({2});
@@ -109,7 +109,7 @@ TEST_CASE("uniforms arrive bit by bit, and again when they change") {
 }
 
 TEST_CASE("uniforms of one call may be many") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto x = streamOf<float>(device, {3}, {0, 1, 2});
     auto r = device.stream<float>({3});
     sk::float4x4 a{}, b{};

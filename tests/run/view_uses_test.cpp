@@ -103,7 +103,7 @@ TEST_CASE("elements of all kinds are strided") {
 }
 
 TEST_CASE("streams in other precisions are strided") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     for (const sk::Storage storage : {sk::Storage::Half, sk::Storage::Double}) {
       auto wide = device.stream<float>({4, 6}, storage);
       wide.fill(0.1f);
@@ -246,7 +246,7 @@ TEST_CASE("red-black relaxation is that of a loop in place") {
 }
 
 TEST_CASE("loops repeat calls with views") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto u = device.stream<int>({5, 8}), v = device.stream<int>({5, 8});
     u.fill(1);
     v.fill(2);
@@ -351,7 +351,7 @@ TEST_CASE("loops in kernels end, whatever lies between a view's elements") {
 }
 
 TEST_CASE("empty views") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto u = device.stream<int>({3, 4}), none = device.stream<int>({0, 4});
     u.write(counted(12));
     auto empty = sk::stride(u, {2, 2}, {3, 0});
@@ -367,7 +367,7 @@ TEST_CASE("empty views") {
 }
 
 TEST_CASE("reshape gives no view of other elements") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto u = device.stream<int>({4, 6});
     CHECK_THAT(errorOf([&] { u.reshape({5, 5}); }),
                Contains("reshape: {4, 6} has 24 element(s), but shape {5, 5} has 25"));
@@ -386,7 +386,7 @@ TEST_CASE("reshape gives no view of other elements") {
 }
 
 TEST_CASE("strides that do not go through a stream") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryTarget([](sk::Device& device) {
     auto u = device.stream<int>({4, 6});
     for (const auto& [steps, offsets] : {std::pair<sk::Index, sk::Index>{{0, 1}, {0, 0}},
                                          {{1, -1}, {0, 0}},

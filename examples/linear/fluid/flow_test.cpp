@@ -255,6 +255,18 @@ std::string messageOf(const std::string& text) {
   return "none";
 }
 
+TEST_CASE("the command line has precedence over a scene, also over what it leaves out") {
+  for (const std::string run : {"", "[run]\nsteps = 3\nprecision = \"single\"\n"}) {
+    const examples::WrittenFile file("[grid]\nsize = [16, 16]\n" + run, "written_flow.toml");
+    Overrides overrides;
+    overrides.steps = 7;
+    overrides.precision = sk::Precision::Double;
+    const Scene scene = readScene(file.path(), overrides);
+    CHECK(scene.steps == 7);
+    CHECK(scene.model.precision == sk::Precision::Double);
+  }
+}
+
 TEST_CASE("what is wrong with a scene is said with its place and a way out") {
   using Catch::Contains;
   const std::string grid = "[grid]\nsize = [16, 16]\n";

@@ -144,9 +144,9 @@ void readViscosity(const SceneTable& table, Model& model) {
   if (v.value > 0.0) model.viscosity = v;
 }
 
-void readRun(const SceneTable& table, const Overrides& overrides, Scene& scene) {
+void readRun(const SceneTable& table, Scene& scene) {
   Model& model = scene.model;
-  scene.steps = overrides.steps.value_or(table.integer("steps", Range{1, 1e9}).value_or(scene.steps));
+  scene.steps = table.integer("steps", Range{1, 1e9}).value_or(scene.steps);
   model.cfl = table.number("cfl", Range{1e-6, 100.0}).value_or(model.scheme == Scheme::Central ? 0.7 : 1.5);
   model.timeStep = table.number("time_step", positive);
   model.tolerance = table.number("tolerance", Range{1e-12, 0.1}).value_or(model.tolerance);
@@ -154,7 +154,6 @@ void readRun(const SceneTable& table, const Overrides& overrides, Scene& scene) 
       static_cast<int>(table.integer("most_iterations", Range{1, 1e6}).value_or(model.mostIterations));
   if (const auto precision = table.choice("precision", precisionNames))
     model.precision = *precision == 0 ? sk::Precision::Single : sk::Precision::Double;
-  if (overrides.precision) model.precision = *overrides.precision;
   if (!model.timeStep || !model.viscosity || model.viscosity->isImplicit) return;
   const double longest = model.spacing * model.spacing / (2.0 * model.rank() * model.viscosity->value);
   if (*model.timeStep > longest)
@@ -225,7 +224,9 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   if (const auto t = table.table("viscosity")) readViscosity(*t, model);
   if (const auto t = table.table("buoyancy")) readBuoyancy(*t, model);
   if (const auto t = table.table("force")) model.force = triple(*t, "acceleration").value_or(model.force);
-  if (const auto t = table.table("run")) readRun(*t, overrides, scene);
+  if (const auto t = table.table("run")) readRun(*t, scene);
+  scene.steps = overrides.steps.value_or(scene.steps);
+  model.precision = overrides.precision.value_or(model.precision);
   if (const auto t = table.table("initial")) scene.initial = readInitial(*t);
   scene.record = examples::readRecord(table.table("record"), scene.name);
   scene.view.shown = model.hasSmoke ? Shown::Smoke : Shown::Speed;

@@ -6,10 +6,10 @@
 // Most of a test's time goes into the driver's compiler, so a test runs on no more devices than its promise needs:
 //   - onGlAndNative: what a kernel's body computes. The emitter writes one body for all profiles, and tests/golden has glslang
 //     compile it in each of them.
-//   - onEveryProfile: what the runtime or the assembler does for fragment programs and for compute programs.
+//   - onEveryTarget: what the runtime or the assembler does for fragment programs and for compute programs.
 //   - onSomeLayouts: the same, where it also matters how the elements of streams are addressed.
 //   - onDrawnLayouts: the same for append outputs and scatters, which run.order and the tests on every layout dispatch: their
-//     compute programs have barriers, and take the compiler ten times as long as others.
+//     compute programs have barriers, for which the compiler takes much longer.
 //   - onEveryLayout: the address arithmetic itself, once for each role of a stream in a call.
 #pragma once
 
@@ -36,8 +36,8 @@ struct Layout {
 };
 
 /// Every layout with fragment programs, and whole and layered streams with compute programs. The programs of essl300 are
-/// those of glsl330 with another header (tests/golden/glslang_test.cpp). Samplers of layers are the only ones whose precision
-/// has no default there; run.layers tests them.
+/// those of glsl330 with another header, but for doubles and more than four outputs (tests/golden/glslang_test.cpp), which have
+/// tests of their own. Samplers of layers are the only ones whose precision has no default there; run.layers tests them.
 inline constexpr Layout layouts[] = {{"glsl330", 0},
                                      {"glsl330", smallLimits[0]},
                                      {"glsl330", smallLimits[1]},
@@ -72,16 +72,16 @@ void onLayouts(std::span<const Layout> chosen, const Test& test) {
 
 }  // namespace detail
 
-/// Calls test(device) on GL and natively: for tests of what a kernel's body computes. essl300 has the strictest compilers.
+/// Calls test(device) on GL and natively: for tests of what a kernel's body computes. essl300 converts no type implicitly.
 template <class Test>
 void onGlAndNative(const Test& test) {
   constexpr Layout one[] = {{"essl300", 0}};
   detail::onLayouts(one, test);
 }
 
-/// Calls test(device) on the smallest fragment profile, on the compute profile and natively. onSomeLayouts has glsl330.
+/// Calls test(device) with fragment programs, with compute programs and natively.
 template <class Test>
-void onEveryProfile(const Test& test) {
+void onEveryTarget(const Test& test) {
   constexpr Layout targets[] = {{"essl300", 0}, {"glsl430", 0}};
   detail::onLayouts(targets, test);
 }
