@@ -23,22 +23,27 @@ class DiagonalMatrix : public Matrix {
                  const Arithmetic& arithmetic)
       : Matrix(arithmetic),
         count_(static_cast<int>(offsets.size())),
+        offsets_(offsets),
         value_(device.stream<float>({count_, a.rows}, arithmetic.matrix)),
         offset_(device.stream<int>({count_})) {
-    std::vector<double> values(static_cast<std::size_t>(count_ * a.rows), 0.0);
-    for (std::int64_t i = 0; i < a.rows; ++i)
-      for (auto k = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
-           k < static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]); ++k) {
-        const std::int64_t offset = (a.column[k] - i + a.columns) % a.columns;
-        const auto diagonal = std::lower_bound(offsets.begin(), offsets.end(), offset) - offsets.begin();
-        values[static_cast<std::size_t>(diagonal * a.rows + i)] = a.value[k];
-      }
-    value_.writeReals(values);
+    update(a);
     // The shorter way around, so that most elements are not beyond an end.
     std::vector<int> shortest;
     for (const std::int64_t o : offsets)
       shortest.push_back(static_cast<int>(2 * o > a.rows ? o - a.rows : o));
     offset_.write(shortest);
+  }
+
+  void update(const SparseMatrix& a) final {
+    std::vector<double> values(static_cast<std::size_t>(count_ * a.rows), 0.0);
+    for (std::int64_t i = 0; i < a.rows; ++i)
+      for (auto k = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
+           k < static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]); ++k) {
+        const std::int64_t offset = (a.column[k] - i + a.columns) % a.columns;
+        const auto diagonal = std::lower_bound(offsets_.begin(), offsets_.end(), offset) - offsets_.begin();
+        values[static_cast<std::size_t>(diagonal * a.rows + i)] = a.value[k];
+      }
+    value_.writeReals(values);
   }
 
   sk::Shape domain() const override { return {value_.shape()[1]}; }
@@ -56,6 +61,7 @@ class DiagonalMatrix : public Matrix {
 
  private:
   int count_;
+  std::vector<std::int64_t> offsets_;  ///< ascending, from 0
   Vector value_;
   sk::Stream<int> offset_;
 };
@@ -73,11 +79,12 @@ class PointMatrix : public Matrix {
     row.reserve(a.column.size());
     for (std::int64_t i = 0; i < a.rows; ++i)
       row.insert(row.end(), static_cast<std::size_t>(a.length(i)), static_cast<int>(i));
-    value_.writeReals(a.value);
+    update(a);
     row_.write(row);
     column_.write(a.column);
   }
 
+  void update(const SparseMatrix& a) final { value_.writeReals(a.value); }
   sk::Shape domain() const override { return {columns_}; }
   sk::Shape range() const override { return {rows_}; }
   using Matrix::multiply;
@@ -98,25 +105,31 @@ class PointMatrix : public Matrix {
 
 /// Rows of one length: entry k of all rows is in row k of the streams.
 struct Bucket {
-  Bucket(sk::Device& device, const SparseMatrix& a, const std::vector<int>& rows,
-         const Arithmetic& arithmetic)
-      : length(static_cast<int>(a.length(rows.front()))),
+  Bucket(sk::Device& device, const SparseMatrix& a, std::vector<int> itsRows, const Arithmetic& arithmetic)
+      : rows(std::move(itsRows)),
+        length(static_cast<int>(a.length(rows.front()))),
         value(device.stream<float>({length, rows.size()}, arithmetic.matrix)),
         column(device.stream<int>({length, rows.size()})),
         row(device.stream<int>({rows.size()})) {
-    std::vector<double> values(static_cast<std::size_t>(length) * rows.size());
-    std::vector<int> columns(values.size());
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      for (std::size_t k = 0; k < static_cast<std::size_t>(length); ++k) {
-        const std::size_t from = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(rows[i])]) + k;
-        values[k * rows.size() + i] = a.value[from];
-        columns[k * rows.size() + i] = a.column[from];
-      }
-    value.writeReals(values);
-    column.write(columns);
+    update(a);
+    column.write(transposed(a, a.column));
     row.write(rows);
   }
 
+  void update(const SparseMatrix& a) { value.writeReals(transposed(a, a.value)); }
+
+  /// The elements `of` the rows' entries, entry by entry.
+  template <class T>
+  std::vector<T> transposed(const SparseMatrix& a, const std::vector<T>& of) const {
+    std::vector<T> elements(static_cast<std::size_t>(length) * rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(length); ++k)
+        elements[k * rows.size() + i] =
+            of[static_cast<std::size_t>(a.starts[static_cast<std::size_t>(rows[i])]) + k];
+    return elements;
+  }
+
+  std::vector<int> rows;
   int length;
   Vector value;
   sk::Stream<int> column, row;
@@ -132,6 +145,9 @@ class BucketMatrix : public Matrix {
     hasEmptyRows_ = rowsByLength.contains(0);
   }
 
+  void update(const SparseMatrix& a) final {
+    for (Bucket& b : buckets_) b.update(a);
+  }
   sk::Shape domain() const override { return {columns_}; }
   sk::Shape range() const override { return {rows_}; }
   using Matrix::multiply;

@@ -23,10 +23,11 @@ class RowsMatrix : public Matrix {
         rowsOf_(startsOf(device, a)),
         value_(device.stream<float>({a.entries()}, arithmetic.matrix)),
         column_(device.stream<int>({a.entries()})) {
-    value_.writeReals(a.value);
+    update(a);
     column_.write(a.column);
   }
 
+  void update(const SparseMatrix& a) final { value_.writeReals(a.value); }
   sk::Shape domain() const override { return {columns_}; }
   sk::Shape range() const override { return {rows_}; }
   using Matrix::multiply;
@@ -58,6 +59,10 @@ class DenseMatrix : public Matrix {
  public:
   DenseMatrix(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic)
       : Matrix(arithmetic), value_(device.stream<float>({a.rows, a.columns}, arithmetic.matrix)) {
+    update(a);
+  }
+
+  void update(const SparseMatrix& a) final {
     std::vector<double> values(static_cast<std::size_t>(a.rows * a.columns), 0.0);
     for (std::int64_t i = 0; i < a.rows; ++i)
       for (auto k = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);

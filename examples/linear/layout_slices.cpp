@@ -67,8 +67,29 @@ template <class Offset>
 class SliceMatrix : public Matrix {
  public:
   SliceMatrix(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic)
-      : SliceMatrix(device, a, slicesOf(a), arithmetic) {}
+      : Matrix(arithmetic),
+        columns_(a.columns),
+        slices_(slicesOf(a)),
+        slot_(device.stream<int>({a.rows})),
+        start_(device.stream<int>({static_cast<std::int64_t>(slices_.start.size())})),
+        offset_(device.stream<Offset>({slices_.start.back()})),
+        value_(device.stream<float>({slices_.start.back()}, arithmetic.matrix)) {
+    // What fills a row reads its own element of x, or the last one, and multiplies it by 0.
+    std::vector<Offset> offset(static_cast<std::size_t>(slices_.start.back()), 0);
+    visitEntries(a, [&](std::int64_t row, std::size_t entry, std::size_t at) {
+      offset[at] = static_cast<Offset>(a.column[entry] - row);
+    });
+    slot_.write(slices_.slot);
+    start_.write(slices_.start);
+    offset_.write(offset);
+    update(a);
+  }
 
+  void update(const SparseMatrix& a) final {
+    std::vector<double> value(static_cast<std::size_t>(value_.size()), 0.0);
+    visitEntries(a, [&](std::int64_t, std::size_t entry, std::size_t at) { value[at] = a.value[entry]; });
+    value_.writeReals(value);
+  }
   sk::Shape domain() const override { return {columns_}; }
   sk::Shape range() const override { return slot_.shape(); }
   void multiply(const Vector& x, Vector& y) override {
@@ -88,32 +109,20 @@ class SliceMatrix : public Matrix {
   }
 
  private:
-  SliceMatrix(sk::Device& device, const SparseMatrix& a, const Slices& slices, const Arithmetic& arithmetic)
-      : Matrix(arithmetic),
-        columns_(a.columns),
-        slot_(device.stream<int>({a.rows})),
-        start_(device.stream<int>({static_cast<std::int64_t>(slices.start.size())})),
-        offset_(device.stream<Offset>({slices.start.back()})),
-        value_(device.stream<float>({slices.start.back()}, arithmetic.matrix)) {
-    // What fills a row reads its own element of x, or the last one, and multiplies it by 0.
-    std::vector<Offset> offset(static_cast<std::size_t>(slices.start.back()), 0);
-    std::vector<double> value(offset.size(), 0.0);
+  /// Calls visit(row, entry, at) with the element of the streams that holds each entry.
+  template <class Visit>
+  void visitEntries(const SparseMatrix& a, Visit&& visit) const {
     for (std::int64_t i = 0; i < a.rows; ++i) {
-      const std::int64_t slot = slices.slot[static_cast<std::size_t>(i)];
-      std::int64_t at = slices.start[static_cast<std::size_t>(slot / height)] + slot % height;
+      const std::int64_t slot = slices_.slot[static_cast<std::size_t>(i)];
+      std::int64_t at = slices_.start[static_cast<std::size_t>(slot / height)] + slot % height;
       for (auto k = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
-           k < static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]); ++k, at += height) {
-        offset[static_cast<std::size_t>(at)] = static_cast<Offset>(a.column[k] - i);
-        value[static_cast<std::size_t>(at)] = a.value[k];
-      }
+           k < static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]); ++k, at += height)
+        visit(i, k, static_cast<std::size_t>(at));
     }
-    slot_.write(slices.slot);
-    start_.write(slices.start);
-    offset_.write(offset);
-    value_.writeReals(value);
   }
 
   std::int64_t columns_;
+  Slices slices_;
   sk::Stream<int> slot_, start_;
   sk::Stream<Offset> offset_;
   Vector value_;

@@ -121,6 +121,21 @@ TEST_CASE("A folded product is x . A x") {
   }
 }
 
+TEST_CASE("Layouts take other values of the same entries") {
+  sk::Device device = sk::Device::native();
+  SparseMatrix a = irregular(67, 67);
+  const std::vector<double> x = randomVector(67);
+  for (const LayoutKind& kind : layoutKinds()) {
+    CAPTURE(kind.name);
+    const std::unique_ptr<Matrix> matrix = kind.make(device, a, {});
+    for (double& v : a.value) v = 0.5 - v;
+    matrix->update(a);
+    CHECK(productOf(device, *matrix, x) == productOf(device, *kind.make(device, a, {}), x));
+  }
+  CHECK_THROWS_WITH(makeMatrix(poisson({4, 4}), {})->update(a),
+                    "a matrix in the layout 'stencil' cannot take other values");
+}
+
 TEST_CASE("Stencils are their matrices") {
   for (sk::Device& device : testDevices()) {
     CAPTURE(device.profile());

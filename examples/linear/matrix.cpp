@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "vectors.sk.hpp"
@@ -55,6 +56,10 @@ void Matrix::multiplyIn(const Arithmetic& arithmetic, const Vector& x, Vector& y
   multiply(x, y);
   options_ = options;
   foldOptions_ = foldOptions;
+}
+
+void Matrix::update(const SparseMatrix&) {
+  throw std::runtime_error("a matrix in the layout '" + layout() + "' cannot take other values");
 }
 
 void Matrix::fusedDirection(const Vector&, const Vector&, const Vector&, Vector&, Vector&) {

@@ -10,6 +10,8 @@
 
 namespace linear {
 
+struct SparseMatrix;
+
 using Vector = sk::Stream<float>;
 
 /// What numbers are computed in and stored as. The defaults are floats, with compensated sums.
@@ -60,6 +62,10 @@ class Matrix {
   /// x <- x + (rr / pq) p and r <- r - (rr / pq) A p, and next, of one element, becomes r . r.
   virtual void fusedStep(const Vector& rr, const Vector& pq, const Vector& p, Vector& x, Vector& r,
                          Vector& next);
+
+  /// Writes other values of the entries to the streams, which recorded loops follow. `a` has the entries in the places of the matrix that
+  /// this one was made of. Throws std::runtime_error for a layout that does not come from a sparse matrix.
+  virtual void update(const SparseMatrix& a);
 
   /// The layout's name, as --layout takes it.
   virtual std::string layout() const = 0;

@@ -19,24 +19,38 @@ namespace linear {
 namespace {
 
 /// 1 / diagonal of the matrix on the device, which is scaled.
-Vector inverseDiagonal(sk::Device& device, const Matrix& matrix, const Operator& a,
-                       const Arithmetic& arithmetic) {
+std::vector<double> inverseDiagonal(const Operator& a) {
   std::vector<double> inverse(a.diagonal.size());
   for (std::size_t i = 0; i < inverse.size(); ++i) inverse[i] = 1.0 / (a.scale * a.diagonal[i]);
-  Vector stream = device.stream<float>(matrix.domain(), arithmetic.vectors);
-  stream.writeReals(inverse);
-  return stream;
+  return inverse;
+}
+
+/// The diagonal matrix M with the least ||I - M A|| in Frobenius' norm (O. Broeker and M. Grote, "Sparse approximate inverse
+/// smoothers for geometric and algebraic multigrid", 2002).
+std::vector<double> leastSquaresDiagonal(const Operator& a) {
+  std::vector<double> entries(a.diagonal.size());
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    entries[i] = a.rowSquares[i] > 0.0 ? a.diagonal[i] / a.rowSquares[i] / a.scale : 0.0;
+  return entries;
 }
 
 class Diagonal : public Preconditioner {
  public:
-  Diagonal(Vector entries, const Arithmetic& arithmetic)
-      : entries_(std::move(entries)), foldOptions_(arithmetic.foldOptions()) {}
+  using Entries = std::vector<double> (*)(const Operator& a);
+
+  Diagonal(const PreconditionerParts& parts, Entries entriesOf)
+      : entriesOf_(entriesOf),
+        entries_(parts.device.stream<float>(parts.matrix.domain(), parts.arithmetic.vectors)),
+        foldOptions_(parts.arithmetic.foldOptions()) {
+    update(parts.a);
+  }
+  void update(const Operator& a) final { entries_.writeReals(entriesOf_(a)); }
   void apply(const Vector& r, Vector& z, Vector& rz) override {
     multiplyElements.with(foldOptions_)(entries_, r, z, rz);
   }
 
  private:
+  Entries entriesOf_;
   Vector entries_;
   sk::CallOptions foldOptions_;
 };
@@ -46,13 +60,15 @@ class Chebyshev : public Preconditioner {
  public:
   Chebyshev(sk::Device& device, Matrix& matrix, const Operator& a, const Arithmetic& arithmetic)
       : matrix_(matrix),
-        inverse_(inverseDiagonal(device, matrix, a, arithmetic)),
+        inverse_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
         change_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
         product_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
         options_(arithmetic.options()),
         foldOptions_(arithmetic.foldOptions()),
         middle_(a.jacobiBound * (1.0 + 1.0 / 30.0) / 2.0),
-        radius_(a.jacobiBound * (1.0 - 1.0 / 30.0) / 2.0) {}
+        radius_(a.jacobiBound * (1.0 - 1.0 / 30.0) / 2.0) {
+    inverse_.writeReals(inverseDiagonal(a));
+  }
 
   void apply(const Vector& r, Vector& z, Vector& rz) override {
     double rho = radius_ / middle_;
@@ -79,20 +95,11 @@ std::unique_ptr<Preconditioner> makeNone(const PreconditionerParts&) { return nu
 
 std::unique_ptr<Preconditioner> makeJacobi(const PreconditionerParts& parts) {
   checkDiagonal(parts.a, "the preconditioner 'jacobi'");
-  return std::make_unique<Diagonal>(inverseDiagonal(parts.device, parts.matrix, parts.a, parts.arithmetic),
-                                    parts.arithmetic);
+  return std::make_unique<Diagonal>(parts, inverseDiagonal);
 }
 
-/// The diagonal matrix M with the least ||I - M A|| in Frobenius' norm (O. Broeker and M. Grote, "Sparse approximate inverse
-/// smoothers for geometric and algebraic multigrid", 2002).
 std::unique_ptr<Preconditioner> makeSpai0(const PreconditionerParts& parts) {
-  std::vector<double> entries(parts.a.diagonal.size());
-  for (std::size_t i = 0; i < entries.size(); ++i)
-    entries[i] =
-        parts.a.rowSquares[i] > 0.0 ? parts.a.diagonal[i] / parts.a.rowSquares[i] / parts.a.scale : 0.0;
-  Vector stream = parts.device.stream<float>(parts.matrix.domain(), parts.arithmetic.vectors);
-  stream.writeReals(entries);
-  return std::make_unique<Diagonal>(std::move(stream), parts.arithmetic);
+  return std::make_unique<Diagonal>(parts, leastSquaresDiagonal);
 }
 
 std::unique_ptr<Preconditioner> makeChebyshev(const PreconditionerParts& parts) {
@@ -126,6 +133,11 @@ constexpr PreconditionerKind preconditioners[] = {
 };
 
 }  // namespace
+
+void Preconditioner::update(const Operator&) {
+  throw std::runtime_error(
+      "the preconditioner cannot follow other values of the matrix; make it anew, or take 'jacobi'");
+}
 
 std::span<const PreconditionerKind> preconditionerKinds() { return preconditioners; }
 

@@ -20,6 +20,9 @@ class Preconditioner {
   virtual ~Preconditioner() = default;
   /// z = M r, and rz, of one element, becomes r . z. May be recorded in a loop.
   virtual void apply(const Vector& r, Vector& z, Vector& rz) = 0;
+  /// Follows a matrix that has been updated, and whose values on the host are `a`; recorded loops follow, too. Throws std::runtime_error if the
+  /// preconditioner can only be made anew.
+  virtual void update(const Operator& a);
 };
 
 struct PreconditionerSettings {

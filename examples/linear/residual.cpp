@@ -56,7 +56,10 @@ std::vector<std::unique_ptr<Matrix>> exactMatrices(sk::Device& device, const Mat
 class DeviceResidual : public Residual {
  public:
   DeviceResidual(sk::Device& device, Matrix& matrix, const Operator& a, const Arithmetic& arithmetic)
-      : matrix_(matrix),
+      : device_(device),
+        matrix_(matrix),
+        a_(a),
+        arithmetic_(arithmetic),
         exact_(exactMatrices(device, matrix, a, arithmetic)),
         options_(doubleArithmetic().options()),
         foldOptions_(doubleArithmetic().foldOptions()) {
@@ -64,6 +67,13 @@ class DeviceResidual : public Residual {
       *v = device.stream<float>(matrix.domain(), sk::Storage::Double);
     if (exact_.size() > 1) q_ = device.stream<float>(matrix.domain(), sk::Storage::Double);
     for (Vector* v : {&rr_, &largestR_, &largestX_}) *v = device.stream<float>({1}, sk::Storage::Double);
+  }
+
+  void update() override {
+    if (a_.sparse != nullptr && exact_.size() == 1)
+      exact_[0]->update(scaled(*a_.sparse, a_.scale));
+    else
+      exact_ = exactMatrices(device_, matrix_, a_, arithmetic_);
   }
 
   Norms start(std::span<const double> b) override {
@@ -107,7 +117,10 @@ class DeviceResidual : public Residual {
 
   Norms norms() const { return {std::sqrt(rr_.readReals()[0]), largestR_.readReals()[0]}; }
 
+  sk::Device& device_;
   Matrix& matrix_;
+  const Operator& a_;
+  Arithmetic arithmetic_;
   std::vector<std::unique_ptr<Matrix>> exact_;
   sk::CallOptions options_, foldOptions_;
   Vector b_, x_, xNext_, r_, rNext_, q_, rr_, largestR_, largestX_;
@@ -123,6 +136,8 @@ double largestOf(std::span<const double> v) {
 class HostResidual : public Residual {
  public:
   explicit HostResidual(const Operator& a) : a_(a) {}
+
+  void update() override {}
 
   Norms start(std::span<const double> b) override {
     b_.assign(b.begin(), b.end());

@@ -26,6 +26,8 @@ class Residual {
  public:
   virtual ~Residual() = default;
 
+  /// Follows the operator and the matrix, whose values have been updated in place.
+  virtual void update() = 0;
   /// Begins with x = 0.
   virtual Norms start(std::span<const double> b) = 0;
   /// The norms of the residual for x + scale * step. Nothing changes until accept().

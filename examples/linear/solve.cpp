@@ -40,14 +40,9 @@ bool addsUpToZero(std::span<const double> b) {
 /// One solve after the other for what is left of b.
 class Refinement {
  public:
-  Refinement(Method& method, const Operator& a, std::span<const double> b, const Arithmetic& arithmetic,
-             const SolveSettings& settings)
-      : method_(method),
-        a_(a),
-        b_(b),
-        arithmetic_(arithmetic),
-        settings_(settings),
-        residual_(makeResidual(method.device(), method.matrix(), a, arithmetic)) {}
+  Refinement(Method& method, Residual& residual, const Operator& a, std::span<const double> b,
+             const Arithmetic& arithmetic, const SolveSettings& settings)
+      : method_(method), a_(a), b_(b), arithmetic_(arithmetic), settings_(settings), residual_(residual) {}
 
   Solution run() {
     const examples::Stopwatch watch;
@@ -63,20 +58,20 @@ class Refinement {
     // A power of two, as a.scale is: only the storage rounds.
     const int exponent = largestB > 0.0 ? std::ilogb(largestB) : 0;
     for (double& v : scaled) v = std::ldexp(v, -exponent);
-    norms_ = residual_->start(scaled);
+    norms_ = residual_.start(scaled);
     normB_ = norms_.two;
     solution_.outcome = outcome();
     solution_.residualTrue = normB_ > 0.0 ? norms_.two / normB_ : 0.0;
     const double scale =
-        a_.scale * a_.infinityNorm * residual_->largestOfSolution() + std::ldexp(largestB, -exponent);
+        a_.scale * a_.infinityNorm * residual_.largestOfSolution() + std::ldexp(largestB, -exponent);
     solution_.backwardError = scale > 0.0 ? norms_.infinity / scale : 0.0;
-    solution_.x = residual_->solution();
+    solution_.x = residual_.solution();
     for (double& v : solution_.x) v = std::ldexp(v * a_.scale, exponent);
     if (isProjected) {
       const double mean = meanOf(solution_.x);
       for (double& v : solution_.x) v -= mean;
     }
-    solution_.residualPlace = residual_->place();
+    solution_.residualPlace = residual_.place();
     solution_.seconds = watch.milliseconds() / 1000.0;
     return std::move(solution_);
   }
@@ -113,7 +108,7 @@ class Refinement {
   /// Solves for the residual, to `goal` of its norm or to what the precision can give, and leaves the iterations' state.
   State solveOnce(double goal) {
     factor_ = std::ldexp(1.0, -std::ilogb(norms_.infinity));
-    residual_->writeTo(method_.rightHandSide(), factor_);
+    residual_.writeTo(method_.rightHandSide(), factor_);
     const double reachable = settings_.refines ? std::max(goal / 2.0, 64.0 * arithmetic_.roundoff()) : goal;
     const double start = factor_ * norms_.two;
     const double limit = reachable * start;
@@ -144,9 +139,9 @@ class Refinement {
 
   /// Adds the method's solution where that makes the residual smaller. Returns the residual's norm with it.
   double addIfBetter() {
-    const Norms reached = residual_->attempt(method_.x(), 1.0 / factor_);
+    const Norms reached = residual_.attempt(method_.x(), 1.0 / factor_);
     if (!(reached.two < norms_.two)) return std::isfinite(reached.two) ? reached.two : norms_.two;
-    residual_->accept();
+    residual_.accept();
     norms_ = reached;
     return reached.two;
   }
@@ -156,7 +151,7 @@ class Refinement {
   std::span<const double> b_;
   const Arithmetic& arithmetic_;
   const SolveSettings& settings_;
-  std::unique_ptr<Residual> residual_;
+  Residual& residual_;
   Norms norms_;  ///< of the residual now
   double normB_ = 0.0;
   double factor_ = 1.0;
@@ -181,12 +176,18 @@ std::string_view nameOf(Outcome outcome) {
 
 Solution solve(Method& method, const Operator& a, std::span<const double> b, const Arithmetic& arithmetic,
                const SolveSettings& settings) {
+  const std::unique_ptr<Residual> residual = makeResidual(method.device(), method.matrix(), a, arithmetic);
+  return solve(method, *residual, a, b, arithmetic, settings);
+}
+
+Solution solve(Method& method, Residual& residual, const Operator& a, std::span<const double> b,
+               const Arithmetic& arithmetic, const SolveSettings& settings) {
   if (static_cast<std::int64_t>(b.size()) != a.size)
     throw std::runtime_error(
         fmt::format("the right-hand side has {} elements, and the matrix {} rows", b.size(), a.size));
   if (!std::ranges::all_of(b, [](double v) { return std::isfinite(v); }))
     throw std::runtime_error("the right-hand side has elements that are not finite");
-  return Refinement(method, a, b, arithmetic, settings).run();
+  return Refinement(method, residual, a, b, arithmetic, settings).run();
 }
 
 }  // namespace linear

@@ -60,8 +60,13 @@ struct Solution {
   std::vector<HistoryPoint> history;
 };
 
+class Residual;
+
 /// `method` belongs to a matrix that is a.scale * A. Throws std::runtime_error if b has another size than A or is not finite.
 Solution solve(Method& method, const Operator& a, std::span<const double> b, const Arithmetic& arithmetic,
                const SolveSettings& settings);
+/// The same with a residual of makeResidual() for the same matrix, which serves several right-hand sides.
+Solution solve(Method& method, Residual& residual, const Operator& a, std::span<const double> b,
+               const Arithmetic& arithmetic, const SolveSettings& settings);
 
 }  // namespace linear

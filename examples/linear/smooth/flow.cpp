@@ -4,57 +4,73 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "equations.hpp"
 #include "layout.hpp"
 #include "named.hpp"
+#include "preconditioner.hpp"
+#include "residual.hpp"
 #include "solve.hpp"
 
 namespace smooth {
 
-Equations equationsOf(const Surface& s, const Faults& faults, const FlowSettings& settings) {
-  const auto n = static_cast<std::int64_t>(s.points.size());
-  std::vector<bool> stays(s.points.size(), false);
-  if (settings.fixesBoundary) stays = faults.boundary;
-  for (const std::int32_t i : faults.isolated) stays[static_cast<std::size_t>(i)] = true;
-
-  std::vector<double> mass(s.points.size(), 0.0);
-  std::vector<linear::Entry> laplacian;
-  double total = 0.0;
-  auto degenerate = faults.degenerate.begin();
-  for (std::size_t f = 0; f < s.faces.size(); ++f) {
-    if (degenerate != faults.degenerate.end() && *degenerate == static_cast<std::int64_t>(f)) {
-      ++degenerate;
-      continue;
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t at = s.faces[f][k], i = s.faces[f][(k + 1) % 3], j = s.faces[f][(k + 2) % 3];
-      const Vector corner = s.points[static_cast<std::size_t>(at)];
-      const Vector a = s.points[static_cast<std::size_t>(i)] - corner,
-                   b = s.points[static_cast<std::size_t>(j)] - corner;
-      const double twiceArea = length(cross(a, b));
-      mass[static_cast<std::size_t>(at)] += twiceArea / 6.0;
-      total += twiceArea / 6.0;
-      // The edge from i to j is opposite of this corner.
-      const double weight = settings.timeStep * dot(a, b) / twiceArea / 2.0;
-      for (const auto& [row, column] : {std::pair{i, j}, std::pair{j, i}}) {
-        if (stays[static_cast<std::size_t>(row)]) continue;
-        laplacian.push_back({row, row, weight});
-        laplacian.push_back({row, column, -weight});
-      }
-    }
+/// The equations on the device, with all that solving them needs. The places of the entries are those of the first step, and so are the streams and the
+/// recorded iteration: a step writes the values alone.
+class Flow::Solver {
+ public:
+  Solver(sk::Device& device, const Surface& surface, const Faults& faults, const FlowSettings& settings)
+      : equations_(surface), settings_(settings) {
+    computeValues(surface, faults);
+    matrix_ = linear::makeMatrix(device, linear::scaled(equations_.matrix(), a_.scale), settings.layout,
+                                 arithmetic_);
+    preconditioner_ = linear::rowNamed(linear::preconditionerKinds(), "jacobi", "preconditioner")
+                          .make(device, *matrix_, a_, arithmetic_);
+    method_ = linear::rowNamed(linear::methodKinds(), "cg", "solver")
+                  .make(device, *matrix_, preconditioner_.get(), arithmetic_);
+    residual_ = linear::makeResidual(device, *matrix_, a_, arithmetic_);
   }
-  std::vector<linear::Entry> sum;
-  for (const linear::Entry& e : laplacian)
-    if (!stays[static_cast<std::size_t>(e.column)]) sum.push_back(e);  // its change is 0
-  const double mean = total / static_cast<double>(std::max<std::int64_t>(n, 1));
-  for (std::int64_t i = 0; i < n; ++i)
-    sum.push_back({i, i, stays[static_cast<std::size_t>(i)] ? mean : mass[static_cast<std::size_t>(i)]});
-  return {linear::assemble(n, n, sum), linear::assemble(n, n, laplacian)};
-}
+
+  /// For other positions of the points.
+  void update(const Surface& surface, const Faults& faults) {
+    computeValues(surface, faults);
+    matrix_->update(linear::scaled(equations_.matrix(), a_.scale));
+    preconditioner_->update(a_);
+    residual_->update();
+  }
+
+  /// By how much one coordinate of all points changes in the step.
+  linear::Solution changeOf(std::span<const double> x) {
+    // For the change of x, so that the tolerance is that of the change.
+    std::vector<double> b = linear::multiply(equations_.laplacian(), x);
+    for (double& v : b) v = -v;
+    return linear::solve(*method_, *residual_, a_, b, arithmetic_, {.tolerance = settings_.tolerance});
+  }
+
+  std::string layout() const { return matrix_->layout(); }
+
+ private:
+  void computeValues(const Surface& surface, const Faults& faults) {
+    equations_.update(surface, faults, settings_.timeStep, settings_.fixesBoundary);
+    a_ = linear::operatorOf(equations_.matrix());
+  }
+
+  Equations equations_;
+  FlowSettings settings_;
+  linear::Arithmetic arithmetic_;
+  linear::Operator a_;
+  std::unique_ptr<linear::Matrix> matrix_;
+  std::unique_ptr<linear::Preconditioner> preconditioner_;
+  std::unique_ptr<linear::Method> method_;
+  std::unique_ptr<linear::Residual> residual_;
+};
+
+Flow::~Flow() = default;
+Flow::Flow(Flow&&) noexcept = default;
 
 Flow::Flow(sk::Device& device, Surface surface, const FlowSettings& settings)
     : device_(device),
@@ -72,25 +88,16 @@ Flow::Flow(sk::Device& device, Surface surface, const FlowSettings& settings)
 
 StepReport Flow::step() {
   ++steps_;
-  const Equations equations = equationsOf(surface_, faults_, settings_);
-  const linear::Operator a = linear::operatorOf(equations.matrix);
-  const linear::Arithmetic arithmetic;
-  const auto matrix =
-      linear::makeMatrix(device_, linear::scaled(equations.matrix, a.scale), layout_, arithmetic);
-  layout_ = matrix->layout();
-  const auto preconditioner = linear::rowNamed(linear::preconditionerKinds(), "jacobi", "preconditioner")
-                                  .make(device_, *matrix, a, arithmetic);
-  const auto method = linear::rowNamed(linear::methodKinds(), "cg", "solver")
-                          .make(device_, *matrix, preconditioner.get(), arithmetic);
+  if (solver_)
+    solver_->update(surface_, faults_);
+  else
+    solver_ = std::make_unique<Solver>(device_, surface_, faults_, settings_);
+  layout_ = solver_->layout();
   StepReport report;
-  for (double Vector::*const component : {&Vector::x, &Vector::y, &Vector::z}) {
+  for (double Vector::* const component : {&Vector::x, &Vector::y, &Vector::z}) {
     std::vector<double> x;
     for (const Vector& p : surface_.points) x.push_back(p.*component);
-    // For the change of x, so that the tolerance is that of the change.
-    std::vector<double> b = linear::multiply(equations.laplacian, x);
-    for (double& v : b) v = -v;
-    const linear::Solution change =
-        linear::solve(*method, a, b, arithmetic, {.tolerance = settings_.tolerance});
+    const linear::Solution change = solver_->changeOf(x);
     if (change.outcome != linear::Outcome::Converged)
       throw std::runtime_error(
           fmt::format("step {}: the equations were not solved: {}, residual {:.2g}; take a smaller time step",

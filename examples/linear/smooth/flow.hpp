@@ -6,12 +6,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <sk/sk.hpp>
 
-#include "sparse.hpp"
 #include "surface.hpp"
 
 namespace smooth {
@@ -24,25 +24,21 @@ struct FlowSettings {
   double tolerance = 1e-8;  ///< of a step's true residual
 };
 
-/// The entries of (M + dt L) x' = M x: L has the cotangents' weights, M a third of the area of each face at its points.
-struct Equations {
-  linear::SparseMatrix matrix;  ///< M + dt L; rows of points that stay are a multiple of the identity's
-  linear::SparseMatrix laplacian;  ///< dt L; empty rows for points that stay
-};
-Equations equationsOf(const Surface& surface, const Faults& faults, const FlowSettings& settings);
-
 struct StepReport {
   std::int64_t iterations = 0;  ///< of three solves, for x, y and z
   double residual = 0.0;  ///< the largest of their true residuals, as a part of the right-hand side
   double volume = 0.0;
   double area = 0.0;
-  double secondsSolving = 0.0;  ///< of the step, in the three solves; the rest assembles, and copies the matrix to the device
+  double secondsSolving =
+      0.0;  ///< of the step, in the three solves; the rest computes the matrix and copies it to the device
 };
 
 class Flow {
  public:
   /// Throws std::runtime_error if the surface has no face with an area, or if its volume cannot be kept.
   Flow(sk::Device& device, Surface surface, const FlowSettings& settings);
+  ~Flow();
+  Flow(Flow&&) noexcept;
 
   /// Throws std::runtime_error if the equations are not solved to the tolerance.
   StepReport step();
@@ -53,6 +49,8 @@ class Flow {
   const std::string& layout() const { return layout_; }
 
  private:
+  class Solver;  ///< flow.cpp's own
+
   void restoreVolume();
 
   sk::Device& device_;
@@ -61,6 +59,7 @@ class Flow {
   Faults faults_;
   std::string layout_;
   double volume_;
+  std::unique_ptr<Solver> solver_;  ///< made by the first step
   std::int64_t steps_ = 0;
 };
 

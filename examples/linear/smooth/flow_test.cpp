@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 #include <sk/sk.hpp>
 
+#include "equations.hpp"
 #include "flow.hpp"
 #include "support/written_file.hpp"
 
@@ -77,6 +78,46 @@ TEST_CASE("Devices agree") {
     // Both solve to 1e-8 of changes that are below 0.2.
     for (std::size_t i = 0; i < noisy.points.size(); ++i)
       CHECK(length(flow.surface().points[i] - expected.surface().points[i]) < 1e-7);
+  }
+}
+
+TEST_CASE("A step writes the values of its own positions to the streams of the first") {
+  sk::Device device = sk::Device::native();
+  Surface noisy = sphere(1, 1.0);
+  addNoise(noisy, 0.1, 3);
+  // Values on the device differ by more than the tolerance in steps of this length.
+  const FlowSettings settings{.timeStep = 0.05, .layout = "buckets"};
+  Flow flow(device, noisy, settings);
+  flow.step();
+  Flow anew(device, flow.surface(), settings);
+  const StepReport second = flow.step(), expected = anew.step();
+  CHECK(flow.surface().points == anew.surface().points);
+  CHECK(second.iterations == expected.iterations);
+  CHECK(second.residual == expected.residual);
+}
+
+TEST_CASE("The matrix is symmetric, its Laplacian does not see constants, and M adds up to the area") {
+  Surface noisy = sphere(1, 1.0);
+  addNoise(noisy, 0.1, 3);
+  noisy.faces.push_back({0, 0, 1});  // degenerate
+  Equations equations(noisy);
+  for (const double timeStep : {1.0, 0.05}) {
+    equations.update(noisy, inspect(noisy), timeStep, false);
+    CHECK(linear::asymmetry(equations.matrix()).empty());
+    const std::vector<double> ones(noisy.points.size(), 1.0);
+    for (const double v : linear::multiply(equations.laplacian(), ones)) CHECK(std::abs(v) < 1e-14);
+    double sum = 0.0;
+    for (const double v : linear::multiply(equations.matrix(), ones)) sum += v;
+    CHECK(sum == Approx(areaOf(noisy)).epsilon(1e-12));
+    // x . L x is twice the area on any triangulation.
+    double energy = 0.0;
+    for (double Vector::* const component : {&Vector::x, &Vector::y, &Vector::z}) {
+      std::vector<double> x;
+      for (const Vector& p : noisy.points) x.push_back(p.*component);
+      const std::vector<double> lx = linear::multiply(equations.laplacian(), x);
+      for (std::size_t i = 0; i < x.size(); ++i) energy += x[i] * lx[i];
+    }
+    CHECK(energy == Approx(2.0 * timeStep * areaOf(noisy)).epsilon(1e-12));
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "equations.hpp"
 #include "flow.hpp"
 #include "layout.hpp"
 #include "study.hpp"
@@ -36,12 +37,13 @@ Findings studyLayouts(sk::Device& device, bool small) {
   Surface surface = small ? torus(16, 8, 1.0, 0.4) : torus(96, 40, 1.0, 0.4);
   addNoise(surface, small ? 0.01 : 0.005, 3);
   FlowSettings settings{.timeStep = 0.002};
-  const Equations equations = equationsOf(surface, inspect(surface), settings);
+  Equations equations(surface);
+  equations.update(surface, inspect(surface), settings.timeStep, settings.fixesBoundary);
 
   std::vector<Measured> all;
   for (const linear::LayoutKind& kind : linear::layoutKinds()) {
     settings.layout = kind.name;
-    const auto matrix = kind.make(device, equations.matrix, linear::Arithmetic());
+    const auto matrix = kind.make(device, equations.matrix(), linear::Arithmetic());
     all.push_back({settings.layout, Flow(device, surface, settings), matrix->stored(), matrix->bytes()});
   }
   // In turns, since a machine is not always equally fast. The first steps build programs.
@@ -69,7 +71,7 @@ Findings studyLayouts(sk::Device& device, bool small) {
     const Measured& m = all[k];
     table.add({m.layout, fmt::format("{}", m.stored),
                fmt::format("{:.2f}",
-                           static_cast<double>(m.stored) / static_cast<double>(equations.matrix.entries())),
+                           static_cast<double>(m.stored) / static_cast<double>(equations.matrix().entries())),
                fmt::format("{:.0f}", static_cast<double>(m.bytes) / 1e3),
                fmt::format("{}", m.first.iterations), fmt::format("{:.1e}", m.residual),
                fmt::format("{:.1f}", m.milliseconds), fmt::format("{:.1f}", m.solving)});

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+//
+// The linear equations of one implicit step of mean-curvature flow, (M + dt L) x' = M x. L has the weights of cotangents (M. Desbrun and others, 1999); M has a
+// third of the area of each face at its points. Everything is computed in double precision on the host.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "sparse.hpp"
+#include "surface.hpp"
+
+namespace smooth {
+
+class Equations {
+ public:
+  /// The places of the entries, which depend on the faces alone: an entry for each point and for both directions of each edge. Those of
+  /// degenerate faces and of points that stay are there, too, and are 0.
+  explicit Equations(const Surface& surface);
+
+  /// Computes the values from the positions of the same surface's points. `timeStep` is dt, a squared length; with
+  /// `fixesBoundary` the points of the boundary stay.
+  void update(const Surface& surface, const Faults& faults, double timeStep, bool fixesBoundary);
+
+  /// M + dt L; rows of points that stay are a multiple of the identity's.
+  const linear::SparseMatrix& matrix() const { return matrix_; }
+  /// dt L; rows of points that stay are 0.
+  const linear::SparseMatrix& laplacian() const { return laplacian_; }
+
+ private:
+  linear::SparseMatrix matrix_, laplacian_;  ///< with the same places
+  std::vector<std::size_t> diagonal_;  ///< the entry of each point
+  /// Of each face and corner: the entries of the opposite edge, in both directions. Of no meaning if a face names a point twice.
+  std::vector<std::array<std::array<std::size_t, 2>, 3>> edges_;
+};
+
+}  // namespace smooth
