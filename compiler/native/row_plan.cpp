@@ -126,12 +126,15 @@ std::uint32_t RowPlan::carried() const {
 }
 
 RowBlock blockFor(const CpuLevel& level, std::uint32_t carried) {
-  // what rows share takes as many registers as one row carries; a row's own reads take three more
-  const std::uint32_t vectors = carried <= 1 ? 2 : 1;
-  const std::uint32_t perRow = vectors * std::max(carried, 1U);
+  const std::uint32_t lanes = level.vectorBits / 32;
+  const auto mostRows = static_cast<std::uint32_t>(sk::native::mostRows);
+  // Two vectors of sums in each row. LLVM loads what each row reads itself, for all rows, before the first product: with
+  // more rows it spills sums in every iteration.
+  if (carried <= 1) return {2 * lanes, std::min(level.vectorRegisters / 3, mostRows)};
+  // What rows share takes as many registers as one row carries; a row's own reads take three more.
   const std::uint32_t free = level.vectorRegisters - 3;
-  const std::uint32_t rows = free > 2 * perRow ? (free - perRow) / perRow : 1;
-  return {vectors * level.vectorBits / 32, std::min<std::uint32_t>(rows, sk::native::mostRows)};
+  const std::uint32_t rows = free > 2 * carried ? (free - carried) / carried : 1;
+  return {lanes, std::min(rows, mostRows)};
 }
 
 }  // namespace skc::native

@@ -69,6 +69,14 @@ vectorised vmulps 'kernel void multiply(float a[][], float b[][], out float c<>)
   c = 0;
   for (int k = 0; k < extentof(a).x; ++k) c += a[p.y][k] * b[k][p.x];
 }'
+# All sums of its rows stay in registers: the block of products touches no vector on the stack.
+for level in x86-64-v3 x86-64-v4; do
+  "$skc" --emit=asm --target-triple=x86_64-linux-gnu --levels="$level" kernel.sk |
+    sed -n "/_multiply\.rows\.v${level: -1}\.contracted:/,/retq/p" |
+    awk '/^\.LBB/ { spills = 0; products = 0 } /[xyz]mm/ && /rsp/ { ++spills } /vfmadd/ { ++products }
+         /^\tj/ && products > 4 && !found { print spills; found = 1 }' >spills
+  [[ $(<spills) == 0 ]] || { echo "broken: sums of a product of matrices are spilled on $level"; exit 1; }
+done
 # The vectors that all rows share are those of b, whose bit says so (Code::sharedGathers).
 "$skc" --emit=llvm --target-triple=x86_64-linux-gnu --levels=x86-64-v3 kernel.sk >kernel.ll
 grep -q '_multiply = hidden constant .*, i64 2 }' kernel.ll ||
