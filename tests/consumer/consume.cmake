@@ -8,6 +8,7 @@
 #   SKC            the skc built there
 #   GENERATOR      CMake's generator for the consumer
 #   SETTINGS       -D options for the consumer, on which both builds must agree
+#   CXX            the C++ compiler
 cmake_minimum_required(VERSION 3.25)
 
 # step(WHAT COMMAND...): runs a command and sets `output` to what it prints; a failure ends the test.
@@ -116,6 +117,9 @@ if(WAY STREQUAL "find_package")
   endif()
 else()
   set(place "-DSTREAMKERNEL=${SOURCE}" "-DSK_SKC=${SKC}" -DLIBRARIES=)   # an installation is linked to every kind
+  list(APPEND SETTINGS "-DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CURRENT_LIST_DIR}/reuse_object.sh")
+  set(ENV{SK_OWN_BUILD} "${BUILD}")
+  set(ENV{SK_TAKEN_IN} "${WORK}/build/streamkernel")
   set(kinds "")
 endif()
 step("configuring" ${CMAKE_COMMAND} -G "${GENERATOR}" -S "${WORK}/project" -B "${WORK}/build"
@@ -136,6 +140,27 @@ prints("4.5 6 7.5 9 ")
 edit(scale.sk "factor * a" "2 * factor * a")
 built("after a change of one file" RUNS scale.sk)
 prints("6 9 12 15 ")
+
+# Users build without assertions, which use variables that nothing else may use: what differs then compiles without a warning, too.
+if(WAY STREQUAL "add_subdirectory")
+  file(GLOB_RECURSE sources "${SOURCE}/runtime/src/*.cpp")
+  set(text "")
+  foreach(source IN LISTS sources)
+    file(STRINGS "${source}" asserts REGEX "^ +assert\\(" LIMIT_COUNT 1)
+    if(asserts)
+      string(APPEND text "#include \"${source}\"\n")
+    endif()
+  endforeach()
+  file(WRITE "${WORK}/unchecked.cpp" "${text}")
+  set(generated runtime/src/assemble)
+  step("compiling without assertions" ${CXX} -std=c++20 -fsyntax-only -DNDEBUG -Wall -Wextra -Werror
+       -I "${SOURCE}/runtime/src" -I "${SOURCE}/runtime/include" -I "${WORK}/build/streamkernel/${generated}" "${WORK}/unchecked.cpp")
+  # What objects of the other build were compiled with.
+  file(GLOB headers RELATIVE "${BUILD}" "${BUILD}/${generated}/glsl_text/*.hpp")
+  foreach(header IN LISTS headers)
+    step("comparing ${header}" ${CMAKE_COMMAND} -E compare_files "${BUILD}/${header}" "${WORK}/build/streamkernel/${header}")
+  endforeach()
+endif()
 
 # A mistake in a kernel stops the build with a message that names its line.
 edit(scale.sk "* a * x" "* a * y")
