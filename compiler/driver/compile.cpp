@@ -58,6 +58,7 @@ TransformOptions transformOptions(const Options& options, std::ostream& output) 
     result.limits.push_back(
         {static_cast<std::uint32_t>(profile.drawBuffers), static_cast<std::uint32_t>(profile.textureUnits)});
   }
+  result.expandsSelects = sk::assemble::findProfile(options.profile)->webgl;
   for (const MeasuredDevice& device : options.devices) result.limits.push_back(device.limits);
   result.precisions = options.precision.empty() ? options.emit == Emit::Stubs : options.precision != "single";
   if (!options.printAfter.empty()) {

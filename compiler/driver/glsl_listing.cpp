@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
@@ -162,10 +163,16 @@ std::string appendListing(const Profile& profile, const sk::program::Kernel& ker
   return skc::join(programs, "\n");
 }
 
+/// The kernel whose elements or partial results a pass reads.
+const sk::program::Kernel& kernelOf(const sk::program::Reduction& reduction,
+                                    const sk::assemble::ReduceVariant& variant) {
+  return sk::assemble::isOfPartials(variant.walk) ? reduction.combine : reduction.fold;
+}
+
 /// Adds the accesses that depend on the arguments, for streams in plain layout.
 void addPlainAccess(const sk::program::Reduction& reduction, sk::assemble::ReduceVariant& variant) {
   const bool isPartial = sk::assemble::isOfPartials(variant.walk);
-  const sk::program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
+  const sk::program::Kernel& kernel = kernelOf(reduction, variant);
   sk::assemble::Variant plain = plainVariant(kernel);
   for (std::size_t i = 0; i < plain.access.size(); ++i) {
     const bool isInput = kernel.parameters[i].role == sk::program::Role::Input;
@@ -210,6 +217,14 @@ bool writesScalars(const sk::program::Kernel& fold) {
   });
 }
 
+/// Whether a pass reads more planes than the profile guarantees texture units, so that the runtime rejects the reduce
+/// on a device that has no more.
+bool readsTooMuch(const Profile& profile, const sk::program::Kernel& kernel,
+                  const sk::assemble::ReduceVariant& variant) {
+  const sk::assemble::PassLimits limits{std::numeric_limits<int>::max(), profile.textureUnits};
+  return !sk::assemble::fitsOnePass(kernel, limits, variant.specs);
+}
+
 /// Every program of these passes, once.
 std::string passListing(const Profile& profile, const sk::program::Reduction& reduction,
                         std::vector<sk::assemble::ReducePass>&& passes) {
@@ -217,6 +232,14 @@ std::string passListing(const Profile& profile, const sk::program::Reduction& re
   std::set<sk::assemble::ReduceVariant> seen;
   for (sk::assemble::ReducePass& pass : passes) {
     addPlainAccess(reduction, pass.variant);
+    if (const sk::program::Kernel& kernel = kernelOf(reduction, pass.variant);
+        readsTooMuch(profile, kernel, pass.variant)) {
+      text += fmt::format(
+          "// {} for {}: no program; its elements or partial results have more planes than {} texture "
+          "units\n",
+          kernel.name, profile.name, profile.textureUnits);
+      continue;
+    }
     for (const sk::assemble::ReduceVariant& variant : drawnVariants(profile, reduction, pass.variant)) {
       if (!seen.insert(variant).second) continue;
       if (!text.empty()) text += "\n";

@@ -139,7 +139,7 @@ void addTargetOptions(CLI::App& app, Words& words) {
       ->check(checkTarget, "")
       ->type_name("LIST");
   app.add_option("--profile", words.options.profile,
-                 "Version of GLSL for --emit=glsl and --emit=plan: " + profileNames())
+                 "Version of GLSL for --emit=glsl, plan and ir: " + profileNames())
       ->check(checkProfile, "")
       ->type_name("NAME");
   app.add_option("--device", words.deviceFile,

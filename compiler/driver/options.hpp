@@ -19,7 +19,7 @@ struct Options {
   std::vector<std::string> files;
   std::string outputDirectory = ".";
   Emit emit = Emit::Stubs;
-  std::string profile = "glsl330";          ///< for --emit=glsl and plan
+  std::string profile = "glsl330";          ///< for --emit=glsl, plan and ir
   std::vector<MeasuredDevice>
       devices;      ///< to plan for, besides all profiles; with --emit=plan, in place of the profile
   std::string kernel;                       ///< the only kernel to emit; empty: all

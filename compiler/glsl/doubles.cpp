@@ -143,7 +143,7 @@ std::string faceforward(Polyfills& polyfills, Type type) {
   defineByComponent(polyfills, "sk_neg", type, {type});
   polyfills.add(
       fmt::format("{} sk_faceforward({}) {{\n"
-                  "  return sk_less(sk_dot(c, b), sk_to_double(0.0)) ? a : sk_neg(a);\n}}\n",
+                  "  if (sk_less(sk_dot(c, b), sk_to_double(0.0))) return a;\n  return sk_neg(a);\n}}\n",
                   nameOf(type), parameterList({type, type, type})));
   return "sk_faceforward";
 }
@@ -282,7 +282,7 @@ std::string doubleComponent(Polyfills& polyfills, Type base, const std::string& 
                             const std::string& index) {
   std::string choice = fmt::format("v.{}", letters[base.width - 1U]);
   for (int c = base.width - 2; c >= 0; --c)
-    choice = fmt::format("i == {} ? v.{} : {}", c, letters[static_cast<std::size_t>(c)], choice);
+    choice = fmt::format("sk_choose(i == {}, v.{}, {})", c, letters[static_cast<std::size_t>(c)], choice);
   polyfills.add(fmt::format("sk_double sk_component({} v, int i) {{ return {}; }}\n", nameOf(base), choice));
   return call("sk_component", {vector, index});
 }

@@ -172,9 +172,10 @@ std::string Polyfills::quantize(Type type) {
 }
 
 std::string Polyfills::select(Type type) {
-  add(fmt::format("{0} sk_select(bvec{1} c, {0} yes, {0} no) {{\n  return {0}({2});\n}}\n",
-                  glslSpelling(type.scalar, type.width), type.width,
-                  byComponent("c.@ ? yes.@ : no.@", type.width)));
+  add(fmt::format(
+      "{0} sk_select(bvec{1} c, {0} yes, {0} no) {{\n  return {0}({2});\n}}\n",
+      glslSpelling(type.scalar, type.width), type.width,
+      byComponent(type.isDouble() ? "sk_choose(c.@, yes.@, no.@)" : "c.@ ? yes.@ : no.@", type.width)));
   return "sk_select";
 }
 

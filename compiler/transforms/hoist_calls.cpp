@@ -2,16 +2,12 @@
 #include "transforms/hoist_calls.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "ir/build.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
-#include "support/overloaded.hpp"
+#include "transforms/hoist_expressions.hpp"
 
 namespace skc {
 
@@ -27,98 +23,6 @@ bool hasOpenLoop(const Module& module, const Function& function) {
   });
   return found;
 }
-
-class Hoister {
- public:
-  Hoister(Function& function, const std::set<FunctionId>& functions)
-      : function_(function), functions_(functions) {}
-
-  void block(Block& statements) {
-    Block result;
-    for (Stmt& stmt : statements) {
-      if (auto* loop = std::get_if<Loop>(&stmt.node)) {
-        condition(*loop, stmt.loc);
-      } else {
-        forEachOperand(stmt, [&](ExprPtr& operand) { expression(operand, result); });
-      }
-      forEachBlock(stmt, [&](Block& inner) { block(inner); });
-      result.push_back(std::move(stmt));
-    }
-    statements = std::move(result);
-  }
-
- private:
-  bool isLong(const Expr& expr) const { return callsOneOf(functions_, expr); }
-
-  /// Moves what cannot stay in the expression to statements before it.
-  void expression(ExprPtr& slot, Block& before) {
-    if (!isLong(*slot)) return;
-    if (auto* n = std::get_if<Select>(&slot->node);
-        n != nullptr && n->cond->type.isScalar() && (isLong(*n->yes) || isLong(*n->no))) {
-      return choice(slot, *n, before);
-    }
-    if (auto* n = std::get_if<Binary>(&slot->node);
-        n != nullptr && slot->type.isScalar() &&
-        (n->op == BinaryOp::LogicalAnd || n->op == BinaryOp::LogicalOr) && isLong(*n->rhs)) {
-      return logical(slot, *n, before);
-    }
-    forEachOperand(*slot, [&](ExprPtr& operand) { expression(operand, before); });
-  }
-
-  void choice(ExprPtr& slot, Select& n, Block& before) {
-    const Loc loc = slot->loc;
-    expression(n.cond, before);
-    const VarId var = addVariable(function_, "chosen", slot->type, VarRole::Local, loc);
-    const auto side = [&](ExprPtr& value) {
-      Block statements;
-      expression(value, statements);
-      statements.push_back(assign(varRef(function_, var, loc), std::move(value), loc));
-      return statements;
-    };
-    Block yes = side(n.yes), no = side(n.no);
-    before.push_back(declare(var, nullptr, loc));
-    before.push_back(ifStmt(std::move(n.cond), std::move(yes), std::move(no), loc));
-    slot = varRef(function_, var, loc);
-  }
-
-  void logical(ExprPtr& slot, Binary& n, Block& before) {
-    const Loc loc = slot->loc;
-    expression(n.lhs, before);
-    const VarId var = addVariable(function_, "decided", slot->type, VarRole::Local, loc);
-    before.push_back(declare(var, std::move(n.lhs), loc));
-    Block rest;
-    expression(n.rhs, rest);
-    rest.push_back(assign(varRef(function_, var, loc), std::move(n.rhs), loc));
-    ExprPtr isOpen = varRef(function_, var, loc);
-    if (n.op == BinaryOp::LogicalOr) isOpen = unary(UnaryOp::LogicalNot, std::move(isOpen), loc);
-    before.push_back(ifStmt(std::move(isOpen), std::move(rest), {}, loc));
-    slot = varRef(function_, var, loc);
-  }
-
-  /// Evaluates a loop's condition in each iteration: at the start of its body, or in the step for `do`.
-  void condition(Loop& loop, Loc loc) {
-    if (!loop.cond) return;
-    Block before;
-    expression(loop.cond, before);
-    if (before.empty()) return;
-    if (loop.kind == LoopKind::DoWhile) {
-      const VarId again = addVariable(function_, "again", loop.cond->type, VarRole::Local, loc);
-      loop.kind = LoopKind::For;
-      loop.init = ir::block(declare(again, literal(true, loc), loc));
-      loop.step = std::move(before);
-      loop.step.push_back(assign(varRef(function_, again, loc), std::move(loop.cond), loc));
-      loop.cond = varRef(function_, again, loc);
-      return;
-    }
-    before.push_back(
-        ifStmt(unary(UnaryOp::LogicalNot, std::move(loop.cond), loc), ir::block(breakStmt(loc)), {}, loc));
-    std::move(loop.body.begin(), loop.body.end(), std::back_inserter(before));
-    loop.body = std::move(before);
-  }
-
-  Function& function_;
-  const std::set<FunctionId>& functions_;
-};
 
 }  // namespace
 
@@ -146,7 +50,10 @@ bool callsOneOf(const std::set<FunctionId>& functions, const Expr& expr) {
 }
 
 void hoistCalls(Function& function, const std::set<FunctionId>& functions) {
-  Hoister(function, functions).block(function.body);
+  hoistExpressions(function, [&](const Expr& expr) {
+    const auto* n = std::get_if<Call>(&expr.node);
+    return n != nullptr && functions.contains(n->callee);
+  });
 }
 
 }  // namespace skc

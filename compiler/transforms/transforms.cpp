@@ -16,6 +16,7 @@
 #include "transforms/bound_pushes.hpp"
 #include "transforms/compensate_sums.hpp"
 #include "transforms/derive_combine.hpp"
+#include "transforms/expand_selects.hpp"
 #include "transforms/find_neighbors.hpp"
 #include "transforms/fold_constants.hpp"
 #include "transforms/forward_continues.hpp"
@@ -79,6 +80,8 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 //   also split-folds' parts.
 // * assign-rows precedes split-kernels, which tracks variables.
 // * forward-continues follows bound-pushes and derive-combine, which analyse the code as written.
+// * expand-selects follows all transforms that copy code or synthesize it, so that nothing adds a `?:` after it. It precedes
+//   split-kernels, which sees a branch as such.
 // * remove-unused follows these, because all of them leave unused entries, and precedes split-kernels, so
 //   that no pass is planned for unused values.
 constexpr Transform transforms[] = {
@@ -100,6 +103,10 @@ constexpr Transform transforms[] = {
     {"sum-in-doubles", plain<sumInDoubles>},
     {"assign-rows", plain<assignRows>},
     {"forward-continues", plain<forwardContinues>},
+    {"expand-selects",
+     [](ir::Module& module, Diagnostics&, const TransformOptions& options) {
+       if (options.expandsSelects) expandSelects(module);
+     }},
     {"remove-unused", plain<removeUnused>},
     {"split-kernels", [](ir::Module& module, Diagnostics&,
                          const TransformOptions& options) { split::splitKernels(module, options.limits); }},

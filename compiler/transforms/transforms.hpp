@@ -19,6 +19,8 @@ struct TransformOptions {
   std::vector<ir::Limits> limits = {};
   /// Whether kernels get variants for other precisions.
   bool precisions = false;
+  /// Whether the target is WebGL, where `?:` does not choose between structs or arrays.
+  bool expandsSelects = false;
   /// Called with the name and the module after each transform; may be empty.
   std::function<void(std::string_view name, const ir::Module& module)> after = {};
 };

@@ -85,6 +85,8 @@ run 0 declared.sk
 # What is printed.
 run 0 -Iinclude --emit=glsl heat.sk
 prints '#version 330'
+run 0 -Iinclude --emit=glsl --profile=webgl2 --kernel=diffuse heat.sk
+prints '#version 300 es'
 run 0 -Iinclude --emit=glsl --profile=essl300 --kernel=diffuse heat.sk
 prints '#version 300 es'
 prints 'diffuse'

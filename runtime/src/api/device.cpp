@@ -36,12 +36,13 @@ std::optional<gl::Api> apiOf(const std::string& profile) {
   if (profile.empty()) {
     return std::nullopt;
   }
-  if (const assemble::Profile* found = assemble::findProfile(profile)) {
+  const assemble::Profile* found = assemble::findProfile(profile);
+  if (found != nullptr && !found->webgl) {
     return found->es ? gl::Api::Es : gl::Api::Gl;
   }
   std::string known;
   for (const assemble::Profile& row : assemble::profiles()) {
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", row.name);
+    if (!row.webgl) known += fmt::format("{}{}", known.empty() ? "" : ", ", row.name);
   }
   throw Error(
       fmt::format("there is no profile '{}'; choose one of {} (option or SK_PROFILE)", profile, known),

@@ -34,7 +34,7 @@ enum class Stage : std::uint8_t {
 
 /// Limits and spellings of one version of a target. The rows are in profiles.cpp.
 struct Profile {
-  std::string_view name;        ///< "glsl330", "essl300", "glsl430"
+  std::string_view name;        ///< "glsl330", "essl300", "glsl430", "webgl2"
   std::string_view version;     ///< the #version line
   Stage stage;
   bool es;                      ///< precision statements, ES formats and limits
@@ -42,6 +42,9 @@ struct Profile {
   int textureUnits;  ///< guaranteed for a program of the stage
   int uniformComponents;  ///< likewise; ES counts vectors of four
   Doubles doubles;  ///< the best representation that devices of the profile have
+  /// Programs run in browsers, where `?:` does not choose between structs or arrays: bodies have passed expand-selects
+  /// (compiler/transforms/expand_selects.hpp). No sk::Device has such a profile.
+  bool webgl = false;
   bool accurate = true;  ///< use our own functions for intrinsics that devices get wrong
   Barrier barrier =
       Barrier::Xor;  ///< Precise needs GL_ARB_gpu_shader5, which devices of the profile may have

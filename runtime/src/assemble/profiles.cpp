@@ -14,6 +14,7 @@ constexpr std::array table = {
     Profile{"glsl330", "#version 330 core", Stage::Fragment, false, 8, 16, 1024, Doubles::Native},
     Profile{"essl300", "#version 300 es", Stage::Fragment, true, 4, 16, 896, Doubles::Pairs},
     Profile{"glsl430", "#version 430 core", Stage::Compute, false, 8, 16, 1024, Doubles::Native},
+    Profile{"webgl2", "#version 300 es", Stage::Fragment, true, 4, 16, 896, Doubles::Pairs, true},
 };
 
 }  // namespace

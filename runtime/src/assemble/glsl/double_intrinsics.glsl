@@ -15,7 +15,7 @@ sk_double sk_tan(sk_double x) {
   int q;
   sk_double r = sk_reduce(sk_abs(x), q), s = sk_wave_part(r, false), c = sk_wave_part(r, true);
   bool odd = (q & 1) != 0;
-  return sk_toggle(sk_div(odd ? sk_neg(c) : s, odd ? s : c), x);
+  return sk_toggle(sk_div(sk_choose(odd, sk_neg(c), s), sk_choose(odd, s, c)), x);
 }
 
 //// asin
@@ -30,25 +30,25 @@ sk_double sk_acos(sk_double x) {
   sk_double a = sk_abs(x), one = D(1.0);
   if (sk_isnan(x) || sk_less(one, a)) return sk_nan();
   sk_double angle = sk_angle(sk_sqrt(sk_mul(sk_sub(one, a), sk_add(one, a))), a);
-  return sk_is_negative(x) ? sk_sub(D(3.1415926535897931), angle) : angle;
+  return sk_choose(sk_is_negative(x), sk_sub(D(3.1415926535897931), angle), angle);
 }
 
 //// atan
 sk_double sk_atan(sk_double x) {
   if (sk_isnan(x)) return x;
   sk_double a = sk_abs(x), most = D(1e30);
-  return sk_toggle(sk_angle(sk_less(most, a) ? most : a, D(1.0)), x);
+  return sk_toggle(sk_angle(sk_choose(sk_less(most, a), most, a), D(1.0)), x);
 }
 
 //// atan2
 sk_double sk_atan2(sk_double y, sk_double x) {
   if (sk_isnan(x) || sk_isnan(y)) return sk_nan();
   sk_double a = sk_ldexp(sk_abs(x), 0), b = sk_ldexp(sk_abs(y), 0), zero = D(0.0), one = D(1.0);
-  sk_double larger = sk_less(a, b) ? b : a;
+  sk_double larger = sk_choose(sk_less(a, b), b, a);
   int e = sk_exponent(larger);
   if (sk_isinf(larger)) {
-    a = sk_isinf(a) ? one : zero;
-    b = sk_isinf(b) ? one : zero;
+    a = sk_choose(sk_isinf(a), one, zero);
+    b = sk_choose(sk_isinf(b), one, zero);
   } else if (sk_equal(larger, zero)) {
     a = one;
   } else {
@@ -56,7 +56,7 @@ sk_double sk_atan2(sk_double y, sk_double x) {
     b = sk_ldexp(b, 60 - e);
   }
   sk_double angle = sk_angle(b, a);
-  return sk_toggle(sk_is_negative(x) ? sk_sub(D(3.1415926535897931), angle) : angle, y);
+  return sk_toggle(sk_choose(sk_is_negative(x), sk_sub(D(3.1415926535897931), angle), angle), y);
 }
 
 //// sinh
@@ -68,7 +68,7 @@ sk_double sk_sinh(sk_double x) {
   int n;
   sk_double e = sk_exp_reduced(a, n), t = sk_add(sk_ldexp(e, n), sk_sub(sk_ldexp(one, n), one));
   sk_double y = sk_mul(D(0.5), sk_add(t, sk_div(t, sk_add(t, one))));
-  return sk_toggle(f < 22.0 ? y : sk_ldexp(sk_add(one, e), n - 1), x);
+  return sk_toggle(sk_choose(f < 22.0, y, sk_ldexp(sk_add(one, e), n - 1)), x);
 }
 
 //// cosh
@@ -97,7 +97,7 @@ sk_double sk_asinh(sk_double x) {
   sk_double a = sk_abs(x), z = sk_mul(a, a), one = D(1.0);
   bool huge = sk_less(D(1e18), a);   // then sqrt(1 + x^2) is x
   sk_double t = sk_add(a, sk_div(z, sk_add(one, sk_sqrt(sk_add(one, z)))));
-  return sk_toggle(sk_log_plus(huge ? a : t, huge ? 1 : 0), x);
+  return sk_toggle(sk_log_plus(sk_choose(huge, a, t), huge ? 1 : 0), x);
 }
 
 //// acosh
@@ -106,7 +106,7 @@ sk_double sk_acosh(sk_double x) {
   if (sk_isinf(x)) return x;
   sk_double t = sk_sub(x, D(1.0));
   bool huge = sk_less(D(1e18), x);
-  return sk_log_plus(huge ? x : sk_add(t, sk_sqrt(sk_mul(t, sk_add(t, D(2.0))))), huge ? 1 : 0);
+  return sk_log_plus(sk_choose(huge, x, sk_add(t, sk_sqrt(sk_mul(t, sk_add(t, D(2.0)))))), huge ? 1 : 0);
 }
 
 //// atanh
@@ -168,9 +168,9 @@ sk_double sk_pow(sk_double x, sk_double y) {
   bool whole = sk_equal(sk_floor(y), y), below = sk_is_negative(y), negative = sk_is_negative(x);
   sk_double halved = sk_ldexp(y, -1);
   bool odd = whole && !sk_equal(sk_floor(halved), halved);
-  sk_double p = sk_equal(a, one) ? one : sk_power(a, y);
-  if (sk_equal(a, zero)) p = below ? sk_infinity() : zero;
-  else if (sk_isinf(a)) p = below ? zero : sk_infinity();
+  sk_double p = sk_choose(sk_equal(a, one), one, sk_power(a, y));
+  if (sk_equal(a, zero)) p = sk_choose(below, sk_infinity(), zero);
+  else if (sk_isinf(a)) p = sk_choose(below, zero, sk_infinity());
   else if (negative && !whole) return sk_nan();
-  return negative && odd ? sk_neg(p) : p;
+  return sk_choose(negative && odd, sk_neg(p), p);
 }

@@ -66,7 +66,7 @@ TEST_CASE("a polynomial has coefficients of pairs only where they matter") {
         "  float t = (other ? 1.12500000 : 0.125000000);\n"
         "  t = t * x.hi + (other ? 1.25000000 : 0.250000000);\n"
         "  sk_double p = sk_to_double(t);\n"
-        "  p = sk_step(p, x, (other ? sk_double(1.50000000, 0.00000000) : sk_double(0.500000000, "
+        "  p = sk_step(p, x, sk_choose(other, sk_double(1.50000000, 0.00000000), sk_double(0.500000000, "
         "0.00000000)));\n"
         "  return p;\n"
         "}\n");

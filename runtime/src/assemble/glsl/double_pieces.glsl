@@ -33,7 +33,7 @@ double sk_keep(double x) { return packDouble2x32(unpackDouble2x32(x) ^ uvec2(sk_
 
 //// commonBasics
 // a, negated where b is negative.
-sk_double sk_toggle(sk_double a, sk_double b) { return sk_is_negative(b) ? sk_neg(a) : a; }
+sk_double sk_toggle(sk_double a, sk_double b) { return sk_choose(sk_is_negative(b), sk_neg(a), a); }
 sk_double sk_infinity() { return sk_unpack(uvec2(0u, 0x7ff00000u)); }
 sk_double sk_nan() { return sk_unpack(uvec2(0u, 0x7ff80000u)); }
 
@@ -41,7 +41,7 @@ sk_double sk_nan() { return sk_unpack(uvec2(0u, 0x7ff80000u)); }
 // exp(r) - 1 for |r| <= ln(2) / 2 and a bit.
 sk_double sk_exp_tail(sk_double r) { return sk_add(r, sk_mul(sk_mul(r, r), sk_exp_polynomial(r))); }
 // exp(x) for |x| > 800.
-sk_double sk_exp_limit(float x) { return x > 0.0 ? sk_infinity() : D(0.0); }
+sk_double sk_exp_limit(float x) { return sk_choose(x > 0.0, sk_infinity(), D(0.0)); }
 
 //// expReduced
 // exp(r) - 1 of x = r + n * ln(2), for |x| <= 800 (ln(2) in two parts: Cody and Waite, 1980).
@@ -76,7 +76,7 @@ sk_double sk_fraction(sk_double x, out int e) {
 sk_double sk_log_limited(sk_double x, sk_double y) {
   if (sk_isnan(x)) return x;
   if (sk_equal(sk_ldexp(x, 0), D(0.0))) return sk_neg(sk_infinity());
-  return sk_is_negative(x) ? sk_nan() : sk_isinf(x) ? x : y;
+  return sk_choose(sk_is_negative(x), sk_nan(), sk_choose(sk_isinf(x), x, y));
 }
 
 //// logPlus
@@ -118,7 +118,7 @@ sk_double sk_power(sk_double x, sk_double y) {
   float k = roundEven(clamp(f, -2e3, 2e3));
   sk_double r = sk_add(sk_sum(product, sk_to_double(-k)), below);
   sk_double p = sk_add(D(1.0), sk_exp_tail(sk_mul(r, D(0.69314718055994529))));
-  return abs(f) > 1200.0 ? sk_exp_limit(f) : sk_ldexp(p, int(k));
+  return sk_choose(abs(f) > 1200.0, sk_exp_limit(f), sk_ldexp(p, int(k)));
 }
 
 //// reduceLarge
@@ -170,7 +170,7 @@ sk_double sk_reduce_large(sk_double x, out int q) {
     r = sk_add(sk_mul(r, D(2.3283064365386963e-10)), sk_to_double(digit));
   }
   r = sk_mul(r, D(1.4629180792671596e-09));   // 2 pi / 2^32
-  return negative ? sk_neg(r) : r;
+  return sk_choose(negative, sk_neg(r), r);
 }
 
 //// wave
@@ -189,8 +189,8 @@ sk_double sk_reduce(sk_double x, out int q) {
 // The sine or the cosine of |r| <= pi/4 and a bit.
 sk_double sk_wave_part(sk_double r, bool isCosine) {
   sk_double z = sk_mul(r, r), p = sk_mul(z, sk_wave_polynomial(z, isCosine));
-  sk_double scale = sk_mul(isCosine ? z : r, isCosine ? sk_sub(p, D(0.5)) : p);
-  return sk_add(isCosine ? D(1.0) : r, scale);
+  sk_double scale = sk_mul(sk_choose(isCosine, z, r), sk_choose(isCosine, sk_sub(p, D(0.5)), p));
+  return sk_add(sk_choose(isCosine, D(1.0), r), scale);
 }
 // The sine of x + turns * pi/2 for x >= 0.
 sk_double sk_wave(sk_double x, int turns) {
@@ -199,7 +199,7 @@ sk_double sk_wave(sk_double x, int turns) {
   sk_double r = sk_reduce(x, q);
   q += turns;
   sk_double wave = sk_wave_part(r, (q & 1) != 0);
-  return (q & 2) == 0 ? wave : sk_neg(wave);
+  return sk_choose((q & 2) == 0, wave, sk_neg(wave));
 }
 
 //// angle
@@ -207,11 +207,11 @@ sk_double sk_wave(sk_double x, int turns) {
 // and the rest, whose tangent is below sqrt(5) - 2.
 sk_double sk_angle(sk_double y, sk_double x) {
   bool steep = sk_less(x, y);
-  sk_double low = steep ? x : y, high = steep ? y : x;
+  sk_double low = sk_choose(steep, x, y), high = sk_choose(steep, y, x);
   float t = sk_to_float(low) / sk_to_float(high);
   sk_double c = sk_to_double(t > 0.72 ? 1.0 : t > 0.236 ? 0.5 : 0.0);
   sk_double s = sk_div(sk_sub(low, sk_mul(c, high)), sk_add(high, sk_mul(c, low))), z = sk_mul(s, s);
   sk_double angle = sk_add(s, sk_mul(s, sk_mul(z, sk_atan_polynomial(z))));
-  if (t > 0.236) angle = sk_add(t > 0.72 ? D(0.78539816339744828) : D(0.46364760900080609), angle);
-  return steep ? sk_sub(D(1.5707963267948966), angle) : angle;
+  if (t > 0.236) angle = sk_add(sk_choose(t > 0.72, D(0.78539816339744828), D(0.46364760900080609)), angle);
+  return sk_choose(steep, sk_sub(D(1.5707963267948966), angle), angle);
 }

@@ -14,11 +14,12 @@ namespace {
 /// Formats with a decimal point, which makes it a float.
 std::string floatText(double value) { return fmt::format("{:#.9g}", static_cast<float>(value)); }
 
-/// A coefficient, or the choice between two, each formatted by `text`.
+/// A coefficient, or the choice between two by `form`, each formatted by `text`.
 template <class Text>
-std::string chosen(const Polynomial& polynomial, std::size_t i, const Text& text) {
+std::string chosen(const Polynomial& polynomial, std::size_t i, const Text& text,
+                   fmt::format_string<std::string, const std::string&> form = "(other ? {} : {})") {
   const std::string one = text(polynomial.coefficients[i]);
-  return polynomial.others.empty() ? one : fmt::format("(other ? {} : {})", text(polynomial.others[i]), one);
+  return polynomial.others.empty() ? one : fmt::format(form, text(polynomial.others[i]), one);
 }
 
 std::string nativeText(const Polynomial& polynomial) {
@@ -36,7 +37,9 @@ std::string pairText(const Polynomial& polynomial) {
   while (i-- > polynomial.exact)
     lines += fmt::format("  t = t * x.hi + {};\n", chosen(polynomial, i, floatText));
   lines += "  sk_double p = sk_to_double(t);\n";
-  for (++i; i-- > 0;) lines += fmt::format("  p = sk_step(p, x, {});\n", chosen(polynomial, i, pair));
+  for (++i; i-- > 0;)
+    lines +=
+        fmt::format("  p = sk_step(p, x, {});\n", chosen(polynomial, i, pair, "sk_choose(other, {}, {})"));
   return lines + "  return p;\n";
 }
 

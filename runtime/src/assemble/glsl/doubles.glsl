@@ -20,6 +20,7 @@
 
 //// native
 struct sk_double { uvec2 bits; };
+sk_double sk_choose(bool c, sk_double a, sk_double b) { return sk_double(c ? a.bits : b.bits); }
 double sk_value(sk_double a) { return packDouble2x32(a.bits); }
 sk_double sk_of(double a) { return sk_double(unpackDouble2x32(a)); }
 sk_double sk_unpack(uvec2 b) { return sk_double(b); }
@@ -72,6 +73,8 @@ sk_double sk_ldexp(sk_double a, int e) {
 
 //// pair
 struct sk_double { float hi, lo; };
+
+sk_double sk_choose(bool c, sk_double a, sk_double b) { return sk_double(c ? a.hi : b.hi, c ? a.lo : b.lo); }
 
 bool sk_is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
 
@@ -166,14 +169,14 @@ bool sk_equal(sk_double a, sk_double b) { return a.hi == b.hi && a.lo == b.lo; }
 bool sk_isnan(sk_double a) { return (floatBitsToUint(a.hi) & 0x7fffffffu) > 0x7f800000u; }
 bool sk_isinf(sk_double a) { return (floatBitsToUint(a.hi) & 0x7fffffffu) == 0x7f800000u; }
 
-sk_double sk_abs(sk_double a) { return floatBitsToUint(a.hi) >> 31 != 0u ? sk_neg(a) : a; }
+sk_double sk_abs(sk_double a) { return sk_choose(floatBitsToUint(a.hi) >> 31 != 0u, sk_neg(a), a); }
 
 sk_double sk_floor(sk_double a) {
   float f = floor(a.hi);
-  return f == a.hi ? sk_join(f, floor(a.lo)) : sk_double(f, 0.0);
+  return sk_choose(f == a.hi, sk_join(f, floor(a.lo)), sk_double(f, 0.0));
 }
 
-sk_double sk_trunc(sk_double a) { return a.hi < 0.0 ? sk_neg(sk_floor(sk_neg(a))) : sk_floor(a); }
+sk_double sk_trunc(sk_double a) { return sk_choose(a.hi < 0.0, sk_neg(sk_floor(sk_neg(a))), sk_floor(a)); }
 
 // To the nearest integer; of two, to the even one.
 sk_double sk_round(sk_double a) {

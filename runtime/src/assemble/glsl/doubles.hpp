@@ -7,6 +7,7 @@
 //   sk_double sk_neg(x)  sk_add(x, y)  sk_sub  sk_mul  sk_div            bool sk_less(x, y)  sk_less_equal  sk_equal
 //   sk_double sk_abs(x)  sk_floor(x)  sk_trunc(x)  sk_round(x)  sk_sqrt(x)  sk_ldexp(x, int)
 //                                                                        bool sk_isnan(x)  sk_isinf(x)
+//   sk_double sk_choose(bool, x, y)    WebGL has no `?:` of structs
 //   sk_double sk_unpack(uvec2 bits)  sk_double2 sk_unpack(uvec4 bits)    uvec2 sk_pack(x)   uvec4 sk_pack(sk_double2)
 //
 // Streams hold the 64 bits of IEEE 754 doubles in either representation, lower half first.

@@ -24,6 +24,13 @@ using namespace sk::program;
 
 namespace {
 
+/// All but those of browsers, whose programs have the same text as for ES and are shown to Chromium (tests/web).
+std::vector<Profile> shownProfiles() {
+  std::vector<Profile> shown(profiles().begin(), profiles().end());
+  std::erase_if(shown, [](const Profile& profile) { return profile.webgl; });
+  return shown;
+}
+
 /// A folder of programs that one process checks.
 class Programs {
  public:
@@ -112,7 +119,7 @@ StreamAccess with(StreamAccess access, bool nearby) {
 
 void addBoundaries(Programs& programs, const Type& type, int rank, const Place& domain,
                    const StreamAccess& input, const StreamAccess& gather) {
-  for (const Profile& profile : profiles()) {
+  for (const Profile& profile : shownProfiles()) {
     for (const Boundary boundary : boundaries) {
       for (const auto [reach, nearby] : neighbours) {
         const samples::EveryAccess sample(*type.element, type.border, rank, boundary, reach);
@@ -166,7 +173,7 @@ TEST_CASE("glslang accepts layers, of what is drawn and of what is read") {
   Programs programs("layers");
   constexpr std::array layered = {StreamAccess{Addressing::Aligned}, StreamAccess{Addressing::Layered},
                                   StreamAccess{Addressing::Layered, true}};
-  for (const Profile& profile : profiles()) {
+  for (const Profile& profile : shownProfiles()) {
     for (const Type& type : types) {
       for (const StreamAccess& input : layered) {
         for (const Domain domain : {Domain::Linear, Domain::LinearBox}) {
@@ -197,7 +204,7 @@ TEST_CASE("glslang accepts the points of a scatter output, in layers or not") {
   Programs programs("points");
   const Parameter appendOutput{
       .name = "r", .symbol = "r", .role = Role::Scatter, .element = &samples::int3Element, .rank = 1};
-  for (const Profile& profile : profiles()) {
+  for (const Profile& profile : shownProfiles()) {
     if (profile.stage == Stage::Compute) continue;
     for (const PointTextures& textures :
          {PointTextures{false, false}, {false, true}, {true, false}, {true, true}}) {
@@ -256,7 +263,7 @@ TEST_CASE(
     all.push_back({static_cast<Intrinsic>(i), 1, true});
   Kernel kernel = samples::saxpy;
   kernel.usesDoubles = true;
-  for (Profile profile : profiles()) {
+  for (Profile profile : shownProfiles()) {
     for (const Doubles form : {Doubles::Native, Doubles::Pairs}) {
       if (profile.es && form == Doubles::Native) continue;
       profile.doubles = form;
@@ -278,7 +285,7 @@ TEST_CASE(
 
 TEST_CASE("glslang accepts kernels that use nothing of the assembler's, and the vertex program") {
   Programs programs("plain");
-  for (const Profile& profile : profiles()) {
+  for (const Profile& profile : shownProfiles()) {
     programs.add(profile, kernelProgram(profile, samples::saxpy, {.access = {{}, {}, {}, {}}}));
     programs.add(profile,
                  kernelProgram(profile, samples::diffuse, {.access = {{}, {Addressing::Plane}, {}}}));
@@ -291,7 +298,7 @@ TEST_CASE("glslang accepts strided regions") {
   Programs programs("strided");
   for (const Addressing addressing :
        {Addressing::Plane, Addressing::Rows, Addressing::Linear, Addressing::Layered}) {
-    for (const Profile& profile : profiles()) {
+    for (const Profile& profile : shownProfiles()) {
       for (const Domain domain : {Domain::Strided, Domain::StridedRows, Domain::StridedLinear}) {
         const StreamAccess strided{.addressing = addressing, .view = true, .strided = true};
         programs.add(profile, kernelProgram(
@@ -313,7 +320,7 @@ TEST_CASE("glslang accepts strided regions") {
 
 TEST_CASE("glslang accepts values that the vertex program hands on") {
   Programs programs("relayed");
-  for (Profile profile : profiles()) {
+  for (Profile profile : shownProfiles()) {
     if (profile.stage == Stage::Compute) continue;
     profile.relaysUniforms = true;
     for (const auto [domain, view] : domains) {
@@ -329,7 +336,7 @@ TEST_CASE("glslang accepts values that the vertex program hands on") {
 
 TEST_CASE("glslang accepts every pass of a reduction") {
   Programs programs("reductions");
-  for (const Profile& profile : profiles()) {
+  for (const Profile& profile : shownProfiles()) {
     for (const Reduction* reduction : {&samples::sum, &samples::firstHit, &samples::countTrue}) {
       for (const Walk walk : {Walk::Line, Walk::Plane, Walk::Box, Walk::Partials}) {
         for (const Runs runs : {Runs::OneBlock, Runs::WholeBlocks, Runs::Split}) {
@@ -352,7 +359,7 @@ TEST_CASE("glslang accepts folds of several inputs to several accumulators, by i
   Programs programs("weighings");
   constexpr StreamAccess plane{Addressing::Plane, true};
   constexpr StreamAccess linear{Addressing::Linear};
-  for (const Profile& profile : profiles()) {
+  for (const Profile& profile : shownProfiles()) {
     for (const Walk walk : {Walk::Index, Walk::Partials, Walk::Nothing}) {
       for (const auto& [x, y] : {std::pair(plane, linear), std::pair(linear, plane)}) {
         for (const auto [domain, view] : domains) {
@@ -380,7 +387,7 @@ TEST_CASE("glslang accepts passes over rows of different lengths, and blocks by 
   Programs programs("rows");
   constexpr StreamAccess packed{.addressing = Addressing::Linear, .view = true, .packed = true};
   constexpr StreamAccess plane{Addressing::Plane, true};
-  for (const Profile& profile : profiles()) {
+  for (const Profile& profile : shownProfiles()) {
     const bool isCompute = profile.stage == Stage::Compute;
     for (const auto [domain, view] : domains) {
       for (const StreamAccess& x : {packed, plane}) {
