@@ -85,6 +85,15 @@ called 'cmake --preset release'
 called 'cmake --build --preset release --target tests/bench/all tests/bench/race/all -- --quiet'
 says 'benchmarks of release in elsewhere: --json x.json'
 
+# The browser is installed for its tests alone.
+stand_in dpkg-query 'for name in "${@:4}"; do [[ $name == chromium ]] && echo "not-installed $name" || echo "installed $name"; done'
+run 0 test
+never_called apt-get
+run 0 test web -V
+says 'installing 1 Debian packages: chromium'
+called 'cmake --build --preset release --target web_tests -- --quiet'
+called 'ctest --preset release -C web -L ^web$ -V'
+
 # A bare machine has no package lists: they are fetched, then it is tried again.
 stand_in apt-get 'case $* in *" update") touch "${0%/*}/../lists" ;; *) test -e "${0%/*}/../lists" ;; esac'
 stand_in dpkg-query 'for name in "${@:4}"; do [[ $name == cmake ]] && echo "not-installed $name" || echo "installed $name"; done'
@@ -126,7 +135,7 @@ says 'no C++ compiler found'
 says 'cmake could not configure'
 
 # packages.txt: every line says one package, under a section.
-awk '/^#/ || !NF { next } /^\[(build|lint|bench)\]$/ { section = 1; next }
+awk '/^#/ || !NF { next } /^\[(build|lint|bench|web)\]$/ { section = 1; next }
      !section || !/^[a-z0-9][a-z0-9.+-]+( +#.*)?$/ { print "packages.txt:" NR ": " $0; bad = 1 }
      END { exit bad }' "$root/packages.txt"
 echo "./dev does what ./dev help says"

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: MIT
+#
+# programs_test.py SKC SOURCE PRECISIONS FILE...: every program that skc prints for these .sk files, or for all of a
+# folder, compiles and links in Chromium's WebGL2. PRECISIONS are skc's, with commas between. Chromium draws with
+# SwiftShader, so that no GPU is needed. A program that WebGL forbids must be rejected, which shows that the test can fail.
+import concurrent.futures
+import contextlib
+import html
+import json
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+
+skc, source, precisions = sys.argv[1], os.path.realpath(sys.argv[2]), sys.argv[3].split(",")
+named = sys.argv[4:]
+skipped = 77
+programs_of_a_page = 100
+seconds_of_a_page = 1500  # some 5 of CPU time, on a machine that has much else to do
+
+# Includes that the build gives to skc, too.
+include_folders = ["compiler/native/library", "examples/linear", "tests/run/shared"]
+
+# What no build compiles: mistakes on purpose, and the library of native code.
+left_out = ("tests/diagnostics/", "compiler/native/library/")
+
+page = """<!DOCTYPE html><meta charset="utf-8"><pre id="report"></pre><script>
+"use strict";
+const programs = %s;
+const corners = `
+void main() { gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);`;
+
+// The vertex program of a draw: a strip of corners, or, for a program of points, one that hands on their number.
+function vertexProgram(fragment) {
+  const relayed = [...fragment.matchAll(/^flat in (\\w+) (\\w+);/gm)];
+  const outputs = relayed.map(([, type, name]) => `flat out ${type} ${name};\\n`).join("");
+  const values = relayed.map(([, type, name]) => ` ${name} = ${type}(gl_VertexID);`).join("");
+  return "#version 300 es\\n" + outputs + corners + values + " }\\n";
+}
+
+function compiled(gl, stage, text) {
+  const shader = gl.createShader(stage);
+  gl.shaderSource(shader, text);
+  gl.compileShader(shader);
+  return shader;
+}
+
+// Why a program does not compile or link; "" if it does.
+function mistake(gl, text) {
+  const shaders = [compiled(gl, gl.VERTEX_SHADER, vertexProgram(text)), compiled(gl, gl.FRAGMENT_SHADER, text)];
+  const program = gl.createProgram();
+  for (const shader of shaders) gl.attachShader(program, shader);
+  gl.linkProgram(program);
+  let log = "";
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
+    log = shaders.map((shader) => gl.getShaderInfoLog(shader)).join("") + gl.getProgramInfoLog(program);
+    if (gl.isContextLost()) log += "the context is lost";
+    log = log.replace(/\\0/g, "") || "no reason given";
+  }
+  for (const shader of shaders) gl.deleteShader(shader);
+  gl.deleteProgram(program);
+  return log;
+}
+
+const gl = document.createElement("canvas").getContext("webgl2");
+const report = gl ? { mistakes: programs.map((text) => mistake(gl, text)) } : { why: "there is no WebGL2" };
+document.getElementById("report").textContent = JSON.stringify(report);
+</script>
+"""
+
+
+def printed(file, precision, profile):
+    """The programs that skc prints for a file: {text: name}. None for a file without kernels, which others include."""
+    folders = [f"-I{os.path.join(source, folder)}" for folder in include_folders]
+    command = [skc, "--emit=glsl", f"--profile={profile}", f"--precision={precision}", *folders, file]
+    result = subprocess.run(command, capture_output=True, text=True)
+    if result.returncode:
+        if "declares no kernel, no reduce and no scan" in result.stderr:
+            return {}
+        sys.exit(f"skc rejects {file}:\n{result.stderr}")
+    texts = re.split(r"^(?=#version )", result.stdout, flags=re.M)
+    name = os.path.relpath(file, source)
+    return {text: f"{name}, {precision}: {text.splitlines()[1][3:]}" for text in texts if text.startswith("#version")}
+
+
+def files():
+    """The .sk files that were named, and those in the folders that were."""
+    for name in named:
+        path = os.path.join(source, name)
+        if os.path.isfile(path):
+            yield path
+            continue
+        if not os.path.isdir(path):
+            sys.exit(f"there is no {path}")
+        for folder, _, names in os.walk(path):
+            for file in sorted(names):
+                found = os.path.join(folder, file)
+                if file.endswith(".sk") and not os.path.relpath(found, source).startswith(left_out):
+                    yield found
+
+
+def gathered():
+    """All programs, each once: {text: name}."""
+    jobs = [(file, precision, "webgl2") for file in files() for precision in precisions]
+    programs = {}
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for some in pool.map(lambda job: printed(*job), jobs):
+            for text, name in some.items():
+                programs.setdefault(text, name)
+    return programs
+
+
+def browsed(command):
+    """Status, output and messages of Chromium, all of whose processes end."""
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    browser = subprocess.Popen(command, **pipes, text=True, errors="replace", start_new_session=True)
+    try:
+        output, errors = browser.communicate(timeout=seconds_of_a_page)
+        return browser.returncode, output, errors
+    except subprocess.TimeoutExpired:
+        sys.exit(f"Chromium did not end within {seconds_of_a_page} s")
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(browser.pid, signal.SIGKILL)
+        browser.wait()
+
+
+def mistakes(texts):
+    """What Chromium says of each program: "" if it compiles and links."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "programs.html")
+        with open(file, "w") as opened:
+            opened.write(page % json.dumps(texts).replace("<", "\\u003c"))
+        options = "--headless=new --use-angle=swiftshader --enable-unsafe-swiftshader --disable-gpu-sandbox"
+        options += " --disable-gpu-watchdog --disable-quic --no-first-run --disable-background-networking"
+        options += " --disable-component-update --disable-sync --disable-dev-shm-usage --dump-dom"
+        # Linking alone: SwiftShader would generate code for each program, which takes seconds for pairs of floats.
+        options += " --disable-angle-features=warmUpPipelineCacheAtLink"
+        options += " --no-sandbox" if os.geteuid() == 0 else ""  # root has no sandbox
+        command = [chromium, *options.split(), f"--user-data-dir={folder}/profile", f"file://{file}"]
+        status, output, errors = browsed(command)
+    report = re.search(r'<pre id="report">(.+?)</pre>', output, re.S)
+    if not report:
+        sys.exit(f"Chromium ended with status {status} and no report:\n{errors[-2000:]}")
+    answer = json.loads(html.unescape(report[1]))
+    if "why" in answer:
+        sys.exit(f"Chromium: {answer['why']}\n{errors[-2000:]}")
+    return answer["mistakes"]
+
+
+chromium = shutil.which("chromium")
+if not chromium:
+    print("skipped: chromium is not installed; './dev test web' installs it")
+    sys.exit(skipped)
+
+programs = gathered()
+if not programs:
+    sys.exit("no program was printed")
+texts = list(programs)
+pages = [texts[first : first + programs_of_a_page] for first in range(0, len(texts), programs_of_a_page)]
+with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:  # each Chromium compiles in one thread
+    found = [why for answer in pool.map(mistakes, pages) for why in answer]
+bad = [(programs[text], why) for text, why in zip(texts, found) if why]
+for name, why in bad:
+    print(f"{name}\n  {why.strip()}")
+
+# The same choice of structs as ES allows it.
+structs = os.path.join(source, "tests/run/programs/bitonic_sort.sk")
+forbidden = [why for why in mistakes(list(printed(structs, "single", "essl300"))) if "ternary operator" in why]
+if not forbidden:
+    print("WebGL no longer rejects '?:' of structs: the profile webgl2 needs no expand-selects, or nothing was compiled")
+
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(f"{len(texts) - len(bad)} of {len(texts)} programs compile and link ({used.ru_utime + used.ru_stime:.0f} s of CPU time)")
+sys.exit(1 if bad or not forbidden else 0)
