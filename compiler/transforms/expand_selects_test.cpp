@@ -18,7 +18,7 @@ using namespace ir;
 constexpr Type doubleType = Type::of(Scalar::Double);
 
 /// A kernel of doubles a, b and a bool c, with an output r.
-struct Sample {
+struct Choices {
   Module module = testModule();
   KernelBuilder k{module, "k"};
   VarId a = k.input("a", doubleType), b = k.input("b", doubleType);
@@ -37,43 +37,43 @@ struct Sample {
   }
 };
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool prints(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST_CASE("a choice of doubles becomes a branch") {
-  Sample s;
+  Choices s;
   const std::string text = s.expanded(block(assign(s.k.ref(s.r), s.chosen())));
   INFO(text);
-  CHECK(has(
+  CHECK(prints(
       text,
       "  double chosen;\n  if (c) {\n    chosen = a;\n  } else {\n    chosen = b;\n  }\n  r = chosen;\n"));
 }
 
 TEST_CASE("a chain of choices sets one variable") {
-  Sample s;
+  Choices s;
   const std::string text = s.expanded(block(assign(
       s.k.ref(s.r), select(s.k.ref(s.c), s.k.ref(s.a), select(s.k.ref(s.c), s.k.ref(s.b), s.k.ref(s.a))))));
   INFO(text);
-  CHECK_FALSE(has(text, "?"));
+  CHECK_FALSE(prints(text, "?"));
   CHECK(text.find("chosen: local") == text.rfind("chosen: local"));
 }
 
 TEST_CASE("a choice after && is evaluated where && would, and one in a loop's condition in every iteration") {
-  Sample s;
+  Choices s;
   const std::string text = s.expanded(
       block(assign(s.k.ref(s.r), literal(0.0)),
             ifStmt(binary(BinaryOp::LogicalAnd, s.k.ref(s.c), s.isPositive(s.chosen())), block(returnStmt())),
             whileLoop(s.isPositive(s.chosen()), block(assign(s.k.ref(s.r), BinaryOp::Add, literal(1.0)))),
             doWhileLoop(block(continueStmt()), s.isPositive(s.chosen()))));
   INFO(text);
-  CHECK_FALSE(has(text, "?"));
-  CHECK_FALSE(has(text, "&&"));
-  CHECK(has(text, "bool decided = c;\n  if (decided) {\n"));
-  CHECK(has(text, "break;"));
-  CHECK(has(text, "again = "));
+  CHECK_FALSE(prints(text, "?"));
+  CHECK_FALSE(prints(text, "&&"));
+  CHECK(prints(text, "bool decided = c;\n  if (decided) {\n"));
+  CHECK(prints(text, "break;"));
+  CHECK(prints(text, "again = "));
 }
 
 TEST_CASE("choices of floats, and choices by component, stay") {
-  Sample s;
+  Choices s;
   ExprPtr mask = construct(Type::of(Scalar::Bool, 2), exprs(s.k.ref(s.c), s.k.ref(s.c)));
   ExprPtr yes = construct(Type::of(Scalar::Double, 2), exprs(s.k.ref(s.a), s.k.ref(s.a)));
   ExprPtr no = clone(yes);
@@ -83,8 +83,8 @@ TEST_CASE("choices of floats, and choices by component, stay") {
       binary(BinaryOp::Add, swizzle(std::move(pair), "x"), convert(Scalar::Double, std::move(number)));
   const std::string text = s.expanded(block(assign(s.k.ref(s.r), std::move(sum))));
   INFO(text);
-  CHECK(has(text, "c ? x : 1.0"));
-  CHECK_FALSE(has(text, "chosen"));
+  CHECK(prints(text, "c ? x : 1.0"));
+  CHECK_FALSE(prints(text, "chosen"));
 }
 
 }  // namespace
