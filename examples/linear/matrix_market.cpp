@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <iterator>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -147,7 +148,12 @@ class Reader {
   MarketFile finish() {
     if (!nextWord(cursor_).empty()) cursor_.fail("the file goes on after its last entry");
     MarketFile file;
-    file.matrix = assemble(rows_, columns_, entries_, &file.duplicates);
+    try {
+      file.matrix = assemble(rows_, columns_, entries_, &file.duplicates);
+    } catch (const std::bad_alloc&) {
+      cursor_.fail(fmt::format("there is not enough memory for a matrix of {} x {} with {} entries", rows_,
+                               columns_, entries_.size()));
+    }
     return file;
   }
 

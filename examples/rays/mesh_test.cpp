@@ -80,6 +80,8 @@ TEST_CASE("errors in OBJ files name the line and the column") {
   CHECK(objMessage("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 4\n") ==
         "a.obj:4:7: there is no vertex 4; 3 are above this line");
   CHECK(objMessage("v 0 0 0\nf 1 1 -2\n") == "a.obj:2:7: there is no vertex -2; 1 are above this line");
+  CHECK(objMessage("v 0 0 0\nf 1 1 -9223372036854775808\n") ==
+        "a.obj:2:7: there is no vertex -9223372036854775808; 1 are above this line");
   CHECK(objMessage("v 0 0 0\nf 0 1 1\n") == "a.obj:2:3: 0 is no vertex; they count from 1");
   CHECK(objMessage("v 0 0 0\nf 1 1\n") == "a.obj:2:6: a face has three corners at least, and this one has 2");
   CHECK(objMessage("v 0 0 0\nf 1/1 1/1 1/1\n") ==

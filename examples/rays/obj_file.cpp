@@ -26,7 +26,7 @@ struct Counts {
 void checkIndex(const TextCursor& cursor, std::string_view word, std::int64_t count, std::string_view what) {
   const std::int64_t index = cursor.integerOf(word);
   if (index == 0) cursor.fail(fmt::format("0 is no {}; they count from 1", what));
-  if (index > count || -index > count)
+  if (index > count || index < -count)
     cursor.fail(fmt::format("there is no {} {}; {} are above this line", what, index, count));
 }
 

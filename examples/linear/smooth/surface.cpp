@@ -186,7 +186,7 @@ Surface loadObj(const std::filesystem::path& file) {
       const auto count = static_cast<std::int64_t>(s.points.size());
       for (std::string_view word = cursor.word(); !word.empty(); word = cursor.word()) {
         const std::int64_t index = cursor.integerOf(word.substr(0, word.find('/')));
-        if (index == 0 || index > count || -index > count)
+        if (index == 0 || index > count || index < -count)
           cursor.fail(fmt::format("there is no vertex {}; {} are above this line", index, count));
         corners.push_back(static_cast<std::int32_t>(index > 0 ? index - 1 : count + index));
       }

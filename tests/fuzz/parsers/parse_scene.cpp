@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The scenes of an example. cloth and lattice each have their own scene.hpp, and this source is built once with each.
+// The scenes of an example. Each example has its own scene.hpp with a readScene in the namespace SK_SCENES, and this source is built once
+// with each.
 #include "scene.hpp"
 
 #include <stdexcept>
@@ -12,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const fuzz::MemoryFile file;
   file.hold({data, size});
   try {
-    examples::readScene(file.path(), {});
+    SK_SCENES::readScene(file.path(), {});
   } catch (const std::runtime_error&) {
     return 0;
   }
