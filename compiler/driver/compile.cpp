@@ -22,6 +22,7 @@
 #include "ir/clone_module.hpp"
 #include "ir/print.hpp"
 #include "program/descriptors.hpp"
+#include "program/json.hpp"
 #include "program/stub.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/check_outputs.hpp"
@@ -60,7 +61,8 @@ TransformOptions transformOptions(const Options& options, std::ostream& output) 
   }
   result.expandsSelects = sk::assemble::findProfile(options.profile)->webgl;
   for (const MeasuredDevice& device : options.devices) result.limits.push_back(device.limits);
-  result.precisions = options.precision.empty() ? options.emit == Emit::Stubs : options.precision != "single";
+  result.precisions = options.precision.empty() ? options.emit == Emit::Stubs || options.emit == Emit::Json
+                                                : options.precision != "single";
   if (!options.printAfter.empty()) {
     result.after = [&output, wanted = options.printAfter](std::string_view name, const ir::Module& module) {
       if (wanted == "all" || wanted == name)
@@ -231,6 +233,9 @@ std::string emitText(const Options& options, const ir::Module& module) {
     case Emit::Ir: return ir::print(module);
     case Emit::Glsl: return glslListing(emit::Program(module), options.profile, options.precision);
     case Emit::Plan: return planListings(options, module);
+    case Emit::Json:
+      return emit::jsonText(module, emit::Program(module, {options.fragmentTarget, options.computeTarget}),
+                            fileName(module));
     case Emit::Stubs: {
       const emit::Stub stub = stubOf(options, module);
       return stub.header + stub.source;

@@ -19,9 +19,9 @@
 namespace skc::driver {
 namespace {
 
-const std::map<std::string, Emit> emits = {{"stubs", Emit::Stubs}, {"glsl", Emit::Glsl}, {"ir", Emit::Ir},
-                                           {"plan", Emit::Plan},   {"ast", Emit::Ast},   {"llvm", Emit::Llvm},
-                                           {"asm", Emit::Assembly}};
+const std::map<std::string, Emit> emits = {
+    {"stubs", Emit::Stubs}, {"glsl", Emit::Glsl}, {"ir", Emit::Ir},        {"plan", Emit::Plan},
+    {"ast", Emit::Ast},     {"llvm", Emit::Llvm}, {"asm", Emit::Assembly}, {"json", Emit::Json}};
 
 std::string profileNames() {
   std::string names;
@@ -42,7 +42,7 @@ std::string transformList() {
 /// An error message if the value is not allowed, or "".
 std::string checkEmit(const std::string& value) {
   if (emits.contains(value)) return {};
-  return fmt::format("'{}' is none of stubs, glsl, ir, plan, ast, llvm, asm", value);
+  return fmt::format("'{}' is none of stubs, glsl, ir, plan, ast, llvm, asm, json", value);
 }
 
 std::string checkProfile(const std::string& value) {
@@ -90,7 +90,7 @@ void addOutputOptions(CLI::App& app, Words& words) {
       ->type_name("DIR");
   app.add_option(
          "--emit", words.emit,
-         "Write stubs and objects (stubs, the default), or print one of glsl, ir, plan, ast, llvm, asm")
+         "Write stubs and objects (stubs, the default), or print one of glsl, ir, plan, ast, llvm, asm, json")
       ->check(checkEmit, "")
       ->type_name("KIND");
   app.add_option("--kernel", words.options.kernel, "Emit only this kernel or reduce")->type_name("NAME");

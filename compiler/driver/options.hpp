@@ -13,7 +13,7 @@
 
 namespace skc::driver {
 
-enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Plan, Ast, Llvm, Assembly };
+enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Plan, Ast, Llvm, Assembly, Json };
 
 struct Options {
   std::vector<std::string> files;

@@ -1,36 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// Private to stub_source.cpp: asserts that it knows every member of the descriptors that it prints. All that C++20
-// tells of the members of an aggregate is their number.
+// Private to stub_source.cpp: asserts that it knows every member of the descriptors that it prints.
 #pragma once
 
 #include <cstddef>
-#include <utility>
 
+#include "program/member_count.hpp"
 #include "sk/program.hpp"
 
 namespace skc::emit {
-
-/// Stands for any member; only its type is used.
-struct AnyMember {
-  template <class T>
-  operator T() const;
-};
-
-template <class T, std::size_t... I>
-constexpr bool takes(std::index_sequence<I...>) {
-  return requires { T{(static_cast<void>(I), AnyMember{})...}; };
-}
-
-/// The number of members of an aggregate without arrays and base classes.
-template <class T, std::size_t Count = 0>
-constexpr std::size_t memberCount() {
-  if constexpr (takes<T>(std::make_index_sequence<Count + 1>{})) {
-    return memberCount<T, Count + 1>();
-  } else {
-    return Count;
-  }
-}
 
 template <class T, std::size_t Count>
 constexpr bool printsAll = memberCount<T>() == Count;

@@ -9,37 +9,13 @@
 #include "ir/print.hpp"
 #include "program/elements.hpp"
 #include "program/stub_parts.hpp"
+#include "program/used_structs.hpp"
 #include "support/text.hpp"
 
 namespace skc::emit {
 namespace {
 
 using namespace ir;
-
-/// The structs that kernels and streams use, each after the structs that it contains.
-class Structs {
- public:
-  explicit Structs(const Module& module) : module_(module) {
-    for (const Kernel& kernel : module.kernels) {
-      if (kernel.isSynthesized) continue;
-      for (const KernelParam& param : kernel.params) add(param.type);
-    }
-    for (const DeclaredStream& stream : module.streams) add(stream.type);
-  }
-  const std::vector<std::uint32_t>& list() const { return list_; }
-
- private:
-  void add(Type type) {
-    if (type.kind == Type::Kind::Array) return add(module_.arrays[type.index].element);
-    if (type.kind != Type::Kind::Struct) return;
-    if (std::find(list_.begin(), list_.end(), type.index) != list_.end()) return;
-    for (const StructField& field : module_.structs[type.index].fields) add(field.type);
-    list_.push_back(type.index);
-  }
-
-  const Module& module_;
-  std::vector<std::uint32_t> list_;
-};
 
 class HeaderWriter {
  public:
@@ -77,8 +53,8 @@ class HeaderWriter {
   /// files that include the same file define it, too.
   void structs() {
     std::vector<std::uint32_t> own;
-    const Structs taken(module_);
-    for (std::uint32_t index : taken.list()) {
+    const std::vector<std::uint32_t> taken = usedStructs(module_);
+    for (std::uint32_t index : taken) {
       const Struct& type = module_.structs[index];
       if (module_.sources[type.loc.file] == module_.file) {
         definition(type);
