@@ -28,6 +28,7 @@
 #include "transforms/check_outputs.hpp"
 #include "transforms/predicate.hpp"
 #include "transforms/transforms.hpp"
+#include "web/js_module.hpp"
 
 namespace skc::driver {
 namespace {
@@ -146,17 +147,25 @@ std::string planListings(const Options& options, const ir::Module& module) {
   return text;
 }
 
+web::JsModule jsModuleOf(const ir::Module& module) {
+  return web::jsModule(module, emit::Program(module, {.fragment = true, .compute = false}), fileName(module));
+}
+
 /// An output file and its contents.
 struct OutputFile {
   std::string path;
   std::string text;
 };
 
-/// FILE.sk.hpp and FILE.sk.cpp, and FILE.sk.o for the native target. The last exists even if no kernel has
-/// native code, because build rules name their outputs without reading the file.
+/// FILE.sk.hpp and FILE.sk.cpp, and FILE.sk.o for the native target; or FILE.sk.js and FILE.sk.d.ts. The object exists
+/// even if no kernel has native code, because build rules name their outputs without reading the file.
 std::vector<OutputFile> outputsOf(const Options& options, const ir::Module& module) {
-  emit::Stub stub = stubOf(options, module);
   const std::string base = (fs::path(options.outputDirectory) / fileName(module)).string();
+  if (options.emit == Emit::Js) {
+    web::JsModule made = jsModuleOf(module);
+    return {{base + ".js", std::move(made.script)}, {base + ".d.ts", std::move(made.types)}};
+  }
+  emit::Stub stub = stubOf(options, module);
   std::vector<OutputFile> files;
   files.push_back({base + ".hpp", std::move(stub.header)});
   files.push_back({base + ".cpp", std::move(stub.source)});
@@ -167,7 +176,7 @@ std::vector<OutputFile> outputsOf(const Options& options, const ir::Module& modu
   return files;
 }
 
-bool writeStubs(const Job& job, const ir::Module& module, const frontend::Frontend& frontend) {
+bool writeOutputs(const Job& job, const ir::Module& module, const frontend::Frontend& frontend) {
   const Options& options = job.options;
   const std::vector<OutputFile> files = outputsOf(options, module);
   std::error_code error;
@@ -218,7 +227,8 @@ int compile(const Job& job) {
   const std::optional<ir::Module> module = translate(job, frontend);
   if (options.emit == Emit::Ast) frontend.dumpAst(job.output);  // even if the program has errors
   if (!module) return 1;
-  if (options.emit == Emit::Stubs && job.text == nullptr) return writeStubs(job, *module, frontend) ? 0 : 1;
+  const bool writesFiles = options.emit == Emit::Stubs || options.emit == Emit::Js;
+  if (writesFiles && job.text == nullptr) return writeOutputs(job, *module, frontend) ? 0 : 1;
   job.output << emitText(options, *module);
   job.output.flush();
   return job.output ? 0 : 1;
@@ -239,6 +249,10 @@ std::string emitText(const Options& options, const ir::Module& module) {
     case Emit::Stubs: {
       const emit::Stub stub = stubOf(options, module);
       return stub.header + stub.source;
+    }
+    case Emit::Js: {
+      const web::JsModule made = jsModuleOf(module);
+      return made.script + made.types;
     }
     case Emit::Llvm: return nativeText(options, module, native::Output::Llvm);
     case Emit::Assembly: return nativeText(options, module, native::Output::Assembly);

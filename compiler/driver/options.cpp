@@ -20,8 +20,9 @@ namespace skc::driver {
 namespace {
 
 const std::map<std::string, Emit> emits = {
-    {"stubs", Emit::Stubs}, {"glsl", Emit::Glsl}, {"ir", Emit::Ir},        {"plan", Emit::Plan},
-    {"ast", Emit::Ast},     {"llvm", Emit::Llvm}, {"asm", Emit::Assembly}, {"json", Emit::Json}};
+    {"stubs", Emit::Stubs},  {"glsl", Emit::Glsl}, {"ir", Emit::Ir},
+    {"plan", Emit::Plan},    {"ast", Emit::Ast},   {"llvm", Emit::Llvm},
+    {"asm", Emit::Assembly}, {"json", Emit::Json}, {"js", Emit::Js}};
 
 std::string profileNames() {
   std::string names;
@@ -42,7 +43,7 @@ std::string transformList() {
 /// An error message if the value is not allowed, or "".
 std::string checkEmit(const std::string& value) {
   if (emits.contains(value)) return {};
-  return fmt::format("'{}' is none of stubs, glsl, ir, plan, ast, llvm, asm, json", value);
+  return fmt::format("'{}' is none of stubs, js, glsl, ir, plan, ast, llvm, asm, json", value);
 }
 
 std::string checkProfile(const std::string& value) {
@@ -88,9 +89,10 @@ void addOutputOptions(CLI::App& app, Words& words) {
   app.add_option("-o", words.options.outputDirectory,
                  "Write the stubs and objects to this directory (default: the current one)")
       ->type_name("DIR");
-  app.add_option(
-         "--emit", words.emit,
-         "Write stubs and objects (stubs, the default), or print one of glsl, ir, plan, ast, llvm, asm, json")
+  app.add_option("--emit", words.emit,
+                 "Write stubs and objects (stubs, the default) or a module for browsers (js), or print one "
+                 "of glsl, ir, plan, ast, llvm, "
+                 "asm, json")
       ->check(checkEmit, "")
       ->type_name("KIND");
   app.add_option("--kernel", words.options.kernel, "Emit only this kernel or reduce")->type_name("NAME");
@@ -183,6 +185,7 @@ std::string checkTogether(Words& words) {
   const auto serves = [&](std::string_view target) {
     return words.targets.empty() || std::ranges::find(words.targets, target) != words.targets.end();
   };
+  if (options.emit == Emit::Js) options.profile = "webgl2";
   options.fragmentTarget = serves("fragment");
   options.computeTarget = serves("compute");
   options.nativeTarget = serves("native");
@@ -197,7 +200,7 @@ std::string checkTogether(Words& words) {
   } catch (const std::runtime_error& error) {
     return error.what();
   }
-  return options.emit == Emit::Stubs ? checkStems(options.files) : "";
+  return options.emit == Emit::Stubs || options.emit == Emit::Js ? checkStems(options.files) : "";
 }
 
 /// "; did you mean '--emit'?" for the first unknown option, or "".

@@ -13,7 +13,7 @@
 
 namespace skc::driver {
 
-enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Plan, Ast, Llvm, Assembly, Json };
+enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Plan, Ast, Llvm, Assembly, Json, Js };
 
 struct Options {
   std::vector<std::string> files;

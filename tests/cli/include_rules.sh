@@ -19,8 +19,9 @@ compiler/native       support ir analysis transforms native llvm sk/native/code.
 compiler/native/library support ir transforms native
 compiler/glsl         support ir analysis glsl sk/program.hpp
 compiler/program      support ir analysis native/kernel_request.hpp glsl program assemble sk/program.hpp sk/scalar_bytes.hpp
+compiler/web          support ir glsl program assemble web sk/program.hpp
 compiler/frontend     support ir frontend clang llvm
-compiler/driver       support ir analysis split transforms native/native.hpp native/library/link_library.hpp glsl program frontend driver assemble sk/program.hpp
+compiler/driver       support ir analysis split transforms native/native.hpp native/library/link_library.hpp glsl program web frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
 runtime/src/support   sk support
 runtime/src/trace     sk trace

@@ -4,21 +4,19 @@
 # folder, compiles and links in Chromium's WebGL2. PRECISIONS are skc's, with commas between. Chromium draws with
 # SwiftShader, so that no GPU is needed. A program that WebGL forbids must be rejected, which shows that the test can fail.
 import concurrent.futures
-import contextlib
 import html
 import json
 import os
 import re
 import resource
-import shutil
-import signal
 import subprocess
 import sys
 import tempfile
 
+import chromium
+
 skc, source, precisions = sys.argv[1], os.path.realpath(sys.argv[2]), sys.argv[3].split(",")
 named = sys.argv[4:]
-skipped = 77
 programs_of_a_page = 100
 seconds_of_a_page = 1500  # some 5 of CPU time, on a machine that has much else to do
 
@@ -115,18 +113,13 @@ def gathered():
 
 
 def browsed(command):
-    """Status, output and messages of Chromium, all of whose processes end."""
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    browser = subprocess.Popen(command, **pipes, text=True, errors="replace", start_new_session=True)
-    try:
-        output, errors = browser.communicate(timeout=seconds_of_a_page)
-        return browser.returncode, output, errors
-    except subprocess.TimeoutExpired:
-        sys.exit(f"Chromium did not end within {seconds_of_a_page} s")
-    finally:
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(browser.pid, signal.SIGKILL)
-        browser.wait()
+    """Status, output and messages of Chromium."""
+    with chromium.started(command) as browser:
+        try:
+            output, errors = browser.communicate(timeout=seconds_of_a_page)
+            return browser.returncode, output, errors
+        except subprocess.TimeoutExpired:
+            sys.exit(f"Chromium did not end within {seconds_of_a_page} s")
 
 
 def mistakes(texts):
@@ -135,13 +128,9 @@ def mistakes(texts):
         file = os.path.join(folder, "programs.html")
         with open(file, "w") as opened:
             opened.write(page % json.dumps(texts).replace("<", "\\u003c"))
-        options = "--headless=new --use-angle=swiftshader --enable-unsafe-swiftshader --disable-gpu-sandbox"
-        options += " --disable-gpu-watchdog --disable-quic --no-first-run --disable-background-networking"
-        options += " --disable-component-update --disable-sync --disable-dev-shm-usage --dump-dom"
         # Linking alone: SwiftShader would generate code for each program, which takes seconds for pairs of floats.
-        options += " --disable-angle-features=warmUpPipelineCacheAtLink"
-        options += " --no-sandbox" if os.geteuid() == 0 else ""  # root has no sandbox
-        command = [chromium, *options.split(), f"--user-data-dir={folder}/profile", f"file://{file}"]
+        linking = "--disable-angle-features=warmUpPipelineCacheAtLink"
+        command = chromium.command(folder, "--dump-dom", linking, f"file://{file}")
         status, output, errors = browsed(command)
     report = re.search(r'<pre id="report">(.+?)</pre>', output, re.S)
     if not report:
@@ -152,11 +141,7 @@ def mistakes(texts):
     return answer["mistakes"]
 
 
-chromium = shutil.which("chromium")
-if not chromium:
-    print("skipped: chromium is not installed; './dev test web' installs it")
-    sys.exit(skipped)
-
+chromium.need()
 programs = gathered()
 if not programs:
     sys.exit("no program was printed")

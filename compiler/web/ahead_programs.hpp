@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+//
+// Programs that are assembled ahead, since browsers have no assembler: those that calls with whole streams need. Each has
+// a key, which runtime/web/src computes from a call in the same way (variant.ts, reduce_plan.ts).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "assemble/assemble.hpp"
+#include "assemble/reduce/reduce_program.hpp"
+#include "sk/program.hpp"
+
+namespace skc::web {
+
+/// GLSL by key. Several keys may have the same program.
+using Programs = std::map<std::string, std::string>;
+
+/// The programs of a kernel that fits one pass.
+///
+/// Streams are whole, in planes or linearised, either all packed that can be or none. Inputs have the shape of the domain.
+/// A Spec parameter's value is any: `const T sk_spec_P = VALUE;` stands in the program for the runtime to replace.
+Programs kernelPrograms(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel);
+
+/// The programs that fold whole streams to a value.
+Programs reducePrograms(const sk::assemble::Profile& profile, const sk::program::Reduction& reduction);
+
+/// The key of a kernel's variant: "plane packed; u:plane packed nearby".
+std::string keyOf(const sk::program::Kernel& kernel, const sk::assemble::Variant& variant);
+/// The key of a pass of a reduction: "rows run8 column packed".
+std::string keyOf(const sk::program::Kernel& kernel, const sk::assemble::ReduceVariant& variant);
+
+/// Values of Spec parameters for which a kernel needs different streams, one for each choice of streams.
+std::vector<sk::assemble::SpecValues> specChoices(const sk::program::Kernel& kernel);
+
+/// How streams of a call lie.
+struct Lie {
+  sk::assemble::Domain domain;
+  std::uint8_t rank;  ///< Variant::domainRank
+  bool packed;  ///< all streams that can be
+};
+
+/// All choices of accesses of a kernel's streams over such a domain.
+std::vector<std::vector<sk::assemble::StreamAccess>> accessChoices(const sk::program::Kernel& kernel,
+                                                                   const Lie& lie, bool domainPacked);
+
+}  // namespace skc::web

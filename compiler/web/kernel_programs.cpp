@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "web/ahead_programs.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <set>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace skc::web {
+namespace {
+
+using sk::assemble::Addressing;
+using sk::assemble::Domain;
+using sk::assemble::SpecValues;
+using sk::assemble::StreamAccess;
+using sk::assemble::Variant;
+using sk::program::ConditionOp;
+using sk::program::Kernel;
+using sk::program::Parameter;
+using sk::program::Role;
+using sk::program::Scalar;
+
+/// The most choices of values of Spec parameters that are tried for a kernel.
+constexpr std::size_t mostSpecChoices = 256;
+
+std::string_view nameOf(Addressing addressing) {
+  switch (addressing) {
+    case Addressing::Aligned: return "aligned";
+    case Addressing::Plane: return "plane";
+    case Addressing::Linear: return "linear";
+    case Addressing::Layered: return "layered";
+    case Addressing::Rows: break;
+  }
+  return "rows";
+}
+
+std::string_view nameOf(Domain domain) {
+  switch (domain) {
+    case Domain::Plane: return "plane";
+    case Domain::Linear: return "linear";
+    case Domain::LinearBox: return "box";
+    case Domain::Entry: return "entry";
+    case Domain::Strided: return "strided";
+    case Domain::StridedRows: return "strided rows";
+    case Domain::StridedLinear: break;
+  }
+  return "strided linear";
+}
+
+/// "; u:plane packed nearby" for each parameter whose access a program depends on, "; no u" for a stream that it does
+/// not need.
+std::string keyOf(const Kernel& kernel, std::span<const StreamAccess> access, const SpecValues& specs) {
+  std::string key;
+  for (std::size_t i = 0; i < access.size(); ++i) {
+    const Parameter& parameter = kernel.parameters[i];
+    const Role role = parameter.role;
+    if (!sk::assemble::isNeeded(parameter, specs)) {
+      key += fmt::format("; no {}", parameter.name);
+    } else if (role == Role::Input || role == Role::Gather || role == Role::Iterator) {
+      const StreamAccess& a = access[i];
+      key += fmt::format("; {}:{}{}{}{}{}", parameter.name, nameOf(a.addressing), a.packed ? " packed" : "",
+                         a.view ? " view" : "", a.nearby ? " nearby" : "", a.filtered ? " filtered" : "");
+    }
+  }
+  return key;
+}
+
+/// Values of a Spec parameter that may differ in which streams they need: those that conditions mention, and their
+/// neighbours.
+std::vector<std::uint32_t> candidates(const Kernel& kernel, Scalar scalar) {
+  if (scalar == Scalar::Bool) return {0, 1};
+  std::set<std::uint32_t> values{0, 1};
+  for (const Parameter& parameter : kernel.parameters) {
+    for (const sk::program::ConditionStep& step : parameter.neededIf.steps) {
+      if (step.op != ConditionOp::Literal || step.scalar != scalar) continue;
+      values.insert({step.value - 1, step.value, step.value + 1});
+    }
+  }
+  return {values.begin(), values.end()};
+}
+
+}  // namespace
+
+std::string keyOf(const Kernel& kernel, const Variant& variant) {
+  std::string key(nameOf(variant.domain));
+  if (variant.domain == Domain::Linear) key += std::to_string(variant.domainRank);
+  if (variant.domainPacked) key += " packed";
+  return key + keyOf(kernel, variant.access, variant.specs);
+}
+
+std::string keyOf(const Kernel& kernel, const sk::assemble::ReduceVariant& v) {
+  using sk::assemble::Runs;
+  using sk::assemble::Walk;
+  constexpr std::string_view walks[] = {
+      "line", "plane", "box", "index", "rows", "partials", "partialRows", "groupedPartials", "nothing"};
+  std::string key(walks[static_cast<std::size_t>(v.walk)]);
+  if (v.runs != Runs::OneBlock) key += v.runs == Runs::WholeBlocks ? " whole" : " split";
+  if (v.domain != Domain::Linear) key += fmt::format(" to {}", nameOf(v.domain));
+  if (v.axes != 1) key += fmt::format(" axes{}", v.axes);
+  if (v.run != 0) key += fmt::format(" run{}", v.run);
+  if (v.column) key += " column";
+  if (v.packed) key += " packed";
+  if (v.sourceLayered) key += " layers";
+  if (v.domainLayered) key += " to layers";
+  if (v.reshaped) key += " reshaped";
+  if (v.planeCount != 0) key += fmt::format(" planes{}", v.firstPlane);
+  if (v.walk == Walk::Nothing) return key;
+  std::vector<StreamAccess> access = v.access;
+  for (std::size_t i = 0; i < access.size(); ++i) {
+    const bool isAligned = kernel.parameters[i].role == Role::Input && v.walk != Walk::Index;
+    if (isAligned) access[i] = {};
+  }
+  return key + keyOf(kernel, access, v.specs);
+}
+
+std::vector<SpecValues> specChoices(const Kernel& kernel) {
+  std::vector<SpecValues> choices(1);
+  std::size_t number = 0;
+  for (const Parameter& parameter : kernel.parameters) {
+    if (parameter.role != Role::Spec) continue;
+    std::vector<SpecValues> more;
+    for (const SpecValues& choice : choices) {
+      for (const std::uint32_t value : candidates(kernel, parameter.element->fields.front().scalar)) {
+        more.push_back(choice);
+        more.back()[number] = value;
+      }
+    }
+    if (more.size() > mostSpecChoices) more.resize(mostSpecChoices);
+    choices = std::move(more);
+    ++number;
+  }
+  std::set<std::vector<bool>> seen;
+  std::erase_if(choices, [&](const SpecValues& specs) {
+    std::vector<bool> needed;
+    for (const Parameter& parameter : kernel.parameters)
+      needed.push_back(sk::assemble::isNeeded(parameter, specs));
+    return !seen.insert(std::move(needed)).second;
+  });
+  return choices;
+}
+
+std::vector<std::vector<StreamAccess>> accessChoices(const Kernel& kernel, const Lie& lie,
+                                                     bool domainPacked) {
+  std::vector<std::vector<StreamAccess>> choices(1);
+  const auto multiply = [&](std::initializer_list<StreamAccess> some) {
+    std::vector<std::vector<StreamAccess>> more;
+    for (const std::vector<StreamAccess>& choice : choices) {
+      for (const StreamAccess& access : some) {
+        more.push_back(choice);
+        more.back().push_back(access);
+      }
+    }
+    choices = std::move(more);
+  };
+  const Addressing own = lie.domain == Domain::Plane ? Addressing::Plane : Addressing::Linear;
+  for (const Parameter& parameter : kernel.parameters) {
+    StreamAccess access;
+    access.packed = lie.packed && parameter.element != nullptr && sk::assemble::mayPack(heldBy(parameter));
+    if (parameter.role == Role::Input) {
+      if (access.packed != domainPacked) access.addressing = own;
+      if (access.addressing == Addressing::Aligned) access.packed = false;
+      multiply({access});
+    } else if (parameter.role == Role::Gather) {
+      access.nearby = parameter.usesNear && parameter.reach >= 0;
+      StreamAccess plane = access, linear = access;
+      plane.addressing = Addressing::Plane;
+      linear.addressing = Addressing::Linear;
+      if (parameter.rank > 2) {
+        multiply({linear});
+      } else if (sk::assemble::mayFilter(parameter)) {  // such gathers are never packed
+        plane.packed = linear.packed = false;
+        StreamAccess filtered = plane;
+        filtered.filtered = true;
+        parameter.rank == 1 ? multiply({plane, filtered, linear}) : multiply({plane, filtered});
+      } else if (parameter.rank == 1) {
+        multiply({plane, linear});
+      } else {
+        multiply({plane});
+      }
+    } else if (parameter.role == Role::Iterator) {
+      multiply({{.addressing = Addressing::Aligned}, {.addressing = Addressing::Linear}});
+    } else {
+      multiply({StreamAccess{}});
+    }
+  }
+  return choices;
+}
+
+Programs kernelPrograms(const sk::assemble::Profile& profile, const Kernel& kernel) {
+  Programs programs;
+  const std::vector<Lie> lies = {{Domain::Plane, 2, true},   {Domain::Linear, 1, true},
+                                 {Domain::Linear, 4, true},  {Domain::Plane, 2, false},
+                                 {Domain::Linear, 1, false}, {Domain::Linear, 4, false}};
+  for (const SpecValues& specs : specChoices(kernel)) {
+    for (const Lie& lie : lies) {
+      Variant variant;
+      variant.specs = specs;
+      variant.domain = lie.domain;
+      variant.domainRank = lie.rank;
+      variant.domainPacked = lie.packed && sk::assemble::mayWritePacked(kernel);
+      for (std::vector<StreamAccess>& access : accessChoices(kernel, lie, variant.domainPacked)) {
+        variant.access = std::move(access);
+        const std::string key = keyOf(kernel, variant);
+        if (!programs.contains(key))
+          programs.emplace(key, sk::assemble::kernelProgram(profile, kernel, variant));
+      }
+    }
+  }
+  return programs;
+}
+
+}  // namespace skc::web

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+//
+// Checks of arguments, with the messages of runtime/src/call.
+import type { Device } from './device.js';
+import { isSameElement, numbersOf } from './elements.js';
+import { SkError, type ErrorKind } from './error.js';
+import { isNeeded, specBits, type Element, type KernelData, type Parameter } from './generated.js';
+import { decodedRank, shapeText, xFirst } from './layout.js';
+import { Stream } from './stream.js';
+
+export type AnyStream = Stream<any, number>;
+
+export function fail(kernel: string, message: string, kind: ErrorKind = 'misuse'): never {
+  throw new SkError(`${kernel}: ${message}`, kind);
+}
+
+/** A call's arguments, one for each parameter. */
+export interface Checked {
+  readonly streams: readonly (AnyStream | null)[];
+  /** Components of uniforms; null for other parameters. Iterators have those of `begin`, then of `end`. */
+  readonly values: readonly (readonly number[] | null)[];
+  /** The words of spec parameters, in order. */
+  readonly specs: readonly number[];
+}
+
+/** The streams and values of a call. Throws SkError if there are too many or too few, or if one has another type. */
+export function checkArguments(kernel: KernelData, elements: readonly Element[], given: readonly unknown[]): Checked {
+  const { name, parameters } = kernel;
+  if (given.length !== parameters.length) fail(name, `${given.length} arguments are given, but ${parameters.length} are declared`);
+  const streams: (AnyStream | null)[] = [];
+  const values: (readonly number[] | null)[] = [];
+  const specs: number[] = [];
+  parameters.forEach((parameter, i) => {
+    const argument = given[i];
+    let stream: AnyStream | null = null;
+    let value: readonly number[] | null = null;
+    switch (parameter.role) {
+      case 'spec': specs.push(specOf(name, parameter, elements, argument)); break;
+      case 'uniform': value = uniformOf(name, parameter, elements[parameter.element]!, argument); break;
+      case 'iterator': value = iteratorOf(name, parameter, elements[parameter.element]!, argument); break;
+      default: stream = argument === null ? null : streamOf(name, parameter, elements, argument);
+    }
+    streams.push(stream);
+    values.push(value);
+  });
+  parameters.forEach((parameter, i) => {
+    const isStream = ['input', 'gather', 'output'].includes(parameter.role);
+    if (!isStream || streams[i] !== null || !isNeeded(parameter, specs)) return;
+    const where = parameter.condition === undefined ? '' : ` here, where ${parameter.condition} holds`;
+    fail(name, `'${parameter.name}' is null, but the kernel needs it${where}; give a stream`);
+  });
+  return { streams, values, specs };
+}
+
+function specOf(kernel: string, parameter: Parameter, elements: readonly Element[], value: unknown): number {
+  const { scalar } = elements[parameter.element]!.fields[0]!;
+  const isNumber = typeof value === 'number' && (scalar === 'float' || Number.isInteger(value));
+  if (!isNumber && typeof value !== 'boolean') fail(kernel, `'${parameter.name}' is a spec ${scalar}, but ${described(value)} is given`, 'type');
+  return specBits(scalar, value as number | boolean);
+}
+
+function uniformOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly number[] {
+  if (value instanceof Stream) {
+    fail(kernel, `'${parameter.name}' is one value for all elements, and streams do not stand for values in browsers yet; read the stream, and give its value`, 'type');
+  }
+  const numbers = typeof value === 'number' ? [value] : numbersOf(element, value);
+  const wanted = element.fields.reduce((count, field) => count + field.width, 0);
+  if (numbers.length !== wanted || (typeof value !== 'object' && wanted > 1) || value === null || value === undefined || typeof value === 'string') {
+    fail(kernel, `'${parameter.name}' is declared as ${element.name}, ${wanted} number(s), but ${described(value)} is given`, 'type');
+  }
+  return numbers;
+}
+
+function iteratorOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly number[] {
+  const ends = value as { begin: unknown; end: unknown } | null | undefined;
+  if (typeof ends !== 'object' || ends === null || !('begin' in ends) || !('end' in ends)) {
+    fail(kernel, `'${parameter.name}' is an iterator, but ${described(value)} is given; give { begin, end }`, 'type');
+  }
+  return [...uniformOf(kernel, parameter, element, ends!.begin), ...uniformOf(kernel, parameter, element, ends!.end)];
+}
+
+function streamOf(kernel: string, parameter: Parameter, elements: readonly Element[], value: unknown): AnyStream {
+  if (!(value instanceof Stream)) fail(kernel, `'${parameter.name}' is a stream, but ${described(value)} is given; make one by device.stream()`, 'type');
+  const stream = value as AnyStream;
+  stream.check(`${kernel}: the stream of '${parameter.name}'`);
+  const declared = elements[parameter.element]!;
+  if (!isSameElement(stream.element, elements[parameter.held ?? parameter.element]!)) {
+    fail(kernel, `'${parameter.name}' is declared as ${declared.name}, but its stream holds ${stream.element.name}`, 'type');
+  }
+  if (parameter.role === 'gather' && stream.shape.length !== parameter.rank) {
+    fail(kernel, `'${parameter.name}' is declared with ${parameter.rank} dimension(s), but its stream has shape ${shapeText(stream.shape)}`, 'shape');
+  }
+  if (parameter.role === 'gather' && stream.size === 0) {
+    fail(kernel, `'${parameter.name}' has shape ${shapeText(stream.shape)}: there is no element to read`, 'shape');
+  }
+  return stream;
+}
+
+function described(value: unknown): string {
+  if (value === null || value === undefined) return String(value);
+  if (value instanceof Stream) return `a stream of ${value.element.name}`;
+  if (typeof value === 'object') return `a ${value.constructor?.name ?? 'object'}${Array.isArray(value) ? ` of ${value.length}` : ''}`;
+  return typeof value === 'function' ? 'a function' : `${typeof value} ${String(value)}`;
+}
+
+/** The common device of the streams. Throws SkError if there are two. */
+export function deviceOf(kernel: KernelData, streams: readonly (AnyStream | null)[]): Device {
+  let first = -1;
+  streams.forEach((stream, i) => {
+    if (stream === null) return;
+    if (first < 0) first = i;
+    else if (stream.device !== streams[first]!.device) {
+      const [a, b] = [kernel.parameters[first]!.name, kernel.parameters[i]!.name];
+      fail(kernel.name, `'${a}' and '${b}' are streams of two devices; copy one of them through the host`, 'device');
+    }
+  });
+  if (first < 0) fail(kernel.name, 'no stream is given that says what device to run on; give one');
+  return streams[first]!.device;
+}
+
+export function isSameShape(a: readonly number[], b: readonly number[]): boolean {
+  return a.length === b.length && a.every((extent, d) => extent === b[d]);
+}
+
+/** Whether an iterator's components all advance with the number of the element, as those of scalars do. */
+export function countsElements(element: Element, rank: number): boolean {
+  return rank === 1 || element.fields[0]!.width === 1;
+}
+
+/** How an iterator is addressed over a domain of this shape. */
+export function iterationOf(element: Element, shape: readonly number[]): 'linear' | 'aligned' {
+  const isFlat = decodedRank(xFirst(shape)) === 1;
+  return countsElements(element, shape.length) && !(element.fields[0]!.width === 1 && isFlat) ? 'linear' : 'aligned';
+}
+
+/** The first value of an iterator, and its step in each component. */
+export function stepsOf(kernel: string, parameter: Parameter, element: Element, ends: readonly number[], shape: readonly number[]): { begin: number[]; step: number[] } {
+  const { width, scalar } = element.fields[0]!;
+  const counts = countsElements(element, shape.length);
+  if (!counts && width !== shape.length) {
+    fail(kernel, `the iterator '${parameter.name}' has ${width} components, but the domain ${shapeText(shape)} has ${shape.length} dimensions; give it one for each, or a scalar to count the elements`, 'shape');
+  }
+  const size = shape.reduce((a, b) => a * b, 1);
+  const begin = ends.slice(0, width);
+  const step = begin.map((from, c) => {
+    const steps = counts ? size : shape[shape.length - 1 - c]!;
+    const difference = ends[width + c]! - from;
+    if (scalar !== 'float' && difference % steps !== 0) {
+      fail(kernel, `the iterator '${parameter.name}' goes from ${from} to ${ends[width + c]} in ${steps} steps, which are not whole; choose ends whose difference ${steps} divides, or iterate over float`, 'shape');
+    }
+    return difference / steps;
+  });
+  return { begin, step };
+}

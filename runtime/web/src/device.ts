@@ -1,0 +1,491 @@
+// SPDX-License-Identifier: MIT
+//
+// A device: a WebGL2 context, its textures and programs. All GL state that passes need is set here.
+import { SkError } from './error.js';
+import { formatOf, wideOf, type Format, type HostArray } from './format.js';
+import type { Element, GeneratedFile, Parameter, StructElement } from './generated.js';
+import { layoutOf, mayPack, type Layout, type Rect } from './layout.js';
+import { Program } from './program.js';
+import { Stream } from './stream.js';
+import { builtInElement } from './elements.js';
+import type { ElementType, ShapeOf, Struct } from './types.js';
+import { drawStream, type DrawOptions } from './draw.js';
+import { compileAll, type Compilable } from './compile.js';
+
+/** An HTMLCanvasElement or an OffscreenCanvas. */
+export interface Canvas extends EventTarget {
+  width: number;
+  height: number;
+  getContext(kind: string, options?: unknown): unknown;
+}
+
+export interface DeviceOptions {
+  /** A WebGL2 context of the application, or a canvas without a context; by default, the device has a canvas of its own. */
+  readonly context?: WebGL2RenderingContext;
+  readonly canvas?: Canvas;
+  readonly powerPreference?: WebGLPowerPreference;
+}
+
+/** What a device is and can do. */
+export interface DeviceInfo {
+  readonly vendor: string;
+  readonly renderer: string;
+  readonly limits: {
+    readonly textureSize: number;
+    /** Planes that a kernel writes and reads in one pass. */
+    readonly drawBuffers: number;
+    readonly textureUnits: number;
+  };
+  /** Whether the device's own filter interpolates 32-bit floats, for gathers with [[filter]]. */
+  readonly filtersFloats: boolean;
+  /** Whether programs compile while the page goes on. */
+  readonly compilesInParallel: boolean;
+}
+
+/** A texture, and the framebuffer that draws to it alone. */
+export interface Plane {
+  readonly texture: WebGLTexture;
+  readonly format: Format;
+  readonly width: number;
+  readonly height: number;
+  readonly id: number;
+  framebuffer: WebGLFramebuffer | null;
+}
+
+/** A transfer to the host that has been asked for. */
+interface Readback {
+  readonly buffer: WebGLBuffer;
+  readonly sync: WebGLSync;
+  /** Takes the bytes out of the buffer, which is bound. */
+  readonly finish: () => void;
+  readonly fail: (error: SkError) => void;
+}
+
+export class Device {
+  /** Called once when the browser takes the context away; streams and their elements are lost then. */
+  onlost: ((error: SkError) => void) | null = null;
+  /** The device's context. Who draws with it must expect every binding to have changed after a call. */
+  readonly context: WebGL2RenderingContext;
+  readonly canvas: Canvas;
+
+  /** @internal */ readonly filtersFloats: boolean;
+  /** @internal */ readonly parallel: { COMPLETION_STATUS_KHR: number } | null;
+  /** @internal */ readonly limits: DeviceInfo['limits'];
+  private readonly ownsContext: boolean;
+  private isLost = false;
+  private readonly programs = new Map<unknown, Map<string, Program>>();
+  private readonly layouts = new Map<string, Layout>();
+  private readonly pool = new Map<string, Plane[]>();
+  private readonly framebuffers = new Map<string, WebGLFramebuffer>();
+  private readonly readFormats = new Map<number, { format: number; type: number }>();
+  private readonly readbacks: Readback[] = [];
+  private isPolling = false;
+  private nextId = 1;
+  private boundProgram: Program | null = null;
+  private boundFramebuffer: WebGLFramebuffer | null | undefined = undefined;
+  private boundTextures: (WebGLTexture | null)[] = [];
+  private boundFilters: (string | null)[] = [];
+  private readonly filters = new Map<string, WebGLSampler>();
+  private readonly viewport = [-1, -1, -1, -1];
+
+  /**
+   * Makes a device. Throws SkError, kind 'device', if the browser has no WebGL2 or does not draw to textures of floats.
+   */
+  static async create(options: DeviceOptions = {}): Promise<Device> {
+    return new Device(options);
+  }
+
+  private constructor(options: DeviceOptions) {
+    const canvas = (options.context?.canvas as Canvas | undefined) ?? options.canvas ?? ownCanvas();
+    const attributes = { alpha: true, antialias: false, depth: false, stencil: false, powerPreference: options.powerPreference };
+    const context = options.context ?? (canvas.getContext('webgl2', attributes) as WebGL2RenderingContext | null);
+    if (context === null) {
+      throw new SkError(
+        'this browser gives no WebGL2 context: use one with WebGL2 (Chrome 56, Firefox 51, Safari 15), allow hardware ' +
+          'acceleration, or give a canvas that has no other context',
+        'device',
+      );
+    }
+    if (context.isContextLost()) throw new SkError('the context is lost; make a device of a new canvas', 'lost');
+    this.context = context;
+    this.canvas = canvas;
+    this.ownsContext = options.context === undefined;
+    this.filtersFloats = context.getExtension('OES_texture_float_linear') !== null;
+    this.parallel = context.getExtension('KHR_parallel_shader_compile') as { COMPLETION_STATUS_KHR: number } | null;
+    const get = (name: number) => context.getParameter(name) as number;
+    this.limits = {
+      textureSize: get(context.MAX_TEXTURE_SIZE),
+      drawBuffers: Math.min(get(context.MAX_DRAW_BUFFERS), get(context.MAX_COLOR_ATTACHMENTS)),
+      textureUnits: get(context.MAX_TEXTURE_IMAGE_UNITS),
+    };
+    this.checkFloatTargets();
+    canvas.addEventListener('webglcontextlost', () => this.lose());
+  }
+
+  /** Some devices have the extension and refuse such framebuffers all the same. */
+  private checkFloatTargets(): void {
+    const gl = this.context;
+    let draws = gl.getExtension('EXT_color_buffer_float') !== null;
+    for (const width of [1, 4]) {
+      if (!draws) break;
+      const plane = this.acquire(formatOf('float', width), 1, 1, 'a trial');
+      this.framebufferOf([plane]);
+      draws = gl.checkFramebufferStatus(gl.FRAMEBUFFER) === gl.FRAMEBUFFER_COMPLETE;
+      this.release([plane]);
+    }
+    if (!draws) {
+      throw new SkError(
+        'this device does not draw to textures of 32-bit floats (EXT_color_buffer_float), which kernels need; use another browser or device',
+        'device',
+      );
+    }
+  }
+
+  private lose(): void {
+    if (this.isLost) return;
+    this.isLost = true;
+    const error = this.lostError();
+    for (const readback of this.readbacks.splice(0)) readback.fail(error);
+    this.onlost?.(error);
+  }
+
+  private lostError(): SkError {
+    return new SkError('the browser has taken the context away, and all streams with it; make a new device', 'lost');
+  }
+
+  /** Whether the context is lost. */
+  get lost(): boolean {
+    return this.isLost;
+  }
+
+  info(): DeviceInfo {
+    const gl = this.context;
+    const names = gl.getExtension('WEBGL_debug_renderer_info');
+    const text = (name: number) => String(gl.getParameter(name) ?? '');
+    return {
+      vendor: text(names?.UNMASKED_VENDOR_WEBGL ?? gl.VENDOR),
+      renderer: text(names?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER),
+      limits: this.limits,
+      filtersFloats: this.filtersFloats,
+      compilesInParallel: this.parallel !== null,
+    };
+  }
+
+  /** A stream of this shape, rows first, whose elements are 0. */
+  stream<T extends ElementType, S extends readonly [number, ...number[]]>(type: T, shape: S): Stream<T, S['length']> {
+    this.check();
+    const element = typeof type === 'string' ? builtInElement(type) : (type as unknown as StructElement);
+    return new Stream<T, S['length']>(this, element, [...shape] as unknown as ShapeOf<S['length']>);
+  }
+
+  /**
+   * Shows a stream in a canvas, the device's own or another one, without a transfer to the host. Numbers are mapped to
+   * colours; elements of three or four components are colours from 0 to 1.
+   */
+  draw(stream: Stream<any, number>, canvas: Canvas = this.canvas, options: DrawOptions = {}): void {
+    this.check();
+    drawStream(this, stream, canvas, options);
+  }
+
+  /** Compiles all programs of these kernels and reduces while the page goes on. `progress` gets a number from 0 to 1. */
+  async compile(callables: readonly unknown[], progress?: (done: number) => void): Promise<void> {
+    this.check();
+    await compileAll(this, callables as readonly Compilable[], progress);
+  }
+
+  /** Frees everything. The context goes, too, if the device has made it. */
+  dispose(): void {
+    if (this.isLost) return;
+    this.lose();
+    if (this.ownsContext) this.context.getExtension('WEBGL_lose_context')?.loseContext();
+  }
+
+  // ---- for streams and calls ------------------------------------------------------------------------
+
+  /** Throws SkError if the context is lost. @internal */
+  check(): void {
+    if (this.isLost) throw this.lostError();
+  }
+
+  /** Layouts are shared: streams of one shape have the same object. @internal */
+  layoutOf(shape: readonly number[], packed: boolean): Layout {
+    const packs = packed && mayPack(shape);
+    const key = shape.join() + packs;
+    let layout = this.layouts.get(key);
+    if (layout === undefined) {
+      layout = layoutOf(shape, this.limits.textureSize, packs);
+      this.layouts.set(key, layout);
+    }
+    return layout;
+  }
+
+  /** @internal */
+  acquire(format: Format, width: number, height: number, what: string): Plane {
+    const key = `${format.internal} ${width} ${height}`;
+    const idle = this.pool.get(key)?.pop();
+    if (idle !== undefined) return idle;
+    const gl = this.context;
+    const texture = gl.createTexture();
+    if (texture === null) {
+      this.check();
+      throw new SkError(`there is no memory for ${what}`, 'memory');
+    }
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    this.boundTextures[0] = texture;
+    gl.texStorage2D(gl.TEXTURE_2D, 1, format.internal, width, height);
+    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+    for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
+    return { texture, format, width, height, id: this.nextId++, framebuffer: null };
+  }
+
+  /** @internal */
+  release(planes: readonly Plane[]): void {
+    for (const plane of planes) {
+      const key = `${plane.format.internal} ${plane.width} ${plane.height}`;
+      const idle = this.pool.get(key);
+      if (idle === undefined) this.pool.set(key, [plane]);
+      else idle.push(plane);
+    }
+  }
+
+  /** Deletes textures that no stream uses. */
+  trim(): void {
+    const gl = this.context;
+    for (const planes of this.pool.values()) {
+      for (const plane of planes) {
+        for (const [key, framebuffer] of this.framebuffers) {
+          if (!key.split(' ').includes(String(plane.id))) continue;
+          gl.deleteFramebuffer(framebuffer);
+          this.framebuffers.delete(key);
+        }
+        gl.deleteFramebuffer(plane.framebuffer);
+        gl.deleteTexture(plane.texture);
+      }
+    }
+    this.pool.clear();
+    this.forgetState();
+  }
+
+  private forgetState(): void {
+    this.boundProgram = null;
+    this.boundFramebuffer = undefined;
+    this.boundTextures = [];
+    this.boundFilters = [];
+    this.viewport[2] = -1;
+  }
+
+  /** Begins a call: an application's context may be in any state. @internal */
+  begin(): void {
+    this.check();
+    if (this.ownsContext) return;
+    this.resetState();
+  }
+
+  /** @internal */
+  resetState(): void {
+    const gl = this.context;
+    this.forgetState();
+    for (const name of [gl.SCISSOR_TEST, gl.BLEND, gl.DEPTH_TEST, gl.STENCIL_TEST, gl.CULL_FACE, gl.RASTERIZER_DISCARD]) gl.disable(name);
+    gl.disable(gl.DITHER);
+    gl.colorMask(true, true, true, true);
+    gl.bindVertexArray(null);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    gl.bindBuffer(gl.PIXEL_UNPACK_BUFFER, null);
+    gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
+    gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
+    for (let unit = 0; unit < this.limits.textureUnits; ++unit) gl.bindSampler(unit, null);
+  }
+
+  /** The program of a callable of a file under this key; `text` is asked for once. @internal */
+  program(
+    owner: unknown, key: string, name: string, text: () => string, parameters: readonly Parameter[], elements: readonly Element[],
+    isUsed: (parameter: Parameter) => boolean,
+  ): Program {
+    let programs = this.programs.get(owner);
+    if (programs === undefined) this.programs.set(owner, (programs = new Map()));
+    let program = programs.get(key);
+    if (program === undefined) {
+      program = new Program(this.context, name, text(), parameters, elements, isUsed);
+      programs.set(key, program);
+    }
+    return program;
+  }
+
+  /** @internal */
+  useProgram(program: Program): void {
+    if (this.boundProgram === program) return;
+    program.use();
+    this.context.useProgram(program.handle);
+    this.boundProgram = program;
+  }
+
+  /** @internal */
+  bindTexture(unit: number, texture: WebGLTexture): void {
+    if (this.boundTextures[unit] === texture) return;
+    const gl = this.context;
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    this.boundTextures[unit] = texture;
+  }
+
+  /** Binds a linear filter with this boundary, or none, which leaves texels as they are. @internal */
+  bindFilter(unit: number, boundary: 'clamp' | 'wrap' | 'mirror' | null): void {
+    if ((this.boundFilters[unit] ?? null) === boundary) return;
+    const gl = this.context;
+    this.boundFilters[unit] = boundary;
+    if (boundary === null) return gl.bindSampler(unit, null);
+    let sampler = this.filters.get(boundary);
+    if (sampler === undefined) {
+      sampler = gl.createSampler()!;
+      const wrap = { clamp: gl.CLAMP_TO_EDGE, wrap: gl.REPEAT, mirror: gl.MIRRORED_REPEAT }[boundary];
+      for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.samplerParameteri(sampler, name, gl.LINEAR);
+      for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.samplerParameteri(sampler, name, wrap);
+      this.filters.set(boundary, sampler);
+    }
+    gl.bindSampler(unit, sampler);
+  }
+
+  /** Binds a framebuffer that draws to these planes. @internal */
+  framebufferOf(planes: readonly Plane[]): void {
+    const gl = this.context;
+    const first = planes[0]!;
+    const key = planes.length === 1 ? '' : planes.map((plane) => plane.id).join(' ');
+    const known = key === '' ? first.framebuffer : this.framebuffers.get(key);
+    if (known) return this.bindFramebuffer(known);
+    const framebuffer = gl.createFramebuffer()!;
+    this.bindFramebuffer(framebuffer);
+    planes.forEach((plane, i) =>
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, plane.texture, 0),
+    );
+    gl.drawBuffers(planes.map((_, i) => gl.COLOR_ATTACHMENT0 + i));
+    if (key === '') first.framebuffer = framebuffer;
+    else this.framebuffers.set(key, framebuffer);
+  }
+
+  /** @internal */
+  bindFramebuffer(framebuffer: WebGLFramebuffer | null): void {
+    if (this.boundFramebuffer === framebuffer) return;
+    this.context.bindFramebuffer(this.context.FRAMEBUFFER, framebuffer);
+    this.boundFramebuffer = framebuffer;
+  }
+
+  /** Draws rectangles with the current program and framebuffer. @internal */
+  drawRects(rects: readonly Rect[]): void {
+    const gl = this.context;
+    const last = this.viewport;
+    for (const { x, y, width, height } of rects) {
+      if (last[0] !== x || last[1] !== y || last[2] !== width || last[3] !== height) {
+        gl.viewport(x, y, width, height);
+        last[0] = x;
+        last[1] = y;
+        last[2] = width;
+        last[3] = height;
+      }
+      gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    }
+  }
+
+  /** Reads the texels of rectangles, one after the other: channels of the texture's format. @internal */
+  readTexels(plane: Plane, rects: readonly Rect[]): Promise<HostArray> {
+    const gl = this.context;
+    this.framebufferOf([plane]);
+    const tight = plane.format;
+    const wide = wideOf(tight);
+    const isTight = this.readsTight(tight);
+    const from = isTight ? { format: tight.format, type: tight.type, array: tight.channel, channels: tight.channels } : { ...wide, channels: 4 };
+    const texels = rects.reduce((count, { width, height }) => count + width * height, 0);
+    const read = new from.array(texels * from.channels);
+    const buffer = gl.createBuffer()!;
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+    gl.bufferData(gl.PIXEL_PACK_BUFFER, read.byteLength, gl.STREAM_READ);
+    gl.pixelStorei(gl.PACK_ALIGNMENT, 1);
+    let at = 0;
+    for (const { x, y, width, height } of rects) {
+      gl.readPixels(x, y, width, height, from.format, from.type, at);
+      at += width * height * from.channels * read.BYTES_PER_ELEMENT;
+    }
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    return new Promise((resolve, reject) => {
+      if (sync === null) return reject(this.lostError());
+      const finish = () => {
+        gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, read);
+        resolve(isTight ? read : narrowed(read, tight, texels));
+      };
+      this.readbacks.push({ buffer, sync, finish, fail: reject });
+      this.poll();
+    });
+  }
+
+  /** Whether the driver reads such textures as they are; else it reads four channels of 32 bits. */
+  private readsTight(format: Format): boolean {
+    const wide = wideOf(format);
+    if (format.format === wide.format && format.type === wide.type) return true;
+    const gl = this.context;
+    let own = this.readFormats.get(format.internal);
+    if (own === undefined) {
+      own = {
+        format: gl.getParameter(gl.IMPLEMENTATION_COLOR_READ_FORMAT) as number,
+        type: gl.getParameter(gl.IMPLEMENTATION_COLOR_READ_TYPE) as number,
+      };
+      this.readFormats.set(format.internal, own);
+    }
+    return own.format === format.format && own.type === format.type;
+  }
+
+  /** Looks at fences between other tasks of the page, until no transfer is left. */
+  private poll(): void {
+    if (this.isPolling) return;
+    this.isPolling = true;
+    const gl = this.context;
+    const channel = new MessageChannel();
+    const quick = 64;
+    let looks = 0;
+    const again = () => (++looks < quick ? channel.port2.postMessage(null) : setTimeout(look, 1));
+    const look = () => {
+      while (this.readbacks.length > 0) {
+        const first = this.readbacks[0]!;
+        const status = gl.clientWaitSync(first.sync, 0, 0);
+        if (status === gl.TIMEOUT_EXPIRED) return again();
+        this.readbacks.shift();
+        if (status === gl.WAIT_FAILED) {
+          first.fail(this.lostError());
+          continue;
+        }
+        gl.bindBuffer(gl.PIXEL_PACK_BUFFER, first.buffer);
+        first.finish();
+        gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+        gl.deleteBuffer(first.buffer);
+        gl.deleteSync(first.sync);
+      }
+      this.isPolling = false;
+      channel.port1.close();
+    };
+    channel.port1.onmessage = look;
+    channel.port2.postMessage(null);
+  }
+}
+
+function ownCanvas(): Canvas {
+  const { OffscreenCanvas } = globalThis as { OffscreenCanvas?: new (width: number, height: number) => Canvas };
+  if (OffscreenCanvas !== undefined) return new OffscreenCanvas(1, 1);
+  if (typeof document !== 'undefined') return document.createElement('canvas');
+  throw new SkError('there is no canvas here: devices need a browser, or a worker with OffscreenCanvas', 'device');
+}
+
+/** The channels of a texture from four channels of 32 bits. */
+function narrowed(wide: HostArray, format: Format, texels: number): HostArray {
+  const { channels } = format;
+  const tight = new format.channel(texels * channels);
+  for (let i = 0; i < texels; ++i) {
+    for (let c = 0; c < channels; ++c) tight[i * channels + c] = wide[4 * i + c]!;
+  }
+  return tight;
+}
+
+/** The elements of a file's kernels, and the structs that it exports. @internal */
+export function structOf(file: GeneratedFile, name: string): Struct<string, unknown, unknown> {
+  return file.structs.find((struct) => struct.name === name) as unknown as Struct<string, unknown, unknown>;
+}

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+//
+// Elements that every file knows, and the arrays of their components on the host.
+import { SkError } from './error.js';
+import { formatOf, hostArrayOf, type HostArray, type Scalar } from './format.js';
+import type { Element, Field, StructElement } from './generated.js';
+import type { Layout, Rect } from './layout.js';
+
+const bytesOf: Readonly<Record<Scalar, number>> = {
+  bool: 1, char: 1, uchar: 1, unorm8: 1, snorm8: 1, half: 2, short: 2, ushort: 2, unorm16: 2, snorm16: 2, int: 4, uint: 4, float: 4, double: 8,
+};
+
+const builtIn = new Map<string, Element>();
+
+/** The element of 'float3' or 'float2x2'. Throws SkError for another name. */
+export function builtInElement(name: string): Element {
+  let element = builtIn.get(name);
+  if (element === undefined) {
+    element = made(name);
+    builtIn.set(name, element);
+  }
+  return element;
+}
+
+function made(name: string): Element {
+  const matrix = /^float([234])x\1$/.exec(name);
+  if (matrix) {
+    const n = Number(matrix[1]);
+    const fields = Array.from({ length: n }, (_, part): Field => ({ scalar: 'float', width: n, offset: 4 * n * part, part }));
+    return { name, size: 4 * n * n, fields };
+  }
+  const parts = /^([a-z]+|[us]norm(?:8|16))([234]?)$/.exec(name);
+  const scalar = parts?.[1] as Scalar;
+  if (parts === null || !(scalar in bytesOf)) {
+    throw new SkError(`'${name}' is no type of elements; name one like 'float', 'int2' or 'unorm8', or give a struct that a .sk.js file exports`, 'type');
+  }
+  const width = Number(parts[2] || 1);
+  const bytes = bytesOf[scalar];
+  if (scalar !== 'double' || width <= 2) return { name, size: bytes * width, fields: [{ scalar, width, offset: 0 }] };
+  const halves = [2, width - 2].map((half, part): Field => ({ scalar, width: half, offset: 16 * part, part }));
+  return { name, size: bytes * width, fields: halves };
+}
+
+/** Whether both have the same planes in host memory. */
+export function isSameElement(a: Element, b: Element): boolean {
+  if (a === b) return true;
+  const same = (x: Field, y: Field) => x.scalar === y.scalar && x.width === y.width && x.offset === y.offset && x.part === y.part;
+  return a.size === b.size && a.fields.length === b.fields.length && a.fields.every((field, i) => same(field, b.fields[i]!));
+}
+
+/** Whether four elements fit in a texel: one scalar of at most four bytes. */
+export function mayPackElement(element: Element): boolean {
+  const field = element.fields[0]!;
+  return element.fields.length === 1 && field.path === undefined && field.width === 1 && field.scalar !== 'double';
+}
+
+function isStruct(element: Element): element is StructElement {
+  return 'planes' in element;
+}
+
+/** The arrays of a struct, by member, as far as they are given. */
+type Members = { [name: string]: HostArray | Members };
+
+/** The parts of a host array that one plane's components are: `first` of every `step` components. */
+interface PlaneArray {
+  readonly array: HostArray;
+  readonly first: number;
+  readonly step: number;
+}
+
+/** Components before a field in the array that it shares with the other parts of its vector or matrix, and in all of it. */
+function placeOf(element: Element, plane: number): { first: number; step: number } {
+  const part = element.fields[plane]!.part ?? 0;
+  let begin = plane;
+  while (begin > 0 && part > 0 && (element.fields[begin]!.part ?? 0) > 0) --begin;
+  let end = begin + 1;
+  while ((element.fields[end]?.part ?? 0) > 0) ++end;
+  let first = 0;
+  let step = 0;
+  for (let i = begin; i < end; ++i) {
+    if (i < plane) first += element.fields[i]!.width;
+    step += element.fields[i]!.width;
+  }
+  return { first, step };
+}
+
+/** "origin.x" and "rows[1]" as names of members. Rows and parts of vectors are in their member's array. */
+function namesOf(element: StructElement, plane: number): string[] {
+  const path = element.planes[plane]!;
+  const isPart = element.fields[plane]!.part !== undefined;
+  const names = path.split(/[.[\]]+/).filter((name) => name !== '');
+  if (!isPart) return names;
+  return path.endsWith(']') ? names.slice(0, -2) : names.slice(0, -1);
+}
+
+/** The array of a plane among the given ones, `count` elements. Throws SkError if it has another type or length. */
+export function planeArray(element: Element, plane: number, given: unknown, count: number): PlaneArray {
+  let array = given;
+  let name = '';
+  if (isStruct(element)) {
+    for (const member of namesOf(element, plane)) {
+      name += `.${member}`;
+      array = (array as Members | undefined)?.[member];
+    }
+  }
+  const { scalar } = element.fields[plane]!;
+  const type = hostArrayOf(scalar);
+  if (!(array instanceof type)) {
+    const what = array === undefined ? 'nothing is given' : `a ${(array as object)?.constructor?.name ?? typeof array} is given`;
+    throw new SkError(`a stream of ${element.name} is written from a ${type.name}${name === '' ? '' : ` in ${name.slice(1)}`}, but ${what}`, 'type');
+  }
+  const place = placeOf(element, plane);
+  if (array.length !== count * place.step) {
+    throw new SkError(
+      `${count} element(s) of ${element.name} are ${count * place.step} number(s)${name === '' ? '' : ` in ${name.slice(1)}`}, but the array has ${array.length}`,
+      'shape',
+    );
+  }
+  return { array: array as HostArray, ...place };
+}
+
+/** New arrays for `count` elements, by which planeArray() finds all planes. */
+export function newArrays(element: Element, count: number): unknown {
+  if (!isStruct(element)) {
+    const { step } = placeOf(element, 0);
+    return new (hostArrayOf(element.fields[0]!.scalar))(count * step);
+  }
+  const members: Members = {};
+  element.fields.forEach((field, plane) => {
+    const names = namesOf(element, plane);
+    let within = members;
+    names.slice(0, -1).forEach((name) => (within = (within[name] ??= {}) as Members));
+    const { step } = placeOf(element, plane);
+    within[names[names.length - 1]!] ??= new (hostArrayOf(field.scalar))(count * step);
+  });
+  return members;
+}
+
+/** The channels of a plane's texels, in the order of elements. */
+export function channelsOf(field: Field, from: PlaneArray, count: number): HostArray {
+  const format = formatOf(field.scalar, field.width);
+  const isDouble = field.scalar === 'double';
+  const words = isDouble ? 2 : 1;
+  const source = isDouble ? new Uint32Array(from.array.buffer, from.array.byteOffset, from.array.length * 2) : from.array;
+  if (from.step === field.width && field.width * words === format.channels && field.scalar !== 'bool') return source;
+  const channels = new format.channel(count * format.channels);
+  for (let i = 0; i < count; ++i) {
+    for (let c = 0; c < field.width * words; ++c) {
+      const value = source[(i * from.step + from.first) * words + c]!;
+      channels[i * format.channels + c] = field.scalar === 'bool' ? Number(value !== 0) : value;
+    }
+  }
+  return channels;
+}
+
+/** The reverse of channelsOf(). */
+export function takeChannels(field: Field, channels: HostArray, to: PlaneArray, count: number): void {
+  const format = formatOf(field.scalar, field.width);
+  const words = field.scalar === 'double' ? 2 : 1;
+  const target = words === 2 ? new Uint32Array(to.array.buffer, to.array.byteOffset, to.array.length * 2) : to.array;
+  if (to.step === field.width && field.width * words === format.channels) {
+    target.set(channels as never);
+    return;
+  }
+  for (let i = 0; i < count; ++i) {
+    for (let c = 0; c < field.width * words; ++c) {
+      target[(i * to.step + to.first) * words + c] = channels[i * format.channels + c]!;
+    }
+  }
+}
+
+/** One value from numbers and booleans: components in the order of fields. */
+export function numbersOf(element: Element, value: unknown): number[] {
+  if (!isStruct(element)) return flat(value);
+  const numbers: number[] = [];
+  element.fields.forEach((_, plane) => {
+    if ((element.fields[plane]!.part ?? 0) > 0) return; // its first part has taken all
+    let member: unknown = value;
+    for (const name of namesOf(element, plane)) member = (member as { [name: string]: unknown } | undefined)?.[name];
+    numbers.push(...flat(member));
+  });
+  return numbers;
+}
+
+function flat(value: unknown): number[] {
+  if (typeof value === 'number') return [value];
+  if (typeof value === 'boolean') return [Number(value)];
+  if (ArrayBuffer.isView(value) || Array.isArray(value)) return Array.from(value as ArrayLike<unknown>).flatMap(flat);
+  if (typeof value === 'object' && value !== null) return Object.values(value).flatMap(flat);
+  return [NaN];
+}
+
+/** The value that has these components: the reverse of numbersOf(). */
+export function valueOf(element: Element, arrays: unknown): unknown {
+  if (!isStruct(element)) return scalarOrVector(element.fields[0]!.scalar, arrays as HostArray);
+  const take = (members: Members): unknown =>
+    Object.fromEntries(Object.entries(members).map(([name, member]) => [name, ArrayBuffer.isView(member) ? member : take(member)]));
+  const value = take(arrays as Members) as { [name: string]: unknown };
+  element.fields.forEach((field, plane) => {
+    const names = namesOf(element, plane);
+    let within: any = value;
+    for (const name of names.slice(0, -1)) within = within[name];
+    const last = names[names.length - 1]!;
+    if (ArrayBuffer.isView(within[last])) within[last] = scalarOrVector(field.scalar, within[last] as HostArray);
+  });
+  return value;
+}
+
+function scalarOrVector(scalar: Scalar, array: HostArray): unknown {
+  const values: unknown[] = scalar === 'bool' ? Array.from(array, (word) => word !== 0) : Array.from(array);
+  return values.length === 1 ? values[0] : values;
+}
+
+/** Where the texels of `rects` are in an array of all of a layout's elements, in order. */
+export function texelsBefore(layout: Layout, rect: Rect): number {
+  return layout.linear ? rect.y * layout.width + rect.x : 0;
+}

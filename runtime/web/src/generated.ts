@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+//
+// What FILE.sk.js hands over (compiler/web/js_module.cpp): descriptors of kernels and reductions, and their programs.
+import { SkError } from './error.js';
+import type { Scalar } from './format.js';
+
+/** The version of this data that this runtime reads. */
+export const moduleSchema = 1;
+
+/** One plane of an element. */
+export interface Field {
+  readonly scalar: Scalar;
+  /** Components, 1 to 4. */
+  readonly width: number;
+  readonly offset: number;
+  /** Member path in GLSL; absent if the element is no struct. */
+  readonly path?: string;
+  /** Which row of a matrix, or which pair of a vector of doubles. */
+  readonly part?: number;
+}
+
+export interface Element {
+  readonly name: string;
+  readonly size: number;
+  readonly fields: readonly Field[];
+}
+
+/** A struct; `planes` are the paths of its fields in the terms of the .sk file. */
+export interface StructElement extends Element {
+  readonly planes: readonly string[];
+}
+
+export type Role =
+  | 'uniform' | 'input' | 'output' | 'gather' | 'accumulator' | 'variableOutput' | 'scatter' | 'iterator' | 'spec';
+
+/** One step of a condition over spec parameters, for a stack machine. */
+export type ConditionStep = readonly [op: string, scalar: Scalar, value: number];
+
+export interface Parameter {
+  readonly name: string;
+  readonly symbol: string;
+  readonly role: Role;
+  /** Index in GeneratedFile.elements. */
+  readonly element: number;
+  readonly held?: number;
+  readonly rank?: number;
+  readonly boundary?: 'clamp' | 'wrap' | 'mirror' | 'border';
+  readonly reach?: number;
+  readonly filter?: boolean;
+  readonly neededIf?: readonly ConditionStep[];
+  readonly condition?: string;
+}
+
+export interface KernelData {
+  readonly name: string;
+  readonly parameters: readonly Parameter[];
+}
+
+/** Index of a program in the file, by the key of a variant. */
+export type ProgramIndices = Readonly<Record<string, number>>;
+
+export interface CallableKernel extends KernelData {
+  /** Whether it may write four elements of a packed texel. */
+  readonly packs: boolean;
+  readonly programs: ProgramIndices;
+}
+
+export interface Reduction {
+  readonly name: string;
+  readonly fold: KernelData;
+  readonly combine: KernelData;
+  readonly combineOperands: readonly number[];
+  readonly commutative: boolean;
+  /** Whether the fold needs the index of its elements. */
+  readonly byIndex: boolean;
+  readonly programs: ProgramIndices;
+  readonly accumulate?: 'tree' | 'compensated' | 'extended' | 'exact';
+  /** Has one more accumulator for each of `sums`: its rounding error. */
+  readonly compensated?: Reduction;
+  /** A parameter of the fold, and bytes from that accumulator's start. */
+  readonly sums?: readonly (readonly [accumulator: number, offset: number])[];
+}
+
+export interface LeftOut {
+  readonly name: string;
+  readonly whyNot: string;
+}
+
+export type Callable = CallableKernel | Reduction | LeftOut;
+
+export interface GeneratedFile {
+  readonly schema: number;
+  readonly name: string;
+  readonly sources: readonly string[];
+  readonly elements: readonly Element[];
+  readonly structs: readonly StructElement[];
+  readonly callables: readonly Callable[];
+}
+
+export function checkSchema(file: GeneratedFile): void {
+  if (file.schema === moduleSchema) return;
+  throw new SkError(
+    `${file.name}.js has version ${file.schema} of what skc writes, and this package reads version ${moduleSchema}; ` +
+      'use skc and the package streamkernel of one release',
+    'compile',
+  );
+}
+
+// ---- spec parameters ------------------------------------------------------------------------------
+
+const bits = new DataView(new ArrayBuffer(4));
+
+/** The 32 bits of a spec parameter's value. */
+export function specBits(scalar: Scalar, value: number | boolean): number {
+  if (scalar === 'float') bits.setFloat32(0, Number(value));
+  else bits.setUint32(0, Number(value) >>> 0);
+  return bits.getUint32(0);
+}
+
+/** The value as a constant expression in GLSL, exactly. */
+export function specLiteral(scalar: Scalar, word: number): string {
+  if (scalar === 'bool') return word !== 0 ? 'true' : 'false';
+  if (scalar === 'uint') return `${word}u`;
+  if (scalar === 'float') return `uintBitsToFloat(${word}u)`;
+  return word === 0x80000000 ? '(-2147483647 - 1)' : `${word | 0}`;
+}
+
+function ordered(scalar: Scalar, word: number): number {
+  bits.setUint32(0, word);
+  return scalar === 'float' ? bits.getFloat32(0) : scalar === 'int' ? bits.getInt32(0) : word;
+}
+
+/** Whether a condition over the words of spec parameters holds. */
+export function holds(steps: readonly ConditionStep[], specs: readonly number[]): boolean {
+  const stack: number[] = [];
+  for (const [op, scalar, value] of steps) {
+    if (op === 'spec') stack.push(specs[value]!);
+    else if (op === 'literal') stack.push(value);
+    else if (op === 'not') stack.push(stack.pop() === 0 ? 1 : 0);
+    else {
+      const b = stack.pop()!;
+      const a = stack.pop()!;
+      stack.push(combined(op, scalar, a, b) >>> 0);
+    }
+  }
+  return stack[0] !== 0;
+}
+
+function combined(op: string, scalar: Scalar, a: number, b: number): number {
+  const x = ordered(scalar, a);
+  const y = ordered(scalar, b);
+  switch (op) {
+    case 'and': return Number(a !== 0 && b !== 0);
+    case 'or': return Number(a !== 0 || b !== 0);
+    case 'bitAnd': return a & b;
+    case 'bitOr': return a | b;
+    case 'bitXor': return a ^ b;
+    case 'add': return a + b;
+    case 'sub': return a - b;
+    case 'mul': return Math.imul(a, b);
+    case 'less': return Number(x < y);
+    case 'lessEqual': return Number(x <= y);
+    case 'greater': return Number(x > y);
+    case 'greaterEqual': return Number(x >= y);
+    case 'equal': return Number(x === y);
+    default: return Number(x !== y);
+  }
+}
+
+export function isNeeded(parameter: Parameter, specs: readonly number[]): boolean {
+  return parameter.neededIf === undefined || holds(parameter.neededIf, specs);
+}

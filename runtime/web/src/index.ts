@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+//
+// The package streamkernel: devices and streams, and what FILE.sk.js needs.
+import { fail } from './arguments.js';
+import { structOf, type Device } from './device.js';
+import { checkSchema, type Callable, type GeneratedFile } from './generated.js';
+import { KernelCaller } from './kernel.js';
+import type { Program } from './program.js';
+import { ReductionCaller } from './reduction.js';
+import type { CallOptions, Struct } from './types.js';
+
+export { Device } from './device.js';
+export type { Canvas, DeviceInfo, DeviceOptions } from './device.js';
+export type { DrawOptions } from './draw.js';
+export { SkError } from './error.js';
+export type { ErrorKind } from './error.js';
+export { Stream } from './stream.js';
+export type {
+  ArrayOf, BuiltIn, CallOptions, ElementType, Gather, Input, Iterate, Kernel, NotOffered, Output, Reduce, ShapeOf, Struct, Value,
+} from './types.js';
+
+/** What FILE.sk.js exports under a name: a function, with what Device.compile() needs. */
+interface Exported {
+  (...given: unknown[]): unknown;
+  /** Throws SkError if these are no arguments of it. */
+  check(given: readonly unknown[]): void;
+  startPrograms(device: Device): Program[];
+}
+
+function kernelFunction(caller: KernelCaller): Exported {
+  const run = (...given: unknown[]) => caller.call(given);
+  return Object.assign(run, {
+    check: (given: readonly unknown[]) => caller.check(given),
+    startPrograms: (device: Device) => caller.startPrograms(device),
+  });
+}
+
+function reduceFunction(caller: ReductionCaller, options: CallOptions): Exported {
+  const run = (...given: unknown[]) => caller.call(given, options);
+  return Object.assign(run, {
+    with: (more: CallOptions) => reduceFunction(caller, { ...options, ...more }),
+    check: (given: readonly unknown[]) => caller.check(given),
+    startPrograms: (device: Device) => caller.startPrograms(device),
+  });
+}
+
+function functionOf(callable: Callable, file: GeneratedFile, texts: readonly string[]): Exported {
+  if ('whyNot' in callable) {
+    const refuse = () => fail(callable.name, callable.whyNot, 'compile');
+    return Object.assign(() => refuse(), { check: refuse, startPrograms: refuse });
+  }
+  if ('fold' in callable) return reduceFunction(new ReductionCaller(callable, file, texts), {});
+  return kernelFunction(new KernelCaller(callable, file, texts));
+}
+
+/** Calls the first of several overloads that takes the arguments; if none does, the first says why. */
+function overloaded(functions: readonly Exported[]): Exported {
+  const [first] = functions;
+  if (functions.length === 1) return first!;
+  const takes = (one: Exported, given: readonly unknown[]) => {
+    try {
+      one.check(given);
+      return true;
+    } catch {
+      return false;
+    }
+  };
+  const chosen = (given: readonly unknown[]) => functions.find((one) => takes(one, given)) ?? first!;
+  return Object.assign((...given: unknown[]) => chosen(given)(...given), {
+    check: (given: readonly unknown[]) => chosen(given).check(given),
+    startPrograms: (device: Device) => functions.flatMap((one) => one.startPrograms(device)),
+  });
+}
+
+/** What FILE.sk.js calls; it is not for other programs. `texts` are the programs that `file` refers to. */
+export function fileOf(file: GeneratedFile, texts: readonly string[]) {
+  checkSchema(file);
+  return {
+    struct: (name: string): Struct<string, unknown, unknown> => structOf(file, name),
+    callable: (...units: number[]): Exported => {
+      const callables = units.map((unit) => file.callables[unit]!);
+      return overloaded(callables.map((callable) => functionOf(callable, file, texts)));
+    },
+  };
+}

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+//
+// One linked program: where its uniforms are, and what was last given to them.
+import type { Layout } from './layout.js';
+import type { Element, Field, Parameter } from './generated.js';
+import { SkError } from './error.js';
+
+export const vertexText = `#version 300 es
+void main() { gl_Position = vec4(float(gl_VertexID & 1) * 2.0 - 1.0, float(gl_VertexID & 2) - 1.0, 0.0, 1.0); }
+`;
+
+type Location = WebGLUniformLocation | null;
+
+/** The uniforms that hold the layout of a stream or of the domain. */
+class LayoutUniforms {
+  private readonly shape: Location;
+  private readonly stride: Location;
+  private readonly shift: Location;
+  private last: Layout | null = null;
+
+  constructor(private readonly gl: WebGL2RenderingContext, program: WebGLProgram, pattern: string) {
+    const at = (part: string) => gl.getUniformLocation(program, pattern.replace('*', part));
+    this.shape = at('shape');
+    this.stride = at('stride');
+    this.shift = at('shift');
+  }
+
+  set(layout: Layout): void {
+    if (layout === this.last) return;
+    this.last = layout;
+    if (this.shape !== null) this.gl.uniform4iv(this.shape, layout.extent as unknown as number[]);
+    if (this.stride !== null) this.gl.uniform4iv(this.stride, layout.stride as unknown as number[]);
+    if (this.shift !== null) this.gl.uniform1i(this.shift, layout.shift);
+  }
+}
+
+/** The uniform of one field of a value, and how to set it. */
+type Setter = (numbers: readonly number[]) => void;
+
+function setterOf(gl: WebGL2RenderingContext, location: WebGLUniformLocation, field: Field, rows: number): Setter {
+  if (rows > 1) {
+    const set = [gl.uniformMatrix2fv, gl.uniformMatrix3fv, gl.uniformMatrix4fv][rows - 2]!;
+    return (numbers) => set.call(gl, location, false, numbers as number[]);
+  }
+  const w = field.width - 1;
+  switch (field.scalar) {
+    case 'bool': case 'int': case 'char': case 'uchar': case 'short': case 'ushort': {
+      if (w === 0) return (numbers) => gl.uniform1i(location, numbers[0]!);
+      const set = [gl.uniform1iv, gl.uniform2iv, gl.uniform3iv, gl.uniform4iv][w]!;
+      return (numbers) => set.call(gl, location, numbers as number[]);
+    }
+    case 'uint': {
+      const set = [gl.uniform1uiv, gl.uniform2uiv, gl.uniform3uiv, gl.uniform4uiv][w]!;
+      return (numbers) => set.call(gl, location, numbers as number[]);
+    }
+    default: {
+      if (w === 0) return (numbers) => gl.uniform1f(location, numbers[0]!);
+      const set = [gl.uniform1fv, gl.uniform2fv, gl.uniform3fv, gl.uniform4fv][w]!;
+      return (numbers) => set.call(gl, location, numbers as number[]);
+    }
+  }
+}
+
+/** A uniform of any type: its components in order are divided among the uniforms of its fields. */
+class ValueUniform {
+  private readonly setters: { readonly set: Setter; readonly first: number; readonly count: number }[] = [];
+
+  constructor(gl: WebGL2RenderingContext, program: WebGLProgram, name: string, element: Element) {
+    let first = 0;
+    for (let i = 0; i < element.fields.length; ) {
+      const field = element.fields[i]!;
+      let rows = 1;
+      while ((element.fields[i + rows]?.part ?? 0) > 0) ++rows;
+      let count = 0;
+      for (let r = 0; r < rows; ++r) count += element.fields[i + r]!.width;
+      const path = field.path ?? '';
+      const full = path === '' || path.startsWith('[') ? name + path : `${name}.${path}`;
+      if (field.scalar === 'double') this.addDoubles(gl, program, full, first, count);
+      else this.add(gl, program, full, field, first, count, rows);
+      first += count;
+      i += rows;
+    }
+  }
+
+  private add(
+    gl: WebGL2RenderingContext, program: WebGLProgram, name: string, field: Field, first: number, count: number, rows: number,
+  ): void {
+    const location = gl.getUniformLocation(program, name);
+    if (location !== null) this.setters.push({ set: setterOf(gl, location, field, rows), first, count });
+  }
+
+  /** A double is a struct of two floats. */
+  private addDoubles(gl: WebGL2RenderingContext, program: WebGLProgram, name: string, first: number, count: number): void {
+    for (let c = 0; c < count; ++c) {
+      const one = count === 1 ? name : `${name}.${'xyzw'[c]}`;
+      const hi = gl.getUniformLocation(program, `${one}.hi`);
+      const lo = gl.getUniformLocation(program, `${one}.lo`);
+      const set: Setter = ([value]) => {
+        const high = Math.fround(value!);
+        gl.uniform1f(hi, high);
+        gl.uniform1f(lo, Number.isFinite(high) ? value! - high : 0);
+      };
+      this.setters.push({ set, first: first + c, count: 1 });
+    }
+  }
+
+  set(numbers: readonly number[]): void {
+    for (const { set, first, count } of this.setters) {
+      set(count === numbers.length ? numbers : numbers.slice(first, first + count));
+    }
+  }
+}
+
+/** A parameter of a program: a stream that it reads, or a value. */
+export interface Bound {
+  readonly index: number;
+  readonly parameter: Parameter;
+  readonly layout?: LayoutUniforms;
+  readonly value?: ValueUniform;
+  readonly step?: ValueUniform;
+}
+
+/** A program that is being compiled, or has been. */
+export class Program {
+  private readonly shaders: WebGLShader[];
+  readonly handle: WebGLProgram;
+  /** Set when it is first used. */
+  reads: Bound[] = [];
+  values: Bound[] = [];
+  domain!: LayoutUniforms;
+  private isReady = false;
+  private readonly integers = new Map<string, Location>();
+
+  constructor(
+    private readonly gl: WebGL2RenderingContext,
+    private readonly name: string,
+    text: string,
+    private readonly parameters: readonly Parameter[],
+    private readonly elements: readonly Element[],
+    private readonly isUsed: (parameter: Parameter) => boolean,
+  ) {
+    this.shaders = [this.compile(gl.VERTEX_SHADER, vertexText), this.compile(gl.FRAGMENT_SHADER, text)];
+    this.handle = gl.createProgram()!;
+    for (const shader of this.shaders) gl.attachShader(this.handle, shader);
+    gl.linkProgram(this.handle);
+  }
+
+  private compile(stage: number, text: string): WebGLShader {
+    const shader = this.gl.createShader(stage)!;
+    this.gl.shaderSource(shader, text);
+    this.gl.compileShader(shader);
+    return shader;
+  }
+
+  /** Whether use() would not wait, if the driver can say so. */
+  isLinked(parallel: { COMPLETION_STATUS_KHR: number } | null): boolean {
+    return this.isReady || parallel === null || Boolean(this.gl.getProgramParameter(this.handle, parallel.COMPLETION_STATUS_KHR));
+  }
+
+  /** Waits for the driver, and finds uniforms; the program is current then. Throws SkError if the driver rejects it. */
+  use(): void {
+    if (this.isReady) return;
+    const { gl, handle } = this;
+    if (!gl.getProgramParameter(handle, gl.LINK_STATUS)) {
+      if (gl.isContextLost()) throw new SkError(`${this.name}: the context is lost`, 'lost');
+      const log = this.shaders.map((shader) => gl.getShaderInfoLog(shader) ?? '').join('') + (gl.getProgramInfoLog(handle) ?? '');
+      throw new SkError(`${this.name}: the driver refuses the program:\n${log}`, 'compile');
+    }
+    for (const shader of this.shaders) gl.deleteShader(shader);
+    gl.useProgram(handle);
+    this.domain = new LayoutUniforms(gl, handle, 'sk_domain_*');
+    let unit = 0;
+    this.parameters.forEach((parameter, index) => {
+      if (!this.isUsed(parameter)) return;
+      const { role, symbol } = parameter;
+      const element = this.elements[parameter.held ?? parameter.element]!;
+      const layout = () => new LayoutUniforms(gl, handle, `sk_*_${symbol}`);
+      const value = (kind: string) => new ValueUniform(gl, handle, `sk_${kind}_${symbol}`, this.elements[parameter.element]!);
+      if (role === 'uniform') {
+        this.values.push({ index, parameter, value: value('arg') });
+      } else if (role === 'iterator') {
+        this.values.push({ index, parameter, value: value('begin'), step: value('step'), layout: layout() });
+      } else if (role === 'input' || role === 'gather') {
+        this.reads.push({ index, parameter, layout: layout() });
+        element.fields.forEach((_, plane) => {
+          const name = element.fields.length === 1 ? `sk_tex_${symbol}` : `sk_tex${plane}_${symbol}`;
+          gl.uniform1i(gl.getUniformLocation(handle, name), unit++);
+        });
+      }
+    });
+    this.isReady = true;
+  }
+
+  /** Sets an int or ivec4 that a plan names; the program must be current. Names that it does not use are skipped. */
+  setInteger(name: string, value: number | readonly number[]): void {
+    let location = this.integers.get(name);
+    if (location === undefined) {
+      location = this.gl.getUniformLocation(this.handle, name);
+      this.integers.set(name, location);
+    }
+    if (location === null) return;
+    if (typeof value === 'number') this.gl.uniform1i(location, value);
+    else this.gl.uniform4iv(location, value as number[]);
+  }
+}

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+//
+// The passes of a reduction to a value: the decisions of runtime/src/assemble/reduce/reduce_plan.cpp for draws over whole
+// streams. Pure arithmetic.
+import { decodedRank, lanes, linearLayout, linearTexture, sizeOf, stridesOf, texelsOf, type Index4, type Layout, type Rect } from './layout.js';
+
+export type Walk = 'line' | 'index' | 'rows' | 'partials' | 'partialRows' | 'nothing';
+
+export interface ReducePass {
+  readonly walk: Walk;
+  /** The choices of the pass, as in the key of its program: "rows run8 column packed". */
+  readonly key: string;
+  readonly toResult: boolean;
+  /** The size of the texture that it draws to. */
+  readonly width: number;
+  readonly height: number;
+  readonly draws: readonly Rect[];
+  readonly uniforms: readonly (readonly [name: string, value: number | Index4])[];
+}
+
+export interface Division {
+  /** Elements are found by their index; else they lie alike in all inputs. */
+  readonly byIndex: boolean;
+  /** Elements are packed, and runs step by texels. */
+  readonly byTexel: boolean;
+  readonly inAnyOrder: boolean;
+}
+
+export interface ReduceLimits {
+  readonly textureSize: number;
+  /** From this many elements or texels on, programs are specialised for the length of runs. */
+  readonly knownRuns: number;
+}
+
+/** Elements per run, at most. */
+const fanIn = 32;
+export const leastKnownRuns = 2 ** 16;
+
+interface Extent2 {
+  readonly width: number;
+  readonly height: number;
+}
+
+const none: Index4 = [0, 0, 0, 0];
+const one: Index4 = [1, 1, 1, 1];
+const valueRect: Rect = { x: 0, y: 0, width: 1, height: 1 };
+
+const divideUp = (a: number, b: number) => Math.floor((a - 1) / b) + 1;
+
+/** A divisor of `extent` near `most`; `most` if there is none. */
+function dividing(extent: number, most: number): number {
+  for (let length = most; 2 * length > most; --length) {
+    if (extent % length === 0) return length;
+  }
+  return most;
+}
+
+class Planner {
+  private readonly input: Layout;
+  private readonly passes: ReducePass[] = [];
+  private left: number;
+  private rows: Extent2 = { width: 0, height: 0 };
+  private tail = 0;
+  private sourceShift = 0;
+
+  constructor(private readonly elements: Layout, private readonly limits: ReduceLimits, private readonly division: Division) {
+    this.input = division.byTexel ? texelsOf(elements) : elements;
+    this.left = sizeOf(this.input.extent);
+  }
+
+  plan(): ReducePass[] {
+    const isByRows = this.findRows();
+    if (isByRows) this.addRows('rows');
+    else this.addPass(this.division.byIndex ? 'index' : 'line');
+    while (!this.passes[this.passes.length - 1]!.toResult) {
+      if (isByRows) this.addRows('partialRows');
+      else this.addPass('partials');
+    }
+    return this.passes;
+  }
+
+  /** Whether the elements are rows of texels. The last may be shorter if there is another and order does not matter. */
+  private findRows(): boolean {
+    if (this.division.byIndex) return false;
+    const { input, left } = this;
+    if (!input.linear) {
+      this.rows = { width: input.extent[0], height: input.extent[1] };
+      return true;
+    }
+    const width = 2 ** input.shift;
+    this.rows = left < width ? { width: left, height: 1 } : { width, height: Math.floor(left / width) };
+    this.tail = left < width ? 0 : left % width;
+    return this.tail === 0 || this.division.inAnyOrder;
+  }
+
+  private runOf({ width, height }: Extent2, most: number, ofPartials: boolean): Extent2 {
+    const side = 8;
+    const { inAnyOrder } = this.division;
+    if (inAnyOrder && ofPartials && most >= side && width >= side && height >= Math.floor(most / side)) {
+      return { width: side, height: Math.floor(most / side) };
+    }
+    if (inAnyOrder && height >= most) return { width: 1, height: dividing(height, most) };
+    if (width < most && height > 1) return { width, height: Math.min(height, Math.floor(most / width)) };
+    return { width: dividing(width, Math.min(width, most)), height: 1 };
+  }
+
+  /** The run of the first pass. A texel of the partial row below extends the last run of its column. */
+  private firstRun(): Extent2 {
+    const most = this.division.byTexel ? fanIn / lanes : fanIn;
+    if (this.tail > 0) return { width: 1, height: Math.min(Math.max(this.rows.height, 1), most - 1) };
+    return this.runOf(this.rows, most, false);
+  }
+
+  /** Whether a program for this length folds the first runs: if all have it and there is enough work. */
+  private hasKnownRun(run: Extent2): boolean {
+    const { width, height } = this.rows;
+    const isEven = this.tail === 0 && width % run.width === 0 && height % run.height === 0;
+    const isLine = run.width === 1 || run.height === 1;
+    return isEven && isLine && width * height >= this.limits.knownRuns && (run.width * run.height) % 4 === 0;
+  }
+
+  private addRows(walk: 'rows' | 'partialRows'): void {
+    const isFirst = walk === 'rows';
+    const before = this.rows;
+    const run = isFirst ? this.firstRun() : this.runOf(before, fanIn, true);
+    let key: string = walk;
+    if (isFirst) {
+      const isKnown = this.hasKnownRun(run);
+      if (isKnown) key += ` run${run.width * run.height}`;
+      if (run.width === 1 && (isKnown || this.tail > 0)) key += ' column';
+      if (this.division.byTexel) key += ' packed';
+    }
+    const width = divideUp(before.width, run.width);
+    const height = divideUp(before.height, run.height);
+    this.rows = { width, height };
+    this.left = width * height;
+    const draw = { x: 0, y: 0, width, height };
+    this.passes.push({
+      walk,
+      key,
+      toResult: this.left === 1,
+      width,
+      height,
+      draws: [draw],
+      uniforms: [
+        ['sk_item_shape', this.elements.extent],
+        ['sk_origin', none],
+        ['sk_source', [before.width, before.height, isFirst ? this.tail : 0, 0]],
+        ['sk_run_shape', [run.width, run.height, 0, 0]],
+        ['sk_target', none],
+      ],
+    });
+  }
+
+  private addPass(walk: 'line' | 'index' | 'partials'): void {
+    const isOfTexels = this.division.byTexel && walk !== 'partials';
+    const most = isOfTexels ? fanIn / lanes : fanIn;
+    const runs = divideUp(this.left, most);
+    const uniforms: [string, number | Index4][] = [
+      ['sk_fan', divideUp(this.left, runs)],
+      ['sk_block_length', this.left],
+      ['sk_blocks', 1],
+      ['sk_item_shape', this.elements.extent],
+    ];
+    let key: string = walk;
+    if (walk === 'partials') {
+      uniforms.push(['sk_shift', this.sourceShift]);
+    } else if (walk === 'line') {
+      uniforms.push(['sk_start', 0], ['sk_shift', this.input.shift]);
+    } else {
+      const axes = decodedRank(this.input.extent);
+      if (axes !== 1) key += ` axes${axes}`;
+      uniforms.push(['sk_block_shape', this.input.extent], ['sk_block_step', stridesOf(this.input.extent)], ['sk_blocks_step', one]);
+    }
+    if (isOfTexels) key += ' packed';
+    const texture = runs === 1 ? { width: 1, height: 1 } : linearTexture(runs, this.limits.textureSize)!;
+    const domain = linearLayout(runs, texture.width, texture.height);
+    uniforms.push(['sk_domain_shape', domain.extent], ['sk_domain_stride', domain.stride], ['sk_domain_shift', domain.shift], ['sk_domain_step', domain.stride]);
+    this.sourceShift = domain.shift;
+    this.left = runs;
+    this.passes.push({ walk, key, toResult: runs === 1, ...texture, draws: domain.draws, uniforms });
+  }
+}
+
+/** Plans the passes that fold elements, of which there is one or more, to a value. */
+export function planReduction(elements: Layout, limits: ReduceLimits, division: Division): ReducePass[] {
+  return new Planner(elements, limits, division).plan();
+}
+
+/** The pass that writes the identities, where there are no elements. */
+export const identities: ReducePass = { walk: 'nothing', key: 'nothing', toResult: true, width: 1, height: 1, draws: [valueRect], uniforms: [] };
+
+export function isOfPartials(walk: Walk): boolean {
+  return walk === 'partials' || walk === 'partialRows';
+}

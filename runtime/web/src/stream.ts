@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+//
+// A stream: elements of one type in textures of the device, one plane for each scalar, vector or row of a matrix.
+import type { Device, Plane } from './device.js';
+import { channelsOf, mayPackElement, newArrays, planeArray, takeChannels, texelsBefore } from './elements.js';
+import { SkError } from './error.js';
+import { formatOf } from './format.js';
+import type { Element, Field } from './generated.js';
+import { lanes, shapeText, sizeOf, type Layout } from './layout.js';
+import { Program } from './program.js';
+import type { ArrayOf, ElementType, ShapeOf } from './types.js';
+
+/** The largest extent of a stream. */
+const mostExtent = 2 ** 30 - 1;
+
+export class Stream<T extends ElementType, R extends number> {
+  /** For types alone: streams of different elements or ranks are different types. */
+  declare readonly type: T;
+  /** Extents, rows first. */
+  readonly shape: ShapeOf<R>;
+  /** The number of elements. */
+  readonly size: number;
+  /** @internal */ layout: Layout;
+  /** @internal */ planes: Plane[] = [];
+  private isDisposed = false;
+
+  /** @internal */
+  constructor(readonly device: Device, /** @internal */ readonly element: Element, shape: ShapeOf<R>) {
+    const extents = shape as readonly number[];
+    const isShape = extents.length >= 1 && extents.length <= 4 && extents.every((n) => Number.isInteger(n) && n >= 0 && n <= mostExtent);
+    if (!isShape) {
+      throw new SkError(`${shapeText(extents)} is no shape: 1 to 4 extents, rows first, whole numbers from 0 to ${mostExtent}`, 'shape');
+    }
+    this.shape = shape;
+    this.size = sizeOf(extents);
+    this.layout = device.layoutOf(extents, this.mayPack());
+    device.begin();
+    this.planes = this.newPlanes(this.layout);
+    this.clear();
+  }
+
+  private clear(): void {
+    const gl = this.device.context;
+    for (const plane of this.planes) {
+      this.device.framebufferOf([plane]);
+      if (plane.format.sampler === 'int') gl.clearBufferiv(gl.COLOR, 0, [0, 0, 0, 0]);
+      else if (plane.format.sampler === 'uint') gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
+      else gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
+    }
+  }
+
+  /** Whether four elements may share a texel, as far as the type says. @internal */
+  mayPack(): boolean {
+    return mayPackElement(this.element);
+  }
+
+  /** The layout with four elements in a texel, or without. @internal */
+  layoutIf(packed: boolean): Layout {
+    return this.device.layoutOf(this.shape as readonly number[], packed && this.mayPack());
+  }
+
+  /** @internal */
+  newPlanes(layout: Layout): Plane[] {
+    if (this.size === 0) return [];
+    const what = `a stream of ${this.element.name} of shape ${shapeText(this.shape as readonly number[])}`;
+    return this.element.fields.map((field) =>
+      this.device.acquire(formatOf(field.scalar, layout.packed ? lanes : field.width), layout.width, layout.height, what),
+    );
+  }
+
+  /** Takes other planes of this layout for its own, which go back to the device. @internal */
+  exchange(planes: Plane[], layout: Layout): void {
+    this.device.release(this.planes);
+    this.planes = planes;
+    this.layout = layout;
+  }
+
+  /** Throws SkError if the stream is not of the device, or has been disposed of. @internal */
+  check(what: string): void {
+    if (this.isDisposed) throw new SkError(`${what} has been disposed of`, 'lost');
+  }
+
+  /** Copies elements to the device, rows first. The array may change as soon as this returns. */
+  write(elements: ArrayOf<T>): void {
+    this.check('the stream');
+    this.device.begin();
+    const { fields } = this.element;
+    const arrays = fields.map((_, plane) => planeArray(this.element, plane, elements, this.size));
+    if (this.size === 0) return;
+    const packed = this.layoutIf(true);
+    if (this.layout !== packed) this.exchange(this.newPlanes(packed), packed);
+    fields.forEach((field, i) => this.upload(this.planes[i]!, channelsOf(field, arrays[i]!, this.size)));
+  }
+
+  private upload(plane: Plane, channels: ArrayBufferView): void {
+    const gl = this.device.context;
+    const { format, type, channels: width } = plane.format;
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    this.device.bindTexture(0, plane.texture);
+    gl.activeTexture(gl.TEXTURE0);
+    for (const rect of this.layout.draws) {
+      const at = texelsBefore(this.layout, rect) * width;
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, rect.x, rect.y, rect.width, rect.height, format, type, channels, at);
+    }
+  }
+
+  /** Copies the elements to the host. Never blocks: they are those that all calls before have left. */
+  async read(): Promise<ArrayOf<T>> {
+    this.check('the stream');
+    this.device.begin();
+    const arrays = newArrays(this.element, this.size) as ArrayOf<T>;
+    if (this.size === 0) return arrays;
+    const transfers = this.planes.map((plane) => this.device.readTexels(plane, this.layout.draws));
+    const { fields } = this.element;
+    (await Promise.all(transfers)).forEach((channels, i) =>
+      takeChannels(fields[i]!, channels, planeArray(this.element, i, arrays, this.size), this.size),
+    );
+    return arrays;
+  }
+
+  /** Converts a packed stream to one element in a texel. @internal */
+  unpack(): void {
+    if (!this.layout.packed) return;
+    const { device } = this;
+    const plain = this.layoutIf(false);
+    const planes = this.newPlanes(plain);
+    const program = unpackProgram(device, this.element.fields[0]!);
+    device.useProgram(program);
+    device.bindTexture(0, this.planes[0]!.texture);
+    const from = this.layout;
+    program.setInteger('shifts', [plain.linear ? plain.shift : -1, from.linear ? from.shift : -1, plain.extent[0], 0]);
+    device.framebufferOf(planes);
+    device.drawRects(plain.draws);
+    this.exchange(planes, plain);
+  }
+
+  /** Frees the elements. */
+  dispose(): void {
+    if (this.isDisposed) return;
+    this.isDisposed = true;
+    if (!this.device.lost) this.device.release(this.planes);
+    this.planes = [];
+  }
+}
+
+const unpackKey = {};
+
+/** Component n & 3 of texel n >> 2; a packed plane may belong to a linearised stream. */
+function unpackProgram(device: Device, field: Field): Program {
+  const { sampler } = formatOf(field.scalar, lanes);
+  const prefix = sampler === 'float' ? '' : sampler[0]!;
+  const text = () => `#version 300 es
+precision highp float;
+precision highp int;
+precision highp ${prefix}sampler2D;
+uniform ${prefix}sampler2D packed4;
+uniform ivec4 shifts;
+out ${prefix}vec4 element;
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  int n = shifts.x < 0 ? at.y * shifts.z + at.x : (at.y << shifts.x) | at.x;
+  int texel = n >> 2, width = shifts.z >> 2;
+  ivec2 from = shifts.y < 0 ? ivec2(texel % width, texel / width) : ivec2(texel & ((1 << shifts.y) - 1), texel >> shifts.y);
+  element = ${prefix}vec4(texelFetch(packed4, from, 0)[n & 3], 0, 0, 0);
+}
+`;
+  return device.program(unpackKey, sampler, 'unpacking', text, [], [], () => true);
+}

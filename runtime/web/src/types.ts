@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+//
+// The types of what .sk files declare, as FILE.sk.d.ts uses them.
+import type { Stream } from './stream.js';
+
+type Width = '' | '2' | '3' | '4';
+/** Scalars and vectors whose arrays have one type. */
+type Of<S extends string> = `${S}${Width}`;
+
+/** Elements that TypeScript has no need to declare: `float`, `int3`. */
+export type BuiltIn =
+  | Of<'float'> | Of<'int'> | Of<'uint'> | Of<'bool'> | Of<'double'> | Of<'half'> | Of<'char'> | Of<'uchar'> | Of<'short'> | Of<'ushort'>
+  | Of<'unorm8'> | Of<'snorm8'> | Of<'unorm16'> | Of<'snorm16'>
+  | 'float2x2' | 'float3x3' | 'float4x4';
+
+/** A struct of a .sk file, which FILE.sk.js exports. `Value` is one element, `Arrays` has one array for each member. */
+export interface Struct<Name extends string, Value, Arrays> {
+  readonly name: Name;
+  /** Only types. */
+  readonly value?: Value;
+  readonly arrays?: Arrays;
+}
+
+export type ElementType = BuiltIn | Struct<string, unknown, unknown>;
+
+/**
+ * The array of a stream's elements: components one after the other, rows first. A half is a float that is rounded when it
+ * is written; normalized types are integers, as the device stores them; a bool is 0 or 1. A struct has one array for each
+ * member.
+ */
+export type ArrayOf<T extends ElementType> = T extends Struct<string, unknown, infer Arrays>
+  ? Arrays
+  : T extends Of<'float'> | Of<'half'> | `float${number}x${number}`
+  ? Float32Array
+  : T extends Of<'int'>
+  ? Int32Array
+  : T extends Of<'uint'>
+  ? Uint32Array
+  : T extends Of<'double'>
+  ? Float64Array
+  : T extends Of<'char'> | Of<'snorm8'>
+  ? Int8Array
+  : T extends Of<'bool'> | Of<'uchar'> | Of<'unorm8'>
+  ? Uint8Array
+  : T extends Of<'short'> | Of<'snorm16'>
+  ? Int16Array
+  : Uint16Array;
+
+type One<T> = T extends `bool${string}` ? boolean : number;
+
+/** One value: a number or a boolean, components of a vector, or all components of a matrix, row by row. */
+export type Value<T extends BuiltIn> = T extends `${string}x${string}`
+  ? readonly number[]
+  : T extends `${string}2`
+  ? readonly [One<T>, One<T>]
+  : T extends `${string}3`
+  ? readonly [One<T>, One<T>, One<T>]
+  : T extends `${string}4`
+  ? readonly [One<T>, One<T>, One<T>, One<T>]
+  : One<T>;
+
+/** What a kernel reads element by element, `T x<>`: a stream with the shape of the output. */
+export type Input<T extends ElementType> = Stream<T, number>;
+/** What a kernel reads at any index, `T a[][]`. */
+export type Gather<T extends ElementType, R extends number> = Stream<T, R>;
+/** What a kernel writes, `out T r<>`. */
+export type Output<T extends ElementType> = Stream<T, number>;
+/** Values from `begin` towards `end`, evenly over the elements, `iter T i<>`. */
+export interface Iterate<T> {
+  readonly begin: T;
+  readonly end: T;
+}
+
+/** Choices of one call, as in `sum.with({ accumulate: 'tree' })(u)`. */
+export interface CallOptions {
+  /** How a reduction adds floats; by default compensated (docs/accuracy.md). */
+  readonly accumulate?: 'tree' | 'compensated';
+}
+
+/** A kernel: a function that writes its outputs. It returns at once; the device computes meanwhile. */
+export interface Kernel<Arguments extends readonly unknown[]> {
+  (...given: Arguments): void;
+}
+
+/** A reduce: a function that promises the value. */
+export interface Reduce<Arguments extends readonly unknown[], Result> {
+  (...given: Arguments): Promise<Result>;
+  with(options: CallOptions): Reduce<Arguments, Result>;
+}
+
+/** What browsers do not run, and why: no call of it compiles. */
+export interface NotOffered<Why extends string> {
+  readonly whyNotOffered: Why;
+}
+
+/** The shape of a stream of this rank, rows first. */
+export type ShapeOf<R extends number> = R extends 1
+  ? readonly [number]
+  : R extends 2
+  ? readonly [number, number]
+  : R extends 3
+  ? readonly [number, number, number]
+  : R extends 4
+  ? readonly [number, number, number, number]
+  : readonly number[];
