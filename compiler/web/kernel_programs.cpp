@@ -81,6 +81,25 @@ std::vector<std::uint32_t> candidates(const Kernel& kernel, Scalar scalar) {
   return {values.begin(), values.end()};
 }
 
+/// The domains that calls may have: all, unless the kernel reads neighbours, whose gathers have the rank of the domain.
+/// Streams of two dimensions are planes, those of more are linearised, and those of one are either.
+std::vector<Lie> liesOf(const Kernel& kernel) {
+  bool isPlane = true, isLine = true, isSpace = true;
+  for (const Parameter& parameter : kernel.parameters) {
+    if (!parameter.usesNear) continue;
+    isPlane = isPlane && parameter.rank <= 2;
+    isLine = isLine && parameter.rank == 1;
+    isSpace = isSpace && parameter.rank > 2;
+  }
+  std::vector<Lie> lies;
+  for (const bool packed : {true, false}) {
+    if (isPlane) lies.push_back({Domain::Plane, 2, packed});
+    if (isLine) lies.push_back({Domain::Linear, 1, packed});
+    if (isSpace) lies.push_back({Domain::Linear, 4, packed});
+  }
+  return lies;
+}
+
 }  // namespace
 
 std::string keyOf(const Kernel& kernel, const Variant& variant) {
@@ -190,11 +209,8 @@ std::vector<std::vector<StreamAccess>> accessChoices(const Kernel& kernel, const
 
 Programs kernelPrograms(const sk::assemble::Profile& profile, const Kernel& kernel) {
   Programs programs;
-  const std::vector<Lie> lies = {{Domain::Plane, 2, true},   {Domain::Linear, 1, true},
-                                 {Domain::Linear, 4, true},  {Domain::Plane, 2, false},
-                                 {Domain::Linear, 1, false}, {Domain::Linear, 4, false}};
   for (const SpecValues& specs : specChoices(kernel)) {
-    for (const Lie& lie : lies) {
+    for (const Lie& lie : liesOf(kernel)) {
       Variant variant;
       variant.specs = specs;
       variant.domain = lie.domain;

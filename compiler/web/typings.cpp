@@ -115,13 +115,14 @@ class TypesWriter {
     return fmt::format("'{}'", print(module_, type));
   }
 
-  /// The type of one value: number, boolean, sk.Vec<3>, Hit.
+  /// The type of one value: number, boolean, sk.Value<'float3'>, Hit.
   std::string valueType(Type type) const {
     if (type.kind == Type::Kind::Struct) return structName(module_, type.index);
     if (type.kind == Type::Kind::Array) {
       const std::string element = valueType(module_.arrays[type.index].element);
       return fmt::format("readonly ({})[]", element);
     }
+    if (type.isScalar()) return type.scalar == Scalar::Bool ? "boolean" : "number";
     return fmt::format("sk.Value<'{}'>", print(module_, type));
   }
 

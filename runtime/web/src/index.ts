@@ -72,9 +72,11 @@ function overloaded(functions: readonly Exported[]): Exported {
   });
 }
 
-/** What FILE.sk.js calls; it is not for other programs. `texts` are the programs that `file` refers to. */
-export function fileOf(file: GeneratedFile, texts: readonly string[]) {
-  checkSchema(file);
+/** What FILE.sk.js calls; it is not for other programs. `texts` are the programs that `data` refers to. */
+export function fileOf(data: GeneratedFile, texts: readonly string[]) {
+  checkSchema(data);
+  const structs = new Map(data.structs.map((struct) => [struct.name, struct]));
+  const file = { ...data, elements: data.elements.map((element) => structs.get(element.name) ?? element) };
   return {
     struct: (name: string): Struct<string, unknown, unknown> => structOf(file, name),
     callable: (...units: number[]): Exported => {

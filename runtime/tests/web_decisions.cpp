@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+//
+// Prints decisions of this runtime as JSON, for streams that are whole: how they lie in textures, which program a kernel needs, and the
+// passes of reductions with their uniforms. tests/web/decisions replays them in TypeScript, so that runtime/web decides likewise.
+#include <cstdio>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "assemble/assemble.hpp"
+#include "assemble/reduce/reduce_plan.hpp"
+#include "gl_device/memory/layout.hpp"
+#include "gl_device/program/variant.hpp"
+#include "sk/error.hpp"
+
+namespace {
+
+using sk::Shape;
+using sk::assemble::Index4;
+using sk::assemble::ReducePass;
+using sk::assemble::RegionLayout;
+using sk::program::Parameter;
+using sk::program::Role;
+
+std::mt19937 generator(1);
+std::int64_t below(std::int64_t n) {
+  return std::uniform_int_distribution<std::int64_t>(0, n - 1)(generator);
+}
+
+/// Extents of every size: tiny ones, those near powers of two, and large ones.
+std::int64_t extent(int rank) {
+  const std::int64_t largest = rank == 1 ? 3000000 : rank == 2 ? 3000 : rank == 3 ? 120 : 24;
+  switch (below(4)) {
+    case 0: return 1 + below(9);
+    case 1: return std::min(largest, (std::int64_t{1} << below(12)) + below(3));
+    case 2: return std::min(largest, 4 + 4 * below(200));
+    default: return 1 + below(largest);
+  }
+}
+
+Shape shapeOf(int rank) {
+  switch (rank) {
+    case 1: return {extent(1)};
+    case 2: return {extent(2), extent(2)};
+    case 3: return {extent(3), extent(3), extent(3)};
+    default: return {extent(4), extent(4), extent(4), extent(4)};
+  }
+}
+
+std::string text(const Shape& shape) {
+  std::vector<std::int64_t> extents;
+  for (int d = 0; d < shape.rank(); ++d) extents.push_back(shape[d]);
+  return fmt::format("[{}]", fmt::join(extents, ","));
+}
+std::string text(const Index4& index) { return fmt::format("[{}]", fmt::join(index, ",")); }
+std::string text(const std::vector<sk::assemble::Rect>& rects) {
+  std::vector<std::string> items;
+  for (const auto& [x, y, width, height] : rects)
+    items.push_back(fmt::format("[{},{},{},{}]", x, y, width, height));
+  return fmt::format("[{}]", fmt::join(items, ","));
+}
+
+/// A stream: its shape, and whether it is packed.
+struct Lie {
+  Shape shape;
+  bool packed;
+
+  explicit Lie(int rank) : shape(shapeOf(rank)), packed(below(2) == 0 && sk::mayPack(shape)) {}
+  std::string text() const { return fmt::format(R"({{"shape":{},"packed":{}}})", ::text(shape), packed); }
+};
+
+sk::assemble::TextureLimits limits(std::int32_t size) {
+  return {size, 0};
+}  // browsers have no layers of streams
+
+std::vector<std::string> layouts() {
+  std::vector<std::string> cases;
+  for (int i = 0; i < 600; ++i) {
+    const Lie lie(1 + i % 4);
+    const std::int32_t size = i % 3 == 0 ? 64 : 8192;
+    std::string result = "null";
+    try {
+      const sk::Layout layout = sk::layoutOf(lie.shape, limits(size), lie.packed);
+      const RegionLayout& whole = layout.whole;
+      result = fmt::format(
+          R"({{"linear":{},"packed":{},"extent":{},"stride":{},"shift":{},"width":{},"height":{},"draws":{}}})",
+          whole.linear, whole.packed, text(whole.extent), text(whole.stride), whole.shift,
+          layout.texture.width, layout.texture.height, text(layout.draws));
+    } catch (const sk::Error&) {
+    }  // too large
+    cases.push_back(fmt::format(R"({{"stream":{},"textureSize":{},"layout":{}}})", lie.text(), size, result));
+  }
+  return cases;
+}
+
+std::vector<std::string> reductions() {
+  constexpr const char* walks[] = {"line",        "plane",           "box",    "index", "rows", "partials",
+                                   "partialRows", "groupedPartials", "nothing"};
+  std::vector<std::string> cases;
+  for (int i = 0; i < 600; ++i) {
+    const Lie lie(1 + i % 4);
+    const bool byIndex = below(4) == 0 && !lie.packed;
+    const bool inAnyOrder = below(2) == 0;
+    const bool isKnown = below(2) == 0;
+    const sk::Layout layout = sk::layoutOf(lie.shape, limits(8192), lie.packed);
+    sk::assemble::ReduceLimits most{.texture = limits(8192)};
+    if (!isKnown) most.knownRuns = std::numeric_limits<std::int32_t>::max();
+    const sk::assemble::Division division{
+        .blocks = {1, 1, 1, 1}, .byIndex = byIndex, .byTexel = lie.packed, .inAnyOrder = inAnyOrder};
+    std::vector<std::string> passes;
+    for (const ReducePass& pass : planReduction(layout.whole, sk::assemble::valueLayout(), most, division)) {
+      const sk::assemble::ReduceVariant& v = pass.variant;
+      std::vector<std::string> uniforms;
+      for (const auto& [name, isVector, value] : pass.uniforms) {
+        uniforms.push_back(
+            fmt::format(R"("{}":{})", name, isVector ? text(value) : std::to_string(value[0])));
+      }
+      passes.push_back(fmt::format(
+          R"({{"walk":"{}","axes":{},"run":{},"column":{},"packed":{},"toResult":{},"width":{},"height":{},"draws":{},"uniforms":{{{}}}}})",
+          walks[static_cast<std::size_t>(v.walk)], v.axes, v.run, v.column, v.packed, pass.toResult,
+          pass.texture.width, pass.texture.height, text(pass.draws), fmt::join(uniforms, ",")));
+    }
+    cases.push_back(
+        fmt::format(R"({{"stream":{},"byIndex":{},"inAnyOrder":{},"knownRuns":{},"passes":[{}]}})",
+                    lie.text(), byIndex, inAnyOrder, isKnown, fmt::join(passes, ",")));
+  }
+  return cases;
+}
+
+/// Calls of a kernel with inputs, and gathers of each rank that read neighbours.
+std::vector<std::string> variants() {
+  static constexpr sk::program::Field field{"", sk::program::Scalar::Float, 1, 0};
+  static constexpr sk::program::Element element{"float", "float", 4, {&field, 1}};
+  constexpr const char* addressings[] = {"aligned", "plane", "linear", "layered", "rows"};
+  std::vector<std::string> cases;
+  for (int i = 0; i < 600; ++i) {
+    const int rank = 1 + i % 4;
+    const Lie domain(rank);
+    std::vector<Parameter> parameters = {
+        {.name = "x", .symbol = "x", .role = Role::Input, .element = &element}};
+    std::vector<Lie> lies = {domain};
+    lies[0].packed = below(2) == 0 && sk::mayPack(domain.shape);
+    for (std::uint8_t r = 1; r <= 3; ++r) {
+      parameters.push_back({.name = std::string_view("abc").substr(r - 1u, 1),
+                            .symbol = "a",
+                            .role = Role::Gather,
+                            .element = &element,
+                            .rank = r,
+                            .usesNear = true,
+                            .reach = static_cast<std::int32_t>(below(3))});
+      Lie lie(r);
+      if (r == rank && below(2) == 0) lie = domain;
+      lies.push_back(lie);
+    }
+    parameters.push_back({.name = "r", .symbol = "r", .role = Role::Output, .element = &element});
+    lies.push_back(domain);
+    const sk::program::Kernel kernel{
+        .name = "k", .entry = "k", .declarations = {}, .body = {}, .parameters = parameters, .sources = {}};
+    std::vector<sk::Operand> operands;
+    std::vector<std::string> streams, accesses;
+    for (const Lie& lie : lies) {
+      operands.push_back({.regionLayout = sk::layoutOf(lie.shape, limits(8192), lie.packed).whole});
+      streams.push_back(lie.text());
+    }
+    const sk::assemble::Variant variant = sk::chooseVariant(kernel, operands, operands.back().regionLayout);
+    for (std::size_t p = 0; p + 1 < lies.size(); ++p) {
+      const sk::assemble::StreamAccess& access = variant.access[p];
+      accesses.push_back(fmt::format(R"("{}{}{}")", addressings[static_cast<std::size_t>(access.addressing)],
+                                     access.packed ? " packed" : "", access.nearby ? " nearby" : ""));
+    }
+    std::vector<std::int32_t> reaches;
+    for (const Parameter& parameter : parameters) reaches.push_back(parameter.reach);
+    cases.push_back(fmt::format(
+        R"({{"streams":[{}],"reaches":[{}],"linear":{},"rank":{},"packed":{},"access":[{}]}})",
+        fmt::join(streams, ","), fmt::join(reaches, ","), variant.domain == sk::assemble::Domain::Linear,
+        variant.domainRank, variant.domainPacked, fmt::join(accesses, ",")));
+  }
+  return cases;
+}
+
+}  // namespace
+
+int main() {
+  fmt::print("{{\"layouts\":[\n{}],\n\"reductions\":[\n{}],\n\"variants\":[\n{}]}}\n",
+             fmt::join(layouts(), ",\n"), fmt::join(reductions(), ",\n"), fmt::join(variants(), ",\n"));
+}

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+#
+# calls_test.py SKC SOURCE REFERENCE: what kernels and reduces compute in Chromium is what native code computes, within the
+# bounds that calls.mjs states; the types that skc writes for TypeScript are right; the runtime is small.
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
+import chromium
+import package
+
+skc, source, reference = sys.argv[1], os.path.realpath(sys.argv[2]), sys.argv[3]
+here = os.path.dirname(os.path.realpath(__file__))
+seconds = 400  # a few, on a machine that has nothing else to do
+
+
+
+def check_document(folder):
+    """The modules of docs/browser.md, with the .sk files that it shows, are what TypeScript accepts."""
+    with open(os.path.join(source, "docs/browser.md")) as document:
+        blocks = re.findall(r"^```(?:sk|ts) file=(\S+)[^\n]*\n(.*?)^```", document.read(), re.M | re.S)
+    for name, text in blocks:
+        with open(os.path.join(folder, name), "w") as file:
+            file.write(text)
+    for name in [name for name, _ in blocks if name.endswith(".sk")]:
+        subprocess.run([skc, "--emit=js", "-o", folder, os.path.join(folder, name)], check=True)
+    modules = [os.path.join(folder, name) for name, _ in blocks if name.endswith(".ts")]
+    assert modules, "docs/browser.md shows no module"
+    package.check_types(modules, folder)
+
+
+chromium.need()
+with tempfile.TemporaryDirectory() as folder:
+    package.build(source, f"{folder}/streamkernel")
+    subprocess.run([skc, "--emit=js", "-o", folder, f"{here}/calls.sk"], check=True)
+    shutil.copy(f"{here}/types.ts", folder)
+    package.check_types([f"{folder}/types.ts"], folder)
+    check_document(folder)
+    with open(f"{folder}/expected.json", "w") as expected:
+        subprocess.run([reference], stdout=expected, check=True)
+    for name in ("index.html", "calls.mjs"):
+        os.symlink(f"{here}/{name}", f"{folder}/{name}")
+    report = chromium.report_of(folder, "index.html", seconds)
+
+for mistake in report["mistakes"]:
+    print(mistake)
+print(f"{report['checks']} checks, {len(report['mistakes'])} mistakes; seconds: {report['seconds']}")
+sys.exit(1 if report["mistakes"] or report["checks"] < 60 else 0)

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+//
+// The calls of calls.mjs in native code. Prints what they compute as JSON, a list of numbers for each case.
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "calls/calls.sk.hpp"
+
+namespace {
+
+/// A number of 24 random bits: equal in C++ and JavaScript.
+std::uint32_t random24(std::size_t i, std::uint32_t seed) {
+  std::uint32_t x = static_cast<std::uint32_t>(i) * 747796405u + seed * 2891336453u + 1u;
+  x = (x >> ((x >> 28) + 4) ^ x) * 277803737u;
+  return (x >> 22 ^ x) >> 8;
+}
+std::vector<float> floats(std::size_t count, std::uint32_t seed) {
+  std::vector<float> all(count);
+  for (std::size_t i = 0; i < count; ++i) all[i] = static_cast<float>(random24(i, seed)) / 8388608.0F - 1.0F;
+  return all;
+}
+template <class T>
+std::vector<T> integers(std::size_t count, std::uint32_t seed, std::uint32_t below) {
+  std::vector<T> all(count);
+  for (std::size_t i = 0; i < count; ++i) all[i] = static_cast<T>(random24(i, seed) % below);
+  return all;
+}
+
+void number(double value) { std::printf("%.17g", value); }
+template <class T>
+void number(const sk::Vector2<T>& v) {
+  std::printf("%.17g,%.17g", double(v.x), double(v.y));
+}
+template <class T>
+void number(const sk::Vector3<T>& v) {
+  std::printf("%.17g,%.17g,%.17g", double(v.x), double(v.y), double(v.z));
+}
+
+bool isFirst = true;
+template <class Values>
+void print(const char* name, const Values& values) {
+  std::printf("%s\"%s\":[", std::exchange(isFirst, false) ? "{" : ",\n", name);
+  bool follows = false;
+  for (const auto& value : values) {
+    if (std::exchange(follows, true)) std::printf(",");
+    number(value);
+  }
+  std::printf("]");
+}
+void print(const char* name, std::initializer_list<double> values) {
+  print(name, std::vector<double>(values));
+}
+
+struct Calls {
+  sk::Device device = sk::Device::native();
+
+  template <class T>
+  sk::Stream<T> filled(const sk::Shape& shape, const std::vector<T>& values) {
+    auto stream = device.stream<T>(shape);
+    stream.write(values);
+    return stream;
+  }
+  sk::Stream<float> random(const sk::Shape& shape, std::uint32_t seed) {
+    return filled(shape, floats(static_cast<std::size_t>(shape.size()), seed));
+  }
+
+  void heat() {
+    std::vector<float> start(256 * 256, 0.0F);
+    start[128 * 256 + 128] = 1000;
+    auto u = filled<float>({256, 256}, start);
+    for (int step = 0; step < 100; ++step) diffuse(0.2F, u, u);
+    print("heat", u.read());
+    print("heat sum", {sum(u), sum.with({.accumulate = sk::Accumulate::Tree})(u)});
+  }
+
+  void elements() {
+    for (const std::int64_t n : {1LL, 7LL, 256LL, 1000LL, 100003LL}) {
+      auto x = random({n}, 1), y = random({n}, 2), r = device.stream<float>({n});
+      saxpy(2.5F, x, y, r);
+      print(("saxpy " + std::to_string(n)).c_str(), r.read());
+      print(("sums " + std::to_string(n)).c_str(), {sum(r), last(r), dot(x, y)});
+    }
+  }
+
+  void boundaries() {
+    for (const auto& [h, w] : {std::pair{29, 37}, {48, 64}, {1, 8}, {3, 3}}) {
+      auto a = random({h, w}, 3), b = random({h, w}, 4), c = random({h, w}, 5), d = random({w}, 6);
+      auto r = device.stream<float>({h, w});
+      if (w >= 8) {
+        edges(a, b, c, d, r);
+        print(("edges " + std::to_string(w)).c_str(), r.read());
+      }
+      print(("far " + std::to_string(w)).c_str(), {farthest(a)});
+    }
+    for (const std::int64_t n : {6LL, 8LL}) {
+      auto a = random({5, 7, n}, 7), r = device.stream<float>({5, 7, n});
+      blur3(a, r);
+      print(("space " + std::to_string(n)).c_str(), r.read());
+      print(("space sum " + std::to_string(n)).c_str(), {sum(r), farthest(r)});
+    }
+  }
+
+  void exact() {
+    for (const std::int64_t w : {64LL, 61LL}) {
+      const auto count = static_cast<std::size_t>(64 * w);
+      auto cells = filled<int>({64, w}, integers<int>(count, 8, 2));
+      for (int step = 0; step < 10; ++step) life(cells, cells);
+      print(("life " + std::to_string(w)).c_str(), cells.read());
+      print(("alive " + std::to_string(w)).c_str(), {double(::count(cells)), double(largest(cells))});
+      auto x = filled<unsigned>({64, w}, integers<unsigned>(count, 9, 1u << 24)),
+           r = device.stream<unsigned>({64, w});
+      auto s = device.stream<int>({64, w}), steps = device.stream<int>({64, w});
+      mix_bits(0xdeadbeefu, x, r, s);
+      print(("bits " + std::to_string(w)).c_str(), r.read());
+      print(("quotients " + std::to_string(w)).c_str(), s.read());
+      print(("totals " + std::to_string(w)).c_str(), {double(::count(s)), double(largest(s))});
+      collatz(300, cells, steps);  // has a loop: elements are not packed
+      collatz(300, steps, steps);
+      print(("collatz " + std::to_string(w)).c_str(), steps.read());
+    }
+    auto x = random({300, 300}, 10);
+    const auto [low, high] = bounds(x);
+    print("bounds", {low, high});
+  }
+
+  void records() {
+    std::vector<sk::float4> four(40 * 31);
+    std::vector<Body> bodies(40 * 31);
+    std::vector<sk::float2> two(40 * 31);
+    const std::vector<float> f = floats(4 * four.size(), 11);
+    for (std::size_t i = 0; i < four.size(); ++i) {
+      four[i] = {f[4 * i], f[4 * i + 1], f[4 * i + 2], f[4 * i + 3]};
+      two[i] = {f[2 * i], f[2 * i + 1]};
+      bodies[i] = {{{f[i], f[i + 1]}, f[i + 2]}, static_cast<int>(i), {f[i + 3], f[i + 4], f[i + 5]}};
+    }
+    auto v = filled<sk::float4>({40, 31}, four);
+    auto r = device.stream<sk::float3>({40, 31});
+    auto s = device.stream<sk::float2>({40, 31});
+    turn({1, 2, 3}, true, v, r, s);
+    print("turn r", r.read());
+    print("turn s", s.read());
+    auto b = filled<Body>({40, 31}, bodies);
+    move(Spot{{1, 2}, 3}, b, b);
+    std::vector<double> members;
+    for (const Body& one : b.read()) {
+      members.insert(members.end(), {one.spot.at.x, one.spot.at.y, one.spot.heat, double(one.kind),
+                                     one.color.x, one.color.y, one.color.z});
+    }
+    print("move", members);
+    const Spot most = heaviest(b);
+    print("heaviest", {most.at.x, most.at.y, most.heat});
+    auto q = filled<sk::float2>({40, 31}, two);
+    field::scale(sk::float2{2, 3}, q, q);
+    print("scale2", q.read());
+  }
+
+  void choices() {
+    for (const std::int64_t n : {100LL, 300LL, 1024LL}) {
+      auto x = random({n}, 12), w = random({n}, 13), r = device.stream<float>({n});
+      choose(2, true, x, w, r);
+      print(("choose 2 " + std::to_string(n)).c_str(), r.read());
+      choose(5, false, x, sk::none, r);
+      print(("choose 5 " + std::to_string(n)).c_str(), r.read());
+    }
+    auto r = device.stream<float>({6, 8});
+    ramp(sk::iter(sk::float2{0, 0}, sk::float2{8, 3}), sk::iter(0, 96), r);
+    print("ramp", r.read());
+  }
+
+  void types() {
+    constexpr std::size_t n = 60;
+    auto a = filled<std::uint8_t>({n}, integers<std::uint8_t>(n, 14, 256));
+    auto b = filled<std::int16_t>({n}, integers<std::int16_t>(n, 15, 1000));
+    auto c = device.stream<sk::unorm8>({n});
+    auto d = device.stream<sk::snorm16>({n});
+    auto e = device.stream<sk::half>({n});
+    auto f = device.stream<bool>({n});
+    std::vector<sk::unorm8> unorms;
+    std::vector<sk::snorm16> snorms;
+    std::vector<sk::half> halves;
+    std::array<bool, n> bools{};
+    for (std::size_t i = 0; i < n; ++i) {
+      unorms.push_back(sk::unorm8::fromInteger(static_cast<std::uint8_t>(random24(i, 16) % 256)));
+      snorms.push_back(sk::snorm16::fromInteger(static_cast<std::int16_t>(random24(i, 17) % 32768)));
+      halves.push_back(sk::half(static_cast<float>(random24(i, 18) % 1024) / 64.0F));
+      bools[i] = random24(i, 19) % 2 == 1;
+    }
+    c.write(unorms);
+    d.write(snorms);
+    e.write(halves);
+    f.write(bools);
+    auto g = device.stream<std::uint16_t>({n});
+    auto h = device.stream<float>({n});
+    narrow(a, b, c, d, e, f, g, h);
+    print("narrow g", g.read());
+    print("narrow h", h.read());
+    std::vector<double> values(n);
+    for (std::size_t i = 0; i < n; ++i) values[i] = random24(i, 20) / 16777216.0 + random24(i, 21) * 0x1p-44;
+    auto x = filled<double>({n}, values);
+    doubles(1.0 / 3.0, x, x);
+    print("doubles", x.read());
+  }
+};
+
+}  // namespace
+
+int main() {
+  Calls calls;
+  calls.heat();
+  calls.elements();
+  calls.boundaries();
+  calls.exact();
+  calls.records();
+  calls.choices();
+  calls.types();
+  std::puts("}");
+}

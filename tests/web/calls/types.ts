@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+//
+// What the types of calls.sk.d.ts allow, and what they reject: tsc reads this, and nothing runs it.
+import { Device } from 'streamkernel';
+import { Body, count, diffuse, field, heaviest, move, positive, sum } from './calls.sk.js';
+
+export async function allowed(device: Device): Promise<number> {
+  const u = device.stream('float', [512, 512]);
+  u.write(new Float32Array(512 * 512));
+  diffuse(0.2, u, u);
+  const host: Float32Array = await u.read();
+  const bodies = device.stream(Body, [100]);
+  const { spot, kind } = await bodies.read();
+  const heats: Float32Array = spot.heat;
+  const kinds: Int32Array = kind;
+  move({ at: [1, 2], heat: 3 }, bodies, bodies);
+  const hottest: number = (await heaviest(bodies)).heat;
+  field.scale([1, 2], device.stream('float2', [4]), device.stream('float2', [4]));
+  return (await sum.with({ accumulate: 'tree' })(u)) + host[0]! + heats[0]! + kinds[0]! + hottest;
+}
+
+export async function rejected(device: Device): Promise<void> {
+  const u = device.stream('float', [512, 512]);
+  const line = device.stream('float', [512]);
+  const ints = device.stream('int', [512, 512]);
+  // @ts-expect-error: the gather has two dimensions
+  diffuse(0.2, line, u);
+  // @ts-expect-error: of floats
+  diffuse(0.2, ints, u);
+  // @ts-expect-error: k is a number
+  diffuse('0.2', u, u);
+  // @ts-expect-error: v is missing
+  diffuse(0.2, u);
+  // @ts-expect-error: a stream of floats takes no ints
+  u.write(new Int32Array(1));
+  // @ts-expect-error: the total is a number
+  const text: string = await count(ints);
+  // @ts-expect-error: no browser runs it
+  positive(u, u);
+  // @ts-expect-error: there is no such type
+  device.stream('flaot', [1]);
+  void text;
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+//
+// Replays decisions of the C++ runtime (runtime/tests/web_decisions.cpp).
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+
+const folder = process.env.SK_WEB;
+const { layoutOf } = await import(`${folder}/streamkernel/layout.js`);
+const { planReduction, leastKnownRuns } = await import(`${folder}/streamkernel/reduce_plan.js`);
+const { kernelKey } = await import(`${folder}/streamkernel/variant.js`);
+const corpus = JSON.parse(readFileSync(`${folder}/decisions.json`));
+
+const rects = (list) => list.map(({ x, y, width, height }) => [x, y, width, height]);
+
+test('streams lie in the same texels', () => {
+  assert.ok(corpus.layouts.some(({ layout }) => layout === null), 'no stream is too large');
+  for (const { stream, textureSize, layout } of corpus.layouts) {
+    const place = () => layoutOf(stream.shape, textureSize, stream.packed);
+    if (layout === null) {
+      assert.throws(place, { name: 'SkError', kind: 'shape' });
+      continue;
+    }
+    const found = place();
+    assert.deepEqual({ ...found, draws: rects(found.draws) }, layout, JSON.stringify(stream));
+  }
+});
+
+test('reductions have the same passes and uniforms', () => {
+  for (const { stream, byIndex, inAnyOrder, knownRuns, passes } of corpus.reductions) {
+    const elements = layoutOf(stream.shape, 8192, stream.packed);
+    const limits = { textureSize: 8192, knownRuns: knownRuns ? leastKnownRuns : Infinity };
+    const found = planReduction(elements, limits, { byIndex, byTexel: stream.packed, inAnyOrder });
+    const where = JSON.stringify(stream);
+    assert.equal(found.length, passes.length, where);
+    found.forEach((pass, i) => {
+      const wanted = passes[i];
+      const key = `${wanted.walk}${wanted.axes > 1 ? ` axes${wanted.axes}` : ''}${wanted.run > 0 ? ` run${wanted.run}` : ''}`;
+      assert.equal(pass.key, `${key}${wanted.column ? ' column' : ''}${wanted.packed ? ' packed' : ''}`, where);
+      assert.equal(pass.toResult, wanted.toResult, where);
+      if (!wanted.toResult) assert.deepEqual([pass.width, pass.height], [wanted.width, wanted.height], where);
+      assert.deepEqual(rects(pass.draws), wanted.draws, where);
+      const own = Object.fromEntries(pass.uniforms);
+      for (const [name, value] of Object.entries(wanted.uniforms)) {
+        // Rows are stored from sk_target on, and the domain's origin is 0, which uniforms are anyway.
+        const isUnused = name.startsWith('sk_domain_') && (pass.walk.endsWith('ows') || name === 'sk_domain_origin');
+        if (!isUnused || name in own) assert.deepEqual(own[name], value, `${name} ${where}`);
+      }
+      assert.ok(Object.keys(own).every((name) => name in wanted.uniforms), where);
+    });
+  }
+});
+
+test('kernels need the same programs', () => {
+  const elements = [{ name: 'float', size: 4, fields: [{ scalar: 'float', width: 1, offset: 0 }] }];
+  const names = ['x', 'a', 'b', 'c', 'r'];
+  for (const { streams, reaches, linear, rank, packed, access } of corpus.variants) {
+    const shared = new Map();
+    const place = ({ shape, packed: isPacked }) => {
+      const layout = layoutOf(shape, 8192, isPacked);
+      const text = JSON.stringify(layout);
+      if (!shared.has(text)) shared.set(text, layout); // as a device shares them
+      return shared.get(text);
+    };
+    const lies = streams.map(place);
+    const parameters = names.map((name, i) => {
+      const role = i === 0 ? 'input' : i < 4 ? 'gather' : 'output';
+      return { name, symbol: name, role, element: 0, rank: i, ...(reaches[i] >= 0 && i > 0 && i < 4 ? { reach: reaches[i] } : {}) };
+    });
+    const domain = lies[4];
+    const key = kernelKey(parameters, elements, [...lies.slice(0, 4), null], domain, [], false);
+    // Programs for linearised domains decode one dimension, or all.
+    const kind = linear ? (rank === 1 ? 'linear1' : 'linear4') : 'plane';
+    const wanted = kind + (packed ? ' packed' : '') + access.map((one, i) => `; ${names[i]}:${one}`).join('');
+    assert.equal(key, wanted, JSON.stringify(streams));
+  }
+});

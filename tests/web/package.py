@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+#
+# Builds the npm package of runtime/web by TypeScript's compiler, and checks types.
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+skipped = 77
+tsc = shutil.which("tsc")
+
+
+def need():
+    if not tsc:
+        print("skipped: tsc is not installed; './dev test web' installs it")
+        sys.exit(skipped)
+
+
+def run(*arguments):
+    result = subprocess.run([tsc, *arguments], capture_output=True, text=True)
+    if result.returncode:
+        sys.exit(f"tsc {' '.join(arguments)}\n{result.stdout}{result.stderr}")
+
+
+def build(source, folder):
+    """The package's modules and types."""
+    need()
+    run("-p", os.path.join(source, "runtime/web"), "--outDir", folder)
+
+
+def check_types(files, folder):
+    """Checks TypeScript files of this folder, which has the package in streamkernel/."""
+    settings = {
+        "compilerOptions": {
+            **{"target": "ES2020", "module": "ES2020", "moduleResolution": "node", "lib": ["ES2021", "DOM"], "types": []},
+            **{"strict": True, "noEmit": True, "baseUrl": ".", "paths": {"streamkernel": ["streamkernel/index"]}},
+        },
+        "files": files,
+    }
+    with open(os.path.join(folder, "tsconfig.json"), "w") as config:
+        json.dump(settings, config)
+    run("-p", folder)
