@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "multigrid.sk.hpp"
-#include "vectors.sk.hpp"
 
 namespace linear {
 
@@ -70,92 +69,39 @@ std::vector<double> inverseOf(const Stencil& a) {
 
 /// A grid of the hierarchy.
 struct Level {
-  Level(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic)
-      : stencil(a),
-        coefficients(kernelCoefficients(a)),
-        low(kernelEnds(a).low),
-        high(kernelEnds(a).high),
-        u(device.stream<float>(a.grid, arithmetic.vectors)),
-        b(device.stream<float>(a.grid, arithmetic.vectors)),
-        r(device.stream<float>(a.grid, arithmetic.vectors)) {}
+  explicit Level(const Stencil& a)
+      : stencil(a), coefficients(kernelCoefficients(a)), low(kernelEnds(a).low), high(kernelEnds(a).high) {}
 
   bool isPlane() const { return stencil.grid.rank() == 2; }
 
   Stencil stencil;
   sk::float4 coefficients, low, high;
-  Vector u, b, r;
 };
 
-class Multigrid : public Preconditioner {
+class StencilHierarchy : public Hierarchy {
  public:
-  Multigrid(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic,
-            const MultigridSettings& settings)
-      : options_(arithmetic.options()), foldOptions_(arithmetic.foldOptions()), settings_(settings) {
-    levels_.emplace_back(device, a, arithmetic);
+  StencilHierarchy(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic)
+      : options_(arithmetic.options()) {
+    levels_.emplace_back(a);
     while (true) {
       const Stencil coarse = coarsened(levels_.back().stencil);
       if (coarse.grid == levels_.back().stencil.grid) break;
-      levels_.emplace_back(device, coarse, arithmetic);
+      levels_.emplace_back(coarse);
     }
     const Stencil& coarsest = levels_.back().stencil;
     inverse_ = device.stream<float>({coarsest.size(), coarsest.size()}, arithmetic.vectors);
     inverse_.writeReals(inverseOf(coarsest));
   }
 
-  void apply(const Vector& r, Vector& z, Vector& rz) override {
-    if (settings_.cycle == Cycle::Full)
-      nest(0, r, z);
-    else
-      cycle(0, r, z, settings_.cycle, true);
-    dot.with(foldOptions_)(r, z, rz);
-  }
+  std::size_t size() const override { return levels_.size(); }
+  sk::Shape grid(std::size_t at) const override { return levels_[at].stencil.grid; }
+  bool hasConstantKernel() const override { return linear::hasConstantKernel(levels_[0].stencil); }
 
- private:
-  /// One cycle for u; what u holds does not count if `isZero`.
-  void cycle(std::size_t at, const Vector& b, Vector& u, Cycle kind, bool isZero) {
-    if (at + 1 == levels_.size()) return solve(b, u);
-    smooth(at, b, u, settings_.before, 0, isZero);
-    Level& level = levels_[at];
-    Level& coarse = levels_[at + 1];
-    restrictResidual(level, b, u, coarse.b);
-    cycle(at + 1, coarse.b, coarse.u, kind, true);
-    if (kind == Cycle::W) cycle(at + 1, coarse.b, coarse.u, Cycle::W, false);
-    if (kind == Cycle::F) cycle(at + 1, coarse.b, coarse.u, Cycle::V, false);
-    if (level.isPlane())
-      correct2.with(options_)(level.low, level.high, coarse.u, u, u);
-    else
-      correct3.with(options_)(level.low, level.high, coarse.u, u, u);
-    smooth(at, b, u, settings_.after, settings_.isSymmetric ? 1 : 0, false);
-  }
-
-  void solve(const Vector& b, Vector& u) {
-    const std::int64_t n = inverse_.shape()[0];
-    solveCoarsest.with(options_)(static_cast<int>(n), inverse_, b.reshape({n}), u.reshape({n}));
-  }
-
-  /// Interpolates the solution for the coarser grid, and lets a V-cycle follow.
-  void nest(std::size_t at, const Vector& b, Vector& u) {
-    if (at + 1 == levels_.size()) return solve(b, u);
-    Level& level = levels_[at];
-    Level& coarse = levels_[at + 1];
-    if (level.isPlane())
-      restrict2.with(options_)(level.low, level.high, b, coarse.b);
-    else
-      restrict3.with(options_)(level.low, level.high, b, coarse.b);
-    // A cycle on this grid overwrites the right-hand sides of the coarser ones, which are no longer needed by then.
-    nest(at + 1, coarse.b, coarse.u);
-    if (level.isPlane())
-      interpolate2.with(options_)(level.low, level.high, coarse.u, u);
-    else
-      interpolate3.with(options_)(level.low, level.high, coarse.u, u);
-    cycle(at, b, u, Cycle::V, false);
-  }
-
-  void smooth(std::size_t at, const Vector& b, Vector& u, int sweeps, int firstColour, bool isZero) {
-    Level& level = levels_[at];
-    if (isZero && sweeps == 0) return u.fill(0.0f);
+  /// Red-black sweeps; reversed ones take the colours in the opposite order.
+  void smooth(std::size_t at, const Vector& b, Vector& u, int sweeps, bool isReversed, bool isZero) override {
+    const Level& level = levels_[at];
     for (int half = 0; half < 2 * sweeps; ++half) {
-      const int colour = (half + firstColour) & 1;
+      const int colour = (half + (isReversed ? 1 : 0)) & 1;
       if (isZero && half == 0)
         relaxZero.with(options_)(colour, level.coefficients, level.low, level.high, b, u);
       else if (level.isPlane())
@@ -165,20 +111,47 @@ class Multigrid : public Preconditioner {
     }
   }
 
-  void restrictResidual(Level& level, const Vector& b, const Vector& u, Vector& coarse) {
-    if (level.isPlane()) {
-      residual2.with(options_)(level.coefficients, level.low, level.high, u, b, level.r);
-      restrict2.with(options_)(level.low, level.high, level.r, coarse);
-    } else {
-      residual3.with(options_)(level.coefficients, level.low, level.high, u, b, level.r);
-      restrict3.with(options_)(level.low, level.high, level.r, coarse);
-    }
+  void residual(std::size_t at, const Vector& b, const Vector& u, Vector& r) override {
+    const Level& level = levels_[at];
+    if (level.isPlane())
+      residual2.with(options_)(level.coefficients, level.low, level.high, u, b, r);
+    else
+      residual3.with(options_)(level.coefficients, level.low, level.high, u, b, r);
   }
 
+  void restrictTo(std::size_t at, const Vector& fine, Vector& coarse) override {
+    const Level& level = levels_[at];
+    if (level.isPlane())
+      restrict2.with(options_)(level.low, level.high, fine, coarse);
+    else
+      restrict3.with(options_)(level.low, level.high, fine, coarse);
+  }
+
+  void correct(std::size_t at, const Vector& coarse, Vector& u) override {
+    const Level& level = levels_[at];
+    if (level.isPlane())
+      correct2.with(options_)(level.low, level.high, coarse, u, u);
+    else
+      correct3.with(options_)(level.low, level.high, coarse, u, u);
+  }
+
+  void interpolate(std::size_t at, const Vector& coarse, Vector& u) override {
+    const Level& level = levels_[at];
+    if (level.isPlane())
+      interpolate2.with(options_)(level.low, level.high, coarse, u);
+    else
+      interpolate3.with(options_)(level.low, level.high, coarse, u);
+  }
+
+  void solveCoarsest(const Vector& b, Vector& u) override {
+    const std::int64_t n = inverse_.shape()[0];
+    linear::solveCoarsest.with(options_)(static_cast<int>(n), inverse_, b.reshape({n}), u.reshape({n}));
+  }
+
+ private:
   std::vector<Level> levels_;
   Vector inverse_;  ///< of the coarsest grid's matrix, which has at most 3 elements along each dimension
-  sk::CallOptions options_, foldOptions_;
-  MultigridSettings settings_;
+  sk::CallOptions options_;
 };
 
 }  // namespace
@@ -212,7 +185,7 @@ std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const Stencil&
     if (a.grid[d] > 0x7fff)
       throw std::runtime_error(
           fmt::format("multigrid takes grids of up to 32767 elements along a dimension, not {}", a.grid[d]));
-  return std::make_unique<Multigrid>(device, a, arithmetic, settings);
+  return makeCycles(device, std::make_unique<StencilHierarchy>(device, a, arithmetic), arithmetic, settings);
 }
 
 }  // namespace linear

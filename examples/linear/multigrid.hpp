@@ -1,33 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// Geometric multigrid for stencils (U. Trottenberg, C. Oosterlee and A. Schueller, "Multigrid", 2001): as a preconditioner, one cycle.
+// Geometric multigrid for stencils with the same coefficients everywhere: as a preconditioner, one cycle.
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include <sk/sk.hpp>
 
-#include "preconditioner.hpp"
+#include "cycles.hpp"
 #include "stencil.hpp"
 
 namespace linear {
-
-enum class Cycle {
-  V,
-  W,
-  F,
-  Full,  ///< nested iteration from the coarsest grid up, with one V-cycle on each
-};
-
-struct MultigridSettings {
-  Cycle cycle = Cycle::V;
-  int before = 1;  ///< red-black sweeps before the coarse grid's correction
-  int after = 1;  ///< after it
-  /// The sweeps after it take the colours in the opposite order: with as many sweeps as before, V-cycles are symmetric, as
-  /// conjugate gradients need them. They converge a little more slowly.
-  bool isSymmetric = true;
-};
 
 /// One cycle for z = A^-1 r, from z = 0. `a` is the matrix as the device has it. Throws std::runtime_error if its centre is 0, or
 /// an extent is 2^15 or more.

@@ -14,6 +14,7 @@
 #include "multigrid.hpp"
 #include "named.hpp"
 #include "operator.hpp"
+#include "report.hpp"
 #include "solve.hpp"
 #include "stencil.hpp"
 #include "system.hpp"
@@ -86,6 +87,38 @@ TEST_CASE("V(2,1)-cycles converge at one rate on every grid") {
   }
   CHECK(rateOf(device, poisson({15, 16, 17}), {.before = 2, .after = 1, .isSymmetric = false}) < 0.3);
   CHECK(rateOf(device, poisson({1, 1}), {}) < 0.01);
+}
+
+TEST_CASE("Every grid of a hierarchy has a rate of its own, which the preconditioner measures") {
+  const MultigridSettings settings{.before = 2, .after = 1, .isSymmetric = false};
+  for (sk::Device& device : testDevices()) {
+    const bool isNative = device.profile() == sk::Device::native().profile();
+    for (const sk::Shape& grid : {sk::Shape{64, 61}, sk::Shape{33, 90}, sk::Shape{127, 127}}) {
+      if (!isNative && grid[0] != 33) continue;  // drawn on the host: slow
+      CAPTURE(device.profile(), grid[0], grid[1]);
+      const std::vector<LevelRate> rates = makeMultigrid(device, poisson(grid), {}, settings)->rates();
+      REQUIRE(rates.size() >= 5);
+      CHECK(rates.front().grid == grid);
+      CHECK(rates.back().grid.size() <= 9);
+      for (const LevelRate& level : rates) CHECK(level.rate <= 0.15);
+      CHECK(rates.back().rate < 1e-5);  // solved by its inverse
+      if (grid[0] == 127)
+        CHECK(rates.front().rate == Approx(rateOf(device, poisson(grid), settings)).margin(0.02));
+    }
+  }
+  sk::Device device = sk::Device::native();
+  for (const LevelRate& level :
+       makeMultigrid(device, poissonWith({20, 31}, {mirrors, ring}), {}, settings)->rates())
+    CHECK(level.rate <= 0.15);
+  Account account;
+  account.rates = {{{41, 63}, 0.125}};
+  Solution solution;
+  solution.iterations = 2;
+  solution.residualTrue = 0.25;
+  const std::string json = jsonOf(account, solution);
+  CHECK_THAT(json, Catch::Contains("\"per_iteration\": 0.5,"));
+  CHECK_THAT(json, Catch::Matches("[^]*\"grid\": \\[\\s*63,\\s*41\\s*\\],\\s*\"rate\": 0.125[^]*"));
+  CHECK(makeMultigrid(device, poisson({9, 9}), {}, {.before = 0, .after = 1})->rates()[0].rate > 0.15);
 }
 
 TEST_CASE("V(2,1)-cycles converge as fast where one dimension couples more strongly") {

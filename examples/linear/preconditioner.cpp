@@ -113,7 +113,10 @@ std::unique_ptr<Preconditioner> makeGeometric(const PreconditionerParts& parts) 
     throw std::runtime_error(
         "multigrid needs a grid, as of 'poisson:512x512'; for matrices of files take another preconditioner");
   return makeMultigrid(parts.device, scaled(*parts.a.stencil, parts.a.scale), parts.arithmetic,
-                       {.cycle = cycle, .isSymmetric = cycle == Cycle::V});
+                       {.cycle = cycle,
+                        .before = parts.settings.before,
+                        .after = parts.settings.after,
+                        .isSymmetric = cycle == Cycle::V && parts.settings.before == parts.settings.after});
 }
 
 constexpr PreconditionerKind preconditioners[] = {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -42,6 +44,15 @@ std::string jsonOf(const Account& account, const Solution& solution) {
   json["layout"] = account.layout;
   json["fill"] = account.fill();
   json["device"] = account.device;
+  const double iterations = static_cast<double>(std::max<std::int64_t>(1, solution.iterations));
+  json["rates"]["per_iteration"] = std::pow(solution.residualTrue, 1.0 / iterations);
+  json["rates"]["levels"] = nlohmann::ordered_json::array();
+  for (const LevelRate& level : account.rates) {
+    nlohmann::ordered_json row;
+    for (int d = level.grid.rank() - 1; d >= 0; --d) row["grid"].push_back(level.grid[d]);
+    row["rate"] = level.rate;
+    json["rates"]["levels"].push_back(row);
+  }
   return json.dump(2) + "\n";
 }
 

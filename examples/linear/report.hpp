@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "layout.hpp"
+#include "preconditioner.hpp"
 #include "solve.hpp"
 
 namespace linear {
@@ -20,6 +21,7 @@ struct Account {
   std::string layout = "none";
   std::int64_t stored = 0;  ///< entries that the layout holds; 0 if it holds none
   std::vector<LayoutTrial> trials;
+  std::vector<LevelRate> rates;  ///< of multigrid on its grids, where they were measured
 
   /// Stored entries for each entry of the matrix; 0 if none is stored.
   double fill() const {
@@ -28,8 +30,9 @@ struct Account {
 };
 
 std::string textOf(const Account& account, const Solution& solution);
-/// An object with outcome, iterations, restarts, residual_true, residual_recurred, backward_error, removed_mean, seconds, layout, fill and device. Numbers
-/// that are not finite are null.
+/// An object with outcome, iterations, restarts, residual_true, residual_recurred, backward_error, removed_mean, seconds, layout, fill, device and rates: the mean
+/// reduction of the residual `per_iteration`, and for each of multigrid's grids its extents, the fastest first, and the rate of a cycle. Numbers that are not
+/// finite are null.
 std::string jsonOf(const Account& account, const Solution& solution);
 
 }  // namespace linear

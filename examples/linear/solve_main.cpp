@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sk/sk.hpp>
@@ -39,6 +40,7 @@ struct Settings {
   std::string ordering = "colours";
   int restart = 30;
   double omega = 1.0;
+  std::vector<int> sweeps{1, 1};
   linear::SolveSettings solve;
   std::string study;
   CLI::Option* studyOption = nullptr;  ///< may have been given without a name
@@ -93,6 +95,14 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--omega", s.omega, "the relaxation factor of sor and ssor, between 0 and 2")
       ->capture_default_str();
   cli.add_option(
+         "--sweeps", s.sweeps,
+         "BEFORE,AFTER: multigrid's sweeps before and after the correction by the coarser grid; cg needs "
+         "as many of both")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
+  cli.add_option(
          "--ordering", s.ordering,
          "of the rows for sor, ssor, ic0 and ilu0:\n  colours     few groups of rows, each of which is "
          "a call\n  levels      the order of the matrix, which needs fewer iterations")
@@ -134,12 +144,19 @@ void addOptions(CLI::App& cli, Settings& s) {
 }
 
 /// Before anything is copied to a device.
-void checkPreconditioner(const linear::MethodKind& method, const linear::PreconditionerKind& preconditioner) {
+void checkPreconditioner(const linear::MethodKind& method, const linear::PreconditionerKind& preconditioner,
+                         const std::vector<int>& sweeps) {
   if (method.needsSymmetry && !preconditioner.isSymmetric)
     throw std::runtime_error(
         fmt::format("the solver '{}' needs a symmetric preconditioner, which '{}' is not; take --solver {}",
                     method.name, preconditioner.name,
                     preconditioner.name == "ilu0" || preconditioner.name == "sor" ? "gmres" : "stationary"));
+  if (method.needsSymmetry && sweeps[0] != sweeps[1])
+    throw std::runtime_error(
+        fmt::format("the solver '{}' needs as many sweeps after the correction as before it, not {} and {}; "
+                    "take --solver stationary",
+                    method.name, sweeps[1], sweeps[0]));
+  if (sweeps[0] + sweeps[1] == 0) throw std::runtime_error("multigrid needs a sweep; take --sweeps 1,1");
 }
 
 void checkSymmetry(sk::Device& device, linear::Matrix& matrix, const linear::Arithmetic& arithmetic,
@@ -169,7 +186,7 @@ void solveSystem(examples::Application& app, Settings& s) {
 
   const linear::System system(s.matrix, s.rightHandSide);
   const linear::Operator& a = system.matrix();
-  checkPreconditioner(methodKind, preconditionerKind);
+  checkPreconditioner(methodKind, preconditionerKind, s.sweeps);
   if (system.duplicates() > 0)
     fmt::print(stderr, "solve: warning: {} entries are given several times, and were added up\n",
                system.duplicates());
@@ -193,8 +210,9 @@ void solveSystem(examples::Application& app, Settings& s) {
     const std::unique_ptr<linear::Matrix> matrix =
         system.makeMatrix(device, s.layout, arithmetic, &account.trials);
     checkSymmetry(device, *matrix, arithmetic, methodKind, preconditionerKind, a);
-    const std::unique_ptr<linear::Preconditioner> preconditioner =
-        preconditionerKind.make(device, *matrix, a, arithmetic, {.omega = s.omega, .ordering = s.ordering});
+    const std::unique_ptr<linear::Preconditioner> preconditioner = preconditionerKind.make(
+        device, *matrix, a, arithmetic,
+        {.omega = s.omega, .ordering = s.ordering, .before = s.sweeps[0], .after = s.sweeps[1]});
     const std::unique_ptr<linear::Method> method = methodKind.make(
         device, *matrix, preconditioner.get(), arithmetic, {.restart = s.restart, .omega = s.omega, .a = &a});
     account.layout = matrix->layout();
@@ -203,6 +221,7 @@ void solveSystem(examples::Application& app, Settings& s) {
     s.solve.progress = [&](std::int64_t done, double) { progress.update(done); };
     solution = linear::solve(*method, a, system.rightHandSide(), arithmetic, s.solve);
     progress.clear();
+    if (!s.json.empty() && preconditioner != nullptr) account.rates = preconditioner->rates();
   } else {
     solution.outcome = linear::Outcome::Converged;
   }

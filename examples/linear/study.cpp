@@ -2,6 +2,7 @@
 #include "study.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -43,6 +44,7 @@ struct Run {
   Arithmetic arithmetic = {};
   SolveSettings settings = {};
   double omega = 1.0;
+  int before = 1, after = 1;
 };
 
 struct Reached {
@@ -50,6 +52,7 @@ struct Reached {
   std::string layout;
   double productSeconds = 0.0;
   double bytes = 0.0;  ///< of the matrix, for each unknown and product
+  std::vector<LevelRate> rates;
 };
 
 /// Solves twice, since the first time builds programs, and returns the second.
@@ -58,13 +61,15 @@ Reached reached(sk::Device& device, const System& system, const Run& run) {
   const std::unique_ptr<Matrix> matrix = system.makeMatrix(device, run.layout, run.arithmetic, nullptr);
   const auto preconditioner =
       rowNamed(preconditionerKinds(), run.preconditioner, "preconditioner")
-          .make(device, *matrix, a, run.arithmetic, {.omega = run.omega, .ordering = run.ordering});
+          .make(device, *matrix, a, run.arithmetic,
+                {.omega = run.omega, .ordering = run.ordering, .before = run.before, .after = run.after});
   const auto method =
       rowNamed(methodKinds(), run.method, "solver")
           .make(device, *matrix, preconditioner.get(), run.arithmetic, {.omega = run.omega, .a = &a});
   Reached r;
   for (int i = 0; i < 2; ++i)
     r.solution = solve(*method, a, system.rightHandSide(), run.arithmetic, run.settings);
+  if (preconditioner != nullptr && run.method == "stationary") r.rates = preconditioner->rates();
   r.layout = matrix->layout();
   r.productSeconds = secondsOf(device, *matrix, run.arithmetic);
   r.bytes = static_cast<double>(matrix->bytes()) / static_cast<double>(a.size);
@@ -157,10 +162,44 @@ std::string layoutsOfGrids(sk::Device& device) {
   return table.markdown();
 }
 
+struct NamedCycle {
+  std::string_view name, preconditioner;
+  int before, after;
+};
+
+std::string multigridRates(sk::Device& device) {
+  examples::Table table({"grid", "cycle", "iterations", "residual an iteration",
+                         "rates from the finest grid to the coarsest", "ms"});
+  constexpr NamedCycle cycles[] = {{"V(1,1)", "multigrid", 1, 1},
+                                   {"V(2,1)", "multigrid", 2, 1},
+                                   {"W(1,1)", "w-cycle", 1, 1},
+                                   {"F(1,1)", "f-cycle", 1, 1},
+                                   {"full", "full", 1, 1}};
+  for (const std::string_view grid :
+       {"127x127", "61x67", "64x64:periodic,neumann", "63x63:1,1000", "31x31x31"})
+    for (const NamedCycle& cycle : cycles) {
+      if (grid != "127x127" && cycle.name != "V(2,1)") continue;
+      const System system(fmt::format("poisson:{}", grid), {});
+      Run run{.method = "stationary", .preconditioner = cycle.preconditioner, .settings = {.every = 1}};
+      run.before = cycle.before;
+      run.after = cycle.after;
+      const Reached r = reached(device, system, run);
+      std::string rates;
+      for (const LevelRate& level : r.rates)
+        rates += fmt::format("{}{:.3f}", rates.empty() ? "" : ", ", level.rate);
+      const double iterations = static_cast<double>(std::max<std::int64_t>(1, r.solution.iterations));
+      table.add({std::string(grid), std::string(cycle.name), std::to_string(r.solution.iterations),
+                 fmt::format("{:.3f}", std::pow(r.solution.residualTrue, 1.0 / iterations)), rates,
+                 milliseconds(r.solution.seconds)});
+    }
+  return table.markdown();
+}
+
 constexpr StudyKind studies[] = {
     {"precision", "precisions, storages and accumulations, with and without refinement", precisions},
     {"solvers", "every solver, for Poisson's equation", solvers},
     {"preconditioners", "every symmetric preconditioner, with conjugate gradients", preconditionerTable},
+    {"multigrid", "the rates of multigrid's cycles on every grid of their hierarchies", multigridRates},
     {"layouts", "every layout of a sparse matrix, with entries in floats and halves", layoutsOfGrids},
 };
 

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+//
+// Cycles over a hierarchy of grids, whatever the equations on them and the transfers between them (U. Trottenberg, C. Oosterlee and
+// A. Schueller, "Multigrid", 2001).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "preconditioner.hpp"
+
+namespace linear {
+
+enum class Cycle {
+  V,
+  W,
+  F,
+  Full,  ///< nested iteration from the coarsest grid up, with one V-cycle on each
+};
+
+struct MultigridSettings {
+  Cycle cycle = Cycle::V;
+  int before = 1;  ///< sweeps before the coarse grid's correction
+  int after = 1;  ///< after it
+  /// The sweeps after it reverse those before it: with as many of both, V-cycles are symmetric, as conjugate gradients need them. They converge
+  /// a little more slowly.
+  bool isSymmetric = true;
+};
+
+/// Grids, 0 being the finest, their matrices, and the transfers between neighbours. Vectors have the shape of their grid.
+class Hierarchy {
+ public:
+  virtual ~Hierarchy() = default;
+
+  virtual std::size_t size() const = 0;
+  virtual sk::Shape grid(std::size_t at) const = 0;
+  /// Whether constants are in the kernel of every matrix.
+  virtual bool hasConstantKernel() const = 0;
+
+  /// Relaxes A u = b. What u holds before does not count if `isZero`: it is 0 then.
+  virtual void smooth(std::size_t at, const Vector& b, Vector& u, int sweeps, bool isReversed,
+                      bool isZero) = 0;
+  /// r = b - A u
+  virtual void residual(std::size_t at, const Vector& b, const Vector& u, Vector& r) = 0;
+  /// From grid `at` to the next coarser one: the transpose of the interpolation, but for a factor.
+  virtual void restrictTo(std::size_t at, const Vector& fine, Vector& coarse) = 0;
+  /// u += the interpolation, to grid `at`, of the next coarser grid's correction.
+  virtual void correct(std::size_t at, const Vector& coarse, Vector& u) = 0;
+  /// u = the interpolation, to grid `at`, of the next coarser grid's solution: of a higher order than that of corrections where there is one.
+  virtual void interpolate(std::size_t at, const Vector& coarse, Vector& u) = 0;
+  /// u = A^-1 b on the coarsest grid.
+  virtual void solveCoarsest(const Vector& b, Vector& u) = 0;
+};
+
+/// One cycle for z = A^-1 r, from z = 0.
+std::unique_ptr<Preconditioner> makeCycles(sk::Device& device, std::unique_ptr<Hierarchy> hierarchy,
+                                           const Arithmetic& arithmetic, const MultigridSettings& settings);
+
+}  // namespace linear
