@@ -13,6 +13,7 @@
 
 #include "sparse.hpp"
 #include "stencil.hpp"
+#include "varying.hpp"
 
 namespace linear {
 
@@ -28,10 +29,13 @@ struct Operator {
   bool hasConstantKernel = false;  ///< A 1 = 0, but for roundings: the matrix is singular
   std::optional<Stencil> stencil;  ///< if the matrix is one
   const SparseMatrix* sparse = nullptr;  ///< if it is not
+  const VaryingStencil* varying = nullptr;  ///< the same matrix as `sparse`, if it belongs to a grid
   /// y = A x in double precision.
   std::function<std::vector<double>(std::span<const double>)> multiply;
   /// A power of two: the matrix on the device is this times A, so that its largest row sum is from 1/2 to 1.
   double scale = 1.0;
+
+  bool isGrid() const { return stencil.has_value() || varying != nullptr; }
 };
 
 /// `a` must outlive the operator. Throws std::runtime_error if the matrix is not square or has entries that are not finite.

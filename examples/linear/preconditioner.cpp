@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "multigrid.hpp"
+#include "multigrid_varying.hpp"
 #include "operator.hpp"
 #include "relaxation.hpp"
 #include "vectors.sk.hpp"
@@ -109,14 +110,19 @@ std::unique_ptr<Preconditioner> makeChebyshev(const PreconditionerParts& parts) 
 
 template <Cycle cycle>
 std::unique_ptr<Preconditioner> makeGeometric(const PreconditionerParts& parts) {
-  if (!parts.a.stencil)
+  if (!parts.a.isGrid())
     throw std::runtime_error(
         "multigrid needs a grid, as of 'poisson:512x512'; for matrices of files take another preconditioner");
-  return makeMultigrid(parts.device, scaled(*parts.a.stencil, parts.a.scale), parts.arithmetic,
-                       {.cycle = cycle,
-                        .before = parts.settings.before,
-                        .after = parts.settings.after,
-                        .isSymmetric = cycle == Cycle::V && parts.settings.before == parts.settings.after});
+  if (parts.matrix.layout() != "stencil")
+    throw std::runtime_error("multigrid works on grids; take --layout stencil, or another preconditioner");
+  const MultigridSettings settings{
+      .cycle = cycle,
+      .before = parts.settings.before,
+      .after = parts.settings.after,
+      .isSymmetric = cycle == Cycle::V && parts.settings.before == parts.settings.after};
+  if (parts.a.varying != nullptr)
+    return makeMultigrid(parts.device, scaled(*parts.a.varying, parts.a.scale), parts.arithmetic, settings);
+  return makeMultigrid(parts.device, scaled(*parts.a.stencil, parts.a.scale), parts.arithmetic, settings);
 }
 
 constexpr PreconditionerKind preconditioners[] = {

@@ -256,7 +256,10 @@ std::unique_ptr<Preconditioner> makeIncomplete(const PreconditionerParts& parts,
 
 std::unique_ptr<Relaxer> makeRelaxer(sk::Device& device, Matrix& matrix, const Operator& a,
                                      const Arithmetic& arithmetic) {
-  if (matrix.layout() == "stencil") return std::make_unique<GridRelaxer>(device, matrix, a, arithmetic);
+  // Colours of grids are independent only without entries for corners.
+  if (matrix.layout() == "stencil" &&
+      (a.varying == nullptr || a.varying->count() == 2 * a.varying->grid.rank() + 1))
+    return std::make_unique<GridRelaxer>(device, matrix, a, arithmetic);
   const SparseMatrix scaledA = scaledMatrix(a);
   const Ordering ordering = colours(scaledA);
   return std::make_unique<RowsRelaxer>(device, permuted(scaledA, ordering), ordering, arithmetic);

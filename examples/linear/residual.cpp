@@ -31,6 +31,11 @@ bool isExact(double v, sk::Storage storage) {
 std::vector<std::unique_ptr<Matrix>> exactMatrices(sk::Device& device, const Matrix& matrix,
                                                    const Operator& a, const Arithmetic& arithmetic) {
   std::vector<std::unique_ptr<Matrix>> sum;
+  if (matrix.layout() == "stencil" && a.varying != nullptr) {
+    if (arithmetic.matrix != sk::Storage::Double)
+      sum.push_back(makeMatrix(device, scaled(*a.varying, a.scale), doubleArithmetic()));
+    return sum;
+  }
   if (matrix.layout() == "stencil") {
     Stencil left = scaled(*a.stencil, a.scale);
     for (int part = 0; part < 3; ++part) {

@@ -47,7 +47,7 @@ class Refinement {
   Solution run() {
     const examples::Stopwatch watch;
     std::vector<double> scaled(b_.begin(), b_.end());
-    const bool isProjected = a_.hasConstantKernel && a_.stencil;
+    const bool isProjected = a_.hasConstantKernel && a_.isGrid();
     if (isProjected) {
       solution_.removedMean = meanOf(b_);
       for (double& v : scaled) v -= solution_.removedMean;
@@ -78,7 +78,7 @@ class Refinement {
 
  private:
   Outcome outcome() {
-    if (a_.hasConstantKernel && !a_.stencil && !addsUpToZero(b_) && findAsymmetry(a_).empty())
+    if (a_.hasConstantKernel && !a_.isGrid() && !addsUpToZero(b_) && findAsymmetry(a_).empty())
       return Outcome::SingularAndIncompatible;
     const double goal = settings_.tolerance * normB_;
     int fruitless = 0;

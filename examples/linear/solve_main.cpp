@@ -80,7 +80,8 @@ void addOptions(CLI::App& cli, Settings& s) {
                  "a Matrix Market file, or poisson:WxH or poisson:WxHxD for Poisson's equation on a grid; "
                  "poisson:WxH:X,Y has these "
                  "diffusivities along its dimensions, and poisson:WxH:periodic,dirichlet-neumann these ends "
-                 "(dirichlet, neumann or periodic)");
+                 "(dirichlet, neumann or periodic); poisson:WxH:PATTERN=RATIO has coefficients that jump "
+                 "(inclusions, blocks or noise), and poisson:WxH:coefficients=FILE those of a file");
   cli.add_option("--rhs", s.rightHandSide,
                  "the right-hand side, a Matrix Market file; without one, A times ones, or A times random "
                  "numbers on a singular grid");

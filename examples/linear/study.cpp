@@ -195,11 +195,45 @@ std::string multigridRates(sk::Device& device) {
   return table.markdown();
 }
 
+std::string jumps(sk::Device& device) {
+  examples::Table table({"coefficients", "grid", "ratio", "largest rate of V(2,1)", "V(2,1) alone",
+                         "cg with V(1,1)", "the same in floats", "cg with jacobi"});
+  constexpr std::string_view grids[][2] = {
+      {"blocks", "127x127"},      {"blocks", "100x90"},
+      {"inclusions", "127x127"},  {"inclusions", "101x75:periodic,dirichlet-neumann"},
+      {"inclusions", "31x31x31"}, {"noise", "127x127"}};
+  const Arithmetic doubles = arithmeticOf(Double, sk::Storage::Double, sk::Accumulate::Default);
+  for (const auto& [pattern, grid] : grids)
+    for (const std::string_view ratio : {"1", "1e2", "1e4", "1e6"}) {
+      const System system(fmt::format("poisson:{}:{}={}", grid, pattern, ratio), {});
+      const Run runs[] = {{.method = "stationary",
+                           .preconditioner = "multigrid",
+                           .arithmetic = doubles,
+                           .settings = {.most = 100, .every = 1},
+                           .before = 2},
+                          {.preconditioner = "multigrid", .arithmetic = doubles, .settings = {.every = 1}},
+                          {.preconditioner = "multigrid", .settings = {.every = 1}},
+                          {.arithmetic = doubles, .settings = {.every = 1}}};
+      std::vector<std::string> row{std::string(pattern), std::string(grid), std::string(ratio)};
+      for (const Run& run : runs) {
+        const Reached r = reached(device, system, run);
+        double largest = 0.0;
+        for (const LevelRate& level : r.rates) largest = std::max(largest, level.rate);
+        if (!r.rates.empty()) row.push_back(fmt::format("{:.2f}", largest));
+        const bool isSolved = r.solution.residualTrue <= run.settings.tolerance;
+        row.push_back(fmt::format("{}{}", isSolved ? "" : "> ", r.solution.iterations));
+      }
+      table.add(row);
+    }
+  return table.markdown();
+}
+
 constexpr StudyKind studies[] = {
     {"precision", "precisions, storages and accumulations, with and without refinement", precisions},
     {"solvers", "every solver, for Poisson's equation", solvers},
     {"preconditioners", "every symmetric preconditioner, with conjugate gradients", preconditionerTable},
     {"multigrid", "the rates of multigrid's cycles on every grid of their hierarchies", multigridRates},
+    {"jumps", "multigrid and conjugate gradients where coefficients jump", jumps},
     {"layouts", "every layout of a sparse matrix, with entries in floats and halves", layoutsOfGrids},
 };
 

@@ -3,11 +3,13 @@
 
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <random>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "coefficients.hpp"
 #include "matrix_market.hpp"
 #include "named.hpp"
 
@@ -89,11 +91,50 @@ std::vector<Ends> endsNamed(std::string_view text, int rank) {
   return ends;
 }
 
-/// "GRID", and ":X,Y" or ":X,Y,Z" and ":END,END" or ":END,END,END" after it.
-Stencil stencilOf(std::string_view text) {
+void checkSize(const Stencil& a) {
+  constexpr std::int64_t most = 0x7fffffff;
+  if (a.size() > most)
+    throw std::runtime_error(
+        fmt::format("a grid of {} elements is too large; at most {} can be solved", a.size(), most));
+}
+
+constexpr std::string_view filePrefix = "coefficients=";
+
+/// Of "PATTERN=RATIO".
+std::vector<double> patternOf(const Stencil& grid, std::string_view text) {
+  const std::size_t equals = text.find('=');
+  const std::string_view number = text.substr(equals + 1);
+  const CoefficientPattern& pattern =
+      rowNamed(coefficientPatterns(), text.substr(0, equals), "pattern of coefficients");
+  double ratio = 0.0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), ratio);
+  if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(ratio) || ratio <= 0.0)
+    throw std::runtime_error(fmt::format(
+        "'{}' has no ratio of coefficients above 0; write, for example, {}=1e3", text, pattern.name));
+  return pattern.make(grid, ratio);
+}
+
+/// A grid, and a coefficient for each element, or none.
+struct GridEquation {
+  Stencil stencil;
+  std::vector<double> coefficient;
+};
+
+/// "GRID", and ":X,Y" or ":X,Y,Z", ":END,END" or ":END,END,END", and coefficients after it.
+GridEquation equationOf(std::string_view text) {
+  std::string_view file;
+  if (const std::size_t at = text.find(fmt::format(":{}", filePrefix)); at != std::string_view::npos) {
+    file = text.substr(at + 1 + filePrefix.size());  // which may have colons
+    text = text.substr(0, at);
+  }
   const std::vector<std::string_view> parts = split(text, ':');
   Stencil a = poisson(gridOf(parts[0]));
+  std::string_view pattern;
   for (std::size_t i = 1; i < parts.size(); ++i) {
+    if (parts[i].find('=') != std::string_view::npos) {
+      pattern = parts[i];
+      continue;
+    }
     const bool isWord = !parts[i].empty() && std::isalpha(static_cast<unsigned char>(parts[i][0])) != 0;
     const auto before = a.ends;
     if (isWord) {
@@ -103,7 +144,9 @@ Stencil stencilOf(std::string_view text) {
       a.ends = before;
     }
   }
-  return a;
+  checkSize(a);
+  if (!file.empty()) return {a, readMarketVector(std::filesystem::path(file))};
+  return {a, pattern.empty() ? std::vector<double>() : patternOf(a, pattern)};
 }
 
 /// From -1 to 1.
@@ -119,12 +162,16 @@ std::vector<double> uniformNoise(std::size_t n) {
 
 System::System(const std::string& matrix, const std::filesystem::path& rightHandSide) : description_(matrix) {
   if (matrix.starts_with(gridPrefix)) {
-    stencil_ = stencilOf(std::string_view(matrix).substr(gridPrefix.size()));
-    constexpr std::int64_t most = 0x7fffffff;
-    if (stencil_->size() > most)
-      throw std::runtime_error(fmt::format("a grid of {} elements is too large; at most {} can be solved",
-                                           stencil_->size(), most));
-    operator_ = operatorOf(*stencil_);
+    const GridEquation equation = equationOf(std::string_view(matrix).substr(gridPrefix.size()));
+    if (equation.coefficient.empty()) {
+      stencil_ = equation.stencil;
+      operator_ = operatorOf(*stencil_);
+    } else {
+      varying_ = diffusion(equation.stencil, equation.coefficient);
+      sparse_ = assemble(*varying_);
+      operator_ = operatorOf(sparse_);
+      operator_.varying = &*varying_;
+    }
   } else {
     MarketFile file = readMarket(matrix);
     sparse_ = std::move(file.matrix);
@@ -132,7 +179,7 @@ System::System(const std::string& matrix, const std::filesystem::path& rightHand
     operator_ = operatorOf(sparse_);
   }
   const auto n = static_cast<std::size_t>(operator_.size);
-  const bool isSingularGrid = stencil_ && operator_.hasConstantKernel;
+  const bool isSingularGrid = operator_.isGrid() && operator_.hasConstantKernel;
   b_ = !rightHandSide.empty()
            ? readMarketVector(rightHandSide)
            : operator_.multiply(isSingularGrid ? uniformNoise(n) : std::vector<double>(n, 1.0));
@@ -149,6 +196,8 @@ std::unique_ptr<Matrix> System::makeMatrix(sk::Device& device, std::string_view 
   const bool wantsStencil = layout == "stencil";
   if (stencil_ && (wantsStencil || layout == "auto"))
     return linear::makeMatrix(scaled(*stencil_, operator_.scale), arithmetic);
+  if (varying_ && (wantsStencil || layout == "auto"))
+    return linear::makeMatrix(device, scaled(*varying_, operator_.scale), arithmetic);
   if (wantsStencil)
     throw std::runtime_error(
         "the layout 'stencil' is for matrices of grids, as 'poisson:512x512'; a file has other layouts");

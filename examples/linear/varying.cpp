@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "varying.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "varying.sk.hpp"
+
+namespace linear {
+
+namespace {
+
+class VaryingMatrix : public Matrix {
+ public:
+  VaryingMatrix(sk::Device& device, const VaryingStencil& a, const Arithmetic& arithmetic)
+      : Matrix(arithmetic),
+        grid_(a.grid),
+        count_(a.count()),
+        entries_(entriesOf(device, a, arithmetic.matrix)) {}
+
+  sk::Shape domain() const override { return grid_; }
+  std::string layout() const override { return "stencil"; }
+  std::int64_t stored() const override { return count_ * grid_.size(); }
+  std::int64_t bytes() const override { return stored() * entryBytes(); }
+
+  using Matrix::multiply;
+  void multiply(const Vector& x, Vector& y) override {
+    if (grid_.rank() == 2)
+      productVarying2.with(options())(count_, entries_, x, y);
+    else
+      productVarying3.with(options())(count_, entries_, x, y);
+  }
+
+ private:
+  sk::Shape grid_;
+  int count_;
+  Vector entries_;
+};
+
+double harmonicMean(double a, double b) { return 2.0 * std::min(a, b) * (std::max(a, b) / (a + b)); }
+
+}  // namespace
+
+std::vector<GridOffset> neighbourOffsets(int rank, Neighbourhood neighbourhood) {
+  std::vector<GridOffset> offsets{{0, 0, 0}};
+  const auto slot = [&](int axis) { return static_cast<std::size_t>(rank - 1 - axis); };  // 0 is the fastest
+  for (int axis = 0; axis < rank; ++axis)
+    for (const int step : {-1, 1}) {
+      offsets.push_back({0, 0, 0});
+      offsets.back()[slot(axis)] = step;
+    }
+  if (neighbourhood == Neighbourhood::Sides) return offsets;
+  for (int fast = 0; fast < rank; ++fast)
+    for (int slow = fast + 1; slow < rank; ++slow)
+      for (const int there : {-1, 1})
+        for (const int here : {-1, 1}) {
+          offsets.push_back({0, 0, 0});
+          offsets.back()[slot(fast)] = here;
+          offsets.back()[slot(slow)] = there;
+        }
+  if (neighbourhood == Neighbourhood::Edges || rank == 2) return offsets;
+  for (const int z : {-1, 1})
+    for (const int y : {-1, 1})
+      for (const int x : {-1, 1}) offsets.push_back({z, y, x});
+  return offsets;
+}
+
+GridWalk::GridWalk(const sk::Shape& grid, std::array<bool, 3> isPeriodic)
+    : rank_(static_cast<std::size_t>(grid.rank())), isPeriodic_(isPeriodic) {
+  std::int64_t stride = 1;
+  for (std::size_t d = rank_; d-- > 0;) {
+    extents_[d] = static_cast<int>(grid[static_cast<int>(d)]);
+    strides_[d] = stride;
+    stride *= extents_[d];
+  }
+}
+
+GridOffset GridWalk::positionOf(std::int64_t element) const {
+  GridOffset position{};
+  for (std::size_t d = 0; d < rank_; ++d) {
+    position[d] = static_cast<int>(element / strides_[d]);
+    element %= strides_[d];
+  }
+  return position;
+}
+
+std::int64_t GridWalk::elementAt(const GridOffset& position) const {
+  std::int64_t element = 0;
+  for (std::size_t d = 0; d < rank_; ++d) element += strides_[d] * position[d];
+  return element;
+}
+
+std::int64_t GridWalk::beside(const GridOffset& position, const GridOffset& offset) const {
+  std::int64_t element = 0;
+  for (std::size_t d = 0; d < rank_; ++d) {
+    int at = position[d] + offset[d];
+    if (at < 0 || at >= extents_[d]) {
+      if (!isPeriodic_[d]) return -1;
+      at += at < 0 ? extents_[d] : -extents_[d];
+    }
+    element += strides_[d] * at;
+  }
+  return element;
+}
+
+void GridWalk::advance(GridOffset& position) const {
+  for (std::size_t d = rank_; d-- > 0;) {
+    if (++position[d] < extents_[d]) return;
+    position[d] = 0;
+  }
+}
+
+VaryingStencil diffusion(const Stencil& grid, std::span<const double> coefficient) {
+  const std::int64_t n = grid.size();
+  if (static_cast<std::int64_t>(coefficient.size()) != n)
+    throw std::runtime_error(
+        fmt::format("a grid of {} elements needs as many coefficients, not {}", n, coefficient.size()));
+  for (std::size_t i = 0; i < coefficient.size(); ++i)
+    if (!std::isfinite(coefficient[i]) || coefficient[i] <= 0.0)
+      throw std::runtime_error(fmt::format("a coefficient is finite and above 0, which number {}, {}, is not",
+                                           i + 1, coefficient[i]));
+  VaryingStencil a{.grid = grid.grid,
+                   .offsets = neighbourOffsets(grid.grid.rank(), Neighbourhood::Sides),
+                   .value = std::vector<double>(static_cast<std::size_t>(n) *
+                                                static_cast<std::size_t>(2 * grid.grid.rank() + 1))};
+  const auto rank = static_cast<std::size_t>(grid.grid.rank());
+  for (std::size_t d = 0; d < rank; ++d) a.isPeriodic[d] = grid.ends[d].low == Side::Periodic;
+  const GridWalk walk(a.grid, a.isPeriodic);
+  GridOffset position{};
+  for (std::int64_t i = 0; i < n; ++i, walk.advance(position)) {
+    const double own = coefficient[static_cast<std::size_t>(i)];
+    for (std::size_t k = 1; k < a.offsets.size(); ++k) {
+      const std::size_t d = rank - 1 - (k - 1) / 2;
+      const Side side = k % 2 == 1 ? grid.ends[d].low : grid.ends[d].high;
+      const std::int64_t j = walk.beside(position, a.offsets[k]);
+      if (j == i || (j < 0 && side == Side::Neumann)) continue;
+      const double between =
+          -grid.along[d] * (j < 0 ? own : harmonicMean(own, coefficient[static_cast<std::size_t>(j)]));
+      a.value[entryAt(a, 0, i)] += between;
+      if (j >= 0) a.value[entryAt(a, k, i)] = -between;
+    }
+  }
+  return a;
+}
+
+bool hasConstantKernel(const VaryingStencil& a) {
+  double largest = 0.0, imbalance = 0.0;
+  for (std::int64_t i = 0; i < a.size(); ++i) {
+    double sum = 0.0, magnitude = 0.0;
+    for (std::size_t k = 0; k < a.offsets.size(); ++k) {
+      sum += a.value[entryAt(a, k, i)];
+      magnitude += std::abs(a.value[entryAt(a, k, i)]);
+    }
+    largest = std::max(largest, magnitude);
+    imbalance = std::max(imbalance, magnitude > 0.0 ? std::abs(sum) / magnitude : 0.0);
+  }
+  return largest > 0.0 && imbalance <= 0x1p-44;
+}
+
+VaryingStencil scaled(VaryingStencil a, double scale) {
+  for (double& v : a.value) v *= scale;
+  return a;
+}
+
+SparseMatrix assemble(const VaryingStencil& a) {
+  std::vector<Entry> entries;
+  entries.reserve(a.value.size());
+  const GridWalk walk(a.grid, a.isPeriodic);
+  GridOffset position{};
+  for (std::int64_t i = 0; i < a.size(); ++i, walk.advance(position))
+    for (std::size_t k = 0; k < a.offsets.size(); ++k) {
+      const double v = a.value[entryAt(a, k, i)];
+      const std::int64_t j = walk.beside(position, a.offsets[k]);
+      if (j >= 0 && (v != 0.0 || k == 0)) entries.push_back({i, j, v});
+    }
+  return assemble(a.size(), a.size(), entries);
+}
+
+Vector entriesOf(sk::Device& device, const VaryingStencil& a, sk::Storage storage) {
+  const std::int64_t count = a.count();
+  const sk::Shape shape = a.grid.rank() == 2 ? sk::Shape{count, a.grid[0], a.grid[1]}
+                                             : sk::Shape{count, a.grid[0], a.grid[1], a.grid[2]};
+  Vector entries = device.stream<float>(shape, storage);
+  std::vector<double> value = a.value;
+  for (std::int64_t i = 0; i < a.size(); ++i)
+    for (std::size_t k = 1; k < a.offsets.size(); ++k) value[entryAt(a, 0, i)] += a.value[entryAt(a, k, i)];
+  entries.writeReals(value);
+  return entries;
+}
+
+std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const VaryingStencil& a,
+                                   const Arithmetic& arithmetic) {
+  return std::make_unique<VaryingMatrix>(device, a, arithmetic);
+}
+
+}  // namespace linear

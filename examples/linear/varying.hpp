@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+//
+// Matrices on grids whose coefficients differ from element to element.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "matrix.hpp"
+#include "sparse.hpp"
+#include "stencil.hpp"
+
+namespace linear {
+
+/// Of a neighbour, or a step, along each dimension, 0 being the slowest.
+using GridOffset = std::array<int, 3>;
+
+/// Row i has the entry value[k * size() + i] for the element at offsets[k] from element i, and 0 where that is outside of the grid. Offsets come in the order of
+/// varying.sk: the first is the element itself.
+struct VaryingStencil {
+  sk::Shape grid;
+  std::array<bool, 3> isPeriodic{};  ///< whether offsets wrap around, for each dimension
+  std::vector<GridOffset> offsets;
+  std::vector<double> value;
+
+  std::int64_t size() const { return grid.size(); }
+  int count() const { return static_cast<int>(offsets.size()); }
+};
+
+/// Where the entry k of row i is, as VaryingStencil stores it.
+inline std::size_t entryAt(const VaryingStencil& a, std::size_t k, std::int64_t i) {
+  return k * static_cast<std::size_t>(a.size()) + static_cast<std::size_t>(i);
+}
+
+/// Which neighbours have entries.
+enum class Neighbourhood {
+  Sides,  ///< 5 or 7 elements
+  Edges,  ///< 9 or 19: also those that differ in two dimensions
+  All,  ///< 9 or 27
+};
+std::vector<GridOffset> neighbourOffsets(int rank, Neighbourhood neighbourhood);
+
+/// Positions in a grid of two or three dimensions.
+class GridWalk {
+ public:
+  explicit GridWalk(const sk::Shape& grid, std::array<bool, 3> isPeriodic = {});
+
+  std::size_t rank() const { return rank_; }
+  GridOffset positionOf(std::int64_t element) const;
+  std::int64_t elementAt(const GridOffset& position) const;
+  /// The element at an offset of at most an extent along each dimension; -1 if it is outside.
+  std::int64_t beside(const GridOffset& position, const GridOffset& offset) const;
+  /// To the next element in their order.
+  void advance(GridOffset& position) const;
+
+ private:
+  std::size_t rank_;
+  GridOffset extents_{1, 1, 1};
+  std::array<std::int64_t, 3> strides_{};
+  std::array<bool, 3> isPeriodic_;
+};
+
+/// -div (coefficient grad u) by finite volumes around the elements of a stencil's grid, times the square of the spacing. The flux between two elements takes the harmonic mean of their
+/// coefficients, which is exact where the coefficient jumps halfway between them; the flux to a Dirichlet end takes that of the outermost element. The stencil gives the grid, its ends
+/// and the diffusivities along its dimensions, by which coefficients are multiplied. Throws std::runtime_error unless there is a finite coefficient above 0 for each element.
+VaryingStencil diffusion(const Stencil& grid, std::span<const double> coefficient);
+
+bool hasConstantKernel(const VaryingStencil& a);
+VaryingStencil scaled(VaryingStencil a, double scale);
+SparseMatrix assemble(const VaryingStencil& a);
+/// The layout "stencil": entries in the order of the grid, no indices.
+std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const VaryingStencil& a, const Arithmetic& arithmetic);
+/// The entries as varying.sk has them, {count, grid}, with the sums of rows in place of the diagonal.
+Vector entriesOf(sk::Device& device, const VaryingStencil& a, sk::Storage storage);
+
+}  // namespace linear
