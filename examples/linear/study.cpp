@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "compact.hpp"
 #include "layout.hpp"
 #include "named.hpp"
 #include "support/table.hpp"
@@ -228,12 +229,53 @@ std::string jumps(sk::Device& device) {
   return table.markdown();
 }
 
+/// By conjugate gradients with multigrid.
+Solution solvedKnown(sk::Device& device, const KnownSolution& known, bool isCompact) {
+  const Arithmetic doubles = arithmeticOf(Double, sk::Storage::Double, sk::Accumulate::Default);
+  const VaryingStencil compact = compactPoisson(known.grid);
+  const SparseMatrix sparse = assemble(compact);
+  Operator a = isCompact ? operatorOf(sparse) : operatorOf(known.grid);
+  if (isCompact) a.varying = &compact;
+  const std::unique_ptr<Matrix> matrix = isCompact ? makeMatrix(device, scaled(compact, a.scale), doubles)
+                                                   : makeMatrix(scaled(known.grid, a.scale), doubles);
+  const auto m =
+      rowNamed(preconditionerKinds(), "multigrid", "preconditioner").make(device, *matrix, a, doubles);
+  const auto method = rowNamed(methodKinds(), "cg", "solver").make(device, *matrix, m.get(), doubles);
+  return solve(*method, a, isCompact ? known.fourthOrder() : known.secondOrder(), doubles,
+               {.tolerance = 1e-12, .every = 1});
+}
+
+std::string orders(sk::Device& device) {
+  examples::Table table({"grid", "5 or 7 entries: error", "order", "iterations", "9 or 19 entries: error",
+                         "order", "iterations"});
+  for (const int rank : {2, 3}) {
+    double before[2] = {0.0, 0.0};
+    for (const std::int64_t n : {7, 15, 31, 63, 127}) {
+      if (rank == 3 && n > 63) continue;
+      const KnownSolution known(rank, n);
+      std::vector<std::string> row{rank == 2 ? fmt::format("{}x{}", n, n) : fmt::format("{}x{}x{}", n, n, n)};
+      for (const bool isCompact : {false, true}) {
+        const Solution s = solvedKnown(device, known, isCompact);
+        const double error = known.errorOf(s.x);
+        double& last = before[isCompact ? 1 : 0];
+        row.push_back(fmt::format("{:.2e}", error));
+        row.push_back(last > 0.0 ? fmt::format("{:.2f}", std::log2(last / error)) : "");
+        row.push_back(std::to_string(s.iterations));
+        last = error;
+      }
+      table.add(row);
+    }
+  }
+  return table.markdown();
+}
+
 constexpr StudyKind studies[] = {
     {"precision", "precisions, storages and accumulations, with and without refinement", precisions},
     {"solvers", "every solver, for Poisson's equation", solvers},
     {"preconditioners", "every symmetric preconditioner, with conjugate gradients", preconditionerTable},
     {"multigrid", "the rates of multigrid's cycles on every grid of their hierarchies", multigridRates},
     {"jumps", "multigrid and conjugate gradients where coefficients jump", jumps},
+    {"orders", "the errors of discretisations of the second and the fourth order", orders},
     {"layouts", "every layout of a sparse matrix, with entries in floats and halves", layoutsOfGrids},
 };
 

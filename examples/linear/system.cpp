@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "coefficients.hpp"
+#include "compact.hpp"
 #include "matrix_market.hpp"
 #include "named.hpp"
 
@@ -118,6 +119,7 @@ std::vector<double> patternOf(const Stencil& grid, std::string_view text) {
 struct GridEquation {
   Stencil stencil;
   std::vector<double> coefficient;
+  bool isCompact = false;
 };
 
 /// "GRID", and ":X,Y" or ":X,Y,Z", ":END,END" or ":END,END,END", and coefficients after it.
@@ -130,7 +132,12 @@ GridEquation equationOf(std::string_view text) {
   const std::vector<std::string_view> parts = split(text, ':');
   Stencil a = poisson(gridOf(parts[0]));
   std::string_view pattern;
+  bool isCompact = false;
   for (std::size_t i = 1; i < parts.size(); ++i) {
+    if (parts[i] == "compact") {
+      isCompact = true;
+      continue;
+    }
     if (parts[i].find('=') != std::string_view::npos) {
       pattern = parts[i];
       continue;
@@ -145,8 +152,10 @@ GridEquation equationOf(std::string_view text) {
     }
   }
   checkSize(a);
-  if (!file.empty()) return {a, readMarketVector(std::filesystem::path(file))};
-  return {a, pattern.empty() ? std::vector<double>() : patternOf(a, pattern)};
+  if (isCompact && (!file.empty() || !pattern.empty()))
+    throw std::runtime_error("compact discretisations need constant coefficients");
+  if (!file.empty()) return {a, readMarketVector(std::filesystem::path(file)), false};
+  return {a, pattern.empty() ? std::vector<double>() : patternOf(a, pattern), isCompact};
 }
 
 /// From -1 to 1.
@@ -163,11 +172,12 @@ std::vector<double> uniformNoise(std::size_t n) {
 System::System(const std::string& matrix, const std::filesystem::path& rightHandSide) : description_(matrix) {
   if (matrix.starts_with(gridPrefix)) {
     const GridEquation equation = equationOf(std::string_view(matrix).substr(gridPrefix.size()));
-    if (equation.coefficient.empty()) {
+    if (equation.coefficient.empty() && !equation.isCompact) {
       stencil_ = equation.stencil;
       operator_ = operatorOf(*stencil_);
     } else {
-      varying_ = diffusion(equation.stencil, equation.coefficient);
+      varying_ = equation.isCompact ? compactPoisson(equation.stencil)
+                                    : diffusion(equation.stencil, equation.coefficient);
       sparse_ = assemble(*varying_);
       operator_ = operatorOf(sparse_);
       operator_.varying = &*varying_;
