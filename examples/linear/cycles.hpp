@@ -17,7 +17,7 @@ enum class Cycle {
   V,
   W,
   F,
-  Full,  ///< nested iteration from the coarsest grid up, with one V-cycle on each
+  Full,  ///< nested iteration from the coarsest grid up, with one F-cycle on each
 };
 
 struct MultigridSettings {
@@ -46,6 +46,8 @@ class Hierarchy {
   virtual void residual(std::size_t at, const Vector& b, const Vector& u, Vector& r) = 0;
   /// From grid `at` to the next coarser one: the transpose of the interpolation, but for a factor.
   virtual void restrictTo(std::size_t at, const Vector& fine, Vector& coarse) = 0;
+  /// The right-hand side of the next coarser grid's own equations, for that of grid `at`.
+  virtual void restrictLoad(std::size_t at, const Vector& fine, Vector& coarse) = 0;
   /// u += the interpolation, to grid `at`, of the next coarser grid's correction.
   virtual void correct(std::size_t at, const Vector& coarse, Vector& u) = 0;
   /// u = the interpolation, to grid `at`, of the next coarser grid's solution: of a higher order than that of corrections where there is one.

@@ -76,16 +76,25 @@ struct Level {
 
   Stencil stencil;
   sk::float4 coefficients, low, high;
+  /// Axes, 0 being the fastest, along which the next grid has fewer elements, and solutions that have been interpolated along some of them.
+  std::vector<std::size_t> halved;
+  std::vector<Vector> between;
 };
+
+std::int64_t extentAlong(const sk::Shape& shape, std::size_t axis) {
+  return shape[shape.rank() - 1 - static_cast<int>(axis)];
+}
 
 class StencilHierarchy : public Hierarchy {
  public:
-  StencilHierarchy(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic)
+  /// `isNested` if solutions are interpolated, too.
+  StencilHierarchy(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic, bool isNested)
       : options_(arithmetic.options()) {
     levels_.emplace_back(a);
     while (true) {
       const Stencil coarse = coarsened(levels_.back().stencil);
       if (coarse.grid == levels_.back().stencil.grid) break;
+      if (isNested) prepareInterpolation(device, levels_.back(), coarse.grid, arithmetic.vectors);
       levels_.emplace_back(coarse);
     }
     const Stencil& coarsest = levels_.back().stencil;
@@ -127,6 +136,14 @@ class StencilHierarchy : public Hierarchy {
       restrict3.with(options_)(level.low, level.high, fine, coarse);
   }
 
+  void restrictLoad(std::size_t at, const Vector& fine, Vector& coarse) override {
+    const Level& level = levels_[at];
+    if (level.isPlane())
+      loadOfCoarse2.with(options_)(level.low, level.high, fine, coarse);
+    else
+      loadOfCoarse3.with(options_)(level.low, level.high, fine, coarse);
+  }
+
   void correct(std::size_t at, const Vector& coarse, Vector& u) override {
     const Level& level = levels_[at];
     if (level.isPlane())
@@ -135,12 +152,28 @@ class StencilHierarchy : public Hierarchy {
       correct3.with(options_)(level.low, level.high, coarse, u, u);
   }
 
+  /// Cubic, along one dimension after the other, the fastest first, for the fewest elements.
   void interpolate(std::size_t at, const Vector& coarse, Vector& u) override {
-    const Level& level = levels_[at];
-    if (level.isPlane())
-      interpolate2.with(options_)(level.low, level.high, coarse, u);
-    else
-      interpolate3.with(options_)(level.low, level.high, coarse, u);
+    Level& level = levels_[at];
+    const Vector* from = &coarse;
+    for (std::size_t i = 0; i < level.halved.size(); ++i) {
+      const std::size_t axis = level.halved[i];
+      Vector& to = i + 1 == level.halved.size() ? u : level.between[i];
+      const std::int64_t n = extentAlong(to.shape(), axis), nc = extentAlong(from->shape(), axis);
+      std::int64_t inner = 1;
+      for (std::size_t faster = 0; faster < axis; ++faster) inner *= extentAlong(to.shape(), faster);
+      const std::int64_t outer = to.size() / (inner * n);
+      const auto end = [&](const sk::float4& ends) {
+        return axis == 0 ? ends.x : axis == 1 ? ends.y : ends.z;
+      };
+      const float low = end(level.low), high = end(level.high);
+      if (axis == 0)
+        cubicAlongRows.with(options_)(low, high, from->reshape({outer, nc}), to.reshape({outer, n}));
+      else
+        cubicAcrossRows.with(options_)(low, high, from->reshape({outer, nc, inner}),
+                                       to.reshape({outer, n, inner}));
+      from = &to;
+    }
   }
 
   void solveCoarsest(const Vector& b, Vector& u) override {
@@ -149,6 +182,21 @@ class StencilHierarchy : public Hierarchy {
   }
 
  private:
+  static void prepareInterpolation(sk::Device& device, Level& fine, const sk::Shape& coarse,
+                                   sk::Storage storage) {
+    const auto rank = static_cast<std::size_t>(coarse.rank());
+    std::array<std::int64_t, 3> extents{};
+    for (std::size_t d = 0; d < rank; ++d) extents[d] = coarse[static_cast<int>(d)];
+    for (std::size_t axis = 0; axis < rank; ++axis) {
+      const std::int64_t n = extentAlong(fine.stencil.grid, axis);
+      if (extentAlong(coarse, axis) == n) continue;
+      fine.halved.push_back(axis);
+      extents[rank - 1 - axis] = n;
+      const sk::Shape shape = shapeOf(std::span(extents).first(rank));
+      if (shape != fine.stencil.grid) fine.between.push_back(device.stream<float>(shape, storage));
+    }
+  }
+
   std::vector<Level> levels_;
   Vector inverse_;  ///< of the coarsest grid's matrix, which has at most 3 elements along each dimension
   sk::CallOptions options_;
@@ -177,15 +225,21 @@ Stencil coarsened(const Stencil& a) {
   return coarse;
 }
 
-std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const Stencil& a,
-                                              const Arithmetic& arithmetic,
-                                              const MultigridSettings& settings) {
+std::unique_ptr<Hierarchy> makeHierarchy(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic,
+                                         bool isNested) {
   if (a.centre == 0.0) throw std::runtime_error("multigrid divides by the stencil's centre, which is 0");
   for (int d = 0; d < a.grid.rank(); ++d)
     if (a.grid[d] > 0x7fff)
       throw std::runtime_error(
           fmt::format("multigrid takes grids of up to 32767 elements along a dimension, not {}", a.grid[d]));
-  return makeCycles(device, std::make_unique<StencilHierarchy>(device, a, arithmetic), arithmetic, settings);
+  return std::make_unique<StencilHierarchy>(device, a, arithmetic, isNested);
+}
+
+std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const Stencil& a,
+                                              const Arithmetic& arithmetic,
+                                              const MultigridSettings& settings) {
+  return makeCycles(device, makeHierarchy(device, a, arithmetic, settings.cycle == Cycle::Full), arithmetic,
+                    settings);
 }
 
 }  // namespace linear

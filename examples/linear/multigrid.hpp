@@ -12,7 +12,11 @@
 
 namespace linear {
 
-/// One cycle for z = A^-1 r, from z = 0. `a` is the matrix as the device has it. Throws std::runtime_error if its centre is 0, or
+/// Grids whose stencils are discretised anew, coarser by coarser, for a matrix as the device has it. Solutions can be interpolated if `isNested`, cubically.
+std::unique_ptr<Hierarchy> makeHierarchy(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic,
+                                         bool isNested);
+
+/// One cycle for z = A^-1 r, from z = 0, on these grids. Throws std::runtime_error if its centre is 0, or
 /// an extent is 2^15 or more.
 std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const Stencil& a,
                                               const Arithmetic& arithmetic,

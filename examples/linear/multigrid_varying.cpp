@@ -97,6 +97,11 @@ class VaryingHierarchy : public Hierarchy {
       restrictVarying3.with(options_)(level.share, level.first, level.step, level.weights, fine, coarse);
   }
 
+  /// Galerkin's equations are those of restricted ones.
+  void restrictLoad(std::size_t at, const Vector& fine, Vector& coarse) override {
+    restrictTo(at, fine, coarse);
+  }
+
   void correct(std::size_t at, const Vector& coarse, Vector& u) override {
     const Level& level = levels_[at];
     if (level.isPlane())

@@ -138,7 +138,7 @@ constexpr PreconditionerKind preconditioners[] = {
     {"multigrid", "a V-cycle of geometric multigrid, for grids", true, false, makeGeometric<Cycle::V>},
     {"w-cycle", "a W-cycle of it", false, false, makeGeometric<Cycle::W>},
     {"f-cycle", "an F-cycle of it", false, false, makeGeometric<Cycle::F>},
-    {"full", "full multigrid: nested iteration with V-cycles", false, false, makeGeometric<Cycle::Full>},
+    {"full", "full multigrid: nested iteration with F-cycles", false, false, makeGeometric<Cycle::Full>},
 };
 
 }  // namespace
