@@ -141,6 +141,11 @@ class Cycles : public Preconditioner {
 
 }  // namespace
 
+sk::Shape shapeOf(std::span<const std::int64_t> extents) {
+  if (extents.size() == 2) return {extents[0], extents[1]};
+  return {extents[0], extents[1], extents[2]};
+}
+
 std::unique_ptr<Preconditioner> makeCycles(sk::Device& device, std::unique_ptr<Hierarchy> hierarchy,
                                            const Arithmetic& arithmetic, const MultigridSettings& settings) {
   return std::make_unique<Cycles>(device, std::move(hierarchy), arithmetic, settings);

@@ -4,7 +4,9 @@
 // A. Schueller, "Multigrid", 2001).
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <sk/sk.hpp>
@@ -28,6 +30,13 @@ struct MultigridSettings {
   /// a little more slowly.
   bool isSymmetric = true;
 };
+
+/// Extents up to this one are not halved.
+inline constexpr std::int64_t smallestExtent = 3;
+/// Dimensions are halved whose coefficient is at least this part of the largest: point smoothing leaves errors along weaker couplings.
+inline constexpr double strongCoupling = 0.25;
+/// The shape with these extents, two or three.
+sk::Shape shapeOf(std::span<const std::int64_t> extents);
 
 /// Grids, 0 being the finest, their matrices, and the transfers between neighbours. Vectors have the shape of their grid.
 class Hierarchy {

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "cycles.hpp"
+
 namespace linear {
 
 namespace {
 
-constexpr std::int64_t smallest = 3;  ///< extents that are not halved
-constexpr double strong = 0.25;  ///< as in multigrid.cpp
 /// Elements of grids that are not made coarser. Errors that are constant where a coefficient is large, and that a coarser grid cannot show, would hardly decrease.
 constexpr std::int64_t solvedDirectly = 400;
 
@@ -91,11 +91,6 @@ class Transfer {
   GridWalk fine_, coarse_;
 };
 
-sk::Shape shapeOf(std::span<const std::int64_t> extents) {
-  if (extents.size() == 2) return {extents[0], extents[1]};
-  return {extents[0], extents[1], extents[2]};
-}
-
 /// How strongly the elements couple along a dimension: minus the sum of the entries for neighbours there, which is the diffusivity also where corners have entries.
 double couplingAlong(const VaryingStencil& a, std::size_t d) {
   double sum = 0.0;
@@ -154,13 +149,13 @@ Coarsening coarsening(const VaryingStencil& a) {
   double strongest = 0.0;
   for (std::size_t d = 0; d < rank; ++d) {
     coupling[d] = couplingAlong(a, d);
-    if (a.grid[static_cast<int>(d)] > smallest) strongest = std::max(strongest, coupling[d]);
+    if (a.grid[static_cast<int>(d)] > smallestExtent) strongest = std::max(strongest, coupling[d]);
   }
   std::array<std::int64_t, 3> extents{};
   for (std::size_t d = 0; d < rank; ++d) {
     const std::int64_t n = a.grid[static_cast<int>(d)];
     extents[d] = n;
-    if (n <= smallest || !(coupling[d] >= strong * strongest)) continue;
+    if (n <= smallestExtent || !(coupling[d] >= strongCoupling * strongest)) continue;
     c.step[d] = 2;
     c.first[d] = a.isPeriodic[d] ? 0 : 1;
     extents[d] = (n - c.first[d] + 1) / 2;

@@ -15,15 +15,6 @@ namespace linear {
 
 namespace {
 
-constexpr std::int64_t smallest = 3;  ///< extents that are not halved
-/// Dimensions are halved whose coefficient is at least this part of the largest: point smoothing leaves errors along weaker couplings.
-constexpr double strong = 0.25;
-
-sk::Shape shapeOf(std::span<const std::int64_t> extents) {
-  if (extents.size() == 2) return {extents[0], extents[1]};
-  return {extents[0], extents[1], extents[2]};
-}
-
 /// The inverse of a small matrix, row by row, by Gauss-Jordan elimination with row pivots. For a matrix whose kernel are the constants, the pseudo-inverse:
 /// (A + J)^-1 - J with J = 1 1^T / n, which removes the mean of what it is applied to. So only this grid projects: the transfers between grids keep sums.
 std::vector<double> inverseOf(const Stencil& a) {
@@ -210,12 +201,12 @@ Stencil coarsened(const Stencil& a) {
   const auto rank = static_cast<std::size_t>(a.grid.rank());
   double strongest = 0.0;
   for (std::size_t d = 0; d < rank; ++d)
-    if (a.grid[static_cast<int>(d)] > smallest) strongest = std::max(strongest, std::abs(a.along[d]));
+    if (a.grid[static_cast<int>(d)] > smallestExtent) strongest = std::max(strongest, std::abs(a.along[d]));
   for (std::size_t d = 0; d < rank; ++d) {
     const std::int64_t n = a.grid[static_cast<int>(d)];
     // The spacing at most doubles: restriction reads four elements along a dimension.
     const std::int64_t half = a.ends[d] == Ends{} ? n / 2 : (n + 1) / 2;
-    extents[d] = n > smallest && std::abs(a.along[d]) >= strong * strongest ? half : n;
+    extents[d] = n > smallestExtent && std::abs(a.along[d]) >= strongCoupling * strongest ? half : n;
     const double ratio =
         static_cast<double>(doubleLength(a, d, extents[d])) / static_cast<double>(doubleLength(a, d, n));
     coarse.along[d] = a.along[d] * ratio * ratio;
