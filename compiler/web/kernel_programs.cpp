@@ -2,7 +2,7 @@
 #include "web/ahead_programs.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -81,16 +81,17 @@ std::vector<std::uint32_t> candidates(const Kernel& kernel, Scalar scalar) {
   return {values.begin(), values.end()};
 }
 
-/// The domains that calls may have: all, unless the kernel reads neighbours, whose gathers have the rank of the domain.
-/// Streams of two dimensions are planes, those of more are linearised, and those of one are either.
+/// The domains that calls may have: all, unless the kernel reads neighbours, when one of these gathers has the rank of the
+/// domain. Streams of two dimensions are planes; all others are linearised.
 std::vector<Lie> liesOf(const Kernel& kernel) {
-  bool isPlane = true, isLine = true, isSpace = true;
-  for (const Parameter& parameter : kernel.parameters) {
-    if (!parameter.usesNear) continue;
-    isPlane = isPlane && parameter.rank <= 2;
-    isLine = isLine && parameter.rank == 1;
-    isSpace = isSpace && parameter.rank > 2;
-  }
+  const auto readsNear = [&](std::initializer_list<int> ranks) {
+    return std::ranges::any_of(kernel.parameters, [&](const Parameter& parameter) {
+      return parameter.usesNear && std::ranges::find(ranks, parameter.rank) != ranks.end();
+    });
+  };
+  const bool isAny = !readsNear({1, 2, 3, 4});
+  const bool isPlane = isAny || readsNear({2}), isLine = isAny || readsNear({1}),
+             isSpace = isAny || readsNear({3, 4});
   std::vector<Lie> lies;
   for (const bool packed : {true, false}) {
     if (isPlane) lies.push_back({Domain::Plane, 2, packed});
@@ -163,47 +164,50 @@ std::vector<SpecValues> specChoices(const Kernel& kernel) {
 std::vector<std::vector<StreamAccess>> accessChoices(const Kernel& kernel, const Lie& lie,
                                                      bool domainPacked) {
   std::vector<std::vector<StreamAccess>> choices(1);
-  const auto multiply = [&](std::initializer_list<StreamAccess> some) {
-    std::vector<std::vector<StreamAccess>> more;
-    for (const std::vector<StreamAccess>& choice : choices) {
-      for (const StreamAccess& access : some) {
-        more.push_back(choice);
-        more.back().push_back(access);
-      }
-    }
-    choices = std::move(more);
+  const auto add = [&](const StreamAccess& access) {
+    for (std::vector<StreamAccess>& choice : choices) choice.push_back(access);
   };
-  const Addressing own = lie.domain == Domain::Plane ? Addressing::Plane : Addressing::Linear;
+  bool hasIterator = false;
   for (const Parameter& parameter : kernel.parameters) {
+    const bool isPacked = lie.packed && sk::assemble::mayPack(heldBy(parameter));
     StreamAccess access;
-    access.packed = lie.packed && parameter.element != nullptr && sk::assemble::mayPack(heldBy(parameter));
     if (parameter.role == Role::Input) {
-      if (access.packed != domainPacked) access.addressing = own;
-      if (access.addressing == Addressing::Aligned) access.packed = false;
-      multiply({access});
+      if (isPacked != domainPacked) {
+        access.addressing = lie.domain == Domain::Plane ? Addressing::Plane : Addressing::Linear;
+        access.packed = isPacked;
+      }
+      add(access);
     } else if (parameter.role == Role::Gather) {
       access.nearby = parameter.usesNear && parameter.reach >= 0;
-      StreamAccess plane = access, linear = access;
-      plane.addressing = Addressing::Plane;
-      linear.addressing = Addressing::Linear;
-      if (parameter.rank > 2) {
-        multiply({linear});
-      } else if (sk::assemble::mayFilter(parameter)) {  // such gathers are never packed
-        plane.packed = linear.packed = false;
-        StreamAccess filtered = plane;
-        filtered.filtered = true;
-        parameter.rank == 1 ? multiply({plane, filtered, linear}) : multiply({plane, filtered});
-      } else if (parameter.rank == 1) {
-        multiply({plane, linear});
-      } else {
-        multiply({plane});
+      access.addressing = parameter.rank == 2 ? Addressing::Plane : Addressing::Linear;
+      access.packed = isPacked && !sk::assemble::mayFilter(parameter);
+      std::vector<std::vector<StreamAccess>> filtered;
+      if (parameter.rank == 2 && sk::assemble::mayFilter(parameter)) filtered = choices;
+      add(access);
+      access.filtered = true;
+      for (std::vector<StreamAccess>& choice : filtered) {
+        choice.push_back(access);
+        choices.push_back(std::move(choice));
       }
-    } else if (parameter.role == Role::Iterator) {
-      multiply({{.addressing = Addressing::Aligned}, {.addressing = Addressing::Linear}});
     } else {
-      multiply({StreamAccess{}});
+      hasIterator = hasIterator || parameter.role == Role::Iterator;
+      add(access);
     }
   }
+  if (!hasIterator) return choices;
+  // Iterators count elements, or they advance along the dimensions. In a domain whose only extent above 1 is x, numbers do
+  // both.
+  std::vector<std::vector<StreamAccess>> counting = choices;
+  for (std::vector<StreamAccess>& choice : counting) {
+    for (std::size_t i = 0; i < choice.size(); ++i) {
+      const Parameter& parameter = kernel.parameters[i];
+      if (parameter.role != Role::Iterator) continue;
+      const bool isScalar = parameter.element->fields.front().width == 1;
+      const bool isLine = lie.domain == Domain::Linear && lie.rank == 1;
+      if (isScalar != isLine) choice[i].addressing = Addressing::Linear;
+    }
+  }
+  std::ranges::move(counting, std::back_inserter(choices));
   return choices;
 }
 

@@ -77,6 +77,17 @@ sk::assemble::TextureLimits limits(std::int32_t size) {
   return {size, 0};
 }  // browsers have no layers of streams
 
+/// Streams of one dimension are always linearised in browsers, as lists are here.
+sk::Layout layoutOf(const Lie& lie, std::int32_t size = 8192) {
+  if (lie.shape.rank() != 1) return sk::layoutOf(lie.shape, limits(size), lie.packed);
+  const std::int64_t count = lie.shape[0];
+  sk::Layout layout = sk::listLayout(lie.packed ? count / sk::assemble::lanes : count, limits(size));
+  layout.whole.packed = lie.packed;
+  layout.whole.extent = sk::xFirst(lie.shape);
+  layout.whole.stride = sk::assemble::stridesOf(layout.whole.extent);
+  return layout;
+}
+
 std::vector<std::string> layouts() {
   std::vector<std::string> cases;
   for (int i = 0; i < 600; ++i) {
@@ -84,7 +95,7 @@ std::vector<std::string> layouts() {
     const std::int32_t size = i % 3 == 0 ? 64 : 8192;
     std::string result = "null";
     try {
-      const sk::Layout layout = sk::layoutOf(lie.shape, limits(size), lie.packed);
+      const sk::Layout layout = layoutOf(lie, size);
       const RegionLayout& whole = layout.whole;
       result = fmt::format(
           R"({{"linear":{},"packed":{},"extent":{},"stride":{},"shift":{},"width":{},"height":{},"draws":{}}})",
@@ -106,7 +117,7 @@ std::vector<std::string> reductions() {
     const bool byIndex = below(4) == 0 && !lie.packed;
     const bool inAnyOrder = below(2) == 0;
     const bool isKnown = below(2) == 0;
-    const sk::Layout layout = sk::layoutOf(lie.shape, limits(8192), lie.packed);
+    const sk::Layout layout = layoutOf(lie);
     sk::assemble::ReduceLimits most{.texture = limits(8192)};
     if (!isKnown) most.knownRuns = std::numeric_limits<std::int32_t>::max();
     const sk::assemble::Division division{
@@ -163,7 +174,7 @@ std::vector<std::string> variants() {
     std::vector<sk::Operand> operands;
     std::vector<std::string> streams, accesses;
     for (const Lie& lie : lies) {
-      operands.push_back({.regionLayout = sk::layoutOf(lie.shape, limits(8192), lie.packed).whole});
+      operands.push_back({.regionLayout = layoutOf(lie).whole});
       streams.push_back(lie.text());
     }
     const sk::assemble::Variant variant = sk::chooseVariant(kernel, operands, operands.back().regionLayout);

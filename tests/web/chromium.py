@@ -29,6 +29,7 @@ def command(folder, *arguments):
     options = "--headless=new --use-angle=swiftshader --enable-unsafe-swiftshader --disable-gpu-sandbox"
     options += " --disable-gpu-watchdog --disable-quic --no-first-run --disable-background-networking"
     options += " --disable-component-update --disable-sync --disable-dev-shm-usage"
+    options += " " + os.environ.get("SK_CHROMIUM_OPTIONS", "")  # the last of two that differ counts
     options += " --no-sandbox" if os.geteuid() == 0 else ""  # root has no sandbox
     return [path, *options.split(), f"--user-data-dir={folder}/profile", *arguments]
 

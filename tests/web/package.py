@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 #
 # Builds the npm package of runtime/web by TypeScript's compiler, and checks types.
+import glob
+import gzip
 import json
 import os
 import shutil
 import subprocess
 import sys
+import tempfile
 
 skipped = 77
 tsc = shutil.which("tsc")
@@ -27,6 +30,17 @@ def build(source, folder):
     """The package's modules and types."""
     need()
     run("-p", os.path.join(source, "runtime/web"), "--outDir", folder)
+
+
+def gzipped(source):
+    """Bytes of all modules of the package together, without comments."""
+    with tempfile.TemporaryDirectory() as folder:
+        run("-p", os.path.join(source, "runtime/web"), "--outDir", folder, "--removeComments", "--declaration", "false")
+        modules = b""
+        for name in sorted(glob.glob(f"{folder}/*.js")):
+            with open(name, "rb") as module:
+                modules += module.read()
+    return len(gzip.compress(modules))
 
 
 def check_types(files, folder):

@@ -44,8 +44,8 @@ export function checkArguments(kernel: KernelData, elements: readonly Element[],
     values.push(value);
   });
   parameters.forEach((parameter, i) => {
-    const isStream = ['input', 'gather', 'output'].includes(parameter.role);
-    if (!isStream || streams[i] !== null || !isNeeded(parameter, specs)) return;
+    if (streams[i] !== null || values[i] !== null || parameter.role === 'spec' || parameter.role === 'accumulator') return;
+    if (!isNeeded(parameter, specs)) return;
     const where = parameter.condition === undefined ? '' : ` here, where ${parameter.condition} holds`;
     fail(name, `'${parameter.name}' is null, but the kernel needs it${where}; give a stream`);
   });

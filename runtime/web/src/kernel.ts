@@ -93,13 +93,25 @@ function strides(device: Device, domain: readonly number[]): Layout {
   return { ...layout, stride: [1, x, x * y, x * y * z] };
 }
 
+interface Choices {
+  readonly device: Device;
+  readonly domain: Layout;
+  readonly lies: readonly Lie[];
+  readonly specs: readonly number[];
+  readonly program: Program;
+}
+
 export class KernelCaller {
   readonly source: ProgramSource;
   private readonly outputs: readonly number[];
+  private readonly hasConditions: boolean;
+  /** The last call's choices: a loop makes the same call again. */
+  private last: Choices | null = null;
 
   constructor(private readonly kernel: CallableKernel, file: GeneratedFile, texts: readonly string[]) {
     this.source = new ProgramSource(kernel.name, file, texts, kernel.programs);
     this.outputs = kernel.parameters.flatMap((parameter, i) => (parameter.role === 'output' ? [i] : []));
+    this.hasConditions = kernel.parameters.some((parameter) => parameter.neededIf !== undefined);
   }
 
   startPrograms(device: Device): Program[] {
@@ -115,25 +127,14 @@ export class KernelCaller {
     const { kernel } = this;
     const { elements } = this.source.file;
     const call = checkArguments(kernel, elements, given);
-    const outputs = this.outputs.filter((i) => isNeeded(kernel.parameters[i]!, call.specs));
+    const outputs = this.hasConditions ? this.outputs.filter((i) => isNeeded(kernel.parameters[i]!, call.specs)) : this.outputs;
     if (outputs.length === 0) return; // the spec parameters leave nothing to write
     const device = deviceOf(kernel, call.streams);
     const shape = this.checkShapes(call, outputs);
     device.begin();
     if (call.streams[outputs[0]!]!.size === 0) return;
 
-    const packs = kernel.packs && mayPack(shape) && outputs.every((i) => call.streams[i]!.mayPack());
-    let domain = call.streams[outputs[0]!]!.layoutIf(packs);
-    let lies = this.lies(call, shape);
-    let key = this.keyOf(call, lies, domain, device);
-    if (!this.source.has(key)) {
-      // Streams that lie in different ways, or a filter: what the call reads is unpacked, and so is what it writes.
-      kernel.parameters.forEach((_, i) => this.isRead(i, call) && call.streams[i]!.unpack());
-      domain = call.streams[outputs[0]!]!.layoutIf(false);
-      lies = this.lies(call, shape);
-      key = this.keyOf(call, lies, domain, device);
-    }
-    const program = this.source.program(device, key, kernel, call.specs);
+    const { domain, lies, program } = this.chosen(device, call, outputs, shape);
     device.useProgram(program);
 
     const targets = outputs.map((i) => this.targetOf(i, call, domain));
@@ -144,6 +145,28 @@ export class KernelCaller {
     for (const { stream, planes } of targets) {
       if (planes !== stream.planes) stream.exchange(planes, domain);
     }
+  }
+
+  /** The layout of the outputs after the call, and the program. Unpacks what the call reads where no program takes it packed. */
+  private chosen(device: Device, call: Checked, outputs: readonly number[], shape: readonly number[]): Choices {
+    const { kernel } = this;
+    const first = call.streams[outputs[0]!]!;
+    const packs = kernel.packs && mayPack(shape) && outputs.every((i) => call.streams[i]!.mayPack());
+    let domain = first.layoutIf(packs);
+    let lies = this.lies(call, shape);
+    const { last } = this;
+    const isSame = (a: readonly unknown[], b: readonly unknown[]) => a.every((one, i) => one === b[i]);
+    if (last?.device === device && last.domain === domain && isSame(last.lies, lies) && isSame(last.specs, call.specs)) return last;
+    let key = this.keyOf(call, lies, domain, device);
+    if (!this.source.has(key)) {
+      kernel.parameters.forEach((_, i) => this.isRead(i, call) && call.streams[i]!.unpack());
+      domain = first.layoutIf(false);
+      lies = this.lies(call, shape);
+      key = this.keyOf(call, lies, domain, device);
+    }
+    const program = this.source.program(device, key, kernel, call.specs);
+    this.last = { device, domain, lies, specs: call.specs, program };
+    return this.last;
   }
 
   private isRead(i: number, call: Checked): boolean {

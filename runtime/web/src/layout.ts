@@ -35,8 +35,6 @@ export interface Layout {
 
 /** Elements per texel of a packed stream. */
 export const lanes = 4;
-/** The longest 1-D stream that is not linearised. */
-const longestRow = 256;
 /** Elements of a stream, which are numbered with an int. */
 const mostElements = 2 ** 31 - 2 ** 16;
 
@@ -88,9 +86,9 @@ export function linearLayout(count: number, width: number, height: number): Layo
   return { linear: true, packed: false, extent, stride, shift, width, height, draws };
 }
 
+/** Streams of two dimensions are planes. Others are linearised, even short ones of one, so that kernels need fewer programs. */
 function fitsTexture(shape: readonly number[], most: number): boolean {
-  if (shape.length > 2 || (shape.length === 1 && shape[0]! > longestRow)) return false;
-  return shape.every((extent) => extent <= most);
+  return shape.length === 2 && shape.every((extent) => extent <= most);
 }
 
 /** Whether a stream of this shape is not empty, and its rows have a multiple of four elements. */

@@ -15,6 +15,7 @@ import package
 
 skc, source, reference = sys.argv[1], os.path.realpath(sys.argv[2]), sys.argv[3]
 here = os.path.dirname(os.path.realpath(__file__))
+most_bytes = 25000  # of the package's modules, gzipped
 seconds = 400  # a few, on a machine that has nothing else to do
 
 
@@ -49,4 +50,8 @@ with tempfile.TemporaryDirectory() as folder:
 for mistake in report["mistakes"]:
     print(mistake)
 print(f"{report['checks']} checks, {len(report['mistakes'])} mistakes; seconds: {report['seconds']}")
+size = package.gzipped(source)
+if size > most_bytes:
+    report["mistakes"].append(size)
+    print(f"the package has {size} bytes, gzipped, more than {most_bytes}")
 sys.exit(1 if report["mistakes"] or report["checks"] < 60 else 0)

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+//
+// Measures calls in one page, in turn with WebGL2 by hand, and posts milliseconds. Results are checked.
+import { Device } from 'streamkernel';
+import { diffuse, saxpy, sum } from './calls.sk.js';
+
+const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
+const figures = {};
+const mistakes = [];
+
+/** The README's example from nothing to a number: a context, programs, one step, the sum. */
+async function firstResult() {
+  const start = performance.now();
+  const device = await Device.create();
+  const u = device.stream('float', [512, 512]);
+  u.write(new Float32Array(512 * 512).fill(0.5));
+  diffuse(0.2, u, u);
+  const total = await sum(u);
+  const milliseconds = performance.now() - start;
+  if (Math.abs(total - 131072) > 1) mistakes.push(`the first sum is ${total}`);
+  device.dispose();
+  return milliseconds;
+}
+
+/** Microseconds of the host for a call, whose elements take next to no time. */
+function hostCost(call, after) {
+  const rounds = [];
+  for (let round = 0; round < 9; ++round) {
+    const start = performance.now();
+    for (let i = 0; i < 200; ++i) call();
+    rounds.push(((performance.now() - start) * 1000) / 200);
+    after();
+  }
+  return median(rounds);
+}
+
+/** The milliseconds of work that ends with a transfer to the host. */
+async function timed(work) {
+  const start = performance.now();
+  await work();
+  return performance.now() - start;
+}
+
+/** saxpy in WebGL2 by hand, over texels of four numbers: the same work as ours. */
+function byHand(gl, width, height, x, y) {
+  const shader = (stage, text) => {
+    const made = gl.createShader(stage);
+    gl.shaderSource(made, text);
+    gl.compileShader(made);
+    return made;
+  };
+  gl.getExtension('EXT_color_buffer_float');
+  const program = gl.createProgram();
+  gl.attachShader(program, shader(gl.VERTEX_SHADER, '#version 300 es\nvoid main() { gl_Position = vec4(float(gl_VertexID & 1) * 2.0 - 1.0, float(gl_VertexID & 2) - 1.0, 0, 1); }'));
+  gl.attachShader(program, shader(gl.FRAGMENT_SHADER, '#version 300 es\nprecision highp float; precision highp sampler2D; uniform float a; uniform sampler2D x, y; out vec4 r; void main() { ivec2 p = ivec2(gl_FragCoord.xy); r = a * texelFetch(x, p, 0) + texelFetch(y, p, 0); }'));
+  gl.linkProgram(program);
+  const texture = (data) => {
+    const made = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, made);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, width, height);
+    if (data) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RGBA, gl.FLOAT, data);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+    return made;
+  };
+  const [tx, ty, tr] = [texture(x), texture(y), texture(null)];
+  const framebuffer = gl.createFramebuffer();
+  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, tr, 0);
+  const a = gl.getUniformLocation(program, 'a');
+  gl.useProgram(program);
+  gl.uniform1i(gl.getUniformLocation(program, 'y'), 1);
+  gl.viewport(0, 0, width, height);
+  const pixel = new Float32Array(4);
+  return () => {
+    gl.useProgram(program);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, tx);
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, ty);
+    gl.uniform1f(a, 2);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    return { wait: () => (gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, pixel), pixel[0]) };
+  };
+}
+
+try {
+  const firsts = [];
+  for (let i = 0; i < 5; ++i) firsts.push(await firstResult());
+  [figures['first result, cold (ms)'], figures['first result (ms)']] = [firsts[0], median(firsts.slice(1))];
+
+  const device = await Device.create();
+  const [s, t] = [device.stream('float', [8, 8]), device.stream('float', [8, 8])];
+  const flush = () => device.context.finish();
+  figures['host cost of saxpy (us)'] = hostCost(() => saxpy(2, s, s, t), flush);
+  figures['host cost of diffuse in place (us)'] = hostCost(() => diffuse(0.2, s, s), flush);
+
+  const n = 1024;
+  const host = Float32Array.from({ length: n * n }, (_, i) => (i % 1000) / 1000);
+  const [x, y, r, one] = [device.stream('float', [n, n]), device.stream('float', [n, n]), device.stream('float', [n, n]), device.stream('float', [4])];
+  x.write(host);
+  y.write(host);
+  const hand = byHand(document.createElement('canvas').getContext('webgl2'), n / 4, n, host, host);
+  const rounds = { ours: [], hand: [], heat: [], sum: [] };
+  for (let round = 0; round < 7; ++round) {
+    rounds.ours.push(await timed(async () => {
+      for (let i = 0; i < 4; ++i) saxpy(2, x, y, r);
+      saxpy(1, one, one, one);
+      await one.read();
+    }));
+    rounds.hand.push(await timed(async () => {
+      let last;
+      for (let i = 0; i < 4; ++i) last = hand();
+      const value = last.wait();
+      if (value !== 0) mistakes.push(`by hand, the first number is ${value}`);
+    }));
+    rounds.heat.push(await timed(async () => {
+      for (let i = 0; i < 4; ++i) diffuse(0.2, r, r);
+      saxpy(1, one, one, one);
+      await one.read();
+    }));
+    rounds.sum.push(await timed(() => sum(x)));
+  }
+  figures['saxpy 1024 x 1024 (ms)'] = median(rounds.ours) / 4;
+  figures['saxpy 1024 x 1024, WebGL2 by hand (ms)'] = median(rounds.hand) / 4;
+  figures['heat step 1024 x 1024 (ms)'] = median(rounds.heat) / 4;
+  figures['sum 1024 x 1024 to a value (ms)'] = median(rounds.sum);
+  const total = await sum(x);
+  const wanted = host.reduce((a, b) => a + b, 0);
+  if (Math.abs(total - wanted) > 0.1) mistakes.push(`the sum is ${total}, not ${wanted}`);
+  figures.renderer = device.info().renderer;
+} catch (error) {
+  mistakes.push(error.stack);
+}
+await fetch('/', { method: 'POST', body: JSON.stringify({ figures, mistakes }) });
