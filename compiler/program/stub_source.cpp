@@ -52,7 +52,8 @@ class SourceWriter {
 
  private:
   void allDescriptors() {
-    text_ += "\nnamespace sk::program {\nnamespace {\n\n";
+    // The length of a literal with this suffix is known; compilers would count that of a plain string_view one character at a time.
+    text_ += "\nnamespace sk::program {\nnamespace {\n\nusing std::string_view_literals::operator\"\"sv;\n\n";
     sources();
     for (std::uint32_t i = 0; i < module_.structs.size(); ++i) {
       if (module_.structs[i].isSynthesized) synthesizedElement(i);
@@ -391,7 +392,7 @@ class SourceWriter {
 
   void programText(const std::string& name, std::string_view text) {
     if (text.empty()) return;
-    text_ += fmt::format("constexpr std::string_view {} =\n    {};\n\n", name, rawString(text));
+    text_ += fmt::format("constexpr std::string_view {} =\n    {}sv;\n\n", name, rawString(text));
   }
 
   void intrinsics(const sk::program::Kernel& kernel, const std::string& name) {
