@@ -58,6 +58,9 @@ macro(sk_compile_for_this_machine)
   endif()
 endmacro()
 
+# How tests are compiled: they spend their time in the code under test, and optimising the tests themselves takes longer than it gains.
+set(SK_TEST_OPTIONS $<$<CONFIG:Release>:-O0>)
+
 # sk_test_headers(TARGET): a program of tests takes Catch2's header as it was compiled for sk_test_main, which it links.
 function(sk_test_headers target)
   target_precompile_headers(${target} REUSE_FROM sk_test_main)
