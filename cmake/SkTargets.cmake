@@ -46,9 +46,12 @@ function(sk_compile_together target)
   target_compile_options(${target} PRIVATE -Wno-shadow -Wno-stringop-overflow)
 endfunction()
 
-# sk_command_line(SOURCE...): these sources parse command lines and write reports; -Og compiles them in two thirds of the time.
+# How sources are compiled that parse command lines and write reports: -Og takes two thirds of the time.
+set(SK_COMMAND_LINE_OPTIONS $<$<CONFIG:Release>:-Og>)
+
+# sk_command_line(SOURCE...): these sources are of that kind.
 function(sk_command_line)
-  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-Og>")
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "${SK_COMMAND_LINE_OPTIONS}")
 endfunction()
 
 # sk_compile_for_this_machine(): kernels of this folder and those below run on this machine alone, unless SK_LEVELS says otherwise.

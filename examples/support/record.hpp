@@ -11,11 +11,13 @@
 #include <string>
 #include <string_view>
 
-#include <CLI/CLI.hpp>
-
 #include "support/film.hpp"
 #include "support/image.hpp"
 #include "support/scene_file.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace examples {
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <catch2/catch.hpp>
 
 #include "support/box_view.hpp"

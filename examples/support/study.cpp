@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "support/application.hpp"
 #include "support/stopwatch.hpp"
 
 namespace examples {

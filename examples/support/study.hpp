@@ -10,10 +10,11 @@
 
 #include <sk/sk.hpp>
 
-#include "support/application.hpp"
 #include "support/verification.hpp"
 
 namespace examples {
+
+class Application;
 
 struct Findings {
   std::string table;  ///< one or more tables, with an empty line between two of them
