@@ -15,7 +15,7 @@ namespace {
 
 using namespace ir;
 
-struct Sample {
+struct SwitchKernel {
   Module module = testModule();
   KernelBuilder k{module, "f"};
   VarId x = k.input("x", intType);
@@ -40,7 +40,7 @@ struct Sample {
 };
 
 TEST_CASE("a continue leaves one switch after the other") {
-  Sample s;
+  SwitchKernel s;
   CHECK(s.forwarded(block(assign(s.k.ref(s.r), literal(0)),
                           whileLoop(literal(true),
                                     block(s.choice(block(s.choice(block(continueStmt())), breakStmt())))))) ==
@@ -70,7 +70,7 @@ TEST_CASE("a continue leaves one switch after the other") {
 }
 
 TEST_CASE("a continue of one switch stays, and one of a loop inside of switches") {
-  Sample a, b;
+  SwitchKernel a, b;
   CHECK(a.forwarded(block(assign(a.k.ref(a.r), literal(0)),
                           whileLoop(literal(true), block(a.choice(block(continueStmt()))))))
             .find("continues") == std::string::npos);

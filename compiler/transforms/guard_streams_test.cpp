@@ -19,7 +19,7 @@ using namespace ir;
 constexpr Type boolType = Type::of(Scalar::Bool);
 
 /// A kernel with a flag, a number, two inputs and an output; each case builds its own body.
-struct Sample {
+struct GuardedKernel {
   Module module = testModule();
   KernelBuilder k{module, "f"};
   VarId flag = k.spec("flag", boolType);
@@ -45,11 +45,13 @@ struct Sample {
 };
 
 TEST_CASE("branches, selections and short circuits guard") {
-  Sample a, b, c, d;
+  GuardedKernel a, b, c, d;
   CHECK(a.need(block(a.write(a.k.ref(a.x)), ifStmt(a.k.ref(a.flag), block(a.write(a.k.ref(a.y)))))) ==
         "flag");
   CHECK(b.need(block(b.write(select(b.k.ref(b.flag), b.k.ref(b.x), b.k.ref(b.y))))) == "!flag");
-  const auto isPositive = [](Sample& s) { return binary(BinaryOp::Greater, s.k.ref(s.y), literal(0.0F)); };
+  const auto isPositive = [](GuardedKernel& s) {
+    return binary(BinaryOp::Greater, s.k.ref(s.y), literal(0.0F));
+  };
   CHECK(c.need(block(ifStmt(binary(BinaryOp::LogicalAnd, c.k.ref(c.flag), isPositive(c)),
                             block(c.write(c.k.ref(c.x))), block(c.write(literal(0.0F)))))) == "flag");
   CHECK(d.need(block(ifStmt(binary(BinaryOp::LogicalOr, d.isN(3), isPositive(d)),
@@ -57,7 +59,7 @@ TEST_CASE("branches, selections and short circuits guard") {
 }
 
 TEST_CASE("several uses need the stream where any of them runs, nested guards where all hold") {
-  Sample a, b;
+  GuardedKernel a, b;
   CHECK(a.need(block(a.write(literal(0.0F)), ifStmt(a.k.ref(a.flag), block(a.write(a.k.ref(a.y)))),
                      ifStmt(a.isN(2), block(a.write(a.k.ref(a.y)))),
                      ifStmt(a.isN(2), block(a.write(a.k.ref(a.y)))))) == "flag || n == 2");
@@ -67,14 +69,14 @@ TEST_CASE("several uses need the stream where any of them runs, nested guards wh
 }
 
 TEST_CASE("what leaves early guards what follows") {
-  Sample s;
+  GuardedKernel s;
   CHECK(s.need(block(s.write(s.k.ref(s.x)),
                      ifStmt(unary(UnaryOp::LogicalNot, s.k.ref(s.flag)), block(returnStmt())),
                      s.write(s.k.ref(s.y)))) == "flag");
 }
 
 TEST_CASE("a switch guards by its labels, fall-through included") {
-  Sample s;
+  GuardedKernel s;
   std::vector<Case> cases;
   cases.push_back({{0}, false, block(s.write(s.k.ref(s.x)), breakStmt()), {}});
   cases.push_back({{1}, false, block(s.write(literal(1.0F))), {}});
@@ -85,7 +87,7 @@ TEST_CASE("a switch guards by its labels, fall-through included") {
 
 TEST_CASE("locals and parameters of functions are looked through unless they change") {
   const auto need = [](bool changes) {
-    Sample s;
+    GuardedKernel s;
     Function f;
     f.name = "pick";
     f.result = floatType;
@@ -109,7 +111,7 @@ TEST_CASE("locals and parameters of functions are looked through unless they cha
 }
 
 TEST_CASE("gathers in functions are needed as the calls are guarded") {
-  Sample s;
+  GuardedKernel s;
   const VarId u = s.k.gather("u", floatType, 1);
   Function f;
   f.name = "read";

@@ -16,7 +16,7 @@ namespace {
 
 using namespace ir;
 
-void run(Module& module) {
+void specialize(Module& module) {
   REQUIRE(validate(module, Stage::Lowered) == "");
   DiagnosticLog log;
   specializeGathers(module, log);
@@ -54,7 +54,7 @@ TEST_CASE("one stream: the function keeps its name and loses the parameter") {
   const VarId u = k.gather("u", floatType, 1);
   const VarId r = k.output("r", floatType);
   k.finish(block(assign(k.ref(r), call(module, pairSum, exprs(literal(0), k.ref(u), literal(7))))));
-  run(module);
+  specialize(module);
   CHECK(bodyOf(module, "pairSum") == "  before: in int\n  i: in int\n{\n  return $0[i] + $0[i + 1];\n}\n");
   CHECK(bodyOf(module, "f") == "  u: gather float rank 1\n  r: inout float\n{\n  r = pairSum(0, 7);\n}\n");
   CHECK(module.kernels[0].entry == 1);   // callees come first
@@ -71,7 +71,7 @@ TEST_CASE("two streams: two copies that say what they read; the same stream twic
     return call(module, pairSum, exprs(literal(0), k.ref(stream), literal(7)));
   };
   k.finish(block(assign(k.ref(r), binary(BinaryOp::Add, binary(BinaryOp::Add, sum(u), sum(v)), sum(u)))));
-  run(module);
+  specialize(module);
   CHECK(module.functions.size() == 3);
   CHECK(bodyOf(module, "pairSum_v").find("$1[i]") != std::string::npos);
   CHECK(bodyOf(module, "f").find("r = pairSum_u(0, 7) + pairSum_v(0, 7) + pairSum_u(0, 7);") !=
@@ -87,7 +87,7 @@ TEST_CASE("each kernel has its own copies") {
     const VarId r = k.output("r", floatType);
     k.finish(block(assign(k.ref(r), call(module, pairSum, exprs(literal(0), k.ref(u), literal(7))))));
   }
-  run(module);   // validate checks that no function has two owners
+  specialize(module);   // validate checks that no function has two owners
   CHECK(module.functions.size() == 4);
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("an element's index is its stream's; of a computed value, the domain's
   const VarId s = k.output("s", floatType);
   k.finish(block(callStmt(place, exprs(k.ref(y), k.ref(r))),
                  callStmt(place, exprs(binary(BinaryOp::Add, k.ref(y), literal(1.0F)), k.ref(s)))));
-  run(module);
+  specialize(module);
   CHECK(bodyOf(module, "place_y").find("r = x + float(indexof($0).x)") != std::string::npos);
   CHECK(bodyOf(module, "place_here").find("r = x + float(indexof(domain).x)") != std::string::npos);
   CHECK(bodyOf(module, "place_y").find("x: in float") != std::string::npos);
@@ -129,7 +129,7 @@ TEST_CASE("streams that a function does not ask about make no copies") {
   const VarId r = k.output("r", floatType);
   const VarId s = k.output("s", floatType);
   k.finish(block(callStmt(twice, exprs(k.ref(x), k.ref(r))), callStmt(twice, exprs(k.ref(y), k.ref(s)))));
-  run(module);
+  specialize(module);
   CHECK(module.functions.size() == 3);   // the kernel `twice`, f's copy of it, and f
 }
 
@@ -148,7 +148,7 @@ TEST_CASE("streams are followed through several calls") {
   const VarId v = k.gather("v", floatType, 1);
   const VarId r = k.output("r", floatType);
   k.finish(block(assign(k.ref(r), call(module, outer, exprs(k.ref(v))))));
-  run(module);
+  specialize(module);
   CHECK(bodyOf(module, "pairSum").find("return $1[i] + $1[i + 1];") != std::string::npos);
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using namespace ir;
 
-const std::vector<ExactSum>& transform(Module& module) {
+const std::vector<ExactSum>& findExactSums(Module& module) {
   DiagnosticLog log;
   specializeGathers(module, log);
   deriveCombine(module, log);
@@ -32,7 +32,7 @@ const std::vector<ExactSum>& transform(Module& module) {
 
 /// reduce void r(reduce T total<>, T x<>, float weights[]) { total op= value; }, value built from an element.
 template <class Value>
-Module reduceModule(Type type, BinaryOp op, Value&& value) {
+Module exactReduce(Type type, BinaryOp op, Value&& value) {
   Module module = testModule();
   KernelBuilder builder(module, "r");
   const VarId total = builder.accumulator("total", type);
@@ -55,18 +55,18 @@ std::size_t accumulators(const Module& module, const ExactSum& sum) {
 }
 
 TEST_CASE("a sum of floats has three groups of digits and flags, of products six") {
-  Module plain = reduceModule(floatType, BinaryOp::Add, element);
-  const std::vector<ExactSum>& sums = transform(plain);
+  Module plain = exactReduce(floatType, BinaryOp::Add, element);
+  const std::vector<ExactSum>& sums = findExactSums(plain);
   REQUIRE(sums.size() == 1);
   CHECK(accumulators(plain, sums[0]) == 4);
   CHECK(sums[0].accumulator == 0);
-  Module products = reduceModule(floatType, BinaryOp::Add, weighted);
-  CHECK(accumulators(products, transform(products).at(0)) == 7);
+  Module products = exactReduce(floatType, BinaryOp::Add, weighted);
+  CHECK(accumulators(products, findExactSums(products).at(0)) == 7);
 }
 
 TEST_CASE("a vector has a form for each component, and one combination") {
-  Module module = reduceModule(Type::of(Scalar::Float, 3), BinaryOp::Add, weighted);
-  const std::vector<ExactSum>& sums = transform(module);
+  Module module = exactReduce(Type::of(Scalar::Float, 3), BinaryOp::Add, weighted);
+  const std::vector<ExactSum>& sums = findExactSums(module);
   REQUIRE(sums.size() == 3);
   CHECK(module.kernels[sums[0].fold].reduction->combine == module.kernels[sums[2].fold].reduction->combine);
 }
@@ -90,12 +90,12 @@ Module moduleAround(Body&& body) {
 }
 
 TEST_CASE("a term of inputs names them, and any other has a kernel") {
-  Module plain = reduceModule(floatType, BinaryOp::Add, element);
-  const ExactTerm inputs = transform(plain).at(0).term;
+  Module plain = exactReduce(floatType, BinaryOp::Add, element);
+  const ExactTerm inputs = findExactSums(plain).at(0).term;
   CHECK(inputs.factors == std::vector<VarId>{1});
   CHECK_FALSE(inputs.kernel);
-  Module products = reduceModule(floatType, BinaryOp::Add, weighted);
-  const ExactTerm computed = transform(products).at(0).term;
+  Module products = exactReduce(floatType, BinaryOp::Add, weighted);
+  const ExactTerm computed = findExactSums(products).at(0).term;
   REQUIRE(computed.kernel);
   CHECK(outputs(products, *computed.kernel) == 2);
   CHECK(products.kernels[*computed.kernel].isNativeOnly);
@@ -109,7 +109,7 @@ TEST_CASE("an element may leave a term out, by a branch around it or a return be
     return block(ifStmt(std::move(cond), block(returnStmt())), std::move(sum));
   });
   for (Module* module : {&branch, &after}) {
-    const ExactTerm term = transform(*module).at(0).term;
+    const ExactTerm term = findExactSums(*module).at(0).term;
     CHECK(term.factors.empty());
     REQUIRE(term.kernel);
     CHECK(outputs(*module, *term.kernel) == 1);
@@ -119,14 +119,14 @@ TEST_CASE("an element may leave a term out, by a branch around it or a return be
 TEST_CASE("a loop adds any number of terms") {
   Module module = moduleAround(
       [](Stmt sum, ExprPtr cond) { return block(whileLoop(std::move(cond), block(std::move(sum)))); });
-  CHECK(transform(module).at(0).term.isEmpty());
+  CHECK(findExactSums(module).at(0).term.isEmpty());
 }
 
 TEST_CASE("products, integers and doubles have no exact form") {
-  Module product = reduceModule(floatType, BinaryOp::Mul, element);
-  Module integers = reduceModule(intType, BinaryOp::Add, element);
-  Module doubles = reduceModule(Type::of(Scalar::Double), BinaryOp::Add, element);
-  for (Module* module : {&product, &integers, &doubles}) CHECK(transform(*module).empty());
+  Module product = exactReduce(floatType, BinaryOp::Mul, element);
+  Module integers = exactReduce(intType, BinaryOp::Add, element);
+  Module doubles = exactReduce(Type::of(Scalar::Double), BinaryOp::Add, element);
+  for (Module* module : {&product, &integers, &doubles}) CHECK(findExactSums(*module).empty());
 }
 
 }  // namespace

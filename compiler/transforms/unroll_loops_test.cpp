@@ -22,7 +22,7 @@ using namespace ir;
 using enum BinaryOp;
 
 /// A kernel with a gather `a`, a uniform `u`, an output `r`, and some locals.
-struct Sample {
+struct LoopKernel {
   Module module = testModule();
   KernelBuilder k{module, "f"};
   VarId a = k.gather("a", floatType, 1);
@@ -57,7 +57,7 @@ struct Sample {
 };
 
 TEST_CASE("offsets of neighbours become constants") {
-  Sample s;
+  LoopKernel s;
   CHECK(s.unrolled(block(s.loop(s.i, -1, 2, block(s.add(s.near(binary(Mul, s.k.ref(s.i), literal(2)))))))) ==
         "{\n  r += neighbor($0, -2);\n  r += neighbor($0, 0);\n  r += neighbor($0, 2);\n}\n");
   CHECK(s.note().whyNot.empty());
@@ -65,7 +65,7 @@ TEST_CASE("offsets of neighbours become constants") {
 }
 
 TEST_CASE("loops in loops count together, also where the outer counter bounds the inner") {
-  Sample s;
+  LoopKernel s;
   CHECK(s.unrolled(
             block(s.loop(s.i, 0, 3,
                          block(s.loop(s.j, s.k.ref(s.i), literal(2),
@@ -74,7 +74,7 @@ TEST_CASE("loops in loops count together, also where the outer counter bounds th
 }
 
 TEST_CASE("each iteration has locals of its own, and those of a known integer are gone") {
-  Sample s;
+  LoopKernel s;
   const VarId t = s.k.local("t", floatType), d = s.k.local("d", intType);
   const std::string text = s.unrolled(
       block(s.loop(s.i, 0, 2,
@@ -86,7 +86,7 @@ TEST_CASE("each iteration has locals of its own, and those of a known integer ar
 }
 
 TEST_CASE("elements of constant arrays take their places; outside, it is the nearest") {
-  Sample s;
+  LoopKernel s;
   const Type floats = arrayOf(s.module, floatType, 2);
   const VarId w = s.k.local("w", floats);
   CHECK(s.unrolled(block(declare(w, construct(floats, exprs(literal(0.25F), literal(0.75F)))),
@@ -95,7 +95,7 @@ TEST_CASE("elements of constant arrays take their places; outside, it is the nea
 }
 
 TEST_CASE("arithmetic on floats is left to the device") {
-  Sample s;
+  LoopKernel s;
   CHECK(s.unrolled(block(
             s.loop(s.i, 1, 3,
                    block(s.add(binary(Mul, binary(Mul, convert(Scalar::Float, s.k.ref(s.i)), literal(0.1F)),
@@ -104,7 +104,7 @@ TEST_CASE("arithmetic on floats is left to the device") {
 }
 
 TEST_CASE("jumps that are decided are gone, and what continues skips the rest of its iteration") {
-  Sample s;
+  LoopKernel s;
   CHECK(s.unrolled(block(
             s.loop(s.i, 0, 9,
                    block(ifStmt(binary(Equal, s.k.ref(s.i), literal(1)), block(continueStmt())),
@@ -116,7 +116,7 @@ TEST_CASE("jumps that are decided are gone, and what continues skips the rest of
 }
 
 TEST_CASE("a loop that elements leave stays, with its reason") {
-  Sample s;
+  LoopKernel s;
   const std::string text = s.unrolled(
       block(s.loop(s.i, 0, 3,
                    block(ifStmt(binary(Less, s.near(s.k.ref(s.i)), literal(0.0F)), block(breakStmt())),
@@ -126,26 +126,26 @@ TEST_CASE("a loop that elements leave stays, with its reason") {
 }
 
 TEST_CASE("a loop of unknown bounds, a changed counter or too many iterations stays, with its reason") {
-  const auto whyNot = [](const std::function<Block(Sample&)>& make) {
-    Sample s;
+  const auto whyNot = [](const std::function<Block(LoopKernel&)>& make) {
+    LoopKernel s;
     CHECK(s.unrolled(make(s)).find("for (int i") != std::string::npos);
     return s.note().whyNot;
   };
-  const auto read = [](Sample& s) { return block(s.add(s.near(s.k.ref(s.i)))); };
-  CHECK(whyNot([&](Sample& s) { return block(s.loop(s.i, literal(0), s.k.ref(s.u), read(s))); }) ==
+  const auto read = [](LoopKernel& s) { return block(s.add(s.near(s.k.ref(s.i)))); };
+  CHECK(whyNot([&](LoopKernel& s) { return block(s.loop(s.i, literal(0), s.k.ref(s.u), read(s))); }) ==
         "the bounds of its counter 'i' are not constants");
-  CHECK(whyNot([&](Sample& s) {
+  CHECK(whyNot([&](LoopKernel& s) {
           Block body = read(s);
           body.push_back(assign(s.k.ref(s.i), Add, literal(1)));
           return block(s.loop(s.i, 0, 4, std::move(body)));
         }) == "its body changes the counter 'i'");
-  CHECK(whyNot([&](Sample& s) {
+  CHECK(whyNot([&](LoopKernel& s) {
           return block(s.loop(s.i, 0, 1000, read(s)));
         }).starts_with("with the loops in it, it takes 1000 rounds"));
 }
 
 TEST_CASE("a nest is unrolled as a whole or not at all; a loop in one that stays, by itself") {
-  Sample s;
+  LoopKernel s;
   const std::string text =
       s.unrolled(block(s.loop(s.i, 0, 1000, block(s.loop(s.j, 0, 2, block(s.add(s.near(s.k.ref(s.j)))))))));
   CHECK(text.find("for (int i = 0;") != std::string::npos);
@@ -153,7 +153,7 @@ TEST_CASE("a nest is unrolled as a whole or not at all; a loop in one that stays
 }
 
 TEST_CASE("a bound that is a local of a known value is a constant") {
-  Sample s;
+  LoopKernel s;
   const VarId radius = s.k.local("radius", intType);
   CHECK(s.unrolled(block(declare(radius, literal(1)),
                          s.loop(s.i, unary(UnaryOp::Negate, s.k.ref(radius)), s.k.ref(radius),
@@ -162,7 +162,7 @@ TEST_CASE("a bound that is a local of a known value is a constant") {
 }
 
 TEST_CASE("an unsigned counter that never ends its loop is not counted") {
-  Sample s;
+  LoopKernel s;
   const Type uintType = Type::of(Scalar::Uint);
   const VarId n = s.k.local("n", uintType);
   const std::string text = s.unrolled(block(forLoop(

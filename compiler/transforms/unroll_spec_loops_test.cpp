@@ -19,7 +19,7 @@ using namespace ir;
 using enum BinaryOp;
 
 /// kernel void f(spec int n, int u, float a[], out float r<>), whose loops count i and j.
-struct Sample {
+struct SpecLoopKernel {
   Module module = testModule();
   KernelBuilder k{module, "f"};
   VarId n = k.spec("n", intType);
@@ -53,7 +53,7 @@ struct Sample {
 };
 
 TEST_CASE("each small value of a bound has a variant") {
-  Sample s;
+  SpecLoopKernel s;
   const Kernel& kernel = s.kernel(block(s.loop(s.i, s.k.ref(s.n), block(s.add(s.k.ref(s.i))))));
   REQUIRE(kernel.unrolled.size() == mostUnrolledValue);
   for (std::size_t v = 0; v < kernel.unrolled.size(); ++v) {
@@ -70,7 +70,7 @@ TEST_CASE("each small value of a bound has a variant") {
 }
 
 TEST_CASE("all variants together stay within the limit") {
-  Sample s;
+  SpecLoopKernel s;
   // n * n rounds of about 8 expressions
   const Kernel& kernel = s.kernel(
       block(s.loop(s.i, s.k.ref(s.n),
@@ -80,7 +80,7 @@ TEST_CASE("all variants together stay within the limit") {
 }
 
 TEST_CASE("other loops have no variants") {
-  Sample uniform, mixed, none;
+  SpecLoopKernel uniform, mixed, none;
   CHECK(uniform
             .kernel(block(uniform.loop(uniform.i, uniform.k.ref(uniform.u),
                                        block(uniform.add(uniform.k.ref(uniform.i))))))
