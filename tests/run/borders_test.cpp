@@ -12,8 +12,8 @@ using sk::float2, sk::float2x2, sk::int2, sk::int3;
 
 namespace {
 
-const std::vector<int> indices = {-2147483647 - 1, -3, -1, 0, 1, 2, 3, 4, 5, 6, 7, 100, 2147483647};
-const auto count = static_cast<std::int64_t>(indices.size());
+const std::vector<int> borderIndices = {-2147483647 - 1, -3, -1, 0, 1, 2, 3, 4, 5, 6, 7, 100, 2147483647};
+const auto indexCount = static_cast<std::int64_t>(borderIndices.size());
 
 bool isSame(const Hit& a, const Hit& b) { return a.t == b.t && a.id == b.id; }
 
@@ -29,12 +29,12 @@ Hit hitAt(std::size_t i) { return {0.5f + float(i), int(i)}; }
 TEST_CASE("borders of structs are written as C++ writes structs") {
   const HostArray<Hit> a({5}, hitAt);
   onSomeLayouts([&](sk::Device& device) {
-    auto r = device.stream<Hit>({count}), s = device.stream<Hit>({count});
+    auto r = device.stream<Hit>({indexCount}), s = device.stream<Hit>({indexCount});
     const auto stream = a.on(device);
-    borders::hits(stream, stream, stream, streamOf<int>(device, indices), r, s);
+    borders::hits(stream, stream, stream, streamOf<int>(device, borderIndices), r, s);
     const auto first = r.read(), second = s.read();
-    for (std::size_t i = 0; i < indices.size(); ++i) {
-      const Hit wanted = at(a, indices[i], Hit{1e30f, -1});
+    for (std::size_t i = 0; i < borderIndices.size(); ++i) {
+      const Hit wanted = at(a, borderIndices[i], Hit{1e30f, -1});
       CHECK(isSame(first[i], wanted));
       CHECK(isSame(second[i], wanted));
     }
@@ -87,25 +87,26 @@ TEST_CASE("borders of vectors, matrices and narrow types") {
                                [](std::size_t i) { return sk::half2{sk::half(float(i)), sk::half(1.0f)}; });
   const HostArray<float> f({5}, [](std::size_t i) { return 100 * float(i); });
   onSomeLayouts([&](sk::Device& device) {
-    auto r = device.stream<float2>({count});
-    auto s = device.stream<float2x2>({count});
-    auto t = device.stream<int3>({count});
+    auto r = device.stream<float2>({indexCount});
+    auto s = device.stream<float2x2>({indexCount});
+    auto t = device.stream<int3>({indexCount});
     borders::vectors(a.on(device), m.on(device), m.on(device), n.on(device), h.on(device), f.on(device),
-                     streamOf<int>(device, indices), r, s, t);
+                     streamOf<int>(device, borderIndices), r, s, t);
     const auto inside = [](int i) { return i >= 0 && i < 5; };
     CHECK(difference(r.read(), [&](std::size_t k) {
-            const int i = indices[k];
+            const int i = borderIndices[k];
             const auto x = static_cast<float>(i);
             return inside(i) ? float2{x + x + 100 * x, 2 + 1 + 100 * x}
                              : float2{0 + float(sk::half(0.1f)) + 20, 1 - 3 + 20};
           }) == "");
     const auto sums = s.read();
-    for (std::size_t k = 0; k < indices.size(); ++k) {
-      const auto x = static_cast<float>(indices[k]);
-      CHECK(sums[k] == (inside(indices[k]) ? float2x2{{{2 * x, 2}, {4, 6}}} : float2x2{{{8, 2}, {3, 11}}}));
+    for (std::size_t k = 0; k < borderIndices.size(); ++k) {
+      const auto x = static_cast<float>(borderIndices[k]);
+      CHECK(sums[k] ==
+            (inside(borderIndices[k]) ? float2x2{{{2 * x, 2}, {4, 6}}} : float2x2{{{8, 2}, {3, 11}}}));
     }
     CHECK(difference(t.read(), [&](std::size_t k) {
-            return inside(indices[k]) ? int3{indices[k], 8, 9} : int3{-1, -2, -3};
+            return inside(borderIndices[k]) ? int3{borderIndices[k], 8, 9} : int3{-1, -2, -3};
           }) == "");
   });
 }
@@ -114,13 +115,14 @@ TEST_CASE("a template's border is of the type that it is instantiated for") {
   const HostArray<float2> a({5}, [](std::size_t i) { return float2{float(i), 2}; });
   const HostArray<Hit> b({5}, hitAt);
   onSomeLayouts([&](sk::Device& device) {
-    auto r = device.stream<float2>({count});
-    auto s = device.stream<Hit>({count});
-    const auto i = streamOf<int>(device, indices);
+    auto r = device.stream<float2>({indexCount});
+    auto s = device.stream<Hit>({indexCount});
+    const auto i = streamOf<int>(device, borderIndices);
     borders::outside_3(a.on(device), i, r);
     borders::outside_5(b.on(device), i, s);
-    CHECK(difference(r.read(), [&](std::size_t k) { return at(a, indices[k], float2{3, 4}); }) == "");
+    CHECK(difference(r.read(), [&](std::size_t k) { return at(a, borderIndices[k], float2{3, 4}); }) == "");
     const auto hits = s.read();
-    for (std::size_t k = 0; k < indices.size(); ++k) CHECK(isSame(hits[k], at(b, indices[k], Hit{5, 6})));
+    for (std::size_t k = 0; k < borderIndices.size(); ++k)
+      CHECK(isSame(hits[k], at(b, borderIndices[k], Hit{5, 6})));
   });
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gather_ranks.sk.hpp"
+#include "support/boundary_modes.hpp"
 #include "support/devices.hpp"
 #include "support/host_array.hpp"
 #include "support/values.hpp"
@@ -12,18 +13,6 @@ using namespace run_tests;
 using sk::float3, sk::int3, sk::int4;
 
 namespace {
-
-constexpr int outsideValue = -7;
-
-/// Maps any index into the extent, as a boundary mode does; -1 stands for the border.
-std::int64_t clampIndex(std::int64_t i, std::int64_t n) { return std::clamp<std::int64_t>(i, 0, n - 1); }
-std::int64_t wrapIndex(std::int64_t i, std::int64_t n) { return ((i % n) + n) % n; }
-std::int64_t mirrorIndex(std::int64_t i, std::int64_t n) {
-  const std::int64_t m = wrapIndex(i, 2 * n);
-  return m < n ? m : 2 * n - 1 - m;
-}
-std::int64_t borderIndex(std::int64_t i, std::int64_t n) { return i < 0 || i >= n ? -1 : i; }
-using Inside = std::int64_t (*)(std::int64_t, std::int64_t);
 
 /// The element at any position, slowest dimension first, as a boundary mode reads it.
 int at(const HostArray<int>& a, Position p, Inside inside) {
@@ -39,8 +28,8 @@ HostArray<int> numbered(const sk::Shape& shape) {
   return HostArray<int>(shape, [](std::size_t i) { return static_cast<int>(3 * i + 1); });
 }
 
-const std::vector<int> indices = {0,  1,  4,   5,    66,         67,         65536,          1 << 30,
-                                  -1, -2, -66, -100, -(1 << 24), 2147483647, -2147483647 - 1};
+const std::vector<int> rankIndices = {0,  1,  4,   5,    66,         67,         65536,          1 << 30,
+                                      -1, -2, -66, -100, -(1 << 24), 2147483647, -2147483647 - 1};
 
 /// The position of element i of the domain, plus an offset.
 Position moved(const sk::Shape& domain, std::size_t i, const Position& offset) {
@@ -58,9 +47,9 @@ template <class Read, class Near, class Stencil>
 void checkSpace(sk::Device& device, const Mode& mode, const Read& read, const Near& near,
                 const Stencil& stencil) {
   std::vector<int3> triples;
-  for (const int z : indices) {
-    for (const int y : indices) {
-      for (const int x : indices) triples.push_back({x, y, z});
+  for (const int z : rankIndices) {
+    for (const int y : rankIndices) {
+      for (const int x : rankIndices) triples.push_back({x, y, z});
     }
   }
   const auto count = static_cast<std::int64_t>(triples.size());
@@ -107,7 +96,7 @@ template <class Read, class Near>
 void checkTime(sk::Device& device, const Mode& mode, const Read& read, const Near& near) {
   std::vector<int4> places;
   for (std::uint32_t i = 0; i < 16 * 81; ++i) {
-    const auto one = [&](std::uint32_t c) { return indices[hashed(4 * i + c) % indices.size()]; };
+    const auto one = [&](std::uint32_t c) { return rankIndices[hashed(4 * i + c) % rankIndices.size()]; };
     places.push_back({one(0), one(1), one(2), one(3)});
   }
   const auto count = static_cast<std::int64_t>(places.size());
@@ -142,7 +131,7 @@ TEST_CASE("gathers of rank 3 read any index, in every boundary mode") {
   using namespace gather_ranks;
   onSomeLayouts([](sk::Device& device) {
     checkSpace(device, {"wrap", wrapIndex}, space_wrap, space_near_wrap, space_stencil_wrap);
-    if (!takesAllCases(device)) return;  // modes are text about indices, not about layouts
+    if (!takesAllCases(device)) return;  // modes are text about rankIndices, not about layouts
     checkSpace(device, {"clamp", clampIndex}, space_clamp, space_near_clamp, space_stencil_clamp);
     checkSpace(device, {"mirror", mirrorIndex}, space_mirror, space_near_mirror, space_stencil_mirror);
     checkSpace(device, {"border", borderIndex}, space_border, space_near_border, space_stencil_border);
@@ -153,7 +142,7 @@ TEST_CASE("gathers of rank 4 read any index, in every boundary mode") {
   using namespace gather_ranks;
   onSomeLayouts([](sk::Device& device) {
     checkTime(device, {"wrap", wrapIndex}, time_wrap, time_near_wrap);
-    if (!takesAllCases(device)) return;  // modes are text about indices, not about layouts
+    if (!takesAllCases(device)) return;  // modes are text about rankIndices, not about layouts
     checkTime(device, {"clamp", clampIndex}, time_clamp, time_near_clamp);
     checkTime(device, {"mirror", mirrorIndex}, time_mirror, time_near_mirror);
     checkTime(device, {"border", borderIndex}, time_border, time_near_border);
@@ -207,7 +196,7 @@ TEST_CASE("a gather of rank 3 may be a view, whose faces are then the boundary")
   });
 }
 
-TEST_CASE("gathers of rank 3 and 4 take float indices, hold structs and know their extents") {
+TEST_CASE("gathers of rank 3 and 4 take float rankIndices, hold structs and know their extents") {
   using gather_ranks::Voxel;
   const sk::Shape shape{3, 4, 5};
   const HostArray<Voxel> a(shape, [](std::size_t i) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "gathers.sk.hpp"
+#include "support/boundary_modes.hpp"
 #include "support/devices.hpp"
 #include "support/host_array.hpp"
 #include "support/values.hpp"
@@ -12,18 +13,6 @@
 using namespace run_tests;
 
 namespace {
-
-constexpr std::int64_t outsideValue = -7;
-
-/// Maps any index into the extent, as a boundary mode does; -1 stands for the border.
-std::int64_t clampIndex(std::int64_t i, std::int64_t n) { return std::clamp<std::int64_t>(i, 0, n - 1); }
-std::int64_t wrapIndex(std::int64_t i, std::int64_t n) { return ((i % n) + n) % n; }
-std::int64_t mirrorIndex(std::int64_t i, std::int64_t n) {
-  const std::int64_t m = wrapIndex(i, 2 * n);
-  return m < n ? m : 2 * n - 1 - m;
-}
-std::int64_t borderIndex(std::int64_t i, std::int64_t n) { return i < 0 || i >= n ? -1 : i; }
-using Inside = std::int64_t (*)(std::int64_t, std::int64_t);
 
 template <class T>
 T at(const HostArray<T>& a, std::int64_t x, Inside inside) {

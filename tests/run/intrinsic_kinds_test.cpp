@@ -15,7 +15,7 @@ using sk::bool3, sk::bool4, sk::float2, sk::float3, sk::float4, sk::int3, sk::in
 
 namespace {
 
-constexpr std::int64_t count = 200;
+constexpr std::int64_t kindCount = 200;
 
 template <class F, class... V>
 auto by4(const F& f, const V&... v) {
@@ -51,10 +51,10 @@ std::string differenceBy(double absolute, const std::vector<float4>& actual, con
 }  // namespace
 
 TEST_CASE("geometry") {
-  const auto u = values<float4>(count, 1), v = values<float4>(count, 2);
+  const auto u = values<float4>(kindCount, 1), v = values<float4>(kindCount, 2);
   onGlAndNative([&](sk::Device& device) {
-    auto a = device.stream<float4>({count}), b = device.stream<float4>({count});
-    auto c = device.stream<float4>({count}), d = device.stream<float4>({count});
+    auto a = device.stream<float4>({kindCount}), b = device.stream<float4>({kindCount});
+    auto c = device.stream<float4>({kindCount}), d = device.stream<float4>({kindCount});
     intrinsics::geometry(streamOf<float4>(device, u), streamOf<float4>(device, v), a, b, c, d);
     // Lengths are up to 16 and dot products up to 256: the bound is a few ulp of these.
     CHECK(differenceBy(1e-4, a.read(), [&](std::size_t i) {
@@ -84,16 +84,16 @@ TEST_CASE("geometry") {
 }
 
 TEST_CASE("scalars may stand among the vectors of an intrinsic") {
-  const auto x = values<float4>(count, 1);
-  auto s = values<float>(count, 2);
+  const auto x = values<float4>(kindCount, 1);
+  auto s = values<float>(kindCount, 2);
   for (float& v : s) v = std::fabs(v);
   const auto smooth = [](double low, double high, double v) {
     const double t = std::clamp((v - low) / (high - low), 0.0, 1.0);
     return t * t * (3 - 2 * t);
   };
   onGlAndNative([&](sk::Device& device) {
-    auto a = device.stream<float4>({count}), b = device.stream<float4>({count});
-    auto c = device.stream<float4>({count}), d = device.stream<float4>({count});
+    auto a = device.stream<float4>({kindCount}), b = device.stream<float4>({kindCount});
+    auto c = device.stream<float4>({kindCount}), d = device.stream<float4>({kindCount});
     intrinsics::scalars(streamOf<float4>(device, x), streamOf<float>(device, s), a, b, c, d);
     const auto wzyx = [&](std::size_t i) { return float4{x[i].w, x[i].z, x[i].y, x[i].x}; };
     const auto each = [&](const auto& f, std::size_t i, const float4& other) {
@@ -133,15 +133,15 @@ TEST_CASE("scalars may stand among the vectors of an intrinsic") {
 }
 
 TEST_CASE("modf, frexp and sincos give both their parts") {
-  std::vector<float4> x = values<float4>(count, 3);
+  std::vector<float4> x = values<float4>(kindCount, 3);
   const float infinity = std::numeric_limits<float>::infinity();
   x[0] = {0, -0.0f, 1, -1};
   x[1] = {3.4e38f, -1.2e-38f, 16777215, -0.5f};
   x[2] = {1.5f, -2.75f, 1024, 1e-30f};
   onGlAndNative([&](sk::Device& device) {
-    auto a = device.stream<float4>({count}), b = device.stream<float4>({count}),
-         c = device.stream<float4>({count});
-    auto d = device.stream<int4>({count});
+    auto a = device.stream<float4>({kindCount}), b = device.stream<float4>({kindCount}),
+         c = device.stream<float4>({kindCount});
+    auto d = device.stream<int4>({kindCount});
     intrinsics::parts(streamOf<float4>(device, x), a, b, c, d);
     CHECK(difference(a.read(), [&](std::size_t i) {
             return by4(
@@ -216,8 +216,8 @@ TEST_CASE("ldexp scales by powers of two to both ends") {
 }
 
 TEST_CASE("bits are moved unchanged, and classes of floats told") {
-  const auto x = values<float4>(count, 4);
-  auto i = values<int4>(count, 5);
+  const auto x = values<float4>(kindCount, 4);
+  auto i = values<int4>(kindCount, 5);
   for (int4& v : i) v = by4([](int b) { return (b & 0x007fffff) | 0x3f800000; }, v);  // floats in [1, 2)
   const float infinity = std::numeric_limits<float>::infinity(),
               nan = std::numeric_limits<float>::quiet_NaN();
@@ -228,9 +228,9 @@ TEST_CASE("bits are moved unchanged, and classes of floats told") {
                                        {-nan, infinity, 1e-30f, -infinity}};
   onGlAndNative([&](sk::Device& device) {
     const auto bits = [](float v) { return std::bit_cast<std::uint32_t>(v); };
-    auto a = device.stream<int4>({count});
-    auto b = device.stream<uint4>({count});
-    auto c = device.stream<float4>({count}), d = device.stream<float4>({count});
+    auto a = device.stream<int4>({kindCount});
+    auto b = device.stream<uint4>({kindCount});
+    auto c = device.stream<float4>({kindCount}), d = device.stream<float4>({kindCount});
     intrinsics::bits(streamOf<float4>(device, x), streamOf<int4>(device, i), a, b, c, d);
     CHECK(difference(a.read(), [&](std::size_t k) {
             return by4([&](float v, float w) { return int(bits(v) ^ bits(w)); }, x[k],
@@ -274,14 +274,14 @@ TEST_CASE("bits are moved unchanged, and classes of floats told") {
 }
 
 TEST_CASE("integers have abs, sign, min, max and clamp") {
-  auto x = values<int4>(count, 6), y = values<int4>(count, 7);
+  auto x = values<int4>(kindCount, 6), y = values<int4>(kindCount, 7);
   for (auto* list : {&x, &y}) {
     for (int4& v : *list) v = by4([](int k) { return k % 20; }, v);
   }
-  const auto u = values<uint4>(count, 8), w = values<uint4>(count, 9);
+  const auto u = values<uint4>(kindCount, 8), w = values<uint4>(kindCount, 9);
   onGlAndNative([&](sk::Device& device) {
-    auto a = device.stream<int4>({count}), b = device.stream<int4>({count});
-    auto c = device.stream<int4>({count}), d = device.stream<int4>({count});
+    auto a = device.stream<int4>({kindCount}), b = device.stream<int4>({kindCount});
+    auto c = device.stream<int4>({kindCount}), d = device.stream<int4>({kindCount});
     intrinsics::ints(streamOf<int4>(device, x), streamOf<int4>(device, y), a, b, c, d);
     const auto sign = [](int v) { return (v > 0) - (v < 0); };
     CHECK(difference(a.read(), [&](std::size_t i) { return by4([](int v) { return std::abs(v); }, x[i]); }) ==
@@ -300,7 +300,7 @@ TEST_CASE("integers have abs, sign, min, max and clamp") {
     CHECK(difference(d.read(), [&](std::size_t i) {
             return int4{std::abs(x[i].x), sign(y[i].y), std::min(x[i].z, y[i].z), std::clamp(x[i].w, 1, 3)};
           }) == "");
-    auto p = device.stream<uint4>({count}), q = device.stream<uint4>({count});
+    auto p = device.stream<uint4>({kindCount}), q = device.stream<uint4>({kindCount});
     intrinsics::uints(streamOf<uint4>(device, u), streamOf<uint4>(device, w), p, q);
     CHECK(difference(p.read(), [&](std::size_t i) {
             return by4([](unsigned s,
@@ -315,16 +315,16 @@ TEST_CASE("integers have abs, sign, min, max and clamp") {
 }
 
 TEST_CASE("comparisons by name give bool vectors") {
-  auto x = values<float3>(count, 1), y = values<float3>(count, 2);
-  auto i = values<int3>(count, 3), j = values<int3>(count, 4);
+  auto x = values<float3>(kindCount, 1), y = values<float3>(kindCount, 2);
+  auto i = values<int3>(kindCount, 3), j = values<int3>(kindCount, 4);
   for (std::size_t k = 0; k < x.size(); k += 3) {
     y[k].y = x[k].y;
     j[k].x = i[k].x;
   }
   onGlAndNative([&](sk::Device& device) {
-    auto a = device.stream<bool3>({count}), b = device.stream<bool3>({count}),
-         c = device.stream<bool3>({count});
-    auto d = device.stream<int4>({count});
+    auto a = device.stream<bool3>({kindCount}), b = device.stream<bool3>({kindCount}),
+         c = device.stream<bool3>({kindCount});
+    auto d = device.stream<int4>({kindCount});
     intrinsics::comparisons(streamOf<float3>(device, x), streamOf<float3>(device, y),
                             streamOf<int3>(device, i), streamOf<int3>(device, j), a, b, c, d);
     const auto less = [&](std::size_t k) { return bool3{x[k].x < y[k].x, x[k].y < y[k].y, x[k].z < y[k].z}; };

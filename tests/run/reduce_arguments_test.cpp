@@ -6,6 +6,7 @@
 
 #include "reduce_arguments.sk.hpp"
 #include "support/devices.hpp"
+#include "support/folds.hpp"
 #include "support/host_array.hpp"
 #include "support/values.hpp"
 
@@ -15,7 +16,6 @@ using sk::float2, sk::int2, sk::uint2;
 namespace {
 
 /// Integers in [-8, 8), so that sums of products are exact.
-float smallAt(std::size_t i) { return static_cast<float>(hashed(static_cast<std::uint32_t>(i)) % 16u) - 8; }
 float otherAt(std::size_t i) { return smallAt(i + 100003); }
 std::uint32_t bitsAt(std::size_t i) { return valueAt<std::uint32_t>(static_cast<std::uint32_t>(i)); }
 

@@ -15,22 +15,21 @@ using sk::float2, sk::float2x2, sk::float3, sk::int2, sk::int4;
 
 namespace {
 
-float smallAt(std::size_t i) { return static_cast<float>(hashed(static_cast<std::uint32_t>(i)) % 16u) - 8; }
-std::uint32_t bitsAt(std::size_t i) { return valueAt<std::uint32_t>(static_cast<std::uint32_t>(i)); }
+std::uint32_t wordAt(std::size_t i) { return valueAt<std::uint32_t>(static_cast<std::uint32_t>(i)); }
 /// Distinct floats, up to 65536 of them.
 float distinctAt(std::size_t i) {
   return static_cast<float>(static_cast<std::uint32_t>(i) * 40503u % 65536u);
 }
 
-const std::vector<sk::Shape> allShapes = {{1},      {2},      {33},     {1021},     {4093},
-                                          {13, 17}, {1, 200}, {200, 1}, {5, 7, 11}, {2, 3, 5, 7}};
+const std::vector<sk::Shape> resultShapes = {{1},      {2},      {33},     {1021},     {4093},
+                                             {13, 17}, {1, 200}, {200, 1}, {5, 7, 11}, {2, 3, 5, 7}};
 
 /// Every shape, or a line and a plane of several passes each: the other ranks read elements by the same functions.
-std::vector<sk::Shape> shapesOn(const sk::Device& device) {
-  return takesAllCases(device) ? allShapes : std::vector<sk::Shape>{{4093}, {13, 17}};
+std::vector<sk::Shape> resultShapesOn(const sk::Device& device) {
+  return takesAllCases(device) ? resultShapes : std::vector<sk::Shape>{{4093}, {13, 17}};
 }
 
-std::size_t count(const sk::Shape& shape) { return static_cast<std::size_t>(shape.size()); }
+std::size_t sizeOf(const sk::Shape& shape) { return static_cast<std::size_t>(shape.size()); }
 
 int4 indexAt(const sk::Shape& shape, std::size_t i) {
   const Position p = positionOf(shape, i);
@@ -63,7 +62,7 @@ sk::Device& narrowDevice(const std::string& profile) {
 
 TEST_CASE("several accumulators come as a tuple, or as streams") {
   onSomeLayouts([](sk::Device& device) {
-    for (const sk::Shape& shape : shapesOn(device)) {
+    for (const sk::Shape& shape : resultShapesOn(device)) {
       INFO(sk::toString(shape));
       const HostArray<float> x(shape, smallAt);
       float sum = 0, squares = 0, least = INFINITY, most = -INFINITY;
@@ -95,9 +94,9 @@ TEST_CASE("several accumulators come as a tuple, or as streams") {
 
 TEST_CASE("accumulators of several types, in order, combined by an overload or by themselves") {
   onSomeLayouts([](sk::Device& device) {
-    for (const sk::Shape& shape : shapesOn(device)) {
+    for (const sk::Shape& shape : resultShapesOn(device)) {
       INFO(sk::toString(shape));
-      const HostArray<std::uint32_t> x(shape, bitsAt);
+      const HostArray<std::uint32_t> x(shape, wordAt);
       results::Affine expected{1, 0};
       bool isOdd = false;
       for (const std::uint32_t v : x.elements()) {
@@ -106,7 +105,7 @@ TEST_CASE("accumulators of several types, in order, combined by an overload or b
       }
       const auto [f, n, odd] = results::mixed(x.on(device));
       CHECK((f.a == expected.a && f.b == expected.b));
-      CHECK(n == static_cast<int>(count(shape)));
+      CHECK(n == static_cast<int>(sizeOf(shape)));
       CHECK(odd == isOdd);
 
       const HostArray<float> y(shape, distinctAt);
@@ -116,7 +115,7 @@ TEST_CASE("accumulators of several types, in order, combined by an overload or b
       CHECK(least == *found);
       CHECK(where == found - y.elements().begin());
       const auto [first, last] = results::firstAndLast(at.on(device), at.on(device));
-      CHECK((first == 0 && last == static_cast<int>(count(shape)) - 1));
+      CHECK((first == 0 && last == static_cast<int>(sizeOf(shape)) - 1));
     }
     CHECK_THROWS_AS(results::leastAt(device.stream<float>({0}), device.stream<int>({0})), sk::Error);
   });
@@ -124,7 +123,7 @@ TEST_CASE("accumulators of several types, in order, combined by an overload or b
 
 TEST_CASE("the index is the element's in its input, in views and for blocks, too") {
   onEveryLayout([](sk::Device& device) {
-    for (const sk::Shape& shape : allShapes) {
+    for (const sk::Shape& shape : resultShapes) {
       INFO(sk::toString(shape));
       const HostArray<float> x(shape, distinctAt);
       const auto least = std::min_element(x.elements().begin(), x.elements().end());
@@ -159,8 +158,8 @@ TEST_CASE("the index is the element's in its input, in views and for blocks, too
 
 TEST_CASE("places of several inputs, of which some repeat, and the weights that they choose") {
   onSomeLayouts([](sk::Device& device) {
-    const HostArray<std::uint32_t> x({14, 50}, bitsAt),
-        y({1, 50}, [](std::size_t i) { return bitsAt(i + 5); });
+    const HostArray<std::uint32_t> x({14, 50}, wordAt),
+        y({1, 50}, [](std::size_t i) { return wordAt(i + 5); });
     std::uint32_t expected = 0;
     for (int row = 0; row < 14; ++row) {
       for (int column = 0; column < 50; ++column) {
@@ -182,7 +181,7 @@ TEST_CASE("more planes than a pass writes") {
     for (sk::Device* device : {&narrowDevice(profile), &run_tests::device(profile)}) {
       INFO(profile << ": " << device->limits().drawBuffers << " draw buffers");
       const HostArray<int> x({37, 60},
-                             [](std::size_t i) { return static_cast<int>(bitsAt(i) % 4096) - 100; });
+                             [](std::size_t i) { return static_cast<int>(wordAt(i) % 4096) - 100; });
       results::Many m{
           0, {-INFINITY, -INFINITY, -INFINITY, -INFINITY}, {0, 0}, 0, false, {INFINITY, INFINITY, INFINITY}};
       results::Many n{INFINITY, {0, 0, 0, 0}, {INT32_MIN, INT32_MIN}, 0, false, {0, 0, 0}};
@@ -222,7 +221,7 @@ TEST_CASE("products of matrices keep the order of 10007 factors") {
   onSomeLayouts([](sk::Device& device) {
     const std::int64_t n = device.limits().textureSize <= smallLimits[0] ? 4093 : 10007;
     const HostArray<float2x2> m({n}, [](std::size_t i) {
-      const auto at = [&](std::size_t k) { return static_cast<float>(bitsAt(4 * i + k) % 251u); };
+      const auto at = [&](std::size_t k) { return static_cast<float>(wordAt(4 * i + k) % 251u); };
       return float2x2{{{at(0), at(1)}, {at(2), at(3)}}};
     });
     const auto times = [](const float2x2& a, const float2x2& b) {
@@ -257,7 +256,7 @@ TEST_CASE("products of matrices keep the order of 10007 factors") {
 
 TEST_CASE("narrow types fold as they do in C++") {
   onEveryTarget([](sk::Device& device) {
-    const HostArray<float> x({4093}, [](std::size_t i) { return static_cast<float>(bitsAt(i) % 90u); });
+    const HostArray<float> x({4093}, [](std::size_t i) { return static_cast<float>(wordAt(i) % 90u); });
     int sum = 0;
     float most = 0, least = 100;
     for (const float v : x.elements()) {

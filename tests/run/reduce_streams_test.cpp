@@ -14,7 +14,6 @@ using sk::float4;
 
 namespace {
 
-float smallAt(std::size_t i) { return static_cast<float>(hashed(static_cast<std::uint32_t>(i)) % 16u) - 8; }
 reduces::Affine affineAt(std::size_t i) {
   const auto k = static_cast<std::uint32_t>(i);
   return {valueAt<std::uint32_t>(k) | 1u, valueAt<std::uint32_t>(k + 5)};

@@ -28,7 +28,6 @@ std::vector<sk::Shape> manyShapes(const sk::Device& device) {
 }
 
 /// Integers in [-8, 8), so that sums of 65537 floats are exact.
-float smallAt(std::size_t i) { return static_cast<float>(hashed(static_cast<std::uint32_t>(i)) % 16u) - 8; }
 
 /// Checks that kernel(stream) is the fold of the elements make(i).
 template <class T, class A, class Make, class Kernel, class Fold>

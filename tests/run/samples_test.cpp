@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "samples.sk.hpp"
+#include "support/boundary_modes.hpp"
 #include "support/devices.hpp"
 #include "support/host_array.hpp"
 #include "support/values.hpp"
@@ -18,16 +19,6 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
-
-std::int64_t clampIndex(std::int64_t i, std::int64_t n) { return std::clamp<std::int64_t>(i, 0, n - 1); }
-std::int64_t wrapIndex(std::int64_t i, std::int64_t n) { return ((i % n) + n) % n; }
-std::int64_t mirrorIndex(std::int64_t i, std::int64_t n) {
-  const std::int64_t m = wrapIndex(i, 2 * n);
-  return m < n ? m : 2 * n - 1 - m;
-}
-std::int64_t borderIndex(std::int64_t i, std::int64_t n) { return i < 0 || i >= n ? -1 : i; }
-using Inside = std::int64_t (*)(std::int64_t, std::int64_t);
-constexpr float outsideValue = -7;
 
 /// The index of the neighbour below a position, limited to the range of indices, and the weight of the neighbour above.
 struct Split {

@@ -14,7 +14,7 @@ using namespace run_tests;
 
 namespace {
 
-const std::vector<sk::Shape> shapes = {{1}, {7}, {1021}, {13, 17}, {67, 3}, {2, 3, 5}};
+const std::vector<sk::Shape> specShapes = {{1}, {7}, {1021}, {13, 17}, {67, 3}, {2, 3, 5}};
 
 std::vector<float> numbered(const sk::Shape& shape, float first) {
   std::vector<float> numbers(static_cast<std::size_t>(shape.size()));
@@ -26,7 +26,7 @@ std::vector<float> numbered(const sk::Shape& shape, float first) {
 
 TEST_CASE("an input that is switched off may be left out") {
   onSomeLayouts([](sk::Device& device) {
-    for (const sk::Shape& shape : shapes) {
+    for (const sk::Shape& shape : specShapes) {
       INFO("shape " << sk::toString(shape));
       auto x = streamOf<float>(device, shape, numbered(shape, 1));
       auto y = streamOf<float>(device, shape, numbered(shape, 100));

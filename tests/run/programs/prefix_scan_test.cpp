@@ -30,7 +30,7 @@ sk::Stream<int> scanExclusive(sk::Device& device, const sk::Stream<int>& x) {
   return before;
 }
 
-const std::vector<std::int64_t> sizes = {0, 1, 2, 3, 17, 64, 65, 127, 1021, 4096};
+const std::vector<std::int64_t> scanSizes = {0, 1, 2, 3, 17, 64, 65, 127, 1021, 4096};
 
 std::vector<unsigned> sums(const std::vector<int>& x) {
   std::vector<unsigned> result(x.begin(), x.end());
@@ -53,7 +53,7 @@ void checkBoth(sk::Device& device, std::int64_t n) {
 
 TEST_CASE("prefix scan: sums of every length, in both ways") {
   onDrawnLayouts([](sk::Device& device) {
-    for (const std::int64_t n : sizes) checkBoth(device, n);
+    for (const std::int64_t n : scanSizes) checkBoth(device, n);
   });
 }
 

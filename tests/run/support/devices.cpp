@@ -18,4 +18,14 @@ sk::Device& device(std::string_view profile, int textureLimit) {
   return found->second;
 }
 
+void detail::onLayouts(std::span<const Layout> chosen, void (*call)(const void* test, sk::Device& device),
+                       const void* test) {
+  for (const Layout& layout : chosen) {
+    INFO("profile " << layout.profile << ", texture limit " << layout.textureLimit);
+    call(test, device(layout.profile, layout.textureLimit));
+  }
+  INFO("native");
+  call(test, device("native"));
+}
+
 }  // namespace run_tests

@@ -60,14 +60,13 @@ inline bool takesAllCases(const sk::Device& one) {
 
 namespace detail {
 
+/// Calls call(test, device) on the chosen layouts and natively, with their names in messages.
+void onLayouts(std::span<const Layout> chosen, void (*call)(const void* test, sk::Device& device),
+               const void* test);
+
 template <class Test>
 void onLayouts(std::span<const Layout> chosen, const Test& test) {
-  for (const Layout& layout : chosen) {
-    INFO("profile " << layout.profile << ", texture limit " << layout.textureLimit);
-    test(device(layout.profile, layout.textureLimit));
-  }
-  INFO("native");
-  test(device("native"));
+  onLayouts(chosen, [](const void* each, sk::Device& one) { (*static_cast<const Test*>(each))(one); }, &test);
 }
 
 }  // namespace detail

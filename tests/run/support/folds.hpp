@@ -11,6 +11,11 @@
 
 namespace run_tests {
 
+/// Integers from -8 to 7, whose sums are exact in any order.
+inline float smallAt(std::size_t i) {
+  return static_cast<float>(hashed(static_cast<std::uint32_t>(i)) % 16u) - 8;
+}
+
 /// Folds the elements of a box of `input`, which starts at `begin` and has shape `box`, in row-major order.
 template <class A, class T, class Fold>
 A foldBox(const HostArray<T>& input, const Position& begin, const sk::Shape& box, A accumulator,

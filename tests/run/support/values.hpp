@@ -7,6 +7,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <type_traits>
@@ -109,50 +110,75 @@ bool isSame(const T& a, const T& b) {
   }
 }
 
-/// "" if agree(actual[i], expected(i)) for all i in [0, count).
-template <class Actual, class Expected, class Agree>
-std::string difference(const Actual& actual, std::size_t count, const Expected& expected,
-                       const Agree& agree) {
+/// Whether an element agrees with the expected one, by a rule of the test.
+template <class T>
+using Agree = std::function<bool(const T& actual, const T& expected)>;
+
+/// "" if both have the same size and agree(actual[i], expected[i]) for all i; without a rule, elements agree if isSame.
+/// The types of most tests are compiled in values.cpp, once.
+template <class T>
+std::string differenceOf(const std::vector<T>& actual, const std::vector<T>& expected,
+                         const Agree<T>& agree) {
   std::ostringstream out;
-  if (actual.size() != count) {
-    out << actual.size() << " elements, not " << count;
+  if (actual.size() != expected.size()) {
+    out << actual.size() << " elements, not " << expected.size();
     return out.str();
   }
   std::size_t wrong = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const typename Actual::value_type wanted = static_cast<typename Actual::value_type>(expected(i));
-    if (agree(actual[i], wanted)) continue;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    if (agree(actual[i], expected[i])) continue;
     if (wrong++ < 4) {
       out << (wrong == 1 ? "" : "; ") << '[' << i << "] is ";
-      show(out, actual[i]);
-      show(out << ", not ", wanted);
+      show<T>(out, actual[i]);
+      show<T>(out << ", not ", expected[i]);
     }
   }
-  if (wrong > 4) out << "; " << wrong << " of " << count << " differ";
+  if (wrong > 4) out << "; " << wrong << " of " << expected.size() << " differ";
   return out.str();
+}
+template <class T>
+std::string differenceOf(const std::vector<T>& actual, const std::vector<T>& expected) {
+  return differenceOf<T>(actual, expected, isSame<T>);
+}
+
+#define SK_COMPILED_ONCE(T)                                                               \
+  extern template std::string differenceOf(const std::vector<T>&, const std::vector<T>&); \
+  extern template std::string differenceOf(const std::vector<T>&, const std::vector<T>&, const Agree<T>&);
+#include "support/compared_types.def"
+#undef SK_COMPILED_ONCE
+
+/// expected(i) for all i in [0, count).
+template <class T, class Expected>
+std::vector<T> listed(std::size_t count, const Expected& expected) {
+  std::vector<T> list(count);
+  for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<T>(expected(i));
+  return list;
+}
+
+/// "" if agree(actual[i], expected(i)) for all i in [0, count).
+template <class T, std::invocable<std::size_t> Expected>
+std::string difference(const std::vector<T>& actual, std::size_t count, const Expected& expected,
+                       const std::type_identity_t<Agree<T>>& agree) {
+  return differenceOf<T>(actual, listed<T>(count, expected), agree);
 }
 
 /// "" if every element is equal to the expected one, or both are NaN.
 template <class T>
 std::string difference(const std::vector<T>& actual, const std::vector<T>& expected) {
-  return difference(
-      actual, expected.size(), [&](std::size_t i) -> const T& { return expected[i]; }, isSame<T>);
+  return differenceOf<T>(actual, expected);
 }
 template <class T, std::invocable<std::size_t> Expected>
 std::string difference(const std::vector<T>& actual, const Expected& expected) {
-  return difference(actual, actual.size(), expected, isSame<T>);
+  return differenceOf<T>(actual, listed<T>(actual.size(), expected));
 }
 
 /// "" if every element is within `absolute` or `relative` of the expected one, whichever allows more.
+std::string difference(const std::vector<float>& actual, const std::vector<float>& expected, double absolute,
+                       double relative);
 template <std::invocable<std::size_t> Expected>
 std::string difference(const std::vector<float>& actual, const Expected& expected, double absolute,
                        double relative) {
-  return difference(
-      actual, actual.size(), [&](std::size_t i) { return static_cast<float>(expected(i)); },
-      [&](float a, float b) {
-        const double allowed = std::max(absolute, relative * std::fabs(double{b}));
-        return isSame(a, b) || std::fabs(double{a} - double{b}) <= allowed;
-      });
+  return difference(actual, listed<float>(actual.size(), expected), absolute, relative);
 }
 
 }  // namespace run_tests
