@@ -39,19 +39,6 @@ const TestKernel& slow() {
   return kernel;
 }
 
-template <class T>
-std::vector<T> patterned(std::size_t count) {
-  const std::vector<std::uint32_t> words = bitPatterns((count * sizeof(T) + 3) / 4);
-  std::vector<T> elements(count);
-  if (count > 0) std::memcpy(static_cast<void*>(elements.data()), words.data(), count * sizeof(T));
-  return elements;
-}
-
-template <class T>
-bool haveSameBits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
 std::vector<Device> devices() {
   std::vector<Device> all;
   for (const std::string& profile : profileNames) {

@@ -97,13 +97,6 @@ Names callsOf(Work&& work) {
   return called;
 }
 
-const TestKernel& saxpy() {
-  static const TestKernel kernel(
-      "saxpy", "void saxpy(float a, float x, float y, out float r) { r = a * x + y; }\n",
-      {uniform<float>("a"), input<float>("x"), input<float>("y"), output<float>("r")});
-  return kernel;
-}
-
 struct Streams {
   explicit Streams(Device& device)
       : x(device.stream<float>({8, 8})),

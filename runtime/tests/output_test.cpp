@@ -17,7 +17,7 @@ using namespace sk::test;
 
 namespace {
 
-std::vector<float> ramp(std::int64_t count, float first = 0) {
+std::vector<float> counted(std::int64_t count, float first = 0) {
   std::vector<float> values(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] = first + static_cast<float>(i);
@@ -86,12 +86,12 @@ TEST_CASE("a stream may be read and written by one call") {
   Device device({.profile = profile, .textureLimit = limit});
   const auto shape = GENERATE(Shape(12), Shape(201), Shape(13, 14), Shape(5, 6, 7));
   auto x = device.stream<float>(shape);
-  x.write(ramp(shape.size()));
+  x.write(counted(shape.size()));
   SECTION("whole, again and again") {
     for (int i = 0; i < 5; ++i) {
       increment()(x, x);
     }
-    CHECK(x.read() == ramp(shape.size(), 5));
+    CHECK(x.read() == counted(shape.size(), 5));
   }
   SECTION("a part of it, at the same place") {
     const Index begin = Index::origin(shape.rank());
@@ -134,7 +134,7 @@ TEST_CASE("in place with a gather reads only what was there before") {
   static const TestKernel shift("shift", "void shift(out float r) { r = sk_near_a(ivec2(1, 0)); }\n",
                                 {gather<float>("a", 2, program::Boundary::Wrap), output<float>("r")});
   auto a = device.stream<float>({40, 31});
-  a.write(ramp(40 * 31));
+  a.write(counted(40 * 31));
   shift(a, a);
   const auto result = a.read();
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -170,14 +170,14 @@ TEST_CASE("outputs that lie differently") {
   const auto limit = GENERATE(0, 64);
   Device device({.profile = profile, .textureLimit = limit});
   auto x = device.stream<float>({10, 10});
-  x.write(ramp(100));
+  x.write(counted(100));
   auto a = device.stream<float>({10, 10});
   SECTION("the second is a part of a larger stream") {
     auto b = device.stream<float>({20, 100});
     b.write(std::vector<float>(2000, -1.0f));
     two()(x, a, b.domain({5, 6}, {15, 16}));
-    CHECK(a.read() == ramp(100, 1));
-    CHECK(b.domain({5, 6}, {15, 16}).read() == ramp(100, 1000));
+    CHECK(a.read() == counted(100, 1));
+    CHECK(b.domain({5, 6}, {15, 16}).read() == counted(100, 1000));
     CHECK(b.domain({0, 0}, {5, 100}).read() == std::vector<float>(500, -1.0f));
     CHECK(b.domain({5, 16}, {20, 100}).read() == std::vector<float>(15 * 84, -1.0f));
   }
@@ -185,21 +185,21 @@ TEST_CASE("outputs that lie differently") {
     auto b = device.stream<float>({20, 100});
     b.write(std::vector<float>(2000, -1.0f));
     two()(x, b.domain({0, 0}, {10, 10}), a);
-    CHECK(a.read() == ramp(100, 1000));
-    CHECK(b.domain({0, 0}, {10, 10}).read() == ramp(100, 1));
+    CHECK(a.read() == counted(100, 1000));
+    CHECK(b.domain({0, 0}, {10, 10}).read() == counted(100, 1));
     CHECK(b.domain({10, 0}, {20, 100}).read() == std::vector<float>(1000, -1.0f));
   }
   SECTION("both are parts of one stream") {
     auto b = device.stream<float>({20, 100});
     b.write(std::vector<float>(2000, -1.0f));
     two()(x, b.domain({0, 5}, {10, 15}), b.domain({10, 15}, {20, 25}));
-    CHECK(b.domain({0, 5}, {10, 15}).read() == ramp(100, 1));
-    CHECK(b.domain({10, 15}, {20, 25}).read() == ramp(100, 1000));
+    CHECK(b.domain({0, 5}, {10, 15}).read() == counted(100, 1));
+    CHECK(b.domain({10, 15}, {20, 25}).read() == counted(100, 1000));
     CHECK(b.domain({0, 15}, {10, 100}).read() == std::vector<float>(850, -1.0f));
   }
   SECTION("both are parts of the stream that is read") {
     auto b = device.stream<float>({20, 100});
-    b.write(ramp(2000));
+    b.write(counted(2000));
     const auto source = b.domain({0, 0}, {10, 10}).read();
     two()(b.domain({0, 0}, {10, 10}), b.domain({5, 5}, {15, 15}), b.domain({0, 20}, {10, 30}));
     const auto first = b.domain({5, 5}, {15, 15}).read();
@@ -213,11 +213,11 @@ TEST_CASE("outputs that lie differently") {
     auto b = device.stream<float>({3, 5, 10});
     auto c = device.stream<float>({2, 5, 10});
     auto y = device.stream<float>({2, 5, 10});
-    y.write(ramp(100));
+    y.write(counted(100));
     b.write(std::vector<float>(150, -1.0f));
     two()(y, c, b.domain({1, 0, 0}, {3, 5, 10}));
-    CHECK(c.read() == ramp(100, 1));
-    CHECK(b.domain({1, 0, 0}, {3, 5, 10}).read() == ramp(100, 1000));
+    CHECK(c.read() == counted(100, 1));
+    CHECK(b.domain({1, 0, 0}, {3, 5, 10}).read() == counted(100, 1000));
     CHECK(b.domain({0, 0, 0}, {1, 5, 10}).read() == std::vector<float>(50, -1.0f));
   }
 }

@@ -17,20 +17,13 @@ using namespace sk::test;
 
 namespace {
 
-const TestKernel& saxpy() {
-  static const TestKernel kernel(
-      "saxpy", "void saxpy(float a, float x, float y, out float r) { r = a * x + y; }\n",
-      {uniform<float>("a"), input<float>("x"), input<float>("y"), output<float>("r")});
-  return kernel;
-}
-
 const TestKernel& indices() {
   static const TestKernel kernel("indices", "void indices(out ivec4 r) { r = sk_index(); }\n",
                                  {output<int4>("r")});
   return kernel;
 }
 
-std::vector<float> ramp(std::int64_t count, float step = 1.0f) {
+std::vector<float> steps(std::int64_t count, float step = 1.0f) {
   std::vector<float> values(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] = step * static_cast<float>(i);
@@ -39,7 +32,7 @@ std::vector<float> ramp(std::int64_t count, float step = 1.0f) {
 }
 
 /// The index of element `number` of a shape, x first.
-int4 indexOf(std::int64_t number, const Shape& shape) {
+int4 kernelIndexOf(std::int64_t number, const Shape& shape) {
   std::int32_t index[4] = {0, 0, 0, 0};
   for (int d = shape.rank() - 1; d >= 0; --d) {
     index[shape.rank() - 1 - d] = static_cast<std::int32_t>(number % shape[d]);
@@ -62,8 +55,8 @@ TEST_CASE("a kernel runs over each element of any shape") {
     auto x = device.stream<float>(shape);
     auto y = device.stream<float>(shape);
     auto r = device.stream<float>(shape);
-    const auto hostX = ramp(shape.size());
-    const auto hostY = ramp(shape.size(), -2.0f);
+    const auto hostX = steps(shape.size());
+    const auto hostY = steps(shape.size(), -2.0f);
     x.write(hostX);
     y.write(hostY);
     const float a = 0.5f;
@@ -77,7 +70,7 @@ TEST_CASE("a kernel runs over each element of any shape") {
     indices()(index);
     std::vector<int4> expectedIndex(hostX.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      expectedIndex[i] = indexOf(static_cast<std::int64_t>(i), shape);
+      expectedIndex[i] = kernelIndexOf(static_cast<std::int64_t>(i), shape);
     }
     CHECK(index.read() == expectedIndex);
   }
@@ -87,10 +80,10 @@ TEST_CASE("an argument that changes between calls is seen") {
   Device device;
   auto x = device.stream<float>(4);
   auto r = device.stream<float>(4);
-  x.write(ramp(4));
+  x.write(steps(4));
   for (const float a : {1.0f, 2.0f, 2.0f, -3.0f}) {
     saxpy()(a, x, x, r);
-    CHECK(r.read() == ramp(4, a + 1));
+    CHECK(r.read() == steps(4, a + 1));
   }
 }
 
@@ -172,8 +165,8 @@ TEST_CASE("an input of extent 1 repeats") {
   auto column = device.stream<float>({5, 1});
   auto row = device.stream<float>({1, 11});
   auto r = device.stream<float>({5, 11});
-  column.write(ramp(5, 100));
-  row.write(ramp(11));
+  column.write(steps(5, 100));
+  row.write(steps(11));
   add(column, row, r);
   const auto result = r.read();
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -183,7 +176,7 @@ TEST_CASE("an input of extent 1 repeats") {
   auto box = device.stream<float>({2, 3, 4});
   auto sum = device.stream<float>({2, 3, 4});
   one.write(std::vector<float>{1000});
-  box.write(ramp(24));
+  box.write(steps(24));
   add(one, box, sum);
   CHECK(sum.read()[23] == 1023);
   CHECK(sum.read()[0] == 1000);
@@ -201,7 +194,7 @@ TEST_CASE("views as inputs and outputs") {
   auto x = device.stream<float>(shape);
   auto r = device.stream<float>(shape);
   auto index = device.stream<int4>({10, 20});
-  x.write(ramp(shape.size()));
+  x.write(steps(shape.size()));
   r.write(std::vector<float>(static_cast<std::size_t>(shape.size()), -1.0f));
   SECTION("from one place to another") {
     copyIndex(x.domain({3, 5}, {13, 25}), r.domain({15, 18}, {25, 38}), index);
@@ -239,7 +232,7 @@ TEST_CASE("views of linearised streams of any rank") {
   const auto shape = GENERATE(Shape(1000), Shape(100, 33), Shape(7, 9, 11), Shape(3, 4, 5, 6));
   auto x = device.stream<float>(shape);
   auto r = device.stream<float>(shape);
-  x.write(ramp(shape.size()));
+  x.write(steps(shape.size()));
   r.write(std::vector<float>(static_cast<std::size_t>(shape.size()), 0.5f));
   Index begin = Index::origin(shape.rank());
   Index end = begin;

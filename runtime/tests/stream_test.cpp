@@ -31,22 +31,6 @@ Device makeDevice(const std::string& profile, int textureLimit = 0) {
   return Device({.profile = profile, .textureLimit = textureLimit});
 }
 
-/// Elements of any type with components of 4 bytes; each component has a distinct bit pattern.
-template <class T>
-std::vector<T> patterned(std::size_t count) {
-  const std::vector<std::uint32_t> words = bitPatterns(count * sizeof(T) / 4);
-  std::vector<T> elements(count);
-  if (count > 0) {
-    std::memcpy(elements.data(), words.data(), count * sizeof(T));
-  }
-  return elements;
-}
-
-template <class T>
-bool haveSameBits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
 }  // namespace
 
 TEMPLATE_TEST_CASE("a stream gives back what was written", "", float, float2, float3, float4, std::int32_t,

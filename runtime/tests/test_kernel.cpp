@@ -86,4 +86,11 @@ std::vector<std::uint32_t> bitPatterns(std::size_t count) {
   return patterns;
 }
 
+const TestKernel& saxpy() {
+  static const TestKernel kernel(
+      "saxpy", "void saxpy(float a, float x, float y, out float r) { r = a * x + y; }\n",
+      {uniform<float>("a"), input<float>("x"), input<float>("y"), output<float>("r")});
+  return kernel;
+}
+
 }  // namespace sk::test

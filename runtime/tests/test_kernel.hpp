@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstring>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -126,6 +127,8 @@ class TestReduction {
   program::Reduction reduction_;
 };
 
+/// r = a x + y, for floats.
+const TestKernel& saxpy();
 /// r = 2 x, for floats.
 const TestKernel& twice();
 /// The sum of floats, with identity 0.
@@ -133,5 +136,19 @@ const TestReduction& sumOfFloats();
 
 /// Distinct bit patterns: 0, 1, 2 ... spread over all 32 bits.
 std::vector<std::uint32_t> bitPatterns(std::size_t count);
+
+/// Elements of any type, each word of them with a bit pattern of its own.
+template <class T>
+std::vector<T> patterned(std::size_t count) {
+  const std::vector<std::uint32_t> words = bitPatterns((count * sizeof(T) + 3) / 4);
+  std::vector<T> elements(count);
+  if (count > 0) std::memcpy(static_cast<void*>(elements.data()), words.data(), count * sizeof(T));
+  return elements;
+}
+
+template <class T>
+bool haveSameBits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
 
 }  // namespace sk::test

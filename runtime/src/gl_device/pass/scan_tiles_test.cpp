@@ -69,7 +69,7 @@ const PairScan maps(ElementTraits<std::uint32_t>::element(), "1u", "0u",
                       s *= x;
                       m = m * x + y;
                     });
-const PairScan floats(
+const PairScan floatPairs(
     ElementTraits<float>::element(), "0.0", "-1e30",
     "void pairs(float x, float y, inout float s, inout float m) { s += x; m = max(m, y); }\n",
     {0, std::bit_cast<std::uint32_t>(-1e30f)},
@@ -172,7 +172,7 @@ TEST_CASE("tiles have the same results as loops") {
   }
   // What a tile folds does not depend on the layout: one inclusive and one exclusive scan, of a stream and of lines.
   for (const Problem& problem : {Problem{{70001}}, Problem{{40, 1024}, 1, true}})
-    CHECK((scanned(*tiles, floats, problem) == scannedOnHost(floats, problem)));
+    CHECK((scanned(*tiles, floatPairs, problem) == scannedOnHost(floatPairs, problem)));
 }
 
 TEST_CASE("a scan of integers takes one pass") {
