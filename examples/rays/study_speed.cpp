@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <utility>
 
 #include <fmt/format.h>
@@ -86,13 +85,6 @@ double callRate(sk::Device& device, double elements, int calls, const std::funct
 
 bool runsOnProcessor(const sk::Device& device) {
   return device.isSoftware() || device.name().starts_with("native");
-}
-
-double callMilliseconds(bool isProcessor, const std::function<void()>& call) {
-  const examples::Stopwatch stopwatch;
-  const std::clock_t start = std::clock();
-  call();
-  return isProcessor ? 1e3 * double(std::clock() - start) / CLOCKS_PER_SEC : stopwatch.milliseconds();
 }
 
 Model speedModel(bool isSmall) {

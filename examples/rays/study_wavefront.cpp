@@ -26,7 +26,7 @@ constexpr std::array sorts = {std::pair{RaySort::None, "none"}, std::pair{RaySor
 
 /// Millions of rays a second: `whole` includes the sort, if there is one; `sortedBefore` traces rays that were sorted beforehand (NaN without
 /// a sort).
-struct Rates {
+struct WavefrontRates {
   double whole, sortedBefore;
 };
 
@@ -38,7 +38,7 @@ std::vector<Ray> sortedRays(sk::Device& device, const BvhTracer& tracer, const s
   return sorted;
 }
 
-Rates ratesOf(DeviceScene& scene, RaySort sort, const std::vector<Ray>& rays, int calls) {
+WavefrontRates ratesOf(DeviceScene& scene, RaySort sort, const std::vector<Ray>& rays, int calls) {
   sk::Device& device = scene.device();
   const auto rate = [&](BvhTracer tracer, const std::vector<Ray>& list) {
     const RayStreams streams = uploadRays(device, list);
@@ -59,7 +59,8 @@ std::string tableOfSorts(sk::Device& device, const Model& model, const std::vect
     return std::isnan(rate) ? std::string("-") : fmt::format("{:.2f}", rate);
   };
   for (const auto& [sort, name] : sorts) {
-    const Rates first = ratesOf(scene, sort, primary, calls), second = ratesOf(scene, sort, diffuse, calls);
+    const WavefrontRates first = ratesOf(scene, sort, primary, calls),
+                         second = ratesOf(scene, sort, diffuse, calls);
     table.add(
         {name, text(first.whole), text(first.sortedBefore), text(second.whole), text(second.sortedBefore)});
   }
