@@ -13,22 +13,22 @@
 namespace bench {
 namespace {
 
-constexpr std::int64_t side = 1024;
+constexpr std::int64_t viewSide = 1024;
 
 /// Streams of the shape of every second column, and larger ones that have such columns and planes.
 struct Streams {
   explicit Streams(sk::Device& device)
-      : x(device.stream<float>({side, side / 2})),
-        y(device.stream<float>({side, side / 2})),
-        small(device.stream<float>({side / 2, side / 2})),
-        wide(device.stream<float>({side, side})),
-        volume(device.stream<float>({3, side / 2, side})) {
+      : x(device.stream<float>({viewSide, viewSide / 2})),
+        y(device.stream<float>({viewSide, viewSide / 2})),
+        small(device.stream<float>({viewSide / 2, viewSide / 2})),
+        wide(device.stream<float>({viewSide, viewSide})),
+        volume(device.stream<float>({3, viewSide / 2, viewSide})) {
     for (sk::Stream<float>* stream : {&x, &y, &small, &wide, &volume})
       stream->write(ramp(stream->size(), 0.37f));
   }
   sk::View<float> columns() { return sk::stride(wide, {1, 2}); }
   sk::View<float> quarter(int row, int column) { return sk::stride(wide, {2, 2}, {row, column}); }
-  sk::View<float> plane() { return volume.domain({1, 0, 0}, {2, side / 2, side}).reshape({side, side / 2}); }
+  sk::View<float> plane() { return volume.domain({1, 0, 0}, {2, viewSide / 2, viewSide}).reshape({viewSide, viewSide / 2}); }
 
   sk::Stream<float> x, y, small, wide, volume;
 };
