@@ -36,8 +36,8 @@ class EntryWriter {
 
   llvm::Function* write(EntryKind kind) {
     switch (kind) {
-      case EntryKind::Run:
-      case EntryKind::RunRows: run(kind == EntryKind::Run ? 1 : s_.rows); break;
+      case EntryKind::Run: run(); break;
+      case EntryKind::RunRows: runRows(); break;
       case EntryKind::Fold: fold(); break;
       case EntryKind::Combine: combine(); break;
       case EntryKind::Identity: values(ParamRole::Accumulator, [&] { return identities(); }); break;
@@ -155,9 +155,37 @@ class EntryWriter {
 
   // ---- kernels ----------------------------------------------------------------------------------
 
-  void run(std::uint32_t rows) {
+  void run() {
     begin(2, 0);
     streams_.begin(function_->getArg(0), function_->getArg(1), prologue_);
+    if (hasRowsOfNeighbors()) {
+      loop(number(0), streams_.chunkRows(), 1, [&](llvm::Value* row) {
+        llvm::BasicBlock* const elements = llvm::BasicBlock::Create(b_.getContext(), "row", function_);
+        streams_.beginRow(row, b_.GetInsertBlock());
+        b_.CreateBr(elements);
+        b_.SetInsertPoint(elements);
+        computeChunk(1);
+      });
+    } else {
+      computeChunk(1);
+    }
+    end();
+  }
+  /// True if chunks may have several rows (sk::native::Chunk::rows).
+  bool hasRowsOfNeighbors() const {
+    return std::ranges::any_of(s_.slots.slots, [&](const sk::native::Slot& slot) {
+      return s_.kernel.params[slot.parameter].role == ParamRole::Gather;
+    });
+  }
+  void runRows() {
+    begin(2, 0);
+    streams_.begin(function_->getArg(0), function_->getArg(1), prologue_);
+    computeChunk(s_.rows);
+    end();
+  }
+
+  /// Computes the elements of a row, or those of the chunks of `rows` rows together.
+  void computeChunk(std::uint32_t rows) {
     if (s_.numbersRecords) streams_.numberRecords();
     llvm::Value* const count = streams_.chunkCount();
     loop(number(0), count, l_.count(), [&](llvm::Value* element) {
@@ -180,7 +208,6 @@ class EntryWriter {
       }
       streams_.selectRow(0);
     });
-    end();
   }
 
   /// A switch over the scatter outputs.

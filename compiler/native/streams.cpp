@@ -31,14 +31,21 @@ void Streams::begin(llvm::Value* frame, llvm::Value* chunk, llvm::BasicBlock* pr
   chunk_ = chunk;
   prologue_ = prologue;
   loads_.clear();
+  beginRow(nullptr, prologue);
 }
 
-llvm::Value* Streams::inPrologue(const std::function<llvm::Value*()>& emit) {
+void Streams::beginRow(llvm::Value* row, llvm::BasicBlock* prologue) {
+  rowNumber_ = row;
+  rowPrologue_ = prologue;
+  rowArrays_.clear();
+}
+
+llvm::Value* Streams::emitIn(llvm::BasicBlock* prologue, const std::function<llvm::Value*()>& emit) {
   const llvm::IRBuilderBase::InsertPointGuard guard(l.b);
-  if (llvm::Instruction* end = prologue_->getTerminator()) {
+  if (llvm::Instruction* end = prologue->getTerminator()) {
     l.b.SetInsertPoint(end);
   } else {
-    l.b.SetInsertPoint(prologue_);
+    l.b.SetInsertPoint(prologue);
   }
   return emit();
 }
@@ -59,7 +66,9 @@ llvm::Value* Streams::chunkField(std::size_t offset) { return load(chunk_, offse
 /// The chunks of several rows differ only in y.
 llvm::Value* Streams::first(std::size_t dimension) {
   const std::size_t chunk = dimension == 1 ? row_ * sizeof(Chunk) : 0;
-  return chunkField(chunk + offsetof(Chunk, first) + dimension * sizeof(std::int64_t));
+  llvm::Value* const index = chunkField(chunk + offsetof(Chunk, first) + dimension * sizeof(std::int64_t));
+  if (dimension != 1 || rowNumber_ == nullptr) return index;
+  return emitIn(rowPrologue_, [&] { return l.b.CreateAdd(index, rowNumber_, "", true, true); });
 }
 llvm::Value* Streams::tables() { return frameField(offsetof(Frame, tables), l.b.getPtrTy()); }
 
@@ -76,7 +85,16 @@ llvm::Value* Streams::component(std::uint32_t param, std::size_t component) {
 }
 llvm::Value* Streams::array(std::size_t number) {
   llvm::Value* const all = load(chunk_, row_ * sizeof(Chunk) + offsetof(Chunk, arrays), l.b.getPtrTy());
-  return load(all, number * sizeof(void*), l.b.getPtrTy());
+  llvm::Value* const ofFirstRow = load(all, number * sizeof(void*), l.b.getPtrTy());
+  if (rowNumber_ == nullptr) return ofFirstRow;
+  llvm::Value*& known = rowArrays_[number];
+  if (known != nullptr) return known;
+  llvm::Value* const steps = load(chunk_, offsetof(Chunk, rowSteps), l.b.getPtrTy());
+  return known = emitIn(rowPrologue_, [&] {
+           llvm::Value* const at = l.b.CreateConstGEP1_64(l.int64(), steps, number);
+           llvm::Value* const step = l.b.CreateAlignedLoad(l.int64(), at, llvm::Align(8));
+           return l.b.CreateGEP(l.b.getInt8Ty(), ofFirstRow, l.b.CreateMul(rowNumber_, step));
+         });
 }
 
 const std::vector<Scalar>& Streams::scalars(std::uint32_t param) {
@@ -124,7 +142,8 @@ Parts Streams::index(const StreamRef& stream) {
     if (isInput) {
       llvm::Value* const multiply = argumentExtent(stream.id, d, offsetof(Argument, multiply));
       llvm::Value* const divide = argumentExtent(stream.id, d, offsetof(Argument, divide));
-      position = inPrologue([&] { return l.b.CreateSDiv(l.b.CreateMul(position, multiply), divide); });
+      position =
+          emitIn(rowPrologue_, [&] { return l.b.CreateSDiv(l.b.CreateMul(position, multiply), divide); });
     }
     if (d > 0) {
       parts.push_back({l.b.CreateTrunc(position, l.int32())});

@@ -25,6 +25,9 @@ class Streams {
 
   /// Sets the arguments of the function; `chunk` is null if it takes none. Loads are added to `prologue`.
   void begin(llvm::Value* frame, llvm::Value* chunk, llvm::BasicBlock* prologue);
+  /// Code that follows is for row number `row` of a chunk of several rows; what is constant in the row is computed in
+  /// `prologue`.
+  void beginRow(llvm::Value* row, llvm::BasicBlock* prologue);
   /// Code that follows is for the elements of the chunk from number `element` on.
   void moveTo(llvm::Value* element) { element_ = element; }
   /// If the function takes chunks of several rows: code that follows is for this row.
@@ -35,6 +38,7 @@ class Streams {
 
   llvm::Value* chunkFirst() { return first(0); }
   llvm::Value* chunkCount() { return chunkField(offsetof(sk::native::Chunk, count)); }
+  llvm::Value* chunkRows() { return chunkField(offsetof(sk::native::Chunk, rows)); }
 
   Parts uniform(std::uint32_t param);
   Parts input(std::uint32_t param);
@@ -76,7 +80,8 @@ class Streams {
   llvm::Value* tables();
 
  private:
-  llvm::Value* inPrologue(const std::function<llvm::Value*()>& emit);
+  llvm::Value* inPrologue(const std::function<llvm::Value*()>& emit) { return emitIn(prologue_, emit); }
+  llvm::Value* emitIn(llvm::BasicBlock* prologue, const std::function<llvm::Value*()>& emit);
   llvm::Value* load(llvm::Value* base, std::size_t offset, llvm::Type* type);
   llvm::Value* argumentField(std::uint32_t param, std::size_t offset, llvm::Type* type);
   llvm::Value* argumentExtent(std::uint32_t param, std::size_t dimension, std::size_t field);
@@ -131,11 +136,14 @@ class Streams {
   std::function<Parts(const ir::Expr&)> value_;
   llvm::Value* frame_ = nullptr;
   llvm::Value* chunk_ = nullptr;
-  llvm::BasicBlock* prologue_ = nullptr;
+  llvm::BasicBlock* prologue_ = nullptr;  ///< of the function
+  llvm::BasicBlock* rowPrologue_ = nullptr;  ///< of a row of the chunk
+  llvm::Value* rowNumber_ = nullptr;  ///< in the chunk; null if it has one row
   llvm::Value* element_ = nullptr;
   bool numbersRecords_ = false;
   std::size_t row_ = 0;
   std::map<std::pair<llvm::Value*, std::size_t>, llvm::Value*> loads_;
+  std::map<std::size_t, llvm::Value*> rowArrays_;  ///< of row rowNumber_
   std::map<std::uint32_t, std::vector<ir::Scalar>> scalars_;
   std::map<std::uint32_t, llvm::Function*> laneGathers_;
 };

@@ -8,6 +8,19 @@ namespace sk {
 
 using native::Extents;
 
+namespace {
+
+/// The most rows of a block, and the most elements at the ends of its rows, with their neighbours.
+constexpr std::size_t rowsOfBlock = 32;
+constexpr std::int64_t endsOfBlock = 256;
+
+/// The rows for which a runner has arrays.
+std::size_t rowsPlaced(bool runsBlocks, std::size_t together, std::size_t rows) {
+  return runsBlocks ? 1 : std::max(together, rows);
+}
+
+}  // namespace
+
 ChunkRunner::ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame,
                          ChunkHook hook, std::size_t rows)
     : layout_(layout),
@@ -15,18 +28,23 @@ ChunkRunner::ChunkRunner(const SlotLayout& layout, const native::Entry& run, con
       lanes_(run.lanes),
       frame_(frame),
       together_(run.rows),
+      runsBlocks_(rows > 1 && together_ == 1 && !hook.after && layout.hasIndependentElements() &&
+                  layout.isDirect()),
       staged_(std::max(together_, rows) > 1 ? 2 * native::mostLanes : mostStaged),
-      arrays_(layout, staged_, layout.isDirect() && rows == 1 ? 0 : staged_, std::max(together_, rows)),
+      arrays_(layout, staged_, layout.isDirect() && rows == 1 ? 0 : staged_,
+              rowsPlaced(runsBlocks_, together_, rows), runsBlocks_ ? endsOfBlock : 0),
       hook_(std::move(hook)) {
-  for (std::size_t row = 0; row < std::max(together_, rows); ++row) {
+  for (std::size_t row = 0; row < rowsPlaced(runsBlocks_, together_, rows); ++row) {
     chunks_[row].arrays = arrays_.get(row);
-    chunks_[row].step = 1;
+    chunks_[row].step = chunks_[row].rows = 1;
+    chunks_[row].rowSteps = arrays_.rowSteps();
   }
 }
 
 std::size_t ChunkRunner::rowsAtOnce(const SlotLayout& layout) {
-  constexpr std::size_t enough = 8;
-  return layout.hasGathers() && layout.isDirect() && !layout.needsElementwiseCalls() ? enough : 1;
+  constexpr std::size_t enough = 8;  // whose ends are laid out together
+  if (!layout.hasGathers() || !layout.isDirect() || layout.needsElementwiseCalls()) return 1;
+  return layout.hasIndependentElements() ? rowsOfBlock : enough;
 }
 
 /// The entry always computes `together_` rows; results of rows that are not wanted are discarded.
@@ -41,6 +59,18 @@ void ChunkRunner::moveTo(const Extents& first, std::size_t rows) {
 }
 
 void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows) {
+  if (!runsBlocks_) return runRow(first, count, rows);
+  Extents at = first;
+  for (std::size_t left = rows, done = 0; left > 0; left -= done, at[1] += static_cast<std::int64_t>(done)) {
+    done = count == layout_.width() ? runBlock(at, left) : 0;
+    if (done == 0) {
+      runRow(at, count, 1);
+      done = 1;
+    }
+  }
+}
+
+void ChunkRunner::runRow(const Extents& first, std::int64_t count, std::size_t rows) {
   moveTo(first, rows);
   const std::int64_t begin = first[0];
   const std::int64_t end = begin + count;
@@ -48,7 +78,6 @@ void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows
     for (std::int64_t x = begin; x < end; ++x) call(x, 1, lanes_);
     return;
   }
-  if (begin == 0 && end == layout_.width() && runRows()) return;
   const std::int64_t longest = layout_.isDirect() ? hook_.longest : std::min(staged_, hook_.longest);
   if (!layout_.hasGathers()) {
     runPart(begin, end, longest);
@@ -69,24 +98,38 @@ void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows
   runPart(right, end, staged_);
 }
 
-bool ChunkRunner::runRows() {
-  if (!layout_.hasIndependentElements() || !layout_.isDirect() || hook_.after || together_ != 1 ||
-      wanted_ == 1)
-    return false;
+std::size_t ChunkRunner::runBlock(const Extents& first, std::size_t most) {
+  moveTo(first, 1);
   const RowEnds ends = arrays_.ends();
-  const std::int64_t end = layout_.width() - ends.right;
-  const std::int64_t count = static_cast<std::int64_t>(wanted_) * ends.ofRow();
-  if (end - ends.left < lanes_ || count > std::min(staged_, layout_.width())) return false;
+  const std::int64_t width = layout_.width();
+  if (width - ends.left - ends.right < lanes_ || ends.ofRow() > endsOfBlock) return 0;
+  const auto mostEnds = static_cast<std::size_t>(endsOfBlock / std::max<std::int64_t>(ends.ofRow(), 1));
+  const SlotArrays::Block block = arrays_.blockOf(std::min(most, mostEnds));
   if (ends.left + ends.right > 0) {
-    arrays_.placeEnds(ends);
-    chunks_[0].count = count;
+    chunks_[0].arrays = arrays_.placeEnds(ends, block.rows);
+    chunks_[0].rows = 1;
+    chunks_[0].count = static_cast<std::int64_t>(block.rows) * ends.ofRow();
     function_(frame_, &chunks_[0]);
-    arrays_.storeEnds(ends);
+    chunks_[0].arrays = arrays_.get();
   }
-  const std::int64_t whole = ends.left + ((end - ends.left) & -lanes_);
-  runInside(ends.left, whole, hook_.longest);
-  if (whole < end) runInside(end - lanes_, end, lanes_);
-  return true;
+  // Where code may read beyond the ends of rows, vectors begin with the first element, so that they are aligned if
+  // rows are. What they store at the ends is overwritten.
+  const std::int64_t begin = block.mayCrossEnds ? 0 : ends.left;
+  const std::int64_t end = block.mayCrossEnds ? width : width - ends.right;
+  const std::int64_t whole = (end - begin) & -lanes_;
+  computeBlock(begin, whole, block.rows);
+  if (begin + whole < end) computeBlock(end - lanes_, lanes_, block.rows);
+  arrays_.storeEnds(ends, block.rows);
+  chunks_[0].rows = 1;
+  return block.rows;
+}
+
+void ChunkRunner::computeBlock(std::int64_t x, std::int64_t count, std::size_t rows) {
+  arrays_.placeInside(x);
+  chunks_[0].first[0] = x;
+  chunks_[0].count = count;
+  chunks_[0].rows = static_cast<std::int64_t>(rows);
+  function_(frame_, &chunks_[0]);
 }
 
 void ChunkRunner::runPart(std::int64_t begin, std::int64_t end, std::int64_t longest) {

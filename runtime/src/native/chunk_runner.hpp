@@ -31,8 +31,7 @@ class ChunkRunner {
   ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame,
               ChunkHook hook = {}, std::size_t rows = 1);
 
-  /// The number of rows that run() should get in one call, at most native::mostRows. Laying out the ends of
-  /// several rows together costs less than one row at a time.
+  /// The number of rows that run() should get in one call. Several rows together cost less than one at a time.
   static std::size_t rowsAtOnce(const SlotLayout& layout);
 
   /// Computes `count` elements from `first` on.
@@ -51,21 +50,24 @@ class ChunkRunner {
   }
 
  private:
+  void runRow(const native::Extents& first, std::int64_t count, std::size_t rows);
+  /// Computes whole rows from `first` on, at most `most`: first their ends together, then the elements between them, some
+  /// of which may be computed twice. Returns the number of rows; 0 if that is not possible.
+  std::size_t runBlock(const native::Extents& first, std::size_t most);
   void moveTo(const native::Extents& first, std::size_t rows);
-  /// Computes whole rows: first their ends together, then the elements between them, the last of which may be
-  /// computed twice. False if that is not possible.
-  bool runRows();
   void runPart(std::int64_t begin, std::int64_t end, std::int64_t longest);
   /// For whole groups of lanes whose elements and neighbours are read in place.
   void runInside(std::int64_t begin, std::int64_t end, std::int64_t longest);
   void call(std::int64_t x, std::int64_t count, std::int64_t room);
   void compute(std::int64_t x, std::int64_t count);
+  void computeBlock(std::int64_t x, std::int64_t count, std::size_t rows);
 
   const SlotLayout& layout_;
   native::RunFunction* function_;
   std::int64_t lanes_;
   const native::Frame* frame_;
   std::size_t together_;  ///< rows that the entry computes together
+  bool runsBlocks_;  ///< several rows in one call of the code
   std::size_t wanted_ = 1;  ///< rows to compute
   std::size_t placed_ = 1;  ///< wanted_, rounded up to a multiple of together_
   std::int64_t staged_;  ///< most elements of a row that are laid out at a time

@@ -247,6 +247,37 @@ TEST_CASE("gathers that all rows share are copied where their rows share sets of
 
 constexpr std::uint8_t stencilReach = 2;
 
+/// Where the gather's stream lies in an array that has `margin` more elements on either side.
+constexpr std::int64_t margin = 100;
+struct Held {
+  const float* first = nullptr;
+  std::int64_t count = 0;
+  bool isLeft = false;  ///< code has read the margins
+
+  void read(const float* begin, std::int64_t length) {
+    const std::int64_t at = begin - first;
+    const bool isInArray = at > -margin && at < count + margin;
+    isLeft = isLeft || (isInArray && (at < 0 || at + length > count));
+  }
+};
+Held held;
+std::int64_t rowsOfChunk, firstOfRows;  ///< of the chunk with most rows
+
+/// A RunFunction that computes the rows of a chunk of `count` arrays one by one.
+template <auto* computeRow, std::size_t count>
+void eachRow(const Frame* frame, const Chunk* chunk) {
+  if (chunk->rows > rowsOfChunk) firstOfRows = chunk->first[0];
+  rowsOfChunk = std::max(rowsOfChunk, chunk->rows);
+  void* arrays[count];
+  Chunk row = *chunk;
+  row.arrays = arrays;
+  for (std::int64_t r = row.rows = 0; r < chunk->rows; ++r, ++row.first[1]) {
+    for (std::size_t a = 0; a < count; ++a)
+      arrays[a] = static_cast<std::byte*>(chunk->arrays[a]) + r * chunk->rowSteps[a];
+    computeRow(frame, &row);
+  }
+}
+
 /// Neighbours at -2, 0 and 2 along x, the upper left and the lower right one, one row to either side in z, and
 /// an element of another stream.
 void stencil(const Frame*, const Chunk* chunk) {
@@ -255,7 +286,11 @@ void stencil(const Frame*, const Chunk* chunk) {
   for (std::size_t k = 0; k < 4; ++k) rows[k] = arrayOf<float>(chunk, k + 1);
   const auto* own = arrayOf<float>(chunk, 5);
   auto* r = arrayOf<float>(chunk, 6);
-  for (std::int64_t i = 0; i < inGroups(chunk->count); ++i) {
+  const std::int64_t count = inGroups(chunk->count);
+  held.read(u - stencilReach, count + 2 * stencilReach);
+  for (const std::size_t k : {0, 1}) held.read(rows[k] - 1, count + 2);
+  for (const std::size_t k : {2, 3}) held.read(rows[k], count);
+  for (std::int64_t i = 0; i < count; ++i) {
     r[i] = own[i] + u[i] + 2 * u[i - stencilReach] + 3 * u[i + stencilReach];
     r[i] += 4 * rows[0][i - 1] + 5 * rows[1][i + 1] + 6 * rows[2][i] + 7 * rows[3][i];
   }
@@ -281,7 +316,7 @@ struct Stencil : TestKernel {
     slot(0, 0, 0, 1);
     slot(1);
     slot(2);
-    entries = {entry(EntryKind::Run, &stencil), entry(EntryKind::Borders, &borders)};
+    entries = {entry(EntryKind::Run, &eachRow<stencil, 7>), entry(EntryKind::Borders, &borders)};
     finish();
   }
 };
@@ -307,16 +342,18 @@ float gathered(const std::vector<float>& u, const Extents& extent, Boundary boun
     if (i < 0) return borderValue;
     number += i * stride;
   }
-  return u[static_cast<std::size_t>(number)];
+  return u[static_cast<std::size_t>(margin + number)];
 }
 
 void checkStencil(Boundary boundary, int rank, const Extents& extent, const Extents& domain) {
   const Stencil f(boundary, static_cast<std::uint8_t>(rank));
-  std::vector<float> u = someFloats(extent[0] * extent[1] * extent[2]);
+  const std::int64_t count = extent[0] * extent[1] * extent[2];
+  std::vector<float> u = someFloats(count + 2 * margin);
+  held = {u.data() + margin, count};
   std::vector<float> own = someFloats(domain[0] * domain[1] * domain[2]);
   std::vector<float> r(own.size());
   TestOperands operands;
-  operands.add(u, extent);
+  operands.add(u, extent).first = margin;
   operands.add(own, domain);
   operands.add(r, domain);
   runCode(f.kernel, operands.call(domain), {});
@@ -335,6 +372,7 @@ void checkStencil(Boundary boundary, int rank, const Extents& extent, const Exte
   }
   CAPTURE(static_cast<int>(boundary), rank, extent[0], extent[1], extent[2], domain[0]);
   CHECK(r == expected);
+  CHECK_FALSE(held.isLeft);
 }
 
 TEST_CASE("neighbours outside are what the boundary says, in rows of every length") {
@@ -351,6 +389,15 @@ TEST_CASE("neighbours outside are what the boundary says, in rows of every lengt
         checkStencil(boundary, 2, {width, height, 1, 1}, {width, height, 1, 1});
       checkStencil(boundary, 3, {33, height, 3, 1}, {33, height, 3, 1});
     }
+  }
+}
+
+TEST_CASE("rows away from the borders are computed in one call, each from its first element on") {
+  for (const Boundary boundary : {Boundary::Clamp, Boundary::Wrap, Boundary::Mirror, Boundary::Border}) {
+    rowsOfChunk = 0;
+    checkStencil(boundary, 2, {128, 24, 1, 1}, {128, 24, 1, 1});
+    CHECK(rowsOfChunk == 20);  // but for two rows at either border
+    CHECK(firstOfRows == 0);
   }
 }
 

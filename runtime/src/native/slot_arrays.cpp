@@ -65,6 +65,13 @@ void copyNeighbors(const Neighbors what, std::size_t rowCount, const Rows rows, 
   }
 }
 
+/// SlotLayout::Slot::wholeRows
+Range wholeRowsOf(const native::Argument& argument, std::int64_t width, std::int64_t reach) {
+  std::int64_t last = argument.first;
+  for (std::size_t d = 0; d < 4; ++d) last += (argument.extent[d] - 1) * argument.stride[d];
+  return {argument.first + reach, last - reach - width + 2};
+}
+
 }  // namespace
 
 // ---- the layout of a call --------------------------------------------------------------------------
@@ -113,6 +120,7 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
     reach_ = std::max(reach_, added.reach);
     inside_ = {std::max(inside_.begin, added.reach), std::min(inside_.end, argument.extent[0] - added.reach)};
     added.firstBorder = firstBorderOf(kernel, slot.parameter);
+    added.wholeRows = wholeRowsOf(argument, width_, added.reach);
   } else {
     isDirect_ = isDirect_ && added.isInPlace;
     needsElementwiseCalls_ =
@@ -195,24 +203,28 @@ void SlotLayout::readBorders(const program::Kernel& kernel, const CodeFrame& fra
 
 // ---- the arrays of a thread ------------------------------------------------------------------------
 
-SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t mostAtEnds, std::size_t rows)
+SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t mostAtEnds, std::size_t rows,
+                       std::int64_t mostOfBlock)
     : layout_(layout),
       slots_(layout.slots().size()),
       width_(layout.arrays().size()),
       rows_(rows * layout.slots().size(), memory_.get()),
       inRow_(rows * width_, memory_.get()),
-      arrays_(rows * width_, memory_.get()),
+      arrays_((rows + 1) * width_, memory_.get()),
+      rowSteps_(width_, memory_.get()),
       scratch_(rows * width_, memory_.get()) {
   for (const Slot& slot : layout.slots()) {
     const bool isStagedOnlyAtEnds = slot.isInPlace && slot.kind != SlotLayout::Kind::Gather;
-    const std::int64_t staged = std::min(layout.width(), isStagedOnlyAtEnds ? mostAtEnds : most);
+    const std::int64_t ofRow = std::min(layout.width(), isStagedOnlyAtEnds ? mostAtEnds : most);
+    const std::int64_t staged = std::max(ofRow, mostOfBlock);
     const std::int64_t elements = staged + native::mostLanes + 2 * slot.reach;
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
       const ScalarBytes bytes = layout.arrays()[a].bytes;
-      const std::size_t ofRow =
+      rowSteps_[a] = slot.rowStep * bytes.held;
+      const std::size_t size =
           (static_cast<std::size_t>(elements) * bytes.read + cacheLine - 1) / cacheLine * cacheLine;
-      auto* next = static_cast<std::byte*>(memory_.get()->allocate(rows * ofRow, cacheLine));
-      for (std::size_t row = 0; row < rows; ++row, next += ofRow) {
+      auto* next = static_cast<std::byte*>(memory_.get()->allocate(rows * size, cacheLine));
+      for (std::size_t row = 0; row < rows; ++row, next += size) {
         scratch_[placeOf(row, a)] = next;
         inRow_[placeOf(row, a)] = {next, slot.isInPlace ? bytes.held : 0};
       }
@@ -450,47 +462,77 @@ RowEnds SlotArrays::ends() const {
           2 * layout_.reach()};
 }
 
-void SlotArrays::placeEnds(const RowEnds& ends) {
+SlotArrays::Block SlotArrays::blockOf(std::size_t most) const {
+  Block block{most, true};
+  const auto atMost = [&](std::int64_t rows) {
+    block.rows = std::min(block.rows, static_cast<std::size_t>(std::max<std::int64_t>(rows, 1)));
+  };
+  for (std::size_t s = 0; s < slots_; ++s) {
+    const Slot& slot = layout_.slots()[s];
+    const bool isEven = slot.evenRows.begin <= at_[1] + 1 && at_[1] + 1 < slot.evenRows.end;
+    atMost(isEven ? slot.evenRows.end - at_[1] : 1);
+    if (slot.kind != SlotLayout::Kind::Gather) continue;
+    block.mayCrossEnds =
+        block.mayCrossEnds && rows_[s].first >= slot.wholeRows.begin && rows_[s].first < slot.wholeRows.end;
+  }
+  // all rows of the block are like the first one
+  for (std::size_t s = 0; s < slots_; ++s) {
+    const Slot& slot = layout_.slots()[s];
+    if (slot.kind != SlotLayout::Kind::Gather || slot.rowStep <= 0) continue;
+    const std::int64_t first = rows_[s].first;
+    if (block.mayCrossEnds) {
+      atMost((slot.wholeRows.end - 1 - first) / slot.rowStep + 1);
+    } else if (first < slot.wholeRows.begin && slot.wholeRows.begin < slot.wholeRows.end) {
+      atMost((slot.wholeRows.begin - first - 1) / slot.rowStep + 1);
+    }
+  }
+  return block;
+}
+
+void* const* SlotArrays::placeEnds(const RowEnds& ends, std::size_t rows) {
+  void** const arrays = arrays_.data() + arrays_.size() - width_;
   for (const Slot& slot : layout_.slots()) {
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
       const std::size_t bytes = layout_.arrays()[a].bytes.read;
-      arrays_[a] = scratch_[a] + slot.reach * static_cast<std::int64_t>(bytes);
+      arrays[a] = scratch_[a] + slot.reach * static_cast<std::int64_t>(bytes);
       if (slot.kind == SlotLayout::Kind::Output) continue;
       withScalar(bytes, [&]<class T> {
-        stageEnd<T>(slot, a, 0, ends.left, 0, ends);
-        stageEnd<T>(slot, a, layout_.width() - ends.right, ends.right, ends.firstRight(), ends);
+        stageEnd<T>(slot, a, 0, ends.left, 0, ends, rows);
+        stageEnd<T>(slot, a, layout_.width() - ends.right, ends.right, ends.firstRight(), ends, rows);
       });
     }
   }
+  return arrays;
 }
 
 /// Lays out `count` elements of each row from `x` on, with their neighbours. Those of the first row become
 /// elements `to` and following ones of the array.
 template <class T>
 void SlotArrays::stageEnd(const Slot& slot, std::size_t array, std::int64_t x, std::int64_t count,
-                          std::int64_t to, const RowEnds& ends) {
+                          std::int64_t to, const RowEnds& ends, std::size_t rows) {
   constexpr std::int64_t size = sizeof(T);
   const void* const border = borderOf(slot, array - slot.firstArray);
-  const ArrayRow* const rows = &inRow_[array];
-  const std::size_t width = width_, wanted = wanted_;
+  const bool isGather = slot.kind == SlotLayout::Kind::Gather;
   const std::int64_t spacing = ends.ofRow() * size;
   for (std::int64_t i = 0; i < count + 2 * slot.reach; ++i) {
-    const bool isNeighbor = slot.kind == SlotLayout::Kind::Gather;
     const std::int64_t index =
-        isNeighbor ? broughtInside(slot.boundary, x + i - slot.reach, slot.argument->extent[0]) : x + i;
+        isGather ? broughtInside(slot.boundary, x + i - slot.reach, slot.argument->extent[0]) : x + i;
     std::byte* staged = scratch_[array] + (to + i) * size;
-    for (std::size_t row = 0; row < wanted; ++row, staged += spacing)
-      std::memcpy(staged, index < 0 ? border : rows[row * width].first + index * size, sizeof(T));
+    const bool isOutside = index < 0;
+    const auto* held = isOutside ? static_cast<const std::byte*>(border) : inRow_[array].first + index * size;
+    const std::int64_t step = isOutside ? 0 : rowSteps_[array];
+    for (std::size_t row = 0; row < rows; ++row, staged += spacing, held += step)
+      std::memcpy(staged, held, sizeof(T));
   }
 }
 
-void SlotArrays::storeEnds(const RowEnds& ends) {
+void SlotArrays::storeEnds(const RowEnds& ends, std::size_t rows) {
   for (const Slot& slot : layout_.slots()) {
     if (slot.kind != SlotLayout::Kind::Output) continue;
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
       withScalar(layout_.arrays()[a].bytes.read, [&]<class T> {
-        storeEnd<T>(a, 0, ends.left, 0, ends);
-        storeEnd<T>(a, layout_.width() - ends.right, ends.right, ends.firstRight(), ends);
+        storeEnd<T>(a, 0, ends.left, 0, ends, rows);
+        storeEnd<T>(a, layout_.width() - ends.right, ends.right, ends.firstRight(), ends, rows);
       });
     }
   }
@@ -499,15 +541,14 @@ void SlotArrays::storeEnds(const RowEnds& ends) {
 /// The reverse of stageEnd(), for an output.
 template <class T>
 void SlotArrays::storeEnd(std::size_t array, std::int64_t x, std::int64_t count, std::int64_t from,
-                          const RowEnds& ends) {
+                          const RowEnds& ends, std::size_t rows) {
   constexpr std::int64_t size = sizeof(T);
-  const ArrayRow* const rows = &inRow_[array];
-  const std::size_t width = width_, wanted = wanted_;
-  const std::int64_t spacing = ends.ofRow() * size;
+  const std::int64_t spacing = ends.ofRow() * size, step = rowSteps_[array];
   for (std::int64_t i = 0; i < count; ++i) {
     const std::byte* staged = scratch_[array] + (from + i) * size;
-    for (std::size_t row = 0; row < wanted; ++row, staged += spacing)
-      std::memcpy(rows[row * width].first + (x + i) * size, staged, sizeof(T));
+    std::byte* held = inRow_[array].first + (x + i) * size;
+    for (std::size_t row = 0; row < rows; ++row, staged += spacing, held += step)
+      std::memcpy(held, staged, sizeof(T));
   }
 }
 

@@ -47,6 +47,9 @@ class SlotLayout {
     std::int64_t reach;
     const native::Argument* argument;
     std::size_t firstArray, arrayCount;  ///< among all slots' arrays
+    /// Gathers: numbers of elements at which a row may begin so that the elements of the domain's width, and as
+    /// many as `reach` beyond both ends, are in the stream's array.
+    native::Range wholeRows;
     native::Range evenRows;  ///< y whose row begins rowStep elements behind the previous one
     std::int64_t rowStep;
     /// Gathers: the slot of the neighbours one row further down, if it reaches as far along x. In the next
@@ -133,8 +136,9 @@ class SlotArrays {
   };
 
   /// At most `most` elements of a row are laid out at a time; for slots that are in place, at most
-  /// `mostAtEnds`, which are at the ends of rows.
-  SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t mostAtEnds, std::size_t rows = 1);
+  /// `mostAtEnds`, which are at the ends of rows. placeEnds() lays out at most `mostOfBlock`.
+  SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t mostAtEnds, std::size_t rows = 1,
+             std::int64_t mostOfBlock = 0);
 
   /// Moves to `wanted` rows, of which the first contains this element. Further rows, up to `placed`, repeat
   /// the last one.
@@ -150,13 +154,25 @@ class SlotArrays {
     for (std::size_t i = 0, count = placed_ * width_; i < count; ++i)
       to[i] = from[i].first + x * from[i].bytes;
   }
-  /// The ends of the rows.
+  /// The ends of a row, with neighbours.
   RowEnds ends() const;
-  /// Lays out the ends of all wanted rows, with their neighbours, in the arrays of the first row. All slots must be
-  /// in place (SlotLayout::isDirect()), and ends.ofRow() elements of each row must be free.
-  void placeEnds(const RowEnds& ends);
-  /// Copies outputs at the ends of all wanted rows to their streams.
-  void storeEnds(const RowEnds& ends);
+  /// Rows below each other that begin at the same distance in each array: the row of moveTo() and those after it.
+  struct Block {
+    std::size_t rows;
+    /// True if what code reads beyond the ends of these rows is in the streams' arrays, though it is not what boundary
+    /// modes say.
+    bool mayCrossEnds;
+  };
+  /// The largest block of at most `most` rows. All slots must be in place (SlotLayout::isDirect()), and no row
+  /// outside.
+  Block blockOf(std::size_t most) const;
+  /// Lays out the ends of the block's rows with their neighbours, and returns their arrays: rows * ends.ofRow()
+  /// elements, at most `mostOfBlock`.
+  void* const* placeEnds(const RowEnds& ends, std::size_t rows);
+  /// Copies outputs at the ends of the block's rows to their streams.
+  void storeEnds(const RowEnds& ends, std::size_t rows);
+  /// For each array, the bytes from a row of a block to the next.
+  const std::int64_t* rowSteps() const { return rowSteps_.data(); }
   /// Copies outputs that were not written in place to their streams; arguments as for place().
   void storeOutputs(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step = 1);
 
@@ -191,10 +207,10 @@ class SlotArrays {
                       const Length& length);
   template <class T>
   void stageEnd(const Slot& slot, std::size_t array, std::int64_t x, std::int64_t count, std::int64_t to,
-                const RowEnds& ends);
+                const RowEnds& ends, std::size_t rows);
   template <class T>
-  void storeEnd(std::size_t array, std::int64_t x, std::int64_t count, std::int64_t from,
-                const RowEnds& ends);
+  void storeEnd(std::size_t array, std::int64_t x, std::int64_t count, std::int64_t from, const RowEnds& ends,
+                std::size_t rows);
   void stageBorder(std::size_t row, const Slot& slot, std::int64_t room);
   const void* borderOf(const Slot& slot, std::size_t component) const;
   /// Makes the code use the slot's scratch memory.
@@ -207,7 +223,8 @@ class SlotArrays {
   CallMemory memory_;
   std::pmr::vector<Row> rows_;
   std::pmr::vector<ArrayRow> inRow_;
-  std::pmr::vector<void*> arrays_;
+  std::pmr::vector<void*> arrays_;  ///< of the rows, then of placeEnds()
+  std::pmr::vector<std::int64_t> rowSteps_;
   std::pmr::vector<std::byte*> scratch_;
   bool isAnyOutside_ = false;
 };

@@ -75,10 +75,15 @@ class Call {
   void uniform(void* value) { add(value, 1); }
   void gather(void* array) { add(array, count); }
   void none() { arguments_.emplace_back(); }
-  void slot(void* array) { arrays_.push_back(array); }
+  void slot(void* array) {
+    arrays_.push_back(array);
+    rowSteps_.push_back(0);
+  }
 
   Frame frame() const { return {arguments_.data(), {count, 1, 1, 1}, nullptr}; }
-  Chunk chunk(std::int64_t elements = count) const { return {arrays_.data(), {}, elements, 1}; }
+  Chunk chunk(std::int64_t elements = count) const {
+    return {arrays_.data(), {}, elements, 1, 1, rowSteps_.data()};
+  }
 
   void run(const Entry& entry) const {
     const Frame f = frame();
@@ -103,6 +108,7 @@ class Call {
   std::vector<Argument> arguments_;
   std::deque<void*> components_;
   std::vector<void*> arrays_;
+  std::vector<std::int64_t> rowSteps_;
 };
 
 template <class T>

@@ -5,7 +5,7 @@
 // uses the best of its entries that the CPU supports. Everything here is plain data, and compiler/native
 // knows its layout (Code::version changes with it).
 //
-// A kernel's function computes a chunk: neighbours along x in one row of the domain. The runtime divides the
+// A kernel's function computes a chunk: neighbours along x in one row of the domain or in several. The runtime divides the
 // domain into chunks and shares them out among threads. It first copies inputs whose layout differs from the
 // domain's to scratch memory, so that object code reads elements and neighbours without boundaries, strides
 // or tails. Indices, extents and strides have the fastest dimension first.
@@ -68,12 +68,16 @@ struct Frame {
   const Table* tables;  ///< one per tabulated function; null if these are computed
 };
 
-/// The elements `x`, `x + step` ... in a row of the domain.
+/// The elements `x`, `x + step` ... in a row of the domain, or in several rows.
 struct Chunk {
   void* const* arrays;  ///< for each slot, its component arrays from the chunk's first element on (Slot)
   std::int64_t first[4];  ///< index of the first element
-  std::int64_t count;  ///< elements; in a fold, of all rounds
+  std::int64_t count;  ///< elements of a row; in a fold, of all rounds
   std::int64_t step;  ///< between the x of consecutive elements: 1, except in folds
+  /// RunFunction: consecutive rows with `count` elements each; 1 if the kernel has no slots of neighbours. Other
+  /// functions ignore it.
+  std::int64_t rows;
+  const std::int64_t* rowSteps;  ///< RunFunction: for each array, bytes from one row to the next
 };
 
 /// A parameter for which a chunk has arrays: an element input, an output, or a row of a gather's neighbours.
@@ -87,7 +91,7 @@ struct Slot {
 
 /// Computes a chunk.
 using RunFunction = void(const Frame*, const Chunk*);
-/// Computes Entry::rows chunks in consecutive rows, which have the same x and `count`.
+/// Computes Entry::rows chunks of one row each in consecutive rows, which have the same x and `count`.
 using RunRowsFunction = void(const Frame*, const Chunk* chunks);
 /// Folds a chunk of `leaves` leaves, a power of 2, into `columns` accumulators each. Element k + (r + l *
 /// rounds) * columns is folded into column k of leaf l, in order of r. `state` has one array for each scalar
@@ -158,7 +162,7 @@ struct Entry {
 
 /// The native code of one kernel.
 struct Code {
-  static constexpr std::uint32_t currentVersion = 5;
+  static constexpr std::uint32_t currentVersion = 6;
   std::uint32_t version;
   std::uint32_t entryCount;
   const Entry* entries;
