@@ -131,6 +131,7 @@ enum class Work : std::uint8_t {
   List,  ///< the list of one append output only
   Owners,  ///< a compute program: which element stores to an element of a scatter output last
   Groups,  ///< a compute program: its outputs, and all append outputs
+  Folds,  ///< a compute program: its outputs, and its accumulators (reduce/group_fold.hpp)
 };
 
 struct Task {
@@ -188,8 +189,10 @@ struct Variant {
 ///
 /// Requires extents up to sk::mostExtent, element numbers up to sk::mostElements and nonempty gathers; the
 /// runtime rejects other calls. Fragment programs support Work::Elements, Counts and List, compute programs Work::Elements,
-/// Owners and Groups.
-std::string kernelProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
+/// Owners, Groups and Folds. `reduction`, whose fold the kernel is, must be given for Work::Folds alone; the domain has no
+/// layers then, and mayFoldInGroups() is true. The images of accumulators follow those of outputs.
+std::string kernelProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant,
+                          const program::Reduction* reduction = nullptr);
 
 /// The sampler's name for a plane of a parameter, in kernels and reductions. Planes in a bundle share its
 /// name.
@@ -207,6 +210,7 @@ struct ProgramPair {
   std::string main;
 };
 /// The result of kernelProgram(), with its vertex program.
-ProgramPair kernelPrograms(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
+ProgramPair kernelPrograms(const Profile& profile, const program::Kernel& kernel, const Variant& variant,
+                           const program::Reduction* reduction = nullptr);
 
 }  // namespace sk::assemble

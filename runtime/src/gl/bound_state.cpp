@@ -55,6 +55,7 @@ void BoundState::forgetFramebuffer(GLuint name) {
 }
 
 void BoundState::forgetStorage(GLuint name) {
+  for (CommandLog* const log : kept_) log->forgetStorage(name);
   if (storage_ == name) storage_ = unknown;
 }
 

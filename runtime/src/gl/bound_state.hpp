@@ -79,6 +79,13 @@ class BoundState {
       bindStorage(name);
     }
   }
+  /// Likewise, a buffer that keeps its bytes between calls, so that a log may bind it again.
+  void keptStorage(GLuint name) {
+    note({.kind = Command::Kind::Storage, .name = name});
+    if (storage_ != name) {
+      bindStorage(name);
+    }
+  }
   /// Binds a texture for changes by glTexImage2D and similar functions: on unit 0, which becomes the active
   /// one.
   void textureToChange(GLuint name, bool isArray) {

@@ -30,6 +30,7 @@ struct Command {
     ArrayTexture,
     Sampler,
     Image,
+    Storage,  ///< a buffer that programs read and write
     Framebuffer,  ///< for drawing and reading
     Viewport,
     Ints,
@@ -77,6 +78,7 @@ class CommandLog {
     forget(name, {Command::Kind::Texture, Command::Kind::ArrayTexture, Command::Kind::Image});
   }
   void forgetFramebuffer(GLuint name) noexcept { forget(name, {Command::Kind::Framebuffer}); }
+  void forgetStorage(GLuint name) noexcept { forget(name, {Command::Kind::Storage}); }
   /// Whether an object that a command refers to has been deleted.
   bool isStale() const { return isStale_; }
 

@@ -22,6 +22,7 @@ TEST_CASE("a log is stale once an object that it names is deleted") {
     one->note({.kind = Kind::Texture, .unit = 2, .name = 3});
     one->note({.kind = Kind::Image, .name = 4});
     one->note({.kind = Kind::Framebuffer, .name = 5});
+    one->note({.kind = Kind::Storage, .name = 6});
     bound.keep(*one);
   }
   bound.drop(dropped);
@@ -29,11 +30,13 @@ TEST_CASE("a log is stale once an object that it names is deleted") {
   bound.forgetTexture(1);
   bound.forgetTexture(5);
   bound.forgetFramebuffer(4);
+  bound.forgetStorage(5);
   CHECK_FALSE(log.isStale());
   SECTION("a program") { bound.forgetProgram(1); }
   SECTION("a texture") { bound.forgetTexture(3); }
   SECTION("an image") { bound.forgetTexture(4); }
   SECTION("a framebuffer") { bound.forgetFramebuffer(5); }
+  SECTION("a buffer") { bound.forgetStorage(6); }
   CHECK(log.isStale());
   CHECK_FALSE(dropped.isStale());
 }

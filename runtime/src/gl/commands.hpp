@@ -23,7 +23,8 @@ inline void drawViewportIndirect(GLintptr offset) {
 /// Makes the writes of a dispatch visible to all later commands.
 inline void finishDispatch() {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                  GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+                  GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT |
+                  GL_SHADER_STORAGE_BARRIER_BIT);
 }
 /// Runs work groups of the compute program.
 inline void dispatch(BoundState& bound, GLsizei groupsInX, GLsizei groupsInY) {

@@ -17,6 +17,7 @@
 #include "assemble/condition.hpp"
 #include "device/device_state.hpp"
 #include "gl/bound_state.hpp"
+#include "gl/fold_buffer.hpp"
 #include "gl/labels.hpp"
 #include "gl/open_context.hpp"
 #include "gl/samplers.hpp"
@@ -98,6 +99,7 @@ class GlDevice final : public DeviceState {
   bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;
   bool needsDense(const StreamRegion& region) override;
   void reduce(const ResolvedReduction& call) override;
+  bool foldsBesideOutputs(const ResolvedReduction& call) override;
   std::optional<std::int64_t> reorder(const Reordering& reordering) override;
 
   /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
@@ -182,6 +184,7 @@ class GlDevice final : public DeviceState {
   SortPrograms sortPrograms;
   gl::Samplers samplers{bound.deletions};
   gl::ValueBuffer values;
+  gl::FoldBuffer folded;  ///< of dispatches that fold beside outputs
   gl::WorkBuffer groupStates;  ///< of dispatched append outputs
   gl::WorkBuffer tileResults;  ///< of scans in one pass
   gl::WorkBuffer sortedWords;  ///< of sorts, between two digits

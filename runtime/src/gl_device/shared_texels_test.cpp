@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: a stencil whose work groups share texels has the same results as loops on the host, wherever the domain
-// ends in a work group. Runs on a software renderer, which by default
+// ends in a work group; so has one that also folds its results in the same dispatch, with shared texels or without. Runs on a software renderer, which by default
 // does not share texels.
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
+#include "call/resolved_reduction.hpp"
 #include "device/stream_state.hpp"
 #include "gl/open_context.hpp"
 #include "gl_device/gl_device.hpp"
@@ -69,6 +73,45 @@ struct Weigh {
   Kernel kernel;
 };
 
+/// The same, and a sum of what it stores, modulo 16.
+struct WeighAndFold {
+  WeighAndFold(Boundary boundary, int reach)
+      : weigh(boundary, reach),
+        body(weigh.body +
+             "void fold(out float r, inout float total) {\n  weigh(r);\n  total += mod(r, 16.0);\n}\n"),
+        parameters{{weigh.parameters[0], weigh.parameters[1], accumulator}},
+        reduction{.fold = {.name = "fold",
+                           .entry = "fold",
+                           .declarations = {},
+                           .body = body,
+                           .parameters = parameters,
+                           .sources = {}},
+                  .combine = {.name = "add",
+                              .entry = "add",
+                              .declarations = {},
+                              .body = combining,
+                              .parameters = combined,
+                              .sources = {}},
+                  .combineOperands = {},
+                  .addition = combining,
+                  .seeded = false,
+                  .commutative = true} {}
+  WeighAndFold(const WeighAndFold&) = delete;
+  WeighAndFold& operator=(const WeighAndFold&) = delete;
+
+  static constexpr std::string_view combining =
+      "void add(float part, inout float total) { total += part; }\n";
+  static constexpr Parameter accumulator{
+      .name = "total", .symbol = "total", .role = Role::Accumulator, .element = &floats, .identity = "0.0"};
+  static constexpr std::array<Parameter, 2> combined{
+      {{.name = "part", .symbol = "part", .role = Role::Input, .element = &floats}, accumulator}};
+
+  Weigh weigh;
+  std::string body;
+  std::array<Parameter, 3> parameters;
+  program::Reduction reduction;
+};
+
 std::vector<float> numbersOf(const Shape& shape) {
   std::vector<float> values(static_cast<std::size_t>(shape.size()));
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i * 37 % 101);
@@ -85,6 +128,27 @@ std::vector<float> weighed(GlDevice& device, const Kernel& kernel, const Shape& 
   device.runUnchecked(kernel, arguments, {.target = Target::Compute});
   detail::read(detail::wholeRegion(r.get()), values.data(), values.size());
   return values;
+}
+
+/// What weighed() gives, and the sum.
+std::pair<std::vector<float>, float> folded(GlDevice& device, const program::Reduction& reduction,
+                                            const Shape& shape) {
+  std::vector<float> values = numbersOf(shape);
+  const auto a = device.createStream(floats, shape, Storage::Single);
+  const auto r = device.createStream(floats, shape, Storage::Single);
+  const auto total = device.createStream(floats, {1, 1}, Storage::Single);
+  detail::write(detail::wholeRegion(a.get()), values.data(), values.size());
+  const std::array arguments{Argument{.region = detail::wholeRegion(a.get())},
+                             Argument{.region = detail::wholeRegion(r.get())},
+                             Argument{.region = detail::wholeRegion(total.get())}};
+  ResolvedReduction call{device, reduction, arguments, shape, {1, 1}};
+  call.options.target = Target::Compute;
+  CHECK(device.foldsBesideOutputs(call));
+  device.reduce(call);
+  float sum = 0;
+  detail::read(detail::wholeRegion(r.get()), values.data(), values.size());
+  detail::read(detail::wholeRegion(total.get()), &sum, 1);
+  return {values, sum};
 }
 
 /// The index within 0 to n - 1 that an index up to n beyond the ends stands for; -1 for the border.
@@ -137,6 +201,27 @@ TEST_CASE("stencils that share texels in work groups") {
     for (const Shape& shape : {Shape{5, 8}, Shape{16, 32}, Shape{17, 36}, Shape{33, 100}}) {
       CAPTURE(static_cast<int>(boundary), reach, shape[0], shape[1]);
       CHECK(weighed(device, kernel, shape) == weighedOnHost(boundary, reach, shape));
+    }
+  }
+}
+
+TEST_CASE("stencils that fold what they store") {
+  std::deque<WeighAndFold> folds;
+  for (const bool shares : {true, false}) {
+    const DeviceChoices choices{.target = Target::Compute, .sharesTexels = shares};
+    GlDevice device(gl::openContext({"software", gl::Api::Gl}), choices);
+    const WeighAndFold& fold = folds.emplace_back(Boundary::Wrap, 1);
+    // packed, and in a column of groups; not packed; several tiles for each group
+    for (const Shape& shape : {Shape{35, 36}, Shape{5, 7}, Shape{1, 4}, Shape{16 * 2100, 4}}) {
+      CAPTURE(shares, shape[0], shape[1]);
+      const std::vector<float> expected = weighedOnHost(Boundary::Wrap, 1, shape);
+      float sum = 0;
+      for (const float value : expected) sum += std::fmod(value, 16.0f);
+      for (int round = 0; round < 2; ++round) {  // the groups that have finished are counted from 0 again
+        const auto [values, total] = folded(device, fold.reduction, shape);
+        CHECK(values == expected);
+        CHECK(total == sum);
+      }
     }
   }
 }

@@ -119,6 +119,17 @@ void ProgramText::dispatchGroups(std::int32_t width, std::int32_t height, bool s
   storesApart_ = storesApart;
 }
 
+void ProgramText::foldTiles(std::pair<int, int> group, std::vector<std::string> before,
+                            std::vector<std::string> after) {
+  beforeTiles_ = std::move(before);
+  afterTiles_ = std::move(after);
+  groupOfTiles_ = group;
+}
+
+std::pair<int, int> ProgramText::groupOfTexels() const {
+  return groupForTexels(outputs_.empty() ? 1 : componentsOf(outputs_.front().type));
+}
+
 void ProgramText::storeLater(std::size_t first) {
   for (std::size_t i = first; i < outputs_.size(); ++i) outputs_[i].isStoredLater = true;
 }
@@ -258,9 +269,9 @@ std::string ProgramText::declarationOfBuffer() const {
 std::string ProgramText::mainOf(const std::string& body) const {
   if (isDrawn()) return "\nvoid main() {\n" + body + "}\n";
   if (!mainOfGroups_.empty()) return "\nvoid sk_run() {\n" + body + storesAtEnd() + "}\n" + mainOfGroups_;
+  if (groupOfTiles_.first > 0) return mainOfTiles(body);
   const bool isGrouped = group_.first > 0;
-  const auto [width, height] =
-      isGrouped ? group_ : groupForTexels(outputs_.empty() ? 1 : componentsOf(outputs_.front().type));
+  const auto [width, height] = isGrouped ? group_ : groupOfTexels();
   std::string text =
       fmt::format("\nlayout(local_size_x = {}, local_size_y = {}) in;\n\nvoid main() {{\n", width, height);
   if (isGrouped) {
@@ -277,6 +288,28 @@ std::string ProgramText::mainOf(const std::string& body) const {
     text += "  if (any(greaterThanEqual(sk_pixel - sk_rect.xy, sk_rect.zw))) return;\n" + body;
   }
   return text + storesAtEnd() + "}\n";
+}
+
+/// All invocations of a group combine what they have folded, also those outside the rectangle.
+std::string ProgramText::mainOfTiles(const std::string& body) const {
+  const auto [width, height] = groupOfTiles_;
+  const bool isTogether = !together_.empty();
+  std::string text = "\nvoid sk_run() {\n" + body + storesAtEnd() + "}\n";
+  fmt::format_to(std::back_inserter(text),
+                 "\nlayout(local_size_x = {}, local_size_y = {}) in;\n\nvoid main() {{\n", width, height);
+  for (const std::string& line : beforeTiles_) text += "  " + line + '\n';
+  text += "  for (int sk_tile = 0; sk_tile < sk_groups.y; ++sk_tile) {\n";
+  fmt::format_to(
+      std::back_inserter(text),
+      "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.x, int(gl_WorkGroupID.y) * sk_groups.y + sk_tile) * "
+      "ivec2({}, {}) + {};\n",
+      width, height, isTogether ? "sk_local()" : "ivec2(gl_LocalInvocationID.xy)");
+  if (isTogether) text += together_ + keptTogether_ + "  memoryBarrierShared();\n  barrier();\n";
+  text += "  if (all(lessThan(sk_pixel - sk_rect.xy, sk_rect.zw))) sk_run();\n";
+  if (isTogether) text += "  barrier();\n";  // the next tile replaces what has been read
+  text += "  }\n";
+  for (const std::string& line : afterTiles_) text += "  " + line + '\n';
+  return text + "}\n";
 }
 
 std::string ProgramText::storesAtEnd() const {

@@ -90,6 +90,11 @@ class ProgramText {
   std::vector<std::string> storesOf(std::size_t first, std::size_t end, std::string_view place) const;
   /// For compute programs: main() becomes the function `sk_run`, and the program ends with `main` in its place.
   void runFrom(std::string main) { mainOfGroups_ = std::move(main); }
+  /// For compute programs that fold (reduce/group_fold.hpp): main() becomes the function `sk_run`, which a work group calls
+  /// for each tile of texels, between the lines `before` and `after`.
+  void foldTiles(std::pair<int, int> group, std::vector<std::string> before, std::vector<std::string> after);
+  /// The size of a work group whose invocations compute a texel of the first output each.
+  std::pair<int, int> groupOfTexels() const;
   /// For compute programs whose invocations store any number of texels: the statements that store the outputs' present
   /// values at a place, an ivec2, or an ivec3 in array textures. main() stores nothing by itself then.
   std::vector<std::string> storing(std::string_view place, bool isArray);
@@ -113,6 +118,20 @@ class ProgramText {
     write();
     std::swap(lines, main_);
     defineWith(signature, lines);
+  }
+  /// The lines that `write` adds by statement(), which main() does not get.
+  template <class Write>
+  std::vector<std::string> linesOf(Write&& write) {
+    std::string text = std::exchange(main_, {});
+    write();
+    std::swap(text, main_);
+    std::vector<std::string> lines;
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = text.find('\n', at);
+      lines.push_back(text.substr(at + 2, end - at - 2));  // without the indent of main()
+      at = end + 1;
+    }
+    return lines;
   }
   /// Adds a line to main().
   void statement(std::string_view line);
@@ -140,6 +159,7 @@ class ProgramText {
   std::string declarationOfOutputs() const;
   std::string declarationOfBuffer() const;
   std::string mainOf(const std::string& body) const;
+  std::string mainOfTiles(const std::string& body) const;
   std::string storesAtEnd() const;
 
   Stage stage_ = Stage::Fragment;
@@ -147,6 +167,8 @@ class ProgramText {
   bool samples_ = false;
   std::string place_;  ///< of storeAt()
   std::string mainOfGroups_;  ///< of runFrom()
+  std::vector<std::string> beforeTiles_, afterTiles_;  ///< of foldTiles()
+  std::pair<int, int> groupOfTiles_{};  ///< likewise; 0: it does not fold
   bool isArray_ = false;
   bool isInBuffer_ = false;  ///< storeInBuffer()
   bool storesApart_ = false;  ///< dispatchGroups()

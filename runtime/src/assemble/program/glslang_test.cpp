@@ -16,6 +16,7 @@
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/append/point_program.hpp"
 #include "assemble/program/sample_kernels.hpp"
+#include "assemble/reduce/group_fold.hpp"
 #include "assemble/reduce/reduce_program.hpp"
 #include "assemble/sort/radix_program.hpp"
 
@@ -331,6 +332,43 @@ TEST_CASE("glslang accepts values that the vertex program hands on") {
       programs.add(vertex, "vert");
     }
   }
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts kernels that fold beside their outputs, or have none") {
+  Programs programs("folds");
+  const Profile& profile = *findProfile("glsl430");
+  Reduction reduction = samples::sum;
+  reduction.addition = reduction.combine.body;
+  reduction.commutative = true;
+  reduction.seeded = false;
+  std::vector<Parameter> parameters(reduction.fold.parameters.begin(), reduction.fold.parameters.end());
+  for (const bool stores : {false, true}) {
+    if (stores)
+      parameters.push_back(
+          {.name = "r", .symbol = "r", .role = Role::Output, .element = &samples::floatElement});
+    reduction.fold.parameters = parameters;
+    reduction.fold.entry = "fold";
+    reduction.fold.body =
+        stores ? "void fold(float x, inout float total, out float r) { r = 2.0 * x; total += r; }\n"
+               : "void fold(float x, inout float total) { total += x; }\n";
+    CHECK(mayFoldInGroups(reduction));
+    for (const auto [domain, view] : domains) {
+      for (const bool packed : {false, true}) {
+        const Variant variant{.task = {.work = Work::Folds},
+                              .domain = domain,
+                              .domainView = view,
+                              .domainPacked = packed,
+                              .domainRank = 4,
+                              .access = {{Addressing::Plane}, {}, {}}};
+        Variant fitting = variant;
+        fitting.access.resize(parameters.size());
+        programs.add(profile, kernelProgram(profile, reduction.fold, fitting, &reduction));
+      }
+    }
+  }
+  reduction.commutative = false;  // and so order matters
+  CHECK_FALSE(mayFoldInGroups(reduction));
   checkAccepted(programs);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <deque>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -18,12 +19,14 @@
 #include "assemble/elements/storage.hpp"
 #include "assemble/glsl/intrinsics.hpp"
 #include "assemble/glsl/program_text.hpp"
+#include "assemble/reduce/group_fold.hpp"
 
 namespace sk::assemble {
 namespace {
 
 using program::Kernel;
 using program::Parameter;
+using program::Reduction;
 using program::Role;
 
 std::string_view name(Domain domain) {
@@ -99,7 +102,7 @@ Profile profileFor(const Task& task, Profile profile) {
 
 class KernelText {
  public:
-  KernelText(const Profile& profile, const Kernel& kernel, const Variant& variant)
+  KernelText(const Profile& profile, const Kernel& kernel, const Variant& variant, const Reduction* reduction)
       : profile_(profileFor(variant.task, profile)),
         held_(kernel, variant.access),
         kernel_(held_.kernel()),
@@ -107,10 +110,14 @@ class KernelText {
         program_(profile_),
         domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
                            variant.domainPacked}),
-        groups_(program_, domain_, kernel_, variant) {}
+        groups_(program_, domain_, kernel_, variant) {
+    if (reduction != nullptr) fold_.emplace(program_, *reduction, variant.domainPacked);
+  }
 
   std::string write() {
-    assert(variant_.task.work == Work::Elements || isGroups() == (profile_.stage == Stage::Compute));
+    assert(variant_.task.work == Work::Elements ||
+           (isGroups() || fold_) == (profile_.stage == Stage::Compute));
+    assert(fold_.has_value() == (variant_.task.work == Work::Folds));
     if (profile_.relaysUniforms && !isList()) relayUniforms();
     if (isList())
       findEntry(program_, domain_, kernel_.parameters[variant_.task.appendOutput],
@@ -122,7 +129,8 @@ class KernelText {
                         {fmt::format("return {};", program_.uniform("ivec4", "sk_domain_shape"))});
     }
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
-      if (isNeeded(kernel_.parameters[i], variant_.specs)) {
+      const bool isFolded = kernel_.parameters[i].role == Role::Accumulator;
+      if (isFolded || isNeeded(kernel_.parameters[i], variant_.specs)) {
         defineAccess(i, variant_.access[i]);
       } else {
         defineUnused(kernel_.parameters[i]);
@@ -134,6 +142,7 @@ class KernelText {
     if (profile_.stage == Stage::Compute)
       program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
     if (isGroups()) groups_.finish();
+    if (fold_) fold_->finish();
     return program_.finish(profile_, describe(profile_, kernel_, variant_), kernel_);
   }
 
@@ -206,7 +215,7 @@ class KernelText {
       case Role::Spec:
         arguments_.push_back({specConstant(program_, parameter, variant_.specs[specs_++])});
         break;
-      case Role::Accumulator: assert(!"a reduction has programs of its own"); break;
+      case Role::Accumulator: arguments_.push_back({fold_->define(parameter)}); break;
       case Role::VariableOutput:
       case Role::Scatter:
         defineAppendOutput(i, access);
@@ -299,6 +308,7 @@ class KernelText {
   ProgramText program_;
   DomainText domain_;
   GroupText groups_;
+  std::optional<GroupFold> fold_;
   std::vector<Value> arguments_;
   std::deque<Parameter> written_;  ///< of packed texels
   std::vector<Result> results_;
@@ -343,16 +353,18 @@ bool mayWritePacked(const Kernel& kernel) {
          });
 }
 
-ProgramPair kernelPrograms(const Profile& profile, const Kernel& kernel, const Variant& variant) {
+ProgramPair kernelPrograms(const Profile& profile, const Kernel& kernel, const Variant& variant,
+                           const Reduction* reduction) {
   assert(variant.access.size() == kernel.parameters.size());
-  KernelText text(profile, kernel, variant);
+  KernelText text(profile, kernel, variant, reduction);
   ProgramPair programs{.vertex = {}, .main = text.write()};
   if (profile.stage == Stage::Fragment) programs.vertex = vertexProgram(profile, text.relayed());
   return programs;
 }
 
-std::string kernelProgram(const Profile& profile, const Kernel& kernel, const Variant& variant) {
-  return kernelPrograms(profile, kernel, variant).main;
+std::string kernelProgram(const Profile& profile, const Kernel& kernel, const Variant& variant,
+                          const Reduction* reduction) {
+  return kernelPrograms(profile, kernel, variant, reduction).main;
 }
 
 }  // namespace sk::assemble

@@ -33,13 +33,7 @@ void blit(GlDevice& device, RenderTarget& from, const RegionLayout& source, Rend
 /// An image binds all layers of a texture: the rows of `rects` are numbered across layers.
 void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes,
                    std::span<const Rect> rects) {
-  if (std::exchange(device.hasDrawn, false)) {
-    gl::finishDraws(device.bound);
-  }
-  int unit = 0;
-  for (const RenderTarget* plane : planes) {
-    device.bound.image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
-  }
+  bindImages(device, planes);
   const auto groups = [&](GLsizei texels, GLint group) {
     return program.isGrouped ? texels : (texels + group - 1) / group;
   };
@@ -102,6 +96,16 @@ DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
                 Error::Kind::Device);
   }
   return {framebuffer, isLayered ? first.texture.shape().height : 0};
+}
+
+void bindImages(GlDevice& device, std::span<RenderTarget* const> planes) {
+  if (std::exchange(device.hasDrawn, false)) {
+    gl::finishDraws(device.bound);
+  }
+  int unit = 0;
+  for (const RenderTarget* plane : planes) {
+    device.bound.image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
+  }
 }
 
 PreparedPass preparedPass(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes) {

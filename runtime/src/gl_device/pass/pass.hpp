@@ -48,6 +48,9 @@ struct PreparedPass {
 };
 PreparedPass preparedPass(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes);
 
+/// Binds the planes that a dispatch writes, and orders it after draws.
+void bindImages(GlDevice& device, std::span<RenderTarget* const> planes);
+
 /// Draws or dispatches the pass's program, which must be bound, for each rectangle of planes of the same
 /// shape.
 void writeRects(GlDevice& device, const PreparedPass& pass, std::span<RenderTarget* const> planes,

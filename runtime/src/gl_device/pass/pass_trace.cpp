@@ -195,6 +195,7 @@ std::string_view stepOf(const assemble::Task& task) {
     case assemble::Work::List: return "list";
     case assemble::Work::Owners: return "owners";
     case assemble::Work::Groups: return "append";
+    case assemble::Work::Folds: return "fold";
   }
   return {};
 }

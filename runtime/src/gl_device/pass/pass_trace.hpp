@@ -80,7 +80,7 @@ PassRecord recordOf(const PassName& name, const assemble::Rect& rect, std::size_
 /// The name of a pass that runs a kernel's program: a draw or a dispatch.
 PassName nameOf(std::string_view kernel, std::string_view step, const KernelProgram& program);
 
-/// The step of a pass of a kernel with append outputs; empty for Work::Elements.
+/// The step of a pass of a kernel; empty for Work::Elements.
 std::string_view stepOf(const assemble::Task& task);
 
 /// Traces and counts a pass, which lasts as long as this object; does nothing if the device does neither.

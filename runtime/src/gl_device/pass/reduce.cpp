@@ -13,6 +13,7 @@
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/memory/element_packing.hpp"
+#include "gl_device/pass/fold_kernel.hpp"
 #include "gl_device/pass/output_targets.hpp"
 #include "gl_device/pass/reduce_passes.hpp"
 #include "gl_device/transfer/buffered_transfer.hpp"
@@ -156,7 +157,9 @@ void GlDevice::reduce(const ResolvedReduction& call) {
   const DeviceScope scope(*this);
   const gl::LabelGroup group(labels, fold.name);
   selectPrograms(call.options, stage);
-  if (call.isToValues()) {
+  if (storesBeside(call) || gathersInGroups(*this, call)) {
+    foldInGroups(*this, call);
+  } else if (call.isToValues()) {
     reduceToValues(*this, call);
   } else {
     reduceToStreams(*this, call);

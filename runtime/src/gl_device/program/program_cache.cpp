@@ -66,7 +66,8 @@ void ProgramCache::makeRoom(Programs& programs, IsOfKernel&& isOfKernel) {
   if (count >= mostVariants) programs.erase(oldest);
 }
 
-KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
+KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const program::Reduction* reduction,
+                                           std::span<const Operand> operands,
                                            const assemble::RegionLayout& domain, const assemble::Task& task) {
   const ProgramKey key = variantKey(kernel, operands, domain, task, device_.capabilities.filtersFloats);
   const auto found = kernels_.find(key);
@@ -75,8 +76,8 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::s
     const assemble::Variant variant =
         chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats);
     auto started = startedKernels_.extract(key);
-    auto result = makeKernelProgram(kernel, variant,
-                                    started.empty() ? begin(kernel, variant) : std::move(started.mapped()));
+    auto result = makeKernelProgram(
+        kernel, variant, started.empty() ? begin(kernel, variant, reduction) : std::move(started.mapped()));
     makeRoom(kernels_, [&](const ProgramKey& other) { return other.kernel == &kernel; });
     return *kernels_.insert_or_assign(key, Kept<KernelProgram>{std::move(result), ++clock_})
                 .first->second.program;
@@ -116,6 +117,9 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
     findListUniforms(*result, kernel.parameters[variant.task.appendOutput]);
   } else if (variant.task.work == assemble::Work::Groups || variant.task.work == assemble::Work::Owners) {
     findAppendUniforms(*result, kernel);
+  } else if (variant.task.work == assemble::Work::Folds) {
+    result->foldGroups = {result->program.location("sk_groups"), true};
+    result->foldResult = {result->program.location("sk_result"), true};
   }
   return result;
 }
@@ -251,8 +255,9 @@ void ProgramCache::bindSamplers(const gl::Program& program, const program::Param
   }
 }
 
-ProgramBuild ProgramCache::begin(const program::Kernel& kernel, const assemble::Variant& variant) {
-  assemble::ProgramPair programs = assemble::kernelPrograms(profile_, kernel, variant);
+ProgramBuild ProgramCache::begin(const program::Kernel& kernel, const assemble::Variant& variant,
+                                 const program::Reduction* reduction) {
+  assemble::ProgramPair programs = assemble::kernelPrograms(profile_, kernel, variant, reduction);
   return {device_, {std::move(programs.vertex), std::move(programs.main)}};
 }
 

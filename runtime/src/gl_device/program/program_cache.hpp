@@ -73,6 +73,7 @@ struct KernelProgram {
   assemble::Stage stage = assemble::Stage::Fragment;
   gl::IntUniform rect;  ///< compute programs: the texels that a dispatch writes
   std::array<GLint, 3> workGroup{1, 1, 1};
+  gl::IntUniform foldGroups, foldResult;  ///< of programs that fold (assemble/reduce/group_fold.hpp)
   bool isGrouped = false;  ///< each work group computes one texel
   bool isPacked = false;  ///< a texel of the domain holds assemble::lanes elements
   LayoutUniforms domain;
@@ -108,7 +109,14 @@ class ProgramCache {
   /// programs of the kernel have been used. Throw sk::Error, with the driver's messages, if the driver
   /// rejects the program.
   KernelProgram& kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
-                               const assemble::RegionLayout& domain, const assemble::Task& task = {});
+                               const assemble::RegionLayout& domain, const assemble::Task& task = {}) {
+    return kernelProgram(kernel, nullptr, operands, domain, task);
+  }
+  /// The program that folds beside the outputs of a reduction's fold (assemble::Work::Folds).
+  KernelProgram& foldProgram(const program::Reduction& reduction, std::span<const Operand> operands,
+                             const assemble::RegionLayout& domain) {
+    return kernelProgram(reduction.fold, &reduction, operands, domain, {.work = assemble::Work::Folds});
+  }
   ReduceProgram& reduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
 
   /// Make the driver start compiling a program that will be needed, so that it can compile several at a time.
@@ -122,6 +130,9 @@ class ProgramCache {
  private:
   using ReduceKey = std::pair<const program::Reduction*, assemble::ReduceVariant>;
 
+  KernelProgram& kernelProgram(const program::Kernel& kernel, const program::Reduction* reduction,
+                               std::span<const Operand> operands, const assemble::RegionLayout& domain,
+                               const assemble::Task& task);
   std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
                                                    const assemble::Variant& variant, ProgramBuild&& begun);
   void findParameters(KernelProgram& result, const program::Kernel& kernel, const assemble::SpecValues& specs,
@@ -133,7 +144,8 @@ class ProgramCache {
   void findAppendUniforms(KernelProgram& result, const program::Kernel& kernel);
   void findListUniforms(KernelProgram& result, const program::Parameter& appendOutput);
   bool isCompute() const { return profile_.stage == assemble::Stage::Compute; }
-  ProgramBuild begin(const program::Kernel& kernel, const assemble::Variant& variant);
+  ProgramBuild begin(const program::Kernel& kernel, const assemble::Variant& variant,
+                     const program::Reduction* reduction = nullptr);
   ProgramBuild begin(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
   /// Throws sk::Error, with the driver's messages, if the driver rejects the program.
   void finish(KernelProgram& result, const program::Kernel& kernel, ProgramBuild&& begun);

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "gl_device/pass/fold_kernel.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "assemble/reduce/group_fold.hpp"
+#include "call/check_argument.hpp"
+#include "call/check_reduction.hpp"
+#include "call/resolved_call.hpp"
+#include "gl/commands.hpp"
+#include "gl_device/gl_stream.hpp"
+#include "gl_device/memory/layout.hpp"
+#include "gl_device/pass/kernel_operands.hpp"
+#include "gl_device/pass/output_targets.hpp"
+#include "gl_device/pass/pass.hpp"
+#include "gl_device/pass/pass_trace.hpp"
+#include "gl_device/pass/reduce_passes.hpp"
+
+namespace sk {
+
+using assemble::Rect;
+using assemble::RegionLayout;
+using program::Kernel;
+using program::Parameter;
+using program::Reduction;
+using program::Role;
+
+namespace {
+
+/// The arguments without the streams of parameters of a role.
+std::vector<Argument> without(Role role, const ResolvedReduction& call) {
+  std::vector<Argument> arguments(call.arguments.begin(), call.arguments.end());
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (call.reduction.fold.parameters[i].role == role) arguments[i].region.stream = nullptr;
+  }
+  return arguments;
+}
+
+/// The planes that one dispatch of a fold writes, with those of its accumulators.
+std::size_t planesWritten(const Reduction& reduction, std::span<const Argument> arguments,
+                          const assemble::SpecValues& specs) {
+  std::size_t planes = accumulatorPlanes(reduction.fold);
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const Parameter& parameter = reduction.fold.parameters[i];
+    if (parameter.role == Role::Output && assemble::isNeeded(parameter, specs) &&
+        arguments[i].region.stream != nullptr)
+      planes += glStream(arguments[i].region).held().fields.size();
+  }
+  return planes;
+}
+
+/// How the tiles of a call are divided among work groups.
+class FoldedTiles {
+ public:
+  FoldedTiles(const KernelProgram& program, std::span<const Rect> rects)
+      : width_(program.workGroup[0]), height_(program.workGroup[1]) {
+    std::int64_t tiles = 0;
+    for (const Rect& rect : rects) tiles += std::int64_t{across(rect)} * down(rect);
+    tilesOfGroup_ = static_cast<std::int32_t>(assemble::tilesOfFoldingGroup(tiles));
+    for (const Rect& rect : rects) groups_ += across(rect) * rowsOfGroups(rect);
+  }
+
+  std::int32_t groups() const { return groups_; }
+  std::int32_t tilesOfGroup() const { return tilesOfGroup_; }
+  std::int32_t across(const Rect& rect) const { return (rect.width + width_ - 1) / width_; }
+  std::int32_t rowsOfGroups(const Rect& rect) const {
+    return (down(rect) + tilesOfGroup_ - 1) / tilesOfGroup_;
+  }
+
+ private:
+  std::int32_t down(const Rect& rect) const { return (rect.height + height_ - 1) / height_; }
+
+  std::int32_t width_, height_;
+  std::int32_t tilesOfGroup_ = 1;
+  std::int32_t groups_ = 0;
+};
+
+/// The operands of the accumulators, which results are drawn to; all others are empty.
+std::vector<Operand> operandsOfResults(const ResolvedReduction& call) {
+  std::vector<Operand> operands(call.arguments.size());
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    if (call.reduction.fold.parameters[i].role == Role::Accumulator)
+      operands[i] = regionOperand(call.arguments[i], call.domain);
+  }
+  return operands;
+}
+
+void bindList(GlDevice& device, const Kernel& fold, std::int32_t groups) {
+  const std::size_t entry = accumulatorPlanes(fold) * assemble::foldPlaneBytes;
+  if (device.folded.bind(device.bound, assemble::foldListStart + static_cast<std::size_t>(groups) * entry))
+    return;
+  device.throwIfLost();
+  fail(Error::Kind::Memory, fold, "'{}' has no memory for what its work groups fold", device.name());
+}
+
+void dispatchTiles(GlDevice& device, KernelProgram& program, const FoldedTiles& tiles,
+                   std::span<const Rect> rects) {
+  std::int32_t first = 0;
+  for (const Rect& rect : rects) {
+    const std::int32_t across = tiles.across(rect), rows = tiles.rowsOfGroups(rect);
+    program.rect.set(device.bound, {rect.x, rect.y, rect.width, rect.height});
+    program.foldGroups.set(device.bound, {tiles.groups(), tiles.tilesOfGroup(), across, first});
+    gl::dispatch(device.bound, across, rows);
+    first += across * rows;
+  }
+}
+
+/// Whether a device has images and texture units for a fold, and the streams that it writes have no layers.
+bool fits(const GlDevice& device, const Reduction& reduction, const ResolvedReduction& call) {
+  const Kernel& fold = reduction.fold;
+  const assemble::SpecValues specs = specsOf(fold, call.arguments);
+  const std::size_t written = planesWritten(reduction, call.arguments, specs);
+  const std::size_t read = planesRead(fold, specs) + uniformPlanes(fold, call.arguments);
+  if (written > static_cast<std::size_t>(device.limits.drawBuffers) ||
+      read > static_cast<std::size_t>(device.limits.textureUnits))
+    return false;
+  const auto hasLayers = [&](const Shape& shape) {
+    return layoutOf(shape, device.textureLimits()).whole.layered;
+  };
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const Role role = call.reduction.fold.parameters[i].role;
+    const StreamState* const stream = call.arguments[i].region.stream;
+    if ((role == Role::Output || role == Role::Accumulator) && stream != nullptr && hasLayers(stream->shape))
+      return false;
+  }
+  return !hasLayers(call.domain);
+}
+
+}  // namespace
+
+void foldInGroups(GlDevice& device, const ResolvedReduction& call) {
+  const Kernel& fold = call.reduction.fold;
+  const assemble::SpecValues specs = specsOf(fold, call.arguments);
+  std::size_t firstResult = fold.parameters.size();
+  for (std::size_t i = fold.parameters.size(); i-- > 0;) {
+    if (fold.parameters[i].role != Role::Accumulator) continue;
+    glStream(call.arguments[i].region).unpack();
+    firstResult = i;
+  }
+  const std::vector<Argument> elements = without(Role::Accumulator, call),
+                              folded = without(Role::Output, call);
+  const KernelOperands operands(device, fold, elements, specs, nullptr, call.domain);
+  OutputTargets outputs(device, fold, elements, specs, operands.get(), operands.domain(), operands.layout());
+  const std::vector<Operand> results = operandsOfResults(call);
+  const RegionLayout& result = results[firstResult].regionLayout;
+  OutputTargets sums(device, fold, folded, specs, results, result,
+                     glStream(call.arguments[firstResult].region).layout);
+  std::vector<RenderTarget*> planes(outputs.planes().begin(), outputs.planes().end());
+  planes.insert(planes.end(), sums.planes().begin(), sums.planes().end());
+
+  KernelProgram& program = device.programs().foldProgram(call.reduction, operands.get(), operands.domain());
+  const DrawnRects rects(operands.domain(), operands.layout());
+  const FoldedTiles tiles(program, rects.get());
+  bindList(device, fold, tiles.groups());
+  outputs.begin();
+  sums.begin();
+  {
+    const PassScope traced(device, nameOf(fold.name, stepOf({.work = assemble::Work::Folds}), program),
+                           program, operands.get(), rects.get(), texelBytesOf(outputs.planes()));
+    device.bound.program(program.program.name());
+    bindOperands(device, program, fold, operands.get());
+    program.domain.set(device.bound, operands.domain());
+    const RegionLayout texel = texelOf(result);
+    program.foldResult.set(device.bound, {texel.origin[0], texel.origin[1], 0, 0});
+    bindImages(device, planes);
+    dispatchTiles(device, program, tiles, rects.get());
+  }
+  outputs.copy();
+  sums.copy();
+  outputs.exchange();
+  sums.exchange();
+}
+
+bool gathersInGroups(GlDevice& device, const ResolvedReduction& call) {
+  const Kernel& fold = call.reduction.fold;
+  const bool isGathered = assemble::readsElementIndex(fold) ||
+                          std::ranges::any_of(fold.parameters, [](const Parameter& parameter) {
+                            return parameter.role == Role::Gather;
+                          });
+  return device.programs().stage() == assemble::Stage::Compute && isGathered && !call.scan &&
+         call.rows == nullptr && call.blocks.size() == 1 && call.domain.size() > 0 && !call.isToValues() &&
+         assemble::mayFoldInGroups(call.reduction) && fits(device, call.reduction, call);
+}
+
+bool GlDevice::foldsBesideOutputs(const ResolvedReduction& call) {
+  const Reduction& plain = call.reduction;
+  const program::CompensatedReduction* const second = plain.compensated;
+  const bool mayFold = call.blocks.size() == 1 && call.domain.size() > 0 && !call.isToValues() &&
+                       assemble::mayFoldInGroups(plain) &&
+                       (second == nullptr || assemble::mayFoldInGroups(second->reduction));
+  return mayFold && stageOf(plain.fold, KernelClass::Reduces, call.options) == assemble::Stage::Compute &&
+         fits(*this, second == nullptr ? plain : second->reduction, call);
+}
+
+}  // namespace sk

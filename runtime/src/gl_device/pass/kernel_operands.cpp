@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "gl_device/pass/kernel_operands.hpp"
+
+#include "assemble/assemble.hpp"
+#include "call/check_argument.hpp"
+#include "gl_device/gl_stream.hpp"
+
+namespace sk {
+
+using assemble::RegionLayout;
+using program::Parameter;
+using program::Role;
+
+DrawnRects::DrawnRects(const RegionLayout& domain, const Layout& layout) {
+  if (!domain.linear) {
+    const RegionLayout texels = domain.packed ? assemble::texelsOf(domain) : domain;
+    plane_ = {texels.origin[0], texels.origin[1], texels.extent[0], texels.extent[1]};
+    rects_ = {&plane_, 1};
+  } else if (!domain.view) {
+    rects_ = layout.draws;
+  } else {
+    list_ = assemble::drawnTexels(domain);
+    rects_ = list_;
+  }
+}
+
+KernelOperands::KernelOperands(GlDevice& device, const program::Kernel& kernel,
+                               std::span<const Argument> arguments, const assemble::SpecValues& specs,
+                               const program::Plan* plan, const Shape& shape)
+    : device_(device),
+      kernel_(kernel),
+      arguments_(arguments),
+      specs_(specs),
+      plan_(plan),
+      operands_(device.operands),
+      shape_(shape) {
+  operands_.resize(arguments_.size());
+  while (hasOutput() && !isOutput(first_)) {
+    ++first_;
+  }
+  if (hasOutput()) {
+    shape_ = arguments_[first_].region.shape;
+    layOut();
+  } else {
+    layOutLikeStream();
+  }
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    operands_[i] = operandOf(i);
+  }
+}
+
+/// Chooses the layout of the outputs: packed if possible. Streams that are written only in part keep their
+/// layout, or are unpacked.
+void KernelOperands::layOut() {
+  const StreamRegion& region = arguments_[first_].region;
+  GlStream& stream = glStream(region);
+  const bool packs = mayWritePacked();
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    if (needsUnpacked(i) || (!packs && isWrittenInPlace(i))) glStream(arguments_[i].region).unpack();
+  }
+  layout_ = &stream.layout;
+  if (stream.layout.whole.packed != packs) {
+    newLayout_ = layoutOf(stream.shape, device_.textureLimits(), packs);
+    layout_ = &newLayout_;
+  }
+  domain_ = regionLayoutOf(region, *layout_);
+}
+
+void KernelOperands::layOutLikeStream() {
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    if (needsUnpacked(i)) glStream(arguments_[i].region).unpack();
+  }
+  newLayout_ =
+      layoutOf(shape_, device_.textureLimits(), mayPack(shape_) && assemble::mayWritePacked(kernel_));
+  layout_ = &newLayout_;
+  domain_ = newLayout_.whole;
+}
+
+/// Whether an output's planes cannot be replaced, because the output or the domain is only a part of a
+/// stream.
+bool KernelOperands::isWrittenInPlace(std::size_t i) const {
+  const auto isPart = [](const StreamRegion& region) { return region.shape != region.stream->shape; };
+  return isOutput(i) && (isPart(arguments_[i].region) || isPart(arguments_[first_].region));
+}
+
+/// Whether the outputs can be written packed.
+bool KernelOperands::mayWritePacked() const {
+  bool may = plan_ == nullptr && assemble::mayWritePacked(kernel_);
+  for (std::size_t i = 0; may && i < arguments_.size(); ++i) {
+    if (!isOutput(i)) continue;
+    const StreamRegion& region = arguments_[i].region;
+    const GlStream& stream = glStream(region);
+    may = stream.canPack();
+    if (may && isWrittenInPlace(i)) {
+      may = stream.layout.whole.packed && assemble::isWholeTexels(regionLayoutOf(region, stream.layout));
+    }
+  }
+  return may;
+}
+
+/// Whether an argument must be unpacked before it is read: plans and linear filters do not support packed
+/// texels.
+bool KernelOperands::needsUnpacked(std::size_t i) const {
+  const Role role = kernel_.parameters[i].role;
+  const bool isRead = (role == Role::Input || role == Role::Gather) && isNeeded(i);
+  return isRead && (plan_ != nullptr || assemble::mayFilter(kernel_.parameters[i]));
+}
+
+Operand KernelOperands::operandOf(std::size_t i) const {
+  const Parameter& parameter = kernel_.parameters[i];
+  const Argument& argument = arguments_[i];
+  if (parameter.role == Role::Uniform) return uniformOperand(argument);
+  if (parameter.role == Role::Spec) return {.value = argument.value};
+  if (parameter.role == Role::Iterator) {
+    return iteration(parameter, argument.value, shape_);
+  }
+  if (parameter.role == Role::Accumulator || !isNeeded(i)) return {};
+  return regionOperand(argument, shape_);
+}
+
+}  // namespace sk
