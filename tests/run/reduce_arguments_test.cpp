@@ -172,6 +172,13 @@ TEST_CASE("gathers of rank 1 and 2, with their boundaries") {
       }
       CHECK(folds::looked(i.on(device), tableStream) == wrapped);
       CHECK(folds::looked2(p.on(device), squareStream) == bordered);
+      auto one = device.scalar<float>();
+      auto several = device.stream<float>({3});
+      folds::looked(i.on(device), tableStream, one);
+      CHECK(one.read() == wrapped);
+      several.fill(7);
+      folds::looked2(p.on(device), squareStream, several.domain({1}, {2}));
+      CHECK(several.read() == std::vector<float>{7, bordered, 7});
       int best = i.elements()[0];
       const auto cost = [&](int at) {
         return table.elements()[static_cast<std::size_t>(std::clamp(at, 0, 96))];
@@ -204,6 +211,9 @@ TEST_CASE("neighbours are those of the element that is folded") {
       }
     }
     CHECK(folds::rough(x.on(device), a.on(device)) == expected);
+    auto all = device.stream<float>({1, 1});
+    folds::rough(x.on(device), a.on(device), all);
+    CHECK(all.read() == std::vector<float>{expected});
     auto sums = device.stream<float>({37, 1});
     folds::rough(x.on(device), a.on(device), sums);
     CHECK(difference(sums.read(), rows) == "");

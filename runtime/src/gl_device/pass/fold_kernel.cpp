@@ -127,6 +127,35 @@ bool fits(const GlDevice& device, const Reduction& reduction, const ResolvedRedu
   return !hasLayers(call.domain);
 }
 
+/// Where a dispatch stores the accumulators: a texel of planes of their own.
+struct FoldTarget {
+  std::span<RenderTarget* const> planes;
+  RegionLayout element;
+};
+
+/// Dispatches a fold whose outputs have these planes, in order. Calls begin() after everything that may fail.
+template <class Begin>
+void dispatchFold(GlDevice& device, const ResolvedReduction& call, const KernelOperands& operands,
+                  std::span<RenderTarget* const> outputs, const FoldTarget& target, Begin&& begin) {
+  const Kernel& fold = call.reduction.fold;
+  std::vector<RenderTarget*> planes(outputs.begin(), outputs.end());
+  planes.insert(planes.end(), target.planes.begin(), target.planes.end());
+  KernelProgram& program = device.programs().foldProgram(call.reduction, operands.get(), operands.domain());
+  const DrawnRects rects(operands.domain(), operands.layout());
+  const FoldedTiles tiles(program, rects.get());
+  bindList(device, fold, tiles.groups());
+  begin();
+  const PassScope traced(device, nameOf(fold.name, stepOf({.work = assemble::Work::Folds}), program), program,
+                         operands.get(), rects.get(), texelBytesOf(outputs));
+  device.bound.program(program.program.name());
+  bindOperands(device, program, fold, operands.get());
+  program.domain.set(device.bound, operands.domain());
+  const RegionLayout texel = texelOf(target.element);
+  program.foldResult.set(device.bound, {texel.origin[0], texel.origin[1], 0, 0});
+  bindImages(device, planes);
+  dispatchTiles(device, program, tiles, rects.get());
+}
+
 }  // namespace
 
 void foldInGroups(GlDevice& device, const ResolvedReduction& call) {
@@ -146,40 +175,34 @@ void foldInGroups(GlDevice& device, const ResolvedReduction& call) {
   const RegionLayout& result = results[firstResult].regionLayout;
   OutputTargets sums(device, fold, folded, specs, results, result,
                      glStream(call.arguments[firstResult].region).layout);
-  std::vector<RenderTarget*> planes(outputs.planes().begin(), outputs.planes().end());
-  planes.insert(planes.end(), sums.planes().begin(), sums.planes().end());
-
-  KernelProgram& program = device.programs().foldProgram(call.reduction, operands.get(), operands.domain());
-  const DrawnRects rects(operands.domain(), operands.layout());
-  const FoldedTiles tiles(program, rects.get());
-  bindList(device, fold, tiles.groups());
-  outputs.begin();
-  sums.begin();
-  {
-    const PassScope traced(device, nameOf(fold.name, stepOf({.work = assemble::Work::Folds}), program),
-                           program, operands.get(), rects.get(), texelBytesOf(outputs.planes()));
-    device.bound.program(program.program.name());
-    bindOperands(device, program, fold, operands.get());
-    program.domain.set(device.bound, operands.domain());
-    const RegionLayout texel = texelOf(result);
-    program.foldResult.set(device.bound, {texel.origin[0], texel.origin[1], 0, 0});
-    bindImages(device, planes);
-    dispatchTiles(device, program, tiles, rects.get());
-  }
+  dispatchFold(device, call, operands, outputs.planes(), {sums.planes(), result}, [&] {
+    outputs.begin();
+    sums.begin();
+  });
   outputs.copy();
   sums.copy();
   outputs.exchange();
   sums.exchange();
 }
 
+void foldInGroups(GlDevice& device, const ResolvedReduction& call, std::span<RenderTarget> values) {
+  const Kernel& fold = call.reduction.fold;
+  const assemble::SpecValues specs = specsOf(fold, call.arguments);
+  const KernelOperands operands(device, fold, call.arguments, specs, nullptr, call.domain);
+  dispatchFold(device, call, operands, {}, {pointersTo(values), assemble::valueLayout()}, [] {});
+}
+
 bool gathersInGroups(GlDevice& device, const ResolvedReduction& call) {
+  // A value comes from a texture, which takes an H100 some 20 us longer than from the buffer of other reductions.
+  constexpr std::int64_t fewestToValue = std::int64_t{1} << 18;
+  const std::int64_t fewest = call.isToValues() ? fewestToValue : 1;
   const Kernel& fold = call.reduction.fold;
   const bool isGathered = assemble::readsElementIndex(fold) ||
                           std::ranges::any_of(fold.parameters, [](const Parameter& parameter) {
                             return parameter.role == Role::Gather;
                           });
   return device.programs().stage() == assemble::Stage::Compute && isGathered && !call.scan &&
-         call.rows == nullptr && call.blocks.size() == 1 && call.domain.size() > 0 && !call.isToValues() &&
+         call.rows == nullptr && call.blocks.size() == 1 && call.domain.size() >= fewest &&
          assemble::mayFoldInGroups(call.reduction) && fits(device, call.reduction, call);
 }
 

@@ -5,17 +5,21 @@
 // reductions that read more than the elements of inputs.
 #pragma once
 
+#include <span>
+
 #include "call/resolved_reduction.hpp"
 #include "gl_device/gl_device.hpp"
 
 namespace sk {
 
-/// Whether foldInGroups() can fold a reduction to streams without outputs, and is the faster way.
+/// Whether foldInGroups() can fold a reduction without outputs, and is the faster way.
 bool gathersInGroups(GlDevice& device, const ResolvedReduction& call);
 
 /// Writes the outputs and the accumulators, which are streams, of a call for which GlDevice::foldsBesideOutputs() or
 /// gathersInGroups() is true, or of the compensated variant of such a call. A DeviceScope must be open, and compute programs
 /// selected.
 void foldInGroups(GlDevice& device, const ResolvedReduction& call);
+/// The same, of a reduction to values, which `values` gets: one texel of each plane of its accumulators.
+void foldInGroups(GlDevice& device, const ResolvedReduction& call, std::span<RenderTarget> values);
 
 }  // namespace sk

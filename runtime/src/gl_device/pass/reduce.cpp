@@ -93,6 +93,13 @@ void takeValues(GlDevice& device, const Kernel& fold, std::span<void* const> res
 void reduceToValues(GlDevice& device, const ResolvedReduction& call) {
   const Kernel& fold = call.reduction.fold;
   const RegionLayout layout = assemble::valueLayout();
+  if (gathersInGroups(device, call)) {
+    PlanesLease value(device);
+    takeAccumulators(fold, {1, 1}, "the result of a reduction", value);
+    foldInGroups(device, call, value.planes);
+    const TraceScope traced(device.trace.get(), "transfer", "read value");
+    return readValues(device, fold, value.planes, layout, call.values);
+  }
   ReducePasses passes(device, call);
   if (call.domain.size() > 0 && passes.mayEndInBuffer()) {
     passes.run(layout, {}, [] {});
@@ -157,10 +164,10 @@ void GlDevice::reduce(const ResolvedReduction& call) {
   const DeviceScope scope(*this);
   const gl::LabelGroup group(labels, fold.name);
   selectPrograms(call.options, stage);
-  if (storesBeside(call) || gathersInGroups(*this, call)) {
-    foldInGroups(*this, call);
-  } else if (call.isToValues()) {
+  if (call.isToValues()) {
     reduceToValues(*this, call);
+  } else if (storesBeside(call) || gathersInGroups(*this, call)) {
+    foldInGroups(*this, call);
   } else {
     reduceToStreams(*this, call);
   }
