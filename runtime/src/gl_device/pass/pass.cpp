@@ -206,11 +206,12 @@ void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel
 
 namespace {
 
-/// Whether a blit can copy a region: source and target are planes with the same elements per texel. A loop repeats no
-/// blits: it could not leave them out on the device.
-bool isBlit(const GlDevice& device, const RegionLayout& source, const RegionLayout& target) {
-  return !device.bound.isLogged() && !source.linear && !target.linear && source.packed == target.packed &&
-         !source.strided && !target.strided;
+/// Whether a blit copies a region: source and target are planes with the same elements per texel. A loop repeats no
+/// blits: it could not leave them out on the device. Where programs are dispatched, blits are as slow as draws.
+bool isBlit(GlDevice& device, const RegionLayout& source, const RegionLayout& target) {
+  return !device.bound.isLogged() && device.programs().stage() == assemble::Stage::Fragment &&
+         !source.linear && !target.linear && source.packed == target.packed && !source.strided &&
+         !target.strided;
 }
 
 /// Whether whole texels are copied.
