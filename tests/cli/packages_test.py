@@ -21,9 +21,9 @@ skipped = 77
 # Programs that are started only where somebody has them, and why a test can do without.
 optional = {
     "chromium": "[web] has it, and tests of programs for browsers are skipped without it",
-    "node": "[web] has it, and tests of programs for browsers are skipped without it",
     "ffmpeg": "writes films, which no test wants",
     "git": "fetches the sources, which are here",
+    "node": "[web] has it, and tests of programs for browsers are skipped without it",
     "sudo": "installs packages, which are here",
     "tsc": "[web] has it, and tests of programs for browsers are skipped without it",
 }
