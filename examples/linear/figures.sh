@@ -10,7 +10,7 @@ program=$(realpath "$1") device=${2:-native} files=../../docs/linear.md
 shift "$(($# > 1 ? 2 : 1))"
 name=$(basename "$program")
 case $name in
-  solve) name=linear all=(precision solvers preconditioners multigrid full jumps orders layouts) files=README.md,$files ;;
+  solve) name=linear all=(precision solvers preconditioners aggregation multigrid full jumps orders layouts) files=README.md,$files ;;
   fluid) all=(taylor_green time energy cavity poiseuille cost) ;;
   waves) all=(dispersion energy) ;;
   smooth) all=(sphere layouts) ;;

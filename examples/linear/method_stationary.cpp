@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "eigenvalues.hpp"
 #include "krylov.sk.hpp"
 #include "method.hpp"
 #include "operator.hpp"
@@ -19,33 +20,6 @@
 namespace linear {
 
 namespace {
-
-/// The smallest or the largest eigenvalue of a symmetric tridiagonal matrix, by bisection: the signs of the pivots of T - x count the eigenvalues
-/// below x (Golub and Van Loan, "Matrix computations", 8.4.1).
-double tridiagonalEigenvalue(const std::vector<double>& diagonal, const std::vector<double>& beside,
-                             bool isSmallest) {
-  const std::size_t n = diagonal.size();
-  double low = diagonal[0], high = diagonal[0];
-  for (std::size_t i = 0; i < n; ++i) {
-    const double radius = (i > 0 ? beside[i - 1] : 0.0) + (i + 1 < n ? beside[i] : 0.0);
-    low = std::min(low, diagonal[i] - radius);
-    high = std::max(high, diagonal[i] + radius);
-  }
-  for (int step = 0; step < 60; ++step) {
-    const double x = 0.5 * (low + high);
-    std::size_t below = 0;
-    double pivot = 1.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double b = i > 0 ? beside[i - 1] : 0.0;
-      pivot = diagonal[i] - x - (i > 0 ? b * b / pivot : 0.0);
-      if (pivot == 0.0) pivot = 1e-300;
-      below += pivot < 0.0 ? 1 : 0;
-    }
-    const bool isAbove = isSmallest ? below > 0 : below == n;
-    (isAbove ? high : low) = x;
-  }
-  return 0.5 * (low + high);
-}
 
 /// x <- x + M (b - A x): what a preconditioner does by itself.
 class Stationary : public Method {

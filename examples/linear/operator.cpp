@@ -11,8 +11,6 @@ namespace linear {
 
 namespace {
 
-double powerOfTwo(double norm) { return norm > 0.0 ? std::ldexp(1.0, -std::ilogb(norm) - 1) : 1.0; }
-
 bool annihilatesOnes(const Operator& a) {
   if (a.size == 0 || a.infinityNorm == 0.0) return false;
   const std::vector<double> ones(static_cast<std::size_t>(a.size), 1.0);
@@ -21,6 +19,8 @@ bool annihilatesOnes(const Operator& a) {
 }
 
 }  // namespace
+
+double powerOfTwo(double norm) { return norm > 0.0 ? std::ldexp(1.0, -std::ilogb(norm) - 1) : 1.0; }
 
 Operator operatorOf(const SparseMatrix& a) {
   if (a.rows != a.columns)

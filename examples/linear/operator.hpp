@@ -47,6 +47,8 @@ std::string findAsymmetry(const Operator& a);
 /// The entries of the matrix, those of a stencil written out.
 SparseMatrix sparseOf(const Operator& a);
 
+/// The power of two that brings a norm to 1/2 or more, and below 1; 1 for the norm 0.
+double powerOfTwo(double norm);
 /// The matrix times a power of two.
 SparseMatrix scaled(SparseMatrix a, double scale);
 Stencil scaled(Stencil a, double scale);

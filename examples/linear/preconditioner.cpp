@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "aggregation.hpp"
+#include "chebyshev.hpp"
 #include "multigrid.hpp"
 #include "multigrid_varying.hpp"
 #include "operator.hpp"
@@ -56,40 +58,23 @@ class Diagonal : public Preconditioner {
   sk::CallOptions foldOptions_;
 };
 
-/// A fixed number of Chebyshev's iterations for D^-1 A z = D^-1 r from z = 0, for eigenvalues from bound / 30 to bound.
+/// Four of Chebyshev's iterations from z = 0, for eigenvalues from bound / 30 to bound.
 class Chebyshev : public Preconditioner {
  public:
-  Chebyshev(sk::Device& device, Matrix& matrix, const Operator& a, const Arithmetic& arithmetic)
-      : matrix_(matrix),
-        inverse_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
-        change_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
-        product_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
-        options_(arithmetic.options()),
-        foldOptions_(arithmetic.foldOptions()),
-        middle_(a.jacobiBound * (1.0 + 1.0 / 30.0) / 2.0),
-        radius_(a.jacobiBound * (1.0 - 1.0 / 30.0) / 2.0) {
-    inverse_.writeReals(inverseDiagonal(a));
-  }
+  explicit Chebyshev(const PreconditionerParts& parts)
+      : steps_(parts.device, parts.matrix, inverseDiagonal(parts.a),
+               {.steps = 4, .low = parts.a.jacobiBound / 30.0, .high = parts.a.jacobiBound},
+               parts.arithmetic),
+        foldOptions_(parts.arithmetic.foldOptions()) {}
 
   void apply(const Vector& r, Vector& z, Vector& rz) override {
-    double rho = radius_ / middle_;
-    chebyshevFirst.with(options_)(static_cast<float>(1.0 / middle_), inverse_, r, change_, z);
-    for (int k = 1; k < steps; ++k) {
-      matrix_.multiply(z, product_);
-      const double next = 1.0 / (2.0 * middle_ / radius_ - rho);
-      chebyshevStep.with(options_)(static_cast<float>(next * rho), static_cast<float>(2.0 * next / radius_),
-                                   inverse_, r, product_, change_, z, change_, z);
-      rho = next;
-    }
+    steps_.begin(r, z);
     dot.with(foldOptions_)(r, z, rz);
   }
 
  private:
-  static constexpr int steps = 4;
-  Matrix& matrix_;
-  Vector inverse_, change_, product_;
-  sk::CallOptions options_, foldOptions_;
-  double middle_, radius_;
+  ChebyshevSteps steps_;
+  sk::CallOptions foldOptions_;
 };
 
 std::unique_ptr<Preconditioner> makeNone(const PreconditionerParts&) { return nullptr; }
@@ -105,14 +90,15 @@ std::unique_ptr<Preconditioner> makeSpai0(const PreconditionerParts& parts) {
 
 std::unique_ptr<Preconditioner> makeChebyshev(const PreconditionerParts& parts) {
   checkDiagonal(parts.a, "the preconditioner 'chebyshev'");
-  return std::make_unique<Chebyshev>(parts.device, parts.matrix, parts.a, parts.arithmetic);
+  return std::make_unique<Chebyshev>(parts);
 }
 
 template <Cycle cycle>
 std::unique_ptr<Preconditioner> makeGeometric(const PreconditionerParts& parts) {
   if (!parts.a.isGrid())
     throw std::runtime_error(
-        "multigrid needs a grid, as of 'poisson:512x512'; for matrices of files take another preconditioner");
+        "multigrid needs a grid, as of 'poisson:512x512'; for matrices of files take 'aggregation' or "
+        "another preconditioner");
   if (parts.matrix.layout() != "stencil")
     throw std::runtime_error("multigrid works on grids; take --layout stencil, or another preconditioner");
   const MultigridSettings settings{
@@ -135,6 +121,8 @@ constexpr PreconditionerKind preconditioners[] = {
     {"ssor", "a sweep forwards and one backwards", true, false, makeSsor},
     {"ic0", "incomplete Cholesky factors on the matrix's own pattern", true, true, makeIncompleteCholesky},
     {"ilu0", "incomplete LU factors on the matrix's own pattern", false, false, makeIncompleteLu},
+    {"aggregation", "a V-cycle of algebraic multigrid by smoothed aggregation, for symmetric matrices", true,
+     true, makeAggregation},
     {"multigrid", "a V-cycle of geometric multigrid, for grids", true, false, makeGeometric<Cycle::V>},
     {"w-cycle", "a W-cycle of it", false, false, makeGeometric<Cycle::W>},
     {"f-cycle", "an F-cycle of it", false, false, makeGeometric<Cycle::F>},
@@ -142,6 +130,13 @@ constexpr PreconditionerKind preconditioners[] = {
 };
 
 }  // namespace
+
+double HierarchyAccount::operatorComplexity() const {
+  if (levels.empty() || levels[0].entries == 0) return 1.0;
+  double sum = 0.0;
+  for (const Level& level : levels) sum += static_cast<double>(level.entries);
+  return sum / static_cast<double>(levels[0].entries);
+}
 
 void Preconditioner::update(const Operator&) {
   throw std::runtime_error(

@@ -3,8 +3,10 @@
 // Preconditioners: z = M r, where M is near the inverse of the matrix and cheap to apply.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +24,20 @@ struct LevelRate {
   double rate = 0.0;
 };
 
+/// The levels that a preconditioner has built from the entries of a matrix.
+struct HierarchyAccount {
+  struct Level {
+    std::int64_t unknowns = 0;
+    std::int64_t entries = 0;
+    std::string layout;
+  };
+  std::vector<Level> levels;  ///< the matrix itself first
+  double seconds = 0.0;  ///< to build them, and to copy them to the device
+
+  /// The entries of all levels for each entry of the matrix: what a cycle costs, in products with the matrix, for each of its steps on a level.
+  double operatorComplexity() const;
+};
+
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
@@ -32,6 +48,8 @@ class Preconditioner {
   virtual void update(const Operator& a);
   /// Measures the rate of the cycle on each grid, the finest first, in about ten cycles each; empty for preconditioners without grids.
   virtual std::vector<LevelRate> rates() { return {}; }
+  /// Null if it has built no levels.
+  virtual const HierarchyAccount* hierarchy() const { return nullptr; }
 };
 
 struct PreconditionerSettings {

@@ -18,6 +18,13 @@ std::string textOf(const Account& account, const Solution& solution) {
   for (std::size_t i = 0; i < account.trials.size(); ++i)
     fmt::format_to(out, "{}{} {:.3g} ms", i == 0 ? "; a product takes with " : ", ", account.trials[i].layout,
                    account.trials[i].seconds * 1000.0);
+  if (account.hierarchy) {
+    std::string sizes;
+    for (const HierarchyAccount::Level& level : account.hierarchy->levels)
+      sizes += fmt::format("{}{}", sizes.empty() ? "" : ", ", level.unknowns);
+    fmt::format_to(out, "\nlevels of {} unknowns, operator complexity {:.3g}, set up in {:.3g} ms", sizes,
+                   account.hierarchy->operatorComplexity(), account.hierarchy->seconds * 1000.0);
+  }
   fmt::format_to(out, "\n{} after {} iterations", nameOf(solution.outcome), solution.iterations);
   if (solution.restarts > 0)
     fmt::format_to(out, ", begun anew {} times for the residual in double precision", solution.restarts);
@@ -52,6 +59,15 @@ std::string jsonOf(const Account& account, const Solution& solution) {
     for (int d = level.grid.rank() - 1; d >= 0; --d) row["grid"].push_back(level.grid[d]);
     row["rate"] = level.rate;
     json["rates"]["levels"].push_back(row);
+  }
+  if (account.hierarchy) {
+    auto& hierarchy = json["hierarchy"];
+    hierarchy["levels"] = nlohmann::ordered_json::array();
+    for (const HierarchyAccount::Level& level : account.hierarchy->levels)
+      hierarchy["levels"].push_back(
+          {{"unknowns", level.unknowns}, {"entries", level.entries}, {"layout", level.layout}});
+    hierarchy["operator_complexity"] = account.hierarchy->operatorComplexity();
+    hierarchy["setup_seconds"] = account.hierarchy->seconds;
   }
   return json.dump(2) + "\n";
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Account {
   std::int64_t stored = 0;  ///< entries that the layout holds; 0 if it holds none
   std::vector<LayoutTrial> trials;
   std::vector<LevelRate> rates;  ///< of multigrid on its grids, where they were measured
+  std::optional<HierarchyAccount> hierarchy;  ///< of the preconditioner
 
   /// Stored entries for each entry of the matrix; 0 if none is stored.
   double fill() const {
@@ -32,7 +34,8 @@ struct Account {
 std::string textOf(const Account& account, const Solution& solution);
 /// An object with outcome, iterations, restarts, residual_true, residual_recurred, backward_error, removed_mean, seconds, layout, fill, device and rates: the mean
 /// reduction of the residual `per_iteration`, and for each of multigrid's grids its extents, the fastest first, and the rate of a cycle. Numbers that are not
-/// finite are null.
+/// finite are null. For a preconditioner that has built levels, also hierarchy: levels (unknowns, entries and layout of each), operator_complexity and
+/// setup_seconds.
 std::string jsonOf(const Account& account, const Solution& solution);
 
 }  // namespace linear

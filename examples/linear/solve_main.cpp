@@ -216,6 +216,8 @@ void solveSystem(examples::Application& app, Settings& s) {
         {.omega = s.omega, .ordering = s.ordering, .before = s.sweeps[0], .after = s.sweeps[1]});
     const std::unique_ptr<linear::Method> method = methodKind.make(
         device, *matrix, preconditioner.get(), arithmetic, {.restart = s.restart, .omega = s.omega, .a = &a});
+    if (preconditioner && preconditioner->hierarchy() != nullptr)
+      account.hierarchy = *preconditioner->hierarchy();
     account.layout = matrix->layout();
     account.stored = matrix->stored();
     examples::Progress progress("solve", s.solve.most);

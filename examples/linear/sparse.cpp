@@ -80,6 +80,37 @@ std::vector<double> multiply(const SparseMatrix& a, std::span<const double> x) {
   return y;
 }
 
+std::optional<SparseMatrix> multiply(const SparseMatrix& a, const SparseMatrix& b, std::int64_t most) {
+  SparseMatrix c{.rows = a.rows, .columns = b.columns, .starts = {0}, .column = {}, .value = {}};
+  std::vector<double> sums(static_cast<std::size_t>(b.columns), 0.0);
+  std::vector<std::size_t> seenBy(sums.size(), 0);  // the row that has seen a column last, plus 1
+  std::vector<std::int32_t> columns;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.rows); ++i) {
+    columns.clear();
+    for (auto k = static_cast<std::size_t>(a.starts[i]); k < static_cast<std::size_t>(a.starts[i + 1]); ++k) {
+      const auto row = static_cast<std::size_t>(a.column[k]);
+      for (auto m = static_cast<std::size_t>(b.starts[row]); m < static_cast<std::size_t>(b.starts[row + 1]);
+           ++m) {
+        const auto column = static_cast<std::size_t>(b.column[m]);
+        if (seenBy[column] != i + 1) {
+          seenBy[column] = i + 1;
+          sums[column] = 0.0;
+          columns.push_back(b.column[m]);
+        }
+        sums[column] += a.value[k] * b.value[m];
+      }
+    }
+    if (c.entries() + static_cast<std::int64_t>(columns.size()) > most) return std::nullopt;
+    std::ranges::sort(columns);
+    for (const std::int32_t column : columns) {
+      c.column.push_back(column);
+      c.value.push_back(sums[static_cast<std::size_t>(column)]);
+    }
+    c.starts.push_back(c.entries());
+  }
+  return c;
+}
+
 SparseMatrix transpose(const SparseMatrix& a) {
   SparseMatrix t{.rows = a.columns, .columns = a.rows, .starts = {}, .column = {}, .value = {}};
   t.starts.assign(static_cast<std::size_t>(a.columns) + 1, 0);

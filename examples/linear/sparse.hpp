@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,8 @@ SparseMatrix assemble(std::int64_t rows, std::int64_t columns, std::span<const E
 
 /// y = A x. The sums are those of double precision, in the order of the columns.
 std::vector<double> multiply(const SparseMatrix& a, std::span<const double> x);
+/// A B, in double precision, with all entries that the structures of A and B give, also if they add up to 0; std::nullopt as soon as it has more than `most` of them.
+std::optional<SparseMatrix> multiply(const SparseMatrix& a, const SparseMatrix& b, std::int64_t most);
 SparseMatrix transpose(const SparseMatrix& a);
 /// The largest sum of magnitudes of a row.
 double infinityNorm(const SparseMatrix& a);

@@ -57,6 +57,7 @@ struct Reached {
   double productSeconds = 0.0;
   double bytes = 0.0;  ///< of the matrix, for each unknown and product
   std::vector<LevelRate> rates;
+  HierarchyAccount hierarchy;  ///< of the preconditioner, if it has levels
 };
 
 /// Solves twice, since the first time builds programs, and returns the second.
@@ -74,6 +75,7 @@ Reached reached(sk::Device& device, const System& system, const Run& run) {
   for (int i = 0; i < 2; ++i)
     r.solution = solve(*method, a, system.rightHandSide(), run.arithmetic, run.settings);
   if (preconditioner != nullptr && run.method == "stationary") r.rates = preconditioner->rates();
+  if (preconditioner && preconditioner->hierarchy() != nullptr) r.hierarchy = *preconditioner->hierarchy();
   r.layout = matrix->layout();
   r.productSeconds = secondsOf(device, *matrix, run.arithmetic);
   r.bytes = static_cast<double>(matrix->bytes()) / static_cast<double>(a.size);
@@ -328,6 +330,25 @@ std::string fullMultigrid(sk::Device& device) {
   return table.markdown();
 }
 
+std::string aggregation(sk::Device& device) {
+  examples::Table table({"grid", "levels", "operator complexity", "set-up ms", "cg with jacobi",
+                         "cg with aggregation", "aggregation alone", "ms"});
+  for (const char* grid :
+       {"32x32", "64x64", "128x128", "256x256", "16x16x16", "32x32x32", "128x128:1,1000"}) {
+    const System system(fmt::format("poisson:{}", grid), {});
+    const auto with = [&](std::string_view method, std::string_view preconditioner) {
+      return reached(device, system, {.method = method, .preconditioner = preconditioner, .layout = "rows"});
+    };
+    const Reached plain = with("cg", "jacobi"), r = with("cg", "aggregation"),
+                  alone = with("stationary", "aggregation");
+    table.add({grid, std::to_string(r.hierarchy.levels.size()),
+               fmt::format("{:.2f}", r.hierarchy.operatorComplexity()), milliseconds(r.hierarchy.seconds),
+               std::to_string(plain.solution.iterations), std::to_string(r.solution.iterations),
+               std::to_string(alone.solution.iterations), milliseconds(r.solution.seconds)});
+  }
+  return table.markdown();
+}
+
 constexpr StudyKind studies[] = {
     {"precision", "precisions, storages and accumulations, with and without refinement", precisions},
     {"solvers", "every solver, for Poisson's equation", solvers},
@@ -336,6 +357,8 @@ constexpr StudyKind studies[] = {
     {"jumps", "multigrid and conjugate gradients where coefficients jump", jumps},
     {"full", "the error after one and two cycles of full multigrid", fullMultigrid},
     {"orders", "the errors of discretisations of the second and the fourth order", orders},
+    {"aggregation", "levels and iterations of smoothed aggregation, for stored matrices of growing grids",
+     aggregation},
     {"layouts", "every layout of a sparse matrix, with entries in floats and halves", layoutsOfGrids},
 };
 
