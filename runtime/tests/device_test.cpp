@@ -44,6 +44,29 @@ TEST_CASE("a device tells what it is") {
   CHECK(es.limits().drawBuffers >= 4);
 }
 
+TEST_CASE("a device tells how much memory it has, if anybody does, and no more than the limit") {
+  for (const bool isNative : {false, true}) {
+    CAPTURE(isNative);
+    const std::string name = isNative ? "native" : "";
+    Device device({.device = name, .profile = isNative ? "" : "glsl330"});
+    const auto memory = device.limits().memory, available = device.availableMemory();
+    if (device.isSoftware()) {  // the host's
+      REQUIRE(memory.has_value());
+      REQUIRE(available.has_value());
+      CHECK(*available > 0);
+    }
+    if (memory && available) CHECK(*available <= *memory);
+    Device small({.device = name, .profile = isNative ? "" : "essl300", .memoryLimit = 1000});
+    CHECK(small.limits().memory == 1000);
+    CHECK(small.availableMemory() == 1000);
+    auto x = small.stream<float>({1000});  // no limit of streams
+    x.fill(2.0f);
+    CHECK(x.read()[999] == 2.0f);
+  }
+  CHECK(errorOf([] { Device(DeviceOptions{.memoryLimit = -1}); }) ==
+        "the memory limit '-1' is no number of bytes from 1 on (option or SK_MEMORY_LIMIT)");
+}
+
 TEST_CASE("what doubles may be") {
   CHECK(errorOf([] { Device(DeviceOptions{.doubles = "long"}); }) ==
         "there are no doubles 'long'; choose native or pairs (option or SK_DOUBLES)");

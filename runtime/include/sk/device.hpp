@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -50,6 +51,10 @@ struct DeviceOptions {
   /// layers. If 0, the environment variable SK_TEXTURE_LIMIT decides, and without it the device's limit,
   /// which is the maximum in any case. It shows how a program runs where textures are smaller.
   std::int32_t textureLimit = 0;
+  /// The most bytes that DeviceLimits::memory and availableMemory() report. If 0, the environment variable
+  /// SK_MEMORY_LIMIT decides, and without it the device's own memory. It shows how a program that asks for
+  /// them runs where there is less memory; streams may be larger in any case.
+  std::int64_t memoryLimit = 0;
   /// "device": the device's own limits. "guaranteed": a pass reads and writes no more planes than every
   /// device of the profile can, which shows how a program runs elsewhere. If empty, the environment variable
   /// SK_LIMITS decides, and without it "device".
@@ -77,6 +82,9 @@ struct DeviceLimits {
   std::int32_t textureUnits = 0;  ///< planes that one pass may read
   std::int32_t uniformComponents = 0;  ///< components of the uniform arguments of a kernel
   std::int64_t elements = 0;  ///< elements of a stream or a domain (sk/limits.hpp)
+  /// Bytes of the memory that holds streams: a GPU's, or the host's if streams are there. Empty if the driver
+  /// does not tell.
+  std::optional<std::int64_t> memory = {};
 };
 
 /// The result of a trial with one class of kernels (docs/runtime.md, Targets).
@@ -172,6 +180,9 @@ class Device {
   /// "glsl330", "glsl430" if compute programs were requested, "essl300", or "native".
   std::string_view profile() const;
   const DeviceLimits& limits() const;
+  /// Bytes of limits().memory that nobody uses at present; empty if it is unknown (docs/runtime.md, Limits).
+  /// Some drivers tell this and not the whole, or neither.
+  std::optional<std::int64_t> availableMemory() const;
   /// Whether the renderer runs on the CPU.
   bool isSoftware() const;
   /// What the device's float arithmetic guarantees. The first call runs a program on a thousand pairs of

@@ -111,9 +111,31 @@ DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, co
           barrierOf(barrier),           targetOf(profile), sharesContext};
 }
 
-/// Gives a device the configuration file and the trace that are named, if any.
-detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const std::string& file) {
-  const std::string name = chosen(file, "SK_CONFIG");
+/// The option if it is set, else the environment variable.
+std::int64_t memoryLimitOf(std::int64_t option) {
+  const std::string text = option != 0 ? std::to_string(option) : chosen({}, "SK_MEMORY_LIMIT");
+  std::int64_t limit = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), limit);
+  const bool isNumber = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+  if (!text.empty() && (!isNumber || limit < 1)) {
+    throw Error(
+        fmt::format("the memory limit '{}' is no number of bytes from 1 on (option or SK_MEMORY_LIMIT)",
+                    text),
+        Error::Kind::Device);
+  }
+  return limit;
+}
+
+/// No more than the limit, where there is one.
+std::optional<std::int64_t> limited(std::optional<std::int64_t> bytes, std::int64_t limit) {
+  return limit == 0 ? bytes : std::min(bytes.value_or(limit), limit);
+}
+
+/// Gives a device the memory limit, the configuration file and the trace that are named, if any.
+detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const DeviceOptions& options) {
+  state->memoryLimit = memoryLimitOf(options.memoryLimit);
+  state->limits.memory = limited(state->limits.memory, state->memoryLimit);
+  const std::string name = chosen(options.configuration, "SK_CONFIG");
   if (!name.empty()) {
     state->configuration = Configuration(name);
     state->configuration.checkNames(program::LinkedFile::namesOfAll());
@@ -175,7 +197,7 @@ template <class Options>
 detail::DeviceOwner open(Options&& options) {
   return withHostMemory(aDevice, [&] {
     const DeviceOptions requested = withEnvironment(options());
-    return configured(openState(requested), requested.configuration);
+    return configured(openState(requested), requested);
   });
 }
 
@@ -200,8 +222,8 @@ Device Device::adopt(const DeviceOptions& options) {
   return withHostMemory(aDevice, [&] {
     const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles,
                                             options.barrier, options.profile, true);
-    return Device(configured(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices),
-                             options.configuration));
+    return Device(
+        configured(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices), options));
   });
 }
 
@@ -241,6 +263,10 @@ const std::string& Device::driver() const { return state().driver(); }
 const std::string& Device::shadingLanguage() const { return state().shadingLanguage(); }
 std::string_view Device::profile() const { return state().profileName(); }
 const DeviceLimits& Device::limits() const { return state().limits; }
+std::optional<std::int64_t> Device::availableMemory() const {
+  return withHostMemory("availableMemory",
+                        [&] { return limited(state().availableMemory(), state().memoryLimit); });
+}
 bool Device::isSoftware() const { return state().isSoftware(); }
 const Arithmetic& Device::arithmetic() {
   return withHostMemory("arithmetic", [&]() -> const Arithmetic& { return state().arithmetic(); });

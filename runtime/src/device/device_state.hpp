@@ -114,7 +114,11 @@ class DeviceState {
   /// effect, if the host is faster. Throws sk::Error if memory is exhausted; nothing has moved then.
   virtual std::optional<std::int64_t> reorder(const Reordering&) { return std::nullopt; }
 
+  /// Bytes of memory for streams that are free now; nullopt if nobody tells.
+  virtual std::optional<std::int64_t> availableMemory() = 0;
+
   DeviceLimits limits;
+  std::int64_t memoryLimit = 0;  ///< the most bytes of memory that it reports; 0: all
   Configuration configuration;
   FunctionTables tables;
   std::optional<PassCount> passCount;  ///< empty unless counting is on

@@ -24,6 +24,7 @@
 #include "probe/copy_bandwidth.hpp"
 #include "probe/probe.hpp"
 #include "sk/error.hpp"
+#include "support/host_memory.hpp"
 
 namespace sk {
 
@@ -115,6 +116,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     arithmetic_ = {.exactSums = *choices.barrier != Barrier::None, .barrier = *choices.barrier};
   }
   const gl::CurrentScope current(context);
+  limits.memory = memoryInfo().whole;
   vertexArray = gl::VertexArray(bound.deletions);
   if (!isGuest()) {
     gl::setPassState(capabilities);
@@ -428,6 +430,17 @@ void GlDevice::releasePlanes(std::vector<RenderTarget>& planes) noexcept {
 }
 
 // An adopted context is either current already, or cannot be made current.
+gl::MemoryInfo GlDevice::memoryInfo() const {
+  if (!capabilities.isSoftware) return gl::readMemoryInfo();
+  const HostMemory host = hostMemory();
+  return {host.whole, host.available};
+}
+
+std::optional<std::int64_t> GlDevice::availableMemory() {
+  const gl::CurrentScope current(context);
+  return memoryInfo().available;
+}
+
 void GlDevice::makeCurrent() {
   if (!context.isCurrent()) context.makeCurrent();
 }

@@ -19,6 +19,7 @@
 #include "gl/bound_state.hpp"
 #include "gl/fold_buffer.hpp"
 #include "gl/labels.hpp"
+#include "gl/memory_info.hpp"
 #include "gl/open_context.hpp"
 #include "gl/samplers.hpp"
 #include "gl/saved_state.hpp"
@@ -90,6 +91,7 @@ class GlDevice final : public DeviceState {
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
                                             Storage storage) override;
   void startTrace(const std::string& file) override;
+  std::optional<std::int64_t> availableMemory() override;
   void finish() override;
   void release() override { context.release(); }
   void makeCurrent() override;
@@ -170,6 +172,9 @@ class GlDevice final : public DeviceState {
   gl::BoundState bound;
 
  private:
+  /// The context is current.
+  gl::MemoryInfo memoryInfo() const;
+
   /// Deletes the GL objects that the members below queue for deletion when they are destroyed.
   struct LastDeletions {
     GlDevice& device;

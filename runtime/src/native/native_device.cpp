@@ -7,6 +7,7 @@
 #include "native/entries.hpp"
 #include "native/native_stream.hpp"
 #include "probe/copy_bandwidth.hpp"
+#include "support/host_memory.hpp"
 
 namespace sk {
 
@@ -41,9 +42,12 @@ NativeDevice::NativeDevice(RealType real)
             .drawBuffers = unlimited,
             .textureUnits = unlimited,
             .uniformComponents = unlimited,
-            .elements = std::numeric_limits<std::int64_t>::max()};
+            .elements = std::numeric_limits<std::int64_t>::max(),
+            .memory = hostMemory().whole};
   static_cast<void>(levelOfCpu());  // throws where SK_CPU names no level
 }
+
+std::optional<std::int64_t> NativeDevice::availableMemory() { return hostMemory().available; }
 
 void NativeDevice::makeCurrent() {
   throw Error(

@@ -38,6 +38,7 @@ class NativeDevice final : public DeviceState {
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
                                             Storage storage) override;
   void startTrace(const std::string& file) override;
+  std::optional<std::int64_t> availableMemory() override;
   void finish() override {}
   void release() override {}
   void makeCurrent() override;
