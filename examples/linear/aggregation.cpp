@@ -19,8 +19,10 @@ namespace {
 constexpr double strengthThreshold = 0.08;  ///< of the finest level; half as large on each coarser one
 constexpr double dominance = 5.0;  ///< of a diagonal over the rest of its row that needs no coarse level
 
-std::size_t begin(const SparseMatrix& a, std::size_t row) { return static_cast<std::size_t>(a.starts[row]); }
-std::size_t end(const SparseMatrix& a, std::size_t row) {
+std::size_t firstEntry(const SparseMatrix& a, std::size_t row) {
+  return static_cast<std::size_t>(a.starts[row]);
+}
+std::size_t endOfRow(const SparseMatrix& a, std::size_t row) {
   return static_cast<std::size_t>(a.starts[row + 1]);
 }
 
@@ -29,7 +31,7 @@ std::vector<bool> dominatedRows(const SparseMatrix& a, const std::vector<double>
   std::vector<bool> dominated(d.size());
   for (std::size_t i = 0; i < d.size(); ++i) {
     double rest = -std::abs(d[i]);
-    for (std::size_t k = begin(a, i); k < end(a, i); ++k) rest += std::abs(a.value[k]);
+    for (std::size_t k = firstEntry(a, i); k < endOfRow(a, i); ++k) rest += std::abs(a.value[k]);
     dominated[i] = d[i] >= dominance * rest;
   }
   return dominated;
@@ -39,7 +41,7 @@ std::vector<bool> dominatedRows(const SparseMatrix& a, const std::vector<double>
 std::int32_t companionOf(const SparseMatrix& a, const std::vector<bool>& dominated, std::size_t i) {
   double largest = 0.0;
   std::int32_t companion = -1;
-  for (std::size_t k = begin(a, i); k < end(a, i); ++k) {
+  for (std::size_t k = firstEntry(a, i); k < endOfRow(a, i); ++k) {
     const auto j = static_cast<std::size_t>(a.column[k]);
     if (j == i || dominated[j] || !(std::abs(a.value[k]) > largest)) continue;
     largest = std::abs(a.value[k]);
@@ -60,7 +62,7 @@ SparseMatrix smoothedProlongator(const SparseMatrix& strong, const std::vector<s
   for (std::size_t i = 0; i < aggregate.size(); ++i) {
     row.clear();
     if (aggregate[i] >= 0) row.emplace_back(aggregate[i], 1.0);
-    for (std::size_t k = begin(strong, i); isSmoothed && k < end(strong, i); ++k)
+    for (std::size_t k = firstEntry(strong, i); isSmoothed && k < endOfRow(strong, i); ++k)
       if (const std::int32_t j = aggregate[static_cast<std::size_t>(strong.column[k])]; j >= 0)
         row.emplace_back(j, -omega * inverse[i] * strong.value[k]);
     std::ranges::stable_sort(row, {}, &std::pair<std::int32_t, double>::first);
@@ -83,11 +85,11 @@ void clearKernel(SparseMatrix& coarse, const SparseMatrix& fine, const SparseMat
   const std::vector<double> d = diagonal(fine), found = diagonal(coarse);
   std::vector<double> terms(found.size(), 0.0);
   for (std::size_t i = 0; i < d.size(); ++i)
-    for (std::size_t k = begin(p, i); k < end(p, i); ++k)
+    for (std::size_t k = firstEntry(p, i); k < endOfRow(p, i); ++k)
       terms[static_cast<std::size_t>(p.column[k])] += p.value[k] * p.value[k] * d[i];
   const auto isKernel = [&](std::size_t i) { return !(found[i] > 0x1p-40 * terms[i]); };
   for (std::size_t i = 0; i < found.size(); ++i)
-    for (std::size_t k = begin(coarse, i); k < end(coarse, i); ++k)
+    for (std::size_t k = firstEntry(coarse, i); k < endOfRow(coarse, i); ++k)
       if (isKernel(i) || isKernel(static_cast<std::size_t>(coarse.column[k]))) coarse.value[k] = 0.0;
 }
 
@@ -113,11 +115,11 @@ std::optional<SparseMatrix> coarsen(AggregationLevel& level, double threshold) {
   return scaled(std::move(*coarse), scale);
 }
 
-std::vector<double> inverseOf(const SparseMatrix& a) {
+std::vector<double> coarsestInverseOf(const SparseMatrix& a) {
   const auto n = static_cast<std::size_t>(a.rows);
   std::vector<double> elements(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t k = begin(a, i); k < end(a, i); ++k)
+    for (std::size_t k = firstEntry(a, i); k < endOfRow(a, i); ++k)
       elements[i * n + static_cast<std::size_t>(a.column[k])] = a.value[k];
   return pseudoInverse(std::move(elements), n);
 }
@@ -135,14 +137,14 @@ SparseMatrix withoutWeakEntries(const SparseMatrix& a, double threshold) {
   std::vector<std::int32_t> companion(d.size(), -1);
   for (std::size_t i = 0; i < d.size(); ++i) {
     bool hasLarge = dominated[i];
-    for (std::size_t k = begin(a, i); !hasLarge && k < end(a, i); ++k) hasLarge = isLarge(i, k);
+    for (std::size_t k = firstEntry(a, i); !hasLarge && k < endOfRow(a, i); ++k) hasLarge = isLarge(i, k);
     if (!hasLarge) companion[i] = companionOf(a, dominated, i);
   }
   SparseMatrix strong{.rows = a.rows, .columns = a.columns, .starts = {0}, .column = {}, .value = {}};
   for (std::size_t i = 0; i < d.size(); ++i) {
     double weak = 0.0;
     std::size_t own = 0;
-    for (std::size_t k = begin(a, i); k < end(a, i); ++k) {
+    for (std::size_t k = firstEntry(a, i); k < endOfRow(a, i); ++k) {
       const auto j = static_cast<std::size_t>(a.column[k]);
       const bool isStrong = j == i || isLarge(i, k) || companion[i] == static_cast<std::int32_t>(j) ||
                             companion[j] == static_cast<std::int32_t>(i);
@@ -168,10 +170,10 @@ std::vector<std::int32_t> aggregatesOf(const SparseMatrix& strong) {
   // A row and all its neighbours, where none of them has an aggregate yet. A row of one entry has no neighbour.
   for (std::size_t i = 0; i < n; ++i) {
     bool isFree = strong.length(static_cast<std::int64_t>(i)) > 1;
-    for (std::size_t k = begin(strong, i); isFree && k < end(strong, i); ++k)
+    for (std::size_t k = firstEntry(strong, i); isFree && k < endOfRow(strong, i); ++k)
       isFree = aggregate[static_cast<std::size_t>(strong.column[k])] < 0;
     if (!isFree) continue;
-    for (std::size_t k = begin(strong, i); k < end(strong, i); ++k)
+    for (std::size_t k = firstEntry(strong, i); k < endOfRow(strong, i); ++k)
       aggregate[static_cast<std::size_t>(strong.column[k])] = count;
     ++count;
   }
@@ -180,7 +182,7 @@ std::vector<std::int32_t> aggregatesOf(const SparseMatrix& strong) {
   for (std::size_t i = 0; i < n; ++i) {
     if (roots[i] >= 0) continue;
     double largest = 0.0;
-    for (std::size_t k = begin(strong, i); k < end(strong, i); ++k) {
+    for (std::size_t k = firstEntry(strong, i); k < endOfRow(strong, i); ++k) {
       const std::int32_t other = roots[static_cast<std::size_t>(strong.column[k])];
       if (other < 0 || !(std::abs(strong.value[k]) > largest)) continue;
       largest = std::abs(strong.value[k]);
@@ -199,7 +201,7 @@ AggregationHierarchy aggregationHierarchy(SparseMatrix a) {
     level.inverseDiagonal = diagonal(level.matrix);
     for (double& v : level.inverseDiagonal) v = v > 0.0 ? 1.0 / v : 0.0;
     if (level.matrix.rows <= mostOfCoarsest) {
-      hierarchy.coarsestInverse = inverseOf(level.matrix);
+      hierarchy.coarsestInverse = coarsestInverseOf(level.matrix);
       return hierarchy;
     }
     level.largestEigenvalue = jacobiEigenvalueBound(level.matrix, level.inverseDiagonal);

@@ -26,9 +26,9 @@ constexpr double smoothedPart = 1.0 / 5.0;
 constexpr int smoothingSteps = 2;  ///< before the correction, and after it
 
 /// A level on the device, and the transfers to the next coarser one.
-struct Level {
-  Level(sk::Device& device, Matrix& itsMatrix, const AggregationLevel& level, bool isSolved,
-        const Arithmetic& arithmetic)
+struct DeviceLevel {
+  DeviceLevel(sk::Device& device, Matrix& itsMatrix, const AggregationLevel& level, bool isSolved,
+              const Arithmetic& arithmetic)
       : matrix(itsMatrix), flat{level.matrix.rows} {
     if (!isSolved)
       smoother =
@@ -86,7 +86,7 @@ class Aggregation : public Preconditioner {
  private:
   /// z becomes about A^-1 b on a level.
   void cycle(std::size_t at, const Vector& b, Vector& z) {
-    Level& level = levels_[at];
+    DeviceLevel& level = levels_[at];
     if (!level.smoother) return solve(b, z);
     level.smoother->begin(b, z);
     if (level.prolongator) {
@@ -107,7 +107,7 @@ class Aggregation : public Preconditioner {
   }
 
   std::vector<std::unique_ptr<Matrix>> coarse_;  ///< matrices of all levels but the first
-  std::vector<Level> levels_;
+  std::vector<DeviceLevel> levels_;
   Vector inverse_;  ///< of the coarsest matrix; none if the coarsest level is smoothed alone
   sk::CallOptions options_, foldOptions_;
   HierarchyAccount account_;

@@ -26,13 +26,14 @@ bool hasFewDiagonals(const SparseMatrix& a) {
 bool isMostlyFull(const SparseMatrix& a) { return a.entries() > 0 && 2 * a.entries() >= a.rows * a.columns; }
 
 constexpr LayoutKind layouts[] = {
-    {"rows", "compressed rows, balanced whatever their lengths", makeRows, always},
-    {"slices", "SELL-C-sigma: slices of 32 rows of similar lengths", makeSlices, always},
-    {"buckets", "rows of one length together (Bolz and others 2003)", makeBuckets, onDemand},
+    {"rows", "compressed rows, balanced whatever their lengths", makeRows, always, bytesOfRows},
+    {"slices", "SELL-C-sigma: slices of 32 rows of similar lengths", makeSlices, always, bytesOfSlices},
+    {"buckets", "rows of one length together (Bolz and others 2003)", makeBuckets, onDemand, bytesOfBuckets},
     {"diagonals", "one stream for each diagonal (Krueger and Westermann 2003)", makeDiagonals,
-     hasFewDiagonals},
-    {"points", "an addition for each entry (Krueger and Westermann 2003)", makePoints, onDemand},
-    {"dense", "all elements", makeDense, isMostlyFull},
+     hasFewDiagonals, bytesOfDiagonals},
+    {"points", "an addition for each entry (Krueger and Westermann 2003)", makePoints, onDemand,
+     bytesOfPoints},
+    {"dense", "all elements", makeDense, isMostlyFull, bytesOfDense},
 };
 
 }  // namespace
@@ -49,6 +50,21 @@ std::vector<std::int64_t> diagonalsOf(const SparseMatrix& a, std::size_t most) {
       if (at == found.end() || *at != offset) found.insert(at, offset);
     }
   return found;
+}
+
+std::int64_t bytesOf(const SparseMatrix& a, std::string_view layout, std::int64_t entryBytes) {
+  if (layout != "auto") return rowNamed(layoutKinds(), layout, "layout").bytes(a, entryBytes);
+  std::int64_t least = layouts[0].bytes(a, entryBytes);
+  for (const LayoutKind& kind : layouts)
+    if (kind.suits(a)) least = std::min(least, kind.bytes(a, entryBytes));
+  return least;
+}
+
+bool hasNarrowOffsets(const SparseMatrix& a, std::int64_t row) {
+  if (a.length(row) == 0) return true;
+  const auto first = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(row)]);
+  const auto last = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(row) + 1]) - 1;
+  return a.column[first] - row >= -0x8000 && a.column[last] - row <= 0x7fff;
 }
 
 double secondsOf(sk::Device& device, Matrix& matrix, const Arithmetic& arithmetic) {

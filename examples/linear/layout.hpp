@@ -23,6 +23,8 @@ struct LayoutKind {
   std::unique_ptr<Matrix> (*make)(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
   /// Whether a trial of this layout is worth its memory for the matrix.
   bool (*suits)(const SparseMatrix& a);
+  /// Bytes that the layout takes of a device, with entries of `entryBytes`: without copying anything. Not negative, also if the layout cannot hold the matrix.
+  std::int64_t (*bytes)(const SparseMatrix& a, std::int64_t entryBytes);
 };
 
 std::span<const LayoutKind> layoutKinds();
@@ -48,6 +50,19 @@ std::unique_ptr<Matrix> makeDiagonals(sk::Device& device, const SparseMatrix& a,
                                       const Arithmetic& arithmetic);
 std::unique_ptr<Matrix> makePoints(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
 std::unique_ptr<Matrix> makeDense(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
+
+/// Bytes of the matrix in the named layout; for "auto", the fewest of those that suit it. Throws std::runtime_error for an unknown name.
+std::int64_t bytesOf(const SparseMatrix& a, std::string_view layout, std::int64_t entryBytes);
+
+std::int64_t bytesOfRows(const SparseMatrix& a, std::int64_t entryBytes);
+std::int64_t bytesOfSlices(const SparseMatrix& a, std::int64_t entryBytes);
+std::int64_t bytesOfBuckets(const SparseMatrix& a, std::int64_t entryBytes);
+std::int64_t bytesOfDiagonals(const SparseMatrix& a, std::int64_t entryBytes);
+std::int64_t bytesOfPoints(const SparseMatrix& a, std::int64_t entryBytes);
+std::int64_t bytesOfDense(const SparseMatrix& a, std::int64_t entryBytes);
+
+/// Whether all columns of a row are less than 2^15 from it, so that 16 bits hold an entry's offset from the diagonal.
+bool hasNarrowOffsets(const SparseMatrix& a, std::int64_t row);
 
 /// The offsets column - row of the entries, modulo the number of columns, ascending. Stops after `most` + 1 of them.
 std::vector<std::int64_t> diagonalsOf(const SparseMatrix& a, std::size_t most);

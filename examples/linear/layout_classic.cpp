@@ -16,6 +16,8 @@ namespace linear {
 
 namespace {
 
+constexpr std::size_t mostStoredDiagonals = 4096;
+
 /// Diagonals i and i - n share a stream: its element at row r is the entry of column (r + i) mod n.
 class DiagonalMatrix : public Matrix {
  public:
@@ -103,43 +105,78 @@ class PointMatrix : public Matrix {
   sk::Stream<int> row_, column_;
 };
 
-/// Rows of one length: entry k of all rows is in row k of the streams.
+using RowsByLength = std::map<std::int64_t, std::vector<int>>;
+
+RowsByLength rowsByLengthOf(const SparseMatrix& a) {
+  RowsByLength rows;
+  for (std::int64_t i = 0; i < a.rows; ++i) rows[a.length(i)].push_back(static_cast<int>(i));
+  return rows;
+}
+
+/// Rows of one length: entry k of all rows is in row k of the streams. Columns are stored as offsets from the row, in 16 bits where all of the bucket's rows allow it.
 struct Bucket {
   Bucket(sk::Device& device, const SparseMatrix& a, std::vector<int> itsRows, const Arithmetic& arithmetic)
       : rows(std::move(itsRows)),
         length(static_cast<int>(a.length(rows.front()))),
         value(device.stream<float>({length, rows.size()}, arithmetic.matrix)),
-        column(device.stream<int>({length, rows.size()})),
         row(device.stream<int>({rows.size()})) {
     update(a);
-    column.write(transposed(a, a.column));
     row.write(rows);
+    if (isNarrow(a, rows))
+      writeOffsets(narrow, device, a);
+    else
+      writeOffsets(wide, device, a);
   }
 
-  void update(const SparseMatrix& a) { value.writeReals(transposed(a, a.value)); }
+  static bool isNarrow(const SparseMatrix& a, const std::vector<int>& rows) {
+    return std::ranges::all_of(rows, [&](int i) { return hasNarrowOffsets(a, i); });
+  }
 
-  /// The elements `of` the rows' entries, entry by entry.
-  template <class T>
-  std::vector<T> transposed(const SparseMatrix& a, const std::vector<T>& of) const {
+  void update(const SparseMatrix& a) {
+    value.writeReals(transposed<double>(a, [&](std::size_t entry, int) { return a.value[entry]; }));
+  }
+
+  template <class Offset>
+  void writeOffsets(sk::Stream<Offset>& offset, sk::Device& device, const SparseMatrix& a) const {
+    offset = device.stream<Offset>(value.shape());
+    offset.write(transposed<Offset>(
+        a, [&](std::size_t entry, int i) { return static_cast<Offset>(a.column[entry] - i); }));
+  }
+
+  /// of(entry, row) of the rows' entries, entry by entry.
+  template <class T, class Of>
+  std::vector<T> transposed(const SparseMatrix& a, Of&& of) const {
     std::vector<T> elements(static_cast<std::size_t>(length) * rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
       for (std::size_t k = 0; k < static_cast<std::size_t>(length); ++k)
         elements[k * rows.size() + i] =
-            of[static_cast<std::size_t>(a.starts[static_cast<std::size_t>(rows[i])]) + k];
+            of(static_cast<std::size_t>(a.starts[static_cast<std::size_t>(rows[i])]) + k, rows[i]);
     return elements;
+  }
+
+  void multiply(const sk::CallOptions& options, const Vector& x, Vector& y) {
+    if (narrow)
+      bucketProduct.with(options)(length, value, narrow, row, x, y);
+    else
+      bucketProduct.with(options)(length, value, wide, row, x, y);
   }
 
   std::vector<int> rows;
   int length;
   Vector value;
-  sk::Stream<int> column, row;
+  sk::Stream<int> row;
+  sk::Stream<std::int16_t> narrow;  ///< one of the two
+  sk::Stream<std::int32_t> wide;
 };
 
 class BucketMatrix : public Matrix {
  public:
-  BucketMatrix(sk::Device& device, const SparseMatrix& a,
-               const std::map<std::int64_t, std::vector<int>>& rowsByLength, const Arithmetic& arithmetic)
-      : Matrix(arithmetic), rows_(a.rows), columns_(a.columns) {
+  BucketMatrix(sk::Device& device, const SparseMatrix& a, const RowsByLength& rowsByLength,
+               const Arithmetic& arithmetic)
+      : Matrix(arithmetic),
+        rows_(a.rows),
+        columns_(a.columns),
+        bytes_(bytesOfBuckets(a, bytesOf(arithmetic.matrix))) {
     for (const auto& [length, rows] : rowsByLength)
       if (length > 0) buckets_.emplace_back(device, a, rows, arithmetic);
     hasEmptyRows_ = rowsByLength.contains(0);
@@ -153,7 +190,7 @@ class BucketMatrix : public Matrix {
   using Matrix::multiply;
   void multiply(const Vector& x, Vector& y) override {
     if (hasEmptyRows_ || buckets_.empty()) y.fill(0.0f);
-    for (Bucket& b : buckets_) bucketProduct.with(options())(b.length, b.value, b.column, b.row, x, y);
+    for (Bucket& b : buckets_) b.multiply(options(), x, y);
   }
   bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "buckets"; }
@@ -162,25 +199,46 @@ class BucketMatrix : public Matrix {
     for (const Bucket& b : buckets_) sum += b.value.size();
     return sum;
   }
-  std::int64_t bytes() const override { return (entryBytes() + 4) * stored() + 4 * rows_; }
+  std::int64_t bytes() const override { return bytes_; }
+  std::string offsetBits() const override {
+    const auto isNarrow = [](const Bucket& b) { return static_cast<bool>(b.narrow); };
+    if (std::ranges::all_of(buckets_, isNarrow)) return "16";
+    return std::ranges::none_of(buckets_, isNarrow) ? "32" : "16 and 32";
+  }
 
  private:
-  std::int64_t rows_, columns_;
+  std::int64_t rows_, columns_, bytes_;
   std::vector<Bucket> buckets_;
   bool hasEmptyRows_ = false;
 };
 
 }  // namespace
 
+std::int64_t bytesOfDiagonals(const SparseMatrix& a, std::int64_t entryBytes) {
+  return entryBytes * a.rows * static_cast<std::int64_t>(diagonalsOf(a, mostStoredDiagonals).size());
+}
+
+std::int64_t bytesOfPoints(const SparseMatrix& a, std::int64_t entryBytes) {
+  return (entryBytes + 8) * a.entries();
+}
+
+std::int64_t bytesOfBuckets(const SparseMatrix& a, std::int64_t entryBytes) {
+  std::int64_t sum = 0;
+  for (const auto& [length, rows] : rowsByLengthOf(a))
+    if (length > 0)
+      sum += static_cast<std::int64_t>(rows.size()) *
+             (length * (entryBytes + (Bucket::isNarrow(a, rows) ? 2 : 4)) + 4);
+  return sum;
+}
+
 std::unique_ptr<Matrix> makeDiagonals(sk::Device& device, const SparseMatrix& a,
                                       const Arithmetic& arithmetic) {
   if (a.rows != a.columns)
     throw std::runtime_error(
         fmt::format("the layout 'diagonals' takes square matrices; this one has {} x {}", a.rows, a.columns));
-  constexpr std::size_t most = 4096;
   constexpr std::int64_t mostValues = std::int64_t{1} << 28;
-  const std::vector<std::int64_t> offsets = diagonalsOf(a, most);
-  if (offsets.size() > most || static_cast<std::int64_t>(offsets.size()) * a.rows > mostValues)
+  const std::vector<std::int64_t> offsets = diagonalsOf(a, mostStoredDiagonals);
+  if (offsets.size() > mostStoredDiagonals || static_cast<std::int64_t>(offsets.size()) * a.rows > mostValues)
     throw std::runtime_error(
         "the matrix has too many diagonals for the layout 'diagonals'; take 'rows' or 'slices'");
   return std::make_unique<DiagonalMatrix>(device, a, offsets, arithmetic);
@@ -192,8 +250,7 @@ std::unique_ptr<Matrix> makePoints(sk::Device& device, const SparseMatrix& a, co
 
 std::unique_ptr<Matrix> makeBuckets(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic) {
   constexpr std::size_t most = 256;  // each is a call, and a program
-  std::map<std::int64_t, std::vector<int>> rowsByLength;
-  for (std::int64_t i = 0; i < a.rows; ++i) rowsByLength[a.length(i)].push_back(static_cast<int>(i));
+  const RowsByLength rowsByLength = rowsByLengthOf(a);
   if (rowsByLength.size() > most)
     throw std::runtime_error(fmt::format(
         "the rows have {} different lengths, and the layout 'buckets' takes {}; take 'rows' or 'slices'",

@@ -22,7 +22,8 @@ class RowsMatrix : public Matrix {
         columns_(a.columns),
         rowsOf_(startsOf(device, a)),
         value_(device.stream<float>({a.entries()}, arithmetic.matrix)),
-        column_(device.stream<int>({a.entries()})) {
+        column_(device.stream<int>({a.entries()})),
+        bytes_(bytesOfRows(a, entryBytes())) {
     update(a);
     column_.write(a.column);
   }
@@ -37,7 +38,7 @@ class RowsMatrix : public Matrix {
   bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "rows"; }
   std::int64_t stored() const override { return value_.size(); }
-  std::int64_t bytes() const override { return (entryBytes() + 4) * value_.size() + 4 * rows_; }
+  std::int64_t bytes() const override { return bytes_; }
 
  private:
   static sk::Stream<int> startsOf(sk::Device& device, const SparseMatrix& a) {
@@ -53,6 +54,7 @@ class RowsMatrix : public Matrix {
   sk::Rows rowsOf_;
   Vector value_;
   sk::Stream<int> column_;
+  std::int64_t bytes_;
 };
 
 class DenseMatrix : public Matrix {
@@ -89,6 +91,14 @@ class DenseMatrix : public Matrix {
 };
 
 }  // namespace
+
+std::int64_t bytesOfRows(const SparseMatrix& a, std::int64_t entryBytes) {
+  return (entryBytes + 4) * a.entries() + 4 * (a.rows + 1);
+}
+
+std::int64_t bytesOfDense(const SparseMatrix& a, std::int64_t entryBytes) {
+  return entryBytes * a.rows * a.columns;
+}
 
 std::unique_ptr<Matrix> makeRows(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic) {
   return std::make_unique<RowsMatrix>(device, a, arithmetic);

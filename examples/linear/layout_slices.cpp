@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
-#include <type_traits>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -52,15 +52,16 @@ Slices slicesOf(const SparseMatrix& a) {
   return s;
 }
 
-/// Whether all columns are less than 2^15 from their rows, so that 16 bits hold an offset.
+/// Whether offsets of 16 bits hold all columns.
 bool isNarrow(const SparseMatrix& a) {
-  for (std::int64_t i = 0; i < a.rows; ++i) {
-    if (a.length(i) == 0) continue;
-    const auto first = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
-    const auto last = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]) - 1;
-    if (a.column[first] - i < -0x8000 || a.column[last] - i > 0x7fff) return false;
-  }
+  for (std::int64_t i = 0; i < a.rows; ++i)
+    if (!hasNarrowOffsets(a, i)) return false;
   return true;
+}
+
+std::int64_t bytesOfStreams(const Slices& s, std::int64_t entryBytes, std::int64_t offsetBytes) {
+  return (entryBytes + offsetBytes) * s.start.back() +
+         4 * static_cast<std::int64_t>(s.slot.size() + s.start.size());
 }
 
 template <class Offset>
@@ -103,10 +104,8 @@ class SliceMatrix : public Matrix {
   }
   std::string layout() const override { return "slices"; }
   std::int64_t stored() const override { return value_.size(); }
-  std::int64_t bytes() const override {
-    return (entryBytes() + static_cast<std::int64_t>(sizeof(Offset))) * value_.size() +
-           4 * (slot_.size() + start_.size());
-  }
+  std::int64_t bytes() const override { return bytesOfStreams(slices_, entryBytes(), sizeof(Offset)); }
+  std::string offsetBits() const override { return std::to_string(8 * sizeof(Offset)); }
 
  private:
   /// Calls visit(row, entry, at) with the element of the streams that holds each entry.
@@ -129,6 +128,10 @@ class SliceMatrix : public Matrix {
 };
 
 }  // namespace
+
+std::int64_t bytesOfSlices(const SparseMatrix& a, std::int64_t entryBytes) {
+  return bytesOfStreams(slicesOf(a), entryBytes, isNarrow(a) ? 2 : 4);
+}
 
 std::unique_ptr<Matrix> makeSlices(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic) {
   if (isNarrow(a)) return std::make_unique<SliceMatrix<std::int16_t>>(device, a, arithmetic);

@@ -150,6 +150,43 @@ TEST_CASE("Stencils are their matrices") {
   }
 }
 
+TEST_CASE("Offsets of 16 bits are taken where they fit, and products have the bits of those of 32") {
+  // Rows of two entries and of three; the second matrix has one row of two, and the third one of each, whose columns are far apart.
+  constexpr std::int64_t n = 40000;
+  const auto matrix = [](bool farTwo, bool farThree) {
+    std::vector<Entry> entries;
+    for (std::int64_t i = 0; i < n; ++i) {
+      entries.push_back({i, i, 1.0 + static_cast<double>(i % 5)});
+      const bool isFar = (i == 1 && farTwo) || (i == 3 && farThree);
+      entries.push_back({i, isFar ? n - 1 : (i + 32767) % n < i ? i - 1 : i + 32767, -0.3});
+      if (i % 3 == 0) entries.push_back({i, i == 0 ? 7 : i - 1, 0.7});
+    }
+    return assemble(n, n, entries);
+  };
+  const SparseMatrix near = matrix(false, false), mixed = matrix(true, false), far = matrix(true, true);
+  const std::vector<double> x = randomVector(n);
+  for (sk::Device& device : testDevices()) {
+    CAPTURE(device.profile());
+    const auto of = [&](const SparseMatrix& a, std::string_view offsetBits) {
+      const auto buckets = makeBuckets(device, a, {});
+      CHECK(buckets->offsetBits() == offsetBits);
+      std::vector<double> y = productOf(device, *buckets, x);
+      checkProduct(a, x, y);
+      return y;
+    };
+    const std::vector<double> narrow = of(near, "16");
+    for (std::vector<double> y : {of(mixed, "16 and 32"), of(far, "32")}) {
+      y[1] = narrow[1];
+      y[3] = narrow[3];
+      CHECK(y == narrow);
+    }
+    CHECK(makeSlices(device, near, {})->offsetBits() == "16");
+    CHECK(makeSlices(device, mixed, {})->offsetBits() == "32");
+    CHECK(makeRows(device, near, {})->offsetBits().empty());
+  }
+  CHECK(bytesOf(near, "buckets", 4) < bytesOf(mixed, "buckets", 4));
+}
+
 TEST_CASE("The automatic choice takes a layout that suits the matrix, and unknown names are told") {
   sk::Device device = sk::Device::native();
   std::vector<LayoutTrial> trials;

@@ -69,6 +69,8 @@ class Matrix {
 
   /// The layout's name, as --layout takes it.
   virtual std::string layout() const = 0;
+  /// Bits of the offsets from the diagonal that stand for columns, "16", "32" or "16 and 32"; "" if the layout has no such offsets.
+  virtual std::string offsetBits() const { return ""; }
   /// Entries that the layout stores, those that only fill included.
   virtual std::int64_t stored() const = 0;
   /// Bytes of the matrix that one product reads.

@@ -74,18 +74,18 @@ namespace {
 
 constexpr MethodKind methods[] = {
     {"cg", "conjugate gradients, for symmetric positive definite matrices", true, 5, makeGradients},
-    {"pipelined", "conjugate gradients with one pass over all vectors in an iteration", true, 12,
+    {"pipelined", "conjugate gradients with one pass over all vectors in an iteration", true, 11,
      makePipelinedGradients},
     {"chebyshev", "Chebyshev's iteration, without scalar products, for the matrices of cg", true, 6,
      makeChebyshevIteration},
-    {"minres", "minimal residuals, for symmetric matrices that are not definite", true, 10,
+    {"minres", "minimal residuals, for symmetric matrices that are not definite", true, 9,
      makeMinimalResiduals},
     {"stationary", "x + M (b - A x): the preconditioner by itself", false, 5, makeStationary},
     {"sor", "successive over-relaxation by colours; Gauss-Seidel's iteration for --omega 1", false, 5,
      makeRelaxation},
     {"bicgstab", "stabilised biconjugate gradients, for any matrix", false, 9, makeBiconjugateGradients},
     {"gmres", "generalised minimal residuals, for any matrix; begins anew after --restart steps", false, 7,
-     makeGeneralizedMinimalResiduals},
+     makeGeneralizedMinimalResiduals, true},
 };
 
 }  // namespace

@@ -99,8 +99,9 @@ struct MethodKind {
   std::string_view name;  ///< of --solver
   std::string_view does;
   bool needsSymmetry;
-  int vectors;  ///< that it allocates, for estimates of memory; gmres has one more for each step
+  int vectors;  ///< that it allocates with a preconditioner, for estimates of memory
   std::unique_ptr<Method> (*create)(const MethodParts& parts);
+  bool hasBasis = false;  ///< allocates one more vector for each step of --restart
 
   std::unique_ptr<Method> make(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner,
                                const Arithmetic& arithmetic, const MethodSettings& settings = {}) const {

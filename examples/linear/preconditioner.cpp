@@ -113,20 +113,21 @@ std::unique_ptr<Preconditioner> makeGeometric(const PreconditionerParts& parts) 
 
 constexpr PreconditionerKind preconditioners[] = {
     {"none", "the residual as it is", true, false, makeNone},
-    {"jacobi", "division by the diagonal", true, false, makeJacobi},
-    {"spai0", "the best diagonal approximate inverse", true, false, makeSpai0},
+    {"jacobi", "division by the diagonal", true, false, makeJacobi, 1.0},
+    {"spai0", "the best diagonal approximate inverse", true, false, makeSpai0, 1.0},
     {"chebyshev", "four of Chebyshev's iterations after Jacobi's scaling, for symmetric matrices", true, true,
-     makeChebyshev},
-    {"sor", "a sweep of over-relaxation, by groups of rows", false, false, makeSor},
-    {"ssor", "a sweep forwards and one backwards", true, false, makeSsor},
-    {"ic0", "incomplete Cholesky factors on the matrix's own pattern", true, true, makeIncompleteCholesky},
-    {"ilu0", "incomplete LU factors on the matrix's own pattern", false, false, makeIncompleteLu},
+     makeChebyshev, 3.0},
+    {"sor", "a sweep of over-relaxation, by groups of rows", false, false, makeSor, 5.0, 0.5},
+    {"ssor", "a sweep forwards and one backwards", true, false, makeSsor, 6.0, 1.0},
+    {"ic0", "incomplete Cholesky factors on the matrix's own pattern", true, true, makeIncompleteCholesky,
+     6.0, 1.0},
+    {"ilu0", "incomplete LU factors on the matrix's own pattern", false, false, makeIncompleteLu, 6.0, 1.0},
     {"aggregation", "a V-cycle of algebraic multigrid by smoothed aggregation, for symmetric matrices", true,
-     true, makeAggregation},
-    {"multigrid", "a V-cycle of geometric multigrid, for grids", true, false, makeGeometric<Cycle::V>},
-    {"w-cycle", "a W-cycle of it", false, false, makeGeometric<Cycle::W>},
-    {"f-cycle", "an F-cycle of it", false, false, makeGeometric<Cycle::F>},
-    {"full", "full multigrid: nested iteration with F-cycles", false, false, makeGeometric<Cycle::Full>},
+     true, makeAggregation, 6.0, 0.8},
+    {"multigrid", "a V-cycle of geometric multigrid, for grids", true, false, makeGeometric<Cycle::V>, 4.0},
+    {"w-cycle", "a W-cycle of it", false, false, makeGeometric<Cycle::W>, 4.0},
+    {"f-cycle", "an F-cycle of it", false, false, makeGeometric<Cycle::F>, 4.0},
+    {"full", "full multigrid: nested iteration with F-cycles", false, false, makeGeometric<Cycle::Full>, 4.0},
 };
 
 }  // namespace

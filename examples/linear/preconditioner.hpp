@@ -74,6 +74,8 @@ struct PreconditionerKind {
   bool needsSymmetry;  ///< of the matrix
   /// Null for none. Throws std::runtime_error if the matrix does not allow it.
   std::unique_ptr<Preconditioner> (*create)(const PreconditionerParts& parts);
+  /// What it allocates, for estimates of memory: in vectors, those of coarse levels included, and in matrices with as many entries as the matrix.
+  double vectors = 0.0, matrices = 0.0;
 
   std::unique_ptr<Preconditioner> make(sk::Device& device, Matrix& matrix, const Operator& a,
                                        const Arithmetic& arithmetic,

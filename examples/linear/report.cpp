@@ -14,6 +14,7 @@ std::string textOf(const Account& account, const Solution& solution) {
   std::string text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "layout {}", account.layout);
+  if (!account.offsetBits.empty()) fmt::format_to(out, ", offsets of {} bits", account.offsetBits);
   if (account.stored > 0) fmt::format_to(out, ", {} entries stored for {}", account.stored, account.entries);
   for (std::size_t i = 0; i < account.trials.size(); ++i)
     fmt::format_to(out, "{}{} {:.3g} ms", i == 0 ? "; a product takes with " : ", ", account.trials[i].layout,
@@ -49,6 +50,7 @@ std::string jsonOf(const Account& account, const Solution& solution) {
   json["removed_mean"] = solution.removedMean;
   json["seconds"] = solution.seconds;
   json["layout"] = account.layout;
+  if (!account.offsetBits.empty()) json["offset_bits"] = account.offsetBits;
   json["fill"] = account.fill();
   json["device"] = account.device;
   const double iterations = static_cast<double>(std::max<std::int64_t>(1, solution.iterations));

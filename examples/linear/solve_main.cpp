@@ -17,6 +17,7 @@
 #include "chart.hpp"
 #include "layout.hpp"
 #include "matrix_market.hpp"
+#include "memory.hpp"
 #include "method.hpp"
 #include "named.hpp"
 #include "preconditioner.hpp"
@@ -208,6 +209,7 @@ void solveSystem(examples::Application& app, Settings& s) {
   account.device = device.name();
   linear::Solution solution;
   if (a.size > 0) {
+    linear::checkMemory(device, system, {methodKind, preconditionerKind, s.layout, arithmetic, s.restart});
     const std::unique_ptr<linear::Matrix> matrix =
         system.makeMatrix(device, s.layout, arithmetic, &account.trials);
     checkSymmetry(device, *matrix, arithmetic, methodKind, preconditionerKind, a);
@@ -220,6 +222,7 @@ void solveSystem(examples::Application& app, Settings& s) {
       account.hierarchy = *preconditioner->hierarchy();
     account.layout = matrix->layout();
     account.stored = matrix->stored();
+    account.offsetBits = matrix->offsetBits();
     examples::Progress progress("solve", s.solve.most);
     s.solve.progress = [&](std::int64_t done, double) { progress.update(done); };
     solution = linear::solve(*method, a, system.rightHandSide(), arithmetic, s.solve);

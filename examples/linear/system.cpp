@@ -200,6 +200,11 @@ std::int64_t System::entries() const {
   return stencil_->size() * (2 * stencil_->grid.rank() + 1);
 }
 
+std::int64_t System::matrixBytes(std::string_view layout, std::int64_t entryBytes) const {
+  if (layout == "stencil" || (stencil_ && layout == "auto")) return 0;
+  return bytesOf(stencil_ ? assemble(*stencil_) : sparse_, layout, entryBytes);
+}
+
 std::unique_ptr<Matrix> System::makeMatrix(sk::Device& device, std::string_view layout,
                                            const Arithmetic& arithmetic,
                                            std::vector<LayoutTrial>* trials) const {

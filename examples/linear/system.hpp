@@ -33,6 +33,9 @@ class System {
   std::int64_t entries() const;
   std::string description() const { return description_; }
 
+  /// Bytes that makeMatrix() takes of a device for the layout; 0 for a stencil. Throws std::runtime_error for an unknown layout.
+  std::int64_t matrixBytes(std::string_view layout, std::int64_t entryBytes) const;
+
   /// Copies the scaled matrix to a device: a stencil where "auto" or "stencil" asks for a grid's layout.
   std::unique_ptr<Matrix> makeMatrix(sk::Device& device, std::string_view layout,
                                      const Arithmetic& arithmetic, std::vector<LayoutTrial>* trials) const;

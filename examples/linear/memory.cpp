@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "memory.hpp"
+
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "layout.hpp"
+#include "residual.hpp"
+
+namespace linear {
+
+namespace {
+
+std::int64_t rounded(double bytes) { return static_cast<std::int64_t>(bytes); }
+
+/// The layout in which the matrix takes the fewest bytes, as a part of advice; "" if there is none to advise.
+std::string smallerLayout(const System& system, const MemoryChoices& choices, std::int64_t bytes) {
+  std::string advice;
+  const std::int64_t entryBytes = bytesOf(choices.arithmetic.matrix);
+  if (system.matrix().stencil && choices.layout != "auto" && choices.layout != "stencil")
+    return "--layout stencil, ";
+  if (bytes == 0) return advice;
+  for (const LayoutKind& kind : layoutKinds()) {
+    const std::int64_t other = system.matrixBytes(kind.name, entryBytes);
+    if (other >= bytes) continue;
+    bytes = other;
+    advice = fmt::format("--layout {}, ", kind.name);
+  }
+  return advice;
+}
+
+}  // namespace
+
+MemoryNeed memoryNeed(const System& system, const MemoryChoices& choices, bool hasDoubles) {
+  const auto unknowns = static_cast<double>(system.matrix().size);
+  const double vector = unknowns * static_cast<double>(bytesOf(choices.arithmetic.vectors));
+  // Copies of the matrix, or of a part of it, are in compressed rows.
+  const double copy =
+      static_cast<double>(system.entries() * (bytesOf(choices.arithmetic.matrix) + 4)) + 4.0 * unknowns;
+  const int basis = choices.method.hasBasis ? choices.restart : 0;
+  constexpr int residualVectors = 5;
+  return {.matrix = system.matrixBytes(choices.layout, bytesOf(choices.arithmetic.matrix)),
+          .method = rounded((choices.method.vectors + basis) * vector),
+          .preconditioner =
+              rounded(choices.preconditioner.vectors * vector + choices.preconditioner.matrices * copy),
+          .residual = hasDoubles ? rounded(residualVectors * 8.0 * unknowns) : 0};
+}
+
+void checkMemory(sk::Device& device, const System& system, const MemoryChoices& choices) {
+  const std::optional<std::int64_t> available = device.availableMemory();
+  if (!available) return;
+  const MemoryNeed need = memoryNeed(system, choices, hasDoubles(device));
+  if (need.total() <= *available) return;
+  const bool isHalf = choices.arithmetic.vectors == sk::Storage::Half;
+  throw std::runtime_error(fmt::format(
+      "{} needs about {} bytes ({} for the matrix, {} for the solver '{}', {} for the preconditioner '{}', "
+      "{} "
+      "for the residual), and '{}' has {} available; take {}{}a solver with fewer vectors, or a device with "
+      "more memory",
+      system.description(), need.total(), need.matrix, need.method, choices.method.name, need.preconditioner,
+      choices.preconditioner.name, need.residual, device.name(), *available,
+      smallerLayout(system, choices, need.matrix), isHalf ? "" : "--storage half, "));
+}
+
+}  // namespace linear

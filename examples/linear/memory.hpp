@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// Whether a device has the memory that a solve needs, before anything is copied to it.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include <sk/sk.hpp>
+
+#include "method.hpp"
+#include "preconditioner.hpp"
+#include "system.hpp"
+
+namespace linear {
+
+/// What is to be solved with, as the command line names it.
+struct MemoryChoices {
+  const MethodKind& method;
+  const PreconditionerKind& preconditioner;
+  std::string_view layout;
+  const Arithmetic& arithmetic;
+  int restart = 30;  ///< of gmres
+};
+
+/// Bytes on a device.
+struct MemoryNeed {
+  std::int64_t matrix = 0;  ///< for "auto", of the smallest layout that suits it
+  std::int64_t method = 0;
+  std::int64_t preconditioner = 0;  ///< an estimate where that depends on more than sizes
+  std::int64_t residual = 0;  ///< in double precision; 0 if the host computes it
+
+  std::int64_t total() const { return matrix + method + preconditioner + residual; }
+};
+
+/// `hasDoubles` says whether the device computes residuals (residual.hpp). Throws std::runtime_error for an unknown layout.
+MemoryNeed memoryNeed(const System& system, const MemoryChoices& choices, bool hasDoubles);
+
+/// Throws std::runtime_error, with what is needed and what there is, if the device is known to have less memory available. Does nothing if it does not tell.
+void checkMemory(sk::Device& device, const System& system, const MemoryChoices& choices);
+
+}  // namespace linear
