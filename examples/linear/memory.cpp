@@ -19,9 +19,8 @@ std::int64_t rounded(double bytes) { return static_cast<std::int64_t>(bytes); }
 std::string smallerLayout(const System& system, const MemoryChoices& choices, std::int64_t bytes) {
   std::string advice;
   const std::int64_t entryBytes = bytesOf(choices.arithmetic.matrix);
-  if (system.matrix().stencil && choices.layout != "auto" && choices.layout != "stencil")
-    return "--layout stencil, ";
-  if (bytes == 0) return advice;
+  if (system.matrix().isGrid())  // no other layout of a grid takes less
+    return system.matrixBytes("stencil", entryBytes) < bytes ? "--layout stencil, " : "";
   for (const LayoutKind& kind : layoutKinds()) {
     const std::int64_t other = system.matrixBytes(kind.name, entryBytes);
     if (other >= bytes) continue;

@@ -32,6 +32,12 @@ TEST_CASE("Bytes of layouts are known before anything is copied") {
         CHECK(kind.bytes(*a, bytesOf(storage)) == kind.make(device, *a, {.matrix = storage})->bytes());
       }
   CHECK(bytesOf(grid, "auto", 4) == bytesOf(grid, "diagonals", 4));
+  for (const char* name : {"poisson:9x13", "poisson:9x13:blocks=10"})
+    for (const char* layout : {"auto", "stencil", "slices"}) {
+      CAPTURE(name, layout);
+      const System system(name, {});
+      CHECK(system.matrixBytes(layout, 4) == system.makeMatrix(device, layout, {}, nullptr)->bytes());
+    }
   CHECK_THROWS_WITH(bytesOf(grid, "csr", 4), Catch::StartsWith("no layout is called 'csr'"));
 }
 

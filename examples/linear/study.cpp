@@ -331,17 +331,26 @@ std::string fullMultigrid(sk::Device& device) {
 }
 
 std::string aggregation(sk::Device& device) {
-  examples::Table table({"grid", "levels", "operator complexity", "set-up ms", "cg with jacobi",
-                         "cg with aggregation", "aggregation alone", "ms"});
-  for (const char* grid :
-       {"32x32", "64x64", "128x128", "256x256", "16x16x16", "32x32x32", "128x128:1,1000"}) {
+  examples::Table table({"grid", "computed in", "levels", "operator complexity", "set-up ms",
+                         "cg with jacobi", "cg with aggregation", "aggregation alone", "ms"});
+  const Arithmetic singles, doubles = arithmeticOf(Double, sk::Storage::Double, sk::Accumulate::Default);
+  for (const auto& [grid, isDouble] :
+       {std::pair{"32x32", false}, std::pair{"64x64", false}, std::pair{"128x128", false},
+        std::pair{"256x256", false}, std::pair{"16x16x16", false}, std::pair{"32x32x32", false},
+        std::pair{"128x128:1,1000", false}, std::pair{"127x127:blocks=1e6", true},
+        std::pair{"127x127:inclusions=1e6", true}, std::pair{"127x127:noise=1e4", true}}) {
     const System system(fmt::format("poisson:{}", grid), {});
     const auto with = [&](std::string_view method, std::string_view preconditioner) {
-      return reached(device, system, {.method = method, .preconditioner = preconditioner, .layout = "rows"});
+      return reached(device, system,
+                     {.method = method,
+                      .preconditioner = preconditioner,
+                      .layout = "slices",
+                      .arithmetic = isDouble ? doubles : singles,
+                      .settings = {.every = 1}});
     };
     const Reached plain = with("cg", "jacobi"), r = with("cg", "aggregation"),
                   alone = with("stationary", "aggregation");
-    table.add({grid, std::to_string(r.hierarchy.levels.size()),
+    table.add({grid, isDouble ? "double" : "single", std::to_string(r.hierarchy.levels.size()),
                fmt::format("{:.2f}", r.hierarchy.operatorComplexity()), milliseconds(r.hierarchy.seconds),
                std::to_string(plain.solution.iterations), std::to_string(r.solution.iterations),
                std::to_string(alone.solution.iterations), milliseconds(r.solution.seconds)});

@@ -201,7 +201,8 @@ std::int64_t System::entries() const {
 }
 
 std::int64_t System::matrixBytes(std::string_view layout, std::int64_t entryBytes) const {
-  if (layout == "stencil" || (stencil_ && layout == "auto")) return 0;
+  const bool isOfGrid = layout == "stencil" || (operator_.isGrid() && layout == "auto");
+  if (isOfGrid) return varying_ ? entryBytes * static_cast<std::int64_t>(varying_->value.size()) : 0;
   return bytesOf(stencil_ ? assemble(*stencil_) : sparse_, layout, entryBytes);
 }
 

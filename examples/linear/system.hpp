@@ -33,7 +33,7 @@ class System {
   std::int64_t entries() const;
   std::string description() const { return description_; }
 
-  /// Bytes that makeMatrix() takes of a device for the layout; 0 for a stencil. Throws std::runtime_error for an unknown layout.
+  /// Bytes that makeMatrix() takes of a device for the layout; 0 for a stencil of constant coefficients. Throws std::runtime_error for an unknown layout.
   std::int64_t matrixBytes(std::string_view layout, std::int64_t entryBytes) const;
 
   /// Copies the scaled matrix to a device: a stencil where "auto" or "stencil" asks for a grid's layout.
