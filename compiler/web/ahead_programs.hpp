@@ -22,7 +22,9 @@ using Programs = std::map<std::string, std::string>;
 ///
 /// Streams are whole, in planes or linearised, either all packed that can be or none. Inputs have the shape of the domain.
 /// A Spec parameter's value is any: `const T sk_spec_P = VALUE;` stands in the program for the runtime to replace.
-Programs kernelPrograms(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel);
+/// `packs`: also those for packed streams, which passes of plans do not read.
+Programs kernelPrograms(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel,
+                        bool packs = true);
 
 /// The programs that fold whole streams to a value.
 Programs reducePrograms(const sk::assemble::Profile& profile, const sk::program::Reduction& reduction);

@@ -78,9 +78,27 @@ class ScriptWriter {
       return {{"name", unit.kernel.name}, {"whyNot", why}};
     if (unit.reduction != nullptr) return reduction(*unit.reduction, unit.kernel);
     Json kernel = kernelOf(unit.kernel);
+    if (const sk::program::Plan* plan = planOf(unit.kernel)) {
+      kernel["packs"] = false;
+      kernel["programs"] = Json::object();
+      kernel["plan"] = planJson(*plan);
+      return kernel;
+    }
     kernel["packs"] = sk::assemble::mayWritePacked(unit.kernel);
     kernel["programs"] = programsOf(kernelPrograms(webProfile(), unit.kernel), {&unit.kernel});
     return kernel;
+  }
+
+  Json planJson(const sk::program::Plan& plan) {
+    Json temporaries = Json::array(), passes = Json::array();
+    for (const Element* element : plan.temporaries) temporaries.push_back(indexOf(*element));
+    for (const sk::program::Pass& pass : plan.passes) {
+      Json kernel = kernelOf(pass.kernel), operands = Json::array();
+      kernel["programs"] = programsOf(kernelPrograms(webProfile(), pass.kernel, false), {&pass.kernel});
+      for (const auto& [isTemporary, index] : pass.operands) operands.push_back({isTemporary, index});
+      passes.push_back({{"kernel", std::move(kernel)}, {"operands", std::move(operands)}});
+    }
+    return {{"temporaries", std::move(temporaries)}, {"passes", std::move(passes)}};
   }
 
   Json reduction(const Reduction& reduction, const Kernel& declared) {
@@ -118,6 +136,10 @@ class ScriptWriter {
                  {"element", indexOf(*parameter.element)}};
     if (parameter.held != nullptr) json["held"] = indexOf(*parameter.held);
     if (parameter.rank > 0) json["rank"] = parameter.rank;
+    if (parameter.planeCount > 0) {
+      json["firstPlane"] = parameter.firstPlane;
+      json["planeCount"] = parameter.planeCount;
+    }
     if (parameter.role == Role::Gather) {
       json["boundary"] = nameOf(parameter.boundary);
       if (parameter.usesNear && parameter.reach >= 0) json["reach"] = parameter.reach;

@@ -211,10 +211,11 @@ std::vector<std::vector<StreamAccess>> accessChoices(const Kernel& kernel, const
   return choices;
 }
 
-Programs kernelPrograms(const sk::assemble::Profile& profile, const Kernel& kernel) {
+Programs kernelPrograms(const sk::assemble::Profile& profile, const Kernel& kernel, bool packs) {
   Programs programs;
   for (const SpecValues& specs : specChoices(kernel)) {
     for (const Lie& lie : liesOf(kernel)) {
+      if (lie.packed && !packs) continue;
       Variant variant;
       variant.specs = specs;
       variant.domain = lie.domain;

@@ -28,6 +28,14 @@ bool fitsOnePass(const Kernel& kernel, const sk::assemble::Profile& profile) {
 
 }  // namespace
 
+const sk::program::Plan* planOf(const Kernel& kernel) {
+  const sk::assemble::Profile profile = webProfile();
+  if (fitsOnePass(kernel, profile)) return nullptr;
+  const sk::program::Plan* plan =
+      sk::assemble::planWithin(kernel, {profile.drawBuffers, profile.textureUnits});
+  return plan != nullptr && plan->bundles.empty() ? plan : nullptr;
+}
+
 sk::assemble::Profile webProfile() {
   sk::assemble::Profile profile = *sk::assemble::findProfile("webgl2");
   profile.tables = false;
@@ -49,10 +57,10 @@ std::string whyNotOffered(const emit::Unit& unit) {
   if (unit.reduction != nullptr && unit.reduction->parts != nullptr) {
     return "folded outputs do not run in browsers yet; write a kernel and a reduce";
   }
-  if (!fitsOnePass(kernel, profile)) {
+  if (!fitsOnePass(kernel, profile) && planOf(kernel) == nullptr) {
     return fmt::format(
-        "kernels of several passes do not run in browsers yet, and its streams have more than {} planes "
-        "to write or {} to read; divide it",
+        "its streams have more than {} planes to write or {} to read, and passes that share textures do not "
+        "run in browsers yet; divide it, or put scalars together in vectors",
         profile.drawBuffers, profile.textureUnits);
   }
   return {};

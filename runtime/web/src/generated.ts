@@ -47,6 +47,9 @@ export interface Parameter {
   readonly boundary?: 'clamp' | 'wrap' | 'mirror' | 'border';
   readonly reach?: number;
   readonly filter?: boolean;
+  /** Outputs of a pass that writes only some planes: the first one, and how many. */
+  readonly firstPlane?: number;
+  readonly planeCount?: number;
   readonly neededIf?: readonly ConditionStep[];
   readonly condition?: string;
 }
@@ -63,6 +66,21 @@ export interface CallableKernel extends KernelData {
   /** Whether it may write four elements of a packed texel. */
   readonly packs: boolean;
   readonly programs: ProgramIndices;
+  /** If one pass is too little. */
+  readonly plan?: Plan;
+}
+
+/** A kernel that is split into passes: each runs over the kernel's domain, and hands on temporaries. */
+export interface Plan {
+  /** Elements, by index. */
+  readonly temporaries: readonly number[];
+  readonly passes: readonly Pass[];
+}
+
+export interface Pass {
+  readonly kernel: KernelData & { readonly programs: ProgramIndices };
+  /** For each of its parameters: one of the temporaries, or a parameter of the whole kernel. */
+  readonly operands: readonly (readonly [isTemporary: boolean, index: number])[];
 }
 
 export interface Reduction {

@@ -5,6 +5,7 @@ import { checkArguments, deviceOf, fail, isSameShape, iterationOf, stepsOf, type
 import type { Device, Plane } from './device.js';
 import { isNeeded, specLiteral, type CallableKernel, type Element, type GeneratedFile, type KernelData, type Parameter, type ProgramIndices } from './generated.js';
 import { mayPack, shapeText, type Layout } from './layout.js';
+import { PlanRunner } from './plan.js';
 import type { Program } from './program.js';
 import { isFiltered, kernelKey, type Lie } from './variant.js';
 
@@ -93,6 +94,26 @@ function strides(device: Device, domain: readonly number[]): Layout {
   return { ...layout, stride: [1, x, x * y, x * y * z] };
 }
 
+export function isRead(kernel: KernelData, i: number, call: Checked): boolean {
+  const { role } = kernel.parameters[i]!;
+  return (role === 'input' || role === 'gather') && isNeeded(kernel.parameters[i]!, call.specs);
+}
+
+/** How each argument lies. */
+export function liesOf(kernel: KernelData, call: Checked, shape: readonly number[], elements: readonly Element[]): Lie[] {
+  return kernel.parameters.map(({ role, element }, i) => {
+    if (role === 'iterator') return iterationOf(elements[element]!, shape);
+    return role === 'input' || role === 'gather' ? call.streams[i]?.layout ?? null : null;
+  });
+}
+
+/** The planes to draw an output to: its own, or new ones if the call reads it, or if it lies in another way. */
+export function targetOf(kernel: KernelData, i: number, call: Checked, domain: Layout): { stream: AnyStream; planes: Plane[] } {
+  const stream = call.streams[i]!;
+  const isAlsoRead = call.streams.some((other, k) => other === stream && isRead(kernel, k, call));
+  return { stream, planes: stream.layout === domain && !isAlsoRead ? stream.planes : stream.newPlanes(domain) };
+}
+
 interface Choices {
   readonly device: Device;
   readonly domain: Layout;
@@ -105,17 +126,19 @@ export class KernelCaller {
   readonly source: ProgramSource;
   private readonly outputs: readonly number[];
   private readonly hasConditions: boolean;
+  private readonly plan: PlanRunner | null;
   /** The last call's choices: a loop makes the same call again. */
   private last: Choices | null = null;
 
   constructor(private readonly kernel: CallableKernel, file: GeneratedFile, texts: readonly string[]) {
     this.source = new ProgramSource(kernel.name, file, texts, kernel.programs);
     this.outputs = kernel.parameters.flatMap((parameter, i) => (parameter.role === 'output' ? [i] : []));
+    this.plan = kernel.plan === undefined ? null : new PlanRunner(kernel, kernel.plan, file, texts);
     this.hasConditions = kernel.parameters.some((parameter) => parameter.neededIf !== undefined);
   }
 
   startPrograms(device: Device): Program[] {
-    return this.source.start(device, () => this.kernel);
+    return this.plan?.start(device) ?? this.source.start(device, () => this.kernel);
   }
 
   /** Throws SkError if these are no arguments of the kernel. */
@@ -134,10 +157,11 @@ export class KernelCaller {
     device.begin();
     if (call.streams[outputs[0]!]!.size === 0) return;
 
+    if (this.plan !== null) return this.plan.run(device, call, outputs, shape);
     const { domain, lies, program } = this.chosen(device, call, outputs, shape);
     device.useProgram(program);
 
-    const targets = outputs.map((i) => this.targetOf(i, call, domain));
+    const targets = outputs.map((i) => targetOf(kernel, i, call, domain));
     bindOperands(device, program, call, call.streams.map((stream) => stream?.planes ?? []), lies, elements, shape);
     program.domain.set(domain);
     device.framebufferOf(targets.length === 1 ? targets[0]!.planes : targets.flatMap((target) => target.planes));
@@ -159,7 +183,7 @@ export class KernelCaller {
     if (last?.device === device && last.domain === domain && isSame(last.lies, lies) && isSame(last.specs, call.specs)) return last;
     let key = this.keyOf(call, lies, domain, device);
     if (!this.source.has(key)) {
-      kernel.parameters.forEach((_, i) => this.isRead(i, call) && call.streams[i]!.unpack());
+      kernel.parameters.forEach((_, i) => isRead(kernel, i, call) && call.streams[i]!.unpack());
       domain = first.layoutIf(false);
       lies = this.lies(call, shape);
       key = this.keyOf(call, lies, domain, device);
@@ -169,27 +193,12 @@ export class KernelCaller {
     return this.last;
   }
 
-  private isRead(i: number, call: Checked): boolean {
-    const { role } = this.kernel.parameters[i]!;
-    return (role === 'input' || role === 'gather') && isNeeded(this.kernel.parameters[i]!, call.specs);
-  }
-
   private lies(call: Checked, shape: readonly number[]): Lie[] {
-    return this.kernel.parameters.map(({ role, element }, i) => {
-      if (role === 'iterator') return iterationOf(this.source.file.elements[element]!, shape);
-      return role === 'input' || role === 'gather' ? call.streams[i]?.layout ?? null : null;
-    });
+    return liesOf(this.kernel, call, shape, this.source.file.elements);
   }
 
   private keyOf(call: Checked, lies: readonly Lie[], domain: Layout, device: Device): string {
     return kernelKey(this.kernel.parameters, this.source.file.elements, lies, domain, call.specs, device.filtersFloats);
-  }
-
-  /** The planes to draw an output to: its own, or new ones if the call reads it, or if it lies in another way. */
-  private targetOf(i: number, call: Checked, domain: Layout): { stream: AnyStream; planes: Plane[] } {
-    const stream = call.streams[i]!;
-    const isAlsoRead = call.streams.some((other, k) => other === stream && this.isRead(k, call));
-    return { stream, planes: stream.layout === domain && !isAlsoRead ? stream.planes : stream.newPlanes(domain) };
   }
 
   /** The shape of the domain. */

@@ -160,6 +160,21 @@ const cases = {
     await refused('shape', 'in 48 steps, which are not whole', () => k.ramp({ begin: [0, 0], end: [8, 3] }, { begin: 0, end: 97 }, r));
   },
 
+  async passes(device) {
+    const shape = [24, 36];
+    const y = filled(device, 'float3', shape, from(Float32Array, 3 * 24 * 36, (i) => random24(i, 22) / 16777216));
+    const x = random(device, shape, 23);
+    const [b, d, e, f] = ['float2', 'float', 'int', k.Spot].map((type) => device.stream(type, shape));
+    k.spread(true, 0.5, x, y, x, b, y, d, e, f);
+    // Seven products of sines and cosines, each within 3 ulp.
+    same('spread a', await x.read(), 32, 4);
+    same('spread b', await b.read(), 32, 4);
+    same('spread c', await y.read(), 32, 4);
+    same('spread d', await d.read(), 64, 16);
+    const { at, heat } = await f.read();
+    same('spread f', from(Array, 24 * 36, (i) => [at[2 * i], at[2 * i + 1], heat[i]]).flat(), 32, 4);
+  },
+
   async types(device) {
     const n = 60;
     const a = filled(device, 'uchar', [n], integers(Uint8Array, n, 14, 256));

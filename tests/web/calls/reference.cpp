@@ -173,6 +173,29 @@ struct Calls {
     print("ramp", r.read());
   }
 
+  void passes() {
+    constexpr std::size_t n = 24 * 36;
+    std::vector<sk::float3> three(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (float* part : {&three[i].x, &three[i].y, &three[i].z})
+        *part = static_cast<float>(random24(3 * i + static_cast<std::size_t>(part - &three[i].x), 22)) /
+                16777216.0F;
+    }
+    auto x = random({24, 36}, 23), a = device.stream<float>({24, 36}), d = device.stream<float>({24, 36});
+    auto y = filled<sk::float3>({24, 36}, three), c = device.stream<sk::float3>({24, 36});
+    auto b = device.stream<sk::float2>({24, 36});
+    auto e = device.stream<int>({24, 36});
+    auto f = device.stream<Spot>({24, 36});
+    spread(true, 0.5F, x, y, x, b, y, d, e, f);  // in place
+    print("spread a", x.read());
+    print("spread b", b.read());
+    print("spread c", y.read());
+    print("spread d", d.read());
+    std::vector<double> spots;
+    for (const Spot& one : f.read()) spots.insert(spots.end(), {one.at.x, one.at.y, one.heat});
+    print("spread f", spots);
+  }
+
   void types() {
     constexpr std::size_t n = 60;
     auto a = filled<std::uint8_t>({n}, integers<std::uint8_t>(n, 14, 256));
@@ -218,6 +241,7 @@ int main() {
   calls.exact();
   calls.records();
   calls.choices();
+  calls.passes();
   calls.types();
   std::puts("}");
 }
