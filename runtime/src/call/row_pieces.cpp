@@ -11,6 +11,7 @@ namespace sk {
 RowPieces::RowPieces(std::vector<std::int32_t> starts) : starts_(std::move(starts)) {
   cutLongRows();
   formGroups();
+  formBatches();
 }
 
 void RowPieces::cutLongRows() {
@@ -42,6 +43,18 @@ void RowPieces::formGroups() {
     while (end - first < most && starts[static_cast<std::size_t>(end) + 1] - begin <= groupElements) ++end;
     groups_.push_back({first, end - first, begin, starts[static_cast<std::size_t>(end)] - begin});
   }
+}
+
+void RowPieces::formBatches() {
+  std::int32_t number = 0;
+  for (std::size_t i = 0; i < longRows_.size(); ++i) {
+    const LongRow& row = longRows_[i];
+    for (std::int32_t first = 0; first < row.pieces; first += batchPieces) {
+      batches_.push_back({static_cast<std::int32_t>(i), row.firstPiece + first,
+                          std::min(batchPieces, row.pieces - first), number++});
+    }
+  }
+  std::ranges::stable_sort(batches_, {}, &Batch::pieces);
 }
 
 std::vector<std::int32_t> RowPieces::firstPieces() const {

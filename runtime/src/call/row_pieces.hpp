@@ -15,9 +15,17 @@ class RowPieces {
  public:
   /// The most elements and pieces of a group.
   static constexpr std::int32_t groupElements = 1024, groupPieces = 256;
+  /// The most pieces of a batch, a power of 2.
+  static constexpr std::int32_t batchPieces = 64;
 
   struct LongRow {
     std::int32_t row, firstPiece, pieces;
+  };
+  /// Consecutive pieces of a long row: all of them or, if they are too many, a part.
+  struct Batch {
+    std::int32_t longRow;  ///< index in longRows()
+    std::int32_t firstPiece, pieces;
+    std::int32_t number;  ///< of batches before it in the order of rows
   };
   /// Consecutive pieces, and their elements.
   struct Group {
@@ -35,6 +43,8 @@ class RowPieces {
   /// The rows that have several pieces, in order.
   std::span<const LongRow> longRows() const { return longRows_; }
   std::span<const Group> groups() const { return groups_; }
+  /// The batches of all long rows, those of fewer pieces first.
+  std::span<const Batch> batches() const { return batches_; }
 
   /// The first piece of each row, and the number of all pieces: the starts of rows whose elements are the pieces.
   std::vector<std::int32_t> firstPieces() const;
@@ -42,11 +52,13 @@ class RowPieces {
  private:
   void cutLongRows();
   void formGroups();
+  void formBatches();
 
   std::vector<std::int32_t> starts_;
   std::vector<std::int32_t> cut_;  ///< empty if no row is long
   std::vector<LongRow> longRows_;
   std::vector<Group> groups_;
+  std::vector<Batch> batches_;
 };
 
 }  // namespace sk

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: pieces have all elements of all rows in order, each of at most program::longestRun, and groups have all
-// pieces within their limits, whatever the rows are.
+// pieces within their limits, whatever the rows are. Batches have all pieces of long rows.
 #include "call/row_pieces.hpp"
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -18,6 +19,24 @@ std::vector<std::int32_t> startsOf(const std::vector<std::int32_t>& lengths, std
   std::vector<std::int32_t> starts{first};
   for (const std::int32_t length : lengths) starts.push_back(starts.back() + length);
   return starts;
+}
+
+void checkBatches(const RowPieces& pieces) {
+  std::vector<RowPieces::Batch> batches(pieces.batches().begin(), pieces.batches().end());
+  CHECK(std::ranges::is_sorted(batches, {}, &RowPieces::Batch::pieces));
+  std::ranges::sort(batches, {}, &RowPieces::Batch::number);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < pieces.longRows().size(); ++i) {
+    const RowPieces::LongRow& row = pieces.longRows()[i];
+    for (std::int32_t first = 0; first < row.pieces; first += RowPieces::batchPieces, ++next) {
+      REQUIRE(next < batches.size());
+      CHECK(batches[next].number == static_cast<std::int32_t>(next));
+      CHECK(batches[next].longRow == static_cast<std::int32_t>(i));
+      CHECK(batches[next].firstPiece == row.firstPiece + first);
+      CHECK(batches[next].pieces == std::min(row.pieces - first, RowPieces::batchPieces));
+    }
+  }
+  CHECK(next == batches.size());
 }
 
 void checkPieces(const std::vector<std::int32_t>& lengths, std::int32_t first = 0) {
@@ -57,6 +76,7 @@ void checkPieces(const std::vector<std::int32_t>& lengths, std::int32_t first = 
     CHECK(group.firstElement + group.elements == cut[static_cast<std::size_t>(next)]);
   }
   CHECK(next == pieces.count());
+  checkBatches(pieces);
 }
 
 TEST_CASE("rows of any lengths are cut into pieces, and these are grouped") {

@@ -194,7 +194,8 @@ FoldResults::FoldResults(std::span<const program::Parameter> parameters,
   }
 }
 
-void FoldResults::store(const Extents& block, const StateColumns& columns, std::int64_t count) const {
+void FoldResults::store(const Extents& block, const StateColumns& columns, std::int64_t count,
+                        std::int64_t from) const {
   for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {
     const Array& array = arrays_[scalar];
     if (array.array == nullptr) continue;
@@ -202,13 +203,13 @@ void FoldResults::store(const Extents& block, const StateColumns& columns, std::
     const std::size_t together = step == 1 ? static_cast<std::size_t>(count) : 1;
     std::byte* to = at(scalar, block);
     if (array.isRounded) {
-      const auto* const doubles = reinterpret_cast<const double*>(columns.at(scalar, 0));
+      const auto* const doubles = reinterpret_cast<const double*>(columns.at(scalar, from));
       auto* const floats = reinterpret_cast<float*>(to);
       for (std::int64_t k = 0; k < count; ++k) floats[k * step] = static_cast<float>(doubles[k]);
       continue;
     }
     for (std::int64_t k = 0; k < count; k += static_cast<std::int64_t>(together)) {
-      std::memcpy(to, columns.at(scalar, k), together * array.bytes);
+      std::memcpy(to, columns.at(scalar, from + k), together * array.bytes);
       to += step * static_cast<std::int64_t>(array.bytes);
     }
   }

@@ -51,8 +51,9 @@ class FoldResults {
   FoldResults(std::span<const program::Parameter> parameters, std::span<const native::Operand> operands,
               const StateShape& shape);
 
-  /// Stores the results of `count` neighbouring blocks from `block` on, which are the first columns.
-  void store(const native::Extents& block, const StateColumns& columns, std::int64_t count) const;
+  /// Stores the results of `count` neighbouring blocks from `block` on, which are the columns from number `from` on.
+  void store(const native::Extents& block, const StateColumns& columns, std::int64_t count,
+             std::int64_t from = 0) const;
 
   /// True if all results are stored as they are, and neighbouring blocks' without gaps.
   bool areRows() const;

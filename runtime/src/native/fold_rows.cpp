@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "native/piece_folder.hpp"
@@ -48,7 +50,6 @@ class RunFolder {
       visit(range.begin, columns_, end - range.begin);
     }
   }
-  bool mustStage() const { return mustStage_; }
 
  private:
   const RowsProgram& program_;
@@ -58,115 +59,125 @@ class RunFolder {
   native::Chunk chunk_{};
 };
 
-/// Folds rows of one piece by groups, and long rows by batches of pieces, which several threads may fold.
+/// Folds all pieces by groups, then combines those of long rows: in each batch as a tree, batches of equally many pieces
+/// side by side.
 class RowFold {
  public:
   RowFold(const RowsProgram& program, const RowPieces& pieces, const FoldResults& results)
       : program_(program), pieces_(pieces), results_(results), bytes_(program.fold.shape.bytes()) {
-    for (const RowPieces::LongRow& row : pieces.longRows()) {
-      firstBatches_.push_back(static_cast<std::int64_t>(batches_.size()));
-      for (std::int32_t first = 0; first < row.pieces; first += ofBatch)
-        batches_.push_back(
-            {row.row, row.firstPiece + first, std::min(ofBatch, row.pieces - first), row.pieces <= ofBatch});
+    const std::span<const RowPieces::LongRow> rows = pieces.longRows();
+    const std::size_t states = rows.empty() ? 0 : firstStateOf(rows.size() - 1) + rows.back().pieces;
+    states_ = std::make_unique_for_overwrite<std::byte[]>(states * bytes_);
+    batchStates_ = std::make_unique_for_overwrite<std::byte[]>(pieces.batches().size() * bytes_);
+    std::int32_t firstBatch = 0;
+    for (const RowPieces::LongRow& row : rows) {
+      const std::int32_t batches = (row.pieces - 1) / RowPieces::batchPieces + 1;
+      if (batches > 1) parted_.push_back({row.row, firstBatch, batches});
+      firstBatch += batches;
     }
-    firstBatches_.push_back(static_cast<std::int64_t>(batches_.size()));
-    states_.resize(batches_.size() * bytes_);
   }
 
   void run() {
     const std::span<const RowPieces::Group> groups = pieces_.groups();
-    const Deal deal = batches_.empty() ? dealOfRows(program_.fold) : Deal::AsTheyCome;
-    native::inParallel(static_cast<std::int64_t>(groups.size()), RowPieces::groupElements, deal,
-                       [&](Range range) {
+    native::inParallel(static_cast<std::int64_t>(groups.size()), RowPieces::groupElements,
+                       dealOfRows(program_.fold), [&](Range range) {
                          RunFolder folder(program_);
-                         for (std::int64_t i = range.begin; i < range.end; ++i) {
-                           const RowPieces::Group& group = groups[static_cast<std::size_t>(i)];
-                           foldShortRows(folder, {group.firstPiece, group.firstPiece + group.pieces});
-                         }
+                         for (std::int64_t i = range.begin; i < range.end; ++i)
+                           foldGroup(folder, groups[static_cast<std::size_t>(i)]);
                        });
-    native::inParallel(static_cast<std::int64_t>(batches_.size()), ofBatch * program::longestRun,
-                       Deal::AsTheyCome, [&](Range range) {
-                         BatchFolder folder(program_);
-                         for (std::int64_t i = range.begin; i < range.end; ++i) foldBatch(folder, i);
+    const auto batches = static_cast<std::int64_t>(pieces_.batches().size());
+    native::inParallel((batches + together - 1) / together, together * 16, Deal::AsTheyCome,
+                       [&](Range range) {
+                         const std::int64_t end = std::min(range.end * together, batches);
+                         combineBatches({range.begin * together, end});
                        });
-    native::inParallel(static_cast<std::int64_t>(pieces_.longRows().size()), ofBatch, Deal::AsTheyCome,
-                       [&](Range range) { combineRows(range); });
+    native::inParallel(static_cast<std::int64_t>(parted_.size()), RowPieces::batchPieces, Deal::AsTheyCome,
+                       [&](Range parted) { combineRows(parted); });
   }
 
  private:
-  /// The pieces of a batch, a power of 2.
-  static constexpr std::int32_t ofBatch = 64;
+  /// The most batches that are combined side by side.
+  static constexpr std::int64_t together = 64;
 
-  struct Batch {
-    std::int32_t row, firstPiece, pieces;
-    bool isWhole;  ///< a whole row
+  struct PartedRow {
+    std::int32_t row, firstBatch, batches;
   };
 
-  std::byte* stateOf(std::int64_t batch) { return states_.data() + static_cast<std::size_t>(batch) * bytes_; }
   static std::int64_t endOf(const RowPieces::LongRow& row) { return row.firstPiece + row.pieces; }
 
-  /// Folds those of the pieces that are whole rows.
-  void foldShortRows(RunFolder& folder, Range range) {
-    const std::int32_t* const starts = pieces_.pieceStarts().data();
+  /// The number of the first piece of a long row among those of all long rows: pieces before it less rows of one piece.
+  std::size_t firstStateOf(std::size_t longRow) const {
+    const RowPieces::LongRow& row = pieces_.longRows()[longRow];
+    return static_cast<std::size_t>(row.firstPiece - row.row) + longRow;
+  }
+  std::byte* stateOf(std::size_t longRow, std::int64_t piece) const {
+    const std::int64_t inRow = piece - pieces_.longRows()[longRow].firstPiece;
+    return states_.get() + (firstStateOf(longRow) + static_cast<std::size_t>(inRow)) * bytes_;
+  }
+  std::byte* stateOf(const RowPieces::Batch& batch) const {
+    return batchStates_.get() + static_cast<std::size_t>(batch.number) * bytes_;
+  }
+
+  /// Stores the results of rows of one piece, and keeps those of other pieces.
+  void foldGroup(RunFolder& folder, const RowPieces::Group& group) {
     const std::span<const RowPieces::LongRow> rows = pieces_.longRows();
     auto next =
-        static_cast<std::size_t>(std::ranges::upper_bound(rows, range.begin, {}, endOf) - rows.begin());
-    while (range.begin < range.end) {
-      const RowPieces::LongRow* const row = next < rows.size() ? &rows[next] : nullptr;
-      if (row != nullptr && range.begin >= row->firstPiece) {
-        range.begin = endOf(*row);
-        ++next;
-        continue;
-      }
-      const std::int64_t end =
-          row == nullptr ? range.end : std::min<std::int64_t>(range.end, row->firstPiece);
-      // long rows before these have more pieces than rows
-      const std::int64_t more = next == 0 ? 0 : endOf(rows[next - 1]) - (rows[next - 1].row + 1);
-      folder.fold(starts, {range.begin, end},
-                  [&](std::int64_t first, const StateColumns& columns, std::int64_t count) {
-                    results_.store({first - more, 0, 0, 0}, columns, count);
-                  });
-      range.begin = end;
+        static_cast<std::size_t>(std::ranges::upper_bound(rows, group.firstPiece, {}, endOf) - rows.begin());
+    folder.fold(pieces_.pieceStarts().data(), {group.firstPiece, group.firstPiece + group.pieces},
+                [&](std::int64_t first, const StateColumns& columns, std::int64_t count) {
+                  for (std::int64_t piece = first, end = 0; piece < first + count; piece = end) {
+                    const RowPieces::LongRow* const row = next < rows.size() ? &rows[next] : nullptr;
+                    if (row == nullptr || piece < row->firstPiece) {
+                      end = first + count;
+                      if (row != nullptr) end = std::min<std::int64_t>(end, row->firstPiece);
+                      // long rows before these have more pieces than rows
+                      const std::int64_t more =
+                          next == 0 ? 0 : endOf(rows[next - 1]) - (rows[next - 1].row + 1);
+                      results_.store({piece - more, 0, 0, 0}, columns, end - piece, piece - first);
+                      continue;
+                    }
+                    end = std::min(endOf(*row), first + count);
+                    for (std::int64_t i = piece; i < end; ++i) columns.pack(i - first, stateOf(next, i));
+                    if (end == endOf(*row)) ++next;
+                  }
+                });
+  }
+
+  void combineBatches(Range range) {
+    const std::span<const RowPieces::Batch> batches = pieces_.batches();
+    ColumnCombiner combiner = combinerOf(program_.fold);
+    StateRuns runs(program_.fold.shape, combiner, together);
+    for (std::int64_t end = 0; range.begin < range.end; range.begin = end) {
+      const std::int32_t pieces = batches[static_cast<std::size_t>(range.begin)].pieces;
+      for (end = range.begin + 1; end < std::min(range.end, range.begin + together) &&
+                                  batches[static_cast<std::size_t>(end)].pieces == pieces;)
+        ++end;
+      combineAlike(runs, batches.subspan(static_cast<std::size_t>(range.begin),
+                                         static_cast<std::size_t>(end - range.begin)));
     }
   }
 
-  /// Folds the pieces of batches and combines their results, a tree. Each thread has its own.
-  class BatchFolder {
-   public:
-    explicit BatchFolder(const RowsProgram& program)
-        : folder_(program),
-          combiner_(combinerOf(program.fold)),
-          runs_(program.fold.shape, combiner_, 1),
-          columns_(program.fold.shape, ofBatch) {}
-
-    const StateColumns& fold(const std::int32_t* starts, std::int64_t count) {
-      for (std::int64_t together = 0; count > 0; count -= together, starts += together) {
-        together = powerUpTo(count);
-        if (folder_.mustStage()) together = std::min(together, mostStaged / program::longestRun);
-        folder_.fold(starts, {0, together}, [&](std::int64_t, const StateColumns& columns, std::int64_t) {
-          columns_.assignReversed(columns, together);
-        });
-        combiner_.gather(columns_, together);
-        runs_.next().assign(0, columns_, 0, 1);
-        runs_.add(together);
+  /// Combines batches of equally many pieces.
+  void combineAlike(StateRuns& runs, std::span<const RowPieces::Batch> batches) {
+    const auto count = static_cast<std::int64_t>(batches.size());
+    runs.useColumns(count);
+    for (std::int32_t piece = 0; piece < batches.front().pieces; ++piece) {
+      StateColumns& next = runs.next();
+      for (std::int64_t i = 0; i < count; ++i) {
+        const RowPieces::Batch& batch = batches[static_cast<std::size_t>(i)];
+        next.unpack(i, stateOf(static_cast<std::size_t>(batch.longRow), batch.firstPiece + piece));
       }
-      return runs_.take();
+      runs.add();
     }
-
-   private:
-    RunFolder folder_;
-    ColumnCombiner combiner_;
-    StateRuns runs_;
-    StateColumns columns_;
-  };
-
-  void foldBatch(BatchFolder& folder, std::int64_t i) {
-    const Batch& batch = batches_[static_cast<std::size_t>(i)];
-    const StateColumns& state = folder.fold(pieces_.pieceStarts().data() + batch.firstPiece, batch.pieces);
-    if (batch.isWhole) {
-      results_.store({batch.row, 0, 0, 0}, state, 1);
-    } else {
-      state.pack(0, stateOf(i));
+    const StateColumns& combined = runs.take();
+    for (std::int64_t i = 0; i < count; ++i) {
+      const RowPieces::Batch& batch = batches[static_cast<std::size_t>(i)];
+      const RowPieces::LongRow& row = pieces_.longRows()[static_cast<std::size_t>(batch.longRow)];
+      if (row.pieces <= RowPieces::batchPieces) {
+        results_.store({row.row, 0, 0, 0}, combined, 1, i);
+      } else {
+        combined.pack(i, stateOf(batch));
+      }
     }
   }
 
@@ -175,12 +186,12 @@ class RowFold {
     ColumnCombiner combiner = combinerOf(program_.fold);
     StateRuns runs(program_.fold.shape, combiner, 1);
     for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end); ++i) {
-      if (pieces_.longRows()[i].pieces <= ofBatch) continue;
-      for (std::int64_t batch = firstBatches_[i]; batch < firstBatches_[i + 1]; ++batch) {
-        runs.next().unpack(0, stateOf(batch));
+      const std::byte* next = batchStates_.get() + static_cast<std::size_t>(parted_[i].firstBatch) * bytes_;
+      for (std::int32_t batch = 0; batch < parted_[i].batches; ++batch, next += bytes_) {
+        runs.next().unpack(0, next);
         runs.add();
       }
-      results_.store({pieces_.longRows()[i].row, 0, 0, 0}, runs.take(), 1);
+      results_.store({parted_[i].row, 0, 0, 0}, runs.take(), 1);
     }
   }
 
@@ -188,9 +199,9 @@ class RowFold {
   const RowPieces& pieces_;
   const FoldResults& results_;
   std::size_t bytes_;  ///< of a state
-  std::vector<Batch> batches_;  ///< of all long rows
-  std::vector<std::int64_t> firstBatches_;  ///< of each long row, then their number
-  std::vector<std::byte> states_;  ///< of batches
+  std::unique_ptr<std::byte[]> states_;  ///< of the pieces of long rows
+  std::unique_ptr<std::byte[]> batchStates_;  ///< of batches that are a part of a row
+  std::vector<PartedRow> parted_;  ///< rows of several batches
 };
 
 /// Scans rows in parts. Those of a long row first fold all that is before them.
