@@ -4,6 +4,7 @@
 // operators for GPU implementation of numerical algorithms", 2003), and rows of one length together (J. Bolz, I. Farmer, E. Grinspun and P. Schroeder, "Sparse
 // matrix solvers on the GPU: conjugate gradients and multigrid", 2003).
 #include <algorithm>
+#include <array>
 #include <map>
 #include <stdexcept>
 
@@ -18,54 +19,85 @@ namespace {
 
 constexpr std::size_t mostStoredDiagonals = 4096;
 
-/// Diagonals i and i - n share a stream: its element at row r is the entry of column (r + i) mod n.
+/// Diagonals i and i - n share a stream: its element at row r is the entry of column (r + i) mod n. Passes sum up to eight streams.
 class DiagonalMatrix : public Matrix {
  public:
   DiagonalMatrix(sk::Device& device, const SparseMatrix& a, const std::vector<std::int64_t>& offsets,
                  const Arithmetic& arithmetic)
-      : Matrix(arithmetic),
-        count_(static_cast<int>(offsets.size())),
-        offsets_(offsets),
-        value_(device.stream<float>({count_, a.rows}, arithmetic.matrix)),
-        offset_(device.stream<int>({count_})) {
+      : Matrix(arithmetic), rows_(a.rows), offsets_(offsets) {
+    for (std::size_t k = 0; k < offsets.size(); ++k)
+      values_.push_back(device.stream<float>({rows_}, arithmetic.matrix));
     update(a);
-    // The shorter way around, so that most elements are not beyond an end.
-    std::vector<int> shortest;
-    for (const std::int64_t o : offsets)
-      shortest.push_back(static_cast<int>(2 * o > a.rows ? o - a.rows : o));
-    offset_.write(shortest);
   }
 
   void update(const SparseMatrix& a) final {
-    std::vector<double> values(static_cast<std::size_t>(count_ * a.rows), 0.0);
+    std::vector<std::vector<double>> values(offsets_.size(),
+                                            std::vector<double>(static_cast<std::size_t>(rows_), 0.0));
     for (std::int64_t i = 0; i < a.rows; ++i)
       for (auto k = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
            k < static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]); ++k) {
         const std::int64_t offset = (a.column[k] - i + a.columns) % a.columns;
         const auto diagonal = std::lower_bound(offsets_.begin(), offsets_.end(), offset) - offsets_.begin();
-        values[static_cast<std::size_t>(diagonal * a.rows + i)] = a.value[k];
+        values[static_cast<std::size_t>(diagonal)][static_cast<std::size_t>(i)] = a.value[k];
       }
-    value_.writeReals(values);
+    for (std::size_t k = 0; k < values.size(); ++k) values_[k].writeReals(values[k]);
   }
 
-  sk::Shape domain() const override { return {value_.shape()[1]}; }
+  sk::Shape domain() const override { return {rows_}; }
   void multiply(const Vector& x, Vector& y) override {
-    if (value_.size() == 0) return y.fill(0.0f);
-    diagonalProduct.with(options())(count_, value_, offset_, x, y);
+    if (stored() == 0) return y.fill(0.0f);
+    forEachPass([&](std::size_t first) { pass(first, x, y); });
   }
   void multiply(const Vector& x, Vector& y, Vector& xy) override {
-    if (value_.size() == 0) return Matrix::multiply(x, y, xy);
-    diagonalProductDot.with(foldOptions())(count_, value_, offset_, x, x, y, xy);
+    if (stored() == 0) return Matrix::multiply(x, y, xy);
+    forEachPass([&](std::size_t first) {
+      if (first + inPass < offsets_.size()) return pass(first, x, y);
+      diagonalProductDot.with(foldOptions())(count(first), first > 0, offset(first), before(first, y),
+                                             values_[first], value(first + 1), value(first + 2),
+                                             value(first + 3), value(first + 4), value(first + 5),
+                                             value(first + 6), value(first + 7), x, x, y, xy);
+    });
   }
   std::string layout() const override { return "diagonals"; }
-  std::int64_t stored() const override { return value_.size(); }
-  std::int64_t bytes() const override { return entryBytes() * value_.size(); }
+  std::int64_t stored() const override { return rows_ * static_cast<std::int64_t>(offsets_.size()); }
+  std::int64_t bytes() const override { return entryBytes() * stored(); }
 
  private:
-  int count_;
+  using Diagonal = sk::Optional<sk::ElementIn<float>>;
+  static constexpr std::size_t inPass = 8;
+
+  template <class Pass>
+  void forEachPass(Pass&& pass) const {
+    for (std::size_t first = 0; first < offsets_.size(); first += inPass) pass(first);
+  }
+  void pass(std::size_t first, const Vector& x, Vector& y) const {
+    diagonalProduct.with(options())(count(first), first > 0, offset(first), before(first, y), values_[first],
+                                    value(first + 1), value(first + 2), value(first + 3), value(first + 4),
+                                    value(first + 5), value(first + 6), value(first + 7), x, y);
+  }
+
+  /// What the kernels take of a pass from diagonal `first` on.
+  int count(std::size_t first) const { return static_cast<int>(std::min(inPass, offsets_.size() - first)); }
+  Diagonal value(std::size_t k) const {
+    return k < values_.size() ? Diagonal(values_[k]) : Diagonal(sk::none);
+  }
+  static Diagonal before(std::size_t first, const Vector& y) {
+    return first > 0 ? Diagonal(y) : Diagonal(sk::none);
+  }
+  /// The shorter way around, so that most elements are not beyond an end.
+  Offsets offset(std::size_t first) const {
+    std::array<int, inPass> shortest{};
+    for (std::size_t k = 0; k < inPass && first + k < offsets_.size(); ++k) {
+      const std::int64_t o = offsets_[first + k];
+      shortest[k] = static_cast<int>(2 * o > rows_ ? o - rows_ : o);
+    }
+    const auto& [a, b, c, d, e, f, g, h] = shortest;
+    return {{a, b, c, d}, {e, f, g, h}};
+  }
+
+  std::int64_t rows_;
   std::vector<std::int64_t> offsets_;  ///< ascending, from 0
-  Vector value_;
-  sk::Stream<int> offset_;
+  std::vector<Vector> values_;
 };
 
 class PointMatrix : public Matrix {

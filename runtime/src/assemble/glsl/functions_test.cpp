@@ -33,8 +33,9 @@ struct ivec4 {
 
 TRANSLITERATED(
     wrapText, int sk_wrap(int sk_i, int sk_d, int sk_n) {
-      bool sk_below = sk_d < -sk_i;
       uint sk_p = uint(sk_i) + uint(sk_d);
+      if (sk_p < uint(sk_n)) return int(sk_p);
+      bool sk_below = sk_d < -sk_i;
       int sk_r = int((sk_below ? ~sk_p : sk_p) % uint(sk_n));
       return sk_below ? sk_n - 1 - sk_r : sk_r;
     })
