@@ -16,8 +16,9 @@ constexpr std::int64_t solvedDirectly = 400;
 
 /// Coarse elements that may have a weight for a fine one.
 struct Candidates {
-  std::array<std::int64_t, 8> coarse{};
-  std::array<std::size_t, 8> slot{};  ///< in Coarsening::weight
+  std::array<std::int64_t, 8> coarse;
+  std::array<GridOffset, 8> position;
+  std::array<std::size_t, 8> slot;  ///< in Coarsening::weight
   std::size_t size = 0;
 };
 
@@ -42,30 +43,31 @@ class Transfer {
   Candidates candidatesFor(const GridOffset& position) const {
     Candidates found;
     found.size = 1;
+    found.coarse[0] = 0;
+    found.position[0] = {};
+    found.slot[0] = 0;
     std::size_t power = powerOfThree(fine_.rank() - 1);
-    std::array<std::int64_t, 8> element{};
-    std::array<std::size_t, 8> slot{};
     for (std::size_t d = 0; d < fine_.rank(); ++d, power /= 3) {
       const int extent = static_cast<int>(c_.coarse[static_cast<int>(d)]);
       const int shifted = position[d] - c_.first[d];
-      const int before = shifted < 0 ? -1 : shifted / c_.step[d];
+      const int before = shifted < 0 ? -1 : c_.step[d] == 2 ? shifted / 2 : shifted;
       const int from = shifted - before * c_.step[d];
-      Candidates next;
+      const Candidates shorter = found;  // without this dimension
+      found.size = 0;
       const auto add = [&](int at, int offset) {
         if (at < 0 || at >= extent) {
           if (!isPeriodic_[d]) return;
           at += at < 0 ? extent : -extent;
         }
-        for (std::size_t i = 0; i < found.size; ++i) {
-          next.coarse[next.size] = element[i] * extent + at;
-          next.slot[next.size++] = slot[i] + power * static_cast<std::size_t>(offset + 1);
+        for (std::size_t i = 0; i < shorter.size; ++i) {
+          found.coarse[found.size] = shorter.coarse[i] * extent + at;
+          found.position[found.size] = shorter.position[i];
+          found.position[found.size][d] = at;
+          found.slot[found.size++] = shorter.slot[i] + power * static_cast<std::size_t>(offset + 1);
         }
       };
       add(before, from);
       if (from > 0) add(before + 1, from - c_.step[d]);
-      found = next;
-      element = found.coarse;
-      slot = found.slot;
     }
     const auto n = static_cast<std::size_t>(c_.coarse.size());
     for (std::size_t i = 0; i < found.size; ++i)
@@ -114,7 +116,7 @@ void interpolateElement(const VaryingStencil& a, const Transfer& transfer, const
   for (std::size_t k = 0; k < a.offsets.size(); ++k) {
     const double entry = a.value[entryAt(a, k, element)];
     if (entry == 0.0) continue;
-    GridOffset offset{}, at = position;
+    GridOffset offset{}, at{};
     bool isOwn = true;
     for (std::size_t d = 0; d < rank; ++d)
       if ((between >> d & 1u) != 0) {
@@ -125,9 +127,7 @@ void interpolateElement(const VaryingStencil& a, const Transfer& transfer, const
       diagonal += entry;
       continue;
     }
-    const std::int64_t neighbour = transfer.fine().beside(position, offset);
-    if (neighbour < 0) continue;
-    at = transfer.fine().positionOf(neighbour);
+    if (transfer.fine().beside(position, offset, at) < 0) continue;
     const Candidates theirs = transfer.candidatesFor(at);
     for (std::size_t i = 0; i < theirs.size; ++i)
       for (std::size_t j = 0; j < own.size; ++j)
@@ -138,6 +138,22 @@ void interpolateElement(const VaryingStencil& a, const Transfer& transfer, const
   }
   if (!(diagonal > 0.0)) return;
   for (std::size_t j = 0; j < own.size; ++j) weight[own.slot[j]] = sum[j] / diagonal;
+}
+
+/// P G P, where P removes the mean of the elements that have equations. A constant in a solution, however large, would leave the residual as it is, but take digits from differences.
+void removeConstants(std::vector<double>& inverse, const std::vector<double>& scale) {
+  const std::size_t n = scale.size();
+  const auto count = static_cast<double>(n - static_cast<std::size_t>(std::ranges::count(scale, 0.0)));
+  for (const bool isRow : {true, false})
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto at = [&](std::size_t j) -> double& {
+        return isRow ? inverse[i * n + j] : inverse[j * n + i];
+      };
+      double sum = 0.0;
+      for (std::size_t j = 0; j < n; ++j) sum += at(j);
+      for (std::size_t j = 0; j < n; ++j)
+        if (scale[j] > 0.0) at(j) -= sum / count;
+    }
 }
 
 }  // namespace
@@ -202,18 +218,17 @@ VaryingStencil galerkin(const VaryingStencil& a, const Coarsening& c) {
     for (std::size_t k = 0; k < a.offsets.size(); ++k) {
       const double entry = share * a.value[entryAt(a, k, i)];
       if (entry == 0.0) continue;
-      const std::int64_t j = walk.beside(position, a.offsets[k]);
-      if (j < 0) continue;
-      const Candidates columns = transfer.candidatesFor(walk.positionOf(j));
+      GridOffset beside{};
+      if (walk.beside(position, a.offsets[k], beside) < 0) continue;
+      const Candidates columns = transfer.candidatesFor(beside);
       for (std::size_t row = 0; row < rows.size; ++row) {
         const double left = entry * c.weight[rows.slot[row]];
         if (left == 0.0) continue;
-        const GridOffset from = transfer.coarse().positionOf(rows.coarse[row]);
         for (std::size_t column = 0; column < columns.size; ++column) {
           const double right = c.weight[columns.slot[column]];
           if (right == 0.0) continue;
-          const GridOffset to = transfer.coarse().positionOf(columns.coarse[column]);
-          const std::size_t slot = slotOf[offsetIndex(transfer.offsetBetween(from, to))];
+          const GridOffset offset = transfer.offsetBetween(rows.position[row], columns.position[column]);
+          const std::size_t slot = slotOf[offsetIndex(offset)];
           coarse.value[entryAt(coarse, slot, rows.coarse[row])] += left * right;
         }
       }
@@ -263,6 +278,7 @@ std::vector<double> symmetricInverse(const VaryingStencil& a, bool hasConstantKe
       const double factor = lower[k * n + i] * inversePivot[k] * scale[i];
       for (std::size_t j = 0; j <= k; ++j) inverse[i * n + j] += factor * lower[k * n + j] * scale[j];
     }
+  if (hasConstantKernel) removeConstants(inverse, scale);
   return inverse;
 }
 

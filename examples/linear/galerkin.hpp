@@ -33,7 +33,7 @@ VaryingStencil galerkin(const VaryingStencil& a, const Coarsening& coarsening);
 
 /// An inverse of a symmetric matrix without negative eigenvalues, row by row: G with A G A = A, where A is singular. For small matrices, by Cholesky's factors after
 /// scaling with the diagonal; a pivot that is 0, but for roundings, leaves its unknown 0, and so does the
-/// last one if constants are in the kernel (G. Golub and C. Van Loan, "Matrix computations", 4.2.8).
+/// last one if constants are in the kernel, after which G keeps means 0 (G. Golub and C. Van Loan, "Matrix computations", 4.2.8).
 std::vector<double> symmetricInverse(const VaryingStencil& a, bool hasConstantKernel);
 
 }  // namespace linear

@@ -95,6 +95,11 @@ std::int64_t GridWalk::elementAt(const GridOffset& position) const {
 }
 
 std::int64_t GridWalk::beside(const GridOffset& position, const GridOffset& offset) const {
+  GridOffset found{};
+  return beside(position, offset, found);
+}
+
+std::int64_t GridWalk::beside(const GridOffset& position, const GridOffset& offset, GridOffset& found) const {
   std::int64_t element = 0;
   for (std::size_t d = 0; d < rank_; ++d) {
     int at = position[d] + offset[d];
@@ -103,6 +108,7 @@ std::int64_t GridWalk::beside(const GridOffset& position, const GridOffset& offs
       at += at < 0 ? extents_[d] : -extents_[d];
     }
     element += strides_[d] * at;
+    found[d] = at;
   }
   return element;
 }

@@ -55,6 +55,8 @@ class GridWalk {
   std::int64_t elementAt(const GridOffset& position) const;
   /// The element at an offset of at most an extent along each dimension; -1 if it is outside.
   std::int64_t beside(const GridOffset& position, const GridOffset& offset) const;
+  /// The same, and its position.
+  std::int64_t beside(const GridOffset& position, const GridOffset& offset, GridOffset& found) const;
   /// To the next element in their order.
   void advance(GridOffset& position) const;
 

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "momentum.sk.hpp"
+#include "multigrid_varying.hpp"
+#include "varying.hpp"
 
 namespace fluid {
 
@@ -133,6 +136,57 @@ linear::Operator pressureOperator(const Model& model, const std::vector<std::int
     return y;
   };
   return o;
+}
+
+namespace {
+
+linear::VaryingStencil pressureStencil(const Model& model, const std::vector<std::int8_t>& cells) {
+  const sk::Shape shape = model.shape();
+  const auto rank = static_cast<std::size_t>(model.rank());
+  linear::VaryingStencil a{.grid = model.isSpace() ? shape : sk::Shape{shape[1], shape[2]},
+                           .offsets = linear::neighbourOffsets(model.rank(), linear::Neighbourhood::Sides),
+                           .value = {}};
+  for (std::size_t d = 0; d < rank; ++d) a.isPeriodic[d] = model.isPeriodic(static_cast<int>(rank - 1 - d));
+  a.value.assign(a.offsets.size() * cells.size(), 0.0);
+  visitFaces(model, cells, [&](std::int64_t cell, std::int64_t neighbour, int face) {
+    const std::int8_t kind = cells[static_cast<std::size_t>(neighbour)];
+    if (kind == Outflow) a.value[entryAt(a, 0, cell)] += 2.0;
+    if (kind != Fluid || neighbour == cell) return;
+    a.value[entryAt(a, 0, cell)] += 1.0;
+    a.value[entryAt(a, static_cast<std::size_t>(face) + 1, cell)] -= 1.0;
+  });
+  return a;
+}
+
+/// Cycles for planes have two dimensions, and the flow's streams three.
+class PlaneMultigrid : public linear::Preconditioner {
+ public:
+  PlaneMultigrid(sk::Device& device, const sk::Shape& grid, std::unique_ptr<linear::Preconditioner> cycle,
+                 const linear::Arithmetic& arithmetic)
+      : cycle_(std::move(cycle)),
+        r_(device.stream<float>(grid, arithmetic.vectors)),
+        z_(device.stream<float>(grid, arithmetic.vectors)) {}
+
+  void apply(const linear::Vector& r, linear::Vector& z, linear::Vector& rz) override {
+    r.reshape(r_.shape()).copyTo(r_.reshape(r_.shape()));
+    cycle_->apply(r_, z_, rz);
+    z_.reshape(z_.shape()).copyTo(z.reshape(z_.shape()));
+  }
+
+ private:
+  std::unique_ptr<linear::Preconditioner> cycle_;
+  linear::Vector r_, z_;
+};
+
+}  // namespace
+
+std::unique_ptr<linear::Preconditioner> makePressureMultigrid(sk::Device& device, const Model& model,
+                                                              const std::vector<std::int8_t>& cells,
+                                                              const linear::Arithmetic& arithmetic) {
+  const linear::VaryingStencil a = pressureStencil(model, cells);
+  std::unique_ptr<linear::Preconditioner> cycle = linear::makeMultigrid(device, a, arithmetic, {});
+  if (model.isSpace()) return cycle;
+  return std::make_unique<PlaneMultigrid>(device, a.grid, std::move(cycle), arithmetic);
 }
 
 ViscousMatrix::ViscousMatrix(sk::Device& device, const GridArguments& grid, int axis,

@@ -37,6 +37,12 @@ std::unique_ptr<linear::Matrix> makePressureMatrix(const GridArguments& grid,
 /// The same on the host, for preconditioners and checks. `cells` are those of cellsOf().
 linear::Operator pressureOperator(const Model& model, const std::vector<std::int8_t>& cells);
 
+/// A V-cycle for the same equations, with Galerkin's coarse grids: faces that are closed are coefficients of 0, and cells that are not fluid have no equations, so that obstacles of any
+/// shape need nothing else. The coarse grids are made on the host, once.
+std::unique_ptr<linear::Preconditioner> makePressureMultigrid(sk::Device& device, const Model& model,
+                                                              const std::vector<std::int8_t>& cells,
+                                                              const linear::Arithmetic& arithmetic);
+
 /// 1 - c times the Laplacian of a velocity along an axis.
 class ViscousMatrix : public linear::Matrix {
  public:

@@ -46,6 +46,7 @@ void forAxis(int axis, F&& f, const A& a, const B& b, const C& c) {
 constexpr const char* velocityNames[] = {"u", "v", "w"};
 constexpr sk::CallOptions inDouble{.precision = sk::Precision::Double};
 constexpr std::int64_t iterationsBetweenLooks = 8;
+constexpr std::int64_t cyclesBetweenLooks = 1;  ///< a cycle costs more than a look
 
 /// What sources hold, and how much of a cell they cover.
 struct Held {
@@ -104,8 +105,12 @@ Flow::Flow(sk::Device& device, const Model& model, const Triple& inside)
     pressure_.back().fill(0.0f);
   }
   matrix_ = makePressureMatrix(*grid_, arithmetic_);
-  const auto& kind = linear::rowNamed(linear::preconditionerKinds(), "chebyshev", "preconditioner");
-  preconditioner_ = kind.make(device, *matrix_, pressureOperator(model, cells), arithmetic_);
+  if (model.projector == Projector::Multigrid) {
+    preconditioner_ = makePressureMultigrid(device, model, cells, arithmetic_);
+  } else {
+    const auto& kind = linear::rowNamed(linear::preconditionerKinds(), "chebyshev", "preconditioner");
+    preconditioner_ = kind.make(device, *matrix_, pressureOperator(model, cells), arithmetic_);
+  }
   const auto& gradients = linear::rowNamed(linear::methodKinds(), "cg", "solver");
   method_ = gradients.make(device, *matrix_, preconditioner_.get(), arithmetic_);
 
@@ -386,7 +391,9 @@ Projection Flow::project(std::size_t stage, double speed) {
   if (squares > limit) {
     // A little below, so that rounding the velocities does not miss it.
     method_->begin(inflow_, 0.8 * limit);
-    report.iterations = method_->run(iterationsBetweenLooks, model_.mostIterations);
+    const bool isMultigrid = model_.projector == Projector::Multigrid;
+    report.iterations =
+        method_->run(isMultigrid ? cyclesBetweenLooks : iterationsBetweenLooks, model_.mostIterations);
     report.recurred = std::sqrt(std::abs(method_->residualSquared()) / cells) / scale;
     subtract(method_->x());
     linear::axpy.with(options_)(1.0f, method_->x(), pressure_[stage], pressure_[stage]);

@@ -2,6 +2,7 @@
 #include "flow.hpp"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -97,6 +98,46 @@ TEST_CASE("a flow does the same drawn, dispatched and in double precision") {
     CHECK(distance(found.velocity, expected.velocity) <= bound(model));
     CHECK(distance(found.smoke, expected.smoke) <= bound(model));
   }
+}
+
+TEST_CASE("a projection by multigrid is that by Chebyshev's iteration, in fewer iterations") {
+  sk::Device device = sk::Device::native();
+  constexpr std::array<std::array<Side, 4>, 4> planes = {
+      {{Side::Inflow, Side::Outflow, Side::Wall, Side::Slip},
+       {Side::Wall, Side::Wall, Side::Wall, Side::Wall},
+       {Side::Periodic, Side::Periodic, Side::Wall, Side::Wall},
+       {Side::Periodic, Side::Periodic, Side::Periodic, Side::Periodic}}};
+  for (const bool isSpace : {false, true})
+    for (const auto& sides : planes) {
+      Model m;
+      m.cells = {isSpace ? 13 : 45, isSpace ? 12 : 40, isSpace ? 10 : 1};
+      m.spacing = 1.0 / static_cast<double>(m.cells[0]);
+      std::ranges::copy(sides, m.sides.begin());
+      m.sides[4] = m.sides[5] = isSpace ? Side::Wall : Side::Periodic;
+      if (sides[0] == Side::Inflow) m.sideVelocity[0] = {1.0, 0.0, 0.0};
+      m.obstacles.push_back({Sphere{{0.4, 0.5, 0.4}, 0.17}, {}});
+      m.obstacles.push_back({{}, Brick{{0.7, 0.1, 0.0}, {0.74, 0.6, 1.0}}});  // a thin wall
+      m.precision = sk::Precision::Double;
+      m.tolerance = 1e-10;
+      CAPTURE(isSpace, static_cast<int>(sides[0]), static_cast<int>(sides[2]));
+      std::vector<std::vector<double>> found;
+      std::vector<std::int64_t> iterations;
+      for (const Projector projector : {Projector::Chebyshev, Projector::Multigrid}) {
+        m.projector = projector;
+        Flow flow(device, m, {1.0, 0.3, 0.2});
+        const Projection p = flow.project();
+        CHECK(p.reached);
+        iterations.push_back(p.iterations);
+        found.emplace_back();
+        for (int axis = 0; axis < m.rank(); ++axis)
+          std::ranges::copy(flow.velocity(axis), std::back_inserter(found.back()));
+      }
+      CHECK(iterations[1] <= 30);
+      if (!isSpace) CHECK(2 * iterations[1] <= iterations[0]);
+      // Each error is at most tolerance * n / pi root mean square, and no element's is more than the root of the number of cells times that.
+      CHECK(distance(found[0], found[1]) <=
+            2.0 * m.tolerance * 45.0 / 3.14 * std::sqrt(static_cast<double>(m.shape().size())));
+    }
 }
 
 TEST_CASE("sides that follow from an index are those that a stream of cells has") {

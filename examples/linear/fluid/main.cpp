@@ -23,7 +23,7 @@ namespace {
 
 struct Settings {
   std::filesystem::path scene;
-  std::string size, scheme, precision;
+  std::string size, scheme, projection, precision;
   std::optional<std::int64_t> steps;
 };
 
@@ -35,6 +35,9 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--scheme", s.scheme,
                  "semi-lagrangian, maccormack, bfecc or central, in place of the scene's")
       ->check(CLI::IsMember({"semi-lagrangian", "maccormack", "bfecc", "central"}));
+  cli.add_option("--projection", s.projection,
+                 "chebyshev or multigrid, what preconditions the projection, in place of the scene's")
+      ->check(CLI::IsMember({"chebyshev", "multigrid"}));
   cli.add_option("--precision", s.precision, "single or double, in place of the scene's")
       ->check(CLI::IsMember({"single", "double"}));
 }
@@ -46,6 +49,10 @@ fluid::Scene sceneOf(const Settings& s, const examples::RecordOptions& record) {
   const auto names = fluid::schemeNames();
   if (!s.scheme.empty())
     overrides.scheme = static_cast<fluid::Scheme>(std::ranges::find(names, s.scheme) - names.begin());
+  const auto projectors = fluid::projectorNames();
+  if (!s.projection.empty())
+    overrides.projector =
+        static_cast<fluid::Projector>(std::ranges::find(projectors, s.projection) - projectors.begin());
   if (s.precision == "single") overrides.precision = sk::Precision::Single;
   if (s.precision == "double") overrides.precision = sk::Precision::Double;
   fluid::Scene scene = fluid::readScene(s.scene, overrides);

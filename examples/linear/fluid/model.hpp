@@ -58,6 +58,12 @@ struct Viscosity {
   bool isImplicit = false;
 };
 
+/// What preconditions the conjugate gradients of the projection.
+enum class Projector {
+  Chebyshev,  ///< four steps of Chebyshev's iteration
+  Multigrid,  ///< a V-cycle
+};
+
 struct Model {
   std::array<std::int64_t, 3> cells = {64, 64, 1};  ///< along x, y, z
   double spacing = 1.0 / 64;
@@ -77,6 +83,7 @@ struct Model {
   double tolerance =
       1e-4;  ///< of the root mean square of divergence * spacing, as a part of the largest speed
   int mostIterations = 2000;
+  Projector projector = Projector::Chebyshev;
   sk::Precision precision = sk::Precision::Single;
 
   bool isSpace() const { return cells[2] > 1; }

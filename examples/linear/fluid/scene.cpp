@@ -25,6 +25,7 @@ constexpr Range anything{-1e12, 1e12};
 constexpr std::int64_t mostCells = std::int64_t{1} << 26;
 
 constexpr std::array<std::string_view, 4> schemes = {"semi-lagrangian", "maccormack", "bfecc", "central"};
+constexpr std::array<std::string_view, 2> projectors = {"chebyshev", "multigrid"};
 constexpr std::array<std::string_view, 5> sides = {"periodic", "wall", "slip", "inflow", "outflow"};
 constexpr std::array<std::string_view, 6> velocityKeys = {
     "left_velocity", "right_velocity", "bottom_velocity", "top_velocity", "back_velocity", "front_velocity"};
@@ -150,6 +151,8 @@ void readRun(const SceneTable& table, Scene& scene) {
   model.cfl = table.number("cfl", Range{1e-6, 100.0}).value_or(model.scheme == Scheme::Central ? 0.7 : 1.5);
   model.timeStep = table.number("time_step", positive);
   model.tolerance = table.number("tolerance", Range{1e-12, 0.1}).value_or(model.tolerance);
+  if (const auto projector = table.choice("projection", projectors))
+    model.projector = static_cast<Projector>(*projector);
   model.mostIterations =
       static_cast<int>(table.integer("most_iterations", Range{1, 1e6}).value_or(model.mostIterations));
   if (const auto precision = table.choice("precision", precisionNames))
@@ -202,6 +205,7 @@ Initial readInitial(const SceneTable& table) {
 }  // namespace
 
 std::span<const std::string_view> schemeNames() { return schemes; }
+std::span<const std::string_view> projectorNames() { return projectors; }
 
 Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   const SceneTable table = examples::loadScene(file);
@@ -227,6 +231,7 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   if (const auto t = table.table("run")) readRun(*t, scene);
   scene.steps = overrides.steps.value_or(scene.steps);
   model.precision = overrides.precision.value_or(model.precision);
+  model.projector = overrides.projector.value_or(model.projector);
   if (const auto t = table.table("initial")) scene.initial = readInitial(*t);
   scene.record = examples::readRecord(table.table("record"), scene.name);
   scene.view.shown = model.hasSmoke ? Shown::Smoke : Shown::Speed;

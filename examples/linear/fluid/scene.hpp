@@ -48,11 +48,13 @@ struct Overrides {
   std::vector<std::int64_t> size;  ///< cells; the spacing follows, so that the width stays
   std::optional<std::int64_t> steps;
   std::optional<Scheme> scheme;
+  std::optional<Projector> projector;
   std::optional<sk::Precision> precision;
 };
 
 /// As scenes write them.
 std::span<const std::string_view> schemeNames();
+std::span<const std::string_view> projectorNames();
 
 /// Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong and the way out".
 Scene readScene(const std::filesystem::path& file, const Overrides& overrides);
