@@ -71,6 +71,17 @@ run 0 --emit=js -o web scan.sk
 silent
 grep -qF 'prefix: sk.NotOffered<"scans do not run in browsers yet' web/scan.sk.d.ts || broken "a scan is offered: $(<web/scan.sk.d.ts)"
 
+# Programs for browsers do not multiply with the streams of a kernel.
+{
+  echo 'kernel void many(float a0[], '
+  for i in {1..14}; do echo "float a$i[], "; done
+  echo 'iter int n<>, iter float m<>, out float r<>) { int i = n; r = m + a0[i]'
+  for i in {1..14}; do echo " + a$i[i]"; done
+  echo '; }'
+} >many.sk
+run 0 --emit=js -o web many.sk
+(($(wc -c <web/many.sk.js) < 200000)) || broken "many.sk.js has $(wc -c <web/many.sk.js) bytes"
+
 # codeSymbols FILE.sk.cpp: the native code that the stub refers to.
 codeSymbols() { grep -oE 'sk_[0-9a-f]{16}_[A-Za-z0-9_]+' "$1" | sort -u; }
 

@@ -71,6 +71,7 @@ export class Device {
   /** @internal */ readonly filtersFloats: boolean;
   /** @internal */ readonly parallel: { COMPLETION_STATUS_KHR: number } | null;
   /** @internal */ readonly limits: DeviceInfo['limits'];
+  /** Whether nobody else sees the device's canvas. @internal */ readonly hasHiddenCanvas: boolean;
   private readonly ownsContext: boolean;
   private isLost = false;
   private readonly programs = new Map<unknown, Map<string, Program>>();
@@ -110,6 +111,7 @@ export class Device {
     this.context = context;
     this.canvas = canvas;
     this.ownsContext = options.context === undefined;
+    this.hasHiddenCanvas = this.ownsContext && options.canvas === undefined;
     this.filtersFloats = context.getExtension('OES_texture_float_linear') !== null;
     this.parallel = context.getExtension('KHR_parallel_shader_compile') as { COMPLETION_STATUS_KHR: number } | null;
     const get = (name: number) => context.getParameter(name) as number;
@@ -179,8 +181,9 @@ export class Device {
   }
 
   /**
-   * Shows a stream in a canvas, the device's own or another one, without a transfer to the host. Numbers are mapped to
-   * colours; elements of three or four components are colours from 0 to 1.
+   * Shows a stream in a canvas without a transfer to the host: in the one that the device was made with, or, of a device
+   * with a canvas of its own, in any. Numbers are mapped to colours; elements of three or four components are colours
+   * from 0 to 1.
    */
   draw(stream: Stream<any, number>, canvas: Canvas = this.canvas, options: DrawOptions = {}): void {
     this.check();

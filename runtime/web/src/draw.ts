@@ -67,8 +67,11 @@ export function drawStream(device: Device, stream: Stream<any, number>, canvas: 
   }
   if (canvas.width === 0 || canvas.height === 0) throw new SkError('the canvas has no pixels', 'shape');
 
-  device.begin();
   const isOwn = canvas === device.canvas;
+  if (!isOwn && !device.hasHiddenCanvas) {
+    throw new SkError('this device draws to the canvas that it was made with; for other canvases, make one without a canvas and a context');
+  }
+  device.begin();
   const { width, height } = canvas;
   if (!isOwn) resize(device.canvas, width, height);
   const program = drawProgram(device, formatOf(field!.scalar, 1).sampler, map);

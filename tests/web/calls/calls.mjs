@@ -244,10 +244,21 @@ const cases = {
     await refused('shape', 'is no picture', () => device.draw(device.stream('float', [2, 2, 2]), picture));
   },
 
+  // The device's own filter weighs by 8 bits; without it, the program interpolates.
+  async filters(device) {
+    const shape = [20, 28];
+    for (const boundary of ['clamp', 'wrap']) {
+      const [a, r] = [random(device, shape, 24), device.stream('float', shape)];
+      k[`zoom_${boundary}`](0.37, a, r);
+      same(`zoom ${boundary}`, await r.read(), 2 ** 16);
+    }
+  },
+
   // A device on the application's own context, whose state is what it may be.
   async adopted() {
     const context = document.createElement('canvas').getContext('webgl2');
     const device = await Device.create({ context });
+    await refused('misuse', 'the canvas that it was made with', () => device.draw(device.stream('float', [2, 2]), document.getElementById('picture')));
     context.enable(context.BLEND);
     context.enable(context.SCISSOR_TEST);
     context.colorMask(true, false, false, false);

@@ -196,6 +196,14 @@ struct Calls {
     print("spread f", spots);
   }
 
+  void filters() {
+    auto a = random({20, 28}, 24), r = device.stream<float>({20, 28});
+    zoom_clamp(0.37F, a, r);
+    print("zoom clamp", r.read());
+    zoom_wrap(0.37F, a, r);
+    print("zoom wrap", r.read());
+  }
+
   void types() {
     constexpr std::size_t n = 60;
     auto a = filled<std::uint8_t>({n}, integers<std::uint8_t>(n, 14, 256));
@@ -242,6 +250,7 @@ int main() {
   calls.records();
   calls.choices();
   calls.passes();
+  calls.filters();
   calls.types();
   std::puts("}");
 }
