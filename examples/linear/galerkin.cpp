@@ -2,6 +2,7 @@
 #include "galerkin.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 
@@ -27,10 +28,9 @@ std::size_t powerOfThree(std::size_t exponent) { return exponent == 0 ? 1 : 3 * 
 class Transfer {
  public:
   Transfer(const VaryingStencil& a, const Coarsening& c)
-      : isPeriodic_(a.isPeriodic), c_(c), fine_(a.grid, a.isPeriodic), coarse_(c.coarse, a.isPeriodic) {}
+      : isPeriodic_(a.isPeriodic), c_(c), fine_(a.grid, a.isPeriodic) {}
 
   const GridWalk& fine() const { return fine_; }
-  const GridWalk& coarse() const { return coarse_; }
 
   /// Bit d is set if the position is between coarse elements along dimension d.
   unsigned betweenAt(const GridOffset& position) const {
@@ -78,7 +78,7 @@ class Transfer {
   /// From one coarse element to another one that is beside it.
   GridOffset offsetBetween(const GridOffset& from, const GridOffset& to) const {
     GridOffset offset{};
-    for (std::size_t d = 0; d < coarse_.rank(); ++d) {
+    for (std::size_t d = 0; d < fine_.rank(); ++d) {
       const int extent = static_cast<int>(c_.coarse[static_cast<int>(d)]);
       offset[d] = to[d] - from[d];
       if (isPeriodic_[d] && extent > 2 && std::abs(offset[d]) == extent - 1)
@@ -90,7 +90,7 @@ class Transfer {
  private:
   std::array<bool, 3> isPeriodic_;
   const Coarsening& c_;
-  GridWalk fine_, coarse_;
+  GridWalk fine_;
 };
 
 /// How strongly the elements couple along a dimension: minus the sum of the entries for neighbours there, which is the diffusivity also where corners have entries.
@@ -190,7 +190,7 @@ Coarsening coarsening(const VaryingStencil& a) {
     GridOffset position{};
     for (std::int64_t i = 0; i < a.size(); ++i, walk.advance(position)) {
       const unsigned between = transfer.betweenAt(position);
-      if (__builtin_popcount(between) != dimensions) continue;
+      if (std::popcount(between) != dimensions) continue;
       if (between == 0)
         c.weight[transfer.candidatesFor(position).slot[0]] = 1.0;
       else
