@@ -24,6 +24,7 @@ optional = {
     "ffmpeg": "writes films, which no test wants",
     "git": "fetches the sources, which are here",
     "node": "[web] has it, and tests of programs for browsers are skipped without it",
+    "node": "[web] has it, and tests of runtime/web are skipped without it",
     "sudo": "installs packages, which are here",
     "tsc": "[web] has it, and tests of programs for browsers are skipped without it",
 }
