@@ -26,6 +26,18 @@ std::size_t leafCount(const Module& module, Type type) {
   return count;
 }
 
+std::size_t firstLeaf(const Module& module, Type type, std::uint32_t field) {
+  std::size_t first = 0;
+  const std::vector<StructField>& fields = module.structs[type.index].fields;
+  for (std::uint32_t i = 0; i < field; ++i) first += leafCount(module, fields[i].type);
+  return first;
+}
+
+std::optional<std::uint32_t> literalIndex(const Expr& index, std::uint32_t length) {
+  const auto* n = std::get_if<Literal>(&index.node);
+  return n != nullptr && n->bits < length ? std::optional(n->bits) : std::nullopt;
+}
+
 Leaf join(Leaf a, Leaf b) {
   if (!a || !b) return a ? a : b;
   return a == b ? a : Shape::Varying;
@@ -65,19 +77,6 @@ bool isComponentwise(Intrinsic intrinsic) {
   static constexpr Intrinsic others[] = {Cross,   Normalize, Faceforward, Reflect,
                                          Refract, Transpose, Inverse,     ExactSettled};
   return std::ranges::find(others, intrinsic) == std::end(others);
-}
-
-/// The index of a field's first leaf in its struct.
-std::size_t firstLeaf(const Module& module, Type type, std::uint32_t field) {
-  std::size_t first = 0;
-  const std::vector<StructField>& fields = module.structs[type.index].fields;
-  for (std::uint32_t i = 0; i < field; ++i) first += leafCount(module, fields[i].type);
-  return first;
-}
-
-std::optional<std::uint32_t> literalIndex(const Expr& index, std::uint32_t length) {
-  const auto* n = std::get_if<Literal>(&index.node);
-  return n != nullptr && n->bits < length ? std::optional(n->bits) : std::nullopt;
 }
 
 }  // namespace

@@ -36,6 +36,10 @@ using KernelShapes = std::map<ir::FunctionId, FunctionShapes>;
 
 /// The number of leaves of a type: one per scalar; an array counts as a single element.
 std::size_t leafCount(const ir::Module& module, ir::Type type);
+/// The index of a field's first leaf in its struct.
+std::size_t firstLeaf(const ir::Module& module, ir::Type type, std::uint32_t field);
+/// The value of an index that is a literal below `length`.
+std::optional<std::uint32_t> literalIndex(const ir::Expr& index, std::uint32_t length);
 
 /// The shape of a value that is either of the two.
 Leaf join(Leaf a, Leaf b);

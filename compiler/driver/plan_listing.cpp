@@ -11,6 +11,7 @@
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/reduce/scan_plan.hpp"
 #include "ir/print.hpp"
+#include "ir/print_reach.hpp"
 #include "split/cost.hpp"
 #include "split/demand.hpp"
 #include "support/text.hpp"
@@ -43,6 +44,7 @@ class PlanPrinter {
         kernel.isScan ? printScan() : kernel.reduction ? printReduce() : printKernel(kernel);
       }
       printScatters(kernel);
+      printReaches(kernel);
       for (const LoopNote& loop : kernel.loops) printLoop(loop);
     }
     return std::move(text_);
@@ -83,6 +85,28 @@ class PlanPrinter {
             "  {} combines values in order: drawn, as points; dispatched, as sorted records\n", param.name);
       }
     }
+  }
+
+  /// Prints how far from its element a kernel reads each gather.
+  void printReaches(const Kernel& kernel) {
+    for (const KernelParam& param : kernel.params) {
+      if (param.reach.empty()) continue;
+      text_ += wrapLine(fmt::format("  reach of {}: {}{}", param.name, ir::printReach(kernel, param),
+                                    shapes(kernel, param)),
+                        100, 4) +
+               "\n";
+    }
+  }
+
+  /// The condition under which a reach holds.
+  static std::string shapes(const Kernel& kernel, const KernelParam& reached) {
+    std::vector<std::string> names;
+    for (std::size_t p = 0; p < kernel.params.size(); ++p) {
+      if ((reached.reachShapes >> p & 1) != 0) names.push_back(kernel.params[p].name);
+    }
+    if (names.empty()) return "";
+    return fmt::format(", if {} {} the domain's shape", join(names, " and "),
+                       names.size() == 1 ? "has" : "have");
   }
 
   void printPass(const Kernel& kernel, const Plan& plan, std::size_t number) {

@@ -42,6 +42,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -219,6 +220,29 @@ enum class ParamRole : std::uint8_t {
   Spec,
 };
 enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };
+
+/// The most Spec parameters of a kernel.
+inline constexpr std::size_t mostSpecs = 8;
+
+/// A number of elements: a constant plus multiples of the values of the kernel's Spec parameters, in their order.
+struct Distance {
+  std::int64_t constant = 0;
+  std::array<std::int16_t, mostSpecs> perSpec = {};
+  bool operator==(const Distance&) const = default;
+};
+/// How far from the index of the element that it computes a kernel reads a gather, in one dimension.
+struct Reach {
+  enum class Kind : std::uint8_t {
+    Near,  ///< at most `below` before the element and `above` after it; a negative distance means 0
+    Computed,  ///< at an index that no analysis bounds
+    Whole,  ///< anywhere: at indices that do not depend on the element
+  };
+  std::uint8_t dimension = 0;  ///< 0 is x
+  Kind kind = Kind::Near;
+  Distance below = {}, above = {};
+  bool operator==(const Reach&) const = default;
+};
+
 struct KernelParam {
   std::string name;
   ParamRole role;
@@ -238,6 +262,11 @@ struct KernelParam {
   /// Set by guard-streams: an expression of the entry's Spec variables that is false if the kernel does not
   /// need the stream, or null.
   ExprPtr neededIf = nullptr;
+  /// Gathers of declared kernels, set by find-reach: at least one Reach for each dimension, x first. If Spec parameters
+  /// count, there may be several, of which the farthest holds.
+  std::vector<Reach> reach = {};
+  /// `reach` holds if the parameters of these bits have the domain's extents.
+  std::uint64_t reachShapes = 0;
 };
 
 /// The type of the elements that the parameter's stream holds.

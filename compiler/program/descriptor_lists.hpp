@@ -98,6 +98,24 @@ struct Members<p::Layer> {
 };
 
 template <>
+struct Members<p::Distance> {
+  static constexpr std::tuple list{
+      Member{"constant", &p::Distance::constant},
+      Member{"perSpec", &p::Distance::perSpec},
+  };
+};
+
+template <>
+struct Members<p::Reach> {
+  static constexpr std::tuple list{
+      Member{"dimension", &p::Reach::dimension},
+      Member{"kind", &p::Reach::kind},
+      Member{"below", &p::Reach::below},
+      Member{"above", &p::Reach::above},
+  };
+};
+
+template <>
 struct Members<p::Parameter> {
   static constexpr std::tuple list{
       Member{"name", &p::Parameter::name},
@@ -122,6 +140,8 @@ struct Members<p::Parameter> {
       Member{"firstPlane", &p::Parameter::firstPlane},
       Member{"planeCount", &p::Parameter::planeCount},
       Member{"layers", &p::Parameter::layers},
+      Member{"halo", &p::Parameter::halo},
+      Member{"haloShapes", &p::Parameter::haloShapes},
   };
 };
 
@@ -328,13 +348,13 @@ struct Members<p::ExactSum> {
 
 static_assert(listsAll<p::Field> && listsAll<p::Element> && listsAll<p::ConditionStep> &&
                   listsAll<p::Condition> && listsAll<p::Layer> && listsAll<p::Parameter> &&
-                  listsAll<p::IntrinsicUse> && listsAll<sk::TableRange> && listsAll<p::Table> &&
-                  listsAll<p::TableUse> && listsAll<p::UnrolledKernel> && listsAll<sk::CallOptions> &&
-                  listsAll<p::Kernel> && listsAll<p::PassOperand> && listsAll<p::Pass> &&
-                  listsAll<p::ArgumentPlane> && listsAll<p::Bundle> && listsAll<p::Plan> &&
-                  listsAll<p::SumTerm> && listsAll<p::Reduction> && listsAll<p::FoldParts> &&
-                  listsAll<p::WideReduction> && listsAll<p::CompensatedSum> &&
-                  listsAll<p::CompensatedReduction> && listsAll<p::ExactSum>,
+                  listsAll<p::Distance> && listsAll<p::Reach> && listsAll<p::IntrinsicUse> &&
+                  listsAll<sk::TableRange> && listsAll<p::Table> && listsAll<p::TableUse> &&
+                  listsAll<p::UnrolledKernel> && listsAll<sk::CallOptions> && listsAll<p::Kernel> &&
+                  listsAll<p::PassOperand> && listsAll<p::Pass> && listsAll<p::ArgumentPlane> &&
+                  listsAll<p::Bundle> && listsAll<p::Plan> && listsAll<p::SumTerm> &&
+                  listsAll<p::Reduction> && listsAll<p::FoldParts> && listsAll<p::WideReduction> &&
+                  listsAll<p::CompensatedSum> && listsAll<p::CompensatedReduction> && listsAll<p::ExactSum>,
               "a descriptor has another member: list it, and document it in docs/json.md");
 
 // ---- names of enumerators -------------------------------------------------------------------------
@@ -353,6 +373,8 @@ inline constexpr std::array enumerators<p::ScatterOp> = std::to_array<Names>({"s
 template <>
 inline constexpr std::array enumerators<p::Boundary> =
     std::to_array<Names>({"clamp", "wrap", "mirror", "border"});
+template <>
+inline constexpr std::array enumerators<p::Reach::Kind> = std::to_array<Names>({"near", "computed", "whole"});
 template <>
 inline constexpr std::array enumerators<p::ConditionOp> =
     std::to_array<Names>({"spec", "literal", "not", "and", "or", "bitAnd", "bitOr", "bitXor", "add", "sub",
@@ -393,12 +415,13 @@ constexpr bool namesUpTo(E last) {
   return enumerators<E>.size() == static_cast<std::size_t>(last) + 1;
 }
 static_assert(namesUpTo(p::Scalar::Snorm16) && namesUpTo(p::Role::Spec) && namesUpTo(p::ScatterOp::Max) &&
-                  namesUpTo(p::Boundary::Border) && namesUpTo(p::ConditionOp::NotEqual) &&
-                  namesUpTo(p::Intrinsic::Normalize) && namesUpTo(sk::Interpolation::Cubic) &&
-                  namesUpTo(sk::Accumulate::Exact) && namesUpTo(sk::Precision::Double) &&
-                  namesUpTo(sk::Intrinsics::Accurate) && namesUpTo(sk::Tables::On) &&
-                  namesUpTo(sk::Target::Native) && namesUpTo(sk::Contraction::Fast) &&
-                  namesUpTo(sk::Order::Any) && namesUpTo(sk::Scan::Exclusive),
+                  namesUpTo(p::Boundary::Border) && namesUpTo(p::Reach::Kind::Whole) &&
+                  namesUpTo(p::ConditionOp::NotEqual) && namesUpTo(p::Intrinsic::Normalize) &&
+                  namesUpTo(sk::Interpolation::Cubic) && namesUpTo(sk::Accumulate::Exact) &&
+                  namesUpTo(sk::Precision::Double) && namesUpTo(sk::Intrinsics::Accurate) &&
+                  namesUpTo(sk::Tables::On) && namesUpTo(sk::Target::Native) &&
+                  namesUpTo(sk::Contraction::Fast) && namesUpTo(sk::Order::Any) &&
+                  namesUpTo(sk::Scan::Exclusive),
               "an enumeration has another enumerator: name it");
 
 }  // namespace skc::emit

@@ -26,6 +26,7 @@ struct Program::Storage {
   std::deque<std::vector<sk::program::Field>> fields;
   std::deque<std::pair<Type, sk::program::Element>> elements;
   std::deque<std::vector<sk::program::ConditionStep>> conditions;
+  std::deque<std::vector<sk::program::Reach>> reaches;
   std::deque<std::vector<sk::program::Parameter>> parameters;
   std::vector<std::string_view> sources;
   std::deque<sk::program::Reduction> reductions;
@@ -73,6 +74,8 @@ static_assert(static_cast<int>(sk::Precision::Double) == 4 && static_cast<int>(s
                   static_cast<int>(sk::Intrinsics::Accurate) == 2 && static_cast<int>(sk::Tables::On) == 2 &&
                   static_cast<int>(sk::Contraction::Fast) == 2 && static_cast<int>(sk::Order::Any) == 2,
               "frontend/choices.cpp has the same order");
+static_assert(mostSpecs == sk::program::maxSpecs &&
+              static_cast<int>(Reach::Kind::Whole) == static_cast<int>(sk::program::Reach::Kind::Whole));
 static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program::Boundary::Border));
 
 /// A template only because Storage is private.
@@ -396,7 +399,22 @@ class Builder {
             .reach = use.reach,
             .neededIf = condition(context, param),
             .firstPlane = static_cast<std::uint8_t>(param.firstPlane),
-            .planeCount = static_cast<std::uint8_t>(param.planeCount)};
+            .planeCount = static_cast<std::uint8_t>(param.planeCount),
+            .halo = reachOf(param),
+            .haloShapes = param.reachShapes};
+  }
+
+  std::span<const sk::program::Reach> reachOf(const KernelParam& param) {
+    if (param.reach.empty()) return {};
+    const auto distance = [](const Distance& from) {
+      return sk::program::Distance{from.constant, from.perSpec};
+    };
+    std::vector<sk::program::Reach>& made = storage_.reaches.emplace_back();
+    for (const Reach& reach : param.reach) {
+      made.push_back({reach.dimension, static_cast<sk::program::Reach::Kind>(reach.kind),
+                      distance(reach.below), distance(reach.above)});
+    }
+    return made;
   }
 
   sk::program::Condition condition(const GlslContext& context, const KernelParam& param) {

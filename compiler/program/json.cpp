@@ -4,7 +4,9 @@
 // their index there.
 #include "program/json.hpp"
 
+#include <array>
 #include <concepts>
+#include <cstddef>
 #include <map>
 #include <span>
 #include <type_traits>
@@ -130,6 +132,10 @@ class Writer {
       return indexOf(descriptor);
     else
       return value(*descriptor);
+  }
+  template <class T, std::size_t Count>
+  Json value(const std::array<T, Count>& list) {
+    return value(std::span<const T>(list));
   }
   template <class T>
   Json value(std::span<T> list) {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "program/stub_parameters.hpp"
 
+#include <cstdint>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "glsl/type_names.hpp"
 #include "ir/print.hpp"
@@ -23,6 +27,45 @@ std::string conditionName(const std::string& unit, const sk::program::Parameter&
 
 std::string elementName(const std::string& unit, const sk::program::Parameter& param) {
   return fmt::format("{}Element_{}", unit, param.symbol);
+}
+
+namespace {
+
+std::string haloName(const std::string& unit, const sk::program::Parameter& param) {
+  return fmt::format("{}Halo_{}", unit, param.symbol);
+}
+
+std::string distanceText(const sk::program::Distance& distance) {
+  std::size_t used = distance.perSpec.size();
+  while (used > 0 && distance.perSpec[used - 1] == 0) --used;
+  if (used == 0) return fmt::format("{{{}}}", distance.constant);
+  const std::span<const std::int16_t> factors(distance.perSpec.data(), used);
+  return fmt::format("{{{}, {{{}}}}}", distance.constant, fmt::join(factors, ", "));
+}
+
+}  // namespace
+
+std::string haloText(const std::string& unit, const sk::program::Parameter& param) {
+  if (param.halo.empty()) return {};
+  constexpr std::string_view kinds[] = {"Near", "Computed", "Whole"};
+  std::vector<std::string> rows;
+  for (const sk::program::Reach& reach : param.halo) {
+    std::string row =
+        fmt::format("{{{}, Reach::Kind::{}", reach.dimension, kinds[static_cast<std::size_t>(reach.kind)]);
+    if (reach.kind == sk::program::Reach::Kind::Near)
+      row += fmt::format(", {}, {}", distanceText(reach.below), distanceText(reach.above));
+    rows.push_back(row + "}");
+  }
+  const std::string head = fmt::format("constexpr Reach {}[] = {{", haloName(unit, param));
+  return wrapLine(head + join(rows, ", ") + "};", 100, head.size()) + "\n\n";
+}
+
+std::string lastMembers(const std::string& unit, const sk::program::Parameter& param, std::size_t number) {
+  std::string text;
+  if (!param.layers.empty()) text += fmt::format(", .layers = {}Layers{}", unit, number);
+  if (!param.halo.empty()) text += ", .halo = " + haloName(unit, param);
+  if (param.haloShapes != 0) text += fmt::format(", .haloShapes = {}u", param.haloShapes);
+  return text;
 }
 
 std::string elementOf(const Module& module, Type type) {

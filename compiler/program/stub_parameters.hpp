@@ -3,6 +3,7 @@
 // Prints the parameters of descriptors for FILE.sk.cpp, and the names of the constants to which they refer.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "ir/ir.hpp"
@@ -15,6 +16,11 @@ std::string conditionName(const std::string& unit, const sk::program::Parameter&
 
 /// The name of the constant that describes the element of a uniform array.
 std::string elementName(const std::string& unit, const sk::program::Parameter& param);
+
+/// The definition of the constant that holds a gather's reach; empty if nothing is known of it.
+std::string haloText(const std::string& unit, const sk::program::Parameter& param);
+/// What refers to that constant, and to the layers of parameter `number`, after parameterText().
+std::string lastMembers(const std::string& unit, const sk::program::Parameter& param, std::size_t number);
 
 /// A pointer to the descriptor of the elements of this type.
 std::string elementOf(const ir::Module& module, ir::Type type);

@@ -376,14 +376,14 @@ class SourceWriter {
     programText(name + "Body", kernel.body);
     for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
       conditionSteps(name, kernel.parameters[i]);
+      text_ += haloText(name, kernel.parameters[i]);
       if (declared.params[i].type.kind == Type::Kind::Array) arrayElement(name, kernel.parameters[i]);
       layers(kernel.parameters[i], name, i);
     }
     text_ += fmt::format("constexpr Parameter {}Parameters[] = {{\n", name);
     for (std::size_t i = 0; i < declared.params.size(); ++i) {
-      std::string row = parameterText(module_, name, kernel.parameters[i], declared.params[i]);
-      if (!kernel.parameters[i].layers.empty()) row += fmt::format(", .layers = {}Layers{}", name, i);
-      text_ += wrapLine("    " + row + "},", 100, 5) + "\n";
+      const std::string row = parameterText(module_, name, kernel.parameters[i], declared.params[i]);
+      text_ += wrapLine("    " + row + lastMembers(name, kernel.parameters[i], i) + "},", 100, 5) + "\n";
     }
     text_ += "};\n\n";
     intrinsics(kernel, name);

@@ -18,6 +18,7 @@
 #include "transforms/derive_combine.hpp"
 #include "transforms/expand_selects.hpp"
 #include "transforms/find_neighbors.hpp"
+#include "transforms/find_reach.hpp"
 #include "transforms/fold_constants.hpp"
 #include "transforms/forward_continues.hpp"
 #include "transforms/guard_streams.hpp"
@@ -69,6 +70,7 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // * unroll-spec-loops precedes unroll-loops, which notes the loops that stay in declared kernels, and like it needs
 //   folded bounds.
 // * find-neighbors needs the constant offsets of unrolled loops, and precedes the analyses of stream uses.
+// * find-reach follows folding, which removes reads, and precedes the transforms that synthesize kernels of declared ones.
 // * bound-pushes follows folding, which finds trip counts and removes unreachable pushes.
 // * inline-folds lets derive-combine see through helper functions.
 // * derive-combine precedes remove-unused, because it adds functions that use structs.
@@ -91,6 +93,7 @@ constexpr Transform transforms[] = {
     {"unroll-spec-loops", plain<unrollSpecLoops>},
     {"unroll-loops", plain<unrollLoops>},
     {"find-neighbors", plain<findNeighbors>},
+    {"find-reach", plain<findReach>},
     {"guard-streams", plain<guardStreams>},
     {"bound-pushes", plain<boundPushes>},
     {"inline-folds", plain<inlineFolds>},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What skc writes for the .sk files of this folder is what lies beside them: FILE.glsl330, FILE.glsl430,
-// FILE.essl300, FILE.ir and FILE.stub (the header). With SK_UPDATE_GOLDENS=1 in the environment the
+// FILE.essl300, FILE.ir and FILE.stub (the header); of reach.sk, FILE.plan. With SK_UPDATE_GOLDENS=1 in the environment the
 // expected texts are written anew; read what `git diff` then shows.
 #include <cstdlib>
 #include <sstream>
@@ -67,6 +67,16 @@ TEST_CASE("skc writes what the goldens say") {
     }
   }
   CHECK(files == 40);
+}
+
+TEST_CASE("plans say how far kernels read") {
+  const fs::path file = fs::path(SK_GOLDEN_FOLDER) / "reach.sk";
+  const fs::path expected = fs::path(file).replace_extension(".plan");
+  const std::string text = emitted(file, {".plan", "--emit=plan"});
+  const char* update = std::getenv("SK_UPDATE_GOLDENS");
+  if (update != nullptr && std::string_view(update) == "1") writeFile(expected, text);
+  INFO("SK_UPDATE_GOLDENS=1 writes it anew");
+  CHECK(firstDifference(text, readFile(expected)) == "");
 }
 
 TEST_CASE("skc writes the same again, wherever it runs and whatever else it compiles") {

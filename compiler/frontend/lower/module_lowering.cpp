@@ -214,10 +214,9 @@ void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation w
     return std::count_if(kernel.params.begin(), kernel.params.end(),
                          [&](const ir::KernelParam& param) { return param.role == role; });
   };
-  constexpr int mostSpecs =
-      8;   // the program's key holds their values (runtime/src/gl_device/program/variant.hpp)
-  if (count(ir::ParamRole::Spec) > mostSpecs)
-    fail(Diag::SpecCount, where, {kernel.name, std::to_string(mostSpecs)});
+  // The program's key holds their values (runtime/src/gl_device/program/variant.hpp).
+  if (count(ir::ParamRole::Spec) > static_cast<std::ptrdiff_t>(ir::mostSpecs))
+    fail(Diag::SpecCount, where, {kernel.name, std::to_string(ir::mostSpecs)});
   if (!kernel.reduction) {
     const bool hasAppendOutputs = count(ir::ParamRole::VariableOutput) + count(ir::ParamRole::Scatter) > 0;
     if (count(ir::ParamRole::Output) > 0) return;

@@ -30,6 +30,7 @@
 // Every name that the assembler declares begins with `sk_`; users' names never do.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -139,6 +140,25 @@ struct Layer {
   std::uint8_t count = 1;  ///< planes in the bundle
 };
 
+/// A number of elements: a constant plus multiples of the values of the kernel's Spec parameters, in their order.
+struct Distance {
+  std::int64_t constant = 0;
+  std::array<std::int16_t, maxSpecs> perSpec = {};
+};
+
+/// How far from the index of the element that it computes a kernel reads a gather, in one dimension. An index that a
+/// boundary mode brings inside counts as what it was before.
+struct Reach {
+  enum class Kind : std::uint8_t {
+    Near,  ///< at most `below` before the element and `above` after it; a negative distance means 0
+    Computed,  ///< at an index that skc cannot bound
+    Whole,  ///< anywhere: at indices that do not depend on the element
+  };
+  std::uint8_t dimension = 0;  ///< 0 is x
+  Kind kind = Kind::Near;
+  Distance below = {}, above = {};
+};
+
 struct Parameter {
   std::string_view name;  ///< as declared, for messages
   /// Suffix of the names that the assembler declares for it: a GLSL-safe name that begins with a letter,
@@ -166,6 +186,11 @@ struct Parameter {
   std::uint8_t firstPlane = 0;  ///< outputs of a pass that writes only some planes: the first one,
   std::uint8_t planeCount = 0;  ///< and how many; 0 means all
   std::span<const Layer> layers = {};  ///< one per plane; empty if no plane is in a bundle
+  /// Gathers of declared kernels: at least one for each dimension, x first. If Spec parameters count, there may be several,
+  /// of which the farthest holds. Empty if nothing is known, as in code that an older skc has generated.
+  std::span<const Reach> halo = {};
+  /// Bit p is set if `halo` holds only for calls that give parameter p the domain's extents.
+  std::uint64_t haloShapes = 0;
 };
 
 /// The element type of a parameter's stream.
