@@ -201,7 +201,8 @@ struct Members<sk::CallOptions> {
       Member{"contraction", &sk::CallOptions::contraction},
       Member{"order", &sk::CallOptions::order},
       Member{"scan", &sk::CallOptions::scan},
-      OmittedMember{&sk::CallOptions::along},  // no declaration chooses it
+      OmittedMember{&sk::CallOptions::along},  // no declaration chooses it, nor the next
+      OmittedMember{&sk::CallOptions::box},
   };
 };
 

@@ -47,8 +47,8 @@ TEST_CASE("nothing runs after an error") {
                 {.after = [&](std::string_view name, const Module&) { visited.emplace_back(name); }});
   CHECK(log.hasErrors());
   CHECK(visited == std::vector<std::string>{"specialize-gathers", "tabulate", "fold-constants",
-                                            "unroll-spec-loops", "unroll-loops", "find-neighbors", "find-reach",
-                                            "guard-streams", "bound-pushes", "inline-folds"});
+                                            "unroll-spec-loops", "unroll-loops", "find-neighbors",
+                                            "find-reach", "guard-streams", "bound-pushes", "inline-folds"});
 }
 
 TEST_CASE("builds with tests check assertions and validate the IR", "[transforms]") {

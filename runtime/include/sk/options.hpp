@@ -7,7 +7,17 @@
 #include <cstdint>
 #include <optional>
 
+#include "sk/shape.hpp"
+
 namespace sk {
+
+/// The box of a domain from `begin` (inclusive) to `end` (exclusive), rows first. The default stands for the whole domain.
+struct Box {
+  Index begin = {}, end = {};
+
+  constexpr bool isWhole() const { return begin.rank() == 0 && end.rank() == 0; }
+  bool operator==(const Box&) const = default;
+};
 
 /// How a stream stores the floats of its elements. Kernels still read and write floats, rounded to nearest;
 /// kernels in extended or double precision read and write all bits of doubles.
@@ -100,6 +110,10 @@ struct CallOptions {
   /// Scans only: scans each line along this dimension by itself (0 is the slowest); by default, the whole stream
   /// in row-major order.
   std::optional<int> along = std::nullopt;
+  /// Runs a kernel for the elements of this box of its domain only, or folds only these. The kernel sees the whole streams:
+  /// indexof, extentof, boundary modes and gathers are what they are without a box. All other elements of the outputs keep
+  /// their values.
+  Box box = {};
 
   bool operator==(const CallOptions&) const = default;
 
@@ -116,7 +130,8 @@ struct CallOptions {
             .contraction = chosen(contraction, later.contraction),
             .order = chosen(order, later.order),
             .scan = chosen(scan, later.scan),
-            .along = later.along ? later.along : along};
+            .along = later.along ? later.along : along,
+            .box = later.box.isWhole() ? box : later.box};
   }
 };
 

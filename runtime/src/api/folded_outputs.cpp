@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/resolved_reduce.hpp"
+#include "call/box.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
@@ -215,6 +216,11 @@ class RecordedFold final : public RecordedCall {
 
 void checkAndFold(const Reduction& reduction, std::span<const Argument> arguments,
                   const CallOptions& options) {
+  if (!options.box.isWhole()) {
+    CallOptions others = options;
+    others.box = {};
+    return checkAndFold(reduction, argumentsIn(reduction.fold, arguments, options.box), others);
+  }
   const FoldCall call(reduction, arguments, options);
   LoopState* const recording = call.device().recording;
   if (recording == nullptr) return call.run();

@@ -24,4 +24,8 @@ TEST_CASE("choices add up, and the last one of a kind holds") {
                             Target::Fragment, Contraction::Fast, Order::Any};
   STATIC_REQUIRE(CallOptions{}.with(all) == all);
   STATIC_REQUIRE(all.with({}) == all);
+  constexpr CallOptions boxed = all.with({.box = {{1, 2}, {3, 4}}});
+  STATIC_REQUIRE(boxed.box == Box{{1, 2}, {3, 4}});
+  STATIC_REQUIRE(boxed.with({.order = Order::Kept}).box == boxed.box);
+  STATIC_REQUIRE(all.box.isWhole());
 }

@@ -9,6 +9,7 @@
 
 #include "api/exact_reduction.hpp"
 #include "api/resolved_reduce.hpp"
+#include "call/box.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_rows.hpp"
@@ -261,6 +262,12 @@ class RecordedReduction final : public RecordedCall {
 void checkAndReduce(const Reduction& reduction, std::span<const Argument> arguments,
                     std::span<void* const> values, const CallOptions& options,
                     const std::optional<ScanOrder>& scan = {}) {
+  if (!options.box.isWhole()) {
+    if (scan) fail(reduction.fold, "a scan takes no box; scan a view of its input, domain(begin, end)");
+    CallOptions others = options;
+    others.box = {};
+    return checkAndReduce(reduction, argumentsIn(reduction.fold, arguments, options.box), values, others);
+  }
   ResolvedReduction call = checkReduction(reduction, arguments, values, scan);
   call.options = resolvedOptions(call, options);
   if (call.device.recording == nullptr) return runResolved(call);

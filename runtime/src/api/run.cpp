@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "call/box.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_call.hpp"
 #include "call/dense_regions.hpp"
@@ -84,6 +85,10 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   DeviceState& device = checked->device;
   checked->call.options = device.configuration.resolve(kernel, options);
   checkTables(kernel, checked->call.options);
+  if (!options.box.isWhole()) {
+    checkBoxedCall(kernel, arguments, options.box, checked->call.domain);
+    if (isAll(options.box, checked->call.domain)) checked->call.options.box = {};
+  }
   const ResolvedCall call = checked->call.of(chosenVariant(device, checked->call), device.limits);
   if (device.recording != nullptr) return record(device, call);
   runResolved(device, call);

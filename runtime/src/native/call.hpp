@@ -44,11 +44,18 @@ struct Operand {
   Pushed* pushed = nullptr;  ///< variable outputs
 };
 
+/// A box of a domain.
+struct Part {
+  Extents first{0, 0, 0, 0}, extent{1, 1, 1, 1};
+};
+
 /// A kernel over a domain.
 struct Call {
   std::span<const Operand> operands;
   Extents domain{1, 1, 1, 1};
   std::span<const Table> tables = {};  ///< one per tabulated function; empty if these are computed
+  /// A kernel's elements that are computed; nullopt stands for the whole domain.
+  std::optional<Part> part = std::nullopt;
 };
 
 /// What a scan stores for each element of its domain.

@@ -189,7 +189,8 @@ void NativeDevice::run(const ResolvedCall& call) {
   const Kernel& kernel =
       computesInHalf(call.options) ? precisionVariant(call.kernel, call.options) : call.kernel;
   const RealType real = realOf(call.options);
-  Operands operands(real, kernel, call.arguments, call.domain, tablesOf(kernel, real, call.options));
+  Operands operands(real, kernel, call.arguments, call.domain, tablesOf(kernel, real, call.options), false,
+                    call.options.box);
   {
     const NativePass traced(*this, kernel, {}, call.arguments, call.domain);
     const native::Call nativeCall = operands.call();
@@ -210,7 +211,7 @@ class PreparedRun final : public RecordedCall {
         resolved_(call),
         kernel_(kernel),
         choice_(codeChoice(real, call.options)),
-        operands_(real, kernel, call.arguments, call.domain, std::move(tables)),
+        operands_(real, kernel, call.arguments, call.domain, std::move(tables), false, call.options.box),
         call_(operands_.call()),
         code_(kernel, choice_, operands_.readsValuesInStreams()) {}
 

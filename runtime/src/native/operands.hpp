@@ -39,13 +39,15 @@ class Operands {
   using Role = program::Role;
 
  public:
+  /// `box` is the part of the domain that a kernel writes.
   Operands(RealType real, const Kernel& kernel, std::span<const Argument> arguments, const Shape& domain,
-           std::vector<native::Table> tables, bool isScan = false)
+           std::vector<native::Table> tables, bool isScan = false, const Box& box = {})
       : real_(real),
         kernel_(kernel),
         arguments_(arguments),
         tables_(std::move(tables)),
         isScan_(isScan),
+        box_(box),
         specs_(specsOf(kernel, arguments)),
         domain_(domain),
         list_(arguments.size()) {
@@ -58,6 +60,11 @@ class Operands {
   /// The call of a kernel, or of a reduction whose domain is divided into such blocks, after coalescing
   /// dimensions.
   native::Call call() {
+    if (!box_.isWhole()) {
+      native::Call part = callAsItIs();
+      part.part = partOf(box_);
+      return part;
+    }
     Extents whole = fastestFirst(domain_);
     return call(whole);
   }
@@ -160,6 +167,17 @@ class Operands {
   bool storesFloats(const NativeStream& stream) const { return isScan_ && areWidened(stream); }
 
  private:
+  static native::Part partOf(const Box& box) {
+    native::Part part;
+    const int rank = box.begin.rank();
+    for (int d = 0; d < rank; ++d) {
+      const auto axis = static_cast<std::size_t>(rank - 1 - d);
+      part.first[axis] = box.begin[d];
+      part.extent[axis] = box.end[d] - box.begin[d];
+    }
+    return part;
+  }
+
   struct Held {
     StreamRegion region;
     Components& value;
@@ -288,7 +306,7 @@ class Operands {
   bool writesWholeStream(std::size_t i) const {
     const Parameter& parameter = kernel_.parameters[i];
     const StreamRegion& region = arguments_[i].region;
-    return parameter.role == Role::Output && assemble::isNeeded(parameter, specs_) &&
+    return parameter.role == Role::Output && box_.isWhole() && assemble::isNeeded(parameter, specs_) &&
            region.shape == region.stream->shape && nativeStream(region).components.real() == real_;
   }
 
@@ -313,6 +331,7 @@ class Operands {
   std::span<const Argument> arguments_;
   std::vector<native::Table> tables_;
   bool isScan_;  ///< accumulators have an element for each of the domain
+  Box box_;
   const assemble::SpecValues specs_;
   Shape domain_;
   std::vector<Operand> list_;

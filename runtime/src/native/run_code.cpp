@@ -41,8 +41,8 @@ class CodeRun {
         rowsEntry_(findRowsEntry(kernel, call, choice)),
         frame_(kernel, call, memory_.get()),
         layout_(kernel, call, frame_, choice, memory_.get()),
-        pieces_(call.domain, kernel.code->isUneven != 0),
-        blocks_(call.domain, rowsEntry_ == nullptr ? 1 : rowsEntry_->rows),
+        pieces_(computed(call), kernel.code->isUneven != 0),
+        blocks_(computed(call), rowsEntry_ == nullptr ? 1 : rowsEntry_->rows),
         padded_(kernel, call, rowsEntry_ == nullptr ? 1 : rowsEntry_->rows),
         isRecorded_(has(Role::VariableOutput) || has(Role::Scatter)) {}
 
@@ -84,12 +84,22 @@ class CodeRun {
   bool hasBorders() const { return layout_.hasBorders(); }
 
  private:
-  /// The RunRows entry; null if there is none, or if the domain has one row or less than half of the entry's
-  /// rows.
+  /// The extents of what is computed.
+  static const Extents& computed(const native::Call& call) {
+    return call.part ? call.part->extent : call.domain;
+  }
+  /// The index in the domain of an element of what is computed.
+  Extents inDomain(Extents index) const {
+    for (std::size_t d = 0; call_.part && d < index.size(); ++d) index[d] += call_.part->first[d];
+    return index;
+  }
+
+  /// The RunRows entry; null if there is none, or if one row or less than half of the entry's rows are computed.
   static const native::Entry* findRowsEntry(const Kernel& kernel, const native::Call& call,
                                             const CodeChoice& choice) {
     const native::Entry* const found = findEntry(*kernel.code, native::EntryKind::RunRows, choice);
-    const bool hasRows = found != nullptr && call.domain[1] > 1 && 2 * call.domain[1] >= found->rows;
+    const std::int64_t rows = computed(call)[1];
+    const bool hasRows = found != nullptr && rows > 1 && 2 * rows >= found->rows;
     return hasRows ? found : nullptr;
   }
 
@@ -104,12 +114,13 @@ class CodeRun {
     visitPieces(range, runner, rowsAtOnce);
   }
   void visitPieces(Range range, ChunkRunner& runner, std::size_t rowsAtOnce) const {
-    pieces_.forEachRun(
-        range, static_cast<std::int64_t>(rowsAtOnce),
-        [&](const Extents& first, std::int64_t count, std::size_t rows) { runner.run(first, count, rows); });
+    pieces_.forEachRun(range, static_cast<std::int64_t>(rowsAtOnce),
+                       [&](const Extents& first, std::int64_t count, std::size_t rows) {
+                         runner.run(inDomain(first), count, rows);
+                       });
   }
   std::size_t rowsAtOnce() const {
-    return std::min(ChunkRunner::rowsAtOnce(layout_), static_cast<std::size_t>(call_.domain[1]));
+    return std::min(ChunkRunner::rowsAtOnce(layout_), static_cast<std::size_t>(computed(call_)[1]));
   }
 
   void runBlocks() {
@@ -121,7 +132,7 @@ class CodeRun {
   }
   void visitBlocks(Range range, ChunkRunner& runner) const {
     blocks_.forEach(range, [&](const Extents& first, std::int64_t count, std::int64_t rows) {
-      runner.run(first, count, static_cast<std::size_t>(rows));
+      runner.run(inDomain(first), count, static_cast<std::size_t>(rows));
     });
   }
   std::int64_t costOfBlock() const { return blocks_.elementsOfOne() << 6; }
@@ -273,7 +284,7 @@ void runCode(const Kernel& kernel, const native::Call& call, const CodeChoice& c
 struct RepeatedCode::State {
   State(const Kernel& kernel, const native::Call& call, const CodeChoice& choice)
       : operands(call.operands.begin(), call.operands.end()),
-        code(kernel, {operands, call.domain, call.tables}, choice) {
+        code(kernel, {operands, call.domain, call.tables, call.part}, choice) {
     for (const native::Operand& operand : operands) {
       arrays.push_back(operand.components.data());
       arrays.insert(arrays.end(), operand.components.begin(), operand.components.end());

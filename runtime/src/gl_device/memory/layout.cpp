@@ -190,6 +190,17 @@ assemble::RegionLayout regionLayoutOf(const StreamRegion& region, const Layout& 
   return regionLayout;
 }
 
+assemble::RegionLayout partOf(const assemble::RegionLayout& region, int rank, const Box& box) {
+  assemble::RegionLayout part = region;
+  for (int d = 0; !box.isWhole() && d < rank; ++d) {
+    const auto axis = static_cast<std::size_t>(rank - 1 - d);
+    part.origin[axis] += static_cast<std::int32_t>(box.begin[d]);
+    part.extent[axis] = static_cast<std::int32_t>(box.end[d] - box.begin[d]);
+    part.view = part.view || part.extent[axis] != region.extent[axis];
+  }
+  return part;
+}
+
 bool haveSameTexels(const assemble::RegionLayout& a, const assemble::RegionLayout& b) {
   if (&a == &b) return true;  // an output whose region layout is the domain itself
   if (a.strided != b.strided || a.numbered != b.numbered || (a.strided && a.stride != b.stride)) return false;

@@ -35,6 +35,9 @@ Layout listLayout(std::int64_t length, const assemble::TextureLimits& limits);
 /// The layout of a region, given the layout of its stream. It is strided only if no other layout describes it.
 assemble::RegionLayout regionLayoutOf(const StreamRegion& region, const Layout& layout);
 
+/// A box of a region of this rank, whose layout is not strided; all of it if the box is the whole domain.
+assemble::RegionLayout partOf(const assemble::RegionLayout& region, int rank, const Box& box);
+
 /// The extents of a shape, x first; missing dimensions are 1.
 assemble::Index4 xFirst(const Shape& shape);
 

@@ -26,14 +26,15 @@ DrawnRects::DrawnRects(const RegionLayout& domain, const Layout& layout) {
 
 KernelOperands::KernelOperands(GlDevice& device, const program::Kernel& kernel,
                                std::span<const Argument> arguments, const assemble::SpecValues& specs,
-                               const program::Plan* plan, const Shape& shape)
+                               const program::Plan* plan, const Shape& shape, const Box& box)
     : device_(device),
       kernel_(kernel),
       arguments_(arguments),
       specs_(specs),
       plan_(plan),
       operands_(device.operands),
-      shape_(shape) {
+      shape_(shape),
+      box_(box) {
   operands_.resize(arguments_.size());
   while (hasOutput() && !isOutput(first_)) {
     ++first_;
@@ -76,11 +77,12 @@ void KernelOperands::layOutLikeStream() {
   domain_ = newLayout_.whole;
 }
 
-/// Whether an output's planes cannot be replaced, because the output or the domain is only a part of a
-/// stream.
+/// Whether an output's planes cannot be replaced, because only a part of a stream is written, or the domain is only a
+/// part of one.
 bool KernelOperands::isWrittenInPlace(std::size_t i) const {
   const auto isPart = [](const StreamRegion& region) { return region.shape != region.stream->shape; };
-  return isOutput(i) && (isPart(arguments_[i].region) || isPart(arguments_[first_].region));
+  return isOutput(i) &&
+         (!box_.isWhole() || isPart(arguments_[i].region) || isPart(arguments_[first_].region));
 }
 
 /// Whether the outputs can be written packed.
@@ -92,7 +94,8 @@ bool KernelOperands::mayWritePacked() const {
     const GlStream& stream = glStream(region);
     may = stream.canPack();
     if (may && isWrittenInPlace(i)) {
-      may = stream.layout.whole.packed && assemble::isWholeTexels(regionLayoutOf(region, stream.layout));
+      may = stream.layout.whole.packed &&
+            assemble::isWholeTexels(partOf(regionLayoutOf(region, stream.layout), region.shape.rank(), box_));
     }
   }
   return may;

@@ -37,8 +37,10 @@ class KernelOperands {
  public:
   /// The arguments have been checked, and the domain is not empty. Packs or unpacks streams. A DeviceScope must be open.
   /// `plan` has the passes of the kernel; null if one is enough. `shape` is that of the domain of a kernel without outputs.
+  /// `box` is what is written of the domain.
   KernelOperands(GlDevice& device, const program::Kernel& kernel, std::span<const Argument> arguments,
-                 const assemble::SpecValues& specs, const program::Plan* plan, const Shape& shape = {});
+                 const assemble::SpecValues& specs, const program::Plan* plan, const Shape& shape = {},
+                 const Box& box = {});
   KernelOperands(const KernelOperands&) = delete;
   KernelOperands& operator=(const KernelOperands&) = delete;
 
@@ -71,6 +73,7 @@ class KernelOperands {
   std::size_t first_ =
       0;  ///< the first output, whose region is the domain; the number of arguments if there is none
   Shape shape_;  ///< of the domain
+  const Box box_;
   Layout newLayout_;
   const Layout* layout_ = nullptr;
   assemble::RegionLayout domain_;

@@ -3,6 +3,8 @@
 // Chooses in-place, swap or copy for each output.
 #include "gl_device/pass/output_targets.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include "assemble/elements/planes.hpp"
@@ -15,17 +17,34 @@ namespace sk {
 using assemble::RegionLayout;
 using program::Role;
 
+namespace {
+
+/// Whether the texels that are drawn for a region have its elements alone: those of a linearised stream are drawn from
+/// the first to the last.
+bool areDrawnAlone(const RegionLayout& region) {
+  if (!region.linear) return true;
+  std::int64_t span = 1, elements = 1;
+  for (std::size_t d = 0; d < region.extent.size(); ++d) {
+    span += std::int64_t{region.extent[d] - 1} * region.stride[d];
+    elements *= region.extent[d];
+  }
+  return span == elements;
+}
+
+}  // namespace
+
 OutputTargets::OutputTargets(GlDevice& device, const program::Kernel& kernel,
                              std::span<const Argument> arguments, const assemble::SpecValues& specs,
                              std::span<const Operand> operands, const RegionLayout& domain,
-                             const Layout& layout)
+                             const Layout& layout, const Box& box)
     : device_(device),
       kernel_(kernel),
       arguments_(arguments),
       specs_(specs),
       operands_(operands),
       domain_(domain),
-      layout_(layout) {
+      layout_(layout),
+      box_(box) {
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     if (!isOutput(i)) {
       continue;
@@ -51,14 +70,15 @@ OutputTargets::Placement OutputTargets::placementOf(std::size_t output) const {
     isWrittenBefore = isWrittenBefore || (isSame && isOutput(i) && i < output);
   }
   const RegionLayout& regionLayout = operands_[output].regionLayout;
-  const bool isSame = haveSameTexels(regionLayout, domain_);
+  const bool isSame =
+      haveSameTexels(regionLayout, domain_) && (box_.isWhole() || areDrawnAlone(drawnPart(output)));
   if (!isWrittenBefore && isSame && !isAlsoRead) {
     return Placement::Direct;
   }
   // a stream that is seen in another shape keeps its planes, and one that is not takes none of another shape
   const StreamRegion& region = arguments_[output].region;
   const bool isOfShape = isBox(region) && layout_.whole.extent == xFirst(region.stream->shape);
-  const bool isWhole = !regionLayout.view && !domain_.view && isOfShape;
+  const bool isWhole = !regionLayout.view && !domain_.view && isOfShape && box_.isWhole();
   return isWhole && !isWrittenBefore ? Placement::Swap : Placement::Copy;
 }
 
@@ -76,7 +96,14 @@ void OutputTargets::addNewPlanes(std::size_t output) {
   for (RenderTarget& plane : drawn.planes) {
     add(plane);
   }
-  if (!isSwapped) prepareCopy(device_, held, domain_, operands_[output].regionLayout);
+  if (!isSwapped) prepareCopy(device_, held, drawnPart(output), writtenPart(output));
+}
+
+RegionLayout OutputTargets::drawnPart(std::size_t output) const {
+  return partOf(domain_, arguments_[output].region.shape.rank(), box_);
+}
+RegionLayout OutputTargets::writtenPart(std::size_t output) const {
+  return partOf(operands_[output].regionLayout, arguments_[output].region.shape.rank(), box_);
 }
 
 std::vector<std::span<RenderTarget>> OutputTargets::planesOfOutputs() const {
@@ -102,8 +129,8 @@ void OutputTargets::copy() {
     if (!newPlanes_[i] || placementOf(i) == Placement::Swap) continue;
     GlStream& stream = glStream(arguments_[i].region);
     stream.isBroken = true;
-    copyRegion(device_, stream.held(), newPlanes_[i]->drawn.planes, domain_, stream.planes,
-               operands_[i].regionLayout);
+    copyRegion(device_, stream.held(), newPlanes_[i]->drawn.planes, drawnPart(i), stream.planes,
+               writtenPart(i));
   }
 }
 

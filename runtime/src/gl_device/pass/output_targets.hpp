@@ -21,11 +21,11 @@ namespace sk {
 
 class OutputTargets {
  public:
-  /// The pass is drawn over `domain`, a region of a stream with the layout `layout`. The arguments have been
-  /// checked. Throws sk::Error if new planes are needed and memory is exhausted.
+  /// The pass is drawn over `domain`, a region of a stream with the layout `layout`, or a box of it. The arguments have
+  /// been checked. Throws sk::Error if new planes are needed and memory is exhausted.
   OutputTargets(GlDevice& device, const program::Kernel& kernel, std::span<const Argument> arguments,
                 const assemble::SpecValues& specs, std::span<const Operand> operands,
-                const assemble::RegionLayout& domain, const Layout& layout);
+                const assemble::RegionLayout& domain, const Layout& layout, const Box& box = {});
 
   /// The planes to draw to, in the order of outputs. Only for kernels that run in one pass.
   std::span<RenderTarget* const> planes() const { return std::span(targets_).first(count_); }
@@ -66,6 +66,9 @@ class OutputTargets {
     return arguments_[i].region.stream != nullptr &&
            (role == program::Role::Output || role == program::Role::Accumulator) && isNeeded(i);
   }
+  /// The elements that are written, in new planes and in the output's stream.
+  assemble::RegionLayout drawnPart(std::size_t output) const;
+  assemble::RegionLayout writtenPart(std::size_t output) const;
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
   Placement placementOf(std::size_t output) const;
   void addNewPlanes(std::size_t output);
@@ -84,6 +87,7 @@ class OutputTargets {
   std::span<const Operand> operands_;
   const assemble::RegionLayout& domain_;
   const Layout& layout_;
+  const Box box_;
   std::array<RenderTarget*, gl::maxDrawBuffers> targets_{};
   std::size_t count_ = 0;
   std::vector<std::unique_ptr<NewPlanes>> newPlanes_;  ///< one per argument, null if drawn in place; or empty

@@ -23,10 +23,10 @@ using program::Kernel;
 /// Runs one call with checked arguments and a nonempty domain.
 void runOverOutputs(GlDevice& device, const ResolvedCall& call) {
   const Kernel& kernel = call.kernel;
-  const KernelOperands operands(device, kernel, call.arguments, call.specs, call.plan);
+  const KernelOperands operands(device, kernel, call.arguments, call.specs, call.plan, {}, call.options.box);
   OutputTargets targets(device, kernel, call.arguments, call.specs, operands.get(), operands.domain(),
-                        operands.layout());
-  const DrawnRects rects(operands.domain(), operands.layout());
+                        operands.layout(), call.options.box);
+  const DrawnRects rects(partOf(operands.domain(), call.domain.rank(), call.options.box), operands.layout());
   if (call.plan != nullptr) {
     const std::vector<std::span<RenderTarget>> drawn = targets.planesOfOutputs();
     runPlan(device, *call.plan, {operands.get(), drawn, operands.domain(), operands.layout(), rects.get()},
