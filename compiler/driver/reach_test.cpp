@@ -165,6 +165,14 @@ TEST_CASE("reductions and outputs that are appended to reach as their elements d
         "x -3 to 0");
 }
 
+TEST_CASE("a promise counts where nothing is known") {
+  const std::string head = "kernel void f([[halo(2, 3)]] float u[][], out float r<>) { int2 p = indexof(r).xy; ";
+  CHECK(reachIn(head + "r = u[int(u[p])][p.x + 1]; }") == "x 0 to 1, y -3 to 3, as promised");
+  CHECK(reachIn(head + "r = sample(u, float2(p)); }") == "x -2 to 2, y -3 to 3, as promised");
+  CHECK(reachIn("kernel void f([[wrap, halo(1)]] float u[], out float r<>) { int n = extentof(r).x;"
+                " r = u[(indexof(r).x + n - 1) % n]; }") == "x -1 to 1, as promised");
+}
+
 TEST_CASE("nested loops and calls are analysed in little time") {
   std::string program = "int f0(int i) { return i; }\n";
   for (int k = 1; k < 24; ++k) {

@@ -283,6 +283,7 @@ KernelParam clone(const KernelParam& param) {
   copy.scatter = param.scatter;
   copy.pushes = param.pushes;
   copy.neededIf = clone(param.neededIf);
+  copy.promise = param.promise;
   return copy;
 }
 

@@ -267,6 +267,8 @@ struct KernelParam {
   std::vector<Reach> reach = {};
   /// `reach` holds if the parameters of these bits have the domain's extents.
   std::uint64_t reachShapes = 0;
+  /// Gathers: [[halo(...)]], the distance for each dimension, x first, that no read exceeds; empty if nothing is promised.
+  std::vector<std::int32_t> promise = {};
 };
 
 /// The type of the elements that the parameter's stream holds.

@@ -71,7 +71,7 @@ std::string printReach(const Kernel& kernel, const KernelParam& param) {
     one += low == "0" ? " 0" : isSum ? fmt::format(" -({})", low) : " -" + low;
     if (low != "0" || high != "0") one += " to " + high;
   }
-  return fmt::format("{}", fmt::join(texts, ", "));
+  return fmt::format("{}{}", fmt::join(texts, ", "), param.promise.empty() ? "" : ", as promised");
 }
 
 }  // namespace skc::ir

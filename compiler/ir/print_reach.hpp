@@ -10,7 +10,7 @@
 namespace skc::ir {
 
 /// The offsets between which a kernel reads a gather in each dimension, as "x -1 to 2, y 0, z whole". A bound that
-/// depends on Spec parameters names them.
+/// depends on Spec parameters names them; a promise is mentioned.
 std::string printReach(const Kernel& kernel, const KernelParam& param);
 
 }  // namespace skc::ir

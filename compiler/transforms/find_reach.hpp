@@ -6,6 +6,8 @@
 //     int x = indexof(r).x;
 //     r = u[x - 1] + u[x + 2];
 //   }
+//
+// Where that is not known, the author's promise counts: [[halo(2)]]. A promise that is known to be broken is an error.
 #pragma once
 
 #include "ir/ir.hpp"

@@ -195,6 +195,12 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
     param.rank = syntax->rank;
     param.boundary = syntax->boundary;
     param.filter = syntax->filter;
+    param.promise = syntax->halo;
+    if (param.promise.size() == 1) param.promise.assign(param.rank, param.promise.front());
+    if (!param.promise.empty() && param.promise.size() != param.rank) {
+      fail(Diag::HaloRank, declaration->getLocation(),
+           {std::to_string(param.promise.size()), param.name, std::to_string(param.rank)});
+    }
     if (!syntax->border.empty()) param.border = generatedConstant(syntax->border);
     if (!syntax->identity.empty()) param.identity = generatedConstant(syntax->identity);
   }

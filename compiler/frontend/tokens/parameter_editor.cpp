@@ -2,6 +2,8 @@
 #include "frontend/tokens/parameter_editor.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -158,7 +160,7 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
   print(parts, kind, out);
 }
 
-/// [[clamp]] [[wrap]] [[mirror]] [[border(v)]] [[filter]] [[wrap, filter]]
+/// [[clamp]] [[wrap]] [[mirror]] [[border(v)]] [[filter]] [[halo(2)]] [[wrap, filter]]
 bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, Parts& parts) {
   while (isKind(parameter, at, tok::l_square) && isKind(parameter, at + 1, tok::l_square)) {
     ++at;
@@ -188,6 +190,7 @@ bool ParameterEditor::takeAttribute(const Tokens& parameter, std::size_t& at, Pa
     parts.syntax.filter = true;
     return true;
   }
+  if (isWord(name, "halo")) return takeHalo(parameter, at, parts);
   if (isWord(name, "clamp")) {
     parts.syntax.boundary = ir::Boundary::Clamp;
   } else if (isWord(name, "wrap")) {
@@ -220,6 +223,30 @@ bool ParameterEditor::takeBorder(const Tokens& parameter, std::size_t& at, Parts
     diagnostics_.report(Diag::BorderValue, locOf(parts.attribute));
     return false;
   }
+  return true;
+}
+
+/// Takes the numbers of [[halo(...)]]: literals, which macros may stand for.
+bool ParameterEditor::takeHalo(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  constexpr long farthest = 1 << 20;
+  if (!parts.syntax.halo.empty()) {
+    diagnostics_.report(Diag::HaloTwice, locOf(parts.attribute));
+    return false;
+  }
+  bool isWellFormed = isKind(parameter, at, tok::l_paren);
+  do {
+    const bool isNumber = isWellFormed && isKind(parameter, ++at, tok::numeric_constant);
+    const std::string text = isNumber ? preprocessor_.getSpelling(parameter[at++]) : "";
+    char* end = nullptr;
+    const long number = std::strtol(text.c_str(), &end, 0);
+    isWellFormed = isNumber && *end == '\0' && number <= farthest;
+    if (isWellFormed) parts.syntax.halo.push_back(static_cast<std::int32_t>(number));
+  } while (isWellFormed && isKind(parameter, at, tok::comma));
+  if (!isWellFormed || !isKind(parameter, at, tok::r_paren)) {
+    diagnostics_.report(Diag::HaloForm, locOf(parts.attribute));
+    return false;
+  }
+  ++at;
   return true;
 }
 

@@ -52,6 +52,7 @@ class ParameterEditor {
   bool takeAttributes(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool takeAttribute(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool takeBorder(const Tokens& parameter, std::size_t& at, Parts& parts);
+  bool takeHalo(const Tokens& parameter, std::size_t& at, Parts& parts);
   void takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool hasSecondQualifier(const Parts& parts);

@@ -8,6 +8,8 @@
 #include "call/box.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_call.hpp"
+#include "call/check_halos.hpp"
+#include "call/check_setting.hpp"
 #include "call/dense_regions.hpp"
 #include "call/precision.hpp"
 #include "device/device_state.hpp"
@@ -91,6 +93,9 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   }
   const ResolvedCall call = checked->call.of(chosenVariant(device, checked->call), device.limits);
   if (device.recording != nullptr) return record(device, call);
+  if (checksHalos()) {
+    checkHalos(device, checked->call, [&](const ResolvedCall& line) { runResolved(device, line); });
+  }
   runResolved(device, call);
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "call/fold_check_setting.hpp"
+#include "call/check_setting.hpp"
 #include "native/call_memory.hpp"
 #include "native/check_fold.hpp"
 #include "native/code_frame.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "call/check_argument.hpp"
-#include "call/fold_check_setting.hpp"
+#include "call/check_setting.hpp"
 #include "call/resolved_call.hpp"
 #include "device/rows_state.hpp"
 #include "gl_device/gl_device.hpp"

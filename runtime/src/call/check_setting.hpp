@@ -5,8 +5,11 @@
 
 namespace sk {
 
+// Both throw sk::Error for a value that names no check.
+
 /// Whether SK_CHECK is `folds`: reductions are tested on elements of each call (native/check_fold.hpp).
-/// Throws sk::Error for any other value.
 bool checksFolds();
+/// Whether SK_CHECK is `halos`: the reach of gathers is tested on elements of each call (call/check_halos.hpp).
+bool checksHalos();
 
 }  // namespace sk

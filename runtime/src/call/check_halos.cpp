@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "call/check_halos.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "assemble/append/append_passes.hpp"
+#include "assemble/condition.hpp"
+#include "call/box.hpp"
+#include "call/check_argument.hpp"
+#include "device/device_state.hpp"
+#include "device/stream_state.hpp"
+#include "sk/scalar_bytes.hpp"
+
+namespace sk {
+
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+namespace {
+
+/// The most lines that are tested along a dimension.
+constexpr std::int64_t mostLines = 64;
+
+/// How far a gather may be read in one dimension.
+struct Limits {
+  std::int64_t below = 0, above = 0;
+};
+
+std::int64_t valueOf(const program::Distance& distance, const assemble::SpecValues& specs) {
+  std::int64_t value = distance.constant;
+  for (std::size_t s = 0; s < distance.perSpec.size(); ++s)
+    value += std::int64_t{distance.perSpec[s]} * static_cast<std::int32_t>(specs[s]);
+  return std::max<std::int64_t>(value, 0);
+}
+
+/// Returns nullopt if the descriptor sets no limit in this dimension, where 0 is x.
+std::optional<Limits> limitsOf(const Parameter& gather, int dimension, const assemble::SpecValues& specs) {
+  std::optional<Limits> limits;
+  for (const program::Reach& reach : gather.halo) {
+    if (reach.dimension != dimension) continue;
+    if (reach.kind != program::Reach::Kind::Near) return std::nullopt;
+    if (!limits) limits.emplace();
+    limits->below = std::max(limits->below, valueOf(reach.below, specs));
+    limits->above = std::max(limits->above, valueOf(reach.above, specs));
+  }
+  return limits;
+}
+
+/// Changes every member of an element.
+void change(const program::Element& element, std::byte* bytes) {
+  for (const program::Field& field : element.fields) {
+    if (field.scalar == program::Scalar::Bool) {
+      for (int c = 0; c < field.width; ++c) bytes[field.offset + static_cast<std::size_t>(c)] ^= std::byte{1};
+      continue;
+    }
+    const std::size_t size = program::hostBytes(field.scalar) * static_cast<std::size_t>(field.width);
+    for (std::size_t b = 0; b < size; ++b) bytes[field.offset + b] = ~bytes[field.offset + b];
+  }
+}
+
+/// The tests of one call.
+class HaloCheck {
+ public:
+  HaloCheck(DeviceState& device, const ResolvedCall& call,
+            const std::function<void(const ResolvedCall&)>& run)
+      : device_(device), call_(call), run_(run), arguments_(call.arguments.begin(), call.arguments.end()) {
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      if (call.kernel.parameters[i].role != Role::Output || arguments_[i].region.stream == nullptr) continue;
+      outputs_.push_back(i);
+      arguments_[i].region = like(call.arguments[i].region);
+    }
+  }
+
+  void check(std::size_t gather) {
+    const Parameter& parameter = call_.kernel.parameters[gather];
+    const StreamRegion& region = call_.arguments[gather].region;
+    const Shape& shape = call_.domain;
+    const std::vector<std::byte> elements = read(region);
+    const StreamRegion changed = like(region);
+    for (int d = 0; d < shape.rank(); ++d) {
+      const std::optional<Limits> limits = limitsOf(parameter, shape.rank() - 1 - d, call_.specs);
+      if (!limits) continue;
+      const std::int64_t lines = std::min(shape[d], mostLines);
+      for (std::int64_t k = 0; k < lines; ++k) {
+        const std::int64_t at = lines == 1 ? 0 : k * (shape[d] - 1) / (lines - 1);
+        checkLine(gather, d, at, *limits, elements, changed);
+      }
+    }
+  }
+
+ private:
+  StreamRegion like(const StreamRegion& region) {
+    const StreamState& stream = *region.stream;
+    streams_.push_back(device_.createStream(*stream.element, region.shape, stream.storage));
+    return {streams_.back().get(), Index::origin(region.shape.rank()), region.shape};
+  }
+
+  static std::vector<std::byte> read(const StreamRegion& region) {
+    std::vector<std::byte> bytes(static_cast<std::size_t>(region.shape.size()) *
+                                 region.stream->element->size);
+    region.stream->read(region, bytes.data());
+    return bytes;
+  }
+
+  /// Tests the elements with index `at` in dimension d.
+  void checkLine(std::size_t gather, int d, std::int64_t at, const Limits& limits,
+                 const std::vector<std::byte>& elements, const StreamRegion& changed) {
+    const Parameter& parameter = call_.kernel.parameters[gather];
+    std::vector<std::byte> other = elements;
+    if (!changeBeyond(parameter, d, at, limits, other)) return;
+    changed.stream->write(changed, other.data());
+    Box line{Index::origin(call_.domain.rank()), Index::origin(call_.domain.rank())};
+    for (int k = 0; k < call_.domain.rank(); ++k) line.end[k] = call_.domain[k];
+    line.begin[d] = at;
+    line.end[d] = at + 1;
+    if (resultsOf(gather, call_.arguments[gather].region, line) == resultsOf(gather, changed, line)) return;
+    fail(call_.kernel,
+         "'{}' is read more than {} before or {} after the element along {}, by elements with index {} "
+         "there; correct "
+         "its [[halo]]",
+         parameter.name, limits.below, limits.above, "xyzw"[call_.domain.rank() - 1 - d], at);
+  }
+
+  /// Changes the elements of the gather that the line may not read. Returns false if there are none.
+  bool changeBeyond(const Parameter& gather, int d, std::int64_t at, const Limits& limits,
+                    std::vector<std::byte>& elements) const {
+    const Shape& shape = call_.domain;
+    std::int64_t inner = 1;
+    for (int k = d + 1; k < shape.rank(); ++k) inner *= shape[k];
+    const bool wraps = gather.boundary == program::Boundary::Wrap;
+    bool hasChanged = false;
+    for (std::int64_t i = 0; i < shape.size(); ++i) {
+      const std::int64_t x = i / inner % shape[d];
+      const bool isNear = (x >= at - limits.below && x <= at + limits.above) ||
+                          (wraps && (x - shape[d] >= at - limits.below || x + shape[d] <= at + limits.above));
+      if (isNear) continue;
+      change(*gather.element, elements.data() + static_cast<std::size_t>(i) * gather.element->size);
+      hasChanged = true;
+    }
+    return hasChanged;
+  }
+
+  /// The bytes of all outputs in the box.
+  std::vector<std::byte> resultsOf(std::size_t gather, const StreamRegion& region, const Box& box) {
+    arguments_[gather].region = region;
+    ResolvedCall line = call_;
+    line.arguments = arguments_;
+    line.options.box = isAll(box, call_.domain) ? Box{} : box;
+    run_(line);
+    std::vector<std::byte> results;
+    for (const std::size_t output : outputs_) {
+      const std::vector<std::byte> one = read(partIn(arguments_[output].region, box));
+      results.insert(results.end(), one.begin(), one.end());
+    }
+    arguments_[gather].region = call_.arguments[gather].region;
+    return results;
+  }
+
+  DeviceState& device_;
+  const ResolvedCall& call_;
+  const std::function<void(const ResolvedCall&)>& run_;
+  std::vector<Argument> arguments_;  ///< with streams of our own for the outputs
+  std::vector<std::size_t> outputs_;
+  std::vector<std::unique_ptr<StreamState>> streams_;
+};
+
+/// Whether the limits of a gather hold for the call: it, and what they depend on, have the domain's shape.
+bool isLimited(const ResolvedCall& call, std::size_t gather) {
+  const Parameter& parameter = call.kernel.parameters[gather];
+  if (parameter.role != Role::Gather || parameter.halo.empty() || !assemble::isNeeded(parameter, call.specs))
+    return false;
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const bool counts = i == gather || (i < 64 && (parameter.haloShapes >> i & 1) != 0);
+    if (counts && call.arguments[i].region.shape != call.domain) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void checkHalos(DeviceState& device, const ResolvedCall& call,
+                const std::function<void(const ResolvedCall&)>& run) {
+  if (std::ranges::any_of(call.kernel.parameters, assemble::isAppendOutput) || call.domain.size() == 0)
+    return;
+  std::optional<HaloCheck> check;
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    if (!isLimited(call, i)) continue;
+    if (!check) check.emplace(device, call, run);
+    check->check(i);
+  }
+}
+
+}  // namespace sk

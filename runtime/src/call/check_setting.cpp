@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "call/check_setting.hpp"
+
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "sk/error.hpp"
+
+namespace sk {
+
+namespace {
+
+enum class Check : std::uint8_t { None, Folds, Halos };
+
+Check chosenCheck() {
+  static const Check chosen = [] {
+    const char* const value = std::getenv("SK_CHECK");
+    if (value == nullptr || *value == '\0') return Check::None;
+    if (std::string_view(value) == "folds") return Check::Folds;
+    if (std::string_view(value) == "halos") return Check::Halos;
+    throw Error(fmt::format("there is no check '{}'; choose folds or halos, or unset SK_CHECK", value));
+  }();
+  return chosen;
+}
+
+}  // namespace
+
+bool checksFolds() { return chosenCheck() == Check::Folds; }
+bool checksHalos() { return chosenCheck() == Check::Halos; }
+
+}  // namespace sk

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: with SK_CHECK=halos, a call that reads a gather beyond its promise throws an error that names the gather, the
+// dimension and an element, on every target; calls that keep their promises give the results that they give without.
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "halo_checks.sk.hpp"
+#include "sk/sk.hpp"
+#include "support/devices.hpp"
+
+namespace run_tests {
+namespace {
+
+/// The message of the error that a call throws.
+template <class Call>
+std::string messageOf(const Call& call) {
+  try {
+    call();
+  } catch (const sk::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST_CASE("a read beyond the promise is an error, and one within it is none") {
+  onEveryTarget([](sk::Device& device) {
+    constexpr int count = 20;
+    auto u = device.stream<float>({count}), r = device.stream<float>({count});
+    auto at = device.stream<int>({count});
+    std::vector<float> values(count), expected(count);
+    std::vector<int> indices(count);
+    for (int i = 0; i < count; ++i) {
+      values[i] = static_cast<float>(i * i);
+      indices[i] = i + i % 5 - 2;
+      expected[i] = values[i];
+    }
+    for (int i = 0; i < count; ++i) expected[i] = values[std::min(std::max(indices[i], 0), count - 1)];
+    u.write(values);
+    at.write(indices);
+    CHECK(messageOf([&] { taken(u, at, r); }) == "no error");
+    CHECK(r.read() == expected);
+    indices[7] = 10;
+    at.write(indices);
+    CHECK(messageOf([&] { taken(u, at, r); }) ==
+          "taken: 'u' is read more than 2 before or 2 after the element along x, by elements with index 7 "
+          "there; correct its "
+          "[[halo]]");
+    indices[7] = 7;
+    indices[19] = 16;
+    at.write(indices);
+    CHECK(messageOf([&] { taken(u, at, u); }).find("index 19") != std::string::npos);
+    CHECK(u.read() == values);
+  });
+}
+
+TEST_CASE("each dimension has its own promise, and wrapping is near") {
+  onEveryTarget([](sk::Device& device) {
+    const sk::Shape shape{9, 12};
+    auto u = device.stream<sk::int2>(shape), r = device.stream<sk::int2>(shape),
+         by = device.stream<sk::int2>(shape);
+    std::vector<sk::int2> values;
+    for (int i = 0; i < 108; ++i) values.push_back({i, -i});
+    u.write(values);
+    std::vector<sk::int2> steps(108, {1, -3});
+    by.write(steps);
+    CHECK(messageOf([&] { moved(u, by, r); }) == "no error");
+    CHECK(r.read()[0].x == 6 * 12 + 1);
+    steps[25] = {1, 4};
+    by.write(steps);
+    CHECK(messageOf([&] { moved(u, by, r); }).find("3 after the element along y, by elements with index 2") !=
+          std::string::npos);
+    steps[25] = {-2, 3};
+    by.write(steps);
+    CHECK(messageOf([&] { moved(u, by, r); }).find("1 after the element along x, by elements with index 1") !=
+          std::string::npos);
+  });
+}
+
+TEST_CASE("positions between elements and reaches that skc knows are tested, too") {
+  onGlAndNative([](sk::Device& device) {
+    auto u = device.stream<float>({16}), by = device.stream<float>({16}), r = device.stream<float>({16});
+    for (const float step : {0.5F, -1.0F, 1.75F}) {
+      u.fill(3);
+      by.fill(step);
+      CHECK((messageOf([&] { between(u, by, r); }) == "no error") == (step < 1.5F));
+    }
+    auto plane = device.stream<float>({6, 100}), sums = device.stream<float>({6, 100});
+    plane.fill(2);
+    CHECK(messageOf([&] { known(12, plane, sums); }) == "no error");
+    CHECK(sums.read()[300] == 100);
+  });
+}
+
+}  // namespace
+}  // namespace run_tests
