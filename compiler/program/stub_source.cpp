@@ -93,7 +93,7 @@ class SourceWriter {
 
   void sources() {
     std::vector<std::string> files;
-    for (const std::string& source : module_.sources) files.push_back(quoted(source));
+    for (const std::string_view source : module_.sources) files.push_back(quoted(source));
     text_ +=
         wrapLine(fmt::format("constexpr std::string_view sources[] = {{{}}};", join(files, ", "))) + "\n\n";
   }

@@ -51,7 +51,7 @@ std::string_view nameOf(Domain domain) {
 
 /// "; u:plane packed nearby" for each parameter whose access a program depends on, "; no u" for a stream that it does
 /// not need.
-std::string keyOf(const Kernel& kernel, std::span<const StreamAccess> access, const SpecValues& specs) {
+std::string accessKey(const Kernel& kernel, std::span<const StreamAccess> access, const SpecValues& specs) {
   std::string key;
   for (std::size_t i = 0; i < access.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
@@ -107,7 +107,7 @@ std::string keyOf(const Kernel& kernel, const Variant& variant) {
   std::string key(nameOf(variant.domain));
   if (variant.domain == Domain::Linear) key += std::to_string(variant.domainRank);
   if (variant.domainPacked) key += " packed";
-  return key + keyOf(kernel, variant.access, variant.specs);
+  return key + accessKey(kernel, variant.access, variant.specs);
 }
 
 std::string keyOf(const Kernel& kernel, const sk::assemble::ReduceVariant& v) {
@@ -132,7 +132,7 @@ std::string keyOf(const Kernel& kernel, const sk::assemble::ReduceVariant& v) {
     const bool isAligned = kernel.parameters[i].role == Role::Input && v.walk != Walk::Index;
     if (isAligned) access[i] = {};
   }
-  return key + keyOf(kernel, access, v.specs);
+  return key + accessKey(kernel, access, v.specs);
 }
 
 std::vector<SpecValues> specChoices(const Kernel& kernel) {

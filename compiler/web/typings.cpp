@@ -122,7 +122,7 @@ class TypesWriter {
       const std::string element = valueType(module_.arrays[type.index].element);
       return fmt::format("readonly ({})[]", element);
     }
-    if (type.isScalar()) return type.scalar == Scalar::Bool ? "boolean" : "number";
+    if (type.isScalar()) return type.scalar == ir::Scalar::Bool ? "boolean" : "number";
     return fmt::format("sk.Value<'{}'>", print(module_, type));
   }
 
@@ -145,7 +145,7 @@ class TypesWriter {
 std::vector<Export> exportsOf(const Module& module, const emit::Program& program) {
   std::vector<Export> list;
   for (std::size_t i = 0; i < program.units().size(); ++i) {
-    const Kernel& kernel = module.kernels[program.units()[i].id];
+    const ir::Kernel& kernel = module.kernels[program.units()[i].id];
     const auto known = std::ranges::find_if(
         list, [&](const Export& one) { return one.scope == kernel.scope && one.name == kernel.name; });
     if (known == list.end()) {
