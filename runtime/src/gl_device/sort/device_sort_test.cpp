@@ -54,7 +54,7 @@ Data dataOf(const std::vector<T>& values) {
   return {ElementTraits<T>::element(), bytesOf(values)};
 }
 
-struct Box {
+struct Part {
   Index begin;
   Shape shape;
 };
@@ -75,7 +75,7 @@ struct Outcome {
 enum class Algorithm { Sort, SortDescending, Order, Unique, Partition };
 
 Outcome carryOut(GlDevice& device, Algorithm algorithm, const Data& keys, const Data* values,
-                 const Shape& shape, const Box* box) {
+                 const Shape& shape, const Part* box) {
   const auto k = streamOf(device, keys, shape);
   const auto v = values != nullptr ? streamOf(device, *values, shape) : nullptr;
   const auto regionOf = [&](StreamState* stream) {
@@ -102,7 +102,7 @@ Outcome carryOut(GlDevice& device, Algorithm algorithm, const Data& keys, const 
 }
 
 void compare(Devices& devices, Algorithm algorithm, const Data& keys, const Data* values, const Shape& shape,
-             const Box* box = nullptr) {
+             const Part* box = nullptr) {
   CAPTURE(static_cast<int>(algorithm), shape.size(), shape.rank(), keys.element.name);
   const Outcome expected = carryOut(*devices.hosting, algorithm, keys, values, shape, box);
   PassCount& passes = devices.dispatching->passCount.emplace();
@@ -219,7 +219,7 @@ TEST_CASE("values of any type and views follow their keys") {
                          {ElementTraits<bool>::element(), bytesOf(bools)},
                          dataOf(keysOf<double>(shape.size())),
                          halves};
-  const Box whole{{8, 4}, {20, 24}}, odd{{3, 1}, {20, 23}};
+  const Part whole{{8, 4}, {20, 24}}, odd{{3, 1}, {20, 23}};
   for (const Data& data : values) {
     compare(devices, Algorithm::Sort, keys, &data, shape);
     compare(devices, Algorithm::Sort, keys, &data, shape, &whole);
