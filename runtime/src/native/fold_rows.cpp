@@ -79,8 +79,9 @@ class RowFold {
 
   void run() {
     const std::span<const RowPieces::Group> groups = pieces_.groups();
-    native::inParallel(static_cast<std::int64_t>(groups.size()), RowPieces::groupElements,
-                       dealOfRows(program_.fold), [&](Range range) {
+    const Deal deal = pieces_.longRows().empty() ? dealOfRows(program_.fold) : Deal::AsTheyCome;
+    native::inParallel(static_cast<std::int64_t>(groups.size()), RowPieces::groupElements, deal,
+                       [&](Range range) {
                          RunFolder folder(program_);
                          for (std::int64_t i = range.begin; i < range.end; ++i)
                            foldGroup(folder, groups[static_cast<std::size_t>(i)]);
