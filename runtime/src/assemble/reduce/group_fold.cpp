@@ -51,10 +51,6 @@ GroupFold::GroupFold(ProgramText& program, const Reduction& reduction, bool isPa
   program_.takeShared(planesOf(reduction.fold) * sharedPlaneBytes * mostInvocations);
 }
 
-std::pair<int, int> GroupFold::group() const {
-  return isPacked_ ? groupOfWideTexels : program_.groupOfTexels();
-}
-
 std::string GroupFold::total(const Parameter& accumulator) const {
   return fmt::format("sk_total_{}", accumulator.symbol);
 }
@@ -91,9 +87,8 @@ void GroupFold::combineInGroup(std::vector<std::string>& lines) const {
     for (const Parameter* accumulator : accumulators_)
       lines.push_back(fmt::format("{}{}[sk_i] = {};", indent, shared(*accumulator), total(*accumulator)));
   };
-  const auto [width, height] = group();
   keep("");
-  lines.push_back(fmt::format("for (int sk_s = 1; sk_s < {}; sk_s *= 2) {{", width * height));
+  lines.push_back(fmt::format("for (int sk_s = 1; sk_s < {}; sk_s *= 2) {{", groupSize()));
   lines.emplace_back("  memoryBarrierShared();");
   lines.emplace_back("  barrier();");
   lines.emplace_back("  if ((sk_i & (2 * sk_s - 1)) == 0) {");
@@ -108,8 +103,7 @@ void GroupFold::combineInGroup(std::vector<std::string>& lines) const {
 /// Each invocation combines every so many entries of the list, several of which it reads before it waits for any.
 void GroupFold::combineList(std::vector<std::string>& lines) const {
   constexpr int together = 4;
-  const auto [width, height] = group();
-  const int size = width * height;
+  const int size = groupSize();
   startFromIdentities(lines);
   lines.push_back(fmt::format("for (int sk_k = sk_i; sk_k < sk_groups.x; sk_k += {}) {{", together * size));
   for (int i = 0; i < together; ++i)
@@ -124,7 +118,7 @@ void GroupFold::combineList(std::vector<std::string>& lines) const {
 }
 
 void GroupFold::finish() {
-  const auto [width, height] = group();  // before outputs of another kind
+  group_ = isPacked_ ? groupOfWideTexels : program_.groupOfTexels();
   const std::size_t first = program_.outputCount();
   for (const Parameter* accumulator : accumulators_) declareOutputs(program_, *accumulator);
   program_.storeLater(first);
@@ -136,7 +130,7 @@ void GroupFold::finish() {
     members += fmt::format("{} {}; ", accumulator->element->glsl, total(*accumulator));
     totals.push_back(total(*accumulator));
     program_.variable(fmt::format("shared {}", accumulator->element->glsl),
-                      fmt::format("{}[{}]", shared(*accumulator), width * height));
+                      fmt::format("{}[{}]", shared(*accumulator), groupSize()));
   }
   program_.variable("shared bool", "sk_isLast");
   program_.variable(fmt::format("struct sk_Partial {{ {}}}", members), "");
@@ -169,7 +163,7 @@ void GroupFold::finish() {
   last.emplace_back("}");
   addIndented(after, last);
   after.emplace_back("}");
-  program_.foldTiles({width, height}, std::move(before), std::move(after));
+  program_.foldTiles(group_, std::move(before), std::move(after));
 }
 
 }  // namespace sk::assemble

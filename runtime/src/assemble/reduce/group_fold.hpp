@@ -49,7 +49,7 @@ class GroupFold {
   void finish();
 
  private:
-  std::pair<int, int> group() const;
+  int groupSize() const { return group_.first * group_.second; }
   std::string total(const program::Parameter& accumulator) const;
   std::string shared(const program::Parameter& accumulator) const;
   /// Adds statements to `lines`.
@@ -63,6 +63,7 @@ class GroupFold {
   ProgramText& program_;
   const program::Reduction& reduction_;
   const bool isPacked_;
+  std::pair<int, int> group_{};  ///< of the kernel's outputs, not of what it folds
   std::vector<const program::Parameter*> accumulators_;
 };
 
