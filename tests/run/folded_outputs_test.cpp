@@ -38,6 +38,12 @@ std::vector<float> floats(std::size_t count, int seed = 1) {
   return x;
 }
 
+/// Whether elements of step agree: a GPU's driver may round a * p + b once or twice, in each program as it likes. Products
+/// are below 4 and sums below 16 here.
+bool agree(const std::vector<float>& a, const std::vector<float>& b) {
+  return std::ranges::equal(a, b, [](float x, float y) { return std::abs(x - y) <= 0x1p-20F; });
+}
+
 TEST_CASE("a step of conjugate gradients gives what a kernel and a reduce give") {
   onEveryTarget([](sk::Device& device) {
     for (const std::size_t n : {1U, 3U, 64U, 4099U, 300000U}) {
@@ -49,16 +55,16 @@ TEST_CASE("a step of conjugate gradients gives what a kernel and a reduce give")
       auto rr = device.scalar<float>();
       folded::step(0.37f, p, q, x, r, xn, rn, rr);
       folded::stepAlone(0.37f, p, q, x, r, xs, rs);
-      CHECK(xn.read() == xs.read());
-      CHECK(rn.read() == rs.read());
+      CHECK(agree(xn.read(), xs.read()));
+      CHECK(agree(rn.read(), rs.read()));
       double exact = 0;
-      for (const float value : rs.read()) exact += double{value} * double{value};
+      for (const float value : rn.read()) exact += double{value} * double{value};
       CHECK(rr.read() == Approx(exact).epsilon(3e-7));
       CHECK(folded::squares(rs) == Approx(rr.read()).epsilon(3e-7));
       auto one = device.stream<float>({1});  // a stream of one element, and an argument that is a scalar
       const auto a = device.scalar<float>(0.37f);
       folded::step(a, p, q, x, r, xn, rn, one);
-      CHECK(xn.read() == xs.read());
+      CHECK(agree(xn.read(), xs.read()));
       CHECK(one.read()[0] == rr.read());
     }
   });
