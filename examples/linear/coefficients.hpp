@@ -14,7 +14,7 @@ namespace linear {
 struct CoefficientPattern {
   std::string_view name;  ///< in "poisson:WxH:NAME=RATIO"
   std::string_view does;
-  /// One for each element: 1 in the background, and up to `ratio` elsewhere.
+  /// Returns a coefficient for each element: 1 in the background, and up to `ratio` elsewhere.
   std::vector<double> (*make)(const Stencil& grid, double ratio);
 };
 

@@ -31,7 +31,7 @@ struct KnownSolution {
   double load(const GridOffset& position) const;
   /// The right-hand side of poisson(grid).
   std::vector<double> secondOrder() const;
-  /// That of compactPoisson(grid).
+  /// The right-hand side of compactPoisson(grid).
   std::vector<double> fourthOrder() const;
   /// The largest error of x.
   double errorOf(std::span<const double> x) const;

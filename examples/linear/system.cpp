@@ -101,7 +101,7 @@ void checkSize(const Stencil& a) {
 
 constexpr std::string_view filePrefix = "coefficients=";
 
-/// Of "PATTERN=RATIO".
+/// The coefficients that "PATTERN=RATIO" names.
 std::vector<double> patternOf(const Stencil& grid, std::string_view text) {
   const std::size_t equals = text.find('=');
   const std::string_view number = text.substr(equals + 1);

@@ -17,7 +17,7 @@
 
 namespace linear {
 
-/// Of a neighbour, or a step, along each dimension, 0 being the slowest.
+/// A position, or the offset of a neighbour, in elements along each dimension; dimension 0 is the slowest.
 using GridOffset = std::array<int, 3>;
 
 /// Row i has the entry value[k * size() + i] for the element at offsets[k] from element i, and 0 where that is outside of the grid. Offsets come in the order of

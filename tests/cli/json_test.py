@@ -11,10 +11,11 @@ import sys
 
 import jsonschema
 
+sys.path.append(os.path.join(os.path.dirname(__file__), "../support"))
+import sk_files
+
 skc, source = sys.argv[1], os.path.realpath(sys.argv[2])
 named = sys.argv[3:]
-include_folders = ["compiler/native/library", "examples/linear", "tests/run/shared"]
-left_out = ("tests/diagnostics/", "compiler/native/library/")  # mistakes on purpose, and what no build compiles
 
 with open(os.path.join(source, "docs/skc.schema.json")) as file:
     schema = json.load(file)
@@ -22,21 +23,6 @@ jsonschema.Draft202012Validator.check_schema(schema)
 validator = jsonschema.Draft202012Validator(schema)
 # Which list an index is of, for the members that are indices.
 lists = {"KernelIndex": "kernels", "ElementIndex": "elements"}
-
-
-def files():
-    for name in named:
-        path = os.path.join(source, name)
-        if os.path.isfile(path):
-            yield path
-            continue
-        if not os.path.isdir(path):
-            sys.exit(f"there is no {path}")
-        for folder, _, names in os.walk(path):
-            for file in sorted(names):
-                found = os.path.join(folder, file)
-                if file.endswith(".sk") and not os.path.relpath(found, source).startswith(left_out):
-                    yield found
 
 
 def indices(value, rule):
@@ -58,8 +44,7 @@ def indices(value, rule):
 
 def mistakes(file):
     """What is wrong with the JSON of a file; None for a file without kernels, which others include."""
-    folders = [f"-I{os.path.join(source, folder)}" for folder in include_folders]
-    result = subprocess.run([skc, "--emit=json", *folders, file], capture_output=True, text=True)
+    result = subprocess.run([skc, "--emit=json", *sk_files.options(source), file], capture_output=True, text=True)
     if result.returncode:
         return None if "declares no kernel, no reduce and no scan" in result.stderr else [result.stderr]
     text = json.loads(result.stdout)
@@ -90,7 +75,7 @@ assert list(validator.iter_errors({name: value for name, value in sample.items()
 
 checked = 0
 with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-    paths = list(files())
+    paths = list(sk_files.files(source, named))
     for path, found in zip(paths, pool.map(mistakes, paths)):
         checked += found is not None
         bad += [f"{os.path.relpath(path, source)}: {mistake}" for mistake in found or []]

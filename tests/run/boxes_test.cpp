@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include "boxes.sk.hpp"
+#include "error_of.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
 
@@ -206,23 +207,12 @@ TEST_CASE("a fold over a box folds its elements alone") {
   });
 }
 
-/// The message of the error that a call throws.
-template <class Call>
-std::string messageOf(const Call& call) {
-  try {
-    call();
-  } catch (const sk::Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST_CASE("a box that is not in the domain is refused, and so are calls that have no parts") {
   sk::Device& device = run_tests::device("native");
   auto r = device.stream<float>({6, 8});
   auto line = device.stream<float>({48});
   using Catch::Matchers::Contains;
-  const auto of = [&](const sk::Box& box) { return messageOf([&] { label.with({.box = box})(0.0F, r); }); };
+  const auto of = [&](const sk::Box& box) { return errorOf([&] { label.with({.box = box})(0.0F, r); }); };
   CHECK_THAT(of({{0, 0}, {6, 9}}),
              Contains("label: the box {0, 0} to {6, 9} is not inside the domain, which has shape {6, 8}"));
   CHECK_THAT(of({{-1, 0}, {6, 8}}), Contains("is not inside"));
@@ -231,15 +221,15 @@ TEST_CASE("a box that is not in the domain is refused, and so are calls that hav
   CHECK_THAT(of({{2}, {4}}), Contains("1 and 1 dimension(s), but the domain has shape {6, 8}"));
   CHECK_THAT(of({{2, 2}, {4}}), Contains("2 and 1 dimension(s)"));
   const sk::Box box{{1, 1}, {2, 2}}, part{{1}, {5}};
-  CHECK_THAT(messageOf([&] { total.with({.box = {{0, 0}, {7, 8}}})(r); }), Contains("total: the box"));
-  CHECK_THAT(messageOf([&] { weighed.with({.box = box})(r); }), Contains("weighed: it uses indexof"));
-  CHECK_THAT(messageOf([&] { prefix.with({.box = part})(line, line); }),
+  CHECK_THAT(errorOf([&] { total.with({.box = {{0, 0}, {7, 8}}})(r); }), Contains("total: the box"));
+  CHECK_THAT(errorOf([&] { weighed.with({.box = box})(r); }), Contains("weighed: it uses indexof"));
+  CHECK_THAT(errorOf([&] { prefix.with({.box = part})(line, line); }),
              Contains("prefix: a scan takes no box"));
-  CHECK_THAT(messageOf([&] { keep.with({.box = part})(line, line); }),
+  CHECK_THAT(errorOf([&] { keep.with({.box = part})(line, line); }),
              Contains("keep: it pushes or scatters to 'r'"));
-  CHECK_THAT(messageOf([&] { deposit.with({.box = part})(line, line); }),
+  CHECK_THAT(errorOf([&] { deposit.with({.box = part})(line, line); }),
              Contains("deposit: it pushes or scatters"));
-  CHECK_THAT(messageOf([&] { label.with({.box = box})(0.0F, sk::stride(r, {1, 2})); }),
+  CHECK_THAT(errorOf([&] { label.with({.box = box})(0.0F, sk::stride(r, {1, 2})); }),
              Contains("strided or reshaped view"));
 }
 

@@ -7,23 +7,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "error_of.hpp"
 #include "halo_checks.sk.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
 
 namespace run_tests {
 namespace {
-
-/// The message of the error that a call throws.
-template <class Call>
-std::string messageOf(const Call& call) {
-  try {
-    call();
-  } catch (const sk::Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST_CASE("a read beyond the promise is an error, and one within it is none") {
   onEveryTarget([](sk::Device& device) {
@@ -40,18 +30,18 @@ TEST_CASE("a read beyond the promise is an error, and one within it is none") {
     for (int i = 0; i < count; ++i) expected[i] = values[std::min(std::max(indices[i], 0), count - 1)];
     u.write(values);
     at.write(indices);
-    CHECK(messageOf([&] { taken(u, at, r); }) == "no error");
+    CHECK(errorOf([&] { taken(u, at, r); }) == "no error");
     CHECK(r.read() == expected);
     indices[7] = 10;
     at.write(indices);
-    CHECK(messageOf([&] { taken(u, at, r); }) ==
+    CHECK(errorOf([&] { taken(u, at, r); }) ==
           "taken: 'u' is read more than 2 before or 2 after the element along x, by elements with index 7 "
           "there; correct its "
           "[[halo]]");
     indices[7] = 7;
     indices[19] = 16;
     at.write(indices);
-    CHECK(messageOf([&] { taken(u, at, u); }).find("index 19") != std::string::npos);
+    CHECK(errorOf([&] { taken(u, at, u); }).find("index 19") != std::string::npos);
     CHECK(u.read() == values);
   });
 }
@@ -66,15 +56,15 @@ TEST_CASE("each dimension has its own promise, and wrapping is near") {
     u.write(values);
     std::vector<sk::int2> steps(108, {1, -3});
     by.write(steps);
-    CHECK(messageOf([&] { moved(u, by, r); }) == "no error");
+    CHECK(errorOf([&] { moved(u, by, r); }) == "no error");
     CHECK(r.read()[0].x == 6 * 12 + 1);
     steps[25] = {1, 4};
     by.write(steps);
-    CHECK(messageOf([&] { moved(u, by, r); }).find("3 after the element along y, by elements with index 2") !=
+    CHECK(errorOf([&] { moved(u, by, r); }).find("3 after the element along y, by elements with index 2") !=
           std::string::npos);
     steps[25] = {-2, 3};
     by.write(steps);
-    CHECK(messageOf([&] { moved(u, by, r); }).find("1 after the element along x, by elements with index 1") !=
+    CHECK(errorOf([&] { moved(u, by, r); }).find("1 after the element along x, by elements with index 1") !=
           std::string::npos);
   });
 }
@@ -85,11 +75,11 @@ TEST_CASE("positions between elements and reaches that skc knows are tested, too
     for (const float step : {0.5F, -1.0F, 1.75F}) {
       u.fill(3);
       by.fill(step);
-      CHECK((messageOf([&] { between(u, by, r); }) == "no error") == (step < 1.5F));
+      CHECK((errorOf([&] { between(u, by, r); }) == "no error") == (step < 1.5F));
     }
     auto plane = device.stream<float>({6, 100}), sums = device.stream<float>({6, 100});
     plane.fill(2);
-    CHECK(messageOf([&] { known(12, plane, sums); }) == "no error");
+    CHECK(errorOf([&] { known(12, plane, sums); }) == "no error");
     CHECK(sums.read()[300] == 100);
   });
 }

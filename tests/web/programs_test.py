@@ -15,16 +15,15 @@ import tempfile
 
 import chromium
 
+sys.path.append(os.path.join(os.path.dirname(__file__), "../support"))
+import sk_files
+
 skc, source, precisions = sys.argv[1], os.path.realpath(sys.argv[2]), sys.argv[3].split(",")
 named = sys.argv[4:]
 programs_of_a_page = 100
 seconds_of_a_page = 1500  # some 5 of CPU time, on a machine that has much else to do
 
-# Includes that the build gives to skc, too.
-include_folders = ["compiler/native/library", "examples/linear", "tests/run/shared"]
 
-# What no build compiles: mistakes on purpose, and the library of native code.
-left_out = ("tests/diagnostics/", "compiler/native/library/")
 
 page = """<!DOCTYPE html><meta charset="utf-8"><pre id="report"></pre><script>
 "use strict";
@@ -73,8 +72,7 @@ document.getElementById("report").textContent = JSON.stringify(report);
 
 def printed(file, precision, profile):
     """The programs that skc prints for a file: {text: name}. None for a file without kernels, which others include."""
-    folders = [f"-I{os.path.join(source, folder)}" for folder in include_folders]
-    command = [skc, "--emit=glsl", f"--profile={profile}", f"--precision={precision}", *folders, file]
+    command = [skc, "--emit=glsl", f"--profile={profile}", f"--precision={precision}", *sk_files.options(source), file]
     result = subprocess.run(command, capture_output=True, text=True)
     if result.returncode:
         if "declares no kernel, no reduce and no scan" in result.stderr:
@@ -85,25 +83,9 @@ def printed(file, precision, profile):
     return {text: f"{name}, {precision}: {text.splitlines()[1][3:]}" for text in texts if text.startswith("#version")}
 
 
-def files():
-    """The .sk files that were named, and those in the folders that were."""
-    for name in named:
-        path = os.path.join(source, name)
-        if os.path.isfile(path):
-            yield path
-            continue
-        if not os.path.isdir(path):
-            sys.exit(f"there is no {path}")
-        for folder, _, names in os.walk(path):
-            for file in sorted(names):
-                found = os.path.join(folder, file)
-                if file.endswith(".sk") and not os.path.relpath(found, source).startswith(left_out):
-                    yield found
-
-
 def gathered():
     """All programs, each once: {text: name}."""
-    jobs = [(file, precision, "webgl2") for file in files() for precision in precisions]
+    jobs = [(file, precision, "webgl2") for file in sk_files.files(source, named) for precision in precisions]
     programs = {}
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for some in pool.map(lambda job: printed(*job), jobs):

@@ -31,7 +31,7 @@ class Equations {
  private:
   linear::SparseMatrix matrix_, laplacian_;  ///< with the same places
   std::vector<std::size_t> diagonal_;  ///< the entry of each point
-  /// Of each face and corner: the entries of the opposite edge, in both directions. Of no meaning if a face names a point twice.
+  /// For each face and corner, the entries of the opposite edge in both directions; unused if the face names a point twice.
   std::vector<std::array<std::array<std::size_t, 2>, 3>> edges_;
 };
 

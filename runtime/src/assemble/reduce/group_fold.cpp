@@ -100,7 +100,7 @@ void GroupFold::combineInGroup(std::vector<std::string>& lines) const {
   lines.emplace_back("}");
 }
 
-/// Each invocation combines every so many entries of the list, several of which it reads before it waits for any.
+/// Invocation i combines the entries i, i + groupSize() and so on. It reads four of them before it combines the first, so that their latencies overlap.
 void GroupFold::combineList(std::vector<std::string>& lines) const {
   constexpr int together = 4;
   const int size = groupSize();
