@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // ViennaCL (K. Rupp and others, "ViennaCL: linear algebra library for multi- and many-core architectures", 2016), on the cores of the host: products of
-// sparse matrices in compressed rows, and pipelined conjugate gradients. A thread adds its floats one after the other: on one core, its results for 2^20 unknowns are 2 % off
-// and miss the check.
+// sparse matrices in compressed rows. Its conjugate gradients do not take part: their sums of floats are serial, and after 128 steps on 2^20 unknowns
+// the result is 5 % off on two cores, more than the check allows.
 #define VIENNACL_WITH_OPENMP
 
 #include <viennacl/compressed_matrix.hpp>
-#include <viennacl/linalg/cg.hpp>
 #include <viennacl/linalg/prod.hpp>
 #include <viennacl/vector.hpp>
 
@@ -14,7 +13,6 @@
 #include <memory>
 #include <vector>
 
-#include "constants.hpp"
 #include "contender.hpp"
 
 namespace race {
@@ -56,48 +54,6 @@ class Product final : public Task {
   Vector x_, y_;
 };
 
-class Gradients final : public Task {
- public:
-  explicit Gradients(const Problem& p)
-      : steps_(static_cast<unsigned int>(gradientSteps(static_cast<double>(p.size())))),
-        b_(vectorOf(p.floats[0])),
-        x_(static_cast<std::size_t>(p.size())) {
-    assignPoisson(p.rows, p.columns);
-  }
-
-  void run(int times) override {
-    for (int i = 0; i < times; ++i)
-      x_ = viennacl::linalg::solve(a_, b_, viennacl::linalg::cg_tag(0.0, steps_));
-  }
-  std::vector<float> result() override { return numbersOf(x_); }
-
- private:
-  /// Minus the Laplacian of a grid, times the square of its spacing.
-  void assignPoisson(std::int64_t rows, std::int64_t columns) {
-    Indices starts{0}, column;
-    std::vector<float> value;
-    const auto add = [&](std::int64_t j, float v) {
-      column.push_back(static_cast<unsigned int>(j));
-      value.push_back(v);
-    };
-    for (std::int64_t y = 0; y < rows; ++y)
-      for (std::int64_t x = 0; x < columns; ++x) {
-        const std::int64_t i = y * columns + x;
-        if (y > 0) add(i - columns, -1);
-        if (x > 0) add(i - 1, -1);
-        add(i, 4);
-        if (x + 1 < columns) add(i + 1, -1);
-        if (y + 1 < rows) add(i + columns, -1);
-        starts.push_back(static_cast<unsigned int>(column.size()));
-      }
-    assign(a_, starts, column, value);
-  }
-
-  unsigned int steps_;
-  Matrix a_;
-  Vector b_, x_;
-};
-
 }  // namespace
 }  // namespace race
 
@@ -107,6 +63,4 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
     contenders.push_back(
         {program, "ViennaCL", [](const Problem& p) { return std::make_unique<Product>(p); }});
   }
-  contenders.push_back(
-      {"conjugate gradients", "ViennaCL", [](const Problem& p) { return std::make_unique<Gradients>(p); }});
 }
