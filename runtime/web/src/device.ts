@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // A device: a WebGL2 context, its textures and programs. All GL state that passes need is set here.
+import { abilitiesOf, contextOf, ownCanvas, type Abilities, type Canvas } from './abilities.js';
 import { SkError } from './error.js';
-import { formatOf, wideOf, type Format, type HostArray } from './format.js';
+import { formatOf, wideOf, type Format, type HostArray, type Scalar } from './format.js';
 import type { Element, GeneratedFile, Parameter, StructElement } from './generated.js';
 import { layoutOf, mayPack, type Layout, type Rect } from './layout.js';
 import { Program } from './program.js';
@@ -12,24 +13,27 @@ import type { ElementType, ShapeOf, Struct } from './types.js';
 import { drawStream, type DrawOptions } from './draw.js';
 import { compileAll, type Compilable } from './compile.js';
 
-/** An HTMLCanvasElement or an OffscreenCanvas. */
-export interface Canvas extends EventTarget {
-  width: number;
-  height: number;
-  getContext(kind: string, options?: unknown): unknown;
-}
-
 export interface DeviceOptions {
   /** A WebGL2 context of the application, or a canvas without a context; by default, the device has a canvas of its own. */
   readonly context?: WebGL2RenderingContext;
   readonly canvas?: Canvas;
   readonly powerPreference?: WebGLPowerPreference;
+  /** Streams keep what is written to them on the host, too, so that a context that the browser takes away can be restored with it. */
+  readonly keepCopies?: boolean;
+  /** Refuse a device that stores floats as halves (DeviceInfo.floats). */
+  readonly requireFloats?: boolean;
+  /** Refuse a device that computes on the processor, as browsers without a graphics driver do. */
+  readonly refuseSoftware?: boolean;
 }
 
 /** What a device is and can do. */
 export interface DeviceInfo {
   readonly vendor: string;
   readonly renderer: string;
+  /** Whether programs run on the processor. */
+  readonly isSoftware: boolean;
+  /** How float streams are stored: with 24 bits, or with the 11 bits of halves where the device draws to no others. */
+  readonly floats: 'float' | 'half';
   readonly limits: {
     readonly textureSize: number;
     /** Planes that a kernel writes and reads in one pass. */
@@ -38,6 +42,8 @@ export interface DeviceInfo {
   };
   /** Whether the device's own filter interpolates 32-bit floats, for gathers with [[filter]]. */
   readonly filtersFloats: boolean;
+  /** Whether scatter outputs combine values: `r[i] += v`, min and max. */
+  readonly combinesScattered: boolean;
   /** Whether programs compile while the page goes on. */
   readonly compilesInParallel: boolean;
 }
@@ -62,18 +68,21 @@ interface Readback {
 }
 
 export class Device {
-  /** Called once when the browser takes the context away; streams and their elements are lost then. */
+  /** Called when the browser takes the context away: calls fail until it is restored. */
   onlost: ((error: SkError) => void) | null = null;
+  /** Called when the browser has given the context back. Streams with a host copy have its elements again. */
+  onrestored: (() => void) | null = null;
   /** The device's context. Who draws with it must expect every binding to have changed after a call. */
   readonly context: WebGL2RenderingContext;
   readonly canvas: Canvas;
 
-  /** @internal */ readonly filtersFloats: boolean;
-  /** @internal */ readonly parallel: { COMPLETION_STATUS_KHR: number } | null;
-  /** @internal */ readonly limits: DeviceInfo['limits'];
+  /** @internal */ readonly keepsCopies: boolean;
+  /** What has been found out about the context; anew when it is restored. @internal */ abilities: Abilities;
+  /** How often the context has been restored. Textures and programs of earlier times are gone. @internal */ generation = 0;
   /** Whether nobody else sees the device's canvas. @internal */ readonly hasHiddenCanvas: boolean;
   private readonly ownsContext: boolean;
   private isLost = false;
+  private isDisposed = false;
   private readonly programs = new Map<unknown, Map<string, Program>>();
   private readonly layouts = new Map<string, Layout>();
   private readonly pool = new Map<string, Plane[]>();
@@ -90,57 +99,42 @@ export class Device {
   private readonly viewport = [-1, -1, -1, -1];
 
   /**
-   * Makes a device. Throws SkError, kind 'device', if the browser has no WebGL2 or does not draw to textures of floats.
+   * Makes a device. Throws SkError, kind 'device', if the browser has no WebGL2, if it draws to textures of neither floats nor
+   * halves, or if the options refuse what it has.
    */
   static async create(options: DeviceOptions = {}): Promise<Device> {
     return new Device(options);
   }
 
-  private constructor(options: DeviceOptions) {
+  private constructor(private readonly options: DeviceOptions) {
     const canvas = (options.context?.canvas as Canvas | undefined) ?? options.canvas ?? ownCanvas();
-    const attributes = { alpha: true, antialias: false, depth: false, stencil: false, powerPreference: options.powerPreference };
-    const context = options.context ?? (canvas.getContext('webgl2', attributes) as WebGL2RenderingContext | null);
-    if (context === null) {
-      throw new SkError(
-        'this browser gives no WebGL2 context: use one with WebGL2 (Chrome 56, Firefox 51, Safari 15), allow hardware ' +
-          'acceleration, or give a canvas that has no other context',
-        'device',
-      );
-    }
-    if (context.isContextLost()) throw new SkError('the context is lost; make a device of a new canvas', 'lost');
-    this.context = context;
+    this.context = options.context ?? contextOf(canvas, options);
+    if (this.context.isContextLost()) throw new SkError('the context is lost; make a device of a new canvas', 'lost');
     this.canvas = canvas;
     this.ownsContext = options.context === undefined;
     this.hasHiddenCanvas = this.ownsContext && options.canvas === undefined;
-    this.filtersFloats = context.getExtension('OES_texture_float_linear') !== null;
-    this.parallel = context.getExtension('KHR_parallel_shader_compile') as { COMPLETION_STATUS_KHR: number } | null;
-    const get = (name: number) => context.getParameter(name) as number;
-    this.limits = {
-      textureSize: get(context.MAX_TEXTURE_SIZE),
-      drawBuffers: Math.min(get(context.MAX_DRAW_BUFFERS), get(context.MAX_COLOR_ATTACHMENTS)),
-      textureUnits: get(context.MAX_TEXTURE_IMAGE_UNITS),
-    };
-    this.checkFloatTargets();
-    canvas.addEventListener('webglcontextlost', () => this.lose());
+    this.keepsCopies = options.keepCopies ?? false;
+    this.abilities = abilitiesOf(this.context, options);
+    canvas.addEventListener('webglcontextlost', (event) => {
+      if (this.ownsContext && !this.isDisposed) event.preventDefault(); // which asks the browser to restore it
+      this.lose();
+    });
+    canvas.addEventListener('webglcontextrestored', () => this.restore());
   }
 
-  /** Some devices have the extension and refuse such framebuffers all the same. */
-  private checkFloatTargets(): void {
-    const gl = this.context;
-    let draws = gl.getExtension('EXT_color_buffer_float') !== null;
-    for (const width of [1, 4]) {
-      if (!draws) break;
-      const plane = this.acquire(formatOf('float', width), 1, 1, 'a trial');
-      this.framebufferOf([plane]);
-      draws = gl.checkFramebufferStatus(gl.FRAMEBUFFER) === gl.FRAMEBUFFER_COMPLETE;
-      this.release([plane]);
-    }
-    if (!draws) {
-      throw new SkError(
-        'this device does not draw to textures of 32-bit floats (EXT_color_buffer_float), which kernels need; use another browser or device',
-        'device',
-      );
-    }
+  /** @internal */
+  get limits(): DeviceInfo['limits'] {
+    return this.abilities.limits;
+  }
+
+  /** @internal */
+  get filtersFloats(): boolean {
+    return this.abilities.filtersFloats;
+  }
+
+  /** @internal */
+  get parallel(): { COMPLETION_STATUS_KHR: number } | null {
+    return this.abilities.parallel;
   }
 
   private lose(): void {
@@ -148,11 +142,36 @@ export class Device {
     this.isLost = true;
     const error = this.lostError();
     for (const readback of this.readbacks.splice(0)) readback.fail(error);
-    this.onlost?.(error);
+    if (!this.isDisposed) this.onlost?.(error);
+  }
+
+  /** The browser has given the context back, with nothing in it: programs are compiled again, and streams when they are used. */
+  private restore(): void {
+    if (this.isDisposed || !this.isLost) return;
+    try {
+      this.abilities = abilitiesOf(this.context, this.options);
+    } catch (error) {
+      this.onlost?.(error as SkError); // the browser has given another device, which cannot do what the first one could
+      return;
+    }
+    ++this.generation;
+    this.pool.clear();
+    this.framebuffers.clear();
+    this.filters.clear();
+    this.readFormats.clear();
+    this.layouts.clear(); // the largest texture may have another size
+    this.forgetState();
+    this.isLost = false;
+    for (const programs of this.programs.values()) {
+      for (const program of programs.values()) program.start();
+    }
+    this.onrestored?.();
   }
 
   private lostError(): SkError {
-    return new SkError('the browser has taken the context away, and all streams with it; make a new device', 'lost');
+    if (this.isDisposed) return new SkError('the device has been disposed of; make a new one', 'lost');
+    const wayOut = 'wait for device.onrestored, or make a new device; keep() the elements of streams that must outlive it';
+    return new SkError(`the browser has taken the context away, and the elements of all streams with it; ${wayOut}`, 'lost');
   }
 
   /** Whether the context is lost. */
@@ -161,16 +180,8 @@ export class Device {
   }
 
   info(): DeviceInfo {
-    const gl = this.context;
-    const names = gl.getExtension('WEBGL_debug_renderer_info');
-    const text = (name: number) => String(gl.getParameter(name) ?? '');
-    return {
-      vendor: text(names?.UNMASKED_VENDOR_WEBGL ?? gl.VENDOR),
-      renderer: text(names?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER),
-      limits: this.limits,
-      filtersFloats: this.filtersFloats,
-      compilesInParallel: this.parallel !== null,
-    };
+    const { parallel, ...rest } = this.abilities;
+    return { ...rest, compilesInParallel: parallel !== null };
   }
 
   /** A stream of this shape, rows first, whose elements are 0. */
@@ -198,7 +209,8 @@ export class Device {
 
   /** Frees everything. The context goes, too, if the device has made it. */
   dispose(): void {
-    if (this.isLost) return;
+    if (this.isDisposed) return;
+    this.isDisposed = true;
     this.lose();
     if (this.ownsContext) this.context.getExtension('WEBGL_lose_context')?.loseContext();
   }
@@ -222,6 +234,11 @@ export class Device {
     return layout;
   }
 
+  /** The format of a plane of `width` components: of floats, that in which this device stores them. @internal */
+  formatOf(scalar: Scalar, width: number): Format {
+    return formatOf(scalar === 'float' ? this.abilities.floats : scalar, width);
+  }
+
   /** @internal */
   acquire(format: Format, width: number, height: number, what: string): Plane {
     const key = `${format.internal} ${width} ${height}`;
@@ -230,7 +247,7 @@ export class Device {
     const gl = this.context;
     const texture = gl.createTexture();
     if (texture === null) {
-      this.check();
+      if (gl.isContextLost()) throw this.lostError(); // the event is yet to come
       throw new SkError(`there is no memory for ${what}`, 'memory');
     }
     gl.activeTexture(gl.TEXTURE0);
@@ -309,7 +326,7 @@ export class Device {
     if (programs === undefined) this.programs.set(owner, (programs = new Map()));
     let program = programs.get(key);
     if (program === undefined) {
-      program = new Program(this.context, name, text(), parameters, elements, isUsed);
+      program = new Program(this, name, text(), parameters, elements, isUsed);
       programs.set(key, program);
     }
     return program;
@@ -469,13 +486,6 @@ export class Device {
     channel.port1.onmessage = look;
     channel.port2.postMessage(null);
   }
-}
-
-function ownCanvas(): Canvas {
-  const { OffscreenCanvas } = globalThis as { OffscreenCanvas?: new (width: number, height: number) => Canvas };
-  if (OffscreenCanvas !== undefined) return new OffscreenCanvas(1, 1);
-  if (typeof document !== 'undefined') return document.createElement('canvas');
-  throw new SkError('there is no canvas here: devices need a browser, or a worker with OffscreenCanvas', 'device');
 }
 
 /** The channels of a texture from four channels of 32 bits. */

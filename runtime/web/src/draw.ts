@@ -2,7 +2,8 @@
 //
 // Shows a stream in a canvas: one fragment program, and a transfer of the picture between canvases, which stays on the device.
 import { colourMaps, type ColourMap } from './colour_maps.js';
-import type { Canvas, Device } from './device.js';
+import type { Canvas } from './abilities.js';
+import type { Device } from './device.js';
 import { SkError } from './error.js';
 import { formatOf } from './format.js';
 import { lanes, shapeText } from './layout.js';

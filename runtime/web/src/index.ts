@@ -10,7 +10,8 @@ import { ReductionCaller } from './reduction.js';
 import type { CallOptions, Struct } from './types.js';
 
 export { Device } from './device.js';
-export type { Canvas, DeviceInfo, DeviceOptions } from './device.js';
+export type { Canvas } from './abilities.js';
+export type { DeviceInfo, DeviceOptions } from './device.js';
 export type { DrawOptions } from './draw.js';
 export { SkError } from './error.js';
 export type { ErrorKind } from './error.js';

@@ -111,6 +111,7 @@ export function liesOf(kernel: KernelData, call: Checked, shape: readonly number
 export function targetOf(kernel: KernelData, i: number, call: Checked, domain: Layout): { stream: AnyStream; planes: Plane[] } {
   const stream = call.streams[i]!;
   const isAlsoRead = call.streams.some((other, k) => other === stream && isRead(kernel, k, call));
+  stream.isGone = false;
   return { stream, planes: stream.layout === domain && !isAlsoRead ? stream.planes : stream.newPlanes(domain) };
 }
 

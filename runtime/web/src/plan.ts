@@ -3,7 +3,6 @@
 // Kernels of several passes: runtime/src/gl_device/pass/multipass_plan.cpp for whole streams, which are not packed.
 import type { Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
-import { formatOf } from './format.js';
 import type { GeneratedFile, KernelData, Pass, Plan } from './generated.js';
 import { bindOperands, isRead, liesOf, ProgramSource, targetOf } from './kernel.js';
 import type { Program } from './program.js';
@@ -32,7 +31,7 @@ export class PlanRunner {
     const lies = liesOf(kernel, call, shape, elements);
     const targets = new Map(outputs.map((i) => [i, targetOf(kernel, i, call, domain)]));
     const temporaries = plan.temporaries.map((element) =>
-      elements[element]!.fields.map((field) => device.acquire(formatOf(field.scalar, field.width), domain.width, domain.height, 'a value saved between passes')),
+      elements[element]!.fields.map((field) => device.acquire(device.formatOf(field.scalar, field.width), domain.width, domain.height, 'a value saved between passes')),
     );
     plan.passes.forEach((pass, number) => {
       const drawn = this.drawnBy(pass, temporaries, new Map([...targets].map(([i, { planes }]) => [i, planes])));

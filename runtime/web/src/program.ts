@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // One linked program: where its uniforms are, and what was last given to them.
+import type { Device } from './device.js';
 import type { Layout } from './layout.js';
 import type { Element, Field, Parameter } from './generated.js';
 import { SkError } from './error.js';
@@ -122,8 +123,9 @@ export interface Bound {
 
 /** A program that is being compiled, or has been. */
 export class Program {
-  private readonly shaders: WebGLShader[];
-  readonly handle: WebGLProgram;
+  private shaders: WebGLShader[] = [];
+  private generation = -1;
+  handle!: WebGLProgram;
   /** Set when it is first used. */
   reads: Bound[] = [];
   values: Bound[] = [];
@@ -131,25 +133,43 @@ export class Program {
   private isReady = false;
   private readonly integers = new Map<string, Location>();
 
+  private readonly gl: WebGL2RenderingContext;
+
   constructor(
-    private readonly gl: WebGL2RenderingContext,
+    private readonly device: Device,
     private readonly name: string,
-    text: string,
+    private readonly text: string,
     private readonly parameters: readonly Parameter[],
     private readonly elements: readonly Element[],
     private readonly isUsed: (parameter: Parameter) => boolean,
   ) {
-    this.shaders = [this.compile(gl.VERTEX_SHADER, vertexText), this.compile(gl.FRAGMENT_SHADER, text)];
-    this.handle = gl.createProgram()!;
-    for (const shader of this.shaders) gl.attachShader(this.handle, shader);
-    gl.linkProgram(this.handle);
+    this.gl = device.context;
+    this.start();
   }
 
-  private compile(stage: number, text: string): WebGLShader {
-    const shader = this.gl.createShader(stage)!;
-    this.gl.shaderSource(shader, text);
-    this.gl.compileShader(shader);
-    return shader;
+  /** Hands the program to the driver; again in a context that has been restored. */
+  start(): void {
+    const { gl } = this;
+    this.generation = this.device.generation;
+    this.isReady = false;
+    this.reads = [];
+    this.values = [];
+    this.integers.clear();
+    const handle = gl.createProgram();
+    const shaders = [gl.createShader(gl.VERTEX_SHADER), gl.createShader(gl.FRAGMENT_SHADER)];
+    if (handle === null || shaders.includes(null)) throw this.lostError();
+    this.handle = handle;
+    this.shaders = shaders as WebGLShader[];
+    this.shaders.forEach((shader, stage) => {
+      gl.shaderSource(shader, stage === 0 ? vertexText : this.text);
+      gl.compileShader(shader);
+      gl.attachShader(handle, shader);
+    });
+    gl.linkProgram(handle);
+  }
+
+  private lostError(): SkError {
+    return new SkError(`${this.name}: the browser has taken the context away; wait for device.onrestored, or make a new device`, 'lost');
   }
 
   /** Whether use() would not wait, if the driver can say so. */
@@ -159,10 +179,11 @@ export class Program {
 
   /** Waits for the driver, and finds uniforms; the program is current then. Throws SkError if the driver rejects it. */
   use(): void {
+    if (this.generation !== this.device.generation) this.start();
     if (this.isReady) return;
     const { gl, handle } = this;
     if (!gl.getProgramParameter(handle, gl.LINK_STATUS)) {
-      if (gl.isContextLost()) throw new SkError(`${this.name}: the context is lost`, 'lost');
+      if (gl.isContextLost()) throw this.lostError();
       const log = this.shaders.map((shader) => gl.getShaderInfoLog(shader) ?? '').join('') + (gl.getProgramInfoLog(handle) ?? '');
       throw new SkError(`${this.name}: the driver refuses the program:\n${log}`, 'compile');
     }

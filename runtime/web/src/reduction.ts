@@ -4,7 +4,7 @@
 import { checkArguments, deviceOf, fail, isSameShape, iterationOf, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
 import { newArrays, planeArray, takeChannels, valueOf } from './elements.js';
-import { formatOf, type HostArray } from './format.js';
+import type { HostArray } from './format.js';
 import { isNeeded, type GeneratedFile, type KernelData, type Reduction } from './generated.js';
 import { shapeText, type Layout } from './layout.js';
 import { bindOperands, ProgramSource } from './kernel.js';
@@ -35,11 +35,11 @@ class Fold {
   }
 
   /** The formats of all accumulators' planes, in order. */
-  private formats() {
+  private formats(device: Device) {
     const { parameters } = this.reduction.fold;
     return parameters
       .filter(({ role }) => role === 'accumulator')
-      .flatMap(({ element }) => this.elements[element]!.fields.map((field) => formatOf(field.scalar, field.width)));
+      .flatMap(({ element }) => this.elements[element]!.fields.map((field) => device.formatOf(field.scalar, field.width)));
   }
 
   /** Draws all passes, and returns the planes that hold the value, which the caller releases. */
@@ -59,7 +59,7 @@ class Fold {
 
     let partials: Plane[] = [];
     for (const pass of passes) {
-      const targets = this.formats().map((format) => device.acquire(format, pass.width, pass.height, 'partial results'));
+      const targets = this.formats(device).map((format) => device.acquire(format, pass.width, pass.height, 'partial results'));
       this.draw(device, pass, call, elements, shape, partials, targets);
       device.release(partials);
       partials = targets;
@@ -72,7 +72,7 @@ class Fold {
   }
 
   private keyOf(pass: ReducePass, call: Checked, elements: Layout, shape: readonly number[], device: Device, firstPlane = 0): string {
-    const parts = this.formats().length > mostPlanes ? ` planes${firstPlane}` : '';
+    const parts = this.formats(device).length > mostPlanes ? ` planes${firstPlane}` : '';
     if (pass.walk === 'nothing') return pass.key + parts;
     const isPartial = isOfPartials(pass.walk);
     const kernel = isPartial ? this.reduction.combine : this.reduction.fold;

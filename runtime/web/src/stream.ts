@@ -23,6 +23,13 @@ export class Stream<T extends ElementType, R extends number> {
   /** @internal */ layout: Layout;
   /** @internal */ planes: Plane[] = [];
   private isDisposed = false;
+  /** The device's generation in which the planes were made. */
+  private generation: number;
+  /** Whether the elements went with a context, and nothing has written them since. @internal */ isGone = false;
+  /** What was written or kept, for a context that is restored; its number, and that of the latest request. */
+  private copy: ArrayOf<T> | null = null;
+  private copyNumber = 0;
+  private requests = 0;
 
   /** @internal */
   constructor(readonly device: Device, /** @internal */ readonly element: Element, shape: ShapeOf<R>) {
@@ -35,6 +42,7 @@ export class Stream<T extends ElementType, R extends number> {
     this.size = sizeOf(extents);
     this.layout = device.layoutOf(extents, this.mayPack());
     device.begin();
+    this.generation = device.generation;
     this.planes = this.newPlanes(this.layout);
     this.clear();
   }
@@ -64,7 +72,7 @@ export class Stream<T extends ElementType, R extends number> {
     if (this.size === 0) return [];
     const what = `a stream of ${this.element.name} of shape ${shapeText(this.shape as readonly number[])}`;
     return this.element.fields.map((field) =>
-      this.device.acquire(formatOf(field.scalar, layout.packed ? lanes : field.width), layout.width, layout.height, what),
+      this.device.acquire(this.device.formatOf(field.scalar, layout.packed ? lanes : field.width), layout.width, layout.height, what),
     );
   }
 
@@ -75,24 +83,64 @@ export class Stream<T extends ElementType, R extends number> {
     this.layout = layout;
   }
 
-  /** Throws SkError if the stream is not of the device, or has been disposed of. @internal */
-  check(what: string): void {
+  /**
+   * Throws SkError if the stream has been disposed of, or if it is to be read and its elements went with the context. @internal
+   */
+  check(what: string, isRead = true): void {
     if (this.isDisposed) throw new SkError(`${what} has been disposed of`, 'lost');
+    if (this.generation !== this.device.generation) this.restore();
+    if (isRead && this.isGone) {
+      throw new SkError(`${what} has lost its elements with the device's context, and there is no copy of them; write() them, and keep() those that must outlive it`, 'lost');
+    }
+  }
+
+  /** Makes new planes in a context that has been restored, with the elements of the copy. */
+  private restore(): void {
+    const { device, copy } = this;
+    device.begin();
+    this.generation = device.generation;
+    this.layout = this.layoutIf(true);
+    this.planes = this.newPlanes(this.layout);
+    this.isGone = copy === null && this.size > 0;
+    if (copy === null) this.clear();
+    else this.upload(copy);
   }
 
   /** Copies elements to the device, rows first. The array may change as soon as this returns. */
   write(elements: ArrayOf<T>): void {
-    this.check('the stream');
+    this.check('the stream', false);
     this.device.begin();
+    this.upload(elements);
+    if (this.device.keepsCopies) this.setCopy(cloned(elements) as ArrayOf<T>, ++this.requests);
+  }
+
+  /**
+   * Copies the elements to the host: if the browser takes the context away and restores it, the stream has these elements
+   * again. Changes after this are lost then, until the next keep().
+   */
+  async keep(): Promise<void> {
+    const number = ++this.requests;
+    this.setCopy(await this.read(), number);
+  }
+
+  /** Of two copies, the one that was asked for later stays. */
+  private setCopy(copy: ArrayOf<T>, number: number): void {
+    if (number < this.copyNumber) return;
+    this.copy = copy;
+    this.copyNumber = number;
+  }
+
+  private upload(elements: ArrayOf<T>): void {
     const { fields } = this.element;
     const arrays = fields.map((_, plane) => planeArray(this.element, plane, elements, this.size));
     if (this.size === 0) return;
     const packed = this.layoutIf(true);
     if (this.layout !== packed) this.exchange(this.newPlanes(packed), packed);
-    fields.forEach((field, i) => this.upload(this.planes[i]!, channelsOf(field, arrays[i]!, this.size)));
+    fields.forEach((field, i) => this.uploadPlane(this.planes[i]!, channelsOf(field, arrays[i]!, this.size)));
+    this.isGone = false;
   }
 
-  private upload(plane: Plane, channels: ArrayBufferView): void {
+  private uploadPlane(plane: Plane, channels: ArrayBufferView): void {
     const gl = this.device.context;
     const { format, type, channels: width } = plane.format;
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
@@ -138,9 +186,17 @@ export class Stream<T extends ElementType, R extends number> {
   dispose(): void {
     if (this.isDisposed) return;
     this.isDisposed = true;
-    if (!this.device.lost) this.device.release(this.planes);
+    const { device } = this;
+    if (!device.lost && this.generation === device.generation) device.release(this.planes);
     this.planes = [];
+    this.copy = null;
   }
+}
+
+/** A copy of an array, or of a struct's arrays. */
+function cloned(arrays: unknown): unknown {
+  if (ArrayBuffer.isView(arrays)) return (arrays as Float32Array).slice();
+  return Object.fromEntries(Object.entries(arrays as object).map(([name, member]) => [name, cloned(member)]));
 }
 
 const unpackKey = {};
