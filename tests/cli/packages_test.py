@@ -24,7 +24,8 @@ optional = {
     "ffmpeg": "writes films, which no test wants",
     "git": "fetches the sources, which are here",
     "node": "[web] has it, and tests of programs for browsers are skipped without it",
-    "node": "[web] has it, and tests of runtime/web are skipped without it",
+    "npm": "fetches Vite, an editor and a peer of benchmarks, which tests do without",
+    "npx": "starts what npm has fetched",
     "sudo": "installs packages, which are here",
     "tsc": "[web] has it, and tests of programs for browsers are skipped without it",
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 
 export interface StreamKernelOptions {
-  /** The compiler: 'skc' by default. */
+  /** The compiler; by default the one that the variable SKC names, else 'skc' on PATH. */
   skc?: string;
   /** More options of skc: ['-Iinclude', '-DN=4']. */
   options?: readonly string[];

@@ -34,7 +34,7 @@ async function compile(file, { skc, options, types }) {
   try {
     const depfile = join(folder, 'depfile');
     const { error, messages } = await run(skc, ['--emit=js', ...options, '-o', folder, `--depfile=${depfile}`, file]);
-    if (error?.code === 'ENOENT') throw { message: `skc is not found as '${skc}'; install StreamKernel, or name skc: streamkernel({ skc: '/path/to/skc' })` };
+    if (error?.code === 'ENOENT') throw { message: `skc is not found as '${skc}'; install StreamKernel, set the variable SKC to the path of skc, or name it: streamkernel({ skc: '/path/to/skc' })` };
     if (error) throw firstError(messages);
     const name = basename(file);
     if (types) await copyFile(join(folder, `${name}.d.ts`), join(dirname(file), `${name}.d.ts`));
@@ -44,7 +44,7 @@ async function compile(file, { skc, options, types }) {
   }
 }
 
-export function streamkernel({ skc = 'skc', options = [], types = true } = {}) {
+export function streamkernel({ skc = process.env.SKC || 'skc', options = [], types = true } = {}) {
   return {
     name: 'streamkernel',
     async load(id) {
