@@ -65,13 +65,14 @@ llvm::Value* Streams::isBlockInside(std::uint32_t param, const Parts& index) {
   for (std::size_t d = 0; d < index.size(); ++d) {
     const bool isClamped = kernel_.params[param].boundary == Boundary::Clamp;
     if (d > 0 && isClamped) continue;  // laneOffsets clamps it
-    llvm::Value* const extent =
-        l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32());
+    llvm::Value* const count = l.b.CreateTrunc(heldCount(param, d), l.int32());
+    llvm::Value* const least = l.b.CreateTrunc(low(param, d), l.int32());
     const std::uint32_t needed = d == 0 ? blockLength : 1;
-    llvm::Value* const last = l.b.CreateSub(extent, l.integer(l.int32(), needed));
+    llvm::Value* const last = l.b.CreateSub(count, l.integer(l.int32(), needed));
     llvm::Value* const i = l.value(index[d]);
+    const auto like = [&](llvm::Value* one) { return l.isVector(i) ? l.broadcast(one) : one; };
     require(l.b.CreateICmpSGE(last, l.integer(l.int32(), 0)));
-    require(l.b.CreateICmpULE(i, l.isVector(i) ? l.broadcast(last) : last));
+    require(l.b.CreateICmpULE(l.b.CreateSub(i, like(least)), like(last)));
   }
   return isInside;
 }
@@ -83,11 +84,12 @@ llvm::Value* Streams::laneOffsets(std::uint32_t param, const Parts& index, llvm:
   for (std::size_t d = 1; d < index.size(); ++d) {
     llvm::Value* i = l.value(index[d]);
     if (kernel_.params[param].boundary == Boundary::Clamp) {
-      llvm::Value* const extent =
-          l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32());
-      llvm::Value* const most = l.b.CreateSub(extent, l.integer(l.int32(), 1));
-      i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, l.isVector(i) ? l.broadcast(most) : most);
-      i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, i, l.integer(i->getType(), 0));
+      const auto like = [&](llvm::Value* one) { return l.isVector(i) ? l.broadcast(one) : one; };
+      llvm::Value* const end = l.b.CreateTrunc(high(param, d), l.int32());
+      llvm::Value* const most = l.b.CreateSub(end, l.integer(l.int32(), 1));
+      llvm::Value* const least = l.b.CreateTrunc(low(param, d), l.int32());
+      i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, like(most));
+      i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, i, like(least));
     }
     llvm::Value* const stride =
         l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, stride)), l.int32());

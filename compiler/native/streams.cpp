@@ -244,37 +244,6 @@ Parts Streams::orBorder(std::uint32_t param, llvm::Value* isOutside, const Parts
   return parts;
 }
 
-Streams::Inside Streams::inside(std::uint32_t param, std::size_t dimension, llvm::Value* index) {
-  llvm::Value* const n = argumentExtent(param, dimension, offsetof(Argument, extent));
-  llvm::Value* const i = l.b.CreateSExt(index, l.int64());
-  llvm::Value* const zero = l.integer(l.int64(), 0);
-  llvm::Value* const one = l.integer(l.int64(), 1);
-  switch (kernel_.params[param].boundary) {
-    case Boundary::Clamp: {
-      llvm::Value* const most = l.b.CreateSub(n, one);
-      return {l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax,
-                                        l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, most), zero),
-              nullptr};
-    }
-    case Boundary::Border: {
-      llvm::Value* const isOutside = l.b.CreateICmpUGE(i, n);
-      return {l.b.CreateSelect(isOutside, zero, i), isOutside};
-    }
-    case Boundary::Wrap:
-    case Boundary::Mirror: break;
-  }
-  const bool isMirror = kernel_.params[param].boundary == Boundary::Mirror;
-  llvm::Value* const period = isMirror ? l.b.CreateShl(n, 1) : n;
-  llvm::Value* const rest = l.b.CreateSRem(i, period);
-  llvm::Value* const isBelow = l.b.CreateICmpSLT(rest, zero);
-  llvm::Value* result = l.b.CreateSelect(isBelow, l.b.CreateAdd(rest, period), rest);
-  if (isMirror) {
-    llvm::Value* const back = l.b.CreateSub(l.b.CreateSub(period, one), result);
-    result = l.b.CreateSelect(l.b.CreateICmpSLT(result, n), result, back);
-  }
-  return {result, nullptr};
-}
-
 /// Reads one element for all lanes, and applies the boundary mode.
 Parts Streams::gatherBounded(std::uint32_t param, const Parts& index) {
   llvm::Value* number = argumentField(param, offsetof(Argument, first), l.int64());
@@ -334,7 +303,7 @@ Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
   for (std::size_t d = 0; d < index.size(); ++d) {
     llvm::Value* const i = l.b.CreateSExt(index[d].value, l.int64());
     isInside =
-        l.b.CreateAnd(isInside, l.b.CreateICmpULT(i, argumentExtent(param, d, offsetof(Argument, extent))));
+        l.b.CreateAnd(isInside, l.b.CreateICmpULT(l.b.CreateSub(i, low(param, d)), heldCount(param, d)));
   }
   const auto inside = [&] {
     llvm::Value* number = argumentField(param, offsetof(Argument, first), l.int64());
@@ -356,10 +325,9 @@ Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
 /// Reads neighbours along x with one load if all of them are in bounds.
 Parts Streams::gatherNeighbors(std::uint32_t param, const Parts& index) {
   llvm::Value* const x = l.b.CreateSExt(index[0].value, l.int64());
-  llvm::Value* const extent = argumentExtent(param, 0, offsetof(Argument, extent));
   llvm::Value* const end = l.b.CreateAdd(x, l.integer(l.int64(), l.count()));
   llvm::Value* const isInside =
-      l.b.CreateAnd(l.b.CreateICmpSGE(x, l.integer(l.int64(), 0)), l.b.CreateICmpSLE(end, extent));
+      l.b.CreateAnd(l.b.CreateICmpSGE(x, low(param, 0)), l.b.CreateICmpSLE(end, high(param, 0)));
   return choose(
       isInside,
       [&] {
@@ -389,18 +357,20 @@ Parts Streams::gatherByNumbers(std::uint32_t param, const Parts& index) {
   llvm::Value* number = nullptr;
   llvm::Value* isOutside = nullptr;
   for (std::size_t d = 0; d < index.size(); ++d) {
-    llvm::Value* const extent =
-        l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32());
     llvm::Value* i = l.broadcast(index[d]);
-    llvm::Value* const zero = l.integer(i->getType(), 0);
-    if (boundary == Boundary::Clamp) {
-      llvm::Value* const most = l.broadcast(l.b.CreateSub(extent, l.integer(l.int32(), 1)));
+    if (boundary == Boundary::Clamp || boundary == Boundary::Border) {
+      llvm::Value* const given = i;
+      llvm::Value* const end = l.b.CreateTrunc(high(param, d), l.int32());
+      llvm::Value* const most = l.broadcast(l.b.CreateSub(end, l.integer(l.int32(), 1)));
+      llvm::Value* const least = l.broadcast(l.b.CreateTrunc(low(param, d), l.int32()));
       i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, most);
-      i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, i, zero);
-    } else if (boundary == Boundary::Border) {
-      llvm::Value* const beyond = l.b.CreateICmpUGE(i, l.broadcast(extent));
-      i = l.b.CreateSelect(beyond, zero, i);
-      isOutside = isOutside == nullptr ? beyond : l.b.CreateOr(isOutside, beyond);
+      i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, i, least);
+      if (boundary == Boundary::Border) {
+        llvm::Value* const extent =
+            l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32());
+        llvm::Value* const beyond = l.b.CreateICmpUGE(given, l.broadcast(extent));
+        isOutside = isOutside == nullptr ? beyond : l.b.CreateOr(isOutside, beyond);
+      }
     }
     if (d > 0) {
       llvm::Value* const stride =
@@ -418,26 +388,12 @@ Parts Streams::gatherByNumbers(std::uint32_t param, const Parts& index) {
   return orBorder(param, isOutside, parts);
 }
 
-/// True if the indices of all lanes are in bounds.
-static llvm::Value* areAllInside(Lanes& l, const Parts& index, const std::vector<llvm::Value*>& extents) {
-  llvm::Value* all = nullptr;
-  for (std::size_t d = 0; d < index.size(); ++d) {
-    llvm::Value* const in = l.b.CreateICmpULT(l.broadcast(index[d]), l.broadcast(extents[d]));
-    all = all == nullptr ? in : l.b.CreateAnd(all, in);
-  }
-  return l.isVector(all) ? l.b.CreateAndReduce(all) : all;
-}
-
 Parts Streams::gatherAnywhere(std::uint32_t param, const Parts& index) {
   const Boundary boundary = kernel_.params[param].boundary;
   llvm::Value* isFast =
       l.b.CreateICmpNE(argumentField(param, offsetof(Argument, isSmall), l.int64()), l.integer(l.int64(), 0));
   if (boundary == Boundary::Wrap || boundary == Boundary::Mirror) {
-    std::vector<llvm::Value*> extents;
-    for (std::size_t d = 0; d < index.size(); ++d) {
-      extents.push_back(l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32()));
-    }
-    isFast = l.b.CreateAnd(isFast, areAllInside(l, index, extents));
+    isFast = l.b.CreateAnd(isFast, areAllHeld(param, index));
   }
   return choose(
       isFast, [&] { return gatherByNumbers(param, index); }, [&] { return gatherByLanes(param, index); },
@@ -553,36 +509,6 @@ Parts Streams::neighbor(std::uint32_t param, const Parts& offset,
   Parts there;
   for (std::size_t d = 0; d < offset.size(); ++d) there.push_back(moved(param, d, here[d], offset[d]));
   return gather(param, there);
-}
-
-/// The sum of an index and an offset; if it could overflow, another index at which the gather has the same
-/// element.
-Part Streams::moved(std::uint32_t param, std::size_t dimension, const Part& index, const Part& offset) {
-  const Boundary boundary = kernel_.params[param].boundary;
-  if (boundary == Boundary::Wrap || boundary == Boundary::Mirror) {
-    const Part extent{
-        l.b.CreateTrunc(argumentExtent(param, dimension, offsetof(Argument, extent)), l.int32())};
-    if (boundary == Boundary::Wrap) {
-      return binary(l, BinaryOp::Add, Scalar::Int, index,
-                    binary(l, BinaryOp::Rem, Scalar::Int, offset, extent));
-    }
-    const Part period{l.b.CreateShl(extent.value, 1)};
-    const Part rest = binary(l, BinaryOp::Rem, Scalar::Int, offset, period);
-    // The sum of an index and an extent is an int; that of an index and a period may exceed it.
-    const Part isNear = binary(l, BinaryOp::Less, Scalar::Int, rest, extent);
-    const Part near = l.select(isNear, rest, binary(l, BinaryOp::Sub, Scalar::Int, rest, period));
-    return binary(l, BinaryOp::Add, Scalar::Int, index, near);
-  }
-  if (l.isUniform(offset)) {  // so that consecutive indices stay consecutive
-    llvm::Value* const most = l.integer(l.int32(), 1 << 30);
-    llvm::Value* const least = l.integer(l.int32(), -(1 << 30));
-    llvm::Value* const low = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, offset.value, least);
-    return binary(l, BinaryOp::Add, Scalar::Int, index,
-                  {l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, low, most)});
-  }
-  Part a = index, c = offset;
-  l.unify(a, c);
-  return {l.b.CreateBinaryIntrinsic(llvm::Intrinsic::sadd_sat, a.value, c.value)};
 }
 
 }  // namespace skc::native

@@ -112,6 +112,11 @@ class Streams {
     llvm::Value* isOutside;  ///< Boundary::Border only; else null
   };
   Inside inside(std::uint32_t param, std::size_t dimension, llvm::Value* index);
+  llvm::Value* low(std::uint32_t param, std::size_t dimension);
+  llvm::Value* high(std::uint32_t param, std::size_t dimension);
+  llvm::Value* heldCount(std::uint32_t param, std::size_t dimension);
+  llvm::Value* clamped(std::uint32_t param, std::size_t dimension, llvm::Value* index);
+  llvm::Value* areAllHeld(std::uint32_t param, const Parts& index);
   Parts gatherBounded(std::uint32_t param, const Parts& index);
   Parts gatherOne(std::uint32_t param, const Parts& index);
   Parts gatherNeighbors(std::uint32_t param, const Parts& index);

@@ -9,6 +9,7 @@
 
 #include "error_of.hpp"
 #include "halo_checks.sk.hpp"
+#include "sk/placed.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
 
@@ -81,6 +82,37 @@ TEST_CASE("positions between elements and reaches that skc knows are tested, too
     plane.fill(2);
     CHECK(errorOf([&] { known(12, plane, sums); }) == "no error");
     CHECK(sums.read()[300] == 100);
+  });
+}
+
+TEST_CASE(
+    "reads of placed streams beyond the promise, or beyond what is held, are errors that name the element") {
+  onEveryTarget([](sk::Device& device) {
+    const sk::Shape held{9, 12};
+    auto u = device.stream<sk::int2>(held), r = device.stream<sk::int2>(held),
+         by = device.stream<sk::int2>(held);
+    std::vector<sk::int2> values, steps(108, {1, -3});
+    for (int i = 0; i < 108; ++i) values.push_back({i, -i});
+    u.write(values);
+    const sk::Placement place{{996, -1}, {1000, 500}};
+    const sk::Box box{{999, 0}, {1000, 10}};
+    const auto message = [&] {
+      by.write(steps);
+      return errorOf([&] {
+        moved.with({.box = box})(sk::placed(u, place), sk::placed(by, place), sk::placed(r, place));
+      });
+    };
+    CHECK(message() == "no error");
+    CHECK(r.read()[3 * 12 + 1].x == 2);
+    steps[3 * 12 + 4] = {-2, 0};
+    CHECK(message() ==
+          "moved: 'u' is read more than 1 before the element along x, by the element with index {999, 3}; "
+          "correct its "
+          "[[halo]]");
+    steps[3 * 12 + 4] = {0, 400000};  // wraps to the element's own row
+    CHECK(message() == "no error");
+    steps[3 * 12 + 4] = {0, 500};
+    CHECK(message().find("along y, by the element with index {999, 3}") != std::string::npos);
   });
 }
 

@@ -29,6 +29,14 @@ struct TypedStreams;
 template <ElementType T>
 class Stream;
 
+/// Where elements lie in a larger whole (sk/placed.hpp). The default stands for elements that are a whole themselves.
+struct Placement {
+  Index origin = {};  ///< index in the whole of the first element; negative if a halo begins before the whole
+  Shape whole = {};  ///< the extents of the whole
+
+  bool operator==(const Placement&) const = default;
+};
+
 /// Elements of a stream without their type: the argument of an untyped call. They are a box of the stream, or, if
 /// `stride` has a rank, any elements at regular distances.
 struct StreamRegion {
@@ -38,6 +46,7 @@ struct StreamRegion {
   /// Element i is number first + sum(i[d] * stride[d]) of the stream, row-major; distances are above 0.
   Index stride = {};
   std::int64_t first = 0;
+  Placement placement = {};  ///< what kernels see: a part of a whole, or these elements alone
 };
 
 /// The texture that holds one plane of a stream. A scalar or vector element has one plane; a struct has one
@@ -76,6 +85,7 @@ StreamRegion wholeRegion(StreamState* state);
 StreamRegion partOf(const StreamRegion& region, const Index& begin, const Index& end);
 StreamRegion strided(const StreamRegion& region, const Index& steps, const Index& offsets);
 StreamRegion reshaped(const StreamRegion& region, const Shape& shape);
+StreamRegion placed(const StreamRegion& region, const Placement& placement);
 void write(const StreamRegion& region, const void* elements, std::size_t count);
 void read(const StreamRegion& region, void* elements, std::size_t count);
 TransferOwner readAsync(const StreamRegion& region);

@@ -14,6 +14,7 @@
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
 #include "call/dense_regions.hpp"
+#include "call/placed.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
@@ -216,7 +217,7 @@ class RecordedFold final : public RecordedCall {
 
 void checkAndFold(const Reduction& reduction, std::span<const Argument> arguments,
                   const CallOptions& options) {
-  if (!options.box.isWhole()) {
+  if (!options.box.isWhole() || hasPlaced(arguments)) {
     CallOptions others = options;
     others.box = {};
     return checkAndFold(reduction, argumentsIn(reduction.fold, arguments, options.box), others);

@@ -14,6 +14,7 @@
 #include "call/check_reduction.hpp"
 #include "call/check_rows.hpp"
 #include "call/dense_regions.hpp"
+#include "call/placed.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
@@ -262,8 +263,10 @@ class RecordedReduction final : public RecordedCall {
 void checkAndReduce(const Reduction& reduction, std::span<const Argument> arguments,
                     std::span<void* const> values, const CallOptions& options,
                     const std::optional<ScanOrder>& scan = {}) {
-  if (!options.box.isWhole()) {
-    if (scan) fail(reduction.fold, "a scan takes no box; scan a view of its input, domain(begin, end)");
+  if (!options.box.isWhole() || hasPlaced(arguments)) {
+    if (scan)
+      fail(reduction.fold,
+           "a scan takes no box and no placed streams; scan a view of its input, domain(begin, end)");
     CallOptions others = options;
     others.box = {};
     return checkAndReduce(reduction, argumentsIn(reduction.fold, arguments, options.box), values, others);

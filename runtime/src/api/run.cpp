@@ -3,6 +3,7 @@
 // sk::run: checks and resolves a call of a kernel and passes it to its device. Must not depend on the kind of
 // device.
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "call/box.hpp"
@@ -11,6 +12,7 @@
 #include "call/check_halos.hpp"
 #include "call/check_setting.hpp"
 #include "call/dense_regions.hpp"
+#include "call/placed.hpp"
 #include "call/precision.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
@@ -77,6 +79,31 @@ const Kernel& chosenVariant(const DeviceState& device, const ResolvedCall& call)
   return isInFloat ? unrolledVariant(call.kernel, call.specs) : call.kernel;
 }
 
+/// Runs or records a call with placed streams, in terms of what they hold if that is the same.
+void runInParts(DeviceState& device, const ResolvedCall& given) {
+  ResolvedCall call = given;
+  std::optional<LocalCall> local = localCall(given, given.options.box);
+  if (!local && device.placesDomains()) local = partCall(given, given.options.box);
+  if (local) {
+    call.arguments = local->arguments;
+    call.domain = local->domain;
+    call.options.box = local->box;
+    call.place = local->place;
+  }
+  const ResolvedCall chosen = call.of(chosenVariant(device, call), device.limits);
+  device.recording != nullptr ? record(device, chosen) : runResolved(device, chosen);
+}
+
+void runPlaced(DeviceState& device, const ResolvedCall& checked, const Box& given) {
+  ResolvedCall call = checked;
+  call.options.box = boxOrAll(given, call.domain);
+  checkBoxedCall(call.kernel, call.arguments, call.options.box, call.domain);
+  checkPlacedCall(call, call.options.box, device.limits.elements);
+  if (checksHalos() && device.recording == nullptr)
+    checkPlacedHalos(device, call, [&](const ResolvedCall& part) { runInParts(device, part); });
+  runInParts(device, call);
+}
+
 void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
   if (options.accumulate != Accumulate::Default) {
     fail(kernel, "it has no accumulator, since it is not a reduce; call it without Accumulate");
@@ -87,6 +114,7 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   DeviceState& device = checked->device;
   checked->call.options = device.configuration.resolve(kernel, options);
   checkTables(kernel, checked->call.options);
+  if (hasPlaced(arguments)) return runPlaced(device, checked->call, options.box);
   if (!options.box.isWhole()) {
     checkBoxedCall(kernel, arguments, options.box, checked->call.domain);
     if (isAll(options.box, checked->call.domain)) checked->call.options.box = {};

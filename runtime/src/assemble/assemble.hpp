@@ -101,6 +101,7 @@ struct StreamAccess {
   Storage storage = Storage::Single;  ///< inputs, outputs and gathers: how the stream stores floats
   bool packed = false;  ///< four elements per texel
   bool strided = false;  ///< RegionLayout::strided: a view
+  bool placed = false;  ///< gathers, and inputs in another layout than the domain's: a part of a whole
   auto operator<=>(const StreamAccess&) const = default;
 };
 
@@ -156,6 +157,7 @@ struct Variant {
   /// Linear, LinearBox: the number of dimensions into which an index is decoded: decodedRank() of the output,
   /// or more.
   std::uint8_t domainRank = 2;
+  bool domainPlaced = false;  ///< the domain is a part of a whole
   std::vector<StreamAccess> access;
   SpecValues specs{};
   auto operator<=>(const Variant&) const = default;
@@ -172,6 +174,9 @@ struct Variant {
 ///                                  of the domain
 ///   sk_shift_P   int               Linear: log2 of the texture's width; Rows: the width in elements
 ///   sk_ratio_P   ivec4             of a fitted input: its stretch or stride in each dimension
+///   sk_low_P sk_high_P  ivec4      placed gathers: the indices that are held
+///   sk_whole_P   ivec4             inputs in a placed domain: the extents of the whole
+/// A placed domain has `sk_domain_low`, the index in the whole of its first element, and `sk_domain_whole`.
 /// The domain, and hence every output, has the same uniforms under the names `sk_domain_origin
 /// sk_domain_shape sk_domain_stride sk_domain_shift`. If it has layers, there is also `sk_domain_row`, an
 /// int: the first row of the drawn layer.

@@ -17,6 +17,15 @@ namespace sk::assemble {
 /// Fastest dimension first: a C++ shape reversed.
 using Index4 = std::array<std::int32_t, 4>;
 
+/// The whole of which a region is a part (sk/placed.hpp).
+struct Place {
+  Index4 low = {0, 0, 0, 0};  ///< the index in the whole of the region's first element
+  Index4 high = {1, 1, 1, 1};  ///< gathers: indices from `low` to `high` (exclusive) are held
+  Index4 whole = {1, 1, 1, 1};  ///< the whole's extents
+
+  bool operator==(const Place&) const = default;
+};
+
 /// A region of a stream. Plane: element (x, y) of the stream is texel (x, y). Linear: row-major element
 /// number n of the whole stream is texel (n & (1 << shift) - 1, n >> shift). Layered: linear in an array
 /// texture with consecutive square layers, so that texel (x, y) is texel (x, y & (1 << shift) - 1) of layer y
@@ -35,6 +44,9 @@ struct RegionLayout {
   Index4 extent = {1, 1, 1, 1};  ///< shape of the region; missing dimensions 1
   Index4 stride = {1, 1, 1, 1};  ///< linear: stridesOf() of the whole stream; or as strided regions say
   std::int32_t shift = 0;  ///< linear: log2 of the texture's width; numbered: the elements of a row
+  /// Programs speak of the whole. In a gather, `extent` is the whole's, and `origin` belongs to the whole's index 0.
+  bool placed = false;
+  Place place = {};
 
   bool operator==(const RegionLayout&) const = default;
 };

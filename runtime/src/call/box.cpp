@@ -6,6 +6,7 @@
 #include "assemble/append/append_passes.hpp"
 #include "assemble/condition.hpp"
 #include "call/check_argument.hpp"
+#include "call/placed.hpp"
 #include "call/resolved_call.hpp"
 #include "device/region.hpp"
 #include "device/stream_state.hpp"
@@ -17,8 +18,6 @@ using program::Parameter;
 using program::Role;
 
 namespace {
-
-std::string toString(const Box& box) { return sk::toString(box.begin) + " to " + sk::toString(box.end); }
 
 /// What about a fold depends on the place of an element in the domain, or an empty text.
 std::string_view askedPlace(const Kernel& fold) {
@@ -36,7 +35,8 @@ std::string_view askedPlace(const Kernel& fold) {
 Argument inBox(const Kernel& fold, const Parameter& input, const Argument& argument, const Box& box,
                const Shape& domain) {
   Argument result = argument;
-  if (argument.region.stream == nullptr || argument.region.shape.rank() != domain.rank()) return result;
+  const Shape& shape = seenShape(argument.region);
+  if (argument.region.stream == nullptr || shape.rank() != domain.rank()) return result;
   if (argument.rows != nullptr) {
     fail(fold,
          "'{}' is in rows of different lengths, of which there are no boxes; give rows of a part of them",
@@ -48,18 +48,33 @@ Argument inBox(const Kernel& fold, const Parameter& input, const Argument& argum
          "domain's shape",
          input.name);
   }
-  Box own = box;
-  const Shape& shape = argument.region.shape;
-  for (int d = 0; d < shape.rank(); ++d) {
-    if (shape[d] != 1 || domain[d] == 1) continue;
-    own.begin[d] = 0;  // broadcast
-    own.end[d] = 1;
-  }
-  result.region = partIn(argument.region, own);
+  const Box own = boxIn(shape, domain, box);
+  result.region = isPlaced(argument.region) ? partOfWhole(fold, input, argument.region, own)
+                                            : partIn(argument.region, own);
+  return result;
+}
+
+/// Elements of a fold count from the start of the box, so that no halo is theirs: a gather must hold its whole.
+Argument wholeGather(const Kernel& fold, const Parameter& gather, const Argument& argument) {
+  Argument result = argument;
+  if (isPlaced(argument.region))
+    result.region = partOfWhole(fold, gather, argument.region, boxOrAll({}, seenShape(argument.region)));
   return result;
 }
 
 }  // namespace
+
+std::string toString(const Box& box) { return sk::toString(box.begin) + " to " + sk::toString(box.end); }
+
+Box boxIn(const Shape& input, const Shape& domain, const Box& box) {
+  Box own = box;
+  for (int d = 0; d < input.rank(); ++d) {
+    if (input[d] != 1 || domain[d] == 1) continue;
+    own.begin[d] = 0;
+    own.end[d] = 1;
+  }
+  return own;
+}
 
 void checkBox(const Kernel& kernel, const Box& box, const Shape& domain) {
   if (box.begin.rank() != domain.rank() || box.end.rank() != domain.rank()) {
@@ -101,7 +116,8 @@ void checkBoxedCall(const Kernel& kernel, std::span<const Argument> arguments, c
            parameter.name);
     }
     if (parameter.role != Role::Output || !assemble::isNeeded(parameter, specs)) continue;
-    if (arguments[i].region.stream->isBroken && !isAll(box, domain)) {
+    const bool isOverwritten = isAll(box, domain) && !isPlaced(arguments[i].region);
+    if (arguments[i].region.stream->isBroken && !isOverwritten) {
       fail(Error::Kind::Lost, kernel,
            "the elements of '{}' are lost, since what wrote them has failed, and a box would restore only "
            "some; write "
@@ -121,10 +137,11 @@ StreamRegion partIn(const StreamRegion& region, const Box& box) {
   return box.isWhole() ? region : detail::partOf(region, box.begin, box.end);
 }
 
-std::vector<Argument> argumentsIn(const Kernel& fold, std::span<const Argument> arguments, const Box& box) {
+std::vector<Argument> argumentsIn(const Kernel& fold, std::span<const Argument> arguments, const Box& given) {
   if (arguments.size() != fold.parameters.size())
     return {arguments.begin(), arguments.end()};  // checked later
   const Shape domain = domainOf(fold, arguments, specsOf(fold, arguments));
+  const Box box = boxOrAll(given, domain);
   checkBox(fold, box, domain);
   if (const std::string_view asked = askedPlace(fold); !asked.empty()) {
     fail(fold,
@@ -138,6 +155,8 @@ std::vector<Argument> argumentsIn(const Kernel& fold, std::span<const Argument> 
     const Parameter& parameter = fold.parameters[i];
     if (parameter.role == Role::Input || parameter.role == Role::Output)
       result[i] = inBox(fold, parameter, arguments[i], box, domain);
+    if (parameter.role == Role::Gather) result[i] = wholeGather(fold, parameter, arguments[i]);
+    if (isPlaced(result[i].region)) refusePlaced(fold, parameter);
   }
   return result;
 }

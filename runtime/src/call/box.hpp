@@ -6,6 +6,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sk/call.hpp"
@@ -25,11 +26,16 @@ bool isAll(const Box& box, const Shape& domain);
 void checkBoxedCall(const program::Kernel& kernel, std::span<const Argument> arguments, const Box& box,
                     const Shape& domain);
 
+std::string toString(const Box& box);
+
+/// The box of an input that an element of the box of the domain reads: where the input's extent is 1, it is repeated.
+Box boxIn(const Shape& input, const Shape& domain, const Box& box);
+
 /// The part of a region with the domain's shape that lies in the box; all of it if the box is the whole domain.
 StreamRegion partIn(const StreamRegion& region, const Box& box);
 
-/// The arguments for folding the box alone. Throws sk::Error if the box is not inside the inputs' common shape, or if
-/// the fold asks where an element is.
+/// The arguments for folding the box alone, or all elements; they are not placed. Throws sk::Error if the box is not
+/// inside the inputs' common shape, if placed arguments do not hold it, or if the fold asks where an element is.
 std::vector<Argument> argumentsIn(const program::Kernel& fold, std::span<const Argument> arguments,
                                   const Box& box);
 

@@ -111,7 +111,8 @@ void checkSameDevice(const Kernel& kernel, const Parameter& a, const StreamState
 
 void checkInputShape(const Kernel& kernel, const Parameter& input, const Argument& argument,
                      const Parameter& first, const Shape& domain) {
-  const Shape& shape = argument.region.shape;
+  const Shape& shape = seenShape(argument.region);
+  if (argument.fit != Fit::Same && isPlaced(argument.region)) refusePlaced(kernel, input);
   if (fitsDomain(shape, argument.fit, domain)) {
     return;
   }
@@ -196,7 +197,15 @@ void checkGiven(const Kernel& kernel, const Parameter& parameter, const Argument
   }
 }
 
-void checkElements(const Kernel& kernel, const DeviceState& device, const Shape& domain) {
+void refusePlaced(const Kernel& kernel, const Parameter& parameter) {
+  fail(kernel,
+       "'{}' is a placed stream, but only element inputs that are neither stretched nor strided, element "
+       "outputs and "
+       "gathers of a kernel may be parts of a whole; give the stream itself",
+       parameter.name);
+}
+
+void checkElements(const Kernel& kernel, const DeviceState& device, const Shape& domain, bool isPlaced) {
   for (int d = 0; d < domain.rank() && domain.size() > 0; ++d) {
     if (domain[d] > mostExtent) {
       fail(Error::Kind::Shape, kernel,
@@ -204,7 +213,7 @@ void checkElements(const Kernel& kernel, const DeviceState& device, const Shape&
            mostExtent);
     }
   }
-  if (domain.size() > device.limits.elements) {
+  if (!isPlaced && domain.size() > device.limits.elements) {
     fail(Error::Kind::Shape, kernel, "the domain of shape {} has {} elements, but '{}' numbers {}; divide it",
          toString(domain), domain.size(), device.name(), device.limits.elements);
   }

@@ -58,8 +58,12 @@ void checkValue(const program::Kernel& kernel, const program::Parameter& paramet
 /// Checks that a stream which the kernel needs is not sk::none.
 void checkGiven(const program::Kernel& kernel, const program::Parameter& parameter, const Argument& argument);
 
+/// Throws sk::Error: a parameter that is not an element or a gather takes no placed stream (sk/placed.hpp).
+[[noreturn]] void refusePlaced(const program::Kernel& kernel, const program::Parameter& parameter);
+
 /// Checks that the device can number the elements of a domain (sk/limits.hpp), which may exceed any stream.
-void checkElements(const program::Kernel& kernel, const DeviceState& device, const Shape& domain);
+void checkElements(const program::Kernel& kernel, const DeviceState& device, const Shape& domain,
+                   bool isPlaced = false);
 
 /// Checks that the device has room for the kernel's uniforms. A driver may need more than the components
 /// counted here; it then reports an error of its own.

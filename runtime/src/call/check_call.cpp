@@ -8,6 +8,7 @@
 #include "assemble/append/append_passes.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_rows.hpp"
+#include "call/placed.hpp"
 #include "device/device_state.hpp"
 #include "device/region.hpp"
 #include "device/stream_state.hpp"
@@ -164,7 +165,7 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
          "no input of the domain's own shape and no iterator with one says how many elements there are; "
          "give one");
   }
-  checkElements(kernel, device, domain);
+  checkElements(kernel, device, domain, hasPlaced(arguments));
   std::size_t written = 0;
   std::size_t read = 0;
   AppendPlanes appendOutputs;
@@ -184,11 +185,12 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
     switch (parameter.role) {
       case Role::Output:
         written += parameter.element->fields.size();
-        checkOutputShape(kernel, parameters[first], domain, parameter, region.shape);
+        checkOutputShape(kernel, parameters[first], domain, parameter, seenShape(region));
         checkDisjoint(kernel, arguments, specs, i);
         break;
       case Role::VariableOutput:
       case Role::Scatter:
+        if (isPlaced(region)) refusePlaced(kernel, parameter);
         appendOutputs.add(parameter);
         if (parameter.role == Role::Scatter) {
           checkScatter(kernel, parameter, region.shape, device);
@@ -199,7 +201,7 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
         break;
       case Role::Gather:
         read += parameter.element->fields.size();
-        checkGatherShape(kernel, parameter, region.shape, domain);
+        checkGatherShape(kernel, parameter, seenShape(region), domain);
         break;
       case Role::Input:
         read += parameter.element->fields.size();
@@ -207,6 +209,7 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
         break;
       case Role::Uniform:
         read += parameter.element->fields.size();
+        if (isPlaced(region)) refusePlaced(kernel, parameter);
         checkUniformShape(kernel, parameter, region.shape);
         break;
       case Role::Iterator:

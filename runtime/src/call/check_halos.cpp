@@ -12,6 +12,7 @@
 #include "assemble/condition.hpp"
 #include "call/box.hpp"
 #include "call/check_argument.hpp"
+#include "call/halo_limits.hpp"
 #include "device/device_state.hpp"
 #include "device/stream_state.hpp"
 #include "sk/scalar_bytes.hpp"
@@ -26,43 +27,6 @@ namespace {
 
 /// The most lines that are tested along a dimension.
 constexpr std::int64_t mostLines = 64;
-
-/// How far a gather may be read in one dimension.
-struct Limits {
-  std::int64_t below = 0, above = 0;
-};
-
-std::int64_t valueOf(const program::Distance& distance, const assemble::SpecValues& specs) {
-  std::int64_t value = distance.constant;
-  for (std::size_t s = 0; s < distance.perSpec.size(); ++s)
-    value += std::int64_t{distance.perSpec[s]} * static_cast<std::int32_t>(specs[s]);
-  return std::max<std::int64_t>(value, 0);
-}
-
-/// Returns nullopt if the descriptor sets no limit in this dimension, where 0 is x.
-std::optional<Limits> limitsOf(const Parameter& gather, int dimension, const assemble::SpecValues& specs) {
-  std::optional<Limits> limits;
-  for (const program::Reach& reach : gather.halo) {
-    if (reach.dimension != dimension) continue;
-    if (reach.kind != program::Reach::Kind::Near) return std::nullopt;
-    if (!limits) limits.emplace();
-    limits->below = std::max(limits->below, valueOf(reach.below, specs));
-    limits->above = std::max(limits->above, valueOf(reach.above, specs));
-  }
-  return limits;
-}
-
-/// Changes every member of an element.
-void change(const program::Element& element, std::byte* bytes) {
-  for (const program::Field& field : element.fields) {
-    if (field.scalar == program::Scalar::Bool) {
-      for (int c = 0; c < field.width; ++c) bytes[field.offset + static_cast<std::size_t>(c)] ^= std::byte{1};
-      continue;
-    }
-    const std::size_t size = program::hostBytes(field.scalar) * static_cast<std::size_t>(field.width);
-    for (std::size_t b = 0; b < size; ++b) bytes[field.offset + b] = ~bytes[field.offset + b];
-  }
-}
 
 /// The tests of one call.
 class HaloCheck {
@@ -84,7 +48,7 @@ class HaloCheck {
     const std::vector<std::byte> elements = read(region);
     const StreamRegion changed = like(region);
     for (int d = 0; d < shape.rank(); ++d) {
-      const std::optional<Limits> limits = limitsOf(parameter, shape.rank() - 1 - d, call_.specs);
+      const std::optional<HaloLimits> limits = haloLimits(parameter, shape.rank() - 1 - d, call_.specs);
       if (!limits) continue;
       const std::int64_t lines = std::min(shape[d], mostLines);
       for (std::int64_t k = 0; k < lines; ++k) {
@@ -109,7 +73,7 @@ class HaloCheck {
   }
 
   /// Tests the elements with index `at` in dimension d.
-  void checkLine(std::size_t gather, int d, std::int64_t at, const Limits& limits,
+  void checkLine(std::size_t gather, int d, std::int64_t at, const HaloLimits& limits,
                  const std::vector<std::byte>& elements, const StreamRegion& changed) {
     const Parameter& parameter = call_.kernel.parameters[gather];
     std::vector<std::byte> other = elements;
@@ -128,7 +92,7 @@ class HaloCheck {
   }
 
   /// Changes the elements of the gather that the line may not read. Returns false if there are none.
-  bool changeBeyond(const Parameter& gather, int d, std::int64_t at, const Limits& limits,
+  bool changeBeyond(const Parameter& gather, int d, std::int64_t at, const HaloLimits& limits,
                     std::vector<std::byte>& elements) const {
     const Shape& shape = call_.domain;
     std::int64_t inner = 1;
@@ -140,7 +104,7 @@ class HaloCheck {
       const bool isNear = (x >= at - limits.below && x <= at + limits.above) ||
                           (wraps && (x - shape[d] >= at - limits.below || x + shape[d] <= at + limits.above));
       if (isNear) continue;
-      change(*gather.element, elements.data() + static_cast<std::size_t>(i) * gather.element->size);
+      changeBits(*gather.element, elements.data() + static_cast<std::size_t>(i) * gather.element->size);
       hasChanged = true;
     }
     return hasChanged;
@@ -170,19 +134,24 @@ class HaloCheck {
   std::vector<std::unique_ptr<StreamState>> streams_;
 };
 
-/// Whether the limits of a gather hold for the call: it, and what they depend on, have the domain's shape.
 bool isLimited(const ResolvedCall& call, std::size_t gather) {
   const Parameter& parameter = call.kernel.parameters[gather];
-  if (parameter.role != Role::Gather || parameter.halo.empty() || !assemble::isNeeded(parameter, call.specs))
-    return false;
-  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
-    const bool counts = i == gather || (i < 64 && (parameter.haloShapes >> i & 1) != 0);
-    if (counts && call.arguments[i].region.shape != call.domain) return false;
-  }
-  return true;
+  return parameter.role == Role::Gather && assemble::isNeeded(parameter, call.specs) &&
+         areLimitsValid(call.kernel, call.arguments, gather, call.domain);
 }
 
 }  // namespace
+
+void changeBits(const program::Element& element, std::byte* bytes) {
+  for (const program::Field& field : element.fields) {
+    if (field.scalar == program::Scalar::Bool) {
+      for (int c = 0; c < field.width; ++c) bytes[field.offset + static_cast<std::size_t>(c)] ^= std::byte{1};
+      continue;
+    }
+    const std::size_t size = program::hostBytes(field.scalar) * static_cast<std::size_t>(field.width);
+    for (std::size_t b = 0; b < size; ++b) bytes[field.offset + b] = ~bytes[field.offset + b];
+  }
+}
 
 void checkHalos(DeviceState& device, const ResolvedCall& call,
                 const std::function<void(const ResolvedCall&)>& run) {

@@ -20,4 +20,12 @@ class DeviceState;
 void checkHalos(DeviceState& device, const ResolvedCall& call,
                 const std::function<void(const ResolvedCall&)>& run);
 
+/// Likewise for lines of the box of a call with placed streams, once it has passed checkPlacedCall(). The gather then holds
+/// what the line may read, and one element more on each side, which stands for all that is farther away.
+void checkPlacedHalos(DeviceState& device, const ResolvedCall& call,
+                      const std::function<void(const ResolvedCall&)>& run);
+
+/// Changes every member of an element.
+void changeBits(const program::Element& element, std::byte* bytes);
+
 }  // namespace sk

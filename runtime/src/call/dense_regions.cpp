@@ -65,7 +65,9 @@ void DenseArguments::replace(std::size_t i, bool isRead, bool isWritten) {
   if (arguments_.empty()) arguments_.assign(given_.begin(), given_.end());
   const StreamRegion& region = given_[i].region;
   Temporary& temporary = temporaries_.emplace_back(Temporary{i, streamLike(region), isWritten});
-  arguments_[i].region = {temporary.stream.get(), Index::origin(region.shape.rank()), region.shape};
+  StreamRegion& dense = arguments_[i].region;
+  dense = {temporary.stream.get(), Index::origin(region.shape.rank()), region.shape};
+  dense.placement = region.placement;
   if (isRead) temporary.stream->copyFrom(region, arguments_[i].region);
 }
 

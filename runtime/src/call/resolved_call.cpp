@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "assemble/program/plans.hpp"
+#include "device/region.hpp"
 
 namespace sk {
 
@@ -43,7 +44,7 @@ Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const 
   Shape domain;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Role role = kernel.parameters[i].role;
-    const Shape& shape = arguments[i].region.shape;
+    const Shape& shape = seenShape(arguments[i].region);
     if (!isNeeded(kernel.parameters[i], specs)) {
       continue;
     }
@@ -81,7 +82,7 @@ ResolvedCall resolveCall(const Kernel& kernel, std::span<const Argument> argumen
 
 ResolvedCall ResolvedCall::of(const Kernel& variant, const DeviceLimits& limits) const {
   const program::Plan* variantPlan = &variant == &kernel ? plan : planFor(variant, specs, limits);
-  return {variant, arguments, options, specs, domain, variantPlan};
+  return {variant, arguments, options, specs, domain, variantPlan, place};
 }
 
 }  // namespace sk

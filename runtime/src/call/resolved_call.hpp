@@ -21,6 +21,8 @@ struct ResolvedCall {
   assemble::SpecValues specs;
   Shape domain;
   const program::Plan* plan;  ///< its passes; null if one pass is enough
+  /// The domain is a part of a whole, of which the kernel speaks: the index there of its first element, and the whole.
+  Placement place = {};
 
   /// The same call of a variant of the kernel, which has the same parameters in another precision.
   ResolvedCall of(const program::Kernel& variant, const DeviceLimits& limits) const;

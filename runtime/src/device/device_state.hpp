@@ -68,6 +68,9 @@ class DeviceState {
   virtual bool sumsInDoubles() const { return false; }
   /// Whether calls return before they have run, so that to read a result means to wait.
   virtual bool hasQueue() const = 0;
+  /// Whether the domain of a call with placed streams (sk/placed.hpp) is a region of its outputs (ResolvedCall::place)
+  /// rather than the whole.
+  virtual bool placesDomains() const { return false; }
   /// Whether it computes in double wherever kernels say float.
   virtual bool isReference() const { return false; }
   /// Throws sk::Error if this device has no program for the kernel.

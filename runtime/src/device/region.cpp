@@ -14,6 +14,7 @@
 
 #include "device/stream_state.hpp"
 #include "sk/error.hpp"
+#include "sk/limits.hpp"
 
 namespace sk {
 
@@ -165,7 +166,7 @@ AffineRegion affine(const StreamRegion& region) {
 bool isWhole(const StreamRegion& region) { return region.shape.size() == region.stream->shape.size(); }
 
 bool isSameRegion(const StreamRegion& a, const StreamRegion& b) {
-  return a.shape == b.shape && affine(a) == affine(b);
+  return a.shape == b.shape && a.placement == b.placement && affine(a) == affine(b);
 }
 
 bool overlap(const StreamRegion& a, const StreamRegion& b) {
@@ -220,6 +221,7 @@ StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, cons
         Error::Kind::Shape);
   }
   StreamRegion part = region;
+  part.placement = {};
   for (int d = 0; d < rank; ++d) {
     if (isBox(region)) {
       part.begin[d] += begin[d];
@@ -229,6 +231,41 @@ StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, cons
     part.shape = part.shape.with(d, end[d] - begin[d]);
   }
   return part;
+}
+
+StreamRegion detail::placed(const StreamRegion& region, const Placement& placement) {
+  requireStream(region, "placed");
+  const Shape& whole = placement.whole;
+  const int rank = region.shape.rank();
+  if (whole.rank() != rank || placement.origin.rank() != rank) {
+    throw Error(
+        fmt::format("placed: a part of shape {} at {} of a whole of shape {}; give the origin and the "
+                    "whole as many dimensions as the part",
+                    toString(region.shape), toString(placement.origin), toString(whole)),
+        Error::Kind::Shape);
+  }
+  bool isTrivial = true;
+  for (int d = 0; d < rank; ++d) {
+    const std::int64_t origin = placement.origin[d];
+    if (whole[d] > mostExtent) {
+      throw Error(
+          fmt::format("placed: the whole of shape {} has an extent above {}, where indices end; give it "
+                      "another shape, with more dimensions",
+                      toString(whole), mostExtent),
+          Error::Kind::Shape);
+    }
+    if (origin >= whole[d] || origin <= -region.shape[d] || origin + region.shape[d] > 2 * mostExtent) {
+      throw Error(
+          fmt::format("placed: a part of shape {} at {} has no element of a whole of shape {}; the origin is "
+                      "the index in the whole of the part's first element",
+                      toString(region.shape), toString(placement.origin), toString(whole)),
+          Error::Kind::Shape);
+    }
+    isTrivial = isTrivial && origin == 0 && whole[d] == region.shape[d];
+  }
+  StreamRegion result = region;
+  result.placement = isTrivial ? Placement{} : placement;
+  return result;
 }
 
 StreamRegion detail::strided(const StreamRegion& region, const Index& steps, const Index& given) {

@@ -84,6 +84,7 @@ class GlDevice final : public DeviceState {
   const Arithmetic& arithmetic() override;
   std::vector<TargetTrial> trialTargets() override;
   bool hasQueue() const override { return true; }
+  bool placesDomains() const override { return true; }
   bool combinesScattered() const override { return capabilities.blendsFloats; }
   bool usesPrecisionVariants() const override { return true; }
   void checkProgram(const program::Kernel& kernel) override;

@@ -30,18 +30,25 @@ struct Pushed {
   std::int64_t capacity = 0;  ///< elements that the arrays have room for
 };
 
+/// Indices from `low` to `high` (exclusive), in each dimension.
+struct HeldIndices {
+  Extents low{}, high{};
+};
+
 /// The argument for one parameter.
 struct Operand {
   std::span<void* const> components;  ///< empty if the stream is omitted (sk::none)
-  std::int64_t first = 0;  ///< number of the region's first element
+  std::int64_t first = 0;  ///< number of the element at index 0
   Extents stride{};  ///< of the stream, in elements
-  Extents extent{1, 1, 1, 1};  ///< of the region
+  Extents extent{1, 1, 1, 1};  ///< of the region, or of the whole
   Extents multiply{1, 1, 1, 1};  ///< an element input's index is the domain's, times this,
   Extents divide{1, 1, 1, 1};  ///< divided by this
   bool holdsFloats =
       false;  ///< element inputs, results of scans: the arrays hold floats, but the code has doubles
   bool countsElements = false;  ///< iterators: advances with the element number, else with the index
   Pushed* pushed = nullptr;  ///< variable outputs
+  /// Placed streams: the indices whose elements are at first + sum(index * stride). Otherwise all indices of the region.
+  std::optional<HeldIndices> held = std::nullopt;
 };
 
 /// A box of a domain.

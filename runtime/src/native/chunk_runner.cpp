@@ -114,8 +114,9 @@ std::size_t ChunkRunner::runBlock(const Extents& first, std::size_t most) {
   }
   // Where code may read beyond the ends of rows, vectors begin with the first element, so that they are aligned if
   // rows are. What they store at the ends is overwritten.
-  const std::int64_t begin = block.mayCrossEnds ? 0 : ends.left;
-  const std::int64_t end = block.mayCrossEnds ? width : width - ends.right;
+  const native::Range columns = layout_.columns();
+  const std::int64_t begin = columns.begin + (block.mayCrossEnds ? 0 : ends.left);
+  const std::int64_t end = columns.end - (block.mayCrossEnds ? 0 : ends.right);
   const std::int64_t whole = (end - begin) & -lanes_;
   computeBlock(begin, whole, block.rows);
   if (begin + whole < end) computeBlock(end - lanes_, lanes_, block.rows);

@@ -16,10 +16,22 @@ bool isEmpty(const native::Operand& operand) {
   return operand.components.empty() || std::ranges::count(operand.extent, 0) > 0;
 }
 
-bool isSmall(const native::Operand& operand) {
-  std::int64_t last = operand.first;
-  for (std::size_t d = 0; d < 4; ++d) last += (operand.extent[d] - 1) * operand.stride[d];
-  return last <= std::numeric_limits<std::int32_t>::max();
+bool fits32(std::int64_t number) {
+  return number >= std::numeric_limits<std::int32_t>::min() &&
+         number <= std::numeric_limits<std::int32_t>::max();
+}
+
+/// Code adds multiples of the strides in 32 bits, and the first element's number in 64.
+bool isSmall(const native::Operand& operand, const native::HeldIndices& held) {
+  std::int64_t least = 0, most = 0;
+  for (std::size_t d = 0; d < 4; ++d) {
+    if (held.low[d] == 0 && held.high[d] == 1) continue;
+    if (!fits32(operand.stride[d])) return false;
+    least += held.low[d] * operand.stride[d];
+    most += (held.high[d] - 1) * operand.stride[d];
+    if (!fits32(least) || !fits32(most)) return false;
+  }
+  return fits32(operand.held ? most : operand.first + most);
 }
 
 native::Argument argumentOf(const native::Operand& operand) {
@@ -31,7 +43,10 @@ native::Argument argumentOf(const native::Operand& operand) {
   std::ranges::copy(operand.multiply, argument.multiply);
   std::ranges::copy(operand.divide, argument.divide);
   argument.countsElements = operand.countsElements ? 1 : 0;
-  argument.isSmall = isSmall(operand) ? 1 : 0;
+  const native::HeldIndices held = operand.held.value_or(native::HeldIndices{{}, operand.extent});
+  argument.isSmall = isSmall(operand, held) ? 1 : 0;
+  std::ranges::copy(held.low, argument.low);
+  std::ranges::copy(held.high, argument.high);
   return argument;
 }
 

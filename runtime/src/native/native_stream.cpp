@@ -46,12 +46,30 @@ void forEachRow(const AffineRegion& region, Visit&& visit) {
 
 }  // namespace
 
+namespace {
+
+void place(native::Operand& operand, const StreamRegion& region) {
+  native::HeldIndices& held = operand.held.emplace(native::HeldIndices{{}, operand.extent});
+  const int rank = region.shape.rank();
+  for (int d = 0; d < rank; ++d) {
+    const auto axis = static_cast<std::size_t>(rank - 1 - d);
+    const std::int64_t origin = originOf(region, d);
+    held.low[axis] = origin;
+    held.high[axis] = origin + region.shape[d];
+    operand.extent[axis] = seenShape(region)[d];
+    operand.first -= origin * operand.stride[axis];
+  }
+}
+
+}  // namespace
+
 native::Operand operandOf(const StreamRegion& region) {
   const AffineRegion all = affine(region);
   native::Operand operand;
   operand.first = all.first;
   operand.stride = all.stride;
   operand.extent = all.extent;
+  if (isPlaced(region)) place(operand, region);
   return operand;
 }
 

@@ -79,7 +79,8 @@ inline NativeStream& nativeStream(const StreamRegion& region) {
   return static_cast<NativeStream&>(*region.stream);
 }
 
-/// An operand with the extent, stride and first element of a region. Missing dimensions have extent 1.
+/// An operand with the extent, stride and first element of a region. Missing dimensions have extent 1. The operand of a
+/// placed region has the whole's extents, and a first element that it may not hold.
 native::Operand operandOf(const StreamRegion& region);
 
 }  // namespace sk

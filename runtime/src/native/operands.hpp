@@ -178,6 +178,14 @@ class Operands {
     return part;
   }
 
+  /// Only [[wrap]] finds elements beyond the ends of the whole.
+  static void keepInside(Operand& operand) {
+    for (std::size_t d = 0; d < 4; ++d) {
+      operand.held->low[d] = std::max<std::int64_t>(operand.held->low[d], 0);
+      operand.held->high[d] = std::min(operand.held->high[d], operand.extent[d]);
+    }
+  }
+
   struct Held {
     StreamRegion region;
     Components& value;
@@ -226,6 +234,8 @@ class Operands {
     }
     if (argument.region.stream == nullptr || !assemble::isNeeded(parameter, specs_)) return {};
     Operand operand = operandOf(argument.region);
+    if (operand.held && parameter.role == Role::Gather && parameter.boundary != program::Boundary::Wrap)
+      keepInside(operand);
     NativeStream& stream = nativeStream(argument.region);
     if (isReplaced(argument.region)) {
       operand.components = (isWritten(parameter.role) ? stream.spare() : stream.components).arrays();

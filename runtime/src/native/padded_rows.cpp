@@ -41,7 +41,7 @@ bool pays(const native::Operand& from, const Extents& domain, std::int64_t rows)
 PaddedRows::PaddedRows(const program::Kernel& kernel, const native::Call& call, std::int64_t rows) {
   for (std::size_t i = 0; i < std::min<std::size_t>(call.operands.size(), 64); ++i) {
     const native::Operand& from = call.operands[i];
-    if ((kernel.code->sharedGathers >> i & 1) == 0 || from.components.empty()) continue;
+    if ((kernel.code->sharedGathers >> i & 1) == 0 || from.components.empty() || from.held) continue;
     std::vector<std::size_t> bytes;
     forEachScalar(*kernel.parameters[i].element, RealType::Float,
                   [&](std::size_t, std::size_t size, auto) { bytes.push_back(size); });

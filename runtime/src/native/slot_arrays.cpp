@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "native/held_index.hpp"
 #include "native/memory.hpp"
 
 namespace sk {
@@ -18,22 +19,6 @@ using program::Boundary;
 using program::Parameter;
 using program::Role;
 
-/// Applies the boundary mode to an index; -1 if the element is the border value.
-std::int64_t broughtInside(Boundary boundary, std::int64_t i, std::int64_t n) {
-  if (i >= 0 && i < n) return i;
-  switch (boundary) {
-    case Boundary::Clamp: return std::clamp<std::int64_t>(i, 0, n - 1);
-    case Boundary::Border: return -1;
-    case Boundary::Wrap:
-    case Boundary::Mirror: break;
-  }
-  const std::int64_t period = boundary == Boundary::Mirror ? 2 * n : n;
-  // saves a division, because few neighbours are farther outside than the extent
-  std::int64_t inside = i < 0 ? i + period : i < period ? i : i - period;
-  if (inside < 0 || inside >= period) inside = (i % period + period) % period;
-  return inside < n ? inside : period - 1 - inside;
-}
-
 /// The index in an input for an index in the domain.
 std::int64_t ownIndex(const native::Argument& input, std::size_t d, std::int64_t index) {
   const std::int64_t multiplied = index * input.multiply[d];
@@ -44,7 +29,7 @@ std::int64_t ownIndex(const native::Argument& input, std::size_t d, std::int64_t
 struct Neighbors {
   Boundary boundary;
   const void* border;
-  std::int64_t extent;  ///< of a row
+  const native::Argument* gather;
   std::int64_t first, count;
 };
 
@@ -53,23 +38,32 @@ struct Neighbors {
 template <class T, class Rows, class To>
 void copyNeighbors(const Neighbors what, std::size_t rowCount, const Rows rows, const To to) {
   constexpr std::int64_t size = sizeof(T);
-  const std::int64_t begin = std::clamp<std::int64_t>(-what.first, 0, what.count);
-  const std::int64_t end = std::clamp<std::int64_t>(what.extent - what.first, begin, what.count);
+  const std::int64_t begin = std::clamp<std::int64_t>(what.gather->low[0] - what.first, 0, what.count);
+  const std::int64_t end = std::clamp<std::int64_t>(what.gather->high[0] - what.first, begin, what.count);
   const auto bytes = static_cast<std::size_t>((end - begin) * size);
   for (std::size_t r = 0; r < rowCount; ++r)
     std::memcpy(to(r) + begin * size, rows(r) + (what.first + begin) * size, bytes);
   for (std::int64_t i = begin > 0 ? 0 : end; i < what.count; i = i + 1 == begin ? end : i + 1) {
-    const std::int64_t index = broughtInside(what.boundary, what.first + i, what.extent);
+    const std::int64_t index = heldIndex(what.boundary, *what.gather, 0, what.first + i);
     for (std::size_t r = 0; r < rowCount; ++r)
-      std::memcpy(to(r) + i * size, index < 0 ? what.border : rows(r) + index * size, sizeof(T));
+      std::memcpy(to(r) + i * size, index == borderIndex ? what.border : rows(r) + index * size, sizeof(T));
   }
 }
 
 /// SlotLayout::Slot::wholeRows
-Range wholeRowsOf(const native::Argument& argument, std::int64_t width, std::int64_t reach) {
-  std::int64_t last = argument.first;
-  for (std::size_t d = 0; d < 4; ++d) last += (argument.extent[d] - 1) * argument.stride[d];
-  return {argument.first + reach, last - reach - width + 2};
+Range wholeRowsOf(const native::Argument& argument, const Range& columns, std::int64_t reach) {
+  std::int64_t first = argument.first, last = argument.first;
+  for (std::size_t d = 0; d < 4; ++d) {
+    first += argument.low[d] * argument.stride[d];
+    last += (argument.high[d] - 1) * argument.stride[d];
+  }
+  return {first + reach - columns.begin, last - reach - columns.end + 2};
+}
+
+/// The x of the elements of a row that a call computes.
+Range columnsOf(const native::Call& call) {
+  if (!call.part) return {0, call.domain[0]};
+  return {call.part->first[0], call.part->first[0] + call.part->extent[0]};
 }
 
 }  // namespace
@@ -78,7 +72,12 @@ Range wholeRowsOf(const native::Argument& argument, std::int64_t width, std::int
 
 SlotLayout::SlotLayout(const program::Kernel& kernel, const native::Call& call, const CodeFrame& frame,
                        const CodeChoice& choice, std::pmr::memory_resource* memory)
-    : width_(call.domain[0]), slots_(memory), order_(memory), arrays_(memory), borders_(memory) {
+    : domainWidth_(call.domain[0]),
+      columns_(columnsOf(call)),
+      slots_(memory),
+      order_(memory),
+      arrays_(memory),
+      borders_(memory) {
   const std::span<const native::Slot> slots(kernel.code->slots, kernel.code->slotCount);
   slots_.reserve(slots.size());
   order_.reserve(slots.size());
@@ -108,20 +107,22 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   added.argument = &argument;
   added.firstArray = arrays_.size();
   // if a row has one element, it does not matter how an input repeats or skips along x
-  const bool isFitted = width_ != 1 && (argument.multiply[0] != 1 || argument.divide[0] != 1);
-  added.isDirect =
-      added.isGiven && !operand.holdsFloats && !isFitted && (width_ == 1 || argument.stride[0] == 1);
-  added.isStrided = added.kind == Kind::Output && added.isGiven && width_ != 1 && argument.stride[0] != 1;
+  const bool isLine = domainWidth_ == 1;
+  const bool isFitted = !isLine && (argument.multiply[0] != 1 || argument.divide[0] != 1);
+  added.isDirect = added.isGiven && !operand.holdsFloats && !isFitted && (isLine || argument.stride[0] == 1);
+  added.isStrided = added.kind == Kind::Output && added.isGiven && !isLine && argument.stride[0] != 1;
   added.isInPlace = added.kind == Kind::Input ? added.isDirect : added.isGiven && !added.isStrided;
   hasStridedOutputs_ = hasStridedOutputs_ || added.isStrided;
   hasOutputs_ = hasOutputs_ || (added.kind == Kind::Output && added.isGiven);
   if (added.kind == Kind::Gather) {
     hasGathers_ = true;
     reach_ = std::max(reach_, added.reach);
-    inside_ = {std::max(inside_.begin, added.reach), std::min(inside_.end, argument.extent[0] - added.reach)};
+    inside_ = {std::max(inside_.begin, argument.low[0] + added.reach),
+               std::min(inside_.end, argument.high[0] - added.reach)};
     added.firstBorder = firstBorderOf(kernel, slot.parameter);
-    added.wholeRows = wholeRowsOf(argument, width_, added.reach);
+    added.wholeRows = wholeRowsOf(argument, columns_, added.reach);
   } else {
+    added.end = operand.held ? argument.high[0] : domainWidth_;
     isDirect_ = isDirect_ && added.isInPlace;
     needsElementwiseCalls_ =
         needsElementwiseCalls_ || (added.kind == Kind::Input && parameter.usesIndex && isFitted);
@@ -131,7 +132,8 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   if (added.kind == Kind::Gather) {
     const bool isRow = added.rank == 1;
     added.rowStep = isRow ? 0 : argument.stride[1];
-    added.evenRows = isRow ? Range{least, most} : Range{1 - added.row[0], argument.extent[1] - added.row[0]};
+    added.evenRows = isRow ? Range{least, most}
+                           : Range{argument.low[1] + 1 - added.row[0], argument.high[1] - added.row[0]};
   } else {
     added.rowStep = argument.multiply[1] * argument.stride[1];
     added.evenRows = argument.divide[1] == 1 ? Range{least, most} : Range{0, 0};
@@ -299,9 +301,9 @@ SlotArrays::Row SlotArrays::rowAt(const Slot& slot, Extents first, std::int64_t 
   Row row{argument.first, false};
   if (slot.kind == SlotLayout::Kind::Gather) {
     for (std::size_t d = 1; d < slot.rank; ++d) {
-      const std::int64_t index = broughtInside(slot.boundary, first[d] + slot.row[d - 1], argument.extent[d]);
-      row.isOutside = row.isOutside || index < 0;
-      row.first += std::max<std::int64_t>(index, 0) * argument.stride[d];
+      const std::int64_t index = heldIndex(slot.boundary, argument, d, first[d] + slot.row[d - 1]);
+      row.isOutside = row.isOutside || index == borderIndex;
+      row.first += (index == borderIndex ? argument.low[d] : index) * argument.stride[d];
     }
   } else {
     for (std::size_t d = 1; d < 4; ++d) row.first += ownIndex(argument, d, first[d]) * argument.stride[d];
@@ -315,7 +317,7 @@ void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, st
     const Slot& slot = layout_.slots()[s];
     switch (slot.kind) {
       case SlotLayout::Kind::Input:
-        if (slot.isInPlace && step == 1 && x + room <= layout_.width()) break;
+        if (slot.isInPlace && step == 1 && x + room <= slot.end) break;
         for (std::size_t row = 0; row < placed_; ++row) stageInput(row, s, x, {count, room}, step);
         break;
       case SlotLayout::Kind::Output:
@@ -324,7 +326,7 @@ void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, st
           useScratch(row, slot);
         break;
       case SlotLayout::Kind::Gather:
-        if (x < slot.reach || x + room + slot.reach > slot.argument->extent[0]) {
+        if (x - slot.reach < slot.argument->low[0] || x + room + slot.reach > slot.argument->high[0]) {
           stageGather(s, x, {count, room}, /*areOutsideAlone=*/false);
         } else if (isAnyOutside_) {
           stageGather(s, x, {count, room}, /*areOutsideAlone=*/true);
@@ -438,7 +440,7 @@ void SlotArrays::stageNeighbors(const Slot& slot, std::size_t begin, std::size_t
   for (std::size_t c = 0; c < slot.arrayCount; ++c) {
     const std::size_t at = placeOf(begin, slot.firstArray + c);
     const std::size_t bytes = layout_.arrays()[slot.firstArray + c].bytes.read;
-    const Neighbors neighbors{slot.boundary, borderOf(slot, c), slot.argument->extent[0], x - slot.reach,
+    const Neighbors neighbors{slot.boundary, borderOf(slot, c), slot.argument, x - slot.reach,
                               length.count + around};
     const ArrayRow* const rows = &inRow_[at];
     std::byte* const* const scratch = &scratch_[at];
@@ -457,9 +459,10 @@ void SlotArrays::stageNeighbors(const Slot& slot, std::size_t begin, std::size_t
 }
 
 RowEnds SlotArrays::ends() const {
-  const native::Range within = inside();
-  return {std::min(within.begin, layout_.width()), std::max<std::int64_t>(layout_.width() - within.end, 0),
-          2 * layout_.reach()};
+  const native::Range within = inside(), columns = layout_.columns();
+  const std::int64_t width = layout_.width();
+  return {std::clamp<std::int64_t>(within.begin - columns.begin, 0, width),
+          std::clamp<std::int64_t>(columns.end - within.end, 0, width), 2 * layout_.reach()};
 }
 
 SlotArrays::Block SlotArrays::blockOf(std::size_t most) const {
@@ -491,14 +494,15 @@ SlotArrays::Block SlotArrays::blockOf(std::size_t most) const {
 
 void* const* SlotArrays::placeEnds(const RowEnds& ends, std::size_t rows) {
   void** const arrays = arrays_.data() + arrays_.size() - width_;
+  const native::Range columns = layout_.columns();
   for (const Slot& slot : layout_.slots()) {
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
       const std::size_t bytes = layout_.arrays()[a].bytes.read;
       arrays[a] = scratch_[a] + slot.reach * static_cast<std::int64_t>(bytes);
       if (slot.kind == SlotLayout::Kind::Output) continue;
       withScalar(bytes, [&]<class T> {
-        stageEnd<T>(slot, a, 0, ends.left, 0, ends, rows);
-        stageEnd<T>(slot, a, layout_.width() - ends.right, ends.right, ends.firstRight(), ends, rows);
+        stageEnd<T>(slot, a, columns.begin, ends.left, 0, ends, rows);
+        stageEnd<T>(slot, a, columns.end - ends.right, ends.right, ends.firstRight(), ends, rows);
       });
     }
   }
@@ -516,9 +520,9 @@ void SlotArrays::stageEnd(const Slot& slot, std::size_t array, std::int64_t x, s
   const std::int64_t spacing = ends.ofRow() * size;
   for (std::int64_t i = 0; i < count + 2 * slot.reach; ++i) {
     const std::int64_t index =
-        isGather ? broughtInside(slot.boundary, x + i - slot.reach, slot.argument->extent[0]) : x + i;
+        isGather ? heldIndex(slot.boundary, *slot.argument, 0, x + i - slot.reach) : x + i;
     std::byte* staged = scratch_[array] + (to + i) * size;
-    const bool isOutside = index < 0;
+    const bool isOutside = index == borderIndex;
     const auto* held = isOutside ? static_cast<const std::byte*>(border) : inRow_[array].first + index * size;
     const std::int64_t step = isOutside ? 0 : rowSteps_[array];
     for (std::size_t row = 0; row < rows; ++row, staged += spacing, held += step)
@@ -527,12 +531,13 @@ void SlotArrays::stageEnd(const Slot& slot, std::size_t array, std::int64_t x, s
 }
 
 void SlotArrays::storeEnds(const RowEnds& ends, std::size_t rows) {
+  const native::Range columns = layout_.columns();
   for (const Slot& slot : layout_.slots()) {
     if (slot.kind != SlotLayout::Kind::Output) continue;
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
       withScalar(layout_.arrays()[a].bytes.read, [&]<class T> {
-        storeEnd<T>(a, 0, ends.left, 0, ends, rows);
-        storeEnd<T>(a, layout_.width() - ends.right, ends.right, ends.firstRight(), ends, rows);
+        storeEnd<T>(a, columns.begin, ends.left, 0, ends, rows);
+        storeEnd<T>(a, columns.end - ends.right, ends.right, ends.firstRight(), ends, rows);
       });
     }
   }

@@ -46,9 +46,10 @@ class SlotLayout {
     std::int8_t row[3];
     std::int64_t reach;
     const native::Argument* argument;
+    std::int64_t end;  ///< inputs and outputs: x behind the last element that a row's array holds
     std::size_t firstArray, arrayCount;  ///< among all slots' arrays
-    /// Gathers: numbers of elements at which a row may begin so that the elements of the domain's width, and as
-    /// many as `reach` beyond both ends, are in the stream's array.
+    /// Gathers: numbers of elements at which a row's x = 0 may be so that the elements of all columns, and as many as
+    /// `reach` beyond both ends, are in the stream's array.
     native::Range wholeRows;
     native::Range evenRows;  ///< y whose row begins rowStep elements behind the previous one
     std::int64_t rowStep;
@@ -71,7 +72,9 @@ class SlotLayout {
   /// The numbers of the slots; Slot::below always precedes the slot itself.
   std::span<const std::size_t> order() const { return order_; }
   std::span<const Array> arrays() const { return arrays_; }
-  std::int64_t width() const { return width_; }
+  /// The x of the elements of a row that the call computes.
+  native::Range columns() const { return columns_; }
+  std::int64_t width() const { return columns_.end - columns_.begin; }
   const void* border(std::size_t value) const { return &borders_[value]; }
 
   /// True if no stream's layout requires that its elements are laid out.
@@ -103,7 +106,8 @@ class SlotLayout {
   void readBorders(const program::Kernel& kernel, const CodeFrame& frame, const CodeChoice& choice);
   std::size_t firstBorderOf(const program::Kernel& kernel, std::size_t parameter) const;
 
-  std::int64_t width_;
+  std::int64_t domainWidth_;
+  native::Range columns_;
   std::pmr::vector<Slot> slots_;
   std::pmr::vector<std::size_t> order_;
   std::pmr::vector<Array> arrays_;

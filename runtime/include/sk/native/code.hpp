@@ -48,8 +48,8 @@ struct AppendBuffer {
 /// two elements, its ends.
 struct Argument {
   void* const* components;  ///< one array per scalar of the element; null if the stream is omitted (sk::none)
-  std::int64_t first;  ///< number of the region's first element in the arrays
-  std::int64_t extent[4];  ///< of the region
+  std::int64_t first;  ///< number of the element at index 0, whether the arrays hold it or not
+  std::int64_t extent[4];  ///< of the region, or of the whole of which the arrays hold a part (sk/placed.hpp)
   std::int64_t stride[4];  ///< in elements; stride[0] of a gather or scatter output is 1
   std::int64_t multiply[4];  ///< an element input's index is the domain's, times this,
   std::int64_t divide[4];  ///< divided by this
@@ -59,6 +59,10 @@ struct Argument {
   /// Iterators: 1 if it advances with the element number, 0 if with the index in each dimension.
   std::int64_t countsElements;
   std::int64_t isSmall;  ///< 1 if all element numbers fit 32 bits
+  /// Gathers: the element at an index from `low` to `high` (exclusive) has number first + sum(index * stride). The
+  /// boundary mode brings other indices inside; what is outside then is not held, and reads the nearest index that is.
+  /// 0 and `extent`, unless the arrays hold a part of a whole.
+  std::int64_t low[4], high[4];
 };
 
 /// A call of a kernel.
@@ -162,7 +166,7 @@ struct Entry {
 
 /// The native code of one kernel.
 struct Code {
-  static constexpr std::uint32_t currentVersion = 6;
+  static constexpr std::uint32_t currentVersion = 7;
   std::uint32_t version;
   std::uint32_t entryCount;
   const Entry* entries;

@@ -43,7 +43,7 @@ void defineExtent(ProgramText& program, const Parameter& parameter) {
 }
 
 void defineInputIndex(ProgramText& program, const Parameter& input, const StreamAccess& access,
-                      const std::string& index) {
+                      const std::string& index, std::string_view kind) {
   const auto uniform = [&](std::string_view kind) { return parameterUniform(program, "ivec4", kind, input); };
   std::string own = index;
   if (access.fitted) {
@@ -52,11 +52,18 @@ void defineInputIndex(ProgramText& program, const Parameter& input, const Stream
   } else if (access.addressing != Addressing::Aligned) {
     own = fmt::format("min({}, {} - 1)", index, uniform("shape"));
   }
-  defineGetter(program, "index", input, own);
+  defineGetter(program, kind, input, own);
 }
 
-Texel inputTexel(ProgramText& program, const Parameter& input, const StreamAccess& access) {
-  const std::string index = fmt::format("sk_index_{}()", input.symbol);
+void definePlacedGetters(ProgramText& program, const Parameter& input, const std::string& index) {
+  const auto whole = [&] { return parameterUniform(program, "ivec4", "whole", input); };
+  if (input.usesIndex) defineGetter(program, "index", input, fmt::format("min({}, {} - 1)", index, whole()));
+  if (input.usesExtent) defineGetter(program, "extent", input, whole());
+}
+
+Texel inputTexel(ProgramText& program, const Parameter& input, const StreamAccess& access,
+                 std::string_view kind) {
+  const std::string index = fmt::format("sk_{}_{}()", kind, input.symbol);
   if (access.strided) {
     const std::string stride = parameterUniform(program, "ivec4", "stride", input);
     if (access.addressing == Addressing::Plane) return stridedTexel(program, input, access, index + ".xy");

@@ -29,12 +29,16 @@ void defineGetter(ProgramText& program, std::string_view kind, const program::Pa
 /// Defines sk_extent_p if the body calls it.
 void defineExtent(ProgramText& program, const program::Parameter& parameter);
 
-/// Defines sk_index_p of an input, fitted or not. In a dimension of extent 1, the input is broadcast.
+/// Defines sk_KIND_p, the index in an input, fitted or not. In a dimension of extent 1, the input is broadcast.
 void defineInputIndex(ProgramText& program, const program::Parameter& input, const StreamAccess& access,
-                      const std::string& index);
+                      const std::string& index, std::string_view kind = "index");
 
-/// The texel of the current element of an input that is not aligned, from its sk_index_p.
-Texel inputTexel(ProgramText& program, const program::Parameter& input, const StreamAccess& access);
+/// Defines sk_index_p and sk_extent_p of an input in a placed domain; `index` is the index in the whole.
+void definePlacedGetters(ProgramText& program, const program::Parameter& input, const std::string& index);
+
+/// The texel of the current element of an input that is not aligned, from its sk_KIND_p.
+Texel inputTexel(ProgramText& program, const program::Parameter& input, const StreamAccess& access,
+                 std::string_view kind = "index");
 
 /// The texel of an element of a strided region. `distance` is its index, an ivec2 expression, if the region is
 /// addressed as a plane; else sum(index * stride), an int expression.

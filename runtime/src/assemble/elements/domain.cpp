@@ -33,6 +33,29 @@ std::string DomainText::index() {
   return fmt::format("{}()", function_);
 }
 
+std::string DomainText::seenIndex() {
+  const std::string within = index();
+  if (!layout_.placed) return within;
+  const std::string signature = "ivec4 sk_index()";
+  if (!program_.isDefined(signature)) {
+    program_.function(signature,
+                      {fmt::format("return {} + {};", within, program_.uniform("ivec4", "sk_domain_low"))});
+  }
+  return "sk_index()";
+}
+
+std::string DomainText::seenShape() {
+  return program_.uniform("ivec4", layout_.placed ? "sk_domain_whole" : "sk_domain_shape");
+}
+
+std::string DomainText::seenPosition(int components) {
+  const std::string within = position(components);
+  if (!layout_.placed) return within;
+  static constexpr std::string_view xyzw = "xyzw";
+  return fmt::format("({} + {}.{})", within, program_.uniform("ivec4", "sk_domain_low"),
+                     xyzw.substr(0, static_cast<std::size_t>(components)));
+}
+
 std::string DomainText::position(int components) {
   const bool aligned = layout_.domain == Domain::Plane && !layout_.view;
   if (aligned && components == 1) {

@@ -20,6 +20,7 @@ struct DomainLayout {
   int rank = 2;  ///< of the domain's stream, if that is linearised
   bool layered = false;
   bool packed = false;  ///< an invocation computes the four elements of a texel in sequence
+  bool placed = false;  ///< a part of a whole
 };
 
 class DomainText {
@@ -32,6 +33,12 @@ class DomainText {
   bool usesLane() const { return usesLane_; }
   /// A call of the function, which returns an ivec4.
   std::string index();
+  /// The index that the kernel sees: in a placed domain, a call of sk_index(), which counts in the whole.
+  std::string seenIndex();
+  /// The extents that the kernel sees, an ivec4.
+  std::string seenShape();
+  /// The first components of seenIndex(): an int or an ivec2 to ivec4 expression.
+  std::string seenPosition(int components);
   /// The first components of the index: an int or an ivec2 to ivec4 expression.
   std::string position(int components);
   /// The invocation's texel.

@@ -36,6 +36,7 @@ class GatherText {
   void defineAt() {
     std::vector<std::string> lines;
     bringInside(lines);
+    if (access_.placed) keepHeld(lines);
     finish(fmt::format("{} sk_at_{}({} sk_i)", parameter_.element->glsl, parameter_.symbol, vector()), lines);
   }
 
@@ -117,6 +118,7 @@ class GatherText {
   void defineNear() {
     std::vector<std::string> lines;
     bringNeighbourInside(lines);
+    if (access_.placed) keepHeld(lines);
     finish(fmt::format("{} sk_near_{}({} sk_d)", parameter_.element->glsl, parameter_.symbol, vector()),
            lines);
   }
@@ -255,6 +257,21 @@ class GatherText {
       lines.push_back(fmt::format("{} sk_i = {};", vector(), here));
       define(lines, componentwise(name, {"sk_i", "sk_d", shapeOperand()}));
     }
+  }
+
+  /// Brings an index `sk_p` in the whole to the element that is held for it; what is not held reads the nearest one.
+  void keepHeld(std::vector<std::string>& lines) {
+    const std::string low = fmt::format("{}{}", uniform("low"), swizzle());
+    const std::string high = fmt::format("{}{}", uniform("high"), swizzle());
+    if (parameter_.boundary != Boundary::Wrap) {
+      lines.push_back(fmt::format("sk_p = clamp(sk_p, {}, {} - 1);", low, high));
+      return;
+    }
+    // low is above -n and at most 0, so that the distance from it is less than 2 n
+    program_.require(Function::WrapOnce);
+    lines.push_back(fmt::format("sk_p -= {};", low));
+    lines.push_back(fmt::format("sk_p = min({} + {}, {} - 1);",
+                                componentwise("sk_wrap", {"sk_p", shapeOperand()}), low, high));
   }
 
   void define(std::vector<std::string>& lines, std::string_view value) const {

@@ -67,8 +67,9 @@ std::string_view name(Storage storage) {
 /// For example "diffuse for glsl330: plane domain; u plane view nearby".
 std::string describe(const Profile& profile, const Kernel& kernel, const Variant& variant) {
   std::string text = fmt::format(
-      "{} for {}: {}{}{}{} domain", kernel.name, profile.name, variant.domainLayered ? "layered " : "",
-      variant.domainPacked ? "packed " : "", name(variant.domain), variant.domainView ? " view" : "");
+      "{} for {}: {}{}{}{}{} domain", kernel.name, profile.name, variant.domainPlaced ? "placed " : "",
+      variant.domainLayered ? "layered " : "", variant.domainPacked ? "packed " : "", name(variant.domain),
+      variant.domainView ? " view" : "");
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
     const bool isRead = parameter.role == Role::Input || parameter.role == Role::Gather;
@@ -86,10 +87,11 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
         text += fmt::format("; {}{}", parameter.name, name(access.storage));
       continue;
     }
-    text += fmt::format("; {} {}{}{}{}{}{}{}{}", parameter.name, access.packed ? "packed " : "",
-                        name(access.addressing), access.view ? " view" : "", access.strided ? " strided" : "",
-                        access.nearby ? " nearby" : "", access.filtered ? " filtered" : "",
-                        access.fitted ? " fitted" : "", name(access.storage));
+    text +=
+        fmt::format("; {} {}{}{}{}{}{}{}{}{}", parameter.name, access.placed ? "placed " : "",
+                    access.packed ? "packed " : "", name(access.addressing), access.view ? " view" : "",
+                    access.strided ? " strided" : "", access.nearby ? " nearby" : "",
+                    access.filtered ? " filtered" : "", access.fitted ? " fitted" : "", name(access.storage));
   }
   return text;
 }
@@ -108,8 +110,10 @@ class KernelText {
         kernel_(held_.kernel()),
         variant_(variant),
         program_(profile_),
-        domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
-                           variant.domainPacked}),
+        domain_(program_,
+                {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
+                 variant.domainPacked, variant.domainPlaced},
+                variant.domainPlaced ? "sk_within" : "sk_index"),
         groups_(program_, domain_, kernel_, variant) {
     if (reduction != nullptr) fold_.emplace(program_, *reduction, variant.domainPacked);
   }
@@ -123,10 +127,9 @@ class KernelText {
       findEntry(program_, domain_, kernel_.parameters[variant_.task.appendOutput],
                 variant_.task.pyramidLayered);
     if (kernel_.usesLoops && !variant_.domainEven) domain_.leaveOutside();
-    if (kernel_.usesIndex) domain_.index();
+    if (kernel_.usesIndex) domain_.seenIndex();
     if (kernel_.usesExtent) {
-      program_.function("ivec4 sk_extent()",
-                        {fmt::format("return {};", program_.uniform("ivec4", "sk_domain_shape"))});
+      program_.function("ivec4 sk_extent()", {fmt::format("return {};", domain_.seenShape())});
     }
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
       const bool isFolded = kernel_.parameters[i].role == Role::Accumulator;
@@ -205,12 +208,12 @@ class KernelText {
       case Role::Output: defineOutput(parameter); break;
       case Role::Gather:
         defineGather(
-            program_, [&](int components) { return domain_.position(components); }, parameter, access,
+            program_, [&](int components) { return domain_.seenPosition(components); }, parameter, access,
             sharesTexels(parameter, access) ? &domain_ : nullptr);
         defineExtent(program_, parameter);
         break;
       case Role::Iterator:
-        arguments_.push_back({iteratorValue(program_, parameter, access, domain_.index())});
+        arguments_.push_back({iteratorValue(program_, parameter, access, domain_.seenIndex())});
         break;
       case Role::Spec:
         arguments_.push_back({specConstant(program_, parameter, variant_.specs[specs_++])});
@@ -234,14 +237,21 @@ class KernelText {
     const bool isAligned = access.addressing == Addressing::Aligned;
     declareSamplers(program_, parameter,
                     isAligned ? variant_.domainLayered : access.addressing == Addressing::Layered);
-    if (parameter.usesIndex || !isAligned) defineInputIndex(program_, parameter, access, domain_.index());
+    const bool isPlaced = variant_.domainPlaced;
+    const std::string_view index = isPlaced ? "within" : "index";
+    if (!isAligned || (parameter.usesIndex && !isPlaced))
+      defineInputIndex(program_, parameter, access, domain_.index(), index);
     if (isAligned && variant_.domainPacked) {
       fetchLanes(parameter);
     } else {
-      const Texel texel = isAligned ? domain_.texel() : inputTexel(program_, parameter, access);
+      const Texel texel = isAligned ? domain_.texel() : inputTexel(program_, parameter, access, index);
       arguments_.push_back({fetch(program_, parameter, texel)});
     }
-    defineExtent(program_, parameter);
+    if (isPlaced) {
+      definePlacedGetters(program_, parameter, domain_.seenIndex());
+    } else {
+      defineExtent(program_, parameter);
+    }
   }
 
   /// Fetches the four elements of a texel at once.
@@ -257,7 +267,7 @@ class KernelText {
   bool sharesTexels(const Parameter& gather, const StreamAccess& access) const {
     constexpr int farthest = 4;  // a gather of rank 2 then reaches 27 texels
     if (gather.reach > farthest || !variant_.domainPacked || !access.packed || !access.nearby ||
-        access.view || variant_.domainView) {
+        access.view || variant_.domainView || variant_.domainPlaced) {
       return false;
     }
     const bool isRow = variant_.domain == Domain::Linear && variant_.domainRank == 1 && gather.rank == 1;
@@ -295,10 +305,8 @@ class KernelText {
   }
 
   void defineDomainGetters(const Parameter& parameter) {
-    if (parameter.usesIndex) defineGetter(program_, "index", parameter, domain_.index());
-    if (parameter.usesExtent) {
-      defineGetter(program_, "extent", parameter, program_.uniform("ivec4", "sk_domain_shape"));
-    }
+    if (parameter.usesIndex) defineGetter(program_, "index", parameter, domain_.seenIndex());
+    if (parameter.usesExtent) defineGetter(program_, "extent", parameter, domain_.seenShape());
   }
 
   const Profile profile_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device/memory/layout.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string_view>
 
@@ -73,6 +74,36 @@ assemble::Index4 xFirst(const Shape& shape) {
     extent[static_cast<std::size_t>(d)] = static_cast<std::int32_t>(shape[shape.rank() - 1 - d]);
   }
   return extent;
+}
+
+assemble::Index4 xFirst(const Index& index) {
+  assemble::Index4 result{0, 0, 0, 0};
+  for (int d = 0; d < index.rank(); ++d)
+    result[static_cast<std::size_t>(d)] = static_cast<std::int32_t>(index[index.rank() - 1 - d]);
+  return result;
+}
+
+assemble::RegionLayout gatherLayout(const assemble::RegionLayout& region, const Placement& placement,
+                                    program::Boundary boundary) {
+  assemble::RegionLayout gather = region;
+  gather.placed = true;
+  gather.extent = xFirst(placement.whole);
+  const assemble::Index4 origin = xFirst(placement.origin);
+  for (std::size_t d = 0; d < origin.size(); ++d) {
+    const std::int32_t n = gather.extent[d];
+    std::int32_t low = origin[d];
+    if (boundary == program::Boundary::Wrap) low = (low % n - n) % n;  // above -n and at most 0
+    gather.origin[d] -= low;
+    std::int32_t high = low + region.extent[d];
+    if (boundary != program::Boundary::Wrap) {
+      low = std::max(low, 0);
+      high = std::min(high, n);
+    }
+    gather.place.low[d] = low;
+    gather.place.high[d] = high;
+  }
+  gather.place.whole = gather.extent;
+  return gather;
 }
 
 Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits, bool packed) {

@@ -38,8 +38,14 @@ assemble::RegionLayout regionLayoutOf(const StreamRegion& region, const Layout& 
 /// A box of a region of this rank, whose layout is not strided; all of it if the box is the whole domain.
 assemble::RegionLayout partOf(const assemble::RegionLayout& region, int rank, const Box& box);
 
+/// A region that holds a part of a whole, as a program gathers from it.
+assemble::RegionLayout gatherLayout(const assemble::RegionLayout& region, const Placement& placement,
+                                    program::Boundary boundary);
+
 /// The extents of a shape, x first; missing dimensions are 1.
 assemble::Index4 xFirst(const Shape& shape);
+/// An index, x first; missing dimensions are 0.
+assemble::Index4 xFirst(const Index& index);
 
 /// Whether the regions have the same shape, and equal indices are at the same position in the same texel.
 bool haveSameTexels(const assemble::RegionLayout& a, const assemble::RegionLayout& b);

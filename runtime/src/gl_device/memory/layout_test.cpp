@@ -197,3 +197,18 @@ TEST_CASE("regions with strides are where their elements are") {
     CHECK(isDrawn(texelAt(region, last)));
   }
 }
+
+TEST_CASE("a gather of a part of a whole has the whole's extents, and wraps from a first index near 0") {
+  using sk::program::Boundary;
+  const RegionLayout held = layoutOf({6, 8}, {64, 256}).whole;
+  const RegionLayout clamped = sk::gatherLayout(held, {{-2, 100}, {50, 104}}, Boundary::Clamp);
+  CHECK(clamped.placed);
+  CHECK(clamped.extent == Index4{104, 50, 1, 1});
+  CHECK(clamped.origin == Index4{-100, 2, 0, 0});
+  CHECK(clamped.place.low == Index4{100, 0, 0, 0});
+  CHECK(clamped.place.high == Index4{104, 4, 1, 1});
+  const RegionLayout wrapped = sk::gatherLayout(held, {{-2, 100}, {50, 104}}, Boundary::Wrap);
+  CHECK(wrapped.origin == Index4{4, 2, 0, 0});
+  CHECK(wrapped.place.low == Index4{-4, -2, 0, 0});
+  CHECK(wrapped.place.high == Index4{4, 4, 1, 1});
+}

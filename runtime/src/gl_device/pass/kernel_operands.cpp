@@ -3,6 +3,7 @@
 
 #include "assemble/assemble.hpp"
 #include "call/check_argument.hpp"
+#include "device/region.hpp"
 #include "gl_device/gl_stream.hpp"
 
 namespace sk {
@@ -26,7 +27,8 @@ DrawnRects::DrawnRects(const RegionLayout& domain, const Layout& layout) {
 
 KernelOperands::KernelOperands(GlDevice& device, const program::Kernel& kernel,
                                std::span<const Argument> arguments, const assemble::SpecValues& specs,
-                               const program::Plan* plan, const Shape& shape, const Box& box)
+                               const program::Plan* plan, const Shape& shape, const Box& box,
+                               const Placement& place)
     : device_(device),
       kernel_(kernel),
       arguments_(arguments),
@@ -34,7 +36,8 @@ KernelOperands::KernelOperands(GlDevice& device, const program::Kernel& kernel,
       plan_(plan),
       operands_(device.operands),
       shape_(shape),
-      box_(box) {
+      box_(box),
+      place_(place) {
   operands_.resize(arguments_.size());
   while (hasOutput() && !isOutput(first_)) {
     ++first_;
@@ -44,6 +47,10 @@ KernelOperands::KernelOperands(GlDevice& device, const program::Kernel& kernel,
     layOut();
   } else {
     layOutLikeStream();
+  }
+  if (isPlaced()) {
+    domain_.placed = true;
+    domain_.place = {xFirst(place_.origin), {}, xFirst(place_.whole)};
   }
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     operands_[i] = operandOf(i);
@@ -115,10 +122,18 @@ Operand KernelOperands::operandOf(std::size_t i) const {
   if (parameter.role == Role::Uniform) return uniformOperand(argument);
   if (parameter.role == Role::Spec) return {.value = argument.value};
   if (parameter.role == Role::Iterator) {
-    return iteration(parameter, argument.value, shape_);
+    return iteration(parameter, argument.value, isPlaced() ? place_.whole : shape_);
   }
   if (parameter.role == Role::Accumulator || !isNeeded(i)) return {};
-  return regionOperand(argument, shape_);
+  Operand operand = regionOperand(argument, shape_);
+  assemble::RegionLayout& layout = operand.regionLayout;
+  if (parameter.role == Role::Gather && sk::isPlaced(argument.region)) {
+    layout = gatherLayout(layout, argument.region.placement, parameter.boundary);
+  } else if (parameter.role == Role::Input && isPlaced()) {
+    layout.placed = true;
+    layout.place.whole = xFirst(seenShape(argument.region));
+  }
+  return operand;
 }
 
 }  // namespace sk

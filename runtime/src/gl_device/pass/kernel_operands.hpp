@@ -37,10 +37,10 @@ class KernelOperands {
  public:
   /// The arguments have been checked, and the domain is not empty. Packs or unpacks streams. A DeviceScope must be open.
   /// `plan` has the passes of the kernel; null if one is enough. `shape` is that of the domain of a kernel without outputs.
-  /// `box` is what is written of the domain.
+  /// `box` is what is written of the domain, and `place` says of which whole it is a part.
   KernelOperands(GlDevice& device, const program::Kernel& kernel, std::span<const Argument> arguments,
                  const assemble::SpecValues& specs, const program::Plan* plan, const Shape& shape = {},
-                 const Box& box = {});
+                 const Box& box = {}, const Placement& place = {});
   KernelOperands(const KernelOperands&) = delete;
   KernelOperands& operator=(const KernelOperands&) = delete;
 
@@ -59,6 +59,7 @@ class KernelOperands {
   bool mayWritePacked() const;
   bool needsUnpacked(std::size_t i) const;
   Operand operandOf(std::size_t i) const;
+  bool isPlaced() const { return place_.whole.rank() != 0; }
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
   bool isOutput(std::size_t i) const {
     return kernel_.parameters[i].role == program::Role::Output && isNeeded(i);
@@ -74,6 +75,7 @@ class KernelOperands {
       0;  ///< the first output, whose region is the domain; the number of arguments if there is none
   Shape shape_;  ///< of the domain
   const Box box_;
+  const Placement place_;
   Layout newLayout_;
   const Layout* layout_ = nullptr;
   assemble::RegionLayout domain_;

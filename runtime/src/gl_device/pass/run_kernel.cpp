@@ -23,7 +23,8 @@ using program::Kernel;
 /// Runs one call with checked arguments and a nonempty domain.
 void runOverOutputs(GlDevice& device, const ResolvedCall& call) {
   const Kernel& kernel = call.kernel;
-  const KernelOperands operands(device, kernel, call.arguments, call.specs, call.plan, {}, call.options.box);
+  const KernelOperands operands(device, kernel, call.arguments, call.specs, call.plan, {}, call.options.box,
+                                call.place);
   OutputTargets targets(device, kernel, call.arguments, call.specs, operands.get(), operands.domain(),
                         operands.layout(), call.options.box);
   const DrawnRects rects(partOf(operands.domain(), call.domain.rank(), call.options.box), operands.layout());

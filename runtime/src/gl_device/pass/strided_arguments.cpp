@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "assemble/append/append_passes.hpp"
+#include "device/region.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
 
@@ -17,6 +18,7 @@ bool GlDevice::needsDense(const program::Kernel& kernel, std::span<const Argumen
   if (role == Role::Uniform) return false;
   if (role == Role::Scatter) return true;  // points are placed by the rank of the stream
   if (!needsDense(arguments[i].region)) return false;
+  if (isPlaced(arguments[i].region)) return true;
   const bool readsRectangles =
       std::ranges::any_of(kernel.parameters, [](const program::Parameter& parameter) {
         return parameter.role == Role::Accumulator || assemble::isAppendOutput(parameter);

@@ -16,6 +16,9 @@ LayoutUniforms::LayoutUniforms(const gl::Program& program, std::string_view name
   shape_ = {location("shape"), true};
   stride_ = {location("stride"), true};
   shift_ = {location("shift"), false};
+  low_ = {location("low"), true};
+  high_ = {location("high"), true};
+  whole_ = {location("whole"), true};
 }
 
 }  // namespace sk

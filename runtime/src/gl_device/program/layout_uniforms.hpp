@@ -14,7 +14,8 @@ namespace sk {
 class LayoutUniforms {
  public:
   LayoutUniforms() = default;
-  /// `names` is the pattern of the uniforms' names, in which `*` stands for origin, shape, stride and shift.
+  /// `names` is the pattern of the uniforms' names, in which `*` stands for origin, shape, stride, shift, low,
+  /// high and whole.
   LayoutUniforms(const gl::Program& program, std::string_view names);
 
   /// The program must be bound.
@@ -23,10 +24,14 @@ class LayoutUniforms {
     shape_.set(bound, regionLayout.extent);
     stride_.set(bound, regionLayout.stride);
     shift_.set(bound, regionLayout.shift);
+    if (!regionLayout.placed) return;
+    low_.set(bound, regionLayout.place.low);
+    high_.set(bound, regionLayout.place.high);
+    whole_.set(bound, regionLayout.place.whole);
   }
 
  private:
-  gl::IntUniform origin_, shape_, stride_, shift_;
+  gl::IntUniform origin_, shape_, stride_, shift_, low_, high_, whole_;
 };
 
 }  // namespace sk

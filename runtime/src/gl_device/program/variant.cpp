@@ -48,8 +48,9 @@ bool isNearby(const Parameter& gather, const RegionLayout& regionLayout, const R
   if (!gather.usesNear || gather.reach < 0) {
     return false;
   }
+  const assemble::Index4& seen = domain.placed ? domain.place.whole : domain.extent;
   for (std::size_t d = 0; d < gather.rank; ++d) {
-    if (gather.reach >= regionLayout.extent[d] || domain.extent[d] > regionLayout.extent[d]) {
+    if (gather.reach >= regionLayout.extent[d] || seen[d] > regionLayout.extent[d]) {
       return false;
     }
   }
@@ -60,8 +61,8 @@ bool isNearby(const Parameter& gather, const RegionLayout& regionLayout, const R
 /// texture's edges.
 bool isFiltered(const Parameter& gather, const RegionLayout& regionLayout, bool filtersFloats) {
   const bool isFloat = gather.element->fields.front().scalar == program::Scalar::Float;
-  return assemble::mayFilter(gather) && !regionLayout.linear && !regionLayout.packed && !regionLayout.view &&
-         (!isFloat || filtersFloats);
+  return assemble::mayFilter(gather) && !regionLayout.placed && !regionLayout.linear &&
+         !regionLayout.packed && !regionLayout.view && (!isFloat || filtersFloats);
 }
 
 StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, const RegionLayout& domain,
@@ -76,14 +77,18 @@ StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, co
   access.packed = regionLayout.packed;
   access.fitted = operand.fitted;
   access.strided = regionLayout.strided;
-  access.view = access.fitted || access.strided || regionLayout.origin != assemble::Index4{};
+  access.placed = parameter.role == Role::Gather && regionLayout.placed;
+  access.view = access.fitted || access.strided || access.placed || regionLayout.origin != assemble::Index4{};
   access.nearby = parameter.role == Role::Gather && isNearby(parameter, regionLayout, domain);
   access.filtered = parameter.role == Role::Gather && operand.storage < Storage::Extended &&
                     isFiltered(parameter, regionLayout, filtersFloats);
   return access;
 }
 
-bool isFlat(const RegionLayout& domain) { return assemble::elements(domain.extent) == domain.extent[0]; }
+bool isFlat(const RegionLayout& domain) {
+  const assemble::Index4& seen = domain.placed ? domain.place.whole : domain.extent;
+  return assemble::elements(seen) == seen[0];
+}
 
 /// If only x has an extent above 1, the index in x is the element number, which needs no addressing by
 /// number.
@@ -214,7 +219,7 @@ Operand uniformOperand(const Argument& argument) {
 Operand iteration(const Parameter& iterator, const void* ends, const Shape& domain) {
   RegionLayout regionLayout;
   regionLayout.extent = xFirst(domain);
-  regionLayout.stride = assemble::stridesOf(regionLayout.extent);
+  if (domain.size() <= mostElements) regionLayout.stride = assemble::stridesOf(regionLayout.extent);
   return {.value = ends,
           .regionLayout = regionLayout,
           .step = stepOf(iterator, ends, domain),
@@ -230,6 +235,7 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
   variant.domainPacked = domain.packed;
   variant.domainEven = isEven(kernel, domain, task);
   variant.domainLayered = domain.layered;
+  variant.domainPlaced = domain.placed;
   variant.domainRank = assemble::decodedRank(domain);
   variant.specs = specsOf(kernel, operands);
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
@@ -303,6 +309,14 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
                    std::uint64_t{operands[i].regionLayout.strided} << 3,
                4);
     }
+  }
+  const bool isPlaced = domain.placed || std::ranges::any_of(operands, [](const Operand& operand) {
+                          return operand.regionLayout.placed;
+                        });
+  if (!isPlaced) return key;
+  bits.add(1 | std::uint64_t{domain.placed} << 1, 4);
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    if (kernel.parameters[i].role == Role::Gather) bits.add(operands[i].regionLayout.placed, 4);
   }
   return key;
 }

@@ -77,6 +77,11 @@ TEST_CASE("views, repeats and linearised streams are told apart, each with a key
   const RegionLayout byLine = strides(line, Shape(4, 4), {180, 2}),
                      otherNumber = strides(plane, Shape(4, 4), {7, 2});
   const RegionLayout byRow = strides(plane, Shape(16), {2});
+  RegionLayout placedDomain = whole(plane);
+  placedDomain.placed = true;
+  placedDomain.place = {{100, 200, 0, 0}, {}, {1000, 1000, 1, 1}};
+  const RegionLayout placedGather =
+      gatherLayout(whole(plane), {{200, 100}, {1000, 1000}}, program::Boundary::Clamp);
   const std::vector<Chosen> all{
       choose(whole(plane), whole(plane), whole(plane)),
       choose(region(plane, {1, 1}, {4, 4}), whole(plane), region(plane, {2, 2}, {4, 4})),
@@ -101,6 +106,9 @@ TEST_CASE("views, repeats and linearised streams are told apart, each with a key
       choose(byNumber, square, byNumber),
       choose(otherNumber, square, byNumber),
       choose(byRow, square, byRow),
+      choose(whole(plane), whole(plane), placedDomain),
+      choose(whole(plane), placedGather, placedDomain),
+      choose(whole(plane), placedGather, whole(plane)),
   };
   CHECK(all[10].variant.access[1].strided);
   CHECK(all[11].variant.access[1].addressing == Addressing::Rows);
@@ -108,6 +116,13 @@ TEST_CASE("views, repeats and linearised streams are told apart, each with a key
   CHECK(all[16].variant.domain == Domain::Strided);
   CHECK(all[17].variant.domain == Domain::StridedRows);
   CHECK(all[18].variant.domain == Domain::StridedLinear);
+  CHECK(all[23].variant.domainPlaced);
+  CHECK_FALSE(all[23].variant.access[2].placed);
+  CHECK_FALSE(all[23].variant.access[2].nearby);
+  CHECK(all[24].variant.access[1].addressing == Addressing::Aligned);
+  CHECK(all[24].variant.access[2].placed);
+  CHECK(all[24].variant.access[2].nearby);
+  CHECK_FALSE(all[25].variant.domainPlaced);
   CHECK(all[1].variant.domainView);
   CHECK(all[1].variant.access[1].addressing == Addressing::Plane);
   CHECK(all[1].variant.access[1].view);

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+#include "call/placed.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "assemble/append/append_passes.hpp"
+#include "call/box.hpp"
+#include "call/check_argument.hpp"
+#include "call/halo_limits.hpp"
+#include "call/iterator.hpp"
+#include "device/region.hpp"
+
+namespace sk {
+
+using program::Boundary;
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+namespace {
+
+/// Numbers from `begin` to `end` (exclusive).
+struct Interval {
+  std::int64_t begin, end;
+
+  bool holds(const Interval& other) const { return begin <= other.begin && other.end <= end; }
+};
+
+Interval heldIn(const StreamRegion& region, int d) {
+  const std::int64_t origin = originOf(region, d);
+  return {origin, origin + region.shape[d]};
+}
+
+/// The letter of a dimension, x for the last one.
+char letterOf(int rank, int d) { return "xyzw"[rank - 1 - d]; }
+
+/// Whether `held` has the elements that a boundary mode gives for the indices in `read`, in a dimension of extent n.
+bool holdsWhatIsRead(Boundary boundary, const Interval& held, const Interval& read, std::int64_t n) {
+  switch (boundary) {
+    case Boundary::Clamp:
+    case Boundary::Border: {
+      const Interval inside{std::clamp<std::int64_t>(read.begin, 0, n - 1),
+                            std::clamp<std::int64_t>(read.end, 1, n)};
+      return held.holds(inside);
+    }
+    case Boundary::Mirror: {
+      if (read.begin < -n || read.end > 2 * n) return held.holds({0, n});
+      Interval inside{std::clamp<std::int64_t>(read.begin, 0, n - 1),
+                      std::clamp<std::int64_t>(read.end, 1, n)};
+      if (read.begin < 0) inside.end = std::max(inside.end, -read.begin);
+      if (read.end > n) inside.begin = std::min(inside.begin, 2 * n - read.end);
+      return held.holds(inside);
+    }
+    case Boundary::Wrap: break;
+  }
+  const std::int64_t length = held.end - held.begin;
+  if (length >= n) return true;
+  const std::int64_t first = ((read.begin - held.begin) % n + n) % n;
+  return first + read.end - read.begin <= length;
+}
+
+/// Whether any index at all may be read in dimension d.
+bool holdsAll(Boundary boundary, const StreamRegion& region, int d) {
+  const std::int64_t n = seenShape(region)[d];
+  const Interval held = heldIn(region, d);
+  return boundary == Boundary::Wrap ? held.end - held.begin >= n : held.holds({0, n});
+}
+
+void checkGather(const ResolvedCall& call, std::size_t gather, const Box& box) {
+  const Parameter& parameter = call.kernel.parameters[gather];
+  const StreamRegion& region = call.arguments[gather].region;
+  const int rank = region.shape.rank();
+  const bool areValid = areLimitsValid(call.kernel, call.arguments, gather, call.domain);
+  for (int d = 0; d < rank; ++d) {
+    if (holdsAll(parameter.boundary, region, d)) continue;
+    const Interval held = heldIn(region, d);
+    const std::optional<HaloLimits> limits =
+        areValid ? haloLimits(parameter, rank - 1 - d, call.specs) : std::nullopt;
+    if (!limits) {
+      fail(Error::Kind::Shape, call.kernel,
+           "how far '{}' is read along {} is not known, and it holds only indices {} to {} (exclusive) of "
+           "{}; promise "
+           "a distance with [[halo(n)]] on a gather of the domain's shape, or give a stream that holds all "
+           "of them",
+           parameter.name, letterOf(rank, d), held.begin, held.end, seenShape(region)[d]);
+    }
+    const Interval read{box.begin[d] - limits->below, box.end[d] + limits->above};
+    if (!holdsWhatIsRead(parameter.boundary, held, read, seenShape(region)[d])) {
+      fail(Error::Kind::Shape, call.kernel,
+           "'{}' is read from {} before to {} after the elements of the box {}, so from index {} to {} "
+           "(exclusive) "
+           "along {}, but it holds {} to {} of {}; give it a deeper halo, or a smaller box",
+           parameter.name, limits->below, limits->above, toString(box), read.begin, read.end,
+           letterOf(rank, d), held.begin, held.end, seenShape(region)[d]);
+    }
+  }
+}
+
+/// Whether a region has elements for the indices of `frame`, and, if it `mayRepeat`, extent 1 where the domain has more.
+bool isInFrame(const StreamRegion& region, const StreamRegion& frame, bool mayRepeat) {
+  const Shape &seen = seenShape(region), &domain = seenShape(frame);
+  if (region.shape.rank() != frame.shape.rank()) return false;
+  for (int d = 0; d < seen.rank(); ++d) {
+    const bool isSame = seen[d] == domain[d] && originOf(region, d) == originOf(frame, d) &&
+                        region.shape[d] == frame.shape[d];
+    const bool repeats = mayRepeat && seen[d] == 1 && domain[d] != 1 && region.shape[d] == 1;
+    if (!isSame && !repeats) return false;
+  }
+  return true;
+}
+
+/// Whether boundary modes at the ends of what a gather holds give what those at the ends of the whole give, for elements
+/// of the box.
+bool hasSameBorders(const ResolvedCall& call, std::size_t gather, const Box& box) {
+  const Parameter& parameter = call.kernel.parameters[gather];
+  const StreamRegion& region = call.arguments[gather].region;
+  const int rank = region.shape.rank();
+  const bool areValid = areLimitsValid(call.kernel, call.arguments, gather, call.domain);
+  for (int d = 0; d < rank; ++d) {
+    const Interval held = heldIn(region, d);
+    const std::int64_t n = seenShape(region)[d], length = held.end - held.begin;
+    if (held.begin == 0 && length == n) continue;
+    const std::optional<HaloLimits> limits =
+        areValid ? haloLimits(parameter, rank - 1 - d, call.specs) : std::nullopt;
+    if (!limits || limits->below > length || limits->above > length) return false;
+    const bool wraps = parameter.boundary == Boundary::Wrap;
+    const std::int64_t first = wraps ? held.begin : std::max<std::int64_t>(held.begin, 0);
+    const std::int64_t end = wraps ? held.end : std::min(held.end, n);
+    const bool isInside = box.begin[d] - limits->below >= first && box.end[d] + limits->above <= end;
+    const bool endsLow = !wraps && held.begin == 0, endsHigh = !wraps && held.end == n;
+    if (isInside) continue;
+    if (box.begin[d] - limits->below < first && !endsLow) return false;
+    if (box.end[d] + limits->above > end && !endsHigh) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool hasPlaced(std::span<const Argument> arguments) {
+  return std::ranges::any_of(arguments, [](const Argument& argument) { return isPlaced(argument.region); });
+}
+
+Box boxOrAll(const Box& box, const Shape& domain) {
+  if (!box.isWhole()) return box;
+  Box all{Index::origin(domain.rank()), Index::origin(domain.rank())};
+  for (int d = 0; d < domain.rank(); ++d) all.end[d] = domain[d];
+  return all;
+}
+
+Box heldBox(const StreamRegion& region) {
+  const int rank = region.shape.rank();
+  Box held{Index::origin(rank), Index::origin(rank)};
+  for (int d = 0; d < rank; ++d) {
+    held.begin[d] = originOf(region, d);
+    held.end[d] = held.begin[d] + region.shape[d];
+  }
+  return held;
+}
+
+StreamRegion partOfWhole(const Kernel& kernel, const Parameter& parameter, const StreamRegion& region,
+                         const Box& box) {
+  const Box held = heldBox(region);
+  Box local = box;
+  for (int d = 0; d < region.shape.rank(); ++d) {
+    if (box.begin[d] < held.begin[d] || box.end[d] > held.end[d]) {
+      fail(Error::Kind::Shape, kernel,
+           "'{}' holds the elements {} of a whole of shape {}, but the call needs {}; give a box of what it "
+           "holds: "
+           ".with({{.box = ...}})",
+           parameter.name, toString(held), toString(seenShape(region)), toString(box));
+    }
+    local.begin[d] -= held.begin[d];
+    local.end[d] -= held.begin[d];
+  }
+  return detail::partOf(region, local.begin, local.end);
+}
+
+void checkPlacedCall(const ResolvedCall& call, const Box& box, std::int64_t mostCounted) {
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const Parameter& parameter = call.kernel.parameters[i];
+    const StreamRegion& region = call.arguments[i].region;
+    if (assemble::isAppendOutput(parameter)) {
+      fail(call.kernel,
+           "it pushes or scatters to '{}', which a call with placed streams cannot do; give streams that are "
+           "whole",
+           parameter.name);
+    }
+    if (parameter.role == Role::Iterator && countsElements(parameter, call.domain.rank()) &&
+        call.domain.size() > mostCounted) {
+      fail(
+          Error::Kind::Shape, call.kernel,
+          "the iterator '{}' advances with the element number, and the whole of shape {} has {} elements, of "
+          "which this device counts {}; give it a component for each dimension",
+          parameter.name, toString(call.domain), call.domain.size(), mostCounted);
+    }
+    const bool isElement = parameter.role == Role::Input || parameter.role == Role::Output;
+    if (isElement && isPlaced(region) && assemble::isNeeded(parameter, call.specs))
+      partOfWhole(call.kernel, parameter, region, boxIn(seenShape(region), call.domain, box));
+  }
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const Parameter& parameter = call.kernel.parameters[i];
+    if (parameter.role == Role::Gather && isPlaced(call.arguments[i].region) &&
+        assemble::isNeeded(parameter, call.specs))
+      checkGather(call, i, box);
+  }
+}
+
+namespace {
+
+Box within(const StreamRegion& frame, const Box& box) {
+  Box local = box;
+  for (int d = 0; d < box.begin.rank(); ++d) {
+    local.begin[d] -= originOf(frame, d);
+    local.end[d] -= originOf(frame, d);
+  }
+  return local;
+}
+
+/// The first element output, which exists.
+const StreamRegion& frameOf(const ResolvedCall& call) {
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const Parameter& parameter = call.kernel.parameters[i];
+    if (parameter.role == Role::Output && assemble::isNeeded(parameter, call.specs))
+      return call.arguments[i].region;
+  }
+  return call.arguments[0].region;
+}
+
+bool isElement(const ResolvedCall& call, std::size_t i) {
+  const Parameter& parameter = call.kernel.parameters[i];
+  return (parameter.role == Role::Input || parameter.role == Role::Output) &&
+         call.arguments[i].region.stream != nullptr && assemble::isNeeded(parameter, call.specs);
+}
+
+}  // namespace
+
+std::optional<LocalCall> localCall(const ResolvedCall& call, const Box& box) {
+  const Kernel& kernel = call.kernel;
+  if (kernel.usesIndex || kernel.usesExtent) return std::nullopt;
+  const StreamRegion& frame = frameOf(call);
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const Parameter& parameter = kernel.parameters[i];
+    const StreamRegion& region = call.arguments[i].region;
+    if (parameter.role == Role::Iterator) return std::nullopt;
+    if (region.stream == nullptr || !assemble::isNeeded(parameter, call.specs)) continue;
+    if (parameter.role == Role::Gather) {
+      if (!isPlaced(region)) {
+        if (parameter.usesNear) return std::nullopt;
+        continue;
+      }
+      if (parameter.usesAt || parameter.usesSample || parameter.usesExtent ||
+          !isInFrame(region, frame, false) || !hasSameBorders(call, i, box))
+        return std::nullopt;
+    } else if (parameter.role == Role::Input || parameter.role == Role::Output) {
+      if (parameter.usesIndex || parameter.usesExtent ||
+          !isInFrame(region, frame, parameter.role == Role::Input))
+        return std::nullopt;
+    }
+  }
+  LocalCall local{{call.arguments.begin(), call.arguments.end()}, frame.shape, within(frame, box)};
+  for (Argument& argument : local.arguments) argument.region.placement = {};
+  if (isAll(local.box, local.domain)) local.box = {};
+  return local;
+}
+
+LocalCall partCall(const ResolvedCall& call, const Box& box) {
+  const StreamRegion& frame = frameOf(call);
+  LocalCall part{{call.arguments.begin(), call.arguments.end()}, frame.shape, within(frame, box)};
+  part.place = {heldBox(frame).begin, call.domain};
+  bool areTogether = true;
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const bool mayRepeat = call.kernel.parameters[i].role == Role::Input;
+    areTogether =
+        areTogether && (!isElement(call, i) || isInFrame(call.arguments[i].region, frame, mayRepeat));
+  }
+  if (areTogether) {
+    if (isAll(part.box, part.domain)) part.box = {};
+    return part;
+  }
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    if (!isElement(call, i)) continue;
+    StreamRegion& region = part.arguments[i].region;
+    const Shape seen = seenShape(region);
+    const Box own = boxIn(seen, call.domain, box);
+    region = partOfWhole(call.kernel, call.kernel.parameters[i], region, own);
+    region.placement = {own.begin, seen};
+  }
+  part.domain =
+      frameOf({call.kernel, part.arguments, call.options, call.specs, call.domain, call.plan}).shape;
+  part.box = {};
+  part.place.origin = box.begin;
+  return part;
+}
+
+}  // namespace sk
