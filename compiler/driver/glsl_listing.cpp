@@ -73,18 +73,6 @@ sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel, bool packe
   return variant;
 }
 
-/// The point passes that apply a scatter output's list (runtime/src/gl_device/append/scatter_points.cpp).
-std::vector<sk::assemble::PointStep> pointSteps(const sk::program::Parameter& appendOutput) {
-  using sk::assemble::PointStep;
-  const bool isFloat = appendOutput.element->fields.front().scalar == sk::program::Scalar::Float;
-  if (isFloat || appendOutput.scatter == sk::program::ScatterOp::Store) return {PointStep::Store};
-  if (appendOutput.scatter == sk::program::ScatterOp::Add) {
-    return {PointStep::SplitLimbs, PointStep::AddLimbs, PointStep::JoinLimbs};
-  }
-  return {PointStep::SplitUpper, PointStep::Upper, PointStep::SplitLower, PointStep::Lower,
-          PointStep::JoinHalves};
-}
-
 /// The compute programs of a kernel with append outputs: the owners of stores, if there are any, and everything else.
 std::string groupListing(const Profile& profile, const sk::program::Kernel& kernel) {
   using sk::program::Role;
@@ -156,7 +144,7 @@ std::string appendListing(const Profile& profile, const sk::program::Kernel& ker
     variant.task.appendOutput = static_cast<std::uint8_t>(i);
     programs.push_back(sk::assemble::kernelProgram(profile, kernel, variant));
     if (appendOutput.role == sk::program::Role::VariableOutput) continue;
-    for (const sk::assemble::PointStep step : pointSteps(appendOutput)) {
+    for (const sk::assemble::PointStep step : sk::assemble::pointSteps(appendOutput)) {
       programs.push_back(sk::assemble::pointProgram(profile, appendOutput, step, {}));
     }
   }

@@ -4,6 +4,7 @@
 // a key, which runtime/web/src computes from a call in the same way (variant.ts, reduce_plan.ts).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -22,9 +23,14 @@ using Programs = std::map<std::string, std::string>;
 ///
 /// Streams are whole, in planes or linearised, either all packed that can be or none. Inputs have the shape of the domain.
 /// A Spec parameter's value is any: `const T sk_spec_P = VALUE;` stands in the program for the runtime to replace.
-/// `packs`: also those for packed streams, which passes of plans do not read.
+/// `packs`: also those for packed streams, which passes of plans do not read. A kernel with append outputs counts its pushes
+/// beside writing its other outputs.
 Programs kernelPrograms(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel,
                         bool packs = true);
+
+/// The programs of the list of an append output (assemble/append/append_passes.hpp), for streams that are not packed.
+Programs listPrograms(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel,
+                      std::size_t appendOutput);
 
 /// The programs that fold whole streams to a value.
 Programs reducePrograms(const sk::assemble::Profile& profile, const sk::program::Reduction& reduction);
@@ -43,6 +49,10 @@ struct Lie {
   std::uint8_t rank;  ///< Variant::domainRank
   bool packed;  ///< all streams that can be
 };
+
+/// The domains that calls may have, packed and not: all, unless the kernel reads neighbours, when one of these gathers has the
+/// rank of the domain. Streams of two dimensions are planes; all others are linearised.
+std::vector<Lie> liesOf(const sk::program::Kernel& kernel);
 
 /// All choices of accesses of a kernel's streams over such a domain.
 std::vector<std::vector<sk::assemble::StreamAccess>> accessChoices(const sk::program::Kernel& kernel,

@@ -10,6 +10,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "assemble/append/append_passes.hpp"
+#include "assemble/append/histo_pyramid.hpp"
+#include "assemble/append/point_program.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
 #include "ir/print.hpp"
 #include "program/descriptor_lists.hpp"
@@ -84,9 +87,54 @@ class ScriptWriter {
       kernel["plan"] = planJson(*plan);
       return kernel;
     }
+    if (hasAppendOutputs(unit.kernel)) return appending(unit.kernel, std::move(kernel));
     kernel["packs"] = sk::assemble::mayWritePacked(unit.kernel);
     kernel["programs"] = programsOf(kernelPrograms(webProfile(), unit.kernel), {&unit.kernel});
     return kernel;
+  }
+
+  /// Adds what a kernel with append outputs needs: programs of each list and its points, and of the pyramid.
+  Json appending(const Kernel& declared, Json kernel) {
+    const sk::assemble::Profile profile = webProfile();
+    Json lists = Json::array();
+    bool isDrawn = false, isCounted = false;
+    for (std::size_t i = 0; i < declared.parameters.size(); ++i) {
+      const Parameter& parameter = declared.parameters[i];
+      isDrawn = isDrawn || parameter.role == Role::Output;
+      if (!sk::assemble::isAppendOutput(parameter)) continue;
+      Json list = {{"parameter", i}, {"symbol", parameter.symbol}};
+      if (sk::assemble::isCounted(parameter)) {
+        isCounted = true;
+      } else {
+        list["slots"] = sk::assemble::slotsOf(parameter);
+      }
+      list["programs"] = programsOf(listPrograms(profile, declared, i), {&declared});
+      if (parameter.role == Role::Scatter) {
+        list["op"] = nameOf(parameter.scatter);
+        Json points = Json::object();
+        for (const sk::assemble::PointStep step : sk::assemble::pointSteps(parameter))
+          points[stepName(step)] = indexOf(sk::assemble::pointProgram(profile, parameter, step, {}), {});
+        list["points"] = std::move(points);
+        kernel["vertices"] = indexOf(sk::assemble::pointVertexProgram(profile, {}), {});
+      }
+      lists.push_back(std::move(list));
+    }
+    if (isCounted) {
+      for (const bool ofCounts : {true, false})
+        kernel["sums"].push_back(indexOf(sk::assemble::pyramidProgram(profile, {.ofCounts = ofCounts}), {}));
+    }
+    kernel["packs"] = false;
+    kernel["programs"] = isDrawn || isCounted
+                             ? programsOf(kernelPrograms(profile, declared, false), {&declared})
+                             : Json::object();
+    kernel["lists"] = std::move(lists);
+    return kernel;
+  }
+
+  static std::string_view stepName(sk::assemble::PointStep step) {
+    static constexpr std::string_view names[] = {"store", "splitLimbs", "addLimbs", "joinLimbs", "splitUpper",
+                                                 "upper", "splitLower", "lower",    "joinHalves"};
+    return names[static_cast<std::size_t>(step)];
   }
 
   Json planJson(const sk::program::Plan& plan) {

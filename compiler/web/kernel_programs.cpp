@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "web/offered.hpp"
+
 namespace skc::web {
 namespace {
 
@@ -16,6 +18,7 @@ using sk::assemble::Domain;
 using sk::assemble::SpecValues;
 using sk::assemble::StreamAccess;
 using sk::assemble::Variant;
+using sk::assemble::Work;
 using sk::program::ConditionOp;
 using sk::program::Kernel;
 using sk::program::Parameter;
@@ -81,8 +84,8 @@ std::vector<std::uint32_t> candidates(const Kernel& kernel, Scalar scalar) {
   return {values.begin(), values.end()};
 }
 
-/// The domains that calls may have: all, unless the kernel reads neighbours, when one of these gathers has the rank of the
-/// domain. Streams of two dimensions are planes; all others are linearised.
+}  // namespace
+
 std::vector<Lie> liesOf(const Kernel& kernel) {
   const auto readsNear = [&](std::initializer_list<int> ranks) {
     return std::ranges::any_of(kernel.parameters, [&](const Parameter& parameter) {
@@ -101,11 +104,10 @@ std::vector<Lie> liesOf(const Kernel& kernel) {
   return lies;
 }
 
-}  // namespace
-
 std::string keyOf(const Kernel& kernel, const Variant& variant) {
   std::string key(nameOf(variant.domain));
-  if (variant.domain == Domain::Linear) key += std::to_string(variant.domainRank);
+  if (variant.domain == Domain::Linear || variant.domain == Domain::Entry)
+    key += std::to_string(variant.domainRank);
   if (variant.domainPacked) key += " packed";
   return key + accessKey(kernel, variant.access, variant.specs);
 }
@@ -217,6 +219,7 @@ Programs kernelPrograms(const sk::assemble::Profile& profile, const Kernel& kern
     for (const Lie& lie : liesOf(kernel)) {
       if (lie.packed && !packs) continue;
       Variant variant;
+      if (hasAppendOutputs(kernel)) variant.task.work = Work::Counts;
       variant.specs = specs;
       variant.domain = lie.domain;
       variant.domainRank = lie.rank;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/append/append_passes.hpp"
 #include "assemble/program/plans.hpp"
 #include "web/ahead_programs.hpp"
 
@@ -15,12 +16,33 @@ using sk::program::Kernel;
 using sk::program::Parameter;
 using sk::program::Role;
 
-bool has(const Kernel& kernel, Role role) {
-  return std::ranges::find(kernel.parameters, role, &Parameter::role) != kernel.parameters.end();
+/// What append outputs add: a list's planes and target texels, the counts that the other outputs are drawn with, and the
+/// textures of the pyramid.
+bool fitsAppendPasses(const Kernel& kernel, const sk::assemble::PassLimits& limits,
+                      const sk::assemble::SpecValues& specs) {
+  int written = 0, read = 0, pyramid = 0;
+  for (const Parameter& parameter : kernel.parameters) {
+    const int planes = static_cast<int>(heldBy(parameter).fields.size());
+    if (sk::assemble::isAppendOutput(parameter)) {
+      const bool isCounted = sk::assemble::isCounted(parameter);
+      written += isCounted ? 1 : 0;
+      pyramid = isCounted ? 2 : pyramid;
+      if (planes + (parameter.role == Role::Scatter ? 1 : 0) > limits.drawBuffers) return false;
+    } else if (sk::assemble::isNeeded(parameter, specs)) {
+      if (parameter.role == Role::Output) written += planes;
+      if (parameter.role == Role::Input || parameter.role == Role::Gather) read += planes;
+    }
+  }
+  return written <= limits.drawBuffers && read + pyramid <= limits.textureUnits;
 }
 
 bool fitsOnePass(const Kernel& kernel, const sk::assemble::Profile& profile) {
   const sk::assemble::PassLimits limits{profile.drawBuffers, profile.textureUnits};
+  if (hasAppendOutputs(kernel)) {
+    return std::ranges::all_of(specChoices(kernel), [&](const sk::assemble::SpecValues& specs) {
+      return fitsAppendPasses(kernel, limits, specs);
+    });
+  }
   return std::ranges::all_of(specChoices(kernel), [&](const sk::assemble::SpecValues& specs) {
     return sk::assemble::fitsOnePass(kernel, limits, specs);
   });
@@ -28,9 +50,13 @@ bool fitsOnePass(const Kernel& kernel, const sk::assemble::Profile& profile) {
 
 }  // namespace
 
+bool hasAppendOutputs(const Kernel& kernel) {
+  return std::ranges::any_of(kernel.parameters, sk::assemble::isAppendOutput);
+}
+
 const sk::program::Plan* planOf(const Kernel& kernel) {
   const sk::assemble::Profile profile = webProfile();
-  if (fitsOnePass(kernel, profile)) return nullptr;
+  if (hasAppendOutputs(kernel) || fitsOnePass(kernel, profile)) return nullptr;
   const sk::program::Plan* plan =
       sk::assemble::planWithin(kernel, {profile.drawBuffers, profile.textureUnits});
   return plan != nullptr && plan->bundles.empty() ? plan : nullptr;
@@ -47,15 +73,15 @@ std::string whyNotOffered(const emit::Unit& unit) {
   const Kernel& kernel = unit.kernel;
   if (unit.isScan)
     return "scans do not run in browsers yet; fold with a reduce, or scan the elements on the host";
-  if (has(kernel, Role::VariableOutput)) {
-    return "variable outputs do not run in browsers yet; write every element with a mark, and select on the "
-           "host";
-  }
-  if (has(kernel, Role::Scatter)) {
-    return "scatter outputs do not run in browsers yet; gather from a stream of indices instead";
-  }
   if (unit.reduction != nullptr && unit.reduction->parts != nullptr) {
     return "folded outputs do not run in browsers yet; write a kernel and a reduce";
+  }
+  if (hasAppendOutputs(kernel) && !fitsOnePass(kernel, profile)) {
+    return fmt::format(
+        "a pass of it has more than {} planes to write or {} to read, with those of what it pushes or "
+        "scatters; divide it, or put "
+        "scalars together in vectors",
+        profile.drawBuffers, profile.textureUnits);
   }
   if (!fitsOnePass(kernel, profile) && planOf(kernel) == nullptr) {
     return fmt::format(

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/append/append_passes.hpp"
 #include "ir/print.hpp"
 #include "program/used_structs.hpp"
 #include "support/text.hpp"
@@ -85,9 +86,17 @@ class TypesWriter {
       }
     }
     const std::string list = join(taken, ", ");
-    if (unit.reduction == nullptr) return fmt::format("sk.Kernel<[{}]>", list);
+    if (unit.reduction == nullptr)
+      return fmt::format("sk.{}<[{}]>", isCounting(unit.kernel) ? "CountingKernel" : "Kernel", list);
     const std::string value = values.size() == 1 ? values.front() : "[" + join(values, ", ") + "]";
     return fmt::format("sk.Reduce<[{}], {}>", list, value);
+  }
+
+  /// Whether calls learn from the device how much they push, which takes a while.
+  static bool isCounting(const sk::program::Kernel& kernel) {
+    return std::ranges::any_of(kernel.parameters, [](const sk::program::Parameter& parameter) {
+      return sk::assemble::isAppendOutput(parameter) && sk::assemble::isCounted(parameter);
+    });
   }
 
   std::string parameterType(const KernelParam& param) const {
@@ -99,9 +108,9 @@ class TypesWriter {
       case ParamRole::Iterator: return fmt::format("sk.Iterate<{}>", valueType(param.type));
       case ParamRole::Input: type = fmt::format("sk.Input<{}>", element); break;
       case ParamRole::Gather: type = fmt::format("sk.Gather<{}, {}>", element, param.rank); break;
+      case ParamRole::Scatter: type = fmt::format("sk.Scattered<{}, {}>", element, param.rank); break;
+      case ParamRole::VariableOutput: type = fmt::format("sk.Pushed<{}>", element); break;
       case ParamRole::Output:
-      case ParamRole::Scatter:
-      case ParamRole::VariableOutput:
       case ParamRole::Accumulator: type = fmt::format("sk.Output<{}>", element); break;
     }
     return param.neededIf ? type + " | null" : type;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "assemble/append/histo_pyramid.hpp"
 #include "assemble/assemble.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
 #include "gl_device/memory/layout.hpp"
@@ -193,9 +194,25 @@ std::vector<std::string> variants() {
   return cases;
 }
 
+std::vector<std::string> pyramids() {
+  std::vector<std::string> cases;
+  for (int i = 0; i < 300; ++i) {
+    const auto count = static_cast<std::int32_t>(i < 20 ? 1 + i : 1 + below(std::int64_t{1} << (1 + i % 26)));
+    const sk::assemble::PyramidPlan plan = sk::assemble::planPyramid(count, limits(8192));
+    std::vector<std::string> levels;
+    for (const auto& [children, row, draws] : plan.levels)
+      levels.push_back(fmt::format(R"({{"children":{},"row":{},"draws":{}}})", children, row, text(draws)));
+    cases.push_back(fmt::format(R"({{"count":{},"width":{},"oddRows":{},"evenRows":{},"levels":[{}]}})",
+                                count, plan.odd.width, plan.odd.height, plan.even.height,
+                                fmt::join(levels, ",")));
+  }
+  return cases;
+}
+
 }  // namespace
 
 int main() {
-  fmt::print("{{\"layouts\":[\n{}],\n\"reductions\":[\n{}],\n\"variants\":[\n{}]}}\n",
-             fmt::join(layouts(), ",\n"), fmt::join(reductions(), ",\n"), fmt::join(variants(), ",\n"));
+  fmt::print("{{\"layouts\":[\n{}],\n\"reductions\":[\n{}],\n\"variants\":[\n{}],\n\"pyramids\":[\n{}]}}\n",
+             fmt::join(layouts(), ",\n"), fmt::join(reductions(), ",\n"), fmt::join(variants(), ",\n"),
+             fmt::join(pyramids(), ",\n"));
 }

@@ -48,6 +48,9 @@ export interface DeviceInfo {
   readonly compilesInParallel: boolean;
 }
 
+/** How points are combined with stored texels. */
+export type Blend = 'add' | 'min' | 'max';
+
 /** A texture, and the framebuffer that draws to it alone. */
 export interface Plane {
   readonly texture: WebGLTexture;
@@ -55,6 +58,12 @@ export interface Plane {
   readonly width: number;
   readonly height: number;
   readonly id: number;
+  /** Device.generation when it was made. */
+  readonly generation: number;
+  /** Calls that are yet to read it. */
+  holds: number;
+  /** Whether no stream has it any more, while calls hold it. */
+  isLeft: boolean;
   framebuffer: WebGLFramebuffer | null;
 }
 
@@ -84,7 +93,8 @@ export class Device {
   private isLost = false;
   private isDisposed = false;
   private readonly programs = new Map<unknown, Map<string, Program>>();
-  private readonly layouts = new Map<string, Layout>();
+  private readonly layouts = new Map<string, WeakRef<Layout>>();
+  private mostLayouts = 1024;
   private readonly pool = new Map<string, Plane[]>();
   private readonly framebuffers = new Map<string, WebGLFramebuffer>();
   private readonly readFormats = new Map<number, { format: number; type: number }>();
@@ -226,12 +236,21 @@ export class Device {
   layoutOf(shape: readonly number[], packed: boolean): Layout {
     const packs = packed && mayPack(shape);
     const key = shape.join() + packs;
-    let layout = this.layouts.get(key);
+    let layout = this.layouts.get(key)?.deref();
     if (layout === undefined) {
       layout = layoutOf(shape, this.limits.textureSize, packs);
-      this.layouts.set(key, layout);
+      this.layouts.set(key, new WeakRef(layout));
+      if (this.layouts.size > this.mostLayouts) this.forgetLayouts();
     }
     return layout;
+  }
+
+  /** Streams that kernels push to have many shapes in their life. */
+  private forgetLayouts(): void {
+    for (const [key, layout] of this.layouts) {
+      if (layout.deref() === undefined) this.layouts.delete(key);
+    }
+    this.mostLayouts = Math.max(1024, 2 * this.layouts.size);
   }
 
   /** The format of a plane of `width` components: of floats, that in which this device stores them. @internal */
@@ -256,16 +275,36 @@ export class Device {
     gl.texStorage2D(gl.TEXTURE_2D, 1, format.internal, width, height);
     for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
     for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
-    return { texture, format, width, height, id: this.nextId++, framebuffer: null };
+    return { texture, format, width, height, id: this.nextId++, generation: this.generation, holds: 0, isLeft: false, framebuffer: null };
   }
 
   /** @internal */
   release(planes: readonly Plane[]): void {
     for (const plane of planes) {
+      if (plane.generation !== this.generation) continue; // it went with the context
+      if (plane.holds > 0) {
+        plane.isLeft = true;
+        continue;
+      }
       const key = `${plane.format.internal} ${plane.width} ${plane.height}`;
       const idle = this.pool.get(key);
       if (idle === undefined) this.pool.set(key, [plane]);
       else idle.push(plane);
+    }
+  }
+
+  /** Keeps planes as they are until letGo(): whoever writes their streams meanwhile draws to others. @internal */
+  hold(planes: readonly Plane[]): Plane[] {
+    planes.forEach((plane) => ++plane.holds);
+    return [...planes];
+  }
+
+  /** Ends hold(), and empties the list. @internal */
+  letGo(planes: Plane[]): void {
+    for (const plane of planes.splice(0)) {
+      if (--plane.holds > 0 || !plane.isLeft) continue;
+      plane.isLeft = false;
+      this.release([plane]);
     }
   }
 
@@ -320,13 +359,13 @@ export class Device {
   /** The program of a callable of a file under this key; `text` is asked for once. @internal */
   program(
     owner: unknown, key: string, name: string, text: () => string, parameters: readonly Parameter[], elements: readonly Element[],
-    isUsed: (parameter: Parameter) => boolean,
+    isUsed: (parameter: Parameter) => boolean, vertices?: string,
   ): Program {
     let programs = this.programs.get(owner);
     if (programs === undefined) this.programs.set(owner, (programs = new Map()));
     let program = programs.get(key);
     if (program === undefined) {
-      program = new Program(this, name, text(), parameters, elements, isUsed);
+      program = new Program(this, name, text(), parameters, elements, isUsed, vertices);
       programs.set(key, program);
     }
     return program;
@@ -347,6 +386,12 @@ export class Device {
     gl.activeTexture(gl.TEXTURE0 + unit);
     gl.bindTexture(gl.TEXTURE_2D, texture);
     this.boundTextures[unit] = texture;
+  }
+
+  /** Binds a plane whose texels are fetched as they are. @internal */
+  bindPlane(unit: number, plane: Plane): void {
+    this.bindTexture(unit, plane.texture);
+    this.bindFilter(unit, null);
   }
 
   /** Binds a linear filter with this boundary, or none, which leaves texels as they are. @internal */
@@ -390,20 +435,45 @@ export class Device {
     this.boundFramebuffer = framebuffer;
   }
 
+  private setViewport(x: number, y: number, width: number, height: number): void {
+    const last = this.viewport;
+    if (last[0] === x && last[1] === y && last[2] === width && last[3] === height) return;
+    this.context.viewport(x, y, width, height);
+    last[0] = x;
+    last[1] = y;
+    last[2] = width;
+    last[3] = height;
+  }
+
   /** Draws rectangles with the current program and framebuffer. @internal */
   drawRects(rects: readonly Rect[]): void {
     const gl = this.context;
-    const last = this.viewport;
     for (const { x, y, width, height } of rects) {
-      if (last[0] !== x || last[1] !== y || last[2] !== width || last[3] !== height) {
-        gl.viewport(x, y, width, height);
-        last[0] = x;
-        last[1] = y;
-        last[2] = width;
-        last[3] = height;
-      }
+      this.setViewport(x, y, width, height);
       gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     }
+  }
+
+  /** Draws points of one texel, in order, to textures of this size; they blend with what is there. @internal */
+  drawPoints(count: number, width: number, height: number, blend: Blend | null): void {
+    const gl = this.context;
+    this.setViewport(0, 0, width, height);
+    if (blend !== null) {
+      gl.enable(gl.BLEND);
+      gl.blendEquation({ add: gl.FUNC_ADD, min: gl.MIN, max: gl.MAX }[blend]);
+      gl.blendFunc(gl.ONE, gl.ONE);
+    }
+    gl.drawArrays(gl.POINTS, 0, count);
+    if (blend !== null) gl.disable(gl.BLEND);
+  }
+
+  /** Copies texels between planes of one format. @internal */
+  copyTexels(from: Plane, to: Plane, rects: readonly Rect[]): void {
+    const gl = this.context;
+    this.framebufferOf([from]);
+    this.bindTexture(0, to.texture);
+    gl.activeTexture(gl.TEXTURE0);
+    for (const { x, y, width, height } of rects) gl.copyTexSubImage2D(gl.TEXTURE_2D, 0, x, y, x, y, width, height);
   }
 
   /** Reads the texels of rectangles, one after the other: channels of the texture's format. @internal */

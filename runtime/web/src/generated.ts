@@ -62,12 +62,33 @@ export interface KernelData {
 /** Index of a program in the file, by the key of a variant. */
 export type ProgramIndices = Readonly<Record<string, number>>;
 
+/** The passes that apply the list of a scatter output (runtime/src/assemble/append/point_program.hpp). */
+export type PointStep =
+  | 'store' | 'splitLimbs' | 'addLimbs' | 'joinLimbs' | 'splitUpper' | 'upper' | 'splitLower' | 'lower' | 'joinHalves';
+
+/** The list of a variable or scatter output. */
+export interface List {
+  readonly parameter: number;
+  readonly symbol: string;
+  /** Entries per element, if they are not counted. */
+  readonly slots?: number;
+  readonly programs: ProgramIndices;
+  /** Of a scatter output: how values are combined, and the programs of its points. */
+  readonly op?: 'store' | 'add' | 'min' | 'max';
+  readonly points?: Readonly<Partial<Record<PointStep, number>>>;
+}
+
 export interface CallableKernel extends KernelData {
   /** Whether it may write four elements of a packed texel. */
   readonly packs: boolean;
   readonly programs: ProgramIndices;
   /** If one pass is too little. */
   readonly plan?: Plan;
+  /** Of variable and scatter outputs, in order. `programs` then count pushes and write the other outputs. */
+  readonly lists?: readonly List[];
+  /** Programs of the pyramid over counts, and the vertex program of points. */
+  readonly sums?: readonly [ofCounts: number, ofNodes: number];
+  readonly vertices?: number;
 }
 
 /** A kernel that is split into passes: each runs over the kernel's domain, and hands on temporaries. */

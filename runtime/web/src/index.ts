@@ -17,7 +17,7 @@ export { SkError } from './error.js';
 export type { ErrorKind } from './error.js';
 export { Stream } from './stream.js';
 export type {
-  ArrayOf, BuiltIn, CallOptions, ElementType, Gather, Input, Iterate, Kernel, NotOffered, Output, Reduce, ShapeOf, Struct, Value,
+  ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Input, Iterate, Kernel, NotOffered, Output, Pushed, Reduce, Scattered, ShapeOf, Struct, Value,
 } from './types.js';
 
 /** What FILE.sk.js exports under a name: a function, with what Device.compile() needs. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Calls of kernels: runtime/src/gl_device/pass/run_kernel.cpp for whole streams.
+import { AppendCaller } from './append.js';
 import { checkArguments, deviceOf, fail, isSameShape, iterationOf, stepsOf, type AnyStream, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
 import { isNeeded, specLiteral, type CallableKernel, type Element, type GeneratedFile, type KernelData, type Parameter, type ProgramIndices } from './generated.js';
@@ -112,7 +113,7 @@ export function targetOf(kernel: KernelData, i: number, call: Checked, domain: L
   const stream = call.streams[i]!;
   const isAlsoRead = call.streams.some((other, k) => other === stream && isRead(kernel, k, call));
   stream.isGone = false;
-  return { stream, planes: stream.layout === domain && !isAlsoRead ? stream.planes : stream.newPlanes(domain) };
+  return { stream, planes: stream.layout === domain && !isAlsoRead && !stream.isHeld() ? stream.planes : stream.newPlanes(domain) };
 }
 
 interface Choices {
@@ -128,6 +129,7 @@ export class KernelCaller {
   private readonly outputs: readonly number[];
   private readonly hasConditions: boolean;
   private readonly plan: PlanRunner | null;
+  private readonly append: AppendCaller | null;
   /** The last call's choices: a loop makes the same call again. */
   private last: Choices | null = null;
 
@@ -135,11 +137,12 @@ export class KernelCaller {
     this.source = new ProgramSource(kernel.name, file, texts, kernel.programs);
     this.outputs = kernel.parameters.flatMap((parameter, i) => (parameter.role === 'output' ? [i] : []));
     this.plan = kernel.plan === undefined ? null : new PlanRunner(kernel, kernel.plan, file, texts);
+    this.append = kernel.lists === undefined ? null : new AppendCaller(kernel, file, texts);
     this.hasConditions = kernel.parameters.some((parameter) => parameter.neededIf !== undefined);
   }
 
   startPrograms(device: Device): Program[] {
-    return this.plan?.start(device) ?? this.source.start(device, () => this.kernel);
+    return this.append?.start(device) ?? this.plan?.start(device) ?? this.source.start(device, () => this.kernel);
   }
 
   /** Throws SkError if these are no arguments of the kernel. */
@@ -147,10 +150,11 @@ export class KernelCaller {
     checkArguments(this.kernel, this.source.file.elements, given);
   }
 
-  call(given: readonly unknown[]): void {
+  call(given: readonly unknown[]): void | Promise<void> {
     const { kernel } = this;
     const { elements } = this.source.file;
     const call = checkArguments(kernel, elements, given);
+    if (this.append !== null) return this.append.call(call);
     const outputs = this.hasConditions ? this.outputs.filter((i) => isNeeded(kernel.parameters[i]!, call.specs)) : this.outputs;
     if (outputs.length === 0) return; // the spec parameters leave nothing to write
     const device = deviceOf(kernel, call.streams);

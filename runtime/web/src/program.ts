@@ -129,7 +129,11 @@ export class Program {
   /** Set when it is first used. */
   reads: Bound[] = [];
   values: Bound[] = [];
+  /** Scatter outputs. */
+  targets: Bound[] = [];
   domain!: LayoutUniforms;
+  /** Texture units that its streams take. */
+  units = 0;
   private isReady = false;
   private readonly integers = new Map<string, Location>();
 
@@ -142,6 +146,7 @@ export class Program {
     private readonly parameters: readonly Parameter[],
     private readonly elements: readonly Element[],
     private readonly isUsed: (parameter: Parameter) => boolean,
+    private readonly vertices = vertexText,
   ) {
     this.gl = device.context;
     this.start();
@@ -154,6 +159,7 @@ export class Program {
     this.isReady = false;
     this.reads = [];
     this.values = [];
+    this.targets = [];
     this.integers.clear();
     const handle = gl.createProgram();
     const shaders = [gl.createShader(gl.VERTEX_SHADER), gl.createShader(gl.FRAGMENT_SHADER)];
@@ -161,7 +167,7 @@ export class Program {
     this.handle = handle;
     this.shaders = shaders as WebGLShader[];
     this.shaders.forEach((shader, stage) => {
-      gl.shaderSource(shader, stage === 0 ? vertexText : this.text);
+      gl.shaderSource(shader, stage === 0 ? this.vertices : this.text);
       gl.compileShader(shader);
       gl.attachShader(handle, shader);
     });
@@ -207,18 +213,32 @@ export class Program {
           const name = element.fields.length === 1 ? `sk_tex_${symbol}` : `sk_tex${plane}_${symbol}`;
           gl.uniform1i(gl.getUniformLocation(handle, name), unit++);
         });
+      } else if (role === 'scatter') {
+        this.targets.push({ index, parameter, layout: layout() });
       }
     });
+    this.units = unit;
     this.isReady = true;
   }
 
-  /** Sets an int or ivec4 that a plan names; the program must be current. Names that it does not use are skipped. */
-  setInteger(name: string, value: number | readonly number[]): void {
+  private locationOf(name: string): Location {
     let location = this.integers.get(name);
     if (location === undefined) {
       location = this.gl.getUniformLocation(this.handle, name);
       this.integers.set(name, location);
     }
+    return location;
+  }
+
+  /** Sets an array of ints, likewise. */
+  setIntegers(name: string, values: readonly number[]): void {
+    const location = this.locationOf(name);
+    if (location !== null) this.gl.uniform1iv(location, values as number[]);
+  }
+
+  /** Sets an int or ivec4 that a plan names; the program must be current. Names that it does not use are skipped. */
+  setInteger(name: string, value: number | readonly number[]): void {
+    const location = this.locationOf(name);
     if (location === null) return;
     if (typeof value === 'number') this.gl.uniform1i(location, value);
     else this.gl.uniform4iv(location, value as number[]);

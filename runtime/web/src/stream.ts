@@ -20,15 +20,15 @@ export class Stream<T extends ElementType, R extends number> {
   readonly shape: ShapeOf<R>;
   /** The number of elements. */
   readonly size: number;
+  /** Whether a call is yet to find out how many elements it has. @internal */ isAwaited = false;
   /** @internal */ layout: Layout;
   /** @internal */ planes: Plane[] = [];
   private isDisposed = false;
   /** The device's generation in which the planes were made. */
   private generation: number;
   /** Whether the elements went with a context, and nothing has written them since. @internal */ isGone = false;
-  /** What was written or kept, for a context that is restored; its number, and that of the latest request. */
-  private copy: ArrayOf<T> | null = null;
-  private copyNumber = 0;
+  /** What was written or kept, for a context that is restored, and the number of the request for it. */
+  private copy: { readonly elements: ArrayOf<T>; readonly shape: readonly number[]; readonly number: number } | null = null;
   private requests = 0;
 
   /** @internal */
@@ -83,11 +83,37 @@ export class Stream<T extends ElementType, R extends number> {
     this.layout = layout;
   }
 
+  /** Takes elements of another number; `shape` has one dimension. @internal */
+  take(planes: Plane[], layout: Layout, shape: readonly number[]): void {
+    if (this.isDisposed) return this.device.release(planes);
+    this.exchange(planes, layout);
+    this.resize(shape);
+    this.isGone = false;
+  }
+
+  private resize(shape: readonly number[]): void {
+    Object.assign(this, { shape, size: sizeOf(shape) });
+  }
+
+  /** Whether a call is yet to read the planes. @internal */
+  isHeld(): boolean {
+    return this.planes.some((plane) => plane.holds > 0);
+  }
+
+  /** Makes sure that nothing else reads the planes, so that they may be drawn to in part. @internal */
+  own(): void {
+    if (!this.isHeld()) return;
+    const planes = this.newPlanes(this.layout);
+    planes.forEach((plane, i) => this.device.copyTexels(this.planes[i]!, plane, this.layout.draws));
+    this.exchange(planes, this.layout);
+  }
+
   /**
    * Throws SkError if the stream has been disposed of, or if it is to be read and its elements went with the context. @internal
    */
   check(what: string, isRead = true): void {
     if (this.isDisposed) throw new SkError(`${what} has been disposed of`, 'lost');
+    if (this.isAwaited) throw new SkError(`${what} is being written by a call that counts what it pushes; await the promise of that call first`);
     if (this.generation !== this.device.generation) this.restore();
     if (isRead && this.isGone) {
       throw new SkError(`${what} has lost its elements with the device's context, and there is no copy of them; write() them, and keep() those that must outlive it`, 'lost');
@@ -99,11 +125,12 @@ export class Stream<T extends ElementType, R extends number> {
     const { device, copy } = this;
     device.begin();
     this.generation = device.generation;
+    if (copy !== null) this.resize(copy.shape);
     this.layout = this.layoutIf(true);
     this.planes = this.newPlanes(this.layout);
     this.isGone = copy === null && this.size > 0;
     if (copy === null) this.clear();
-    else this.upload(copy);
+    else this.upload(copy.elements);
   }
 
   /** Copies elements to the device, rows first. The array may change as soon as this returns. */
@@ -111,7 +138,8 @@ export class Stream<T extends ElementType, R extends number> {
     this.check('the stream', false);
     this.device.begin();
     this.upload(elements);
-    if (this.device.keepsCopies) this.setCopy(cloned(elements) as ArrayOf<T>, ++this.requests);
+    if (!this.device.keepsCopies) return;
+    this.copy = { elements: cloned(elements) as ArrayOf<T>, shape: this.shape as readonly number[], number: ++this.requests };
   }
 
   /**
@@ -120,14 +148,9 @@ export class Stream<T extends ElementType, R extends number> {
    */
   async keep(): Promise<void> {
     const number = ++this.requests;
-    this.setCopy(await this.read(), number);
-  }
-
-  /** Of two copies, the one that was asked for later stays. */
-  private setCopy(copy: ArrayOf<T>, number: number): void {
-    if (number < this.copyNumber) return;
-    this.copy = copy;
-    this.copyNumber = number;
+    const shape = this.shape as readonly number[];
+    const elements = await this.read();
+    if (number >= (this.copy?.number ?? 0)) this.copy = { elements, shape, number }; // of two copies, the one asked for later stays
   }
 
   private upload(elements: ArrayOf<T>): void {
@@ -135,7 +158,7 @@ export class Stream<T extends ElementType, R extends number> {
     const arrays = fields.map((_, plane) => planeArray(this.element, plane, elements, this.size));
     if (this.size === 0) return;
     const packed = this.layoutIf(true);
-    if (this.layout !== packed) this.exchange(this.newPlanes(packed), packed);
+    if (this.layout !== packed || this.isHeld()) this.exchange(this.newPlanes(packed), packed);
     fields.forEach((field, i) => this.uploadPlane(this.planes[i]!, channelsOf(field, arrays[i]!, this.size)));
     this.isGone = false;
   }
@@ -156,12 +179,13 @@ export class Stream<T extends ElementType, R extends number> {
   async read(): Promise<ArrayOf<T>> {
     this.check('the stream');
     this.device.begin();
-    const arrays = newArrays(this.element, this.size) as ArrayOf<T>;
-    if (this.size === 0) return arrays;
+    const { size } = this;
+    const arrays = newArrays(this.element, size) as ArrayOf<T>;
+    if (size === 0) return arrays;
     const transfers = this.planes.map((plane) => this.device.readTexels(plane, this.layout.draws));
     const { fields } = this.element;
     (await Promise.all(transfers)).forEach((channels, i) =>
-      takeChannels(fields[i]!, channels, planeArray(this.element, i, arrays, this.size), this.size),
+      takeChannels(fields[i]!, channels, planeArray(this.element, i, arrays, size), size),
     );
     return arrays;
   }
@@ -186,8 +210,7 @@ export class Stream<T extends ElementType, R extends number> {
   dispose(): void {
     if (this.isDisposed) return;
     this.isDisposed = true;
-    const { device } = this;
-    if (!device.lost && this.generation === device.generation) device.release(this.planes);
+    if (!this.device.lost) this.device.release(this.planes);
     this.planes = [];
     this.copy = null;
   }

@@ -65,6 +65,10 @@ export type Input<T extends ElementType> = Stream<T, number>;
 export type Gather<T extends ElementType, R extends number> = Stream<T, R>;
 /** What a kernel writes, `out T r<>`. */
 export type Output<T extends ElementType> = Stream<T, number>;
+/** What a kernel pushes to, `vout T r<>`: the call makes its shape the number of elements. */
+export type Pushed<T extends ElementType> = Stream<T, 1>;
+/** What a kernel writes at any index, `out T r[][]`. */
+export type Scattered<T extends ElementType, R extends number> = Stream<T, R>;
 /** Values from `begin` towards `end`, evenly over the elements, `iter T i<>`. */
 export interface Iterate<T> {
   readonly begin: T;
@@ -80,6 +84,11 @@ export interface CallOptions {
 /** A kernel: a function that writes its outputs. It returns at once; the device computes meanwhile. */
 export interface Kernel<Arguments extends readonly unknown[]> {
   (...given: Arguments): void;
+}
+
+/** A kernel that pushes, or that scatters many values: how many is known when the promise resolves. */
+export interface CountingKernel<Arguments extends readonly unknown[]> {
+  (...given: Arguments): Promise<void>;
 }
 
 /** A reduce: a function that promises the value. */

@@ -70,6 +70,15 @@ export function kernelKey(
   return kind + (domain.packed ? ' packed' : '') + accessKey(parameters, elements, lies, domain, specs, filtersFloats);
 }
 
+/** The key of the program of a list, whose entries find their elements by number (compiler/web/append_programs.cpp). */
+export function listKey(
+  parameters: readonly Parameter[], elements: readonly Element[], lies: readonly Lie[], domain: Layout, specs: readonly number[],
+  filtersFloats: boolean,
+): string {
+  const kind = domain.linear && decodedRank(domain.extent) === 1 ? 'entry1' : 'entry4';
+  return kind + accessKey(parameters, elements, lies, domain, specs, filtersFloats, true);
+}
+
 /** Whether a kernel with these outputs writes packed texels. */
 export function packsOutputs(outputs: readonly Element[]): boolean {
   return outputs.every(mayPackElement);

@@ -43,7 +43,7 @@ with tempfile.TemporaryDirectory() as folder:
     check_document(folder)
     with open(f"{folder}/expected.json", "w") as expected:
         subprocess.run([reference], stdout=expected, check=True)
-    for name in ("index.html", "calls.mjs", "devices.mjs"):
+    for name in ("index.html", "calls.mjs", "append.mjs", "devices.mjs"):
         os.symlink(f"{here}/{name}", f"{folder}/{name}")
     report = chromium.report_of(folder, "index.html", seconds)
 

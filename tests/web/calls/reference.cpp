@@ -42,6 +42,10 @@ void number(const sk::Vector3<T>& v) {
   std::printf("%.17g,%.17g,%.17g", double(v.x), double(v.y), double(v.z));
 }
 
+void number(const Spot& s) {
+  std::printf("%.17g,%.17g,%.17g", double(s.at.x), double(s.at.y), double(s.heat));
+}
+
 bool isFirst = true;
 template <class Values>
 void print(const char* name, const Values& values) {
@@ -68,6 +72,11 @@ struct Calls {
   }
   sk::Stream<float> random(const sk::Shape& shape, std::uint32_t seed) {
     return filled(shape, floats(static_cast<std::size_t>(shape.size()), seed));
+  }
+
+  template <class T>
+  sk::Stream<T> zeros(const sk::Shape& shape) {
+    return filled(shape, std::vector<T>(static_cast<std::size_t>(shape.size())));
   }
 
   void heat() {
@@ -237,6 +246,74 @@ struct Calls {
     doubles(1.0 / 3.0, x, x);
     print("doubles", x.read());
   }
+
+  void pushes() {
+    for (const std::int64_t n : {1LL, 7LL, 256LL, 1000LL, 100003LL}) {
+      auto x = random({n}, 40), r = device.stream<float>({3});
+      positive(x, r);
+      print(("positive " + std::to_string(n)).c_str(), r.read());
+    }
+    for (const auto& [shape, most] :
+         {std::pair{sk::Shape{500}, 9}, {sk::Shape{20, 25}, 3}, {sk::Shape{5, 10, 10}, 0}}) {
+      auto x = filled<int>(shape, integers<int>(500, 41, 6)), twice = device.stream<int>(shape);
+      auto odd = device.stream<int>({0});
+      auto even = device.stream<Spot>({10000});
+      sieve(most, x, twice, odd, even);
+      print(("sieve twice " + std::to_string(most)).c_str(), twice.read());
+      print(("sieve odd " + std::to_string(most)).c_str(), odd.read());
+      print(("sieve even " + std::to_string(most)).c_str(), even.read());
+    }
+    auto a = random({37, 52}, 42);
+    auto at = device.stream<sk::int3>({1});
+    corners(a, a, sk::iter(0, 37 * 52 * 2), at);
+    print("corners", at.read());
+    auto x = random({1000}, 43);
+    positive(x, x);
+    print("positive of itself", x.read());
+    auto r = device.stream<float>(x.shape());
+    saxpy(1.0F, x, x, r);
+    print("twice what is pushed", r.read());
+    print("sum of what is pushed", {sum(x)});
+  }
+
+  void scatters() {
+    const std::int64_t n = 3000;
+    auto to = filled<int>({n}, integers<int>(n, 44, 2000));
+    auto r = random({1500}, 45);
+    permute(to, random({n}, 46), r);
+    print("permute", r.read());
+    const std::vector<float> at = floats(80, 47), heat = floats(40, 48);
+    std::vector<Spot> values(40);
+    for (std::size_t i = 0; i < 40; ++i) values[i] = {{at[2 * i], at[2 * i + 1]}, heat[i]};
+    auto spots = filled<Spot>({40}, values), places = zeros<Spot>({6, 7});
+    place(filled<int>({40}, integers<int>(40, 49, 45)), spots, places);
+    print("place", places.read());
+    auto x = filled<int>({100, 1000}, integers<int>(100000, 50, 1000));
+    auto w = random({100, 1000}, 51), total = zeros<float>({16});
+    auto counts = filled<int>({16}, std::vector<int>(16, -7));
+    auto most = filled<unsigned>({12}, std::vector<unsigned>(12, 3999999999u));
+    auto least = filled<sk::int2>({16}, std::vector<sk::int2>(16, sk::int2{5, 5}));
+    histogram(x, w, counts, total, most, least);
+    print("histogram n", counts.read());
+    print("histogram total", total.read());
+    print("histogram most", most.read());
+    print("histogram least", least.read());
+    std::vector<sk::float2> points(300);
+    for (std::size_t i = 0; i < 300; ++i)
+      points[i] = {static_cast<float>(random24(2 * i, 52) % 30),
+                   static_cast<float>(random24(2 * i + 1, 52) % 30)};
+    auto p = filled<sk::float2>({300}, points);
+    auto image = random({30, 30}, 53);
+    for (const int radius : {1, 2}) {
+      auto sums = random({30, 30}, 54), peak = zeros<float>({2, 25, 25});
+      splat(radius, p, image, sums, peak);
+      print(("splat sum " + std::to_string(radius)).c_str(), sums.read());
+      print(("splat peak " + std::to_string(radius)).c_str(), peak.read());
+    }
+    auto peak = zeros<float>({2, 25, 25});
+    splat(1, p, image, image, peak);
+    print("splat of itself", image.read());
+  }
 };
 
 }  // namespace
@@ -252,5 +329,7 @@ int main() {
   calls.passes();
   calls.filters();
   calls.types();
+  calls.pushes();
+  calls.scatters();
   std::puts("}");
 }

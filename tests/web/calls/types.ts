@@ -15,8 +15,12 @@ export async function allowed(device: Device): Promise<number> {
   const kinds: Int32Array = kind;
   move({ at: [1, 2], heat: 3 }, bodies, bodies);
   const hottest: number = (await heaviest(bodies)).heat;
+  const pushed = device.stream('float', [0]);
+  const counted: Promise<void> = positive(u, pushed);
+  await counted;
+  const many: number = pushed.shape[0];
   field.scale([1, 2], device.stream('float2', [4]), device.stream('float2', [4]));
-  return (await sum.with({ accumulate: 'tree' })(u)) + host[0]! + heats[0]! + kinds[0]! + hottest;
+  return (await sum.with({ accumulate: 'tree' })(u)) + host[0]! + heats[0]! + kinds[0]! + many + hottest;
 }
 
 export async function rejected(device: Device): Promise<void> {
@@ -35,8 +39,8 @@ export async function rejected(device: Device): Promise<void> {
   u.write(new Int32Array(1));
   // @ts-expect-error: the total is a number
   const text: string = await count(ints);
-  // @ts-expect-error: no browser runs it
-  positive(u, u);
+  // @ts-expect-error: pushed elements have one dimension
+  await positive(u, u);
   // @ts-expect-error: there is no such type
   device.stream('flaot', [1]);
   void text;

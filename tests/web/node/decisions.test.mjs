@@ -8,6 +8,7 @@ import { test } from 'node:test';
 const folder = process.env.SK_WEB;
 const { layoutOf } = await import(`${folder}/streamkernel/layout.js`);
 const { planReduction, leastKnownRuns } = await import(`${folder}/streamkernel/reduce_plan.js`);
+const { planPyramid } = await import(`${folder}/streamkernel/pyramid.js`);
 const { kernelKey } = await import(`${folder}/streamkernel/variant.js`);
 const corpus = JSON.parse(readFileSync(`${folder}/decisions.json`));
 
@@ -49,6 +50,15 @@ test('reductions have the same passes and uniforms', () => {
       assert.ok(Object.keys(own).every((name) => name in wanted.uniforms), where);
     });
   }
+});
+
+test('pushes are summed in the same pyramids', () => {
+  for (const { count, levels, ...wanted } of corpus.pyramids) {
+    const { levels: found, ...textures } = planPyramid(count, 8192);
+    assert.deepEqual(textures, wanted, `${count}`);
+    assert.deepEqual(found.map((level) => ({ ...level, draws: rects(level.draws) })), levels, `${count}`);
+  }
+  assert.throws(() => planPyramid(2 ** 27, 64), { name: 'SkError', kind: 'shape' });
 });
 
 test('kernels need the same programs', () => {

@@ -193,6 +193,16 @@ class PointText {
 
 }  // namespace
 
+std::span<const PointStep> pointSteps(const Parameter& scatter) {
+  static constexpr PointStep store[] = {PointStep::Store};
+  static constexpr PointStep sums[] = {PointStep::SplitLimbs, PointStep::AddLimbs, PointStep::JoinLimbs};
+  static constexpr PointStep extremes[] = {PointStep::SplitUpper, PointStep::Upper, PointStep::SplitLower,
+                                           PointStep::Lower, PointStep::JoinHalves};
+  const bool isFloat = scatter.element->fields.front().scalar == Scalar::Float;
+  if (isFloat || scatter.scatter == ScatterOp::Store) return store;
+  return scatter.scatter == ScatterOp::Add ? std::span<const PointStep>(sums) : extremes;
+}
+
 bool hasPoints(PointStep step) {
   switch (step) {
     case PointStep::Store:

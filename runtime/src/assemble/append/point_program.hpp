@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "assemble/assemble.hpp"
@@ -34,6 +35,9 @@ enum class PointStep : std::uint8_t {
   Lower,  ///< points, with maximum blending: the lower halves of values, likewise
   JoinHalves,
 };
+
+/// The steps that apply the list of a scatter output, in order.
+std::span<const PointStep> pointSteps(const program::Parameter& scatter);
 
 /// Whether the step draws the list's points, rather than the region.
 bool hasPoints(PointStep step);

@@ -31,16 +31,6 @@ bool isOfFloats(const program::Parameter& appendOutput) {
   return appendOutput.element->fields.front().scalar == program::Scalar::Float;
 }
 
-/// The steps of a scatter output, in order.
-std::span<const PointStep> stepsOf(const program::Parameter& appendOutput) {
-  static constexpr PointStep store[] = {PointStep::Store};
-  static constexpr PointStep sums[] = {PointStep::SplitLimbs, PointStep::AddLimbs, PointStep::JoinLimbs};
-  static constexpr PointStep extremes[] = {PointStep::SplitUpper, PointStep::Upper, PointStep::SplitLower,
-                                           PointStep::Lower, PointStep::JoinHalves};
-  if (isOfFloats(appendOutput) || appendOutput.scatter == ScatterOp::Store) return store;
-  return appendOutput.scatter == ScatterOp::Add ? std::span<const PointStep>(sums) : extremes;
-}
-
 }  // namespace
 
 Scatterer::Scatterer(GlDevice& device, const program::Parameter& appendOutput, std::span<RenderTarget> list,
@@ -57,7 +47,7 @@ Scatterer::Scatterer(GlDevice& device, const program::Parameter& appendOutput, s
       limbs_(device),
       upper_(device),
       lower_(device) {
-  const std::span<const PointStep> steps = stepsOf(appendOutput);
+  const std::span<const PointStep> steps = assemble::pointSteps(appendOutput);
   for (const PointStep step : steps) {
     device.appendPrograms.points(appendOutput, step, {listLayout.layered, regionLayout.layered});
   }
