@@ -27,6 +27,7 @@ runtime/src/support   sk support
 runtime/src/trace     sk trace
 runtime/src/device    sk toml trace device call/resolved_call.hpp call/row_pieces.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp assemble/nearest_word.hpp
 runtime/src/call      sk support device call assemble
+runtime/src/domain    sk domain
 runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp
 runtime/src/native    sk support trace device call native assemble probe/copy_bandwidth.hpp
 runtime/src/probe     sk support trace device call gl gl_device probe assemble
@@ -39,6 +40,7 @@ runtime/src/assemble/glsl     sk/program.hpp sk/arithmetic.hpp sk/limits.hpp ASS
 runtime/src/assemble/elements sk/program.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements
 runtime/src/assemble/append   sk/program.hpp ASSEMBLE assemble/glsl assemble/elements assemble/append
 runtime/src/assemble/reduce   sk/program.hpp sk/types.hpp sk/limits.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/reduce assemble/program/sample_kernels.hpp
+runtime/mpi           sk support device call api native gl assemble
 runtime/tools         sk support/cache_folder.hpp native probe/probe.hpp assemble/nearest_word.hpp
 runtime/tests         sk support trace device call gl gl_device native assemble epoxy
 examples              sk toml epoxy

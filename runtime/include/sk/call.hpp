@@ -213,4 +213,33 @@ void fold(const program::Reduction& reduction, std::span<const Argument> argumen
 void scan(const program::Reduction& reduction, std::span<const Argument> arguments,
           const CallOptions& options = {});
 
+namespace detail {
+
+/// Runs calls with streams that several processes share (sk/mpi.hpp): the functions above pass such a call on. An empty
+/// `results` means that the arguments of accumulators are streams.
+class Distribution {
+ public:
+  virtual void run(const program::Kernel& kernel, std::span<const Argument> arguments,
+                   const CallOptions& options) = 0;
+  virtual void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
+                      std::span<void* const> results, const CallOptions& options) = 0;
+  virtual void fold(const program::Reduction& reduction, std::span<const Argument> arguments,
+                    const CallOptions& options) = 0;
+  virtual void scan(const program::Reduction& reduction, std::span<const Argument> arguments,
+                    const CallOptions& options) = 0;
+
+ protected:
+  ~Distribution() = default;
+};
+
+class DistributedStream {
+ public:
+  virtual Distribution& distribution() = 0;
+
+ protected:
+  ~DistributedStream() = default;
+};
+
+}  // namespace detail
+
 }  // namespace sk

@@ -25,6 +25,7 @@ class StreamState;  // the runtime's own
 class Device;
 namespace detail {
 struct TypedStreams;
+class DistributedStream;
 }  // namespace detail
 template <ElementType T>
 class Stream;
@@ -46,6 +47,8 @@ struct StreamRegion {
   /// Element i is number first + sum(i[d] * stride[d]) of the stream, row-major; distances are above 0.
   Index stride = {};
   std::int64_t first = 0;
+  /// Of a stream that several processes share (sk/mpi.hpp): that one; `stream` is null, and `shape` the whole.
+  detail::DistributedStream* distributed = nullptr;
   Placement placement = {};  ///< what kernels see: a part of a whole, or these elements alone
 };
 

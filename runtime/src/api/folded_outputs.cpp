@@ -14,6 +14,7 @@
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
 #include "call/dense_regions.hpp"
+#include "call/distribution.hpp"
 #include "call/placed.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
@@ -231,6 +232,7 @@ void checkAndFold(const Reduction& reduction, std::span<const Argument> argument
 }  // namespace
 
 void fold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
+  if (detail::Distribution* all = distributionOf(arguments)) return all->fold(reduction, arguments, options);
   withHostMemory(reduction.fold.name, [&] { checkAndFold(reduction, arguments, options); });
 }
 

@@ -14,6 +14,7 @@
 #include "call/check_reduction.hpp"
 #include "call/check_rows.hpp"
 #include "call/dense_regions.hpp"
+#include "call/distribution.hpp"
 #include "call/placed.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
@@ -25,17 +26,13 @@
 
 namespace sk {
 
-namespace {
-
 using program::CompensatedReduction;
 using program::Kernel;
 using program::Parameter;
 using program::Reduction;
 using program::Role;
 
-/// The compensated variant if the call uses it, else null. An empty domain gives the plain reduction's
-/// identity.
-const CompensatedReduction* compensated(const ResolvedReduction& call) {
+const CompensatedReduction* compensatedVariant(const ResolvedReduction& call) {
   const Reduction& reduction = call.reduction;
   const Accumulate requested = call.options.accumulate;
   const CompensatedReduction* second = reduction.compensated;
@@ -64,6 +61,8 @@ const CompensatedReduction* compensated(const ResolvedReduction& call) {
   const bool fits = planesRead(second->reduction.combine, specsOf(reduction.fold, call.arguments)) <= room;
   return fits || requested == Accumulate::Compensated ? second : nullptr;
 }
+
+namespace {
 
 /// Adds rounding errors to floats in host memory.
 void addFloats(void* to, const void* from, std::size_t bytes) {
@@ -104,21 +103,19 @@ std::vector<Argument> resultsWithSums(const CompensatedReduction& second,
   return results;
 }
 
-/// Whether the call uses the exact variant. An empty domain gives the plain reduction's identity.
+}  // namespace
+
 bool isExact(const ResolvedReduction& call) {
   return call.options.accumulate == Accumulate::Exact && call.domain.size() != 0 &&
          call.device.sumsExactly(call);
 }
 
-/// Whether native code sums in doubles beside the outputs of a fold.
 bool foldsInDoubles(const ResolvedReduction& call) {
   return call.reduction.parts != nullptr && call.reduction.parts->inDoubles != nullptr &&
          call.options.accumulate != Accumulate::Exact && !call.device.usesPrecisionVariants() &&
          call.device.sumsInDoubles();
 }
 
-/// Whether the plain variant in doubles can replace the compensated one: not if a stream has bits that floats
-/// drop.
 bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& second) {
   // without rows, gathers would have to be copied to doubles
   const bool readsInputs = !call.reduction.term.factors.empty() || call.rows != nullptr;
@@ -127,8 +124,6 @@ bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& seco
            return argument.region.stream != nullptr && argument.region.stream->storage >= Storage::Extended;
          });
 }
-
-}  // namespace
 
 CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions& call) {
   const Reduction& reduction = checked.reduction;
@@ -186,6 +181,17 @@ void reduceByTemporaries(const ResolvedReduction& call, const std::function<void
   });
 }
 
+namespace {}  // namespace
+
+void addErrors(const Reduction& reduction, const CompensatedReduction& second, std::span<void* const> values,
+               std::span<void* const> errors) {
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    const auto& [accumulator, offset] = second.sums[k];
+    auto* const result = static_cast<std::byte*>(values[resultOf(reduction.fold, accumulator)]);
+    addFloats(result + offset, errors[k], errorAccumulators(second)[k].element->size);
+  }
+}
+
 namespace {
 
 /// Computes the sums in the results and the rounding errors in temporaries, then adds both.
@@ -197,12 +203,7 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
   values.insert(values.end(), errors.values.begin(), errors.values.end());
   checkReduction(second.reduction, all, values, call.scan);
   call.device.reduce(call.of(second.reduction, all, values));
-  for (std::size_t k = 0; k < errors.values.size(); ++k) {
-    const auto& [accumulator, offset] = second.sums[k];
-    auto* const result = static_cast<std::byte*>(call.values[resultOf(call.reduction.fold, accumulator)]);
-    const std::size_t bytes = errorAccumulators(second)[k].element->size;
-    addFloats(result + offset, errors.values[k], bytes);
-  }
+  if (call.isToValues()) addErrors(call.reduction, second, call.values, errors.values);
   if (call.isToValues()) return;
   writeInSteps(call.reduction, call.arguments, true, [&] {
     const std::vector<Argument> results = resultsWithSums(second, call.arguments);
@@ -221,7 +222,7 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
 void reduceResolved(const ResolvedReduction& call) {
   if (isStoredInOtherPrecision(call)) return reduceByTemporaries(call, [] {});
   if (needsPrecisionVariant(call.options)) return reduceInPrecision(call);
-  const CompensatedReduction* second = compensated(call);
+  const CompensatedReduction* second = compensatedVariant(call);
   if (second != nullptr && foldsInDoubles(call)) return reduceWide(call, *call.reduction.parts->inDoubles);
   if (isExact(call)) return reduceExactly(call);
   if (second == nullptr) return call.device.reduce(call);
@@ -286,14 +287,19 @@ void checkAndReduce(const Reduction& reduction, std::span<const Argument> argume
 
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
             const CallOptions& options) {
+  if (detail::Distribution* all = distributionOf(arguments))
+    return all->reduce(reduction, arguments, results, options);
   withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, results, options); });
 }
 
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
+  if (detail::Distribution* all = distributionOf(arguments))
+    return all->reduce(reduction, arguments, {}, options);
   withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, {}, options); });
 }
 
 void scan(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
+  if (detail::Distribution* all = distributionOf(arguments)) return all->scan(reduction, arguments, options);
   const ScanOrder order{options.along, options.scan == Scan::Exclusive};
   withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, {}, options, order); });
 }

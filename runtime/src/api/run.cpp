@@ -12,6 +12,7 @@
 #include "call/check_halos.hpp"
 #include "call/check_setting.hpp"
 #include "call/dense_regions.hpp"
+#include "call/distribution.hpp"
 #include "call/placed.hpp"
 #include "call/precision.hpp"
 #include "device/device_state.hpp"
@@ -130,6 +131,7 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
 }  // namespace
 
 void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
+  if (detail::Distribution* all = distributionOf(arguments)) return all->run(kernel, arguments, options);
   withHostMemory(kernel.name, [&] { checkAndRun(kernel, arguments, options); });
 }
 

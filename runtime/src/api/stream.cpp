@@ -95,6 +95,12 @@ void StreamState::leave() noexcept {
 }
 
 StreamState& liveStream(const StreamRegion& region, std::string_view context) {
+  if (region.distributed != nullptr) {
+    throw Error(fmt::format(
+        "{}: this stream of shape {} is spread over the ranks of a sk::Domain, which run kernels and "
+        "reductions on it, and nothing else; use the stream's own functions, or gather it",
+        context, toString(region.shape)));
+  }
   if (region.stream == nullptr) {
     throw Error(fmt::format("{}: there is no stream: it was default-constructed or moved from; make one by "
                             "device.stream<T>(shape)",

@@ -103,6 +103,13 @@ class DeviceState {
   virtual bool needsDense(const StreamRegion& region) = 0;
   /// There is at least one block. For an empty domain, the results are the identities, which then exist.
   virtual void reduce(const ResolvedReduction& call) = 0;
+  /// Combines the results of consecutive parts of a domain: element k of `parts`, which have one region for each accumulator,
+  /// belongs to part k. Stores them to the one element of `results`. The streams hold floats in the precision of the call.
+  /// Returns false, without any effect, if the parts must be folded as a reduction of their own.
+  virtual bool combine(const ResolvedReduction&, std::span<const StreamRegion> /*parts*/,
+                       std::span<const StreamRegion> /*results*/) {
+    return false;
+  }
   /// Whether reduce() also writes the outputs of a fold that has some, which are given then.
   virtual bool foldsBesideOutputs(const ResolvedReduction&) { return false; }
   /// Whether it adds sums of floats without rounding; otherwise it compensates them in its own precision.
@@ -111,6 +118,13 @@ class DeviceState {
   /// digits.
   virtual std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction&, const program::ExactSum&) {
     return nullptr;
+  }
+  /// An exact sum of floats over the whole domain, which is not empty, before it is rounded: words that are added up over
+  /// several devices (native/exact_accumulator.hpp), of which one includes the identity, `isFirst`. Empty if the sum must be
+  /// folded to digits.
+  virtual std::vector<std::int64_t> exactWords(const ResolvedReduction&, const program::ExactSum&,
+                                               bool /*isFirst*/) {
+    return {};
   }
 
   /// Reorders streams and returns the number of elements that come first, if it chooses them; nullopt, without any

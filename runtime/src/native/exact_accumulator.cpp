@@ -237,6 +237,21 @@ void ExactAccumulator::addWhole(double x) {
   digit[2] += sign * static_cast<std::int64_t>(rest >> digitBits);
 }
 
+std::vector<std::int64_t> ExactAccumulator::words() const {
+  std::vector<std::int64_t> words(digits_, digits_ + digitCount_);
+  settle(words.data(), digitCount_);
+  for (std::uint32_t flag = 1; flag <= HasNaN; flag *= 2) words.push_back((flags_ & flag) != 0 ? 1 : 0);
+  return words;
+}
+
+ExactAccumulator ExactAccumulator::ofWords(std::span<const std::int64_t> words) {
+  const std::size_t digits = words.size() - 4;
+  ExactAccumulator sum(digits == mostDigits ? Of::Products : Of::Floats);
+  std::copy_n(words.begin(), digits, sum.digits_);
+  for (std::size_t k = 0; k < 4; ++k) sum.flags_ |= words[digits + k] != 0 ? 1U << k : 0U;
+  return sum;
+}
+
 float ExactAccumulator::rounded() const {
   constexpr std::uint32_t both = HasInfinity | HasNegativeInfinity;
   if ((flags_ & HasNaN) != 0 || (flags_ & both) == both) return std::numeric_limits<float>::quiet_NaN();

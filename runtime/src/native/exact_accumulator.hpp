@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace sk {
 
@@ -25,6 +27,12 @@ class ExactAccumulator {
   /// The nearest float, ties to even. NaN if the terms include infinities of both signs or a NaN; -0 only if
   /// all of them are -0.
   float rounded() const;
+
+  /// All that has been added, in words whose sums over several accumulators are the words of their sum. There may be 2^36
+  /// of them.
+  std::vector<std::int64_t> words() const;
+  /// The accumulator that has such words.
+  static ExactAccumulator ofWords(std::span<const std::int64_t> words);
 
  private:
   static constexpr int mostDigits = 24;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "native/fold_code.hpp"
 
+#include <cstring>
 #include <vector>
 
 #include "call/check_setting.hpp"
@@ -96,6 +97,27 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
     return;
   }
   scanBlocks(scanProgram, call.fold.domain, call.block, results);
+}
+
+void combineParts(const program::Reduction& reduction, const native::Call& combine, const CodeChoice& choice,
+                  std::span<void* const> parts, std::int64_t count, std::span<void* const> result) {
+  const Entry& entry = entryOf(reduction.combine, EntryKind::Combine, choice);
+  const CodeFrame frame(reduction.combine, combine);
+  const StateShape shape(reduction.fold.parameters, choice.real);
+  StateColumns columns(shape, count);
+  for (std::size_t scalar = 0; scalar < shape.scalars(); ++scalar) {
+    std::memcpy(columns.at(scalar, 0), parts[scalar],
+                static_cast<std::size_t>(count) * shape.bytesOf(scalar));
+  }
+  ColumnCombiner combiner(shape, functionOf<native::CombineFunction>(entry), entry.lanes, frame.get());
+  StateRuns runs(shape, combiner, 1);
+  for (std::int64_t k = 0; k < count; ++k) {
+    runs.next().assign(0, columns, k, 1);
+    runs.add();
+  }
+  const StateColumns& all = runs.take();
+  for (std::size_t scalar = 0; scalar < shape.scalars(); ++scalar)
+    std::memcpy(result[scalar], all.at(scalar, 0), shape.bytesOf(scalar));
 }
 
 void storeIdentities(const program::Reduction& reduction, const native::Call& call,

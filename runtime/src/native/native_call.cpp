@@ -120,6 +120,11 @@ class Folding {
         whole, {combine_, {1, 1, 1, 1}, combineTables_}, block, scan_, rows_.pieces, rows_.holdsFloats};
     foldCode(reduction_, call, choice_);
   }
+  /// Combines elements of `parts`, one region for each accumulator, to the element of `results`.
+  void combine(std::span<const StreamRegion> parts, std::span<const StreamRegion> results) {
+    combineParts(reduction_, {combine_, {1, 1, 1, 1}, combineTables_}, choice_, arraysOf(parts),
+                 parts.front().shape.size(), arraysOf(results));
+  }
   /// Stores the identities to all blocks, of which there are `counts` in each dimension; `results` are the
   /// indices of the accumulators.
   void storeIdentities(std::span<const std::size_t> results, const Extents& counts) {
@@ -140,6 +145,15 @@ class Folding {
   }
 
  private:
+  static std::vector<void*> arraysOf(std::span<const StreamRegion> regions) {
+    std::vector<void*> arrays;
+    for (const StreamRegion& region : regions) {
+      const std::span<void* const> own = nativeStream(region).components.arrays();
+      arrays.insert(arrays.end(), own.begin(), own.end());
+    }
+    return arrays;
+  }
+
   CodeChoice choice_;
   const program::Reduction& reduction_;
   std::vector<native::Table> combineTables_;
@@ -314,6 +328,18 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
   }
 }
 
+bool NativeDevice::combine(const ResolvedReduction& call, std::span<const StreamRegion> parts,
+                           std::span<const StreamRegion> results) {
+  const program::Reduction& reduction =
+      computesInHalf(call.options) ? halfVariant(call.reduction) : call.reduction;
+  const RealType real = realOf(call.options);
+  Folding(codeChoice(real, call.options), reduction, call.arguments, call.domain,
+          tablesOf(reduction.fold, real, call.options), tablesOf(reduction.combine, real, call.options), {},
+          {})
+      .combine(parts, results);
+  return true;
+}
+
 // A scan, and a sum without a term, is folded to digits, which hold only floats.
 bool NativeDevice::sumsExactly(const ResolvedReduction& call) const {
   if (!isReference()) return true;
@@ -342,22 +368,25 @@ std::unique_ptr<RoundedSums> sumsOf(const ResolvedReduction& whole, const progra
 
 }  // namespace
 
+std::vector<Argument> NativeDevice::termArguments(const ResolvedReduction& whole,
+                                                  const program::ExactSum& sum) {
+  const std::span<const Argument> arguments = whole.arguments;
+  if (sum.term.kernel == nullptr) return {arguments.begin(), arguments.end()};
+  std::vector<Argument> all;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const Role role = whole.reduction.fold.parameters[i].role;
+    if (role != Role::Accumulator && role != Role::Output) all.push_back(arguments[i]);
+  }
+  all.resize(sum.term.kernel->parameters.size());  // its outputs are read, but never stored
+  return all;
+}
+
 std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& whole,
                                                       const program::ExactSum& sum) {
   const program::Reduction& reduction = whole.reduction;
-  const std::span<const Argument> arguments = whole.arguments;
   if (whole.scan || reduction.fold.code == nullptr || !hasTerm(sum)) return nullptr;
   const Kernel& kernel = kernelOfTerm(reduction, sum);
-  std::vector<Argument> all;
-  if (sum.term.kernel == nullptr) {
-    all.assign(arguments.begin(), arguments.end());
-  } else {
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-      const Role role = reduction.fold.parameters[i].role;
-      if (role != Role::Accumulator && role != Role::Output) all.push_back(arguments[i]);
-    }
-    all.resize(kernel.parameters.size());  // its outputs are read, but never stored
-  }
+  const std::vector<Argument> all = termArguments(whole, sum);
   const RealType real = realOf(whole.options);
   Operands operands(real, kernel, all, whole.domain, tablesOf(kernel, real, whole.options));
   const NativePass traced(*this, kernel, "fold", all, whole.domain);
@@ -367,6 +396,20 @@ std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& w
     case RealType::Quad: return sumsOf<native::Quad>(whole, sum, operands, real);
   }
   return sumsOf<float>(whole, sum, operands, real);
+}
+
+std::vector<std::int64_t> NativeDevice::exactWords(const ResolvedReduction& whole,
+                                                   const program::ExactSum& sum, bool isFirst) {
+  const program::Reduction& reduction = whole.reduction;
+  const RealType real = realOf(whole.options);
+  if (real != RealType::Float || reduction.fold.code == nullptr || !hasTerm(sum)) return {};
+  const Kernel& kernel = kernelOfTerm(reduction, sum);
+  const std::vector<Argument> all = termArguments(whole, sum);
+  Operands operands(real, kernel, all, whole.domain, tablesOf(kernel, real, whole.options));
+  const NativePass traced(*this, kernel, "fold", all, whole.domain);
+  Extents block = fastestFirst(whole.domain);
+  const native::Call call = operands.call(block);
+  return sk::exactWords(reduction, sum, call, {.real = real}, isFirst);
 }
 
 }  // namespace sk

@@ -48,12 +48,18 @@ class NativeDevice final : public DeviceState {
   bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;
   bool needsDense(const StreamRegion&) override { return false; }
   void reduce(const ResolvedReduction& call) override;
+  bool combine(const ResolvedReduction& call, std::span<const StreamRegion> parts,
+               std::span<const StreamRegion> results) override;
   bool foldsBesideOutputs(const ResolvedReduction&) override { return true; }
   bool sumsExactly(const ResolvedReduction& call) const override;
   std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction& call,
                                           const program::ExactSum& sum) override;
+  std::vector<std::int64_t> exactWords(const ResolvedReduction& call, const program::ExactSum& sum,
+                                       bool isFirst) override;
 
  private:
+  /// The arguments of kernelOfTerm().
+  static std::vector<Argument> termArguments(const ResolvedReduction& call, const program::ExactSum& sum);
   RealType realOf(const CallOptions& options) const;
   /// Throws sk::Error if a call asks for GLSL programs.
   void checkTarget(const program::Kernel& kernel, Target requested) const;

@@ -171,6 +171,24 @@ std::vector<Real> sumBlocks(const BlockPieces& pieces, const Accumulator<Real>& 
   return results;
 }
 
+/// The sum of all elements. Sums are exact in any order.
+template <class Make>
+ExactAccumulator sumWhole(const BlockPieces& pieces, ExactAccumulator start, native::Deal deal, Make&& make) {
+  ExactAccumulator none = start;
+  none.clear();
+  std::vector<ExactAccumulator> parts(static_cast<std::size_t>(pieces.count()), none);
+  native::inParallel(pieces.count(), pieces.elementsOfOne(), deal, [&](Range range) {
+    auto adder = make();
+    for (std::int64_t piece = range.begin; piece < range.end; ++piece) {
+      pieces.forEachRow(pieces.blockAt(0), piece, [&](const Extents& first, std::int64_t length) {
+        adder.add(parts[static_cast<std::size_t>(piece)], first, length);
+      });
+    }
+  });
+  for (const ExactAccumulator& part : parts) start.add(part);
+  return start;
+}
+
 /// Likewise, of all rows; those without elements have the value `ofNone`. Sums are exact in any order.
 template <class Real, class Make>
 std::vector<Real> sumRows(const RowPieces& rows, const Accumulator<Real>& start, Real ofNone,
@@ -224,8 +242,8 @@ std::vector<Real> sumRows(const RowPieces& rows, const Accumulator<Real>& start,
 
 /// Calls sumAll(start, deal, make), which returns the sums, with what sumBlocks() takes.
 template <class Real, class SumAll>
-std::vector<Real> withAdder(const program::Reduction& reduction, const program::ExactSum& sum,
-                            const Call& call, const CodeChoice& choice, SumAll&& sumAll) {
+auto withAdder(const program::Reduction& reduction, const program::ExactSum& sum, const Call& call,
+               const CodeChoice& choice, SumAll&& sumAll) {
   Accumulator<Real> start = Summing<Real>::of(sum.ofProducts);
   if (!reduction.seeded) {  // the identity is one of the terms
     const Real identity = identityOf<Real>(reduction, sum, choice);
@@ -272,6 +290,16 @@ std::vector<Real> sumRowsExactly(const program::Reduction& reduction, const prog
                          [&](const Accumulator<Real>& start, native::Deal, auto&& make) {
                            return sumRows<Real>(rows, start, ofNone, native::Deal::AsTheyCome, make);
                          });
+}
+
+std::vector<std::int64_t> exactWords(const program::Reduction& reduction, const program::ExactSum& sum,
+                                     const Call& call, const CodeChoice& choice, bool isFirst) {
+  const BlockPieces pieces(call.domain, call.domain);
+  return withAdder<float>(reduction, sum, call, choice,
+                          [&](ExactAccumulator start, native::Deal deal, auto&& make) {
+                            if (!isFirst) start.clear();
+                            return sumWhole(pieces, start, deal, make).words();
+                          });
 }
 
 template std::vector<float> sumExactly<float>(const program::Reduction&, const program::ExactSum&,

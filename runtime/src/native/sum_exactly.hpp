@@ -30,6 +30,10 @@ std::vector<Real> sumExactly(const program::Reduction& reduction, const program:
                              const native::Call& call, const native::Extents& block,
                              const CodeChoice& choice);
 
+/// The sum of the whole domain, not rounded (ExactAccumulator::words). It includes the reduction's identity if `isFirst`.
+std::vector<std::int64_t> exactWords(const program::Reduction& reduction, const program::ExactSum& sum,
+                                     const native::Call& call, const CodeChoice& choice, bool isFirst);
+
 /// Likewise, of each row of a one-dimensional domain. A row without elements has the reduction's identity.
 template <class Real>
 std::vector<Real> sumRowsExactly(const program::Reduction& reduction, const program::ExactSum& sum,
