@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+//
+// Grids that are divided over the ranks of MPI (target sk::mpi). Every rank makes the same calls, in the same order: creating
+// a domain and its streams, running kernels, reducing, gather() and scatter() are collective. Kernels and reductions are
+// called as with ordinary streams, and the results are those of one device; skc knows how far a kernel reads, so halos are
+// exchanged when a call needs them, and only as deep as it reads.
+#pragma once
+
+#ifndef OMPI_SKIP_MPICXX
+#define OMPI_SKIP_MPICXX 1
+#endif
+#ifndef MPICH_SKIP_MPICXX
+#define MPICH_SKIP_MPICXX 1
+#endif
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "sk/call.hpp"
+#include "sk/device.hpp"
+#include "sk/future.hpp"
+#include "sk/host_vector.hpp"
+#include "sk/options.hpp"
+#include "sk/owner.hpp"
+#include "sk/shape.hpp"
+#include "sk/stream.hpp"
+
+namespace sk {
+
+struct DomainOptions {
+  /// The extents of the whole, rows first.
+  Shape shape = {};
+  /// Whether the last elements of a dimension have the first ones as neighbors. Gathers with [[wrap]] that reach beyond
+  /// their own element need it in every dimension that is divided.
+  std::array<bool, maxRank> periodic = {};
+  /// The number of parts in each dimension; their product is the number of ranks. If empty, the grid with the least surface.
+  Index split = {};
+  /// How many calls that read neighbors share an exchange: halos are so many times as deep, and the elements in them are
+  /// computed by both sides. Fewer messages, more work.
+  int exchangeEvery = 1;
+  /// Whether a call computes elements that need no halo while messages are under way.
+  bool overlap = true;
+  /// The device of this rank. If `device` of these options is empty, SK_DEVICE decides, and without it: GPU number r modulo
+  /// the number of GPUs, for the rank that is number r on its host; without GPUs, as for any sk::Device.
+  DeviceOptions device = {};
+};
+
+/// What this rank has sent since the domain was created, or since resetStatistics().
+struct DomainStatistics {
+  std::int64_t exchanges = 0;  ///< calls that exchanged halos
+  std::int64_t messages = 0;  ///< sent for halos
+  std::int64_t bytes = 0;  ///< in these messages
+  std::int64_t reductions = 0;  ///< collective steps of reductions
+
+  bool operator==(const DomainStatistics&) const = default;
+};
+
+class DomainState;  // the library's own
+class DomainStreamState;
+
+namespace detail {
+
+struct DomainDeleter {
+  void operator()(DomainState* state) const noexcept;
+  void operator()(DomainStreamState* state) const noexcept;
+};
+using DomainOwner = Owner<DomainState, DomainDeleter>;
+using DomainStreamOwner = Owner<DomainStreamState, DomainDeleter>;
+
+StreamRegion regionOf(DomainStreamState* stream);
+const Box& ownBox(const DomainStreamState* stream);
+StreamRegion ownRegion(DomainStreamState* stream, bool isWritten);
+void gather(DomainStreamState* stream, int root, void* elements);
+void scatter(DomainStreamState* stream, int root, const void* elements, std::size_t count);
+int rankOf(const DomainStreamState* stream);
+/// Starts the reduction that call(context) calls.
+TransferOwner later(DomainState* domain, void (*call)(void*), void* context);
+
+}  // namespace detail
+
+/// A stream over all elements of a domain, of which each rank holds its own box. Move-only; an argument of kernels and
+/// reductions wherever an ordinary stream can be, but not of scans, scatter outputs and variable outputs. A stream that has
+/// outlived its domain throws sk::Error.
+template <ElementType T>
+class DomainStream {
+ public:
+  using value_type = T;
+
+  DomainStream() = default;
+  explicit operator bool() const noexcept { return state_.get() != nullptr; }
+
+  /// The extents of the whole.
+  Shape shape() const { return region().shape; }
+  std::int64_t size() const { return region().shape.size(); }
+  /// The box of this rank, in indices of the whole.
+  Box own() const { return detail::ownBox(state_.get()); }
+
+  /// Sets every element to a value, or to start(index), where the index is that of the whole, rows first.
+  void fill(const T& value) { writable().fill(value); }
+  template <std::invocable<const Index&> Start>
+    requires std::convertible_to<std::invoke_result_t<Start, const Index&>, T>
+  void fill(Start&& start);
+
+  /// The elements of this rank, row-major. Not collective.
+  std::vector<HostElement<T>> read() const { return readable().read(); }
+  /// Writes the elements of this rank: exactly own()'s, row-major. Every rank must write its own.
+  void write(std::span<const HostElement<T>> elements) { writable().write(elements); }
+
+  /// All elements, row-major, on rank `root`; nothing on the others.
+  std::vector<HostElement<T>> gather(int root = 0) const {
+    const bool isRoot = detail::rankOf(state_.get()) == root;
+    auto elements = detail::hostVector<HostElement<T>>(isRoot ? static_cast<std::size_t>(size()) : 0);
+    detail::gather(state_.get(), root, elements.data());
+    return elements;
+  }
+  /// Distributes the elements that rank `root` gives, all of them, row-major; the other ranks' are ignored.
+  void scatter(std::span<const HostElement<T>> elements, int root = 0) {
+    detail::scatter(state_.get(), root, elements.data(), elements.size());
+  }
+
+  StreamRegion region() const { return detail::regionOf(state_.get()); }
+  DomainStreamState* state() const noexcept { return state_.get(); }
+
+ private:
+  friend class Domain;
+  explicit DomainStream(detail::DomainStreamOwner state) : state_(std::move(state)) {}
+
+  /// The elements of this rank on its device, until the next call.
+  View<const T> readable() const { return View<const T>(detail::ownRegion(state_.get(), false)); }
+  View<T> writable() { return View<T>(detail::ownRegion(state_.get(), true)); }
+
+  detail::DomainStreamOwner state_;
+};
+
+template <ElementType T>
+StreamRegion regionOf(const DomainStream<T>& stream) {
+  return stream.region();
+}
+template <class T>
+inline constexpr bool isWritable<DomainStream<T>> = true;
+
+/// Divides a box of elements over the ranks of a communicator, and runs kernels on the parts. Move-only. It must be
+/// destroyed before MPI_Finalize, and its streams should be destroyed before it.
+class Domain {
+ public:
+  /// Collective. Throws sk::Error if MPI has not been initialized, if the ranks cannot divide the shape, or if they do not
+  /// agree on the options. The communicator is duplicated.
+  Domain(MPI_Comm communicator, const DomainOptions& options);
+  ~Domain() = default;
+  Domain(Domain&&) noexcept = default;
+  Domain& operator=(Domain&&) noexcept = default;
+
+  /// Creates a stream with undefined elements; the arguments are those of Device::stream.
+  template <ElementType T>
+  DomainStream<T> stream(Storage storage = Storage::Default, std::string_view name = {}) {
+    return DomainStream<T>(createStream(ElementTraits<T>::element(), storage, name));
+  }
+  detail::DomainStreamOwner createStream(const program::Element& element, Storage storage = Storage::Default,
+                                         std::string_view name = {});
+
+  const Shape& shape() const;
+  /// The number of parts in each dimension; ranks are numbered in row-major order of the parts.
+  const Index& split() const;
+  int rank() const;
+  int ranks() const;
+  /// The box of this or of another rank, in indices of the whole.
+  Box own() const { return own(rank()); }
+  Box own(int rank) const;
+  /// This rank's device. Ordinary streams on it may be arguments beside those of the domain: as tables that kernels
+  /// read anywhere, the same on every rank, and for uniforms.
+  Device& device();
+  /// The duplicate of the communicator.
+  MPI_Comm communicator() const;
+
+  /// Starts a reduction to one value, as in `domain.later(sum, u)`, and does not wait for other ranks. The future has one
+  /// element; get() combines what all ranks have folded. It must be asked or destroyed before the domain ends, on its thread.
+  /// Later calls may write `u`.
+  template <class Reduce, class... Arguments>
+  auto later(const Reduce& reduce, const Arguments&... arguments)
+      -> Future<std::remove_cvref_t<decltype(reduce(arguments...))>> {
+    const auto call = [&] { (void)reduce(arguments...); };
+    return {detail::later(
+                state_.get(), [](void* context) { (*static_cast<decltype(call)*>(context))(); },
+                const_cast<void*>(static_cast<const void*>(&call))),
+            1};
+  }
+
+  const DomainStatistics& statistics() const;
+  void resetStatistics();
+
+ private:
+  detail::DomainOwner state_;
+};
+
+template <ElementType T>
+template <std::invocable<const Index&> Start>
+  requires std::convertible_to<std::invoke_result_t<Start, const Index&>, T>
+void DomainStream<T>::fill(Start&& start) {
+  const View<T> elements = writable();
+  const Box box = own();
+  const int rank = box.begin.rank();
+  const std::int64_t row = box.end[rank - 1] - box.begin[rank - 1];
+  auto values = detail::hostVector<HostElement<T>>(static_cast<std::size_t>(elements.size()));
+  Index index = box.begin;
+  for (std::size_t at = 0; at < values.size();) {
+    for (std::int64_t x = 0; x < row; ++x, ++at) {
+      index[rank - 1] = box.begin[rank - 1] + x;
+      values[at] = static_cast<HostElement<T>>(start(std::as_const(index)));
+    }
+    for (int d = rank - 2; d >= 0 && ++index[d] == box.end[d]; --d) index[d] = box.begin[d];
+  }
+  elements.write(std::span<const HostElement<T>>(values));
+}
+
+}  // namespace sk

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: MIT
+#include "rank_reduction.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "call/check_argument.hpp"
+#include "call/check_reduction.hpp"
+#include "call/precision.hpp"
+#include "native/exact_accumulator.hpp"
+#include "support/convert_elements.hpp"
+
+namespace sk::mpi {
+
+using program::CompensatedReduction;
+using program::ExactSum;
+using program::Parameter;
+using program::Reduction;
+using program::Role;
+
+namespace {
+
+Variant variantOf(const ResolvedReduction& call) {
+  const bool usesVariants = call.device.usesPrecisionVariants();
+  Variant variant{&call.reduction, call.options, nullptr, nullptr, !usesVariants && isWide(call.options)};
+  if (needsPrecisionVariant(call.options)) {
+    if (usesVariants && !isWide(call.options)) variant.reduction = &halfVariant(call.reduction);
+    if (usesVariants && isWide(call.options)) variant.wide = call.reduction.wide;
+    if (variant.wide != nullptr) variant.reduction = &variant.wide->reduction;
+    return variant;
+  }
+  const CompensatedReduction* const second = compensatedVariant(call);
+  if (second == nullptr) return variant;
+  if (foldsInDoubles(call)) {
+    variant.wide = call.reduction.parts->inDoubles;
+    variant.reduction = &variant.wide->reduction;
+  } else if (isInDoubles(call, *second)) {
+    variant.options.accumulate = Accumulate::Extended;
+    variant.inDoubles = true;
+  } else {
+    variant.second = second;
+    variant.reduction = &second->reduction;
+  }
+  return variant;
+}
+
+std::vector<Bytes> valuesFor(const Reduction& reduction) {
+  std::vector<Bytes> values;
+  for (const Parameter& parameter : reduction.fold.parameters) {
+    if (parameter.role == Role::Accumulator) values.emplace_back(parameter.element->size);
+  }
+  return values;
+}
+
+/// A reduction to values, of which checkReduction() only needs to know that there are some.
+ResolvedReduction checked(const Reduction& reduction, std::span<const Argument> arguments,
+                          std::vector<Bytes>& values) {
+  std::vector<void*> targets;
+  for (Bytes& value : values) targets.push_back(value.data());
+  ResolvedReduction call = checkReduction(reduction, arguments, targets);
+  call.values = {};
+  return call;
+}
+
+int lastDivided(const domain::Decomposition& parts) {
+  int last = 0;
+  for (int d = 0; d < parts.split().rank(); ++d) {
+    if (parts.split()[d] > 1) last = d;
+  }
+  return last;
+}
+
+}  // namespace
+
+RankReduction::RankReduction(DomainState& domain, const Reduction& reduction,
+                             std::span<const Argument> arguments, const CallOptions& options, const Box& box)
+    : domain_(domain),
+      box_(box),
+      hasElements_(!domain::isEmpty(domain::intersection(domain.own, box))),
+      arguments_(reduction.fold, arguments),
+      values_(valuesFor(reduction)),
+      call_(checked(reduction, arguments_.get(), values_)),
+      dense_(reduction.fold, arguments_.get()) {
+  call_.arguments = dense_.get();
+  call_.options = resolvedOptions(call_, options);
+}
+
+RankReduction::~RankReduction() {
+  int isOver = 0;
+  MPI_Finalized(&isOver);
+  if (isOver != 0) return;
+  MPI_Wait(&wordsRequest_, MPI_STATUS_IGNORE);
+  for (const std::unique_ptr<Step>& step : steps_) MPI_Wait(&step->request, MPI_STATUS_IGNORE);
+}
+
+/// Whether parts of ranks are not one after the other in the order of the elements.
+bool RankReduction::isInterleaved() const {
+  return lastDivided(domain_.parts) > 0 && !call_.reduction.commutative;
+}
+
+/// The parts of a rank that are consecutive elements of the whole: all of it, or lines.
+Shape RankReduction::partsOf(int rank) const {
+  const Box own = domain::intersection(domain_.parts.boxOf(rank), box_);
+  if (domain::isEmpty(own)) return {0};
+  Shape parts = domain::shapeOf(own);
+  for (int d = isInterleaved() ? lastDivided(domain_.parts) : 0; d < parts.rank(); ++d)
+    parts = parts.with(d, 1);
+  return parts;
+}
+
+std::int64_t RankReduction::countOfParts() const {
+  std::int64_t count = 0;
+  for (int rank = 0; rank < domain_.parts.ranks(); ++rank) count += partsOf(rank).size();
+  return count;
+}
+
+/// Whether this is the first rank that has elements: its exact sum includes the identity.
+bool RankReduction::isFirst() const {
+  for (int rank = 0; rank < domain_.rank; ++rank) {
+    if (partsOf(rank).size() > 0) return false;
+  }
+  return true;
+}
+
+/// Whether every scalar of every accumulator is an exact sum, so that the plain fold is not needed.
+bool RankReduction::sumsEverything() const {
+  std::size_t scalars = 0;
+  for (const Parameter& parameter : call_.reduction.fold.parameters) {
+    if (parameter.role != Role::Accumulator) continue;
+    for (const program::Field& field : parameter.element->fields) scalars += field.width;
+  }
+  return scalars == call_.reduction.exact.size();
+}
+
+std::byte* RankReduction::valueOf(std::size_t accumulator) {
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < accumulator; ++i)
+    number += call_.reduction.fold.parameters[i].role == Role::Accumulator ? 1 : 0;
+  return values_[number].data();
+}
+
+void RankReduction::start() {
+  Variant variant = variantOf(call_);  // checks the options, too
+  const bool exact = !needsPrecisionVariant(call_.options) && isExact(call_);
+  if (exact) {
+    variant = {&call_.reduction, call_.options};
+    variant.options.accumulate = Accumulate::Tree;
+  }
+  if (!exact || !sumsEverything()) startStep(variant, nullptr, call_.arguments);
+  if (!exact) return;
+  std::vector<std::int64_t> words = exactWords();
+  if (!words.empty()) return startWords(std::move(words));
+  for (const ExactSum& sum : call_.reduction.exact) {
+    std::vector<Argument> inputs;
+    for (std::size_t i = 0; i < call_.arguments.size(); ++i) {
+      const Role role = call_.reduction.fold.parameters[i].role;
+      if (role != Role::Accumulator && role != Role::Output) inputs.push_back(call_.arguments[i]);
+    }
+    startStep({&sum.reduction, call_.options}, &sum, inputs);
+  }
+}
+
+ResolvedReduction RankReduction::partOf(const Step& step) const {
+  ResolvedReduction part = call_.of(*step.variant.reduction, step.arguments, {});
+  part.options = step.variant.options;
+  return part;
+}
+
+/// Folds this rank's elements to one element for each part, and sends these.
+void RankReduction::startStep(const Variant& variant, const ExactSum* digits,
+                              std::span<const Argument> arguments) {
+  auto step = std::make_unique<Step>(Step{.variant = variant,
+                                          .digits = digits,
+                                          .arguments = {},
+                                          .own = {},
+                                          .all = {},
+                                          .counts = {},
+                                          .offsets = {}});
+  const Shape shape = isInterleaved() && hasElements_ ? partsOf(domain_.rank) : Shape{1};
+  Accumulators own(call_.device, *variant.reduction, shape, variant.inDoubles);
+  step->arguments = own.in(*variant.reduction, arguments);
+  step->elementBytes = own.elementBytes();
+  if (hasElements_) {
+    ResolvedReduction part = partOf(*step);
+    if (isInterleaved()) part.blocks = shape;
+    call_.device.reduce(part);
+    dense_.finish();
+    step->own = own.read();
+  }
+  step->arguments.assign(arguments.begin(), arguments.end());
+  step->arguments.resize(variant.reduction->fold.parameters.size());
+  post(*step);
+  steps_.push_back(std::move(step));
+}
+
+void RankReduction::post(Step& step) {
+  std::size_t total = 0;
+  for (int rank = 0; rank < domain_.parts.ranks(); ++rank) {
+    const std::size_t bytes = static_cast<std::size_t>(partsOf(rank).size()) * step.elementBytes;
+    if (total + bytes > mostBytes)
+      fail(Error::Kind::Memory, call_.reduction.fold,
+           "its operation is not known to commute, and with this split there are {} lines of elements to "
+           "combine; divide "
+           "the first dimension alone",
+           countOfParts());
+    step.counts.push_back(static_cast<int>(bytes));
+    step.offsets.push_back(static_cast<int>(total));
+    total += bytes;
+  }
+  step.all.resize(total);
+  check(
+      MPI_Iallgatherv(step.own.data(), static_cast<int>(step.own.size()), MPI_BYTE, step.all.data(),
+                      step.counts.data(), step.offsets.data(), MPI_BYTE, domain_.communicator, &step.request),
+      call_.reduction.fold.name);
+  ++domain_.statistics.reductions;
+}
+
+/// The words of all exact sums, or nothing if the device folds them to digits.
+std::vector<std::int64_t> RankReduction::exactWords() {
+  std::vector<std::int64_t> all;
+  for (const ExactSum& sum : call_.reduction.exact) {
+    std::vector<std::int64_t> words = call_.device.exactWords(call_, sum, isFirst());
+    if (words.empty()) return {};
+    if (!hasElements_) std::ranges::fill(words, 0);
+    wordCounts_.push_back(words.size());
+    all.insert(all.end(), words.begin(), words.end());
+  }
+  return all;
+}
+
+void RankReduction::startWords(std::vector<std::int64_t>&& words) {
+  words_ = std::move(words);
+  check(MPI_Iallreduce(MPI_IN_PLACE, words_.data(), static_cast<int>(words_.size()), MPI_INT64_T, MPI_SUM,
+                       domain_.communicator, &wordsRequest_),
+        call_.reduction.fold.name);
+  ++domain_.statistics.reductions;
+}
+
+bool RankReduction::isReady() {
+  int isDone = 0;
+  check(MPI_Test(&wordsRequest_, &isDone, MPI_STATUS_IGNORE), call_.reduction.fold.name);
+  for (const std::unique_ptr<Step>& step : steps_) {
+    if (isDone != 0) check(MPI_Test(&step->request, &isDone, MPI_STATUS_IGNORE), call_.reduction.fold.name);
+  }
+  return isDone != 0;
+}
+
+void RankReduction::wait() {
+  check(MPI_Wait(&wordsRequest_, MPI_STATUS_IGNORE), call_.reduction.fold.name);
+  for (const std::unique_ptr<Step>& step : steps_)
+    check(MPI_Wait(&step->request, MPI_STATUS_IGNORE), call_.reduction.fold.name);
+}
+
+void RankReduction::finish(std::span<void* const> results) {
+  wait();
+  for (const std::unique_ptr<Step>& step : steps_) finishStep(*step);
+  finishWords();
+  for (std::size_t k = 0; k < values_.size(); ++k)
+    std::memcpy(results[k], values_[k].data(), values_[k].size());
+}
+
+/// The accumulators of all lines of elements, by the index of their first element.
+Bytes RankReduction::inOrder(const Step& step) const {
+  struct Line {
+    Index first;
+    std::size_t offset;
+  };
+  std::vector<Line> lines;
+  for (int rank = 0; rank < domain_.parts.ranks(); ++rank) {
+    const Box own = domain::intersection(domain_.parts.boxOf(rank), box_);
+    const Shape parts = partsOf(rank);
+    for (std::int64_t k = 0; k < parts.size(); ++k) {
+      Line line{own.begin, static_cast<std::size_t>(step.offsets[static_cast<std::size_t>(rank)]) +
+                               static_cast<std::size_t>(k) * step.elementBytes};
+      std::int64_t rest = k;
+      for (int d = parts.rank() - 1; d >= 0; --d) {
+        line.first[d] += rest % parts[d];
+        rest /= parts[d];
+      }
+      lines.push_back(line);
+    }
+  }
+  std::ranges::sort(lines, [](const Line& a, const Line& b) {
+    for (int d = 0; d < a.first.rank(); ++d) {
+      if (a.first[d] != b.first[d]) return a.first[d] < b.first[d];
+    }
+    return false;
+  });
+  Bytes sorted(step.all.size());
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    std::memcpy(sorted.data() + k * step.elementBytes, step.all.data() + lines[k].offset, step.elementBytes);
+  return sorted;
+}
+
+/// Combines the parts in order: by native code, or by a reduction of their own.
+void RankReduction::combine(const Step& step, const Accumulators& all, const Accumulators& result) {
+  const ResolvedReduction part = partOf(step);
+  if (call_.device.combine(part, all.regions, result.regions)) return;
+  std::unique_ptr<Combination>& made = domain_.combinations[&part.reduction];
+  if (made == nullptr) made = std::make_unique<Combination>(part.reduction);
+  const Reduction& combination = made->reduction;
+  std::vector<Argument> arguments;
+  std::size_t nextInput = 0, nextResult = 0;
+  for (std::size_t i = 0; i < combination.fold.parameters.size(); ++i) {
+    const Role role = combination.fold.parameters[i].role;
+    if (role == Role::Input) {
+      arguments.push_back({.region = all.regions[nextInput++]});
+    } else if (role == Role::Accumulator) {
+      arguments.push_back({.region = result.regions[nextResult++]});
+    } else {
+      arguments.push_back(part.arguments[part.reduction.combineOperands[i]]);
+    }
+  }
+  ResolvedReduction whole = checkReduction(combination, arguments, {});
+  whole.options = part.options;
+  whole.device.reduce(whole);
+}
+
+void RankReduction::finishStep(const Step& step) {
+  const Variant& variant = step.variant;
+  Accumulators all(call_.device, *variant.reduction, Shape{countOfParts()}, variant.inDoubles);
+  all.write(isInterleaved() ? inOrder(step) : step.all);
+  Accumulators result(call_.device, *variant.reduction, {1}, variant.inDoubles);
+  combine(step, all, result);
+  if (step.digits != nullptr) return finishDigits(step, result);
+  std::vector<Bytes> finished;
+  for (const StreamRegion& region : result.regions) {
+    finished.emplace_back(region.stream->element->size);
+    region.stream->read(region, finished.back().data());
+  }
+  std::size_t next = 0;
+  std::vector<void*> values, errors;
+  for (const Parameter& parameter : call_.reduction.fold.parameters) {
+    if (parameter.role != Role::Accumulator) continue;
+    values.push_back(values_[next].data());
+    if (variant.wide != nullptr) {
+      convertElements(*result.regions[next].stream->element, finished[next].data(), *parameter.element,
+                      values_[next].data(), 1);
+    } else {
+      values_[next] = finished[next];
+    }
+    ++next;
+  }
+  if (variant.second == nullptr) return;
+  for (; next < finished.size(); ++next) errors.push_back(finished[next].data());
+  addErrors(call_.reduction, *variant.second, values, errors);
+}
+
+/// Rounds a sum that was folded to digits.
+void RankReduction::finishDigits(const Step& step, const Accumulators& digits) {
+  const ExactSum& sum = *step.digits;
+  Accumulators result(call_.device, call_.reduction, {1}, false);
+  const StreamRegion target = result.in(call_.reduction, call_.arguments)[sum.accumulator].region;
+  target.stream->write(target, valueOf(sum.accumulator));
+  std::vector<Argument> arguments = {{.region = target}};
+  for (const StreamRegion& region : digits.regions) arguments.push_back({.region = region});
+  arguments.push_back({.region = target});
+  sk::run(sum.finish, arguments, {.precision = Precision::Single});
+  target.stream->read(target, valueOf(sum.accumulator));
+}
+
+void RankReduction::finishWords() {
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < wordCounts_.size(); ++k) {
+    const ExactSum& sum = call_.reduction.exact[k];
+    const float rounded = ExactAccumulator::ofWords(std::span(words_).subspan(at, wordCounts_[k])).rounded();
+    std::memcpy(valueOf(sum.accumulator) + sum.offset, &rounded, sizeof rounded);
+    at += wordCounts_[k];
+  }
+}
+
+}  // namespace sk::mpi

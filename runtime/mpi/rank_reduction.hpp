@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+//
+// A reduction over all ranks of a domain. Each rank folds its own elements with the variant that one device would use, and
+// keeps the accumulators as they are before they are finished. All ranks then get the accumulators of all, in the order of
+// the elements, and combine them. Exact sums are integers, which MPI adds.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "accumulators.hpp"
+#include "api/resolved_reduce.hpp"
+#include "call/dense_regions.hpp"
+#include "device/loop_state.hpp"
+#include "domain_state.hpp"
+
+namespace sk::mpi {
+
+/// A reduction of this rank's elements, and what makes results of its accumulators.
+struct Variant {
+  const program::Reduction* reduction;
+  CallOptions options;
+  const program::CompensatedReduction* second = nullptr;  ///< its rounding errors are added
+  const program::WideReduction* wide = nullptr;  ///< its doubles are rounded
+  bool inDoubles = false;  ///< native code keeps doubles for floats
+};
+
+class RankReduction {
+ public:
+  /// `arguments` are those of the rank's own elements in the box of the call, or of any elements if it has none there.
+  RankReduction(DomainState& domain, const program::Reduction& reduction, std::span<const Argument> arguments,
+                const CallOptions& options, const Box& box);
+  ~RankReduction();
+  RankReduction(const RankReduction&) = delete;
+  RankReduction& operator=(const RankReduction&) = delete;
+
+  /// Folds this rank's elements, and posts what is collective.
+  void start();
+  bool isReady();
+  void wait();
+  /// Waits, and stores the results: one value for each accumulator.
+  void finish(std::span<void* const> results);
+
+ private:
+  /// Accumulators that travel to all ranks.
+  struct Step {
+    Variant variant;
+    const program::ExactSum* digits = nullptr;  ///< the sum whose digits they are
+    std::vector<Argument> arguments;
+    std::size_t elementBytes = 0;
+    Bytes own, all;
+    std::vector<int> counts, offsets;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+
+  bool isInterleaved() const;
+  Shape partsOf(int rank) const;
+  std::int64_t countOfParts() const;
+  bool isFirst() const;
+  bool sumsEverything() const;
+  std::byte* valueOf(std::size_t accumulator);
+  ResolvedReduction partOf(const Step& step) const;
+  void startStep(const Variant& variant, const program::ExactSum* digits,
+                 std::span<const Argument> arguments);
+  void post(Step& step);
+  void startWords(std::vector<std::int64_t>&& words);
+  std::vector<std::int64_t> exactWords();
+  Bytes inOrder(const Step& step) const;
+  void combine(const Step& step, const Accumulators& all, const Accumulators& result);
+  void finishStep(const Step& step);
+  void finishDigits(const Step& step, const Accumulators& digits);
+  void finishWords();
+
+  DomainState& domain_;
+  Box box_;
+  bool hasElements_;
+  OwnedArguments arguments_;
+  std::vector<Bytes> values_;  ///< one for each accumulator
+  ResolvedReduction call_;
+  DenseArguments dense_;
+  std::vector<std::unique_ptr<Step>> steps_;
+  std::vector<std::int64_t> words_;  ///< of all exact sums, if the device keeps them as integers
+  std::vector<std::size_t> wordCounts_;
+  MPI_Request wordsRequest_ = MPI_REQUEST_NULL;
+};
+
+}  // namespace sk::mpi

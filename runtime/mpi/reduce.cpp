@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+//
+// Reductions and kernels with folded outputs on streams of a domain: what they fold on this rank, and where the results go.
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "call/box.hpp"
+#include "call/check_argument.hpp"
+#include "call/placed.hpp"
+#include "call/precision.hpp"
+#include "call_plan.hpp"
+#include "device/transfer_state.hpp"
+#include "rank_reduction.hpp"
+
+namespace sk {
+
+using mpi::Bytes;
+using mpi::RankReduction;
+using program::Kernel;
+using program::Parameter;
+using program::Reduction;
+using program::Role;
+
+namespace {
+
+/// Values in host memory for the arguments of accumulators, which are streams of one element.
+class StreamResults {
+ public:
+  StreamResults(const Reduction& reduction, std::span<const Argument> arguments)
+      : reduction_(reduction), arguments_(arguments) {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      const Parameter& parameter = reduction.fold.parameters[i];
+      if (parameter.role != Role::Accumulator) continue;
+      const StreamRegion& region = arguments[i].region;
+      if (region.distributed != nullptr || region.shape.size() != 1) {
+        fail(Error::Kind::Shape, reduction.fold,
+             "over the ranks of a domain it folds to one value, but '{}' has shape {}; give an ordinary "
+             "stream of one "
+             "element, or take the value that the call returns",
+             parameter.name, toString(region.shape));
+      }
+      bytes_.emplace_back(parameter.element->size);
+    }
+    for (Bytes& one : bytes_) values.push_back(one.data());
+  }
+
+  void store() const {
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      if (reduction_.fold.parameters[i].role == Role::Accumulator)
+        detail::write(arguments_[i].region, values[next++], 1);
+    }
+  }
+
+  std::vector<void*> values;
+
+ private:
+  const Reduction& reduction_;
+  std::span<const Argument> arguments_;
+  std::vector<Bytes> bytes_;
+};
+
+/// Starts a reduction to values over the ranks.
+std::unique_ptr<RankReduction> started(DomainState& domain, const Reduction& reduction,
+                                       std::span<const Argument> arguments, const CallOptions& options) {
+  const Box box = boxOrAll(options.box, domain.parts.whole());
+  checkBox(reduction.fold, box, domain.parts.whole());
+  const Box own = domain::intersection(domain.own, box);
+  CallOptions others = options;
+  others.box = {};
+  const Box folded = domain::isEmpty(own) ? domain.own : own;
+  std::vector<Argument> local = argumentsIn(reduction.fold, mpi::ownArguments(arguments), folded);
+  for (std::size_t i = 0; i < local.size(); ++i) {  // outputs that another call writes
+    if (reduction.fold.parameters[i].role == Role::Output && local[i].region.stream == nullptr)
+      local[i].region.shape = domain::shapeOf(folded);
+  }
+  auto reductionOfAll = std::make_unique<RankReduction>(domain, reduction, local, others, box);
+  reductionOfAll->start();
+  return reductionOfAll;
+}
+
+/// A reduction whose value is asked for later.
+class PendingReduction final : public TransferState {
+ public:
+  explicit PendingReduction(std::unique_ptr<RankReduction> reduction) : reduction_(std::move(reduction)) {}
+
+  bool isReady() override { return reduction_->isReady(); }
+  void wait() override { reduction_->wait(); }
+  void take(std::byte* value) override {
+    void* const values[] = {value};
+    reduction_->finish(values);
+  }
+
+ private:
+  std::unique_ptr<RankReduction> reduction_;
+};
+
+void begin(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments,
+           const CallOptions& options) {
+  mpi::refuseRecording(domain, reduction.fold);
+  domain.agree(&reduction, mpi::hashOf(reduction.fold, options), reduction.fold.name);
+  mpi::spreadArguments(domain, reduction.fold, arguments);
+}
+
+}  // namespace
+
+void DomainState::reduce(const Reduction& reduction, std::span<const Argument> arguments,
+                         std::span<void* const> results, const CallOptions& options) {
+  begin(*this, reduction, arguments, options);
+  if (results.empty()) {
+    const StreamResults streams(reduction, arguments);
+    reduce(reduction, arguments, streams.values, options);
+    return streams.store();
+  }
+  if (later != nullptr) return reduceLater(reduction, arguments, results, options);
+  if (parts.ranks() == 1) return sk::reduce(reduction, mpi::ownArguments(arguments), results, options);
+  started(*this, reduction, arguments, options)->finish(results);
+}
+
+/// Keeps the reduction for the future of detail::later(); the stub that has called gets zeros.
+void DomainState::reduceLater(const Reduction& reduction, std::span<const Argument> arguments,
+                              std::span<void* const> results, const CallOptions& options) {
+  if (results.size() != 1 || *later) {
+    fail(reduction.fold,
+         "later() starts one reduction that has one result; call it for each, or call the reduction itself");
+  }
+  const auto accumulator = std::ranges::find(reduction.fold.parameters, Role::Accumulator, &Parameter::role);
+  std::memset(results[0], 0, accumulator->element->size);
+  *later = detail::TransferOwner(new PendingReduction(started(*this, reduction, arguments, options)));
+}
+
+detail::TransferOwner detail::later(DomainState* domain, void (*call)(void*), void* context) {
+  TransferOwner started;
+  if (domain == nullptr)
+    throw Error("the sk::Domain was moved from; use the one that it was moved to", Error::Kind::Lost);
+  domain->later = &started;
+  try {
+    call(context);
+  } catch (...) {
+    domain->later = nullptr;
+    throw;
+  }
+  domain->later = nullptr;
+  if (!started)
+    throw Error(
+        "Domain::later: no reduction of a stream of this domain was called; give one, and its arguments");
+  return started;
+}
+
+void DomainState::fold(const Reduction& reduction, std::span<const Argument> arguments,
+                       const CallOptions& options) {
+  begin(*this, reduction, arguments, options);
+  const StreamResults streams(reduction, arguments);
+  if (parts.ranks() == 1) {
+    sk::fold(reduction, mpi::ownArguments(arguments), options);
+  } else {
+    const bool isTogether = device.profile() == "native" && options.accumulate != Accumulate::Exact &&
+                            !needsPrecisionVariant(options);
+    if (isTogether) {  // native code stores elements while it folds
+      started(*this, reduction, arguments, options)->finish(streams.values);
+    } else {  // values are not stored yet, so that the kernel may overwrite what is folded
+      std::vector<Argument> inputs(arguments.begin(), arguments.end());
+      for (std::size_t i = 0; i < inputs.size(); ++i) {
+        if (reduction.fold.parameters[i].role == Role::Output) inputs[i].region.distributed = nullptr;
+      }
+      started(*this, reduction, inputs, options)->finish(streams.values);
+      std::vector<Argument> mapped;
+      for (const std::uint8_t operand : reduction.parts->mapOperands) mapped.push_back(arguments[operand]);
+      CallOptions map = options;
+      map.accumulate = Accumulate::Default;
+      run(reduction.parts->map, mapped, map);
+    }
+    streams.store();
+  }
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (reduction.fold.parameters[i].role != Role::Output) continue;
+    if (DomainStreamState* const stream = domainStream(arguments[i].region)) stream->valid = {};
+  }
+}
+
+}  // namespace sk

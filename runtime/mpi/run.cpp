@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+//
+// Runs a kernel on this rank's part of a domain: finds out which halos it needs, exchanges those that are not valid,
+// computes what needs no halo meanwhile, and the rest afterwards.
+#include "call_plan.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "call/box.hpp"
+#include "call/check_argument.hpp"
+#include "device/device_state.hpp"
+#include "device/loop_state.hpp"
+#include "device/stream_state.hpp"
+#include "exchange.hpp"
+#include "hash.hpp"
+
+namespace sk {
+
+using domain::Depth;
+using mpi::HaloRequest;
+using mpi::SpreadArgument;
+using program::Kernel;
+using program::Role;
+
+namespace {
+
+Depth times(const Depth& depth, std::int64_t factor) {
+  Depth result = depth;
+  for (std::size_t d = 0; d < result.below.size(); ++d) {
+    result.below[d] *= factor;
+    result.above[d] *= factor;
+  }
+  return result;
+}
+
+Depth sum(const Depth& a, const Depth& b) {
+  Depth result = a;
+  for (std::size_t d = 0; d < result.below.size(); ++d) {
+    result.below[d] += b.below[d];
+    result.above[d] += b.above[d];
+  }
+  return result;
+}
+
+/// How many elements of a halo are valid beyond those that are read around an element.
+Depth left(const Depth& valid, const Depth& read) {
+  Depth result;
+  for (std::size_t d = 0; d < result.below.size(); ++d) {
+    result.below[d] = std::max<std::int64_t>(valid.below[d] - read.below[d], 0);
+    result.above[d] = std::max<std::int64_t>(valid.above[d] - read.above[d], 0);
+  }
+  return result;
+}
+
+Depth least(const Depth& a, const Depth& b) {
+  Depth result;
+  for (std::size_t d = 0; d < result.below.size(); ++d) {
+    result.below[d] = std::min(a.below[d], b.below[d]);
+    result.above[d] = std::min(a.above[d], b.above[d]);
+  }
+  return result;
+}
+
+/// A halo reaches no farther than the neighbor's own elements.
+void checkThickness(const DomainState& domain, const Kernel& kernel, const program::Parameter& parameter,
+                    const Depth& depth) {
+  for (int d = 0; d < domain.parts.whole().rank(); ++d) {
+    const auto k = static_cast<std::size_t>(d);
+    const std::int64_t deepest = std::max(depth.below[k], depth.above[k]),
+                       least = domain.parts.leastExtent(d);
+    if (deepest <= least) continue;
+    fail(Error::Kind::Shape, kernel,
+         "'{}' needs a halo of {} element(s) along {}{}, but rank {} has {} of the {} there; start fewer "
+         "ranks, or divide "
+         "another dimension",
+         parameter.name, deepest, "xyzw"[domain.parts.whole().rank() - 1 - d],
+         domain.options.exchangeEvery > 1 ? " with this exchangeEvery" : "", domain.parts.thinnest(d), least,
+         domain.parts.whole()[d]);
+  }
+}
+
+}  // namespace
+
+namespace mpi {
+
+std::uint64_t hashOf(const Kernel& kernel, const CallOptions& options) {
+  Hash hash;
+  hash.add(kernel.name);
+  hash.add(kernel.declarations);
+  hash.add(kernel.body);
+  for (const program::Parameter& parameter : kernel.parameters) hash.add(parameter.name);
+  hash.add(static_cast<std::int64_t>(options.precision));
+  hash.add(static_cast<std::int64_t>(options.accumulate));
+  return hash.value();
+}
+
+std::vector<Argument> ownArguments(std::span<const Argument> arguments) {
+  std::vector<Argument> own(arguments.begin(), arguments.end());
+  for (Argument& argument : own) {
+    if (const DomainStreamState* const stream = domainStream(argument.region))
+      argument.region = stream->placed();
+  }
+  return own;
+}
+
+void refuseRecording(DomainState& domain, const Kernel& kernel) {
+  for (const DomainStreamState* stream : domain.streams) {
+    if (stream->placed().stream->device->recording == nullptr) return;
+    fail(kernel,
+         "a call on a stream of a sk::Domain cannot be recorded, because the ranks exchange elements in it; "
+         "call it "
+         "outside of Device::record");
+  }
+}
+
+CallPlan::CallPlan(DomainState& domain, const Kernel& kernel, std::span<const Argument> arguments,
+                   const CallOptions& options)
+    : domain_(domain), arguments_(arguments.begin(), arguments.end()) {
+  refuseRecording(domain, kernel);
+  domain.agree(&kernel, hashOf(kernel, options), kernel.name);
+  spread_ = spreadArguments(domain, kernel, arguments);
+  bool needsExchange = false;
+  for (const SpreadArgument& one : spread_) {
+    if (one.isWritten) continue;
+    reach_ = reach_.with(one.depth);
+    needsExchange = needsExchange || !one.stream->valid.covers(one.depth);
+  }
+  const int every = domain.options.exchangeEvery;
+  const Depth further = times(reach_, every - 1);
+  bool isFirst = true;
+  for (const SpreadArgument& one : spread_) {
+    if (one.isWritten) continue;
+    const Depth depth = sum(further, one.depth);
+    if (needsExchange && !one.stream->valid.covers(depth)) {
+      checkThickness(domain, kernel, kernel.parameters[one.index], depth);
+      addRequest(one.stream, depth);
+    }
+    const Depth beyond = left(depthAfter(*one.stream), one.depth);
+    beyond_ = std::exchange(isFirst, false) ? beyond : least(beyond_, beyond);
+  }
+  if (every == 1 || !options.box.isWhole()) beyond_ = {};
+  for (const HaloRequest& request : requests_) request.stream->deepen(request.depth);
+  for (const SpreadArgument& one : spread_) {
+    if (one.isWritten) one.stream->deepen(beyond_);
+  }
+  box_ = options.box.isWhole() ? domain::grown(domain.own, domain.parts.haloOf(domain.rank, beyond_))
+                               : domain::intersection(domain.own, options.box);
+}
+
+void CallPlan::addRequest(DomainStreamState* stream, const Depth& depth) {
+  const auto found = std::ranges::find(requests_, stream, &HaloRequest::stream);
+  if (found != requests_.end()) {
+    found->depth = found->depth.with(depth);
+  } else {
+    requests_.push_back({stream, depth.with(stream->valid)});
+  }
+}
+
+Depth CallPlan::depthAfter(const DomainStreamState& stream) const {
+  const auto found = std::ranges::find(requests_, &stream, &HaloRequest::stream);
+  return found == requests_.end() ? stream.valid : found->depth;
+}
+
+/// A stream that is also read is written to a spare array, if there are several boxes: each reads what was there before.
+void CallPlan::replaceArguments() {
+  for (Argument& argument : arguments_) {
+    if (const DomainStreamState* const stream = domainStream(argument.region))
+      argument.region = stream->placed();
+  }
+  for (const SpreadArgument& one : spread_) {
+    const bool isRead = std::ranges::any_of(
+        spread_, [&](const SpreadArgument& other) { return !other.isWritten && other.stream == one.stream; });
+    if (!one.isWritten || !isRead) continue;
+    arguments_[one.index].region = one.stream->spare();
+    swapped_.push_back(one.stream);
+  }
+}
+
+void CallPlan::run(const CallOptions& options, const Compute& compute) {
+  const bool isOneBox = !options.box.isWhole() || domain_.parts.ranks() == 1;
+  if (isOneBox) {
+    arguments_ = ownArguments(arguments_);
+  } else {
+    replaceArguments();
+  }
+  CallOptions part = options;
+  const auto computeBox = [&](const Box& box) {
+    for (const domain::Piece& piece : domain::piecesInside(box, domain_.parts.whole())) {
+      std::vector<Argument> moved = arguments_;
+      for (Argument& argument : moved) {
+        Index& origin = argument.region.placement.origin;
+        for (int d = 0; d < origin.rank(); ++d) origin[d] += piece.shift[d];
+      }
+      part.box = piece.box;
+      compute(moved, part);
+    }
+  };
+  if (requests_.empty()) {
+    computeBox(box_);
+  } else {
+    Exchange exchange(domain_, requests_);
+    const Box inner = domain::shrunk(domain_.own, domain_.parts.haloOf(domain_.rank, reach_));
+    const bool overlaps = domain_.options.overlap && !isOneBox && !domain::isEmpty(inner);
+    if (overlaps) computeBox(inner);
+    exchange.finish();
+    for (const Box& box : overlaps ? domain::difference(box_, inner) : std::vector{box_}) computeBox(box);
+  }
+  for (DomainStreamState* stream : swapped_) stream->exchange();
+  for (const SpreadArgument& one : spread_) {
+    if (one.isWritten) one.stream->valid = beyond_;
+  }
+}
+
+}  // namespace mpi
+
+void DomainState::run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
+  if (!options.box.isWhole()) checkBox(kernel, options.box, parts.whole());
+  mpi::CallPlan(*this, kernel, arguments, options)
+      .run(options,
+           [&](std::span<const Argument> own, const CallOptions& part) { sk::run(kernel, own, part); });
+}
+
+void DomainState::scan(const program::Reduction& reduction, std::span<const Argument>, const CallOptions&) {
+  fail(reduction.fold,
+       "a scan of a stream that is divided over ranks is not possible; gather() it, or scan an ordinary "
+       "stream");
+}
+
+}  // namespace sk

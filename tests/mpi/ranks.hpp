@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+//
+// What tests on ranks share. Collective calls need all ranks, so that a test case that fails on one rank ends all of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <mpi.h>
+
+int rankOfWorld();
+int ranksOfWorld();
+
+/// The elements of rank 0, on every rank.
+template <class T>
+std::vector<T> everywhere(std::vector<T> elements) {
+  unsigned long long count = elements.size();
+  MPI_Bcast(&count, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
+  elements.resize(count);
+  MPI_Bcast(elements.data(), static_cast<int>(count * sizeof(T)), MPI_BYTE, 0, MPI_COMM_WORLD);
+  return elements;
+}
