@@ -15,6 +15,7 @@
 #include "accuracy/accuracy.hpp"
 #include "assemble/nearest_word.hpp"
 #include "info/info.hpp"
+#include "scale/scale.hpp"
 
 namespace {
 
@@ -49,6 +50,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   sk_tool::addInfo(app);
   sk_tool::addAccuracy(app);
+  sk_tool::addScale(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& stop) {  // also --help and --version

@@ -20,6 +20,7 @@
 
 #include "accuracy/chart.hpp"
 #include "accuracy/file/options.hpp"
+#include "accuracy/gnuplot.hpp"
 #include "accuracy/programs.hpp"
 #include "accuracy/table.hpp"
 #include "info/device_info.hpp"

@@ -3,29 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
-#include <optional>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
-#include "accuracy/child_process.hpp"
+#include "accuracy/gnuplot.hpp"
 #include "accuracy/label_places.hpp"
-#include "accuracy/temporary_folder.hpp"
 
 namespace sk_tool {
 
 namespace {
-
-/// Quotes as gnuplot does.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-  return result + "'";
-}
-
-bool isPicture(const std::string& file) { return file.ends_with(".png"); }
 
 /// An error of 0 has no logarithm: it is drawn a decade below the smallest other error.
 double floorOf(const Experiment& experiment) {
@@ -140,49 +127,24 @@ std::string scriptOf(const std::string& file, const std::string& device,
                      const std::vector<Experiment>& experiments) {
   const std::size_t columns = experiments.size() > 1 ? 2 : 1;
   const std::size_t rows = (experiments.size() + columns - 1) / columns;
-  std::string script = fmt::format(
-      "set terminal {} size {},{} font 'sans,{}' background '#ffffff'\n"
-      "set output {}\n"
+  std::string script = terminalOf(file, static_cast<double>(columns) * panelWidth,
+                                  static_cast<double>(rows) * panelHeight + headHeight);
+  script += fmt::format(
       "set key off\nset grid lt 1 lc rgb '#dddddd'\nset border 3\nset tics nomirror\n"
       "set xlabel 'time over that of the first mode'\nset ylabel 'log10 of the relative error'\n"
       "set multiplot title {} noenhanced\n",
-      isPicture(file) ? "pngcairo noenhanced" : "svg noenhanced", static_cast<double>(columns) * panelWidth,
-      static_cast<double>(rows) * panelHeight + headHeight,
-      isPicture(file) ? 9 : 12,  // points or pixels: the same size
-      quoted(file), quoted("sk accuracy on " + device));
+      quoted("sk accuracy on " + device));
   for (std::size_t i = 0; i < experiments.size(); ++i) {
     script += marginsOf(i, columns, rows) + panelOf(experiments[i], i);
   }
   return script + "unset multiplot\n";
 }
 
-void runGnuplot(const std::string& script) {
-  const TemporaryFolder folder;
-  const std::string file = (folder.path() / "chart.gnuplot").string();
-  std::ofstream(file) << script;
-  const std::optional<int> status = runProgram({"gnuplot", file});
-  if (!status) {
-    throw std::runtime_error(
-        "there is no gnuplot to draw the chart; install it (Debian: gnuplot-nox), or take --json FILE and "
-        "draw from that");
-  }
-  if (*status != 0) throw std::runtime_error("gnuplot could not draw the chart");
-}
-
 }  // namespace
-
-void checkChartName(const std::string& file) {
-  if (!isPicture(file) && !file.ends_with(".svg")) {
-    throw std::runtime_error(fmt::format("no chart can be '{}': its name must end in .svg or .png", file));
-  }
-}
 
 void drawChart(const std::string& file, const std::string& device,
                const std::vector<Experiment>& experiments) {
-  std::ofstream probe(file);
-  if (!probe) throw std::runtime_error(fmt::format("cannot write '{}'", file));
-  probe.close();
-  runGnuplot(scriptOf(file, device, experiments));
+  runGnuplot(file, scriptOf(file, device, experiments));
 }
 
 }  // namespace sk_tool

@@ -10,9 +10,6 @@
 
 namespace sk_tool {
 
-/// Throws std::runtime_error unless the file's name ends in .svg or .png.
-void checkChartName(const std::string& file);
-
 /// Draws one panel per experiment. Throws std::runtime_error if gnuplot is missing or fails.
 void drawChart(const std::string& file, const std::string& device,
                const std::vector<Experiment>& experiments);
