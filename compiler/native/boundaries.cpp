@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include <llvm/IR/Intrinsics.h>
+#include <llvm/IR/MDBuilder.h>
 
 #include "native/arithmetic.hpp"
 #include "native/streams.hpp"
@@ -45,16 +46,46 @@ Streams::Inside Streams::inside(std::uint32_t param, std::size_t dimension, llvm
   switch (kernel_.params[param].boundary) {
     case Boundary::Clamp: return {clamped(param, dimension, i), nullptr};
     case Boundary::Border: return {clamped(param, dimension, i), l.b.CreateICmpUGE(i, n)};
-    case Boundary::Wrap: {
-      llvm::Value* const first = low(param, dimension);
-      return {clamped(param, dimension, l.b.CreateAdd(first, modulo(l.b.CreateSub(i, first), n))), nullptr};
-    }
+    case Boundary::Wrap:
+      return {unlessHeld(param, dimension, i,
+                         [&] {
+                           llvm::Value* const first = low(param, dimension);
+                           return l.b.CreateAdd(first, modulo(l.b.CreateSub(i, first), n));
+                         }),
+              nullptr};
     case Boundary::Mirror: break;
   }
-  llvm::Value* const period = l.b.CreateShl(n, 1);
-  llvm::Value* const rest = modulo(i, period);
-  llvm::Value* const back = l.b.CreateSub(l.b.CreateSub(period, one), rest);
-  return {clamped(param, dimension, l.b.CreateSelect(l.b.CreateICmpSLT(rest, n), rest, back)), nullptr};
+  return {unlessHeld(param, dimension, i,
+                     [&] {
+                       llvm::Value* const period = l.b.CreateShl(n, 1);
+                       llvm::Value* const rest = modulo(i, period);
+                       llvm::Value* const back = l.b.CreateSub(l.b.CreateSub(period, one), rest);
+                       return l.b.CreateSelect(l.b.CreateICmpSLT(rest, n), rest, back);
+                     }),
+          nullptr};
+}
+
+/// The index itself if its element is held, which CPUs predict; else what `bring` computes, which takes a division.
+llvm::Value* Streams::unlessHeld(std::uint32_t param, std::size_t dimension, llvm::Value* index,
+                                 const std::function<llvm::Value*()>& bring) {
+  llvm::BasicBlock* const before = l.b.GetInsertBlock();
+  const auto block = [&](const char* name) {
+    return llvm::BasicBlock::Create(l.b.getContext(), name, before->getParent());
+  };
+  llvm::BasicBlock* const outside = block("outside");
+  llvm::BasicBlock* const end = block("held");
+  llvm::Value* const isHeld =
+      l.b.CreateICmpULT(l.b.CreateSub(index, low(param, dimension)), heldCount(param, dimension));
+  l.b.CreateCondBr(isHeld, end, outside, llvm::MDBuilder(l.b.getContext()).createLikelyBranchWeights());
+  l.b.SetInsertPoint(outside);
+  llvm::Value* const brought = clamped(param, dimension, bring());
+  llvm::BasicBlock* const outsideEnd = l.b.GetInsertBlock();
+  l.b.CreateBr(end);
+  l.b.SetInsertPoint(end);
+  llvm::PHINode* const phi = l.b.CreatePHI(l.int64(), 2);
+  phi->addIncoming(index, before);
+  phi->addIncoming(brought, outsideEnd);
+  return phi;
 }
 
 /// True if the elements at the indices of all lanes are held as they are.

@@ -325,9 +325,11 @@ Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
 /// Reads neighbours along x with one load if all of them are in bounds.
 Parts Streams::gatherNeighbors(std::uint32_t param, const Parts& index) {
   llvm::Value* const x = l.b.CreateSExt(index[0].value, l.int64());
-  llvm::Value* const end = l.b.CreateAdd(x, l.integer(l.int64(), l.count()));
-  llvm::Value* const isInside =
-      l.b.CreateAnd(l.b.CreateICmpSGE(x, low(param, 0)), l.b.CreateICmpSLE(end, high(param, 0)));
+  llvm::Value* const firsts = inPrologue([&] {  // the number of indices from which all lanes are in bounds
+    llvm::Value* const less = l.b.CreateSub(heldCount(param, 0), l.integer(l.int64(), l.count() - 1));
+    return l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, less, l.integer(l.int64(), 0));
+  });
+  llvm::Value* const isInside = l.b.CreateICmpULT(l.b.CreateSub(x, low(param, 0)), firsts);
   return choose(
       isInside,
       [&] {

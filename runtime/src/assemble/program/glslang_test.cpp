@@ -92,12 +92,12 @@ const std::array types = {
     Type{&samples::hitElement, "Hit(0.0, Place(vec3(0.0), false), -1)"},
 };
 
-struct Place {
+struct DomainKind {
   Domain domain;
   bool view;
 };
-constexpr std::array domains = {Place{Domain::Plane, false}, Place{Domain::Plane, true},
-                                Place{Domain::Linear, false}, Place{Domain::LinearBox, false}};
+constexpr std::array domains = {DomainKind{Domain::Plane, false}, DomainKind{Domain::Plane, true},
+                                DomainKind{Domain::Linear, false}, DomainKind{Domain::LinearBox, false}};
 
 constexpr std::array inputs = {StreamAccess{Addressing::Aligned}, StreamAccess{Addressing::Plane},
                                StreamAccess{Addressing::Plane, true}, StreamAccess{Addressing::Linear},
@@ -118,8 +118,8 @@ StreamAccess with(StreamAccess access, bool nearby) {
   return access;
 }
 
-void addBoundaries(Programs& programs, const Type& type, int rank, const Place& domain,
-                   const StreamAccess& input, const StreamAccess& gather) {
+void addBoundaries(Programs& programs, const Type& type, int rank, const DomainKind& domain,
+                   const StreamAccess& input, const StreamAccess& gather, bool isPlaced = false) {
   for (const Profile& profile : shownProfiles()) {
     for (const Boundary boundary : boundaries) {
       for (const auto [reach, nearby] : neighbours) {
@@ -127,6 +127,7 @@ void addBoundaries(Programs& programs, const Type& type, int rank, const Place& 
         const Variant variant{.domain = domain.domain,
                               .domainView = domain.view,
                               .domainRank = static_cast<std::uint8_t>(rank),
+                              .domainPlaced = isPlaced,
                               .access = {{}, input, with(gather, nearby), {}, {}}};
         Profile sampling = profile;
         sampling.samples = nearby;
@@ -146,7 +147,7 @@ TEST_CASE("glslang finds what is wrong") {
 
 TEST_CASE("glslang accepts every layout with every boundary") {
   Programs programs("layouts");
-  for (const Place& domain : domains) {
+  for (const DomainKind& domain : domains) {
     for (const StreamAccess& input : inputs) {
       for (const StreamAccess& gather : inputs) {
         if (gather.addressing == Addressing::Aligned) continue;
@@ -167,6 +168,18 @@ TEST_CASE("glslang accepts every type and rank with every boundary") {
     }
   }
   REQUIRE(programs.count() == 8 * 4 * 2 * 3 * 4 * 3);
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts parts of a whole of every rank with every boundary") {
+  Programs programs("parts");
+  StreamAccess plane = inputs[2], linear = inputs[4];
+  plane.placed = linear.placed = true;
+  for (const int rank : {1, 2, 3, 4}) {
+    addBoundaries(programs, types[0], rank, domains[1], inputs[0], plane, true);
+    addBoundaries(programs, types[0], rank, domains[3], inputs[4], linear, true);
+  }
+  REQUIRE(programs.count() == 4 * 2 * 3 * 4 * 3);
   checkAccepted(programs);
 }
 
