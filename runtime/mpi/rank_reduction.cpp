@@ -90,7 +90,7 @@ RankReduction::~RankReduction() {
   MPI_Finalized(&isOver);
   if (isOver != 0) return;
   MPI_Wait(&wordsRequest_, MPI_STATUS_IGNORE);
-  for (const std::unique_ptr<Step>& step : steps_) MPI_Wait(&step->request, MPI_STATUS_IGNORE);
+  MPI_Wait(&stepsRequest_, MPI_STATUS_IGNORE);
 }
 
 /// Whether parts of ranks are not one after the other in the order of the elements.
@@ -147,7 +147,11 @@ void RankReduction::start() {
     variant.options.accumulate = Accumulate::Tree;
   }
   if (!exact || !sumsEverything()) startStep(variant, nullptr, call_.arguments);
-  if (!exact) return;
+  if (exact) startExactly();
+  if (!steps_.empty()) postSteps();
+}
+
+void RankReduction::startExactly() {
   std::vector<std::int64_t> words = exactWords();
   if (!words.empty()) return startWords(std::move(words));
   for (const ExactSum& sum : call_.reduction.exact) {
@@ -166,16 +170,10 @@ ResolvedReduction RankReduction::partOf(const Step& step) const {
   return part;
 }
 
-/// Folds this rank's elements to one element for each part, and sends these.
+/// Folds this rank's elements to one element for each part.
 void RankReduction::startStep(const Variant& variant, const ExactSum* digits,
                               std::span<const Argument> arguments) {
-  auto step = std::make_unique<Step>(Step{.variant = variant,
-                                          .digits = digits,
-                                          .arguments = {},
-                                          .own = {},
-                                          .all = {},
-                                          .counts = {},
-                                          .offsets = {}});
+  auto step = std::make_unique<Step>(Step{.variant = variant, .digits = digits, .arguments = {}, .own = {}});
   const Shape shape = isInterleaved() && hasElements_ ? partsOf(domain_.rank) : Shape{1};
   Accumulators own(call_.device, *variant.reduction, shape, variant.inDoubles);
   step->arguments = own.in(*variant.reduction, arguments);
@@ -189,29 +187,32 @@ void RankReduction::startStep(const Variant& variant, const ExactSum* digits,
   }
   step->arguments.assign(arguments.begin(), arguments.end());
   step->arguments.resize(variant.reduction->fold.parameters.size());
-  post(*step);
   steps_.push_back(std::move(step));
 }
 
-void RankReduction::post(Step& step) {
-  std::size_t total = 0;
+/// Sends the parts of all steps in one message: those of a rank lie together, step after step.
+void RankReduction::postSteps() {
+  std::size_t elementBytes = 0, total = 0;
+  for (const std::unique_ptr<Step>& step : steps_) {
+    elementBytes += step->elementBytes;
+    own_.insert(own_.end(), step->own.begin(), step->own.end());
+  }
   for (int rank = 0; rank < domain_.parts.ranks(); ++rank) {
-    const std::size_t bytes = static_cast<std::size_t>(partsOf(rank).size()) * step.elementBytes;
+    const std::size_t bytes = static_cast<std::size_t>(partsOf(rank).size()) * elementBytes;
     if (total + bytes > mostBytes)
       fail(Error::Kind::Memory, call_.reduction.fold,
            "its operation is not known to commute, and with this split there are {} lines of elements to "
            "combine; divide "
            "the first dimension alone",
            countOfParts());
-    step.counts.push_back(static_cast<int>(bytes));
-    step.offsets.push_back(static_cast<int>(total));
+    counts_.push_back(static_cast<int>(bytes));
+    offsets_.push_back(static_cast<int>(total));
     total += bytes;
   }
-  step.all.resize(total);
-  check(
-      MPI_Iallgatherv(step.own.data(), static_cast<int>(step.own.size()), MPI_BYTE, step.all.data(),
-                      step.counts.data(), step.offsets.data(), MPI_BYTE, domain_.communicator, &step.request),
-      call_.reduction.fold.name);
+  all_.resize(total);
+  check(MPI_Iallgatherv(own_.data(), static_cast<int>(own_.size()), MPI_BYTE, all_.data(), counts_.data(),
+                        offsets_.data(), MPI_BYTE, domain_.communicator, &stepsRequest_),
+        call_.reduction.fold.name);
   ++domain_.statistics.reductions;
 }
 
@@ -239,43 +240,54 @@ void RankReduction::startWords(std::vector<std::int64_t>&& words) {
 bool RankReduction::isReady() {
   int isDone = 0;
   check(MPI_Test(&wordsRequest_, &isDone, MPI_STATUS_IGNORE), call_.reduction.fold.name);
-  for (const std::unique_ptr<Step>& step : steps_) {
-    if (isDone != 0) check(MPI_Test(&step->request, &isDone, MPI_STATUS_IGNORE), call_.reduction.fold.name);
-  }
+  if (isDone != 0) check(MPI_Test(&stepsRequest_, &isDone, MPI_STATUS_IGNORE), call_.reduction.fold.name);
   return isDone != 0;
 }
 
 void RankReduction::wait() {
   check(MPI_Wait(&wordsRequest_, MPI_STATUS_IGNORE), call_.reduction.fold.name);
-  for (const std::unique_ptr<Step>& step : steps_)
-    check(MPI_Wait(&step->request, MPI_STATUS_IGNORE), call_.reduction.fold.name);
+  check(MPI_Wait(&stepsRequest_, MPI_STATUS_IGNORE), call_.reduction.fold.name);
 }
 
 void RankReduction::finish(std::span<void* const> results) {
   wait();
-  for (const std::unique_ptr<Step>& step : steps_) finishStep(*step);
+  for (std::size_t k = 0; k < steps_.size(); ++k) finishStep(k);
   finishWords();
   for (std::size_t k = 0; k < values_.size(); ++k)
     std::memcpy(results[k], values_[k].data(), values_[k].size());
 }
 
-/// The accumulators of all lines of elements, by the index of their first element.
-Bytes RankReduction::inOrder(const Step& step) const {
+/// The parts of all ranks, in the order of their elements.
+Bytes RankReduction::allOf(std::size_t step) const {
+  const std::size_t elementBytes = steps_[step]->elementBytes;
+  std::size_t before = 0;  // bytes of a part in earlier steps
+  for (std::size_t k = 0; k < step; ++k) before += steps_[k]->elementBytes;
+  Bytes parts;
+  for (int rank = 0; rank < domain_.parts.ranks(); ++rank) {
+    const auto count = static_cast<std::size_t>(partsOf(rank).size());
+    const std::byte* const from =
+        all_.data() + offsets_[static_cast<std::size_t>(rank)] + static_cast<std::ptrdiff_t>(count * before);
+    parts.insert(parts.end(), from, from + count * elementBytes);
+  }
+  return isInterleaved() ? inOrder(parts, elementBytes) : parts;
+}
+
+/// Sorts lines of elements, those of one rank after those of another, by the index of their first element.
+Bytes RankReduction::inOrder(const Bytes& parts, std::size_t elementBytes) const {
   struct Line {
     Index first;
-    std::size_t offset;
+    std::size_t number;
   };
   std::vector<Line> lines;
   for (int rank = 0; rank < domain_.parts.ranks(); ++rank) {
     const Box own = domain::intersection(domain_.parts.boxOf(rank), box_);
-    const Shape parts = partsOf(rank);
-    for (std::int64_t k = 0; k < parts.size(); ++k) {
-      Line line{own.begin, static_cast<std::size_t>(step.offsets[static_cast<std::size_t>(rank)]) +
-                               static_cast<std::size_t>(k) * step.elementBytes};
+    const Shape shape = partsOf(rank);
+    for (std::int64_t k = 0; k < shape.size(); ++k) {
+      Line line{own.begin, lines.size()};
       std::int64_t rest = k;
-      for (int d = parts.rank() - 1; d >= 0; --d) {
-        line.first[d] += rest % parts[d];
-        rest /= parts[d];
+      for (int d = shape.rank() - 1; d >= 0; --d) {
+        line.first[d] += rest % shape[d];
+        rest /= shape[d];
       }
       lines.push_back(line);
     }
@@ -286,9 +298,10 @@ Bytes RankReduction::inOrder(const Step& step) const {
     }
     return false;
   });
-  Bytes sorted(step.all.size());
+  Bytes sorted(parts.size());
   for (std::size_t k = 0; k < lines.size(); ++k)
-    std::memcpy(sorted.data() + k * step.elementBytes, step.all.data() + lines[k].offset, step.elementBytes);
+    std::memcpy(sorted.data() + k * elementBytes, parts.data() + lines[k].number * elementBytes,
+                elementBytes);
   return sorted;
 }
 
@@ -316,10 +329,11 @@ void RankReduction::combine(const Step& step, const Accumulators& all, const Acc
   whole.device.reduce(whole);
 }
 
-void RankReduction::finishStep(const Step& step) {
+void RankReduction::finishStep(std::size_t number) {
+  const Step& step = *steps_[number];
   const Variant& variant = step.variant;
   Accumulators all(call_.device, *variant.reduction, Shape{countOfParts()}, variant.inDoubles);
-  all.write(isInterleaved() ? inOrder(step) : step.all);
+  all.write(allOf(number));
   Accumulators result(call_.device, *variant.reduction, {1}, variant.inDoubles);
   combine(step, all, result);
   if (step.digits != nullptr) return finishDigits(step, result);

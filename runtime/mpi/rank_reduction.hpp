@@ -49,9 +49,7 @@ class RankReduction {
     const program::ExactSum* digits = nullptr;  ///< the sum whose digits they are
     std::vector<Argument> arguments;
     std::size_t elementBytes = 0;
-    Bytes own, all;
-    std::vector<int> counts, offsets;
-    MPI_Request request = MPI_REQUEST_NULL;
+    Bytes own;  ///< of this rank's parts
   };
 
   bool isInterleaved() const;
@@ -63,12 +61,14 @@ class RankReduction {
   ResolvedReduction partOf(const Step& step) const;
   void startStep(const Variant& variant, const program::ExactSum* digits,
                  std::span<const Argument> arguments);
-  void post(Step& step);
+  void postSteps();
+  void startExactly();
   void startWords(std::vector<std::int64_t>&& words);
   std::vector<std::int64_t> exactWords();
-  Bytes inOrder(const Step& step) const;
+  Bytes allOf(std::size_t step) const;
+  Bytes inOrder(const Bytes& parts, std::size_t elementBytes) const;
   void combine(const Step& step, const Accumulators& all, const Accumulators& result);
-  void finishStep(const Step& step);
+  void finishStep(std::size_t number);
   void finishDigits(const Step& step, const Accumulators& digits);
   void finishWords();
 
@@ -80,6 +80,9 @@ class RankReduction {
   ResolvedReduction call_;
   DenseArguments dense_;
   std::vector<std::unique_ptr<Step>> steps_;
+  Bytes own_, all_;  ///< the parts of all steps: of this rank, and of all
+  std::vector<int> counts_, offsets_;
+  MPI_Request stepsRequest_ = MPI_REQUEST_NULL;
   std::vector<std::int64_t> words_;  ///< of all exact sums, if the device keeps them as integers
   std::vector<std::size_t> wordCounts_;
   MPI_Request wordsRequest_ = MPI_REQUEST_NULL;
