@@ -26,6 +26,7 @@ export function ownCanvas(): Canvas {
 
 /** The WebGL2 context of a canvas. Throws SkError if the browser gives none. */
 export function contextOf(canvas: Canvas, { powerPreference, refuseSoftware = false }: DeviceOptions): WebGL2RenderingContext {
+  if (typeof canvas?.getContext !== 'function') throw new SkError('options.canvas is no canvas; give an HTMLCanvasElement or an OffscreenCanvas', 'device');
   const attributes = { alpha: true, antialias: false, depth: false, stencil: false, powerPreference, failIfMajorPerformanceCaveat: refuseSoftware };
   const context = canvas.getContext('webgl2', attributes) as WebGL2RenderingContext | null;
   if (context !== null) return context;
@@ -39,6 +40,7 @@ export function contextOf(canvas: Canvas, { powerPreference, refuseSoftware = fa
 
 /** Extensions must be asked for before anything needs them, also in a context that has been restored. */
 export function abilitiesOf(gl: WebGL2RenderingContext, options: DeviceOptions): Abilities {
+  if (typeof gl?.texStorage2D !== 'function') throw new SkError("options.context is no WebGL2 context; give canvas.getContext('webgl2')", 'device');
   const names = gl.getExtension('WEBGL_debug_renderer_info');
   const text = (name: number) => String(gl.getParameter(name) ?? '');
   const renderer = text(names?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER);

@@ -2,7 +2,7 @@
 //
 // Checks of arguments, with the messages of runtime/src/call.
 import type { Device } from './device.js';
-import { isSameElement, numbersOf } from './elements.js';
+import { isSameElement, numbersOf, withArticle } from './elements.js';
 import { SkError, type ErrorKind } from './error.js';
 import { isNeeded, specBits, type Element, type KernelData, type Parameter } from './generated.js';
 import { decodedRank, shapeText, xFirst } from './layout.js';
@@ -65,10 +65,25 @@ function uniformOf(kernel: string, parameter: Parameter, element: Element, value
   }
   const numbers = typeof value === 'number' ? [value] : numbersOf(element, value);
   const wanted = element.fields.reduce((count, field) => count + field.width, 0);
-  if (numbers.length !== wanted || (typeof value !== 'object' && wanted > 1) || value === null || value === undefined || typeof value === 'string') {
+  if (numbers.length !== wanted || (typeof value !== 'object' && wanted > 1)) {
     fail(kernel, `'${parameter.name}' is declared as ${element.name}, ${wanted} number(s), but ${described(value)} is given`, 'type');
   }
+  checkWhole(kernel, parameter, element, numbers);
   return numbers;
+}
+
+const fractions = ['float', 'double', 'half', 'unorm8', 'snorm8', 'unorm16', 'snorm16'];
+
+/** WebGL makes integers of everything: of NaN 0. */
+function checkWhole(kernel: string, parameter: Parameter, element: Element, numbers: readonly number[]): void {
+  let i = 0;
+  for (const { scalar, width } of element.fields) {
+    for (let c = 0; c < width; ++c) {
+      const number = numbers[i++]!;
+      if (Number.isInteger(number) || fractions.includes(scalar)) continue;
+      fail(kernel, `'${parameter.name}' is declared as ${element.name}, but ${number} is no whole number`, 'type');
+    }
+  }
 }
 
 function iteratorOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly number[] {
@@ -99,7 +114,7 @@ function streamOf(kernel: string, parameter: Parameter, elements: readonly Eleme
 function described(value: unknown): string {
   if (value === null || value === undefined) return String(value);
   if (value instanceof Stream) return `a stream of ${value.element.name}`;
-  if (typeof value === 'object') return `a ${value.constructor?.name ?? 'object'}${Array.isArray(value) ? ` of ${value.length}` : ''}`;
+  if (typeof value === 'object') return `${withArticle(value.constructor?.name ?? 'object')}${Array.isArray(value) ? ` of ${value.length}` : ''}`;
   return typeof value === 'function' ? 'a function' : `${typeof value} ${String(value)}`;
 }
 

@@ -2,6 +2,7 @@
 //
 // Compiles programs ahead of the calls that need them, while the page goes on.
 import type { Device } from './device.js';
+import { SkError } from './error.js';
 import type { Program } from './program.js';
 
 /** What knows all its programs: kernels and reduces of FILE.sk.js. */
@@ -11,6 +12,9 @@ export interface Compilable {
 }
 
 export async function compileAll(device: Device, callables: readonly Compilable[], progress?: (done: number) => void): Promise<void> {
+  if (!callables.every((callable) => typeof callable?.startPrograms === 'function')) {
+    throw new SkError('only kernels and reduces of .sk.js files are compiled', 'type');
+  }
   const programs = callables.flatMap((callable) => callable.startPrograms(device));
   const isLinked = (program: Program) => program.isLinked(device.parallel);
   for (;;) {

@@ -12,6 +12,7 @@ import { builtInElement } from './elements.js';
 import type { ElementType, ShapeOf, Struct } from './types.js';
 import { drawStream, type DrawOptions } from './draw.js';
 import { compileAll, type Compilable } from './compile.js';
+import { Trace } from './trace.js';
 
 export interface DeviceOptions {
   /** A WebGL2 context of the application, or a canvas without a context; by default, the device has a canvas of its own. */
@@ -20,6 +21,8 @@ export interface DeviceOptions {
   readonly powerPreference?: WebGLPowerPreference;
   /** Streams keep what is written to them on the host, too, so that a context that the browser takes away can be restored with it. */
   readonly keepCopies?: boolean;
+  /** Device.trace, from the beginning. */
+  readonly trace?: boolean;
   /** Refuse a device that stores floats as halves (DeviceInfo.floats). */
   readonly requireFloats?: boolean;
   /** Refuse a device that computes on the processor, as browsers without a graphics driver do. */
@@ -85,6 +88,7 @@ export class Device {
   readonly context: WebGL2RenderingContext;
   readonly canvas: Canvas;
 
+  /** @internal */ tracer: Trace | null = null;
   /** @internal */ readonly keepsCopies: boolean;
   /** What has been found out about the context; anew when it is restored. @internal */ abilities: Abilities;
   /** How often the context has been restored. Textures and programs of earlier times are gone. @internal */ generation = 0;
@@ -119,17 +123,26 @@ export class Device {
   private constructor(private readonly options: DeviceOptions) {
     const canvas = (options.context?.canvas as Canvas | undefined) ?? options.canvas ?? ownCanvas();
     this.context = options.context ?? contextOf(canvas, options);
-    if (this.context.isContextLost()) throw new SkError('the context is lost; make a device of a new canvas', 'lost');
+    if (this.context.isContextLost?.()) throw new SkError('the context is lost; make a device of a new canvas', 'lost');
     this.canvas = canvas;
     this.ownsContext = options.context === undefined;
     this.hasHiddenCanvas = this.ownsContext && options.canvas === undefined;
     this.keepsCopies = options.keepCopies ?? false;
     this.abilities = abilitiesOf(this.context, options);
+    this.trace = options.trace ?? false;
     canvas.addEventListener('webglcontextlost', (event) => {
       if (this.ownsContext && !this.isDisposed) event.preventDefault(); // which asks the browser to restore it
       this.lose();
     });
     canvas.addEventListener('webglcontextrestored', () => this.restore());
+  }
+
+  /** Whether calls, passes, compilations and transfers make entries for the browser's performance panel. */
+  get trace(): boolean {
+    return this.tracer !== null;
+  }
+  set trace(isOn: boolean) {
+    if (isOn !== this.trace) this.tracer = isOn ? new Trace(this) : null;
   }
 
   /** @internal */
@@ -171,6 +184,7 @@ export class Device {
     this.readFormats.clear();
     this.layouts.clear(); // the largest texture may have another size
     this.forgetState();
+    if (this.tracer !== null) this.tracer = new Trace(this);
     this.isLost = false;
     for (const programs of this.programs.values()) {
       for (const program of programs.values()) program.start();
@@ -197,7 +211,9 @@ export class Device {
   /** A stream of this shape, rows first, whose elements are 0. */
   stream<T extends ElementType, S extends readonly [number, ...number[]]>(type: T, shape: S): Stream<T, S['length']> {
     this.check();
-    const element = typeof type === 'string' ? builtInElement(type) : (type as unknown as StructElement);
+    const isStruct = typeof type === 'object' && type !== null && 'fields' in type;
+    const element = isStruct ? (type as unknown as StructElement) : builtInElement(type as string);
+    if (!Array.isArray(shape)) throw new SkError(`${String(shape)} is no shape: give an array of 1 to 4 extents, rows first`, 'shape');
     return new Stream<T, S['length']>(this, element, [...shape] as unknown as ShapeOf<S['length']>);
   }
 
@@ -447,6 +463,11 @@ export class Device {
 
   /** Draws rectangles with the current program and framebuffer. @internal */
   drawRects(rects: readonly Rect[]): void {
+    if (this.tracer === null) return this.drawEach(rects);
+    this.tracer.pass(this.boundProgram!.name, texelsIn(rects), () => this.drawEach(rects));
+  }
+
+  private drawEach(rects: readonly Rect[]): void {
     const gl = this.context;
     for (const { x, y, width, height } of rects) {
       this.setViewport(x, y, width, height);
@@ -463,7 +484,9 @@ export class Device {
       gl.blendEquation({ add: gl.FUNC_ADD, min: gl.MIN, max: gl.MAX }[blend]);
       gl.blendFunc(gl.ONE, gl.ONE);
     }
-    gl.drawArrays(gl.POINTS, 0, count);
+    const draw = () => gl.drawArrays(gl.POINTS, 0, count);
+    if (this.tracer === null) draw();
+    else this.tracer.pass(this.boundProgram!.name, count, draw);
     if (blend !== null) gl.disable(gl.BLEND);
   }
 
@@ -484,7 +507,8 @@ export class Device {
     const wide = wideOf(tight);
     const isTight = this.readsTight(tight);
     const from = isTight ? { format: tight.format, type: tight.type, array: tight.channel, channels: tight.channels } : { ...wide, channels: 4 };
-    const texels = rects.reduce((count, { width, height }) => count + width * height, 0);
+    const texels = texelsIn(rects);
+    const asked = performance.now();
     const read = new from.array(texels * from.channels);
     const buffer = gl.createBuffer()!;
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
@@ -502,6 +526,7 @@ export class Device {
       if (sync === null) return reject(this.lostError());
       const finish = () => {
         gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, read);
+        this.tracer?.measure('transfers', `read ${read.byteLength} bytes`, asked);
         resolve(isTight ? read : narrowed(read, tight, texels));
       };
       this.readbacks.push({ buffer, sync, finish, fail: reject });
@@ -556,6 +581,10 @@ export class Device {
     channel.port1.onmessage = look;
     channel.port2.postMessage(null);
   }
+}
+
+function texelsIn(rects: readonly Rect[]): number {
+  return rects.reduce((count, { width, height }) => count + width * height, 0);
 }
 
 /** The channels of a texture from four channels of 32 bits. */

@@ -8,7 +8,7 @@ import { SkError } from './error.js';
 import { formatOf } from './format.js';
 import { lanes, shapeText } from './layout.js';
 import type { Program } from './program.js';
-import type { Stream } from './stream.js';
+import { Stream } from './stream.js';
 
 export interface DrawOptions {
   /** Colours of numbers: 'viridis' by default. */
@@ -56,6 +56,8 @@ function glslColour(hex: string): string {
 
 export function drawStream(device: Device, stream: Stream<any, number>, canvas: Canvas, options: DrawOptions): void {
   const { map = 'viridis', range = [0, 1] } = options;
+  if (!(stream instanceof Stream)) throw new SkError('what is drawn is no stream; make one by device.stream()', 'type');
+  if (typeof canvas?.getContext !== 'function') throw new SkError('the picture needs a canvas, an HTMLCanvasElement or an OffscreenCanvas', 'type');
   stream.check('the stream');
   if (stream.device !== device) throw new SkError('the stream belongs to another device; draw it with its own', 'device');
   if (!(map in colourMaps)) throw new SkError(`there is no colour map '${String(map)}'; use ${Object.keys(colourMaps).join(', ')}`);

@@ -106,8 +106,8 @@ export function planeArray(element: Element, plane: number, given: unknown, coun
   const { scalar } = element.fields[plane]!;
   const type = hostArrayOf(scalar);
   if (!(array instanceof type)) {
-    const what = array === undefined ? 'nothing is given' : `a ${(array as object)?.constructor?.name ?? typeof array} is given`;
-    throw new SkError(`a stream of ${element.name} is written from a ${type.name}${name === '' ? '' : ` in ${name.slice(1)}`}, but ${what}`, 'type');
+    const what = array === undefined ? 'nothing is given' : `${withArticle((array as object)?.constructor?.name ?? typeof array)} is given`;
+    throw new SkError(`a stream of ${element.name} is written from ${withArticle(type.name)}${name === '' ? '' : ` in ${name.slice(1)}`}, but ${what}`, 'type');
   }
   const place = placeOf(element, plane);
   if (array.length !== count * place.step) {
@@ -117,6 +117,10 @@ export function planeArray(element: Element, plane: number, given: unknown, coun
     );
   }
   return { array: array as HostArray, ...place };
+}
+
+export function withArticle(noun: string): string {
+  return `${/^[AEIO]/i.test(noun) ? 'an' : 'a'} ${noun}`;
 }
 
 /** New arrays for `count` elements, by which planeArray() finds all planes. */
@@ -187,7 +191,7 @@ function flat(value: unknown): number[] {
   if (typeof value === 'boolean') return [Number(value)];
   if (ArrayBuffer.isView(value) || Array.isArray(value)) return Array.from(value as ArrayLike<unknown>).flatMap(flat);
   if (typeof value === 'object' && value !== null) return Object.values(value).flatMap(flat);
-  return [NaN];
+  return []; // no value at all
 }
 
 /** The value that has these components: the reverse of numbersOf(). */

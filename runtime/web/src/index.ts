@@ -28,18 +28,29 @@ interface Exported {
   startPrograms(device: Device): Program[];
 }
 
-function kernelFunction(caller: KernelCaller): Exported {
-  const run = (...given: unknown[]) => caller.call(given);
+/** Makes a function of a call, which the tracer of the streams' device sees. */
+function traced<T>(name: string, call: (given: readonly unknown[]) => T): (...given: unknown[]) => T {
+  return (...given) => {
+    for (const argument of given) {
+      const tracer = (argument as { device?: Device } | null | undefined)?.device?.tracer;
+      if (tracer) return tracer.call(name, () => call(given));
+    }
+    return call(given);
+  };
+}
+
+function kernelFunction(name: string, caller: KernelCaller): Exported {
+  const run = traced(name, (given) => caller.call(given));
   return Object.assign(run, {
     check: (given: readonly unknown[]) => caller.check(given),
     startPrograms: (device: Device) => caller.startPrograms(device),
   });
 }
 
-function reduceFunction(caller: ReductionCaller, options: CallOptions): Exported {
-  const run = (...given: unknown[]) => caller.call(given, options);
+function reduceFunction(name: string, caller: ReductionCaller, options: CallOptions): Exported {
+  const run = traced(name, (given) => caller.call(given, options));
   return Object.assign(run, {
-    with: (more: CallOptions) => reduceFunction(caller, { ...options, ...more }),
+    with: (more: CallOptions) => reduceFunction(name, caller, { ...options, ...more }),
     check: (given: readonly unknown[]) => caller.check(given),
     startPrograms: (device: Device) => caller.startPrograms(device),
   });
@@ -50,8 +61,8 @@ function functionOf(callable: Callable, file: GeneratedFile, texts: readonly str
     const refuse = () => fail(callable.name, callable.whyNot, 'compile');
     return Object.assign(() => refuse(), { check: refuse, startPrograms: refuse });
   }
-  if ('fold' in callable) return reduceFunction(new ReductionCaller(callable, file, texts), {});
-  return kernelFunction(new KernelCaller(callable, file, texts));
+  if ('fold' in callable) return reduceFunction(callable.name, new ReductionCaller(callable, file, texts), {});
+  return kernelFunction(callable.name, new KernelCaller(callable, file, texts));
 }
 
 /** Calls the first of several overloads that takes the arguments; if none does, the first says why. */

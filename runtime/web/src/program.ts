@@ -125,6 +125,7 @@ export interface Bound {
 export class Program {
   private shaders: WebGLShader[] = [];
   private generation = -1;
+  private started = 0;
   handle!: WebGLProgram;
   /** Set when it is first used. */
   reads: Bound[] = [];
@@ -141,7 +142,7 @@ export class Program {
 
   constructor(
     private readonly device: Device,
-    private readonly name: string,
+    readonly name: string,
     private readonly text: string,
     private readonly parameters: readonly Parameter[],
     private readonly elements: readonly Element[],
@@ -156,6 +157,7 @@ export class Program {
   start(): void {
     const { gl } = this;
     this.generation = this.device.generation;
+    this.started = performance.now();
     this.isReady = false;
     this.reads = [];
     this.values = [];
@@ -193,6 +195,7 @@ export class Program {
       const log = this.shaders.map((shader) => gl.getShaderInfoLog(shader) ?? '').join('') + (gl.getProgramInfoLog(handle) ?? '');
       throw new SkError(`${this.name}: the driver refuses the program:\n${log}`, 'compile');
     }
+    this.device.tracer?.measure('compilations', this.name, this.started);
     for (const shader of this.shaders) gl.deleteShader(shader);
     gl.useProgram(handle);
     this.domain = new LayoutUniforms(gl, handle, 'sk_domain_*');

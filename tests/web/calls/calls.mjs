@@ -5,6 +5,7 @@ import { Device, SkError } from 'streamkernel';
 import * as k from './calls.sk.js';
 import { appendCases } from './append.mjs';
 import { deviceCases } from './devices.mjs';
+import { mistakeCases } from './mistakes.mjs';
 
 const expected = await (await fetch('expected.json')).json();
 const mistakes = [];
@@ -210,7 +211,7 @@ const cases = {
     await refused('misuse', '3 arguments are given, but 4 are declared', () => k.saxpy(1, u, u));
     await refused('type', "'x' is a stream, but a Float32Array is given", () => k.saxpy(1, new Float32Array(64), u, u));
     await refused('shape', '64 element(s) of float are 64 number(s), but the array has 63', () => u.write(new Float32Array(63)));
-    await refused('type', 'written from a Float32Array, but a Array is given', () => u.write([1, 2]));
+    await refused('type', 'written from a Float32Array, but an Array is given', () => u.write([1, 2]));
     await refused('shape', 'is no shape', () => device.stream('float', [2.5]));
     await refused('shape', 'is no shape', () => device.stream('float', []));
     await refused('shape', 'divide it into several streams', () => device.stream('float2', [100000, 100000]));
@@ -271,7 +272,7 @@ const cases = {
   },
 };
 const checked = { same, refused, filled, random, random24, floats, integers, from, expect };
-Object.assign(cases, appendCases(checked), deviceCases(checked));
+Object.assign(cases, appendCases(checked), deviceCases(checked), mistakeCases(checked));
 
 const report = { mistakes, checks, seconds: {} };
 try {

@@ -15,7 +15,7 @@ import package
 
 skc, source, reference = sys.argv[1], os.path.realpath(sys.argv[2]), sys.argv[3]
 here = os.path.dirname(os.path.realpath(__file__))
-most_bytes = 25000  # of the package's modules, gzipped
+most_bytes = 33000  # of the package's modules, gzipped, with indentation and long names: minified, 25 kB
 seconds = 400  # a few, on a machine that has nothing else to do
 
 
@@ -43,7 +43,7 @@ with tempfile.TemporaryDirectory() as folder:
     check_document(folder)
     with open(f"{folder}/expected.json", "w") as expected:
         subprocess.run([reference], stdout=expected, check=True)
-    for name in ("index.html", "calls.mjs", "append.mjs", "devices.mjs"):
+    for name in ("index.html", "calls.mjs", "append.mjs", "devices.mjs", "mistakes.mjs"):
         os.symlink(f"{here}/{name}", f"{folder}/{name}")
     report = chromium.report_of(folder, "index.html", seconds)
 
