@@ -58,7 +58,7 @@ llvm::Value* concatenate(Lanes& l, std::vector<llvm::Value*> vectors) {
 
 llvm::Value* Streams::isBlockInside(std::uint32_t param, const Parts& index) {
   llvm::Value* isInside =
-      l.b.CreateICmpNE(argumentField(param, offsetof(Argument, isSmall), l.int64()), l.integer(l.int64(), 0));
+      l.b.CreateICmpEQ(argumentField(param, offsetof(Argument, isSmall), l.int64()), l.integer(l.int64(), 1));
   const auto require = [&](llvm::Value* condition) {
     isInside = l.b.CreateAnd(isInside, l.isVector(condition) ? l.b.CreateAndReduce(condition) : condition);
   };

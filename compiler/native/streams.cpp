@@ -381,7 +381,7 @@ Parts Streams::gatherByNumbers(std::uint32_t param, const Parts& index) {
     }
     number = number == nullptr ? i : l.b.CreateAdd(number, i);
   }
-  llvm::Value* const start = argumentField(param, offsetof(Argument, first), l.int64());
+  llvm::Value* const start = argumentField(param, offsetof(Argument, start), l.int64());
   Parts parts;
   for (std::size_t c = 0; c < scalars(param).size(); ++c) {
     const Scalar scalar = scalars(param)[c];

@@ -370,6 +370,37 @@ TEST_CASE("indices, extents and neighbors are those of a whole with more element
   });
 }
 
+TEST_CASE("computed gathers find elements whose numbers in the whole exceed 32 bits") {
+  sk::Device& device = run_tests::device("native");
+  const sk::Shape whole{(1 << 16) + 3, (1 << 17) + 5}, held{9, 40000};
+  const sk::Index origin{65525, 50000};
+  const sk::Box box{{65528, 50010}, {65530, 50110}};
+  std::vector<float> values(static_cast<std::size_t>(held.size()));
+  const auto valueAt = [](std::int64_t y, std::int64_t x) { return static_cast<float>((7 * y + x) % 1009); };
+  forEachIn(origin, held, [&](std::int64_t number, const sk::Index& index) {
+    values[static_cast<std::size_t>(number)] = valueAt(index[0], index[1]);
+  });
+  Random random(3);
+  std::vector<sk::int2> by(200);
+  for (sk::int2& one : by) one = {below(random, 7) - 3, below(random, 7) - 3};
+  auto u = device.stream<float>(held), r = device.stream<float>({2, 100});
+  auto d = device.stream<sk::int2>({2, 100});
+  u.write(values);
+  d.write(by);
+  const sk::Placement own{box.begin, whole};
+  forEachMode([&](const auto& mode) {
+    INFO(mode.name);
+    mode.anywhere.with({.box = box})(sk::placed(u, {origin, whole}), sk::placed(d, own), sk::placed(r, own));
+    const std::vector<float> got = r.read();
+    bool areSame = true;
+    forEachIn(box.begin, {2, 100}, [&](std::int64_t number, const sk::Index& index) {
+      const auto i = static_cast<std::size_t>(number);
+      areSame = areSame && got[i] == valueAt(index[0] + by[i].y, index[1] + by[i].x);
+    });
+    CHECK(areSame);
+  });
+}
+
 TEST_CASE("iterators, inputs that repeat and several outputs keep to the whole's indices") {
   onEveryTarget([](sk::Device& device) {
     const sk::Shape shape{13, 22};

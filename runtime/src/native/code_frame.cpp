@@ -21,17 +21,28 @@ bool fits32(std::int64_t number) {
          number <= std::numeric_limits<std::int32_t>::max();
 }
 
-/// Code adds multiples of the strides in 32 bits, and the first element's number in 64.
-bool isSmall(const native::Operand& operand, const native::HeldIndices& held) {
+/// Sets isSmall and start. Code adds multiples of the strides in 32 bits, and that sum to `start` in 64. In a large whole,
+/// sums are large though the elements that are held lie close together.
+void setSmall(native::Argument& argument, const native::Operand& operand, const native::HeldIndices& held) {
+  argument.start = operand.first;
   std::int64_t least = 0, most = 0;
+  bool areSmall = true;
   for (std::size_t d = 0; d < 4; ++d) {
     if (held.low[d] == 0 && held.high[d] == 1) continue;
-    if (!fits32(operand.stride[d])) return false;
     least += held.low[d] * operand.stride[d];
     most += (held.high[d] - 1) * operand.stride[d];
-    if (!fits32(least) || !fits32(most)) return false;
+    areSmall = areSmall && fits32(operand.stride[d]) && fits32(least) && fits32(most);
   }
-  return fits32(operand.held ? most : operand.first + most);
+  if (areSmall && fits32(operand.held ? most : operand.first + most)) {
+    argument.isSmall = 1;
+    return;
+  }
+  constexpr int bits = 32;
+  const std::int64_t turns = (least + (std::int64_t{1} << (bits - 1))) >> bits;
+  const std::int64_t turned = turns * (std::int64_t{1} << bits);
+  if (!operand.held || !fits32(least - turned) || !fits32(most - turned)) return;
+  argument.isSmall = 2;
+  argument.start += turned;
 }
 
 native::Argument argumentOf(const native::Operand& operand) {
@@ -44,7 +55,7 @@ native::Argument argumentOf(const native::Operand& operand) {
   std::ranges::copy(operand.divide, argument.divide);
   argument.countsElements = operand.countsElements ? 1 : 0;
   const native::HeldIndices held = operand.held.value_or(native::HeldIndices{{}, operand.extent});
-  argument.isSmall = isSmall(operand, held) ? 1 : 0;
+  setSmall(argument, operand, held);
   std::ranges::copy(held.low, argument.low);
   std::ranges::copy(held.high, argument.high);
   return argument;

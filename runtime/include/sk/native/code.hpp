@@ -58,7 +58,10 @@ struct Argument {
   AppendBuffer* appendBuffer;
   /// Iterators: 1 if it advances with the element number, 0 if with the index in each dimension.
   std::int64_t countsElements;
-  std::int64_t isSmall;  ///< 1 if all element numbers fit 32 bits
+  /// 1 if all element numbers fit 32 bits; 2 if sums of multiples of strides, computed modulo 2^32 and sign-extended, lead
+  /// from element number `start` to every element; else 0.
+  std::int64_t isSmall;
+  std::int64_t start;  ///< the element from which such sums count; `first` if isSmall is 1
   /// Gathers: the element at an index from `low` to `high` (exclusive) has number first + sum(index * stride). The
   /// boundary mode brings other indices inside; what is outside then is not held, and reads the nearest index that is.
   /// 0 and `extent`, unless the arrays hold a part of a whole.
@@ -166,7 +169,7 @@ struct Entry {
 
 /// The native code of one kernel.
 struct Code {
-  static constexpr std::uint32_t currentVersion = 7;
+  static constexpr std::uint32_t currentVersion = 8;
   std::uint32_t version;
   std::uint32_t entryCount;
   const Entry* entries;
