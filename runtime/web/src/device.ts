@@ -3,7 +3,7 @@
 // A device: a WebGL2 context, its textures and programs. All GL state that passes need is set here.
 import { abilitiesOf, contextOf, ownCanvas, type Abilities, type Canvas } from './abilities.js';
 import { SkError } from './error.js';
-import { formatOf, wideOf, type Format, type HostArray, type Scalar } from './format.js';
+import { formatOf, type Format, type HostArray, type Scalar } from './format.js';
 import type { Element, GeneratedFile, Parameter, StructElement } from './generated.js';
 import { layoutOf, mayPack, type Layout, type Rect } from './layout.js';
 import { Program } from './program.js';
@@ -13,6 +13,7 @@ import type { ElementType, ShapeOf, Struct } from './types.js';
 import { drawStream, type DrawOptions } from './draw.js';
 import { compileAll, type Compilable } from './compile.js';
 import { Trace } from './trace.js';
+import { texelsIn, Transfers } from './transfers.js';
 
 export interface DeviceOptions {
   /** A WebGL2 context of the application, or a canvas without a context; by default, the device has a canvas of its own. */
@@ -70,15 +71,6 @@ export interface Plane {
   framebuffer: WebGLFramebuffer | null;
 }
 
-/** A transfer to the host that has been asked for. */
-interface Readback {
-  readonly buffer: WebGLBuffer;
-  readonly sync: WebGLSync;
-  /** Takes the bytes out of the buffer, which is bound. */
-  readonly finish: () => void;
-  readonly fail: (error: SkError) => void;
-}
-
 export class Device {
   /** Called when the browser takes the context away: calls fail until it is restored. */
   onlost: ((error: SkError) => void) | null = null;
@@ -94,6 +86,7 @@ export class Device {
   /** How often the context has been restored. Textures and programs of earlier times are gone. @internal */ generation = 0;
   /** Whether nobody else sees the device's canvas. @internal */ readonly hasHiddenCanvas: boolean;
   private readonly ownsContext: boolean;
+  private transfers: Transfers;
   private isLost = false;
   private isDisposed = false;
   private readonly programs = new Map<unknown, Map<string, Program>>();
@@ -101,9 +94,6 @@ export class Device {
   private mostLayouts = 1024;
   private readonly pool = new Map<string, Plane[]>();
   private readonly framebuffers = new Map<string, WebGLFramebuffer>();
-  private readonly readFormats = new Map<number, { format: number; type: number }>();
-  private readonly readbacks: Readback[] = [];
-  private isPolling = false;
   private nextId = 1;
   private boundProgram: Program | null = null;
   private boundFramebuffer: WebGLFramebuffer | null | undefined = undefined;
@@ -129,6 +119,7 @@ export class Device {
     this.hasHiddenCanvas = this.ownsContext && options.canvas === undefined;
     this.keepsCopies = options.keepCopies ?? false;
     this.abilities = abilitiesOf(this.context, options);
+    this.transfers = new Transfers(this);
     this.trace = options.trace ?? false;
     canvas.addEventListener('webglcontextlost', (event) => {
       if (this.ownsContext && !this.isDisposed) event.preventDefault(); // which asks the browser to restore it
@@ -164,7 +155,7 @@ export class Device {
     if (this.isLost) return;
     this.isLost = true;
     const error = this.lostError();
-    for (const readback of this.readbacks.splice(0)) readback.fail(error);
+    this.transfers.end(error);
     if (!this.isDisposed) this.onlost?.(error);
   }
 
@@ -181,7 +172,7 @@ export class Device {
     this.pool.clear();
     this.framebuffers.clear();
     this.filters.clear();
-    this.readFormats.clear();
+    this.transfers = new Transfers(this);
     this.layouts.clear(); // the largest texture may have another size
     this.forgetState();
     if (this.tracer !== null) this.tracer = new Trace(this);
@@ -192,7 +183,8 @@ export class Device {
     this.onrestored?.();
   }
 
-  private lostError(): SkError {
+  /** @internal */
+  lostError(): SkError {
     if (this.isDisposed) return new SkError('the device has been disposed of; make a new one', 'lost');
     const wayOut = 'wait for device.onrestored, or make a new device; keep() the elements of streams that must outlive it';
     return new SkError(`the browser has taken the context away, and the elements of all streams with it; ${wayOut}`, 'lost');
@@ -501,100 +493,9 @@ export class Device {
 
   /** Reads the texels of rectangles, one after the other: channels of the texture's format. @internal */
   readTexels(plane: Plane, rects: readonly Rect[]): Promise<HostArray> {
-    const gl = this.context;
     this.framebufferOf([plane]);
-    const tight = plane.format;
-    const wide = wideOf(tight);
-    const isTight = this.readsTight(tight);
-    const from = isTight ? { format: tight.format, type: tight.type, array: tight.channel, channels: tight.channels } : { ...wide, channels: 4 };
-    const texels = texelsIn(rects);
-    const asked = performance.now();
-    const read = new from.array(texels * from.channels);
-    const buffer = gl.createBuffer()!;
-    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
-    gl.bufferData(gl.PIXEL_PACK_BUFFER, read.byteLength, gl.STREAM_READ);
-    gl.pixelStorei(gl.PACK_ALIGNMENT, 1);
-    let at = 0;
-    for (const { x, y, width, height } of rects) {
-      gl.readPixels(x, y, width, height, from.format, from.type, at);
-      at += width * height * from.channels * read.BYTES_PER_ELEMENT;
-    }
-    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
-    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-    gl.flush();
-    return new Promise((resolve, reject) => {
-      if (sync === null) return reject(this.lostError());
-      const finish = () => {
-        gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, read);
-        this.tracer?.measure('transfers', `read ${read.byteLength} bytes`, asked);
-        resolve(isTight ? read : narrowed(read, tight, texels));
-      };
-      this.readbacks.push({ buffer, sync, finish, fail: reject });
-      this.poll();
-    });
+    return this.transfers.read(plane.format, rects);
   }
-
-  /** Whether the driver reads such textures as they are; else it reads four channels of 32 bits. */
-  private readsTight(format: Format): boolean {
-    const wide = wideOf(format);
-    if (format.format === wide.format && format.type === wide.type) return true;
-    const gl = this.context;
-    let own = this.readFormats.get(format.internal);
-    if (own === undefined) {
-      own = {
-        format: gl.getParameter(gl.IMPLEMENTATION_COLOR_READ_FORMAT) as number,
-        type: gl.getParameter(gl.IMPLEMENTATION_COLOR_READ_TYPE) as number,
-      };
-      this.readFormats.set(format.internal, own);
-    }
-    return own.format === format.format && own.type === format.type;
-  }
-
-  /** Looks at fences between other tasks of the page, until no transfer is left. */
-  private poll(): void {
-    if (this.isPolling) return;
-    this.isPolling = true;
-    const gl = this.context;
-    const channel = new MessageChannel();
-    const quick = 64;
-    let looks = 0;
-    const again = () => (++looks < quick ? channel.port2.postMessage(null) : setTimeout(look, 1));
-    const look = () => {
-      while (this.readbacks.length > 0) {
-        const first = this.readbacks[0]!;
-        const status = gl.clientWaitSync(first.sync, 0, 0);
-        if (status === gl.TIMEOUT_EXPIRED) return again();
-        this.readbacks.shift();
-        if (status === gl.WAIT_FAILED) {
-          first.fail(this.lostError());
-          continue;
-        }
-        gl.bindBuffer(gl.PIXEL_PACK_BUFFER, first.buffer);
-        first.finish();
-        gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
-        gl.deleteBuffer(first.buffer);
-        gl.deleteSync(first.sync);
-      }
-      this.isPolling = false;
-      channel.port1.close();
-    };
-    channel.port1.onmessage = look;
-    channel.port2.postMessage(null);
-  }
-}
-
-function texelsIn(rects: readonly Rect[]): number {
-  return rects.reduce((count, { width, height }) => count + width * height, 0);
-}
-
-/** The channels of a texture from four channels of 32 bits. */
-function narrowed(wide: HostArray, format: Format, texels: number): HostArray {
-  const { channels } = format;
-  const tight = new format.channel(texels * channels);
-  for (let i = 0; i < texels; ++i) {
-    for (let c = 0; c < channels; ++c) tight[i * channels + c] = wide[4 * i + c]!;
-  }
-  return tight;
 }
 
 /** The elements of a file's kernels, and the structs that it exports. @internal */
