@@ -105,8 +105,8 @@ class Page:
 
 
 @contextlib.contextmanager
-def page(kind=Page):
-    """A page of a new Chromium, which ends with the test; `kind` may know more of it than Page."""
+def page(kind=Page, *options):
+    """A page of a new Chromium with these options, which ends with the test; `kind` may know more of it than Page."""
     theirs_in, ours_out = os.pipe()
     ours_in, theirs_out = os.pipe()
 
@@ -116,7 +116,7 @@ def page(kind=Page):
         os.dup2(moved_out, 4)
 
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        command = chromium.command(folder, "--remote-debugging-pipe", "about:blank")
+        command = chromium.command(folder, "--remote-debugging-pipe", *options, "about:blank")
         nowhere = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         browser = subprocess.Popen(command, **nowhere, preexec_fn=descriptors, close_fds=False, start_new_session=True)
         os.close(theirs_in)

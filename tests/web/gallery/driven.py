@@ -21,6 +21,10 @@ class Driven(devtools.Page):
             entry = event["params"]["entry"]
             self.messages.append(f"{entry['text']} {entry.get('url', '')}")
 
+    def wait(self, expression, seconds=400):
+        """A few suffice on a machine that has nothing else to do."""
+        return super().wait(expression, seconds)
+
     def open(self, address):
         super().open(address)
         self.wait(f"location.href === {json.dumps(address)} && document.readyState === 'complete'")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# gallery_test.py SITE [--update]: opens every page of the gallery in Chromium at a small size, drives it by pointer, finger and keys, and compares
+# gallery_test.py SITE [--update] [PAGE...]: opens every page of the gallery in Chromium at a small size, drives it by pointer, finger and keys, and compares
 # its picture with a stored one. --update stores the pictures.
 import base64
 import functools
@@ -18,6 +18,9 @@ import devtools
 from driven import Driven, cpu_seconds
 
 site, is_update = sys.argv[1], "--update" in sys.argv
+chosen = [name for name in sys.argv[2:] if name != "--update"]
+# The page itself is drawn without SwiftShader, which would take most of the time.
+options = ["--disable-gpu-rasterization", "--disable-gpu-compositing"]
 # Drivers contract products and sums as they like, and SwiftShader compiles for the machine's CPU: after some steps fields differ in their last
 # bits, and so do codes of colours, by 1. Boiling and reactions make more of it: a cell may boil a step earlier. A page that paints
 # nothing, or another place, differs by 10 and more.
@@ -59,6 +62,9 @@ def compare(tab, name, shown):
     if is_update:
         with open(stored, "wb") as file:
             file.write(base64.b64decode(shown.split(",")[1]))
+        return
+    if not os.path.exists(stored):
+        print(f"{name}: NOT COMPARED, there is no {stored}; --update stores one")
         return
     with open(stored, "rb") as file:
         wanted = "data:image/png;base64," + base64.b64encode(file.read()).decode()
@@ -154,7 +160,7 @@ def drive(tab, name):
 
 
 def check_page(tab, address, name, query):
-    tab.viewport(1280, 900)
+    tab.viewport(1040, 700)
     tab.open(f"{address}/{name}.html?{query}&seed=1")
     wait_done(tab)
     drive(tab, name)
@@ -212,9 +218,11 @@ if not os.path.exists(f"{site}/index.html"):
 server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Server, directory=site))
 threading.Thread(target=server.serve_forever, daemon=True).start()
 where = f"http://127.0.0.1:{server.server_address[1]}/some/where"
-with devtools.page(Driven) as tab:
+with devtools.page(Driven, *options) as tab:
     check_index(tab, where)
     for page, query in pages.items():
+        if chosen and page not in chosen:
+            continue
         spent = cpu_seconds()
         check_page(tab, where, page, query)
         print(f"{page}: {cpu_seconds() - spent:.1f} s of CPU")
