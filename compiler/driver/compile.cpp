@@ -46,12 +46,13 @@ struct Job {
 
 frontend::Options frontendOptions(const Job& job) {
   const Options& options = job.options;
-  return {options.includeDirectories,
-          options.definitions,
-          options.warnings,
-          options.color,
-          options.fixIts,
-          job.text == nullptr ? nullptr : &job.messages};
+  return {.includeDirectories = options.includeDirectories,
+          .definitions = options.definitions,
+          .warnings = options.warnings,
+          .color = options.color,
+          .fixIts = options.fixIts,
+          .messages = job.text == nullptr ? nullptr : &job.messages,
+          .isIsolated = options.isolated};
 }
 
 TransformOptions transformOptions(const Options& options, std::ostream& output) {

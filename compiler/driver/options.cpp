@@ -132,6 +132,8 @@ void addSourceOptions(CLI::App& app, Words& words) {
       ->type_name("WHEN");
   app.add_flag("--fixits", words.options.fixIts,
                "Print fix-its in the form of Clang's -fdiagnostics-parseable-fixits");
+  app.add_flag("--isolated", words.options.isolated,
+               "Read no file but FILE: #include and #embed find nothing, for programs of strangers");
 }
 
 void addTargetOptions(CLI::App& app, Words& words) {
@@ -192,6 +194,8 @@ std::string checkTogether(Words& words) {
   options.native.optimizes = words.optimization != 0;
   options.color = words.color == "always" || (words.color == "auto" && isatty(STDERR_FILENO));
   const bool printsNative = options.emit == Emit::Llvm || options.emit == Emit::Assembly;
+  if (options.isolated && !options.includeDirectories.empty())
+    return "--isolated reads no included file; leave out -I";
   if (printsNative && !options.nativeTarget)
     return fmt::format("--emit={} prints native code; leave out --target, or add native to it", words.emit);
   try {

@@ -34,6 +34,7 @@ struct Options {
   bool library = false;  ///< the stubs list their descriptors
   bool color = false;
   bool fixIts = false;  ///< also print fix-its for tools
+  bool isolated = false;  ///< read no file but those to compile
 };
 
 /// The options, or the exit status if there is nothing to compile: 0 after --help and --version, 1 after an

@@ -78,8 +78,8 @@ class Frontend::Unit {
 
   std::optional<ir::Module> compile(const std::string& path, std::optional<std::string> text) {
     path_ = path;
-    const bool isInMemory = text.has_value();
-    text_ = isInMemory ? llvm::MemoryBuffer::getMemBufferCopy(*text, path) : readFile(path);
+    text_ = text ? llvm::MemoryBuffer::getMemBufferCopy(*text, path) : readFile(path);
+    const bool isInMemory = text.has_value() || options_.isIsolated;
     if (text_ == nullptr || !isProgram(text_->getBuffer()) || !setUp(isInMemory)) return std::nullopt;
     std::vector<clang::Token> tokens = lex();
     if (tokens.empty()) return std::nullopt;
@@ -184,11 +184,12 @@ class Frontend::Unit {
     return compiler_.InitializeSourceManager(compiler_.getFrontendOpts().Inputs.front());
   }
 
-  /// The real file system, with the main file in memory over it.
+  /// The real file system, with the main file in memory over it; only the main file if it is isolated.
   llvm::IntrusiveRefCntPtr<llvm::vfs::FileSystem> filesWithText() {
     auto memory = llvm::makeIntrusiveRefCnt<llvm::vfs::InMemoryFileSystem>();
-    auto files = llvm::makeIntrusiveRefCnt<llvm::vfs::OverlayFileSystem>(llvm::vfs::getRealFileSystem());
-    files->pushOverlay(memory);  // sets its working directory
+    auto files = llvm::makeIntrusiveRefCnt<llvm::vfs::OverlayFileSystem>(
+        options_.isIsolated ? memory : llvm::vfs::getRealFileSystem());
+    if (!options_.isIsolated) files->pushOverlay(memory);  // sets its working directory
     memory->addFile(path_, 0, std::move(text_));
     return files;
   }

@@ -23,6 +23,7 @@ struct Options {
   bool fixIts = false;                           ///< print them in Clang's parseable form
   std::ostream* messages = nullptr;              ///< where messages go; null: standard error
   bool isLibrary = false;                        ///< the file need not have kernels
+  bool isIsolated = false;  ///< no other file is read: #include and #embed find nothing
 };
 
 /// One translation unit. It must outlive every report of a diagnostic about it.

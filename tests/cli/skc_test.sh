@@ -36,7 +36,7 @@ echo '#define WEIGHT 0.25f' >include/weights.sk
 # Help and version.
 run 0 --help
 prints 'FILE'
-for option in -o --emit --target --profile --kernel -I -D -W -g -O --depfile --print-after --library --device --target-triple --levels \
+for option in -o --emit --target --profile --kernel --isolated -I -D -W -g -O --depfile --print-after --library --device --target-triple --levels \
   --lanes --quad --version; do
   prints " $option"
 done
@@ -94,6 +94,23 @@ fi
 run 0 -Iinclude -o fragment --target=fragment heat.sk
 grep -qF '.code = ' fragment/heat.sk.cpp && broken "--target=fragment writes native code"
 [[ ! -e fragment/heat.sk.o ]] || broken "--target=fragment writes an object"
+
+# With --isolated, no other file is read, and none is found.
+echo 'the secret;' >secret.sk
+kernel='kernel void f(out float r<>) { r = 1; }'
+for asks in '#include "secret.sk"' "#include \"$PWD/secret.sk\"" "#include <$PWD/secret.sk>" '#include "/etc/passwd"'; do
+  printf '%s\n%s\n' "$asks" "$kernel" >alone.sk
+  run 1 --isolated --emit=glsl alone.sk
+  says 'file not found'
+  [[ $err != *secret\;* && $err != *root:* ]] || broken "a message quotes another file"
+done
+printf '#if __has_include("secret.sk")\n#error found\n#endif\n%s\n' "$kernel" >alone.sk
+run 0 --isolated --emit=glsl alone.sk
+run 1 --emit=glsl alone.sk
+echo "$kernel" >plain.sk
+run 0 --isolated -o alone "$PWD/../${PWD##*/}/plain.sk"
+run 1 --isolated -I. --emit=glsl alone.sk
+says '--isolated reads no included file; leave out -I'
 
 # Symbols do not depend on folders, and differ between files.
 mkdir elsewhere
