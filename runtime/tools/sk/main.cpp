@@ -16,6 +16,7 @@
 #include "assemble/nearest_word.hpp"
 #include "info/info.hpp"
 #include "scale/scale.hpp"
+#include "serve/serve.hpp"
 
 namespace {
 
@@ -51,6 +52,7 @@ int main(int argc, char** argv) {
   sk_tool::addInfo(app);
   sk_tool::addAccuracy(app);
   sk_tool::addScale(app);
+  sk_tool::addServe(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& stop) {  // also --help and --version
