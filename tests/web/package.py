@@ -43,6 +43,16 @@ def gzipped(source):
     return len(gzip.compress(modules))
 
 
+def minified(modules, build):
+    """Bytes of the whole package as bundlers ship it, minified and gzipped; `modules` is what build() wrote. None where npm has not
+    fetched esbuild (--target playground_editor)."""
+    esbuild = os.path.join(build, "runtime/web/editor/node_modules/.bin/esbuild")
+    if not os.path.exists(esbuild):
+        return None
+    bundle = subprocess.run([esbuild, f"{modules}/index.js", "--bundle", "--minify", "--format=esm"], capture_output=True, check=True)
+    return len(gzip.compress(bundle.stdout))
+
+
 def check_types(files, folder):
     """Checks TypeScript files of this folder, which has the package in streamkernel/."""
     settings = {

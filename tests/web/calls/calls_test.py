@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# calls_test.py SKC SOURCE REFERENCE: what kernels and reduces compute in Chromium is what native code computes, within the
+# calls_test.py SKC SOURCE REFERENCE BUILD: what kernels and reduces compute in Chromium is what native code computes, within the
 # bounds that calls.mjs states; the types that skc writes for TypeScript are right; the runtime is small.
 import os
 import re
@@ -13,9 +13,9 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 import chromium
 import package
 
-skc, source, reference = sys.argv[1], os.path.realpath(sys.argv[2]), sys.argv[3]
+skc, source, reference, build = sys.argv[1], os.path.realpath(sys.argv[2]), sys.argv[3], sys.argv[4]
 here = os.path.dirname(os.path.realpath(__file__))
-most_bytes = 33000  # of the package's modules, gzipped, with indentation and long names: minified, 25 kB
+most_bytes = 25000  # of the package, minified and gzipped
 seconds = 400  # a few, on a machine that has nothing else to do
 
 
@@ -46,12 +46,14 @@ with tempfile.TemporaryDirectory() as folder:
     for name in ("index.html", "calls.mjs", "append.mjs", "devices.mjs", "mistakes.mjs"):
         os.symlink(f"{here}/{name}", f"{folder}/{name}")
     report = chromium.report_of(folder, "index.html", seconds)
+    size = package.minified(f"{folder}/streamkernel", build)
 
 for mistake in report["mistakes"]:
     print(mistake)
 print(f"{report['checks']} checks, {len(report['mistakes'])} mistakes; seconds: {report['seconds']}")
-size = package.gzipped(source)
-if size > most_bytes:
+if size is None:
+    print("esbuild is not here (--target playground_editor, which needs npm): the package's size is not tested")
+elif size > most_bytes:
     report["mistakes"].append(size)
-    print(f"the package has {size} bytes, gzipped, more than {most_bytes}")
+    print(f"the package has {size} bytes, minified and gzipped, more than {most_bytes}")
 sys.exit(1 if report["mistakes"] or report["checks"] < 60 else 0)
