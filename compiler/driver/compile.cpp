@@ -63,8 +63,8 @@ TransformOptions transformOptions(const Options& options, std::ostream& output) 
   }
   result.expandsSelects = sk::assemble::findProfile(options.profile)->webgl;
   for (const MeasuredDevice& device : options.devices) result.limits.push_back(device.limits);
-  result.precisions = options.precision.empty() ? options.emit == Emit::Stubs || options.emit == Emit::Json
-                                                : options.precision != "single";
+  const bool isWhole = options.emit == Emit::Stubs || options.emit == Emit::Js || options.emit == Emit::Json;
+  result.precisions = options.precision.empty() ? isWhole : options.precision != "single";
   if (!options.printAfter.empty()) {
     result.after = [&output, wanted = options.printAfter](std::string_view name, const ir::Module& module) {
       if (wanted == "all" || wanted == name)

@@ -32,8 +32,16 @@ Programs kernelPrograms(const sk::assemble::Profile& profile, const sk::program:
 Programs listPrograms(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel,
                       std::size_t appendOutput);
 
-/// The programs that fold whole streams to a value.
-Programs reducePrograms(const sk::assemble::Profile& profile, const sk::program::Reduction& reduction);
+/// How a reduction is called.
+struct ReductionCalls {
+  bool byIndex;  ///< elements are always found by their index
+  bool scans = false;  ///< it gives a result for each element, else values and streams
+  bool mayBeEmpty = true;  ///< there may be no elements
+};
+
+/// The programs that fold whole streams to a value or to streams, or that scan them.
+Programs reducePrograms(const sk::assemble::Profile& profile, const sk::program::Reduction& reduction,
+                        const ReductionCalls& calls);
 
 /// The key of a kernel's variant: "plane packed; u:plane packed nearby".
 std::string keyOf(const sk::program::Kernel& kernel, const sk::assemble::Variant& variant);

@@ -13,7 +13,6 @@
 #include "assemble/append/append_passes.hpp"
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/append/point_program.hpp"
-#include "assemble/reduce/reduce_plan.hpp"
 #include "ir/print.hpp"
 #include "program/descriptor_lists.hpp"
 #include "program/elements.hpp"
@@ -21,6 +20,7 @@
 #include "support/text.hpp"
 #include "web/ahead_programs.hpp"
 #include "web/offered.hpp"
+#include "web/sum_variants.hpp"
 #include "web/typings.hpp"
 
 namespace skc::web {
@@ -58,6 +58,7 @@ class ScriptWriter {
   std::string text(std::string_view fileName) {
     Json callables = Json::array();
     for (const emit::Unit& unit : program_.units()) callables.push_back(callable(unit));
+    shareParagraphs();
     Json names = Json::array();
     for (const std::string& source : module_.sources)
       names.push_back(source.substr(source.find_last_of('/') + 1));
@@ -79,17 +80,20 @@ class ScriptWriter {
   Json callable(const emit::Unit& unit) {
     if (const std::string why = whyNotOffered(unit); !why.empty())
       return {{"name", unit.kernel.name}, {"whyNot", why}};
-    if (unit.reduction != nullptr) return reduction(*unit.reduction, unit.kernel);
-    Json kernel = kernelOf(unit.kernel);
-    if (const sk::program::Plan* plan = planOf(unit.kernel)) {
+    return unit.reduction != nullptr ? reductionUnit(unit) : callableKernel(unit.kernel);
+  }
+
+  Json callableKernel(const Kernel& whole) {
+    Json kernel = kernelOf(whole);
+    if (const sk::program::Plan* plan = planOf(whole)) {
       kernel["packs"] = false;
       kernel["programs"] = Json::object();
       kernel["plan"] = planJson(*plan);
       return kernel;
     }
-    if (hasAppendOutputs(unit.kernel)) return appending(unit.kernel, std::move(kernel));
-    kernel["packs"] = sk::assemble::mayWritePacked(unit.kernel);
-    kernel["programs"] = programsOf(kernelPrograms(webProfile(), unit.kernel), {&unit.kernel});
+    if (hasAppendOutputs(whole)) return appending(whole, std::move(kernel));
+    kernel["packs"] = sk::assemble::mayWritePacked(whole);
+    kernel["programs"] = programsOf(kernelPrograms(webProfile(), whole), {&whole});
     return kernel;
   }
 
@@ -149,26 +153,53 @@ class ScriptWriter {
     return {{"temporaries", std::move(temporaries)}, {"passes", std::move(passes)}};
   }
 
-  Json reduction(const Reduction& reduction, const Kernel& declared) {
-    Json json = {{"name", reduction.fold.name},
-                 {"fold", kernelOf(reduction.fold)},
-                 {"combine", kernelOf(reduction.combine)},
-                 {"combineOperands", reduction.combineOperands},
-                 {"commutative", reduction.commutative},
-                 {"byIndex", sk::assemble::readsElementIndex(reduction.fold)},
-                 {"programs", programsOf(reducePrograms(webProfile(), reduction),
-                                         {&reduction.fold, &reduction.combine})}};
-    if (declared.options.accumulate != sk::Accumulate::Default)
-      json["accumulate"] = nameOf(declared.options.accumulate);
-    if (reduction.compensated != nullptr) {
-      json["compensated"] =
-          this->reduction(reduction.compensated->reduction, reduction.compensated->reduction.fold);
-      Json sums = Json::array();
-      for (const auto& [accumulator, offset] : reduction.compensated->sums)
-        sums.push_back({accumulator, offset});
-      json["sums"] = std::move(sums);
+  Json reductionUnit(const emit::Unit& unit) {
+    const Reduction& reduction = *unit.reduction;
+    Json json = this->reduction(reduction, {.byIndex = findsByIndex(reduction), .scans = unit.isScan});
+    if (unit.kernel.options.accumulate != sk::Accumulate::Default)
+      json["accumulate"] = nameOf(unit.kernel.options.accumulate);
+    if (unit.isScan) json["scans"] = true;
+    Json variants = Json::object();
+    for (const SumVariants& sums : sumVariants(reduction, unit.isScan)) {
+      if (!sums.whyNot.empty()) {
+        variants[sums.name] = sums.whyNot;
+        continue;
+      }
+      Json list = Json::array();
+      for (const SumVariant& variant : sums.variants)
+        list.push_back(variantOf(variant, unit.isScan, sums.isRare));
+      variants[sums.name] = std::move(list);
+    }
+    json["variants"] = std::move(variants);
+    if (sumsEverything(reduction)) json["sumsAll"] = true;
+    if (reduction.parts != nullptr) {
+      json["map"] = callableKernel(reduction.parts->map);
+      json["mapOperands"] = reduction.parts->mapOperands;
     }
     return json;
+  }
+
+  Json variantOf(const SumVariant& variant, bool scans, bool isRare) {
+    Json finish = kernelOf(*variant.finish), inputs = Json::array();
+    finish["programs"] = programsOf(kernelPrograms(webProfile(), *variant.finish, false), {variant.finish});
+    for (const auto& [isOwn, index] : variant.inputs) inputs.push_back({isOwn, index});
+    // Where there are no elements, the plain reduction has the identities.
+    const bool byIndex = (isRare && !scans) || findsByIndex(*variant.reduction);
+    return {{"reduction", reduction(*variant.reduction, {byIndex, scans, /*mayBeEmpty=*/false})},
+            {"finish", std::move(finish)},
+            {"inputs", std::move(inputs)},
+            {"results", variant.results}};
+  }
+
+  Json reduction(const Reduction& reduction, const ReductionCalls& calls) {
+    return {{"name", reduction.fold.name},
+            {"fold", kernelOf(reduction.fold)},
+            {"combine", kernelOf(reduction.combine)},
+            {"combineOperands", reduction.combineOperands},
+            {"commutative", reduction.commutative},
+            {"byIndex", calls.byIndex},
+            {"programs", programsOf(reducePrograms(webProfile(), reduction, calls),
+                                    {&reduction.fold, &reduction.combine})}};
   }
 
   Json kernelOf(const Kernel& kernel) {
@@ -193,6 +224,7 @@ class ScriptWriter {
       if (parameter.usesNear && parameter.reach >= 0) json["reach"] = parameter.reach;
       if (sk::assemble::mayFilter(parameter)) json["filter"] = true;
     }
+    if (parameter.role == Role::Accumulator && !parameter.identity.empty()) json["hasIdentity"] = true;
     if (!parameter.neededIf.steps.empty()) {
       Json steps = Json::array();
       for (const sk::program::ConditionStep& step : parameter.neededIf.steps)
@@ -275,6 +307,21 @@ class ScriptWriter {
     const auto index = static_cast<std::size_t>(found - texts_.begin());
     if (found == texts_.end()) texts_.push_back(part);
     replaceAll(program, part, fmt::format("${{text{}}}", index));
+  }
+
+  /// Shares functions and declarations that several programs have.
+  void shareParagraphs() {
+    constexpr std::string_view end = "\n\n";
+    std::map<std::string, int> counts;
+    for (const std::string& program : programs_) {
+      for (std::size_t from = 0, to = 0; (to = program.find(end, from)) != std::string::npos;
+           from = to + end.size())
+        ++counts[program.substr(from, to + 1 - from)];
+    }
+    for (const auto& [paragraph, count] : counts) {
+      if (count == 1) continue;
+      for (std::string& program : programs_) share(program, paragraph);
+    }
   }
 
   std::string exports() const {

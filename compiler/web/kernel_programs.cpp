@@ -127,6 +127,9 @@ std::string keyOf(const Kernel& kernel, const sk::assemble::ReduceVariant& v) {
   if (v.sourceLayered) key += " layers";
   if (v.domainLayered) key += " to layers";
   if (v.reshaped) key += " reshaped";
+  constexpr std::string_view scans[] = {"", " folds", " inclusive", " exclusive"};
+  key += scans[static_cast<std::size_t>(v.scan)];
+  if (v.carried) key += " carried";
   if (v.planeCount != 0) key += fmt::format(" planes{}", v.firstPlane);
   if (v.walk == Walk::Nothing) return key;
   std::vector<StreamAccess> access = v.access;

@@ -8,6 +8,7 @@
 #include "assemble/append/append_passes.hpp"
 #include "assemble/program/plans.hpp"
 #include "web/ahead_programs.hpp"
+#include "web/sum_variants.hpp"
 
 namespace skc::web {
 namespace {
@@ -68,14 +69,26 @@ sk::assemble::Profile webProfile() {
   return profile;
 }
 
-std::string whyNotOffered(const emit::Unit& unit) {
+namespace {
+
+std::string whyTooLarge(const Kernel& kernel) {
   const sk::assemble::Profile profile = webProfile();
+  if (fitsOnePass(kernel, profile) || planOf(kernel) != nullptr) return {};
+  return fmt::format(
+      "its streams have more than {} planes to write or {} to read, and passes that share textures do not "
+      "run in browsers yet; divide it, or put scalars together in vectors",
+      profile.drawBuffers, profile.textureUnits);
+}
+
+}  // namespace
+
+std::string whyNotOffered(const emit::Unit& unit) {
   const Kernel& kernel = unit.kernel;
-  if (unit.isScan)
-    return "scans do not run in browsers yet; fold with a reduce, or scan the elements on the host";
-  if (unit.reduction != nullptr && unit.reduction->parts != nullptr) {
-    return "folded outputs do not run in browsers yet; write a kernel and a reduce";
+  if (unit.reduction != nullptr) {
+    if (std::string why = whyTooManyPlanes(*unit.reduction, unit.isScan); !why.empty()) return why;
+    return unit.reduction->parts == nullptr ? std::string() : whyTooLarge(unit.reduction->parts->map);
   }
+  const sk::assemble::Profile profile = webProfile();
   if (hasAppendOutputs(kernel) && !fitsOnePass(kernel, profile)) {
     return fmt::format(
         "a pass of it has more than {} planes to write or {} to read, with those of what it pushes or "
@@ -83,13 +96,7 @@ std::string whyNotOffered(const emit::Unit& unit) {
         "scalars together in vectors",
         profile.drawBuffers, profile.textureUnits);
   }
-  if (!fitsOnePass(kernel, profile) && planOf(kernel) == nullptr) {
-    return fmt::format(
-        "its streams have more than {} planes to write or {} to read, and passes that share textures do not "
-        "run in browsers yet; divide it, or put scalars together in vectors",
-        profile.drawBuffers, profile.textureUnits);
-  }
-  return {};
+  return whyTooLarge(kernel);
 }
 
 }  // namespace skc::web

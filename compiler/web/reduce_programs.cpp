@@ -3,9 +3,11 @@
 // Which programs a reduction needs follows from the plans for streams of several shapes: the planner is asked, as the
 // runtime asks its own.
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "assemble/reduce/reduce_plan.hpp"
+#include "assemble/reduce/scan_plan.hpp"
 #include "web/ahead_programs.hpp"
 
 namespace skc::web {
@@ -14,6 +16,7 @@ namespace {
 using sk::assemble::Addressing;
 using sk::assemble::Division;
 using sk::assemble::Domain;
+using sk::assemble::Index4;
 using sk::assemble::ReduceLimits;
 using sk::assemble::ReducePass;
 using sk::assemble::ReduceVariant;
@@ -47,27 +50,70 @@ std::vector<RegionLayout> elementLayouts(bool packed) {
   return layouts;
 }
 
-/// One plan for each rank that programs by index may have.
-std::vector<RegionLayout> indexedLayouts() {
-  std::vector<RegionLayout> layouts(4);
-  for (std::size_t rank = 1; rank <= 4; ++rank) {
-    for (std::size_t d = 0; d < rank; ++d) layouts[rank - 1].extent[d] = 16;
-  }
-  return layouts;
+RegionLayout linear(const Index4& extent) {
+  const std::int64_t count = sk::assemble::elements(extent);
+  RegionLayout layout = sk::assemble::linearLayout(count, *sk::assemble::linearTexture(count, anyTexture));
+  layout.extent = extent;
+  layout.stride = sk::assemble::stridesOf(extent);
+  return layout;
 }
 
-std::vector<ReducePass> passesOf(const RegionLayout& elements, const Reduction& reduction, bool byIndex) {
+/// A plane, and linearised streams whose index has one component or four. Those of two and three use the latter's programs.
+std::vector<RegionLayout> indexedLayouts() {
+  return {{.extent = {2048, 16, 1, 1}}, linear({32768, 1, 1, 1}), linear({64, 16, 16, 16})};
+}
+
+/// Lets a pass's program write any number of runs of any number of blocks to a texture of any width, which saves programs.
+void generalize(ReducePass& pass) {
+  pass.variant.runs = sk::assemble::Runs::Split;
+  pass.variant.domain = Domain::Plane;
+}
+
+/// The passes to a value for both kinds of programs of long runs.
+std::vector<ReducePass> passesInOrder(const RegionLayout& elements, const Reduction& reduction) {
   std::vector<ReducePass> all;
   for (const std::int32_t knownRuns : {ReduceLimits{}.knownRuns, std::numeric_limits<std::int32_t>::max()}) {
     ReduceLimits limits{.texture = anyTexture};
     limits.knownRuns = knownRuns;
-    const Division division{.blocks = {1, 1, 1, 1},
-                            .byIndex = byIndex,
-                            .byTexel = elements.packed && !byIndex,
-                            .inAnyOrder = reduction.commutative};
-    std::vector<ReducePass> passes =
-        sk::assemble::planReduction(elements, sk::assemble::valueLayout(), limits, division);
-    std::ranges::move(passes, std::back_inserter(all));
+    const Division division{
+        .blocks = {1, 1, 1, 1}, .byTexel = elements.packed, .inAnyOrder = reduction.commutative};
+    std::ranges::move(sk::assemble::planReduction(elements, sk::assemble::valueLayout(), limits, division),
+                      std::back_inserter(all));
+  }
+  return all;
+}
+
+/// The passes to a value or to a stream.
+std::vector<ReducePass> passesByIndex(const RegionLayout& elements) {
+  const Division division{.blocks = {1, 1, 1, 1}, .byIndex = true};
+  std::vector<ReducePass> all =
+      sk::assemble::planReduction(elements, sk::assemble::valueLayout(), {.texture = anyTexture}, division);
+  std::ranges::for_each(all, generalize);
+  return all;
+}
+
+bool hasIdentities(const Reduction& reduction) {
+  return std::ranges::none_of(reduction.fold.parameters, [](const Parameter& parameter) {
+    return parameter.role == Role::Accumulator && parameter.identity.empty();
+  });
+}
+
+std::vector<ReducePass> passesOfScan(const RegionLayout& elements, const Reduction& reduction, bool byIndex) {
+  std::vector<ReducePass> all;
+  const ReduceLimits limits{.texture = anyTexture, .fanIn = sk::assemble::scanRun};
+  const sk::assemble::Lines lines{static_cast<std::int32_t>(sk::assemble::elements(elements.extent)), 1};
+  for (const bool isExclusive : {false, true}) {
+    if (isExclusive && !hasIdentities(reduction)) continue;
+    sk::assemble::ScanPlan plan =
+        sk::assemble::planScan(elements, elements, limits, lines, {.byIndex = byIndex}, isExclusive);
+    for (std::vector<ReducePass>* passes : {&plan.folds, &plan.scans}) {
+      for (ReducePass& pass : *passes) {
+        if (pass.variant.walk != Walk::Index) pass.variant.axes = 1;
+        pass.variant.carried = pass.variant.scan != sk::assemble::ScanPass::Folds;
+        generalize(pass);
+        all.push_back(std::move(pass));
+      }
+    }
   }
   return all;
 }
@@ -86,6 +132,7 @@ std::vector<ReduceVariant> variantsOf(const ReducePass& pass, const Kernel& kern
   const std::uint8_t rank = sk::assemble::decodedRank(elements);
   for (const sk::assemble::SpecValues& specs : specChoices(kernel)) {
     for (const Domain domain : {Domain::Plane, Domain::Linear}) {
+      if (pass.variant.walk == Walk::Index && (domain == Domain::Linear) != elements.linear) continue;
       for (const bool packed : {true, false}) {
         for (std::vector<StreamAccess>& access : accessChoices(kernel, {domain, rank, packed}, packed)) {
           ReduceVariant variant = pass.variant;
@@ -126,28 +173,33 @@ void add(Programs& programs, const sk::assemble::Profile& profile, const Reducti
 
 }  // namespace
 
-Programs reducePrograms(const sk::assemble::Profile& profile, const Reduction& reduction) {
-  const bool byIndex = sk::assemble::readsElementIndex(reduction.fold);
-  std::vector<RegionLayout> layouts =
-      indexedLayouts();  // inputs may lie in different ways, even without an index
-  if (!byIndex) {
-    std::ranges::move(elementLayouts(false), std::back_inserter(layouts));
-    if (readsScalars(reduction.fold)) std::ranges::move(elementLayouts(true), std::back_inserter(layouts));
-  }
-  const auto inputs = std::ranges::count(reduction.fold.parameters, Role::Input, &Parameter::role);
+Programs reducePrograms(const sk::assemble::Profile& profile, const Reduction& reduction,
+                        const ReductionCalls& calls) {
   Programs programs;
-  for (const RegionLayout& elements : layouts) {
-    const bool isIndexed = &elements - layouts.data() < 4;
-    if (isIndexed && !byIndex && inputs == 1) continue;  // the only input lies as itself
-    for (const ReducePass& pass : passesOf(elements, reduction, isIndexed)) {
+  const auto addAll = [&](const RegionLayout& elements, const std::vector<ReducePass>& passes) {
+    for (const ReducePass& pass : passes) {
       const Kernel& kernel =
           sk::assemble::isOfPartials(pass.variant.walk) ? reduction.combine : reduction.fold;
       for (const ReduceVariant& variant : variantsOf(pass, kernel, elements))
         add(programs, profile, reduction, variant, kernel);
     }
+  };
+  if (calls.scans && !calls.byIndex) {
+    for (const RegionLayout& elements : {RegionLayout{.extent = {2048, 16, 1, 1}}, linear({32768, 1, 1, 1})})
+      addAll(elements, passesOfScan(elements, reduction, false));
+    return programs;
   }
-  add(programs, profile, reduction, sk::assemble::planIdentities(sk::assemble::valueLayout()).variant,
-      reduction.fold);
+  for (const RegionLayout& elements : indexedLayouts())
+    addAll(elements, calls.scans ? passesOfScan(elements, reduction, true) : passesByIndex(elements));
+  if (calls.scans) return programs;
+  for (const bool packed : {false, true}) {
+    if (calls.byIndex || (packed && !readsScalars(reduction.fold))) continue;
+    for (const RegionLayout& elements : elementLayouts(packed))
+      addAll(elements, passesInOrder(elements, reduction));
+  }
+  if (calls.mayBeEmpty && hasIdentities(reduction))
+    add(programs, profile, reduction, sk::assemble::planIdentities(sk::assemble::valueLayout()).variant,
+        reduction.fold);
   return programs;
 }
 

@@ -77,19 +77,21 @@ class TypesWriter {
     if (const std::string why = whyNotOffered(unit); !why.empty()) {
       return fmt::format("sk.NotOffered<\"{}\">", why);
     }
-    std::vector<std::string> taken, values;
+    std::vector<std::string> all, taken, values;
     for (const KernelParam& param : module_.kernels[unit.id].params) {
+      all.push_back(fmt::format("{}: {}", jsName(param.name), parameterType(param)));
       if (param.role == ParamRole::Accumulator) {
         values.push_back(valueType(param.type));
       } else {
-        taken.push_back(fmt::format("{}: {}", jsName(param.name), parameterType(param)));
+        taken.push_back(all.back());
       }
     }
-    const std::string list = join(taken, ", ");
+    const std::string list = join(all, ", ");
     if (unit.reduction == nullptr)
       return fmt::format("sk.{}<[{}]>", isCounting(unit.kernel) ? "CountingKernel" : "Kernel", list);
+    if (unit.isScan) return fmt::format("sk.Scan<[{}]>", list);
     const std::string value = values.size() == 1 ? values.front() : "[" + join(values, ", ") + "]";
-    return fmt::format("sk.Reduce<[{}], {}>", list, value);
+    return fmt::format("sk.Reduce<[{}], {}, [{}]>", join(taken, ", "), value, list);
   }
 
   /// Whether calls learn from the device how much they push, which takes a while.

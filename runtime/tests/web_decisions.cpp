@@ -14,6 +14,8 @@
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/assemble.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
+#include "assemble/reduce/scan_plan.hpp"
+#include "call/block_grid.hpp"
 #include "gl_device/memory/layout.hpp"
 #include "gl_device/program/variant.hpp"
 #include "sk/error.hpp"
@@ -109,9 +111,32 @@ std::vector<std::string> layouts() {
   return cases;
 }
 
-std::vector<std::string> reductions() {
+/// A pass as JSON.
+std::string text(const ReducePass& pass) {
   constexpr const char* walks[] = {"line",        "plane",           "box",    "index", "rows", "partials",
                                    "partialRows", "groupedPartials", "nothing"};
+  constexpr const char* runs[] = {"", " whole", " split"};
+  constexpr const char* scans[] = {"", " folds", " inclusive", " exclusive"};
+  const sk::assemble::ReduceVariant& v = pass.variant;
+  std::vector<std::string> uniforms;
+  for (const auto& [name, isVector, value] : pass.uniforms)
+    uniforms.push_back(fmt::format(R"("{}":{})", name, isVector ? text(value) : std::to_string(value[0])));
+  return fmt::format(
+      R"({{"walk":"{}","runs":"{}","toPlane":{},"axes":{},"run":{},"column":{},"packed":{},"scan":"{}","carried":{},)"
+      R"("toResult":{},"width":{},"height":{},"draws":{},"uniforms":{{{}}}}})",
+      walks[static_cast<std::size_t>(v.walk)], runs[static_cast<std::size_t>(v.runs)],
+      v.domain == sk::assemble::Domain::Plane, v.axes, v.run, v.column, v.packed,
+      scans[static_cast<std::size_t>(v.scan)], v.carried, pass.toResult, pass.texture.width,
+      pass.texture.height, text(pass.draws), fmt::join(uniforms, ","));
+}
+
+std::string text(const std::vector<ReducePass>& passes) {
+  std::vector<std::string> items;
+  for (const ReducePass& pass : passes) items.push_back(text(pass));
+  return fmt::format("[{}]", fmt::join(items, ","));
+}
+
+std::vector<std::string> reductions() {
   std::vector<std::string> cases;
   for (int i = 0; i < 600; ++i) {
     const Lie lie(1 + i % 4);
@@ -123,22 +148,68 @@ std::vector<std::string> reductions() {
     if (!isKnown) most.knownRuns = std::numeric_limits<std::int32_t>::max();
     const sk::assemble::Division division{
         .blocks = {1, 1, 1, 1}, .byIndex = byIndex, .byTexel = lie.packed, .inAnyOrder = inAnyOrder};
-    std::vector<std::string> passes;
-    for (const ReducePass& pass : planReduction(layout.whole, sk::assemble::valueLayout(), most, division)) {
-      const sk::assemble::ReduceVariant& v = pass.variant;
-      std::vector<std::string> uniforms;
-      for (const auto& [name, isVector, value] : pass.uniforms) {
-        uniforms.push_back(
-            fmt::format(R"("{}":{})", name, isVector ? text(value) : std::to_string(value[0])));
-      }
-      passes.push_back(fmt::format(
-          R"({{"walk":"{}","axes":{},"run":{},"column":{},"packed":{},"toResult":{},"width":{},"height":{},"draws":{},"uniforms":{{{}}}}})",
-          walks[static_cast<std::size_t>(v.walk)], v.axes, v.run, v.column, v.packed, pass.toResult,
-          pass.texture.width, pass.texture.height, text(pass.draws), fmt::join(uniforms, ",")));
+    cases.push_back(fmt::format(
+        R"({{"stream":{},"byIndex":{},"inAnyOrder":{},"knownRuns":{},"passes":{}}})", lie.text(), byIndex,
+        inAnyOrder, isKnown, text(planReduction(layout.whole, sk::assemble::valueLayout(), most, division))));
+  }
+  return cases;
+}
+
+/// A divisor of n.
+std::int64_t divisorOf(std::int64_t n) {
+  const std::int64_t most = 1 + below(std::min<std::int64_t>(n, 100));
+  for (std::int64_t divisor = most; divisor > 1; --divisor) {
+    if (n % divisor == 0) return below(2) == 0 ? divisor : n / divisor;
+  }
+  return below(2) == 0 ? 1 : n;
+}
+
+/// Reductions to streams: the grid of blocks that a result's shape means, and the passes of those that mean one.
+std::vector<std::string> blocks() {
+  std::vector<std::string> cases;
+  for (int i = 0; i < 500; ++i) {
+    Lie lie(1 + i % 4);
+    lie.packed = false;
+    std::vector<std::int64_t> extents;
+    for (int d = 0; d < lie.shape.rank(); ++d) {
+      if (below(4) != 0 || (extents.empty() && d + 1 == lie.shape.rank()))
+        extents.push_back(below(10) == 0 ? 1 + below(5) : divisorOf(lie.shape[d]));
     }
+    Lie result(static_cast<int>(extents.size()));
+    result.packed = false;
+    for (int d = 0; d < result.shape.rank(); ++d)
+      result.shape = result.shape.with(d, extents[static_cast<std::size_t>(d)]);
+    std::vector<std::string> grids;
+    const std::vector<Shape> found = sk::blockGrids(lie.shape, result.shape);
+    for (const Shape& grid : found) grids.push_back(text(grid));
+    std::string passes = "null";
+    if (found.size() == 1 && found[0].size() > 1) {
+      const sk::assemble::Division division{.blocks = sk::xFirst(found[0]), .byIndex = true};
+      passes = text(
+          planReduction(layoutOf(lie).whole, layoutOf(result).whole, {.texture = limits(8192)}, division));
+    }
+    cases.push_back(fmt::format(R"({{"stream":{},"result":{},"grids":[{}],"passes":{}}})", lie.text(),
+                                result.text(), fmt::join(grids, ","), passes));
+  }
+  return cases;
+}
+
+std::vector<std::string> scans() {
+  std::vector<std::string> cases;
+  for (int i = 0; i < 400; ++i) {
+    Lie lie(1 + i % 4);
+    lie.packed = false;
+    const RegionLayout elements = layoutOf(lie).whole;
+    const bool byIndex = below(3) == 0, isExclusive = below(2) == 0;
+    const int along = static_cast<int>(below(lie.shape.rank() + 1)) - 1;
+    const Shape grid = along < 0 ? sk::oneBlock(lie.shape) : lie.shape.with(along, 1);
+    const sk::assemble::ReduceLimits most{.texture = limits(8192), .fanIn = sk::assemble::scanRun};
+    const sk::assemble::ScanPlan plan =
+        planScan(elements, elements, most, sk::assemble::linesOf(elements.extent, sk::xFirst(grid)),
+                 {.byIndex = byIndex}, isExclusive);
     cases.push_back(
-        fmt::format(R"({{"stream":{},"byIndex":{},"inAnyOrder":{},"knownRuns":{},"passes":[{}]}})",
-                    lie.text(), byIndex, inAnyOrder, isKnown, fmt::join(passes, ",")));
+        fmt::format(R"({{"stream":{},"byIndex":{},"exclusive":{},"along":{},"folds":{},"scans":{}}})",
+                    lie.text(), byIndex, isExclusive, along, text(plan.folds), text(plan.scans)));
   }
   return cases;
 }
@@ -212,7 +283,9 @@ std::vector<std::string> pyramids() {
 }  // namespace
 
 int main() {
-  fmt::print("{{\"layouts\":[\n{}],\n\"reductions\":[\n{}],\n\"variants\":[\n{}],\n\"pyramids\":[\n{}]}}\n",
-             fmt::join(layouts(), ",\n"), fmt::join(reductions(), ",\n"), fmt::join(variants(), ",\n"),
-             fmt::join(pyramids(), ",\n"));
+  fmt::print(
+      "{{\"layouts\":[\n{}],\n\"reductions\":[\n{}],\n\"blocks\":[\n{}],\n\"scans\":[\n{}],\n\"variants\":["
+      "\n{}],\n\"pyramids\":[\n{}]}}\n",
+      fmt::join(layouts(), ",\n"), fmt::join(reductions(), ",\n"), fmt::join(blocks(), ",\n"),
+      fmt::join(scans(), ",\n"), fmt::join(variants(), ",\n"), fmt::join(pyramids(), ",\n"));
 }

@@ -97,7 +97,7 @@ function iteratorOf(kernel: string, parameter: Parameter, element: Element, valu
 function streamOf(kernel: string, parameter: Parameter, elements: readonly Element[], value: unknown): AnyStream {
   if (!(value instanceof Stream)) fail(kernel, `'${parameter.name}' is a stream, but ${described(value)} is given; make one by device.stream()`, 'type');
   const stream = value as AnyStream;
-  stream.check(`${kernel}: the stream of '${parameter.name}'`, parameter.role !== 'output' && parameter.role !== 'variableOutput');
+  stream.check(`${kernel}: the stream of '${parameter.name}'`, !['output', 'variableOutput', 'accumulator'].includes(parameter.role));
   const declared = elements[parameter.element]!;
   if (!isSameElement(stream.element, elements[parameter.held ?? parameter.element]!)) {
     fail(kernel, `'${parameter.name}' is declared as ${declared.name}, but its stream holds ${stream.element.name}`, 'type');

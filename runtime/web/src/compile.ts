@@ -15,7 +15,7 @@ export async function compileAll(device: Device, callables: readonly Compilable[
   if (!callables.every((callable) => typeof callable?.startPrograms === 'function')) {
     throw new SkError('only kernels and reduces of .sk.js files are compiled', 'type');
   }
-  const programs = callables.flatMap((callable) => callable.startPrograms(device));
+  const programs = [...new Set(callables.flatMap((callable) => callable.startPrograms(device)))];
   const isLinked = (program: Program) => program.isLinked(device.parallel);
   for (;;) {
     const done = programs.filter(isLinked).length;

@@ -52,6 +52,8 @@ export interface Parameter {
   readonly planeCount?: number;
   readonly neededIf?: readonly ConditionStep[];
   readonly condition?: string;
+  /** Accumulators: whether they have a value where there are no elements. */
+  readonly hasIdentity?: boolean;
 }
 
 export interface KernelData {
@@ -110,14 +112,32 @@ export interface Reduction {
   readonly combine: KernelData;
   readonly combineOperands: readonly number[];
   readonly commutative: boolean;
-  /** Whether the fold needs the index of its elements. */
+  /** Whether elements are always found by their index. */
   readonly byIndex: boolean;
   readonly programs: ProgramIndices;
-  readonly accumulate?: 'tree' | 'compensated' | 'extended' | 'exact';
-  /** Has one more accumulator for each of `sums`: its rounding error. */
-  readonly compensated?: Reduction;
-  /** A parameter of the fold, and bytes from that accumulator's start. */
-  readonly sums?: readonly (readonly [accumulator: number, offset: number])[];
+}
+
+/** A variant of a reduction, and the kernel that runs over its results. */
+export interface SumVariant {
+  readonly reduction: Reduction;
+  readonly finish: KernelData & { readonly programs: ProgramIndices };
+  /** For each input of `finish`: an accumulator of the variant if `isOwn`, else of the plain reduction. */
+  readonly inputs: readonly (readonly [isOwn: boolean, index: number])[];
+  /** The accumulators of the plain reduction that `finish` computes. */
+  readonly results: readonly number[];
+}
+
+/** A reduce, a scan, or a kernel with folded outputs. */
+export interface CallableReduction extends Reduction {
+  readonly accumulate?: string;
+  readonly scans?: boolean;
+  /** The ways to add floats, by name: one variant after the other, or why no browser runs them. */
+  readonly variants: { readonly [accumulate: string]: readonly SumVariant[] | string };
+  /** Whether the variants of 'exact' compute all that the plain reduction does. */
+  readonly sumsAll?: boolean;
+  /** Computes the other outputs of a kernel with folded outputs: for each parameter, the one of the whole kernel. */
+  readonly map?: CallableKernel;
+  readonly mapOperands?: readonly number[];
 }
 
 export interface LeftOut {
@@ -125,7 +145,7 @@ export interface LeftOut {
   readonly whyNot: string;
 }
 
-export type Callable = CallableKernel | Reduction | LeftOut;
+export type Callable = CallableKernel | CallableReduction | LeftOut;
 
 export interface GeneratedFile {
   readonly schema: number;

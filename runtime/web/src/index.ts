@@ -7,7 +7,7 @@ import { checkSchema, type Callable, type GeneratedFile } from './generated.js';
 import { KernelCaller } from './kernel.js';
 import type { Program } from './program.js';
 import { ReductionCaller } from './reduction.js';
-import type { CallOptions, Struct } from './types.js';
+import type { ScanOptions, Struct } from './types.js';
 
 export { Device } from './device.js';
 export type { Canvas } from './abilities.js';
@@ -17,7 +17,8 @@ export { SkError } from './error.js';
 export type { ErrorKind } from './error.js';
 export { Stream } from './stream.js';
 export type {
-  ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Input, Iterate, Kernel, NotOffered, Output, Pushed, Reduce, Scattered, ShapeOf, Struct, Value,
+  ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Input, Iterate, Kernel, NotOffered, Output, Pushed, Reduce, Scan, ScanOptions,
+  Scattered, ShapeOf, Struct, Value,
 } from './types.js';
 
 /** What FILE.sk.js exports under a name: a function, with what Device.compile() needs. */
@@ -26,6 +27,8 @@ interface Exported {
   /** Throws SkError if these are no arguments of it. */
   check(given: readonly unknown[]): void;
   startPrograms(device: Device): Program[];
+  /** Only reduces have choices. */
+  with?(options: ScanOptions): Exported;
 }
 
 /** Makes a function of a call, which the tracer of the streams' device sees. */
@@ -47,12 +50,12 @@ function kernelFunction(name: string, caller: KernelCaller): Exported {
   });
 }
 
-function reduceFunction(name: string, caller: ReductionCaller, options: CallOptions): Exported {
+function reduceFunction(name: string, caller: ReductionCaller, options: ScanOptions): Exported {
   const run = traced(name, (given) => caller.call(given, options));
   return Object.assign(run, {
-    with: (more: CallOptions) => reduceFunction(name, caller, { ...options, ...more }),
+    with: (more: ScanOptions) => reduceFunction(name, caller, { ...options, ...more }),
     check: (given: readonly unknown[]) => caller.check(given),
-    startPrograms: (device: Device) => caller.startPrograms(device),
+    startPrograms: (device: Device) => caller.startPrograms(device, options),
   });
 }
 
@@ -79,6 +82,7 @@ function overloaded(functions: readonly Exported[]): Exported {
   };
   const chosen = (given: readonly unknown[]) => functions.find((one) => takes(one, given)) ?? first!;
   return Object.assign((...given: unknown[]) => chosen(given)(...given), {
+    with: (options: ScanOptions) => overloaded(functions.map((one) => one.with?.(options) ?? one)),
     check: (given: readonly unknown[]) => chosen(given).check(given),
     startPrograms: (device: Device) => functions.flatMap((one) => one.startPrograms(device)),
   });

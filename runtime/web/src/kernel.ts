@@ -4,6 +4,7 @@
 import { AppendCaller } from './append.js';
 import { checkArguments, deviceOf, fail, isSameShape, iterationOf, stepsOf, type AnyStream, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
+import type { Format } from './format.js';
 import { isNeeded, specLiteral, type CallableKernel, type Element, type GeneratedFile, type KernelData, type Parameter, type ProgramIndices } from './generated.js';
 import { mayPack, shapeText, type Layout } from './layout.js';
 import { PlanRunner } from './plan.js';
@@ -25,7 +26,8 @@ export class ProgramSource {
     const { parameters } = kernel;
     const words = specs.length === 0 ? '' : ` ${specs.join()}`;
     const isUsed = (parameter: Parameter) => isNeeded(parameter, specs);
-    return device.program(this, key + words, this.name, () => this.text(key, parameters, specs), parameters, this.file.elements, isUsed);
+    // Calls whose programs have one text share it.
+    return device.program(this, `${this.indices[key] ?? key}${words}`, this.name, () => this.text(key, parameters, specs), parameters, this.file.elements, isUsed);
   }
 
   private text(key: string, parameters: readonly Parameter[], specs: readonly number[]): string {
@@ -93,6 +95,25 @@ function strides(device: Device, domain: readonly number[]): Layout {
   if (layout.linear) return layout;
   const [x, y, z] = layout.extent;
   return { ...layout, stride: [1, x, x * y, x * y * z] };
+}
+
+/** Runs a kernel over planes that lie as its domain does, those of each input, and returns new ones of these formats, for each output. */
+export function drawAligned(
+  device: Device, source: ProgramSource, kernel: KernelData, inputs: readonly (readonly Plane[])[], domain: Layout, formats: readonly (readonly Format[])[],
+): Plane[][] {
+  const { parameters } = kernel;
+  const { elements } = source.file;
+  let next = 0;
+  const planes = parameters.map(({ role }) => (role === 'input' ? inputs[next++]! : []));
+  const lies = parameters.map(({ role }) => (role === 'input' ? domain : null));
+  const program = source.program(device, kernelKey(parameters, elements, lies, domain, [], device.filtersFloats), kernel, []);
+  const targets = formats.map((list) => list.map((format) => device.acquire(format, domain.width, domain.height, 'the results of a reduction')));
+  device.useProgram(program);
+  bindOperands(device, program, { streams: [], values: [], specs: [] }, planes, lies, elements, []);
+  program.domain.set(domain);
+  device.framebufferOf(targets.flat());
+  device.drawRects(domain.draws);
+  return targets;
 }
 
 export function isRead(kernel: KernelData, i: number, call: Checked): boolean {

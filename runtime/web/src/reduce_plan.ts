@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// The passes of a reduction to a value: the decisions of runtime/src/assemble/reduce/reduce_plan.cpp for draws over whole
-// streams. Pure arithmetic.
+// The passes of a reduction to a value or to a smaller stream: the decisions of runtime/src/assemble/reduce/reduce_plan.cpp
+// for draws over whole streams. Pure arithmetic.
 import { decodedRank, lanes, linearLayout, linearTexture, sizeOf, stridesOf, texelsOf, type Index4, type Layout, type Rect } from './layout.js';
 
-export type Walk = 'line' | 'index' | 'rows' | 'partials' | 'partialRows' | 'nothing';
+export type Walk = 'line' | 'plane' | 'index' | 'rows' | 'partials' | 'partialRows' | 'nothing';
+export type Uniform = readonly [name: string, value: number | Index4];
 
 export interface ReducePass {
   readonly walk: Walk;
@@ -15,15 +16,19 @@ export interface ReducePass {
   readonly width: number;
   readonly height: number;
   readonly draws: readonly Rect[];
-  readonly uniforms: readonly (readonly [name: string, value: number | Index4])[];
+  readonly uniforms: readonly Uniform[];
+  /** Of a scan: it reads the results of the runs before, if there are any. */
+  readonly carried?: boolean;
 }
 
 export interface Division {
-  /** Elements are found by their index; else they lie alike in all inputs. */
+  /** Elements are found by their index; else they lie alike in all inputs. Programs take any number of blocks then. */
   readonly byIndex: boolean;
   /** Elements are packed, and runs step by texels. */
   readonly byTexel: boolean;
   readonly inAnyOrder: boolean;
+  /** The number of blocks in each dimension; by default one. Several need `byIndex`. */
+  readonly blocks?: Index4;
 }
 
 export interface ReduceLimits {
@@ -43,9 +48,10 @@ interface Extent2 {
 
 const none: Index4 = [0, 0, 0, 0];
 const one: Index4 = [1, 1, 1, 1];
-const valueRect: Rect = { x: 0, y: 0, width: 1, height: 1 };
+/** Where a value lies. */
+export const valueLayout: Layout = linearLayout(1, 1, 1);
 
-const divideUp = (a: number, b: number) => Math.floor((a - 1) / b) + 1;
+export const divideUp = (a: number, b: number) => Math.floor((a - 1) / b) + 1;
 
 /** A divisor of `extent` near `most`; `most` if there is none. */
 function dividing(extent: number, most: number): number {
@@ -55,17 +61,39 @@ function dividing(extent: number, most: number): number {
   return most;
 }
 
+/** The components that a program decodes of an index: programs for linearised streams decode one, or all four. */
+export function indexAxes(elements: Layout): number {
+  return !elements.linear ? 2 : decodedRank(elements.extent) === 1 ? 1 : 4;
+}
+
+/** Where a pass draws. `isPlane`: its program takes all textures for planes, whose texels it numbers row by row. */
+export function domainUniforms(domain: Layout, isPlane: boolean): Uniform[] {
+  return [
+    ['sk_domain_shape', isPlane ? [domain.width, domain.height, 1, 1] : domain.extent],
+    ['sk_domain_stride', domain.stride],
+    ['sk_domain_shift', domain.shift],
+    ['sk_domain_step', stridesOf(domain.extent)],
+  ];
+}
+
 class Planner {
   private readonly input: Layout;
   private readonly passes: ReducePass[] = [];
+  /** Elements, texels or partial results of a block. */
   private left: number;
   private rows: Extent2 = { width: 0, height: 0 };
   private tail = 0;
   private sourceShift = 0;
+  private readonly grid: Index4;
+  private readonly blocks: number;
 
-  constructor(private readonly elements: Layout, private readonly limits: ReduceLimits, private readonly division: Division) {
+  constructor(
+    private readonly elements: Layout, private readonly result: Layout, private readonly limits: ReduceLimits, private readonly division: Division,
+  ) {
     this.input = division.byTexel ? texelsOf(elements) : elements;
-    this.left = sizeOf(this.input.extent);
+    this.grid = division.blocks ?? one;
+    this.blocks = sizeOf(this.grid);
+    this.left = sizeOf(this.input.extent) / this.blocks;
   }
 
   plan(): ReducePass[] {
@@ -156,39 +184,52 @@ class Planner {
     const isOfTexels = this.division.byTexel && walk !== 'partials';
     const most = isOfTexels ? fanIn / lanes : fanIn;
     const runs = divideUp(this.left, most);
-    const uniforms: [string, number | Index4][] = [
+    const toResult = runs === 1;
+    const uniforms: Uniform[] = [
       ['sk_fan', divideUp(this.left, runs)],
       ['sk_block_length', this.left],
-      ['sk_blocks', 1],
+      ['sk_blocks', this.blocks],
       ['sk_item_shape', this.elements.extent],
     ];
+    const domain = toResult ? this.result : this.partials(runs * this.blocks);
     let key: string = walk;
+    const { byIndex } = this.division;
+    if (byIndex) key += ' split to plane';
     if (walk === 'partials') {
       uniforms.push(['sk_shift', this.sourceShift]);
     } else if (walk === 'line') {
       uniforms.push(['sk_start', 0], ['sk_shift', this.input.shift]);
     } else {
-      const axes = decodedRank(this.input.extent);
+      const axes = indexAxes(this.elements);
       if (axes !== 1) key += ` axes${axes}`;
-      uniforms.push(['sk_block_shape', this.input.extent], ['sk_block_step', stridesOf(this.input.extent)], ['sk_blocks_step', one]);
+      const shape = this.input.extent.map((extent, d) => extent / this.grid[d]!) as unknown as Index4;
+      uniforms.push(['sk_block_shape', shape], ['sk_block_step', stridesOf(shape)], ['sk_blocks_step', stridesOf(this.grid)]);
     }
     if (isOfTexels) key += ' packed';
-    const texture = runs === 1 ? { width: 1, height: 1 } : linearTexture(runs, this.limits.textureSize)!;
-    const domain = linearLayout(runs, texture.width, texture.height);
-    uniforms.push(['sk_domain_shape', domain.extent], ['sk_domain_stride', domain.stride], ['sk_domain_shift', domain.shift], ['sk_domain_step', domain.stride]);
+    uniforms.push(...domainUniforms(domain, byIndex));
     this.sourceShift = domain.shift;
     this.left = runs;
-    this.passes.push({ walk, key, toResult: runs === 1, ...texture, draws: domain.draws, uniforms });
+    this.passes.push({ walk, key, toResult, width: domain.width, height: domain.height, draws: domain.draws, uniforms });
+  }
+
+  private partials(count: number): Layout {
+    const { width, height } = linearTexture(count, this.limits.textureSize)!;
+    return linearLayout(count, width, height);
   }
 }
 
-/** Plans the passes that fold elements, of which there is one or more, to a value. */
-export function planReduction(elements: Layout, limits: ReduceLimits, division: Division): ReducePass[] {
-  return new Planner(elements, limits, division).plan();
+/**
+ * Plans the passes that fold elements, of which there is one or more, to `result`: an element for each block, in order. If
+ * there is one block, it is valueLayout.
+ */
+export function planReduction(elements: Layout, limits: ReduceLimits, division: Division, result: Layout = valueLayout): ReducePass[] {
+  return new Planner(elements, result, limits, division).plan();
 }
 
-/** The pass that writes the identities, where there are no elements. */
-export const identities: ReducePass = { walk: 'nothing', key: 'nothing', toResult: true, width: 1, height: 1, draws: [valueRect], uniforms: [] };
+/** The pass that writes the identities to `result`, where there are no elements. */
+export function planIdentities({ width, height, draws }: Layout): ReducePass {
+  return { walk: 'nothing', key: 'nothing', toResult: true, width, height, draws, uniforms: [] };
+}
 
 export function isOfPartials(walk: Walk): boolean {
   return walk === 'partials' || walk === 'partialRows';

@@ -1,224 +1,291 @@
 // SPDX-License-Identifier: MIT
 //
-// Calls of reduces: runtime/src/gl_device/pass/reduce_passes.cpp for values, and the sums of runtime/src/api/reduce.cpp.
-import { checkArguments, deviceOf, fail, isSameShape, iterationOf, type Checked } from './arguments.js';
+// Calls of reduces, scans and kernels with folded outputs: the checks of runtime/src/call/check_reduction.cpp, and the sums of
+// runtime/src/api/reduce.cpp. All results are drawn to new planes, so that a call may write what it reads.
+import { checkArguments, deviceOf, fail, isSameShape, type Checked } from './arguments.js';
+import { blockGrids } from './block_grid.js';
 import type { Device, Plane } from './device.js';
 import { newArrays, planeArray, takeChannels, valueOf } from './elements.js';
-import type { HostArray } from './format.js';
-import { isNeeded, type GeneratedFile, type KernelData, type Reduction } from './generated.js';
-import { shapeText, type Layout } from './layout.js';
-import { bindOperands, ProgramSource } from './kernel.js';
+import { Fold, type Goal } from './fold.js';
+import type { Format } from './format.js';
+import { isNeeded, type CallableReduction, type GeneratedFile, type SumVariant } from './generated.js';
+import { drawAligned, KernelCaller, ProgramSource } from './kernel.js';
+import { shapeText } from './layout.js';
 import type { Program } from './program.js';
-import { identities, isOfPartials, leastKnownRuns, planReduction, type ReducePass } from './reduce_plan.js';
-import type { CallOptions } from './types.js';
-import { accessKey, type Lie } from './variant.js';
-
-/** Planes that a pass of a reduction writes: more are written in parts, as WebGL2 guarantees four draw buffers. */
-const mostPlanes = 4;
+import { valueLayout } from './reduce_plan.js';
+import type { ScanOptions } from './types.js';
 
 const valueRects = [{ x: 0, y: 0, width: 1, height: 1 }];
+const accumulations = ['tree', 'compensated', 'extended', 'exact'];
 
-/** One variant of a reduction, plain or compensated. */
-class Fold {
-  private readonly source: ProgramSource;
+/** A variant, and the kernel that computes results from its accumulators. */
+class Sum {
+  readonly fold: Fold;
+  readonly finish: ProgramSource;
 
-  constructor(readonly reduction: Reduction, file: GeneratedFile, texts: readonly string[]) {
-    this.source = new ProgramSource(reduction.name, file, texts, reduction.programs);
+  constructor(readonly data: SumVariant, file: GeneratedFile, texts: readonly string[]) {
+    this.fold = new Fold(data.reduction, file, texts);
+    this.finish = new ProgramSource(data.reduction.name, file, texts, data.finish.programs);
   }
+}
 
-  private get elements() {
-    return this.source.file.elements;
-  }
-
-  start(device: Device): Program[] {
-    return this.source.start(device, (key) => (key.startsWith('partial') ? this.reduction.combine : this.reduction.fold));
-  }
-
-  /** The formats of all accumulators' planes, in order. */
-  private formats(device: Device) {
-    const { parameters } = this.reduction.fold;
-    return parameters
-      .filter(({ role }) => role === 'accumulator')
-      .flatMap(({ element }) => this.elements[element]!.fields.map((field) => device.formatOf(field.scalar, field.width)));
-  }
-
-  /** Draws all passes, and returns the planes that hold the value, which the caller releases. */
-  run(device: Device, call: Checked, shape: readonly number[]): Plane[] {
-    const inputs = this.reduction.fold.parameters.flatMap(({ role }, i) => (role === 'input' && call.streams[i] ? [i] : []));
-    const layouts = () => inputs.map((i) => call.streams[i]!.layout);
-    const areAlike = () => layouts().every((layout) => layout === layouts()[0]);
-    const isEmpty = shape.includes(0);
-    const byTexel = !isEmpty && !this.reduction.byIndex && areAlike() && layouts()[0]!.packed;
-    if (!byTexel) inputs.forEach((i) => call.streams[i]!.unpack());
-    const elements = layouts()[0]!;
-    const byIndex = this.reduction.byIndex || !areAlike();
-    const division = { byIndex, byTexel, inAnyOrder: this.reduction.commutative };
-    let passes = isEmpty ? [identities] : this.planned(device, elements, division, leastKnownRuns);
-    const keys = passes.map((pass) => this.keyOf(pass, call, elements, shape, device));
-    if (!keys.every((key) => this.source.has(key))) passes = this.planned(device, elements, division, Infinity);
-
-    let partials: Plane[] = [];
-    for (const pass of passes) {
-      const targets = this.formats(device).map((format) => device.acquire(format, pass.width, pass.height, 'partial results'));
-      this.draw(device, pass, call, elements, shape, partials, targets);
-      device.release(partials);
-      partials = targets;
-    }
-    return partials;
-  }
-
-  private planned(device: Device, elements: Layout, division: { byIndex: boolean; byTexel: boolean; inAnyOrder: boolean }, knownRuns: number): ReducePass[] {
-    return planReduction(elements, { textureSize: device.limits.textureSize, knownRuns }, division);
-  }
-
-  private keyOf(pass: ReducePass, call: Checked, elements: Layout, shape: readonly number[], device: Device, firstPlane = 0): string {
-    const parts = this.formats(device).length > mostPlanes ? ` planes${firstPlane}` : '';
-    if (pass.walk === 'nothing') return pass.key + parts;
-    const isPartial = isOfPartials(pass.walk);
-    const kernel = isPartial ? this.reduction.combine : this.reduction.fold;
-    const lies = this.lies(kernel, call, isPartial, pass.walk === 'index', shape);
-    return pass.key + parts + accessKey(kernel.parameters, this.elements, lies, elements, call.specs, device.filtersFloats, pass.walk === 'index');
-  }
-
-  /** The parameter of the fold whose argument a parameter of the pass's kernel gets. */
-  private foldParameter(i: number, isPartial: boolean): number {
-    return isPartial ? this.reduction.combineOperands[i]! : i;
-  }
-
-  private lies(kernel: KernelData, call: Checked, isPartial: boolean, isByIndex: boolean, shape: readonly number[]): Lie[] {
-    return kernel.parameters.map(({ role, element }, i) => {
-      if (role === 'input' && (isPartial || !isByIndex)) return 'aligned';
-      if (role === 'iterator') return iterationOf(this.elements[element]!, shape);
-      return role === 'input' || role === 'gather' ? call.streams[this.foldParameter(i, isPartial)]?.layout ?? null : null;
-    });
-  }
-
-  private draw(
-    device: Device, pass: ReducePass, call: Checked, elements: Layout, shape: readonly number[], partials: readonly Plane[], targets: readonly Plane[],
-  ): void {
-    const isPartial = isOfPartials(pass.walk);
-    const kernel = isPartial ? this.reduction.combine : this.reduction.fold;
-    const operands = this.operands(kernel, call, isPartial, partials);
-    const own: Checked = { streams: call.streams, specs: call.specs, values: kernel.parameters.map((_, i) => call.values[this.foldParameter(i, isPartial)] ?? null) };
-    const lies = this.lies(kernel, call, isPartial, pass.walk === 'index', shape).map((lie) => (lie === 'aligned' ? elements : lie));
-    const used: KernelData = pass.walk === 'nothing' ? { name: kernel.name, parameters: kernel.parameters.filter(({ role }) => role === 'spec') } : kernel;
-    for (let first = 0; first < targets.length; first += mostPlanes) {
-      const key = this.keyOf(pass, call, elements, shape, device, first);
-      const program = this.source.program(device, key, used, call.specs);
-      device.useProgram(program);
-      bindOperands(device, program, own, operands, lies, this.elements, shape);
-      for (const [name, value] of pass.uniforms) program.setInteger(name, value);
-      device.framebufferOf(targets.slice(first, first + mostPlanes));
-      device.drawRects(pass.draws);
-    }
-  }
-
-  /** The planes of each parameter's stream; of the combining kernel's inputs, those of partial results. */
-  private operands(kernel: KernelData, call: Checked, isPartial: boolean, partials: readonly Plane[]): (readonly Plane[])[] {
-    let next = 0;
-    return kernel.parameters.map(({ role, element }, i) => {
-      if (!isPartial || role !== 'input') return call.streams[this.foldParameter(i, isPartial)]?.planes ?? [];
-      const count = this.elements[element]!.fields.length;
-      return partials.slice(next, (next += count));
-    });
-  }
-
-  /** The arrays of one element of each accumulator, from the planes of run(). */
-  async read(device: Device, planes: readonly Plane[]): Promise<unknown[]> {
-    const transfers = planes.map((plane) => device.readTexels(plane, valueRects));
-    device.release(planes); // later passes that draw to them come after the transfers
-    const channels = await Promise.all(transfers);
-    let next = 0;
-    return this.reduction.fold.parameters
-      .filter(({ role }) => role === 'accumulator')
-      .map((parameter) => {
-        const element = this.elements[parameter.element]!;
-        const arrays = newArrays(element, 1);
-        element.fields.forEach((field, plane) => takeChannels(field, channels[next++]!, planeArray(element, plane, arrays, 1), 1));
-        return arrays;
-      });
-  }
+/** What a call runs: variants, one after the other, which start from the plain results, from planes of any content, or from nothing. */
+interface Chosen {
+  readonly sums: readonly Sum[];
+  readonly start: 'plain' | 'any' | 'none';
 }
 
 export class ReductionCaller {
   private readonly plain: Fold;
-  private readonly compensated: Fold | null;
+  private readonly map: KernelCaller | null;
+  private readonly sums: ReadonlyMap<string, string | readonly Sum[]>;
+  /** The parameters that are results. */
+  private readonly results: readonly number[];
 
-  constructor(private readonly reduction: Reduction, private readonly file: GeneratedFile, texts: readonly string[]) {
+  constructor(private readonly reduction: CallableReduction, private readonly file: GeneratedFile, texts: readonly string[]) {
     this.plain = new Fold(reduction, file, texts);
-    this.compensated = reduction.compensated === undefined ? null : new Fold(reduction.compensated, file, texts);
+    this.map = reduction.map === undefined ? null : new KernelCaller(reduction.map, file, texts);
+    const made = Object.entries(reduction.variants).map(
+      ([name, list]) => [name, typeof list === 'string' ? list : list.map((data) => new Sum(data, file, texts))] as const,
+    );
+    this.sums = new Map(made);
+    this.results = reduction.fold.parameters.flatMap(({ role }, i) => (role === 'accumulator' ? [i] : []));
   }
 
-  startPrograms(device: Device): Program[] {
-    return (this.compensated ?? this.plain).start(device);
+  private get fold() {
+    return this.reduction.fold;
   }
 
-  /** Throws SkError if these are no arguments of the reduce. They have no accumulators. */
+  private fail(message: string, kind: 'misuse' | 'shape' | 'compile' = 'misuse'): never {
+    fail(this.reduction.name, message, kind);
+  }
+
+  startPrograms(device: Device, options: ScanOptions): Program[] {
+    const { sums, start } = this.chosen(options);
+    const map = this.map?.startPrograms(device) ?? [];
+    const plain = start === 'plain' ? this.plain.start(device) : [];
+    return [...map, ...plain, ...sums.flatMap(({ fold, finish, data }) => [...fold.start(device), ...finish.start(device, () => data.finish)])];
+  }
+
+  /** Throws SkError if these are no arguments of the reduce, with streams for the results or without. */
   check(given: readonly unknown[]): Checked {
-    const { fold, name } = this.reduction;
-    const taken = fold.parameters.filter(({ role }) => role !== 'accumulator').length;
-    if (given.length > taken && given.length === fold.parameters.length) {
-      fail(name, 'reductions to streams do not run in browsers yet; leave the result out, and take the value that the call promises');
+    const { parameters } = this.fold;
+    const taken = parameters.length - (this.reduction.scans ? 0 : this.results.length);
+    if (given.length === parameters.length) {
+      const call = checkArguments(this.fold, this.file.elements, given);
+      const missing = this.results.find((i) => call.streams[i] === null);
+      if (missing !== undefined) this.fail(`'${parameters[missing]!.name}' is null; give a stream, or leave all results out`);
+      return call;
     }
-    if (given.length !== taken) fail(name, `${given.length} arguments are given, but ${taken} are taken`);
-    let next = 0;
-    const all = fold.parameters.map(({ role }) => (role === 'accumulator' ? null : given[next++]));
-    return checkArguments(fold, this.file.elements, all);
+    if (given.length !== taken) {
+      const more = taken < parameters.length ? `, or ${parameters.length} with streams for the results` : '';
+      this.fail(`${given.length} arguments are given, but ${taken} are taken${more}`);
+    }
+    return checkArguments(this.fold, this.file.elements, this.withResults(given));
   }
 
-  /** The values of the accumulators, if there are several, as a list. */
-  async call(given: readonly unknown[], options: CallOptions): Promise<unknown> {
-    const { fold } = this.reduction;
+  /** The arguments of a call for values, with null for each result. */
+  private withResults(given: readonly unknown[]): unknown[] {
+    let next = 0;
+    return this.fold.parameters.map(({ role }) => (role === 'accumulator' ? null : given[next++]));
+  }
+
+  /** Promises the values of the accumulators, or, if they are given, writes to streams. */
+  call(given: readonly unknown[], options: ScanOptions): Promise<unknown> | void {
+    if (this.reduction.scans || given.length === this.fold.parameters.length) return this.toStreams(given, options);
+    return this.toValues(given, options);
+  }
+
+  /** If there are several accumulators, a list. */
+  private async toValues(given: readonly unknown[], options: ScanOptions): Promise<unknown> {
     const call = this.check(given);
     const shape = this.domainOf(call);
-    const device = deviceOf(fold, call.streams);
-    const chosen = this.variantOf(options);
+    const goal: Goal = { shape, blocks: shape.map(() => 1), layout: valueLayout };
+    this.checkIdentities(shape);
+    const device = deviceOf(this.fold, call.streams);
+    const sums = this.chosen(options);
     device.begin();
-    const planes = chosen.run(device, call, shape);
-    const arrays = await chosen.read(device, planes);
-    const results = fold.parameters.flatMap(({ role, element }, i) => (role === 'accumulator' ? [{ parameter: i, element: this.file.elements[element]! }] : []));
-    if (chosen !== this.plain) this.addErrors(results, arrays);
-    const values = results.map(({ element }, i) => valueOf(element, arrays[i]));
+    const planes = this.compute(device, call, goal, this.plain.accumulators.map((accumulator) => this.plain.formatsOf(device, accumulator)), sums);
+    this.runMap(device, this.withResults(given), planes);
+    const values = await this.read(device, planes);
     return values.length === 1 ? values[0] : values;
   }
 
-  private variantOf({ accumulate }: CallOptions): Fold {
-    const { name } = this.reduction;
+  private toStreams(given: readonly unknown[], options: ScanOptions): void {
+    const call = this.check(given);
+    const shape = this.domainOf(call);
+    const device = deviceOf(this.fold, call.streams);
+    const sums = this.chosen(options);
+    const goal = this.goalOf(device, call, shape, options);
+    device.begin();
+    if (goal.blocks.includes(0)) return this.runMap(device, given, []);
+    const formats = this.results.map((i) => call.streams[i]!.element.fields.map((field) => device.formatOf(field.scalar, field.width)));
+    const planes = this.compute(device, call, goal, formats, sums);
+    this.runMap(device, given, planes);
+    this.results.forEach((i, k) => {
+      const stream = call.streams[i]!;
+      stream.exchange(planes[k]!, goal.layout);
+      stream.isGone = false;
+    });
+  }
+
+  /** Computes the outputs of a kernel with folded outputs, whose elements have been folded to these planes. */
+  private runMap(device: Device, given: readonly unknown[], planes: readonly Plane[][]): void {
+    try {
+      this.map?.call(this.reduction.mapOperands!.map((i) => given[i]));
+    } catch (error) {
+      device.release(planes.flat());
+      throw error;
+    }
+  }
+
+  // ---- sums of floats -----------------------------------------------------------------------------
+
+  private chosen({ accumulate, scan, along }: ScanOptions): Chosen {
+    if (!this.reduction.scans && scan !== undefined) this.fail("it is not a scan; call it without 'scan', or declare it 'scan void'");
+    if (!this.reduction.scans && along !== undefined) this.fail("it is not a scan, so it goes along no dimension; call it without 'along'");
+    if (scan !== undefined && scan !== 'inclusive' && scan !== 'exclusive') this.fail(`'${scan}' is no kind of scan; choose 'inclusive' or 'exclusive'`);
     const wanted = accumulate ?? this.reduction.accumulate;
-    if (wanted === 'exact' || wanted === 'extended') {
-      fail(name, `'${wanted}' sums do not run in browsers yet; call it by with({ accumulate: 'compensated' })`);
+    if (wanted !== undefined && !accumulations.includes(wanted)) {
+      this.fail(`'${wanted}' is no way to accumulate; choose one of '${accumulations.join("', '")}'`);
     }
-    if (wanted === 'compensated' && this.compensated === null) {
-      fail(name, "it has no sum of floats to compensate, one that elements and partial results are added to and no more; call it without 'compensated'");
+    const found = this.sums.get(wanted ?? 'compensated');
+    if (found === undefined && accumulate === 'compensated') {
+      this.fail("it has no sum of floats to compensate, one that elements and partial results are added to and no more; call it without 'compensated'");
     }
-    return wanted === 'tree' || this.compensated === null ? this.plain : this.compensated;
+    if (found === undefined && accumulate === 'exact') this.fail("it has no sum of floats to add exactly; call it without 'exact'");
+    if (typeof found === 'string' && wanted !== undefined) this.fail(`${found}; call it without '${wanted}'`, 'compile');
+    const sums = found === undefined || typeof found === 'string' ? [] : found;
+    const start = sums.length === 0 || (wanted === 'exact' && !this.reduction.sumsAll) ? 'plain' : wanted === 'exact' ? 'any' : 'none';
+    return { sums, start };
   }
 
-  /** Adds each sum's rounding error to it, in floats. */
-  private addErrors(results: readonly { parameter: number; element: { fields: readonly { offset: number; width: number }[] } }[], arrays: unknown[]): void {
-    this.reduction.sums!.forEach(([accumulator, offset], k) => {
-      const [lost] = arrays[results.length + k] as Float32Array;
-      if (!Number.isFinite(lost) || lost === 0) return; // the error of a sum that is not finite is NaN
-      const i = results.findIndex(({ parameter }) => parameter === accumulator);
-      const element = this.file.elements[this.reduction.fold.parameters[accumulator]!.element]!;
-      const plane = element.fields.findIndex((field) => offset >= field.offset && offset < field.offset + 4 * field.width);
-      const { array, first } = planeArray(element, plane, arrays[i], 1);
-      (array as HostArray)[first + (offset - element.fields[plane]!.offset) / 4] += lost!;
+  /** Draws the results, of these formats. The planes of each are the caller's. */
+  private compute(
+    device: Device, call: Checked, goal: Goal, formats: readonly Format[][], { sums, start }: Chosen,
+  ): Plane[][] {
+    const { plain } = this;
+    const runPlain = () => plain.byAccumulator(plain.run(device, call, goal, formats.flat()));
+    if (sums.length === 0 || goal.shape.includes(0)) return runPlain();
+    const anyPlanes = () => formats.map((list) => list.map((format) => device.acquire(format, goal.layout.width, goal.layout.height, 'sums')));
+    let results = start === 'plain' ? runPlain() : start === 'any' ? anyPlanes() : null;
+    for (const { data, fold, finish } of sums) {
+      // What is not finished is a result.
+      const isResult = (i: number) => results === null && i < formats.length && !data.results.includes(i);
+      const own = fold.byAccumulator(
+        fold.run(device, fold.argumentsOf(this.fold, call), goal, fold.accumulators.flatMap((one, i) => (isResult(i) ? formats[i]! : fold.formatsOf(device, one)))),
+      );
+      const before: readonly Plane[][] = results ?? own;
+      const inputs = data.inputs.map(([isOwn, i]) => (isOwn ? own : before)[i]!);
+      const finished = drawAligned(device, finish, data.finish, inputs, goal.layout, data.results.map((i) => formats[i]!));
+      const after = formats.map((_, i) => (data.results.includes(i) ? finished[data.results.indexOf(i)]! : before[i]!));
+      const kept = new Set(after.flat());
+      device.release([...new Set([...own.flat(), ...before.flat()])].filter((plane) => !kept.has(plane)));
+      results = after;
+    }
+    return results!;
+  }
+
+  private async read(device: Device, planes: readonly Plane[][]): Promise<unknown[]> {
+    const transfers = planes.map((list) => Promise.all(list.map((plane) => device.readTexels(plane, valueRects))));
+    device.release(planes.flat()); // later passes that draw to them come after the transfers
+    const channels = await Promise.all(transfers);
+    return this.plain.accumulators.map((parameter, k) => {
+      const element = this.file.elements[parameter.element]!;
+      const arrays = newArrays(element, 1);
+      element.fields.forEach((field, plane) => takeChannels(field, channels[k]![plane]!, planeArray(element, plane, arrays, 1), 1));
+      return valueOf(element, arrays);
     });
   }
 
-  /** The common shape of the inputs. */
+  // ---- shapes -------------------------------------------------------------------------------------
+
+  /** The common shape of the outputs and inputs. */
   private domainOf(call: Checked): readonly number[] {
-    const { fold, name } = this.reduction;
-    let first = -1;
-    fold.parameters.forEach((parameter, i) => {
-      if (parameter.role !== 'input' || !isNeeded(parameter, call.specs)) return;
-      if (first < 0) first = i;
-      const [a, b] = [call.streams[first]!.shape, call.streams[i]!.shape];
-      if (isSameShape(a, b)) return;
-      fail(name, `'${fold.parameters[first]!.name}' has shape ${shapeText(a)}, and '${parameter.name}' ${shapeText(b)}; give them the same shape`, 'shape');
-    });
-    if (first < 0) fail(name, 'no input says how many elements there are; reductions in browsers need one');
-    return call.streams[first]!.shape;
+    const { parameters } = this.fold;
+    const ofRole = (wanted: string) => parameters.flatMap((parameter, i) => (parameter.role === wanted && isNeeded(parameter, call.specs) ? [i] : []));
+    const [first, ...others] = [...ofRole('output'), ...ofRole('input')];
+    if (first === undefined) this.fail('no input says how many elements there are; reductions in browsers need one', 'shape');
+    const shape = call.streams[first]!.shape as readonly number[];
+    for (const i of others) {
+      const other = call.streams[i]!.shape;
+      if (isSameShape(shape, other)) continue;
+      this.fail(`'${parameters[first]!.name}' has shape ${shapeText(shape)}, and '${parameters[i]!.name}' ${shapeText(other)}; give them the same shape`, 'shape');
+    }
+    return shape;
+  }
+
+  /** "'x' has shape" for one input, "the inputs together have" for several. */
+  private elementsText(domain: readonly number[]): string {
+    const { parameters } = this.fold;
+    const inputs = parameters.filter(({ role }) => role === 'input');
+    const first = parameters.find(({ role }) => role === 'output') ?? (inputs.length === 1 ? inputs[0] : undefined);
+    return `${first === undefined ? 'the inputs together have' : `'${first.name}' has`} shape ${shapeText(domain)}`;
+  }
+
+  private checkIdentities(domain: readonly number[]): void {
+    if (!domain.includes(0)) return;
+    const lacking = this.plain.accumulators.find(({ hasIdentity }) => !hasIdentity);
+    if (lacking === undefined) return;
+    this.fail(`${this.elementsText(domain)}: there is no element to fold, and '${lacking.name}' declares no identity`, 'shape');
+  }
+
+  private goalOf(device: Device, call: Checked, shape: readonly number[], options: ScanOptions): Goal {
+    const result = this.checkResults(call);
+    const layout = device.layoutOf(result, false);
+    if (this.reduction.scans) return { shape, blocks: shape, layout, scan: this.checkScan(shape, result, options) };
+    const blocks = this.checkBlocks(shape, result);
+    if (!blocks.includes(0)) this.checkIdentities(shape);
+    return { shape, blocks, layout };
+  }
+
+  /** The common shape of the results. */
+  private checkResults(call: Checked): readonly number[] {
+    const { parameters } = this.fold;
+    const [first] = this.results;
+    const shape = call.streams[first!]!.shape as readonly number[];
+    const nameOf = (i: number) => parameters[i]!.name;
+    const written = parameters.flatMap(({ role }, i) => (role === 'output' || role === 'accumulator' ? [i] : []));
+    for (const i of this.results) {
+      const other = call.streams[i]!.shape as readonly number[];
+      if (!isSameShape(other, shape)) {
+        this.fail(`the outputs '${nameOf(first!)}' and '${nameOf(i)}' have shapes ${shapeText(shape)} and ${shapeText(other)}; give them the same shape`, 'shape');
+      }
+      const same = written.find((k) => k !== i && call.streams[k] === call.streams[i]);
+      if (same !== undefined) {
+        const [a, b] = [Math.min(i, same), Math.max(i, same)];
+        this.fail(`the outputs '${nameOf(a)}' and '${nameOf(b)}' are one stream; give them different streams`);
+      }
+    }
+    return shape;
+  }
+
+  /** The grid of blocks. */
+  private checkBlocks(domain: readonly number[], result: readonly number[]): readonly number[] {
+    const grids = blockGrids(domain, result);
+    if (grids.length === 1) return grids[0]!;
+    const both = `${this.elementsText(domain)}, and the output '${this.fold.parameters[this.results[0]!]!.name}' has ${shapeText(result)}`;
+    if (grids.length === 0) {
+      this.fail(`${both}; give the output as many dimensions, or fewer, each extent a divisor of the input's`, 'shape');
+    }
+    this.fail(`${both}, which could mean ${shapeText(grids[0]!)} or ${shapeText(grids[1]!)}; write the one that you mean`, 'shape');
+  }
+
+  private checkScan(domain: readonly number[], result: readonly number[], { scan, along }: ScanOptions): NonNullable<Goal['scan']> {
+    const isExclusive = scan === 'exclusive';
+    if (!isSameShape(domain, result)) {
+      const { name } = this.fold.parameters[this.results[0]!]!;
+      const both = `${this.elementsText(domain)}, and the output '${name}' has ${shapeText(result)}`;
+      this.fail(`${both}; a scan has one result for each element, so give them the same shape`, 'shape');
+    }
+    const lacking = isExclusive ? this.plain.accumulators.find(({ hasIdentity }) => !hasIdentity) : undefined;
+    if (lacking !== undefined) {
+      const { name } = lacking;
+      this.fail(`an exclusive scan starts with the identity, and '${name}' declares none; write '${name} = ...' in its declaration, or call it without 'exclusive'`);
+    }
+    if (along !== undefined && !(Number.isInteger(along) && along >= 0 && along < domain.length)) {
+      this.fail(`${this.elementsText(domain)}, which has no dimension ${along}; along is 0 to ${domain.length - 1}`, 'shape');
+    }
+    return { along: along === undefined ? undefined : domain.length - 1 - along, isExclusive };
   }
 }

@@ -78,7 +78,15 @@ export interface Iterate<T> {
 /** Choices of one call, as in `sum.with({ accumulate: 'tree' })(u)`. */
 export interface CallOptions {
   /** How a reduction adds floats; by default compensated (docs/accuracy.md). */
-  readonly accumulate?: 'tree' | 'compensated';
+  readonly accumulate?: 'tree' | 'compensated' | 'extended' | 'exact';
+}
+
+/** Choices of one call of a scan, as in `prefix.with({ scan: 'exclusive' })(x, s)`. */
+export interface ScanOptions extends CallOptions {
+  /** Whether a result has its own element, too, as it has by default. */
+  readonly scan?: 'inclusive' | 'exclusive';
+  /** The dimension, 0 being the slowest, whose lines are scanned each by itself; by default, all elements are one line. */
+  readonly along?: number;
 }
 
 /** A kernel: a function that writes its outputs. It returns at once; the device computes meanwhile. */
@@ -91,10 +99,20 @@ export interface CountingKernel<Arguments extends readonly unknown[]> {
   (...given: Arguments): Promise<void>;
 }
 
-/** A reduce: a function that promises the value. */
-export interface Reduce<Arguments extends readonly unknown[], Result> {
+/**
+ * A reduce, or a kernel with folded outputs: a function that promises the value. With streams for the results, `All`, it writes
+ * to these instead, and returns at once: a smaller stream has one element for each block of the inputs.
+ */
+export interface Reduce<Arguments extends readonly unknown[], Result, All extends readonly unknown[]> {
   (...given: Arguments): Promise<Result>;
-  with(options: CallOptions): Reduce<Arguments, Result>;
+  (...given: All): void;
+  with(options: CallOptions): Reduce<Arguments, Result, All>;
+}
+
+/** A scan: a function that writes one result for each element. */
+export interface Scan<Arguments extends readonly unknown[]> {
+  (...given: Arguments): void;
+  with(options: ScanOptions): Scan<Arguments>;
 }
 
 /** What browsers do not run, and why: no call of it compiles. */

@@ -6,6 +6,7 @@ import * as k from './calls.sk.js';
 import { appendCases } from './append.mjs';
 import { deviceCases } from './devices.mjs';
 import { mistakeCases } from './mistakes.mjs';
+import { reductionCases } from './reductions.mjs';
 
 const expected = await (await fetch('expected.json')).json();
 const mistakes = [];
@@ -216,8 +217,6 @@ const cases = {
     await refused('shape', 'is no shape', () => device.stream('float', []));
     await refused('shape', 'divide it into several streams', () => device.stream('float2', [100000, 100000]));
     await refused('type', "'flaot' is no type of elements", () => device.stream('flaot', [4]));
-    await refused('compile', 'scans do not run in browsers yet', () => k.prefix(u, u));
-    await refused('misuse', 'reductions to streams do not run in browsers yet', () => k.sum(u, v));
     await refused('misuse', 'it has no sum of floats to compensate', () => k.count.with({ accumulate: 'compensated' })(device.stream('int', [4])));
     const other = await Device.create();
     await refused('device', 'streams of two devices', () => k.saxpy(1, u, other.stream('float', [8, 8]), u));
@@ -271,8 +270,8 @@ const cases = {
     await cases.exact(device);
   },
 };
-const checked = { same, refused, filled, random, random24, floats, integers, from, expect };
-Object.assign(cases, appendCases(checked), deviceCases(checked), mistakeCases(checked));
+const checked = { same, refused, filled, random, random24, floats, integers, from, size, expect };
+Object.assign(cases, appendCases(checked), deviceCases(checked), mistakeCases(checked), reductionCases(checked));
 
 const report = { mistakes, checks, seconds: {} };
 try {

@@ -11,69 +11,15 @@
 #include <sk/sk.hpp>
 
 #include "calls/calls.sk.hpp"
+#include "reference.hpp"
 
-namespace {
-
-/// A number of 24 random bits: equal in C++ and JavaScript.
-std::uint32_t random24(std::size_t i, std::uint32_t seed) {
-  std::uint32_t x = static_cast<std::uint32_t>(i) * 747796405u + seed * 2891336453u + 1u;
-  x = (x >> ((x >> 28) + 4) ^ x) * 277803737u;
-  return (x >> 22 ^ x) >> 8;
-}
-std::vector<float> floats(std::size_t count, std::uint32_t seed) {
-  std::vector<float> all(count);
-  for (std::size_t i = 0; i < count; ++i) all[i] = static_cast<float>(random24(i, seed)) / 8388608.0F - 1.0F;
-  return all;
-}
-template <class T>
-std::vector<T> integers(std::size_t count, std::uint32_t seed, std::uint32_t below) {
-  std::vector<T> all(count);
-  for (std::size_t i = 0; i < count; ++i) all[i] = static_cast<T>(random24(i, seed) % below);
-  return all;
-}
-
-void number(double value) { std::printf("%.17g", value); }
-template <class T>
-void number(const sk::Vector2<T>& v) {
-  std::printf("%.17g,%.17g", double(v.x), double(v.y));
-}
-template <class T>
-void number(const sk::Vector3<T>& v) {
-  std::printf("%.17g,%.17g,%.17g", double(v.x), double(v.y), double(v.z));
-}
-
-void number(const Spot& s) {
+inline void number(const Spot& s) {
   std::printf("%.17g,%.17g,%.17g", double(s.at.x), double(s.at.y), double(s.heat));
 }
 
-bool isFirst = true;
-template <class Values>
-void print(const char* name, const Values& values) {
-  std::printf("%s\"%s\":[", std::exchange(isFirst, false) ? "{" : ",\n", name);
-  bool follows = false;
-  for (const auto& value : values) {
-    if (std::exchange(follows, true)) std::printf(",");
-    number(value);
-  }
-  std::printf("]");
-}
-void print(const char* name, std::initializer_list<double> values) {
-  print(name, std::vector<double>(values));
-}
+namespace {
 
-struct Calls {
-  sk::Device device = sk::Device::native();
-
-  template <class T>
-  sk::Stream<T> filled(const sk::Shape& shape, const std::vector<T>& values) {
-    auto stream = device.stream<T>(shape);
-    stream.write(values);
-    return stream;
-  }
-  sk::Stream<float> random(const sk::Shape& shape, std::uint32_t seed) {
-    return filled(shape, floats(static_cast<std::size_t>(shape.size()), seed));
-  }
-
+struct Calls : Streams {
   template <class T>
   sk::Stream<T> zeros(const sk::Shape& shape) {
     return filled(shape, std::vector<T>(static_cast<std::size_t>(shape.size())));
@@ -319,6 +265,7 @@ struct Calls {
 }  // namespace
 
 int main() {
+  std::puts("{");
   Calls calls;
   calls.heat();
   calls.elements();
@@ -331,5 +278,6 @@ int main() {
   calls.types();
   calls.pushes();
   calls.scatters();
+  printReductions();
   std::puts("}");
 }

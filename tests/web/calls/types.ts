@@ -3,6 +3,7 @@
 // What the types of calls.sk.d.ts allow, and what they reject: tsc reads this, and nothing runs it.
 import { Device } from 'streamkernel';
 import { Body, count, diffuse, field, heaviest, move, positive, sum } from './calls.sk.js';
+import { folds } from './reductions.sk.js';
 
 export async function allowed(device: Device): Promise<number> {
   const u = device.stream('float', [512, 512]);
@@ -20,6 +21,15 @@ export async function allowed(device: Device): Promise<number> {
   await counted;
   const many: number = pushed.shape[0];
   field.scale([1, 2], device.stream('float2', [4]), device.stream('float2', [4]));
+  const rows = device.stream('float', [512, 1]);
+  sum(u, rows);
+  sum.with({ accumulate: 'exact' })(u, rows);
+  const cells = device.stream('int', [8, 8]);
+  const [alive, most]: readonly [number, number] = await folds.advance(cells, cells);
+  folds.advance(cells, cells, device.stream('int', [8, 1]), device.stream('int', [8, 1]));
+  const [total]: readonly number[] = await folds.weighted(cells);
+  folds.prefix.with({ scan: 'exclusive', along: 0 })(cells, cells);
+  void [alive, most, total];
   return (await sum.with({ accumulate: 'tree' })(u)) + host[0]! + heats[0]! + kinds[0]! + many + hottest;
 }
 
@@ -41,6 +51,16 @@ export async function rejected(device: Device): Promise<void> {
   const text: string = await count(ints);
   // @ts-expect-error: pushed elements have one dimension
   await positive(u, u);
+  // @ts-expect-error: totals are floats
+  sum(u, ints);
+  // @ts-expect-error: two accumulators need two streams
+  folds.weighted(ints, ints);
+  // @ts-expect-error: there is no such sum
+  sum.with({ accumulate: 'exakt' });
+  // @ts-expect-error: a reduce is no scan
+  sum.with({ along: 0 });
+  // @ts-expect-error: a scan needs a stream for its results
+  folds.prefix(ints);
   // @ts-expect-error: there is no such type
   device.stream('flaot', [1]);
   void text;

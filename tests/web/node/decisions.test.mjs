@@ -9,6 +9,9 @@ const folder = process.env.SK_WEB;
 const { layoutOf } = await import(`${folder}/streamkernel/layout.js`);
 const { planReduction, leastKnownRuns } = await import(`${folder}/streamkernel/reduce_plan.js`);
 const { planPyramid } = await import(`${folder}/streamkernel/pyramid.js`);
+const { planScan } = await import(`${folder}/streamkernel/scan_plan.js`);
+const { blockGrids } = await import(`${folder}/streamkernel/block_grid.js`);
+const { xFirst } = await import(`${folder}/streamkernel/layout.js`);
 const { kernelKey } = await import(`${folder}/streamkernel/variant.js`);
 const corpus = JSON.parse(readFileSync(`${folder}/decisions.json`));
 
@@ -27,28 +30,68 @@ test('streams lie in the same texels', () => {
   }
 });
 
+/**
+ * The key that skc gives a pass's program. Programs by index, and those of scans, take any number of runs and blocks, and
+ * decode an index as that of a plane, one component, or all four.
+ */
+function keyOf({ walk, axes, run, column, packed, scan }, elements, isGeneral) {
+  const decoded = !elements.linear ? 2 : axes === 1 ? 1 : 4;
+  const index = walk === 'index' && decoded > 1 ? ` axes${decoded}` : '';
+  const choices = [isGeneral && ' split to plane', index, run > 0 && ` run${run}`, column && ' column', packed && ' packed', scan, / .*clusive/.test(scan) && ' carried'];
+  return walk + choices.filter(Boolean).join('');
+}
+
+function samePasses(found, passes, elements, isGeneral, where) {
+  assert.equal(found.length, passes.length, where);
+  found.forEach((pass, i) => {
+    const wanted = passes[i];
+    assert.equal(pass.key, keyOf(wanted, elements, isGeneral), where);
+    assert.equal(pass.toResult, wanted.toResult, where);
+    if (!wanted.toResult) assert.deepEqual([pass.width, pass.height], [wanted.width, wanted.height], where);
+    assert.deepEqual(rects(pass.draws), wanted.draws, where);
+    const own = Object.fromEntries(pass.uniforms);
+    for (const [name, value] of Object.entries(wanted.uniforms)) {
+      // Rows are stored from sk_target on, and the origins of whole streams are 0, which uniforms are anyway.
+      const isUnused = name.endsWith('_origin') || (name.startsWith('sk_domain_') && pass.walk.endsWith('ows'));
+      const isTexture = isGeneral && name === 'sk_domain_shape';
+      if (!isUnused || name in own) assert.deepEqual(own[name], isTexture ? [pass.width, pass.height, 1, 1] : value, `${name} ${where}`);
+    }
+    assert.ok(Object.keys(own).every((name) => name in wanted.uniforms || (name === 'sk_carry_shift' && own[name] === 0)), where);
+  });
+}
+
 test('reductions have the same passes and uniforms', () => {
   for (const { stream, byIndex, inAnyOrder, knownRuns, passes } of corpus.reductions) {
     const elements = layoutOf(stream.shape, 8192, stream.packed);
     const limits = { textureSize: 8192, knownRuns: knownRuns ? leastKnownRuns : Infinity };
     const found = planReduction(elements, limits, { byIndex, byTexel: stream.packed, inAnyOrder });
-    const where = JSON.stringify(stream);
-    assert.equal(found.length, passes.length, where);
-    found.forEach((pass, i) => {
-      const wanted = passes[i];
-      const key = `${wanted.walk}${wanted.axes > 1 ? ` axes${wanted.axes}` : ''}${wanted.run > 0 ? ` run${wanted.run}` : ''}`;
-      assert.equal(pass.key, `${key}${wanted.column ? ' column' : ''}${wanted.packed ? ' packed' : ''}`, where);
-      assert.equal(pass.toResult, wanted.toResult, where);
-      if (!wanted.toResult) assert.deepEqual([pass.width, pass.height], [wanted.width, wanted.height], where);
-      assert.deepEqual(rects(pass.draws), wanted.draws, where);
-      const own = Object.fromEntries(pass.uniforms);
-      for (const [name, value] of Object.entries(wanted.uniforms)) {
-        // Rows are stored from sk_target on, and the domain's origin is 0, which uniforms are anyway.
-        const isUnused = name.startsWith('sk_domain_') && (pass.walk.endsWith('ows') || name === 'sk_domain_origin');
-        if (!isUnused || name in own) assert.deepEqual(own[name], value, `${name} ${where}`);
-      }
-      assert.ok(Object.keys(own).every((name) => name in wanted.uniforms), where);
-    });
+    samePasses(found, passes, elements, byIndex, JSON.stringify(stream));
+  }
+});
+
+test('reductions to streams have the same blocks, passes and uniforms', () => {
+  const counts = [0, 0, 0];
+  for (const { stream, result, grids, passes } of corpus.blocks) {
+    const where = JSON.stringify([stream, result]);
+    const found = blockGrids(stream.shape, result.shape);
+    assert.deepEqual(found, grids, where);
+    ++counts[Math.min(found.length, 2)];
+    if (passes === null) continue;
+    const [elements, target] = [stream, result].map(({ shape }) => layoutOf(shape, 8192, false));
+    const division = { byIndex: true, byTexel: false, inAnyOrder: false, blocks: xFirst(found[0]) };
+    samePasses(planReduction(elements, { textureSize: 8192, knownRuns: Infinity }, division, target), passes, elements, true, where);
+  }
+  assert.ok(counts.every((count) => count > 9), `${counts} results mean no division into blocks, one, and several`);
+});
+
+test('scans have the same passes and uniforms', () => {
+  for (const { stream, byIndex, exclusive, along, folds, scans } of corpus.scans) {
+    const elements = layoutOf(stream.shape, 8192, false);
+    const dimension = along < 0 ? undefined : stream.shape.length - 1 - along;
+    const found = planScan(elements, elements, 8192, dimension, byIndex, exclusive);
+    const where = JSON.stringify([stream, byIndex, exclusive, along]);
+    samePasses(found.folds, folds, elements, true, where);
+    samePasses(found.scans, scans, elements, true, where);
   }
 });
 
