@@ -108,28 +108,28 @@ void begin(DomainState& domain, const Reduction& reduction, std::span<const Argu
 }  // namespace
 
 void DomainState::reduce(const Reduction& reduction, std::span<const Argument> arguments,
-                         std::span<void* const> results, const CallOptions& options) {
-  begin(*this, reduction, arguments, options);
+                         std::span<void* const> results, const CallOptions& chosen) {
+  begin(*this, reduction, arguments, chosen);
   if (results.empty()) {
-    const StreamResults streams(reduction, arguments);
-    reduce(reduction, arguments, streams.values, options);
-    return streams.store();
+    const StreamResults targets(reduction, arguments);
+    reduce(reduction, arguments, targets.values, chosen);
+    return targets.store();
   }
-  if (later != nullptr) return reduceLater(reduction, arguments, results, options);
-  if (parts.ranks() == 1) return sk::reduce(reduction, mpi::ownArguments(arguments), results, options);
-  started(*this, reduction, arguments, options)->finish(results);
+  if (later != nullptr) return reduceLater(reduction, arguments, results, chosen);
+  if (parts.ranks() == 1) return sk::reduce(reduction, mpi::ownArguments(arguments), results, chosen);
+  started(*this, reduction, arguments, chosen)->finish(results);
 }
 
 /// Keeps the reduction for the future of detail::later(); the stub that has called gets zeros.
 void DomainState::reduceLater(const Reduction& reduction, std::span<const Argument> arguments,
-                              std::span<void* const> results, const CallOptions& options) {
+                              std::span<void* const> results, const CallOptions& chosen) {
   if (results.size() != 1 || *later) {
     fail(reduction.fold,
          "later() starts one reduction that has one result; call it for each, or call the reduction itself");
   }
   const auto accumulator = std::ranges::find(reduction.fold.parameters, Role::Accumulator, &Parameter::role);
   std::memset(results[0], 0, accumulator->element->size);
-  *later = detail::TransferOwner(new PendingReduction(started(*this, reduction, arguments, options)));
+  *later = detail::TransferOwner(new PendingReduction(started(*this, reduction, arguments, chosen)));
 }
 
 detail::TransferOwner detail::later(DomainState* domain, void (*call)(void*), void* context) {
@@ -151,29 +151,29 @@ detail::TransferOwner detail::later(DomainState* domain, void (*call)(void*), vo
 }
 
 void DomainState::fold(const Reduction& reduction, std::span<const Argument> arguments,
-                       const CallOptions& options) {
-  begin(*this, reduction, arguments, options);
-  const StreamResults streams(reduction, arguments);
+                       const CallOptions& chosen) {
+  begin(*this, reduction, arguments, chosen);
+  const StreamResults targets(reduction, arguments);
   if (parts.ranks() == 1) {
-    sk::fold(reduction, mpi::ownArguments(arguments), options);
+    sk::fold(reduction, mpi::ownArguments(arguments), chosen);
   } else {
-    const bool isTogether = device.profile() == "native" && options.accumulate != Accumulate::Exact &&
-                            !needsPrecisionVariant(options);
+    const bool isTogether = device.profile() == "native" && chosen.accumulate != Accumulate::Exact &&
+                            !needsPrecisionVariant(chosen);
     if (isTogether) {  // native code stores elements while it folds
-      started(*this, reduction, arguments, options)->finish(streams.values);
+      started(*this, reduction, arguments, chosen)->finish(targets.values);
     } else {  // values are not stored yet, so that the kernel may overwrite what is folded
       std::vector<Argument> inputs(arguments.begin(), arguments.end());
       for (std::size_t i = 0; i < inputs.size(); ++i) {
         if (reduction.fold.parameters[i].role == Role::Output) inputs[i].region.distributed = nullptr;
       }
-      started(*this, reduction, inputs, options)->finish(streams.values);
+      started(*this, reduction, inputs, chosen)->finish(targets.values);
       std::vector<Argument> mapped;
       for (const std::uint8_t operand : reduction.parts->mapOperands) mapped.push_back(arguments[operand]);
-      CallOptions map = options;
+      CallOptions map = chosen;
       map.accumulate = Accumulate::Default;
       run(reduction.parts->map, mapped, map);
     }
-    streams.store();
+    targets.store();
   }
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (reduction.fold.parameters[i].role != Role::Output) continue;

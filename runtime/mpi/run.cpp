@@ -214,11 +214,11 @@ void CallPlan::run(const CallOptions& options, const Compute& compute) {
 
 }  // namespace mpi
 
-void DomainState::run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
-  if (!options.box.isWhole()) checkBox(kernel, options.box, parts.whole());
-  mpi::CallPlan(*this, kernel, arguments, options)
-      .run(options,
-           [&](std::span<const Argument> own, const CallOptions& part) { sk::run(kernel, own, part); });
+void DomainState::run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& chosen) {
+  if (!chosen.box.isWhole()) checkBox(kernel, chosen.box, parts.whole());
+  mpi::CallPlan(*this, kernel, arguments, chosen)
+      .run(chosen,
+           [&](std::span<const Argument> mine, const CallOptions& part) { sk::run(kernel, mine, part); });
 }
 
 void DomainState::scan(const program::Reduction& reduction, std::span<const Argument>, const CallOptions&) {
