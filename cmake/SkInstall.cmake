@@ -14,7 +14,7 @@ if(TARGET sk_mpi)   # targets of their own: they need an MPI where they are used
   install(TARGETS sk_mpi EXPORT StreamKernelMpiTargets)
   set_target_properties(sk_mpi PROPERTIES EXPORT_NAME mpi)
   install(EXPORT StreamKernelMpiTargets NAMESPACE sk:: DESTINATION "${packageFolder}")
-  install(FILES "${PROJECT_SOURCE_DIR}/runtime/mpi/include/sk/mpi.hpp" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/sk")
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/mpi/include/sk" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 endif()
 install(EXPORT StreamKernelTargets NAMESPACE sk:: DESTINATION "${packageFolder}")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/sk" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"

@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -29,6 +30,7 @@
 #include "sk/device.hpp"
 #include "sk/future.hpp"
 #include "sk/host_vector.hpp"
+#include "sk/mpi_run.hpp"
 #include "sk/options.hpp"
 #include "sk/owner.hpp"
 #include "sk/shape.hpp"
@@ -82,6 +84,8 @@ StreamRegion ownRegion(DomainStreamState* stream, bool isWritten);
 void gather(DomainStreamState* stream, int root, void* elements);
 void scatter(DomainStreamState* stream, int root, const void* elements, std::size_t count);
 int rankOf(const DomainStreamState* stream);
+void save(DomainStreamState* stream, const std::string& file);
+void load(DomainStreamState* stream, const std::string& file);
 /// Starts the reduction that call(context) calls.
 TransferOwner later(DomainState* domain, void (*call)(void*), void* context);
 
@@ -126,6 +130,14 @@ class DomainStream {
   void scatter(std::span<const HostElement<T>> elements, int root = 0) {
     detail::scatter(state_.get(), root, elements.data(), elements.size());
   }
+
+  /// Writes all elements to a .npy file, which NumPy reads, together with the other ranks (MPI-IO). The file appears under its name
+  /// when it is whole; until then, or if that fails, an older file of the name stays. Throws sk::Error on all ranks if it
+  /// cannot be written. Streams that are stored in doubles are written as doubles.
+  void save(const std::string& file) const { detail::save(state_.get(), file); }
+  /// Reads all elements from a .npy file of this shape and type, which any number of ranks may have written. Throws sk::Error on
+  /// all ranks if it is another one.
+  void load(const std::string& file) { detail::load(state_.get(), file); }
 
   StreamRegion region() const { return detail::regionOf(state_.get()); }
   DomainStreamState* state() const noexcept { return state_.get(); }
