@@ -74,6 +74,19 @@ TransformOptions transformOptions(const Options& options, std::ostream& output) 
   return result;
 }
 
+/// Whether a module for browsers needs kernels in other precisions: one declares or lists them.
+bool wantsPrecisions(const ir::Module& module) {
+  return std::ranges::any_of(module.kernels, [](const ir::Kernel& kernel) {
+    const ir::Choices& choices = kernel.choices;
+    const auto isDeclared = [&](sk::Precision precision) {
+      return choices.precision == static_cast<std::uint8_t>(precision);
+    };
+    return ir::isAhead(choices, ir::Ahead::Half) || ir::isAhead(choices, ir::Ahead::Extended) ||
+           isDeclared(sk::Precision::Half) || isDeclared(sk::Precision::Extended) ||
+           isDeclared(sk::Precision::Double);
+  });
+}
+
 std::string qualifiedName(const ir::Kernel& kernel) { return ir::qualifier(kernel.scope) + kernel.name; }
 
 /// Keeps only the kernels that --kernel names, with or without their namespaces.
@@ -212,7 +225,9 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   checkLimits(*module, frontend.diagnostics());
   checkOutputs(*module, frontend.diagnostics());  // before any transform: it checks the code as written
   if (!frontend.diagnostics().hasErrors()) {
-    runTransforms(*module, frontend.diagnostics(), transformOptions(options, job.output));
+    TransformOptions transforms = transformOptions(options, job.output);
+    transforms.precisions = transforms.precisions || (options.emit == Emit::Js && wantsPrecisions(*module));
+    runTransforms(*module, frontend.diagnostics(), transforms);
   }
   if (!frontend.diagnostics().hasErrors() && wantsPerformanceWarnings(options.warnings)) {
     warnOfPerformance(*module, frontend.diagnostics());

@@ -35,6 +35,10 @@ constexpr std::array<Choice, 6> choices = {{
     {"order", &ir::Choices::order, {"", "kept", "any"}, "kept, any"},
 }};
 
+/// The words of [[variants(...)]], in the order of ir::Ahead.
+constexpr std::array<std::string_view, 4> variants = {"views", "half", "extended", "fast"};
+constexpr std::string_view variantList = "views, half, extended, fast";
+
 bool startsAttributes(const TokenCursor& cursor, std::size_t at) {
   return cursor.peek(at).is(tok::l_square) && cursor.peek(at + 1).is(tok::l_square);
 }
@@ -49,9 +53,35 @@ std::size_t behindBrackets(const TokenCursor& cursor, std::size_t at) {
   return 0;
 }
 
+/// Takes variants(WORD, ...), up to the bracket at least.
+void takeVariants(TokenCursor& cursor, Diagnostics& diagnostics, const clang::Token& name,
+                  ir::Choices& chosen) {
+  if (!cursor.at(tok::l_paren)) return diagnostics.report(Diag::VariantForm, locOf(name), {variantList});
+  bool isWord = true;
+  do {
+    cursor.take();  // '(' or ','
+    const auto found = std::ranges::find(variants, nameOf(cursor.peek()));
+    isWord = found != variants.end();
+    if (!isWord) break;
+    chosen.ahead |= static_cast<std::uint8_t>(1u << (found - variants.begin()));
+    cursor.take();
+  } while (cursor.at(tok::comma));
+  if (!isWord || !cursor.at(tok::r_paren)) {
+    const clang::Token& word = cursor.peek();
+    if (nameOf(word).empty()) {
+      diagnostics.report(Diag::VariantForm, locOf(word), {variantList});
+    } else {
+      diagnostics.report(Diag::VariantName, locOf(word), {nameOf(word), variantList});
+    }
+  }
+  while (!cursor.peek().isOneOf(tok::r_paren, tok::r_square)) cursor.take();
+  if (cursor.at(tok::r_paren)) cursor.take();
+}
+
 /// Takes NAME(VALUE). After an error, leaves the cursor at the first token that does not fit.
 void takeChoice(TokenCursor& cursor, Diagnostics& diagnostics, ir::Choices& chosen) {
   const clang::Token name = cursor.take();
+  if (nameOf(name) == "variants") return takeVariants(cursor, diagnostics, name, chosen);
   const auto choice = std::ranges::find(choices, nameOf(name), &Choice::name);
   if (choice == choices.end()) return diagnostics.report(Diag::ChoiceName, locOf(name), {nameOf(name)});
   const bool opens = cursor.at(tok::l_paren);
@@ -78,7 +108,8 @@ std::size_t endOfChoices(const TokenCursor& cursor) {
 }
 
 bool namesChoice(const TokenCursor& cursor) {
-  return std::ranges::find(choices, nameOf(cursor.peek(2)), &Choice::name) != choices.end();
+  const std::string name = nameOf(cursor.peek(2));
+  return name == "variants" || std::ranges::find(choices, name, &Choice::name) != choices.end();
 }
 
 ir::Choices takeChoices(TokenCursor& cursor, std::size_t tokens, Diagnostics& diagnostics) {

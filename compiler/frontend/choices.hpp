@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Parses the attributes in front of a kernel: [[precision(extended), accumulate(exact), intrinsics(fast)]].
+// Parses the attributes in front of a kernel: [[precision(extended), accumulate(exact), intrinsics(fast), variants(views, half)]].
 #pragma once
 
 #include <cstddef>

@@ -409,7 +409,14 @@ struct PassOf {
 /// sk::Precision, sk::Accumulate, sk::Intrinsics, sk::Tables, sk::Contraction and sk::Order; 0 if unspecified.
 struct Choices {
   std::uint8_t precision = 0, accumulate = 0, intrinsics = 0, tables = 0, contraction = 0, order = 0;
+  std::uint8_t ahead = 0;  ///< bits of Ahead: the programs for browsers besides those for whole streams
 };
+
+/// What [[variants(...)]] asks for, in the order of its words in frontend/choices.cpp.
+enum class Ahead : std::uint8_t { Views, Half, Extended, Fast };
+inline bool isAhead(const Choices& choices, Ahead variant) {
+  return (choices.ahead >> static_cast<unsigned>(variant) & 1u) != 0;
+}
 
 /// A loop that unroll-loops has considered.
 struct LoopNote {

@@ -19,14 +19,30 @@ namespace skc::web {
 /// GLSL by key. Several keys may have the same program.
 using Programs = std::map<std::string, std::string>;
 
+/// Which programs of a kernel there are.
+struct Wanted {
+  bool packed = true;  ///< those for packed streams, which passes of plans do not read
+  bool views = false;  ///< those that [[variants(views)]] asks for
+};
+
 /// The programs of a kernel that fits one pass.
 ///
 /// Streams are whole, in planes or linearised, either all packed that can be or none. Inputs have the shape of the domain.
 /// A Spec parameter's value is any: `const T sk_spec_P = VALUE;` stands in the program for the runtime to replace.
-/// `packs`: also those for packed streams, which passes of plans do not read. A kernel with append outputs counts its pushes
-/// beside writing its other outputs.
+/// A kernel with append outputs counts its pushes beside writing its other outputs.
 Programs kernelPrograms(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel,
-                        bool packs = true);
+                        const Wanted& wanted);
+
+/// What a program has instead of `uniform T sk_arg_k;` if a stream of one element, or an element of one, holds the value.
+/// Empty if no stream may.
+struct HeldValue {
+  std::string uniforms;
+  std::string statements;  ///< at the beginning of main()
+};
+HeldValue heldValue(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel,
+                    const sk::program::Parameter& uniform);
+/// Whether the runtime finds that text itself: for floats, ints and uints, and their vectors.
+bool isPlain(const sk::program::Parameter& uniform);
 
 /// The programs of the list of an append output (assemble/append/append_passes.hpp), for streams that are not packed.
 Programs listPrograms(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel,

@@ -80,26 +80,85 @@ class ScriptWriter {
   Json callable(const emit::Unit& unit) {
     if (const std::string why = whyNotOffered(unit); !why.empty())
       return {{"name", unit.kernel.name}, {"whyNot", why}};
-    return unit.reduction != nullptr ? reductionUnit(unit) : callableKernel(unit.kernel);
+    const Forms forms(module_.kernels[unit.id].choices, unit.kernel.options);
+    const bool views = ir::isAhead(module_.kernels[unit.id].choices, ir::Ahead::Views);
+    if (unit.reduction != nullptr) return reductionUnit(unit);
+    Json json = kernelForm(unit.kernel, webProfile(), views);
+    if (forms.isDefault() || hasAppendOutputs(unit.kernel)) return json;
+    if (forms.declared.precision != sk::Precision::Default) json["precision"] = forms.declaredPrecision();
+    if (forms.declared.intrinsics != sk::Intrinsics::Default)
+      json["intrinsics"] = nameOf(forms.declared.intrinsics);
+    Json others = Json::object();
+    for (const std::string_view precision : {"", "half", "extended"}) {
+      if (!forms.has(precision)) continue;
+      for (const bool fast : {false, true}) {
+        if ((fast && !forms.fast) || (!fast && precision.empty())) continue;
+        const std::string name = fmt::format("{}{}", precision,
+                                             !fast               ? ""
+                                             : precision.empty() ? "fast"
+                                                                 : " fast");
+        others[name] = kernelFormIn(unit.kernel, precision, fast, views);
+      }
+    }
+    json["forms"] = std::move(others);
+    return json;
   }
 
-  Json callableKernel(const Kernel& whole) {
+  /// What is assembled for calls with other dials than the usual ones.
+  struct Forms {
+    Forms(const ir::Choices& choices, const sk::CallOptions& options)
+        : declared(options),
+          half(ir::isAhead(choices, ir::Ahead::Half) || options.precision == sk::Precision::Half),
+          extended(ir::isAhead(choices, ir::Ahead::Extended) ||
+                   options.precision == sk::Precision::Extended ||
+                   options.precision == sk::Precision::Double),
+          fast(ir::isAhead(choices, ir::Ahead::Fast) || options.intrinsics == sk::Intrinsics::Fast) {}
+    bool isDefault() const { return !half && !extended && !fast; }
+    bool has(std::string_view precision) const {
+      return precision.empty() || (precision == "half" ? half : extended);
+    }
+    /// Browsers compute doubles as pairs of floats.
+    std::string_view declaredPrecision() const {
+      return declared.precision == sk::Precision::Double ? "extended" : nameOf(declared.precision);
+    }
+    const sk::CallOptions& declared;
+    bool half, extended, fast;
+  };
+
+  static sk::assemble::Profile profileOf(bool fast) {
+    sk::assemble::Profile profile = webProfile();
+    profile.accurate = !fast;
+    return profile;
+  }
+
+  /// A kernel in another precision; null if it is the same as without.
+  Json kernelFormIn(const Kernel& kernel, std::string_view precision, bool fast, bool views) {
+    const bool isHalf = precision == "half";
+    const Kernel* form = precision.empty() ? &kernel : isHalf ? kernel.half : kernel.wide;
+    const std::string_view why = isHalf ? kernel.whyNotHalf : kernel.whyNotWide;
+    if (form == nullptr) return why.empty() ? Json() : Json{{"whyNot", why}};
+    if (precision.empty() && kernel.intrinsics.empty()) return {};
+    if (isTooLarge(*form)) return {{"whyNot", "its streams have too many planes for this precision"}};
+    return kernelForm(*form, profileOf(fast), views);
+  }
+
+  Json kernelForm(const Kernel& whole, const sk::assemble::Profile& profile, bool views) {
     Json kernel = kernelOf(whole);
     if (const sk::program::Plan* plan = planOf(whole)) {
       kernel["packs"] = false;
       kernel["programs"] = Json::object();
-      kernel["plan"] = planJson(*plan);
+      kernel["plan"] = planJson(*plan, profile, views);
       return kernel;
     }
-    if (hasAppendOutputs(whole)) return appending(whole, std::move(kernel));
+    if (hasAppendOutputs(whole)) return appending(whole, std::move(kernel), profile);
     kernel["packs"] = sk::assemble::mayWritePacked(whole);
-    kernel["programs"] = programsOf(kernelPrograms(webProfile(), whole), {&whole});
+    kernel["programs"] =
+        programsOf(kernelPrograms(profile, whole, {.packed = true, .views = views}), {&whole});
     return kernel;
   }
 
   /// Adds what a kernel with append outputs needs: programs of each list and its points, and of the pyramid.
-  Json appending(const Kernel& declared, Json kernel) {
-    const sk::assemble::Profile profile = webProfile();
+  Json appending(const Kernel& declared, Json kernel, const sk::assemble::Profile& profile) {
     Json lists = Json::array();
     bool isDrawn = false, isCounted = false;
     for (std::size_t i = 0; i < declared.parameters.size(); ++i) {
@@ -128,9 +187,10 @@ class ScriptWriter {
         kernel["sums"].push_back(indexOf(sk::assemble::pyramidProgram(profile, {.ofCounts = ofCounts}), {}));
     }
     kernel["packs"] = false;
-    kernel["programs"] = isDrawn || isCounted
-                             ? programsOf(kernelPrograms(profile, declared, false), {&declared})
-                             : Json::object();
+    kernel["programs"] =
+        isDrawn || isCounted
+            ? programsOf(kernelPrograms(profile, declared, {.packed = false, .views = false}), {&declared})
+            : Json::object();
     kernel["lists"] = std::move(lists);
     return kernel;
   }
@@ -141,16 +201,24 @@ class ScriptWriter {
     return names[static_cast<std::size_t>(step)];
   }
 
-  Json planJson(const sk::program::Plan& plan) {
-    Json temporaries = Json::array(), passes = Json::array();
+  Json planJson(const sk::program::Plan& plan, const sk::assemble::Profile& profile, bool views) {
+    Json temporaries = Json::array(), bundles = Json::array(), passes = Json::array();
     for (const Element* element : plan.temporaries) temporaries.push_back(indexOf(*element));
+    for (const sk::program::Bundle& bundle : plan.bundles) {
+      Json layers = Json::array();
+      for (const auto& [argument, plane] : bundle.layers) layers.push_back({argument, plane});
+      bundles.push_back({nameOf(bundle.scalar), bundle.width, std::move(layers)});
+    }
     for (const sk::program::Pass& pass : plan.passes) {
       Json kernel = kernelOf(pass.kernel), operands = Json::array();
-      kernel["programs"] = programsOf(kernelPrograms(webProfile(), pass.kernel, false), {&pass.kernel});
+      kernel["programs"] =
+          programsOf(kernelPrograms(profile, pass.kernel, {.packed = false, .views = views}), {&pass.kernel});
       for (const auto& [isTemporary, index] : pass.operands) operands.push_back({isTemporary, index});
       passes.push_back({{"kernel", std::move(kernel)}, {"operands", std::move(operands)}});
     }
-    return {{"temporaries", std::move(temporaries)}, {"passes", std::move(passes)}};
+    Json json = {{"temporaries", std::move(temporaries)}, {"passes", std::move(passes)}};
+    if (!bundles.empty()) json["bundles"] = std::move(bundles);
+    return json;
   }
 
   Json reductionUnit(const emit::Unit& unit) {
@@ -173,7 +241,7 @@ class ScriptWriter {
     json["variants"] = std::move(variants);
     if (sumsEverything(reduction)) json["sumsAll"] = true;
     if (reduction.parts != nullptr) {
-      json["map"] = callableKernel(reduction.parts->map);
+      json["map"] = kernelForm(reduction.parts->map, webProfile(), false);
       json["mapOperands"] = reduction.parts->mapOperands;
     }
     return json;
@@ -181,7 +249,8 @@ class ScriptWriter {
 
   Json variantOf(const SumVariant& variant, bool scans, bool isRare) {
     Json finish = kernelOf(*variant.finish), inputs = Json::array();
-    finish["programs"] = programsOf(kernelPrograms(webProfile(), *variant.finish, false), {variant.finish});
+    finish["programs"] = programsOf(
+        kernelPrograms(webProfile(), *variant.finish, {.packed = false, .views = false}), {variant.finish});
     for (const auto& [isOwn, index] : variant.inputs) inputs.push_back({isOwn, index});
     // Where there are no elements, the plain reduction has the identities.
     const bool byIndex = (isRare && !scans) || findsByIndex(*variant.reduction);
@@ -193,8 +262,8 @@ class ScriptWriter {
 
   Json reduction(const Reduction& reduction, const ReductionCalls& calls) {
     return {{"name", reduction.fold.name},
-            {"fold", kernelOf(reduction.fold)},
-            {"combine", kernelOf(reduction.combine)},
+            {"fold", kernelOf(reduction.fold, false)},
+            {"combine", kernelOf(reduction.combine, false)},
             {"combineOperands", reduction.combineOperands},
             {"commutative", reduction.commutative},
             {"byIndex", calls.byIndex},
@@ -202,9 +271,15 @@ class ScriptWriter {
                                     {&reduction.fold, &reduction.combine})}};
   }
 
-  Json kernelOf(const Kernel& kernel) {
+  /// `takesStreams`: for values of uniforms.
+  Json kernelOf(const Kernel& kernel, bool takesStreams = true) {
     Json parameters = Json::array();
-    for (const Parameter& parameter : kernel.parameters) parameters.push_back(parameterOf(parameter));
+    for (const Parameter& parameter : kernel.parameters) {
+      parameters.push_back(parameterOf(parameter));
+      if (parameter.role != Role::Uniform || !takesStreams || isPlain(parameter)) continue;
+      const auto [uniforms, statements] = heldValue(webProfile(), kernel, parameter);
+      if (!statements.empty()) parameters.back()["fromStream"] = {uniforms, statements};
+    }
     return {{"name", kernel.name}, {"parameters", std::move(parameters)}};
   }
 
@@ -225,6 +300,12 @@ class ScriptWriter {
       if (sk::assemble::mayFilter(parameter)) json["filter"] = true;
     }
     if (parameter.role == Role::Accumulator && !parameter.identity.empty()) json["hasIdentity"] = true;
+    if (!parameter.layers.empty()) {
+      Json layers = Json::array();
+      for (const sk::program::Layer& layer : parameter.layers)
+        layers.push_back({layer.bundle, layer.layer, layer.count});
+      json["layers"] = std::move(layers);
+    }
     if (!parameter.neededIf.steps.empty()) {
       Json steps = Json::array();
       for (const sk::program::ConditionStep& step : parameter.neededIf.steps)

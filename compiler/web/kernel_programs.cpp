@@ -104,7 +104,74 @@ std::vector<Lie> liesOf(const Kernel& kernel) {
   return lies;
 }
 
+namespace {
+
+/// "; i:linear" for iterators, "; no u" for streams that are not needed: views are all accessed in one way.
+std::string viewsKey(const Kernel& kernel, const Variant& variant) {
+  std::string key = variant.domain == Domain::Plane ? "views plane" : "views box";
+  for (std::size_t i = 0; i < variant.access.size(); ++i) {
+    const Parameter& parameter = kernel.parameters[i];
+    if (!sk::assemble::isNeeded(parameter, variant.specs)) {
+      key += fmt::format("; no {}", parameter.name);
+    } else if (parameter.role == Role::Iterator) {
+      key += fmt::format("; {}:{}", parameter.name, nameOf(variant.access[i].addressing));
+    }
+  }
+  return key;
+}
+
+/// Accesses of the streams of a call with views. Scalar iterators count elements; others do so in domains of one dimension
+/// alone.
+std::vector<std::vector<StreamAccess>> viewChoices(const Kernel& kernel, Domain domain) {
+  std::vector<std::vector<StreamAccess>> choices(1);
+  bool hasVectorIterator = false;
+  for (const Parameter& parameter : kernel.parameters) {
+    StreamAccess access;
+    if (parameter.role == Role::Input || parameter.role == Role::Gather) {
+      const bool isPlane = parameter.role == Role::Input ? domain == Domain::Plane : parameter.rank == 2;
+      access = {.addressing = isPlane ? Addressing::Plane : Addressing::Linear,
+                .view = true,
+                .fitted = parameter.role == Role::Input,
+                .strided = true};
+    } else if (parameter.role == Role::Iterator) {
+      const bool isScalar = parameter.element->fields.front().width == 1;
+      if (isScalar) access.addressing = Addressing::Linear;
+      hasVectorIterator = hasVectorIterator || !isScalar;
+    }
+    choices.front().push_back(access);
+  }
+  if (domain == Domain::Plane || !hasVectorIterator) return choices;
+  choices.push_back(choices.front());
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    if (kernel.parameters[i].role == Role::Iterator) choices.back()[i].addressing = Addressing::Linear;
+  }
+  return choices;
+}
+
+/// Programs that read and write any region of a stream, and whose inputs repeat or skip elements: one for planes, one for
+/// linearised streams, which decodes all four dimensions.
+void addViewPrograms(Programs& programs, const sk::assemble::Profile& profile, const Kernel& kernel,
+                     const SpecValues& specs) {
+  for (const Lie& lie : liesOf(kernel)) {
+    if (lie.packed) continue;
+    Variant variant;
+    variant.specs = specs;
+    variant.domain = lie.domain == Domain::Plane ? Domain::Plane : Domain::LinearBox;
+    variant.domainView = true;
+    variant.domainRank = variant.domain == Domain::Plane ? 2 : 4;
+    for (std::vector<StreamAccess>& access : viewChoices(kernel, variant.domain)) {
+      variant.access = std::move(access);
+      const std::string key = keyOf(kernel, variant);
+      if (!programs.contains(key))
+        programs.emplace(key, sk::assemble::kernelProgram(profile, kernel, variant));
+    }
+  }
+}
+
+}  // namespace
+
 std::string keyOf(const Kernel& kernel, const Variant& variant) {
+  if (variant.domainView) return viewsKey(kernel, variant);
   std::string key(nameOf(variant.domain));
   if (variant.domain == Domain::Linear || variant.domain == Domain::Entry)
     key += std::to_string(variant.domainRank);
@@ -216,11 +283,12 @@ std::vector<std::vector<StreamAccess>> accessChoices(const Kernel& kernel, const
   return choices;
 }
 
-Programs kernelPrograms(const sk::assemble::Profile& profile, const Kernel& kernel, bool packs) {
+Programs kernelPrograms(const sk::assemble::Profile& profile, const Kernel& kernel, const Wanted& wanted) {
   Programs programs;
   for (const SpecValues& specs : specChoices(kernel)) {
+    if (wanted.views) addViewPrograms(programs, profile, kernel, specs);
     for (const Lie& lie : liesOf(kernel)) {
-      if (lie.packed && !packs) continue;
+      if (lie.packed && !wanted.packed) continue;
       Variant variant;
       if (hasAppendOutputs(kernel)) variant.task.work = Work::Counts;
       variant.specs = specs;

@@ -58,9 +58,11 @@ bool hasAppendOutputs(const Kernel& kernel) {
 const sk::program::Plan* planOf(const Kernel& kernel) {
   const sk::assemble::Profile profile = webProfile();
   if (hasAppendOutputs(kernel) || fitsOnePass(kernel, profile)) return nullptr;
-  const sk::program::Plan* plan =
-      sk::assemble::planWithin(kernel, {profile.drawBuffers, profile.textureUnits});
-  return plan != nullptr && plan->bundles.empty() ? plan : nullptr;
+  return sk::assemble::planWithin(kernel, {profile.drawBuffers, profile.textureUnits});
+}
+
+bool isTooLarge(const Kernel& kernel) {
+  return !fitsOnePass(kernel, webProfile()) && planOf(kernel) == nullptr;
 }
 
 sk::assemble::Profile webProfile() {

@@ -83,6 +83,9 @@ class TypesWriter {
       if (param.role == ParamRole::Accumulator) {
         values.push_back(valueType(param.type));
       } else {
+        if (param.role == ParamRole::Uniform && unit.reduction == nullptr && !hasAppendOutputs(unit.kernel) &&
+            param.type.kind != Type::Kind::Array)
+          all.back() += fmt::format(" | sk.Held<{}>", elementType(param.type));
         taken.push_back(all.back());
       }
     }

@@ -280,12 +280,68 @@ std::vector<std::string> pyramids() {
   return cases;
 }
 
+/// The texel of an element of a region, as RegionLayout says.
+std::pair<std::int32_t, std::int32_t> texelOf(const RegionLayout& region, const Index4& index) {
+  const auto at = [&](std::size_t d) { return index[d] * (region.strided ? region.stride[d] : 1); };
+  if (!region.linear && !region.numbered) return {region.origin[0] + at(0), region.origin[1] + at(1)};
+  std::int32_t number = region.strided ? region.origin[0] : 0;
+  for (std::size_t d = 0; d < index.size(); ++d)
+    number += region.strided ? at(d) : (region.origin[d] + index[d]) * region.stride[d];
+  if (region.numbered) return {number % region.shift, number / region.shift};
+  return {number & ((1 << region.shift) - 1), number >> region.shift};
+}
+
+/// Views: where some of their elements lie and, of boxes, what a pass over them draws.
+std::vector<std::string> views() {
+  std::vector<std::string> cases;
+  for (int i = 0; i < 400; ++i) {
+    const int rank = 1 + i % 4;
+    Lie whole(rank);
+    whole.packed = false;
+    sk::Index begin = sk::Index::origin(rank), steps = begin, strides = begin;
+    Shape shape = whole.shape;
+    bool isBox = true;
+    std::int64_t first = 0, stride = 1;
+    for (int d = rank; d-- > 0; stride *= whole.shape[d]) {
+      begin[d] = below(whole.shape[d]);
+      steps[d] = i % 2 == 0 ? 1 : 1 + below(3);
+      shape = shape.with(d, 1 + below((whole.shape[d] - 1 - begin[d]) / steps[d] + 1));
+      if (shape[d] == 1) steps[d] = 1;
+      isBox = isBox && steps[d] == 1;
+      strides[d] = steps[d] * stride;
+      first += begin[d] * stride;
+    }
+    const sk::StreamRegion region = isBox ? sk::StreamRegion{nullptr, begin, shape, {}, 0}
+                                          : sk::StreamRegion{nullptr, {}, shape, strides, first};
+    const RegionLayout layout = regionLayoutOf(region, layoutOf(whole));
+    std::vector<std::string> samples;
+    for (int k = 0; k < 6; ++k) {
+      Index4 index{0, 0, 0, 0};
+      for (std::size_t d = 0; d < static_cast<std::size_t>(rank); ++d)
+        index[d] = k == 0 ? layout.extent[d] - 1 : static_cast<std::int32_t>(below(layout.extent[d]));
+      const auto [x, y] = texelOf(layout, index);
+      samples.push_back(fmt::format("[{},[{},{}]]", text(index), x, y));
+    }
+    const auto listed = [&](const sk::Index& index) {
+      std::vector<std::int64_t> numbers;
+      for (int d = 0; d < rank; ++d) numbers.push_back(index[d]);
+      return fmt::format("[{}]", fmt::join(numbers, ","));
+    };
+    cases.push_back(
+        fmt::format(R"({{"stream":{},"begin":{},"shape":{},"steps":{},"texels":[{}],"draws":{}}})",
+                    whole.text(), listed(begin), text(shape), listed(steps), fmt::join(samples, ","),
+                    isBox ? text(sk::assemble::drawnTexels(layout)) : "null"));
+  }
+  return cases;
+}
+
 }  // namespace
 
 int main() {
   fmt::print(
       "{{\"layouts\":[\n{}],\n\"reductions\":[\n{}],\n\"blocks\":[\n{}],\n\"scans\":[\n{}],\n\"variants\":["
-      "\n{}],\n\"pyramids\":[\n{}]}}\n",
+      "\n{}],\n\"views\":[\n{}],\n\"pyramids\":[\n{}]}}\n",
       fmt::join(layouts(), ",\n"), fmt::join(reductions(), ",\n"), fmt::join(blocks(), ",\n"),
-      fmt::join(scans(), ",\n"), fmt::join(variants(), ",\n"), fmt::join(pyramids(), ",\n"));
+      fmt::join(scans(), ",\n"), fmt::join(variants(), ",\n"), fmt::join(views(), ",\n"),
+      fmt::join(pyramids(), ",\n"));
 }

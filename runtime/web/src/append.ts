@@ -4,10 +4,10 @@
 // The kernel runs once to count the pushes of each element, and once for each list, whose entries find their elements. How
 // long a list is must be read back, without blocking: until then, the call holds the planes that it reads, so that later
 // calls which write those streams draw to others.
-import { deviceOf, fail, isSameShape, stepsOf, type Checked } from './arguments.js';
+import { deviceOf, fail, isRead, isSameShape, stepsOf, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
 import { isNeeded, type CallableKernel, type GeneratedFile, type List, type PointStep } from './generated.js';
-import { bindOperands, isRead, liesOf, ProgramSource, targetOf } from './kernel.js';
+import { bindOperands, liesOf, ProgramSource, targetOf } from './kernel.js';
 import { shapeText, sizeOf, stridesOf, type Layout } from './layout.js';
 import type { Program } from './program.js';
 import { mostPushes, Pyramid } from './pyramid.js';
@@ -103,7 +103,7 @@ export class AppendCaller {
     const targets = outputs.map((i) => targetOf(kernel, i, call, domain));
     const counted = this.lists.filter(({ slots }) => slots === undefined);
     const counts = counted.map(() => device.acquire(device.formatOf('int', 1), domain.width, domain.height, 'the numbers of what a kernel pushes'));
-    const drawn = [...targets.flatMap((target) => target.planes), ...counts];
+    const drawn = [...targets.flat(), ...counts];
     if (drawn.length > 0) {
       const key = kernelKey(kernel.parameters, elements, lies, domain, call.specs, device.filtersFloats);
       const program = this.counting.program(device, key, kernel, call.specs);
@@ -116,9 +116,7 @@ export class AppendCaller {
     const pyramids = new Map(counted.map((list, i) => [list, new Pyramid(device, counts[i]!, domain, this.sumProgram(device, 0), this.sumProgram(device, 1))]));
     device.release(counts);
     const held = device.hold(planes.flatMap((own, i) => (isRead(kernel, i, call) ? own : [])));
-    for (const { stream, planes: target } of targets) {
-      if (target !== stream.planes) stream.exchange(target, domain);
-    }
+    outputs.forEach((i, n) => call.streams[i]!.exchange(targets[n]!, domain));
     return { device, call, shape, domain, lies, planes, held, pyramids };
   }
 

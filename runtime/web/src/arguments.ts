@@ -7,6 +7,7 @@ import { SkError, type ErrorKind } from './error.js';
 import { isNeeded, specBits, type Element, type KernelData, type Parameter } from './generated.js';
 import { decodedRank, shapeText, xFirst } from './layout.js';
 import { Stream } from './stream.js';
+import { Fitted, View } from './view.js';
 
 export type AnyStream = Stream<any, number>;
 
@@ -17,7 +18,10 @@ export function fail(kernel: string, message: string, kind: ErrorKind = 'misuse'
 /** A call's arguments, one for each parameter. */
 export interface Checked {
   readonly streams: readonly (AnyStream | null)[];
-  /** Components of uniforms; null for other parameters. Iterators have those of `begin`, then of `end`. */
+  /** Which elements of its stream an argument is, if not all; and how it is fitted to the domain. */
+  readonly views: readonly (View<any, number> | null)[];
+  readonly fits: readonly (Fitted<any> | null)[];
+  /** Components of uniforms that no stream holds; null for other parameters. Iterators have those of `begin`, then of `end`. */
   readonly values: readonly (readonly number[] | null)[];
   /** The words of spec parameters, in order. */
   readonly specs: readonly number[];
@@ -28,19 +32,29 @@ export function checkArguments(kernel: KernelData, elements: readonly Element[],
   const { name, parameters } = kernel;
   if (given.length !== parameters.length) fail(name, `${given.length} arguments are given, but ${parameters.length} are declared`);
   const streams: (AnyStream | null)[] = [];
+  const views: (View<any, number> | null)[] = [];
+  const fits: (Fitted<any> | null)[] = [];
   const values: (readonly number[] | null)[] = [];
   const specs: number[] = [];
   parameters.forEach((parameter, i) => {
-    const argument = given[i];
+    const fitted = given[i] instanceof Fitted ? (given[i] as Fitted<any>) : null;
+    const argument = fitted?.view ?? given[i];
     let stream: AnyStream | null = null;
     let value: readonly number[] | null = null;
+    const isElements = argument instanceof Stream || argument instanceof View;
     switch (parameter.role) {
       case 'spec': specs.push(specOf(name, parameter, elements, argument)); break;
-      case 'uniform': value = uniformOf(name, parameter, elements[parameter.element]!, argument); break;
+      case 'uniform':
+        if (isElements) stream = streamOf(name, parameter, elements, argument);
+        else value = uniformOf(name, parameter, elements[parameter.element]!, argument);
+        break;
       case 'iterator': value = iteratorOf(name, parameter, elements[parameter.element]!, argument); break;
       default: stream = argument === null ? null : streamOf(name, parameter, elements, argument);
     }
+    if (fitted !== null && parameter.role !== 'input') fail(name, `'${parameter.name}' is no input 'T x<>', and stretch() and stride() fit these alone; give the stream, or a view by stride(stream, steps)`, 'type');
     streams.push(stream);
+    views.push(argument instanceof View && argument.size !== stream?.size ? argument : null); // a view of all elements is the stream
+    fits.push(fitted);
     values.push(value);
   });
   parameters.forEach((parameter, i) => {
@@ -49,7 +63,7 @@ export function checkArguments(kernel: KernelData, elements: readonly Element[],
     const where = parameter.condition === undefined ? '' : ` here, where ${parameter.condition} holds`;
     fail(name, `'${parameter.name}' is null, but the kernel needs it${where}; give a stream`);
   });
-  return { streams, values, specs };
+  return { streams, views, fits, values, specs };
 }
 
 function specOf(kernel: string, parameter: Parameter, elements: readonly Element[], value: unknown): number {
@@ -60,9 +74,6 @@ function specOf(kernel: string, parameter: Parameter, elements: readonly Element
 }
 
 function uniformOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly number[] {
-  if (value instanceof Stream) {
-    fail(kernel, `'${parameter.name}' is one value for all elements, and streams do not stand for values in browsers yet; read the stream, and give its value`, 'type');
-  }
   const numbers = typeof value === 'number' ? [value] : numbersOf(element, value);
   const wanted = element.fields.reduce((count, field) => count + field.width, 0);
   if (numbers.length !== wanted || (typeof value !== 'object' && wanted > 1)) {
@@ -95,27 +106,72 @@ function iteratorOf(kernel: string, parameter: Parameter, element: Element, valu
 }
 
 function streamOf(kernel: string, parameter: Parameter, elements: readonly Element[], value: unknown): AnyStream {
-  if (!(value instanceof Stream)) fail(kernel, `'${parameter.name}' is a stream, but ${described(value)} is given; make one by device.stream()`, 'type');
-  const stream = value as AnyStream;
-  stream.check(`${kernel}: the stream of '${parameter.name}'`, !['output', 'variableOutput', 'accumulator'].includes(parameter.role));
+  const isView = value instanceof View;
+  if (!(value instanceof Stream) && !isView) fail(kernel, `'${parameter.name}' is a stream, but ${described(value)} is given; make one by device.stream()`, 'type');
+  const stream = (isView ? (value as View<any, number>).stream : value) as AnyStream;
+  const { shape, size } = value as AnyStream | View<any, number>;
+  const what = `${kernel}: the stream of '${parameter.name}'`;
+  if (isView) (value as View<any, number>).check(what);
+  else stream.check(what, !['output', 'variableOutput', 'accumulator'].includes(parameter.role));
   const declared = elements[parameter.element]!;
   if (!isSameElement(stream.element, elements[parameter.held ?? parameter.element]!)) {
     fail(kernel, `'${parameter.name}' is declared as ${declared.name}, but its stream holds ${stream.element.name}`, 'type');
   }
-  if (parameter.role === 'gather' && stream.shape.length !== parameter.rank) {
-    fail(kernel, `'${parameter.name}' is declared with ${parameter.rank} dimension(s), but its stream has shape ${shapeText(stream.shape)}`, 'shape');
+  if (parameter.role === 'gather' && shape.length !== parameter.rank) {
+    fail(kernel, `'${parameter.name}' is declared with ${parameter.rank} dimension(s), but its stream has shape ${shapeText(shape)}`, 'shape');
   }
-  if (parameter.role === 'gather' && stream.size === 0) {
-    fail(kernel, `'${parameter.name}' has shape ${shapeText(stream.shape)}: there is no element to read`, 'shape');
+  if (parameter.role === 'gather' && size === 0) {
+    fail(kernel, `'${parameter.name}' has shape ${shapeText(shape)}: there is no element to read`, 'shape');
+  }
+  if (parameter.role === 'uniform' && size !== 1) {
+    fail(kernel, `'${parameter.name}' is one value for all elements, but its stream has shape ${shapeText(shape)}; give a value, or a stream or view of one element`, 'shape');
+  }
+  if (parameter.role === 'uniform' && parameter.fromStream === undefined && !isPlain(declared)) {
+    fail(kernel, `'${parameter.name}' is one value for all elements, and no stream stands for it here; read the stream, and give its value`, 'type');
   }
   return stream;
+}
+
+/** Whether a stream may hold a value without further text: floats, ints, uints and their vectors. */
+function isPlain({ fields }: Element): boolean {
+  const { scalar, path, part } = fields[0]!;
+  return fields.length === 1 && path === undefined && part === undefined && (scalar === 'float' || scalar === 'int' || scalar === 'uint');
 }
 
 function described(value: unknown): string {
   if (value === null || value === undefined) return String(value);
   if (value instanceof Stream) return `a stream of ${value.element.name}`;
+  if (value instanceof View) return `a view of ${value.element.name}`;
   if (typeof value === 'object') return `${withArticle(value.constructor?.name ?? 'object')}${Array.isArray(value) ? ` of ${value.length}` : ''}`;
   return typeof value === 'function' ? 'a function' : `${typeof value} ${String(value)}`;
+}
+
+/** Whether a call reads the stream of a parameter. */
+export function isRead(kernel: KernelData, i: number, call: Checked): boolean {
+  const { role } = kernel.parameters[i]!;
+  if (role === 'uniform') return call.streams[i] !== null;
+  return (role === 'input' || role === 'gather') && isNeeded(kernel.parameters[i]!, call.specs);
+}
+
+/** The shape of a stream or view. */
+export function shapeAt(call: Checked, i: number): readonly number[] {
+  return (call.views[i] ?? call.streams[i]!).shape as readonly number[];
+}
+
+/**
+ * The same call, but every view is a stream with its elements, which the caller disposes of: `copies`. For what has no
+ * programs for views.
+ */
+export function withoutViews(call: Checked): { call: Checked; copies: readonly AnyStream[] } {
+  if (call.views.every((view) => view === null)) return { call, copies: [] };
+  const copies: AnyStream[] = [];
+  const streams = call.streams.map((stream, i) => {
+    const view = call.views[i];
+    if (!view) return stream;
+    copies.push(view.copied());
+    return copies[copies.length - 1]!;
+  });
+  return { call: { ...call, streams, views: call.views.map(() => null) }, copies };
 }
 
 /** The common device of the streams. Throws SkError if there are two. */

@@ -367,13 +367,13 @@ export class Device {
   /** The program of a callable of a file under this key; `text` is asked for once. @internal */
   program(
     owner: unknown, key: string, name: string, text: () => string, parameters: readonly Parameter[], elements: readonly Element[],
-    isUsed: (parameter: Parameter) => boolean, vertices?: string,
+    isUsed: (parameter: Parameter) => boolean, vertices?: string, isHeld?: (index: number) => boolean,
   ): Program {
     let programs = this.programs.get(owner);
     if (programs === undefined) this.programs.set(owner, (programs = new Map()));
     let program = programs.get(key);
     if (program === undefined) {
-      program = new Program(this, name, text(), parameters, elements, isUsed, vertices);
+      program = new Program(this, name, text(), parameters, elements, isUsed, vertices, isHeld);
       programs.set(key, program);
     }
     return program;

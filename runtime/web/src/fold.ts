@@ -72,7 +72,7 @@ export class Fold {
     const taken = plain.parameters.flatMap((parameter, i) => (isResult(parameter) ? [] : [i]));
     let next = 0;
     const from = this.reduction.fold.parameters.map((parameter) => (isResult(parameter) ? -1 : taken[next++]!));
-    return { streams: from.map((i) => call.streams[i] ?? null), values: from.map((i) => call.values[i] ?? null), specs: call.specs };
+    return { streams: from.map((i) => call.streams[i] ?? null), views: from.map(() => null), fits: from.map(() => null), values: from.map((i) => call.values[i] ?? null), specs: call.specs };
   }
 
   /** Draws all passes, and returns the planes of the results, of these formats, which are the caller's. */
@@ -178,7 +178,7 @@ class FoldRun {
     const isPartial = isOfPartials(pass.walk);
     const kernel = kernelOf(this.reduction, isPartial, pass.carried === true);
     const planes = this.planesOf(kernel, isPartial, source);
-    const own: Checked = { streams: call.streams, specs: call.specs, values: kernel.parameters.map((_, i) => call.values[this.foldParameter(i, isPartial)] ?? null) };
+    const own: Checked = { ...call, values: kernel.parameters.map((_, i) => call.values[this.foldParameter(i, isPartial)] ?? null) };
     const lies = this.lies(pass, kernel.parameters).map((lie) => (lie === 'aligned' ? this.elements : lie));
     const used: KernelData = pass.walk === 'nothing' ? { name: kernel.name, parameters: kernel.parameters.filter(({ role }) => role === 'spec') } : kernel;
     for (let first = 0; first < targets.length; first += mostPlanes) {

@@ -50,6 +50,13 @@ export interface Parameter {
   /** Outputs of a pass that writes only some planes: the first one, and how many. */
   readonly firstPlane?: number;
   readonly planeCount?: number;
+  /** Of planes that share textures with others: a bundle or -1, the layer, and the number of planes in the bundle. */
+  readonly layers?: readonly (readonly [bundle: number, layer: number, count: number])[];
+  /**
+   * Uniforms: what programs have, in place of the value's uniform and at the beginning of main(), if a stream holds it. Absent
+   * for floats, ints, uints and their vectors, and if none may.
+   */
+  readonly fromStream?: readonly [uniforms: string, statements: string];
   readonly neededIf?: readonly ConditionStep[];
   readonly condition?: string;
   /** Accumulators: whether they have a value where there are no elements. */
@@ -80,7 +87,19 @@ export interface List {
   readonly points?: Readonly<Partial<Record<PointStep, number>>>;
 }
 
-export interface CallableKernel extends KernelData {
+/** Choices that programs depend on. */
+export interface Dials {
+  readonly precision?: 'half' | 'single' | 'extended';
+  readonly intrinsics?: 'accurate' | 'fast';
+}
+
+/** What the file chooses for calls that choose nothing, and other forms by name: "half", "extended fast"; null: no other. */
+export interface WithForms<Data> extends Dials {
+  readonly name: string;
+  readonly forms?: Readonly<Record<string, Data | { readonly whyNot: string } | null>>;
+}
+
+export interface CallableKernel extends KernelData, WithForms<CallableKernel> {
   /** Whether it may write four elements of a packed texel. */
   readonly packs: boolean;
   readonly programs: ProgramIndices;
@@ -97,6 +116,8 @@ export interface CallableKernel extends KernelData {
 export interface Plan {
   /** Elements, by index. */
   readonly temporaries: readonly number[];
+  /** Planes of arguments that are copied to the layers of a texture before the passes run. */
+  readonly bundles?: readonly (readonly [scalar: Scalar, width: number, layers: readonly (readonly [argument: number, plane: number])[]])[];
   readonly passes: readonly Pass[];
 }
 

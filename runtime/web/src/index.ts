@@ -3,11 +3,12 @@
 // The package streamkernel: devices and streams, and what FILE.sk.js needs.
 import { fail } from './arguments.js';
 import { structOf, type Device } from './device.js';
+import { Forms } from './forms.js';
 import { checkSchema, type Callable, type GeneratedFile } from './generated.js';
 import { KernelCaller } from './kernel.js';
 import type { Program } from './program.js';
 import { ReductionCaller } from './reduction.js';
-import type { ScanOptions, Struct } from './types.js';
+import type { KernelOptions, ScanOptions, Struct } from './types.js';
 
 export { Device } from './device.js';
 export type { Canvas } from './abilities.js';
@@ -16,8 +17,9 @@ export type { DrawOptions } from './draw.js';
 export { SkError } from './error.js';
 export type { ErrorKind } from './error.js';
 export { Stream } from './stream.js';
+export { stretch, stride, type Fitted, type View } from './view.js';
 export type {
-  ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Input, Iterate, Kernel, NotOffered, Output, Pushed, Reduce, Scan, ScanOptions,
+  ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Held, Input, Iterate, Kernel, KernelOptions, NotOffered, Output, Pushed, Reduce, Scan, ScanOptions,
   Scattered, ShapeOf, Struct, Value,
 } from './types.js';
 
@@ -27,7 +29,6 @@ interface Exported {
   /** Throws SkError if these are no arguments of it. */
   check(given: readonly unknown[]): void;
   startPrograms(device: Device): Program[];
-  /** Only reduces have choices. */
   with?(options: ScanOptions): Exported;
 }
 
@@ -42,12 +43,10 @@ function traced<T>(name: string, call: (given: readonly unknown[]) => T): (...gi
   };
 }
 
-function kernelFunction(name: string, caller: KernelCaller): Exported {
-  const run = traced(name, (given) => caller.call(given));
-  return Object.assign(run, {
-    check: (given: readonly unknown[]) => caller.check(given),
-    startPrograms: (device: Device) => caller.startPrograms(device),
-  });
+interface Caller {
+  call(given: readonly unknown[]): unknown;
+  check(given: readonly unknown[]): void;
+  startPrograms(device: Device): Program[];
 }
 
 function reduceFunction(name: string, caller: ReductionCaller, options: ScanOptions): Exported {
@@ -59,13 +58,24 @@ function reduceFunction(name: string, caller: ReductionCaller, options: ScanOpti
   });
 }
 
+function kernelFunction(name: string, callers: { of(options: KernelOptions): Caller }, options: KernelOptions): Exported {
+  let chosen: Caller | null = null; // when it is called: other overloads may have forms that this one lacks
+  const caller = () => (chosen ??= callers.of(options));
+  const run = traced(name, (given) => caller().call(given));
+  return Object.assign(run, {
+    with: (more: object) => kernelFunction(name, callers, { ...options, ...more }),
+    check: (given: readonly unknown[]) => caller().check(given),
+    startPrograms: (device: Device) => caller().startPrograms(device),
+  });
+}
+
 function functionOf(callable: Callable, file: GeneratedFile, texts: readonly string[]): Exported {
   if ('whyNot' in callable) {
     const refuse = () => fail(callable.name, callable.whyNot, 'compile');
-    return Object.assign(() => refuse(), { check: refuse, startPrograms: refuse });
+    return Object.assign(() => refuse(), { with: refuse, check: refuse, startPrograms: refuse });
   }
   if ('fold' in callable) return reduceFunction(callable.name, new ReductionCaller(callable, file, texts), {});
-  return kernelFunction(callable.name, new KernelCaller(callable, file, texts));
+  return kernelFunction(callable.name, new Forms(callable, file, (form) => new KernelCaller(form, file, texts)), {});
 }
 
 /** Calls the first of several overloads that takes the arguments; if none does, the first says why. */

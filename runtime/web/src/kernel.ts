@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
-// Calls of kernels: runtime/src/gl_device/pass/run_kernel.cpp for whole streams.
+// Calls of kernels: runtime/src/gl_device/pass/run_kernel.cpp.
 import { AppendCaller } from './append.js';
-import { checkArguments, deviceOf, fail, isSameShape, iterationOf, stepsOf, type AnyStream, type Checked } from './arguments.js';
+import { checkArguments, deviceOf, fail, isRead, isSameShape, iterationOf, shapeAt, stepsOf, withoutViews, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
 import type { Format } from './format.js';
 import { isNeeded, specLiteral, type CallableKernel, type Element, type GeneratedFile, type KernelData, type Parameter, type ProgramIndices } from './generated.js';
 import { mayPack, shapeText, type Layout } from './layout.js';
+import { checkDisjoint, checkInput, placed } from './placed.js';
 import { PlanRunner } from './plan.js';
 import type { Program } from './program.js';
-import { isFiltered, kernelKey, type Lie } from './variant.js';
+import { isFiltered, kernelKey, viewsKey, type Lie } from './variant.js';
+import { texelOf } from './view.js';
+
+/** Why a call with whole streams needs the program for views. */
+export const smallGather = 'where a gather is smaller than the output, or nearly';
 
 /** The programs of one kernel or reduction. */
 export class ProgramSource {
@@ -21,25 +26,23 @@ export class ProgramSource {
     return key in this.indices;
   }
 
-  /** The program with this key, for these values of spec parameters. Throws SkError if skc has not assembled it. */
-  program(device: Device, key: string, kernel: KernelData, specs: readonly number[]): Program {
+  /**
+   * The program with this key, for these values of spec parameters; `isHeld`: a stream holds the value of a uniform. Throws
+   * SkError if skc has not assembled it.
+   */
+  program(device: Device, key: string, kernel: KernelData, specs: readonly number[], isHeld: (index: number) => boolean = () => false): Program {
     const { parameters } = kernel;
-    const words = specs.length === 0 ? '' : ` ${specs.join()}`;
+    const areHeld = parameters.map(({ role }, i) => role === 'uniform' && isHeld(i)); // the program outlives the call
+    const held = parameters.filter((_, i) => areHeld[i]);
+    if (held.length > 0) this.checkUnits(device, kernel, held, specs);
+    const words = [this.indices[key] ?? key, ...specs, ...held.map(({ symbol }) => symbol)].join(' ');
     const isUsed = (parameter: Parameter) => isNeeded(parameter, specs);
-    // Calls whose programs have one text share it.
-    return device.program(this, `${this.indices[key] ?? key}${words}`, this.name, () => this.text(key, parameters, specs), parameters, this.file.elements, isUsed);
+    return device.program(this, words, this.name, () => this.text(key, parameters, specs, held), parameters, this.file.elements, isUsed, undefined, (i) => areHeld[i]!);
   }
 
-  private text(key: string, parameters: readonly Parameter[], specs: readonly number[]): string {
+  private text(key: string, parameters: readonly Parameter[], specs: readonly number[], held: readonly Parameter[]): string {
     const index = this.indices[key];
-    if (index === undefined) {
-      fail(
-        this.name,
-        `${this.file.name}.js has no program for this call, '${key}'; it has those for whole streams whose inputs have the shape of the output ` +
-          'and whose gathers are at least as large, and skc assembles no others: give such streams',
-        'compile',
-      );
-    }
+    if (index === undefined) this.refuse(`'${key}'`);
     let number = 0;
     let text = this.texts[index]!;
     for (const parameter of parameters) {
@@ -47,7 +50,40 @@ export class ProgramSource {
       const literal = specLiteral(this.file.elements[parameter.element]!.fields[0]!.scalar, specs[number++]!);
       text = text.replace(new RegExp(`( sk_spec_${parameter.symbol} = )[^;]*;`), `$1${literal};`);
     }
+    const main = 'void main() {\n';
+    for (const { symbol, element, fromStream } of held) {
+      let fetch = '';
+      text = text.replace(new RegExp(`uniform ([^;]*) sk_arg_${symbol};\n`), (_, type: string) => {
+        const { scalar, width } = this.file.elements[element]!.fields[0]!;
+        const sampler = `${scalar === 'float' ? '' : scalar[0]}sampler2D`;
+        const plain = [
+          `uniform ${sampler} sk_tex_${symbol};\nuniform ivec4 sk_origin_${symbol};\n`,
+          `  ${type} sk_arg_${symbol} = texelFetch(sk_tex_${symbol}, sk_origin_${symbol}.xy, 0)${'.xyzw'.slice(0, width + 1)};\n`,
+        ];
+        const [uniforms, statements] = fromStream ?? plain;
+        fetch = statements!;
+        return uniforms!;
+      });
+      const at = text.lastIndexOf(main) + main.length;
+      text = text.slice(0, at) + fetch + text.slice(at);
+    }
     return text;
+  }
+
+  /** Throws SkError, as there is no program for a call. */
+  refuse(which: string): never {
+    const { name } = this.file;
+    fail(this.name, `${name}.js has no program for this call, ${which}; write [[variants(views)]] before '${this.name}' in ${name}, or give whole streams that have the shape of the output, and gathers at least as large`, 'compile');
+  }
+
+  private checkUnits(device: Device, { parameters }: KernelData, held: readonly Parameter[], specs: readonly number[]): void {
+    const isBound = (parameter: Parameter) => parameter.role === 'input' || parameter.role === 'gather' || held.includes(parameter);
+    const planes = parameters
+      .filter((parameter) => isBound(parameter) && isNeeded(parameter, specs))
+      .flatMap(({ element, held: own, layers }) => this.file.elements[own ?? element]!.fields.map((_, plane) => layers?.[plane]?.[0] ?? -1));
+    const units = planes.filter((bundle) => bundle < 0).length + new Set(planes.filter((bundle) => bundle >= 0)).size;
+    if (units <= device.limits.textureUnits) return;
+    fail(this.name, `a pass reads ${units} planes, with those of streams that stand for values, but this device reads ${device.limits.textureUnits}; give values`, 'device');
   }
 
   /** Starts to compile all programs. */
@@ -64,16 +100,17 @@ export class ProgramSource {
 export function bindOperands(
   device: Device, program: Program, call: Checked, planes: readonly (readonly Plane[])[], lies: readonly Lie[], elements: readonly Element[], domain: readonly number[],
 ): void {
-  let unit = 0;
   for (const read of program.reads) {
     const layout = lies[read.index] as Layout;
     read.layout!.set(layout);
     const isFilteredHere = read.parameter.filter === true && isFiltered(read.parameter, layout, elements, device.filtersFloats);
     const boundary = read.parameter.boundary === 'border' ? 'clamp' : read.parameter.boundary ?? 'clamp';
-    for (const plane of planes[read.index]!) {
+    planes[read.index]!.forEach((plane, p) => {
+      const unit = read.units![p]!;
+      if (unit < 0) return; // it shares a texture, which the plan binds
       device.bindTexture(unit, plane.texture);
-      device.bindFilter(unit++, isFilteredHere ? boundary : null);
-    }
+      device.bindFilter(unit, isFilteredHere ? boundary : null);
+    });
   }
   for (const bound of program.values) {
     const numbers = call.values[bound.index]!;
@@ -109,32 +146,36 @@ export function drawAligned(
   const program = source.program(device, kernelKey(parameters, elements, lies, domain, [], device.filtersFloats), kernel, []);
   const targets = formats.map((list) => list.map((format) => device.acquire(format, domain.width, domain.height, 'the results of a reduction')));
   device.useProgram(program);
-  bindOperands(device, program, { streams: [], values: [], specs: [] }, planes, lies, elements, []);
+  bindOperands(device, program, { streams: [], views: [], fits: [], values: [], specs: [] }, planes, lies, elements, []);
   program.domain.set(domain);
   device.framebufferOf(targets.flat());
   device.drawRects(domain.draws);
   return targets;
 }
 
-export function isRead(kernel: KernelData, i: number, call: Checked): boolean {
-  const { role } = kernel.parameters[i]!;
-  return (role === 'input' || role === 'gather') && isNeeded(kernel.parameters[i]!, call.specs);
+/** Where a stream holds the value of a uniform; null if none does. */
+export function heldLie(call: Checked, i: number): Lie {
+  const view = call.views[i];
+  if (!view) return call.streams[i]?.layout ?? null;
+  view.stream.unpack();
+  return texelOf(view);
 }
 
 /** How each argument lies. */
 export function liesOf(kernel: KernelData, call: Checked, shape: readonly number[], elements: readonly Element[]): Lie[] {
   return kernel.parameters.map(({ role, element }, i) => {
     if (role === 'iterator') return iterationOf(elements[element]!, shape);
+    if (role === 'uniform') return heldLie(call, i);
     return role === 'input' || role === 'gather' ? call.streams[i]?.layout ?? null : null;
   });
 }
 
 /** The planes to draw an output to: its own, or new ones if the call reads it, or if it lies in another way. */
-export function targetOf(kernel: KernelData, i: number, call: Checked, domain: Layout): { stream: AnyStream; planes: Plane[] } {
+export function targetOf(kernel: KernelData, i: number, call: Checked, domain: Layout): Plane[] {
   const stream = call.streams[i]!;
   const isAlsoRead = call.streams.some((other, k) => other === stream && isRead(kernel, k, call));
   stream.isGone = false;
-  return { stream, planes: stream.layout === domain && !isAlsoRead && !stream.isHeld() ? stream.planes : stream.newPlanes(domain) };
+  return stream.layout === domain && !isAlsoRead && !stream.isHeld() ? stream.planes : stream.newPlanes(domain);
 }
 
 interface Choices {
@@ -175,30 +216,65 @@ export class KernelCaller {
     const { kernel } = this;
     const { elements } = this.source.file;
     const call = checkArguments(kernel, elements, given);
-    if (this.append !== null) return this.append.call(call);
+    if (this.append !== null) return this.callAppending(this.append, call);
     const outputs = this.hasConditions ? this.outputs.filter((i) => isNeeded(kernel.parameters[i]!, call.specs)) : this.outputs;
     if (outputs.length === 0) return; // the spec parameters leave nothing to write
     const device = deviceOf(kernel, call.streams);
-    const shape = this.checkShapes(call, outputs);
+    const { shape, reason } = this.checkShapes(call, outputs);
     device.begin();
-    if (call.streams[outputs[0]!]!.size === 0) return;
+    if (shape.includes(0)) return;
 
-    if (this.plan !== null) return this.plan.run(device, call, outputs, shape);
-    const { domain, lies, program } = this.chosen(device, call, outputs, shape);
-    device.useProgram(program);
-
-    const targets = outputs.map((i) => targetOf(kernel, i, call, domain));
-    bindOperands(device, program, call, call.streams.map((stream) => stream?.planes ?? []), lies, elements, shape);
-    program.domain.set(domain);
-    device.framebufferOf(targets.length === 1 ? targets[0]!.planes : targets.flatMap((target) => target.planes));
-    device.drawRects(domain.draws);
-    for (const { stream, planes } of targets) {
-      if (planes !== stream.planes) stream.exchange(planes, domain);
-    }
+    if (this.plan !== null) return this.plan.run(device, call, outputs, shape, reason);
+    const choices = reason === null ? this.chosen(device, call, outputs, shape) : null;
+    if (choices === null) return this.runWithViews(device, call, outputs, shape, reason ?? smallGather);
+    const { domain, lies, program } = choices;
+    const drawn = outputs.map((i) => targetOf(kernel, i, call, domain));
+    this.draw(device, program, call, domain, lies, shape, drawn);
+    outputs.forEach((i, n) => call.streams[i]!.exchange(drawn[n]!, domain));
   }
 
-  /** The layout of the outputs after the call, and the program. Unpacks what the call reads where no program takes it packed. */
-  private chosen(device: Device, call: Checked, outputs: readonly number[], shape: readonly number[]): Choices {
+  /** Copies the views that a call with variable or scatter outputs reads: lists have no programs for views. */
+  private callAppending(append: AppendCaller, given: Checked): void | Promise<void> {
+    const { name, parameters } = this.kernel;
+    parameters.forEach((parameter, i) => {
+      const isRead = parameter.role === 'input' || parameter.role === 'gather';
+      if (given.fits[i] || (given.views[i] && !isRead)) fail(name, `'${parameter.name}' of a kernel that pushes or scatters is no view, and fitted to nothing; give a stream`, 'type');
+      if (parameter.role === 'uniform' && given.streams[i]) fail(name, `'${parameter.name}' of a kernel that pushes or scatters is a value; read the stream, and give its value`, 'type');
+    });
+    const { call, copies } = withoutViews(given);
+    const done = append.call(call);
+    for (const copy of copies) copy.dispose(); // the call holds their planes as long as it reads them
+    return done;
+  }
+
+  private runWithViews(device: Device, call: Checked, outputs: readonly number[], shape: readonly number[], reason: string): void {
+    const { kernel, source } = this;
+    const { elements } = source.file;
+    const { domain, lies, begin, finish } = placed(device, kernel, call, outputs, shape, elements, true);
+    const key = viewsKey(kernel.parameters, elements, lies, domain, call.specs);
+    if (!source.has(key)) source.refuse(reason);
+    const program = source.program(device, key, kernel, call.specs, (i) => call.streams[i] !== null);
+    const drawn = begin();
+    this.draw(device, program, call, domain, lies, shape, drawn);
+    finish(drawn);
+  }
+
+  private draw(
+    device: Device, program: Program, call: Checked, domain: Layout, lies: readonly Lie[], shape: readonly number[],
+    drawn: readonly (readonly Plane[])[],
+  ): void {
+    device.useProgram(program);
+    bindOperands(device, program, call, call.streams.map((stream) => stream?.planes ?? []), lies, this.source.file.elements, shape);
+    program.domain.set(domain);
+    device.framebufferOf(drawn.length === 1 ? drawn[0]! : drawn.flat());
+    device.drawRects(domain.draws);
+  }
+
+  /**
+   * The layout of the outputs after the call, and the program. Unpacks what the call reads where no program takes it packed;
+   * null if none takes it then.
+   */
+  private chosen(device: Device, call: Checked, outputs: readonly number[], shape: readonly number[]): Choices | null {
     const { kernel } = this;
     const first = call.streams[outputs[0]!]!;
     const packs = kernel.packs && mayPack(shape) && outputs.every((i) => call.streams[i]!.mayPack());
@@ -214,7 +290,8 @@ export class KernelCaller {
       lies = this.lies(call, shape);
       key = this.keyOf(call, lies, domain, device);
     }
-    const program = this.source.program(device, key, kernel, call.specs);
+    if (!this.source.has(key)) return null;
+    const program = this.source.program(device, key, kernel, call.specs, (i) => call.streams[i] !== null);
     this.last = { device, domain, lies, specs: call.specs, program };
     return this.last;
   }
@@ -227,28 +304,27 @@ export class KernelCaller {
     return kernelKey(this.kernel.parameters, this.source.file.elements, lies, domain, call.specs, device.filtersFloats);
   }
 
-  /** The shape of the domain. */
-  private checkShapes(call: Checked, outputs: readonly number[]): readonly number[] {
+  /** The shape of the domain, and why the call needs the program for views, if it does. */
+  private checkShapes(call: Checked, outputs: readonly number[]): { shape: readonly number[]; reason: string | null } {
     const { kernel } = this;
     const first = outputs[0]!;
-    const shape = call.streams[first]!.shape as readonly number[];
+    const shape = shapeAt(call, first);
     const nameOf = (i: number) => kernel.parameters[i]!.name;
     for (const i of outputs) {
-      const stream = call.streams[i]!;
-      if (!isSameShape(stream.shape, shape)) {
-        fail(kernel.name, `the outputs '${nameOf(first)}' and '${nameOf(i)}' have shapes ${shapeText(shape)} and ${shapeText(stream.shape)}; give them the same shape`, 'shape');
-      }
-      const other = outputs.find((k) => k < i && call.streams[k] === stream);
-      if (other !== undefined) fail(kernel.name, `the outputs '${nameOf(other)}' and '${nameOf(i)}' are one stream; give them different streams`);
+      const own = shapeAt(call, i);
+      if (isSameShape(own, shape)) continue;
+      fail(kernel.name, `the outputs '${nameOf(first)}' and '${nameOf(i)}' have shapes ${shapeText(shape)} and ${shapeText(own)}; give them the same shape`, 'shape');
     }
-    kernel.parameters.forEach(({ name, role }, i) => {
-      const stream = call.streams[i];
-      if (role !== 'input' || !stream || isSameShape(stream.shape, shape)) return;
-      fail(kernel.name, `'${name}' has shape ${shapeText(stream.shape)}, but the output '${nameOf(first)}' has ${shapeText(shape)}; give them the same shape`, 'shape');
-    });
+    if (outputs.length > 1) checkDisjoint(kernel, call, outputs);
+    let reason: string | null = null;
     kernel.parameters.forEach((parameter, i) => {
-      if (parameter.role === 'iterator') stepsOf(kernel.name, parameter, this.source.file.elements[parameter.element]!, call.values[i]!, shape);
+      const { name, role } = parameter;
+      if (role === 'iterator') stepsOf(kernel.name, parameter, this.source.file.elements[parameter.element]!, call.values[i]!, shape);
+      if (role === 'uniform' || role === 'spec' || role === 'iterator' || !call.streams[i]) return;
+      const isOfShape = role !== 'input' || checkInput(kernel, i, call, shape, kernel.parameters[first]!);
+      const why = !isOfShape ? (call.fits[i] ? 'is fitted to the output' : 'repeats') : call.views[i] ? 'is a view' : null;
+      if (why !== null && isNeeded(parameter, call.specs)) reason ??= `where '${name}' ${why}`;
     });
-    return shape;
+    return { shape, reason };
   }
 }

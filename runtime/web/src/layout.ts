@@ -31,6 +31,10 @@ export interface Layout {
   readonly height: number;
   /** What a pass over all elements draws: no texel beyond the last element. */
   readonly draws: readonly Rect[];
+  /** Of views: the first element, as programs for views take it (view.ts). */
+  readonly origin?: Index4;
+  /** Of inputs in such programs: how many elements of the domain an element serves; negative: of how many one is read. */
+  readonly ratio?: Index4;
 }
 
 /** Elements per texel of a packed stream. */
@@ -68,13 +72,18 @@ export function linearTexture(count: number, most: number): { width: number; hei
   return height <= most ? { width: 2 ** shift, height } : null;
 }
 
-/** The rectangles that hold the first `count` texels of a linearised texture. */
-export function consecutiveTexels(count: number, shift: number): Rect[] {
-  const width = 2 ** shift;
-  const rows = Math.floor(count / width);
+/** The rectangles that hold the texels from number `begin` up to `end` of a linearised texture. */
+export function consecutiveTexels(end: number, shift: number, begin = 0): Rect[] {
+  const across = 2 ** shift;
   const rects: Rect[] = [];
-  if (rows > 0) rects.push({ x: 0, y: 0, width, height: rows });
-  if (count % width > 0) rects.push({ x: 0, y: rows, width: count % width, height: 1 });
+  while (begin < end) {
+    const x = begin % across;
+    const left = end - begin;
+    const rows = x === 0 ? Math.floor(left / across) : 0;
+    const rect = { x, y: Math.floor(begin / across), width: rows > 0 ? across : Math.min(across - x, left), height: rows || 1 };
+    rects.push(rect);
+    begin += rect.width * rect.height;
+  }
   return rects;
 }
 

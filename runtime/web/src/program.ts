@@ -17,6 +17,8 @@ class LayoutUniforms {
   private readonly shape: Location;
   private readonly stride: Location;
   private readonly shift: Location;
+  private readonly origin: Location;
+  private readonly ratio: Location;
   private last: Layout | null = null;
 
   constructor(private readonly gl: WebGL2RenderingContext, program: WebGLProgram, pattern: string) {
@@ -24,6 +26,8 @@ class LayoutUniforms {
     this.shape = at('shape');
     this.stride = at('stride');
     this.shift = at('shift');
+    this.origin = at('origin');
+    this.ratio = at('ratio');
   }
 
   set(layout: Layout): void {
@@ -32,6 +36,8 @@ class LayoutUniforms {
     if (this.shape !== null) this.gl.uniform4iv(this.shape, layout.extent as unknown as number[]);
     if (this.stride !== null) this.gl.uniform4iv(this.stride, layout.stride as unknown as number[]);
     if (this.shift !== null) this.gl.uniform1i(this.shift, layout.shift);
+    if (this.origin !== null) this.gl.uniform4iv(this.origin, (layout.origin ?? [0, 0, 0, 0]) as number[]);
+    if (this.ratio !== null) this.gl.uniform4iv(this.ratio, (layout.ratio ?? [1, 1, 1, 1]) as number[]);
   }
 }
 
@@ -119,6 +125,8 @@ export interface Bound {
   readonly layout?: LayoutUniforms;
   readonly value?: ValueUniform;
   readonly step?: ValueUniform;
+  /** Of streams: the texture unit of each plane; negative: of a plan's bundle, ~unit. */
+  readonly units?: readonly number[];
 }
 
 /** A program that is being compiled, or has been. */
@@ -132,6 +140,8 @@ export class Program {
   values: Bound[] = [];
   /** Scatter outputs. */
   targets: Bound[] = [];
+  /** The texture unit of each of a plan's bundles. */
+  readonly bundles = new Map<number, number>();
   domain!: LayoutUniforms;
   /** Texture units that its streams take. */
   units = 0;
@@ -148,6 +158,8 @@ export class Program {
     private readonly elements: readonly Element[],
     private readonly isUsed: (parameter: Parameter) => boolean,
     private readonly vertices = vertexText,
+    /** Whether a stream holds the value of a uniform. */
+    private readonly isHeld: (index: number) => boolean = () => false,
   ) {
     this.gl = device.context;
     this.start();
@@ -162,6 +174,8 @@ export class Program {
     this.reads = [];
     this.values = [];
     this.targets = [];
+    this.bundles.clear();
+    this.units = 0;
     this.integers.clear();
     const handle = gl.createProgram();
     const shaders = [gl.createShader(gl.VERTEX_SHADER), gl.createShader(gl.FRAGMENT_SHADER)];
@@ -199,28 +213,33 @@ export class Program {
     for (const shader of this.shaders) gl.deleteShader(shader);
     gl.useProgram(handle);
     this.domain = new LayoutUniforms(gl, handle, 'sk_domain_*');
-    let unit = 0;
     this.parameters.forEach((parameter, index) => {
       if (!this.isUsed(parameter)) return;
       const { role, symbol } = parameter;
       const element = this.elements[parameter.held ?? parameter.element]!;
       const layout = () => new LayoutUniforms(gl, handle, `sk_*_${symbol}`);
       const value = (kind: string) => new ValueUniform(gl, handle, `sk_${kind}_${symbol}`, this.elements[parameter.element]!);
-      if (role === 'uniform') {
+      if (role === 'uniform' && !this.isHeld(index)) {
         this.values.push({ index, parameter, value: value('arg') });
       } else if (role === 'iterator') {
         this.values.push({ index, parameter, value: value('begin'), step: value('step'), layout: layout() });
-      } else if (role === 'input' || role === 'gather') {
-        this.reads.push({ index, parameter, layout: layout() });
-        element.fields.forEach((_, plane) => {
-          const name = element.fields.length === 1 ? `sk_tex_${symbol}` : `sk_tex${plane}_${symbol}`;
-          gl.uniform1i(gl.getUniformLocation(handle, name), unit++);
+      } else if (role === 'input' || role === 'gather' || role === 'uniform') {
+        const units = element.fields.map((_, plane) => {
+          const bundle = parameter.layers?.[plane]?.[0] ?? -1;
+          const known = this.bundles.get(bundle);
+          if (known !== undefined) return ~known;
+          const name = bundle >= 0 ? `sk_bundle${bundle}` : element.fields.length === 1 ? `sk_tex_${symbol}` : `sk_tex${plane}_${symbol}`;
+          const unit = this.units++;
+          gl.uniform1i(gl.getUniformLocation(handle, name), unit);
+          if (bundle < 0) return unit;
+          this.bundles.set(bundle, unit);
+          return ~unit;
         });
+        this.reads.push({ index, parameter, layout: layout(), units });
       } else if (role === 'scatter') {
         this.targets.push({ index, parameter, layout: layout() });
       }
     });
-    this.units = unit;
     this.isReady = true;
   }
 

@@ -13,7 +13,9 @@ import { drawAligned, KernelCaller, ProgramSource } from './kernel.js';
 import { shapeText } from './layout.js';
 import type { Program } from './program.js';
 import { valueLayout } from './reduce_plan.js';
+import { Stream } from './stream.js';
 import type { ScanOptions } from './types.js';
+import { Fitted, View } from './view.js';
 
 const valueRects = [{ x: 0, y: 0, width: 1, height: 1 }];
 const accumulations = ['tree', 'compensated', 'extended', 'exact'];
@@ -92,8 +94,32 @@ export class ReductionCaller {
 
   /** Promises the values of the accumulators, or, if they are given, writes to streams. */
   call(given: readonly unknown[], options: ScanOptions): Promise<unknown> | void {
-    if (this.reduction.scans || given.length === this.fold.parameters.length) return this.toStreams(given, options);
-    return this.toValues(given, options);
+    const { whole, copies } = this.withoutViews(given);
+    const isToStreams = this.reduction.scans || given.length === this.fold.parameters.length;
+    const done = isToStreams ? this.toStreams(whole, options) : this.toValues(whole, options);
+    for (const copy of copies) copy.dispose(); // all passes have been drawn
+    return done;
+  }
+
+  /** Copies the views that a call reads: reductions have programs for whole streams alone. */
+  private withoutViews(given: readonly unknown[]): { whole: readonly unknown[]; copies: readonly { dispose(): void }[] } {
+    const all = this.fold.parameters;
+    const parameters = given.length === all.length ? all : all.filter(({ role }) => role !== 'accumulator');
+    const copies: { dispose(): void }[] = [];
+    if (given.length !== parameters.length) return { whole: given, copies };
+    const whole = given.map((argument, i) => {
+      const { name, role } = parameters[i]!;
+      const isHere = argument instanceof Stream || argument instanceof View || argument instanceof Fitted;
+      if (isHere && role === 'uniform') fail(this.reduction.name, `'${name}' is one value for all elements, and streams do not stand for values of reduces in browsers; read the stream, and give its value`, 'type');
+      if (argument instanceof Fitted) fail(this.reduction.name, `'${name}' is fitted, but only outputs say to what; give a stream or a view`, 'type');
+      if (!(argument instanceof View)) return argument;
+      if (role !== 'input' && role !== 'gather') fail(this.reduction.name, `'${name}' is a view, but reduces and scans write whole streams in browsers; give a stream`, 'type');
+      argument.check(`${this.reduction.name}: the stream of '${name}'`);
+      const copy = argument.copied();
+      copies.push(copy);
+      return copy;
+    });
+    return { whole, copies };
   }
 
   /** If there are several accumulators, a list. */

@@ -9,6 +9,7 @@ import type { Element, Field } from './generated.js';
 import { lanes, shapeText, sizeOf, type Layout } from './layout.js';
 import { Program } from './program.js';
 import type { ArrayOf, ElementType, ShapeOf } from './types.js';
+import { viewOf, type View } from './view.js';
 
 /** The largest extent of a stream. */
 const mostExtent = 2 ** 30 - 1;
@@ -57,6 +58,11 @@ export class Stream<T extends ElementType, R extends number> {
     }
   }
 
+  /** The box from `begin` (inclusive) to `end` (exclusive), rows first: a view. Throws SkError unless it is inside the stream. */
+  domain(begin: ShapeOf<R>, end: ShapeOf<R>): View<T, R> {
+    return viewOf(this).domain(begin, end);
+  }
+
   /** Whether four elements may share a texel, as far as the type says. @internal */
   mayPack(): boolean {
     return mayPackElement(this.element);
@@ -78,6 +84,7 @@ export class Stream<T extends ElementType, R extends number> {
 
   /** Takes other planes of this layout for its own, which go back to the device. @internal */
   exchange(planes: Plane[], layout: Layout): void {
+    if (planes === this.planes) return;
     this.device.release(this.planes);
     this.planes = planes;
     this.layout = layout;
@@ -204,6 +211,12 @@ export class Stream<T extends ElementType, R extends number> {
     device.framebufferOf(planes);
     device.drawRects(plain.draws);
     this.exchange(planes, plain);
+  }
+
+  /** Takes one element in a texel, as unpack() does, but the elements are what they may be. @internal */
+  forget(): void {
+    const plain = this.layoutIf(false);
+    if (this.layout !== plain) this.exchange(this.newPlanes(plain), plain);
   }
 
   /** Frees the elements. */

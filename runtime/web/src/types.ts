@@ -2,6 +2,7 @@
 //
 // The types of what .sk files declare, as FILE.sk.d.ts uses them.
 import type { Stream } from './stream.js';
+import type { Fitted, View } from './view.js';
 
 type Width = '' | '2' | '3' | '4';
 /** Scalars and vectors whose arrays have one type. */
@@ -59,12 +60,14 @@ export type Value<T extends BuiltIn> = T extends `${string}x${string}`
   ? readonly [One<T>, One<T>, One<T>, One<T>]
   : One<T>;
 
-/** What a kernel reads element by element, `T x<>`: a stream with the shape of the output. */
-export type Input<T extends ElementType> = Stream<T, number>;
+/** What a kernel reads element by element, `T x<>`: a stream with the shape of the output, or 1 where it repeats. */
+export type Input<T extends ElementType> = Stream<T, number> | View<T, number> | Fitted<T>;
 /** What a kernel reads at any index, `T a[][]`. */
-export type Gather<T extends ElementType, R extends number> = Stream<T, R>;
+export type Gather<T extends ElementType, R extends number> = Stream<T, R> | View<T, R>;
 /** What a kernel writes, `out T r<>`. */
-export type Output<T extends ElementType> = Stream<T, number>;
+export type Output<T extends ElementType> = Stream<T, number> | View<T, number>;
+/** A stream of one element that stands for a value, `T c`, or a view of one. */
+export type Held<T extends ElementType> = Stream<T, number> | View<T, number>;
 /** What a kernel pushes to, `vout T r<>`: the call makes its shape the number of elements. */
 export type Pushed<T extends ElementType> = Stream<T, 1>;
 /** What a kernel writes at any index, `out T r[][]`. */
@@ -75,7 +78,15 @@ export interface Iterate<T> {
   readonly end: T;
 }
 
-/** Choices of one call, as in `sum.with({ accumulate: 'tree' })(u)`. */
+/** Choices of one call, as in `diffuse.with({ precision: 'half' })(0.2, u, u)`. [[variants(...)]] assembles programs for them. */
+export interface KernelOptions {
+  /** 'half' rounds every result to half; 'extended' computes in pairs of floats. */
+  readonly precision?: 'half' | 'single' | 'extended';
+  /** 'fast' takes the device's own functions, where others are more accurate. */
+  readonly intrinsics?: 'accurate' | 'fast';
+}
+
+/** Choices of one call of a reduce, as in `sum.with({ accumulate: 'tree' })(u)`. */
 export interface CallOptions {
   /** How a reduction adds floats; by default compensated (docs/accuracy.md). */
   readonly accumulate?: 'tree' | 'compensated' | 'extended' | 'exact';
@@ -92,6 +103,7 @@ export interface ScanOptions extends CallOptions {
 /** A kernel: a function that writes its outputs. It returns at once; the device computes meanwhile. */
 export interface Kernel<Arguments extends readonly unknown[]> {
   (...given: Arguments): void;
+  with(options: KernelOptions): Kernel<Arguments>;
 }
 
 /** A kernel that pushes, or that scatters many values: how many is known when the promise resolves. */

@@ -21,7 +21,7 @@ function isNearby(gather: Parameter, extent: Index4, domain: Index4): boolean {
 
 /** Whether the device's filter interpolates a gather. */
 export function isFiltered(parameter: Parameter, layout: Layout, elements: readonly Element[], filtersFloats: boolean): boolean {
-  if (!parameter.filter || layout.linear || layout.packed) return false;
+  if (!parameter.filter || layout.linear || layout.packed || layout.origin !== undefined) return false;
   const { scalar, width } = elements[parameter.element]!.fields[0]!;
   return filtersFloats || formatOf(scalar, width).internal !== formatOf('float', width).internal;
 }
@@ -42,7 +42,7 @@ export function accessKey(
       continue;
     }
     const lie = lies[i]!;
-    if (lie === null) continue;
+    if (lie === null || parameter.role === 'uniform') continue;
     if (typeof lie === 'string') {
       key += `; ${parameter.name}:${lie}`;
     } else if (parameter.role === 'input' && lie === domain && !isByIndex) {
@@ -77,6 +77,19 @@ export function listKey(
 ): string {
   const kind = domain.linear && decodedRank(domain.extent) === 1 ? 'entry1' : 'entry4';
   return kind + accessKey(parameters, elements, lies, domain, specs, filtersFloats, true);
+}
+
+/**
+ * The key of the program that [[variants(views)]] adds: it takes all streams as views. Scalar iterators always count the
+ * elements.
+ */
+export function viewsKey(parameters: readonly Parameter[], elements: readonly Element[], lies: readonly Lie[], domain: Layout, specs: readonly number[]): string {
+  let key = domain.linear ? 'views box' : 'views plane';
+  parameters.forEach((parameter, i) => {
+    if (!isNeeded(parameter, specs)) key += `; no ${parameter.name}`;
+    else if (parameter.role === 'iterator') key += `; ${parameter.name}:${elements[parameter.element]!.fields[0]!.width === 1 ? 'linear' : lies[i]}`;
+  });
+  return key;
 }
 
 /** Whether a kernel with these outputs writes packed texels. */

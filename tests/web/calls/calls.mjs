@@ -7,6 +7,7 @@ import { appendCases } from './append.mjs';
 import { deviceCases } from './devices.mjs';
 import { mistakeCases } from './mistakes.mjs';
 import { reductionCases } from './reductions.mjs';
+import { layoutCases } from './layouts.mjs';
 
 const expected = await (await fetch('expected.json')).json();
 const mistakes = [];
@@ -97,7 +98,7 @@ const cases = {
           k.edges(a, b, c, d, r);
           same(`edges ${w}`, await r.read(), 8, 32); // five terms below 32
         } else {
-          await refused('compile', "no program for this call, 'plane; a:plane;", () => k.edges(a, b, c, d, r));
+          await refused('compile', "where a gather is smaller than the output, or nearly; write [[variants(views)]] before 'edges'", () => k.edges(a, b, c, d, r));
         }
       }
       same(`far ${w}`, [await k.farthest(a)], 1, 512);
@@ -272,6 +273,8 @@ const cases = {
 };
 const checked = { same, refused, filled, random, random24, floats, integers, from, size, expect };
 Object.assign(cases, appendCases(checked), deviceCases(checked), mistakeCases(checked), reductionCases(checked));
+
+Object.assign(cases, layoutCases({ same, refused, filled, floats, integers, from, size, mistakes }));
 
 const report = { mistakes, checks, seconds: {} };
 try {

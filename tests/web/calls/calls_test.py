@@ -37,14 +37,14 @@ def check_document(folder):
 chromium.need()
 with tempfile.TemporaryDirectory() as folder:
     package.build(source, f"{folder}/streamkernel")
-    for name in ("calls.sk", "reductions.sk"):
+    for name in ("calls.sk", "layouts.sk", "reductions.sk"):
         subprocess.run([skc, "--emit=js", "-o", folder, f"{here}/{name}"], check=True)
     shutil.copy(f"{here}/types.ts", folder)
     package.check_types([f"{folder}/types.ts"], folder)
     check_document(folder)
     with open(f"{folder}/expected.json", "w") as expected:
         subprocess.run([reference], stdout=expected, check=True)
-    for name in ("index.html", "calls.mjs", "append.mjs", "devices.mjs", "mistakes.mjs", "reductions.mjs"):
+    for name in ("index.html", "calls.mjs", "append.mjs", "devices.mjs", "layouts.mjs", "mistakes.mjs", "reductions.mjs"):
         os.symlink(f"{here}/{name}", f"{folder}/{name}")
     report = chromium.report_of(folder, "index.html", seconds)
     size = package.minified(f"{folder}/streamkernel", build)

@@ -44,7 +44,7 @@ export const mistakeCases = ({ refused, filled, expect }) => ({
       ...[5, null, [0, 8], { begin: [0, 0] }].map((p) => ['type', "'p' is an iterator", () => k.ramp(p, { begin: 0, end: 64 }, u)]),
       ['shape', 'which are not whole', () => k.ramp({ begin: [0, 0], end: [8, 8] }, { begin: 0, end: 65 }, u)],
       ['type', 'is no whole number', () => k.ramp({ begin: [0, 0], end: [8, 8] }, { begin: 0, end: NaN }, u)],
-      ['type', "'a' is one value for all elements", () => k.saxpy(u, u, u, u)],
+      ['shape', "'a' is one value for all elements", () => k.saxpy(u, u, u, u)],
       // Streams.
       ...[new Float32Array(64), 5, undefined, {}, 'u'].map((x) => ['type', "'x' is a stream", () => k.saxpy(1, x, u, u)]),
       ['misuse', "'x' is null, but the kernel needs it", () => k.saxpy(1, null, u, u)],
@@ -68,7 +68,7 @@ export const mistakeCases = ({ refused, filled, expect }) => ({
       ['device', "'x' and 'y' are streams of two devices", () => k.dot(u, foreign)],
       ['device', 'belongs to another device', () => device.draw(foreign, document.getElementById('picture'))],
       // Programs that skc has not assembled.
-      ['compile', "no program for this call, 'plane", () => k.edges(make('float', [1, 8]), u, u, make('float', [8]), u)],
+      ['compile', "no program for this call, where a gather is smaller", () => k.edges(make('float', [1, 8]), u, u, make('float', [8]), u)],
       ['type', 'only kernels and reduces', () => device.compile([k.saxpy, {}])],
       ['type', 'only kernels and reduces', () => device.compile([undefined])],
       // Pictures and devices.

@@ -279,5 +279,6 @@ int main() {
   calls.pushes();
   calls.scatters();
   printReductions();
+  callLayouts();
   std::puts("}");
 }

@@ -75,3 +75,5 @@ struct Streams {
 
 /// Prints the cases of reductions.sk.
 void printReductions();
+/// The calls of layouts.mjs.
+void callLayouts();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // What the types of calls.sk.d.ts allow, and what they reject: tsc reads this, and nothing runs it.
-import { Device } from 'streamkernel';
+import { Device, stretch, stride, type View } from 'streamkernel';
 import { Body, count, diffuse, field, heaviest, move, positive, sum } from './calls.sk.js';
 import { folds } from './reductions.sk.js';
+import { curve, held, mixed, Point, smooth, squares } from './layouts.sk.js';
 
 export async function allowed(device: Device): Promise<number> {
   const u = device.stream('float', [512, 512]);
@@ -64,4 +65,33 @@ export async function rejected(device: Device): Promise<void> {
   // @ts-expect-error: there is no such type
   device.stream('flaot', [1]);
   void text;
+}
+
+export async function layouts(device: Device): Promise<number> {
+  const u = device.stream('float', [8, 8]);
+  const box: View<'float', 2> = u.domain([0, 0], [4, 4]);
+  const odd: View<'float', 2> = stride(box, [2, 2], [1, 1]);
+  const host: Float32Array = await odd.read();
+  mixed(1, stretch(u), stride(stretch(box)), u.domain([1, 1], [2, 2]));
+  mixed(device.stream('float', [1]), u, box, odd);
+  const point = device.stream(Point, [1]);
+  held(1, [1, 2], point, 3, device.stream('bool', [1]), [1, 2, 3, 4], u, device.stream('float2', [8, 8]));
+  curve.with({ precision: 'half', intrinsics: 'fast' })(1, [1, 2], u, u);
+  // @ts-expect-error: a position for each dimension
+  u.domain([0], [4]);
+  // @ts-expect-error: a view of floats takes no ints
+  box.write(new Int32Array(16));
+  // @ts-expect-error: the gather has two dimensions
+  smooth(device.stream('float', [8]).domain([0], [4]), device.stream('float', [8]), u);
+  // @ts-expect-error: only inputs are fitted
+  smooth(stretch(u), device.stream('float', [8]), u);
+  // @ts-expect-error: an output is not fitted
+  mixed(1, u, u, stretch(u));
+  // @ts-expect-error: k is a float, not an int
+  mixed(device.stream('int', [1]), u, u, u);
+  // @ts-expect-error: there is no such precision
+  curve.with({ precision: 'quad' });
+  // @ts-expect-error: kernels accumulate nothing
+  curve.with({ accumulate: 'tree' });
+  return (await squares(odd)) + host[0]!;
 }

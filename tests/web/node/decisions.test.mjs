@@ -13,6 +13,8 @@ const { planScan } = await import(`${folder}/streamkernel/scan_plan.js`);
 const { blockGrids } = await import(`${folder}/streamkernel/block_grid.js`);
 const { xFirst } = await import(`${folder}/streamkernel/layout.js`);
 const { kernelKey } = await import(`${folder}/streamkernel/variant.js`);
+const { drawsOf } = await import(`${folder}/streamkernel/copy.js`);
+const { regionOf, strided, View } = await import(`${folder}/streamkernel/view.js`);
 const corpus = JSON.parse(readFileSync(`${folder}/decisions.json`));
 
 const rects = (list) => list.map(({ x, y, width, height }) => [x, y, width, height]);
@@ -126,5 +128,27 @@ test('kernels need the same programs', () => {
     const kind = linear ? (rank === 1 ? 'linear1' : 'linear4') : 'plane';
     const wanted = kind + (packed ? ' packed' : '') + access.map((one, i) => `; ${names[i]}:${one}`).join('');
     assert.equal(key, wanted, JSON.stringify(streams));
+  }
+});
+
+test('views have the same elements', () => {
+  for (const { stream: whole, begin, shape, steps, texels, draws } of corpus.views) {
+    const layout = layoutOf(whole.shape, 8192, false);
+    const view = new View({ shape: whole.shape, layout, planes: [] }, shape, begin, steps);
+    const where = JSON.stringify({ whole, begin, shape, steps });
+    const { linear, origin, stride, shift } = strided(view, [1, 1, 1, 1]);
+    const region = regionOf(view);
+    const { length } = texels;
+    assert.ok(length > 0);
+    for (const [index, texel] of texels) {
+      const sum = (of) => index.reduce((all, i, d) => all + i * of[d], 0);
+      const number = origin[0] + sum(stride);
+      const found = linear ? [number & ((1 << shift) - 1), number >> shift] : [origin[0] + index[0] * stride[0], origin[1] + index[1] * stride[1]];
+      assert.deepEqual(found, texel, where);
+      const copied = region.first + sum(region.strides);
+      assert.deepEqual([copied % region.width, Math.floor(copied / region.width)], texel, where);
+    }
+    const xFirst = [0, 1, 2, 3].map((d) => shape[shape.length - 1 - d] ?? 1);
+    if (draws !== null) assert.deepEqual(rects(drawsOf(xFirst, region)), draws, where);
   }
 });
