@@ -15,7 +15,7 @@ cd "$place"
 ends() {
   local status=0
   timeout 60 "${mpirun[@]}" -n 3 "$program" "$2" state.npy >out.txt 2>err.txt || status=$?
-  if [[ $status != "$1" ]] || ! grep -qF -- "$3" err.txt; then
+  if [[ $status != "$1" || $(<err.txt) != *"$3"* ]]; then
     printf 'broken: %s ended with status %s, not %s, or did not say: %s\n' "$2" "$status" "$1" "$3"
     cat out.txt err.txt
     exit 1
