@@ -64,8 +64,7 @@ def compare(tab, name, shown):
             file.write(base64.b64decode(shown.split(",")[1]))
         return
     if not os.path.exists(stored):
-        print(f"{name}: NOT COMPARED, there is no {stored}; --update stores one")
-        return
+        return check(False, f"there is no {stored}; --update stores one")
     with open(stored, "rb") as file:
         wanted = "data:image/png;base64," + base64.b64encode(file.read()).decode()
     far = difference(tab, wanted, shown)
