@@ -19,6 +19,8 @@ class Driven(devtools.Page):
         super().note(event)
         if event.get("method") == "Log.entryAdded" and event["params"]["entry"]["level"] in ("error", "warning"):
             entry = event["params"]["entry"]
+            if "GPU stall due to ReadPixels" in entry["text"]:  # Chromium's advice about speed, where it draws pages without the GPU
+                return
             self.messages.append(f"{entry['text']} {entry.get('url', '')}")
 
     def wait(self, expression, seconds=400):

@@ -127,7 +127,7 @@ def check_phone(tab, name):
     width, shade = tab.evaluate("[document.documentElement.scrollWidth, getComputedStyle(document.body).backgroundColor]")
     check(width <= 390, f"{name}: {width} pixels wide on a phone of 390")
     check(shade == "rgb(14, 18, 22)", f"{name}: the ground is {shade} where dark is wanted")
-    if name == "index":
+    if name in ("index", "edges"):  # nothing to touch
         return
     tab.evaluate("document.getElementById('picture').scrollIntoView({block: 'center'})")
     before = tab.evaluate("gallery.touched = 0, gallery.simulation.point && (() => { const own = gallery.point.bind(gallery); gallery.point = (e) => { ++gallery.touched; own(e); }; })(), 0")
