@@ -4,6 +4,7 @@
 // plan the same, because they keep the same account of which halos are valid.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -24,6 +25,7 @@ class CallPlan {
   void run(const CallOptions& options, const Compute& compute);
 
  private:
+  void makeRoom(const domain::Depth& further);
   void addRequest(DomainStreamState* stream, const domain::Depth& depth);
   domain::Depth depthAfter(const DomainStreamState& stream) const;
   void replaceArguments();
@@ -34,6 +36,7 @@ class CallPlan {
   std::vector<HaloRequest> requests_;
   domain::Depth beyond_;  ///< elements of the halo that are computed, too
   domain::Depth reach_;  ///< how far the call reads around an element
+  std::int64_t unit_ = 1;  ///< boxes should begin at multiples of this many elements of the arrays
   Box box_;
   std::vector<DomainStreamState*> swapped_;
 };

@@ -14,6 +14,7 @@
 #include "device/stream_state.hpp"
 #include "exchange.hpp"
 #include "hash.hpp"
+#include "strips.hpp"
 
 namespace sk {
 
@@ -60,6 +61,32 @@ Depth least(const Depth& a, const Depth& b) {
     result.above[d] = std::min(a.above[d], b.above[d]);
   }
   return result;
+}
+
+/// Rows and columns of a GL device's textures are computed fastest in groups of this many, which begin at multiples of it.
+constexpr std::int64_t group = 4;
+
+Depth roundedUp(const Depth& depth, std::int64_t unit) {
+  Depth result = depth;
+  for (std::size_t d = 0; d < result.below.size(); ++d) {
+    result.below[d] = (depth.below[d] + unit - 1) / unit * unit;
+    result.above[d] = (depth.above[d] + unit - 1) / unit * unit;
+  }
+  return result;
+}
+
+/// The depth of a stream's arrays that holds `needed`: that of all streams of the call, so that the kernel finds an element
+/// at the same place in each of them, except in dimensions that are so short that a part with both halos would overlap itself.
+Depth roomFor(const domain::Decomposition& parts, const Depth& needed, const Depth& common) {
+  Depth room = needed;
+  for (int d = 0; d < parts.whole().rank(); ++d) {
+    const auto k = static_cast<std::size_t>(d);
+    const std::int64_t thickest = (parts.whole()[d] + parts.split()[d] - 1) / parts.split()[d];
+    if (common.below[k] + thickest + common.above[k] > parts.whole()[d]) continue;
+    room.below[k] = common.below[k];
+    room.above[k] = common.above[k];
+  }
+  return room;
 }
 
 /// A halo reaches no farther than the neighbor's own elements.
@@ -120,14 +147,13 @@ CallPlan::CallPlan(DomainState& domain, const Kernel& kernel, std::span<const Ar
   refuseRecording(domain, kernel);
   domain.agree(&kernel, hashOf(kernel, options), kernel.name);
   spread_ = spreadArguments(domain, kernel, arguments);
-  bool needsExchange = false;
-  for (const SpreadArgument& one : spread_) {
-    if (one.isWritten) continue;
-    reach_ = reach_.with(one.depth);
-    needsExchange = needsExchange || !one.stream->valid.covers(one.depth);
-  }
+  for (const SpreadArgument& one : spread_) reach_ = reach_.with(one.depth);
   const int every = domain.options.exchangeEvery;
   const Depth further = times(reach_, every - 1);
+  makeRoom(further);
+  bool needsExchange = false;
+  for (const SpreadArgument& one : spread_)
+    needsExchange = needsExchange || (!one.isWritten && !one.stream->valid.covers(one.depth));
   bool isFirst = true;
   for (const SpreadArgument& one : spread_) {
     if (one.isWritten) continue;
@@ -146,6 +172,20 @@ CallPlan::CallPlan(DomainState& domain, const Kernel& kernel, std::span<const Ar
   }
   box_ = options.box.isWhole() ? domain::grown(domain.own, domain.parts.haloOf(domain.rank, beyond_))
                                : domain::intersection(domain.own, options.box);
+}
+
+/// Makes room for the halos that this call and the ones like it need. What deepens a stream ends its halo.
+void CallPlan::makeRoom(const Depth& further) {
+  if (domain_.parts.ranks() == 1) return;
+  Depth common;
+  for (const SpreadArgument& one : spread_) {
+    common = common.with(one.stream->allocated);
+    if (!one.isWritten) common = common.with(sum(further, one.depth));
+    if (!isInMemory(one.stream->placed())) unit_ = group;
+  }
+  common = roundedUp(common, unit_);
+  for (const SpreadArgument& one : spread_)
+    one.stream->deepen(roomFor(domain_.parts, one.stream->allocated, common));
 }
 
 void CallPlan::addRequest(DomainStreamState* stream, const Depth& depth) {
@@ -200,7 +240,8 @@ void CallPlan::run(const CallOptions& options, const Compute& compute) {
     computeBox(box_);
   } else {
     Exchange exchange(domain_, requests_);
-    const Box inner = domain::shrunk(domain_.own, domain_.parts.haloOf(domain_.rank, reach_));
+    const Box inner =
+        domain::shrunk(domain_.own, domain_.parts.haloOf(domain_.rank, roundedUp(reach_, unit_)));
     const bool overlaps = domain_.options.overlap && !isOneBox && !domain::isEmpty(inner);
     if (overlaps) computeBox(inner);
     exchange.finish();
