@@ -50,11 +50,12 @@ TEST_CASE("a rank sends what its neighbor receives") {
   CHECK(parts.haloOf(0, depth) == Depth{{1, 0}, {2, 1}});
 }
 
-TEST_CASE("the split with the least surface is chosen") {
-  CHECK(balancedSplit({100, 100}, 4) == Index{2, 2});
+TEST_CASE("the split with the least surface is chosen, where faces that are not contiguous count a little more") {
+  CHECK(balancedSplit({100, 100}, 4) == Index{4, 1});
+  CHECK(balancedSplit({100, 100}, 16) == Index{4, 4});
   CHECK(balancedSplit({100, 100}, 2) == Index{2, 1});
   CHECK(balancedSplit({10, 1000}, 4) == Index{1, 4});
-  CHECK(balancedSplit({64, 64, 64}, 8) == Index{2, 2, 2});
+  CHECK(balancedSplit({64, 64, 64}, 8) == Index{4, 2, 1});
   CHECK(balancedSplit({3, 2}, 6) == Index{3, 2});
   CHECK_FALSE(balancedSplit({3, 2}, 7));
   CHECK_FALSE(balancedSplit({4}, 6));

@@ -24,7 +24,7 @@ struct Layouts {
   }
   sk::Stream<int> numbers(const sk::Shape& shape, std::uint32_t seed) {
     auto stream = device.stream<int>(shape);
-    stream.write(integers<int>(static_cast<std::size_t>(shape.size()), seed, 1000));
+    stream.write(randomIntegers<int>(static_cast<std::size_t>(shape.size()), seed, 1000));
     return stream;
   }
   template <class S>

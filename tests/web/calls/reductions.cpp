@@ -92,7 +92,7 @@ struct Reductions : Streams {
         {{2, 3, 4, 50}, {{2, 3, 4, 1}, {1, 3, 1, 25}, {2, 1, 4, 1}}}};
     for (const auto& [shape, results] : cases) {
       const auto elements = static_cast<std::size_t>(shape.size());
-      auto x = filled<int>(shape, integers<int>(elements, 45, 2001));
+      auto x = filled<int>(shape, randomIntegers<int>(elements, 45, 2001));
       for (const sk::Shape& result : results) {
         const std::string name = " " + text(shape) + " to " + text(result);
         auto r = device.stream<int>(result), s = device.stream<int>(result);
@@ -105,8 +105,8 @@ struct Reductions : Streams {
         print("most" + name, s.read());
       }
     }
-    auto x = filled<int>({24, 40}, integers<int>(24 * 40, 46, 100));
-    auto table = filled<int>({16}, integers<int>(16, 47, 100)), n = device.stream<int>({24, 1});
+    auto x = filled<int>({24, 40}, randomIntegers<int>(24 * 40, 46, 100));
+    auto table = filled<int>({16}, randomIntegers<int>(16, 47, 100)), n = device.stream<int>({24, 1});
     looked(3, true, table, x, n);
     print("looked", n.read());
     auto a = random({24, 40}, 48), b = random({24, 40}, 49);
@@ -119,7 +119,7 @@ struct Reductions : Streams {
     largest(x, x);  // each block is an element
     print("same", x.read());
     auto none = device.stream<int>({0, 8});
-    auto zeros = filled<int>({1, 8}, integers<int>(8, 50, 9));
+    auto zeros = filled<int>({1, 8}, randomIntegers<int>(8, 50, 9));
     folds::count(none, zeros);
     print("none", zeros.read());
   }
@@ -135,7 +135,7 @@ struct Reductions : Streams {
       print("descend rows" + name, rows.read());
       print("descend x" + name, x.read());
       print("descend r" + name, r.read());
-      auto cells = filled<int>({48, w}, integers<int>(static_cast<std::size_t>(48 * w), 55, 7));
+      auto cells = filled<int>({48, w}, randomIntegers<int>(static_cast<std::size_t>(48 * w), 55, 7));
       auto alive = device.stream<int>({1}), most = device.stream<int>({1});
       advance(cells, cells, alive, most);
       print("advance" + name, {double(alive.read()[0]), double(most.read()[0])});
@@ -156,7 +156,7 @@ struct Reductions : Streams {
          {sk::Shape{1}, sk::Shape{7}, sk::Shape{1000}, sk::Shape{20011}, sk::Shape{37, 29}, sk::Shape{64, 48},
           sk::Shape{5, 7, 36}, sk::Shape{3, 2, 4, 20}}) {
       const auto elements = static_cast<std::size_t>(shape.size());
-      auto x = filled<int>(shape, integers<int>(elements, 56, 201)), s = device.stream<int>(shape);
+      auto x = filled<int>(shape, randomIntegers<int>(elements, 56, 201)), s = device.stream<int>(shape);
       for (int along = -1; along < shape.rank(); ++along) {
         const std::string name = " " + text(shape) + " along " + std::to_string(along);
         const std::optional<int> dimension = along < 0 ? std::nullopt : std::optional(along);

@@ -64,11 +64,11 @@ struct Calls : Streams {
   void exact() {
     for (const std::int64_t w : {64LL, 61LL}) {
       const auto count = static_cast<std::size_t>(64 * w);
-      auto cells = filled<int>({64, w}, integers<int>(count, 8, 2));
+      auto cells = filled<int>({64, w}, randomIntegers<int>(count, 8, 2));
       for (int step = 0; step < 10; ++step) life(cells, cells);
       print(("life " + std::to_string(w)).c_str(), cells.read());
       print(("alive " + std::to_string(w)).c_str(), {double(::count(cells)), double(largest(cells))});
-      auto x = filled<unsigned>({64, w}, integers<unsigned>(count, 9, 1u << 24)),
+      auto x = filled<unsigned>({64, w}, randomIntegers<unsigned>(count, 9, 1u << 24)),
            r = device.stream<unsigned>({64, w});
       auto s = device.stream<int>({64, w}), steps = device.stream<int>({64, w});
       mix_bits(0xdeadbeefu, x, r, s);
@@ -161,8 +161,8 @@ struct Calls : Streams {
 
   void types() {
     constexpr std::size_t n = 60;
-    auto a = filled<std::uint8_t>({n}, integers<std::uint8_t>(n, 14, 256));
-    auto b = filled<std::int16_t>({n}, integers<std::int16_t>(n, 15, 1000));
+    auto a = filled<std::uint8_t>({n}, randomIntegers<std::uint8_t>(n, 14, 256));
+    auto b = filled<std::int16_t>({n}, randomIntegers<std::int16_t>(n, 15, 1000));
     auto c = device.stream<sk::unorm8>({n});
     auto d = device.stream<sk::snorm16>({n});
     auto e = device.stream<sk::half>({n});
@@ -201,7 +201,7 @@ struct Calls : Streams {
     }
     for (const auto& [shape, most] :
          {std::pair{sk::Shape{500}, 9}, {sk::Shape{20, 25}, 3}, {sk::Shape{5, 10, 10}, 0}}) {
-      auto x = filled<int>(shape, integers<int>(500, 41, 6)), twice = device.stream<int>(shape);
+      auto x = filled<int>(shape, randomIntegers<int>(500, 41, 6)), twice = device.stream<int>(shape);
       auto odd = device.stream<int>({0});
       auto even = device.stream<Spot>({10000});
       sieve(most, x, twice, odd, even);
@@ -224,7 +224,7 @@ struct Calls : Streams {
 
   void scatters() {
     const std::int64_t n = 3000;
-    auto to = filled<int>({n}, integers<int>(n, 44, 2000));
+    auto to = filled<int>({n}, randomIntegers<int>(n, 44, 2000));
     auto r = random({1500}, 45);
     permute(to, random({n}, 46), r);
     print("permute", r.read());
@@ -232,9 +232,9 @@ struct Calls : Streams {
     std::vector<Spot> values(40);
     for (std::size_t i = 0; i < 40; ++i) values[i] = {{at[2 * i], at[2 * i + 1]}, heat[i]};
     auto spots = filled<Spot>({40}, values), places = zeros<Spot>({6, 7});
-    place(filled<int>({40}, integers<int>(40, 49, 45)), spots, places);
+    place(filled<int>({40}, randomIntegers<int>(40, 49, 45)), spots, places);
     print("place", places.read());
-    auto x = filled<int>({100, 1000}, integers<int>(100000, 50, 1000));
+    auto x = filled<int>({100, 1000}, randomIntegers<int>(100000, 50, 1000));
     auto w = random({100, 1000}, 51), total = zeros<float>({16});
     auto counts = filled<int>({16}, std::vector<int>(16, -7));
     auto most = filled<unsigned>({12}, std::vector<unsigned>(12, 3999999999u));

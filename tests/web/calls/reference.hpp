@@ -24,7 +24,7 @@ inline std::vector<float> floats(std::size_t n, std::uint32_t seed) {
   return all;
 }
 template <class T>
-std::vector<T> integers(std::size_t n, std::uint32_t seed, std::uint32_t below) {
+std::vector<T> randomIntegers(std::size_t n, std::uint32_t seed, std::uint32_t below) {
   std::vector<T> all(n);
   for (std::size_t i = 0; i < n; ++i) all[i] = static_cast<T>(random24(i, seed) % below);
   return all;
