@@ -169,6 +169,17 @@ DomainStreamState* domainStream(const StreamRegion& region) {
   return stream;
 }
 
+DomainStreamState& liveStream(DomainStreamState* stream, std::string_view what) {
+  if (stream == nullptr) {
+    throw Error(fmt::format("{}: there is no stream: it was default-constructed or moved from; make one by "
+                            "domain.stream<T>()",
+                            what),
+                Error::Kind::Lost);
+  }
+  domainStream({.distributed = stream});
+  return *stream;
+}
+
 DomainStreamState::DomainStreamState(DomainState& of, const program::Element& type, Storage storage,
                                      std::string_view name)
     : domain(&of), element(type), storage_(storage), name_(name), local_(create()) {

@@ -95,4 +95,7 @@ class DomainState final : public detail::Distribution {
 /// The stream of an argument, or null if it is no stream of a domain. Throws sk::Error if its domain has ended.
 DomainStreamState* domainStream(const StreamRegion& region);
 
+/// The stream that `what` is asked of. Throws sk::Error if there is none, or if its domain has ended.
+DomainStreamState& liveStream(DomainStreamState* stream, std::string_view what);
+
 }  // namespace sk

@@ -155,17 +155,6 @@ class SharedFile {
 /// Whether a file has doubles for floats, because the stream has.
 bool hasDoubles(const StreamRegion& region) { return region.stream->storage >= Storage::Extended; }
 
-DomainStreamState& streamOf(DomainStreamState* stream, const char* what) {
-  if (stream == nullptr) {
-    throw Error(fmt::format("{}: there is no stream: it was default-constructed or moved from; make one by "
-                            "domain.stream<T>()",
-                            what),
-                Error::Kind::Lost);
-  }
-  domainStream({.distributed = stream});
-  return *stream;
-}
-
 std::vector<std::byte> bytesOfOwn(const StreamRegion& own, std::size_t elementBytes) {
   const auto count = static_cast<std::size_t>(own.shape.size());
   auto bytes = detail::hostVector<std::byte>(count * elementBytes);
@@ -230,7 +219,7 @@ std::string mismatch(const std::string& file, const mpi::NpyArray& wanted, std::
 }  // namespace
 
 void detail::save(DomainStreamState* stream, const std::string& file) {
-  const DomainState& domain = *streamOf(stream, "save").domain;
+  const DomainState& domain = *liveStream(stream, "save").domain;
   const StreamRegion own = stream->part(domain.own);
   const std::size_t size = mpi::elementBytes(stream->element, hasDoubles(own));
   const std::string header =
@@ -255,7 +244,7 @@ void detail::save(DomainStreamState* stream, const std::string& file) {
 }
 
 void detail::load(DomainStreamState* stream, const std::string& file) {
-  const DomainState& domain = *streamOf(stream, "load").domain;
+  const DomainState& domain = *liveStream(stream, "load").domain;
   const StreamRegion own = stream->part(domain.own);
   const std::size_t size = mpi::elementBytes(stream->element, hasDoubles(own));
   const mpi::NpyArray wanted = mpi::npyArray(stream->element, domain.parts.whole(), hasDoubles(own));

@@ -16,17 +16,6 @@ namespace {
 /// A tag that no exchange uses.
 constexpr int transferTag = 1000;
 
-DomainStreamState& live(DomainStreamState* stream, std::string_view what) {
-  if (stream == nullptr) {
-    throw Error(fmt::format("{}: there is no stream: it was default-constructed or moved from; make one by "
-                            "domain.stream<T>()",
-                            what),
-                Error::Kind::Lost);
-  }
-  domainStream({.distributed = stream});
-  return *stream;
-}
-
 void checkRoot(const DomainState& domain, int root, std::string_view what) {
   if (root >= 0 && root < domain.parts.ranks()) return;
   throw Error(fmt::format("{}: there is no rank {}; the domain has ranks 0 to {}", what, root,
@@ -51,26 +40,26 @@ void forEachRow(const Shape& whole, const Box& box, std::size_t size, Visit&& vi
 }  // namespace
 
 StreamRegion detail::regionOf(DomainStreamState* stream) {
-  const DomainState& domain = *live(stream, "a stream of a domain").domain;
+  const DomainState& domain = *liveStream(stream, "a stream of a domain").domain;
   return {.shape = domain.parts.whole(), .distributed = stream};
 }
 
 const Box& detail::ownBox(const DomainStreamState* stream) {
-  return live(const_cast<DomainStreamState*>(stream), "own").domain->own;
+  return liveStream(const_cast<DomainStreamState*>(stream), "own").domain->own;
 }
 
 int detail::rankOf(const DomainStreamState* stream) {
-  return live(const_cast<DomainStreamState*>(stream), "gather").domain->rank;
+  return liveStream(const_cast<DomainStreamState*>(stream), "gather").domain->rank;
 }
 
 StreamRegion detail::ownRegion(DomainStreamState* stream, bool isWritten) {
-  DomainStreamState& own = live(stream, isWritten ? "write" : "read");
+  DomainStreamState& own = liveStream(stream, isWritten ? "write" : "read");
   if (isWritten) own.valid = {};
   return own.part(own.domain->own);
 }
 
 void detail::gather(DomainStreamState* stream, int root, void* elements) {
-  const DomainState& domain = *live(stream, "gather").domain;
+  const DomainState& domain = *liveStream(stream, "gather").domain;
   checkRoot(domain, root, "gather");
   const std::size_t size = stream->element.size;
   const StreamRegion own = stream->part(domain.own);
@@ -96,7 +85,7 @@ void detail::gather(DomainStreamState* stream, int root, void* elements) {
 }
 
 void detail::scatter(DomainStreamState* stream, int root, const void* elements, std::size_t count) {
-  DomainState& domain = *live(stream, "scatter").domain;
+  DomainState& domain = *liveStream(stream, "scatter").domain;
   checkRoot(domain, root, "scatter");
   std::int64_t given = static_cast<std::int64_t>(count);
   mpi::broadcast(domain.communicator, root, &given, sizeof given);
