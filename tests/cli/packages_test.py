@@ -150,7 +150,8 @@ def read_by_the_build():
             yield file, wanted
     with open(os.path.join(build, "CMakeCache.txt")) as cache:
         for variable, file in re.findall(r"^(SK_\w+|PKG_CONFIG\w+):FILEPATH=(/.*)$", cache.read(), re.M):
-            yield file, variable
+            if os.path.basename(file) not in optional:
+                yield file, variable
 
 
 def binaries():

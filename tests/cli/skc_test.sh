@@ -59,9 +59,9 @@ grep -qF 'include/weights.sk' heat.d || broken "the depfile lacks the included f
 run 0 --emit=js -Iinclude -o web --depfile=web.d heat.sk
 silent
 grep -qF 'export const diffuse = file.callable(0);' web/heat.sk.js || broken "no kernel in heat.sk.js"
-grep -qF 'diffuse: sk.Kernel<[k: number, u: sk.Gather<'"'float'"', 2>, v: sk.Output<'"'float'"'>]>;' web/heat.sk.d.ts ||
+grep -qF 'diffuse: sk.Kernel<[k: number | sk.Held<'"'float'"'>, u: sk.Gather<'"'float'"', 2>, v: sk.Output<'"'float'"'>]>;' web/heat.sk.d.ts ||
   broken "no type of diffuse: $(<web/heat.sk.d.ts)"
-grep -qF 'sum: sk.Reduce<[x: sk.Input<'"'float'"'>], number>;' web/heat.sk.d.ts || broken "no type of sum: $(<web/heat.sk.d.ts)"
+grep -qF 'sum: sk.Reduce<[x: sk.Input<'"'float'"'>], number, [x: sk.Input<'"'float'"'>, total: sk.Output<'"'float'"'>]>;' web/heat.sk.d.ts || broken "no type of sum: $(<web/heat.sk.d.ts)"
 [[ ! -e web/heat.sk.cpp ]] || broken "a stub beside the module"
 grep -qF 'web/heat.sk.d.ts' web.d || broken "the depfile lacks the types: $(<web.d)"
 cat >scan.sk <<'EOF'
@@ -69,7 +69,7 @@ scan void prefix(int x<>, scan int s<> = 0) { s += x; }
 EOF
 run 0 --emit=js -o web scan.sk
 silent
-grep -qF 'prefix: sk.NotOffered<"scans do not run in browsers yet' web/scan.sk.d.ts || broken "a scan is offered: $(<web/scan.sk.d.ts)"
+grep -qF 'prefix: sk.Scan<[x: sk.Input<'"'int'"'>, s: sk.Output<'"'int'"'>]>;' web/scan.sk.d.ts || broken "no type of prefix: $(<web/scan.sk.d.ts)"
 
 # Programs for browsers do not multiply with the streams of a kernel.
 {
