@@ -52,7 +52,7 @@ HeldValue heldValue(const sk::assemble::Profile& profile, const sk::program::Ker
   std::string uniforms;
   for (const std::string_view type : {"sampler2D", "isampler2D", "usampler2D", "ivec4"})
     uniforms += linesWith(fmt::format("uniform {} sk_", type), first);
-  // Of a value with several planes, a function puts them together.
+  // If the value has several planes, a function combines them.
   const std::size_t function =
       first.find(fmt::format("\n{} sk_fetch_{}(", uniform.element->glsl, uniform.symbol));
   if (function != std::string_view::npos) {

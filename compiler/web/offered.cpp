@@ -77,8 +77,8 @@ std::string whyTooLarge(const Kernel& kernel) {
   const sk::assemble::Profile profile = webProfile();
   if (fitsOnePass(kernel, profile) || planOf(kernel) != nullptr) return {};
   return fmt::format(
-      "its streams have more than {} planes to write or {} to read, and passes that share textures do not "
-      "run in browsers yet; divide it, or put scalars together in vectors",
+      "its streams have more than {} planes to write or {} to read, and no passes "
+      "of these sizes compute it; divide it, or put scalars together in vectors",
       profile.drawBuffers, profile.textureUnits);
 }
 

@@ -122,7 +122,8 @@ class Needs {
              "set .periodic for it",
              gather.name, parts.split()[d], d);
       }
-      // Of two parts, each is before and after the other: an element may be in both halos, and both must have it.
+      // With two parts, each is the neighbor of the other on both sides. An element may lie in both halos, so both have
+      // one depth.
       if (parts.split()[d] == 2 && parts.isPeriodic(d)) below = above = std::max(below, above);
       const auto k = static_cast<std::size_t>(d);
       depth.below[k] = below;

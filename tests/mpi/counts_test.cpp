@@ -38,7 +38,7 @@ void checkCounts(const sk::Domain& domain, const std::vector<bool>& periodic,
   CHECK(static_cast<double>(domain.statistics().bytes) == static_cast<double>(exchanges) * sent.bytes);
 }
 
-/// All splits of a rank's number in so many dimensions.
+/// Returns every way to divide `rank` dimensions among the ranks.
 std::vector<Extents> splits(std::size_t rank) { return sk_tool::processGrids(ranksOfWorld(), rank); }
 
 sk::Index indexOf(const Extents& parts) {

@@ -47,7 +47,7 @@ struct StreamRegion {
   /// Element i is number first + sum(i[d] * stride[d]) of the stream, row-major; distances are above 0.
   Index stride = {};
   std::int64_t first = 0;
-  /// Of a stream that several processes share (sk/mpi.hpp): that one; `stream` is null, and `shape` the whole.
+  /// Set if several processes share the stream (sk/mpi.hpp); `stream` is then null, and `shape` is the shape of the whole.
   detail::DistributedStream* distributed = nullptr;
   Placement placement = {};  ///< what kernels see: a part of a whole, or these elements alone
 };

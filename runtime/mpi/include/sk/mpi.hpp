@@ -46,7 +46,7 @@ struct DomainOptions {
   std::array<bool, maxRank> periodic = {};
   /// The number of parts in each dimension; their product is the number of ranks. If empty, the grid with the least surface.
   Index split = {};
-  /// How many calls that read neighbors share an exchange: halos are so many times as deep, and the elements in them are
+  /// How many calls that read neighbors share an exchange. Halos are deeper by this factor, and the elements in them are
   /// computed by both sides. Fewer messages, more work.
   int exchangeEvery = 1;
   /// Whether a call computes elements that need no halo while messages are under way.

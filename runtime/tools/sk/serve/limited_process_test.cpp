@@ -33,7 +33,7 @@ TEST_CASE("A program that is not there is not started") {
   CHECK(sk_tool::runLimited({"/no/such/program"}, {}).end == End::NotStarted);
 }
 
-TEST_CASE("A signal that ends a program is told") {
+TEST_CASE("A signal that ends a program is reported") {
   const ProcessResult result = shell("kill -SEGV $$");
   CHECK(result.end == End::Signal);
   CHECK(result.status == SIGSEGV);
