@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "combination.hpp"
+#include "device/staging.hpp"
 #include "domain/decomposition.hpp"
 #include "messages.hpp"
 #include "sk/mpi.hpp"
@@ -52,6 +53,13 @@ class DomainStreamState final : public detail::DistributedStream {
   detail::StreamOwner local_, spare_;
 };
 
+/// The memory through which halos reach a GL device's streams.
+struct HaloStaging {
+  bool isChosen = false;  ///< whether the ranks have found out if all of them have it
+  std::unique_ptr<Staging> toHost;  ///< null: at least one has not
+  std::unique_ptr<Staging> toDevice;
+};
+
 class DomainState final : public detail::Distribution {
  public:
   DomainState(MPI_Comm communicator, const DomainOptions& options);
@@ -83,6 +91,7 @@ class DomainState final : public detail::Distribution {
   std::vector<DomainStreamState*> streams;
   detail::TransferOwner* later =
       nullptr;  ///< where the next reduction to a value is kept instead of awaited; or null
+  HaloStaging staging;  ///< ends before the device
   std::vector<std::vector<std::byte>> sendBuffers, receiveBuffers;  ///< one for each direction, kept
 
  private:

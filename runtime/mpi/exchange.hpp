@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// The exchange of halos: one message to each neighbor, with the halos of all streams of a call. Native devices send and
-// receive in the streams' own memory if all that a neighbor gets is contiguous there; otherwise, elements are packed.
+// The exchange of halos: one message to each neighbor, with the halos of all streams of a call.
 #pragma once
 
 #include <memory>
 #include <vector>
 
+#include "carrier.hpp"
 #include "domain_state.hpp"
 
 namespace sk::mpi {
@@ -27,14 +27,20 @@ class Exchange {
   void finish();
 
  private:
-  struct Direction;
+  struct Neighbor {
+    int rank;
+    std::size_t opposite;  ///< the direction in which it sees this rank
+  };
 
+  void addNeighbor(std::size_t direction);
   void post();
 
   DomainState& domain_;
   std::vector<HaloRequest> requests_;
-  std::vector<Direction> neighbors_;
-  Messages messages_;
+  std::vector<Neighbor> neighbors_;
+  std::vector<Strips> strips_;  ///< for each neighbor
+  std::unique_ptr<Carrier> carrier_;
+  Messages messages_;  ///< ends before what it sends and receives
 };
 
 }  // namespace sk::mpi

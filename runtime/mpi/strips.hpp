@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The bytes of boxes of streams, as they travel between ranks: of native devices, as they are stored, one array after the
-// other; of others, as elements in host memory.
+// The bytes of boxes of streams, as they travel between ranks.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +24,10 @@ bool isInMemory(const StreamRegion& region);
 std::vector<Span> spansOf(const StreamRegion& region);
 /// Whether a GL device stores the floats of a region as doubles, which travel as such.
 bool holdsReals(const StreamRegion& region);
-/// The bytes of a region.
+/// The bytes of a region: as a native device stores them, one array after the other, or as elements of a GL device.
 std::size_t bytesOf(const StreamRegion& region);
+/// The bytes of a region of a GL device in staging memory (device/staging.hpp).
+std::size_t bytesStaged(const StreamRegion& region);
 
 /// Copies a region's bytes between a native stream and a buffer.
 void pack(std::span<const Span> from, std::byte* to);

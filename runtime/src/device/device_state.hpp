@@ -18,6 +18,7 @@
 #include "device/loop_runner.hpp"
 #include "device/recorded_call.hpp"
 #include "device/scalar_pass.hpp"
+#include "device/staging.hpp"
 #include "device/stream_state.hpp"
 #include "sk/call.hpp"
 #include "sk/device.hpp"
@@ -130,6 +131,10 @@ class DeviceState {
   /// Reorders streams and returns the number of elements that come first, if it chooses them; nullopt, without any
   /// effect, if the host is faster. Throws sk::Error if memory is exhausted; nothing has moved then.
   virtual std::optional<std::int64_t> reorder(const Reordering&) { return std::nullopt; }
+
+  /// Staging memory, which must not outlive the device; null if its elements are in host memory, or if programs of its own
+  /// do not reach any. All streams may be staged.
+  virtual std::unique_ptr<Staging> makeStaging(Staging::Way) { return nullptr; }
 
   /// Bytes of memory for streams that are free now; nullopt if nobody tells.
   virtual std::optional<std::int64_t> availableMemory() = 0;

@@ -66,7 +66,7 @@ class BoundState {
     }
   }
   /// Binds all layers of a texture as an image that programs read and write, with a format of the same size.
-  void atomicImage(int unit, GLuint name, GLenum format) {
+  void readWriteImage(int unit, GLuint name, GLenum format) {
     spoil();
     bindImage(unit, name, format, GL_READ_WRITE);
     images_[static_cast<std::size_t>(unit)] = unknown;

@@ -54,6 +54,7 @@ void readCompute(Capabilities& found) {
     GLint64 storageBytes = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storageBytes);
     found.storageBytes = storageBytes;
+    found.mapsStorage = found.version >= 44 || epoxy_has_gl_extension("GL_ARB_buffer_storage");
   }
 }
 

@@ -50,6 +50,9 @@ inline void finishStorage(BoundState& bound) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
+/// Hands all commands to the device.
+inline void flush() { glFlush(); }
+
 /// Waits until the device has finished all commands.
 inline void finish() { glFinish(); }
 

@@ -86,6 +86,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       pool(bound, framebuffers),
       appendPrograms(*this),
       sortPrograms(*this),
+      stagingPrograms(*this),
       binaries(cache, capabilities, driverKey(name(), driver(), profileName())),
       sharesContext_(choices.sharesContext),
       sortsByDispatches_(choices.target != Target::Fragment && capabilities.hasCompute &&

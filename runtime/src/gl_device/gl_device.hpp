@@ -34,6 +34,7 @@
 #include "gl_device/program/variant.hpp"
 #include "gl_device/sort/device_sort.hpp"
 #include "gl_device/transfer/buffered_transfer.hpp"
+#include "gl_device/transfer/gl_staging.hpp"
 #include "gl_device/transfer/transfer_buffers.hpp"
 #include "native/rest_threads.hpp"
 #include "probe/target_choice.hpp"
@@ -104,6 +105,7 @@ class GlDevice final : public DeviceState {
   void reduce(const ResolvedReduction& call) override;
   bool foldsBesideOutputs(const ResolvedReduction& call) override;
   std::optional<std::int64_t> reorder(const Reordering& reordering) override;
+  std::unique_ptr<Staging> makeStaging(Staging::Way way) override;
 
   /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
   /// their purpose `whatFor`, if memory is exhausted.
@@ -188,6 +190,7 @@ class GlDevice final : public DeviceState {
   TexturePool pool;
   AppendPrograms appendPrograms;
   SortPrograms sortPrograms;
+  StagingPrograms stagingPrograms;
   gl::Samplers samplers{bound.deletions};
   gl::ValueBuffer values;
   gl::FoldBuffer folded;  ///< of dispatches that fold beside outputs

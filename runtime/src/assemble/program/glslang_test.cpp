@@ -19,6 +19,7 @@
 #include "assemble/reduce/group_fold.hpp"
 #include "assemble/reduce/reduce_program.hpp"
 #include "assemble/sort/radix_program.hpp"
+#include "assemble/transfer/staging_program.hpp"
 
 using namespace sk::assemble;
 using namespace sk::program;
@@ -242,6 +243,13 @@ TEST_CASE("glslang accepts the programs of sorts, and of scans by runs and tiles
     programs.add(profile,
                  radixProgram(profile, step, {.reads = true, .writes = step == RadixStep::MovePairs}));
   programs.add(profile, radixProgram(profile, RadixStep::MoveFirst, {.writes = true}));
+  for (const std::string_view format :
+       {"R32F", "RGBA32F", "RG16F", "R8UI", "RGBA32UI", "R8I", "RG32I", "R8"}) {
+    for (const bool writesTexels : {true, false}) {
+      for (const bool isLayered : {true, false})
+        programs.add(profile, stagingProgram(profile, writesTexels, format, isLayered));
+    }
+  }
   for (const Reduction* reduction : {&samples::sum, &samples::firstHit}) {
     for (const ScanPass scan : {ScanPass::Folds, ScanPass::Inclusive, ScanPass::Exclusive}) {
       if (scan == ScanPass::Exclusive && reduction == &samples::firstHit) continue;  // it has no identity

@@ -363,7 +363,7 @@ class AppendDispatch {
       }
       if (parameter.scatter != program::ScatterOp::Store && !drawn.empty()) {
         const bool isInt = parameter.element->fields.front().scalar == program::Scalar::Int;
-        device_.bound.atomicImage(unit, drawn.front().texture.name(), isInt ? GL_R32I : GL_R32UI);
+        device_.bound.readWriteImage(unit, drawn.front().texture.name(), isInt ? GL_R32I : GL_R32UI);
         return;
       }
     } else if (parameter.role == Role::VariableOutput) {

@@ -63,7 +63,7 @@ void ListedScatter::combine(GlStream& stream) {
   if (count_ != nullptr) bindPlanes(device_, {count_, 1}, 1);
   if (!assemble::isPair(scatter_)) bindPlanes(device_, values_.planes, 2);
   const gl::Texture& target = stream.planes.front().texture;
-  device_.bound.atomicImage(0, target.name(), target.format().internalFormat);
+  device_.bound.readWriteImage(0, target.name(), target.format().internalFormat);
   program.set(device_.bound, "sk_length", length_);
   program.set(device_.bound, "sk_tiles", tiles);
   program.set(device_.bound, "sk_keys_shift", sort_.pairs->shift());

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// Compares transfers through pixel buffers with direct ones.
+// Compares transfers through pixel buffers, and through staging memory, with direct ones.
 #include "gl_device/transfer/buffered_transfer.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -93,6 +94,48 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
   CHECK(areEqual(element, given, found));
 }
 
+/// Takes a region through staging memory to a stream that lies in another way, whose other elements stay.
+void checkStaged(GlDevice& device, const program::Element& element, const StreamRegion& region) {
+  const std::unique_ptr<Staging> toHost = device.makeStaging(Staging::Way::ToHost),
+                                 toDevice = device.makeStaging(Staging::Way::ToDevice);
+  if (!toHost) return;
+  INFO("staged " << element.name << " of shape " << toString(region.stream->shape) << ", "
+                 << toString(region.shape) << " from " << toString(region.begin));
+  const StreamRegion whole = detail::wholeRegion(region.stream);
+  const std::int64_t count = whole.shape.size();
+  const std::unique_ptr<StreamState> other = device.createStream(element, whole.shape, Storage::Single);
+  const StreamRegion otherWhole = detail::wholeRegion(other.get());
+  StreamRegion target = region;
+  target.stream = other.get();
+  for (const bool isUnpacked : {false, true}) {
+    const std::vector<std::byte> given = bitsOf(element, count), before = bitsOf(element, count);
+    std::vector<std::byte> expected(static_cast<std::size_t>(region.shape.size()) * element.size),
+        found(expected), after(given.size());
+    region.stream->write(whole, given.data());
+    other->write(otherWhole, before.data());
+    if (isUnpacked) static_cast<void>(other->texture(0));
+    constexpr std::size_t offset = 16;  // something else may lie before it
+    const std::size_t bytes = offset + static_cast<std::size_t>(region.shape.size()) * 64;
+    const std::byte* const packed = toHost->room(bytes);
+    toHost->copy(region, offset);
+    toHost->flush();
+    toHost->wait();
+    std::memcpy(toDevice->room(bytes), packed, bytes);
+    toDevice->copy(target, offset);
+    toDevice->flush();
+    region.stream->read(region, expected.data());
+    other->read(target, found.data());
+    CHECK(areEqual(element, expected, found));
+    other->write(target, expected.data());
+    other->read(otherWhole, after.data());
+    other->write(otherWhole, before.data());
+    other->write(target, expected.data());
+    std::vector<std::byte> wanted(after.size());
+    other->read(otherWhole, wanted.data());
+    CHECK(areEqual(element, wanted, after));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("what goes through buffers of the driver's is what goes directly") {
@@ -114,6 +157,8 @@ TEST_CASE("what goes through buffers of the driver's is what goes directly") {
         end[d] = shape[d] - shape[d] / 4;
       }
       checkRegion(device, *element, detail::partOf(whole, begin, end));
+      checkStaged(device, *element, whole);
+      checkStaged(device, *element, detail::partOf(whole, begin, end));
     }
   }
 }

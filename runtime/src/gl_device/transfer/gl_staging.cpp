@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "gl_device/transfer/gl_staging.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "assemble/transfer/staging_program.hpp"
+#include "gl/commands.hpp"
+#include "gl_device/gl_device.hpp"
+#include "gl_device/gl_stream.hpp"
+#include "gl_device/pass/pass.hpp"
+#include "sk/error.hpp"
+
+namespace sk {
+
+using assemble::RegionLayout;
+
+namespace {
+
+constexpr std::int32_t log2OfLanes = 2;
+
+std::int32_t laneBits(const RegionLayout& box) { return box.packed ? log2OfLanes : 0; }
+
+std::int64_t stagedTexels(const RegionLayout& box) {
+  const std::int32_t bits = laneBits(box);
+  const std::int32_t end = (box.origin[0] + box.extent[0] - 1) >> bits;
+  return std::int64_t{end - (box.origin[0] >> bits) + 1} * box.extent[1] * box.extent[2] * box.extent[3];
+}
+
+}  // namespace
+
+GlStaging::GlStaging(GlDevice& device, Way way)
+    : device_(device),
+      way_(way),
+      buffer_(way == Way::ToHost ? gl::MappedBuffer::Access::HostReads
+                                 : gl::MappedBuffer::Access::HostWrites) {}
+
+bool GlStaging::isPossible(const GlDevice& device) {
+  return device.capabilities.hasCompute && device.capabilities.mapsStorage &&
+         device.target != Target::Fragment;
+}
+
+std::byte* GlStaging::room(std::size_t bytes) {
+  wait();
+  const DeviceScope scope(device_);
+  const auto size = static_cast<std::int64_t>(bytes);
+  if (size > device_.capabilities.storageBytes || !buffer_.reserve(device_.bound, bytes)) {
+    device_.throwIfLost();
+    throw Error(
+        fmt::format("'{}' has no memory for {} KiB of halos; divide the domain over more ranks, or exchange "
+                    "them more often",
+                    device_.name(), bytes >> 10),
+        Error::Kind::Memory);
+  }
+  return buffer_.bytes();
+}
+
+void GlStaging::copy(const StreamRegion& box, std::size_t offset) {
+  const TraceScope traced(device_.trace.get(), "transfer", way_ == Way::ToHost ? "pack" : "unpack");
+  const DeviceScope scope(device_);
+  GlStream& stream = glStream(box);
+  const RegionLayout place = regionLayoutOf(box, stream.layout);
+  const auto count = static_cast<std::size_t>(box.shape.size());
+  std::size_t word = offset / 4;
+  if (way_ == Way::ToDevice) stream.isBroken = true;
+  for (std::size_t i = 0; i < stream.planes.size(); ++i) {
+    const int channels = stream.held().fields[i].scalar == program::Scalar::Double
+                             ? 2 * stream.held().fields[i].width
+                             : stream.held().fields[i].width;
+    copyPlane(stream.planes[i], place, channels, word);
+    word += count * static_cast<std::size_t>(channels);
+  }
+  if (way_ == Way::ToDevice) stream.setWritten();
+}
+
+void GlStaging::copyPlane(const RenderTarget& plane, const RegionLayout& box, int channels,
+                          std::size_t word) {
+  gl::BoundState& bound = device_.bound;
+  const gl::Texture& texture = plane.texture;
+  IntegerProgram& program = device_.stagingPrograms.of(way_, texture.format(), texture.isLayered());
+  bound.program(program.program().name());
+  if (way_ == Way::ToHost) {
+    bound.texture(0, texture.name(), texture.isLayered());
+    bound.sampler(0, device_.samplers.nearest());
+  } else {
+    bound.readWriteImage(0, texture.name(), texture.format().internalFormat);
+  }
+  buffer_.bind(bound);
+  program.set(bound, "sk_origin", box.origin);
+  program.set(bound, "sk_extent", box.extent);
+  program.set(bound, "sk_stride", box.stride);
+  program.set(bound, "sk_shift", box.linear ? box.shift : -1);
+  program.set(bound, "sk_lane_bits", laneBits(box));
+  program.set(bound, "sk_channels", channels);
+  program.set(bound, "sk_first", static_cast<std::int32_t>(word));
+  if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(bound);
+  constexpr std::int64_t mostGroups = 65535;  // per dimension; guaranteed by GL 4.3
+  const std::int64_t groups = (stagedTexels(box) + assemble::stagingGroup - 1) / assemble::stagingGroup;
+  const std::int64_t inX = std::min(groups, mostGroups);
+  gl::dispatch(bound, static_cast<GLsizei>(inX), static_cast<GLsizei>((groups + inX - 1) / inX));
+}
+
+void GlStaging::flush() {
+  const DeviceScope scope(device_);
+  gl::finishMapped(device_.bound);
+  fence_ = gl::Fence::insert(device_.bound.deletions);
+  if (!fence_) device_.throwPendingError();
+}
+
+void GlStaging::wait() {
+  if (!fence_) return;
+  const TraceScope traced(device_.trace.get(), "wait", "halos");
+  const DeviceScope scope(device_);
+  gl::flush();  // what follows the copies, too, runs meanwhile
+  fence_.wait();
+  fence_ = {};
+}
+
+std::unique_ptr<Staging> GlDevice::makeStaging(Staging::Way way) {
+  if (!GlStaging::isPossible(*this)) return nullptr;
+  return std::make_unique<GlStaging>(*this, way);
+}
+
+IntegerProgram& StagingPrograms::of(Staging::Way way, const gl::Format& format, bool isLayered) {
+  std::unique_ptr<IntegerProgram>& known =
+      programs_[static_cast<std::size_t>(way)][std::pair(format.index, isLayered)];
+  if (known) return *known;
+  std::string log;
+  const bool writesTexels = way == Staging::Way::ToDevice;
+  gl::Program program =
+      ProgramBuild(
+          device_,
+          {{}, assemble::stagingProgram(device_.computeProfile, writesTexels, format.name, isLayered)})
+          .finish(device_, log);
+  if (!program) {
+    device_.throwIfLost();
+    throw Error(
+        fmt::format("the driver of '{}' refuses a program that copies halos:\n{}", device_.name(), log),
+        Error::Kind::Compile);
+  }
+  known = std::make_unique<IntegerProgram>(std::move(program));
+  device_.bound.program(known->program().name());
+  known->program().setSampler("sk_texels", 0);
+  return *known;
+}
+
+}  // namespace sk

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+//
+// Staging memory of a GL device: buffers that stay mapped, and compute programs.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "assemble/region_layout.hpp"
+#include "device/staging.hpp"
+#include "gl/fence.hpp"
+#include "gl/format.hpp"
+#include "gl/mapped_buffer.hpp"
+#include "gl_device/program/integer_program.hpp"
+
+namespace sk {
+
+class GlDevice;
+struct RenderTarget;
+
+/// Its programs, which are compiled on first use and kept as long as the device.
+class StagingPrograms {
+ public:
+  explicit StagingPrograms(GlDevice& device) : device_(device) {}
+  /// Throws sk::Error if the driver rejects it.
+  IntegerProgram& of(Staging::Way way, const gl::Format& format, bool isLayered);
+
+ private:
+  GlDevice& device_;
+  std::map<std::pair<std::size_t, bool>, std::unique_ptr<IntegerProgram>> programs_[2];
+};
+
+class GlStaging final : public Staging {
+ public:
+  GlStaging(GlDevice& device, Way way);
+  /// Whether a device has what it takes: GL 4.4, or 4.3 with GL_ARB_buffer_storage.
+  static bool isPossible(const GlDevice& device);
+
+  std::byte* room(std::size_t bytes) override;
+  void copy(const StreamRegion& box, std::size_t offset) override;
+  void flush() override;
+  void wait() override;
+
+ private:
+  void copyPlane(const RenderTarget& plane, const assemble::RegionLayout& box, int channels,
+                 std::size_t word);
+
+  GlDevice& device_;
+  const Way way_;
+  gl::MappedBuffer buffer_;
+  gl::Fence fence_;
+};
+
+}  // namespace sk
