@@ -25,9 +25,10 @@ class Staging {
   /// Makes room for `bytes` undefined bytes, once the device has finished with those before. Throws sk::Error if memory is
   /// exhausted. Pointers into the memory are valid until the next call.
   virtual std::byte* room(std::size_t bytes) = 0;
-  /// Queues the copy of a box, which is not empty, to the memory or from it, at a multiple of 4 bytes.
+  /// Adds the copy of a box, which is not empty, to the memory or from it, at a multiple of 4 bytes. Streams must stay until
+  /// flush().
   virtual void copy(const StreamRegion& box, std::size_t offset) = 0;
-  /// Ends the copies, and begins to carry them out.
+  /// Begins to carry out all copies, those of one stream together.
   virtual void flush() = 0;
   /// Waits until the copies have been carried out.
   virtual void wait() = 0;

@@ -31,6 +31,7 @@ std::string stagingProgram(const Profile& profile, bool writesTexels, std::strin
   }
   text += library::stagingHead;
   text += writesTexels ? library::unpackTexels : library::packTexels;
+  text += library::stagingMain;
   return text;
 }
 

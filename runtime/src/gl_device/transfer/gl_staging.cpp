@@ -2,7 +2,9 @@
 #include "gl_device/transfer/gl_staging.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -20,6 +22,17 @@ using assemble::RegionLayout;
 namespace {
 
 constexpr std::int32_t log2OfLanes = 2;
+
+/// The uniforms of a box.
+struct BoxNames {
+  std::string_view origin, extent, first;
+};
+constexpr std::array<BoxNames, assemble::stagedBoxes> names{{
+    {"sk_origin[0]", "sk_extent[0]", "sk_first[0]"},
+    {"sk_origin[1]", "sk_extent[1]", "sk_first[1]"},
+    {"sk_origin[2]", "sk_extent[2]", "sk_first[2]"},
+    {"sk_origin[3]", "sk_extent[3]", "sk_first[3]"},
+}};
 
 std::int32_t laneBits(const RegionLayout& box) { return box.packed ? log2OfLanes : 0; }
 
@@ -58,27 +71,44 @@ std::byte* GlStaging::room(std::size_t bytes) {
 }
 
 void GlStaging::copy(const StreamRegion& box, std::size_t offset) {
-  const TraceScope traced(device_.trace.get(), "transfer", way_ == Way::ToHost ? "pack" : "unpack");
-  const DeviceScope scope(device_);
   GlStream& stream = glStream(box);
   const RegionLayout place = regionLayoutOf(box, stream.layout);
   const auto count = static_cast<std::size_t>(box.shape.size());
   std::size_t word = offset / 4;
-  if (way_ == Way::ToDevice) stream.isBroken = true;
   for (std::size_t i = 0; i < stream.planes.size(); ++i) {
-    const int channels = stream.held().fields[i].scalar == program::Scalar::Double
-                             ? 2 * stream.held().fields[i].width
-                             : stream.held().fields[i].width;
-    copyPlane(stream.planes[i], place, channels, word);
+    const program::Field& field = stream.held().fields[i];
+    const int channels = field.scalar == program::Scalar::Double ? 2 * field.width : field.width;
+    boxes_.push_back({&stream, i, channels, place, static_cast<std::int32_t>(word)});
     word += count * static_cast<std::size_t>(channels);
   }
-  if (way_ == Way::ToDevice) stream.setWritten();
 }
 
-void GlStaging::copyPlane(const RenderTarget& plane, const RegionLayout& box, int channels,
-                          std::size_t word) {
+void GlStaging::flush() {
+  const TraceScope traced(device_.trace.get(), "transfer", way_ == Way::ToHost ? "pack" : "unpack");
+  const DeviceScope scope(device_);
+  std::ranges::stable_sort(boxes_, {}, [](const PlaneBox& box) { return std::pair(box.stream, box.plane); });
+  const std::span<const PlaneBox> all = boxes_;
+  for (std::size_t begin = 0; begin < all.size();) {
+    std::size_t end = begin + 1;
+    while (end < all.size() && end - begin < assemble::stagedBoxes && all[end].isOfPlane(all[begin])) ++end;
+    if (way_ == Way::ToDevice) all[begin].stream->isBroken = true;
+    copyBoxes(all.subspan(begin, end - begin));
+    begin = end;
+  }
+  if (way_ == Way::ToDevice) {
+    for (const PlaneBox& box : boxes_) box.stream->setWritten();
+  }
+  boxes_.clear();
+  gl::finishMapped(device_.bound);
+  fence_ = gl::Fence::insert(device_.bound.deletions);
+  if (!fence_) device_.throwPendingError();
+}
+
+/// Copies boxes of one plane.
+void GlStaging::copyBoxes(std::span<const PlaneBox> boxes) {
   gl::BoundState& bound = device_.bound;
-  const gl::Texture& texture = plane.texture;
+  const PlaneBox& first = boxes.front();
+  const gl::Texture& texture = first.stream->planes[first.plane].texture;
   IntegerProgram& program = device_.stagingPrograms.of(way_, texture.format(), texture.isLayered());
   bound.program(program.program().name());
   if (way_ == Way::ToHost) {
@@ -88,25 +118,22 @@ void GlStaging::copyPlane(const RenderTarget& plane, const RegionLayout& box, in
     bound.readWriteImage(0, texture.name(), texture.format().internalFormat);
   }
   buffer_.bind(bound);
-  program.set(bound, "sk_origin", box.origin);
-  program.set(bound, "sk_extent", box.extent);
-  program.set(bound, "sk_stride", box.stride);
-  program.set(bound, "sk_shift", box.linear ? box.shift : -1);
-  program.set(bound, "sk_lane_bits", laneBits(box));
-  program.set(bound, "sk_channels", channels);
-  program.set(bound, "sk_first", static_cast<std::int32_t>(word));
+  program.set(bound, "sk_stride", first.place.stride);
+  program.set(bound, "sk_shift", first.place.linear ? first.place.shift : -1);
+  program.set(bound, "sk_lane_bits", laneBits(first.place));
+  program.set(bound, "sk_channels", first.channels);
+  std::int64_t most = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    program.set(bound, names[i].origin, boxes[i].place.origin);
+    program.set(bound, names[i].extent, boxes[i].place.extent);
+    program.set(bound, names[i].first, boxes[i].firstWord);
+    most = std::max(most, stagedTexels(boxes[i].place));
+  }
   if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(bound);
-  constexpr std::int64_t mostGroups = 65535;  // per dimension; guaranteed by GL 4.3
-  const std::int64_t groups = (stagedTexels(box) + assemble::stagingGroup - 1) / assemble::stagingGroup;
-  const std::int64_t inX = std::min(groups, mostGroups);
-  gl::dispatch(bound, static_cast<GLsizei>(inX), static_cast<GLsizei>((groups + inX - 1) / inX));
-}
-
-void GlStaging::flush() {
-  const DeviceScope scope(device_);
-  gl::finishMapped(device_.bound);
-  fence_ = gl::Fence::insert(device_.bound.deletions);
-  if (!fence_) device_.throwPendingError();
+  constexpr std::int64_t mostGroups =
+      4096;  // enough for any device; each takes the texels that are left in turn
+  const std::int64_t groups = (most + assemble::stagingGroup - 1) / assemble::stagingGroup;
+  gl::dispatch(bound, static_cast<GLsizei>(std::min(groups, mostGroups)), static_cast<GLsizei>(boxes.size()));
 }
 
 void GlStaging::wait() {

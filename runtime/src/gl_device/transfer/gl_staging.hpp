@@ -5,7 +5,9 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "assemble/region_layout.hpp"
 #include "device/staging.hpp"
@@ -17,7 +19,7 @@
 namespace sk {
 
 class GlDevice;
-struct RenderTarget;
+class GlStream;
 
 /// Its programs, which are compiled on first use and kept as long as the device.
 class StagingPrograms {
@@ -43,12 +45,23 @@ class GlStaging final : public Staging {
   void wait() override;
 
  private:
-  void copyPlane(const RenderTarget& plane, const assemble::RegionLayout& box, int channels,
-                 std::size_t word);
+  /// A box of one plane.
+  struct PlaneBox {
+    GlStream* stream;
+    std::size_t plane;
+    int channels;  ///< of an element
+    assemble::RegionLayout place;
+    std::int32_t firstWord;
+
+    bool isOfPlane(const PlaneBox& other) const { return stream == other.stream && plane == other.plane; }
+  };
+
+  void copyBoxes(std::span<const PlaneBox> boxes);
 
   GlDevice& device_;
   const Way way_;
   gl::MappedBuffer buffer_;
+  std::vector<PlaneBox> boxes_;  ///< to be copied by flush()
   gl::Fence fence_;
 };
 
