@@ -29,8 +29,11 @@ class CallPlan {
   void addRequest(DomainStreamState* stream, const domain::Depth& depth);
   domain::Depth depthAfter(const DomainStreamState& stream) const;
   void replaceArguments();
+  bool isAlikeEverywhere() const;
+  std::vector<domain::Piece> piecesOf(const Box& box) const;
 
   DomainState& domain_;
+  const program::Kernel& kernel_;
   std::vector<Argument> arguments_;
   std::vector<SpreadArgument> spread_;
   std::vector<HaloRequest> requests_;

@@ -5,6 +5,7 @@
 #include "call_plan.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "call/box.hpp"
@@ -143,7 +144,7 @@ void refuseRecording(DomainState& domain, const Kernel& kernel) {
 
 CallPlan::CallPlan(DomainState& domain, const Kernel& kernel, std::span<const Argument> arguments,
                    const CallOptions& options)
-    : domain_(domain), arguments_(arguments.begin(), arguments.end()) {
+    : domain_(domain), kernel_(kernel), arguments_(arguments.begin(), arguments.end()) {
   refuseRecording(domain, kernel);
   domain.agree(&kernel, hashOf(kernel, options), kernel.name);
   spread_ = spreadArguments(domain, kernel, arguments);
@@ -217,6 +218,30 @@ void CallPlan::replaceArguments() {
   }
 }
 
+/// Whether the kernel computes the same wherever its elements are: it does not ask for indices, and no end of the whole is near.
+bool CallPlan::isAlikeEverywhere() const {
+  if (kernel_.usesIndex || kernel_.usesExtent) return false;
+  for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+    const program::Parameter& parameter = kernel_.parameters[i];
+    if (parameter.role == Role::Iterator || parameter.usesIndex || parameter.usesExtent) return false;
+    if (parameter.role != Role::Gather) continue;
+    const bool isSpread = std::ranges::any_of(
+        spread_, [&](const SpreadArgument& one) { return one.index == i && !one.isWritten; });
+    const bool isRelative =
+        parameter.boundary == program::Boundary::Wrap && !parameter.usesAt && !parameter.usesSample;
+    if (isSpread ? !isRelative : parameter.usesNear) return false;
+  }
+  return true;
+}
+
+std::vector<domain::Piece> CallPlan::piecesOf(const Box& box) const {
+  std::vector<domain::Piece> pieces = domain::piecesInside(box, domain_.parts.whole());
+  if (pieces.size() < 2 || !isAlikeEverywhere()) return pieces;
+  const std::optional<domain::Piece> moved = domain::movedInside(box, domain_.parts.whole());
+  if (moved) pieces = {*moved};
+  return pieces;
+}
+
 void CallPlan::run(const CallOptions& options, const Compute& compute) {
   const bool isOneBox = !options.box.isWhole() || domain_.parts.ranks() == 1;
   if (isOneBox) {
@@ -226,7 +251,7 @@ void CallPlan::run(const CallOptions& options, const Compute& compute) {
   }
   CallOptions part = options;
   const auto computeBox = [&](const Box& box) {
-    for (const domain::Piece& piece : domain::piecesInside(box, domain_.parts.whole())) {
+    for (const domain::Piece& piece : piecesOf(box)) {
       std::vector<Argument> moved = arguments_;
       for (Argument& argument : moved) {
         Index& origin = argument.region.placement.origin;

@@ -95,6 +95,31 @@ std::vector<float> diffused(const sk::Shape& shape, int steps) {
   return u.read();
 }
 
+TEST_CASE("kernels that do not ask where they are run beyond the ends of a torus in one piece") {
+  const sk::Shape shape{24, 24};
+  sk::Device device;
+  auto expected = device.stream<float>(shape), other = device.stream<float>(shape);
+  expected.write(starts(shape));
+  for (int step = 0; step < 4; ++step) {
+    skewed(expected, other);
+    spread(0.2F, other, expected);
+  }
+  for (const sk::Index& split : splits()) {
+    for (const int every : {1, 2}) {
+      sk::Domain domain(MPI_COMM_WORLD,
+                        {.shape = shape, .periodic = around, .split = split, .exchangeEvery = every});
+      auto u = domain.stream<float>(), v = domain.stream<float>();
+      u.fill(start);
+      for (int step = 0; step < 4; ++step) {
+        skewed(u, v);
+        spread(0.2F, v, u);
+      }
+      INFO("split " << sk::toString(domain.split()) << ", every " << every);
+      CHECK(areSame(wholeOf(u), expected.read()));
+    }
+  }
+}
+
 TEST_CASE("steps on a torus have the bits of one device") {
   const sk::Shape shape{14, 12};
   const std::vector<float> expected = diffused(shape, 7);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// mpi_weak_scaling ROWS COLUMNS [STEPS [EXCHANGE_EVERY [OVERLAP]]]: the time of a step of `diffuse` on a torus with ROWS x
+// mpi_weak_scaling ROWS COLUMNS [STEPS [EXCHANGE_EVERY [OVERLAP]]]: the time of a step of heat on a torus with ROWS x
 // COLUMNS elements per rank, on plain streams and on a domain, as medians of five rounds. With one rank, the quotient is
 // what a domain costs; with several, their times beside that of one rank are the efficiency. Both compute the same noise, and with
 // k = 0 it stays: GPUs store smooth textures compressed, and are up to 1.7 times as fast with them. Not a test.
@@ -66,7 +66,7 @@ void measure(std::int64_t rows, std::int64_t columns, int steps, int every, bool
     }
     u.write(noise);
     plain = timesOf(domain.device(), steps, [&] {
-      diffuse(0.0F, u, v);
+      spread(0.0F, u, v);
       std::swap(u, v);
     });
   }
@@ -74,7 +74,7 @@ void measure(std::int64_t rows, std::int64_t columns, int steps, int every, bool
   u.fill(start);
   domain.resetStatistics();
   const std::vector<double> divided = timesOf(domain.device(), steps, [&] {
-    diffuse(0.0F, u, v);
+    spread(0.0F, u, v);
     std::swap(u, v);
   });
   const sk::DomainStatistics sent = domain.statistics();

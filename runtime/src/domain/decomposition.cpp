@@ -236,6 +236,18 @@ std::vector<Piece> piecesInside(const Box& box, const Shape& whole) {
   return pieces;
 }
 
+std::optional<Piece> movedInside(const Box& box, const Shape& whole) {
+  Piece moved{box, Index::origin(whole.rank())};
+  for (int d = 0; d < whole.rank(); ++d) {
+    if (box.end[d] - box.begin[d] > whole[d]) return std::nullopt;
+    moved.shift[d] =
+        std::max<std::int64_t>(-box.begin[d], 0) - std::max<std::int64_t>(box.end[d] - whole[d], 0);
+    moved.box.begin[d] += moved.shift[d];
+    moved.box.end[d] += moved.shift[d];
+  }
+  return moved;
+}
+
 std::vector<Box> difference(const Box& all, const Box& inner) {
   if (isEmpty(inner)) return {all};
   std::vector<Box> boxes;

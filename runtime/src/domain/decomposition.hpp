@@ -79,6 +79,9 @@ struct Piece {
   Index shift;  ///< what was added to the indices
 };
 std::vector<Piece> piecesInside(const Box& box, const Shape& whole);
+/// A box that goes beyond an end, moved by as little as it takes to be in the whole: for who does not care about indices.
+/// Nullopt if it is larger than the whole.
+std::optional<Piece> movedInside(const Box& box, const Shape& whole);
 /// Boxes that together have the elements of `all` that `inner`, a part of it, does not have.
 std::vector<Box> difference(const Box& all, const Box& inner);
 

@@ -50,7 +50,8 @@ TEST_CASE("a rank sends what its neighbor receives") {
   CHECK(parts.haloOf(0, depth) == Depth{{1, 0}, {2, 1}});
 }
 
-TEST_CASE("the split with the least surface is chosen, where faces that are not contiguous count a little more") {
+TEST_CASE(
+    "the split with the least surface is chosen, where faces that are not contiguous count a little more") {
   CHECK(balancedSplit({100, 100}, 4) == Index{4, 1});
   CHECK(balancedSplit({100, 100}, 16) == Index{4, 4});
   CHECK(balancedSplit({100, 100}, 2) == Index{2, 1});
@@ -72,6 +73,14 @@ TEST_CASE("what is beyond an end lies at the other end") {
   CHECK(pieces[3].box == Box{{0, 0}, {3, 1}});
   CHECK(pieces[3].shift == Index{0, -8});
   CHECK(piecesInside({{3, 3}, {3, 4}}, {10, 8}).empty());
+}
+
+TEST_CASE("a box beyond an end is moved inside") {
+  const std::optional<Piece> moved = movedInside({{-2, 3}, {3, 9}}, {10, 8});
+  REQUIRE(moved);
+  CHECK(moved->box == Box{{0, 2}, {5, 8}});
+  CHECK(moved->shift == Index{2, -1});
+  CHECK_FALSE(movedInside({{-2, 0}, {9, 8}}, {10, 8}));
 }
 
 TEST_CASE("boxes around an interior have the rest, once") {
