@@ -85,10 +85,11 @@ export class Transfers {
     this.isPolling = true;
     const { gl } = this;
     const channel = new MessageChannel();
-    const quick = 64;
+    const quick = 16;
     let looks = 0;
     const again = () => (++looks < quick ? channel.port2.postMessage(null) : setTimeout(look, 1));
     const look = () => {
+      gl.flush(); // Chromium updates fences at each flush, otherwise only every 2 ms
       while (this.readbacks.length > 0) {
         const first = this.readbacks[0]!;
         const status = gl.clientWaitSync(first.sync, 0, 0);
