@@ -56,6 +56,11 @@ class Page:
             details = said["exceptionDetails"]
             self.messages.append(details.get("exception", {}).get("description", details["text"]))
 
+    def slow_frames(self, milliseconds):
+        """Pages that are opened from now on draw frames this far apart: while a test waits, moving pictures take the CPU."""
+        wait = f"const own = requestAnimationFrame; window.requestAnimationFrame = (draw) => setTimeout(() => own(draw), {milliseconds});"
+        self.send("Page.addScriptToEvaluateOnNewDocument", source=f"{{ {wait} }}")
+
     def open(self, address):
         answer = self.send("Page.navigate", url=address)
         assert "errorText" not in answer, f"{address}: {answer.get('errorText')}"
@@ -116,7 +121,9 @@ def page(kind=Page, *options):
         os.dup2(moved_out, 4)
 
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        command = chromium.command(folder, "--remote-debugging-pipe", *options, "about:blank")
+        # The page itself is drawn without SwiftShader, which would take most of the time.
+        software = ["--disable-gpu-rasterization", "--disable-gpu-compositing"]
+        command = chromium.command(folder, "--remote-debugging-pipe", *software, *options, "about:blank")
         nowhere = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         browser = subprocess.Popen(command, **nowhere, preexec_fn=descriptors, close_fds=False, start_new_session=True)
         os.close(theirs_in)

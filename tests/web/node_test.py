@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# node_test.py SOURCE SKC DECISIONS: the tests of runtime/web that need no browser, run by Node. DECISIONS prints what the C++
+# node_test.py SOURCE SKC DECISIONS BUILD: the tests of runtime/web that need no browser, run by Node. DECISIONS prints what the C++
 # runtime decides.
 import os
 import shutil
@@ -10,7 +10,7 @@ import tempfile
 
 import package
 
-source, skc, decisions = os.path.realpath(sys.argv[1]), os.path.realpath(sys.argv[2]), sys.argv[3]
+source, skc, decisions, build = os.path.realpath(sys.argv[1]), os.path.realpath(sys.argv[2]), sys.argv[3], sys.argv[4]
 here = os.path.dirname(os.path.realpath(__file__))
 
 node = shutil.which("node")
@@ -18,7 +18,7 @@ if not node:
     print("skipped: node is not installed; './dev test web' installs it")
     sys.exit(package.skipped)
 with tempfile.TemporaryDirectory() as folder:
-    package.build(source, f"{folder}/streamkernel")
+    package.build(source, f"{folder}/streamkernel", build)
     with open(f"{folder}/streamkernel/package.json", "w") as marker:
         marker.write('{"type": "module"}')
     with open(f"{folder}/decisions.json", "w") as corpus:

@@ -97,8 +97,8 @@ def check_link(page, address, editor):
     assert not page.messages, page.messages
 
 
-def try_page(share, editor):
-    with playground.served(sk, skc, share=share) as (host, port), devtools.page() as page:
+def try_page(page, share, editor):
+    with playground.served(sk, skc, share=share) as (host, port):
         page.look(1280, 800)
         check(page, f"http://{host}:{port}/", editor)
 
@@ -107,15 +107,16 @@ chromium.need()
 if not os.path.exists(f"{share}/package/dist/index.js"):
     print("skipped: the npm package is not built (--target web_package); './dev test web' builds it")
     sys.exit(chromium.skipped)
-with tempfile.TemporaryDirectory() as folder:
+with tempfile.TemporaryDirectory() as folder, devtools.page() as page:
+    page.slow_frames(200)
     os.symlink(f"{source}/runtime/web/playground", f"{folder}/playground")
     os.symlink(f"{share}/package", f"{folder}/package")
     began = time.monotonic()
     if os.path.exists(f"{share}/editor/editor.js"):
         os.symlink(f"{share}/editor", f"{folder}/editor")
-        try_page(folder, "codemirror")
+        try_page(page, folder, "codemirror")
         os.unlink(f"{folder}/editor")
     else:
         print("CodeMirror is not built (--target playground): the plain editor alone is tested")
-    try_page(folder, "plain")
+    try_page(page, folder, "plain")
 print(f"the playground edits, reports, draws and shares ({time.monotonic() - began:.0f} s)")

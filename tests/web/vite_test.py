@@ -104,6 +104,7 @@ with tempfile.TemporaryDirectory() as folder:
     for words in commands()[:-1]:
         typed(words, folder)
     with served(folder) as address, devtools.page() as page:
+        page.slow_frames(200)
         page.open(address)
         check_page(page, folder)
 print("a moving picture from an empty folder, hot reload, and skc's messages in the page")

@@ -20,8 +20,8 @@ seconds = 400  # a few, on a machine that has nothing else to do
 
 
 
-def check_document(folder):
-    """The modules of docs/browser.md, with the .sk files that it shows, are what TypeScript accepts."""
+def modules_of_document(folder):
+    """Writes the modules of docs/browser.md, with the .sk files that it shows."""
     with open(os.path.join(source, "docs/browser.md")) as document:
         blocks = re.findall(r"^```(?:sk|ts) file=(\S+)[^\n]*\n(.*?)^```", document.read(), re.M | re.S)
     for name, text in blocks:
@@ -31,17 +31,16 @@ def check_document(folder):
         subprocess.run([skc, "--emit=js", "-o", folder, os.path.join(folder, name)], check=True)
     modules = [os.path.join(folder, name) for name, _ in blocks if name.endswith(".ts")]
     assert modules, "docs/browser.md shows no module"
-    package.check_types(modules, folder)
+    return modules
 
 
 chromium.need()
 with tempfile.TemporaryDirectory() as folder:
-    package.build(source, f"{folder}/streamkernel")
+    package.build(source, f"{folder}/streamkernel", build)
     for name in ("calls.sk", "layouts.sk", "reductions.sk"):
         subprocess.run([skc, "--emit=js", "-o", folder, f"{here}/{name}"], check=True)
     shutil.copy(f"{here}/types.ts", folder)
-    package.check_types([f"{folder}/types.ts"], folder)
-    check_document(folder)
+    package.check_types([f"{folder}/types.ts", *modules_of_document(folder)], folder)
     with open(f"{folder}/expected.json", "w") as expected:
         subprocess.run([reference], stdout=expected, check=True)
     for name in ("index.html", "calls.mjs", "append.mjs", "devices.mjs", "layouts.mjs", "mistakes.mjs", "reductions.mjs"):

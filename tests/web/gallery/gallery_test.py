@@ -19,8 +19,6 @@ from driven import Driven, cpu_seconds
 
 site, is_update = sys.argv[1], "--update" in sys.argv
 chosen = [name for name in sys.argv[2:] if name != "--update"]
-# The page itself is drawn without SwiftShader, which would take most of the time.
-options = ["--disable-gpu-rasterization", "--disable-gpu-compositing"]
 # Drivers contract products and sums as they like, and SwiftShader compiles for the machine's CPU: after some steps fields differ in their last
 # bits, and so do codes of colours, by 1. Boiling and reactions make more of it: a cell may boil a step earlier. A page that paints
 # nothing, or another place, differs by 10 and more.
@@ -217,7 +215,7 @@ if not os.path.exists(f"{site}/index.html"):
 server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Server, directory=site))
 threading.Thread(target=server.serve_forever, daemon=True).start()
 where = f"http://127.0.0.1:{server.server_address[1]}/some/where"
-with devtools.page(Driven, *options) as tab:
+with devtools.page(Driven) as tab:
     check_index(tab, where)
     for page, query in pages.items():
         if chosen and page not in chosen:
