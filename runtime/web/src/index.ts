@@ -20,7 +20,7 @@ export { Stream } from './stream.js';
 export { stretch, stride, type Fitted, type View } from './view.js';
 export type {
   ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Held, Input, Iterate, Kernel, KernelOptions, NotOffered, Output, Pushed, Reduce, Scan, ScanOptions,
-  Scattered, ShapeOf, Struct, Value,
+  Scattered, ShapeOf, Struct, Value, ValueOf,
 } from './types.js';
 
 /** What FILE.sk.js exports under a name: a function, with what Device.compile() needs. */

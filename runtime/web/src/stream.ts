@@ -4,11 +4,12 @@
 import type { Device, Plane } from './device.js';
 import { channelsOf, mayPackElement, newArrays, planeArray, takeChannels, texelsBefore } from './elements.js';
 import { SkError } from './error.js';
+import { copy, fill } from './filling.js';
 import { formatOf } from './format.js';
 import type { Element, Field } from './generated.js';
 import { lanes, shapeText, sizeOf, type Layout } from './layout.js';
 import { Program } from './program.js';
-import type { ArrayOf, ElementType, ShapeOf } from './types.js';
+import type { ArrayOf, ElementType, ShapeOf, ValueOf } from './types.js';
 import { viewOf, type View } from './view.js';
 
 /** The largest extent of a stream. */
@@ -61,6 +62,16 @@ export class Stream<T extends ElementType, R extends number> {
   /** The box from `begin` (inclusive) to `end` (exclusive), rows first: a view. Throws SkError unless it is inside the stream. */
   domain(begin: ShapeOf<R>, end: ShapeOf<R>): View<T, R> {
     return viewOf(this).domain(begin, end);
+  }
+
+  /** Gives all elements one value, on the device. Normalized types take the integers that they store. */
+  fill(value: ValueOf<T>): void {
+    fill(this, value);
+  }
+
+  /** Copies the elements, on the device, to a stream or view of the same shape, of the same device. Both may overlap. */
+  copyTo(target: Stream<T, R> | View<T, R>): void {
+    copy(this, target);
   }
 
   /** Whether four elements may share a texel, as far as the type says. @internal */

@@ -60,6 +60,9 @@ export type Value<T extends BuiltIn> = T extends `${string}x${string}`
   ? readonly [One<T>, One<T>, One<T>, One<T>]
   : One<T>;
 
+/** One element of a stream. */
+export type ValueOf<T extends ElementType> = T extends Struct<string, infer One, unknown> ? One : T extends BuiltIn ? Value<T> : never;
+
 /** What a kernel reads element by element, `T x<>`: a stream with the shape of the output, or 1 where it repeats. */
 export type Input<T extends ElementType> = Stream<T, number> | View<T, number> | Fitted<T>;
 /** What a kernel reads at any index, `T a[][]`. */

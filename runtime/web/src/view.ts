@@ -5,10 +5,11 @@
 import { copyRegion, type Region } from './copy.js';
 import type { Device } from './device.js';
 import { SkError } from './error.js';
+import { copy, fill } from './filling.js';
 import type { Element } from './generated.js';
 import { shapeText, sizeOf, stridesOf, xFirst, type Index4, type Layout } from './layout.js';
 import { Stream } from './stream.js';
-import type { ArrayOf, ElementType, ShapeOf } from './types.js';
+import type { ArrayOf, ElementType, ShapeOf, ValueOf } from './types.js';
 
 type AnyStream = Stream<any, number>;
 
@@ -83,6 +84,16 @@ export class View<T extends ElementType, R extends number> {
     const arrays = whole.read();
     whole.dispose();
     return arrays;
+  }
+
+  /** As Stream.fill(). */
+  fill(value: ValueOf<T>): void {
+    fill(this, value);
+  }
+
+  /** As Stream.copyTo(). */
+  copyTo(target: Stream<T, R> | View<T, R>): void {
+    copy(this, target);
   }
 
   /** A stream with these elements. @internal */

@@ -33,6 +33,68 @@ export function layoutCases({ same, refused, filled, floats, integers, from, siz
       }
     },
 
+    async fills(device) {
+      const expectSame = (what, found, wanted) => {
+        const list = Array.from(found, Number);
+        if (list.length !== wanted.length || list.some((x, i) => x !== wanted[i])) mistakes.push(`${what}: ${list.slice(0, 40)}, not ${wanted.slice(0, 40)}`);
+      };
+      for (const shape of [[24, 32], [600], [7, 9], [5, 7, 3], [2, 3, 4, 8]]) {
+        const [u, v] = [random(device, shape, 20), device.stream('float', shape)];
+        const host = await u.read();
+        u.copyTo(v);
+        expectSame(`copy of ${shape}`, await v.read(), host);
+        v.fill(2.5);
+        expectSame(`filled ${shape}`, await v.read(), host.map(() => 2.5));
+        const inner = [flat(shape, 1), shape.map((n) => n - 1)];
+        const parts = [(s) => s.domain(...inner), (s) => stride(s, flat(shape, 2)), (s) => stride(s.domain(...inner), flat(shape, 2))];
+        for (const [i, part] of parts.entries()) {
+          const marks = device.stream('float', shape);
+          part(marks).write(new Float32Array(part(marks).size).fill(1)); // where the part is
+          const isIn = await marks.read();
+          u.write(host);
+          part(u).fill(-3);
+          expectSame(`part ${i} of ${shape}`, await u.read(), host.map((x, n) => (isIn[n] ? -3 : x)));
+          v.fill(7);
+          u.write(host);
+          part(u).copyTo(part(v));
+          expectSame(`copied part ${i} of ${shape}`, await v.read(), host.map((x, n) => (isIn[n] ? x : 7)));
+        }
+      }
+      const lines = numbers(device, [6, 5], 21);
+      const before = await lines.read();
+      lines.domain([0, 0], [4, 5]).copyTo(lines.domain([2, 0], [6, 5])); // they overlap
+      expectSame('overlapping copies', await lines.read(), [...before.slice(0, 10), ...before.slice(0, 20)]);
+      lines.copyTo(lines);
+      const values = { int3: [1, -2, 3], bool: true, double: 1 / 3, double3: [1 / 3, 2, 1e-9], half: 0.25, unorm8: 200, short2: [-5, 300], float2x2: [1, 2, 3, 4] };
+      for (const [type, value] of Object.entries(values)) {
+        const s = device.stream(type, [3, 5]);
+        s.fill(value);
+        expectSame(`filled ${type}`, (await s.read()), from(Array, 15, () => value).flat().map(Number));
+        const part = s.domain([1, 1], [2, 3]);
+        part.copyTo(s.domain([0, 0], [1, 2]));
+        expectSame(`copied ${type}`, (await part.read()), from(Array, 2, () => value).flat().map(Number));
+      }
+      const p = device.stream(k.Point, [4]);
+      p.fill({ at: [1, 2], kind: 3 });
+      expectSame('filled structs', points(await p.read()), from(Array, 4, () => [1, 2, 3]).flat());
+      const empty = device.stream('float', [0, 4]);
+      empty.fill(1);
+      empty.copyTo(device.stream('float', [0, 4]));
+
+      const [u, n] = [device.stream('float', [4, 4]), device.stream('int', [4, 4])];
+      await refused('type', 'fill: a value of float has 1 number(s), but 2 are given', () => u.fill([1, 2]));
+      await refused('type', 'fill: a value of Point has 3 number(s), but 2 are given', () => p.fill({ at: [1, 2] }));
+      await refused('type', 'fill: NaN is no whole number, as int holds', () => n.fill(NaN));
+      await refused('shape', 'copyTo: the source has shape [4, 4], the target [4, 5]', () => u.copyTo(device.stream('float', [4, 5])));
+      await refused('type', 'copyTo: the source holds float, the target int', () => u.copyTo(n));
+      await refused('type', 'the target is no stream', () => u.copyTo(new Float32Array(16)));
+      const other = await Device.create();
+      await refused('device', 'copyTo: the streams are of two devices', () => u.copyTo(other.stream('float', [4, 4])));
+      other.dispose();
+      u.dispose();
+      await refused('lost', 'fill: the stream has been disposed of', () => u.fill(0));
+    },
+
     async fits(device) {
       const [x, row, column, one] = [random(device, [24, 32], 5), random(device, [1, 32], 6), random(device, [24, 1], 7), random(device, [1, 1], 8)];
       const r = device.stream('float', [24, 32]);

@@ -31,6 +31,9 @@ export async function allowed(device: Device): Promise<number> {
   const [total]: readonly number[] = await folds.weighted(cells);
   folds.prefix.with({ scan: 'exclusive', along: 0 })(cells, cells);
   void [alive, most, total];
+  u.fill(1);
+  bodies.domain([0], [5]).fill({ spot: { at: [1, 2], heat: 3 }, kind: 4, color: [0, 0, 1] });
+  u.domain([0, 0], [1, 512]).copyTo(u.domain([1, 0], [2, 512]));
   return (await sum.with({ accumulate: 'tree' })(u)) + host[0]! + heats[0]! + kinds[0]! + many + hottest;
 }
 
@@ -38,6 +41,12 @@ export async function rejected(device: Device): Promise<void> {
   const u = device.stream('float', [512, 512]);
   const line = device.stream('float', [512]);
   const ints = device.stream('int', [512, 512]);
+  // @ts-expect-error: a vector for a number
+  u.fill([1, 2]);
+  // @ts-expect-error: another type of elements
+  u.copyTo(ints);
+  // @ts-expect-error: another rank
+  u.copyTo(line);
   // @ts-expect-error: the gather has two dimensions
   diffuse(0.2, line, u);
   // @ts-expect-error: of floats
