@@ -156,6 +156,53 @@ def drive(tab, name):
         check(difference(tab, painted, shown(tab)) > 0.1, f"{name}: keys change nothing")
 
 
+# A picture file, dark on the left and light on the right, and one that is none, dropped as a visitor does.
+drop = """(async (isPicture) => {
+    const canvas = new OffscreenCanvas(64, 48), drawing = canvas.getContext('2d');
+    drawing.fillStyle = 'black'; drawing.fillRect(0, 0, 32, 48);
+    drawing.fillStyle = 'white'; drawing.fillRect(32, 0, 32, 48);
+    const blob = isPicture ? await canvas.convertToBlob() : new Blob(['no picture']);
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([blob], 'dropped.png', { type: 'image/png' }));
+    const frame = document.getElementById('frame');
+    const send = (name) => frame.dispatchEvent(new DragEvent(name, { dataTransfer, bubbles: true, cancelable: true }));
+    send('dragover');
+    const isMarked = frame.classList.contains('dropping');
+    return [isMarked, !send('drop'), frame.classList.contains('dropping')];
+})"""
+# Where the picture is not as in its corner, from 0 to 1 in x: the mean, and the largest distance from it.
+inked = """(() => {
+    const picture = document.getElementById('picture'), { width, height } = picture;
+    const drawing = new OffscreenCanvas(width, height).getContext('2d');
+    drawing.drawImage(picture, 0, 0);
+    const { data } = drawing.getImageData(0, 0, width, height);
+    const places = [];
+    for (let i = 0; i < data.length; i += 4) if (Math.abs(data[i] - data[0]) + Math.abs(data[i + 1] - data[1]) > 60) places.push((i / 4) % width / width);
+    const mean = places.reduce((a, b) => a + b, 0) / places.length;
+    return places.length === 0 ? null : [mean, Math.max(...places.map((x) => Math.abs(x - mean)))];
+})()"""
+
+
+def check_sources(tab):
+    """Pictures of the visitor's, and the camera."""
+    marks = tab.evaluate(f"{drop}(true)")
+    check(marks == [True, True, False], f"edges: a file that is dragged over the picture gives {marks}")
+    found = tab.wait(f"(({inked} ?? [])[1] ?? 1) < 0.05 && {inked}")
+    check(abs(found[0] - 0.5) < 0.05, f"edges: the only edge of a dropped picture is at {found[0]}")
+    tab.evaluate(f"{drop}(false)")
+    tab.wait("document.getElementById('help').innerText.includes(\"'dropped.png' is no picture that this browser reads\")")
+    camera = "[...document.querySelectorAll('#controls button')].find((b) => b.textContent.includes('camera'))"
+    before = tab.evaluate("gallery.loop.count")
+    tab.evaluate(f"{camera}.click()")
+    tab.wait(f"{camera}.textContent === 'Stop the camera' && gallery.loop.count > {before + 1}")
+    first, count = shown(tab), tab.evaluate("gallery.loop.count")
+    tab.wait(f"gallery.loop.count > {count + 2}")
+    check(difference(tab, first, shown(tab)) > 0.01, "edges: the camera's picture does not move")
+    tab.evaluate(f"{camera}.click()")
+    tab.wait(f"{camera}.textContent === 'Use the camera'")
+    tab.evaluate("gallery.loop.pause()")
+
+
 def check_page(tab, address, name, query):
     tab.viewport(1040, 700)
     tab.open(f"{address}/{name}.html?{query}&seed=1")
@@ -165,6 +212,8 @@ def check_page(tab, address, name, query):
     check_code(tab, name)
     check_accuracy(tab, name)
     check_phone(tab, name)
+    if name == "edges":
+        check_sources(tab)
 
 
 def check_index(tab, address):
@@ -215,7 +264,7 @@ if not os.path.exists(f"{site}/index.html"):
 server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Server, directory=site))
 threading.Thread(target=server.serve_forever, daemon=True).start()
 where = f"http://127.0.0.1:{server.server_address[1]}/some/where"
-with devtools.page(Driven) as tab:
+with devtools.page(Driven, "--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream") as tab:
     check_index(tab, where)
     for page, query in pages.items():
         if chosen and page not in chosen:
