@@ -27,6 +27,20 @@ namespace skc::frontend {
 
 using clang::SourceLocation;
 
+namespace {
+
+/// The kernels of this one's kind if [[variants]] adds no programs to them; else empty.
+std::string_view withoutVariants(const ir::Kernel& kernel) {
+  const auto isAppended = [](const ir::KernelParam& param) {
+    return param.role == ir::ParamRole::VariableOutput || param.role == ir::ParamRole::Scatter;
+  };
+  if (std::ranges::any_of(kernel.params, isAppended)) return "kernels that push or scatter";
+  if (!kernel.reduction) return {};
+  return kernel.isScan ? "scans" : ir::foldsBesideOutputs(kernel) ? "kernels with folded outputs" : "reduces";
+}
+
+}  // namespace
+
 ir::Module lowerModule(clang::Sema& sema, const DeclarationSyntax& syntax, const std::string& file,
                        Diagnostics& diagnostics) {
   return ModuleLowering(sema, syntax, diagnostics).run(file);
@@ -119,6 +133,8 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   kernel.isScan = syntax.kind == FunctionKind::Scan;
   if (folds && !isFold(syntax.kind)) checkFoldedOutputs(kernel, syntax);
   checkKernelShape(kernel, where);
+  if (const std::string_view kind = withoutVariants(kernel); kernel.choices.ahead != 0 && !kind.empty())
+    diagnostics_.report(Diag::VariantsUnused, kernel.loc, {kernel.name, std::string(kind)});
   module_.kernels.push_back(std::move(kernel));
 }
 
