@@ -257,7 +257,7 @@ int compile(const Options& options, const std::string& file) { return compile(Jo
 std::string emitText(const Options& options, const ir::Module& module) {
   switch (options.emit) {
     case Emit::Ir: return ir::print(module);
-    case Emit::Glsl: return glslListing(emit::Program(module), options.profile, options.precision);
+    case Emit::Glsl: return glslListing(module, options.profile, options.precision);
     case Emit::Plan: return planListings(options, module);
     case Emit::Json:
       return emit::jsonText(module, emit::Program(module, {options.fragmentTarget, options.computeTarget}),

@@ -23,6 +23,8 @@
 #include "assemble/reduce/reduce_program.hpp"
 #include "assemble/reduce/scan_plan.hpp"
 #include "support/text.hpp"
+#include "web/ahead_programs.hpp"
+#include "web/offered.hpp"
 
 namespace skc::driver {
 namespace {
@@ -308,6 +310,20 @@ std::string kernelListing(const Profile& profile, const sk::program::Kernel& ker
   return text;
 }
 
+/// The programs of a kernel, or of its passes, that [[variants(views)]] adds for browsers.
+std::string viewListing(const sk::program::Kernel& kernel) {
+  std::vector<std::string> programs;
+  const auto add = [&](const sk::program::Kernel& pass) {
+    for (auto& [key, program] : web::viewPrograms(web::webProfile(), pass)) programs.push_back(program);
+  };
+  if (const sk::program::Plan* plan = web::planOf(kernel)) {
+    for (const sk::program::Pass& pass : plan->passes) add(pass.kernel);
+  } else if (!web::isTooLarge(kernel)) {
+    add(kernel);
+  }
+  return skc::join(programs, "\n");
+}
+
 std::string wholeListing(const Profile& profile, const sk::program::Kernel& kernel) {
   const bool hasAppendOutputs =
       std::any_of(kernel.parameters.begin(), kernel.parameters.end(), sk::assemble::isAppendOutput);
@@ -327,10 +343,15 @@ std::string withoutForm(const emit::Unit& unit, std::string_view precision, std:
 }
 
 /// A kernel or reduce in one precision.
-std::string unitListing(const Profile& profile, const emit::Unit& unit, std::string_view precision) {
+std::string unitListing(const Profile& profile, const emit::Unit& unit, std::string_view precision,
+                        const ir::Choices& choices) {
   const sk::program::Kernel& kernel = unit.kernel;
   const sk::program::Reduction* reduction = unit.reduction;
   if (precision.empty() || precision == "single") {
+    if (reduction == nullptr && profile.name == "webgl2" && ir::isAhead(choices, ir::Ahead::Views) &&
+        !web::hasAppendOutputs(kernel)) {
+      return wholeListing(profile, kernel) + "\n" + viewListing(kernel);
+    }
     if (reduction == nullptr) return wholeListing(profile, kernel);
     const std::string folds = reductionListing(profile, *reduction, unit.isScan);
     return reduction->parts == nullptr ? folds : folds + "\n" + partsListing(profile, *reduction->parts);
@@ -351,14 +372,14 @@ std::string unitListing(const Profile& profile, const emit::Unit& unit, std::str
 
 }  // namespace
 
-std::string glslListing(const emit::Program& program, std::string_view profileName,
-                        std::string_view precision) {
+std::string glslListing(const ir::Module& module, std::string_view profileName, std::string_view precision) {
+  const emit::Program program(module);
   Profile profile = *sk::assemble::findProfile(profileName);
   if (precision == "extended") profile.doubles = sk::assemble::Doubles::Pairs;
   std::string text;
   for (const emit::Unit& unit : program.units()) {
     if (!text.empty()) text += "\n";
-    text += unitListing(profile, unit, precision);
+    text += unitListing(profile, unit, precision, module.kernels[unit.id].choices);
   }
   return text;
 }

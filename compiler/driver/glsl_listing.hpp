@@ -11,7 +11,8 @@
 
 namespace skc::driver {
 
-/// `precision`: "half", "extended" or "double" for those variants of the kernels; otherwise float.
-std::string glslListing(const emit::Program& program, std::string_view profile, std::string_view precision);
+/// `precision`: "half", "extended" or "double" for those variants of the kernels; otherwise float. For browsers (webgl2), the
+/// programs in single precision that [[variants(views)]] adds come last.
+std::string glslListing(const ir::Module& module, std::string_view profile, std::string_view precision);
 
 }  // namespace skc::driver

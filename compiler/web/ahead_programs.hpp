@@ -33,6 +33,9 @@ struct Wanted {
 Programs kernelPrograms(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel,
                         const Wanted& wanted);
 
+/// Those of them that [[variants(views)]] adds.
+Programs viewPrograms(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel);
+
 /// What a program has instead of `uniform T sk_arg_k;` if a stream of one element, or an element of one, holds the value.
 /// Empty if no stream may.
 struct HeldValue {

@@ -283,10 +283,15 @@ std::vector<std::vector<StreamAccess>> accessChoices(const Kernel& kernel, const
   return choices;
 }
 
-Programs kernelPrograms(const sk::assemble::Profile& profile, const Kernel& kernel, const Wanted& wanted) {
+Programs viewPrograms(const sk::assemble::Profile& profile, const Kernel& kernel) {
   Programs programs;
+  for (const SpecValues& specs : specChoices(kernel)) addViewPrograms(programs, profile, kernel, specs);
+  return programs;
+}
+
+Programs kernelPrograms(const sk::assemble::Profile& profile, const Kernel& kernel, const Wanted& wanted) {
+  Programs programs = wanted.views ? viewPrograms(profile, kernel) : Programs{};
   for (const SpecValues& specs : specChoices(kernel)) {
-    if (wanted.views) addViewPrograms(programs, profile, kernel, specs);
     for (const Lie& lie : liesOf(kernel)) {
       if (lie.packed && !wanted.packed) continue;
       Variant variant;
