@@ -7,7 +7,7 @@
 import { deviceOf, fail, isRead, isSameShape, stepsOf, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
 import { isNeeded, type CallableKernel, type GeneratedFile, type List, type PointStep } from './generated.js';
-import { bindOperands, liesOf, ProgramSource, targetOf } from './kernel.js';
+import { bindOperands, isAlsoRead, liesOf, ProgramSource, targetOf } from './kernel.js';
 import { shapeText, sizeOf, stridesOf, type Layout } from './layout.js';
 import type { Program } from './program.js';
 import { mostPushes, Pyramid } from './pyramid.js';
@@ -100,7 +100,7 @@ export class AppendCaller {
     const domain = device.layoutOf(shape, false);
     const lies = liesOf(kernel, call, shape, elements);
     const planes = call.streams.map((stream) => stream?.planes ?? []);
-    const targets = outputs.map((i) => targetOf(kernel, i, call, domain));
+    const targets = outputs.map((i) => targetOf(call.streams[i]!, isAlsoRead(kernel, i, call), domain));
     const counted = this.lists.filter(({ slots }) => slots === undefined);
     const counts = counted.map(() => device.acquire(device.formatOf('int', 1), domain.width, domain.height, 'the numbers of what a kernel pushes'));
     const drawn = [...targets.flat(), ...counts];
@@ -108,7 +108,7 @@ export class AppendCaller {
       const key = kernelKey(kernel.parameters, elements, lies, domain, call.specs, device.filtersFloats);
       const program = this.counting.program(device, key, kernel, call.specs);
       device.useProgram(program);
-      bindOperands(device, program, call, planes, lies, elements, shape);
+      bindOperands(device, program, call.values, planes, lies, elements, shape);
       program.domain.set(domain);
       device.framebufferOf(drawn);
       device.drawRects(domain.draws);
@@ -154,7 +154,7 @@ export class AppendCaller {
     const key = listKey(kernel.parameters, elements, lies, domain, call.specs, device.filtersFloats);
     const program = this.sources.get(list)!.program(device, key, kernel, call.specs);
     device.useProgram(program);
-    bindOperands(device, program, call, begun.planes, lies, elements, shape);
+    bindOperands(device, program, call.values, begun.planes, lies, elements, shape);
     for (const { index, layout: uniforms } of program.targets) uniforms!.set(call.streams[index]!.layout);
     begun.pyramids.get(list)?.bind(program, program.units);
     program.domain.set({ ...layout, extent: domain.extent, stride: stridesOf(domain.extent) });

@@ -4,7 +4,7 @@
 import type { Device } from './device.js';
 import { isSameElement, numbersOf, withArticle } from './elements.js';
 import { SkError, type ErrorKind } from './error.js';
-import { isNeeded, specBits, type Element, type KernelData, type Parameter } from './generated.js';
+import { isNeeded, specBits, type Element, type Field, type KernelData, type Parameter } from './generated.js';
 import { decodedRank, shapeText, xFirst } from './layout.js';
 import { Stream } from './stream.js';
 import { Fitted, View } from './view.js';
@@ -66,14 +66,18 @@ export function checkArguments(kernel: KernelData, elements: readonly Element[],
   return { streams, views, fits, values, specs };
 }
 
-function specOf(kernel: string, parameter: Parameter, elements: readonly Element[], value: unknown): number {
+/** The word of a spec parameter. Throws SkError if the value is none. */
+export function specOf(kernel: string, parameter: Parameter, elements: readonly Element[], value: unknown): number {
   const { scalar } = elements[parameter.element]!.fields[0]!;
   const isNumber = typeof value === 'number' && (scalar === 'float' || Number.isInteger(value));
   if (!isNumber && typeof value !== 'boolean') fail(kernel, `'${parameter.name}' is a spec ${scalar}, but ${described(value)} is given`, 'type');
   return specBits(scalar, value as number | boolean);
 }
 
-function uniformOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly number[] {
+/** The components of a uniform. Throws SkError if the value is none. */
+export function uniformOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly number[] {
+  const [{ scalar, width }] = element.fields as [Field];
+  if (typeof value === 'number' && width === 1 && element.fields.length === 1 && fractions.includes(scalar)) return [value];
   const numbers = typeof value === 'number' ? [value] : numbersOf(element, value);
   const wanted = element.fields.reduce((count, field) => count + field.width, 0);
   if (numbers.length !== wanted || (typeof value !== 'object' && wanted > 1)) {
@@ -97,7 +101,8 @@ function checkWhole(kernel: string, parameter: Parameter, element: Element, numb
   }
 }
 
-function iteratorOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly number[] {
+/** The components of an iterator's ends. Throws SkError if the value has none. */
+export function iteratorOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly number[] {
   const ends = value as { begin: unknown; end: unknown } | null | undefined;
   if (typeof ends !== 'object' || ends === null || !('begin' in ends) || !('end' in ends)) {
     fail(kernel, `'${parameter.name}' is an iterator, but ${described(value)} is given; give { begin, end }`, 'type');
@@ -112,7 +117,7 @@ function streamOf(kernel: string, parameter: Parameter, elements: readonly Eleme
   const { shape, size } = value as AnyStream | View<any, number>;
   const what = `${kernel}: the stream of '${parameter.name}'`;
   if (isView) (value as View<any, number>).check(what);
-  else stream.check(what, !['output', 'variableOutput', 'accumulator'].includes(parameter.role));
+  else stream.check(what, !isWritten(parameter));
   const declared = elements[parameter.element]!;
   if (!isSameElement(stream.element, elements[parameter.held ?? parameter.element]!)) {
     fail(kernel, `'${parameter.name}' is declared as ${declared.name}, but its stream holds ${stream.element.name}`, 'type');
@@ -144,6 +149,11 @@ function described(value: unknown): string {
   if (value instanceof View) return `a view of ${value.element.name}`;
   if (typeof value === 'object') return `${withArticle(value.constructor?.name ?? 'object')}${Array.isArray(value) ? ` of ${value.length}` : ''}`;
   return typeof value === 'function' ? 'a function' : `${typeof value} ${String(value)}`;
+}
+
+/** Whether a call writes all of a stream, and reads none of it. */
+export function isWritten({ role }: Parameter): boolean {
+  return role === 'output' || role === 'variableOutput' || role === 'accumulator';
 }
 
 /** Whether a call reads the stream of a parameter. */

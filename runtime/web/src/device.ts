@@ -55,13 +55,28 @@ export interface DeviceInfo {
 /** How points are combined with stored texels. */
 export type Blend = 'add' | 'min' | 'max';
 
+/** Planes of one format and size that nothing uses. */
+export interface Shelf {
+  readonly format: Format;
+  readonly width: number;
+  readonly height: number;
+  readonly idle: Plane[];
+}
+
+/** A framebuffer that draws to several planes. */
+interface Joint {
+  readonly planes: readonly Plane[];
+  readonly framebuffer: WebGLFramebuffer;
+}
+
 /** A texture, and the framebuffer that draws to it alone. */
 export interface Plane {
   readonly texture: WebGLTexture;
   readonly format: Format;
   readonly width: number;
   readonly height: number;
-  readonly id: number;
+  /** Where it goes when nothing uses it any more. */
+  readonly shelf: Shelf;
   /** Device.generation when it was made. */
   readonly generation: number;
   /** Calls that are yet to read it. */
@@ -69,6 +84,8 @@ export interface Plane {
   /** Whether no stream has it any more, while calls hold it. */
   isLeft: boolean;
   framebuffer: WebGLFramebuffer | null;
+  /** Framebuffers of several planes whose first one it is. */
+  joints: Joint[];
 }
 
 export class Device {
@@ -92,9 +109,8 @@ export class Device {
   private readonly programs = new Map<unknown, Map<string, Program>>();
   private readonly layouts = new Map<string, WeakRef<Layout>>();
   private mostLayouts = 1024;
-  private readonly pool = new Map<string, Plane[]>();
-  private readonly framebuffers = new Map<string, WebGLFramebuffer>();
-  private nextId = 1;
+  private readonly shelves = new Map<number, Shelf>();
+  private readonly joints = new Set<Joint>();
   private boundProgram: Program | null = null;
   private boundFramebuffer: WebGLFramebuffer | null | undefined = undefined;
   private boundTextures: (WebGLTexture | null)[] = [];
@@ -169,8 +185,8 @@ export class Device {
       return;
     }
     ++this.generation;
-    this.pool.clear();
-    this.framebuffers.clear();
+    for (const { idle } of this.shelves.values()) idle.length = 0;
+    this.joints.clear();
     this.filters.clear();
     this.transfers = new Transfers(this);
     this.layouts.clear(); // the largest texture may have another size
@@ -267,15 +283,28 @@ export class Device {
   }
 
   /** @internal */
+  shelfOf(format: Format, width: number, height: number): Shelf {
+    const key = (format.internal * 2 ** 16 + width) * 2 ** 16 + height;
+    let shelf = this.shelves.get(key);
+    if (shelf === undefined) this.shelves.set(key, (shelf = { format, width, height, idle: [] }));
+    return shelf;
+  }
+
+  /** @internal */
   acquire(format: Format, width: number, height: number, what: string): Plane {
-    const key = `${format.internal} ${width} ${height}`;
-    const idle = this.pool.get(key)?.pop();
+    return this.take(this.shelfOf(format, width, height), what);
+  }
+
+  /** A plane of any content; `what` it is for, if there is no memory. @internal */
+  take(shelf: Shelf, what: string | (() => string)): Plane {
+    const idle = shelf.idle.pop();
     if (idle !== undefined) return idle;
+    const { format, width, height } = shelf;
     const gl = this.context;
     const texture = gl.createTexture();
     if (texture === null) {
       if (gl.isContextLost()) throw this.lostError(); // the event is yet to come
-      throw new SkError(`there is no memory for ${what}`, 'memory');
+      throw new SkError(`there is no memory for ${typeof what === 'string' ? what : what()}`, 'memory');
     }
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -283,7 +312,7 @@ export class Device {
     gl.texStorage2D(gl.TEXTURE_2D, 1, format.internal, width, height);
     for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
     for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
-    return { texture, format, width, height, id: this.nextId++, generation: this.generation, holds: 0, isLeft: false, framebuffer: null };
+    return { texture, format, width, height, shelf, generation: this.generation, holds: 0, isLeft: false, framebuffer: null, joints: [] };
   }
 
   /** @internal */
@@ -294,10 +323,7 @@ export class Device {
         plane.isLeft = true;
         continue;
       }
-      const key = `${plane.format.internal} ${plane.width} ${plane.height}`;
-      const idle = this.pool.get(key);
-      if (idle === undefined) this.pool.set(key, [plane]);
-      else idle.push(plane);
+      plane.shelf.idle.push(plane);
     }
   }
 
@@ -319,18 +345,18 @@ export class Device {
   /** Deletes textures that no stream uses. */
   trim(): void {
     const gl = this.context;
-    for (const planes of this.pool.values()) {
-      for (const plane of planes) {
-        for (const [key, framebuffer] of this.framebuffers) {
-          if (!key.split(' ').includes(String(plane.id))) continue;
-          gl.deleteFramebuffer(framebuffer);
-          this.framebuffers.delete(key);
-        }
-        gl.deleteFramebuffer(plane.framebuffer);
-        gl.deleteTexture(plane.texture);
-      }
+    const unused = new Set([...this.shelves.values()].flatMap(({ idle }) => idle.splice(0)));
+    for (const joint of this.joints) {
+      const { planes, framebuffer } = joint;
+      if (!planes.some((plane) => unused.has(plane))) continue;
+      gl.deleteFramebuffer(framebuffer);
+      this.joints.delete(joint);
+      planes[0]!.joints = planes[0]!.joints.filter((other) => other !== joint);
     }
-    this.pool.clear();
+    for (const { framebuffer, texture } of unused) {
+      gl.deleteFramebuffer(framebuffer);
+      gl.deleteTexture(texture);
+    }
     this.forgetState();
   }
 
@@ -421,19 +447,23 @@ export class Device {
 
   /** Binds a framebuffer that draws to these planes. @internal */
   framebufferOf(planes: readonly Plane[]): void {
-    const gl = this.context;
     const first = planes[0]!;
-    const key = planes.length === 1 ? '' : planes.map((plane) => plane.id).join(' ');
-    const known = key === '' ? first.framebuffer : this.framebuffers.get(key);
-    if (known) return this.bindFramebuffer(known);
+    const known = planes.length === 1 ? first.framebuffer : jointOf(first, planes);
+    if (known !== null) return this.bindFramebuffer(known);
+    const gl = this.context;
     const framebuffer = gl.createFramebuffer()!;
     this.bindFramebuffer(framebuffer);
     planes.forEach((plane, i) =>
       gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, plane.texture, 0),
     );
     gl.drawBuffers(planes.map((_, i) => gl.COLOR_ATTACHMENT0 + i));
-    if (key === '') first.framebuffer = framebuffer;
-    else this.framebuffers.set(key, framebuffer);
+    if (planes.length === 1) {
+      first.framebuffer = framebuffer;
+      return;
+    }
+    const joint = { planes: [...planes], framebuffer };
+    first.joints.push(joint);
+    this.joints.add(joint);
   }
 
   /** @internal */
@@ -496,6 +526,14 @@ export class Device {
     this.framebufferOf([plane]);
     return this.transfers.read(plane.format, rects);
   }
+}
+
+/** The framebuffer that draws to these planes, of which `first` is one, if there is one. */
+function jointOf(first: Plane, planes: readonly Plane[]): WebGLFramebuffer | null {
+  for (const joint of first.joints) {
+    if (joint.planes.length === planes.length && joint.planes.every((plane, i) => plane === planes[i])) return joint.framebuffer;
+  }
+  return null;
 }
 
 /** The elements of a file's kernels, and the structs that it exports. @internal */

@@ -175,23 +175,26 @@ export function takeChannels(field: Field, channels: HostArray, to: PlaneArray, 
 
 /** One value from numbers and booleans: components in the order of fields. */
 export function numbersOf(element: Element, value: unknown): number[] {
-  if (!isStruct(element)) return flat(value);
   const numbers: number[] = [];
+  if (!isStruct(element)) return addNumbers(value, numbers);
   element.fields.forEach((_, plane) => {
     if ((element.fields[plane]!.part ?? 0) > 0) return; // its first part has taken all
     let member: unknown = value;
     for (const name of namesOf(element, plane)) member = (member as { [name: string]: unknown } | undefined)?.[name];
-    numbers.push(...flat(member));
+    addNumbers(member, numbers);
   });
   return numbers;
 }
 
-function flat(value: unknown): number[] {
-  if (typeof value === 'number') return [value];
-  if (typeof value === 'boolean') return [Number(value)];
-  if (ArrayBuffer.isView(value) || Array.isArray(value)) return Array.from(value as ArrayLike<unknown>).flatMap(flat);
-  if (typeof value === 'object' && value !== null) return Object.values(value).flatMap(flat);
-  return []; // no value at all
+/** Appends the numbers of a value, of which there are none if it is no value at all. */
+function addNumbers(value: unknown, numbers: number[]): number[] {
+  if (typeof value === 'number' || typeof value === 'boolean') {
+    numbers.push(Number(value));
+  } else if (typeof value === 'object' && value !== null) {
+    const members = (ArrayBuffer.isView(value) || Array.isArray(value) ? value : Object.values(value)) as ArrayLike<unknown>;
+    for (let i = 0; i < members.length; ++i) addNumbers(members[i], numbers);
+  }
+  return numbers;
 }
 
 /** The value that has these components: the reverse of numbersOf(). */

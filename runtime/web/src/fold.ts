@@ -178,13 +178,13 @@ class FoldRun {
     const isPartial = isOfPartials(pass.walk);
     const kernel = kernelOf(this.reduction, isPartial, pass.carried === true);
     const planes = this.planesOf(kernel, isPartial, source);
-    const own: Checked = { ...call, values: kernel.parameters.map((_, i) => call.values[this.foldParameter(i, isPartial)] ?? null) };
+    const values = kernel.parameters.map((_, i) => call.values[this.foldParameter(i, isPartial)] ?? null);
     const lies = this.lies(pass, kernel.parameters).map((lie) => (lie === 'aligned' ? this.elements : lie));
     const used: KernelData = pass.walk === 'nothing' ? { name: kernel.name, parameters: kernel.parameters.filter(({ role }) => role === 'spec') } : kernel;
     for (let first = 0; first < targets.length; first += mostPlanes) {
       const program = this.source.program(device, this.keyOf(pass, first), used, call.specs);
       device.useProgram(program);
-      bindOperands(device, program, own, planes, lies, this.elementTypes, this.goal.shape);
+      bindOperands(device, program, values, planes, lies, this.elementTypes, this.goal.shape);
       for (const [name, value] of pass.uniforms) program.setInteger(name, value);
       device.framebufferOf(targets.slice(first, first + mostPlanes));
       device.drawRects(pass.draws);

@@ -26,32 +26,34 @@ export type {
 /** What FILE.sk.js exports under a name: a function, with what Device.compile() needs. */
 interface Exported {
   (...given: unknown[]): unknown;
+  /** Makes a call if it is like an earlier one; else it does nothing, and returns false. */
+  repeat(given: readonly unknown[]): boolean;
   /** Throws SkError if these are no arguments of it. */
   check(given: readonly unknown[]): void;
   startPrograms(device: Device): Program[];
   with?(options: ScanOptions): Exported;
 }
 
-/** Makes a function of a call, which the tracer of the streams' device sees. */
-function traced<T>(name: string, call: (given: readonly unknown[]) => T): (...given: unknown[]) => T {
-  return (...given) => {
-    for (const argument of given) {
-      const tracer = (argument as { device?: Device } | null | undefined)?.device?.tracer;
-      if (tracer) return tracer.call(name, () => call(given));
-    }
-    return call(given);
-  };
+/** Makes a call, which the tracer of the streams' device sees. */
+function traced<T>(name: string, given: readonly unknown[], call: () => T): T {
+  for (const argument of given) {
+    const tracer = (argument as { device?: Device } | null | undefined)?.device?.tracer;
+    if (tracer) return tracer.call(name, call);
+  }
+  return call();
 }
 
 interface Caller {
+  repeat(given: readonly unknown[]): boolean;
   call(given: readonly unknown[]): unknown;
   check(given: readonly unknown[]): void;
   startPrograms(device: Device): Program[];
 }
 
 function reduceFunction(name: string, caller: ReductionCaller, options: ScanOptions): Exported {
-  const run = traced(name, (given) => caller.call(given, options));
+  const run = (...given: unknown[]) => traced(name, given, () => caller.call(given, options));
   return Object.assign(run, {
+    repeat: () => false,
     with: (more: ScanOptions) => reduceFunction(name, caller, { ...options, ...more }),
     check: (given: readonly unknown[]) => caller.check(given),
     startPrograms: (device: Device) => caller.startPrograms(device, options),
@@ -61,8 +63,10 @@ function reduceFunction(name: string, caller: ReductionCaller, options: ScanOpti
 function kernelFunction(name: string, callers: { of(options: KernelOptions): Caller }, options: KernelOptions): Exported {
   let chosen: Caller | null = null; // when it is called: other overloads may have forms that this one lacks
   const caller = () => (chosen ??= callers.of(options));
-  const run = traced(name, (given) => caller().call(given));
+  const repeat = (given: readonly unknown[]) => chosen !== null && chosen.repeat(given);
+  const run = (...given: unknown[]) => (repeat(given) ? undefined : traced(name, given, () => caller().call(given)));
   return Object.assign(run, {
+    repeat,
     with: (more: object) => kernelFunction(name, callers, { ...options, ...more }),
     check: (given: readonly unknown[]) => caller().check(given),
     startPrograms: (device: Device) => caller().startPrograms(device),
@@ -72,7 +76,7 @@ function kernelFunction(name: string, callers: { of(options: KernelOptions): Cal
 function functionOf(callable: Callable, file: GeneratedFile, texts: readonly string[]): Exported {
   if ('whyNot' in callable) {
     const refuse = () => fail(callable.name, callable.whyNot, 'compile');
-    return Object.assign(() => refuse(), { with: refuse, check: refuse, startPrograms: refuse });
+    return Object.assign(() => refuse(), { repeat: () => false, with: refuse, check: refuse, startPrograms: refuse });
   }
   if ('fold' in callable) return reduceFunction(callable.name, new ReductionCaller(callable, file, texts), {});
   return kernelFunction(callable.name, new Forms(callable, file, (form) => new KernelCaller(form, file, texts)), {});
@@ -91,7 +95,9 @@ function overloaded(functions: readonly Exported[]): Exported {
     }
   };
   const chosen = (given: readonly unknown[]) => functions.find((one) => takes(one, given)) ?? first!;
-  return Object.assign((...given: unknown[]) => chosen(given)(...given), {
+  const repeat = (given: readonly unknown[]) => functions.some((one) => one.repeat(given));
+  return Object.assign((...given: unknown[]) => (repeat(given) ? undefined : chosen(given)(...given)), {
+    repeat,
     with: (options: ScanOptions) => overloaded(functions.map((one) => one.with?.(options) ?? one)),
     check: (given: readonly unknown[]) => chosen(given).check(given),
     startPrograms: (device: Device) => functions.flatMap((one) => one.startPrograms(device)),

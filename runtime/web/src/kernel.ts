@@ -2,7 +2,7 @@
 //
 // Calls of kernels: runtime/src/gl_device/pass/run_kernel.cpp.
 import { AppendCaller } from './append.js';
-import { checkArguments, deviceOf, fail, isRead, isSameShape, iterationOf, shapeAt, stepsOf, withoutViews, type Checked } from './arguments.js';
+import { checkArguments, deviceOf, fail, isRead, isSameShape, iterationOf, shapeAt, stepsOf, withoutViews, type AnyStream, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
 import type { Format } from './format.js';
 import { isNeeded, specLiteral, type CallableKernel, type Element, type GeneratedFile, type KernelData, type Parameter, type ProgramIndices } from './generated.js';
@@ -10,8 +10,10 @@ import { mayPack, shapeText, type Layout } from './layout.js';
 import { checkDisjoint, checkInput, placed } from './placed.js';
 import { PlanRunner } from './plan.js';
 import type { Program } from './program.js';
+import { Repeat, type Choices } from './repeat.js';
+import { Stream } from './stream.js';
 import { isFiltered, kernelKey, viewsKey, type Lie } from './variant.js';
-import { texelOf } from './view.js';
+import { Fitted, texelOf, View } from './view.js';
 
 /** Why a call with whole streams needs the program for views. */
 export const smallGather = 'where a gather is smaller than the output, or nearly';
@@ -98,22 +100,23 @@ export class ProgramSource {
 
 /** Binds the planes that a program reads, and sets the uniforms of its parameters. The program must be current. */
 export function bindOperands(
-  device: Device, program: Program, call: Checked, planes: readonly (readonly Plane[])[], lies: readonly Lie[], elements: readonly Element[], domain: readonly number[],
+  device: Device, program: Program, values: Checked['values'], planes: readonly (readonly Plane[])[], lies: readonly Lie[], elements: readonly Element[], domain: readonly number[],
 ): void {
-  for (const read of program.reads) {
-    const layout = lies[read.index] as Layout;
-    read.layout!.set(layout);
-    const isFilteredHere = read.parameter.filter === true && isFiltered(read.parameter, layout, elements, device.filtersFloats);
-    const boundary = read.parameter.boundary === 'border' ? 'clamp' : read.parameter.boundary ?? 'clamp';
-    planes[read.index]!.forEach((plane, p) => {
-      const unit = read.units![p]!;
-      if (unit < 0) return; // it shares a texture, which the plan binds
-      device.bindTexture(unit, plane.texture);
+  for (const { index, parameter, layout: uniforms, units } of program.reads) {
+    const layout = lies[index] as Layout;
+    uniforms!.set(layout);
+    const isFilteredHere = parameter.filter === true && isFiltered(parameter, layout, elements, device.filtersFloats);
+    const boundary = parameter.boundary === 'border' ? 'clamp' : parameter.boundary ?? 'clamp';
+    const own = planes[index]!;
+    for (let p = 0; p < own.length; ++p) {
+      const unit = units![p]!;
+      if (unit < 0) continue; // it shares a texture, which the plan binds
+      device.bindTexture(unit, own[p]!.texture);
       device.bindFilter(unit, isFilteredHere ? boundary : null);
-    });
+    }
   }
   for (const bound of program.values) {
-    const numbers = call.values[bound.index]!;
+    const numbers = values[bound.index]!;
     if (bound.step === undefined) {
       bound.value!.set(numbers);
       continue;
@@ -124,6 +127,18 @@ export function bindOperands(
     bound.step.set(step);
     bound.layout!.set(strides(device, domain));
   }
+}
+
+/** Draws a domain to these planes, of each output. */
+export function drawDomain(
+  device: Device, program: Program, values: Checked['values'], planes: readonly (readonly Plane[])[], lies: readonly Lie[], elements: readonly Element[],
+  shape: readonly number[], domain: Layout, drawn: readonly (readonly Plane[])[],
+): void {
+  device.useProgram(program);
+  bindOperands(device, program, values, planes, lies, elements, shape);
+  program.domain.set(domain);
+  device.framebufferOf(drawn.length === 1 ? drawn[0]! : drawn.flat());
+  device.drawRects(domain.draws);
 }
 
 /** The layout whose strides are those of a domain's element numbers. */
@@ -145,11 +160,7 @@ export function drawAligned(
   const lies = parameters.map(({ role }) => (role === 'input' ? domain : null));
   const program = source.program(device, kernelKey(parameters, elements, lies, domain, [], device.filtersFloats), kernel, []);
   const targets = formats.map((list) => list.map((format) => device.acquire(format, domain.width, domain.height, 'the results of a reduction')));
-  device.useProgram(program);
-  bindOperands(device, program, { streams: [], views: [], fits: [], values: [], specs: [] }, planes, lies, elements, []);
-  program.domain.set(domain);
-  device.framebufferOf(targets.flat());
-  device.drawRects(domain.draws);
+  drawDomain(device, program, [], planes, lies, elements, [], domain, targets);
   return targets;
 }
 
@@ -170,21 +181,19 @@ export function liesOf(kernel: KernelData, call: Checked, shape: readonly number
   });
 }
 
+/** Whether a call reads the stream of an output, too. */
+export function isAlsoRead(kernel: KernelData, i: number, call: Checked): boolean {
+  return call.streams.some((other, k) => other === call.streams[i] && isRead(kernel, k, call));
+}
+
 /** The planes to draw an output to: its own, or new ones if the call reads it, or if it lies in another way. */
-export function targetOf(kernel: KernelData, i: number, call: Checked, domain: Layout): Plane[] {
-  const stream = call.streams[i]!;
-  const isAlsoRead = call.streams.some((other, k) => other === stream && isRead(kernel, k, call));
+export function targetOf(stream: AnyStream, isAlsoRead: boolean, domain: Layout): Plane[] {
   stream.isGone = false;
   return stream.layout === domain && !isAlsoRead && !stream.isHeld() ? stream.planes : stream.newPlanes(domain);
 }
 
-interface Choices {
-  readonly device: Device;
-  readonly domain: Layout;
-  readonly lies: readonly Lie[];
-  readonly specs: readonly number[];
-  readonly program: Program;
-}
+/** Calls that differ in how their streams lie, as those of a multigrid solver do, and are remembered. */
+const mostRepeats = 8;
 
 export class KernelCaller {
   readonly source: ProgramSource;
@@ -192,8 +201,8 @@ export class KernelCaller {
   private readonly hasConditions: boolean;
   private readonly plan: PlanRunner | null;
   private readonly append: AppendCaller | null;
-  /** The last call's choices: a loop makes the same call again. */
-  private last: Choices | null = null;
+  /** Earlier calls, the latest first: a loop makes the same calls again. */
+  private repeats: Repeat[] = [];
 
   constructor(private readonly kernel: CallableKernel, file: GeneratedFile, texts: readonly string[]) {
     this.source = new ProgramSource(kernel.name, file, texts, kernel.programs);
@@ -212,6 +221,12 @@ export class KernelCaller {
     checkArguments(this.kernel, this.source.file.elements, given);
   }
 
+  /** Makes a call if it is like an earlier one; else it does nothing, and returns false. */
+  repeat(given: readonly unknown[]): boolean {
+    for (const earlier of this.repeats) if (earlier.run(given)) return true;
+    return false;
+  }
+
   call(given: readonly unknown[]): void | Promise<void> {
     const { kernel } = this;
     const { elements } = this.source.file;
@@ -228,9 +243,22 @@ export class KernelCaller {
     const choices = reason === null ? this.chosen(device, call, outputs, shape) : null;
     if (choices === null) return this.runWithViews(device, call, outputs, shape, reason ?? smallGather);
     const { domain, lies, program } = choices;
-    const drawn = outputs.map((i) => targetOf(kernel, i, call, domain));
+    const drawn = outputs.map((i) => targetOf(call.streams[i]!, isAlsoRead(kernel, i, call), domain));
     this.draw(device, program, call, domain, lies, shape, drawn);
     outputs.forEach((i, n) => call.streams[i]!.exchange(drawn[n]!, domain));
+    if (this.mayRepeat(given, choices)) this.remember(call, choices);
+  }
+
+  /** Repeats take streams as they are, and no streams for values. */
+  private mayRepeat(given: readonly unknown[], { device }: Choices): boolean {
+    const isOther = (argument: unknown, i: number) =>
+      argument instanceof View || argument instanceof Fitted || (argument instanceof Stream && this.kernel.parameters[i]!.role === 'uniform');
+    return device.tracer === null && !given.some(isOther);
+  }
+
+  private remember(call: Checked, choices: Choices): void {
+    const others = this.repeats.filter(({ device }) => !device.lost).slice(0, mostRepeats - 1);
+    this.repeats = [new Repeat(this.kernel, this.source.file.elements, call, choices), ...others];
   }
 
   /** Copies the views that a call with variable or scatter outputs reads: lists have no programs for views. */
@@ -263,11 +291,8 @@ export class KernelCaller {
     device: Device, program: Program, call: Checked, domain: Layout, lies: readonly Lie[], shape: readonly number[],
     drawn: readonly (readonly Plane[])[],
   ): void {
-    device.useProgram(program);
-    bindOperands(device, program, call, call.streams.map((stream) => stream?.planes ?? []), lies, this.source.file.elements, shape);
-    program.domain.set(domain);
-    device.framebufferOf(drawn.length === 1 ? drawn[0]! : drawn.flat());
-    device.drawRects(domain.draws);
+    const planes = call.streams.map((stream) => stream?.planes ?? []);
+    drawDomain(device, program, call.values, planes, lies, this.source.file.elements, shape, domain, drawn);
   }
 
   /**
@@ -280,9 +305,6 @@ export class KernelCaller {
     const packs = kernel.packs && mayPack(shape) && outputs.every((i) => call.streams[i]!.mayPack());
     let domain = first.layoutIf(packs);
     let lies = this.lies(call, shape);
-    const { last } = this;
-    const isSame = (a: readonly unknown[], b: readonly unknown[]) => a.every((one, i) => one === b[i]);
-    if (last?.device === device && last.domain === domain && isSame(last.lies, lies) && isSame(last.specs, call.specs)) return last;
     let key = this.keyOf(call, lies, domain, device);
     if (!this.source.has(key)) {
       kernel.parameters.forEach((_, i) => isRead(kernel, i, call) && call.streams[i]!.unpack());
@@ -292,8 +314,7 @@ export class KernelCaller {
     }
     if (!this.source.has(key)) return null;
     const program = this.source.program(device, key, kernel, call.specs, (i) => call.streams[i] !== null);
-    this.last = { device, domain, lies, specs: call.specs, program };
-    return this.last;
+    return { device, outputs, shape, domain, lies, program };
   }
 
   private lies(call: Checked, shape: readonly number[]): Lie[] {

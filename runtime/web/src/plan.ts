@@ -6,7 +6,7 @@ import type { Device, Plane } from './device.js';
 import { SkError } from './error.js';
 import type { Format } from './format.js';
 import type { GeneratedFile, KernelData, Pass, Plan } from './generated.js';
-import { bindOperands, liesOf, ProgramSource, smallGather, targetOf } from './kernel.js';
+import { bindOperands, isAlsoRead, liesOf, ProgramSource, smallGather, targetOf } from './kernel.js';
 import { placed, type Placed } from './placed.js';
 import type { Program } from './program.js';
 import { kernelKey, viewsKey, type Lie } from './variant.js';
@@ -59,7 +59,7 @@ export class PlanRunner {
       const program = ready();
       device.useProgram(program);
       const planes = pass.operands.map(([isTemporary, i]) => (isTemporary ? temporaries[i]! : call.streams[i]?.planes ?? []));
-      bindOperands(device, program, own, planes, own.lies, elements, shape);
+      bindOperands(device, program, own.values, planes, own.lies, elements, shape);
       for (const [bundle, unit] of program.bundles) bindLayers(device, unit, bundles[bundle]!);
       program.domain.set(domain);
       device.framebufferOf(drawn);
@@ -75,7 +75,7 @@ export class PlanRunner {
     const { kernel } = this;
     kernel.parameters.forEach((_, i) => isRead(kernel, i, call) && call.streams[i]!.unpack());
     const domain = call.streams[outputs[0]!]!.layoutIf(false);
-    const begin = () => outputs.map((i) => targetOf(kernel, i, call, domain));
+    const begin = () => outputs.map((i) => targetOf(call.streams[i]!, isAlsoRead(kernel, i, call), domain));
     const finish = (drawn: readonly Plane[][]) => outputs.forEach((i, n) => call.streams[i]!.exchange(drawn[n]!, domain));
     return { domain, lies: liesOf(kernel, call, shape, this.file.elements), begin, finish };
   }

@@ -157,8 +157,11 @@ export class ReductionCaller {
 
   /** Computes the outputs of a kernel with folded outputs, whose elements have been folded to these planes. */
   private runMap(device: Device, given: readonly unknown[], planes: readonly Plane[][]): void {
+    const { map } = this;
+    if (map === null) return;
     try {
-      this.map?.call(this.reduction.mapOperands!.map((i) => given[i]));
+      const own = this.reduction.mapOperands!.map((i) => given[i]);
+      if (!map.repeat(own)) map.call(own);
     } catch (error) {
       device.release(planes.flat());
       throw error;

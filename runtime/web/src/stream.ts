@@ -87,10 +87,11 @@ export class Stream<T extends ElementType, R extends number> {
   /** @internal */
   newPlanes(layout: Layout): Plane[] {
     if (this.size === 0) return [];
-    const what = `a stream of ${this.element.name} of shape ${shapeText(this.shape as readonly number[])}`;
-    return this.element.fields.map((field) =>
-      this.device.acquire(this.device.formatOf(field.scalar, layout.packed ? lanes : field.width), layout.width, layout.height, what),
-    );
+    const { device, element } = this;
+    const what = () => `a stream of ${element.name} of shape ${shapeText(this.shape as readonly number[])}`;
+    if (layout === this.layout && this.planes.length > 0) return this.planes.map(({ shelf }) => device.take(shelf, what));
+    const { packed, width, height } = layout;
+    return element.fields.map((field) => device.take(device.shelfOf(device.formatOf(field.scalar, packed ? lanes : field.width), width, height), what));
   }
 
   /** Takes other planes of this layout for its own, which go back to the device. @internal */
@@ -115,7 +116,13 @@ export class Stream<T extends ElementType, R extends number> {
 
   /** Whether a call is yet to read the planes. @internal */
   isHeld(): boolean {
-    return this.planes.some((plane) => plane.holds > 0);
+    for (const plane of this.planes) if (plane.holds > 0) return true;
+    return false;
+  }
+
+  /** Whether check() would do nothing. @internal */
+  isReady(isRead: boolean): boolean {
+    return !this.isDisposed && !this.isAwaited && this.generation === this.device.generation && !(isRead && this.isGone);
   }
 
   /** Makes sure that nothing else reads the planes, so that they may be drawn to in part. @internal */
@@ -144,6 +151,7 @@ export class Stream<T extends ElementType, R extends number> {
     device.begin();
     this.generation = device.generation;
     if (copy !== null) this.resize(copy.shape);
+    this.planes = []; // they went with the context
     this.layout = this.layoutIf(true);
     this.planes = this.newPlanes(this.layout);
     this.isGone = copy === null && this.size > 0;

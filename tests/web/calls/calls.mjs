@@ -6,6 +6,7 @@ import * as k from './calls.sk.js';
 import { appendCases } from './append.mjs';
 import { deviceCases } from './devices.mjs';
 import { mistakeCases } from './mistakes.mjs';
+import { repeatCases } from './repeats.mjs';
 import { reductionCases } from './reductions.mjs';
 import { layoutCases } from './layouts.mjs';
 
@@ -272,7 +273,7 @@ const cases = {
   },
 };
 const checked = { same, refused, filled, random, random24, floats, integers, from, size, expect };
-Object.assign(cases, appendCases(checked), deviceCases(checked), mistakeCases(checked), reductionCases(checked));
+Object.assign(cases, appendCases(checked), deviceCases(checked), mistakeCases(checked), repeatCases(checked), reductionCases(checked));
 
 Object.assign(cases, layoutCases({ same, refused, filled, floats, integers, from, size, mistakes }));
 
