@@ -48,14 +48,28 @@ def gzipped(source):
     return len(gzip.compress(modules))
 
 
+# What an application imports from the package, itself or by FILE.sk.js.
+uses = {
+    "kernels": "Device, fileOf",
+    "kernels and reduces": "Device, fileOf, folds",
+    "everything": "*",
+}
+
+
 def minified(modules, build):
-    """Bytes of the whole package as bundlers ship it, minified and gzipped; `modules` is what build() wrote. None where npm has not
-    fetched esbuild (--target playground_editor)."""
+    """Bytes of the package as bundlers ship it, minified and gzipped, for each of `uses`; `modules` is what build() wrote. None where
+    npm has not fetched esbuild (--target playground_editor)."""
     esbuild = os.path.join(build, "runtime/web/editor/node_modules/.bin/esbuild")
     if not os.path.exists(esbuild):
         return None
-    bundle = subprocess.run([esbuild, f"{modules}/index.js", "--bundle", "--minify", "--format=esm"], capture_output=True, check=True)
-    return len(gzip.compress(bundle.stdout))
+
+    def size(names):
+        what = names if names == "*" else f"{{ {names} }}"
+        command = [esbuild, "--bundle", "--minify", "--format=esm"]
+        bundle = subprocess.run(command, input=f"export {what} from './index.js';".encode(), cwd=modules, capture_output=True, check=True)
+        return len(gzip.compress(bundle.stdout))
+
+    return {use: size(names) for use, names in uses.items()}
 
 
 def check_types(files, folder):

@@ -4,9 +4,10 @@
 // The kernel runs once to count the pushes of each element, and once for each list, whose entries find their elements. How
 // long a list is must be read back, without blocking: until then, the call holds the planes that it reads, so that later
 // calls which write those streams draw to others.
-import { deviceOf, fail, isRead, isSameShape, stepsOf, type Checked } from './arguments.js';
+import { deviceOf, fail, isRead, isSameShape, stepsOf, withoutViews, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
-import { isNeeded, type CallableKernel, type GeneratedFile, type List, type PointStep } from './generated.js';
+import type { Features, LoadedFile, ListCaller } from './features.js';
+import { isNeeded, type CallableKernel, type List, type PointStep } from './generated.js';
 import { bindOperands, isAlsoRead, liesOf, ProgramSource, targetOf } from './kernel.js';
 import { shapeText, sizeOf, stridesOf, type Layout } from './layout.js';
 import type { Program } from './program.js';
@@ -34,29 +35,42 @@ interface DrawnList {
   readonly length: number;
 }
 
-export class AppendCaller {
+class AppendCaller implements ListCaller {
   /** Counts, and writes the other outputs. */
   private readonly counting: ProgramSource;
   private readonly sources: ReadonlyMap<List, ProgramSource>;
   private readonly lists: readonly List[];
   private readonly isCounted: boolean;
 
-  constructor(private readonly kernel: CallableKernel, private readonly file: GeneratedFile, private readonly texts: readonly string[]) {
+  constructor(private readonly kernel: CallableKernel, private readonly file: LoadedFile) {
     this.lists = kernel.lists!;
-    this.counting = new ProgramSource(kernel.name, file, texts, kernel.programs);
-    this.sources = new Map(this.lists.map((list) => [list, new ProgramSource(kernel.name, file, texts, list.programs)]));
+    this.counting = new ProgramSource(kernel.name, file, kernel.programs);
+    this.sources = new Map(this.lists.map((list) => [list, new ProgramSource(kernel.name, file, list.programs)]));
     this.isCounted = this.lists.some(({ slots }) => slots === undefined);
   }
 
-  start(device: Device): Program[] {
+  startPrograms(device: Device): Program[] {
     const { kernel } = this;
-    const sources = [this.counting, ...this.sources.values()].flatMap((source) => source.start(device, () => kernel));
+    const sources = [this.counting, ...this.sources.values()].flatMap((source) => source.startPrograms(device, () => kernel));
     const steps = this.lists.flatMap((list) => Object.keys(list.points ?? {}).map((step) => this.pointProgram(device, list, step as PointStep)));
     return [...sources, ...steps, ...(kernel.sums ?? []).map((_, i) => this.sumProgram(device, i))];
   }
 
   /** Runs the kernel; promises that the streams have their elements if the number of pushes must be counted. */
-  call(call: Checked): void | Promise<void> {
+  call(given: Checked): void | Promise<void> {
+    const { name, parameters } = this.kernel;
+    parameters.forEach((parameter, i) => {
+      const isRead = parameter.role === 'input' || parameter.role === 'gather';
+      if (given.fits[i] || (given.views[i] && !isRead)) fail(name, `'${parameter.name}' of a kernel that pushes or scatters is no view, and fitted to nothing; give a stream`, 'type');
+      if (parameter.role === 'uniform' && given.streams[i]) fail(name, `'${parameter.name}' of a kernel that pushes or scatters is a value; read the stream, and give its value`, 'type');
+    });
+    const { call, copies } = withoutViews(given); // lists have no programs for views
+    const done = this.callWhole(call);
+    for (const copy of copies) copy.dispose(); // the call holds their planes as long as it reads them
+    return done;
+  }
+
+  private callWhole(call: Checked): void | Promise<void> {
     if (this.isCounted) return this.callCounted(call);
     const begun = this.begin(call);
     if (begun === null) return;
@@ -165,13 +179,13 @@ export class AppendCaller {
 
   private pointProgram(device: Device, list: List, step: PointStep): Program {
     const hasPoints = ['store', 'addLimbs', 'upper', 'lower'].includes(step);
-    const vertices = hasPoints ? this.texts[this.kernel.vertices!] : undefined;
-    return device.program(list, step, this.kernel.name, () => this.texts[list.points![step]!]!, [], [], () => true, vertices);
+    const vertices = hasPoints ? this.file.texts[this.kernel.vertices!] : undefined;
+    return device.program(list, step, this.kernel.name, () => this.file.texts[list.points![step]!]!, [], [], () => true, vertices);
   }
 
   /** The program of the pyramid's first level, or of the others. */
   private sumProgram(device: Device, i: number): Program {
-    return device.program(this, `sums ${i}`, 'sums of counts', () => this.texts[this.kernel.sums![i]!]!, [], [], () => true);
+    return device.program(this, `sums ${i}`, 'sums of counts', () => this.file.texts[this.kernel.sums![i]!]!, [], [], () => true);
   }
 
   /** The shape of the domain. */
@@ -216,6 +230,8 @@ export class AppendCaller {
     return shape;
   }
 }
+
+export const lists: Features['lists'] = (kernel, file) => new AppendCaller(kernel, file);
 
 /** Rows of a list's texture. Few heights occur, so that lists of many lengths share textures. */
 function roomFor(height: number, device: Device): number {

@@ -4,12 +4,13 @@
 import { iterationOf, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
 import type { Format } from './format.js';
-import type { GeneratedFile, KernelData, Parameter, Reduction } from './generated.js';
+import type { LoadedFile } from './features.js';
+import type { KernelData, Parameter, Reduction } from './generated.js';
 import { sizeOf, xFirst, type Layout } from './layout.js';
 import { bindOperands, ProgramSource } from './kernel.js';
 import type { Program } from './program.js';
 import { isOfPartials, leastKnownRuns, planIdentities, planReduction, valueLayout, type ReducePass } from './reduce_plan.js';
-import { planScan, type ScanPlan } from './scan_plan.js';
+import type { ScanPlan } from './scan_plan.js';
 import { accessKey, type Lie } from './variant.js';
 
 /** Planes that a pass of a reduction writes: more are written in parts, as WebGL2 guarantees four draw buffers. */
@@ -38,8 +39,8 @@ export class Fold {
   private readonly source: ProgramSource;
   readonly accumulators: readonly Parameter[];
 
-  constructor(readonly reduction: Reduction, file: GeneratedFile, texts: readonly string[]) {
-    this.source = new ProgramSource(reduction.name, file, texts, reduction.programs);
+  constructor(readonly reduction: Reduction, file: LoadedFile) {
+    this.source = new ProgramSource(reduction.name, file, reduction.programs);
     this.accumulators = reduction.fold.parameters.filter(({ role }) => role === 'accumulator');
   }
 
@@ -47,8 +48,8 @@ export class Fold {
     return this.source.file.elements;
   }
 
-  start(device: Device): Program[] {
-    return this.source.start(device, (key) => kernelOf(this.reduction, key.startsWith('partial'), key.includes(' carried')));
+  startPrograms(device: Device): Program[] {
+    return this.source.startPrograms(device, (key) => kernelOf(this.reduction, key.startsWith('partial'), key.includes(' carried')));
   }
 
   /** The formats of an accumulator's planes. */
@@ -90,7 +91,7 @@ export class Fold {
     const { textureSize } = device.limits;
     if (goal.scan) {
       const { along, isExclusive } = goal.scan;
-      return run.scan(planScan(elements, goal.layout, textureSize, along, this.reduction.byIndex, isExclusive));
+      return run.scan(this.source.file.features.scans!(elements, goal.layout, textureSize, along, this.reduction.byIndex, isExclusive));
     }
     const division = { byIndex: this.reduction.byIndex || !isOne || !areAlike(), byTexel, inAnyOrder: this.reduction.commutative, blocks: xFirst(goal.blocks) };
     const planned = (knownRuns: number) => planReduction(elements, { textureSize, knownRuns }, division, isOne ? valueLayout : goal.layout);
@@ -116,8 +117,26 @@ class FoldRun {
     return this.source.has(this.keyOf(pass));
   }
 
+  /** Hands the programs of all passes to the driver before the first one is waited for. */
+  private start(passes: readonly ReducePass[]): void {
+    for (const pass of passes) {
+      for (let first = 0; first < this.ownFormats.length; first += mostPlanes) this.program(pass, first);
+    }
+  }
+
+  private program(pass: ReducePass, firstPlane: number): Program {
+    const kernel = this.kernelOf(pass);
+    const used: KernelData = pass.walk === 'nothing' ? { name: kernel.name, parameters: kernel.parameters.filter(({ role }) => role === 'spec') } : kernel;
+    return this.source.program(this.device, this.keyOf(pass, firstPlane), used, this.call.specs);
+  }
+
+  private kernelOf(pass: ReducePass): KernelData {
+    return kernelOf(this.reduction, isOfPartials(pass.walk), pass.carried === true);
+  }
+
   /** Each pass reads what the one before has written. */
   chain(passes: readonly ReducePass[]): Plane[] {
+    this.start(passes);
     let partials: Plane[] = [];
     for (const pass of passes) {
       const targets = this.draw(pass, { partials, carries: [] });
@@ -128,6 +147,7 @@ class FoldRun {
   }
 
   scan({ folds, scans }: ScanPlan): Plane[] {
+    this.start([...folds, ...scans]);
     const levels: Plane[][] = [[]];
     for (const pass of folds) levels.push(this.draw(pass, { partials: levels[levels.length - 1]!, carries: [] }));
     let carries = this.acquire(this.ownFormats, 1, 1); // of the only run there is none
@@ -176,13 +196,12 @@ class FoldRun {
     const { device, call } = this;
     const targets = this.acquire(pass.toResult ? this.formats : this.ownFormats, pass.width, pass.height);
     const isPartial = isOfPartials(pass.walk);
-    const kernel = kernelOf(this.reduction, isPartial, pass.carried === true);
+    const kernel = this.kernelOf(pass);
     const planes = this.planesOf(kernel, isPartial, source);
     const values = kernel.parameters.map((_, i) => call.values[this.foldParameter(i, isPartial)] ?? null);
     const lies = this.lies(pass, kernel.parameters).map((lie) => (lie === 'aligned' ? this.elements : lie));
-    const used: KernelData = pass.walk === 'nothing' ? { name: kernel.name, parameters: kernel.parameters.filter(({ role }) => role === 'spec') } : kernel;
     for (let first = 0; first < targets.length; first += mostPlanes) {
-      const program = this.source.program(device, this.keyOf(pass, first), used, call.specs);
+      const program = this.program(pass, first);
       device.useProgram(program);
       bindOperands(device, program, values, planes, lies, this.elementTypes, this.goal.shape);
       for (const [name, value] of pass.uniforms) program.setInteger(name, value);

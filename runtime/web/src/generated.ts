@@ -5,7 +5,7 @@ import { SkError } from './error.js';
 import type { Scalar } from './format.js';
 
 /** The version of this data that this runtime reads. */
-export const moduleSchema = 1;
+export const moduleSchema = 2;
 
 /** One plane of an element. */
 export interface Field {

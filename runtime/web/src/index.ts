@@ -3,11 +3,11 @@
 // The package streamkernel: devices and streams, and what FILE.sk.js needs.
 import { fail } from './arguments.js';
 import { structOf, type Device } from './device.js';
+import type { Features, FoldCaller, LoadedFile } from './features.js';
 import { Forms } from './forms.js';
 import { checkSchema, type Callable, type GeneratedFile } from './generated.js';
 import { KernelCaller } from './kernel.js';
 import type { Program } from './program.js';
-import { ReductionCaller } from './reduction.js';
 import type { KernelOptions, ScanOptions, Struct } from './types.js';
 
 export { Device } from './device.js';
@@ -22,6 +22,13 @@ export type {
   ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Held, Input, Iterate, Kernel, KernelOptions, NotOffered, Output, Pushed, Reduce, Scan, ScanOptions,
   Scattered, ShapeOf, Struct, Value, ValueOf,
 } from './types.js';
+
+// What FILE.sk.js hands to fileOf() if its kernels need it.
+export { lists } from './append.js';
+export { placed as views } from './placed.js';
+export { plans } from './plan.js';
+export { folds } from './reduction.js';
+export { planScan as scans } from './scan_plan.js';
 
 /** What FILE.sk.js exports under a name: a function, with what Device.compile() needs. */
 interface Exported {
@@ -50,7 +57,7 @@ interface Caller {
   startPrograms(device: Device): Program[];
 }
 
-function reduceFunction(name: string, caller: ReductionCaller, options: ScanOptions): Exported {
+function reduceFunction(name: string, caller: FoldCaller, options: ScanOptions): Exported {
   const run = (...given: unknown[]) => traced(name, given, () => caller.call(given, options));
   return Object.assign(run, {
     repeat: () => false,
@@ -73,13 +80,13 @@ function kernelFunction(name: string, callers: { of(options: KernelOptions): Cal
   });
 }
 
-function functionOf(callable: Callable, file: GeneratedFile, texts: readonly string[]): Exported {
+function functionOf(callable: Callable, file: LoadedFile): Exported {
   if ('whyNot' in callable) {
     const refuse = () => fail(callable.name, callable.whyNot, 'compile');
     return Object.assign(() => refuse(), { repeat: () => false, with: refuse, check: refuse, startPrograms: refuse });
   }
-  if ('fold' in callable) return reduceFunction(callable.name, new ReductionCaller(callable, file, texts), {});
-  return kernelFunction(callable.name, new Forms(callable, file, (form) => new KernelCaller(form, file, texts)), {});
+  if ('fold' in callable) return reduceFunction(callable.name, file.features.folds!(callable, file), {});
+  return kernelFunction(callable.name, new Forms(callable, file, (form) => new KernelCaller(form, file)), {});
 }
 
 /** Calls the first of several overloads that takes the arguments; if none does, the first says why. */
@@ -105,15 +112,15 @@ function overloaded(functions: readonly Exported[]): Exported {
 }
 
 /** What FILE.sk.js calls; it is not for other programs. `texts` are the programs that `data` refers to. */
-export function fileOf(data: GeneratedFile, texts: readonly string[]) {
+export function fileOf(data: GeneratedFile, texts: readonly string[], features: Features = {}) {
   checkSchema(data);
   const structs = new Map(data.structs.map((struct) => [struct.name, struct]));
-  const file = { ...data, elements: data.elements.map((element) => structs.get(element.name) ?? element) };
+  const file: LoadedFile = { ...data, texts, features, elements: data.elements.map((element) => structs.get(element.name) ?? element) };
   return {
     struct: (name: string): Struct<string, unknown, unknown> => structOf(file, name),
     callable: (...units: number[]): Exported => {
       const callables = units.map((unit) => file.callables[unit]!);
-      return overloaded(callables.map((callable) => functionOf(callable, file, texts)));
+      return overloaded(callables.map((callable) => functionOf(callable, file)));
     },
   };
 }

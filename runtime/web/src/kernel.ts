@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
 // Calls of kernels: runtime/src/gl_device/pass/run_kernel.cpp.
-import { AppendCaller } from './append.js';
-import { checkArguments, deviceOf, fail, isRead, isSameShape, iterationOf, shapeAt, stepsOf, withoutViews, type AnyStream, type Checked } from './arguments.js';
+import { checkArguments, deviceOf, fail, isRead, isSameShape, iterationOf, shapeAt, stepsOf, type AnyStream, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
+import type { ListCaller, LoadedFile, PassRunner } from './features.js';
 import type { Format } from './format.js';
-import { isNeeded, specLiteral, type CallableKernel, type Element, type GeneratedFile, type KernelData, type Parameter, type ProgramIndices } from './generated.js';
+import { isNeeded, specLiteral, type CallableKernel, type Element, type KernelData, type Parameter, type ProgramIndices } from './generated.js';
 import { mayPack, shapeText, type Layout } from './layout.js';
-import { checkDisjoint, checkInput, placed } from './placed.js';
-import { PlanRunner } from './plan.js';
 import type { Program } from './program.js';
 import { Repeat, type Choices } from './repeat.js';
+import { checkDisjoint, checkInput } from './shapes.js';
 import { Stream } from './stream.js';
 import { isFiltered, kernelKey, viewsKey, type Lie } from './variant.js';
 import { Fitted, texelOf, View } from './view.js';
@@ -20,9 +19,7 @@ export const smallGather = 'where a gather is smaller than the output, or nearly
 
 /** The programs of one kernel or reduction. */
 export class ProgramSource {
-  constructor(
-    readonly name: string, readonly file: GeneratedFile, private readonly texts: readonly string[], private readonly indices: ProgramIndices,
-  ) {}
+  constructor(readonly name: string, readonly file: LoadedFile, private readonly indices: ProgramIndices) {}
 
   has(key: string): boolean {
     return key in this.indices;
@@ -46,7 +43,7 @@ export class ProgramSource {
     const index = this.indices[key];
     if (index === undefined) this.refuse(`'${key}'`);
     let number = 0;
-    let text = this.texts[index]!;
+    let text = this.file.texts[index]!;
     for (const parameter of parameters) {
       if (parameter.role !== 'spec') continue;
       const literal = specLiteral(this.file.elements[parameter.element]!.fields[0]!.scalar, specs[number++]!);
@@ -89,7 +86,7 @@ export class ProgramSource {
   }
 
   /** Starts to compile all programs. */
-  start(device: Device, kernelFor: (key: string) => KernelData): Program[] {
+  startPrograms(device: Device, kernelFor: (key: string) => KernelData): Program[] {
     return Object.keys(this.indices).flatMap((key) => {
       const kernel = kernelFor(key);
       const hasSpecs = kernel.parameters.some((parameter) => parameter.role === 'spec');
@@ -149,18 +146,25 @@ function strides(device: Device, domain: readonly number[]): Layout {
   return { ...layout, stride: [1, x, x * y, x * y * z] };
 }
 
-/** Runs a kernel over planes that lie as its domain does, those of each input, and returns new ones of these formats, for each output. */
+/** The program of a kernel whose inputs lie as its domain does. */
+export function alignedProgram(device: Device, source: ProgramSource, kernel: KernelData, domain: Layout): Program {
+  return source.program(device, kernelKey(kernel.parameters, source.file.elements, alignedLies(kernel, domain), domain, [], device.filtersFloats), kernel, []);
+}
+
+function alignedLies({ parameters }: KernelData, domain: Layout): Lie[] {
+  return parameters.map(({ role }) => (role === 'input' ? domain : null));
+}
+
+/** Runs such a kernel over the planes of each input, and returns new ones of these formats, for each output. */
 export function drawAligned(
   device: Device, source: ProgramSource, kernel: KernelData, inputs: readonly (readonly Plane[])[], domain: Layout, formats: readonly (readonly Format[])[],
 ): Plane[][] {
-  const { parameters } = kernel;
   const { elements } = source.file;
   let next = 0;
-  const planes = parameters.map(({ role }) => (role === 'input' ? inputs[next++]! : []));
-  const lies = parameters.map(({ role }) => (role === 'input' ? domain : null));
-  const program = source.program(device, kernelKey(parameters, elements, lies, domain, [], device.filtersFloats), kernel, []);
+  const planes = kernel.parameters.map(({ role }) => (role === 'input' ? inputs[next++]! : []));
+  const program = alignedProgram(device, source, kernel, domain);
   const targets = formats.map((list) => list.map((format) => device.acquire(format, domain.width, domain.height, 'the results of a reduction')));
-  drawDomain(device, program, [], planes, lies, elements, [], domain, targets);
+  drawDomain(device, program, [], planes, alignedLies(kernel, domain), elements, [], domain, targets);
   return targets;
 }
 
@@ -199,21 +203,22 @@ export class KernelCaller {
   readonly source: ProgramSource;
   private readonly outputs: readonly number[];
   private readonly hasConditions: boolean;
-  private readonly plan: PlanRunner | null;
-  private readonly append: AppendCaller | null;
+  private readonly plan: PassRunner | null;
+  private readonly lists: ListCaller | null;
   /** Earlier calls, the latest first: a loop makes the same calls again. */
   private repeats: Repeat[] = [];
 
-  constructor(private readonly kernel: CallableKernel, file: GeneratedFile, texts: readonly string[]) {
-    this.source = new ProgramSource(kernel.name, file, texts, kernel.programs);
+  constructor(private readonly kernel: CallableKernel, file: LoadedFile) {
+    const { lists, plans } = file.features;
+    this.source = new ProgramSource(kernel.name, file, kernel.programs);
     this.outputs = kernel.parameters.flatMap((parameter, i) => (parameter.role === 'output' ? [i] : []));
-    this.plan = kernel.plan === undefined ? null : new PlanRunner(kernel, kernel.plan, file, texts);
-    this.append = kernel.lists === undefined ? null : new AppendCaller(kernel, file, texts);
+    this.plan = kernel.plan === undefined ? null : plans!(kernel, kernel.plan, file);
+    this.lists = kernel.lists === undefined ? null : lists!(kernel, file);
     this.hasConditions = kernel.parameters.some((parameter) => parameter.neededIf !== undefined);
   }
 
   startPrograms(device: Device): Program[] {
-    return this.append?.start(device) ?? this.plan?.start(device) ?? this.source.start(device, () => this.kernel);
+    return this.lists?.startPrograms(device) ?? this.plan?.startPrograms(device) ?? this.source.startPrograms(device, () => this.kernel);
   }
 
   /** Throws SkError if these are no arguments of the kernel. */
@@ -231,7 +236,7 @@ export class KernelCaller {
     const { kernel } = this;
     const { elements } = this.source.file;
     const call = checkArguments(kernel, elements, given);
-    if (this.append !== null) return this.callAppending(this.append, call);
+    if (this.lists !== null) return this.lists.call(call);
     const outputs = this.hasConditions ? this.outputs.filter((i) => isNeeded(kernel.parameters[i]!, call.specs)) : this.outputs;
     if (outputs.length === 0) return; // the spec parameters leave nothing to write
     const device = deviceOf(kernel, call.streams);
@@ -261,24 +266,12 @@ export class KernelCaller {
     this.repeats = [new Repeat(this.kernel, this.source.file.elements, call, choices), ...others];
   }
 
-  /** Copies the views that a call with variable or scatter outputs reads: lists have no programs for views. */
-  private callAppending(append: AppendCaller, given: Checked): void | Promise<void> {
-    const { name, parameters } = this.kernel;
-    parameters.forEach((parameter, i) => {
-      const isRead = parameter.role === 'input' || parameter.role === 'gather';
-      if (given.fits[i] || (given.views[i] && !isRead)) fail(name, `'${parameter.name}' of a kernel that pushes or scatters is no view, and fitted to nothing; give a stream`, 'type');
-      if (parameter.role === 'uniform' && given.streams[i]) fail(name, `'${parameter.name}' of a kernel that pushes or scatters is a value; read the stream, and give its value`, 'type');
-    });
-    const { call, copies } = withoutViews(given);
-    const done = append.call(call);
-    for (const copy of copies) copy.dispose(); // the call holds their planes as long as it reads them
-    return done;
-  }
-
   private runWithViews(device: Device, call: Checked, outputs: readonly number[], shape: readonly number[], reason: string): void {
     const { kernel, source } = this;
     const { elements } = source.file;
-    const { domain, lies, begin, finish } = placed(device, kernel, call, outputs, shape, elements, true);
+    const { views } = source.file.features;
+    if (views === undefined) return source.refuse(reason);
+    const { domain, lies, begin, finish } = views(device, kernel, call, outputs, shape, elements, true);
     const key = viewsKey(kernel.parameters, elements, lies, domain, call.specs);
     if (!source.has(key)) source.refuse(reason);
     const program = source.program(device, key, kernel, call.specs, (i) => call.streams[i] !== null);

@@ -5,30 +5,29 @@ import { isRead, type Checked } from './arguments.js';
 import type { Device, Plane } from './device.js';
 import { SkError } from './error.js';
 import type { Format } from './format.js';
-import type { GeneratedFile, KernelData, Pass, Plan } from './generated.js';
+import type { Features, LoadedFile, PassRunner, Placed } from './features.js';
+import type { KernelData, Pass, Plan } from './generated.js';
 import { bindOperands, isAlsoRead, liesOf, ProgramSource, smallGather, targetOf } from './kernel.js';
-import { placed, type Placed } from './placed.js';
 import type { Program } from './program.js';
 import { kernelKey, viewsKey, type Lie } from './variant.js';
 
-export class PlanRunner {
+class PlanRunner implements PassRunner {
   private readonly sources: readonly ProgramSource[];
   /** The number of each parameter among spec parameters. */
   private readonly specNumbers: readonly number[];
 
-  constructor(private readonly kernel: KernelData, private readonly plan: Plan, private readonly file: GeneratedFile, texts: readonly string[]) {
-    this.sources = plan.passes.map((pass) => new ProgramSource(kernel.name, file, texts, pass.kernel.programs));
+  constructor(private readonly kernel: KernelData, private readonly plan: Plan, private readonly file: LoadedFile) {
+    this.sources = plan.passes.map((pass) => new ProgramSource(kernel.name, file, pass.kernel.programs));
     let number = 0;
     this.specNumbers = kernel.parameters.map(({ role }) => (role === 'spec' ? number++ : -1));
   }
 
-  start(device: Device): Program[] {
-    return this.sources.flatMap((source, i) => source.start(device, () => this.plan.passes[i]!.kernel));
+  startPrograms(device: Device): Program[] {
+    return this.sources.flatMap((source, i) => source.startPrograms(device, () => this.plan.passes[i]!.kernel));
   }
 
-  /** `reason`: why the call needs the programs for views, if it does. */
   run(device: Device, call: Checked, outputs: readonly number[], shape: readonly number[], reason: string | null): void {
-    const { elements } = this.file;
+    const { elements, features } = this.file;
     let place = reason === null ? this.wholes(call, outputs, shape) : null;
     const lacksProgram = ({ domain, lies }: Placed) =>
       this.plan.passes.some((pass, number) => {
@@ -36,7 +35,8 @@ export class PlanRunner {
         return !this.sources[number]!.has(kernelKey(pass.kernel.parameters, elements, own.lies, domain, own.specs, device.filtersFloats));
       });
     const withViews = place === null || lacksProgram(place);
-    if (place === null || withViews) place = placed(device, this.kernel, call, outputs, shape, elements, false);
+    if (withViews && features.views === undefined) this.sources[0]!.refuse(reason ?? smallGather);
+    if (place === null || withViews) place = features.views!(device, this.kernel, call, outputs, shape, elements, false);
     const { domain, lies, begin, finish } = place;
     const keyOf = (pass: Pass, own: Arguments) =>
       withViews ? viewsKey(pass.kernel.parameters, elements, own.lies, domain, own.specs) : kernelKey(pass.kernel.parameters, elements, own.lies, domain, own.specs, device.filtersFloats);
@@ -53,10 +53,11 @@ export class PlanRunner {
       elements[element]!.fields.map((field) => device.acquire(device.formatOf(field.scalar, field.width), domain.width, domain.height, 'a value saved between passes')),
     );
     const bundles = (this.plan.bundles ?? []).map(([scalar, width, layers]) => copiedLayers(device, device.formatOf(scalar, width), layers.map(([argument, plane]) => call.streams[argument]?.planes[plane])));
-    for (const { pass, own, program: ready } of runs) {
+    const started = runs.flatMap(({ pass, own, program }) => {
       const drawn = this.drawnBy(pass, temporaries, planesOf);
-      if (drawn.length === 0) continue; // all of its outputs are omitted
-      const program = ready();
+      return drawn.length === 0 ? [] : [{ pass, own, drawn, program: program() }]; // a pass whose outputs are all omitted is none
+    });
+    for (const { pass, own, drawn, program } of started) { // the driver has all programs before it is asked for the first one
       device.useProgram(program);
       const planes = pass.operands.map(([isTemporary, i]) => (isTemporary ? temporaries[i]! : call.streams[i]?.planes ?? []));
       bindOperands(device, program, own.values, planes, own.lies, elements, shape);
@@ -105,6 +106,8 @@ export class PlanRunner {
     });
   }
 }
+
+export const plans: Features['plans'] = (kernel, plan, file) => new PlanRunner(kernel, plan, file);
 
 interface Arguments extends Checked {
   readonly lies: readonly Lie[];

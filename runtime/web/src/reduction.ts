@@ -8,8 +8,9 @@ import type { Device, Plane } from './device.js';
 import { newArrays, planeArray, takeChannels, valueOf } from './elements.js';
 import { Fold, type Goal } from './fold.js';
 import type { Format } from './format.js';
-import { isNeeded, type CallableReduction, type GeneratedFile, type SumVariant } from './generated.js';
-import { drawAligned, KernelCaller, ProgramSource } from './kernel.js';
+import type { Features, FoldCaller, LoadedFile } from './features.js';
+import { isNeeded, type CallableReduction, type SumVariant } from './generated.js';
+import { alignedProgram, drawAligned, KernelCaller, ProgramSource } from './kernel.js';
 import { shapeText } from './layout.js';
 import type { Program } from './program.js';
 import { valueLayout } from './reduce_plan.js';
@@ -25,9 +26,9 @@ class Sum {
   readonly fold: Fold;
   readonly finish: ProgramSource;
 
-  constructor(readonly data: SumVariant, file: GeneratedFile, texts: readonly string[]) {
-    this.fold = new Fold(data.reduction, file, texts);
-    this.finish = new ProgramSource(data.reduction.name, file, texts, data.finish.programs);
+  constructor(readonly data: SumVariant, file: LoadedFile) {
+    this.fold = new Fold(data.reduction, file);
+    this.finish = new ProgramSource(data.reduction.name, file, data.finish.programs);
   }
 }
 
@@ -37,18 +38,18 @@ interface Chosen {
   readonly start: 'plain' | 'any' | 'none';
 }
 
-export class ReductionCaller {
+class ReductionCaller implements FoldCaller {
   private readonly plain: Fold;
   private readonly map: KernelCaller | null;
   private readonly sums: ReadonlyMap<string, string | readonly Sum[]>;
   /** The parameters that are results. */
   private readonly results: readonly number[];
 
-  constructor(private readonly reduction: CallableReduction, private readonly file: GeneratedFile, texts: readonly string[]) {
-    this.plain = new Fold(reduction, file, texts);
-    this.map = reduction.map === undefined ? null : new KernelCaller(reduction.map, file, texts);
+  constructor(private readonly reduction: CallableReduction, private readonly file: LoadedFile) {
+    this.plain = new Fold(reduction, file);
+    this.map = reduction.map === undefined ? null : new KernelCaller(reduction.map, file);
     const made = Object.entries(reduction.variants).map(
-      ([name, list]) => [name, typeof list === 'string' ? list : list.map((data) => new Sum(data, file, texts))] as const,
+      ([name, list]) => [name, typeof list === 'string' ? list : list.map((data) => new Sum(data, file))] as const,
     );
     this.sums = new Map(made);
     this.results = reduction.fold.parameters.flatMap(({ role }, i) => (role === 'accumulator' ? [i] : []));
@@ -65,8 +66,8 @@ export class ReductionCaller {
   startPrograms(device: Device, options: ScanOptions): Program[] {
     const { sums, start } = this.chosen(options);
     const map = this.map?.startPrograms(device) ?? [];
-    const plain = start === 'plain' ? this.plain.start(device) : [];
-    return [...map, ...plain, ...sums.flatMap(({ fold, finish, data }) => [...fold.start(device), ...finish.start(device, () => data.finish)])];
+    const plain = start === 'plain' ? this.plain.startPrograms(device) : [];
+    return [...map, ...plain, ...sums.flatMap(({ fold, finish, data }) => [...fold.startPrograms(device), ...finish.startPrograms(device, () => data.finish)])];
   }
 
   /** Throws SkError if these are no arguments of the reduce, with streams for the results or without. */
@@ -196,6 +197,7 @@ export class ReductionCaller {
     const { plain } = this;
     const runPlain = () => plain.byAccumulator(plain.run(device, call, goal, formats.flat()));
     if (sums.length === 0 || goal.shape.includes(0)) return runPlain();
+    for (const { data, finish } of sums) alignedProgram(device, finish, data.finish, goal.layout); // starts to compile it
     const anyPlanes = () => formats.map((list) => list.map((format) => device.acquire(format, goal.layout.width, goal.layout.height, 'sums')));
     let results = start === 'plain' ? runPlain() : start === 'any' ? anyPlanes() : null;
     for (const { data, fold, finish } of sums) {
@@ -318,3 +320,5 @@ export class ReductionCaller {
     return { along: along === undefined ? undefined : domain.length - 1 - along, isExclusive };
   }
 }
+
+export const folds: Features['folds'] = (reduction, file) => new ReductionCaller(reduction, file);

@@ -11,6 +11,8 @@ test('a device needs a browser', async () => {
 });
 
 test('a module of another release is refused', () => {
-  const file = { schema: 99, name: 'heat.sk', sources: [], elements: [], structs: [], callables: [] };
-  assert.throws(() => fileOf(file, []), /use skc and the package streamkernel of one release/);
+  for (const schema of [1, 99]) {
+    const file = { schema, name: 'heat.sk', sources: [], elements: [], structs: [], callables: [] };
+    assert.throws(() => fileOf(file, []), new RegExp(`has version ${schema} .*use skc and the package streamkernel of one release`));
+  }
 });

@@ -24,7 +24,7 @@ const plugin = streamkernel({ skc: SK_SKC, options: [`-I${join(folder, 'include'
 test('a .sk file is a module, and its types are beside it', async () => {
   const vite = context();
   const { code } = await plugin.load.call(vite, join(folder, 'scale.sk'));
-  assert.match(code, /export const scale = file\.callable\(0\);/);
+  assert.match(code, /export const scale = \$file\.callable\(0\);/);
   assert.match(readFileSync(join(folder, 'scale.sk.d.ts'), 'utf8'), /scale: sk\.Kernel/);
   assert.ok(vite.watched.includes(join(folder, 'include', 'twice.sk')), `${vite.watched}`);
 });
