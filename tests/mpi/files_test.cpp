@@ -241,3 +241,22 @@ TEST_CASE("a file that cannot be written leaves the older one whole") {
   u.save(file);  // and it can be written afterwards
   CHECK(bytesOf(file) != before);
 }
+
+TEST_CASE("components are gathered and scattered in the precision in which they are stored") {
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {7, 6}});
+  auto u = domain.stream<sk::float2>(sk::Storage::Double);
+  std::vector<double> given;
+  for (int k = 0; domain.rank() == 0 && k < 2 * 7 * 6; ++k) given.push_back(1.0 / (k + 3));
+  u.scatterReals(given);
+  CHECK(u.gatherReals() == given);
+  CHECK(u.gather().empty() == (domain.rank() != 0));
+  const int last = domain.ranks() - 1;
+  CHECK(u.gatherReals(last).size() == (domain.rank() == last ? 84U : 0U));
+  CHECK_THAT(errorOf([&] { u.scatterReals(std::vector<double>(5)); }),
+             Contains("5 component(s) are given on rank 0, but 42 elements of shape {7, 6} have 84"));
+  CHECK_THAT(errorOf([&] { (void)u.gatherReals(domain.ranks()); }),
+             Contains("gatherReals: there is no rank"));
+  auto numbers = domain.stream<int>();
+  numbers.fill(3);
+  CHECK_THAT(errorOf([&] { (void)numbers.gatherReals(); }), Contains("readReals"));
+}

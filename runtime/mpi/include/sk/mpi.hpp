@@ -84,6 +84,8 @@ StreamRegion ownRegion(DomainStreamState* stream, bool isWritten);
 void gather(DomainStreamState* stream, int root, void* elements);
 void scatter(DomainStreamState* stream, int root, const void* elements, std::size_t count);
 int rankOf(const DomainStreamState* stream);
+std::vector<double> gatherReals(DomainStreamState* stream, int root);
+void scatterReals(DomainStreamState* stream, int root, std::span<const double> components);
 void save(DomainStreamState* stream, const std::string& file);
 void load(DomainStreamState* stream, const std::string& file);
 /// Starts the reduction that call(context) calls.
@@ -129,6 +131,15 @@ class DomainStream {
   /// Distributes the elements that rank `root` gives, all of them, row-major; the other ranks' are ignored.
   void scatter(std::span<const HostElement<T>> elements, int root = 0) {
     detail::scatter(state_.get(), root, elements.data(), elements.size());
+  }
+
+  /// The components of all elements, element by element, in the precision in which they are stored (Stream::readReals), on
+  /// rank `root`; nothing on the others. Throws sk::Error if a component is not a float.
+  std::vector<double> gatherReals(int root = 0) const { return detail::gatherReals(state_.get(), root); }
+  /// Distributes what rank `root` gives of what gatherReals() returns, rounded to nearest if the storage is narrower; what the
+  /// other ranks give is ignored.
+  void scatterReals(std::span<const double> components, int root = 0) {
+    detail::scatterReals(state_.get(), root, components);
   }
 
   /// Writes all elements to a .npy file, which NumPy reads, together with the other ranks (MPI-IO). The file appears under its name
