@@ -25,6 +25,7 @@
 #include "study.hpp"
 #include "support/application.hpp"
 #include "support/extents.hpp"
+#include "support/join_ranks.hpp"
 #include "table_file.hpp"
 
 namespace {
@@ -118,58 +119,99 @@ sk::Device openDevice(const std::string& name, bool isFilmed) {
   return device;
 }
 
+/// The whole of a cloth that is divided over ranks, on the first one's device: what is drawn and observed there has the bits of a
+/// cloth on one device.
+class WholeCloth {
+ public:
+  WholeCloth(examples::Simulation& simulation, std::optional<sk::Device>& device,
+             const examples::Scene& scene, sk::Precision precision)
+      : simulation_(simulation), isDivided_(simulation.space().isDivided()) {
+    if (isDivided_ && device) copy_.emplace(*device, scene, simulation.features(), precision);
+  }
+  /// The cloth as it is now; null on ranks other than the first. Collective.
+  examples::Simulation* now() {
+    if (!isDivided_) return &simulation_;
+    const examples::State state = simulation_.state();
+    if (!copy_) return nullptr;
+    copy_->restore(state);
+    return &*copy_;
+  }
+
+ private:
+  examples::Simulation& simulation_;
+  bool isDivided_;
+  std::optional<examples::Simulation> copy_;
+};
+
 void runScene(examples::Application& app, const Settings& s) {
   const examples::Scene scene = sceneOf(s);
   const sk::Precision precision = precisionOf(s.precision);
   const examples::PictureSize size = sizeOf(s.size);
-  if (s.window) return examples::runLive(scene, precision, app.device(), size);
-  sk::Device device = openDevice(app.device(), !scene.record.film.empty());
-
-  examples::Simulation simulation(device, scene, examples::Features::of(scene), precision);
-  std::optional<examples::Filming> filming;
-  if (!scene.record.film.empty())
-    filming.emplace(device, scene, examples::Look{size, s.samples, !s.bare}, s.precision);
-  std::optional<examples::TableFile> csv;
-  if (!scene.record.csv.empty()) csv.emplace(scene.record.csv);
-  const examples::Outcome outcome = examples::run(simulation, scene, [&](int) {
-    if (csv) csv->add(simulation, scene);
-    if (filming) filming->add(simulation);
-  });
-  if (csv) csv->finish();
-  if (filming) filming->finish(simulation);
-  if (!scene.record.obj.empty()) {
-    simulation.dress();
-    examples::saveObj(scene.record.obj, scene.cloth.columns, scene.cloth.rows,
-                      simulation.dressedPositions().read(), simulation.dressedNormals().read());
+  examples::Ranks& ranks = app.ranks();
+  if (s.window) {
+    ranks.refuseSeveral("--window", "start it without mpirun, or make a film with --output");
+    return examples::runLive(scene, precision, app.device(), size);
   }
+  const examples::Features features = examples::Features::of(scene);
+  const bool isFilmed = !scene.record.film.empty(), isObserved = !scene.record.csv.empty();
+  const auto divided = ranks.divide(app.device(), examples::shapeOf(scene), examples::Ends::Open);
+  std::optional<sk::Device> device;
+  if (ranks.isFirst()) device = openDevice(app.device(), isFilmed);
+  const examples::Space space =
+      divided ? examples::Space(*divided) : examples::Space(*device, examples::shapeOf(scene));
+  examples::Simulation simulation(space, scene, features, precision);
+  WholeCloth whole(simulation, device, scene, precision);
 
+  std::optional<examples::Filming> filming;
+  if (isFilmed && device)
+    filming.emplace(*device, scene, examples::Look{size, s.samples, !s.bare}, s.precision);
+  std::optional<examples::TableFile> csv;
+  if (isObserved && device) csv.emplace(scene.record.csv);
+  const examples::Outcome outcome = examples::run(simulation, scene, [&](int) {
+    if (!isFilmed && !isObserved) return;
+    examples::Simulation* const now = whole.now();
+    if (csv) csv->add(*now, scene);
+    if (filming) filming->add(*now);
+  });
+  examples::Simulation again(space, scene, features, precision);
+  const std::int64_t checked = stepsToCheck(scene, s);
+  again.advance(checked);
+  const std::vector<double> positions = again.positions();
+  examples::Simulation* const last = whole.now();
+  if (last == nullptr) return;
+
+  if (csv) csv->finish();
+  if (filming) filming->finish(*last);
+  if (!scene.record.obj.empty()) {
+    last->dress();
+    examples::saveObj(scene.record.obj, scene.cloth.columns, scene.cloth.rows,
+                      last->dressedPositions().read(), last->dressedNormals().read());
+  }
   app.report(fmt::format("{}, {} x {} points, {} steps in {} precision", scene.title, scene.cloth.columns,
                          scene.cloth.rows, outcome.steps, s.precision),
-             device.name(), simulation.milliseconds());
-  const examples::Observation end = simulation.observe();
+             examples::placeOf(ranks, space.device().name()), simulation.milliseconds());
+  const examples::Observation end = last->observe();
   fmt::print("{:.3g} ms a step; {}mean strain {:.3g}, largest {:.3g}, fastest point {:.3g} m/s\n",
              simulation.milliseconds() / static_cast<double>(std::max<std::int64_t>(1, outcome.steps)),
              outcome.settled ? "settled; " : "", end.strain, end.largest, outcome.fastest);
   if (filming) fmt::print("{}\n", filming->report());
-  if (s.compares)
-    fmt::print("{}", examples::tableOf(
-                         examples::compareWithFull(device, scene, precision, simulation.state()), scene));
-
-  const std::int64_t checked = stepsToCheck(scene, s);
-  examples::Simulation again(device, scene, examples::Features::of(scene), precision);
-  again.advance(checked);
-  app.verified(examples::checkSteps(scene, checked, again.positions(), precision));
-  app.verified(examples::checkObservation(scene, end, simulation.state()));
+  if (s.compares && ranks.count() == 1)  // costs are those of one device
+    fmt::print("{}",
+               examples::tableOf(examples::compareWithFull(*device, scene, precision, last->state()), scene));
+  app.verified(examples::checkSteps(scene, checked, positions, precision));
+  app.verified(examples::checkObservation(scene, end, last->state()));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Settings settings;
-  examples::Application app("cloth", "Cloth that hangs, falls, flutters and tears: a scene from a file.");
+  examples::Application app("cloth", "Cloth that hangs, falls, flutters and tears: a scene from a file.",
+                            examples::joinRanks());
   addOptions(app.options(), settings);
   return app.run(argc, argv, [&] {
     if (settings.study.empty()) return runScene(app, settings);
+    app.ranks().refuseSeveral("--study", "start it without mpirun");
     const examples::ClothStudy& study = examples::findStudy(settings.study);
     sk::Device device(app.device());
     fmt::print("{}", study.run(device));

@@ -11,13 +11,14 @@
 namespace examples {
 namespace {
 
-[[noreturn]] void failBroken(const Scene& scene, std::int64_t step, const Census& census) {
+[[noreturn]] void failBroken(const Simulation& simulation, const Scene& scene, const Census& census) {
+  const std::int64_t step = simulation.step();
+  const std::int64_t first = simulation.state().firstBroken(simulation.features().verlet);
   throw std::runtime_error(fmt::format(
       "step {}: the point in column {}, row {} has flown off, or is no number any more ({} of {} points); "
       "take a smaller "
       "dt, stiffness or relaxation",
-      step, census.first % scene.cloth.columns, census.first / scene.cloth.columns, census.broken,
-      scene.points()));
+      step, first % scene.cloth.columns, first / scene.cloth.columns, census.broken, scene.points()));
 }
 
 /// Goes from the last sound state step by step to the first that is not.
@@ -26,10 +27,9 @@ namespace {
   simulation.restore(sound);
   while (simulation.step() < end) {
     simulation.advance(1);
-    if (const Census census = simulation.census(); census.broken > 0)
-      failBroken(scene, simulation.step(), census);
+    if (const Census census = simulation.census(); census.broken > 0) failBroken(simulation, scene, census);
   }
-  failBroken(scene, end, atEnd);
+  failBroken(simulation, scene, atEnd);
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ Outcome run(Simulation& simulation, const Scene& scene, const std::function<void
   Progress progress(scene.title, steps);
   Outcome outcome;
   State sound = simulation.state();
-  if (const Census census = simulation.census(); census.broken > 0) failBroken(scene, 0, census);
+  if (const Census census = simulation.census(); census.broken > 0) failBroken(simulation, scene, census);
   onFrame(0);
   const int gaps = std::max(1, scene.record.frames - 1);
   for (int frame = 1; outcome.steps < steps && !outcome.settled;) {
@@ -58,7 +58,7 @@ Outcome run(Simulation& simulation, const Scene& scene, const std::function<void
       progress.clear();
       onFrame(frame++);
     }
-    progress.update(end);
+    if (simulation.space().isFirst()) progress.update(end);
   }
   return outcome;
 }

@@ -31,8 +31,8 @@ cloth::Wind windOf(const WindConstants& w, float phase) {
 }
 
 /// The stream, or sk::none where the scene has it not.
-template <class Parameter, class T>
-sk::Optional<Parameter> given(const std::optional<sk::Stream<T>>& stream) {
+template <class Parameter, class Stream>
+sk::Optional<Parameter> given(const std::optional<Stream>& stream) {
   if (!stream) return sk::none;
   return *stream;
 }
@@ -68,28 +68,34 @@ struct Simulation::Bodies {
   std::optional<sk::Stream<cloth::Box>> boxes;
 };
 
+sk::Shape shapeOf(const Scene& scene) { return {scene.cloth.rows, scene.cloth.columns}; }
+
 Simulation::Simulation(sk::Device& device, const Scene& scene, const Features& features,
                        sk::Precision precision)
-    : device_(&device),
+    : Simulation(Space(device, shapeOf(scene)), scene, features, precision) {}
+
+Simulation::Simulation(const Space& space, const Scene& scene, const Features& features,
+                       sk::Precision precision)
+    : space_(space),
       scene_(scene),
       features_(features),
       constants_(constantsOf(scene)),
       options_{.precision = precision},
-      p_(device.stream<sk::float4>({scene.cloth.rows, scene.cloth.columns}, storageFor(precision))),
-      d_(device.stream<sk::float3>({scene.cloth.rows, scene.cloth.columns}, storageFor(precision))),
+      p_(space.stream<sk::float4>(storageFor(precision))),
+      d_(space.stream<sk::float3>(storageFor(precision))),
       bodies_(std::make_unique<Bodies>()) {
   const FirstState first = firstState(scene, constants_);
   p_.write(first.positions);
   d_.write(first.displacements);
   if (features_.tearing) {
-    alive_ = device.stream<int>(p_.shape());
+    alive_ = space.stream<int>();
     alive_->write(first.alive);
   }
   if (features_.carried) {
-    pin_ = device.stream<int>(p_.shape());
+    pin_ = space.stream<int>();
     pin_->write(first.pin);
-    carry_ =
-        device.stream<sk::float3>({std::max<std::int64_t>(1, static_cast<std::int64_t>(scene.pins.size()))});
+    carry_ = space.device().stream<sk::float3>(
+        {std::max<std::int64_t>(1, static_cast<std::int64_t>(scene.pins.size()))});
     if (scene.pins.empty()) carry_->write(std::vector<sk::float3>(1));
   }
   place(momentAt(scene_, 0));
@@ -100,20 +106,20 @@ Simulation::~Simulation() = default;
 
 void Simulation::place(const Moment& moment) {
   const auto friction = [](const Body& b) { return static_cast<float>(b.friction); };
-  placeKind(*device_, features_.spheres, scene_, Kind::Sphere, moment, noSphere, bodies_->spheres,
+  placeKind(space_.device(), features_.spheres, scene_, Kind::Sphere, moment, noSphere, bodies_->spheres,
             [&](const Body& b, const Placed& now) {
               return cloth::Sphere{now.at, static_cast<float>(b.size.x), now.moved, friction(b)};
             });
-  placeKind(*device_, features_.planes, scene_, Kind::Plane, moment, noPlane, bodies_->planes,
+  placeKind(space_.device(), features_.planes, scene_, Kind::Plane, moment, noPlane, bodies_->planes,
             [&](const Body& b, const Placed& now) {
               return cloth::Plane{now.at, friction(b), toFloat3(b.along), now.moved};
             });
-  placeKind(*device_, features_.capsules, scene_, Kind::Capsule, moment, noCapsule, bodies_->capsules,
+  placeKind(space_.device(), features_.capsules, scene_, Kind::Capsule, moment, noCapsule, bodies_->capsules,
             [&](const Body& b, const Placed& now) {
               return cloth::Capsule{now.at, static_cast<float>(b.size.x), toFloat3(b.along), friction(b),
                                     now.moved};
             });
-  placeKind(*device_, features_.boxes, scene_, Kind::Box, moment, noBox, bodies_->boxes,
+  placeKind(space_.device(), features_.boxes, scene_, Kind::Box, moment, noBox, bodies_->boxes,
             [&](const Body& b, const Placed& now) {
               const sk::float3 axis = toFloat3(b.axis);
               return cloth::Box{now.at,
@@ -182,14 +188,14 @@ void Simulation::advance(std::int64_t steps) {
 
 void Simulation::finish() {
   const Stopwatch stopwatch;
-  device_->finish();
+  space_.device().finish();
   milliseconds_ += stopwatch.milliseconds();
 }
 
 Census Simulation::census() const {
-  const auto [broken, first, fastest] =
+  const auto [broken, fastest] =
       cloth::census.with(options_)(static_cast<unsigned>(features_.verlet), p_, d_);
-  return {broken, first, fastest / scene_.run.dt};
+  return {broken, fastest / scene_.run.dt};
 }
 
 Observation Simulation::observe() const {
@@ -197,8 +203,8 @@ Observation Simulation::observe() const {
   const LinkConstants& k = springs ? constants_.springs : constants_.relaxed;
   const cloth::Observed o = cloth::observe.with(options_)(
       scene_.links.shear.has_value(), scene_.links.bend.has_value(), alive_.has_value(), springs,
-      static_cast<unsigned>(features_.verlet), constants_.gravity, linksOf(k), p_, p_, d_,
-      given<sk::ElementIn<int>>(alive_));
+      static_cast<unsigned>(features_.verlet), constants_.gravity, linksOf(k), p_.whole(), p_.whole(),
+      d_.whole(), given<sk::ElementIn<int>>(alive_));
   const double joule = constants_.pointMass / (scene_.run.dt * scene_.run.dt);
   const double mass = std::max(1.0, static_cast<double>(o.energy.w));
   Observation result;
@@ -214,7 +220,7 @@ Observation Simulation::observe() const {
 std::int64_t Simulation::links() const { return alive_ ? cloth::countLinks(*alive_) : 0; }
 
 State Simulation::state() const {
-  State s{step_, p_.readReals(), d_.readReals(), {}};
+  State s{step_, p_.readReals(), d_.readReals(), alive_.has_value(), {}};
   if (alive_) s.alive = alive_->read();
   return s;
 }
@@ -223,15 +229,29 @@ void Simulation::restore(const State& state) {
   step_ = state.step;
   p_.writeReals(state.positions);
   d_.writeReals(state.displacements);
-  if (alive_ && !state.alive.empty()) alive_->write(state.alive);
+  if (alive_ && state.tears) alive_->write(state.alive);
+}
+
+std::int64_t State::firstBroken(Verlet verlet) const {
+  const auto points = static_cast<std::int64_t>(positions.size() / 4);
+  for (std::int64_t i = 0; i < points; ++i) {
+    double size = 0.0;
+    for (std::int64_t k = 0; k < 3; ++k) {
+      const double x = positions[static_cast<std::size_t>(4 * i + k)],
+                   d = displacements[static_cast<std::size_t>(3 * i + k)];
+      size += std::abs(x) + std::abs(verlet == Verlet::Displacements ? d : x - d);
+    }
+    if (!(size < 1e18)) return i;
+  }
+  return std::max<std::int64_t>(points - 1, 0);
 }
 
 void Simulation::dress() {
   if (!normals_) {
-    shown_ = device_->stream<sk::float4>(p_.shape());
-    normals_ = device_->stream<sk::float4>(p_.shape());
+    shown_ = space_.device().stream<sk::float4>(space_.shape());
+    normals_ = space_.device().stream<sk::float4>(space_.shape());
   }
-  cloth::dress.with(options_)(features_.tearing, p_, given<sk::In<int>>(alive_), *shown_, *normals_);
+  cloth::dress.with(options_)(features_.tearing, p_.whole(), given<sk::In<int>>(alive_), *shown_, *normals_);
 }
 
 int Simulation::streams() const {

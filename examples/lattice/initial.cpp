@@ -78,6 +78,11 @@ std::vector<double> firstTemperature(const Model& model, const Initial& initial,
 /// u = 1, v = 0 with squares of others, disturbed by 1 %: Pearson's first state, or many of it.
 void writeSeeds(const Model& model, const Initial& initial, Noise& noise, Lattice& lattice) {
   const Grid& g = model.grid;
+  if (!lattice.space().isFirst()) {
+    lattice.write(Field::U, {});
+    lattice.write(Field::V, {});
+    return;
+  }
   const auto cells = static_cast<std::size_t>(g.cells());
   std::vector<double> u(cells, 1.0), v(cells, 0.0);
   const std::int64_t side = initial.seedSide;
@@ -101,7 +106,10 @@ void writeSeeds(const Model& model, const Initial& initial, Noise& noise, Lattic
 
 void writeInitial(const Model& model, const Initial& initial, Lattice& lattice) {
   Noise noise(initial.random);
-  if (model.hasTemperature()) lattice.write(Field::Temperature, firstTemperature(model, initial, noise));
+  const bool isFirst = lattice.space().isFirst();
+  if (model.hasTemperature())
+    lattice.write(Field::Temperature,
+                  isFirst ? firstTemperature(model, initial, noise) : std::vector<double>());
   if (model.reaction) writeSeeds(model, initial, noise, lattice);
 }
 

@@ -2,7 +2,7 @@
 #include "lattice.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -29,22 +29,40 @@ sk::Storage storageFor(sk::Precision precision) {
 
 unsigned code(Edge edge) { return static_cast<unsigned>(edge); }
 
+/// Floats and halves are summed exactly, wider numbers in their own precision.
+sk::CallOptions sumsIn(sk::Precision precision) {
+  sk::CallOptions options;
+  if (precision == sk::Precision::Extended || precision == sk::Precision::Double) {
+    options.precision = precision;
+  } else {
+    options.accumulate = sk::Accumulate::Exact;
+  }
+  return options;
+}
+
+}  // namespace
+
 sk::Shape shapeOf(const Grid& grid) {
   if (grid.isSpace()) return {grid.depth, grid.height, grid.width};
   return {grid.height, grid.width};
 }
 
-}  // namespace
-
-Lattice::Lattice(sk::Device& device, const Model& model)
-    : device_(device), model_(model), c_(coefficientsOf(model)), options_{.precision = model.precision} {
+Lattice::Lattice(const Space& space, const Model& model)
+    : space_(space),
+      model_(model),
+      c_(coefficientsOf(model)),
+      options_{.precision = model.precision},
+      sums_(sumsIn(model.precision)) {
   allocate(now_);
   if (model.latentHeat) warmed_.emplace(makeStream());
 }
 
-sk::Stream<float> Lattice::makeStream() {
-  auto stream = device_.stream<float>(shapeOf(model_.grid), storageFor(model_.precision));
-  stream.writeReals(std::vector<double>(static_cast<std::size_t>(model_.grid.cells()), 0.0));
+Lattice::Lattice(sk::Device& device, const Model& model)
+    : Lattice(Space(device, shapeOf(model.grid)), model) {}
+
+GridStream<float> Lattice::makeStream() {
+  GridStream<float> stream = space_.stream<float>(storageFor(model_.precision));
+  stream.fill(0.0f);
   return stream;
 }
 
@@ -55,7 +73,7 @@ void Lattice::allocate(Fields& fields) {
   }
 }
 
-sk::Stream<float>& Lattice::stream(Field field) {
+GridStream<float>& Lattice::stream(Field field) {
   auto& place = now_[placeOf(field)];
   if (!place) throw std::logic_error(fmt::format("the scene has no field '{}'", nameOf(field)));
   return *place;
@@ -96,10 +114,10 @@ void Lattice::stepFlow(Fields& from, Fields& to) {
 }
 
 void Lattice::stepTemperature(Fields& from, Fields& to) {
-  sk::Stream<float>& before = in(from, Field::Temperature);
-  sk::Stream<float>& after = in(to, Field::Temperature);
-  sk::Stream<float>& warmed = warmed_ ? *warmed_ : after;
-  sk::Stream<float>* current = &before;
+  GridStream<float>& before = in(from, Field::Temperature);
+  GridStream<float>& after = in(to, Field::Temperature);
+  GridStream<float>& warmed = warmed_ ? *warmed_ : after;
+  GridStream<float>* current = &before;
   if (model_.flow) {
     const auto& [edges, t, closedZ] = model_.boundary;
     lattice::convect.with(options_)(code(edges[0]), code(edges[1]), code(edges[2]), code(edges[3]), walls(),
@@ -124,7 +142,7 @@ sk::float4 Lattice::walls() const {
           static_cast<float>(t[3])};
 }
 
-void Lattice::diffuse(sk::Stream<float>& from, sk::Stream<float>& to) {
+void Lattice::diffuse(GridStream<float>& from, GridStream<float>& to) {
   const Boundary& b = model_.boundary;
   const auto& edges = b.edges;
   const sk::float4 at = walls();
@@ -137,7 +155,7 @@ void Lattice::diffuse(sk::Stream<float>& from, sk::Stream<float>& to) {
   }
 }
 
-void Lattice::rise(sk::Stream<float>& from, sk::Stream<float>& to) {
+void Lattice::rise(GridStream<float>& from, GridStream<float>& to) {
   const bool closed = model_.boundary.closedY();
   const auto density = static_cast<unsigned>(model_.buoyancy->density);
   const lattice::Boiling b{c_.point, c_.alpha, c_.sigma, c_.latent};
@@ -148,7 +166,7 @@ void Lattice::rise(sk::Stream<float>& from, sk::Stream<float>& to) {
   }
 }
 
-void Lattice::exchange(sk::Stream<float>& before, sk::Stream<float>& after, sk::Stream<float>& to) {
+void Lattice::exchange(GridStream<float>& before, GridStream<float>& after, GridStream<float>& to) {
   const Boundary& b = model_.boundary;
   const lattice::Boiling boiling{c_.point, c_.alpha, c_.sigma, c_.latent};
   if (model_.grid.isSpace()) {
@@ -172,15 +190,20 @@ void Lattice::stepReaction(Fields& from, Fields& to) {
 }
 
 Observation Lattice::observe(Field field) {
-  const auto [least, most, total, broken] = lattice::observe.with(options_)(stream(field));
-  const auto cells = static_cast<double>(model_.grid.cells());
-  return {least, most, total / cells, broken == std::numeric_limits<int>::max() ? -1 : broken};
+  const auto [least, most, total, broken] = lattice::observe.with(sums_)(stream(field));
+  return {least, most, total / static_cast<double>(model_.grid.cells()), broken};
+}
+
+std::int64_t Lattice::firstBroken(Field field) {
+  const std::vector<double> values = read(field);
+  const auto found = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
+  return found == values.end() ? -1 : found - values.begin();
 }
 
 double Lattice::nusselt() {
   const auto& [edges, temperatures, closedZ] = model_.boundary;
   const Grid& g = model_.grid;
-  sk::Stream<float>& t = stream(Field::Temperature);
+  GridStream<float>& t = stream(Field::Temperature);
   const auto isWall = [&](Boundary::Side side) { return edges[side] == Edge::Wall; };
   const bool upright = isWall(Boundary::Bottom) && isWall(Boundary::Top);
   const Boundary::Side first = upright ? Boundary::Bottom : Boundary::Left;
@@ -189,16 +212,16 @@ double Lattice::nusselt() {
   const bool isFirst = temperatures[first] >= temperatures[second];
   const std::int64_t cells = upright ? g.height : g.width, along = upright ? g.width : g.height;
   const std::int64_t place = isFirst ? 0 : cells - 1;
-  const auto row =
-      upright ? t.domain({place, 0}, {place + 1, along}) : t.domain({0, place}, {along, place + 1});
-  const double beside = lattice::sum.with(options_)(row) / static_cast<double>(along);
+  const sk::Box row =
+      upright ? sk::Box{{place, 0}, {place + 1, along}} : sk::Box{{0, place}, {along, place + 1}};
+  const double beside = lattice::sum.with(sums_).with({.box = row})(t) / static_cast<double>(along);
   const double wall = temperatures[isFirst ? first : second];
   const double other = temperatures[isFirst ? second : first];
   return 2.0 * static_cast<double>(cells) * (wall - beside) / (wall - other);
 }
 
 double Lattice::kineticEnergy() {
-  const double total = lattice::energy.with(options_)(stream(Field::VelocityX), stream(Field::VelocityY));
+  const double total = lattice::energy.with(sums_)(stream(Field::VelocityX), stream(Field::VelocityY));
   return 0.5 * total / static_cast<double>(model_.grid.cells());
 }
 

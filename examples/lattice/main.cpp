@@ -3,7 +3,7 @@
 // lattice: coupled map lattices from scene files, and the studies of their numerics.
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -21,6 +21,7 @@
 #include "study.hpp"
 #include "support/application.hpp"
 #include "support/extents.hpp"
+#include "support/join_ranks.hpp"
 #include "support/record.hpp"
 
 namespace {
@@ -67,14 +68,24 @@ std::string sizeText(const examples::Grid& g) {
 }
 
 void simulate(examples::Application& app, const examples::Scene& scene, const Settings& s) {
-  if (s.window) return examples::runLive(scene, app.device());
-  sk::Device device(app.device());
-  examples::Lattice lattice(device, scene.model);
+  const examples::Ranks& ranks = app.ranks();
+  if (s.window) {
+    ranks.refuseSeveral("--window", "start it without mpirun, or make a film with --output");
+    return examples::runLive(scene, app.device());
+  }
+  const std::unique_ptr<examples::DividedGrid> divided =
+      app.ranks().divide(app.device(), examples::shapeOf(scene.model.grid), examples::Ends::Joined);
+  std::optional<sk::Device> own;
+  const examples::Space space =
+      divided ? examples::Space(*divided)
+              : examples::Space(own.emplace(app.device()), examples::shapeOf(scene.model.grid));
+  sk::Device& device = space.device();
+  examples::Lattice lattice(space, scene.model);
   examples::writeInitial(scene.model, scene.initial, lattice);
-  const examples::Outcome outcome = examples::runScene(device, scene, lattice);
+  const examples::Outcome outcome = examples::runScene(scene, lattice);
 
   app.report(fmt::format("{}, {}, {} steps", scene.name, sizeText(scene.model.grid), outcome.steps),
-             device.name(), outcome.milliseconds);
+             examples::placeOf(ranks, device.name()), outcome.milliseconds);
   if (scene.settling) {
     fmt::print("{} after {} steps: the last change was {:.2g} a step, asked {} times\n",
                outcome.settled ? "settled" : "not settled", outcome.steps, outcome.change, outcome.checks);
@@ -95,8 +106,9 @@ void simulate(examples::Application& app, const examples::Scene& scene, const Se
     tableError = std::max(tableError, table.predicted);
   }
   examples::printWritten(scene.record, outcome.frames);
-  app.verified(examples::checkStep(scene.model, outcome.beforeLast, outcome.last, tableError));
-  if (!s.account) return;
+  if (space.isFirst())
+    app.verified(examples::checkStep(scene.model, outcome.beforeLast, outcome.last, tableError));
+  if (!s.account || ranks.count() > 1) return;  // the account is of one device
   const examples::Account account = examples::accountFor(device, scene, outcome.beforeLast);
   fmt::print("\n{}\n", account.text());
   app.verified(account.agreement);
@@ -107,12 +119,16 @@ void simulate(examples::Application& app, const examples::Scene& scene, const Se
 int main(int argc, char** argv) {
   Settings settings;
   examples::Application app(
-      "lattice", "Boiling, convection, reaction with diffusion: coupled map lattices from scene files.");
+      "lattice", "Boiling, convection, reaction with diffusion: coupled map lattices from scene files.",
+      examples::joinRanks());
   addOptions(app.options(), settings);
   const examples::StudyOptions study(app, "measure the numerics", examples::studies());
   const examples::RecordOptions record(app.options(), "means, extremes, Nusselt number ... while it runs");
   return app.run(argc, argv, [&] {
-    if (study.isGiven()) return study.run();
+    if (study.isGiven()) {
+      app.ranks().refuseSeveral("--study", "start it without mpirun");
+      return study.run();
+    }
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/lattice/scenes/boiling.toml");
     simulate(app, sceneOf(settings, record), settings);

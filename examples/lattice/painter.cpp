@@ -33,10 +33,9 @@ Painter::Painter(sk::Device& device, const Scene& scene)
   palette_.write(colours_);
 }
 
-sk::Stream<float>& Painter::shown(Lattice& lattice) {
-  const auto derive = [&](const auto& kernel) -> sk::Stream<float>& {
-    const Grid& g = scene_.model.grid;
-    if (!derived_) derived_.emplace(device_.stream<float>({g.height, g.width}));
+GridStream<float>& Painter::shown(Lattice& lattice) {
+  const auto derive = [&](const auto& kernel) -> GridStream<float>& {
+    if (!derived_) derived_.emplace(lattice.space().stream<float>());
     kernel(lattice.stream(Field::VelocityX), lattice.stream(Field::VelocityY), *derived_);
     return *derived_;
   };
@@ -52,7 +51,18 @@ sk::Stream<float>& Painter::shown(Lattice& lattice) {
   return lattice.stream(Field::Temperature);
 }
 
-Painter::Values Painter::range(sk::Stream<float>& field) const {
+/// All elements of a field on this device; on ranks other than the first, nothing.
+const sk::Stream<float>& Painter::whole(const GridStream<float>& field) {
+  if (!field.isDivided()) return field.whole();
+  const std::vector<double> values = field.readReals();
+  gathered_ = {};
+  if (values.empty()) return gathered_;
+  gathered_ = device_.stream<float>(shapeOf(scene_.model.grid), field.storage());
+  gathered_.writeReals(values);
+  return gathered_;
+}
+
+Painter::Values Painter::range(const GridStream<float>& field) const {
   const auto [least, most, total, broken] = lattice::observe(field);
   Values v{scene_.view.low.value_or(least), scene_.view.high.value_or(most)};
   if (scene_.view.shown == Shown::Vorticity && !scene_.view.low && !scene_.view.high) {
@@ -63,7 +73,7 @@ Painter::Values Painter::range(sk::Stream<float>& field) const {
   return v;
 }
 
-sk::Stream<sk::float3> Painter::plane(sk::Stream<float>& field, Values values) {
+sk::Stream<sk::float3> Painter::plane(const sk::Stream<float>& field, Values values) {
   const Grid& g = scene_.model.grid;
   const int zoom = zoomFor(scene_);
   auto colour = device_.stream<sk::float3>({g.height * zoom, g.width * zoom});
@@ -73,38 +83,41 @@ sk::Stream<sk::float3> Painter::plane(sk::Stream<float>& field, Values values) {
   return colour;
 }
 
-sk::Stream<sk::float3> Painter::bubbles(Lattice& lattice, Values values, int finer) {
+sk::Stream<sk::float3> Painter::bubbles(const sk::Stream<float>& temperature, Values values, int finer) {
   const Grid& g = scene_.model.grid;
   const BoxView view = boxView({g.width, g.height, g.depth}, 0.55, 0.32, 960L * finer);
   const lattice::Camera camera = {view.middle, view.right, view.up, view.ahead};
   auto colour = device_.stream<sk::float3>({view.height, view.width});
   lattice::march(palette_, static_cast<float>(values.low), static_cast<float>(values.high),
-                 static_cast<float>(scene_.model.boilingPoint), camera, lattice.stream(Field::Temperature),
-                 colour);
+                 static_cast<float>(scene_.model.boilingPoint), camera, temperature, colour);
   return colour;
 }
 
 Image Painter::plot(Lattice& lattice) {
   constexpr int finer = 2;  // rays for each pixel, in each direction: surfaces have edges
-  sk::Stream<float>& field = shown(lattice);
+  const GridStream<float>& field = shown(lattice);
   last_ = range(field);
+  const sk::Stream<float>& cells = whole(field);
+  if (!cells) return {};
   const bool isSpace = scene_.view.shown == Shown::Bubbles;
-  const auto colour = isSpace ? bubbles(lattice, last_, finer) : plane(field, last_);
+  const auto colour = isSpace ? bubbles(cells, last_, finer) : plane(cells, last_);
   const Image image =
       imageOf(static_cast<int>(colour.shape()[1]), static_cast<int>(colour.shape()[0]), colour.read());
   return isSpace ? reduced(image, finer) : image;
 }
 
 Painter::Texture Painter::texture(Lattice& lattice) {
-  sk::Stream<float>& field = shown(lattice);
+  const GridStream<float>& field = shown(lattice);
   last_ = range(field);
-  if (scene_.view.shown != Shown::Bubbles) return {field.texture(), false, last_.low, last_.high};
-  seen_.emplace(bubbles(lattice, last_, 1));
+  const sk::Stream<float>& cells = field.whole();
+  if (scene_.view.shown != Shown::Bubbles) return {cells.texture(), false, last_.low, last_.high};
+  seen_.emplace(bubbles(cells, last_, 1));
   return {seen_->texture(), true, last_.low, last_.high};
 }
 
 Image Painter::paint(Lattice& lattice, const std::string& moment) {
   const Image image = plot(lattice);
+  if (image.rgb.empty()) return image;
   std::optional<ColourBar> bar;  // surfaces in space are coloured by their height
   if (scene_.view.shown != Shown::Bubbles)
     bar = ColourBar{colours_, last_.low, last_.high, std::string(nameOf(scene_.view.shown))};

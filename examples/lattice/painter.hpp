@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Pictures of a lattice: computed on its device, titled on the host.
+// Pictures of a lattice: computed on its device, titled on the host. If the lattice is divided over ranks, the first one gathers what
+// is shown and computes the picture.
 #pragma once
 
 #include <optional>
@@ -17,12 +18,14 @@ class Painter {
  public:
   Painter(sk::Device& device, const Scene& scene);
 
-  /// The field as it is now, with a title and a bar of its colours; `moment` stands below it.
+  /// The field as it is now, with a title and a bar of its colours; `moment` stands below it. On ranks other than the first, the
+  /// pictures of paint() and plot() are empty.
   Image paint(Lattice& lattice, const std::string& moment);
   /// The field alone.
   Image plot(Lattice& lattice);
 
-  /// The texture of what is shown, until the lattice's next step: the field itself, or colours where it is seen in space.
+  /// The texture of what is shown, until the lattice's next step: the field itself, or colours where it is seen in space. The
+  /// lattice must be on one device.
   struct Texture {
     sk::StreamTexture texture;
     bool isColour = false;
@@ -34,16 +37,18 @@ class Painter {
   struct Values {
     double low, high;
   };
-  sk::Stream<float>& shown(Lattice& lattice);
-  Values range(sk::Stream<float>& field) const;
-  sk::Stream<sk::float3> plane(sk::Stream<float>& field, Values values);
-  sk::Stream<sk::float3> bubbles(Lattice& lattice, Values values, int finer);
+  GridStream<float>& shown(Lattice& lattice);
+  const sk::Stream<float>& whole(const GridStream<float>& field);
+  Values range(const GridStream<float>& field) const;
+  sk::Stream<sk::float3> plane(const sk::Stream<float>& field, Values values);
+  sk::Stream<sk::float3> bubbles(const sk::Stream<float>& temperature, Values values, int finer);
 
   sk::Device& device_;
   Scene scene_;
   std::vector<sk::float3> colours_;
   sk::Stream<sk::float3> palette_;
-  std::optional<sk::Stream<float>> derived_;
+  std::optional<GridStream<float>> derived_;
+  sk::Stream<float> gathered_;
   std::optional<sk::Stream<sk::float3>> seen_;
   Values last_ = {0.0, 1.0};
 };

@@ -23,7 +23,8 @@ std::string placeOf(const Grid& g, std::int64_t cell) {
 /// Rows of numbers, reduced on the device.
 class Numbers {
  public:
-  Numbers(const std::filesystem::path& path, const Model& model) : model_(model), file_(path, heads(model)) {}
+  Numbers(const std::filesystem::path& path, const Model& model, bool writes)
+      : model_(model), file_(path, heads(model), writes) {}
 
   void add(std::int64_t step, Lattice& lattice) {
     if (!file_.isWanted()) return;
@@ -72,21 +73,23 @@ std::int64_t nextOf(std::int64_t step, std::int64_t every, std::int64_t never) {
 
 void requireFinite(Lattice& lattice, std::int64_t step) {
   for (const Field field : fieldsOf(lattice.model())) {
-    const Observation o = lattice.observe(field);
-    if (o.broken < 0) continue;
+    if (lattice.observe(field).broken == 0) continue;
+    const std::string cell = placeOf(lattice.model().grid, lattice.firstBroken(field));
     throw std::runtime_error(fmt::format("step {}: {} is not finite in cell {}; what was made before is kept",
-                                         step, nameOf(field), placeOf(lattice.model().grid, o.broken)));
+                                         step, nameOf(field), cell));
   }
 }
 
-Outcome runScene(sk::Device& device, const Scene& scene, Lattice& lattice) {
+Outcome runScene(const Scene& scene, Lattice& lattice) {
+  sk::Device& device = lattice.space().device();
   Outcome outcome;
   const std::int64_t steps = scene.steps;
   const std::int64_t every =
       scene.csvInterval > 0 ? scene.csvInterval : std::max<std::int64_t>(1, steps / 100);
+  const bool isFirst = lattice.space().isFirst();
   Painter painter(device, scene);
-  Pictures pictures(scene.record);
-  Numbers numbers(scene.record.csv, scene.model);
+  Pictures pictures(scene.record, isFirst);
+  Numbers numbers(scene.record.csv, scene.model, isFirst);
   numbers.add(0, lattice);
   Progress progress(scene.name, steps);
   const auto addPicture = [&](std::int64_t step) {
@@ -132,7 +135,7 @@ Outcome runScene(sk::Device& device, const Scene& scene, Lattice& lattice) {
       progress.clear();
       addPicture(step);
     }
-    progress.update(step);
+    if (isFirst) progress.update(step);
   }
   if (outcome.beforeLast.empty()) {
     outcome.beforeLast = readState(lattice);

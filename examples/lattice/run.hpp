@@ -24,9 +24,9 @@ struct Outcome {
   State beforeLast, last;  ///< the fields one step before the end, and at the end
 };
 
-/// Runs the scene. Throws std::runtime_error, naming step, field and cell, where a number is not finite; pictures that
+/// Runs the scene. If the lattice is divided over ranks, the first one writes the files, and has the states. Throws std::runtime_error, naming step, field and cell, where a number is not finite; pictures that
 /// were made before stay.
-Outcome runScene(sk::Device& device, const Scene& scene, Lattice& lattice);
+Outcome runScene(const Scene& scene, Lattice& lattice);
 
 /// Throws where a field has a number that is not finite.
 void requireFinite(Lattice& lattice, std::int64_t step);

@@ -31,7 +31,7 @@ bool grows(sk::Device& device, const Model& model, Field field, double mean, int
   if (model.flow) lattice.write(Field::VelocityY, chequered(model.grid, mean, amplitude));
   lattice.advance(steps);
   const Observation o = lattice.observe(field);
-  return o.broken >= 0 || std::max(o.most - mean, mean - o.least) > 100.0 * amplitude;
+  return o.broken > 0 || std::max(o.most - mean, mean - o.least) > 100.0 * amplitude;
 }
 
 struct Case {

@@ -38,8 +38,8 @@ bool closer(const Verification& a, const Verification& b) {
 
 }  // namespace
 
-Application::Application(std::string name, std::string purpose)
-    : name_(std::move(name)), cli_(std::move(purpose), name_) {
+Application::Application(std::string name, std::string purpose, std::unique_ptr<Ranks> ranks)
+    : name_(std::move(name)), ranks_(std::move(ranks)), cli_(std::move(purpose), name_) {
   cli_.add_option(
       "--device", device_,
       "where to run: native, gpu, gpu:1, software, gl, or part of a renderer's name (default: the best)");
@@ -59,34 +59,41 @@ void Application::verified(const Verification& verification) {
   verifications_.push_back(verification);
 }
 
-bool Application::parse(int argc, char** argv, int& status) {
+void Application::parse(int argc, char** argv) {
   try {
     cli_.parse(argc, argv);
-    return true;
   } catch (const CLI::CallForHelp&) {
-    fmt::print("{}", cli_.help());
-    status = 0;
+    throw;
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{}: {}; see {} --help\n", name_, oneLine(error.what()), name_);
-    status = 1;
+    throw std::runtime_error(fmt::format("{}; see {} --help", oneLine(error.what()), name_));
   }
-  return false;
+}
+
+/// Processes that do not know each other would all compute the whole, and write the same files.
+void Application::refuseCopies() const {
+  const int started = startedProcesses();
+  if (started <= 1 || ranks_->count() > 1) return;
+  throw std::runtime_error(fmt::format("{} processes were started, but each would compute everything: {}",
+                                       started, ranks_->whyAlone()));
 }
 
 int Application::run(int argc, char** argv, const std::function<void()>& body) {
-  int status = 0;
-  if (!parse(argc, argv, status)) return status;
+  std::string error;
   try {
+    parse(argc, argv);
+    refuseCopies();
     body();
-    if (!summary_.empty()) writeSummary();
-  } catch (const std::exception& error) {
-    std::fflush(stdout);
-    fmt::print(stderr, "{}: {}\n", name_, oneLine(error.what()));
-    return 1;
+    if (!summary_.empty() && ranks_->isFirst()) writeSummary();
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", cli_.help());
+  } catch (const std::exception& thrown) {
+    error = fmt::format("{}: {}", name_, oneLine(thrown.what()));
   }
-  return std::all_of(verifications_.begin(), verifications_.end(), [](const auto& v) { return v.passed(); })
-             ? 0
-             : 1;
+  std::fflush(stdout);
+  ranks_->end(error);
+  const bool passed =
+      std::all_of(verifications_.begin(), verifications_.end(), [](const auto& v) { return v.passed(); });
+  return error.empty() && passed ? 0 : 1;
 }
 
 void Application::writeSummary() const {

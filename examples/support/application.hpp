@@ -6,23 +6,28 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "support/ranks.hpp"
 #include "support/verification.hpp"
 
 namespace examples {
 
 class Application {
  public:
-  Application(std::string name, std::string purpose);
+  /// An example that computes on the ranks of MPI passes joinRanks(); others run in one process.
+  Application(std::string name, std::string purpose,
+              std::unique_ptr<Ranks> ranks = std::make_unique<Ranks>());
 
   /// For options of the example's own; --help, --device and --summary are there already.
   CLI::App& options() { return cli_; }
   /// What --device was given, to make a sk::Device from; empty for the best one.
   const std::string& device() const { return device_; }
+  Ranks& ranks() { return *ranks_; }
 
   /// Says what the run did, where, and how long it took there, for the report and the table of demo.sh.
   void report(std::string did, std::string where, double milliseconds);
@@ -30,14 +35,16 @@ class Application {
   void verified(const Verification& verification);
 
   /// Parses the command line, calls `body`, turns whatever it throws into a message. Returns main's exit
-  /// status: 1 after an error or where a verification missed its bound.
+  /// status: 1 after an error or where a verification missed its bound. All ranks must call it.
   int run(int argc, char** argv, const std::function<void()>& body);
 
  private:
-  bool parse(int argc, char** argv, int& status);
+  void parse(int argc, char** argv);
+  void refuseCopies() const;
   void writeSummary() const;
 
   std::string name_;
+  std::unique_ptr<Ranks> ranks_;
   CLI::App cli_;
   std::string device_;
   std::filesystem::path summary_;

@@ -20,8 +20,8 @@ Record readRecord(const std::optional<SceneTable>& table, std::string_view name)
   return r;
 }
 
-Pictures::Pictures(const Record& record) : record_(record) {
-  if (isWanted() && (record.frames > 1 || record.output.extension() != ".png"))
+Pictures::Pictures(const Record& record, bool writes) : record_(record), writes_(writes) {
+  if (writes && isWanted() && (record.frames > 1 || record.output.extension() != ".png"))
     film_ = std::make_unique<Film>(record.output, record.framesPerSecond);
 }
 
@@ -44,7 +44,7 @@ bool Pictures::isDue(std::int64_t step, std::int64_t steps) const {
 void Pictures::add(const Image& image) {
   if (film_)
     film_->add(image);
-  else
+  else if (writes_)
     savePng(record_.output, image);
   ++count_;
 }
@@ -53,8 +53,9 @@ void Pictures::finish() {
   if (const std::unique_ptr<Film> film = std::move(film_); film && count_ > 0) film->finish();
 }
 
-CsvFile::CsvFile(const std::filesystem::path& file, std::string_view heads) : name_(file.string()) {
-  if (!isWanted()) return;
+CsvFile::CsvFile(const std::filesystem::path& file, std::string_view heads, bool writes)
+    : name_(file.string()), writes_(writes) {
+  if (!isWanted() || !writes_) return;
   std::error_code ignored;  // a file that cannot be written is reported by `add`
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
   file_.open(file);
@@ -62,7 +63,7 @@ CsvFile::CsvFile(const std::filesystem::path& file, std::string_view heads) : na
 }
 
 void CsvFile::add(std::string_view row) {
-  if (!isWanted()) return;
+  if (!isWanted() || !writes_) return;
   if (!(file_ << row << '\n').flush()) throw std::runtime_error(fmt::format("cannot write '{}'", name_));
 }
 

@@ -47,8 +47,9 @@ class RecordOptions {
 /// The pictures of a run, in one PNG file or a film. A run that throws keeps the pictures that were added, in a complete file.
 class Pictures {
  public:
-  /// Creates the film. Throws std::runtime_error if the file cannot be written.
-  explicit Pictures(const Record& record);
+  /// Creates the film. Throws std::runtime_error if the file cannot be written. If `writes` is false, pictures are counted and
+  /// dropped, because another process writes them.
+  explicit Pictures(const Record& record, bool writes = true);
   ~Pictures();
   Pictures(const Pictures&) = delete;
   Pictures& operator=(const Pictures&) = delete;
@@ -68,6 +69,7 @@ class Pictures {
 
  private:
   Record record_;
+  bool writes_;
   std::unique_ptr<Film> film_;
   int count_ = 0;
 };
@@ -75,14 +77,16 @@ class Pictures {
 /// Lines of comma-separated values, each of which is on file when `add` returns.
 class CsvFile {
  public:
-  /// Creates the file, and its folder if there is none. An empty path: no file, and `add` does nothing.
-  CsvFile(const std::filesystem::path& file, std::string_view heads);
+  /// Creates the file, and its folder if there is none. An empty path: no file, and `add` does nothing. If `writes` is false,
+  /// `add` does nothing either, because another process writes the file.
+  CsvFile(const std::filesystem::path& file, std::string_view heads, bool writes = true);
   bool isWanted() const { return !name_.empty(); }
   /// Throws std::runtime_error if the file cannot be written.
   void add(std::string_view row);
 
  private:
   std::string name_;
+  bool writes_;
   std::ofstream file_;
 };
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+//
+// The processes that run an example together, as mpirun or srun starts them. This header knows no MPI; joinRanks() of
+// join_ranks.hpp makes ranks that do.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <sk/shape.hpp>
+
+#include "support/grid_stream.hpp"
+
+namespace examples {
+
+/// How many processes a launcher of MPI says that it has started, of which this is one; 0 without a launcher.
+int startedProcesses();
+
+/// Whether the elements at the ends of a grid are neighbors of those at the other ends, as [[wrap]] gathers have it.
+enum class Ends : std::uint8_t { Open, Joined };
+
+/// One process alone. Derived classes are processes that compute together.
+class Ranks {
+ public:
+  virtual ~Ranks() = default;
+  virtual int rank() const { return 0; }
+  virtual int count() const { return 1; }
+  /// Whether this process prints and writes files.
+  bool isFirst() const { return rank() == 0; }
+
+  /// Why a process is alone although a launcher has started several, and what to do about it.
+  virtual std::string_view whyAlone() const { return "it computes in one process; start it without mpirun"; }
+  /// Divides a grid over the ranks. The device is that of --device. Null if there is nothing to divide it over.
+  virtual std::unique_ptr<DividedGrid> divide(const std::string& device, const sk::Shape& shape, Ends ends);
+
+  /// Called once, at the end of the program, with the message that it ends with on this rank, or an empty text. Prints
+  /// what all ranks say once. If others go on, ends them, too: they would wait for this rank.
+  virtual void end(const std::string& error);
+
+  /// Throws std::runtime_error if there are several ranks: `what` is for one. `instead` says what to do.
+  void refuseSeveral(std::string_view what, std::string_view instead) const;
+};
+
+/// "4 ranks, each on native", or the device's name alone.
+std::string placeOf(const Ranks& ranks, std::string_view device);
+
+}  // namespace examples
