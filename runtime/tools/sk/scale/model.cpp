@@ -91,6 +91,10 @@ class Prediction {
   }
 
  private:
+  struct ExchangeTimes {
+    double messages, copies;
+  };
+
   static Extents grown(Extents block, const Halos& margin) {
     for (std::size_t d = 0; d < block.size(); ++d) block[d] += margin[d].both();
     return block;
@@ -109,25 +113,27 @@ class Prediction {
     const Halos depth = exchanges ? times(reach, every_) : valid;
     const Halos margin = every_ == 1 ? Halos(reach.size()) : less(depth, reach);
     const double volume = static_cast<double>(volumeOf(grown(result_.block, margin)));
-    result_.compute += call.perCall + volume * call.perElement;
+    const double factor = result_.devices > 1 ? call.boxes.factor : 1;  // what is held has a halo
+    result_.compute += call.perCall + volume * call.perElement * factor;
     if (exchanges) addExchange(call, reach, exchangeOf(call, less(depth, reach)));
     return margin;
   }
 
-  void addExchange(const StepCall& call, const Halos& reach, double exchange) {
-    result_.exchange += exchange;
-    result_.waiting += exchange;
+  void addExchange(const StepCall& call, const Halos& reach, const ExchangeTimes& exchange) {
+    result_.exchange += exchange.messages + exchange.copies;
+    result_.waiting += exchange.messages + exchange.copies;
     Extents interior = result_.block;
     for (std::size_t d = 0; d < interior.size(); ++d) interior[d] -= reach[d].both();
     const bool isEmpty = std::ranges::any_of(interior, [](std::int64_t extent) { return extent <= 0; });
     if (!cluster_.hasOverlap || isEmpty) return;
-    const double hiding = call.perCall + static_cast<double>(volumeOf(interior)) * call.perElement;
-    result_.waiting -= std::min(exchange, hiding);
-    result_.compute += 2 * splitDimensions(result_.parts) * call.perCall;  // a call for each side's box
+    const double hiding =
+        call.perCall + static_cast<double>(volumeOf(interior)) * call.perElement * call.boxes.factor;
+    result_.waiting -= std::min(exchange.messages, hiding);
+    result_.compute += 2 * splitDimensions(result_.parts) * call.boxes.borderTime;  // a call for each side
   }
 
   /// Exchanges the gathers' halos, with `further` more elements around them.
-  double exchangeOf(const StepCall& call, const Halos& further) {
+  ExchangeTimes exchangeOf(const StepCall& call, const Halos& further) {
     std::vector<ExchangedStream> streams;
     for (const ExchangedGather& gather : call.gathers) {
       streams.push_back(gather.stream);
@@ -139,7 +145,7 @@ class Prediction {
     const Sent sent = sentBy(split_, result_.block, place_, streams);
     result_.messages += static_cast<double>(sent.messages);
     result_.bytes += sent.bytes;
-    return exchangeTime(cluster_.network, sent.messages, sent.bytes) + cluster_.staging.time(sent.bytes);
+    return {exchangeTime(cluster_.network, sent.messages, sent.bytes), cluster_.staging.time(sent.bytes)};
   }
 
   double reductionTime(const StepCall& call) const {

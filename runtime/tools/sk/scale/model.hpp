@@ -4,7 +4,8 @@
 // A pure function of numbers: it runs nothing and prints nothing. docs/domains.md explains the terms.
 //
 // A step calls kernels one after the other, and each reads what the one before has written. A call with gathers that reach
-// beyond the block exchanges their halos while it computes the interior, and then computes the rest. If several calls share
+// beyond the block exchanges their halos while it computes the interior, and then computes the rest. Only messages are under
+// way meanwhile: a device with a queue copies halos to and from host memory between its kernels. If several calls share
 // an exchange, halos are as many times as deep, and blocks are computed with a margin that shrinks from call to call.
 // (DomainOptions::exchangeEvery.)
 #pragma once
@@ -30,6 +31,7 @@ struct StepCall {
   std::string name;
   double perCall = 0;  ///< seconds that a call takes for any number of elements
   double perElement = 0;  ///< seconds
+  Boxes boxes = {};  ///< of calls that compute a part of what a device holds
   std::vector<ExchangedGather> gathers = {};
   std::int64_t reducedBytes =
       0;  ///< of the value that all ranks combine; 0: the call is no reduction to a value

@@ -64,4 +64,21 @@ Staging Staging::parse(const std::string& text) {
           .writeBandwidth = parseBandwidth(words[2])};
 }
 
+Boxes Boxes::parse(const std::string& text) {
+  const std::vector<std::string> words = wordsOf(text, ',');
+  std::size_t read = 0;
+  double factor = 0;
+  try {
+    factor = std::stod(words[0], &read);
+  } catch (const std::logic_error&) {  // not a number
+  }
+  if (words.size() != 2 || read != words[0].size() || !(factor >= 1) || factor > 100) {
+    throw std::runtime_error(fmt::format(
+        "'{}' says nothing of boxes; give how many times as long an element takes, 1 to 100, and the time of "
+        "a call for a border, as in 1.3,6us",
+        text));
+  }
+  return {.factor = factor, .borderTime = parseTime(words[1])};
+}
+
 }  // namespace sk_tool

@@ -29,8 +29,9 @@ double exchangeTime(const Network& network, std::int64_t messages, double bytes)
 /// The time of an all-reduce of `bytes` bytes by recursive doubling: ceil(log2 ranks) exchanges, one after the other.
 double allReduceTime(const Network& network, std::int64_t ranks, double bytes);
 
-/// Copies between a device and host memory, which messages of a GPU need: seconds and bytes per second. All 0: messages
-/// are sent from where the stream is, as native devices do.
+/// Copies between a device and host memory, which messages of a GPU need: seconds and bytes per second. The device carries
+/// them out between its kernels, so that no kernel hides them. All 0: messages are sent from where the stream is, as native
+/// devices do.
 struct Staging {
   double readTime = 0, readBandwidth = 0;
   double writeTime = 0, writeBandwidth = 0;
@@ -40,6 +41,15 @@ struct Staging {
 
   /// Parses "READ_BANDWIDTH,READ_TIME,WRITE_BANDWIDTH,WRITE_TIME", or "none". Throws std::runtime_error.
   static Staging parse(const std::string& text);
+};
+
+/// What it costs a device to compute a box of a stream in place of all of it.
+struct Boxes {
+  double factor = 1;  ///< times as long for an element
+  double borderTime = 0;  ///< seconds of a call for one border
+
+  /// Parses "FACTOR,TIME". Throws std::runtime_error.
+  static Boxes parse(const std::string& text);
 };
 
 }  // namespace sk_tool

@@ -50,7 +50,7 @@ struct Line {
   }
 };
 
-/// The time of a call, and the number of its elements.
+/// The time of a call with inputs for a domain, and the number of its elements.
 std::pair<double, double> timeOfCall(sk::Device& device, const Subject& subject, const Ranges& ranges,
                                      int rank, std::int64_t elements) {
   const sk::Shape domain = cubeOf(rank, elements);
@@ -58,6 +58,27 @@ std::pair<double, double> timeOfCall(sk::Device& device, const Subject& subject,
   const Inputs inputs = drawInputs(subject, ranges, extent, Extremes::None);
   Call call(device, subject, inputs);
   return {timeOf(device, [&] { call.run({}, 0); }), static_cast<double>(domain.size())};
+}
+
+/// Times the interior and a border of a domain, as calls that exchange halos compute them.
+Boxes measureBoxes(sk::Device& device, const Subject& subject, const Ranges& ranges, int rank,
+                   std::int64_t elements, double wholeTime) {
+  constexpr std::int64_t border = 4;
+  const sk::Shape domain = cubeOf(rank, elements);
+  if (domain[0] <= 4 * border) return {.borderTime = wholeTime};
+  const Inputs inputs =
+      drawInputs(subject, ranges, {.domain = domain, .results = domain, .draws = 1}, Extremes::None);
+  Call call(device, subject, inputs);
+  sk::Box inner{sk::Index::origin(rank), sk::Index::origin(rank)};
+  for (int d = 0; d < rank; ++d) inner.end[d] = domain[d];
+  sk::Box first = inner;
+  inner.begin[0] = border;
+  inner.end[0] -= border;
+  first.end[0] = border;
+  const double innerTime = timeOf(device, [&] { call.run({.box = inner}, 0); });
+  const double share = static_cast<double>(domain[0] - 2 * border) / static_cast<double>(domain[0]);
+  return {.factor = std::max(innerTime / (share * wholeTime), 1.0),
+          .borderTime = timeOf(device, [&] { call.run({.box = first}, 0); })};
 }
 
 }  // namespace
@@ -77,10 +98,12 @@ GivenRate GivenRate::parse(const std::string& text) {
     throw std::runtime_error(fmt::format(
         "'{}' is no rate; give KERNEL=ELEMENTS/s[,TIME OF A CALL] as in diffuse=2.5e9/s,5us", text));
   }
+  const double perCall = words.size() > 1 ? parseTime(words[1]) : 0;
   return {.kernel = text.substr(0, equals),
-          .rate = {.perCall = words.size() > 1 ? parseTime(words[1]) : 0,
+          .rate = {.perCall = perCall,
                    .perElement = 1 / perSecond,
-                   .source = "given"}};
+                   .source = "given",
+                   .boxes = {.borderTime = perCall}}};
 }
 
 std::string obstacleToMeasuring(const Subject& subject) {
@@ -96,9 +119,13 @@ Rate measureRate(sk::Device& device, const Subject& subject, const Ranges& range
       timeOfCall(device, subject, ranges, rank, std::min(smallElements, elements / 8));
   const auto [manyTime, many] = timeOfCall(device, subject, ranges, rank, elements);
   const Line line(few, fewTime, many, manyTime);
-  return {.perCall = line.fixed,
-          .perElement = line.perUnit,
-          .source = fmt::format("measured, {} elements", many)};
+  Rate rate{.perCall = line.fixed,
+            .perElement = line.perUnit,
+            .source = fmt::format("measured, {} elements", many),
+            .boxes = {.borderTime = line.fixed}};
+  if (subject.reduction == nullptr && !device.shadingLanguage().empty())
+    rate.boxes = measureBoxes(device, subject, ranges, rank, elements, manyTime);
+  return rate;
 }
 
 Staging measureStaging(sk::Device& device) {

@@ -19,6 +19,7 @@ namespace sk_tool {
 struct Rate {
   double perCall = 0, perElement = 0;  ///< seconds
   std::string source;  ///< where it is from, for the report
+  Boxes boxes = {};
 };
 
 /// Parses "NAME=2.5e9/s[,5us]": elements per second, and the time of a call (default: 0). Throws std::runtime_error.
@@ -32,7 +33,8 @@ struct GivenRate {
 /// Why a kernel cannot be measured with drawn inputs; empty if it can.
 std::string obstacleToMeasuring(const Subject& subject);
 
-/// Runs a kernel with drawn inputs on a small and on a large domain of this rank: about `elements` elements. Throws sk::Error.
+/// Runs a kernel with drawn inputs on a small and on a large domain of this rank: about `elements` elements. On a GL device, also
+/// on the domain without its first and last rows, and on a few rows. Throws sk::Error.
 Rate measureRate(sk::Device& device, const Subject& subject, const Ranges& ranges, int rank,
                  std::int64_t elements);
 

@@ -60,6 +60,10 @@ std::string headOf(const ScaleReport& report) {
                    call.name, 1 / call.perElement, secondsText(call.perCall), report.rates[i].source,
                    haloText(call),
                    call.reducedBytes > 0 ? fmt::format("; {} bytes combined", call.reducedBytes) : "");
+    if (call.boxes.factor > 1)
+      fmt::format_to(std::back_inserter(text),
+                     "  {:<16} {:.3g} times as long for an element, {} for a border\n", "  in boxes",
+                     call.boxes.factor, secondsText(call.boxes.borderTime));
   }
   fmt::format_to(std::back_inserter(text), "  {:<16} {}/s, latency {}, overhead {}, gap {}\n", "network",
                  bytesText(1 / network.gapPerByte), secondsText(network.latency),
@@ -131,8 +135,14 @@ Json jsonOf(const StepCall& call, const Rate& rate) {
     for (const Halo& one : gather.stream.halo) halo.push_back({one.below, one.above});
     gathers.push_back({{"name", gather.name}, {"bytes", gather.stream.bytes}, {"halo", halo}});
   }
-  return {{"name", call.name},     {"perCall", call.perCall}, {"perElement", call.perElement},
-          {"source", rate.source}, {"gathers", gathers},      {"reducedBytes", call.reducedBytes}};
+  return {{"name", call.name},
+          {"perCall", call.perCall},
+          {"perElement", call.perElement},
+          {"source", rate.source},
+          {"gathers", gathers},
+          {"reducedBytes", call.reducedBytes},
+          {"boxFactor", call.boxes.factor},
+          {"perBorder", call.boxes.borderTime}};
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ namespace {
 
 struct ScaleOptions {
   std::string file, grid, gpus = "1..4096", network = "25GB/s,2us";
-  std::string staging, memory, device, profile;
+  std::string staging, boxes, memory, device, profile;
   std::vector<std::string> kernels, rates, constants, values;
   std::int64_t size = 0, exchangeEvery = 0;
   double bar = 0.7;
@@ -84,6 +84,8 @@ void setRates(const ScaleOptions& options, const StepOfFile& step, const Ranges&
       report.rates.push_back(measureRate(open(), subject, ranges, static_cast<int>(report.step.grid.size()),
                                          options.size > 0 ? options.size : usual));
     }
+    if (!options.boxes.empty()) report.rates.back().boxes = Boxes::parse(options.boxes);
+    report.step.calls[i].boxes = report.rates.back().boxes;
     report.step.calls[i].perCall = report.rates.back().perCall;
     report.step.calls[i].perElement = report.rates.back().perElement;
   }
@@ -161,6 +163,11 @@ void addScale(CLI::App& app) {
       "Copies of halos between a GPU and host memory, or none (default: measured if a device is; native "
       "devices have none)",
       "READ_BANDWIDTH,READ_TIME,WRITE_BANDWIDTH,WRITE_TIME");
+  add("--boxes", options->boxes,
+      "How many times as long an element takes in a call for a part of what a GPU holds, and the time of a "
+      "call "
+      "for a border (default: measured if a device is; else 1 and the time of a call)",
+      "FACTOR,TIME");
   add("--memory", options->memory, "Bytes of a GPU (default: what the measured device has)", "BYTES");
   add("--kernel", options->kernels,
       "A kernel or reduce of the step, in its order; may be repeated (default: each of the file, once)",
