@@ -2,6 +2,9 @@
 #include "engine.hpp"
 
 #include <array>
+#include <stdexcept>
+
+#include <fmt/format.h>
 
 #include "bvh_engine.hpp"
 #include "exposure.hpp"
@@ -17,6 +20,15 @@ std::span<const EngineKind> engineKinds() {
       EngineKind{"ray_engine", "buckets of rays that the host sends (Carr and others, 2002)", readRayEngine},
   };
   return kinds;
+}
+
+void refuseDivided(const Picture& picture, std::string_view what) {
+  if (picture.grid == nullptr) return;
+  throw std::runtime_error(
+      fmt::format("{} keeps lists of all rays on one device, but the pixels are divided over ranks; take "
+                  "--engine bvh, or "
+                  "start it without mpirun",
+                  what));
 }
 
 std::vector<sk::float3> Renderer::image() { return exposure().image(); }

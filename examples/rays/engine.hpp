@@ -16,6 +16,7 @@
 #include <sk/sk.hpp>
 
 #include "model.hpp"
+#include "support/grid_stream.hpp"
 #include "support/scene_file.hpp"
 
 namespace rays {
@@ -37,7 +38,12 @@ struct Picture {
   std::uint32_t seed = 1;
   Sampling sampling = Sampling::Sobol;  ///< independent numbers, or Sobol's with Owen's scrambling
   Strategy strategy = Strategy::Both;
+  /// Of the shape {height, width}: divides the pixels over ranks, whose devices all have the scene. Null: they are on the engine's device.
+  examples::DividedGrid* grid = nullptr;
 };
+
+/// Throws std::runtime_error if the pixels are divided over ranks: `what` needs all of them on one device.
+void refuseDivided(const Picture& picture, std::string_view what);
 
 class Exposure;
 

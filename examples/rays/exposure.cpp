@@ -7,13 +7,22 @@
 
 namespace rays {
 
-Exposure::Exposure(sk::Device& device, const Picture& picture) : device_(&device) {
-  const sk::Shape shape{picture.height, picture.width};
-  radiance = device.stream<sk::float3>(shape);
-  sum_ = device.stream<sk::double3>(shape);
-  mean_ = device.stream<sk::float3>(shape);
-  squares_ = device.stream<sk::double3>(shape);
-  passCount_ = device.stream<int>({1, 1});
+namespace {
+
+examples::Space spaceOf(sk::Device& device, const Picture& picture) {
+  if (picture.grid != nullptr) return examples::Space(*picture.grid);
+  return {device, {picture.height, picture.width}};
+}
+
+}  // namespace
+
+Exposure::Exposure(sk::Device& device, const Picture& picture)
+    : space_(spaceOf(device, picture)),
+      radiance(space_.stream<sk::float3>()),
+      sum_(space_.stream<sk::double3>()),
+      squares_(space_.stream<sk::double3>()),
+      mean_(space_.stream<sk::float3>()),
+      passCount_(space_.device().stream<int>({1, 1})) {
   clear();
 }
 
@@ -39,13 +48,13 @@ void Exposure::add() {
 }
 
 std::int64_t Exposure::narrow(const Tolerance& tolerance) {
-  if (radiance.size() == 0) return 0;
-  auto uncertain = device_->stream<int>(radiance.shape());
+  if (space_.shape().size() == 0) return 0;
+  auto uncertain = space_.device().stream<int>(space_.shape());
   kernels::isUncertain(sum_, squares_, countStream(), static_cast<float>(tolerance.error),
                        static_cast<float>(tolerance.least), uncertain);
   if (!isSparse()) {
-    counts_ = device_->stream<int>(radiance.shape());
-    active_ = device_->stream<int>(radiance.shape());
+    counts_ = space_.device().stream<int>(space_.shape());
+    active_ = space_.device().stream<int>(space_.shape());
     counts_.fill(static_cast<int>(passes_));
     active_.fill(1);
   }
@@ -55,9 +64,9 @@ std::int64_t Exposure::narrow(const Tolerance& tolerance) {
 }
 
 void Exposure::listPixels() {
-  pixels_ = device_->stream<sk::int2>({0});
+  pixels_ = space_.device().stream<sk::int2>({0});
   kernels::listActive(active_, pixels_);
-  list_ = device_->stream<sk::float3>(pixels_.shape());
+  list_ = space_.device().stream<sk::float3>(pixels_.shape());
 }
 
 const sk::Stream<int>& Exposure::countStream() {
@@ -79,7 +88,7 @@ std::vector<sk::float3> Exposure::variance() {
 
 std::vector<int> Exposure::counts() {
   if (isSparse()) return counts_.read();
-  return std::vector<int>(static_cast<std::size_t>(radiance.size()), static_cast<int>(passes_));
+  return std::vector<int>(static_cast<std::size_t>(space_.shape().size()), static_cast<int>(passes_));
 }
 
 Gathered Exposure::gathered() {
@@ -92,7 +101,7 @@ Gathered Exposure::gathered() {
 }
 
 void Exposure::restore(const Gathered& gathered) {
-  const auto size = static_cast<std::size_t>(radiance.size());
+  const auto size = static_cast<std::size_t>(space_.shape().size());
   const bool isSparse = !gathered.active.empty();
   if (gathered.sums.size() != size || gathered.squares.size() != size ||
       (isSparse && (gathered.active.size() != size || gathered.counts.size() != size)))
@@ -102,8 +111,8 @@ void Exposure::restore(const Gathered& gathered) {
   sum_.write(gathered.sums);
   squares_.write(gathered.squares);
   if (!isSparse) return;
-  counts_ = device_->stream<int>(radiance.shape());
-  active_ = device_->stream<int>(radiance.shape());
+  counts_ = space_.device().stream<int>(space_.shape());
+  active_ = space_.device().stream<int>(space_.shape());
   counts_.write(gathered.counts);
   active_.write(gathered.active);
   listPixels();

@@ -9,6 +9,7 @@
 #include <sk/sk.hpp>
 
 #include "engine.hpp"
+#include "support/grid_stream.hpp"
 
 namespace rays {
 
@@ -28,17 +29,22 @@ struct Gathered {
   friend bool operator==(const Gathered&, const Gathered&) = default;
 };
 
+/// If the picture's pixels are divided over ranks, all ranks make the same calls, and the first one gets the pixels that functions
+/// return. None stops then.
 class Exposure {
+  examples::Space space_;
+
  public:
   Exposure(sk::Device& device, const Picture& picture);
 
   /// One sample of each pixel, which kernels write before `add`; the elements of stopped pixels are ignored.
-  sk::Stream<sk::float3> radiance;
+  examples::GridStream<sk::float3> radiance;
+  const examples::Space& space() const { return space_; }
 
   /// True if some pixels have stopped. Kernels then sample only the `activePixels()` pixels listed in `pixels()` (x, y), in row-major order.
   bool isSparse() const { return bool(active_); }
   const sk::Stream<sk::int2>& pixels() const { return pixels_; }
-  std::int64_t activePixels() const { return isSparse() ? pixels_.size() : radiance.size(); }
+  std::int64_t activePixels() const { return isSparse() ? pixels_.size() : space_.shape().size(); }
   /// Kernels write one sample for each of `pixels()` here, and `deliver` scatters them to `radiance`.
   sk::Stream<sk::float3>& list() { return list_; }
   void deliver();
@@ -64,10 +70,10 @@ class Exposure {
   const sk::Stream<int>& countStream();
   void listPixels();
 
-  sk::Device* device_;
   std::int64_t passes_ = 0;
-  sk::Stream<sk::double3> sum_, squares_;
-  sk::Stream<sk::float3> mean_, list_;
+  examples::GridStream<sk::double3> sum_, squares_;
+  examples::GridStream<sk::float3> mean_;
+  sk::Stream<sk::float3> list_;
   sk::Stream<int> passCount_, counts_, active_;
   sk::Stream<sk::int2> pixels_;
 };

@@ -31,6 +31,7 @@
 #include "study.hpp"
 #include "support/application.hpp"
 #include "support/extents.hpp"
+#include "support/join_ranks.hpp"
 #include "support/stopwatch.hpp"
 #include "trace.hpp"
 
@@ -94,7 +95,12 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_flag("--strict", s.strict, "vertices that are not finite are an error");
 }
 
-rays::Scene sceneOf(const Settings& s) {
+/// Prints what all ranks have to say once.
+void warn(const examples::Ranks& ranks, std::string_view warning) {
+  if (ranks.isFirst()) fmt::print(stderr, "rays: warning: {}\n", warning);
+}
+
+rays::Scene sceneOf(const Settings& s, const examples::Ranks& ranks) {
   rays::Overrides overrides{
       .samples = s.samples, .seconds = s.seconds, .engine = s.engine, .strict = s.strict, .error = s.error};
   if (!s.size.empty()) {
@@ -104,19 +110,21 @@ rays::Scene sceneOf(const Settings& s) {
   }
   rays::Scene scene = rays::readScene(s.scene, overrides);
   if (s.output) scene.output.picture = *s.output;
-  for (const std::string& warning : scene.warnings) fmt::print(stderr, "rays: warning: {}\n", warning);
+  for (const std::string& warning : scene.warnings) warn(ranks, warning);
   return scene;
 }
 
-std::unique_ptr<rays::Engine> engineOf(sk::Device& device, const rays::Scene& scene) {
+std::unique_ptr<rays::Engine> engineOf(sk::Device& device, const rays::Scene& scene,
+                                       const examples::Ranks& ranks) {
   std::unique_ptr<rays::Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
-  for (const std::string& warning : engine->warnings()) fmt::print(stderr, "rays: warning: {}\n", warning);
+  for (const std::string& warning : engine->warnings()) warn(ranks, warning);
   return engine;
 }
 
 void writeHits(examples::Application& app, const Settings& s, const rays::Scene& scene) {
+  app.ranks().refuseSeveral("--hits", "start it without mpirun");
   sk::Device device(app.device());
-  const std::unique_ptr<rays::Engine> engine = engineOf(device, scene);
+  const std::unique_ptr<rays::Engine> engine = engineOf(device, scene, app.ranks());
   const bool fromFile = !s.rays.empty();
   const rays::Picture& picture = scene.picture;
   const examples::Stopwatch stopwatch;
@@ -153,13 +161,33 @@ std::string samplesText(const rays::Rendering& rendering, const rays::Scene& sce
                     100 * double(rendering.unfinished) / pixels, scene.output.error);
 }
 
-void makePicture(examples::Application& app, const Settings& s, const rays::Scene& scene) {
+/// What ranks cannot decide together: each has its own clock, and pixels that stop are in a list of all of them.
+void refuseForRanks(const examples::Ranks& ranks, const Settings& s, const rays::Output& output) {
+  if (output.seconds > 0) ranks.refuseSeveral("'seconds'", "give --seconds 0, and --samples");
+  if (output.error > 0) ranks.refuseSeveral("'error'", "give --error 0");
+  if (!s.resume.empty()) ranks.refuseSeveral("--resume", "leave it out, or start it without mpirun");
+  if (s.account) ranks.refuseSeveral("--account", "leave it out, or start it without mpirun");
+}
+
+void makePicture(examples::Application& app, const Settings& s, rays::Scene& scene) {
   rays::checkOutput(scene);
-  sk::Device device(app.device());
-  const std::unique_ptr<rays::Engine> engine = engineOf(device, scene);
+  examples::Ranks& ranks = app.ranks();
+  refuseForRanks(ranks, s, scene.output);
+  std::unique_ptr<examples::DividedGrid> grid;
+  if (ranks.count() > 1)
+    grid = ranks.divide(app.device(), {scene.picture.height, scene.picture.width}, examples::Ends::Open);
+  scene.picture.grid = grid.get();
+  std::optional<sk::Device> own;
+  sk::Device& device = grid ? grid->device() : own.emplace(app.device());
+  const std::unique_ptr<rays::Engine> engine = engineOf(device, scene, ranks);
   const rays::Picture& picture = scene.picture;
   const std::unique_ptr<rays::Renderer> renderer = engine->renderer(picture);
   const rays::Rendering rendering = rays::render(*renderer, scene, {s.resume, device.name()});
+  const bool isExr = scene.output.picture.extension() == ".exr";
+  const bool hasLayers = isExr || !s.layers.empty();
+  std::vector<rays::Layer> gathered;
+  if (hasLayers) gathered = rays::layersOf(renderer->exposure());
+  if (!ranks.isFirst()) return;
   const bool isBlack = std::ranges::all_of(
       rendering.radiance, [](const sk::float3& r) { return r.x == 0 && r.y == 0 && r.z == 0; });
   if (isBlack && !rays::hasLight(scene.model))
@@ -170,16 +198,13 @@ void makePicture(examples::Application& app, const Settings& s, const rays::Scen
     fmt::print(stderr,
                "rays: warning: the picture is black, and the camera sees nothing but the backs of surfaces; "
                "is it inside of a wall?\n");
-  const bool isExr = scene.output.picture.extension() == ".exr";
   std::vector<rays::Layer> layers;
-  if (isExr || !s.layers.empty()) {
-    layers = rays::layersOf(*engine, engine->model(), picture);
-    for (rays::Layer& layer : rays::layersOf(renderer->exposure())) layers.push_back(std::move(layer));
-  }
+  if (hasLayers) layers = rays::layersOf(*engine, engine->model(), picture);
+  for (rays::Layer& layer : gathered) layers.push_back(std::move(layer));
   rays::saveRendering(rendering, scene, layers);
   app.report(
       fmt::format("{}, {} x {}, {} samples", scene.name, picture.width, picture.height, rendering.samples),
-      device.name(), rendering.milliseconds);
+      examples::placeOf(ranks, device.name()), rendering.milliseconds);
   for (const std::string& line : engine->account()) fmt::print("{}\n", line);
   for (const std::string& line : renderer->account()) fmt::print("{}\n", line);
   fmt::print("{}\n", samplesText(rendering, scene));
@@ -198,6 +223,7 @@ void makePicture(examples::Application& app, const Settings& s, const rays::Scen
 }
 
 void showPicture(examples::Application& app, const Settings& s, rays::Scene& scene) {
+  app.ranks().refuseSeveral("--window", "start it without mpirun");
   if (!s.resume.empty())
     throw std::runtime_error("--window and --resume exclude each other: a window is not resumed");
   rays::checkOutput(scene);
@@ -208,17 +234,21 @@ void showPicture(examples::Application& app, const Settings& s, rays::Scene& sce
 
 int main(int argc, char** argv) {
   Settings settings;
-  examples::Application app("rays", "Pictures and hits of scene files by tracing rays.");
+  examples::Application app("rays", "Pictures and hits of scene files by tracing rays.",
+                            examples::joinRanks());
   addOptions(app.options(), settings);
   const examples::StudyOptions study(app, "measure what choices are worth", rays::studies());
   return app.run(argc, argv, [&] {
-    if (study.isGiven()) return study.run();
+    if (study.isGiven()) {
+      app.ranks().refuseSeveral("--study", "start it without mpirun");
+      return study.run();
+    }
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/rays/scenes/cornell.toml");
     if (!settings.rays.empty() && settings.hits.empty())
       throw std::runtime_error("--trace needs --hits, where its hits go");
     try {
-      rays::Scene scene = sceneOf(settings);
+      rays::Scene scene = sceneOf(settings, app.ranks());
       if (!settings.hits.empty()) return writeHits(app, settings, scene);
       if (settings.window) return showPicture(app, settings, scene);
       makePicture(app, settings, scene);

@@ -16,7 +16,7 @@ class PathRenderer : public PathsRenderer {
 
   void pass(std::int64_t index) override {
     const PathTables& t = tables_;
-    passBy([&](sk::Stream<sk::float3>& radiance) {
+    passBy([&](auto& radiance) {
       scene_.call(kernels::followPaths, features(), static_cast<unsigned>(t.sampling), t.view, t.setting,
                   static_cast<std::uint32_t>(index), t.seed, t.materials, t.corners, t.lights, t.sky,
                   t.texels, t.textures, pixels(), radiance);

@@ -76,7 +76,7 @@ Rendering render(Renderer& renderer, const Scene& scene, const Resuming& resumin
     renderer.pass(rendering.samples++);
     if (output.error > 0 && isLook(rendering.samples, output.least))
       rendering.unfinished = exposure.narrow(tolerance);
-    progress.update(rendering.samples);
+    if (exposure.space().isFirst()) progress.update(rendering.samples);
     keeper.saveAfter(millisecondsBetweenStates);
   }
   rendering.radiance = exposure.image();

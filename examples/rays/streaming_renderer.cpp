@@ -17,7 +17,7 @@ class BranchingRenderer : public PathsRenderer {
 
   void pass(std::int64_t index) override {
     const PathTables& t = tables_;
-    passBy([&](sk::Stream<sk::float3>& radiance) {
+    passBy([&](auto& radiance) {
       scene_.call(kernels::followPathsInGrid, features(), static_cast<unsigned>(t.sampling),
                   static_cast<unsigned>(use_), t.view, t.setting, static_cast<std::uint32_t>(index), t.seed,
                   t.materials, t.corners, t.lights, t.sky, t.texels, t.textures, pixels(), radiance);
@@ -51,7 +51,9 @@ class MultipassRenderer : public PathsRenderer {
         tracer_(tracer),
         depth_(picture.depth),
         use_(use),
-        meter_(meter) {}
+        meter_(meter) {
+    refuseDivided(picture, "a picture in several passes");
+  }
 
   void pass(std::int64_t index) override {
     const PathTables& t = tables_;

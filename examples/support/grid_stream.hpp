@@ -39,6 +39,7 @@ class DividedGrid {
   virtual void make(sk::Storage storage, std::unique_ptr<DividedStream<sk::float3>>& stream) = 0;
   virtual void make(sk::Storage storage, std::unique_ptr<DividedStream<sk::float4>>& stream) = 0;
   virtual void make(sk::Storage storage, std::unique_ptr<DividedStream<int>>& stream) = 0;
+  virtual void make(sk::Storage storage, std::unique_ptr<DividedStream<sk::double3>>& stream) = 0;
 };
 
 /// A stream over all elements of a grid: an argument wherever a sk::Stream can be one. Move-only.
@@ -98,7 +99,7 @@ class Space {
 
   /// Undefined until it is written. Collective.
   template <class T>
-  GridStream<T> stream(sk::Storage storage = sk::Storage::Single) const {
+  GridStream<T> stream(sk::Storage storage = sk::Storage::Default) const {
     if (grid_ == nullptr) return {device_->stream<T>(shape_, storage), storage};
     std::unique_ptr<DividedStream<T>> divided;
     grid_->make(storage, divided);

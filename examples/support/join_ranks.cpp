@@ -47,6 +47,9 @@ class MpiGrid final : public DividedGrid {
   void make(sk::Storage storage, std::unique_ptr<DividedStream<int>>& stream) override {
     fill(storage, stream);
   }
+  void make(sk::Storage storage, std::unique_ptr<DividedStream<sk::double3>>& stream) override {
+    fill(storage, stream);
+  }
 
  private:
   static sk::DomainOptions optionsOf(const std::string& device, const sk::Shape& shape, Ends ends) {

@@ -8,6 +8,7 @@ set -euo pipefail
 binaries=$(realpath "$1")
 scenes=$(realpath "$2/lattice/scenes")
 cloths=$(realpath "$2/cloth/scenes")
+rays=$(realpath "$2/rays/scenes")
 shift 2
 mpirun=("$@")
 place=$(mktemp -d)
@@ -53,5 +54,12 @@ cmp one.csv three.csv
 cmp one.obj three.obj
 on 6 1 cloth "$cloths/torn.toml" --points 3 3 --steps 2
 says 1 "'p' needs a halo of 2 element(s)"
+cornell=(rays "$rays/cornell.toml" --size 20x15 --samples 2)
+"$binaries/${cornell[0]}" "${cornell[@]:1}" --output one.pfm --layers one >out.txt 2>err.txt
+on 3 0 "${cornell[@]}" --output three.pfm --layers three
+[[ $(grep -c '^rays: cornell, 20 x 15, 2 samples on 3 ranks, each on ' out.txt) == 1 ]] || broken 'not one report'
+for layer in '' _variance _samples _depth; do cmp "one$layer.pfm" "three$layer.pfm"; done
+on 2 1 "${cornell[@]}" --error 0.1
+says 1 "rays: 'error' needs one process, but there are 2; give --error 0"
 on 2 1 saxpy
 says 2 'saxpy: 2 processes were started, but each would compute everything: it computes in one process; start it without mpirun'
