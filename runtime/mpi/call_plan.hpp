@@ -23,6 +23,8 @@ class CallPlan {
   /// Computes the box of the options with these arguments.
   using Compute = std::function<void(std::span<const Argument> arguments, const CallOptions& options)>;
   void run(const CallOptions& options, const Compute& compute);
+  /// Exchanges the halos that the call needs, and computes nothing.
+  void exchangeHalos() const;
 
  private:
   void makeRoom(const domain::Depth& further);

@@ -159,6 +159,20 @@ void DomainState::agree(const void* key, std::uint64_t hash, std::string_view wh
       texts.c_str(), other, texts.c_str() + other * length));
 }
 
+const mpi::Communicator& DomainState::lineOf(int dimension) {
+  const auto found = lines_.find(dimension);
+  if (found != lines_.end()) return found->second;
+  const Index place = parts.placeOf(rank);
+  int color = 0;
+  for (int d = 0; d < place.rank(); ++d) {
+    if (d != dimension) color = color * static_cast<int>(parts.split()[d]) + static_cast<int>(place[d]);
+  }
+  MPI_Comm line = MPI_COMM_NULL;
+  mpi::check(MPI_Comm_split(communicator, color, static_cast<int>(place[dimension]), &line), "a domain");
+  MPI_Comm_set_errhandler(line, MPI_ERRORS_RETURN);
+  return lines_.try_emplace(dimension, line).first->second;
+}
+
 DomainStreamState* domainStream(const StreamRegion& region) {
   auto* const stream = static_cast<DomainStreamState*>(region.distributed);
   if (stream != nullptr && stream->domain == nullptr) {

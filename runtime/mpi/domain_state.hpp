@@ -79,6 +79,9 @@ class DomainState final : public detail::Distribution {
   /// Collective where `key` is new: throws sk::Error on all ranks unless all give the same hash. `what` names the call.
   void agree(const void* key, std::uint64_t hash, std::string_view what);
 
+  /// The ranks along a dimension that have this rank's place in all others, in their order. Collective when it is first asked for.
+  const mpi::Communicator& lineOf(int dimension);
+
   mpi::Communicator communicator;
   int rank = 0;
   DomainOptions options;
@@ -99,6 +102,7 @@ class DomainState final : public detail::Distribution {
                    std::span<void* const> results, const CallOptions& options);
 
   std::set<const void*> agreed_;
+  std::map<int, mpi::Communicator> lines_;
 };
 
 /// The stream of an argument, or null if it is no stream of a domain. Throws sk::Error if its domain has ended.

@@ -7,6 +7,7 @@
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
 #include "call/precision.hpp"
+#include "combine_each.hpp"
 #include "native/exact_accumulator.hpp"
 #include "support/convert_elements.hpp"
 
@@ -54,10 +55,10 @@ std::vector<Bytes> valuesFor(const Reduction& reduction) {
 
 /// A reduction to values, of which checkReduction() only needs to know that there are some.
 ResolvedReduction checked(const Reduction& reduction, std::span<const Argument> arguments,
-                          std::vector<Bytes>& values) {
+                          std::vector<Bytes>& values, const FoldedBox& placed) {
   std::vector<void*> targets;
   for (Bytes& value : values) targets.push_back(value.data());
-  ResolvedReduction call = checkReduction(reduction, arguments, targets);
+  ResolvedReduction call = checkReduction(reduction, arguments, targets, {}, placed);
   call.values = {};
   return call;
 }
@@ -72,14 +73,14 @@ int lastDivided(const domain::Decomposition& parts) {
 
 }  // namespace
 
-RankReduction::RankReduction(DomainState& domain, const Reduction& reduction,
-                             std::span<const Argument> arguments, const CallOptions& options, const Box& box)
+RankReduction::RankReduction(DomainState& domain, const Reduction& reduction, const BoxedArguments& arguments,
+                             const CallOptions& options, const Box& box)
     : domain_(domain),
       box_(box),
       hasElements_(!domain::isEmpty(domain::intersection(domain.own, box))),
-      arguments_(reduction.fold, arguments),
+      arguments_(reduction.fold, arguments.arguments),
       values_(valuesFor(reduction)),
-      call_(checked(reduction, arguments_.get(), values_)),
+      call_(checked(reduction, arguments_.get(), values_, arguments.placed)),
       dense_(reduction.fold, arguments_.get()) {
   call_.arguments = dense_.get();
   call_.options = resolvedOptions(call_, options);
@@ -309,24 +310,7 @@ Bytes RankReduction::inOrder(const Bytes& parts, std::size_t elementBytes) const
 void RankReduction::combine(const Step& step, const Accumulators& all, const Accumulators& result) {
   const ResolvedReduction part = partOf(step);
   if (call_.device.combine(part, all.regions, result.regions)) return;
-  std::unique_ptr<Combination>& made = domain_.combinations[&part.reduction];
-  if (made == nullptr) made = std::make_unique<Combination>(part.reduction);
-  const Reduction& combination = made->reduction;
-  std::vector<Argument> arguments;
-  std::size_t nextInput = 0, nextResult = 0;
-  for (std::size_t i = 0; i < combination.fold.parameters.size(); ++i) {
-    const Role role = combination.fold.parameters[i].role;
-    if (role == Role::Input) {
-      arguments.push_back({.region = all.regions[nextInput++]});
-    } else if (role == Role::Accumulator) {
-      arguments.push_back({.region = result.regions[nextResult++]});
-    } else {
-      arguments.push_back(part.arguments[part.reduction.combineOperands[i]]);
-    }
-  }
-  ResolvedReduction whole = checkReduction(combination, arguments, {});
-  whole.options = part.options;
-  whole.device.reduce(whole);
+  combineAsReduction(domain_, part, all.regions, result.regions);
 }
 
 void RankReduction::finishStep(std::size_t number) {

@@ -11,6 +11,7 @@
 
 #include "accumulators.hpp"
 #include "api/resolved_reduce.hpp"
+#include "call/box.hpp"
 #include "call/dense_regions.hpp"
 #include "device/loop_state.hpp"
 #include "domain_state.hpp"
@@ -29,7 +30,7 @@ struct Variant {
 class RankReduction {
  public:
   /// `arguments` are those of the rank's own elements in the box of the call, or of any elements if it has none there.
-  RankReduction(DomainState& domain, const program::Reduction& reduction, std::span<const Argument> arguments,
+  RankReduction(DomainState& domain, const program::Reduction& reduction, const BoxedArguments& arguments,
                 const CallOptions& options, const Box& box);
   ~RankReduction();
   RankReduction(const RankReduction&) = delete;

@@ -9,6 +9,7 @@
 
 #include "call/box.hpp"
 #include "call/check_argument.hpp"
+#include "call/check_reduction.hpp"
 #include "call/placed.hpp"
 #include "call/precision.hpp"
 #include "call_plan.hpp"
@@ -72,14 +73,24 @@ std::unique_ptr<RankReduction> started(DomainState& domain, const Reduction& red
   CallOptions others = options;
   others.box = {};
   const Box folded = domain::isEmpty(own) ? domain.own : own;
-  std::vector<Argument> local = argumentsIn(reduction.fold, mpi::ownArguments(arguments), folded);
-  for (std::size_t i = 0; i < local.size(); ++i) {  // outputs that another call writes
-    if (reduction.fold.parameters[i].role == Role::Output && local[i].region.stream == nullptr)
-      local[i].region.shape = domain::shapeOf(folded);
-  }
+  const BoxedArguments local = argumentsIn(reduction.fold, mpi::ownArguments(arguments), folded);
   auto reductionOfAll = std::make_unique<RankReduction>(domain, reduction, local, others, box);
   reductionOfAll->start();
   return reductionOfAll;
+}
+
+/// Stores this rank's part of the outputs of a kernel with folded outputs.
+void storeOwnOutputs(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments,
+                     const CallOptions& options) {
+  const Box own = domain::intersection(domain.own, boxOrAll(options.box, domain.parts.whole()));
+  if (domain::isEmpty(own)) return;
+  CallOptions others = options;
+  others.box = {};
+  const BoxedArguments local = argumentsIn(reduction.fold, mpi::ownArguments(arguments), own);
+  void* const toValues[] = {nullptr};
+  ResolvedReduction call = checkReduction(reduction, local.arguments, toValues, {}, local.placed);
+  call.options = resolvedOptions(call, others);
+  storeOutputs(call);
 }
 
 /// A reduction whose value is asked for later.
@@ -98,11 +109,14 @@ class PendingReduction final : public TransferState {
   std::unique_ptr<RankReduction> reduction_;
 };
 
+/// What every call does first: compares what the ranks call, and exchanges the halos of gathers.
 void begin(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments,
            const CallOptions& options) {
   mpi::refuseRecording(domain, reduction.fold);
   domain.agree(&reduction, mpi::hashOf(reduction.fold, options), reduction.fold.name);
-  mpi::spreadArguments(domain, reduction.fold, arguments);
+  const std::vector<mpi::SpreadArgument> spread = mpi::spreadArguments(domain, reduction.fold, arguments);
+  if (domain.parts.ranks() > 1 && std::ranges::any_of(spread, &mpi::SpreadArgument::isGather))
+    mpi::CallPlan(domain, reduction.fold, arguments, options).exchangeHalos();
 }
 
 }  // namespace
@@ -167,11 +181,7 @@ void DomainState::fold(const Reduction& reduction, std::span<const Argument> arg
         if (reduction.fold.parameters[i].role == Role::Output) inputs[i].region.distributed = nullptr;
       }
       started(*this, reduction, inputs, chosen)->finish(targets.values);
-      std::vector<Argument> mapped;
-      for (const std::uint8_t operand : reduction.parts->mapOperands) mapped.push_back(arguments[operand]);
-      CallOptions map = chosen;
-      map.accumulate = Accumulate::Default;
-      run(reduction.parts->map, mapped, map);
+      storeOwnOutputs(*this, reduction, arguments, chosen);
     }
     targets.store();
   }

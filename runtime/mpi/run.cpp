@@ -120,6 +120,8 @@ std::uint64_t hashOf(const Kernel& kernel, const CallOptions& options) {
   for (const program::Parameter& parameter : kernel.parameters) hash.add(parameter.name);
   hash.add(static_cast<std::int64_t>(options.precision));
   hash.add(static_cast<std::int64_t>(options.accumulate));
+  hash.add(static_cast<std::int64_t>(options.scan));
+  hash.add(options.along.value_or(-1));
   return hash.value();
 }
 
@@ -242,6 +244,10 @@ std::vector<domain::Piece> CallPlan::piecesOf(const Box& box) const {
   return pieces;
 }
 
+void CallPlan::exchangeHalos() const {
+  if (!requests_.empty()) Exchange(domain_, requests_).finish();
+}
+
 void CallPlan::run(const CallOptions& options, const Compute& compute) {
   const bool isOneBox = !options.box.isWhole() || domain_.parts.ranks() == 1;
   if (isOneBox) {
@@ -285,12 +291,6 @@ void DomainState::run(const Kernel& kernel, std::span<const Argument> arguments,
   mpi::CallPlan(*this, kernel, arguments, chosen)
       .run(chosen,
            [&](std::span<const Argument> mine, const CallOptions& part) { sk::run(kernel, mine, part); });
-}
-
-void DomainState::scan(const program::Reduction& reduction, std::span<const Argument>, const CallOptions&) {
-  fail(reduction.fold,
-       "a scan of a stream that is divided over ranks is not possible; gather() it, or scan an ordinary "
-       "stream");
 }
 
 }  // namespace sk

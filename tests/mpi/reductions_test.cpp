@@ -206,7 +206,6 @@ TEST_CASE("reductions that ranks cannot share are refused") {
   auto rows = domain.device().stream<float>({12, 1});
   CHECK_THAT(errorOf([&] { sum(x, rows); }),
              Contains("'total' has shape {12, 1}") && Contains("one element"));
-  CHECK_THAT(errorOf([&] { (void)around(x, x); }), Contains("neighbor"));
   CHECK_THAT(errorOf([&] { (void)largest.with({.accumulate = sk::Accumulate::Exact})(x); }),
              Contains("no sum of floats"));
   CHECK_THAT(errorOf([&] { (void)sum.with({.box = {{0, 0}, {13, 1}}})(x); }), Contains("not inside"));

@@ -73,15 +73,34 @@ void checkDisjoint(const Kernel& fold, std::span<const Argument> arguments) {
   }
 }
 
+/// Stores the outputs alone. The arguments are those of the kernel that computes them.
+void runMap(const ResolvedReduction& call, std::span<const Argument> arguments) {
+  const FoldedBox& placed = call.placed;
+  CallOptions options = call.options;
+  options.accumulate = Accumulate::Default;
+  options.box = placed.box;
+  ResolvedCall map = resolveCall(call.reduction.parts->map, arguments, call.device.limits, options);
+  std::optional<LocalCall> part;
+  if (placed.isPlaced() && call.device.placesDomains()) {
+    part = partCall(map, placed.box);
+    map.arguments = part->arguments;
+    map.domain = part->domain;
+    map.options.box = part->box;
+    map.place = part->place;
+  }
+  call.device.run(map);
+}
+
 /// A call of a kernel with folded outputs, checked.
 class FoldCall {
  public:
   /// `arguments` must outlive the object.
-  FoldCall(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options)
+  FoldCall(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options,
+           const FoldedBox& placed)
       : parts_(*reduction.parts),
         mapArguments_(argumentsOf(parts_.mapOperands, arguments)),
         hasMap_(checkCall(parts_.map, mapArguments_).has_value()),
-        call_(checkReduction(reduction, arguments, {})) {
+        call_(checkReduction(reduction, arguments, {}, {}, placed)) {
     checkDisjoint(reduction.fold, arguments);
     call_.options = resolvedOptions(call_, options);
   }
@@ -190,10 +209,7 @@ class FoldCall {
   }
 
   void map() const {
-    if (!hasMap_) return;
-    CallOptions options = call_.options;
-    options.accumulate = Accumulate::Default;
-    call_.device.run(resolveCall(parts_.map, mapArguments_, call_.device.limits, options));
+    if (hasMap_) runMap(call_, mapArguments_);
   }
 
   const FoldParts& parts_;
@@ -204,8 +220,9 @@ class FoldCall {
 
 class RecordedFold final : public RecordedCall {
  public:
-  RecordedFold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options)
-      : arguments_(reduction.fold, arguments), call_(reduction, arguments_.get(), options) {
+  RecordedFold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options,
+               const FoldedBox& placed)
+      : arguments_(reduction.fold, arguments), call_(reduction, arguments_.get(), options, placed) {
     arguments_.noteUses(*call_.device().recording);
   }
 
@@ -216,20 +233,27 @@ class RecordedFold final : public RecordedCall {
   const FoldCall call_;
 };
 
-void checkAndFold(const Reduction& reduction, std::span<const Argument> arguments,
-                  const CallOptions& options) {
-  if (!options.box.isWhole() || hasPlaced(arguments)) {
+void checkAndFold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options,
+                  const FoldedBox& placed = {}) {
+  if (!placed.isPlaced() && (!options.box.isWhole() || hasPlaced(arguments))) {
     CallOptions others = options;
     others.box = {};
-    return checkAndFold(reduction, argumentsIn(reduction.fold, arguments, options.box), others);
+    const BoxedArguments boxed = argumentsIn(reduction.fold, arguments, options.box);
+    return checkAndFold(reduction, boxed.arguments, others, boxed.placed);
   }
-  const FoldCall call(reduction, arguments, options);
+  const FoldCall call(reduction, arguments, options, placed);
   LoopState* const recording = call.device().recording;
   if (recording == nullptr) return call.run();
-  recording->add(std::make_unique<RecordedFold>(reduction, arguments, options));
+  recording->add(std::make_unique<RecordedFold>(reduction, arguments, options, placed));
 }
 
 }  // namespace
+
+void storeOutputs(const ResolvedReduction& call) {
+  const FoldParts& parts = *call.reduction.parts;
+  const std::vector<Argument> arguments = argumentsOf(parts.mapOperands, call.arguments);
+  if (checkCall(parts.map, arguments)) runMap(call, arguments);
+}
 
 void fold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
   if (detail::Distribution* all = distributionOf(arguments)) return all->fold(reduction, arguments, options);

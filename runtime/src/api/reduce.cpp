@@ -201,7 +201,7 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
   for (const Parameter& parameter : errorAccumulators(second)) all.push_back(errors.add(*parameter.element));
   std::vector<void*> values(call.values.begin(), call.values.end());
   values.insert(values.end(), errors.values.begin(), errors.values.end());
-  checkReduction(second.reduction, all, values, call.scan);
+  checkReduction(second.reduction, all, values, call.scan, call.placed);
   call.device.reduce(call.of(second.reduction, all, values));
   if (call.isToValues()) addErrors(call.reduction, second, call.values, errors.values);
   if (call.isToValues()) return;
@@ -263,16 +263,17 @@ class RecordedReduction final : public RecordedCall {
 
 void checkAndReduce(const Reduction& reduction, std::span<const Argument> arguments,
                     std::span<void* const> values, const CallOptions& options,
-                    const std::optional<ScanOrder>& scan = {}) {
-  if (!options.box.isWhole() || hasPlaced(arguments)) {
+                    const std::optional<ScanOrder>& scan = {}, const FoldedBox& placed = {}) {
+  if (!placed.isPlaced() && (!options.box.isWhole() || hasPlaced(arguments))) {
     if (scan)
       fail(reduction.fold,
            "a scan takes no box and no placed streams; scan a view of its input, domain(begin, end)");
     CallOptions others = options;
     others.box = {};
-    return checkAndReduce(reduction, argumentsIn(reduction.fold, arguments, options.box), values, others);
+    const BoxedArguments boxed = argumentsIn(reduction.fold, arguments, options.box);
+    return checkAndReduce(reduction, boxed.arguments, values, others, scan, boxed.placed);
   }
-  ResolvedReduction call = checkReduction(reduction, arguments, values, scan);
+  ResolvedReduction call = checkReduction(reduction, arguments, values, scan, placed);
   call.options = resolvedOptions(call, options);
   if (call.device.recording == nullptr) return runResolved(call);
   if (call.isToValues()) {

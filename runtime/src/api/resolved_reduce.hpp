@@ -35,6 +35,9 @@ void addErrors(const program::Reduction& reduction, const program::CompensatedRe
 /// Reduces with the variant that the options, the device and the results require. There is at least one block.
 void reduceResolved(const ResolvedReduction& call);
 
+/// Stores the outputs of a kernel with folded outputs, which must be dense and have elements, and folds nothing.
+void storeOutputs(const ResolvedReduction& call);
+
 /// Reduces to temporary streams of floats, calls between(), and copies the results. The call has streams for results.
 void reduceByTemporaries(const ResolvedReduction& call, const std::function<void()>& between);
 

@@ -2,14 +2,17 @@
 #include "call/box.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "assemble/append/append_passes.hpp"
 #include "assemble/condition.hpp"
 #include "call/check_argument.hpp"
 #include "call/placed.hpp"
 #include "call/resolved_call.hpp"
+#include "device/device_state.hpp"
 #include "device/region.hpp"
 #include "device/stream_state.hpp"
+#include "domain/decomposition.hpp"
 
 namespace sk {
 
@@ -19,24 +22,11 @@ using program::Role;
 
 namespace {
 
-/// What about a fold depends on the place of an element in the domain, or an empty text.
-std::string_view askedPlace(const Kernel& fold) {
-  if (fold.usesIndex) return "indexof";
-  if (fold.usesExtent) return "extentof";
-  for (const Parameter& parameter : fold.parameters) {
-    if (parameter.usesIndex) return "indexof";
-    if (parameter.usesExtent && parameter.role != Role::Gather) return "extentof";
-    if (parameter.usesNear) return "neighbor";
-    if (parameter.role == Role::Iterator) return "an iterator";
-  }
-  return {};
-}
-
 Argument inBox(const Kernel& fold, const Parameter& input, const Argument& argument, const Box& box,
                const Shape& domain) {
   Argument result = argument;
   const Shape& shape = seenShape(argument.region);
-  if (argument.region.stream == nullptr || shape.rank() != domain.rank()) return result;
+  if (shape.rank() != domain.rank()) return result;
   if (argument.rows != nullptr) {
     fail(fold,
          "'{}' is in rows of different lengths, of which there are no boxes; give rows of a part of them",
@@ -49,12 +39,34 @@ Argument inBox(const Kernel& fold, const Parameter& input, const Argument& argum
          input.name);
   }
   const Box own = boxIn(shape, domain, box);
-  result.region = isPlaced(argument.region) ? partOfWhole(fold, input, argument.region, own)
-                                            : partIn(argument.region, own);
+  if (argument.region.stream == nullptr) {  // an output that another call writes
+    result.region.shape = domain::shapeOf(own);
+  } else {
+    result.region = isPlaced(argument.region) ? partOfWhole(fold, input, argument.region, own)
+                                              : partIn(argument.region, own);
+  }
   return result;
 }
 
-/// Elements of a fold count from the start of the box, so that no halo is theirs: a gather must hold its whole.
+/// The most elements that the device of these arguments counts.
+std::int64_t mostCounted(std::span<const Argument> arguments) {
+  for (const Argument& argument : arguments) {
+    const StreamState* const stream = argument.region.stream;
+    if (stream != nullptr && stream->device != nullptr) return stream->device->limits.elements;
+  }
+  return std::numeric_limits<std::int64_t>::max();
+}
+
+/// The box of an input or output, placed in its whole.
+Argument placedInBox(const Kernel& fold, const Parameter& parameter, const Argument& argument, const Box& box,
+                     const Shape& domain) {
+  Argument result = inBox(fold, parameter, argument, box, domain);
+  const Shape& seen = seenShape(argument.region);
+  if (seen.rank() == domain.rank()) result.region.placement = {boxIn(seen, domain, box).begin, seen};
+  return result;
+}
+
+/// A fold that does not ask where its elements are has no halo: a gather must hold its whole.
 Argument wholeGather(const Kernel& fold, const Parameter& gather, const Argument& argument) {
   Argument result = argument;
   if (isPlaced(argument.region))
@@ -137,26 +149,37 @@ StreamRegion partIn(const StreamRegion& region, const Box& box) {
   return box.isWhole() ? region : detail::partOf(region, box.begin, box.end);
 }
 
-std::vector<Argument> argumentsIn(const Kernel& fold, std::span<const Argument> arguments, const Box& given) {
-  if (arguments.size() != fold.parameters.size())
-    return {arguments.begin(), arguments.end()};  // checked later
-  const Shape domain = domainOf(fold, arguments, specsOf(fold, arguments));
+bool asksPlace(const Kernel& fold) {
+  return fold.usesIndex || fold.usesExtent ||
+         std::ranges::any_of(fold.parameters, [](const Parameter& parameter) {
+           return parameter.usesIndex || parameter.usesNear || parameter.role == Role::Iterator ||
+                  (parameter.usesExtent && parameter.role != Role::Gather);
+         });
+}
+
+BoxedArguments argumentsIn(const Kernel& fold, std::span<const Argument> arguments, const Box& given) {
+  BoxedArguments result{{arguments.begin(), arguments.end()}};
+  if (arguments.size() != fold.parameters.size()) return result;  // checked later
+  const assemble::SpecValues specs = specsOf(fold, arguments);
+  const Shape domain = domainOf(fold, arguments, specs);
   const Box box = boxOrAll(given, domain);
   checkBox(fold, box, domain);
-  if (const std::string_view asked = askedPlace(fold); !asked.empty()) {
-    fail(fold,
-         "it uses {}, which counts from the start of what a reduction folds; let a kernel with this box "
-         "store what "
-         "is to be folded, and fold that",
-         asked);
+  const bool isPlaced = asksPlace(fold);
+  if (isPlaced) {
+    checkPlacedCall({fold, arguments, {}, specs, domain, nullptr}, box, mostCounted(arguments));
+    result.placed = {box, domain};
   }
-  std::vector<Argument> result(arguments.begin(), arguments.end());
-  for (std::size_t i = 0; i < result.size(); ++i) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
     const Parameter& parameter = fold.parameters[i];
-    if (parameter.role == Role::Input || parameter.role == Role::Output)
-      result[i] = inBox(fold, parameter, arguments[i], box, domain);
-    if (parameter.role == Role::Gather) result[i] = wholeGather(fold, parameter, arguments[i]);
-    if (isPlaced(result[i].region)) refusePlaced(fold, parameter);
+    Argument& argument = result.arguments[i];
+    if (parameter.role == Role::Input || parameter.role == Role::Output) {
+      argument = isPlaced ? placedInBox(fold, parameter, arguments[i], box, domain)
+                          : inBox(fold, parameter, arguments[i], box, domain);
+    } else if (parameter.role == Role::Gather) {
+      if (!isPlaced) argument = wholeGather(fold, parameter, arguments[i]);
+    } else if (sk::isPlaced(argument.region)) {
+      refusePlaced(fold, parameter);
+    }
   }
   return result;
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
 // Calls for the elements of a box of the domain (CallOptions::box). A kernel runs with its whole domain, and devices write
-// the box alone. A reduction folds views of its inputs instead, which is the same as long as it does not ask where an
-// element is.
+// the box alone. A reduction folds views of its inputs instead. If it asks where an element is, these are placed in the
+// whole.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
+#include "call/resolved_reduction.hpp"
 #include "sk/call.hpp"
 #include "sk/options.hpp"
 #include "sk/program.hpp"
@@ -34,9 +35,17 @@ Box boxIn(const Shape& input, const Shape& domain, const Box& box);
 /// The part of a region with the domain's shape that lies in the box; all of it if the box is the whole domain.
 StreamRegion partIn(const StreamRegion& region, const Box& box);
 
-/// The arguments for folding the box alone, or all elements; they are not placed. Throws sk::Error if the box is not
-/// inside the inputs' common shape, if placed arguments do not hold it, or if the fold asks where an element is.
-std::vector<Argument> argumentsIn(const program::Kernel& fold, std::span<const Argument> arguments,
-                                  const Box& box);
+/// Whether a fold depends on the place of an element in the domain.
+bool asksPlace(const program::Kernel& fold);
+
+/// What folds a box alone.
+struct BoxedArguments {
+  std::vector<Argument> arguments;
+  FoldedBox placed = {};  ///< if the fold asks where its elements are
+};
+
+/// The arguments for folding the box alone, or all elements. Throws sk::Error if the box is not inside the inputs' common
+/// shape, or if placed arguments do not hold what is folded and gathered.
+BoxedArguments argumentsIn(const program::Kernel& fold, std::span<const Argument> arguments, const Box& box);
 
 }  // namespace sk

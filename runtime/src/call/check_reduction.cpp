@@ -12,6 +12,7 @@
 #include "device/device_state.hpp"
 #include "device/region.hpp"
 #include "device/stream_state.hpp"
+#include "domain/decomposition.hpp"
 
 namespace sk {
 
@@ -33,7 +34,8 @@ class Arguments {
     specs_ = specsOf(fold_, arguments);
   }
 
-  ResolvedReduction check(std::span<void* const> values, const std::optional<ScanOrder>& scan) {
+  ResolvedReduction check(std::span<void* const> values, const std::optional<ScanOrder>& scan,
+                          const FoldedBox& placed) {
     const bool toStreams = values.empty();
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
       const Role role = fold_.parameters[i].role;
@@ -44,8 +46,8 @@ class Arguments {
         checkLives(i);
       }
     }
-    const Shape domain = domainOf(fold_, arguments_, specs_);
-    if (domain.rank() == 0) {
+    const Shape seen = domainOf(fold_, arguments_, specs_);
+    if (seen.rank() == 0) {
       fail(Error::Kind::Shape, fold_,
            "no input and no iterator with a shape says how many elements there are; give one");
     }
@@ -53,12 +55,14 @@ class Arguments {
       fail(fold_, "no stream is given that says what device to fold on; give one");
     }
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
-      checkShape(i, domain);
+      checkShape(i, seen);
     }
+    const Shape domain = placed.isPlaced() ? domain::shapeOf(placed.box) : seen;
     const StreamState& first = *arguments_[first_].region.stream;
     const RowsState* const rows = rowsOf(fold_, arguments_, specs_);
     ResolvedReduction checked{*first.device, reduction_, arguments_, domain, oneBlock(domain), values};
-    checkElements(fold_, checked.device, domain);
+    checked.placed = placed;
+    checkElements(fold_, checked.device, seen, placed.isPlaced());
     checked.device.checkProgram(reduction_);
     checkUniforms(fold_, checked.device);
     checkUnits(checked.device, scan.has_value(), rows != nullptr);
@@ -272,8 +276,9 @@ std::size_t planesRead(const Kernel& kernel, const assemble::SpecValues& specs) 
 }
 
 ResolvedReduction checkReduction(const Reduction& reduction, std::span<const Argument> arguments,
-                                 std::span<void* const> values, const std::optional<ScanOrder>& scan) {
-  return Arguments(reduction, arguments).check(values, scan);
+                                 std::span<void* const> values, const std::optional<ScanOrder>& scan,
+                                 const FoldedBox& placed) {
+  return Arguments(reduction, arguments).check(values, scan, placed);
 }
 
 }  // namespace sk

@@ -20,8 +20,9 @@ std::size_t planesRead(const program::Kernel& kernel, const assemble::SpecValues
 /// Checks the arguments of a reduction: streams, devices, element types, shapes, planes; that identities
 /// exist if the domain is empty; and, without `values`, that the shape of the results divides the inputs'
 /// shape in exactly one way. Of a scan, checks that the results have the shape of the inputs, and that identities
-/// exist if it is exclusive. The options of the returned reduction are the defaults.
+/// exist if it is exclusive. The options of the returned reduction are the defaults. `placed` has passed argumentsIn().
 ResolvedReduction checkReduction(const program::Reduction& reduction, std::span<const Argument> arguments,
-                                 std::span<void* const> values, const std::optional<ScanOrder>& scan = {});
+                                 std::span<void* const> values, const std::optional<ScanOrder>& scan = {},
+                                 const FoldedBox& placed = {});
 
 }  // namespace sk

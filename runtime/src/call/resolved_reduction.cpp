@@ -18,7 +18,7 @@ const Shape& ResolvedReduction::shapeOfResults() const {
 ResolvedReduction ResolvedReduction::of(const program::Reduction& other,
                                         std::span<const Argument> otherArguments,
                                         std::span<void* const> otherValues) const {
-  return {device, other, otherArguments, domain, blocks, otherValues, options, scan, rows};
+  return {device, other, otherArguments, domain, blocks, otherValues, options, scan, rows, placed};
 }
 
 Argument TemporaryResults::add(const program::Element& element) {

@@ -26,20 +26,33 @@ struct ScanOrder {
   bool isExclusive = false;
 };
 
+/// A box of a whole, of which a reduction that folds it speaks: of the whole's indices and extents.
+struct FoldedBox {
+  Box box = {};
+  Shape whole = {};
+
+  /// False if a reduction folds a whole, or never asks where an element is.
+  bool isPlaced() const { return whole.rank() != 0; }
+};
+
 /// A scan is a reduction to streams of the shape of the domain. The outputs of a fold that has some are written if their
 /// arguments have streams; without these, they have only shapes.
 struct ResolvedReduction {
   DeviceState& device;
   const program::Reduction& reduction;
   std::span<const Argument> arguments;  ///< in a reduction to values, those of accumulators are empty
-  Shape domain;  ///< the common shape of the inputs
+  Shape domain;  ///< the common shape of the inputs, or of the box of them that is folded
   Shape blocks;  ///< the number of blocks in each dimension of the domain
   std::span<void* const> values = {};  ///< one destination per accumulator; empty if the results are streams
   CallOptions options = {};
   std::optional<ScanOrder> scan = {};
   const RowsState* rows = nullptr;  ///< each row of the domain, which is one-dimensional, is a block; or null
+  /// If placed, inputs and outputs are regions of the box, placed in the whole. There are no scans and no rows.
+  FoldedBox placed = {};
 
   bool isToValues() const { return !values.empty(); }
+  /// The shape of which the fold speaks.
+  const Shape& seenDomain() const { return placed.isPlaced() ? placed.whole : domain; }
   /// The shape of stream results, which may have fewer dimensions than `blocks`.
   const Shape& shapeOfResults() const;
   /// The same elements, folded by another reduction.

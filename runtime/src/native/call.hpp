@@ -61,8 +61,10 @@ struct Call {
   std::span<const Operand> operands;
   Extents domain{1, 1, 1, 1};
   std::span<const Table> tables = {};  ///< one per tabulated function; empty if these are computed
-  /// A kernel's elements that are computed; nullopt stands for the whole domain.
+  /// The elements that a kernel computes, or a reduction folds; nullopt stands for the whole domain.
   std::optional<Part> part = std::nullopt;
+
+  Part computed() const { return part.value_or(Part{.extent = domain}); }
 };
 
 /// What a scan stores for each element of its domain.

@@ -70,7 +70,7 @@ class FoldCheck {
             const CodeChoice& choice)
       : reduction_(reduction),
         program_(program),
-        domain_(call.domain),
+        folded_(call.computed()),
         leaves_(program),
         combiner_(program.shape, program.combine.function, program.combine.lanes, program.combine.frame) {
     for (const program::Parameter& parameter : reduction.fold.parameters) {
@@ -122,7 +122,8 @@ class FoldCheck {
     std::vector<Extents> chosen(static_cast<std::size_t>(1 + random_() % longest));
     for (Extents& at : chosen) {
       for (std::size_t i = 0; i < 4; ++i)
-        at[i] = static_cast<std::int64_t>(random_() % static_cast<std::uint64_t>(domain_[i]));
+        at[i] = folded_.first[i] +
+                static_cast<std::int64_t>(random_() % static_cast<std::uint64_t>(folded_.extent[i]));
     }
     return chosen;
   }
@@ -174,7 +175,7 @@ class FoldCheck {
 
   const program::Reduction& reduction_;
   const FoldProgram& program_;
-  Extents domain_;
+  const native::Part folded_;
   LeafFolder leaves_;
   ColumnCombiner combiner_;
   std::vector<ComponentType> types_;

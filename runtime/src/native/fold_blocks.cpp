@@ -28,6 +28,7 @@ class GroupFolder {
  public:
   GroupFolder(const FoldProgram& program, const Extents& block)
       : block_(block),
+        first_(program.first),
         leaves_(program, memory_.get()),
         combiner_(combinerOf(program, memory_.get())),
         runs_(program.shape, combiner_, groupOf(program.shape), memory_.get()) {}
@@ -48,7 +49,7 @@ class GroupFolder {
  private:
   void foldRow(const Extents& block, const Extents& in, std::int64_t count) {
     Extents first;
-    for (std::size_t d = 0; d < 4; ++d) first[d] = block[d] * block_[d] + in[d];
+    for (std::size_t d = 0; d < 4; ++d) first[d] = first_[d] + block[d] * block_[d] + in[d];
     leaves_.moveToRow(first);
     for (std::int64_t x = 0; x < block_[0]; ++x) {
       leaves_.fold(runs_.next(), first[0] + x, count, 1, rounds_ == 0 ? Start::New : Start::Continued,
@@ -62,7 +63,7 @@ class GroupFolder {
     runs_.add();
   }
 
-  Extents block_;
+  Extents block_, first_;
   CallMemory memory_;
   LeafFolder leaves_;
   ColumnCombiner combiner_;
@@ -241,7 +242,7 @@ void foldBlocks(const FoldProgram& program, const Extents& domain, const Extents
     foldGroups(program, domain, block, deal, results);
     return;
   }
-  const BlockPieces pieces(domain, block);
+  const BlockPieces pieces(domain, block, program.first);
   const std::int64_t ofBlock = pieces.ofBlock();
   const std::size_t bytes = program.shape.bytes();
   std::vector<std::byte> states(ofBlock == 1 ? 0 : static_cast<std::size_t>(pieces.count()) * bytes);

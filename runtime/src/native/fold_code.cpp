@@ -33,7 +33,7 @@ void checkWithoutOutputs(const program::Reduction& reduction, const FoldProgram&
   for (std::size_t i = 0; i < operands.size(); ++i) {
     if (reduction.fold.parameters[i].role == program::Role::Output) operands[i].components = {};
   }
-  const native::Call alone{operands, call.domain, call.tables};
+  const native::Call alone{operands, call.domain, call.tables, call.part};
   const CodeFrame frame(reduction.fold, alone);
   const SlotLayout layout(reduction.fold, alone, frame, choice);
   const FoldProgram tried{.layout = layout,
@@ -41,7 +41,8 @@ void checkWithoutOutputs(const program::Reduction& reduction, const FoldProgram&
                           .fold = {program.fold.function, program.fold.lanes, frame.get()},
                           .combine = program.combine,
                           .isCommutative = program.isCommutative,
-                          .isUneven = program.isUneven};
+                          .isUneven = program.isUneven,
+                          .first = program.first};
   checkFold(reduction, tried, alone, choice);
 }
 
@@ -66,7 +67,8 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
                             .fold = bound<native::FoldFunction>(fold, frame),
                             .combine = bound<native::CombineFunction>(combine, combineFrame),
                             .isCommutative = reduction.commutative,
-                            .isUneven = reduction.fold.code->isUneven != 0};
+                            .isUneven = reduction.fold.code->isUneven != 0,
+                            .first = call.fold.computed().first};
   if (checksFolds() && !reduction.commutative) checkWithoutOutputs(reduction, program, call.fold, choice);
   const auto rowsOf = [&] {
     const EntryKind kind = call.holdsFloats ? EntryKind::FoldFloatRows : EntryKind::FoldRows;
@@ -78,7 +80,7 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
     return;
   }
   if (!call.scan) {
-    foldBlocks(program, call.fold.domain, call.block, results);
+    foldBlocks(program, call.fold.computed().extent, call.block, results);
     return;
   }
   native::ValuesFunction* const identities =

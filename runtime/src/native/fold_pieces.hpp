@@ -18,7 +18,9 @@ class BlockPieces {
   /// The most elements of a piece.
   static constexpr std::int64_t most = 1 << 14;
 
-  BlockPieces(const native::Extents& domain, const native::Extents& block) : block_(block) {
+  /// `first` is the index of the domain's first element.
+  BlockPieces(const native::Extents& domain, const native::Extents& block, const native::Extents& first = {})
+      : block_(block), first_(first) {
     for (std::size_t d = 0; d < 4; ++d) blocks_[d] = domain[d] / block_[d];
     rows_ = block_[1] * block_[2] * block_[3];
     width_ = std::min(block_[0], most);
@@ -47,14 +49,14 @@ class BlockPieces {
     native::Extents in{x, row % block_[1], row / block_[1] % block_[2], row / block_[1] / block_[2]};
     for (std::int64_t k = 0; k < rows; ++k) {
       native::Extents first;
-      for (std::size_t d = 0; d < 4; ++d) first[d] = block[d] * block_[d] + in[d];
+      for (std::size_t d = 0; d < 4; ++d) first[d] = first_[d] + block[d] * block_[d] + in[d];
       visit(first, std::min(width_, block_[0] - x));
       for (std::size_t d = 1; d < 4 && ++in[d] == block_[d]; ++d) in[d] = 0;
     }
   }
 
  private:
-  native::Extents block_;
+  native::Extents block_, first_;
   native::Extents blocks_;
   std::int64_t rows_;  ///< of a block
   std::int64_t width_;  ///< of a piece

@@ -42,6 +42,7 @@ struct FoldProgram {
   Bound<native::CombineFunction> combine;
   bool isCommutative;  ///< elements may be folded in any order
   bool isUneven;  ///< their times may differ widely
+  native::Extents first{};  ///< the index of the first element that is folded
 };
 
 /// The destinations of the results of blocks.
@@ -72,7 +73,7 @@ class FoldResults {
   std::vector<Array> arrays_;
 };
 
-/// Folds each block of a domain to one element of the results.
+/// Folds each block of a domain, which begins at program.first, to one element of the results.
 void foldBlocks(const FoldProgram& program, const native::Extents& domain, const native::Extents& block,
                 const FoldResults& results);
 

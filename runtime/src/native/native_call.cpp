@@ -98,11 +98,11 @@ class Folding {
   Operands fold;
 
   Folding(const CodeChoice& choice, const program::Reduction& reduction, std::span<const Argument> arguments,
-          const Shape& domain, std::vector<native::Table> foldTables,
+          const Shape& domain, const Box& box, std::vector<native::Table> foldTables,
           std::vector<native::Table> combineTables, const std::optional<native::ScanOf>& scan,
           const RowsOfCall& rows)
       : fold(rows.holdsFloats ? RealType::Float : choice.real, reduction.fold, arguments, domain,
-             std::move(foldTables), scan.has_value()),
+             std::move(foldTables), scan.has_value(), box),
         choice_(choice),
         reduction_(reduction),
         combineTables_(std::move(combineTables)),
@@ -290,7 +290,7 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
   if (call.rows != nullptr) {
     rows = {&call.rows->pieces(), !call.scan && foldsFloatRows(reduction, call.arguments, choice)};
   }
-  Folding folding(choice, reduction, call.arguments, call.domain,
+  Folding folding(choice, reduction, call.arguments, call.seenDomain(), call.placed.box,
                   tablesOf(reduction.fold, real, call.options),
                   tablesOf(reduction.combine, real, call.options), scanOf(call), rows);
   const Extents counts = fastestFirst(call.blocks);
@@ -333,7 +333,7 @@ bool NativeDevice::combine(const ResolvedReduction& call, std::span<const Stream
   const program::Reduction& reduction =
       computesInHalf(call.options) ? halfVariant(call.reduction) : call.reduction;
   const RealType real = realOf(call.options);
-  Folding(codeChoice(real, call.options), reduction, call.arguments, call.domain,
+  Folding(codeChoice(real, call.options), reduction, call.arguments, call.seenDomain(), call.placed.box,
           tablesOf(reduction.fold, real, call.options), tablesOf(reduction.combine, real, call.options), {},
           {})
       .combine(parts, results);
@@ -388,7 +388,8 @@ std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& w
   const Kernel& kernel = kernelOfTerm(reduction, sum);
   const std::vector<Argument> all = termArguments(whole, sum);
   const RealType real = realOf(whole.options);
-  Operands operands(real, kernel, all, whole.domain, tablesOf(kernel, real, whole.options));
+  Operands operands(real, kernel, all, whole.seenDomain(), tablesOf(kernel, real, whole.options), false,
+                    whole.placed.box);
   const NativePass traced(*this, kernel, "fold", all, whole.domain);
   switch (real) {
     case RealType::Float: break;
@@ -405,7 +406,8 @@ std::vector<std::int64_t> NativeDevice::exactWords(const ResolvedReduction& whol
   if (real != RealType::Float || reduction.fold.code == nullptr || !hasTerm(sum)) return {};
   const Kernel& kernel = kernelOfTerm(reduction, sum);
   const std::vector<Argument> all = termArguments(whole, sum);
-  Operands operands(real, kernel, all, whole.domain, tablesOf(kernel, real, whole.options));
+  Operands operands(real, kernel, all, whole.seenDomain(), tablesOf(kernel, real, whole.options), false,
+                    whole.placed.box);
   const NativePass traced(*this, kernel, "fold", all, whole.domain);
   Extents block = fastestFirst(whole.domain);
   const native::Call call = operands.call(block);

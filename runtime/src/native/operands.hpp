@@ -39,7 +39,7 @@ class Operands {
   using Role = program::Role;
 
  public:
-  /// `box` is the part of the domain that a kernel writes.
+  /// `box` is the part of the domain that a kernel writes, or a reduction folds.
   Operands(RealType real, const Kernel& kernel, std::span<const Argument> arguments, const Shape& domain,
            std::vector<native::Table> tables, bool isScan = false, const Box& box = {})
       : real_(real),
@@ -69,6 +69,7 @@ class Operands {
     return call(whole);
   }
   native::Call call(Extents& block) {
+    if (!box_.isWhole()) return call();
     native::Call call = callAsItIs();
     coalesce(kernel_, list_, call.domain, block, isScan_);
     return call;

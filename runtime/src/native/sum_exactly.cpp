@@ -274,7 +274,8 @@ const Kernel& kernelOfTerm(const program::Reduction& reduction, const program::E
 template <class Real>
 std::vector<Real> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
                              const Call& call, const Extents& block, const CodeChoice& choice) {
-  const BlockPieces pieces(call.domain, block);
+  const native::Part all = call.computed();
+  const BlockPieces pieces(all.extent, block, all.first);
   return withAdder<Real>(reduction, sum, call, choice,
                          [&](const Accumulator<Real>& start, native::Deal deal, auto&& make) {
                            return sumBlocks<Real>(pieces, start, deal, make);
@@ -294,7 +295,8 @@ std::vector<Real> sumRowsExactly(const program::Reduction& reduction, const prog
 
 std::vector<std::int64_t> exactWords(const program::Reduction& reduction, const program::ExactSum& sum,
                                      const Call& call, const CodeChoice& choice, bool isFirst) {
-  const BlockPieces pieces(call.domain, call.domain);
+  const native::Part all = call.computed();
+  const BlockPieces pieces(all.extent, all.extent, all.first);
   return withAdder<float>(reduction, sum, call, choice,
                           [&](ExactAccumulator start, native::Deal deal, auto&& make) {
                             if (!isFirst) start.clear();

@@ -233,9 +233,10 @@ void sumFloats(const program::Reduction& reduction, const native::ReduceCall& ca
                             .fold = {sumOf(factors), 1, &sumFrame},
                             .combine = combination(),
                             .isCommutative = true,
-                            .isUneven = false};
+                            .isUneven = false,
+                            .first = call.fold.computed().first};
   if (!call.scan) {
-    foldBlocks(program, call.fold.domain, call.block, results);
+    foldBlocks(program, call.fold.computed().extent, call.block, results);
     return;
   }
   const bool storesFloats = results.areRoundedRows();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Grids that are divided over the ranks of MPI (target sk::mpi). Every rank makes the same calls, in the same order: creating
-// a domain and its streams, running kernels, reducing, gather() and scatter() are collective. Kernels and reductions are
+// a domain and its streams, running kernels, reducing, scanning, gather() and scatter() are collective. Kernels and reductions are
 // called as with ordinary streams, and the results are those of one device; skc knows how far a kernel reads, so halos are
 // exchanged when a call needs them, and only as deep as it reads.
 #pragma once
@@ -93,8 +93,8 @@ TransferOwner later(DomainState* domain, void (*call)(void*), void* context);
 
 }  // namespace detail
 
-/// A stream over all elements of a domain, of which each rank holds its own box. Move-only; an argument of kernels and
-/// reductions wherever an ordinary stream can be, but not of scans, scatter outputs and variable outputs. A stream that has
+/// A stream over all elements of a domain, of which each rank holds its own box. Move-only; an argument of kernels,
+/// reductions and scans wherever an ordinary stream can be, but not of scatter outputs and variable outputs. A stream that has
 /// outlived its domain throws sk::Error.
 template <ElementType T>
 class DomainStream {

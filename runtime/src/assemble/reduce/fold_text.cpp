@@ -50,17 +50,23 @@ std::string FoldText::item() {
   return "sk_item";
 }
 
+std::string FoldText::seenItem() {
+  if (!variant_.placed) return item();
+  return fmt::format("({} + {})", item(), program_.uniform("ivec4", "sk_item_low"));
+}
+
+std::string FoldText::seenShape() {
+  return program_.uniform("ivec4", variant_.placed ? "sk_item_whole" : "sk_item_shape");
+}
+
 std::string FoldText::itemPosition(int components) {
   static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
-  return fmt::format("{}{}", item(), swizzles[static_cast<std::size_t>(components - 1)]);
+  return fmt::format("{}{}", seenItem(), swizzles[static_cast<std::size_t>(components - 1)]);
 }
 
 void FoldText::defineParameters() {
-  if (kernel_.usesIndex) program_.function("ivec4 sk_index()", {fmt::format("return {};", item())});
-  if (kernel_.usesExtent) {
-    const std::string shape = program_.uniform("ivec4", "sk_item_shape");
-    program_.function("ivec4 sk_extent()", {fmt::format("return {};", shape)});
-  }
+  if (kernel_.usesIndex) program_.function("ivec4 sk_index()", {fmt::format("return {};", seenItem())});
+  if (kernel_.usesExtent) program_.function("ivec4 sk_extent()", {fmt::format("return {};", seenShape())});
   std::size_t specs = 0;
   for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
     const Parameter& parameter = kernel_.parameters[i];
@@ -77,21 +83,28 @@ void FoldText::defineParameters() {
 void FoldText::defineParameter(const Parameter& parameter, const StreamAccess& access) {
   switch (parameter.role) {
     case Role::Uniform: arguments_.push_back(uniformValue(program_, parameter, access)); return;
-    case Role::Iterator: arguments_.push_back(iteratorValue(program_, parameter, access, item())); return;
+    case Role::Iterator: arguments_.push_back(iteratorValue(program_, parameter, access, seenItem())); return;
     case Role::Input:
       declareSamplers(
           program_, parameter,
           variant_.walk == Walk::Index ? access.addressing == Addressing::Layered : variant_.sourceLayered);
-      if (variant_.walk == Walk::Index) defineInputIndex(program_, parameter, access, item());
-      defineExtent(program_, parameter);
+      if (variant_.walk == Walk::Index) defineInputIndex(program_, parameter, access, item(), indexGetter());
+      if (variant_.placed) {
+        definePlacedGetters(program_, parameter, seenItem());
+      } else {
+        defineExtent(program_, parameter);
+      }
       return;
     case Role::Gather:
       defineGather(program_, [&](int components) { return itemPosition(components); }, parameter, access);
       defineExtent(program_, parameter);
       return;
+    case Role::Output:
+      if (parameter.usesIndex) defineGetter(program_, "index", parameter, seenItem());
+      if (parameter.usesExtent) defineGetter(program_, "extent", parameter, seenShape());
+      return;
     case Role::Spec:
     case Role::Accumulator:
-    case Role::Output:
     case Role::VariableOutput:
     case Role::Scatter: return;
   }
@@ -101,7 +114,7 @@ std::string FoldText::element(std::size_t i, const Texel& texel) {
   const Parameter& input = kernel_.parameters[i];
   if (!isNeeded(input, variant_.specs)) return absentElement(input);
   if (variant_.walk != Walk::Index) return fetch(program_, input, texel);
-  return fetch(program_, input, inputTexel(program_, input, access(i)));
+  return fetch(program_, input, inputTexel(program_, input, access(i), indexGetter()));
 }
 
 Texel FoldText::numberedTexel(std::string_view number) {

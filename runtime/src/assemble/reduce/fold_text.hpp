@@ -37,6 +37,10 @@ class FoldText {
   void defineParameters();
   /// The index of the current element in the domain, an ivec4 variable.
   std::string item();
+  /// The same in what the fold speaks of, an ivec4 expression.
+  std::string seenItem();
+  /// The extents of what the fold speaks of, an ivec4 expression.
+  std::string seenShape();
   /// The element of an input: of Walk::Index at its own address, else at a texel.
   std::string element(std::size_t i, const Texel& texel);
   /// The texel with a number in the linearised texture that the walk reads.
@@ -107,6 +111,8 @@ class FoldText {
  private:
   std::string sharedName(const program::Parameter& accumulator) const;
   std::string itemPosition(int components);
+  /// What getters of indices of inputs within their regions are called.
+  std::string_view indexGetter() const { return variant_.placed ? "within" : "index"; }
   void defineParameter(const program::Parameter& parameter, const StreamAccess& access);
 };
 

@@ -398,9 +398,11 @@ bool mayEndInBuffer(const program::Reduction& reduction) {
 
 bool readsElementIndex(const program::Kernel& fold) {
   using program::Role;
-  return fold.usesIndex || std::ranges::any_of(fold.parameters, [](const program::Parameter& parameter) {
+  return fold.usesIndex || fold.usesExtent ||
+         std::ranges::any_of(fold.parameters, [](const program::Parameter& parameter) {
            return parameter.role == Role::Iterator || parameter.usesNear ||
-                  (parameter.role == Role::Input && parameter.usesIndex);
+                  (parameter.role == Role::Input && parameter.usesIndex) ||
+                  (parameter.role == Role::Output && (parameter.usesIndex || parameter.usesExtent));
          });
 }
 

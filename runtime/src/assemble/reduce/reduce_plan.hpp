@@ -66,7 +66,7 @@ bool foldsInGroups(const program::Reduction& reduction);
 /// than every device can write at once.
 bool mayEndInBuffer(const program::Reduction& reduction);
 
-/// Whether a fold reads the index of its elements.
+/// Whether a fold reads the index of its elements, or the extents of the domain.
 bool readsElementIndex(const program::Kernel& fold);
 
 /// How the elements are divided into blocks and addressed.

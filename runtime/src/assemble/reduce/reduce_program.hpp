@@ -105,6 +105,7 @@ struct ReduceVariant {
   bool carryLayered = false;  ///< of these
   RowPass rows = RowPass::None;
   bool tableLayered = false;  ///< rows: of the first table
+  bool placed = false;  ///< Walk::Index: elements are a box of a whole, in which the fold's indices count
   bool reshaped = false;  ///< the result has other dimensions than the grid of blocks
   std::uint8_t firstPlane = 0;  ///< among the planes of all accumulators: the first one written,
   std::uint8_t planeCount = 0;  ///< and how many; 0 means all

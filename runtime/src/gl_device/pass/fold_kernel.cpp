@@ -37,6 +37,8 @@ std::vector<Argument> without(Role role, const ResolvedReduction& call) {
   return arguments;
 }
 
+Placement placeOf(const ResolvedReduction& call) { return {call.placed.box.begin, call.placed.whole}; }
+
 /// The planes that one dispatch of a fold writes, with those of its accumulators.
 std::size_t planesWritten(const Reduction& reduction, std::span<const Argument> arguments,
                           const assemble::SpecValues& specs) {
@@ -127,6 +129,15 @@ bool fits(const GlDevice& device, const Reduction& reduction, const ResolvedRedu
   return !hasLayers(call.domain);
 }
 
+/// Whether another call writes outputs of the fold, which has no texels for them then.
+bool omitsOutputs(const ResolvedReduction& call) {
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const bool isOutput = call.reduction.fold.parameters[i].role == Role::Output;
+    if (isOutput && call.arguments[i].region.stream == nullptr) return true;
+  }
+  return false;
+}
+
 /// Where a dispatch stores the accumulators: a texel of planes of their own.
 struct FoldTarget {
   std::span<RenderTarget* const> planes;
@@ -169,7 +180,7 @@ void foldInGroups(GlDevice& device, const ResolvedReduction& call) {
   }
   const std::vector<Argument> elements = without(Role::Accumulator, call),
                               folded = without(Role::Output, call);
-  const KernelOperands operands(device, fold, elements, specs, nullptr, call.domain);
+  const KernelOperands operands(device, fold, elements, specs, nullptr, call.domain, {}, placeOf(call));
   OutputTargets outputs(device, fold, elements, specs, operands.get(), operands.domain(), operands.layout());
   const std::vector<Operand> results = operandsOfResults(call);
   const RegionLayout& result = results[firstResult].regionLayout;
@@ -188,7 +199,7 @@ void foldInGroups(GlDevice& device, const ResolvedReduction& call) {
 void foldInGroups(GlDevice& device, const ResolvedReduction& call, std::span<RenderTarget> values) {
   const Kernel& fold = call.reduction.fold;
   const assemble::SpecValues specs = specsOf(fold, call.arguments);
-  const KernelOperands operands(device, fold, call.arguments, specs, nullptr, call.domain);
+  const KernelOperands operands(device, fold, call.arguments, specs, nullptr, call.domain, {}, placeOf(call));
   dispatchFold(device, call, operands, {}, {pointersTo(values), assemble::valueLayout()}, [] {});
 }
 
@@ -201,8 +212,8 @@ bool gathersInGroups(GlDevice& device, const ResolvedReduction& call) {
                           std::ranges::any_of(fold.parameters, [](const Parameter& parameter) {
                             return parameter.role == Role::Gather;
                           });
-  return device.programs().stage() == assemble::Stage::Compute && isGathered && !call.scan &&
-         call.rows == nullptr && call.blocks.size() == 1 && call.domain.size() >= fewest &&
+  return device.programs().stage() == assemble::Stage::Compute && isGathered && !omitsOutputs(call) &&
+         !call.scan && call.rows == nullptr && call.blocks.size() == 1 && call.domain.size() >= fewest &&
          assemble::mayFoldInGroups(call.reduction) && fits(device, call.reduction, call);
 }
 

@@ -12,6 +12,7 @@
 #include "assemble/reduce/scan_program.hpp"
 #include "call/check_argument.hpp"
 #include "call/resolved_call.hpp"
+#include "device/region.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "gl_device/pass/pass_trace.hpp"
@@ -77,6 +78,7 @@ ReducePasses::ReducePasses(GlDevice& device, const ResolvedReduction& call)
       specs_(specsOf(call.reduction.fold, call.arguments)),
       isScan_(call.scan.has_value()),
       isInRows_(call.rows != nullptr),
+      placed_(call.placed),
       blocks_(xFirst(call.blocks)) {
   findOperands(call.arguments, call.domain);
   if (isInRows_) return;
@@ -184,6 +186,9 @@ void ReducePasses::findOperands(std::span<const Argument> arguments, const Shape
     operands_.push_back(operandOf(i, arguments[i], domain));
   }
   elements_ = layoutOfElements(xFirst(domain));
+  if (!placed_.isPlaced()) return;
+  elements_.placed = true;
+  elements_.place = {xFirst(placed_.box.begin), {}, xFirst(placed_.whole)};
 }
 
 assemble::ReduceLimits ReducePasses::limitsOfPasses() const {
@@ -223,7 +228,7 @@ bool ReducePasses::foldsByGroups() const {
 }
 
 bool ReducePasses::readsTexelsTogether() const {
-  if (assemble::readsElementIndex(reduction_.fold) || !elements_.packed ||
+  if (assemble::readsElementIndex(reduction_.fold) || placed_.isPlaced() || !elements_.packed ||
       !assemble::isWholeTexels(elements_) || elements_.extent[0] / blocks_[0] % assemble::lanes != 0) {
     return false;
   }
@@ -256,7 +261,9 @@ Operand ReducePasses::operandOf(std::size_t i, const Argument& argument, const S
   switch (parameter.role) {
     case Role::Uniform: return uniformOperand(argument);
     case Role::Spec: return {.value = argument.value};
-    case Role::Iterator: return domain.size() == 0 ? Operand{} : iteration(parameter, argument.value, domain);
+    case Role::Iterator:
+      if (domain.size() == 0) return {};
+      return iteration(parameter, argument.value, placed_.isPlaced() ? placed_.whole : domain);
     case Role::Input:
     case Role::Gather:
     case Role::Accumulator: break;
@@ -267,7 +274,15 @@ Operand ReducePasses::operandOf(std::size_t i, const Argument& argument, const S
   if (argument.region.stream == nullptr || !assemble::isNeeded(parameter, specs_)) {
     return {};
   }
-  return regionOperand(argument, domain);
+  Operand operand = regionOperand(argument, domain);
+  RegionLayout& layout = operand.regionLayout;
+  if (parameter.role == Role::Gather && isPlaced(argument.region)) {
+    layout = gatherLayout(layout, argument.region.placement, parameter.boundary);
+  } else if (parameter.role == Role::Input && placed_.isPlaced()) {
+    layout.placed = true;
+    layout.place.whole = xFirst(seenShape(argument.region));
+  }
+  return operand;
 }
 
 RegionLayout ReducePasses::layoutOfElements(const Index4& shape) const {
@@ -285,7 +300,7 @@ bool ReducePasses::isRead(std::size_t i) const {
 }
 
 bool ReducePasses::foldsByIndex() const {
-  bool byIndex = assemble::readsElementIndex(reduction_.fold);
+  bool byIndex = assemble::readsElementIndex(reduction_.fold) || placed_.isPlaced();
   bool hasElements = false;  // a kernel with folded outputs may have no inputs
   for (std::size_t i = 0; i < operands_.size(); ++i) {
     hasElements = hasElements || isRead(i);
@@ -346,6 +361,12 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
         bindOperands(device_, program.kernel, kernel, operands);
         for (const assemble::UniformValue& value : pass.uniforms) {
           program.uniform(value).set(device_.bound, value.value);
+        }
+        if (variant.placed) {
+          for (const assemble::UniformValue& value :
+               {assemble::UniformValue{"sk_item_low", true, elements_.place.low},
+                assemble::UniformValue{"sk_item_whole", true, elements_.place.whole}})
+            program.uniform(value).set(device_.bound, value.value);
         }
         const bool storesItself = pass.groups.width > 0;
         writeRects(device_, preparedPass(device_, program.kernel, planes), planes,
@@ -424,6 +445,7 @@ void ReducePasses::addAccess(assemble::ReduceVariant& variant, const Kernel& ker
     }
   }
   variant.access = std::move(chosen.access);
+  variant.placed = variant.walk == Walk::Index && elements_.placed;
 }
 
 }  // namespace sk

@@ -133,6 +133,7 @@ class ReducePasses {
   assemble::RegionLayout elements_;
   const bool isScan_;
   const bool isInRows_;  ///< of different lengths
+  const FoldedBox placed_;
   bool byGroups_ = false;
   bool byTexel_ = false;
   const assemble::Index4 blocks_;

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+//
+// Scans of streams of a domain. Each rank scans its own elements; the ranks along the scanned dimension exchange the totals of
+// their lines; and each rank combines the totals before its own with its results. Only what a scan over one device would fold
+// is folded, in the same order, but floats are rounded once more for each rank before.
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "call/box.hpp"
+#include "call/check_argument.hpp"
+#include "call_plan.hpp"
+#include "combine_each.hpp"
+#include "domain_state.hpp"
+
+namespace sk {
+
+using mpi::Accumulators;
+using mpi::Bytes;
+using program::Parameter;
+using program::Reduction;
+using program::Role;
+
+namespace {
+
+/// A scan over several ranks, whose arguments have been checked.
+class RankScan {
+ public:
+  RankScan(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments,
+           const CallOptions& options)
+      : domain_(domain), reduction_(reduction), options_(options), dimension_(scannedDimension()) {
+    for (const Argument& argument : arguments) {
+      local_.push_back(argument);
+      DomainStreamState* const stream = domainStream(argument.region);
+      if (stream != nullptr) local_.back().region = stream->part(domain.own);
+    }
+  }
+
+  void run() {
+    if (domain_.parts.split()[dimension_] == 1) return sk::scan(reduction_, local_, options_);
+    if (isExact()) {
+      fail(reduction_.fold,
+           "exact scans of floats are not possible along dimension {}, which is divided over {} ranks; call "
+           "it "
+           "without Accumulate::Exact, or do not divide that dimension",
+           dimension_, domain_.parts.split()[dimension_]);
+    }
+    const Shape own = domain::shapeOf(domain_.own);
+    Accumulators results = accumulators(own.size());
+    sk::scan(reduction_, withResults(results, own), options_);
+    const std::optional<Accumulators> before = totalsBefore();
+    if (before) {
+      const ResolvedReduction call{
+          *results.regions.front().stream->device, reduction_, local_, own, own, {}, options_};
+      mpi::combineEach(domain_, call, *before, results, lines());
+    }
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < local_.size(); ++i) {
+      if (isResult(i)) detail::copy(detail::reshaped(results.regions[next++], own), local_[i].region);
+    }
+  }
+
+ private:
+  bool isResult(std::size_t i) const { return reduction_.fold.parameters[i].role == Role::Accumulator; }
+
+  /// The dimension that is scanned; of a scan over all elements, the only one in which these are divided.
+  int scannedDimension() const {
+    const Shape& whole = domain_.parts.whole();
+    if (options_.along) {
+      if (*options_.along < 0 || *options_.along >= whole.rank()) {
+        fail(Error::Kind::Shape, reduction_.fold,
+             "the domain has shape {}, which has no dimension {}; along is 0 to {}", toString(whole),
+             *options_.along, whole.rank() - 1);
+      }
+      return *options_.along;
+    }
+    int slowest = 0;
+    while (slowest + 1 < whole.rank() && whole[slowest] == 1) ++slowest;
+    for (int d = slowest + 1; d < whole.rank(); ++d) {
+      if (domain_.parts.split()[d] == 1) continue;
+      fail(
+          reduction_.fold,
+          "a scan over all elements goes on from row to row, but the rows are divided over ranks (split {}); "
+          "divide the first dimension alone, .split = {{{}}}, or scan each line: .with({{.along = ...}})",
+          toString(domain_.parts.split()), splitOfFirst(slowest));
+    }
+    return slowest;
+  }
+  std::string splitOfFirst(int slowest) const {
+    std::string text;
+    for (int d = 0; d < domain_.parts.whole().rank(); ++d)
+      text += (d == 0 ? "" : ", ") + std::to_string(d == slowest ? domain_.parts.ranks() : 1);
+    return text;
+  }
+
+  const StreamRegion& resultRegion() const {
+    const auto result = std::ranges::find(reduction_.fold.parameters, Role::Accumulator, &Parameter::role);
+    return local_[static_cast<std::size_t>(result - reduction_.fold.parameters.begin())].region;
+  }
+
+  bool isExact() const {
+    const DeviceState& device = *resultRegion().stream->device;
+    return !reduction_.exact.empty() &&
+           device.configuration.resolve(reduction_.fold, options_).accumulate == Accumulate::Exact;
+  }
+
+  /// Native code keeps doubles if a result does.
+  bool isInDoubles() const {
+    for (std::size_t i = 0; i < local_.size(); ++i) {
+      if (isResult(i) && mpi::isInMemory(local_[i].region) &&
+          local_[i].region.stream->storage >= Storage::Extended)
+        return true;
+    }
+    return false;
+  }
+
+  Accumulators accumulators(std::int64_t count) const {
+    return {*resultRegion().stream->device, reduction_, Shape{count}, isInDoubles()};
+  }
+
+  std::vector<Argument> withResults(const Accumulators& results, const Shape& shape) const {
+    std::vector<Argument> arguments = local_;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      if (isResult(i)) arguments[i].region = detail::reshaped(results.regions[next++], shape);
+    }
+    return arguments;
+  }
+
+  mpi::LinesOf lines() const {
+    const Shape own = domain::shapeOf(domain_.own);
+    if (!options_.along) return {own.size(), 1};
+    mpi::LinesOf lines{own[dimension_], 1};
+    for (int d = dimension_ + 1; d < own.rank(); ++d) lines.inner *= own[d];
+    return lines;
+  }
+
+  /// The totals of all ranks before this one along the dimension, combined; nullopt on the first rank.
+  std::optional<Accumulators> totalsBefore() {
+    const Shape own = domain::shapeOf(domain_.own);
+    Shape shape = own.with(dimension_, 1);  // one for each line
+    for (int d = 0; !options_.along && d < own.rank(); ++d) shape = shape.with(d, 1);
+    const mpi::Communicator& line = domain_.lineOf(dimension_);
+    int rank = 0, ranks = 1;
+    mpi::check(MPI_Comm_rank(line, &rank), reduction_.fold.name);
+    mpi::check(MPI_Comm_size(line, &ranks), reduction_.fold.name);
+    Accumulators totals = accumulators(shape.size());
+    const std::size_t bytes = totals.elements() * totals.elementBytes();
+    Bytes mine(bytes);
+    if (rank + 1 < ranks) {
+      CallOptions fold = options_;
+      fold.along = {};
+      fold.scan = Scan::Default;
+      sk::reduce(reduction_, withResults(totals, shape), fold);
+      mine = totals.read();
+    }
+    if (bytes > mpi::mostBytes / static_cast<std::size_t>(ranks)) {
+      fail(Error::Kind::Memory, reduction_.fold,
+           "it has {} lines on a rank, whose totals do not fit in one message of {} ranks; divide another "
+           "dimension",
+           shape.size(), ranks);
+    }
+    Bytes all(bytes * static_cast<std::size_t>(ranks));
+    const auto count = static_cast<int>(bytes);
+    mpi::check(MPI_Allgather(mine.data(), count, MPI_BYTE, all.data(), count, MPI_BYTE, line),
+               reduction_.fold.name);
+    ++domain_.statistics.reductions;
+    if (rank == 0) return std::nullopt;
+    const auto totalsOf = [&](int of) {
+      const auto from = all.begin() + static_cast<std::ptrdiff_t>(bytes) * of;
+      return Bytes(from, from + static_cast<std::ptrdiff_t>(bytes));
+    };
+    std::optional<Accumulators> before;
+    before.emplace(accumulators(shape.size())).write(totalsOf(0));
+    const ResolvedReduction call{
+        *before->regions.front().stream->device, reduction_, local_, shape, shape, {}, options_};
+    for (int other = 1; other < rank; ++other) {
+      totals.write(totalsOf(other));
+      mpi::combineEach(domain_, call, *before, totals, {1, shape.size()});
+      std::swap(*before, totals);
+    }
+    return before;
+  }
+
+  DomainState& domain_;
+  const Reduction& reduction_;
+  CallOptions options_;
+  int dimension_;
+  std::vector<Argument> local_;
+};
+
+/// Throws sk::Error unless results are streams of the domain, and nothing but elements is spread.
+void checkArguments(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments) {
+  std::vector<Argument> others(arguments.begin(), arguments.end());
+  for (std::size_t i = 0; i < arguments.size() && i < reduction.fold.parameters.size(); ++i) {
+    const Parameter& parameter = reduction.fold.parameters[i];
+    if (parameter.role != Role::Accumulator) continue;
+    const DomainStreamState* const result = domainStream(arguments[i].region);
+    if (result == nullptr || result->domain != &domain) {
+      fail(reduction.fold,
+           "'{}' is no stream of the domain whose elements it scans; create it by domain.stream, with a "
+           "result "
+           "for each element",
+           parameter.name);
+    }
+    others[i] = {};
+  }
+  for (const mpi::SpreadArgument& one : mpi::spreadArguments(domain, reduction.fold, others)) {
+    if (!one.isGather) continue;
+    fail(
+        reduction.fold,
+        "'{}' is gathered from a stream of the domain, which a scan over ranks cannot do; let a kernel store "
+        "what is to be scanned",
+        reduction.fold.parameters[one.index].name);
+  }
+}
+
+}  // namespace
+
+void DomainState::scan(const Reduction& reduction, std::span<const Argument> arguments,
+                       const CallOptions& chosen) {
+  mpi::refuseRecording(*this, reduction.fold);
+  agree(&reduction, mpi::hashOf(reduction.fold, chosen), reduction.fold.name);
+  checkArguments(*this, reduction, arguments);
+  if (!chosen.box.isWhole())
+    fail(reduction.fold, "a scan takes no box; scan all elements, or let a kernel store 0 outside of it");
+  if (parts.ranks() > 1 && asksPlace(reduction.fold)) {
+    fail(reduction.fold,
+         "it asks where an element is (indexof, extentof, neighbor or an iterator), which a scan over ranks "
+         "cannot "
+         "say; let a kernel store what is to be scanned");
+  }
+  RankScan(*this, reduction, arguments, chosen).run();
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (reduction.fold.parameters[i].role == Role::Accumulator) domainStream(arguments[i].region)->valid = {};
+  }
+}
+
+}  // namespace sk
