@@ -24,6 +24,7 @@
 #include "web/offered.hpp"
 #include "web/sum_variants.hpp"
 #include "web/typings.hpp"
+#include "web/used_functions.hpp"
 
 namespace skc::web {
 namespace {
@@ -377,10 +378,23 @@ class ScriptWriter {
     return indices;
   }
 
+  /// What the runtime adds to a kernel's programs where streams hold values.
+  static std::string heldTexts(const Kernel& kernel) {
+    std::string texts;
+    for (const Parameter& parameter : kernel.parameters) {
+      if (parameter.role != Role::Uniform || isPlain(parameter)) continue;
+      const auto [uniforms, statements] = heldValue(webProfile(), kernel, parameter);
+      texts += uniforms + statements;
+    }
+    return texts;
+  }
+
   std::size_t indexOf(std::string text, const std::vector<const Kernel*>& kernels) {
     const std::size_t comment = text.find("\n//");  // it names the layouts, as the key does
     if (comment != std::string::npos) text.erase(comment, text.find('\n', comment + 1) - comment);
-    text = escaped(std::move(text));
+    std::string more;
+    for (const Kernel* kernel : kernels) more += heldTexts(*kernel);
+    text = escaped(withUsedFunctions(text, more));
     const std::size_t body = text.find("\n\n");  // after the precisions
     if (body != std::string::npos) share(text, text.substr(0, body + 1));
     for (const Kernel* kernel : kernels) {

@@ -60,6 +60,7 @@ run 0 --emit=js -Iinclude -o web --depfile=web.d heat.sk
 silent
 grep -qF 'export const diffuse = $file.callable(0);' web/heat.sk.js || broken "no kernel in heat.sk.js"
 grep -qF ', $programs, {folds: $sk.folds});' web/heat.sk.js || broken "heat.sk.js asks for other features than folds"
+[[ $(<web/heat.sk.js) != *sk_sqrt* ]] || broken 'heat.sk.js has functions that its programs do not call'
 grep -qF 'diffuse: sk.Kernel<[k: number | sk.Held<'"'float'"'>, u: sk.Gather<'"'float'"', 2>, v: sk.Output<'"'float'"'>]>;' web/heat.sk.d.ts ||
   broken "no type of diffuse: $(<web/heat.sk.d.ts)"
 grep -qF 'sum: sk.Reduce<[x: sk.Input<'"'float'"'>], number, [x: sk.Input<'"'float'"'>, total: sk.Output<'"'float'"'>]>;' web/heat.sk.d.ts || broken "no type of sum: $(<web/heat.sk.d.ts)"

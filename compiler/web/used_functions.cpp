@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "web/used_functions.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <vector>
+
+namespace skc::web {
+namespace {
+
+/// A function, or a line outside of functions, which has no name.
+struct Part {
+  std::string_view text;
+  std::string_view name;
+};
+
+bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+std::string_view lineAt(std::string_view text) { return text.substr(0, text.find('\n') + 1); }
+
+std::string_view withoutComment(std::string_view line) { return line.substr(0, line.find("//")); }
+
+/// The name of the function that a line begins to define or declare: "f" of "float f(float x) {". Empty if there is none.
+std::string_view functionName(std::string_view line) {
+  const std::size_t open = line.find('(');
+  if (open == std::string_view::npos || !isWord(line.front())) return {};
+  std::size_t begin = open;
+  while (begin > 0 && isWord(line[begin - 1])) --begin;
+  const bool hasType = begin > 0 && begin < open && line[begin - 1] == ' ';
+  const std::string_view type = line.substr(0, begin);
+  return hasType && std::ranges::all_of(type, [](char c) { return isWord(c) || c == ' '; })
+             ? line.substr(begin, open - begin)
+             : std::string_view();
+}
+
+/// The length of the function at the beginning of a text, up to the line of its last brace; 0 if it is only declared.
+std::size_t functionLength(std::string_view text) {
+  int depth = 0;
+  bool isOpen = false;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::string_view line = lineAt(text.substr(at));
+    if (line.empty()) return 0;
+    at += line.size();
+    for (const char c : withoutComment(line)) {
+      if (!isOpen && c == ';') return 0;
+      isOpen = isOpen || c == '{';
+      depth += c == '{' ? 1 : c == '}' ? -1 : 0;
+    }
+    if (isOpen && depth == 0) return at;
+  }
+  return 0;
+}
+
+std::vector<Part> partsOf(std::string_view program) {
+  std::vector<Part> parts;
+  while (!program.empty()) {
+    std::string_view line = lineAt(program);
+    if (line.empty()) line = program;
+    const std::string_view name = functionName(line);
+    const std::size_t length = name.empty() ? 0 : functionLength(program);
+    const std::string_view text = program.substr(0, length == 0 ? line.size() : length);
+    if (!line.starts_with("//")) parts.push_back({text, length == 0 ? std::string_view() : name});
+    program.remove_prefix(text.size());
+  }
+  return parts;
+}
+
+void addWords(std::string_view text, std::set<std::string_view>& words) {
+  while (!text.empty()) {
+    const auto end = std::ranges::find_if_not(text, isWord);
+    const std::string_view word(text.begin(), end);
+    if (!word.empty()) words.insert(word);
+    text.remove_prefix(std::max<std::size_t>(word.size(), 1));
+  }
+}
+
+}  // namespace
+
+std::string withUsedFunctions(std::string_view program, std::string_view more) {
+  if (program.find("#if") != std::string_view::npos) return std::string(program);
+  const std::vector<Part> parts = partsOf(program);
+  std::set<std::string_view> words = {"main"};
+  addWords(more, words);
+  for (const Part& part : parts) {
+    if (part.name.empty()) addWords(part.text, words);
+  }
+  std::vector<bool> isUsed(parts.size());
+  for (bool hasChanged = true; hasChanged;) {
+    hasChanged = false;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (isUsed[i] || parts[i].name.empty() || !words.contains(parts[i].name)) continue;
+      isUsed[i] = hasChanged = true;
+      addWords(parts[i].text, words);
+    }
+  }
+  std::string used;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].name.empty() && parts[i].text == "\n" && used.ends_with("\n\n")) continue;
+    if (parts[i].name.empty() || isUsed[i]) used += parts[i].text;
+  }
+  return used;
+}
+
+}  // namespace skc::web
