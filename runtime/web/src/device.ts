@@ -52,9 +52,6 @@ export interface DeviceInfo {
   readonly compilesInParallel: boolean;
 }
 
-/** How points are combined with stored texels. */
-export type Blend = 'add' | 'min' | 'max';
-
 /** Planes of one format and size that nothing uses. */
 export interface Shelf {
   readonly format: Format;
@@ -473,7 +470,8 @@ export class Device {
     this.boundFramebuffer = framebuffer;
   }
 
-  private setViewport(x: number, y: number, width: number, height: number): void {
+  /** @internal */
+  setViewport(x: number, y: number, width: number, height: number): void {
     const last = this.viewport;
     if (last[0] === x && last[1] === y && last[2] === width && last[3] === height) return;
     this.context.viewport(x, y, width, height);
@@ -486,7 +484,13 @@ export class Device {
   /** Draws rectangles with the current program and framebuffer. @internal */
   drawRects(rects: readonly Rect[]): void {
     if (this.tracer === null) return this.drawEach(rects);
-    this.tracer.pass(this.boundProgram!.name, texelsIn(rects), () => this.drawEach(rects));
+    this.tracePass(texelsIn(rects), () => this.drawEach(rects));
+  }
+
+  /** Draws a pass of the current program, which the tracer sees if there is one. @internal */
+  tracePass(texels: number, draw: () => void): void {
+    if (this.tracer === null) draw();
+    else this.tracer.pass(this.boundProgram!.name, texels, draw);
   }
 
   private drawEach(rects: readonly Rect[]): void {
@@ -495,21 +499,6 @@ export class Device {
       this.setViewport(x, y, width, height);
       gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     }
-  }
-
-  /** Draws points of one texel, in order, to textures of this size; they blend with what is there. @internal */
-  drawPoints(count: number, width: number, height: number, blend: Blend | null): void {
-    const gl = this.context;
-    this.setViewport(0, 0, width, height);
-    if (blend !== null) {
-      gl.enable(gl.BLEND);
-      gl.blendEquation({ add: gl.FUNC_ADD, min: gl.MIN, max: gl.MAX }[blend]);
-      gl.blendFunc(gl.ONE, gl.ONE);
-    }
-    const draw = () => gl.drawArrays(gl.POINTS, 0, count);
-    if (this.tracer === null) draw();
-    else this.tracer.pass(this.boundProgram!.name, count, draw);
-    if (blend !== null) gl.disable(gl.BLEND);
   }
 
   /** Copies texels between planes of one format. @internal */

@@ -3,11 +3,14 @@
 // Stores the list of a scatter output to its stream, entry by entry, as points: the steps of
 // runtime/src/gl_device/append/scatter_points.cpp. Devices blend floats only; integers are taken apart into floats that
 // stay exact.
-import type { Blend, Device, Plane } from './device.js';
+import type { Device, Plane } from './device.js';
 import type { List, PointStep } from './generated.js';
 import type { Layout } from './layout.js';
 import type { Program } from './program.js';
 import type { AnyStream } from './arguments.js';
+
+/** How points are combined with stored texels. */
+type Blend = 'add' | 'min' | 'max';
 
 /** The most points in one draw of limbs of 8 bits, whose sums are exact in floats. */
 const mostLimbPoints = 2 ** 16 - 1;
@@ -86,7 +89,7 @@ export class Scatterer {
     program.setInteger('sk_first', first);
     program.setInteger('sk_size', [width, height, 0, 0]);
     this.device.framebufferOf(targets);
-    this.device.drawPoints(count, width, height, blend);
+    drawPoints(this.device, count, width, height, blend);
   }
 
   private region(step: PointStep, targets: readonly Plane[], earlier: readonly Plane[] = []): void {
@@ -95,4 +98,17 @@ export class Scatterer {
     this.device.framebufferOf(targets);
     this.device.drawRects(this.stream.layout.draws);
   }
+}
+
+/** Draws points of one texel, in order, to textures of this size; they blend with what is there. */
+function drawPoints(device: Device, count: number, width: number, height: number, blend: Blend | null): void {
+  const gl = device.context;
+  device.setViewport(0, 0, width, height);
+  if (blend !== null) {
+    gl.enable(gl.BLEND);
+    gl.blendEquation({ add: gl.FUNC_ADD, min: gl.MIN, max: gl.MAX }[blend]);
+    gl.blendFunc(gl.ONE, gl.ONE);
+  }
+  device.tracePass(count, () => gl.drawArrays(gl.POINTS, 0, count));
+  if (blend !== null) gl.disable(gl.BLEND);
 }
