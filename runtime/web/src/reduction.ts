@@ -9,14 +9,15 @@ import { newArrays, planeArray, takeChannels, valueOf } from './elements.js';
 import { Fold, type Goal } from './fold.js';
 import type { Format } from './format.js';
 import type { Features, FoldCaller, LoadedFile } from './features.js';
-import { isNeeded, type CallableReduction, type SumVariant } from './generated.js';
+import { isNeeded, type CallableReduction, type Parameter, type SumVariant } from './generated.js';
 import { alignedProgram, drawAligned, KernelCaller, ProgramSource } from './kernel.js';
 import { shapeText } from './layout.js';
 import type { Program } from './program.js';
 import { valueLayout } from './reduce_plan.js';
+import { checkDisjoint } from './shapes.js';
 import { Stream } from './stream.js';
 import type { ScanOptions } from './types.js';
-import { Fitted, View } from './view.js';
+import { Fitted, View, viewOf } from './view.js';
 
 const valueRects = [{ x: 0, y: 0, width: 1, height: 1 }];
 const accumulations = ['tree', 'compensated', 'extended', 'exact'];
@@ -95,36 +96,51 @@ class ReductionCaller implements FoldCaller {
 
   /** Promises the values of the accumulators, or, if they are given, writes to streams. */
   call(given: readonly unknown[], options: ScanOptions): Promise<unknown> | void {
-    const { whole, copies } = this.withoutViews(given);
+    const { whole, copies, written } = this.withoutViews(given);
+    const finish = () => written.forEach(([drawn, view]) => drawn.copyTo(view));
     const isToStreams = this.reduction.scans || given.length === this.fold.parameters.length;
-    const done = isToStreams ? this.toStreams(whole, options) : this.toValues(whole, options);
+    const done = isToStreams ? this.toStreams(whole, options, finish) : this.toValues(whole, options, finish);
     for (const copy of copies) copy.dispose(); // all passes have been drawn
     return done;
   }
 
-  /** Copies the views that a call reads: reductions have programs for whole streams alone. */
-  private withoutViews(given: readonly unknown[]): { whole: readonly unknown[]; copies: readonly { dispose(): void }[] } {
+  /**
+   * Copies the views that a call reads: reductions have programs for whole streams alone. Those that it writes stand for streams of
+   * their shape, `written`, which are copied to them when all passes have been drawn.
+   */
+  private withoutViews(given: readonly unknown[]) {
     const all = this.fold.parameters;
     const parameters = given.length === all.length ? all : all.filter(({ role }) => role !== 'accumulator');
-    const copies: { dispose(): void }[] = [];
-    if (given.length !== parameters.length) return { whole: given, copies };
+    const copies: Stream<any, number>[] = [];
+    const written: [Stream<any, number>, View<any, number>][] = [];
+    if (given.length !== parameters.length) return { whole: given, copies, written };
     const whole = given.map((argument, i) => {
       const { name, role } = parameters[i]!;
       const isHere = argument instanceof Stream || argument instanceof View || argument instanceof Fitted;
       if (isHere && role === 'uniform') fail(this.reduction.name, `'${name}' is one value for all elements, and streams do not stand for values of reduces in browsers; read the stream, and give its value`, 'type');
       if (argument instanceof Fitted) fail(this.reduction.name, `'${name}' is fitted, but only outputs say to what; give a stream or a view`, 'type');
       if (!(argument instanceof View)) return argument;
-      if (role !== 'input' && role !== 'gather') fail(this.reduction.name, `'${name}' is a view, but reduces and scans write whole streams in browsers; give a stream`, 'type');
       argument.check(`${this.reduction.name}: the stream of '${name}'`);
-      const copy = argument.copied();
+      const isRead = role === 'input' || role === 'gather';
+      const copy = isRead ? argument.copied() : new Stream<any, number>(argument.device, argument.element, argument.shape);
       copies.push(copy);
+      if (!isRead) written.push([copy, argument]);
       return copy;
     });
-    return { whole, copies };
+    if (written.length > 0) this.checkWritten(parameters, given);
+    return { whole, copies, written };
+  }
+
+  /** Throws SkError if two results, of which some are views, have an element in common. */
+  private checkWritten(parameters: readonly Parameter[], given: readonly unknown[]): void {
+    const isWritten = ({ role }: Parameter, i: number) => (role === 'output' || role === 'accumulator') && (given[i] instanceof Stream || given[i] instanceof View);
+    const views = parameters.map((parameter, i) => (isWritten(parameter, i) ? viewOf(given[i] as View<any, number>) : null));
+    const outputs = views.flatMap((view, i) => (view === null ? [] : [i]));
+    checkDisjoint({ name: this.reduction.name, parameters }, { streams: views.map((view) => view?.stream ?? null), views }, outputs);
   }
 
   /** If there are several accumulators, a list. */
-  private async toValues(given: readonly unknown[], options: ScanOptions): Promise<unknown> {
+  private async toValues(given: readonly unknown[], options: ScanOptions, finish: () => void): Promise<unknown> {
     const call = this.check(given);
     const shape = this.domainOf(call);
     const goal: Goal = { shape, blocks: shape.map(() => 1), layout: valueLayout };
@@ -134,11 +150,12 @@ class ReductionCaller implements FoldCaller {
     device.begin();
     const planes = this.compute(device, call, goal, this.plain.accumulators.map((accumulator) => this.plain.formatsOf(device, accumulator)), sums);
     this.runMap(device, this.withResults(given), planes);
+    finish();
     const values = await this.read(device, planes);
     return values.length === 1 ? values[0] : values;
   }
 
-  private toStreams(given: readonly unknown[], options: ScanOptions): void {
+  private toStreams(given: readonly unknown[], options: ScanOptions, finish: () => void): void {
     const call = this.check(given);
     const shape = this.domainOf(call);
     const device = deviceOf(this.fold, call.streams);
@@ -154,6 +171,7 @@ class ReductionCaller implements FoldCaller {
       stream.exchange(planes[k]!, goal.layout);
       stream.isGone = false;
     });
+    finish();
   }
 
   /** Computes the outputs of a kernel with folded outputs, whose elements have been folded to these planes. */

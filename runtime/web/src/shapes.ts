@@ -37,8 +37,10 @@ export function checkInput(kernel: KernelData, i: number, call: Checked, domain:
   );
 }
 
+type Written = Pick<Checked, 'streams' | 'views'>;
+
 /** Throws SkError if two outputs write one element. */
-export function checkDisjoint(kernel: KernelData, call: Checked, outputs: readonly number[]): void {
+export function checkDisjoint(kernel: KernelData, call: Written, outputs: readonly number[]): void {
   for (const i of outputs) {
     for (const k of outputs) {
       if (k >= i || call.streams[i] !== call.streams[k] || !overlap(viewAt(call, k), viewAt(call, i))) continue;
@@ -49,7 +51,7 @@ export function checkDisjoint(kernel: KernelData, call: Checked, outputs: readon
   }
 }
 
-export function viewAt(call: Checked, i: number): View<any, number> {
+export function viewAt(call: Written, i: number): View<any, number> {
   return call.views[i] ?? viewOf(call.streams[i]!);
 }
 

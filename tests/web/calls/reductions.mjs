@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // Reductions to streams, sums of every kind, folded outputs and scans: the calls of reductions.cpp.
+import { stride } from 'streamkernel';
 import { folds as k, folds_Sums as Sums } from './reductions.sk.js';
 
 /** The cases, given what calls.mjs has to make and compare streams. */
-export function reductionCases({ random24, floats, integers, filled, random, size, same, refused }) {
+export function reductionCases({ random24, floats, integers, filled, random, size, from, same, refused, expect }) {
   // Floats of all magnitudes: sums of them cancel, and depend on the order wherever they are rounded.
   const wild = (count, seed) => floats(count, seed).map((value, i) => value * 2 ** ((random24(i, seed + 100) % 200) - 110));
   const bits = (values) => {
@@ -45,6 +46,29 @@ export function reductionCases({ random24, floats, integers, filled, random, siz
       const found = [];
       for (const values of ends) found.push(await k.sum.with(exactly)(filled(device, 'float', [values.length], Float32Array.from(values))));
       same('exact ends', bits(found));
+    },
+
+    // Results in views are those in streams, and what lies around them stays.
+    async viewedResults(device) {
+      const equal = (what, found, wanted) => expect(what, String(found) === String(wanted), String(found));
+      const x = filled(device, 'int', [12, 8], integers(Int32Array, 96, 60, 2001));
+      const [rows, sums] = [device.stream('int', [12, 1]), device.stream('int', [14, 5])];
+      k.count(x, rows);
+      sums.fill(-1);
+      k.count(x, sums.domain([1, 2], [13, 3]));
+      const column = await rows.read();
+      equal('a column of a stream', await sums.read(), from(Int32Array, 70, (i) => (i % 5 === 2 && i > 5 && i < 65 ? column[Math.floor(i / 5) - 1] : -1)));
+      const [whole, wide] = [device.stream('int', [12, 8]), device.stream('int', [12, 16])];
+      k.prefix(x, whole);
+      k.prefix(x, stride(wide, [1, 2]));
+      equal('a scan to every second column', await wide.read(), [...(await whole.read())].flatMap((n) => [n, 0]));
+      const [next, part] = [device.stream('int', [12, 8]), device.stream('int', [20, 20])];
+      const folded = await k.advance(x, next);
+      equal('the fold beside a view', await k.advance(x, part.domain([3, 4], [15, 12])), folded);
+      equal('an output in a view', await part.domain([3, 4], [15, 12]).read(), await next.read());
+      equal('the rest', await k.count(part), await k.count(next));
+      await refused('misuse', "'alive' and 'most' overlap: both write elements of one stream", () => k.advance(x, next, rows.domain([0, 0], [6, 1]), rows.domain([5, 0], [11, 1])));
+      await refused('shape', 'give the output as many dimensions, or fewer', () => k.count(x, sums.domain([0, 0], [5, 1])));
     },
 
     async blocks(device) {
