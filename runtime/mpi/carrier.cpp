@@ -29,10 +29,12 @@ std::vector<Span> memoryOf(const std::vector<StreamRegion>& boxes) {
   return all;
 }
 
-void addBytes(std::span<Strips> strips, std::size_t (*bytesOf)(const StreamRegion&)) {
+/// `sizeOf` is that of a box.
+template <class SizeOf>
+void addBytes(std::span<Strips> strips, SizeOf&& sizeOf) {
   for (Strips& neighbor : strips) {
-    for (const StreamRegion& box : neighbor.sent) neighbor.sentBytes += bytesOf(box);
-    for (const StreamRegion& box : neighbor.received) neighbor.receivedBytes += bytesOf(box);
+    for (const StreamRegion& box : neighbor.sent) neighbor.sentBytes += sizeOf(box);
+    for (const StreamRegion& box : neighbor.received) neighbor.receivedBytes += sizeOf(box);
   }
 }
 
@@ -72,7 +74,7 @@ class MemoryCarrier final : public Carrier {
 class StagedCarrier final : public Carrier {
  public:
   StagedCarrier(DomainState& domain, std::span<Strips> strips) : Carrier(domain, strips) {
-    addBytes(strips, bytesStaged);
+    addBytes(strips, [&](const StreamRegion& box) { return toHost().bytesOf(box); });
   }
 
   bool isPacked() const override { return false; }
@@ -115,7 +117,7 @@ class StagedCarrier final : public Carrier {
   static std::size_t copyAll(Staging& staging, const std::vector<StreamRegion>& boxes, std::size_t offset) {
     for (const StreamRegion& box : boxes) {
       staging.copy(box, offset);
-      offset += bytesStaged(box);
+      offset += staging.bytesOf(box);
     }
     return offset;
   }

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "device/region.hpp"
-#include "gl_device/gl_stream.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
 
@@ -54,13 +53,6 @@ std::size_t bytesOf(const StreamRegion& region) {
   std::size_t bytes = 0;
   for (const ComponentType& type : nativeStream(region).components.types()) bytes += type.storedBytes;
   return elements * bytes;
-}
-
-std::size_t bytesStaged(const StreamRegion& region) {
-  std::size_t words = 0;
-  for (const program::Field& field : glStream(region).held().fields)
-    words += field.width * (field.scalar == program::Scalar::Double ? 2U : 1U);
-  return static_cast<std::size_t>(region.shape.size()) * words * sizeof(std::uint32_t);
 }
 
 void pack(std::span<const Span> from, std::byte* to) {

@@ -26,8 +26,6 @@ std::vector<Span> spansOf(const StreamRegion& region);
 bool holdsReals(const StreamRegion& region);
 /// The bytes of a region: as a native device stores them, one array after the other, or as elements of a GL device.
 std::size_t bytesOf(const StreamRegion& region);
-/// The bytes of a region of a GL device in staging memory (device/staging.hpp).
-std::size_t bytesStaged(const StreamRegion& region);
 
 /// Copies a region's bytes between a native stream and a buffer.
 void pack(std::span<const Span> from, std::byte* to);

@@ -22,6 +22,8 @@ class Staging {
   Staging(const Staging&) = delete;
   Staging& operator=(const Staging&) = delete;
 
+  /// The bytes of a box.
+  virtual std::size_t bytesOf(const StreamRegion& box) const = 0;
   /// Makes room for `bytes` undefined bytes, once the device has finished with those before. Throws sk::Error if memory is
   /// exhausted. Pointers into the memory are valid until the next call.
   virtual std::byte* room(std::size_t bytes) = 0;

@@ -34,6 +34,10 @@ constexpr std::array<BoxNames, assemble::stagedBoxes> names{{
     {"sk_origin[3]", "sk_extent[3]", "sk_first[3]"},
 }};
 
+int channelsOf(const program::Field& field) {
+  return field.scalar == program::Scalar::Double ? 2 * field.width : field.width;
+}
+
 std::int32_t laneBits(const RegionLayout& box) { return box.packed ? log2OfLanes : 0; }
 
 std::int64_t stagedTexels(const RegionLayout& box) {
@@ -53,6 +57,13 @@ GlStaging::GlStaging(GlDevice& device, Way way)
 bool GlStaging::isPossible(const GlDevice& device) {
   return device.capabilities.hasCompute && device.capabilities.mapsStorage &&
          device.target != Target::Fragment;
+}
+
+std::size_t GlStaging::bytesOf(const StreamRegion& box) const {
+  std::size_t words = 0;
+  for (const program::Field& field : glStream(box).held().fields)
+    words += static_cast<std::size_t>(channelsOf(field));
+  return static_cast<std::size_t>(box.shape.size()) * words * sizeof(std::uint32_t);
 }
 
 std::byte* GlStaging::room(std::size_t bytes) {
@@ -77,7 +88,7 @@ void GlStaging::copy(const StreamRegion& box, std::size_t offset) {
   std::size_t word = offset / 4;
   for (std::size_t i = 0; i < stream.planes.size(); ++i) {
     const program::Field& field = stream.held().fields[i];
-    const int channels = field.scalar == program::Scalar::Double ? 2 * field.width : field.width;
+    const int channels = channelsOf(field);
     boxes_.push_back({&stream, i, channels, place, static_cast<std::int32_t>(word)});
     word += count * static_cast<std::size_t>(channels);
   }

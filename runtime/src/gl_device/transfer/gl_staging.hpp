@@ -39,6 +39,7 @@ class GlStaging final : public Staging {
   /// Whether a device has what it takes: GL 4.4, or 4.3 with GL_ARB_buffer_storage.
   static bool isPossible(const GlDevice& device);
 
+  std::size_t bytesOf(const StreamRegion& box) const override;
   std::byte* room(std::size_t bytes) override;
   void copy(const StreamRegion& box, std::size_t offset) override;
   void flush() override;
