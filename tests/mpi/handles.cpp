@@ -60,7 +60,9 @@ int MPI_Waitall(int count, MPI_Request* all, MPI_Status* statuses) {
 }
 int MPI_Comm_dup(MPI_Comm from, MPI_Comm* copy) { return created(communicators, PMPI_Comm_dup(from, copy)); }
 int MPI_Comm_split(MPI_Comm from, int color, int key, MPI_Comm* part) {
-  return created(communicators, PMPI_Comm_split(from, color, key, part));
+  const int status = PMPI_Comm_split(from, color, key, part);
+  return *part == MPI_COMM_NULL ? status
+                                : created(communicators, status);  // null where this rank has no part
 }
 int MPI_Comm_split_type(MPI_Comm from, int type, int key, MPI_Info info, MPI_Comm* part) {
   return created(communicators, PMPI_Comm_split_type(from, type, key, info, part));

@@ -12,7 +12,7 @@ export interface Canvas extends EventTarget {
   getContext(kind: string, options?: unknown): unknown;
 }
 
-export interface Abilities extends Omit<DeviceInfo, 'compilesInParallel'> {
+export interface Abilities extends Omit<DeviceInfo, 'compilesInParallel' | 'arithmetic'> {
   readonly parallel: { COMPLETION_STATUS_KHR: number } | null;
 }
 

@@ -2,6 +2,7 @@
 //
 // A device: a WebGL2 context, its textures and programs. All GL state that passes need is set here.
 import { abilitiesOf, contextOf, ownCanvas, type Abilities, type Canvas } from './abilities.js';
+import { arithmeticOf, type Arithmetic } from './arithmetic.js';
 import { SkError } from './error.js';
 import { formatOf, type Format, type HostArray, type Scalar } from './format.js';
 import type { Element, GeneratedFile, Parameter, StructElement } from './generated.js';
@@ -50,6 +51,8 @@ export interface DeviceInfo {
   readonly combinesScattered: boolean;
   /** Whether programs compile while the page goes on. */
   readonly compilesInParallel: boolean;
+  /** What its floats do, which the first info() tests; null where the context is lost before that. */
+  readonly arithmetic: Arithmetic | null;
 }
 
 /** Planes of one format and size that nothing uses. */
@@ -100,6 +103,7 @@ export class Device {
   /** How often the context has been restored. Textures and programs of earlier times are gone. @internal */ generation = 0;
   /** Whether nobody else sees the device's canvas. @internal */ readonly hasHiddenCanvas: boolean;
   private readonly ownsContext: boolean;
+  private arithmetic: Arithmetic | null = null;
   private transfers: Transfers;
   private isLost = false;
   private isDisposed = false;
@@ -182,6 +186,7 @@ export class Device {
       return;
     }
     ++this.generation;
+    this.arithmetic = null;
     for (const { idle } of this.shelves.values()) idle.length = 0;
     this.joints.clear();
     this.filters.clear();
@@ -210,7 +215,8 @@ export class Device {
 
   info(): DeviceInfo {
     const { parallel, ...rest } = this.abilities;
-    return { ...rest, compilesInParallel: parallel !== null };
+    if (!this.isLost) this.arithmetic ??= arithmeticOf(this);
+    return { ...rest, compilesInParallel: parallel !== null, arithmetic: this.arithmetic };
   }
 
   /** A stream of this shape, rows first, whose elements are 0. */

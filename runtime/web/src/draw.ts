@@ -15,6 +15,11 @@ export interface DrawOptions {
   readonly map?: ColourMap;
   /** The numbers at both ends of the map: 0 and 1 by default. */
   readonly range?: readonly [number, number];
+  /**
+   * How a field of vectors of two components is shown: 'length', by default, as a number; or 'direction' as a hue, red along x,
+   * whose brightness is the length in the range.
+   */
+  readonly vectors?: 'length' | 'direction';
 }
 
 const drawKey = {};
@@ -29,7 +34,7 @@ precision highp int;
 precision highp ${prefix}sampler2D;
 uniform ${prefix}sampler2D data;
 uniform ivec4 shape;   // width, height, shift of the texture or -1, components
-uniform ivec4 place;   // lanes of a texel, width and height of the picture
+uniform ivec4 place;   // lanes of a texel, width and height of the picture, 1: hues of directions
 uniform vec2 range;
 out vec4 colour;
 const vec3 map[${colours.length}] = vec3[](${colours.map(glslColour).join(', ')});
@@ -41,7 +46,13 @@ void main() {
   vec4 value = vec4(texelFetch(data, from, 0));
   if (shape.w >= 3) { colour = vec4(value.rgb, 1); return; }
   float x = place.x > 1 ? value[n % place.x] : shape.w == 2 ? length(value.xy) : value.x;
-  float t = clamp((x - range.x) / (range.y - range.x), 0.0, 1.0) * ${(colours.length - 1).toFixed(1)};
+  float t = clamp((x - range.x) / (range.y - range.x), 0.0, 1.0);
+  if (place.w == 1 && !isnan(x)) {
+    float angle = x == 0.0 ? 0.0 : atan(value.y, value.x);
+    colour = vec4(t * (0.5 + 0.5 * cos(angle - vec3(0, 2.0943951, 4.1887902))), 1);
+    return;
+  }
+  t *= ${(colours.length - 1).toFixed(1)};
   int i = min(int(t), ${colours.length - 2});
   colour = isnan(x) ? vec4(0.5, 0.5, 0.5, 1) : vec4(mix(map[i], map[i + 1], t - float(i)), 1);
 }
@@ -55,7 +66,7 @@ function glslColour(hex: string): string {
 }
 
 export function drawStream(device: Device, stream: Stream<any, number>, canvas: Canvas, options: DrawOptions): void {
-  const { map = 'viridis', range = [0, 1] } = options;
+  const { map = 'viridis', range = [0, 1], vectors = 'length' } = options;
   if (!(stream instanceof Stream)) throw new SkError('what is drawn is no stream; make one by device.stream()', 'type');
   if (typeof canvas?.getContext !== 'function') throw new SkError('the picture needs a canvas, an HTMLCanvasElement or an OffscreenCanvas', 'type');
   stream.check('the stream');
@@ -68,6 +79,8 @@ export function drawStream(device: Device, stream: Stream<any, number>, canvas: 
   if (stream.element.fields.length > 1 || field!.scalar === 'double') {
     throw new SkError(`elements of ${stream.element.name} are no colours; draw numbers, or vectors of floats`, 'type');
   }
+  if (vectors !== 'length' && vectors !== 'direction') throw new SkError(`vectors are shown by 'length' or 'direction', not by '${String(vectors)}'`);
+  if (vectors === 'direction' && field!.width !== 2) throw new SkError(`${stream.element.name} has no direction; draw vectors of two components by it`, 'type');
   if (canvas.width === 0 || canvas.height === 0) throw new SkError('the canvas has no pixels', 'shape');
 
   const isOwn = canvas === device.canvas;
@@ -84,7 +97,7 @@ export function drawStream(device: Device, stream: Stream<any, number>, canvas: 
   const { layout } = stream;
   const gl = device.context;
   program.setInteger('shape', [layout.extent[0], layout.extent[1], layout.linear ? layout.shift : -1, field!.width]);
-  program.setInteger('place', [layout.packed ? lanes : 1, width, height, 0]);
+  program.setInteger('place', [layout.packed ? lanes : 1, width, height, vectors === 'direction' ? 1 : 0]);
   gl.uniform2f(gl.getUniformLocation(program.handle, 'range'), range[0], range[1]);
   device.bindFramebuffer(null);
   device.drawRects([{ x: 0, y: 0, width, height }]);

@@ -12,6 +12,7 @@ import type { KernelOptions, ScanOptions, Struct } from './types.js';
 
 export { Device } from './device.js';
 export type { Canvas } from './abilities.js';
+export type { Arithmetic } from './arithmetic.js';
 export type { DeviceInfo, DeviceOptions } from './device.js';
 export type { DrawOptions } from './draw.js';
 export { SkError } from './error.js';

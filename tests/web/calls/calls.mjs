@@ -243,6 +243,16 @@ const cases = {
     ++checks;
     const found = [at(5, 5), at(5, 40), at(60, 40)];
     if (Math.abs(found[0]) > 1 || Math.abs(found[1] - 128) > 1 || Math.abs(found[2] - 255) > 1) mistakes.push(`a picture has ${found}, not 0, 128, 255`);
+    // Right is red, half of the length half as bright; left has no red.
+    const field = filled(device, 'float2', [1, 4], from(Float32Array, 8, (i) => [2, 0, 1, 0, -2, 0, 0, 0][i]));
+    [picture.width, picture.height] = [4, 1];
+    device.draw(field, picture, { vectors: 'direction', range: [0, 2] });
+    const hues = [...picture.getContext('2d').getImageData(0, 0, 4, 1).data];
+    const wanted = [255, 64, 64, 255, 128, 32, 32, 255, 0, 191, 191, 255, 0, 0, 0, 255];
+    expect('directions are hues', hues.every((value, i) => Math.abs(value - wanted[i]) <= 2), `${hues}`);
+    [picture.width, picture.height] = [64, 48];
+    await refused('type', 'float has no direction', () => device.draw(shades, picture, { vectors: 'direction' }));
+    await refused('misuse', "not by 'arrows'", () => device.draw(field, picture, { vectors: 'arrows' }));
     await refused('misuse', "there is no colour map 'jet'", () => device.draw(shades, picture, { map: 'jet' }));
     await refused('shape', 'is no picture', () => device.draw(device.stream('float', [2, 2, 2]), picture));
   },
@@ -284,6 +294,7 @@ try {
   await device.compile([k.diffuse, k.sum], (done) => (last = done));
   if (last !== 1) mistakes.push('compile() does not report progress');
   report.info = device.info();
+  expect('sums are exact', report.info.arithmetic.exactSums, JSON.stringify(report.info.arithmetic));
   const wanted = new URLSearchParams(location.search).get('only');
   for (const [name, run] of Object.entries(cases)) {
     if (wanted && !wanted.split(',').includes(name)) continue;
