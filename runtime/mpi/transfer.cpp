@@ -1,40 +1,28 @@
 // SPDX-License-Identifier: MIT
 //
-// Elements of a domain's stream between its ranks and the host memory of one: gather and scatter.
+// Elements of a domain's stream between its ranks and the host memory of one: gather and scatter, as they are declared or in the
+// precision in which they are stored.
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "domain_state.hpp"
+#include "collect.hpp"
 #include "sk/error.hpp"
 
 namespace sk {
 
 namespace {
 
-/// A tag that no exchange uses.
-constexpr int transferTag = 1000;
-
-void checkRoot(const DomainState& domain, int root, std::string_view what) {
-  if (root >= 0 && root < domain.parts.ranks()) return;
-  throw Error(fmt::format("{}: there is no rank {}; the domain has ranks 0 to {}", what, root,
-                          domain.parts.ranks() - 1));
-}
-
-/// Calls visit(whole, part, bytes) for each row of a box: offsets in the bytes of all elements and of the box alone.
-template <class Visit>
-void forEachRow(const Shape& whole, const Box& box, std::size_t size, Visit&& visit) {
-  const int rank = whole.rank();
-  const auto row = static_cast<std::size_t>(box.end[rank - 1] - box.begin[rank - 1]) * size;
-  Index index = box.begin;
-  const auto rows = static_cast<std::size_t>(domain::shapeOf(box).size()) * size / row;
-  for (std::size_t k = 0; k < rows; ++k) {
-    std::int64_t number = 0;
-    for (int d = 0; d < rank; ++d) number = number * whole[d] + index[d];
-    visit(static_cast<std::size_t>(number) * size, k * row, row);
-    for (int d = rank - 2; d >= 0 && ++index[d] == box.end[d]; --d) index[d] = box.begin[d];
+/// The domain of a stream that `what` is asked of.
+const DomainState& domainFor(DomainStreamState* stream, int root, std::string_view what) {
+  const DomainState& domain = *liveStream(stream, what).domain;
+  if (root < 0 || root >= domain.parts.ranks()) {
+    throw Error(fmt::format("{}: there is no rank {}; the domain has ranks 0 to {}", what, root,
+                            domain.parts.ranks() - 1));
   }
+  return domain;
 }
 
 }  // namespace
@@ -59,34 +47,16 @@ StreamRegion detail::ownRegion(DomainStreamState* stream, bool isWritten) {
 }
 
 void detail::gather(DomainStreamState* stream, int root, void* elements) {
-  const DomainState& domain = *liveStream(stream, "gather").domain;
-  checkRoot(domain, root, "gather");
-  const std::size_t size = stream->element.size;
+  const DomainState& domain = domainFor(stream, root, "gather");
   const StreamRegion own = stream->part(domain.own);
-  std::vector<std::byte> bytes = hostVector<std::byte>(static_cast<std::size_t>(own.shape.size()) * size);
-  detail::read(own, bytes.data(), static_cast<std::size_t>(own.shape.size()));
-  if (domain.rank != root) {
-    mpi::Messages messages(domain.communicator);
-    messages.send(bytes.data(), bytes.size(), root, transferTag);
-    return messages.wait();
-  }
-  for (int rank = 0; rank < domain.parts.ranks(); ++rank) {
-    const Box box = domain.parts.boxOf(rank);
-    if (rank != root) {
-      bytes = hostVector<std::byte>(static_cast<std::size_t>(domain::shapeOf(box).size()) * size);
-      mpi::Messages messages(domain.communicator);
-      messages.receive(bytes.data(), bytes.size(), rank, transferTag);
-      messages.wait();
-    }
-    forEachRow(domain.parts.whole(), box, size, [&](std::size_t whole, std::size_t part, std::size_t count) {
-      std::memcpy(static_cast<std::byte*>(elements) + whole, bytes.data() + part, count);
-    });
-  }
+  const auto count = static_cast<std::size_t>(own.shape.size());
+  std::vector<std::byte> bytes = hostVector<std::byte>(count * stream->element.size);
+  detail::read(own, bytes.data(), count);
+  mpi::collect(domain, root, stream->element.size, std::move(bytes), elements);
 }
 
 void detail::scatter(DomainStreamState* stream, int root, const void* elements, std::size_t count) {
-  DomainState& domain = *liveStream(stream, "scatter").domain;
-  checkRoot(domain, root, "scatter");
+  const DomainState& domain = domainFor(stream, root, "scatter");
   std::int64_t given = static_cast<std::int64_t>(count);
   mpi::broadcast(domain.communicator, root, &given, sizeof given);
   if (given != domain.parts.whole().size()) {
@@ -95,34 +65,43 @@ void detail::scatter(DomainStreamState* stream, int root, const void* elements, 
                     given, root, toString(domain.parts.whole()), domain.parts.whole().size()),
         Error::Kind::Shape);
   }
-  const std::size_t size = stream->element.size;
-  const auto bytesFor = [&](int rank) {
-    return hostVector<std::byte>(static_cast<std::size_t>(domain::shapeOf(domain.parts.boxOf(rank)).size()) *
-                                 size);
-  };
-  std::vector<std::byte> own = bytesFor(domain.rank);
-  if (domain.rank != root) {
-    mpi::Messages messages(domain.communicator);
-    messages.receive(own.data(), own.size(), root, transferTag);
-    messages.wait();
-  } else {
-    for (int rank = 0; rank < domain.parts.ranks(); ++rank) {
-      std::vector<std::byte> bytes = bytesFor(rank);
-      forEachRow(domain.parts.whole(), domain.parts.boxOf(rank), size,
-                 [&](std::size_t whole, std::size_t part, std::size_t row) {
-                   std::memcpy(bytes.data() + part, static_cast<const std::byte*>(elements) + whole, row);
-                 });
-      if (rank == root) {
-        own = std::move(bytes);
-        continue;
-      }
-      mpi::Messages messages(domain.communicator);
-      messages.send(bytes.data(), bytes.size(), rank, transferTag);
-      messages.wait();
-    }
-  }
+  const std::vector<std::byte> own = mpi::distribute(domain, root, stream->element.size, elements);
   const StreamRegion target = ownRegion(stream, true);
   detail::write(target, own.data(), static_cast<std::size_t>(target.shape.size()));
+}
+
+std::vector<double> detail::gatherReals(DomainStreamState* stream, int root) {
+  const DomainState& domain = domainFor(stream, root, "gatherReals");
+  const std::vector<double> own = readReals(stream->part(domain.own));
+  std::vector<std::byte> bytes(own.size() * sizeof(double));
+  std::memcpy(bytes.data(), own.data(), bytes.size());
+  const auto cells = static_cast<std::size_t>(domain::shapeOf(domain.own).size());
+  const std::size_t components = own.size() / cells;
+  auto all = hostVector<double>(
+      domain.rank == root ? static_cast<std::size_t>(domain.parts.whole().size()) * components : 0);
+  mpi::collect(domain, root, components * sizeof(double), std::move(bytes), all.data());
+  return all;
+}
+
+void detail::scatterReals(DomainStreamState* stream, int root, std::span<const double> components) {
+  const DomainState& domain = domainFor(stream, root, "scatterReals");
+  const auto cells = static_cast<std::uint64_t>(domain.parts.whole().size());
+  std::uint64_t given = components.size(), width = 0;
+  for (const program::Field& field : stream->element.fields) width += static_cast<std::uint64_t>(field.width);
+  mpi::broadcast(domain.communicator, root, &given, sizeof given);
+  if (given != cells * width) {
+    throw Error(
+        fmt::format(
+            "scatterReals: {} component(s) are given on rank {}, but {} elements of shape {} have {}; give "
+            "exactly as many",
+            given, root, cells, toString(domain.parts.whole()), cells * width),
+        Error::Kind::Shape);
+  }
+  const std::vector<std::byte> bytes =
+      mpi::distribute(domain, root, static_cast<std::size_t>(width) * sizeof(double), components.data());
+  auto own = hostVector<double>(bytes.size() / sizeof(double));
+  std::memcpy(own.data(), bytes.data(), bytes.size());
+  writeReals(ownRegion(stream, true), own);
 }
 
 }  // namespace sk
