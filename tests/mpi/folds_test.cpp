@@ -3,15 +3,13 @@
 // Promises: folds over ranks may ask where an element is and read its neighbors. Exact sums, comparisons and folds of integers
 // have the bits of one device, compensated sums its bound; a fold exchanges halos once, and only if they are not valid.
 #include <cmath>
-#include <cstring>
 
 #include <catch2/catch.hpp>
 
 #include "error_of.hpp"
 #include "folds.sk.hpp"
-#include "ranks.hpp"
-#include "sk/mpi.hpp"
 #include "sk/sk.hpp"
+#include "split_grids.hpp"
 
 namespace {
 
@@ -26,33 +24,12 @@ float wild(const sk::Index& i) {
 }
 float small(const sk::Index& i) { return static_cast<float>((i[0] * 5 + i[1] * 3) % 11); }
 
-template <class Start>
-std::vector<float> valuesOf(Start&& start) {
-  std::vector<float> values;
-  for (std::int64_t k = 0; k < shape.size(); ++k) values.push_back(start(sk::Index{k / 14, k % 14}));
-  return values;
-}
-
-bool isSame(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-/// Calls visit(domain) for every split of the ranks.
-template <class Visit>
-void forEachSplit(Visit&& visit) {
-  for (int rows = 1; rows <= ranksOfWorld(); ++rows) {
-    if (ranksOfWorld() % rows != 0) continue;
-    sk::Domain domain(MPI_COMM_WORLD,
-                      {.shape = shape, .periodic = {true, true}, .split = {rows, ranksOfWorld() / rows}});
-    INFO("split " << sk::toString(domain.split()));
-    visit(domain);
-  }
-}
-
 TEST_CASE("a product over ranks and its dot product are those of one device") {
   const sk::CallOptions exact{.accumulate = sk::Accumulate::Exact};
   sk::Device device("native");
   auto x = device.stream<float>(shape), r = device.stream<float>(shape);
   auto t = device.scalar<float>();
-  x.write(valuesOf(wild));
+  x.write(valuesOf<float>(shape, wild));
   product.with(exact)(x, x, r, t);
   const float dot = t.read();
   const std::vector<float> results = r.read();
@@ -60,12 +37,13 @@ TEST_CASE("a product over ranks and its dot product are those of one device") {
   const float compensated = t.read();
   double magnitudes = 0;
   for (std::size_t k = 0; k < results.size(); ++k)
-    magnitudes += std::abs(static_cast<double>(results[k]) * static_cast<double>(valuesOf(wild)[k]));
+    magnitudes +=
+        std::abs(static_cast<double>(results[k]) * static_cast<double>(valuesOf<float>(shape, wild)[k]));
   // Both have the bound of one device: u times the result, and a term of second order (docs/accuracy.md).
   const double u = std::ldexp(1.0, -24),
                bound = 2 * u * std::abs(static_cast<double>(dot)) + 128 * u * u * magnitudes;
   CHECK(std::abs(static_cast<double>(compensated) - static_cast<double>(dot)) <= bound);
-  forEachSplit([&](sk::Domain& domain) {
+  forEachSplit({.shape = shape, .periodic = {true, true}}, [&](sk::Domain& domain) {
     auto v = domain.stream<float>(), w = domain.stream<float>();
     auto value = domain.device().scalar<float>();
     v.fill(wild);
@@ -91,12 +69,12 @@ TEST_CASE("a product over ranks and its dot product are those of one device") {
 TEST_CASE("indices, extents and ramps of folds are those of the whole") {
   sk::Device device("native");
   auto x = device.stream<float>(shape);
-  x.write(valuesOf(small));
+  x.write(valuesOf<float>(shape, small));
   const auto ramp = sk::iter(sk::float2{0, 0}, sk::float2{14, 12});
   const Least best = least(x);
   const Polynomial inOrder = places(x);
   const float sum = moment(x, ramp);
-  forEachSplit([&](sk::Domain& domain) {
+  forEachSplit({.shape = shape, .periodic = {true, true}}, [&](sk::Domain& domain) {
     auto v = domain.stream<float>();
     v.fill(small);
     const Least got = least(v);

@@ -14,9 +14,9 @@ int ranksOfWorld();
 /// The elements of rank 0, on every rank.
 template <class T>
 std::vector<T> everywhere(std::vector<T> elements) {
-  unsigned long long count = elements.size();
-  MPI_Bcast(&count, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
-  elements.resize(count);
-  MPI_Bcast(elements.data(), static_cast<int>(count * sizeof(T)), MPI_BYTE, 0, MPI_COMM_WORLD);
+  unsigned long long size = elements.size();
+  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
+  elements.resize(size);
+  MPI_Bcast(elements.data(), static_cast<int>(size * sizeof(T)), MPI_BYTE, 0, MPI_COMM_WORLD);
   return elements;
 }

@@ -4,16 +4,14 @@
 // extrema), keep the order of the elements where it matters, and are otherwise as accurate as on one device; every rank gets
 // the result.
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 #include <catch2/catch.hpp>
 
 #include "error_of.hpp"
-#include "ranks.hpp"
 #include "reductions.sk.hpp"
-#include "sk/mpi.hpp"
 #include "sk/sk.hpp"
+#include "split_grids.hpp"
 
 namespace {
 
@@ -28,35 +26,15 @@ float wild(const sk::Index& i) {
   return (number % 2 == 0 ? magnitude : -magnitude) + static_cast<float>(number % 5) / 16;
 }
 
-template <class T, class Start>
-std::vector<T> valuesOf(Start&& start) {
-  std::vector<T> values;
-  for (std::int64_t k = 0; k < shape.size(); ++k) values.push_back(start(sk::Index{k / 14, k % 14}));
-  return values;
-}
-
-bool isSame(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-/// Calls visit(domain) for every split of the ranks.
-template <class Visit>
-void forEachSplit(Visit&& visit) {
-  for (int rows = 1; rows <= ranksOfWorld(); ++rows) {
-    if (ranksOfWorld() % rows != 0) continue;
-    sk::Domain domain(MPI_COMM_WORLD, {.shape = shape, .split = {rows, ranksOfWorld() / rows}});
-    INFO("split " << sk::toString(domain.split()));
-    visit(domain);
-  }
-}
-
 TEST_CASE("exact sums have the same bits for any number of ranks") {
   const sk::CallOptions exact{.accumulate = sk::Accumulate::Exact};
   sk::Device device("native");
   auto x = device.stream<float>(shape);
-  x.write(valuesOf<float>(wild));
+  x.write(valuesOf<float>(shape, wild));
   const float total = sum.with(exact)(x), squares = dot.with(exact)(x, x);
   const auto [one, two] = both.with(exact)(x);
   const Moments all = moments.with(exact)(x);
-  forEachSplit([&](sk::Domain& domain) {
+  forEachSplit({.shape = shape}, [&](sk::Domain& domain) {
     auto u = domain.stream<float>();
     u.fill(wild);
     CHECK(isSame(sum.with(exact)(u), total));
@@ -75,7 +53,7 @@ TEST_CASE("exact sums have the same bits for any number of ranks") {
 
 TEST_CASE("exact sums of infinities, NaN and zeros are those of one device") {
   const sk::CallOptions exact{.accumulate = sk::Accumulate::Exact};
-  forEachSplit([&](sk::Domain& domain) {
+  forEachSplit({.shape = shape}, [&](sk::Domain& domain) {
     auto u = domain.stream<float>();
     u.fill([](const sk::Index& i) { return i[0] == 11 ? INFINITY : 1.0F; });
     CHECK(sum.with(exact)(u) == INFINITY);
@@ -90,7 +68,7 @@ TEST_CASE("exact sums of infinities, NaN and zeros are those of one device") {
 }
 
 TEST_CASE("compensated and extended sums keep their bounds over ranks") {
-  const std::vector<float> values = valuesOf<float>(wild);
+  const std::vector<float> values = valuesOf<float>(shape, wild);
   long double total = 0, magnitudes = 0;
   for (const float value : values) {
     total += value;
@@ -99,7 +77,7 @@ TEST_CASE("compensated and extended sums keep their bounds over ranks") {
   // u times the result, and a term of second order in u times the magnitudes (docs/accuracy.md)
   const double u = std::ldexp(1.0, -24), squared = 64 * u * u * static_cast<double>(magnitudes);
   const double bound = u * std::abs(static_cast<double>(total)) + squared;
-  forEachSplit([&](sk::Domain& domain) {
+  forEachSplit({.shape = shape}, [&](sk::Domain& domain) {
     auto x = domain.stream<float>();
     x.fill(wild);
     for (const sk::Accumulate kind :
@@ -121,12 +99,12 @@ TEST_CASE("integers, extrema and the first of equals are those of one device") {
   };
   sk::Device device("native");
   auto h = device.stream<Hit>(shape);
-  h.write(valuesOf<Hit>(hit));
+  h.write(valuesOf<Hit>(shape, hit));
   const Hit best = nearest(h);
-  forEachSplit([&](sk::Domain& domain) {
+  forEachSplit({.shape = shape}, [&](sk::Domain& domain) {
     auto x = domain.stream<float>();
     x.fill(wild);
-    const std::vector<float> values = valuesOf<float>(wild);
+    const std::vector<float> values = valuesOf<float>(shape, wild);
     CHECK(largest(x) == *std::ranges::max_element(values));
     CHECK(count(x, 0.5F) == std::ranges::count_if(values, [](float v) { return v > 0.5F; }));
     auto hits = domain.stream<Hit>();
@@ -141,8 +119,8 @@ TEST_CASE("the order of elements is that of the whole, however it is divided") {
     return static_cast<std::uint32_t>(i[0] * 1000 + i[1] * 7 + 3);
   };
   std::uint32_t expected = 0;
-  for (const std::uint32_t value : valuesOf<std::uint32_t>(number)) expected = expected * 31 + value;
-  forEachSplit([&](sk::Domain& domain) {
+  for (const std::uint32_t value : valuesOf<std::uint32_t>(shape, number)) expected = expected * 31 + value;
+  forEachSplit({.shape = shape}, [&](sk::Domain& domain) {
     auto x = domain.stream<std::uint32_t>();
     x.fill(number);
     CHECK(hash(x).value == expected);
@@ -155,11 +133,11 @@ TEST_CASE("the order of elements is that of the whole, however it is divided") {
 }
 
 TEST_CASE("folded outputs, streams of one element and messages") {
-  forEachSplit([&](sk::Domain& domain) {
+  forEachSplit({.shape = shape}, [&](sk::Domain& domain) {
     auto x = domain.stream<float>(), r = domain.stream<float>();
     const auto small = [](const sk::Index& i) { return static_cast<float>(i[0] + i[1]); };
     x.fill(small);
-    const std::vector<float> values = valuesOf<float>(small);
+    const std::vector<float> values = valuesOf<float>(shape, small);
     const float total = std::accumulate(values.begin(), values.end(), 0.0F);
     auto folded = domain.device().stream<float>({1});
     twice(x, r, folded);
@@ -181,7 +159,7 @@ TEST_CASE("folded outputs, streams of one element and messages") {
 
 TEST_CASE("a reduction that is asked later gives the value of its call") {
   const sk::CallOptions exact{.accumulate = sk::Accumulate::Exact};
-  forEachSplit([&](sk::Domain& domain) {
+  forEachSplit({.shape = shape}, [&](sk::Domain& domain) {
     auto x = domain.stream<float>(), y = domain.stream<float>();
     x.fill(wild);
     y.fill(2.0F);
