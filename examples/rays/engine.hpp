@@ -38,7 +38,7 @@ struct Picture {
   std::uint32_t seed = 1;
   Sampling sampling = Sampling::Sobol;  ///< independent numbers, or Sobol's with Owen's scrambling
   Strategy strategy = Strategy::Both;
-  /// Of the shape {height, width}: divides the pixels over ranks, whose devices all have the scene. Null: they are on the engine's device.
+  /// A grid of shape {height, width} divides the pixels over ranks; each rank has the whole scene on its device. Null: the engine's device computes all pixels.
   examples::DividedGrid* grid = nullptr;
 };
 

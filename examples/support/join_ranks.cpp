@@ -92,7 +92,7 @@ class MpiRanks final : public Ranks {
     return divideGrid(device, shape, ends);
   }
 
-  /// An error that all ranks throw is told by the first alone. One that others do not throw aborts them.
+  /// The first rank prints an error that all ranks throw. An error that only some ranks throw aborts the others.
   void end(const std::string& error) override {
     if (isFirst()) Ranks::end(error);
     const int own = error.empty() ? 0 : rank_ + 1;

@@ -45,7 +45,7 @@ class MemoryCarrier final : public Carrier {
     addBytes(strips, bytesOf);
   }
 
-  bool isPacked() const override { return true; }
+  bool isAtHost() const override { return true; }
   void begin() override {}
   std::byte* target(const Strips& neighbor) override {
     std::vector<Span>& spans = targets_[neighbor.direction] = memoryOf(neighbor.received);
@@ -77,7 +77,7 @@ class StagedCarrier final : public Carrier {
     addBytes(strips, [&](const StreamRegion& box) { return toHost().bytesOf(box); });
   }
 
-  bool isPacked() const override { return false; }
+  bool isAtHost() const override { return false; }
   void begin() override {
     std::size_t bytes = 0;
     for (const Strips& neighbor : strips_) bytes += neighbor.sentBytes;
@@ -132,7 +132,7 @@ class ElementCarrier final : public Carrier {
     addBytes(strips, bytesOf);
   }
 
-  bool isPacked() const override { return false; }
+  bool isAtHost() const override { return false; }
   void begin() override {
     for (const Strips& neighbor : strips_) {
       for (const StreamRegion& box : neighbor.sent)

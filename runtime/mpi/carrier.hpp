@@ -23,15 +23,15 @@ struct Strips {
 /// The halos of one exchange. `strips` must outlive it.
 class Carrier {
  public:
-  /// That of the domain's devices. Collective on first use.
+  /// Makes the carrier that suits the devices of all ranks. Collective at the first exchange of a domain.
   static std::unique_ptr<Carrier> of(DomainState& domain, std::span<Strips> strips);
 
   virtual ~Carrier() = default;
   Carrier(const Carrier&) = delete;
   Carrier& operator=(const Carrier&) = delete;
 
-  /// Whether what is sent need not be packed on a device.
-  virtual bool isPacked() const = 0;
+  /// Whether what is sent is in host memory from the beginning, so that it need not wait for a device.
+  virtual bool isAtHost() const = 0;
   /// Where what comes from a neighbor is received.
   virtual std::byte* target(const Strips& neighbor) = 0;
   /// Begins to pack what is sent.

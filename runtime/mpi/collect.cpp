@@ -8,7 +8,7 @@ namespace sk::mpi {
 
 namespace {
 
-/// A tag that neither exchanges nor other transfers use.
+/// A tag that no exchange uses.
 constexpr int collectTag = 1001;
 
 /// Calls visit(whole, part, bytes) for each row of a rank's box: offsets in the bytes of all elements and in those of the box.

@@ -16,7 +16,7 @@ Exchange::Exchange(DomainState& domain, std::vector<HaloRequest> requests)
                       static_cast<int>(neighbor.opposite));
   }
   carrier_->begin();
-  if (carrier_->isPacked()) post();
+  if (carrier_->isAtHost()) post();
 }
 
 Exchange::~Exchange() = default;
@@ -53,7 +53,7 @@ void Exchange::post() {
 }
 
 void Exchange::finish() {
-  if (!carrier_->isPacked()) post();
+  if (!carrier_->isAtHost()) post();
   messages_.wait();
   carrier_->store();
   for (const HaloRequest& request : requests_) request.stream->valid = request.depth;

@@ -32,7 +32,7 @@ class Staging {
   virtual void copy(const StreamRegion& box, std::size_t offset) = 0;
   /// Begins to carry out all copies, those of one stream together.
   virtual void flush() = 0;
-  /// Waits until the copies have been carried out.
+  /// Waits until the copies have been carried out. Throws sk::Error if the device is lost or has failed.
   virtual void wait() = 0;
 };
 

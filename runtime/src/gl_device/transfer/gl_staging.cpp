@@ -154,6 +154,7 @@ void GlStaging::wait() {
   gl::flush();  // what follows the copies, too, runs meanwhile
   fence_.wait();
   fence_ = {};
+  device_.throwPendingError();  // a fence of a lost context is reached, too
 }
 
 std::unique_ptr<Staging> GlDevice::makeStaging(Staging::Way way) {
