@@ -156,7 +156,7 @@ class ElementCarrier final : public Carrier {
     for (const Strips& neighbor : strips_) {
       const std::byte* from = domain_.receiveBuffers[neighbor.direction].data();
       for (const StreamRegion& box : neighbor.received) {
-        write(box, from);
+        writeBytes(box, from);
         from += bytesOf(box);
       }
     }
@@ -165,14 +165,7 @@ class ElementCarrier final : public Carrier {
  private:
   static void take(const StreamRegion& box, detail::TransferOwner read, std::byte* to) {
     if (read) return detail::take(std::move(read), to);
-    const std::vector<double> values = detail::readReals(box);
-    std::memcpy(to, values.data(), bytesOf(box));
-  }
-  static void write(const StreamRegion& box, const std::byte* from) {
-    if (!holdsReals(box)) return detail::writeAsync(box, from, static_cast<std::size_t>(box.shape.size()));
-    std::vector<double> values(bytesOf(box) / sizeof(double));
-    std::memcpy(values.data(), from, bytesOf(box));
-    detail::writeReals(box, values);
+    readBytes(box, to);
   }
 
   std::map<std::size_t, std::vector<detail::TransferOwner>> reads_;  ///< by direction

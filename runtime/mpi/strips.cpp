@@ -55,6 +55,22 @@ std::size_t bytesOf(const StreamRegion& region) {
   return elements * bytes;
 }
 
+void readBytes(const StreamRegion& region, std::byte* to) {
+  if (isInMemory(region)) return pack(spansOf(region), to);
+  if (!holdsReals(region)) return detail::read(region, to, static_cast<std::size_t>(region.shape.size()));
+  const std::vector<double> values = detail::readReals(region);
+  std::memcpy(to, values.data(), bytesOf(region));
+}
+
+void writeBytes(const StreamRegion& region, const std::byte* from) {
+  if (isInMemory(region)) return unpack(from, spansOf(region));
+  if (!holdsReals(region))
+    return detail::writeAsync(region, from, static_cast<std::size_t>(region.shape.size()));
+  std::vector<double> values(bytesOf(region) / sizeof(double));
+  std::memcpy(values.data(), from, bytesOf(region));
+  detail::writeReals(region, values);
+}
+
 void pack(std::span<const Span> from, std::byte* to) {
   for (const Span& span : from) {
     std::memcpy(to, span.bytes, span.count);

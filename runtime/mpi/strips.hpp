@@ -27,6 +27,10 @@ bool holdsReals(const StreamRegion& region);
 /// The bytes of a region: as a native device stores them, one array after the other, or as elements of a GL device.
 std::size_t bytesOf(const StreamRegion& region);
 
+/// Copies a region's bytes to or from a buffer, on any device. Reading waits for the device; written bytes may change afterwards.
+void readBytes(const StreamRegion& region, std::byte* to);
+void writeBytes(const StreamRegion& region, const std::byte* from);
+
 /// Copies a region's bytes between a native stream and a buffer.
 void pack(std::span<const Span> from, std::byte* to);
 void unpack(const std::byte* from, std::span<const Span> to);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Grids that are divided over the ranks of MPI (target sk::mpi). Every rank makes the same calls, in the same order: creating
-// a domain and its streams, running kernels, reducing, scanning, gather() and scatter() are collective. Kernels and reductions are
+// a domain and its streams, running kernels, reducing, scanning, gather(), scatter() and copyTo() are collective. Kernels and reductions are
 // called as with ordinary streams, and the results are those of one device; skc knows how far a kernel reads, so halos are
 // exchanged when a call needs them, and only as deep as it reads.
 #pragma once
@@ -86,6 +86,8 @@ void scatter(DomainStreamState* stream, int root, const void* elements, std::siz
 int rankOf(const DomainStreamState* stream);
 std::vector<double> gatherReals(DomainStreamState* stream, int root);
 void scatterReals(DomainStreamState* stream, int root, std::span<const double> components);
+void copyToWhole(DomainStreamState* stream, const StreamRegion& whole);
+void copyFromWhole(DomainStreamState* stream, const StreamRegion& whole);
 void save(DomainStreamState* stream, const std::string& file);
 void load(DomainStreamState* stream, const std::string& file);
 /// Starts the reduction that call(context) calls.
@@ -141,6 +143,13 @@ class DomainStream {
   void scatterReals(std::span<const double> components, int root = 0) {
     detail::scatterReals(state_.get(), root, components);
   }
+
+  /// Collective: every rank gives an ordinary stream on domain.device() with this shape and storage, which gets all elements with
+  /// their bits. They pass through host memory. Throws sk::Error if the shape, the storage or the device is another one.
+  void copyTo(Stream<T>& whole) const { detail::copyToWhole(state_.get(), whole.region()); }
+  /// Takes this rank's own elements from an ordinary stream like that of copyTo(), on the device and without messages. Not
+  /// collective, but every rank must do it. Throws sk::Error as copyTo() does.
+  void copyFrom(const Stream<T>& whole) { detail::copyFromWhole(state_.get(), whole.region()); }
 
   /// Writes all elements to a .npy file, which NumPy reads, together with the other ranks (MPI-IO). The file appears under its name
   /// when it is whole; until then, or if that fails, an older file of the name stays. Throws sk::Error on all ranks if it
