@@ -169,6 +169,9 @@ TEST_CASE("a promise counts where nothing is known") {
   const std::string head = "kernel void f([[halo(2, 3)]] float u[][], out float r<>) { int2 p = indexof(r).xy; ";
   CHECK(reachIn(head + "r = u[int(u[p])][p.x + 1]; }") == "x 0 to 1, y -3 to 3, as promised");
   CHECK(reachIn(head + "r = sample(u, float2(p)); }") == "x -2 to 2, y -3 to 3, as promised");
+  CHECK(reachIn("kernel void f([[halo(1)]] float u[][][], out float r<>) { r = 0;"
+                " for (int k = 0; k < 3; ++k) r += u[k][2 * indexof(r).y][indexof(r).x]; }") ==
+        "x 0, y -1 to 1, z whole, as promised");
   CHECK(reachIn("kernel void f([[wrap, halo(1)]] float u[], out float r<>) { int n = extentof(r).x;"
                 " r = u[(indexof(r).x + n - 1) % n]; }") == "x -1 to 1, as promised");
 }

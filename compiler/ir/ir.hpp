@@ -240,6 +240,7 @@ struct Reach {
   std::uint8_t dimension = 0;  ///< 0 is x
   Kind kind = Kind::Near;
   Distance below = {}, above = {};
+  bool isPromised = false;  ///< by [[halo]], because nothing is known
   bool operator==(const Reach&) const = default;
 };
 

@@ -112,6 +112,7 @@ struct Members<p::Reach> {
       Member{"kind", &p::Reach::kind},
       Member{"below", &p::Reach::below},
       Member{"above", &p::Reach::above},
+      Member{"isPromised", &p::Reach::isPromised},
   };
 };
 

@@ -16,7 +16,7 @@ constexpr bool printsAll = memberCount<T>() == Count;
 static_assert(printsAll<sk::program::Field, 5> && printsAll<sk::program::Element, 4> &&
                   printsAll<sk::program::ConditionStep, 3> && printsAll<sk::program::Condition, 2> &&
                   printsAll<sk::program::Layer, 3> && printsAll<sk::program::Parameter, 24> &&
-                  printsAll<sk::program::Reach, 4> && printsAll<sk::program::IntrinsicUse, 3> &&
+                  printsAll<sk::program::Reach, 5> && printsAll<sk::program::IntrinsicUse, 3> &&
                   printsAll<sk::program::Table, 4> && printsAll<sk::program::TableUse, 2> &&
                   printsAll<sk::program::Kernel, 24> && printsAll<sk::program::UnrolledKernel, 3> &&
                   printsAll<sk::program::PassOperand, 2> && printsAll<sk::program::Pass, 2> &&

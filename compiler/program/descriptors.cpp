@@ -412,7 +412,7 @@ class Builder {
     std::vector<sk::program::Reach>& made = storage_.reaches.emplace_back();
     for (const Reach& reach : param.reach) {
       made.push_back({reach.dimension, static_cast<sk::program::Reach::Kind>(reach.kind),
-                      distance(reach.below), distance(reach.above)});
+                      distance(reach.below), distance(reach.above), reach.isPromised});
     }
     return made;
   }

@@ -54,6 +54,7 @@ std::string haloText(const std::string& unit, const sk::program::Parameter& para
         fmt::format("{{{}, Reach::Kind::{}", reach.dimension, kinds[static_cast<std::size_t>(reach.kind)]);
     if (reach.kind == sk::program::Reach::Kind::Near)
       row += fmt::format(", {}, {}", distanceText(reach.below), distanceText(reach.above));
+    if (reach.isPromised) row += ", true";
     rows.push_back(row + "}");
   }
   const std::string head = fmt::format("constexpr Reach {}[] = {{", haloName(unit, param));

@@ -77,11 +77,11 @@ TEST_CASE("what is known of a gather's reach stands beside it") {
   spec.perSpec[1] = -1;
   ir::KernelParam& u = module.kernels[0].params[1];
   REQUIRE(u.name == "u");
-  u.reach = {{0, ir::Reach::Kind::Near, {1}, spec}};
+  u.reach = {{0, ir::Reach::Kind::Near, {1}, spec, true}};
   u.reachShapes = 4;
   const std::string source = stubOf(module).source;
-  CHECK(
-      contains(source, R"(constexpr Reach diffuseHalo_u[] = {{0, Reach::Kind::Near, {1}, {2, {0, -1}}}};)"));
+  CHECK(contains(source,
+                 R"(constexpr Reach diffuseHalo_u[] = {{0, Reach::Kind::Near, {1}, {2, {0, -1}}, true}};)"));
   CHECK(contains(source, ".halo = diffuseHalo_u"));
   CHECK(contains(source, ".haloShapes = 4u"));
 }

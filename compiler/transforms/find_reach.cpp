@@ -30,13 +30,17 @@ void report(const KernelParam& param, const Reach& reach, Diagnostics& diagnosti
   diagnostics.report(Diag::HaloExceeded, param.loc, {param.name, most, axis, range, std::to_string(needed)});
 }
 
-/// Puts the promise in the place of what is not known.
+/// Puts the promise in the place of what is not known. A gather that is read as a table in some dimensions only, such as a stack of
+/// grids, keeps these as they are.
 void applyPromise(KernelParam& param, Diagnostics& diagnostics) {
   if (param.promise.empty()) return;
+  const auto isTable = [](const Reach& reach) { return reach.kind == Reach::Kind::Whole; };
+  const bool isTableAlone = std::ranges::all_of(param.reach, isTable);
   for (Reach& reach : param.reach) {
+    if (isTable(reach) && !isTableAlone) continue;
     const Distance promised{param.promise[reach.dimension]};
     if (reach.kind == Reach::Kind::Computed) {
-      reach = {reach.dimension, Reach::Kind::Near, promised, promised};
+      reach = {reach.dimension, Reach::Kind::Near, promised, promised, true};
     } else {
       report(param, reach, diagnostics);
     }

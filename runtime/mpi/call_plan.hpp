@@ -27,8 +27,11 @@ class CallPlan {
   void exchangeHalos() const;
 
  private:
+  void takeOthers();
+  void exchangeOthers() const;
   void makeRoom(const domain::Depth& further);
-  void addRequest(DomainStreamState* stream, const domain::Depth& depth);
+  static void addRequest(std::vector<HaloRequest>& requests, DomainStreamState* stream,
+                         const domain::Depth& depth);
   domain::Depth depthAfter(const DomainStreamState& stream) const;
   void replaceArguments();
   bool isAlikeEverywhere() const;
@@ -38,7 +41,9 @@ class CallPlan {
   const program::Kernel& kernel_;
   std::vector<Argument> arguments_;
   std::vector<SpreadArgument> spread_;
+  std::vector<SpreadArgument> others_;  ///< gathers of other domains
   std::vector<HaloRequest> requests_;
+  std::vector<HaloRequest> otherRequests_;
   domain::Depth beyond_;  ///< elements of the halo that are computed, too
   domain::Depth reach_;  ///< how far the call reads around an element
   std::int64_t unit_ = 1;  ///< boxes should begin at multiples of this many elements of the arrays

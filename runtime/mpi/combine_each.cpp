@@ -96,7 +96,7 @@ detail::StreamOwner stacked(const StreamRegion& earlier, const StreamRegion& lat
 
 void combineAsReduction(DomainState& domain, const ResolvedReduction& call,
                         std::span<const StreamRegion> parts, std::span<const StreamRegion> results) {
-  std::unique_ptr<Combination>& made = domain.combinations[&call.reduction];
+  std::unique_ptr<Combination>& made = domain.rankDevice->combinations[&call.reduction];
   if (made == nullptr) made = std::make_unique<Combination>(call.reduction);
   const program::Reduction& combination = made->reduction;
   std::vector<Argument> arguments;

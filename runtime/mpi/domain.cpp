@@ -22,6 +22,9 @@ void detail::DomainDeleter::operator()(DomainStreamState* state) const noexcept 
 Domain::Domain(MPI_Comm communicator, const DomainOptions& options)
     : state_(new DomainState(communicator, options)) {}
 
+Domain::Domain(const Domain& beside, const DomainOptions& options)
+    : state_(new DomainState(live(beside.state_), options)) {}
+
 detail::DomainStreamOwner Domain::createStream(const program::Element& element, Storage storage,
                                                std::string_view name) {
   return detail::DomainStreamOwner(new DomainStreamState(live(state_), element, storage, name));

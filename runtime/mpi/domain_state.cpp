@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -115,16 +116,37 @@ std::uint64_t hashOf(const DomainOptions& options, const domain::Decomposition& 
   return hash.value();
 }
 
+/// The options of a domain beside another one: parts are those of the other one, if the options do not say how to divide.
+DomainOptions optionsBeside(const DomainState& other, DomainOptions options) {
+  if (options.split.rank() != 0) return options;
+  const Index& split = other.parts.split();
+  Index same = Index::origin(options.shape.rank());
+  for (int d = 0; d < same.rank(); ++d) {
+    const int k = split.rank() - same.rank() + d;
+    same[d] = k < 0 ? 1 : split[k];
+  }
+  options.split = same;
+  return options;
+}
+
 }  // namespace
 
-DomainState::DomainState(MPI_Comm given, const DomainOptions& chosen)
+DomainState::DomainState(MPI_Comm given, const DomainOptions& chosen) : DomainState(given, chosen, nullptr) {}
+
+DomainState::DomainState(const DomainState& beside, const DomainOptions& chosen)
+    : DomainState(beside.communicator, optionsBeside(beside, chosen), beside.rankDevice) {}
+
+DomainState::DomainState(MPI_Comm given, const DomainOptions& chosen, std::shared_ptr<RankDevice> shared)
     : communicator(duplicated(given)),
       rank(rankIn(communicator)),
       options(chosen),
       parts(decompose(chosen, communicator)),
       own(parts.boxOf(rank)),
       directions(domain::directionsOf(parts)),
-      device(mpi::openDevice(communicator, chosen.device)),
+      rankDevice(shared ? std::move(shared)
+                        : std::make_shared<RankDevice>(
+                              RankDevice{{}, mpi::openDevice(communicator, chosen.device)})),
+      device(rankDevice->device),
       sendBuffers(directions.size()),
       receiveBuffers(directions.size()) {
   agree(nullptr, hashOf(options, parts, device),

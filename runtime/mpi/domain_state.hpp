@@ -60,9 +60,17 @@ struct HaloStaging {
   std::unique_ptr<Staging> toDevice;
 };
 
+/// The device of a rank, which domains beside each other share.
+struct RankDevice {
+  std::map<const void*, std::unique_ptr<mpi::Combination>> combinations;  ///< outlive the device
+  Device device;
+};
+
 class DomainState final : public detail::Distribution {
  public:
   DomainState(MPI_Comm communicator, const DomainOptions& options);
+  /// On the ranks and the device of another domain.
+  DomainState(const DomainState& beside, const DomainOptions& options);
   ~DomainState();
   DomainState(const DomainState&) = delete;
   DomainState& operator=(const DomainState&) = delete;
@@ -88,8 +96,8 @@ class DomainState final : public detail::Distribution {
   domain::Decomposition parts;
   Box own;
   std::vector<Index> directions;
-  std::map<const void*, std::unique_ptr<mpi::Combination>> combinations;  ///< outlive the device
-  Device device;
+  std::shared_ptr<RankDevice> rankDevice;
+  Device& device;
   DomainStatistics statistics;
   std::vector<DomainStreamState*> streams;
   detail::TransferOwner* later =
@@ -98,6 +106,7 @@ class DomainState final : public detail::Distribution {
   std::vector<std::vector<std::byte>> sendBuffers, receiveBuffers;  ///< one for each direction, kept
 
  private:
+  DomainState(MPI_Comm communicator, const DomainOptions& options, std::shared_ptr<RankDevice> shared);
   void reduceLater(const program::Reduction& reduction, std::span<const Argument> arguments,
                    std::span<void* const> results, const CallOptions& options);
 

@@ -38,8 +38,8 @@ class Needs {
       } else {
         checkSpread(parameter, *stream, arguments_[i]);
         const bool isGather = parameter.role == Role::Gather;
-        spread.push_back(
-            {i, stream, parameter.role == Role::Output, isGather, isGather ? depthOf(i) : Depth{}});
+        spread.push_back({i, stream, parameter.role == Role::Output, isGather,
+                          isGather ? depthOf(i, stream->domain->parts) : Depth{}});
       }
     }
     return spread;
@@ -57,10 +57,7 @@ class Needs {
 
   void checkSpread(const Parameter& parameter, const DomainStreamState& stream,
                    const Argument& argument) const {
-    if (stream.domain != &domain_) {
-      fail(kernel_, "'{}' is of another sk::Domain than the other streams; give streams of one domain",
-           parameter.name);
-    }
+    if (stream.domain != &domain_) checkOther(parameter, *stream.domain);
     if (argument.rows != nullptr || argument.fit != program::Fit::Same) {
       fail(kernel_,
            "'{}' is in rows, stretched or strided, but a stream of a domain is read element by element; give "
@@ -76,9 +73,37 @@ class Needs {
            "domain.device()",
            parameter.name);
     }
-    if (parameter.rank != domain_.parts.whole().rank()) {
+    const Shape& whole = stream.domain->parts.whole();
+    if (parameter.rank != whole.rank()) {
       fail(Error::Kind::Shape, kernel_, "'{}' is a gather of {} dimension(s), but the domain has shape {}",
-           parameter.name, parameter.rank, toString(domain_.parts.whole()));
+           parameter.name, parameter.rank, toString(whole));
+    }
+  }
+
+  /// A gather may be of another domain, each part of which lies where the rank computes.
+  void checkOther(const Parameter& parameter, const DomainState& other) const {
+    if (parameter.role != Role::Gather) {
+      fail(kernel_,
+           "'{}' is of another sk::Domain than the elements that the call computes; give streams of one "
+           "domain, and read grids of other sizes as gathers",
+           parameter.name);
+    }
+    if (&other.device != &domain_.device) {
+      fail(
+          kernel_,
+          "'{}' is of a sk::Domain with a device of its own; create one domain beside the other, on the same "
+          "ranks and device: sk::Domain coarse(fine, {{.shape = ...}})",
+          parameter.name);
+    }
+    const Index &split = domain_.parts.split(), &others = other.parts.split();
+    for (int k = 1; k <= maxRank; ++k) {
+      const std::int64_t parts = k <= split.rank() ? split[split.rank() - k] : 1;
+      const std::int64_t otherParts = k <= others.rank() ? others[others.rank() - k] : 1;
+      if (parts == otherParts) continue;
+      fail(Error::Kind::Shape, kernel_,
+           "'{}' is of a sk::Domain with split {}, but the call computes one with split {}, so that along {} "
+           "a rank does not hold what it reads; create both with the same .split",
+           parameter.name, toString(others), toString(split), "xyzw"[k - 1]);
     }
   }
 
@@ -103,18 +128,17 @@ class Needs {
     }
   }
 
-  /// What gather number `i` reads around an element, in dimensions that are divided.
-  Depth depthOf(std::size_t i) const {
+  /// What gather number `i`, a stream of this or of another domain, reads in dimensions that are divided.
+  Depth depthOf(std::size_t i, const domain::Decomposition& parts) const {
     const Parameter& gather = kernel_.parameters[i];
-    const domain::Decomposition& parts = domain_.parts;
-    const int rank = parts.whole().rank();
     Depth depth;
-    for (int d = 0; d < rank; ++d) {
+    for (int d = 0; d < parts.whole().rank(); ++d) {
       if (parts.split()[d] == 1) continue;
       const std::optional<HaloLimits> limits =
-          hasDomainsShapes(gather) ? haloLimits(gather, rank - 1 - d, specs_) : std::nullopt;
-      if (!limits) refuseFarReads(gather, d);
-      std::int64_t below = limits->below, above = limits->above;
+          haloLimits(kernel_, arguments_, i, d, specs_, domain_.parts.whole());
+      if (!limits) refuseFarReads(gather, parts, d);
+      auto [below, above] = &parts == &domain_.parts ? Distances{limits->below, limits->above}
+                                                     : farthestOf(gather, *limits, parts, d);
       if (below + above > 0 && gather.boundary == program::Boundary::Wrap && !parts.isPeriodic(d)) {
         fail(kernel_,
              "'{}' wraps around, but the domain is divided in {} parts in dimension {} and does not wrap "
@@ -132,17 +156,31 @@ class Needs {
     return depth;
   }
 
-  /// Whether all that the reach of a gather depends on is spread, so that it has the shape of the domain.
-  bool hasDomainsShapes(const Parameter& gather) const {
-    if (gather.halo.empty()) return false;
-    for (std::size_t i = 0; i < arguments_.size() && i < 64; ++i) {
-      if ((gather.haloShapes >> i & 1) != 0 && arguments_[i].region.distributed == nullptr) return false;
+  struct Distances {
+    std::int64_t below, above;
+  };
+
+  /// How far what any rank reads of another domain's stream, to compute its own elements, lies beyond its part of the stream in
+  /// dimension `d`. The ranks of both domains lie at the same places.
+  Distances farthestOf(const Parameter& gather, const HaloLimits& limits, const domain::Decomposition& parts,
+                       int d) const {
+    const GatherDimension dimension = gatherDimension(parts.whole(), d, domain_.parts.whole());
+    int step = 1;  // from a rank to the next one along this dimension
+    for (int k = d + 1; k < parts.split().rank(); ++k) step *= static_cast<int>(parts.split()[k]);
+    Distances farthest{0, 0};
+    for (int place = 0; place < parts.split()[d]; ++place) {
+      const Box own = parts.boxOf(place * step);
+      IndexRange read = readBy(domain_.parts.boxOf(place * step), limits, dimension);
+      if (gather.boundary != program::Boundary::Wrap)
+        read = broughtInside(gather.boundary, read, dimension.extent);
+      farthest.below = std::max(farthest.below, own.begin[d] - read.begin);
+      farthest.above = std::max(farthest.above, read.end - own.end[d]);
     }
-    return true;
+    return farthest;
   }
 
-  [[noreturn]] void refuseFarReads(const Parameter& gather, int d) const {
-    const int rank = domain_.parts.whole().rank();
+  [[noreturn]] void refuseFarReads(const Parameter& gather, const domain::Decomposition& parts, int d) const {
+    const int rank = parts.whole().rank();
     const char letter = "xyzw"[rank - 1 - d];
     const bool isTable = std::ranges::any_of(gather.halo, [&](const Reach& reach) {
       return reach.dimension == rank - 1 - d && reach.kind == Reach::Kind::Whole;
@@ -152,13 +190,13 @@ class Needs {
           kernel_,
           "'{}' is read anywhere along {}, but it is divided there over {} ranks; give an ordinary stream of "
           "domain.device() that has the same elements on every rank, or do not divide dimension {}",
-          gather.name, letter, domain_.parts.split()[d], d);
+          gather.name, letter, parts.split()[d], d);
     }
     fail(kernel_,
          "how far '{}' is read along {} is not known, and it is divided there over {} ranks; promise a "
          "distance with "
          "[[halo(n)]] in the declaration, or do not divide dimension {}",
-         gather.name, letter, domain_.parts.split()[d], d);
+         gather.name, letter, parts.split()[d], d);
   }
 
   const DomainState& domain_;

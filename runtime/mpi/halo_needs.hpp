@@ -16,10 +16,12 @@ struct SpreadArgument {
   DomainStreamState* stream;
   bool isWritten;
   bool isGather;
-  domain::Depth depth;  ///< what it reads around each element
+  /// What it reads around each element; of a stream of another domain, what this needs around the elements of a rank.
+  domain::Depth depth;
 };
 
-/// The arguments that are spread over the ranks of `domain`. Throws sk::Error, which names the kernel, the parameter and a
+/// The arguments that are spread over the ranks of `domain`, which the call computes, and gathers that are of other domains with
+/// the same device. Throws sk::Error, which names the kernel, the parameter and a
 /// way out, if the kernel cannot run on parts of a domain with these arguments.
 std::vector<SpreadArgument> spreadArguments(const DomainState& domain, const program::Kernel& kernel,
                                             std::span<const Argument> arguments);

@@ -151,8 +151,9 @@ CallPlan::CallPlan(DomainState& domain, const Kernel& kernel, std::span<const Ar
   refuseRecording(domain, kernel);
   domain.agree(&kernel, hashOf(kernel, options), kernel.name);
   spread_ = spreadArguments(domain, kernel, arguments);
+  takeOthers();
   for (const SpreadArgument& one : spread_) reach_ = reach_.with(one.depth);
-  const int every = domain.options.exchangeEvery;
+  const int every = others_.empty() ? domain.options.exchangeEvery : 1;
   const Depth further = times(reach_, every - 1);
   makeRoom(further);
   bool needsExchange = false;
@@ -164,7 +165,7 @@ CallPlan::CallPlan(DomainState& domain, const Kernel& kernel, std::span<const Ar
     const Depth depth = sum(further, one.depth);
     if (needsExchange && !one.stream->valid.covers(depth)) {
       checkThickness(domain, kernel, kernel.parameters[one.index], depth);
-      addRequest(one.stream, depth);
+      addRequest(requests_, one.stream, depth);
     }
     const Depth beyond = left(depthAfter(*one.stream), one.depth);
     beyond_ = std::exchange(isFirst, false) ? beyond : least(beyond_, beyond);
@@ -176,6 +177,38 @@ CallPlan::CallPlan(DomainState& domain, const Kernel& kernel, std::span<const Ar
   }
   box_ = options.box.isWhole() ? domain::grown(domain.own, domain.parts.haloOf(domain.rank, beyond_))
                                : domain::intersection(domain.own, options.box);
+}
+
+/// Halos of other domains' streams, which these exchange. What the call needs of them around a rank's own elements says nothing of
+/// elements in its halo, so that such calls compute no more than their own.
+void CallPlan::takeOthers() {
+  for (const SpreadArgument& one : spread_) {
+    if (one.stream->domain != &domain_) others_.push_back(one);
+  }
+  std::erase_if(spread_, [&](const SpreadArgument& one) { return one.stream->domain != &domain_; });
+  for (const SpreadArgument& one : others_) {
+    if (one.stream->valid.covers(one.depth)) continue;
+    checkThickness(*one.stream->domain, kernel_, kernel_.parameters[one.index], one.depth);
+    addRequest(otherRequests_, one.stream, one.depth);
+  }
+  for (const auto& [stream, depth] : otherRequests_) {
+    const std::int64_t unit = isInMemory(stream->placed()) ? 1 : group;
+    const Depth needed = depth.with(stream->allocated);
+    stream->deepen(roomFor(stream->domain->parts, needed, roundedUp(needed, unit)));
+  }
+}
+
+/// One message to each neighbor for all streams of a domain.
+void CallPlan::exchangeOthers() const {
+  std::vector<HaloRequest> rest = otherRequests_;
+  while (!rest.empty()) {
+    DomainState& domain = *rest.front().stream->domain;
+    const auto end = std::stable_partition(rest.begin(), rest.end(), [&](const HaloRequest& request) {
+      return request.stream->domain == &domain;
+    });
+    Exchange(domain, {rest.begin(), end}).finish();
+    rest.erase(rest.begin(), end);
+  }
 }
 
 /// Makes room for the halos that this call and the ones like it need. What deepens a stream ends its halo.
@@ -192,12 +225,12 @@ void CallPlan::makeRoom(const Depth& further) {
     one.stream->deepen(roomFor(domain_.parts, one.stream->allocated, common));
 }
 
-void CallPlan::addRequest(DomainStreamState* stream, const Depth& depth) {
-  const auto found = std::ranges::find(requests_, stream, &HaloRequest::stream);
-  if (found != requests_.end()) {
+void CallPlan::addRequest(std::vector<HaloRequest>& requests, DomainStreamState* stream, const Depth& depth) {
+  const auto found = std::ranges::find(requests, stream, &HaloRequest::stream);
+  if (found != requests.end()) {
     found->depth = found->depth.with(depth);
   } else {
-    requests_.push_back({stream, depth.with(stream->valid)});
+    requests.push_back({stream, depth.with(stream->valid)});
   }
 }
 
@@ -246,10 +279,12 @@ std::vector<domain::Piece> CallPlan::piecesOf(const Box& box) const {
 }
 
 void CallPlan::exchangeHalos() const {
+  exchangeOthers();
   if (!requests_.empty()) Exchange(domain_, requests_).finish();
 }
 
 void CallPlan::run(const CallOptions& options, const Compute& compute) {
+  exchangeOthers();
   const bool isOneBox = !options.box.isWhole() || domain_.parts.ranks() == 1;
   if (isOneBox) {
     arguments_ = ownArguments(arguments_);

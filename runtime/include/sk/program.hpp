@@ -157,6 +157,10 @@ struct Reach {
   std::uint8_t dimension = 0;  ///< 0 is x
   Kind kind = Kind::Near;
   Distance below = {}, above = {};
+  /// Near is what [[halo]] promises. If the gather has another extent than the domain in this dimension, the distances count
+  /// from the index of the gather's element in which the center of the kernel's element lies, when both are scaled to one
+  /// length; in dimensions that the domain does not have, nothing is promised.
+  bool isPromised = false;
 };
 
 struct Parameter {

@@ -42,17 +42,17 @@ class HaloCheck {
   }
 
   void check(std::size_t gather) {
-    const Parameter& parameter = call_.kernel.parameters[gather];
     const StreamRegion& region = call_.arguments[gather].region;
-    const Shape& shape = call_.domain;
     const std::vector<std::byte> elements = read(region);
     const StreamRegion changed = like(region);
-    for (int d = 0; d < shape.rank(); ++d) {
-      const std::optional<HaloLimits> limits = haloLimits(parameter, shape.rank() - 1 - d, call_.specs);
+    for (int d = 0; d < region.shape.rank(); ++d) {
+      const std::optional<HaloLimits> limits =
+          haloLimits(call_.kernel, call_.arguments, gather, d, call_.specs, call_.domain);
+      const std::int64_t extent = gatherDimension(region.shape, d, call_.domain).domainExtent;
       if (!limits) continue;
-      const std::int64_t lines = std::min(shape[d], mostLines);
+      const std::int64_t lines = std::min(extent, mostLines);
       for (std::int64_t k = 0; k < lines; ++k) {
-        const std::int64_t at = lines == 1 ? 0 : k * (shape[d] - 1) / (lines - 1);
+        const std::int64_t at = lines == 1 ? 0 : k * (extent - 1) / (lines - 1);
         checkLine(gather, d, at, *limits, elements, changed);
       }
     }
@@ -72,37 +72,43 @@ class HaloCheck {
     return bytes;
   }
 
-  /// Tests the elements with index `at` in dimension d.
+  /// Tests the elements with index `at` in the domain's dimension that belongs to the gather's dimension d.
   void checkLine(std::size_t gather, int d, std::int64_t at, const HaloLimits& limits,
                  const std::vector<std::byte>& elements, const StreamRegion& changed) {
     const Parameter& parameter = call_.kernel.parameters[gather];
     std::vector<std::byte> other = elements;
-    if (!changeBeyond(parameter, d, at, limits, other)) return;
+    const GatherDimension dimension = gatherDimension(changed.shape, d, call_.domain);
+    if (!changeBeyond(parameter, changed.shape, d, readBy(IndexRange{at, at + 1}, limits, dimension), other))
+      return;
     changed.stream->write(changed, other.data());
     Box line{Index::origin(call_.domain.rank()), Index::origin(call_.domain.rank())};
     for (int k = 0; k < call_.domain.rank(); ++k) line.end[k] = call_.domain[k];
-    line.begin[d] = at;
-    line.end[d] = at + 1;
+    if (const int k = dimension.domainDimension; k >= 0) {
+      line.begin[k] = at;
+      line.end[k] = at + 1;
+    }
     if (resultsOf(gather, call_.arguments[gather].region, line) == resultsOf(gather, changed, line)) return;
     fail(call_.kernel,
          "'{}' is read more than {} before or {} after the element along {}, by elements with index {} "
          "there; correct "
          "its [[halo]]",
-         parameter.name, limits.below, limits.above, "xyzw"[call_.domain.rank() - 1 - d], at);
+         parameter.name, limits.below, limits.above, "xyzw"[changed.shape.rank() - 1 - d], at);
   }
 
-  /// Changes the elements of the gather that the line may not read. Returns false if there are none.
-  bool changeBeyond(const Parameter& gather, int d, std::int64_t at, const HaloLimits& limits,
-                    std::vector<std::byte>& elements) const {
-    const Shape& shape = call_.domain;
+  /// Changes the elements of the gather that the line may not read: it reads the indices `read` in dimension d. Returns false if
+  /// there are none.
+  static bool changeBeyond(const Parameter& gather, const Shape& shape, int d, const IndexRange& read,
+                           std::vector<std::byte>& elements) {
     std::int64_t inner = 1;
     for (int k = d + 1; k < shape.rank(); ++k) inner *= shape[k];
+    const std::int64_t n = shape[d];
     const bool wraps = gather.boundary == program::Boundary::Wrap;
+    const IndexRange inside = wraps ? read : broughtInside(gather.boundary, read, n);
     bool hasChanged = false;
     for (std::int64_t i = 0; i < shape.size(); ++i) {
-      const std::int64_t x = i / inner % shape[d];
-      const bool isNear = (x >= at - limits.below && x <= at + limits.above) ||
-                          (wraps && (x - shape[d] >= at - limits.below || x + shape[d] <= at + limits.above));
+      const std::int64_t x = i / inner % n;
+      const bool isNear = wraps ? ((x - inside.begin) % n + n) % n < inside.end - inside.begin
+                                : x >= inside.begin && x < inside.end;
       if (isNear) continue;
       changeBits(*gather.element, elements.data() + static_cast<std::size_t>(i) * gather.element->size);
       hasChanged = true;
@@ -134,10 +140,10 @@ class HaloCheck {
   std::vector<std::unique_ptr<StreamState>> streams_;
 };
 
-bool isLimited(const ResolvedCall& call, std::size_t gather) {
+bool isTested(const ResolvedCall& call, std::size_t gather) {
   const Parameter& parameter = call.kernel.parameters[gather];
-  return parameter.role == Role::Gather && assemble::isNeeded(parameter, call.specs) &&
-         areLimitsValid(call.kernel, call.arguments, gather, call.domain);
+  return parameter.role == Role::Gather && !parameter.halo.empty() &&
+         assemble::isNeeded(parameter, call.specs) && call.arguments[gather].region.shape.size() > 0;
 }
 
 }  // namespace
@@ -159,7 +165,7 @@ void checkHalos(DeviceState& device, const ResolvedCall& call,
     return;
   std::optional<HaloCheck> check;
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
-    if (!isLimited(call, i)) continue;
+    if (!isTested(call, i)) continue;
     if (!check) check.emplace(device, call, run);
     check->check(i);
   }

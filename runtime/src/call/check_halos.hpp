@@ -15,8 +15,8 @@ namespace sk {
 class DeviceState;
 
 /// Throws sk::Error if a kernel reads farther. `run` runs a call of the same kernel with other arguments and options. Tests
-/// every line of the domain where a dimension has no more than 64, and otherwise 64 of them. Gathers of another shape than the
-/// domain's, and kernels that push or scatter, are not tested.
+/// every line of the domain where a dimension has no more than 64, and otherwise 64 of them. Kernels that push or scatter are not
+/// tested.
 void checkHalos(DeviceState& device, const ResolvedCall& call,
                 const std::function<void(const ResolvedCall&)>& run);
 

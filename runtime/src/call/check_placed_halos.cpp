@@ -69,22 +69,30 @@ class PlacedCheck {
 
   void check(std::size_t gather) {
     const Box& box = call_.options.box;
-    const int rank = box.begin.rank();
-    for (int d = 0; d < rank; ++d) {
-      const std::optional<HaloLimits> limits =
-          haloLimits(call_.kernel.parameters[gather], rank - 1 - d, call_.specs);
+    const Shape seen = seenShape(call_.arguments[gather].region);
+    for (int d = 0; d < seen.rank(); ++d) {
+      const std::optional<HaloLimits> limits = limitsOf(gather, d);
+      const int k = gatherDimension(seen, d, call_.domain).domainDimension;
       if (!limits) continue;
-      const std::int64_t count = box.end[d] - box.begin[d], lines = std::min(count, mostPlacedLines);
-      for (std::int64_t k = 0; k < lines; ++k) {
+      if (k < 0) {
+        checkLine(gather, d, *limits, box);
+        continue;
+      }
+      const std::int64_t count = box.end[k] - box.begin[k], lines = std::min(count, mostPlacedLines);
+      for (std::int64_t number = 0; number < lines; ++number) {
         Box line = box;
-        line.begin[d] += lines == 1 ? 0 : k * (count - 1) / (lines - 1);
-        line.end[d] = line.begin[d] + 1;
+        line.begin[k] += lines == 1 ? 0 : number * (count - 1) / (lines - 1);
+        line.end[k] = line.begin[k] + 1;
         checkLine(gather, d, *limits, line);
       }
     }
   }
 
  private:
+  std::optional<HaloLimits> limitsOf(std::size_t gather, int d) const {
+    return haloLimits(call_.kernel, call_.arguments, gather, d, call_.specs, call_.domain);
+  }
+
   struct Made {
     std::unique_ptr<StreamState> stream;
     StreamRegion region;
@@ -102,7 +110,8 @@ class PlacedCheck {
     const StreamRegion& given = call_.arguments[gather].region;
     const program::Element& element = *call_.kernel.parameters[gather].element;
     Box allowed = heldBox(given), around = allowed;
-    limit(gather, d, {line.begin[d] - limits.below, line.end[d] + limits.above}, allowed, around);
+    limit(gather, d, readBy(line, limits, gatherDimension(seenShape(given), d, call_.domain)), allowed,
+          around);
     if (around == allowed) return;
     const std::vector<std::byte> elements = elementsAround(given, allowed, around, element.size);
     Shape shape = given.shape;
@@ -124,8 +133,7 @@ class PlacedCheck {
   }
 
   /// Sets the indices that may be read in dimension d, and those with an element where farther ones exist.
-  void limit(std::size_t gather, int d, const std::pair<std::int64_t, std::int64_t>& read, Box& allowed,
-             Box& around) const {
+  void limit(std::size_t gather, int d, const IndexRange& read, Box& allowed, Box& around) const {
     const Boundary boundary = call_.kernel.parameters[gather].boundary;
     const StreamRegion& region = call_.arguments[gather].region;
     const std::int64_t n = seenShape(region)[d];
@@ -190,8 +198,8 @@ class PlacedCheck {
       const auto number = static_cast<std::int64_t>(static_cast<std::size_t>(first - expected[k].begin()) /
                                                     call_.kernel.parameters[outputs_[k]].element->size);
       const Parameter& parameter = call_.kernel.parameters[gather];
-      const int rank = call_.domain.rank();
-      const HaloLimits limits = *haloLimits(parameter, rank - 1 - d, call_.specs);
+      const int rank = call_.arguments[gather].region.shape.rank();
+      const HaloLimits limits = *limitsOf(gather, d);
       Index at = line.begin;
       forEachIn(line, [&](std::int64_t n, const Index& index) {
         if (n == number) at = index;
@@ -220,7 +228,7 @@ void checkPlacedHalos(DeviceState& device, const ResolvedCall& call,
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     const Parameter& parameter = call.kernel.parameters[i];
     if (parameter.role != Role::Gather || !assemble::isNeeded(parameter, call.specs) ||
-        !isPlaced(call.arguments[i].region) || !areLimitsValid(call.kernel, call.arguments, i, call.domain))
+        !isPlaced(call.arguments[i].region) || parameter.halo.empty())
       continue;
     if (!check) check.emplace(device, call, run);
     check->check(i);

@@ -21,14 +21,7 @@ using program::Role;
 
 namespace {
 
-/// Numbers from `begin` to `end` (exclusive).
-struct Interval {
-  std::int64_t begin, end;
-
-  bool holds(const Interval& other) const { return begin <= other.begin && other.end <= end; }
-};
-
-Interval heldIn(const StreamRegion& region, int d) {
+IndexRange heldIn(const StreamRegion& region, int d) {
   const std::int64_t origin = originOf(region, d);
   return {origin, origin + region.shape[d]};
 }
@@ -37,24 +30,8 @@ Interval heldIn(const StreamRegion& region, int d) {
 char letterOf(int rank, int d) { return "xyzw"[rank - 1 - d]; }
 
 /// Whether `held` has the elements that a boundary mode gives for the indices in `read`, in a dimension of extent n.
-bool holdsWhatIsRead(Boundary boundary, const Interval& held, const Interval& read, std::int64_t n) {
-  switch (boundary) {
-    case Boundary::Clamp:
-    case Boundary::Border: {
-      const Interval inside{std::clamp<std::int64_t>(read.begin, 0, n - 1),
-                            std::clamp<std::int64_t>(read.end, 1, n)};
-      return held.holds(inside);
-    }
-    case Boundary::Mirror: {
-      if (read.begin < -n || read.end > 2 * n) return held.holds({0, n});
-      Interval inside{std::clamp<std::int64_t>(read.begin, 0, n - 1),
-                      std::clamp<std::int64_t>(read.end, 1, n)};
-      if (read.begin < 0) inside.end = std::max(inside.end, -read.begin);
-      if (read.end > n) inside.begin = std::min(inside.begin, 2 * n - read.end);
-      return held.holds(inside);
-    }
-    case Boundary::Wrap: break;
-  }
+bool holdsWhatIsRead(Boundary boundary, const IndexRange& held, const IndexRange& read, std::int64_t n) {
+  if (boundary != Boundary::Wrap) return held.holds(broughtInside(boundary, read, n));
   const std::int64_t length = held.end - held.begin;
   if (length >= n) return true;
   const std::int64_t first = ((read.begin - held.begin) % n + n) % n;
@@ -64,7 +41,7 @@ bool holdsWhatIsRead(Boundary boundary, const Interval& held, const Interval& re
 /// Whether any index at all may be read in dimension d.
 bool holdsAll(Boundary boundary, const StreamRegion& region, int d) {
   const std::int64_t n = seenShape(region)[d];
-  const Interval held = heldIn(region, d);
+  const IndexRange held = heldIn(region, d);
   return boundary == Boundary::Wrap ? held.end - held.begin >= n : held.holds({0, n});
 }
 
@@ -72,28 +49,31 @@ void checkGather(const ResolvedCall& call, std::size_t gather, const Box& box) {
   const Parameter& parameter = call.kernel.parameters[gather];
   const StreamRegion& region = call.arguments[gather].region;
   const int rank = region.shape.rank();
-  const bool areValid = areLimitsValid(call.kernel, call.arguments, gather, call.domain);
   for (int d = 0; d < rank; ++d) {
     if (holdsAll(parameter.boundary, region, d)) continue;
-    const Interval held = heldIn(region, d);
+    const IndexRange held = heldIn(region, d);
     const std::optional<HaloLimits> limits =
-        areValid ? haloLimits(parameter, rank - 1 - d, call.specs) : std::nullopt;
+        haloLimits(call.kernel, call.arguments, gather, d, call.specs, call.domain);
     if (!limits) {
       fail(Error::Kind::Shape, call.kernel,
            "how far '{}' is read along {} is not known, and it holds only indices {} to {} (exclusive) of "
            "{}; promise "
-           "a distance with [[halo(n)]] on a gather of the domain's shape, or give a stream that holds all "
-           "of them",
+           "a distance with [[halo(n)]] in a dimension that the domain has, too, or give a stream that "
+           "holds all of them",
            parameter.name, letterOf(rank, d), held.begin, held.end, seenShape(region)[d]);
     }
-    const Interval read{box.begin[d] - limits->below, box.end[d] + limits->above};
-    if (!holdsWhatIsRead(parameter.boundary, held, read, seenShape(region)[d])) {
+    const GatherDimension dimension = gatherDimension(seenShape(region), d, call.domain);
+    const IndexRange read = readBy(box, *limits, dimension);
+    if (!holdsWhatIsRead(parameter.boundary, held, read, dimension.extent)) {
       fail(Error::Kind::Shape, call.kernel,
-           "'{}' is read from {} before to {} after the elements of the box {}, so from index {} to {} "
+           "'{}' is read from {} before to {} after {} of the box {}, so from index {} to {} "
            "(exclusive) "
            "along {}, but it holds {} to {} of {}; give it a deeper halo, or a smaller box",
-           parameter.name, limits->below, limits->above, toString(box), read.begin, read.end,
-           letterOf(rank, d), held.begin, held.end, seenShape(region)[d]);
+           parameter.name, limits->below, limits->above,
+           limits->isPromised && dimension.extent != dimension.domainExtent
+               ? "the relative places of the elements"
+               : "the elements",
+           toString(box), read.begin, read.end, letterOf(rank, d), held.begin, held.end, dimension.extent);
     }
   }
 }
@@ -117,13 +97,12 @@ bool hasSameBorders(const ResolvedCall& call, std::size_t gather, const Box& box
   const Parameter& parameter = call.kernel.parameters[gather];
   const StreamRegion& region = call.arguments[gather].region;
   const int rank = region.shape.rank();
-  const bool areValid = areLimitsValid(call.kernel, call.arguments, gather, call.domain);
   for (int d = 0; d < rank; ++d) {
-    const Interval held = heldIn(region, d);
+    const IndexRange held = heldIn(region, d);
     const std::int64_t n = seenShape(region)[d], length = held.end - held.begin;
     if (held.begin == 0 && length == n) continue;
     const std::optional<HaloLimits> limits =
-        areValid ? haloLimits(parameter, rank - 1 - d, call.specs) : std::nullopt;
+        haloLimits(call.kernel, call.arguments, gather, d, call.specs, call.domain);
     if (!limits || limits->below > length || limits->above > length) return false;
     const bool wraps = parameter.boundary == Boundary::Wrap;
     const std::int64_t first = wraps ? held.begin : std::max<std::int64_t>(held.begin, 0);

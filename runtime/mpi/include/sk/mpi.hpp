@@ -187,6 +187,10 @@ class Domain {
   /// Collective. Throws sk::Error if MPI has not been initialized, if the ranks cannot divide the shape, or if they do not
   /// agree on the options. The communicator is duplicated.
   Domain(MPI_Comm communicator, const DomainOptions& options);
+  /// Another grid on the ranks and the device of `beside`, so that kernels may read streams of both. Collective. Without
+  /// `options.split`, it is divided in as many parts as the other one, in dimensions that are counted from the fastest;
+  /// `options.device` does not count. Throws sk::Error as above.
+  Domain(const Domain& beside, const DomainOptions& options);
   ~Domain() = default;
   Domain(Domain&&) noexcept = default;
   Domain& operator=(Domain&&) noexcept = default;
