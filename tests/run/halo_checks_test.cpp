@@ -116,5 +116,49 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("promises about grids of other extents count from the same relative place") {
+  onEveryTarget([](sk::Device& device) {
+    for (const bool isFiner : {false, true}) {
+      const sk::Shape shape = isFiner ? sk::Shape{5, 7} : sk::Shape{11, 15},
+                      other = isFiner ? sk::Shape{11, 15} : sk::Shape{5, 7};
+      auto u = device.stream<float>(other), r = device.stream<float>(shape);
+      auto by = device.stream<sk::int2>(shape);
+      std::vector<float> values;
+      for (int i = 0; i < other.size(); ++i) values.push_back(static_cast<float>(i * i));
+      u.write(values);
+      std::vector<sk::int2> steps(static_cast<std::size_t>(shape.size()), {1, -2});
+      const std::int64_t x = shape[1] / 2;
+      const auto at = static_cast<std::size_t>(shape[1] + x);
+      const auto message = [&] {
+        by.write(steps);
+        return errorOf([&] { elsewhere(u, by, r); });
+      };
+      CHECK(message() == "no error");
+      steps[at] = {-2, 0};
+      CHECK(message().find("1 after the element along x, by elements with index " + std::to_string(x) +
+                           " there") != std::string::npos);
+      steps[at] = {0, 3};
+      CHECK(message().find("2 after the element along y, by elements with index 1 there") !=
+            std::string::npos);
+
+      const sk::Placement place{{0, 0}, {2 * shape[0], 2 * shape[1]}},
+          ofOther{{0, 0}, {2 * other[0], 2 * other[1]}};
+      const auto ofParts = [&](const sk::int2& step) {
+        steps.assign(steps.size(), {1, -2});
+        steps[static_cast<std::size_t>(shape[1] + 3)] = step;
+        by.write(steps);
+        return errorOf([&] {
+          elsewhere.with({.box = {{0, 0}, {3, 4}}})(sk::placed(u, ofOther), sk::placed(by, place),
+                                                    sk::placed(r, place));
+        });
+      };
+      CHECK(ofParts({1, 2}) == "no error");
+      CHECK(ofParts({0, 3}) ==
+            "elsewhere: 'u' is read more than 2 after the element along y, by the element with index {1, 3}; "
+            "correct its [[halo]]");
+    }
+  });
+}
+
 }  // namespace
 }  // namespace run_tests
