@@ -102,6 +102,9 @@ struct StreamAccess {
   bool packed = false;  ///< four elements per texel
   bool strided = false;  ///< RegionLayout::strided: a view
   bool placed = false;  ///< gathers, and inputs in another layout than the domain's: a part of a whole
+  /// Gathers in a placed domain: a part of a whole, whose neighbours are found as in a stream that is not placed.
+  bool local = false;
+  bool shifted = false;  ///< local gathers: the domain's first element is not the first one of the part
   auto operator<=>(const StreamAccess&) const = default;
 };
 
@@ -174,8 +177,9 @@ struct Variant {
 ///                                  of the domain
 ///   sk_shift_P   int               Linear: log2 of the texture's width; Rows: the width in elements
 ///   sk_ratio_P   ivec4             of a fitted input: its stretch or stride in each dimension
-///   sk_low_P sk_high_P  ivec4      placed gathers: the indices that are held
-///   sk_whole_P   ivec4             inputs in a placed domain: the extents of the whole
+///   sk_low_P sk_high_P  ivec4      placed gathers: the indices that are held; sk_low_P of shifted gathers: the
+///                                  index in the part of the domain's first element
+///   sk_whole_P   ivec4             inputs in a placed domain, and local gathers: the extents of the whole
 /// A placed domain has `sk_domain_low`, the index in the whole of its first element, and `sk_domain_whole`.
 /// The domain, and hence every output, has the same uniforms under the names `sk_domain_origin
 /// sk_domain_shape sk_domain_stride sk_domain_shift`. If it has layers, there is also `sk_domain_row`, an

@@ -19,7 +19,9 @@ using Index4 = std::array<std::int32_t, 4>;
 
 /// The whole of which a region is a part (sk/placed.hpp).
 struct Place {
-  Index4 low = {0, 0, 0, 0};  ///< the index in the whole of the region's first element
+  /// The index in the whole of the region's first element. Of a local gather: the index in the region of the domain's first
+  /// element.
+  Index4 low = {0, 0, 0, 0};
   Index4 high = {1, 1, 1, 1};  ///< gathers: indices from `low` to `high` (exclusive) are held
   Index4 whole = {1, 1, 1, 1};  ///< the whole's extents
 
@@ -44,8 +46,11 @@ struct RegionLayout {
   Index4 extent = {1, 1, 1, 1};  ///< shape of the region; missing dimensions 1
   Index4 stride = {1, 1, 1, 1};  ///< linear: stridesOf() of the whole stream; or as strided regions say
   std::int32_t shift = 0;  ///< linear: log2 of the texture's width; numbered: the elements of a row
-  /// Programs speak of the whole. In a gather, `extent` is the whole's, and `origin` belongs to the whole's index 0.
+  /// Programs speak of the whole. In a gather that is not local, `extent` is the whole's, and `origin` belongs to the whole's
+  /// index 0.
   bool placed = false;
+  bool local =
+      false;  ///< placed gathers: indices and boundary modes are those of the region, as if it were not placed
   Place place = {};
 
   bool operator==(const RegionLayout&) const = default;

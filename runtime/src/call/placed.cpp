@@ -245,6 +245,13 @@ std::optional<LocalCall> localCall(const ResolvedCall& call, const Box& box) {
   return local;
 }
 
+bool isReadAsHeld(const ResolvedCall& call, std::size_t gather, const Box& box) {
+  const Parameter& parameter = call.kernel.parameters[gather];
+  return parameter.usesNear && parameter.reach >= 0 && !parameter.usesAt && !parameter.usesSample &&
+         call.arguments[gather].region.shape.rank() == call.domain.rank() &&
+         hasSameBorders(call, gather, box);
+}
+
 LocalCall partCall(const ResolvedCall& call, const Box& box) {
   const StreamRegion& frame = frameOf(call);
   LocalCall part{{call.arguments.begin(), call.arguments.end()}, frame.shape, within(frame, box)};

@@ -47,6 +47,11 @@ struct LocalCall {
 /// gathers hold. The call has passed checkPlacedCall().
 std::optional<LocalCall> localCall(const ResolvedCall& call, const Box& box);
 
+/// Whether a placed gather may be read like a stream that is not placed, for the elements of a box of the whole: only near
+/// the element, at offsets that skc knows, and boundary modes do nothing, or the same, at the ends of what it holds.
+/// `call.domain` is the whole.
+bool isReadAsHeld(const ResolvedCall& call, std::size_t gather, const Box& box);
+
 /// The call over what its outputs hold, or over the box alone, for devices whose domain is a region of a stream.
 /// Arguments stay placed, and the domain is.
 LocalCall partCall(const ResolvedCall& call, const Box& box);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: a stencil whose work groups share texels has the same results as loops on the host, wherever the domain
-// ends in a work group; so has one that also folds its results in the same dispatch, with shared texels or without. Runs on a software renderer, which by default
-// does not share texels.
+// ends in a work group, and if it is a part of a whole; so has one that also folds its results in the same dispatch, with
+// shared texels or without. Runs on a software renderer, which by default does not share texels.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -15,6 +16,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "call/resolved_call.hpp"
 #include "call/resolved_reduction.hpp"
 #include "device/stream_state.hpp"
 #include "gl/open_context.hpp"
@@ -49,6 +51,8 @@ std::string bodyOf(int reach) {
 struct Weigh {
   Weigh(Boundary boundary, int reach)
       : body(bodyOf(reach)),
+        halo{{{0, program::Reach::Kind::Near, {reach}, {reach}},
+              {1, program::Reach::Kind::Near, {reach}, {reach}}}},
         parameters{{{.name = "a",
                      .symbol = "a",
                      .role = Role::Gather,
@@ -57,7 +61,9 @@ struct Weigh {
                      .boundary = boundary,
                      .border = "-7.0",
                      .usesNear = true,
-                     .reach = reach},
+                     .reach = reach,
+                     .halo = halo,
+                     .haloShapes = 1},
                     {.name = "r", .symbol = "r", .role = Role::Output, .element = &floats}}},
         kernel{.name = "weigh",
                .entry = "weigh",
@@ -69,6 +75,7 @@ struct Weigh {
   Weigh& operator=(const Weigh&) = delete;
 
   std::string body;
+  std::array<program::Reach, 2> halo;
   std::array<Parameter, 2> parameters;
   Kernel kernel;
 };
@@ -126,6 +133,38 @@ std::vector<float> weighed(GlDevice& device, const Kernel& kernel, const Shape& 
   const std::array arguments{Argument{.region = detail::wholeRegion(a.get())},
                              Argument{.region = detail::wholeRegion(r.get())}};
   device.runUnchecked(kernel, arguments, {.target = Target::Compute});
+  detail::read(detail::wholeRegion(r.get()), values.data(), values.size());
+  return values;
+}
+
+/// The rows from `begin` to `end` (exclusive) of what weighed() gives, from a part of the elements: `halo` rows more above and
+/// below, without those beyond the ends unless `wraps`.
+std::vector<float> weighedInPart(GlDevice& device, const Kernel& kernel, const Shape& whole,
+                                 std::int64_t begin, std::int64_t end, std::int64_t halo, bool wraps) {
+  const std::vector<float> all = numbersOf(whole);
+  const std::int64_t width = whole[1];
+  const std::int64_t first = wraps ? begin - halo : std::max<std::int64_t>(begin - halo, 0);
+  const std::int64_t last = wraps ? end + halo : std::min(end + halo, whole[0]);
+  std::vector<float> held, values(static_cast<std::size_t>((end - begin) * width));
+  for (std::int64_t row = first; row < last; ++row) {
+    const auto from = all.begin() + (row + whole[0]) % whole[0] * width;
+    held.insert(held.end(), from, from + width);
+  }
+  const auto a = device.createStream(floats, {last - first, width}, Storage::Single);
+  const auto r = device.createStream(floats, {end - begin, width}, Storage::Single);
+  detail::write(detail::wholeRegion(a.get()), held.data(), held.size());
+  std::array arguments{Argument{.region = detail::wholeRegion(a.get())},
+                       Argument{.region = detail::wholeRegion(r.get())}};
+  arguments[0].region.placement = {{first, 0}, whole};
+  arguments[1].region.placement = {{begin, 0}, whole};
+  const ResolvedCall call{kernel,
+                          arguments,
+                          {.target = Target::Compute},
+                          {},
+                          {end - begin, width},
+                          nullptr,
+                          arguments[1].region.placement};
+  device.run(call);
   detail::read(detail::wholeRegion(r.get()), values.data(), values.size());
   return values;
 }
@@ -201,6 +240,27 @@ TEST_CASE("stencils that share texels in work groups") {
     for (const Shape& shape : {Shape{5, 8}, Shape{16, 32}, Shape{17, 36}, Shape{33, 100}}) {
       CAPTURE(static_cast<int>(boundary), reach, shape[0], shape[1]);
       CHECK(weighed(device, kernel, shape) == weighedOnHost(boundary, reach, shape));
+    }
+  }
+}
+
+TEST_CASE("stencils over parts of a whole that share texels in work groups") {
+  const DeviceChoices choices{.target = Target::Compute, .sharesTexels = true};
+  GlDevice device(gl::openContext({"software", gl::Api::Gl}), choices);
+  struct Case {
+    Boundary boundary;
+    int reach;
+  };
+  std::deque<Weigh> kernels;
+  for (const auto& [boundary, reach] :
+       {Case{Boundary::Clamp, 2}, {Boundary::Wrap, 1}, {Boundary::Mirror, 1}, {Boundary::Border, 2}}) {
+    const Kernel& kernel = kernels.emplace_back(boundary, reach).kernel;
+    const Shape whole{61, 36};
+    const std::vector<float> expected = weighedOnHost(boundary, reach, whole);
+    for (const auto& [begin, end] : {std::pair{0, 17}, {17, 40}, {40, 61}}) {
+      CAPTURE(static_cast<int>(boundary), reach, begin, end);
+      const std::vector<float> rows(expected.begin() + begin * 36, expected.begin() + end * 36);
+      CHECK(weighedInPart(device, kernel, whole, begin, end, reach, boundary == Boundary::Wrap) == rows);
     }
   }
 }

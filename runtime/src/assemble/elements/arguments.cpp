@@ -37,9 +37,9 @@ void defineGetter(ProgramText& program, std::string_view kind, const Parameter& 
                    {fmt::format("return {};", value)});
 }
 
-void defineExtent(ProgramText& program, const Parameter& parameter) {
+void defineExtent(ProgramText& program, const Parameter& parameter, std::string_view kind) {
   if (!parameter.usesExtent) return;
-  defineGetter(program, "extent", parameter, parameterUniform(program, "ivec4", "shape", parameter));
+  defineGetter(program, "extent", parameter, parameterUniform(program, "ivec4", kind, parameter));
 }
 
 void defineInputIndex(ProgramText& program, const Parameter& input, const StreamAccess& access,

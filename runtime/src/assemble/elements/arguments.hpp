@@ -26,8 +26,8 @@ std::string uniformValue(ProgramText& program, const program::Parameter& uniform
 void defineGetter(ProgramText& program, std::string_view kind, const program::Parameter& parameter,
                   std::string_view value);
 
-/// Defines sk_extent_p if the body calls it.
-void defineExtent(ProgramText& program, const program::Parameter& parameter);
+/// Defines sk_extent_p, the uniform sk_KIND_p, if the body calls it.
+void defineExtent(ProgramText& program, const program::Parameter& parameter, std::string_view kind = "shape");
 
 /// Defines sk_KIND_p, the index in an input, fitted or not. In a dimension of extent 1, the input is broadcast.
 void defineInputIndex(ProgramText& program, const program::Parameter& input, const StreamAccess& access,

@@ -68,6 +68,15 @@ std::string DomainText::position(int components) {
                          : fmt::format("{}.{}", whole, xyzw.substr(0, static_cast<std::size_t>(components)));
 }
 
+std::string DomainText::texelPosition(int components) {
+  assert(layout_.domain == Domain::Plane && layout_.packed && components <= 2);
+  const std::string texel(components == 1 ? program_.column() : program_.texel());
+  if (!layout_.view) return texel;
+  const std::string origin = program_.uniform("ivec4", "sk_domain_origin");
+  return components == 1 ? fmt::format("({} - ({}.x >> 2))", texel, origin)
+                         : fmt::format("({} - ({}.xy >> ivec2(2, 0)))", texel, origin);
+}
+
 std::string DomainText::number() {
   switch (layout_.domain) {
     case Domain::Plane: {

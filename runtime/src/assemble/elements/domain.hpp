@@ -41,6 +41,8 @@ class DomainText {
   std::string seenPosition(int components);
   /// The first components of the index: an int or an ivec2 to ivec4 expression.
   std::string position(int components);
+  /// Planes, packed: the first components of the texel's index in the domain, an int or an ivec2 expression.
+  std::string texelPosition(int components);
   /// The invocation's texel.
   Texel texel();
   /// The number of that texel in a linearised stream: an int expression that needs parentheses.

@@ -95,7 +95,7 @@ class GatherText {
     const std::string extents = isRow
                                     ? fmt::format("int sk_n = {}.x >> 2;", uniform("shape"))
                                     : fmt::format("ivec2 sk_n = ivec2({0}.x >> 2, {0}.y);", uniform("shape"));
-    const std::string here = isRow ? rowOfTexels(domain) : std::string(program_.texel());
+    const std::string here = texelHere(domain);
     const std::string p = isRow ? "sk_p" : "sk_p.x";
     const std::string n = isRow ? "sk_n" : "sk_n.x";
     defineTexels(extents, here);
@@ -225,9 +225,15 @@ class GatherText {
     }
   }
 
+  /// The index in the gather of the current element.
+  std::string elementHere() {
+    if (!access_.shifted) return here_(rank_);
+    return fmt::format("({} + {}{})", here_(rank_), uniform("low"), swizzle());
+  }
+
   /// Maps any offset `sk_d` to the index `sk_p` of that neighbour of the current element, in bounds.
   void bringNeighbourInside(std::vector<std::string>& lines) {
-    const std::string here = here_(rank_);
+    const std::string here = elementHere();
     switch (parameter_.boundary) {
       case Boundary::Clamp:
         if (parameter_.reach >= 0 && parameter_.reach <= largestSafeReach) {
@@ -286,10 +292,15 @@ class GatherText {
     lines.push_back(fmt::format("if ({}) return {};", outside, parameter_.border));
   }
 
-  /// The number of the current texel in its row, or in a linearised stream.
-  std::string rowOfTexels(DomainText& domain) const {
-    return access_.addressing == Addressing::Plane ? std::string(program_.column())
-                                                   : fmt::format("({})", domain.texelNumber());
+  /// The index in the gather of the current texel: in a plane, in a row, or the number in a linearised stream.
+  std::string texelHere(DomainText& domain) {
+    const bool isRow = rank_ == 1;
+    const std::string here = access_.addressing == Addressing::Plane
+                                 ? domain.texelPosition(rank_)
+                                 : fmt::format("({})", domain.texelNumber());
+    if (!access_.shifted) return here;
+    return isRow ? fmt::format("({} + ({}.x >> 2))", here, uniform("low"))
+                 : fmt::format("({} + ({}.xy >> ivec2(2, 0)))", here, uniform("low"));
   }
 
   /// How many texels away neighbours may be: left and right, and above and below.

@@ -120,13 +120,15 @@ StreamAccess with(StreamAccess access, bool nearby) {
 }
 
 void addBoundaries(Programs& programs, const Type& type, int rank, const DomainKind& domain,
-                   const StreamAccess& input, const StreamAccess& gather, bool isPlaced = false) {
+                   const StreamAccess& input, const StreamAccess& gather, bool isPlaced = false,
+                   bool isPacked = false) {
   for (const Profile& profile : shownProfiles()) {
     for (const Boundary boundary : boundaries) {
       for (const auto [reach, nearby] : neighbours) {
         const samples::EveryAccess sample(*type.element, type.border, rank, boundary, reach);
         const Variant variant{.domain = domain.domain,
                               .domainView = domain.view,
+                              .domainPacked = isPacked,
                               .domainRank = static_cast<std::uint8_t>(rank),
                               .domainPlaced = isPlaced,
                               .access = {{}, input, with(gather, nearby), {}, {}}};
@@ -181,6 +183,21 @@ TEST_CASE("glslang accepts parts of a whole of every rank with every boundary") 
     addBoundaries(programs, types[0], rank, domains[3], inputs[4], linear, true);
   }
   REQUIRE(programs.count() == 4 * 2 * 3 * 4 * 3);
+  checkAccepted(programs);
+}
+
+TEST_CASE(
+    "glslang accepts local gathers of every rank with every boundary, in texels of one element or four") {
+  Programs programs("local");
+  StreamAccess plane = inputs[2], linear = inputs[4], texels = inputs[1];
+  plane.local = linear.local = texels.local = linear.shifted = texels.shifted = true;
+  texels.packed = true;
+  for (const int rank : {1, 2, 3, 4}) {
+    addBoundaries(programs, types[0], rank, domains[1], inputs[0], plane, true);
+    addBoundaries(programs, types[0], rank, domains[3], inputs[4], linear, true);
+    if (rank <= 2) addBoundaries(programs, types[0], rank, domains[1], inputs[0], texels, true, true);
+  }
+  REQUIRE(programs.count() == (4 * 2 + 2) * 3 * 4 * 3);
   checkAccepted(programs);
 }
 

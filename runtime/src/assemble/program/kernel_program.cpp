@@ -87,11 +87,14 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
         text += fmt::format("; {}{}", parameter.name, name(access.storage));
       continue;
     }
-    text +=
-        fmt::format("; {} {}{}{}{}{}{}{}{}{}", parameter.name, access.placed ? "placed " : "",
-                    access.packed ? "packed " : "", name(access.addressing), access.view ? " view" : "",
-                    access.strided ? " strided" : "", access.nearby ? " nearby" : "",
-                    access.filtered ? " filtered" : "", access.fitted ? " fitted" : "", name(access.storage));
+    text += fmt::format("; {} {}{}{}{}{}{}{}{}{}{}", parameter.name,
+                        access.placed  ? "placed "
+                        : access.local ? "local "
+                                       : "",
+                        access.packed ? "packed " : "", name(access.addressing), access.view ? " view" : "",
+                        access.shifted ? " shifted" : "", access.strided ? " strided" : "",
+                        access.nearby ? " nearby" : "", access.filtered ? " filtered" : "",
+                        access.fitted ? " fitted" : "", name(access.storage));
   }
   return text;
 }
@@ -208,9 +211,12 @@ class KernelText {
       case Role::Output: defineOutput(parameter); break;
       case Role::Gather:
         defineGather(
-            program_, [&](int components) { return domain_.seenPosition(components); }, parameter, access,
-            sharesTexels(parameter, access) ? &domain_ : nullptr);
-        defineExtent(program_, parameter);
+            program_,
+            [&](int components) {
+              return access.local ? domain_.position(components) : domain_.seenPosition(components);
+            },
+            parameter, access, sharesTexels(parameter, access) ? &domain_ : nullptr);
+        defineExtent(program_, parameter, access.local ? "whole" : "shape");
         break;
       case Role::Iterator:
         arguments_.push_back({iteratorValue(program_, parameter, access, domain_.seenIndex())});
@@ -263,11 +269,13 @@ class KernelText {
     arguments_.push_back({name, true});
   }
 
-  /// Whether a gather has the domain's texel layout, so that neighbours are found by texels.
+  /// Whether a gather has the domain's texel layout, so that neighbours are found by texels. Local gathers have whole texels
+  /// between the domain's first element and their own.
   bool sharesTexels(const Parameter& gather, const StreamAccess& access) const {
     constexpr int farthest = 4;  // a gather of rank 2 then reaches 27 texels
+    const bool isElsewhere = !access.local && (variant_.domainView || variant_.domainPlaced);
     if (gather.reach > farthest || !variant_.domainPacked || !access.packed || !access.nearby ||
-        access.view || variant_.domainView || variant_.domainPlaced) {
+        access.view || isElsewhere) {
       return false;
     }
     const bool isRow = variant_.domain == Domain::Linear && variant_.domainRank == 1 && gather.rank == 1;

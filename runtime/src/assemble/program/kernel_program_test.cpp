@@ -320,6 +320,38 @@ TEST_CASE("a dispatched stencil fetches each texel once for its work group") {
   CHECK(kernelProgram(glsl, sample.kernel(), variant).find("sk_tile_a") == std::string::npos);
 }
 
+TEST_CASE("a local gather reads its neighbours as in a stream that is not placed") {
+  const auto programOf = [](const Profile& profile, bool isPacked, Variant variant, StreamAccess gather) {
+    const samples::EveryAccess sample(samples::floatElement, "-1.0", 2, Boundary::Border, 1);
+    gather.addressing = Addressing::Plane;
+    gather.nearby = true;
+    variant.domainPacked = gather.packed = isPacked;
+    variant.access = {{}, {}, gather, {}, {}};
+    return kernelProgram(profile, sample.kernel(), variant);
+  };
+  const Variant placed{.domainPlaced = true, .access = {}},
+      view{.domainView = true, .domainPlaced = true, .access = {}};
+  const StreamAccess local{.local = true}, shifted{.local = true, .shifted = true};
+  for (const bool isPacked : {false, true}) {
+    const std::string plain = programOf(glsl, isPacked, {}, {}),
+                      here = programOf(glsl, isPacked, placed, local);
+    CHECK(definition(here, "float sk_near_a") == definition(plain, "float sk_near_a"));
+    CHECK(definition(here, "ivec4 sk_extent_a()") == "ivec4 sk_extent_a() {\n  return sk_whole_a;\n}\n");
+    CHECK(definition(here, "ivec4 sk_extent_r()") == "ivec4 sk_extent_r() {\n  return sk_domain_whole;\n}\n");
+  }
+  CHECK(definition(programOf(glsl, true, placed, local), "vec4 sk_texel_at_a") ==
+        definition(programOf(glsl, true, {}, {}), "vec4 sk_texel_at_a"));
+  CHECK(definition(programOf(glsl, false, placed, shifted), "float sk_near_a")
+            .find("ivec2 sk_p = (ivec2(gl_FragCoord.xy) + sk_low_a.xy) + sk_d;") != std::string::npos);
+  CHECK(definition(programOf(glsl, true, view, shifted), "vec4 sk_texel_at_a")
+            .find("ivec2 sk_p = ((ivec2(gl_FragCoord.xy) - (sk_domain_origin.xy >> ivec2(2, 0))) + "
+                  "(sk_low_a.xy >> ivec2(2, 0))) + sk_d;") != std::string::npos);
+  const Profile& compute = *findProfile("glsl430");
+  CHECK(programOf(compute, true, view, shifted).find("shared vec4 sk_tile_a[18][10];") != std::string::npos);
+  CHECK(programOf(compute, true, placed, {.placed = true}).find("sk_tile_a") == std::string::npos);
+  CHECK(programOf(compute, true, placed, {}).find("sk_tile_a") == std::string::npos);
+}
+
 TEST_CASE("the vertex program needs no data") {
   CHECK(vertexProgram(glsl) == R"(#version 330 core
 void main() {

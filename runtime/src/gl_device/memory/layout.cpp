@@ -106,6 +106,19 @@ assemble::RegionLayout gatherLayout(const assemble::RegionLayout& region, const 
   return gather;
 }
 
+assemble::RegionLayout localLayout(const assemble::RegionLayout& region, const Placement& placement,
+                                   const Index& domain) {
+  assemble::RegionLayout gather = region;
+  gather.placed = gather.local = true;
+  gather.place.whole = xFirst(placement.whole);
+  const assemble::Index4 first = xFirst(domain), origin = xFirst(placement.origin);
+  for (int d = 0; d < placement.origin.rank(); ++d) {
+    const auto axis = static_cast<std::size_t>(d);
+    gather.place.low[axis] = first[axis] - origin[axis];
+  }
+  return gather;
+}
+
 Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits, bool packed) {
   if (shape.rank() == 0) {
     throw Error("a stream needs a shape of 1 to 4 dimensions", Error::Kind::Shape);

@@ -42,6 +42,10 @@ assemble::RegionLayout partOf(const assemble::RegionLayout& region, int rank, co
 assemble::RegionLayout gatherLayout(const assemble::RegionLayout& region, const Placement& placement,
                                     program::Boundary boundary);
 
+/// The same region as a local gather of a domain whose first element has the index `domain` in the whole.
+assemble::RegionLayout localLayout(const assemble::RegionLayout& region, const Placement& placement,
+                                   const Index& domain);
+
 /// The extents of a shape, x first; missing dimensions are 1.
 assemble::Index4 xFirst(const Shape& shape);
 /// An index, x first; missing dimensions are 0.

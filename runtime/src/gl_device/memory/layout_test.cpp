@@ -212,3 +212,14 @@ TEST_CASE("a gather of a part of a whole has the whole's extents, and wraps from
   CHECK(wrapped.place.low == Index4{-4, -2, 0, 0});
   CHECK(wrapped.place.high == Index4{4, 4, 1, 1});
 }
+
+TEST_CASE("a local gather keeps the part's extents, and knows where in it the domain begins") {
+  const RegionLayout held = layoutOf({6, 8}, {64, 256}).whole;
+  const RegionLayout local = sk::localLayout(held, {{-2, 100}, {50, 104}}, {3, 100});
+  CHECK(local.placed);
+  CHECK(local.local);
+  CHECK(local.extent == held.extent);
+  CHECK(local.origin == held.origin);
+  CHECK(local.place.low == Index4{0, 5, 0, 0});
+  CHECK(local.place.whole == Index4{104, 50, 1, 1});
+}

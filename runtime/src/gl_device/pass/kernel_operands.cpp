@@ -3,6 +3,7 @@
 
 #include "assemble/assemble.hpp"
 #include "call/check_argument.hpp"
+#include "call/placed.hpp"
 #include "device/region.hpp"
 #include "gl_device/gl_stream.hpp"
 
@@ -128,12 +129,30 @@ Operand KernelOperands::operandOf(std::size_t i) const {
   Operand operand = regionOperand(argument, shape_);
   assemble::RegionLayout& layout = operand.regionLayout;
   if (parameter.role == Role::Gather && sk::isPlaced(argument.region)) {
-    layout = gatherLayout(layout, argument.region.placement, parameter.boundary);
+    layout = placedLayout(i, layout);
   } else if (parameter.role == Role::Input && isPlaced()) {
     layout.placed = true;
     layout.place.whole = xFirst(seenShape(argument.region));
   }
   return operand;
+}
+
+/// The layout of a placed gather: local if that reads the same, and texels hold the same elements as the domain's.
+RegionLayout KernelOperands::placedLayout(std::size_t gather, const RegionLayout& region) const {
+  const Placement& placement = arguments_[gather].region.placement;
+  if (isPlaced()) {
+    Box box = boxOrAll(box_, shape_);
+    for (int d = 0; d < box.begin.rank(); ++d) {
+      box.begin[d] += place_.origin[d];
+      box.end[d] += place_.origin[d];
+    }
+    if (isReadAsHeld({kernel_, arguments_, {}, specs_, place_.whole, plan_}, gather, box)) {
+      const RegionLayout local = localLayout(region, placement, place_.origin);
+      const bool arePacked = domain_.packed && region.packed;
+      if (!arePacked || local.place.low[0] % assemble::lanes == 0) return local;
+    }
+  }
+  return gatherLayout(region, placement, kernel_.parameters[gather].boundary);
 }
 
 }  // namespace sk

@@ -59,6 +59,7 @@ class KernelOperands {
   bool mayWritePacked() const;
   bool needsUnpacked(std::size_t i) const;
   Operand operandOf(std::size_t i) const;
+  assemble::RegionLayout placedLayout(std::size_t gather, const assemble::RegionLayout& region) const;
   bool isPlaced() const { return place_.whole.rank() != 0; }
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
   bool isOutput(std::size_t i) const {

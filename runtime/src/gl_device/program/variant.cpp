@@ -49,8 +49,10 @@ bool isNearby(const Parameter& gather, const RegionLayout& regionLayout, const R
     return false;
   }
   const assemble::Index4& seen = domain.placed ? domain.place.whole : domain.extent;
+  // a local gather holds the current element if the whole has it
+  const assemble::Index4& gathered = regionLayout.local ? regionLayout.place.whole : regionLayout.extent;
   for (std::size_t d = 0; d < gather.rank; ++d) {
-    if (gather.reach >= regionLayout.extent[d] || seen[d] > regionLayout.extent[d]) {
+    if (gather.reach >= regionLayout.extent[d] || seen[d] > gathered[d]) {
       return false;
     }
   }
@@ -77,7 +79,10 @@ StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, co
   access.packed = regionLayout.packed;
   access.fitted = operand.fitted;
   access.strided = regionLayout.strided;
-  access.placed = parameter.role == Role::Gather && regionLayout.placed;
+  const bool isPlacedGather = parameter.role == Role::Gather && regionLayout.placed;
+  access.placed = isPlacedGather && !regionLayout.local;
+  access.local = isPlacedGather && regionLayout.local;
+  access.shifted = access.local && regionLayout.place.low != assemble::Index4{};
   access.view = access.fitted || access.strided || access.placed || regionLayout.origin != assemble::Index4{};
   access.nearby = parameter.role == Role::Gather && isNearby(parameter, regionLayout, domain);
   access.filtered = parameter.role == Role::Gather && operand.storage < Storage::Extended &&
@@ -131,6 +136,12 @@ std::uint64_t domainBits(const RegionLayout& domain, const Task& task) {
 std::uint64_t choiceBits(const StreamAccess& access) {
   if (access.fitted) return 2;
   return std::uint64_t{access.view} | std::uint64_t{access.nearby} << 1;
+}
+
+/// How a gather belongs to a whole.
+std::uint64_t placeBits(const RegionLayout& gather) {
+  const bool isShifted = gather.local && gather.place.low != assemble::Index4{};
+  return std::uint64_t{gather.placed} | std::uint64_t{gather.local} << 1 | std::uint64_t{isShifted} << 2;
 }
 
 /// Variant::domainEven, which matters only for kernels with loops. The passes of a list draw the list's
@@ -316,7 +327,7 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
   if (!isPlaced) return key;
   bits.add(1 | std::uint64_t{domain.placed} << 1, 4);
   for (std::size_t i = 0; i < operands.size(); ++i) {
-    if (kernel.parameters[i].role == Role::Gather) bits.add(operands[i].regionLayout.placed, 4);
+    if (kernel.parameters[i].role == Role::Gather) bits.add(placeBits(operands[i].regionLayout), 4);
   }
   return key;
 }

@@ -82,6 +82,8 @@ TEST_CASE("views, repeats and linearised streams are told apart, each with a key
   placedDomain.place = {{100, 200, 0, 0}, {}, {1000, 1000, 1, 1}};
   const RegionLayout placedGather =
       gatherLayout(whole(plane), {{200, 100}, {1000, 1000}}, program::Boundary::Clamp);
+  const RegionLayout localGather = localLayout(whole(plane), {{200, 100}, {1000, 1000}}, {200, 100});
+  const RegionLayout shiftedGather = localLayout(whole(plane), {{199, 100}, {1000, 1000}}, {200, 100});
   const std::vector<Chosen> all{
       choose(whole(plane), whole(plane), whole(plane)),
       choose(region(plane, {1, 1}, {4, 4}), whole(plane), region(plane, {2, 2}, {4, 4})),
@@ -109,6 +111,8 @@ TEST_CASE("views, repeats and linearised streams are told apart, each with a key
       choose(whole(plane), whole(plane), placedDomain),
       choose(whole(plane), placedGather, placedDomain),
       choose(whole(plane), placedGather, whole(plane)),
+      choose(whole(plane), localGather, placedDomain),
+      choose(whole(plane), shiftedGather, placedDomain),
   };
   CHECK(all[10].variant.access[1].strided);
   CHECK(all[11].variant.access[1].addressing == Addressing::Rows);
@@ -123,6 +127,14 @@ TEST_CASE("views, repeats and linearised streams are told apart, each with a key
   CHECK(all[24].variant.access[2].placed);
   CHECK(all[24].variant.access[2].nearby);
   CHECK_FALSE(all[25].variant.domainPlaced);
+  for (const std::size_t number : {std::size_t{26}, std::size_t{27}}) {
+    const assemble::StreamAccess& access = all[number].variant.access[2];
+    CHECK(access.local);
+    CHECK_FALSE(access.placed);
+    CHECK_FALSE(access.view);
+    CHECK(access.nearby);
+    CHECK(access.shifted == (number == 27));
+  }
   CHECK(all[1].variant.domainView);
   CHECK(all[1].variant.access[1].addressing == Addressing::Plane);
   CHECK(all[1].variant.access[1].view);
@@ -168,6 +180,16 @@ TEST_CASE("a gather is near only where one step always brings its index back") {
   CHECK(choose(whole({3, 3}), whole({3, 3}), whole({3, 3})).variant.access[2].nearby);
   CHECK_FALSE(choose(whole({2, 9}), whole({2, 9}), whole({2, 9})).variant.access[2].nearby);
   CHECK_FALSE(choose(whole({8, 9}), whole({8, 8}), whole({8, 9})).variant.access[2].nearby);
+  RegionLayout part = whole({8, 9});
+  part.placed = true;
+  part.place.whole = {90, 80, 1, 1};
+  const auto isNearby = [&](const Shape& held) {
+    return choose(whole({8, 9}), localLayout(whole(held), {{3, 0}, {80, 90}}, {4, 0}), part)
+        .variant.access[2]
+        .nearby;
+  };
+  CHECK(isNearby({3, 90}));  // the calls that take a local gather compute elements that it holds
+  CHECK_FALSE(isNearby({2, 90}));
 }
 
 TEST_CASE("the device's filter reads whole textures of floats that it can filter, at edges that it knows") {
