@@ -193,7 +193,7 @@ struct Parameter {
   /// Gathers of declared kernels: at least one for each dimension, x first. If Spec parameters count, there may be several,
   /// of which the farthest holds. Empty if nothing is known, as in code that an older skc has generated.
   std::span<const Reach> halo = {};
-  /// Bit p is set if `halo` holds only for calls that give parameter p the domain's extents.
+  /// Bit p is set if what `halo` says without a promise holds only for calls that give parameter p the domain's extents.
   std::uint64_t haloShapes = 0;
 };
 
