@@ -91,18 +91,29 @@ bool isInFrame(const StreamRegion& region, const StreamRegion& frame, bool mayRe
   return true;
 }
 
+/// How far a gather is read along dimension d, if that is known. Of variants of a kernel, only the greatest distance of a
+/// neighbor is.
+std::optional<HaloLimits> limitsOf(const ResolvedCall& call, std::size_t gather, int d) {
+  const Parameter& parameter = call.kernel.parameters[gather];
+  const StreamRegion& region = call.arguments[gather].region;
+  if (parameter.halo.empty()) {
+    const bool isNear = parameter.reach >= 0 && !parameter.usesAt && !parameter.usesSample;
+    if (!isNear || seenShape(region) != call.domain) return std::nullopt;
+    return HaloLimits{parameter.reach, parameter.reach};
+  }
+  return haloLimits(call.kernel, call.arguments, gather, d, call.specs, call.domain);
+}
+
 /// Whether boundary modes at the ends of what a gather holds give what those at the ends of the whole give, for elements
 /// of the box.
 bool hasSameBorders(const ResolvedCall& call, std::size_t gather, const Box& box) {
   const Parameter& parameter = call.kernel.parameters[gather];
   const StreamRegion& region = call.arguments[gather].region;
-  const int rank = region.shape.rank();
-  for (int d = 0; d < rank; ++d) {
+  for (int d = 0; d < region.shape.rank(); ++d) {
     const IndexRange held = heldIn(region, d);
     const std::int64_t n = seenShape(region)[d], length = held.end - held.begin;
     if (held.begin == 0 && length == n) continue;
-    const std::optional<HaloLimits> limits =
-        haloLimits(call.kernel, call.arguments, gather, d, call.specs, call.domain);
+    const std::optional<HaloLimits> limits = limitsOf(call, gather, d);
     if (!limits || limits->below > length || limits->above > length) return false;
     const bool wraps = parameter.boundary == Boundary::Wrap;
     const std::int64_t first = wraps ? held.begin : std::max<std::int64_t>(held.begin, 0);

@@ -169,7 +169,11 @@ TEST_CASE("a gather that is read elsewhere, or whose promise may be broken, is n
   CHECK_FALSE(isLocal([](Parameter& gather) { gather.usesAt = true; }));
   CHECK_FALSE(isLocal([](Parameter& gather) { gather.usesSample = true; }));
   CHECK_FALSE(isLocal([](Parameter& gather) { gather.reach = -1; }));
-  CHECK_FALSE(isLocal([](Parameter& gather) { gather.halo = {}; }));
+  CHECK(isLocal([](Parameter& gather) {  // as in a variant of a kernel
+    gather.halo = {};
+    gather.reach = 1;
+  }));
+  CHECK_FALSE(isLocal([](Parameter& gather) { gather.halo = {}; }));  // the halo has one row above
 }
 
 }  // namespace sk
