@@ -73,12 +73,9 @@ void simulate(examples::Application& app, const examples::Scene& scene, const Se
     ranks.refuseSeveral("--window", "start it without mpirun, or make a film with --output");
     return examples::runLive(scene, app.device());
   }
-  const std::unique_ptr<examples::DividedGrid> divided =
-      app.ranks().divide(app.device(), examples::shapeOf(scene.model.grid), examples::Ends::Joined);
-  std::optional<sk::Device> own;
-  const examples::Space space =
-      divided ? examples::Space(*divided)
-              : examples::Space(own.emplace(app.device()), examples::shapeOf(scene.model.grid));
+  const examples::OwnedSpace owned(app.ranks(), app.device(), examples::shapeOf(scene.model.grid),
+                                   examples::Ends::Joined);
+  const examples::Space& space = owned.get();
   sk::Device& device = space.device();
   examples::Lattice lattice(space, scene.model);
   examples::writeInitial(scene.model, scene.initial, lattice);

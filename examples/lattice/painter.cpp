@@ -51,17 +51,6 @@ GridStream<float>& Painter::shown(Lattice& lattice) {
   return lattice.stream(Field::Temperature);
 }
 
-/// All elements of a field on this device; on ranks other than the first, nothing.
-const sk::Stream<float>& Painter::whole(const GridStream<float>& field) {
-  if (!field.isDivided()) return field.whole();
-  const std::vector<double> values = field.readReals();
-  gathered_ = {};
-  if (values.empty()) return gathered_;
-  gathered_ = device_.stream<float>(shapeOf(scene_.model.grid), field.storage());
-  gathered_.writeReals(values);
-  return gathered_;
-}
-
 Painter::Values Painter::range(const GridStream<float>& field) const {
   const auto [least, most, total, broken] = lattice::observe(field);
   Values v{scene_.view.low.value_or(least), scene_.view.high.value_or(most)};
@@ -97,7 +86,7 @@ Image Painter::plot(Lattice& lattice) {
   constexpr int finer = 2;  // rays for each pixel, in each direction: surfaces have edges
   const GridStream<float>& field = shown(lattice);
   last_ = range(field);
-  const sk::Stream<float>& cells = whole(field);
+  const sk::Stream<float>& cells = gathered_.of(field, device_);
   if (!cells) return {};
   const bool isSpace = scene_.view.shown == Shown::Bubbles;
   const auto colour = isSpace ? bubbles(cells, last_, finer) : plane(cells, last_);

@@ -38,7 +38,6 @@ class Painter {
     double low, high;
   };
   GridStream<float>& shown(Lattice& lattice);
-  const sk::Stream<float>& whole(const GridStream<float>& field);
   Values range(const GridStream<float>& field) const;
   sk::Stream<sk::float3> plane(const sk::Stream<float>& field, Values values);
   sk::Stream<sk::float3> bubbles(const sk::Stream<float>& temperature, Values values, int finer);
@@ -48,7 +47,7 @@ class Painter {
   std::vector<sk::float3> colours_;
   sk::Stream<sk::float3> palette_;
   std::optional<GridStream<float>> derived_;
-  sk::Stream<float> gathered_;
+  Gathered<float> gathered_;
   std::optional<sk::Stream<sk::float3>> seen_;
   Values last_ = {0.0, 1.0};
 };

@@ -8,9 +8,9 @@ namespace linear {
 ChebyshevSteps::ChebyshevSteps(sk::Device& device, Matrix& matrix, std::span<const double> inverseDiagonal,
                                const ChebyshevSettings& settings, const Arithmetic& arithmetic)
     : matrix_(matrix),
-      inverse_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
-      change_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
-      product_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
+      inverse_(matrix.space(device).stream<float>(arithmetic.vectors)),
+      change_(matrix.space(device).stream<float>(arithmetic.vectors)),
+      product_(matrix.space(device).stream<float>(arithmetic.vectors)),
       options_(arithmetic.options()),
       steps_(settings.steps),
       middle_(0.5 * (settings.high + settings.low)),

@@ -30,20 +30,31 @@ void removeMean(Vector& u) {
 
 class Cycles : public Preconditioner {
  public:
-  Cycles(sk::Device& device, std::unique_ptr<Hierarchy> hierarchy, const Arithmetic& arithmetic,
+  Cycles(std::unique_ptr<Hierarchy> hierarchy, const Arithmetic& arithmetic,
          const MultigridSettings& settings)
-      : device_(device),
-        hierarchy_(std::move(hierarchy)),
+      : hierarchy_(std::move(hierarchy)),
         arithmetic_(arithmetic),
         options_(arithmetic.options()),
         foldOptions_(arithmetic.foldOptions()),
         settings_(settings) {
     for (std::size_t at = 0; at < hierarchy_->size(); ++at)
-      levels_.push_back({vector(at), vector(at), vector(at)});
+      levels_.push_back({vector(at), vector(at), vector(at), {}});
+    for (std::size_t at = 1; at < levels_.size(); ++at) {
+      if (levels_[at - 1].u.isDivided() && !levels_[at].u.isDivided())
+        levels_[at].divided =
+            hierarchy_->space(at - 1).resized(hierarchy_->grid(at)).stream<float>(arithmetic_.vectors);
+    }
   }
 
   void apply(const Vector& r, Vector& z, Vector& rz) override {
-    begin(0, r, z);
+    Level& finest = levels_[0];
+    if (r.isDivided() && !finest.u.isDivided()) {
+      r.copyTo(finest.b);
+      begin(0, finest.b, finest.u);
+      finest.u.copyTo(z);
+    } else {
+      begin(0, r, z);
+    }
     dot.with(foldOptions_)(r, z, rz);
   }
 
@@ -57,11 +68,10 @@ class Cycles : public Preconditioner {
  private:
   struct Level {
     Vector u, b, r;
+    Vector divided;  ///< what is restricted to it, if the finer grid is divided and this one is not
   };
 
-  Vector vector(std::size_t at) const {
-    return device_.stream<float>(hierarchy_->grid(at), arithmetic_.vectors);
-  }
+  Vector vector(std::size_t at) const { return hierarchy_->space(at).stream<float>(arithmetic_.vectors); }
 
   bool isCoarsest(std::size_t at) const { return at + 1 == hierarchy_->size(); }
 
@@ -78,7 +88,8 @@ class Cycles : public Preconditioner {
     smooth(at, b, u, settings_.before, false, isZero);
     Level& coarse = levels_[at + 1];
     hierarchy_->residual(at, b, u, levels_[at].r);
-    hierarchy_->restrictTo(at, levels_[at].r, coarse.b);
+    hierarchy_->restrictTo(at, levels_[at].r, coarse.divided ? coarse.divided : coarse.b);
+    if (coarse.divided) coarse.divided.copyTo(coarse.b);
     cycle(at + 1, coarse.b, coarse.u, kind, true);
     if (kind == Cycle::W) cycle(at + 1, coarse.b, coarse.u, Cycle::W, false);
     if (kind == Cycle::F) cycle(at + 1, coarse.b, coarse.u, Cycle::V, false);
@@ -90,7 +101,8 @@ class Cycles : public Preconditioner {
   void nest(std::size_t at, const Vector& b, Vector& u) {
     if (isCoarsest(at)) return hierarchy_->solveCoarsest(b, u);
     Level& coarse = levels_[at + 1];
-    hierarchy_->restrictLoad(at, b, coarse.b);
+    hierarchy_->restrictLoad(at, b, coarse.divided ? coarse.divided : coarse.b);
+    if (coarse.divided) coarse.divided.copyTo(coarse.b);
     // A cycle on this grid overwrites the right-hand sides of the coarser ones, which are no longer needed by then.
     nest(at + 1, coarse.b, coarse.u);
     hierarchy_->interpolate(at, coarse.u, u);
@@ -106,7 +118,7 @@ class Cycles : public Preconditioner {
   double rateOf(std::size_t at) {
     constexpr int cycles = 10, settled = 4;
     Vector u = vector(at), zero = vector(at), r = vector(at), z = vector(at);
-    Vector squares = device_.stream<float>({1}, arithmetic_.sums());
+    Vector squares = hierarchy_->space(at).device().stream<float>({1}, arithmetic_.sums());
     u.writeReals(noise(u.size()));
     zero.fill(0.0f);
     std::vector<double> norms;
@@ -131,7 +143,6 @@ class Cycles : public Preconditioner {
     return std::pow(norms[last] / norms[first], 1.0 / static_cast<double>(last - first));
   }
 
-  sk::Device& device_;
   std::unique_ptr<Hierarchy> hierarchy_;
   Arithmetic arithmetic_;
   sk::CallOptions options_, foldOptions_;
@@ -146,9 +157,18 @@ sk::Shape shapeOf(std::span<const std::int64_t> extents) {
   return {extents[0], extents[1], extents[2]};
 }
 
-std::unique_ptr<Preconditioner> makeCycles(sk::Device& device, std::unique_ptr<Hierarchy> hierarchy,
-                                           const Arithmetic& arithmetic, const MultigridSettings& settings) {
-  return std::make_unique<Cycles>(device, std::move(hierarchy), arithmetic, settings);
+Space coarserSpace(const Space& finer, const sk::Shape& grid) {
+  if (!finer.isDivided()) return finer.resized(grid);
+  return finestSpace(finer.resized(grid));
+}
+
+Space finestSpace(const Space& space) {
+  return space.isDivided() && space.thinnest() < thinnestPart ? space.undivided() : space;
+}
+
+std::unique_ptr<Preconditioner> makeCycles(std::unique_ptr<Hierarchy> hierarchy, const Arithmetic& arithmetic,
+                                           const MultigridSettings& settings) {
+  return std::make_unique<Cycles>(std::move(hierarchy), arithmetic, settings);
 }
 
 }  // namespace linear

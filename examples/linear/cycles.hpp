@@ -38,13 +38,22 @@ inline constexpr double strongCoupling = 0.25;
 /// The shape with these extents, two or three.
 sk::Shape shapeOf(std::span<const std::int64_t> extents);
 
-/// Grids, 0 being the finest, their matrices, and the transfers between neighbours. Vectors have the shape of their grid.
+/// Where the vectors of a grid are that follows one in `finer`: divided alike, if no part is thinner than `thinnestPart` elements; else every rank has all of them.
+Space coarserSpace(const Space& finer, const sk::Shape& grid);
+/// The space itself, or, if it is divided in thinner parts, one that every rank has for itself.
+Space finestSpace(const Space& space);
+inline constexpr std::int64_t thinnestPart = 8;
+
+/// Grids, 0 being the finest, their matrices, and the transfers between neighbours. Vectors have the shape of their grid. Grids may be divided over ranks, but none whose finer
+/// neighbour is not: restrictions from a divided grid write a divided vector in any case.
 class Hierarchy {
  public:
   virtual ~Hierarchy() = default;
 
   virtual std::size_t size() const = 0;
-  virtual sk::Shape grid(std::size_t at) const = 0;
+  /// Where the vectors of a grid are.
+  virtual Space space(std::size_t at) const = 0;
+  sk::Shape grid(std::size_t at) const { return space(at).shape(); }
   /// Whether constants are in the kernel of every matrix.
   virtual bool hasConstantKernel() const = 0;
 
@@ -66,7 +75,7 @@ class Hierarchy {
 };
 
 /// One cycle for z = A^-1 r, from z = 0.
-std::unique_ptr<Preconditioner> makeCycles(sk::Device& device, std::unique_ptr<Hierarchy> hierarchy,
-                                           const Arithmetic& arithmetic, const MultigridSettings& settings);
+std::unique_ptr<Preconditioner> makeCycles(std::unique_ptr<Hierarchy> hierarchy, const Arithmetic& arithmetic,
+                                           const MultigridSettings& settings);
 
 }  // namespace linear

@@ -12,9 +12,6 @@ namespace linear {
 
 namespace {
 
-/// Elements of grids that are not made coarser. Errors that are constant where a coefficient is large, and that a coarser grid cannot show, would hardly decrease.
-constexpr std::int64_t solvedDirectly = 400;
-
 /// Coarse elements that may have a weight for a fine one.
 struct Candidates {
   std::array<std::int64_t, 8> coarse;

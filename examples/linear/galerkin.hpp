@@ -11,6 +11,9 @@
 
 namespace linear {
 
+/// Elements of grids that are not made coarser. Errors that are constant where a coefficient is large, and that a coarser grid cannot show, would hardly decrease.
+inline constexpr std::int64_t solvedDirectly = 400;
+
 /// A grid of every `step`-th element, from `first` on, of each dimension, and its interpolation.
 struct Coarsening {
   sk::Shape coarse;

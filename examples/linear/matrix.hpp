@@ -8,11 +8,15 @@
 
 #include <sk/sk.hpp>
 
+#include "support/grid_stream.hpp"
+
 namespace linear {
 
 struct SparseMatrix;
 
-using Vector = sk::Stream<float>;
+/// On a device, or divided over ranks.
+using Vector = examples::GridStream<float>;
+using examples::Space;
 
 /// What numbers are computed in and stored as. The defaults are floats, with compensated sums.
 struct Arithmetic {
@@ -43,6 +47,8 @@ class Matrix {
   /// The shapes of x and y in y = A x.
   virtual sk::Shape domain() const = 0;
   virtual sk::Shape range() const { return domain(); }
+  /// Where vectors of the domain are. A matrix that is divided over ranks says so; others are on `device`.
+  virtual Space space(sk::Device& device) const { return {device, domain()}; }
 
   /// y = A x. x and y are different streams.
   virtual void multiply(const Vector& x, Vector& y) = 0;

@@ -33,14 +33,16 @@ std::string smallerLayout(const System& system, const MemoryChoices& choices, st
 }  // namespace
 
 MemoryNeed memoryNeed(const System& system, const MemoryChoices& choices, bool hasDoubles) {
-  const auto unknowns = static_cast<double>(system.matrix().size);
+  const auto devices = static_cast<double>(choices.devices);
+  const auto unknowns = static_cast<double>(system.matrix().size) / devices;
   const double vector = unknowns * static_cast<double>(bytesOf(choices.arithmetic.vectors));
   // Copies of the matrix, or of a part of it, are in compressed rows.
   const double copy =
-      static_cast<double>(system.entries() * (bytesOf(choices.arithmetic.matrix) + 4)) + 4.0 * unknowns;
+      static_cast<double>(system.entries() * (bytesOf(choices.arithmetic.matrix) + 4)) / devices +
+      4.0 * unknowns;
   const int basis = choices.method.hasBasis ? choices.restart : 0;
   constexpr int residualVectors = 5;
-  return {.matrix = system.matrixBytes(choices.layout, bytesOf(choices.arithmetic.matrix)),
+  return {.matrix = system.matrixBytes(choices.layout, bytesOf(choices.arithmetic.matrix)) / choices.devices,
           .method = rounded((choices.method.vectors + basis) * vector),
           .preconditioner =
               rounded(choices.preconditioner.vectors * vector + choices.preconditioner.matrices * copy),

@@ -21,9 +21,10 @@ struct MemoryChoices {
   std::string_view layout;
   const Arithmetic& arithmetic;
   int restart = 30;  ///< of gmres
+  int devices = 1;  ///< that share all of it alike
 };
 
-/// Bytes on a device.
+/// Bytes on each device.
 struct MemoryNeed {
   std::int64_t matrix = 0;  ///< for "auto", of the smallest layout that suits it
   std::int64_t method = 0;

@@ -56,8 +56,21 @@ std::int64_t Method::advance(std::int64_t every, std::int64_t most) {
 }
 
 std::int64_t Method::repeat(std::int64_t every, std::int64_t most) {
+  if (isDivided()) return repeatAtOnce(most);
   if (!loop_) loop_ = device_.record([&] { iterate(); });
   return loop_.until(done_, {.every = every, .most = most});
+}
+
+/// What a loop does, call by call. The sums of all ranks have passed through the host, so that asking it after each iteration costs little.
+std::int64_t Method::repeatAtOnce(std::int64_t most) {
+  std::int64_t ran = 0;
+  bool isDone = false;
+  while (ran < most && !isDone) {
+    iterate();
+    ++ran;
+    isDone = done_.read()[0] != 0;
+  }
+  return ran;
 }
 
 State Method::state() const { return static_cast<State>(state_.read()[0]); }

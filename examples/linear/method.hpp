@@ -53,7 +53,7 @@ class Method {
  protected:
   Method(sk::Device& device, Matrix& matrix, Preconditioner* preconditioner, const Arithmetic& arithmetic);
 
-  Vector vector() const { return device_.stream<float>(matrix_.domain(), arithmetic_.vectors); }
+  Vector vector() const { return matrix_.space(device_).stream<float>(arithmetic_.vectors); }
   Vector sum() const { return device_.stream<float>({1}, arithmetic_.sums()); }
   /// z = M r and rz = r . z, where there is a preconditioner; z = r otherwise.
   void precondition(const Vector& r, Vector& z, Vector& rz);
@@ -61,6 +61,8 @@ class Method {
   /// Computes everything that an iteration needs, from r_, with x_ = 0.
   virtual void start() = 0;
   virtual void iterate() = 0;
+  /// Whether calls must run at once: they exchange elements between ranks, which no loop records.
+  bool isDivided() const { return r_.isDivided(); }
   /// Whether something happens between two calls of advance().
   virtual bool hasCycles() const { return false; }
 
@@ -76,6 +78,7 @@ class Method {
 
  private:
   std::int64_t repeat(std::int64_t every, std::int64_t most);
+  std::int64_t repeatAtOnce(std::int64_t most);
 
   sk::Loop loop_;
 };

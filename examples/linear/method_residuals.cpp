@@ -139,7 +139,9 @@ class GeneralizedMinimalResiduals : public Method {
 
   std::int64_t advance(std::int64_t, std::int64_t most) override {
     steps_.fill(0);
-    if (most < restart_) {
+    if (isDivided()) {
+      cycle(static_cast<int>(std::min<std::int64_t>(most, restart_)));
+    } else if (most < restart_) {
       device_.record([&] { cycle(static_cast<int>(most)); }).repeat(1);
     } else {
       if (!cycle_) cycle_ = device_.record([&] { iterate(); });

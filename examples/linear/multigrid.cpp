@@ -60,11 +60,16 @@ std::vector<double> inverseOf(const Stencil& a) {
 
 /// A grid of the hierarchy.
 struct Level {
-  explicit Level(const Stencil& a)
-      : stencil(a), coefficients(kernelCoefficients(a)), low(kernelEnds(a).low), high(kernelEnds(a).high) {}
+  Level(const Space& where, const Stencil& a)
+      : space(where),
+        stencil(a),
+        coefficients(kernelCoefficients(a)),
+        low(kernelEnds(a).low),
+        high(kernelEnds(a).high) {}
 
   bool isPlane() const { return stencil.grid.rank() == 2; }
 
+  Space space;
   Stencil stencil;
   sk::float4 coefficients, low, high;
   /// Axes, 0 being the fastest, along which the next grid has fewer elements, and solutions that have been interpolated along some of them.
@@ -79,22 +84,22 @@ std::int64_t extentAlong(const sk::Shape& shape, std::size_t axis) {
 class StencilHierarchy : public Hierarchy {
  public:
   /// `isNested` if solutions are interpolated, too.
-  StencilHierarchy(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic, bool isNested)
+  StencilHierarchy(const Space& space, const Stencil& a, const Arithmetic& arithmetic, bool isNested)
       : options_(arithmetic.options()) {
-    levels_.emplace_back(a);
+    levels_.emplace_back(finestSpace(space), a);
     while (true) {
       const Stencil coarse = coarsened(levels_.back().stencil);
       if (coarse.grid == levels_.back().stencil.grid) break;
-      if (isNested) prepareInterpolation(device, levels_.back(), coarse.grid, arithmetic.vectors);
-      levels_.emplace_back(coarse);
+      if (isNested) prepareInterpolation(levels_.back(), coarse.grid, arithmetic.vectors);
+      levels_.emplace_back(coarserSpace(levels_.back().space, coarse.grid), coarse);
     }
     const Stencil& coarsest = levels_.back().stencil;
-    inverse_ = device.stream<float>({coarsest.size(), coarsest.size()}, arithmetic.vectors);
+    inverse_ = space.device().stream<float>({coarsest.size(), coarsest.size()}, arithmetic.vectors);
     inverse_.writeReals(inverseOf(coarsest));
   }
 
   std::size_t size() const override { return levels_.size(); }
-  sk::Shape grid(std::size_t at) const override { return levels_[at].stencil.grid; }
+  Space space(std::size_t at) const override { return levels_[at].space; }
   bool hasConstantKernel() const override { return linear::hasConstantKernel(levels_[0].stencil); }
 
   /// Red-black sweeps; reversed ones take the colours in the opposite order.
@@ -150,19 +155,14 @@ class StencilHierarchy : public Hierarchy {
     for (std::size_t i = 0; i < level.halved.size(); ++i) {
       const std::size_t axis = level.halved[i];
       Vector& to = i + 1 == level.halved.size() ? u : level.between[i];
-      const std::int64_t n = extentAlong(to.shape(), axis), nc = extentAlong(from->shape(), axis);
-      std::int64_t inner = 1;
-      for (std::size_t faster = 0; faster < axis; ++faster) inner *= extentAlong(to.shape(), faster);
-      const std::int64_t outer = to.size() / (inner * n);
       const auto end = [&](const sk::float4& ends) {
         return axis == 0 ? ends.x : axis == 1 ? ends.y : ends.z;
       };
       const float low = end(level.low), high = end(level.high);
-      if (axis == 0)
-        cubicAlongRows.with(options_)(low, high, from->reshape({outer, nc}), to.reshape({outer, n}));
+      if (level.isPlane())
+        cubic2.with(options_)(static_cast<int>(axis), low, high, *from, to);
       else
-        cubicAcrossRows.with(options_)(low, high, from->reshape({outer, nc, inner}),
-                                       to.reshape({outer, n, inner}));
+        cubic3.with(options_)(static_cast<int>(axis), low, high, *from, to);
       from = &to;
     }
   }
@@ -173,8 +173,7 @@ class StencilHierarchy : public Hierarchy {
   }
 
  private:
-  static void prepareInterpolation(sk::Device& device, Level& fine, const sk::Shape& coarse,
-                                   sk::Storage storage) {
+  static void prepareInterpolation(Level& fine, const sk::Shape& coarse, sk::Storage storage) {
     const auto rank = static_cast<std::size_t>(coarse.rank());
     std::array<std::int64_t, 3> extents{};
     for (std::size_t d = 0; d < rank; ++d) extents[d] = coarse[static_cast<int>(d)];
@@ -184,7 +183,8 @@ class StencilHierarchy : public Hierarchy {
       fine.halved.push_back(axis);
       extents[rank - 1 - axis] = n;
       const sk::Shape shape = shapeOf(std::span(extents).first(rank));
-      if (shape != fine.stencil.grid) fine.between.push_back(device.stream<float>(shape, storage));
+      if (shape != fine.stencil.grid)
+        fine.between.push_back(fine.space.resized(shape).stream<float>(storage));
     }
   }
 
@@ -216,21 +216,20 @@ Stencil coarsened(const Stencil& a) {
   return coarse;
 }
 
-std::unique_ptr<Hierarchy> makeHierarchy(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic,
+std::unique_ptr<Hierarchy> makeHierarchy(const Space& space, const Stencil& a, const Arithmetic& arithmetic,
                                          bool isNested) {
   if (a.centre == 0.0) throw std::runtime_error("multigrid divides by the stencil's centre, which is 0");
   for (int d = 0; d < a.grid.rank(); ++d)
     if (a.grid[d] > 0x7fff)
       throw std::runtime_error(
           fmt::format("multigrid takes grids of up to 32767 elements along a dimension, not {}", a.grid[d]));
-  return std::make_unique<StencilHierarchy>(device, a, arithmetic, isNested);
+  return std::make_unique<StencilHierarchy>(space, a, arithmetic, isNested);
 }
 
-std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const Stencil& a,
+std::unique_ptr<Preconditioner> makeMultigrid(const Space& space, const Stencil& a,
                                               const Arithmetic& arithmetic,
                                               const MultigridSettings& settings) {
-  return makeCycles(device, makeHierarchy(device, a, arithmetic, settings.cycle == Cycle::Full), arithmetic,
-                    settings);
+  return makeCycles(makeHierarchy(space, a, arithmetic, settings.cycle == Cycle::Full), arithmetic, settings);
 }
 
 }  // namespace linear

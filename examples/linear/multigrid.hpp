@@ -13,14 +13,23 @@
 namespace linear {
 
 /// Grids whose stencils are discretised anew, coarser by coarser, for a matrix as the device has it. Solutions can be interpolated if `isNested`, cubically.
-std::unique_ptr<Hierarchy> makeHierarchy(sk::Device& device, const Stencil& a, const Arithmetic& arithmetic,
+std::unique_ptr<Hierarchy> makeHierarchy(const Space& space, const Stencil& a, const Arithmetic& arithmetic,
                                          bool isNested);
+inline std::unique_ptr<Hierarchy> makeHierarchy(sk::Device& device, const Stencil& a,
+                                                const Arithmetic& arithmetic, bool isNested) {
+  return makeHierarchy(Space(device, a.grid), a, arithmetic, isNested);
+}
 
 /// One cycle for z = A^-1 r, from z = 0, on these grids. Throws std::runtime_error if its centre is 0, or
 /// an extent is 2^15 or more.
-std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const Stencil& a,
+std::unique_ptr<Preconditioner> makeMultigrid(const Space& space, const Stencil& a,
                                               const Arithmetic& arithmetic,
                                               const MultigridSettings& settings);
+inline std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const Stencil& a,
+                                                     const Arithmetic& arithmetic,
+                                                     const MultigridSettings& settings) {
+  return makeMultigrid(Space(device, a.grid), a, arithmetic, settings);
+}
 
 /// The stencil for a grid with half the elements along each dimension that has more than three, and whose coefficient is at least a quarter of
 /// the largest of these (semi-coarsening; Trottenberg et al., section 5.1): coefficients go with the square of the distance between elements.

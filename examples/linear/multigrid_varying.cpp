@@ -45,24 +45,26 @@ sk::int4 reversed(const GridOffset& v, int rank) {
 
 class VaryingHierarchy : public Hierarchy {
  public:
-  VaryingHierarchy(sk::Device& device, const VaryingStencil& a, const Arithmetic& arithmetic)
+  VaryingHierarchy(const Space& space, const VaryingStencil& a, const Arithmetic& arithmetic)
       : options_(arithmetic.options()), hasConstantKernel_(linear::hasConstantKernel(a)) {
     // Entries of coarser grids become smaller, and those of jumping coefficients differ by more than halves can.
     const sk::Storage storage =
         arithmetic.matrix == sk::Storage::Half ? sk::Storage::Single : arithmetic.matrix;
     VaryingStencil coarse = a;
+    Space where = a.size() <= solvedDirectly ? space.undivided() : finestSpace(space);
     while (true) {
       const Coarsening c = coarsening(coarse);
-      levels_.push_back(levelOf(device, coarse, c, storage));
+      levels_.push_back(levelOf(where, coarse, c, storage));
       if (c.coarse == coarse.grid) break;
       coarse = galerkin(coarse, c);
+      where = spaceAfter(where, coarse.grid);
     }
-    inverse_ = device.stream<float>({coarse.size(), coarse.size()}, storage);
+    inverse_ = space.device().stream<float>({coarse.size(), coarse.size()}, storage);
     inverse_.writeReals(symmetricInverse(coarse, hasConstantKernel_));
   }
 
   std::size_t size() const override { return levels_.size(); }
-  sk::Shape grid(std::size_t at) const override { return levels_[at].grid; }
+  Space space(std::size_t at) const override { return levels_[at].space; }
   bool hasConstantKernel() const override { return hasConstantKernel_; }
 
   void smooth(std::size_t at, const Vector& b, Vector& u, int sweeps, bool isReversed, bool isZero) override {
@@ -122,7 +124,9 @@ class VaryingHierarchy : public Hierarchy {
 
  private:
   struct Level {
-    sk::Shape grid;
+    explicit Level(const Space& where) : space(where) {}
+
+    Space space;
     int count = 0;
     std::array<float, steps> factors{};
     Vector entries;
@@ -130,25 +134,27 @@ class VaryingHierarchy : public Hierarchy {
     sk::int4 first, step, isPeriodic;
     float share = 1.0f;
 
-    bool isPlane() const { return grid.rank() == 2; }
+    bool isPlane() const { return space.shape().rank() == 2; }
   };
 
-  static Level levelOf(sk::Device& device, const VaryingStencil& a, const Coarsening& c,
+  static Space spaceAfter(const Space& finer, const sk::Shape& grid) {
+    return grid.size() <= solvedDirectly ? Space(finer.device(), grid) : coarserSpace(finer, grid);
+  }
+
+  static Level levelOf(const Space& space, const VaryingStencil& a, const Coarsening& c,
                        sk::Storage storage) {
     const int rank = a.grid.rank();
-    Level level;
-    level.grid = a.grid;
+    Level level(space);
     level.count = a.count();
     level.factors = sweepFactors(a);
-    level.entries = entriesOf(device, a, storage);
+    level.entries = entriesOf(space, a, storage);
     level.first = reversed(c.first, rank);
     level.step = reversed(c.step, rank);
     level.isPeriodic = reversed({a.isPeriodic[0], a.isPeriodic[1], a.isPeriodic[2]}, rank);
     level.share = 1.0f / static_cast<float>(c.share());
     if (!c.weight.empty()) {
-      level.weights = device.stream<float>(rank == 2 ? sk::Shape{9, c.coarse[0], c.coarse[1]}
-                                                     : sk::Shape{27, c.coarse[0], c.coarse[1], c.coarse[2]},
-                                           storage);
+      level.weights =
+          spaceAfter(space, c.coarse).resized(stackOf(rank == 2 ? 9 : 27, c.coarse)).stream<float>(storage);
       level.weights.writeReals(c.weight);
     }
     return level;
@@ -162,15 +168,15 @@ class VaryingHierarchy : public Hierarchy {
 
 }  // namespace
 
-std::unique_ptr<Hierarchy> makeHierarchy(sk::Device& device, const VaryingStencil& a,
+std::unique_ptr<Hierarchy> makeHierarchy(const Space& space, const VaryingStencil& a,
                                          const Arithmetic& arithmetic) {
-  return std::make_unique<VaryingHierarchy>(device, a, arithmetic);
+  return std::make_unique<VaryingHierarchy>(space, a, arithmetic);
 }
 
-std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const VaryingStencil& a,
+std::unique_ptr<Preconditioner> makeMultigrid(const Space& space, const VaryingStencil& a,
                                               const Arithmetic& arithmetic,
                                               const MultigridSettings& settings) {
-  return makeCycles(device, makeHierarchy(device, a, arithmetic), arithmetic, settings);
+  return makeCycles(makeHierarchy(space, a, arithmetic), arithmetic, settings);
 }
 
 }  // namespace linear

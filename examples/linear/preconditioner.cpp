@@ -43,7 +43,7 @@ class Diagonal : public Preconditioner {
 
   Diagonal(const PreconditionerParts& parts, Entries entriesOf)
       : entriesOf_(entriesOf),
-        entries_(parts.device.stream<float>(parts.matrix.domain(), parts.arithmetic.vectors)),
+        entries_(parts.matrix.space(parts.device).stream<float>(parts.arithmetic.vectors)),
         foldOptions_(parts.arithmetic.foldOptions()) {
     update(parts.a);
   }
@@ -106,9 +106,10 @@ std::unique_ptr<Preconditioner> makeGeometric(const PreconditionerParts& parts) 
       .before = parts.settings.before,
       .after = parts.settings.after,
       .isSymmetric = cycle == Cycle::V && parts.settings.before == parts.settings.after};
+  const Space space = parts.matrix.space(parts.device);
   if (parts.a.varying != nullptr)
-    return makeMultigrid(parts.device, scaled(*parts.a.varying, parts.a.scale), parts.arithmetic, settings);
-  return makeMultigrid(parts.device, scaled(*parts.a.stencil, parts.a.scale), parts.arithmetic, settings);
+    return makeMultigrid(space, scaled(*parts.a.varying, parts.a.scale), parts.arithmetic, settings);
+  return makeMultigrid(space, scaled(*parts.a.stencil, parts.a.scale), parts.arithmetic, settings);
 }
 
 constexpr PreconditionerKind preconditioners[] = {
@@ -117,13 +118,14 @@ constexpr PreconditionerKind preconditioners[] = {
     {"spai0", "the best diagonal approximate inverse", true, false, makeSpai0, 1.0},
     {"chebyshev", "four of Chebyshev's iterations after Jacobi's scaling, for symmetric matrices", true, true,
      makeChebyshev, 3.0},
-    {"sor", "a sweep of over-relaxation, by groups of rows", false, false, makeSor, 5.0, 0.5},
-    {"ssor", "a sweep forwards and one backwards", true, false, makeSsor, 6.0, 1.0},
+    {"sor", "a sweep of over-relaxation, by groups of rows", false, false, makeSor, 5.0, 0.5, false},
+    {"ssor", "a sweep forwards and one backwards", true, false, makeSsor, 6.0, 1.0, false},
     {"ic0", "incomplete Cholesky factors on the matrix's own pattern", true, true, makeIncompleteCholesky,
-     6.0, 1.0},
-    {"ilu0", "incomplete LU factors on the matrix's own pattern", false, false, makeIncompleteLu, 6.0, 1.0},
+     6.0, 1.0, false},
+    {"ilu0", "incomplete LU factors on the matrix's own pattern", false, false, makeIncompleteLu, 6.0, 1.0,
+     false},
     {"aggregation", "a V-cycle of algebraic multigrid by smoothed aggregation, for symmetric matrices", true,
-     true, makeAggregation, 6.0, 0.8},
+     true, makeAggregation, 6.0, 0.8, false},
     {"multigrid", "a V-cycle of geometric multigrid, for grids", true, false, makeGeometric<Cycle::V>, 4.0},
     {"w-cycle", "a W-cycle of it", false, false, makeGeometric<Cycle::W>, 4.0},
     {"f-cycle", "an F-cycle of it", false, false, makeGeometric<Cycle::F>, 4.0},

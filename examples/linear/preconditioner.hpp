@@ -76,6 +76,7 @@ struct PreconditionerKind {
   std::unique_ptr<Preconditioner> (*create)(const PreconditionerParts& parts);
   /// What it allocates, for estimates of memory: in vectors, those of coarse levels included, and in matrices with as many entries as the matrix.
   double vectors = 0.0, matrices = 0.0;
+  bool isDivisible = true;  ///< whether it applies to vectors that are divided over ranks
 
   std::unique_ptr<Preconditioner> make(sk::Device& device, Matrix& matrix, const Operator& a,
                                        const Arithmetic& arithmetic,

@@ -123,10 +123,10 @@ class GridRelaxer : public Relaxer {
  public:
   GridRelaxer(sk::Device& device, Matrix& matrix, const Operator& a, const Arithmetic& arithmetic)
       : matrix_(matrix),
-        inverse_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
-        b_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
-        x_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
-        q_(device.stream<float>(matrix.domain(), arithmetic.vectors)),
+        inverse_(matrix.space(device).stream<float>(arithmetic.vectors)),
+        b_(matrix.space(device).stream<float>(arithmetic.vectors)),
+        x_(matrix.space(device).stream<float>(arithmetic.vectors)),
+        q_(matrix.space(device).stream<float>(arithmetic.vectors)),
         part_(device.stream<float>({1}, arithmetic.sums())),
         options_(arithmetic.options()),
         foldOptions_(arithmetic.foldOptions()) {
@@ -260,6 +260,11 @@ std::unique_ptr<Relaxer> makeRelaxer(sk::Device& device, Matrix& matrix, const O
   if (matrix.layout() == "stencil" &&
       (a.varying == nullptr || a.varying->count() == 2 * a.varying->grid.rank() + 1))
     return std::make_unique<GridRelaxer>(device, matrix, a, arithmetic);
+  if (matrix.space(device).isDivided())
+    throw std::runtime_error(
+        "on several processes, the solver 'sor' takes grids without entries for corners, whose elements have "
+        "two "
+        "colours; take another solver, or one process");
   const SparseMatrix scaledA = scaledMatrix(a);
   const Ordering ordering = colours(scaledA);
   return std::make_unique<RowsRelaxer>(device, permuted(scaledA, ordering), ordering, arithmetic);

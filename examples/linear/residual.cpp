@@ -33,13 +33,13 @@ std::vector<std::unique_ptr<Matrix>> exactMatrices(sk::Device& device, const Mat
   std::vector<std::unique_ptr<Matrix>> sum;
   if (matrix.layout() == "stencil" && a.varying != nullptr) {
     if (arithmetic.matrix != sk::Storage::Double)
-      sum.push_back(makeMatrix(device, scaled(*a.varying, a.scale), doubleArithmetic()));
+      sum.push_back(makeMatrix(matrix.space(device), scaled(*a.varying, a.scale), doubleArithmetic()));
     return sum;
   }
   if (matrix.layout() == "stencil") {
     Stencil left = scaled(*a.stencil, a.scale);
     for (int part = 0; part < 3; ++part) {
-      sum.push_back(makeMatrix(left, doubleArithmetic()));
+      sum.push_back(makeMatrix(matrix.space(device), left, doubleArithmetic()));
       const auto subtract = [](double& c) { c -= static_cast<double>(static_cast<float>(c)); };
       subtract(left.centre);
       std::ranges::for_each(left.along, subtract);
@@ -68,9 +68,9 @@ class DeviceResidual : public Residual {
         exact_(exactMatrices(device, matrix, a, arithmetic)),
         options_(doubleArithmetic().options()),
         foldOptions_(doubleArithmetic().foldOptions()) {
-    for (Vector* v : {&b_, &x_, &xNext_, &r_, &rNext_})
-      *v = device.stream<float>(matrix.domain(), sk::Storage::Double);
-    if (exact_.size() > 1) q_ = device.stream<float>(matrix.domain(), sk::Storage::Double);
+    const Space space = matrix.space(device);
+    for (Vector* v : {&b_, &x_, &xNext_, &r_, &rNext_}) *v = space.stream<float>(sk::Storage::Double);
+    if (exact_.size() > 1) q_ = space.stream<float>(sk::Storage::Double);
     for (Vector* v : {&rr_, &largestR_, &largestX_}) *v = device.stream<float>({1}, sk::Storage::Double);
   }
 
@@ -140,7 +140,9 @@ double largestOf(std::span<const double> v) {
 
 class HostResidual : public Residual {
  public:
-  explicit HostResidual(const Operator& a) : a_(a) {}
+  HostResidual(const Operator& a, const Space& space, sk::Storage storage) : a_(a) {
+    if (space.isDivided()) whole_ = space.undivided().stream<float>(storage);
+  }
 
   void update() override {}
 
@@ -152,7 +154,7 @@ class HostResidual : public Residual {
   }
 
   Norms attempt(const Vector& step, double scale) override {
-    next_ = step.readReals();
+    next_ = elementsOf(step);
     for (std::size_t i = 0; i < next_.size(); ++i) next_[i] = x_[i] + scale * next_[i];
     rNext_ = a_.multiply(next_);
     for (std::size_t i = 0; i < next_.size(); ++i) rNext_[i] = b_[i] - a_.scale * rNext_[i];
@@ -175,6 +177,12 @@ class HostResidual : public Residual {
   std::string_view place() const override { return "host"; }
 
  private:
+  /// On every rank.
+  std::vector<double> elementsOf(const Vector& v) {
+    if (!v.isDivided()) return v.readReals();
+    v.copyTo(whole_);
+    return whole_.readReals();
+  }
   static Norms norms(std::span<const double> r) {
     double sum = 0.0;
     for (const double v : r) sum += v * v;
@@ -182,6 +190,7 @@ class HostResidual : public Residual {
   }
 
   const Operator& a_;
+  Vector whole_;  ///< of vectors that are divided over ranks, all elements
   std::vector<double> b_, x_, r_, next_, rNext_;
 };
 
@@ -209,7 +218,7 @@ bool hasDoubles(sk::Device& device) {
 std::unique_ptr<Residual> makeResidual(sk::Device& device, Matrix& matrix, const Operator& a,
                                        const Arithmetic& arithmetic) {
   if (hasDoubles(device)) return std::make_unique<DeviceResidual>(device, matrix, a, arithmetic);
-  return std::make_unique<HostResidual>(a);
+  return std::make_unique<HostResidual>(a, matrix.space(device), arithmetic.vectors);
 }
 
 std::string asymmetryOnDevice(sk::Device& device, Matrix& matrix, const Operator& a,
@@ -218,7 +227,7 @@ std::string asymmetryOnDevice(sk::Device& device, Matrix& matrix, const Operator
   const bool isDouble = hasDoubles(device) && matrix.multipliesInDoubles();
   const Arithmetic in = isDouble ? doubleArithmetic() : arithmetic;
   Vector u, v, p, q;
-  for (Vector* w : {&u, &v, &p, &q}) *w = device.stream<float>(matrix.domain(), in.vectors);
+  for (Vector* w : {&u, &v, &p, &q}) *w = matrix.space(device).stream<float>(in.vectors);
   Vector sum = device.stream<float>({1}, in.sums());
   randomNumbers.with(in.options())(1, u);
   randomNumbers.with(in.options())(2, v);

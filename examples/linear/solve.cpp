@@ -67,7 +67,7 @@ class Refinement {
     solution_.backwardError = scale > 0.0 ? norms_.infinity / scale : 0.0;
     solution_.x = residual_.solution();
     for (double& v : solution_.x) v = std::ldexp(v * a_.scale, exponent);
-    if (isProjected) {
+    if (isProjected && !solution_.x.empty()) {
       const double mean = meanOf(solution_.x);
       for (double& v : solution_.x) v -= mean;
     }

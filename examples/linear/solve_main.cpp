@@ -26,6 +26,7 @@
 #include "solve.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
+#include "support/join_ranks.hpp"
 #include "support/progress.hpp"
 #include "support/stopwatch.hpp"
 #include "support/text_file.hpp"
@@ -176,6 +177,26 @@ void checkSymmetry(sk::Device& device, linear::Matrix& matrix, const linear::Ari
                   preconditioner.name, asymmetry));
 }
 
+/// Several processes divide a grid.
+void checkDivisible(const examples::Ranks& ranks, const linear::Operator& a,
+                    const linear::PreconditionerKind& preconditioner) {
+  if (!a.isGrid())
+    ranks.refuseSeveral("a matrix of a file",
+                        "its rows read any element of a vector; start it without mpirun");
+  if (!preconditioner.isDivisible)
+    ranks.refuseSeveral(
+        fmt::format("the preconditioner '{}'", preconditioner.name),
+        "it takes rows one after the other; take multigrid, chebyshev or jacobi, or start it without "
+        "mpirun");
+}
+
+void writeFiles(const Settings& s, const linear::Account& account, const linear::Solution& solution) {
+  if (!s.solution.empty()) linear::writeMarketVector(s.solution, solution.x);
+  if (!s.svg.empty())
+    examples::writeFile(s.svg, linear::svgChart(solution.history, s.solve.tolerance, account.system));
+  if (!s.json.empty()) examples::writeFile(s.json, linear::jsonOf(account, solution));
+}
+
 void solveSystem(examples::Application& app, Settings& s) {
   const linear::Arithmetic arithmetic{
       .precision = chosen(precisions, s.precision, "precision"),
@@ -193,8 +214,13 @@ void solveSystem(examples::Application& app, Settings& s) {
     fmt::print(stderr, "solve: warning: {} entries are given several times, and were added up\n",
                system.duplicates());
 
-  sk::Device device(app.device());
-  if (s.studyOption->count() > 0 && a.size > 0) {
+  const bool isStudy = s.studyOption->count() > 0;
+  if (isStudy) app.ranks().refuseSeveral("--study", "start it without mpirun");
+  checkDivisible(app.ranks(), a, preconditionerKind);
+  const examples::OwnedSpace owned(app.ranks(), app.device(), system.shape(), examples::Ends::Joined);
+  const examples::Space& space = owned.get();
+  sk::Device& device = space.device();
+  if (isStudy && a.size > 0) {
     const examples::Stopwatch watch;
     const std::string table =
         linear::studyPrecisions(device, system, {methodKind, preconditionerKind, s.layout, s.solve});
@@ -209,9 +235,11 @@ void solveSystem(examples::Application& app, Settings& s) {
   account.device = device.name();
   linear::Solution solution;
   if (a.size > 0) {
-    linear::checkMemory(device, system, {methodKind, preconditionerKind, s.layout, arithmetic, s.restart});
+    linear::checkMemory(
+        device, system,
+        {methodKind, preconditionerKind, s.layout, arithmetic, s.restart, app.ranks().count()});
     const std::unique_ptr<linear::Matrix> matrix =
-        system.makeMatrix(device, s.layout, arithmetic, &account.trials);
+        system.makeMatrix(space, s.layout, arithmetic, &account.trials);
     checkSymmetry(device, *matrix, arithmetic, methodKind, preconditionerKind, a);
     const std::unique_ptr<linear::Preconditioner> preconditioner = preconditionerKind.make(
         device, *matrix, a, arithmetic,
@@ -224,7 +252,7 @@ void solveSystem(examples::Application& app, Settings& s) {
     account.stored = matrix->stored();
     account.offsetBits = matrix->offsetBits();
     examples::Progress progress("solve", s.solve.most);
-    s.solve.progress = [&](std::int64_t done, double) { progress.update(done); };
+    if (space.isFirst()) s.solve.progress = [&](std::int64_t done, double) { progress.update(done); };
     solution = linear::solve(*method, a, system.rightHandSide(), arithmetic, s.solve);
     progress.clear();
     if (!s.json.empty() && preconditioner != nullptr) account.rates = preconditioner->rates();
@@ -234,13 +262,10 @@ void solveSystem(examples::Application& app, Settings& s) {
 
   app.report(
       fmt::format("{}, {} unknowns, {}", account.system, account.unknowns, linear::nameOf(solution.outcome)),
-      device.name(), solution.seconds * 1000.0);
+      examples::placeOf(app.ranks(), device.name()), solution.seconds * 1000.0);
   fmt::print("{}{}", linear::textOf(account, solution),
              linear::textChart(solution.history, s.solve.tolerance));
-  if (!s.solution.empty()) linear::writeMarketVector(s.solution, solution.x);
-  if (!s.svg.empty())
-    examples::writeFile(s.svg, linear::svgChart(solution.history, s.solve.tolerance, account.system));
-  if (!s.json.empty()) examples::writeFile(s.json, linear::jsonOf(account, solution));
+  if (space.isFirst()) writeFiles(s, account, solution);
   examples::Verification verification("||b - A x|| / ||b|| in double precision", s.solve.tolerance,
                                       "--tolerance");
   verification.note(0, solution.residualTrue);
@@ -261,10 +286,14 @@ void study(examples::Application& app, std::string_view name) {
 int main(int argc, char** argv) {
   Settings settings;
   examples::Application app("solve",
-                            "Solves systems of linear equations, and says what has really been reached.");
+                            "Solves systems of linear equations, and says what has really been reached.",
+                            examples::joinRanks());
   addOptions(app.options(), settings);
   return app.run(argc, argv, [&] {
-    if (settings.matrix.empty() && !settings.study.empty()) return study(app, settings.study);
+    if (settings.matrix.empty() && !settings.study.empty()) {
+      app.ranks().refuseSeveral("--study", "start it without mpirun");
+      return study(app, settings.study);
+    }
     if (settings.matrix.empty())
       throw std::runtime_error("no matrix is named; try poisson:256x256, or a Matrix Market file");
     try {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,15 +20,17 @@ namespace {
 /// What matrices that are not stored have in common.
 class UnstoredMatrix : public Matrix {
  public:
-  UnstoredMatrix(const Stencil& a, const Arithmetic& arithmetic)
-      : Matrix(arithmetic), grid_(a.grid), coefficients_(kernelCoefficients(a)) {}
+  UnstoredMatrix(std::optional<Space> space, const Stencil& a, const Arithmetic& arithmetic)
+      : Matrix(arithmetic), space_(std::move(space)), grid_(a.grid), coefficients_(kernelCoefficients(a)) {}
 
   sk::Shape domain() const override { return grid_; }
+  Space space(sk::Device& device) const override { return space_ ? *space_ : Matrix::space(device); }
   std::string layout() const override { return "stencil"; }
   std::int64_t stored() const override { return 0; }
   std::int64_t bytes() const override { return 0; }
 
  protected:
+  std::optional<Space> space_;
   sk::Shape grid_;
   sk::float4 coefficients_;
 };
@@ -66,8 +70,8 @@ class DirichletMatrix : public UnstoredMatrix {
 
 class EndedMatrix : public UnstoredMatrix {
  public:
-  EndedMatrix(const Stencil& a, const Arithmetic& arithmetic)
-      : UnstoredMatrix(a, arithmetic), ends_(kernelEnds(a)) {}
+  EndedMatrix(std::optional<Space> space, const Stencil& a, const Arithmetic& arithmetic)
+      : UnstoredMatrix(std::move(space), a, arithmetic), ends_(kernelEnds(a)) {}
 
   using Matrix::multiply;
   void multiply(const Vector& x, Vector& y) override {
@@ -80,6 +84,12 @@ class EndedMatrix : public UnstoredMatrix {
  private:
   KernelEnds ends_;
 };
+
+std::unique_ptr<Matrix> makeIn(const std::optional<Space>& space, const Stencil& a,
+                               const Arithmetic& arithmetic) {
+  if (!isDirichlet(a)) return std::make_unique<EndedMatrix>(space, a, arithmetic);
+  return std::make_unique<DirichletMatrix>(space, a, arithmetic);
+}
 
 }  // namespace
 
@@ -176,8 +186,11 @@ SparseMatrix assemble(const Stencil& a) {
 }
 
 std::unique_ptr<Matrix> makeMatrix(const Stencil& a, const Arithmetic& arithmetic) {
-  if (!isDirichlet(a)) return std::make_unique<EndedMatrix>(a, arithmetic);
-  return std::make_unique<DirichletMatrix>(a, arithmetic);
+  return makeIn(std::nullopt, a, arithmetic);
+}
+
+std::unique_ptr<Matrix> makeMatrix(const Space& space, const Stencil& a, const Arithmetic& arithmetic) {
+  return makeIn(space, a, arithmetic);
 }
 
 }  // namespace linear

@@ -92,5 +92,7 @@ void visitNeighbours(const Stencil& a, Visit&& visit) {
 std::vector<double> multiply(const Stencil& a, std::span<const double> x);
 SparseMatrix assemble(const Stencil& a);
 std::unique_ptr<Matrix> makeMatrix(const Stencil& a, const Arithmetic& arithmetic);
+/// For vectors in a space of the grid's shape, which may be divided over ranks.
+std::unique_ptr<Matrix> makeMatrix(const Space& space, const Stencil& a, const Arithmetic& arithmetic);
 
 }  // namespace linear

@@ -206,19 +206,36 @@ std::int64_t System::matrixBytes(std::string_view layout, std::int64_t entryByte
   return bytesOf(stencil_ ? assemble(*stencil_) : sparse_, layout, entryBytes);
 }
 
+sk::Shape System::shape() const {
+  if (stencil_) return stencil_->grid;
+  return varying_ ? varying_->grid : sk::Shape{operator_.size};
+}
+
 std::unique_ptr<Matrix> System::makeMatrix(sk::Device& device, std::string_view layout,
+                                           const Arithmetic& arithmetic,
+                                           std::vector<LayoutTrial>* trials) const {
+  return makeMatrix(Space(device, shape()), layout, arithmetic, trials);
+}
+
+std::unique_ptr<Matrix> System::makeMatrix(const Space& space, std::string_view layout,
                                            const Arithmetic& arithmetic,
                                            std::vector<LayoutTrial>* trials) const {
   const bool wantsStencil = layout == "stencil";
   if (stencil_ && (wantsStencil || layout == "auto"))
-    return linear::makeMatrix(scaled(*stencil_, operator_.scale), arithmetic);
+    return linear::makeMatrix(space, scaled(*stencil_, operator_.scale), arithmetic);
   if (varying_ && (wantsStencil || layout == "auto"))
-    return linear::makeMatrix(device, scaled(*varying_, operator_.scale), arithmetic);
+    return linear::makeMatrix(space, scaled(*varying_, operator_.scale), arithmetic);
   if (wantsStencil)
     throw std::runtime_error(
         "the layout 'stencil' is for matrices of grids, as 'poisson:512x512'; a file has other layouts");
+  if (space.isDivided())
+    throw std::runtime_error(
+        fmt::format("the layout '{}' is for one process, because rows read any element of a vector; take "
+                    "--layout stencil for "
+                    "a grid, or start it without mpirun",
+                    layout));
   const SparseMatrix sparse = scaled(stencil_ ? assemble(*stencil_) : sparse_, operator_.scale);
-  return linear::makeMatrix(device, sparse, layout, arithmetic, trials);
+  return linear::makeMatrix(space.device(), sparse, layout, arithmetic, trials);
 }
 
 }  // namespace linear

@@ -16,13 +16,15 @@ namespace {
 
 class VaryingMatrix : public Matrix {
  public:
-  VaryingMatrix(sk::Device& device, const VaryingStencil& a, const Arithmetic& arithmetic)
+  VaryingMatrix(const Space& space, const VaryingStencil& a, const Arithmetic& arithmetic)
       : Matrix(arithmetic),
+        space_(space),
         grid_(a.grid),
         count_(a.count()),
-        entries_(entriesOf(device, a, arithmetic.matrix)) {}
+        entries_(entriesOf(space, a, arithmetic.matrix)) {}
 
   sk::Shape domain() const override { return grid_; }
+  Space space(sk::Device&) const override { return space_; }
   std::string layout() const override { return "stencil"; }
   std::int64_t stored() const override { return count_ * grid_.size(); }
   std::int64_t bytes() const override { return stored() * entryBytes(); }
@@ -36,6 +38,7 @@ class VaryingMatrix : public Matrix {
   }
 
  private:
+  Space space_;
   sk::Shape grid_;
   int count_;
   Vector entries_;
@@ -186,11 +189,13 @@ SparseMatrix assemble(const VaryingStencil& a) {
   return assemble(a.size(), a.size(), entries);
 }
 
-Vector entriesOf(sk::Device& device, const VaryingStencil& a, sk::Storage storage) {
-  const std::int64_t count = a.count();
-  const sk::Shape shape = a.grid.rank() == 2 ? sk::Shape{count, a.grid[0], a.grid[1]}
-                                             : sk::Shape{count, a.grid[0], a.grid[1], a.grid[2]};
-  Vector entries = device.stream<float>(shape, storage);
+sk::Shape stackOf(std::int64_t count, const sk::Shape& grid) {
+  if (grid.rank() == 2) return {count, grid[0], grid[1]};
+  return {count, grid[0], grid[1], grid[2]};
+}
+
+Vector entriesOf(const Space& space, const VaryingStencil& a, sk::Storage storage) {
+  Vector entries = space.resized(stackOf(a.count(), a.grid)).stream<float>(storage);
   std::vector<double> value = a.value;
   for (std::int64_t i = 0; i < a.size(); ++i)
     for (std::size_t k = 1; k < a.offsets.size(); ++k) value[entryAt(a, 0, i)] += a.value[entryAt(a, k, i)];
@@ -198,9 +203,14 @@ Vector entriesOf(sk::Device& device, const VaryingStencil& a, sk::Storage storag
   return entries;
 }
 
+std::unique_ptr<Matrix> makeMatrix(const Space& space, const VaryingStencil& a,
+                                   const Arithmetic& arithmetic) {
+  return std::make_unique<VaryingMatrix>(space, a, arithmetic);
+}
+
 std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const VaryingStencil& a,
                                    const Arithmetic& arithmetic) {
-  return std::make_unique<VaryingMatrix>(device, a, arithmetic);
+  return makeMatrix(Space(device, a.grid), a, arithmetic);
 }
 
 }  // namespace linear

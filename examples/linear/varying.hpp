@@ -76,8 +76,12 @@ bool hasConstantKernel(const VaryingStencil& a);
 VaryingStencil scaled(VaryingStencil a, double scale);
 SparseMatrix assemble(const VaryingStencil& a);
 /// The layout "stencil": entries in the order of the grid, no indices.
+/// For vectors in a space of the grid's shape, which may be divided over ranks.
+std::unique_ptr<Matrix> makeMatrix(const Space& space, const VaryingStencil& a, const Arithmetic& arithmetic);
 std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const VaryingStencil& a, const Arithmetic& arithmetic);
 /// The entries as varying.sk has them, {count, grid}, with the sums of rows in place of the diagonal.
-Vector entriesOf(sk::Device& device, const VaryingStencil& a, sk::Storage storage);
+Vector entriesOf(const Space& space, const VaryingStencil& a, sk::Storage storage);
+/// The shape of a number of values for each element of a grid.
+sk::Shape stackOf(std::int64_t count, const sk::Shape& grid);
 
 }  // namespace linear

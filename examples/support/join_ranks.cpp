@@ -3,9 +3,13 @@
 // Implements Ranks by sk::mpi.
 #include "support/join_ranks.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <limits>
+#include <memory>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <sk/mpi.hpp>
@@ -16,25 +20,51 @@ namespace {
 template <class T>
 class MpiStream final : public DividedStream<T> {
  public:
-  explicit MpiStream(sk::DomainStream<T> stream) : stream_(std::move(stream)) {}
+  MpiStream(std::shared_ptr<sk::Domain> domain, sk::Storage storage)
+      : domain_(std::move(domain)), stream_(domain_->stream<T>(storage)) {}
   sk::StreamRegion region() const override { return stream_.region(); }
   void fill(const T& value) override { stream_.fill(value); }
   std::vector<T> gather() const override { return stream_.gather(); }
   void scatter(std::span<const T> elements) override { stream_.scatter(elements); }
   std::vector<double> gatherReals() const override { return stream_.gatherReals(); }
   void scatterReals(std::span<const double> components) override { stream_.scatterReals(components); }
+  void copyTo(DividedStream<T>& target) const override {
+    stream_.copyTo(dynamic_cast<MpiStream&>(target).stream_);
+  }
+  void copyTo(sk::Stream<T>& whole) const override { stream_.copyTo(whole); }
+  void copyFrom(const sk::Stream<T>& whole) override { stream_.copyFrom(whole); }
 
  private:
+  std::shared_ptr<sk::Domain> domain_;  ///< which the stream needs
   sk::DomainStream<T> stream_;
 };
 
 class MpiGrid final : public DividedGrid {
  public:
+  MpiGrid(std::shared_ptr<sk::Domain> domain, Ends ends) : domain_(std::move(domain)), ends_(ends) {}
   MpiGrid(const std::string& device, const sk::Shape& shape, Ends ends)
-      : domain_(MPI_COMM_WORLD, optionsOf(device, shape, ends)) {}
-  sk::Device& device() override { return domain_.device(); }
-  int rank() const override { return domain_.rank(); }
-  sk::Shape shape() const override { return domain_.shape(); }
+      : MpiGrid(std::make_shared<sk::Domain>(MPI_COMM_WORLD, optionsOf(device, shape, ends)), ends) {}
+  sk::Device& device() override { return domain_->device(); }
+  int rank() const override { return domain_->rank(); }
+  sk::Shape shape() const override { return domain_->shape(); }
+  std::unique_ptr<DividedGrid> resized(const sk::Shape& shape) override {
+    const sk::Index& split = domain_->split();
+    for (int d = 0; d < split.rank(); ++d) {  // d counts from the fastest dimension
+      const std::int64_t parts = split[split.rank() - 1 - d];
+      const std::int64_t extent = d < shape.rank() ? shape[shape.rank() - 1 - d] : 1;
+      if (extent < parts) return nullptr;
+    }
+    return std::make_unique<MpiGrid>(std::make_shared<sk::Domain>(*domain_, optionsOf("", shape, ends_)),
+                                     ends_);
+  }
+  std::int64_t thinnest() const override {
+    std::int64_t least = std::numeric_limits<std::int64_t>::max();
+    for (int d = 0; d < domain_->shape().rank(); ++d) {
+      if (domain_->split()[d] > 1 || domain_->ranks() == 1)
+        least = std::min(least, domain_->shape()[d] / domain_->split()[d]);
+    }
+    return least;
+  }
   void make(sk::Storage storage, std::unique_ptr<DividedStream<float>>& stream) override {
     fill(storage, stream);
   }
@@ -45,6 +75,9 @@ class MpiGrid final : public DividedGrid {
     fill(storage, stream);
   }
   void make(sk::Storage storage, std::unique_ptr<DividedStream<int>>& stream) override {
+    fill(storage, stream);
+  }
+  void make(sk::Storage storage, std::unique_ptr<DividedStream<std::int8_t>>& stream) override {
     fill(storage, stream);
   }
   void make(sk::Storage storage, std::unique_ptr<DividedStream<sk::double3>>& stream) override {
@@ -61,10 +94,11 @@ class MpiGrid final : public DividedGrid {
   }
   template <class T>
   void fill(sk::Storage storage, std::unique_ptr<DividedStream<T>>& stream) {
-    stream = std::make_unique<MpiStream<T>>(domain_.stream<T>(storage));
+    stream = std::make_unique<MpiStream<T>>(domain_, storage);
   }
 
-  sk::Domain domain_;
+  std::shared_ptr<sk::Domain> domain_;
+  Ends ends_;
 };
 
 class MpiRanks final : public Ranks {

@@ -28,6 +28,14 @@ void Ranks::refuseSeveral(std::string_view what, std::string_view instead) const
   throw std::runtime_error(fmt::format("{} needs one process, but there are {}; {}", what, count(), instead));
 }
 
+OwnedSpace::OwnedSpace(Ranks& ranks, const std::string& device, const sk::Shape& shape, Ends ends)
+    : divided_(shape.size() > 0 ? ranks.divide(device, shape, ends) : nullptr) {
+  if (divided_)
+    space_.emplace(*divided_);
+  else
+    space_.emplace(device_.emplace(device), shape);
+}
+
 std::string placeOf(const Ranks& ranks, std::string_view device) {
   if (ranks.count() == 1) return std::string(device);
   return fmt::format("{} ranks, each on {}", ranks.count(), device);

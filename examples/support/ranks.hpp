@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,7 +33,7 @@ class Ranks {
 
   /// Why a process is alone although a launcher has started several, and what to do about it.
   virtual std::string_view whyAlone() const { return "it computes in one process; start it without mpirun"; }
-  /// Divides a grid over the ranks. The device is that of --device. Null if there is nothing to divide it over.
+  /// Divides a grid, which has elements, over the ranks. The device is that of --device. Null if there is nothing to divide it over.
   virtual std::unique_ptr<DividedGrid> divide(const std::string& device, const sk::Shape& shape, Ends ends);
 
   /// Called once, at the end of the program, with the message that it ends with on this rank, or an empty text. Prints
@@ -41,6 +42,20 @@ class Ranks {
 
   /// Throws std::runtime_error if there are several ranks: `what` is for one. `instead` says what to do.
   void refuseSeveral(std::string_view what, std::string_view instead) const;
+};
+
+/// A grid's space, and what it is made of: the ranks' devices, or one device if this process is alone. The arguments are those of Ranks::divide().
+class OwnedSpace {
+ public:
+  OwnedSpace(Ranks& ranks, const std::string& device, const sk::Shape& shape, Ends ends);
+  OwnedSpace(const OwnedSpace&) = delete;
+  OwnedSpace& operator=(const OwnedSpace&) = delete;
+  const Space& get() const { return *space_; }
+
+ private:
+  std::unique_ptr<DividedGrid> divided_;
+  std::optional<sk::Device> device_;
+  std::optional<Space> space_;
 };
 
 /// "4 ranks, each on native", or the device's name alone.

@@ -76,6 +76,18 @@ std::vector<std::byte> bytesOfAll(const DomainState& domain, const StreamRegion&
 
 }  // namespace
 
+void detail::copyOwn(DomainStreamState* from, DomainStreamState* to) {
+  const DomainStreamState& source = liveStream(from, "copyTo");
+  DomainStreamState& target = liveStream(to, "copyTo");
+  if (source.domain != target.domain) {
+    throw Error(
+        "copyTo: the two streams are of different domains; create both by one sk::Domain, or copy through an "
+        "ordinary stream");
+  }
+  target.valid = {};
+  copy(source.part(source.domain->own), target.part(target.domain->own));
+}
+
 void detail::copyToWhole(DomainStreamState* stream, const StreamRegion& whole) {
   checkWhole(stream, whole, "copyTo");
   const DomainState& domain = *stream->domain;

@@ -26,7 +26,8 @@ class PressureMatrix : public linear::Matrix {
  public:
   PressureMatrix(const GridArguments& grid, const linear::Arithmetic& arithmetic)
       : Matrix(arithmetic), grid_(grid) {}
-  sk::Shape domain() const override { return grid_.shape; }
+  sk::Shape domain() const override { return grid_.space.shape(); }
+  linear::Space space(sk::Device&) const override { return grid_.space; }
   void multiply(const linear::Vector& x, linear::Vector& y) override {
     pressureProduct.with(options())(grid_.bounds, grid_.isSpace, grid_.box, grid_.faces, x, y);
   }
@@ -87,15 +88,22 @@ void visitEntries(const Model& m, const std::vector<std::int8_t>& cells, Visit&&
   });
 }
 
+/// A stream for each cell, or of one element.
+template <class T>
+examples::GridStream<T> cellStream(const linear::Space& space, bool hasCells) {
+  if (hasCells) return space.stream<T>();
+  return space.device().stream<T>({1, 1, 1});
+}
+
 }  // namespace
 
-GridArguments::GridArguments(sk::Device& device, const Model& model)
+GridArguments::GridArguments(const linear::Space& where, const Model& model)
     : bounds(static_cast<unsigned>(model.bounds())),
       isSpace(model.isSpace()),
       box(boxOf(model)),
-      shape(model.shape()),
-      cell(device.stream<std::int8_t>(bounds == Anywhere ? shape : sk::Shape{1, 1, 1})),
-      faces(device.stream<int>(cell.shape())) {
+      space(where),
+      cell(cellStream<std::int8_t>(where, bounds == Anywhere)),
+      faces(cellStream<int>(where, bounds == Anywhere)) {
   if (bounds != Anywhere) return;
   const std::vector<std::int8_t> cells = cellsOf(model);
   cell.write(cells);
@@ -161,37 +169,41 @@ linear::VaryingStencil pressureStencil(const Model& model, const std::vector<std
 /// Cycles for planes have two dimensions, and the flow's streams three.
 class PlaneMultigrid : public linear::Preconditioner {
  public:
-  PlaneMultigrid(sk::Device& device, const sk::Shape& grid, std::unique_ptr<linear::Preconditioner> cycle,
+  PlaneMultigrid(const linear::Space& plane, std::unique_ptr<linear::Preconditioner> cycle,
                  const linear::Arithmetic& arithmetic)
       : cycle_(std::move(cycle)),
-        r_(device.stream<float>(grid, arithmetic.vectors)),
-        z_(device.stream<float>(grid, arithmetic.vectors)) {}
+        r_(plane.stream<float>(arithmetic.vectors)),
+        z_(plane.stream<float>(arithmetic.vectors)),
+        options_(arithmetic.options()) {}
 
   void apply(const linear::Vector& r, linear::Vector& z, linear::Vector& rz) override {
-    r.reshape(r_.shape()).copyTo(r_.reshape(r_.shape()));
+    planeOf.with(options_)(r, r_);
     cycle_->apply(r_, z_, rz);
-    z_.reshape(z_.shape()).copyTo(z.reshape(z_.shape()));
+    layerOf.with(options_)(z_, z);
   }
 
  private:
   std::unique_ptr<linear::Preconditioner> cycle_;
   linear::Vector r_, z_;
+  sk::CallOptions options_;
 };
 
 }  // namespace
 
-std::unique_ptr<linear::Preconditioner> makePressureMultigrid(sk::Device& device, const Model& model,
+std::unique_ptr<linear::Preconditioner> makePressureMultigrid(const linear::Space& space, const Model& model,
                                                               const std::vector<std::int8_t>& cells,
                                                               const linear::Arithmetic& arithmetic) {
   const linear::VaryingStencil a = pressureStencil(model, cells);
-  std::unique_ptr<linear::Preconditioner> cycle = linear::makeMultigrid(device, a, arithmetic, {});
-  if (model.isSpace()) return cycle;
-  return std::make_unique<PlaneMultigrid>(device, a.grid, std::move(cycle), arithmetic);
+  if (model.isSpace()) return linear::makeMultigrid(space, a, arithmetic, {});
+  const linear::Space plane = space.resized(a.grid);
+  return std::make_unique<PlaneMultigrid>(plane, linear::makeMultigrid(plane, a, arithmetic, {}), arithmetic);
 }
 
-ViscousMatrix::ViscousMatrix(sk::Device& device, const GridArguments& grid, int axis,
-                             const linear::Arithmetic& arithmetic)
-    : Matrix(arithmetic), grid_(grid), axis_(axis), c_(device.stream<float>({1}, arithmetic.sums())) {}
+ViscousMatrix::ViscousMatrix(const GridArguments& grid, int axis, const linear::Arithmetic& arithmetic)
+    : Matrix(arithmetic),
+      grid_(grid),
+      axis_(axis),
+      c_(grid.space.device().stream<float>({1}, arithmetic.sums())) {}
 
 void ViscousMatrix::setCoefficient(double c) { c_.writeReals(std::array{c}); }
 

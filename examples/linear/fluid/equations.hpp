@@ -19,15 +19,16 @@ namespace fluid {
 
 /// A model's grid as kernels take it.
 struct GridArguments {
-  GridArguments(sk::Device& device, const Model& model);
+  /// In a space of the model's shape.
+  GridArguments(const linear::Space& where, const Model& model);
 
   unsigned bounds;
   bool isSpace;
   Box box;
-  sk::Shape shape;
+  linear::Space space;
   // Both streams have one element, which kernels do not read, if the model has no obstacles.
-  sk::Stream<std::int8_t> cell;
-  sk::Stream<int>
+  examples::GridStream<std::int8_t> cell;
+  examples::GridStream<int>
       faces;  ///< of fluid cells: two bits for the cell beyond each face, below and above along x, y and z
 };
 
@@ -39,7 +40,7 @@ linear::Operator pressureOperator(const Model& model, const std::vector<std::int
 
 /// A V-cycle for the same equations, with Galerkin's coarse grids: faces that are closed are coefficients of 0, and cells that are not fluid have no equations, so that obstacles of any
 /// shape need nothing else. The coarse grids are made on the host, once.
-std::unique_ptr<linear::Preconditioner> makePressureMultigrid(sk::Device& device, const Model& model,
+std::unique_ptr<linear::Preconditioner> makePressureMultigrid(const linear::Space& space, const Model& model,
                                                               const std::vector<std::int8_t>& cells,
                                                               const linear::Arithmetic& arithmetic);
 
@@ -47,12 +48,12 @@ std::unique_ptr<linear::Preconditioner> makePressureMultigrid(sk::Device& device
 class ViscousMatrix : public linear::Matrix {
  public:
   /// `grid` must outlive it.
-  ViscousMatrix(sk::Device& device, const GridArguments& grid, int axis,
-                const linear::Arithmetic& arithmetic);
+  ViscousMatrix(const GridArguments& grid, int axis, const linear::Arithmetic& arithmetic);
   /// c is viscosity times time step over the square of the spacing. Recorded loops follow it.
   void setCoefficient(double c);
 
-  sk::Shape domain() const override { return grid_.shape; }
+  sk::Shape domain() const override { return grid_.space.shape(); }
+  linear::Space space(sk::Device&) const override { return grid_.space; }
   using Matrix::multiply;
   void multiply(const linear::Vector& x, linear::Vector& y) override;
   std::string layout() const override { return "stencil"; }

@@ -30,9 +30,12 @@ sk::Storage storageFor(sk::Precision precision) {
   return sk::Storage::Single;
 }
 
-linear::Arithmetic arithmeticFor(sk::Precision precision) {
+linear::Arithmetic arithmeticFor(sk::Precision precision, bool isDivided) {
   const sk::Storage storage = storageFor(precision);
-  return {.precision = precision, .matrix = storage, .vectors = storage};
+  return {.precision = precision,
+          .matrix = storage,
+          .vectors = storage,
+          .accumulate = isDivided ? sk::Accumulate::Exact : sk::Accumulate::Default};
 }
 
 /// Calls f with the kernel of an axis.
@@ -83,14 +86,17 @@ Held heldBy(const Model& m) {
 }  // namespace
 
 Flow::Flow(sk::Device& device, const Model& model, const Triple& inside)
-    : device_(device),
-      model_(model),
-      arithmetic_(arithmeticFor(model.precision)),
+    : Flow(linear::Space(device, model.shape()), model, inside) {}
+
+Flow::Flow(const linear::Space& space, const Model& model, const Triple& inside)
+    : model_(model),
+      arithmetic_(arithmeticFor(model.precision, space.isDivided())),
       options_(arithmetic_.options()),
-      grid_(std::make_unique<GridArguments>(device, model_)),
+      grid_(std::make_unique<GridArguments>(space, model_)),
       inflow_(makeStream()) {
   if (const std::string wrong = contradiction(model); !wrong.empty())
     throw std::runtime_error(fmt::format("the flow {}", wrong));
+  sk::Device& device = space.device();
   const std::vector<std::int8_t> cells = cellsOf(model);
   fluid_ = fluidCells(cells);
   const bool hasStages = model.scheme == Scheme::Central;
@@ -106,7 +112,7 @@ Flow::Flow(sk::Device& device, const Model& model, const Triple& inside)
   }
   matrix_ = makePressureMatrix(*grid_, arithmetic_);
   if (model.projector == Projector::Multigrid) {
-    preconditioner_ = makePressureMultigrid(device, model, cells, arithmetic_);
+    preconditioner_ = makePressureMultigrid(space, model, cells, arithmetic_);
   } else {
     const auto& kind = linear::rowNamed(linear::preconditionerKinds(), "chebyshev", "preconditioner");
     preconditioner_ = kind.make(device, *matrix_, pressureOperator(model, cells), arithmetic_);
@@ -114,7 +120,7 @@ Flow::Flow(sk::Device& device, const Model& model, const Triple& inside)
   const auto& gradients = linear::rowNamed(linear::methodKinds(), "cg", "solver");
   method_ = gradients.make(device, *matrix_, preconditioner_.get(), arithmetic_);
 
-  const auto start = [&](std::optional<sk::Stream<float>>& stream, double value) {
+  const auto start = [&](std::optional<linear::Vector>& stream, double value) {
     stream.emplace(makeStream());
     stream->writeReals(std::vector<double>(cells.size(), value));
   };
@@ -136,17 +142,13 @@ Flow::Flow(sk::Device& device, const Model& model, const Triple& inside)
   if (model.viscosity && model.viscosity->isImplicit) {
     change_.emplace(makeStream());
     for (int axis = 0; axis < model.rank(); ++axis) {
-      viscous_.push_back(std::make_unique<ViscousMatrix>(device, *grid_, axis, arithmetic_));
+      viscous_.push_back(std::make_unique<ViscousMatrix>(*grid_, axis, arithmetic_));
       diffusion_.push_back(gradients.make(device, *viscous_.back(), nullptr, arithmetic_));
     }
   }
 }
 
-sk::Stream<float> Flow::makeStream() const {
-  return device_.stream<float>(grid_->shape, storageFor(model_.precision));
-}
-
-sk::Stream<float>& Flow::stream(Scalar scalar) {
+linear::Vector& Flow::stream(Scalar scalar) {
   auto& place = scalar == Scalar::Smoke ? smoke_ : heat_;
   if (!place)
     throw std::logic_error(scalar == Scalar::Smoke ? "the scene has no smoke" : "the scene has no heat");
@@ -167,10 +169,10 @@ int Flow::streams() const {
 
 // ---- a step ------------------------------------------------------------------------------------------------
 
-double Flow::surveyOne(const sk::Stream<float>& stream, const char* name) {
+double Flow::surveyOne(const linear::Vector& stream, const char* name) {
   const auto [most, broken] = survey.with(options_)(stream);
   if (broken == std::numeric_limits<int>::max()) return most;
-  const std::int64_t w = grid_->shape[2], h = grid_->shape[1];
+  const std::int64_t w = space().shape()[2], h = space().shape()[1];
   const std::int64_t x = broken % w, y = broken / w % h, z = broken / (w * h);
   const std::string cell =
       model_.isSpace() ? fmt::format("({}, {}, {})", x, y, z) : fmt::format("({}, {})", x, y);
@@ -215,6 +217,7 @@ Step Flow::step(double longest) {
   report.timeStep = std::min(chosenTimeStep(report.speed), longest);
   const double dt = report.timeStep;
   report.cfl = report.speed * dt / model_.spacing;
+  checkCarried(report.cfl);
   holdSources();
   const bool acts =
       model_.buoyancy || (model_.viscosity && !model_.viscosity->isImplicit) || model_.force != Triple{};
@@ -238,6 +241,14 @@ Step Flow::step(double longest) {
   return report;
 }
 
+void Flow::checkCarried(double cells) const {
+  if (!space().isDivided() || cells <= farthestCarried) return;
+  throw std::runtime_error(fmt::format(
+      "step {}: the velocity carries up to {:.3g} cells in a step, and a flow that is divided over "
+      "ranks at most {:g}; take a smaller time step, or one process",
+      steps_, cells, farthestCarried));
+}
+
 void Flow::holdSources() {
   if (heldSmoke_) hold.with(options_)(*sourceWeight_, *heldSmoke_, *smoke_, *smoke_);
   if (heldHeat_) hold.with(options_)(*sourceWeight_, *heldHeat_, *heat_, *heat_);
@@ -256,7 +267,7 @@ void Flow::transport(double dt) {
   std::swap(velocity_, next_);
 }
 
-void Flow::carryOne(int axis, double step, const sk::Stream<float>& from, sk::Stream<float>& to) {
+void Flow::carryOne(int axis, double step, const linear::Vector& from, linear::Vector& to) {
   const auto call = [&](const auto& f) {
     if (axis == 3)
       f(carry_3, correct_3);
@@ -315,7 +326,7 @@ void Flow::accelerate(double dt, bool convects, double keep) {
         isHeated && isUp ? sk::Optional<sk::In<float>>(*heat_) : sk::Optional<sk::In<float>>(sk::none);
     const auto smoke =
         isLaden && isUp ? sk::Optional<sk::In<float>>(*smoke_) : sk::Optional<sk::In<float>>(sk::none);
-    const sk::Stream<float>& base = keep != 0.0 ? begun_[at(axis)] : velocity_[at(axis)];
+    const linear::Vector& base = keep != 0.0 ? begun_[at(axis)] : velocity_[at(axis)];
     const auto call = [&](const auto& kernel) {
       kernel.with(options_)(grid_->bounds, grid_->isSpace, convects, isViscous, isHeated && isUp,
                             isLaden && isUp, grid_->box, m, grid_->cell, velocity_[at(axis)],
@@ -333,7 +344,7 @@ void Flow::diffuse(double dt, double speed) {
   m.viscosity = static_cast<float>(c);
   const double small = 0.1 * model_.tolerance * std::max(speed, 1e-30);
   for (int axis = 0; axis < model_.rank(); ++axis) {
-    sk::Stream<float>& v = velocity_[at(axis)];
+    linear::Vector& v = velocity_[at(axis)];
     const auto call = [&](const auto& kernel) {
       kernel.with(options_)(grid_->bounds, grid_->isSpace, false, true, false, false, grid_->box, m,
                             grid_->cell, v, sk::none, sk::none, sk::none, sk::none, v, *change_);
@@ -348,7 +359,7 @@ void Flow::diffuse(double dt, double speed) {
   }
 }
 
-void Flow::subtract(const sk::Stream<float>& q) {
+void Flow::subtract(const linear::Vector& q) {
   if (model_.isSpace())
     subtractSlopes.with(options_)(grid_->bounds, true, grid_->box, grid_->cell, q, velocity_[0], velocity_[1],
                                   velocity_[2], velocity_[0], velocity_[1], velocity_[2]);
@@ -369,7 +380,7 @@ void Flow::extendVelocity() {
   const auto isOpen = [](Side side) { return side == Side::Slip || side == Side::Outflow; };
   if (std::ranges::none_of(model_.sides, isOpen)) return;
   for (int axis = 0; axis < model_.rank(); ++axis) {
-    sk::Stream<float>& v = velocity_[at(axis)];
+    linear::Vector& v = velocity_[at(axis)];
     const auto call = [&](const auto& kernel) { kernel.with(options_)(grid_->box, v, v); };
     forAxis(axis, call, extend_0, extend_1, extend_2);
   }
@@ -408,36 +419,39 @@ Projection Flow::project(std::size_t stage, double speed) {
 
 // ---- what there is ------------------------------------------------------------------------------------------
 
-double Flow::divergence() {
-  sk::Stream<float> exact = device_.stream<float>(grid_->shape, sk::Storage::Double);
+std::vector<double> Flow::exactDivergence() {
+  linear::Vector exact = space().stream<float>(sk::Storage::Double);
   inflows.with(inDouble)(grid_->bounds, grid_->isSpace, grid_->box, grid_->cell, velocity_[0], velocity_[1],
                          along(2), exact);
+  return exact.readReals();
+}
+
+double Flow::divergence() {
   double most = 0.0;
-  for (const double d : exact.readReals()) most = std::max(most, std::abs(d));
+  for (const double d : exactDivergence()) most = std::max(most, std::abs(d));
   return most / model_.spacing;
 }
 
 double Flow::divergenceMean() {
-  sk::Stream<float> exact = device_.stream<float>(grid_->shape, sk::Storage::Double);
-  inflows.with(inDouble)(grid_->bounds, grid_->isSpace, grid_->box, grid_->cell, velocity_[0], velocity_[1],
-                         along(2), exact);
   double sum = 0.0;
-  for (const double d : exact.readReals()) sum += d * d;
+  for (const double d : exactDivergence()) sum += d * d;
   return std::sqrt(sum / static_cast<double>(fluid_));
 }
 
 double Flow::kineticEnergy() const {
   double sum = 0.0;
-  for (const sk::Stream<float>& v : velocity_) sum += sumOfSquares.with(options_)(v);
+  for (const linear::Vector& v : velocity_) sum += sumOfSquares.with(arithmetic_.foldOptions())(v);
   return 0.5 * sum * std::pow(model_.spacing, model_.rank());
 }
 
 double Flow::total(Scalar scalar) {
-  return fluid::total.with(options_)(stream(scalar)) * std::pow(model_.spacing, model_.rank());
+  return fluid::total.with(arithmetic_.foldOptions())(stream(scalar)) *
+         std::pow(model_.spacing, model_.rank());
 }
 
 std::pair<double, double> Flow::range(Scalar scalar) {
   const std::vector<double> all = values(scalar);
+  if (all.empty()) return {};
   const auto [low, high] = std::ranges::minmax_element(all);
   return {*low, *high};
 }

@@ -40,10 +40,16 @@ struct Step {
 
 enum class Scalar { Smoke, Heat };
 
+/// The largest Courant number of flows that are divided over ranks: how far kernels read, as transport.sk promises, follows from it.
+inline constexpr double farthestCarried = 4.0;
+
 class Flow {
  public:
   /// At rest but for what walls and inflows give, and `inside`. Throws std::runtime_error for a model with a contradiction.
   Flow(sk::Device& device, const Model& model, const Triple& inside = {});
+  /// The same in a space of the model's shape, which may be divided over ranks: then all functions are collective, the first rank gives and gets all
+  /// values and the others none, and sums are exact, so that no bit depends on the number of ranks.
+  Flow(const linear::Space& space, const Model& model, const Triple& inside = {});
 
   const Model& model() const { return model_; }
   double time() const { return time_; }
@@ -54,13 +60,14 @@ class Flow {
   void write(Scalar scalar, std::span<const double> values) { stream(scalar).writeReals(values); }
   std::vector<double> velocity(int axis) const { return velocity_[at(axis)].readReals(); }
   std::vector<double> values(Scalar scalar) { return stream(scalar).readReals(); }
-  const sk::Stream<float>& velocityStream(int axis) const { return velocity_[at(axis)]; }
+  const linear::Vector& velocityStream(int axis) const { return velocity_[at(axis)]; }
   /// Throws std::logic_error for a scalar that the model has not.
-  sk::Stream<float>& stream(Scalar scalar);
+  linear::Vector& stream(Scalar scalar);
 
   /// Makes the velocity that has been written free of divergence.
   Projection project() { return project(0, surveyed()); }
-  /// Throws std::runtime_error, "step N: u is not finite in cell (x, y)", before a step that would spread it. `longest` bounds the time step.
+  /// Throws std::runtime_error, "step N: u is not finite in cell (x, y)", before a step that would spread it, or, if the space is divided, that would carry something
+  /// farther than `farthestCarried` cells. `longest` bounds the time step.
   Step step(double longest = 1e300);
   /// Throws as step() does.
   void requireFinite() { surveyed(); }
@@ -73,39 +80,42 @@ class Flow {
   double total(Scalar scalar);  ///< times the volume of a cell
   std::pair<double, double> range(Scalar scalar);
   const GridArguments& grid() const { return *grid_; }
+  const linear::Space& space() const { return grid_->space; }
 
   int streams() const;
 
  private:
   static std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
-  sk::Stream<float> makeStream() const;
+  linear::Vector makeStream() const { return space().stream<float>(arithmetic_.vectors); }
+  /// The divergence in double precision, times the spacing.
+  std::vector<double> exactDivergence();
   sk::Optional<sk::In<float>> along(int axis) const;
   double surveyed();
-  double surveyOne(const sk::Stream<float>& stream, const char* name);
+  double surveyOne(const linear::Vector& stream, const char* name);
   double chosenTimeStep(double speed) const;
+  void checkCarried(double cells) const;
 
   void holdSources();
   void transport(double dt);
-  void carryOne(int axis, double step, const sk::Stream<float>& from, sk::Stream<float>& to);
+  void carryOne(int axis, double step, const linear::Vector& from, linear::Vector& to);
   void accelerate(double dt, bool convects, double keep);
   void diffuse(double dt, double speed);
   Projection project(std::size_t stage, double speed);
   std::pair<double, double> measureInflows();
-  void subtract(const sk::Stream<float>& q);
+  void subtract(const linear::Vector& q);
   void extendVelocity();
 
-  sk::Device& device_;
   Model model_;
   linear::Arithmetic arithmetic_;
   sk::CallOptions options_;
   std::unique_ptr<GridArguments> grid_;  ///< matrices refer to it, also after the flow has moved
   std::int64_t fluid_;
-  std::vector<sk::Stream<float>> velocity_, next_,
+  std::vector<linear::Vector> velocity_, next_,
       begun_;  ///< begun: the velocity before a step of two stages
-  std::optional<sk::Stream<float>> smoke_, heat_, heldSmoke_, heldHeat_, sourceWeight_;
-  std::optional<sk::Stream<float>> there_, back_, change_;
-  sk::Stream<float> inflow_;
-  std::vector<sk::Stream<float>> pressure_;  ///< of each stage
+  std::optional<linear::Vector> smoke_, heat_, heldSmoke_, heldHeat_, sourceWeight_;
+  std::optional<linear::Vector> there_, back_, change_;
+  linear::Vector inflow_;
+  std::vector<linear::Vector> pressure_;  ///< of each stage
   std::unique_ptr<linear::Matrix> matrix_;
   std::unique_ptr<linear::Preconditioner> preconditioner_;
   std::unique_ptr<linear::Method> method_;

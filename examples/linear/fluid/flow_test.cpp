@@ -164,7 +164,7 @@ TEST_CASE("the matrix of pressures is that of the host, symmetric and not negati
     const Model model = everything(isSpace);
     const std::vector<std::int8_t> cells = cellsOf(model);
     const linear::Operator o = pressureOperator(model, cells);
-    const GridArguments grid(device, model);
+    const GridArguments grid(linear::Space(device, model.shape()), model);
     const auto matrix = makePressureMatrix(grid, {});
     std::mt19937 random(3);
     const auto vector = [&] {
@@ -173,8 +173,8 @@ TEST_CASE("the matrix of pressures is that of the host, symmetric and not negati
       return v;
     };
     const std::vector<double> x = vector(), z = vector();
-    auto sx = device.stream<float>(model.shape()), sy = device.stream<float>(model.shape());
-    auto xy = device.stream<float>({1});
+    linear::Vector sx = device.stream<float>(model.shape()), sy = device.stream<float>(model.shape());
+    linear::Vector xy = device.stream<float>({1});
     sx.writeReals(x);
     matrix->multiply(sx, sy, xy);
     const std::vector<double> y = o.multiply(x), az = o.multiply(z);

@@ -17,6 +17,7 @@
 #include "study.hpp"
 #include "support/application.hpp"
 #include "support/extents.hpp"
+#include "support/join_ranks.hpp"
 #include "support/record.hpp"
 
 namespace {
@@ -75,10 +76,10 @@ std::string leftOut(const fluid::Model& m) {
 
 void simulate(examples::Application& app, const fluid::Scene& scene) {
   const fluid::Model& m = scene.model;
-  sk::Device device(app.device());
-  const fluid::Outcome o = fluid::run(device, scene);
-  app.report(fmt::format("{}, {}, {} steps", scene.name, fluid::sizeText(m), o.steps), device.name(),
-             o.milliseconds);
+  const examples::OwnedSpace space(app.ranks(), app.device(), m.shape(), examples::Ends::Joined);
+  const fluid::Outcome o = fluid::run(space.get(), scene);
+  app.report(fmt::format("{}, {}, {} steps", scene.name, fluid::sizeText(m), o.steps),
+             examples::placeOf(app.ranks(), space.get().device().name()), o.milliseconds);
   fmt::print("computed: {}\nleft out: {}\n", fluid::operatorsOf(m), leftOut(m));
   fmt::print("a step: {} streams, {:.0f} passes, {:.1f} MB\n", o.streams, o.passes, o.bytes / 1e6);
   fmt::print("time {:.4g}, steps of {:.3g} to {:.3g} ({}), CFL number at most {:.2f}\n", o.time, o.shortest,
@@ -103,13 +104,17 @@ void simulate(examples::Application& app, const fluid::Scene& scene) {
 int main(int argc, char** argv) {
   Settings settings;
   examples::Application app(
-      "fluid", "Incompressible flows in planes and in space: Navier and Stokes' equations from scene files.");
+      "fluid", "Incompressible flows in planes and in space: Navier and Stokes' equations from scene files.",
+      examples::joinRanks());
   addOptions(app.options(), settings);
   const examples::StudyOptions study(app, "compare with solutions that are known", fluid::studies());
   const examples::RecordOptions record(app.options(),
                                        "time step, speed, divergence, iterations and energy of each step");
   return app.run(argc, argv, [&] {
-    if (study.isGiven()) return study.run();
+    if (study.isGiven()) {
+      app.ranks().refuseSeveral("--study", "start it without mpirun");
+      return study.run();
+    }
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/linear/fluid/scenes/plume.toml");
     simulate(app, sceneOf(settings, record));

@@ -18,7 +18,7 @@ constexpr std::array<const char*, 4> labels = {"smoke", "temperature", "vorticit
 
 /// A stream without the layer around the grid.
 template <class T>
-auto inner(sk::Stream<T>& stream, const Model& m) {
+auto inner(const sk::Stream<T>& stream, const Model& m) {
   const auto first = [&](int d) { return m.isPeriodic(d) ? std::int64_t{0} : std::int64_t{1}; };
   const auto& n = m.cells;
   return stream.domain({first(2), first(1), first(0)}, {first(2) + n[2], first(1) + n[1], first(0) + n[0]});
@@ -39,25 +39,27 @@ Painter::Painter(sk::Device& device, const Scene& scene)
 
 examples::Image Painter::plane(Flow& flow) {
   const Model& m = scene_.model;
-  const auto derived = [&]() -> sk::Stream<float>& {
-    if (!derived_) derived_.emplace(device_.stream<float>(m.shape()));
+  const auto derived = [&]() -> linear::Vector& {
+    if (!derived_) derived_.emplace(flow.space().stream<float>());
     return *derived_;
   };
-  sk::Stream<float>* shown = nullptr;
+  const linear::Vector* shown = nullptr;
   switch (scene_.view.shown) {
     case Shown::Smoke: shown = &flow.stream(Scalar::Smoke); break;
     case Shown::Temperature: shown = &flow.stream(Scalar::Heat); break;
     case Shown::Speed:
       shown = &derived();
-      speedOf(flow.velocityStream(0), flow.velocityStream(1), *shown);
+      speedOf(flow.velocityStream(0), flow.velocityStream(1), derived());
       break;
     case Shown::Vorticity:
       shown = &derived();
       vorticityOf(static_cast<float>(1.0 / m.spacing), flow.velocityStream(0), flow.velocityStream(1),
-                  *shown);
+                  derived());
       break;
   }
-  const auto field = inner(*shown, m).reshape({m.cells[1], m.cells[0]});
+  const sk::Stream<float>& all = shown_.of(*shown, device_);
+  if (!all) return {};
+  const auto field = inner(all, m).reshape({m.cells[1], m.cells[0]});
   const std::vector<double> values = field.readReals();
   const auto [least, most] = std::ranges::minmax_element(values);
   low_ = scene_.view.low.value_or(*least);
@@ -99,7 +101,10 @@ examples::Image Painter::space(Flow& flow) {
   air.cells = {static_cast<float>(m.cells[0]), static_cast<float>(m.cells[1]),
                static_cast<float>(m.cells[2])};
   if (!light_) light_.emplace(device_.stream<float>({m.cells[2], m.cells[1], m.cells[0]}));
-  const auto smoke = inner(flow.stream(Scalar::Smoke), m);
+  const sk::Stream<float>& allSmoke = shown_.of(flow.stream(Scalar::Smoke), device_);
+  const sk::Stream<float>* const allHeat = glows ? &heat_.of(flow.stream(Scalar::Heat), device_) : nullptr;
+  if (!allSmoke) return {};
+  const auto smoke = inner(allSmoke, m);
   double hottest = 1e-30;
   for (const Source& source : m.sources) hottest = std::max(hottest, source.temperature);
   auto colour = device_.stream<sk::float3>({view.height, view.width});
@@ -107,7 +112,7 @@ examples::Image Painter::space(Flow& flow) {
     illuminate(hasObstacles, air, smoke, covered, *light_);
     if (glows)
       march(hasObstacles, true, air, camera, palette_, static_cast<float>(hottest), smoke, *light_, covered,
-            inner(flow.stream(Scalar::Heat), m), colour);
+            inner(*allHeat, m), colour);
     else
       march(hasObstacles, false, air, camera, palette_, 1.0f, smoke, *light_, covered, sk::none, colour);
   };
@@ -120,8 +125,9 @@ examples::Image Painter::space(Flow& flow) {
 }
 
 examples::Image Painter::paint(Flow& flow, const std::string& moment) {
-  if (scene_.model.isSpace()) return examples::figure(space(flow), {scene_.title, "", moment});
-  const examples::Image image = plane(flow);
+  const examples::Image image = scene_.model.isSpace() ? space(flow) : plane(flow);
+  if (!flow.space().isFirst()) return image;
+  if (scene_.model.isSpace()) return examples::figure(image, {scene_.title, "", moment});
   const std::string label = labels[static_cast<std::size_t>(scene_.view.shown)];
   return examples::figure(image, {scene_.title, "", moment},
                           examples::ColourBar{colours_, low_, high_, label});

@@ -17,6 +17,7 @@ class Painter {
  public:
   Painter(sk::Device& device, const Scene& scene);
 
+  /// If the flow is divided over ranks, all must call it; those other than the first get an empty picture.
   /// The flow as it is now, with a title and, of planes, a bar of its colours; `moment` stands below it.
   examples::Image paint(Flow& flow, const std::string& moment);
 
@@ -29,7 +30,9 @@ class Painter {
   std::vector<sk::float3> colours_;
   sk::Stream<sk::float3> palette_;
   sk::Stream<float> covered_;  ///< of one element if there are no obstacles
-  std::optional<sk::Stream<float>> derived_, light_;
+  std::optional<linear::Vector> derived_;
+  std::optional<sk::Stream<float>> light_;
+  examples::Gathered<float> shown_, heat_;
   double low_ = 0.0, high_ = 1.0;
 };
 

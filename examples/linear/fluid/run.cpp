@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -29,11 +30,14 @@ std::string captionOf(const Flow& flow) {
 constexpr const char* csvHeads =
     "step,time,time_step,cfl,speed,divergence_before,divergence_after,residual,iterations,energy";
 
-std::string csvRow(const Step& s, const Flow& flow) {
+/// All ranks must come here, for the energy.
+void tell(examples::CsvFile& csv, const Step& s, const Flow& flow) {
   const Projection& p = s.projection;
-  return fmt::format("{},{:.9g},{:.9g},{:.4g},{:.9g},{:.4g},{:.4g},{:.4g},{},{:.9g}", flow.steps(),
-                     flow.time(), s.timeStep, s.cfl, s.speed, p.before, p.after, p.residual, p.iterations,
-                     flow.kineticEnergy());
+  const double energy = flow.kineticEnergy();
+  if (csv.isWanted())
+    csv.add(fmt::format("{},{:.9g},{:.9g},{:.4g},{:.9g},{:.4g},{:.4g},{:.4g},{},{:.9g}", flow.steps(),
+                        flow.time(), s.timeStep, s.cfl, s.speed, p.before, p.after, p.residual, p.iterations,
+                        energy));
 }
 
 /// The fields of a flow, as the device holds them.
@@ -108,8 +112,8 @@ std::vector<examples::Verification> checkStep(sk::Device& device, const Model& s
 
 }  // namespace
 
-Flow begin(sk::Device& device, const Scene& scene) {
-  Flow flow(device, scene.model, scene.initial.velocity);
+Flow begin(const linear::Space& space, const Scene& scene) {
+  Flow flow(space, scene.model, scene.initial.velocity);
   if (scene.initial.noise > 0.0) {
     std::mt19937 random(scene.initial.random);
     const std::vector<std::int8_t> cells = cellsOf(scene.model);
@@ -128,12 +132,15 @@ Flow begin(sk::Device& device, const Scene& scene) {
   return flow;
 }
 
-Outcome run(sk::Device& device, const Scene& scene) {
+Outcome run(const linear::Space& space, const Scene& scene) {
+  sk::Device& device = space.device();
+  const bool isFirst = space.isFirst();
   Outcome outcome;
-  Flow flow = begin(device, scene);
+  Flow flow = begin(space, scene);
   outcome.streams = flow.streams();
-  examples::Pictures pictures(scene.record);
-  examples::CsvFile csv(scene.record.csv, csvHeads);
+  examples::Pictures pictures(scene.record, isFirst);
+  examples::CsvFile csv(isFirst ? scene.record.csv : std::filesystem::path(), csvHeads);
+  const bool isTold = !scene.record.csv.empty();
   std::optional<Painter> painter;
   if (pictures.isWanted()) painter.emplace(device, scene);
   if (pictures.wantsStart()) pictures.add(painter->paint(flow, captionOf(flow)));
@@ -163,12 +170,12 @@ Outcome run(sk::Device& device, const Scene& scene) {
       outcome.largestCfl = std::max(outcome.largestCfl, s.cfl);
       outcome.iterations += s.projection.iterations;
       outcome.missed += s.projection.reached ? 0 : 1;
-      if (csv.isWanted()) csv.add(csvRow(s, flow));
+      if (isTold) tell(csv, s, flow);
       if (pictures.isDue(i, scene.steps)) {
         progress.clear();
         pictures.add(painter->paint(flow, captionOf(flow)));
       }
-      progress.update(i);
+      if (isFirst) progress.update(i);
     }
   }
   pictures.finish();
@@ -181,8 +188,10 @@ Outcome run(sk::Device& device, const Scene& scene) {
                                     "the tolerance of the projection, and the rounding of velocities");
   const double scale =
       std::max({outcome.last.speed, outcome.last.projection.before * scene.model.spacing, 1e-30});
+  const double left = flow.divergenceMean();
+  if (!isFirst) return outcome;
   if (outcome.last.projection.reached)
-    divergence.note(0, flow.divergenceMean() / scale);
+    divergence.note(0, left / scale);
   else
     divergence.note(0, outcome.last.projection.residual);
   outcome.verifications.push_back(divergence);

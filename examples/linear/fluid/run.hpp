@@ -26,9 +26,9 @@ struct Outcome {
 };
 
 /// The start of a scene: noise, if it has any, and no divergence.
-Flow begin(sk::Device& device, const Scene& scene);
+Flow begin(const linear::Space& space, const Scene& scene);
 
-/// Throws std::runtime_error, "step N: ...", if a field is not finite; pictures that were made before are kept.
-Outcome run(sk::Device& device, const Scene& scene);
+/// In a space of the model's shape. If it is divided over ranks, the first one verifies, and writes pictures and numbers. Throws std::runtime_error, "step N: ...", if a field is not finite; pictures that were made before are kept.
+Outcome run(const linear::Space& space, const Scene& scene);
 
 }  // namespace fluid

@@ -63,7 +63,7 @@ Findings studyCost(sk::Device& device, bool small) {
     Scene scene;
     scene.model = row.model;
     scene.initial.noise = 1.0;  // so that there is always something to project
-    Flow flow = begin(device, scene);
+    Flow flow = begin(linear::Space(device, scene.model.shape()), scene);
     flow.step();
     device.countPasses(true);
     flow.step();

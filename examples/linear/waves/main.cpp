@@ -17,6 +17,7 @@
 #include "study.hpp"
 #include "support/application.hpp"
 #include "support/extents.hpp"
+#include "support/join_ranks.hpp"
 #include "support/record.hpp"
 
 namespace {
@@ -59,10 +60,10 @@ waves::Scene sceneOf(const Settings& s, const examples::RecordOptions& record) {
 
 void simulate(examples::Application& app, const waves::Scene& scene) {
   const waves::Model& m = scene.model;
-  sk::Device device(app.device());
-  const waves::Outcome o = waves::run(device, scene);
-  app.report(fmt::format("{}, {} x {}, {} steps", scene.name, m.width, m.height, o.steps), device.name(),
-             o.milliseconds);
+  const examples::OwnedSpace space(app.ranks(), app.device(), {m.height, m.width}, examples::Ends::Open);
+  const waves::Outcome o = waves::run(space.get(), scene);
+  app.report(fmt::format("{}, {} x {}, {} steps", scene.name, m.width, m.height, o.steps),
+             examples::placeOf(app.ranks(), space.get().device().name()), o.milliseconds);
   fmt::print("{}, time {:.4g}, Courant number {:.3g}\n",
              waves::schemeNames()[static_cast<std::size_t>(m.scheme)], o.time, std::sqrt(m.lambdaSquared()));
   fmt::print(
@@ -83,12 +84,16 @@ void simulate(examples::Application& app, const waves::Scene& scene) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  examples::Application app("waves", "Waves of a water surface: an implicit wave equation from scene files.");
+  examples::Application app("waves", "Waves of a water surface: an implicit wave equation from scene files.",
+                            examples::joinRanks());
   addOptions(app.options(), settings);
   const examples::StudyOptions study(app, "compare with what is known", waves::studies());
   const examples::RecordOptions record(app.options(), "time, iterations, residual and energy of each step");
   return app.run(argc, argv, [&] {
-    if (study.isGiven()) return study.run();
+    if (study.isGiven()) {
+      app.ranks().refuseSeveral("--study", "start it without mpirun");
+      return study.run();
+    }
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/linear/waves/scenes/drops.toml");
     simulate(app, sceneOf(settings, record));

@@ -81,11 +81,12 @@ Painter::Painter(sk::Device& device, const Scene& scene)
 examples::Image Painter::paint(const Surface& surface) {
   const Pool pool = poolOf(scene_);
   const View& v = scene_.view;
+  const sk::Stream<float>& heights = gathered_.of(surface.heightStream(), device_);
+  if (!heights) return {};
   light_.fill(0.0f);
-  shine(pool, 1.0f / static_cast<float>(photonsAcross * photonsAcross), photons_, surface.heightStream(),
-        light_);
+  shine(pool, 1.0f / static_cast<float>(photonsAcross * photonsAcross), photons_, heights, light_);
   auto colour = device_.stream<sk::float3>({std::int64_t{v.height} * finer, std::int64_t{v.width} * finer});
-  look(pool, cameraOf(scene_, pool), surface.heightStream(), light_, colour);
+  look(pool, cameraOf(scene_, pool), heights, light_, colour);
   return examples::reduced(examples::imageOf(v.width * finer, v.height * finer, colour.read()), finer);
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -23,14 +24,18 @@ examples::Image pictureOf(Painter& painter, const Scene& scene, const Surface& s
   const std::string moment = fmt::format("{} x {} cells   {}   Courant number {:.3g}   step {}   time {:.3g}",
                                          m.width, m.height, schemeNames()[static_cast<std::size_t>(m.scheme)],
                                          std::sqrt(m.lambdaSquared()), surface.steps(), surface.time());
-  return examples::figure(painter.paint(surface), {scene.title, "", moment});
+  const examples::Image water = painter.paint(surface);
+  return surface.space().isFirst() ? examples::figure(water, {scene.title, "", moment}) : water;
 }
 
 constexpr const char* csvHeads = "step,time,iterations,residual,energy";
 
-std::string csvRow(const Step& s, const Surface& surface) {
-  return fmt::format("{},{:.9g},{},{:.4g},{:.9g}", surface.steps(), surface.time(), s.iterations, s.residual,
-                     surface.energy());
+/// All ranks must come here, for the energy.
+void tell(examples::CsvFile& csv, const Step& s, const Surface& surface) {
+  const double energy = surface.energy();
+  if (csv.isWanted())
+    csv.add(fmt::format("{},{:.9g},{},{:.4g},{:.9g}", surface.steps(), surface.time(), s.iterations,
+                        s.residual, energy));
 }
 
 /// The energy between drops, each of which begins a stretch of its own.
@@ -76,13 +81,16 @@ examples::Verification checkStep(sk::Device& device, const Model& model, const s
 
 }  // namespace
 
-Outcome run(sk::Device& device, const Scene& scene) {
+Outcome run(const linear::Space& space, const Scene& scene) {
   const Model& m = scene.model;
+  sk::Device& device = space.device();
+  const bool isFirst = space.isFirst();
   Outcome outcome;
-  Surface surface(device, m);
+  Surface surface(space, m);
   Energies energies(surface);
-  examples::Pictures pictures(scene.record);
-  examples::CsvFile csv(scene.record.csv, csvHeads);
+  examples::Pictures pictures(scene.record, isFirst);
+  examples::CsvFile csv(isFirst ? scene.record.csv : std::filesystem::path(), csvHeads);
+  const bool isTold = !scene.record.csv.empty();
   std::optional<Painter> painter;
   if (pictures.isWanted()) painter.emplace(device, scene);
   auto drop = scene.drops.begin();
@@ -94,7 +102,9 @@ Outcome run(sk::Device& device, const Scene& scene) {
       if (drop != scene.drops.end() && drop->time <= surface.time()) {
         energies.end();
         heights = surface.heights();
-        for (; drop != scene.drops.end() && drop->time <= surface.time(); ++drop) add(*drop, m, heights);
+        for (; drop != scene.drops.end() && drop->time <= surface.time(); ++drop) {
+          if (isFirst) add(*drop, m, heights);
+        }
         surface.writeHeights(heights);
         energies.begin();
       }
@@ -112,12 +122,12 @@ Outcome run(sk::Device& device, const Scene& scene) {
       outcome.mostIterations = std::max(outcome.mostIterations, step.iterations);
       outcome.residual = std::max(outcome.residual, step.residual);
       outcome.missed += step.reached ? 0 : 1;
-      if (csv.isWanted()) csv.add(csvRow(step, surface));
+      if (isTold) tell(csv, step, surface);
       if (pictures.isDue(i, scene.steps)) {
         progress.clear();
         pictures.add(pictureOf(*painter, scene, surface));
       }
-      progress.update(i);
+      if (isFirst) progress.update(i);
     }
   }
   pictures.finish();
@@ -127,6 +137,7 @@ Outcome run(sk::Device& device, const Scene& scene) {
   outcome.pictures = pictures.count();
   outcome.residualLast = surface.residualInDouble();
   outcome.energy = surface.energy();
+  if (!isFirst) return outcome;
   const double scale = std::max(outcome.energy, 1e-300);
   outcome.drift = energies.drift() / scale;
   outcome.driftBound = energies.bound() / scale;

@@ -25,7 +25,7 @@ struct Outcome {
   std::vector<examples::Verification> verifications;
 };
 
-/// Throws std::runtime_error, "step N: ...", if the surface is not finite; pictures that were made before are kept.
-Outcome run(sk::Device& device, const Scene& scene);
+/// In a space of the scene's shape, {height, width}. If it is divided over ranks, the first one verifies, and writes pictures and numbers. Throws std::runtime_error, "step N: ...", if the surface is not finite; pictures that were made before are kept.
+Outcome run(const linear::Space& space, const Scene& scene);
 
 }  // namespace waves

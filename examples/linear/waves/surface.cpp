@@ -18,18 +18,22 @@ namespace {
 
 constexpr std::int64_t iterationsBetweenLooks = 2;
 
-linear::Arithmetic arithmeticFor(sk::Precision precision) {
+linear::Arithmetic arithmeticFor(sk::Precision precision, bool isDivided) {
   const sk::Storage storage = precision == sk::Precision::Double ? sk::Storage::Double : sk::Storage::Single;
-  return {.precision = precision, .matrix = storage, .vectors = storage};
+  return {.precision = precision,
+          .matrix = storage,
+          .vectors = storage,
+          .accumulate = isDivided ? sk::Accumulate::Exact : sk::Accumulate::Default};
 }
+
+sk::Shape shapeOf(const Model& model) { return {model.height, model.width}; }
 
 class WaveMatrix : public linear::Matrix {
  public:
-  WaveMatrix(const Model& model, const linear::Arithmetic& arithmetic)
-      : Matrix(arithmetic),
-        shape_({model.height, model.width}),
-        k_(static_cast<float>(model.coefficient())) {}
-  sk::Shape domain() const override { return shape_; }
+  WaveMatrix(const linear::Space& space, const Model& model, const linear::Arithmetic& arithmetic)
+      : Matrix(arithmetic), space_(space), k_(static_cast<float>(model.coefficient())) {}
+  sk::Shape domain() const override { return space_.shape(); }
+  linear::Space space(sk::Device&) const override { return space_; }
   void multiply(const linear::Vector& x, linear::Vector& y) override {
     waveProduct.with(options())(k_, x, y);
   }
@@ -41,7 +45,7 @@ class WaveMatrix : public linear::Matrix {
   std::int64_t bytes() const override { return 0; }
 
  private:
-  sk::Shape shape_;
+  linear::Space space_;
   float k_;
 };
 
@@ -71,27 +75,26 @@ double Model::lambdaSquared() const {
 double Model::roundoff() const { return precision == sk::Precision::Double ? 0x1p-53 : 0x1p-24; }
 
 Surface::Surface(sk::Device& device, const Model& model)
-    : device_(device),
+    : Surface(linear::Space(device, shapeOf(model)), model) {}
+
+Surface::Surface(const linear::Space& space, const Model& model)
+    : space_(space),
       model_(model),
-      arithmetic_(arithmeticFor(model.precision)),
-      sum_(device.stream<float>({1}, arithmetic_.sums())) {
+      arithmetic_(arithmeticFor(model.precision, space.isDivided())),
+      sum_(space.device().stream<float>({1}, arithmetic_.sums())) {
   requirePositive("width", static_cast<double>(model.width));
   requirePositive("height", static_cast<double>(model.height));
   requirePositive("spacing", model.spacing);
   requirePositive("wave speed", model.speed);
   requirePositive("time step", model.timeStep);
   requirePositive("tolerance", model.tolerance);
-  for (sk::Stream<float>* s : {&u_, &q_, &un_, &qn_, &b_, &w_, &change_, &r_}) {
+  for (linear::Vector* s : {&u_, &q_, &un_, &qn_, &b_, &w_, &change_, &r_}) {
     *s = stream();
     s->fill(0.0f);
   }
-  matrix_ = std::make_unique<WaveMatrix>(model_, arithmetic_);
-  method_ =
-      linear::rowNamed(linear::methodKinds(), "cg", "solver").make(device, *matrix_, nullptr, arithmetic_);
-}
-
-sk::Stream<float> Surface::stream() const {
-  return device_.stream<float>({model_.height, model_.width}, arithmetic_.vectors);
+  matrix_ = std::make_unique<WaveMatrix>(space_, model_, arithmetic_);
+  method_ = linear::rowNamed(linear::methodKinds(), "cg", "solver")
+                .make(space_.device(), *matrix_, nullptr, arithmetic_);
 }
 
 void Surface::writeHeights(std::span<const double> values) {
@@ -146,6 +149,7 @@ Step Surface::step() {
 
 double Surface::energy() const {
   const std::vector<double> u = u_.readReals(), q = q_.readReals();
+  if (u.empty()) return 0.0;
   double kinetic = 0.0, potential = 0.0;
   for (const double v : q) kinetic += v * v;
   visitPairs(model_.width, model_.height,
@@ -165,6 +169,7 @@ double Surface::energyBound(const Step& step, double energy) const {
 
 double Surface::residualInDouble() const {
   const std::vector<double> b = b_.readReals(), w = w_.readReals();
+  if (b.empty()) return 0.0;
   std::vector<double> r(b.size());
   for (std::size_t i = 0; i < r.size(); ++i) r[i] = b[i] - w[i];
   const double k = model_.coefficient();

@@ -50,6 +50,9 @@ class Surface {
  public:
   /// At rest. Throws std::runtime_error for a model with a number that is not positive.
   Surface(sk::Device& device, const Model& model);
+  /// The same in a space of the shape {height, width}, which may be divided over ranks: then all functions are collective, and sums are exact, so
+  /// that no bit depends on the number of ranks.
+  Surface(const linear::Space& space, const Model& model);
   /// Matrices in here refer to the model.
   Surface(const Surface&) = delete;
   Surface& operator=(const Surface&) = delete;
@@ -58,32 +61,33 @@ class Surface {
   std::int64_t steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * model_.timeStep; }
 
-  /// Row-major, height * width values; the first row is the near wall.
+  /// Row-major, height * width values; the first row is the near wall. If the surface is divided, rank 0 gives and gets them, and the others get none.
   void writeHeights(std::span<const double> values);
   void writeVelocities(std::span<const double> values);  ///< per time
   std::vector<double> heights() const { return u_.readReals(); }
   std::vector<double> velocities() const;
-  const sk::Stream<float>& heightStream() const { return u_; }
+  const linear::Vector& heightStream() const { return u_; }
+  const linear::Space& space() const { return space_; }
 
   /// Throws std::runtime_error, "step N: ...", if a number is not finite.
   Step step();
 
-  /// Kinetic and potential energy for a density of 1: the integral of (u'^2 + c^2 |grad u|^2) / 2, in double precision.
+  /// Kinetic and potential energy for a density of 1: the integral of (u'^2 + c^2 |grad u|^2) / 2, in double precision. 0 on ranks other than the first.
   double energy() const;
   /// How much a step with this residual can change the energy: its residual's part is at most 8 (c dt / h) sqrt(E) ||r|| (in the units of q), and the
   /// rounding of u and q acts like a residual.
   double energyBound(const Step& step, double energy) const;
-  /// ||b - A w|| / ||b|| of the last step, computed in double precision on the host.
+  /// ||b - A w|| / ||b|| of the last step, computed in double precision on the host. 0 on ranks other than the first.
   double residualInDouble() const;
 
  private:
-  sk::Stream<float> stream() const;
+  linear::Vector stream() const { return space_.stream<float>(arithmetic_.vectors); }
 
-  sk::Device& device_;
+  linear::Space space_;
   Model model_;
   linear::Arithmetic arithmetic_;
-  sk::Stream<float> u_, q_, un_, qn_, b_, w_, change_, r_;
-  sk::Stream<float> sum_;  ///< of one element
+  linear::Vector u_, q_, un_, qn_, b_, w_, change_, r_;
+  linear::Vector sum_;  ///< of one element
   std::unique_ptr<linear::Matrix> matrix_;
   std::unique_ptr<linear::Method> method_;
   std::int64_t steps_ = 0;

@@ -86,6 +86,7 @@ void scatter(DomainStreamState* stream, int root, const void* elements, std::siz
 int rankOf(const DomainStreamState* stream);
 std::vector<double> gatherReals(DomainStreamState* stream, int root);
 void scatterReals(DomainStreamState* stream, int root, std::span<const double> components);
+void copyOwn(DomainStreamState* from, DomainStreamState* to);
 void copyToWhole(DomainStreamState* stream, const StreamRegion& whole);
 void copyFromWhole(DomainStreamState* stream, const StreamRegion& whole);
 void save(DomainStreamState* stream, const std::string& file);
@@ -147,6 +148,9 @@ class DomainStream {
   /// Collective: every rank gives an ordinary stream on domain.device() with this shape and storage, which gets all elements with
   /// their bits. They pass through host memory. Throws sk::Error if the shape, the storage or the device is another one.
   void copyTo(Stream<T>& whole) const { detail::copyToWhole(state_.get(), whole.region()); }
+  /// Copies every rank's own elements to a stream of the same domain, on the devices and without messages. Throws sk::Error if the
+  /// domain is another one.
+  void copyTo(DomainStream& target) const { detail::copyOwn(state_.get(), target.state_.get()); }
   /// Takes this rank's own elements from an ordinary stream like that of copyTo(), on the device and without messages. Not
   /// collective, but every rank must do it. Throws sk::Error as copyTo() does.
   void copyFrom(const Stream<T>& whole) { detail::copyFromWhole(state_.get(), whole.region()); }
