@@ -256,7 +256,8 @@ void storeOutputs(const ResolvedReduction& call) {
 }
 
 void fold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
-  if (detail::Distribution* all = distributionOf(reduction.fold, arguments)) return all->fold(reduction, arguments, options);
+  if (detail::Distribution* all = distributionOf(reduction.fold, arguments))
+    return all->fold(reduction, arguments, options);
   withHostMemory(reduction.fold.name, [&] { checkAndFold(reduction, arguments, options); });
 }
 

@@ -300,7 +300,8 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
 }
 
 void scan(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
-  if (detail::Distribution* all = distributionOf(reduction.fold, arguments)) return all->scan(reduction, arguments, options);
+  if (detail::Distribution* all = distributionOf(reduction.fold, arguments))
+    return all->scan(reduction, arguments, options);
   const ScanOrder order{options.along, options.scan == Scan::Exclusive};
   withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, {}, options, order); });
 }

@@ -131,7 +131,8 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
 }  // namespace
 
 void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
-  if (detail::Distribution* all = distributionOf(kernel, arguments)) return all->run(kernel, arguments, options);
+  if (detail::Distribution* all = distributionOf(kernel, arguments))
+    return all->run(kernel, arguments, options);
   withHostMemory(kernel.name, [&] { checkAndRun(kernel, arguments, options); });
 }
 
