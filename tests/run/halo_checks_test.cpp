@@ -70,6 +70,16 @@ TEST_CASE("each dimension has its own promise, and wrapping is near") {
   });
 }
 
+TEST_CASE("elements that floats do not hold are no error") {
+  sk::Device& native = device("native");
+  const sk::Shape shape{7, 9};
+  auto u = native.stream<float>(shape, sk::Storage::Double), r = native.stream<float>(shape);
+  std::vector<double> values;
+  for (int i = 0; i < 63; ++i) values.push_back(0.1 * i);
+  u.writeReals(values);
+  CHECK(errorOf([&] { known.with({.precision = sk::Precision::Double})(1, u, r); }) == "no error");
+}
+
 TEST_CASE("positions between elements and reaches that skc knows are tested, too") {
   onGlAndNative([](sk::Device& device) {
     auto u = device.stream<float>({16}), by = device.stream<float>({16}), r = device.stream<float>({16});

@@ -44,7 +44,9 @@ class HaloCheck {
   void check(std::size_t gather) {
     const StreamRegion& region = call_.arguments[gather].region;
     const std::vector<std::byte> elements = read(region);
-    const StreamRegion changed = like(region);
+    // Elements that are stored in doubles have been rounded: both runs read what is written here.
+    const StreamRegion same = like(region), changed = like(region);
+    same.stream->write(same, elements.data());
     for (int d = 0; d < region.shape.rank(); ++d) {
       const std::optional<HaloLimits> limits =
           haloLimits(call_.kernel, call_.arguments, gather, d, call_.specs, call_.domain);
@@ -53,7 +55,7 @@ class HaloCheck {
       const std::int64_t lines = std::min(extent, mostLines);
       for (std::int64_t k = 0; k < lines; ++k) {
         const std::int64_t at = lines == 1 ? 0 : k * (extent - 1) / (lines - 1);
-        checkLine(gather, d, at, *limits, elements, changed);
+        checkLine(gather, d, at, *limits, elements, same, changed);
       }
     }
   }
@@ -74,7 +76,8 @@ class HaloCheck {
 
   /// Tests the elements with index `at` in the domain's dimension that belongs to the gather's dimension d.
   void checkLine(std::size_t gather, int d, std::int64_t at, const HaloLimits& limits,
-                 const std::vector<std::byte>& elements, const StreamRegion& changed) {
+                 const std::vector<std::byte>& elements, const StreamRegion& same,
+                 const StreamRegion& changed) {
     const Parameter& parameter = call_.kernel.parameters[gather];
     std::vector<std::byte> other = elements;
     const GatherDimension dimension = gatherDimension(changed.shape, d, call_.domain);
@@ -87,7 +90,7 @@ class HaloCheck {
       line.begin[k] = at;
       line.end[k] = at + 1;
     }
-    if (resultsOf(gather, call_.arguments[gather].region, line) == resultsOf(gather, changed, line)) return;
+    if (resultsOf(gather, same, line) == resultsOf(gather, changed, line)) return;
     fail(call_.kernel,
          "'{}' is read more than {} before or {} after the element along {}, by elements with index {} "
          "there; correct "
