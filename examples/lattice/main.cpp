@@ -122,10 +122,7 @@ int main(int argc, char** argv) {
   const examples::StudyOptions study(app, "measure the numerics", examples::studies());
   const examples::RecordOptions record(app.options(), "means, extremes, Nusselt number ... while it runs");
   return app.run(argc, argv, [&] {
-    if (study.isGiven()) {
-      app.ranks().refuseSeveral("--study", "start it without mpirun");
-      return study.run();
-    }
+    if (study.isGiven()) return study.run();
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/lattice/scenes/boiling.toml");
     simulate(app, sceneOf(settings, record), settings);

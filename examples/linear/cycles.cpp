@@ -157,12 +157,8 @@ sk::Shape shapeOf(std::span<const std::int64_t> extents) {
   return {extents[0], extents[1], extents[2]};
 }
 
-Space coarserSpace(const Space& finer, const sk::Shape& grid) {
-  if (!finer.isDivided()) return finer.resized(grid);
-  return finestSpace(finer.resized(grid));
-}
-
-Space finestSpace(const Space& space) {
+Space spaceFor(const sk::Shape& grid, const Space& other) {
+  const Space space = other.resized(grid);
   return space.isDivided() && space.thinnest() < thinnestPart ? space.undivided() : space;
 }
 

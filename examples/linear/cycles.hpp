@@ -38,11 +38,10 @@ inline constexpr double strongCoupling = 0.25;
 /// The shape with these extents, two or three.
 sk::Shape shapeOf(std::span<const std::int64_t> extents);
 
-/// Where the vectors of a grid are that follows one in `finer`: divided alike, if no part is thinner than `thinnestPart` elements; else every rank has all of them.
-Space coarserSpace(const Space& finer, const sk::Shape& grid);
-/// The space itself, or, if it is divided in thinner parts, one that every rank has for itself.
-Space finestSpace(const Space& space);
+/// Parts of grids are at least as thick in the dimensions that are divided: transfers between grids read a few elements beyond them.
 inline constexpr std::int64_t thinnestPart = 8;
+/// Where the vectors of a grid are, if those of another one, which may be itself, are in `other`: divided alike, or on every rank if parts would be too thin.
+Space spaceFor(const sk::Shape& grid, const Space& other);
 
 /// Grids, 0 being the finest, their matrices, and the transfers between neighbours. Vectors have the shape of their grid. Grids may be divided over ranks, but none whose finer
 /// neighbour is not: restrictions from a divided grid write a divided vector in any case.

@@ -86,12 +86,12 @@ class StencilHierarchy : public Hierarchy {
   /// `isNested` if solutions are interpolated, too.
   StencilHierarchy(const Space& space, const Stencil& a, const Arithmetic& arithmetic, bool isNested)
       : options_(arithmetic.options()) {
-    levels_.emplace_back(finestSpace(space), a);
+    levels_.emplace_back(spaceFor(a.grid, space), a);
     while (true) {
       const Stencil coarse = coarsened(levels_.back().stencil);
       if (coarse.grid == levels_.back().stencil.grid) break;
       if (isNested) prepareInterpolation(levels_.back(), coarse.grid, arithmetic.vectors);
-      levels_.emplace_back(coarserSpace(levels_.back().space, coarse.grid), coarse);
+      levels_.emplace_back(spaceFor(coarse.grid, levels_.back().space), coarse);
     }
     const Stencil& coarsest = levels_.back().stencil;
     inverse_ = space.device().stream<float>({coarsest.size(), coarsest.size()}, arithmetic.vectors);

@@ -51,13 +51,13 @@ class VaryingHierarchy : public Hierarchy {
     const sk::Storage storage =
         arithmetic.matrix == sk::Storage::Half ? sk::Storage::Single : arithmetic.matrix;
     VaryingStencil coarse = a;
-    Space where = a.size() <= solvedDirectly ? space.undivided() : finestSpace(space);
+    Space where = placeOf(a.grid, space);
     while (true) {
       const Coarsening c = coarsening(coarse);
       levels_.push_back(levelOf(where, coarse, c, storage));
       if (c.coarse == coarse.grid) break;
       coarse = galerkin(coarse, c);
-      where = spaceAfter(where, coarse.grid);
+      where = placeOf(coarse.grid, where);
     }
     inverse_ = space.device().stream<float>({coarse.size(), coarse.size()}, storage);
     inverse_.writeReals(symmetricInverse(coarse, hasConstantKernel_));
@@ -137,8 +137,9 @@ class VaryingHierarchy : public Hierarchy {
     bool isPlane() const { return space.shape().rank() == 2; }
   };
 
-  static Space spaceAfter(const Space& finer, const sk::Shape& grid) {
-    return grid.size() <= solvedDirectly ? Space(finer.device(), grid) : coarserSpace(finer, grid);
+  /// The coarsest grid is on every rank.
+  static Space placeOf(const sk::Shape& grid, const Space& other) {
+    return grid.size() <= solvedDirectly ? Space(other.device(), grid) : spaceFor(grid, other);
   }
 
   static Level levelOf(const Space& space, const VaryingStencil& a, const Coarsening& c,
@@ -154,7 +155,7 @@ class VaryingHierarchy : public Hierarchy {
     level.share = 1.0f / static_cast<float>(c.share());
     if (!c.weight.empty()) {
       level.weights =
-          spaceAfter(space, c.coarse).resized(stackOf(rank == 2 ? 9 : 27, c.coarse)).stream<float>(storage);
+          placeOf(c.coarse, space).resized(stackOf(rank == 2 ? 9 : 27, c.coarse)).stream<float>(storage);
       level.weights.writeReals(c.weight);
     }
     return level;

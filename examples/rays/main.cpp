@@ -240,10 +240,7 @@ int main(int argc, char** argv) {
   addOptions(app.options(), settings);
   const examples::StudyOptions study(app, "measure what choices are worth", rays::studies());
   return app.run(argc, argv, [&] {
-    if (study.isGiven()) {
-      app.ranks().refuseSeveral("--study", "start it without mpirun");
-      return study.run();
-    }
+    if (study.isGiven()) return study.run();
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/rays/scenes/cornell.toml");
     if (!settings.rays.empty() && settings.hits.empty())

@@ -22,6 +22,7 @@ StudyOptions::StudyOptions(Application& app, std::string_view purpose, std::span
 }
 
 void StudyOptions::run() const {
+  app_.ranks().refuseSeveral("--study", "start it without mpirun");
   const auto study = std::ranges::find(studies_, name_, &Study::name);
   if (study == studies_.end()) {
     std::string names;

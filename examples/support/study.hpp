@@ -36,7 +36,7 @@ class StudyOptions {
   /// Whether the command line names a study.
   bool isGiven() const { return !name_.empty(); }
   /// Runs the named study on the application's device, prints its tables, and passes its verifications to the application.
-  /// Throws std::runtime_error, listing the names, if no study has the name.
+  /// Throws std::runtime_error if there are several ranks, or, listing the names, if no study has the name.
   void run() const;
 
  private:

@@ -111,10 +111,7 @@ int main(int argc, char** argv) {
   const examples::RecordOptions record(app.options(),
                                        "time step, speed, divergence, iterations and energy of each step");
   return app.run(argc, argv, [&] {
-    if (study.isGiven()) {
-      app.ranks().refuseSeveral("--study", "start it without mpirun");
-      return study.run();
-    }
+    if (study.isGiven()) return study.run();
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/linear/fluid/scenes/plume.toml");
     simulate(app, sceneOf(settings, record));

@@ -90,10 +90,7 @@ int main(int argc, char** argv) {
   const examples::StudyOptions study(app, "compare with what is known", waves::studies());
   const examples::RecordOptions record(app.options(), "time, iterations, residual and energy of each step");
   return app.run(argc, argv, [&] {
-    if (study.isGiven()) {
-      app.ranks().refuseSeveral("--study", "start it without mpirun");
-      return study.run();
-    }
+    if (study.isGiven()) return study.run();
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/linear/waves/scenes/drops.toml");
     simulate(app, sceneOf(settings, record));

@@ -223,19 +223,22 @@ std::vector<float> weighedOnHost(Boundary boundary, int reach, const Shape& shap
   return result;
 }
 
+struct BoundaryAndReach {
+  Boundary boundary;
+  int reach;
+};
+
 }  // namespace
 
 TEST_CASE("stencils that share texels in work groups") {
   const DeviceChoices choices{.target = Target::Compute, .sharesTexels = true};
   GlDevice device(gl::openContext({"software", gl::Api::Gl}), choices);
   // Where an index beyond the ends leads does not depend on the reach: each boundary has a reach, and each reach a boundary.
-  struct Case {
-    Boundary boundary;
-    int reach;
-  };
   std::deque<Weigh> kernels;
-  for (const auto& [boundary, reach] :
-       {Case{Boundary::Clamp, 1}, {Boundary::Wrap, 2}, {Boundary::Mirror, 4}, {Boundary::Border, 2}}) {
+  for (const auto& [boundary, reach] : {BoundaryAndReach{Boundary::Clamp, 1},
+                                        {Boundary::Wrap, 2},
+                                        {Boundary::Mirror, 4},
+                                        {Boundary::Border, 2}}) {
     const Kernel& kernel = kernels.emplace_back(boundary, reach).kernel;
     for (const Shape& shape : {Shape{5, 8}, Shape{16, 32}, Shape{17, 36}, Shape{33, 100}}) {
       CAPTURE(static_cast<int>(boundary), reach, shape[0], shape[1]);
@@ -247,13 +250,11 @@ TEST_CASE("stencils that share texels in work groups") {
 TEST_CASE("stencils over parts of a whole that share texels in work groups") {
   const DeviceChoices choices{.target = Target::Compute, .sharesTexels = true};
   GlDevice device(gl::openContext({"software", gl::Api::Gl}), choices);
-  struct Case {
-    Boundary boundary;
-    int reach;
-  };
   std::deque<Weigh> kernels;
-  for (const auto& [boundary, reach] :
-       {Case{Boundary::Clamp, 2}, {Boundary::Wrap, 1}, {Boundary::Mirror, 1}, {Boundary::Border, 2}}) {
+  for (const auto& [boundary, reach] : {BoundaryAndReach{Boundary::Clamp, 2},
+                                        {Boundary::Wrap, 1},
+                                        {Boundary::Mirror, 1},
+                                        {Boundary::Border, 2}}) {
     const Kernel& kernel = kernels.emplace_back(boundary, reach).kernel;
     const Shape whole{61, 36};
     const std::vector<float> expected = weighedOnHost(boundary, reach, whole);
