@@ -32,11 +32,17 @@ says() { [[ $said == *"$1"* ]] || broken "it does not say: $1"; }
 called() { grep -qxF -- "$1" "$calls" || broken "not called: $1"; }
 never_called() { ! grep -q "^$1" "$calls" || broken "called: $1"; }
 
-all_installed='for name in "${@:4}"; do echo "installed $name"; done'
+# dpkg_query STATUS NAME: a stand-in for dpkg-query that knows all of packages.txt, and NAME with that status.
+dpkg_query() {
+  printf 'awk -v status="%s" -v name="%s" %s "${0%%/*}/../repo/packages.txt"' "$1" "$2" \
+    "'/^[a-z]/ { print \"installed=\" (\$1 == name ? status : \"installed\") \", \" \$1 \", \" }'"
+}
+all_installed=$(dpkg_query installed g++)
 stand_in sudo 'while [[ $1 == -* ]]; do shift; done; exec "$@"'
 stand_in apt-get ''
 stand_in cmake ''
-stand_in ctest 'echo "100% tests passed, 0 tests failed out of 1"'
+stand_in ctest 'echo "100% tests passed, 0 tests failed out of 1"; echo "PATH $PATH" >>"${0%/*}/../calls"'
+stand_in python3 'mkdir -p "$3/build"'
 stand_in dpkg-query "$all_installed"
 
 # Help, and commands that do not exist.
@@ -66,15 +72,61 @@ called "ctest --preset release -j $(nproc) -C web -R saxpy"
 run 0 test asan
 called "ctest --preset asan -j $(nproc)"
 
+# What is provided by an installed package is not installed again.
+stand_in dpkg-query "$(dpkg_query not-installed npm); echo 'installed=installed, nodejs, nodejs-dev, npm (= 10.8)'"
+run 0 test
+never_called apt-get
+
+# Tests see the programs of packages.txt alone, or all of this machine where these are not known.
+called "python3 tests/cli/listed_programs.py . build/release/programs"
+called "PATH $place/repo/build/release/programs/build"
+stand_in python3 'echo "this is no Debian"; exit 77'
+run 0 test
+says 'tests may start any program of this machine: this is no Debian'
+called "PATH $place/bin:$PATH"
+
+# What was skipped is said last, with the reason, and the status is that of ctest.
+mkdir -p "$place/log"
+cat >"$place/log/LastTest.log" <<'END'
+Start testing: Nov 28 15:27 UTC
+----------------------------------------------------------
+1/3 Testing: web.vite
+1/3 Test: web.vite
+Output:
+----------------------------------------------------------
+skipped: npm reaches no registry
+<end of output>
+Test time =   0.04 sec
+----------------------------------------------------------
+Test Skipped.
+"web.vite" end time: Nov 28 15:27 UTC
+
+2/3 Testing: web.calls
+2/3 Test: web.calls
+skipped: the package's size
+<end of output>
+Test Passed.
+
+3/3 Testing: run.loops
+3/3 Test: run.loops
+<end of output>
+Test Failed.
+END
+stand_in ctest 'mkdir -p build/release/Testing/Temporary; cp "${0%/*}/../log/LastTest.log" build/release/Testing/Temporary; exit 8'
+run 8 test
+says $'dev: not tested (2):\n  web.vite is skipped: npm reaches no registry\n  web.calls is skipped in part: the package\'s size'
+[[ ${said##*$'\n'} == *"the package's size" ]] || broken "what was skipped is not said last"
+stand_in ctest 'echo "100% tests passed, 0 tests failed out of 1"; echo "PATH $PATH" >>"${0%/*}/../calls"'
+
 # Something is missing: only that is installed, and package lists are not fetched.
-stand_in dpkg-query 'for name in "${@:4}"; do [[ $name == cmake ]] && echo "not-installed $name" || echo "installed $name"; done'
+stand_in dpkg-query "$(dpkg_query not-installed cmake)"
 run 0 build
 says 'installing 1 Debian packages: cmake'
 called 'apt-get -q -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 install --no-install-recommends cmake'
 never_called 'apt-get .* update'
 
 # What benchmarks alone want is installed for them alone, and CMake then looks for it; files are the caller's.
-stand_in dpkg-query 'for name in "${@:4}"; do [[ $name == libbenchmark-dev ]] && echo "not-installed $name" || echo "installed $name"; done'
+stand_in dpkg-query "$(dpkg_query not-installed libbenchmark-dev)"
 mkdir -p "$place/repo/tests/bench"
 printf '#!/bin/bash\necho "benchmarks of ${1##*/} in ${PWD##*/}: ${*:2}"\n' >"$place/repo/tests/bench/bench.sh"
 chmod +x "$place/repo/tests/bench/bench.sh"
@@ -87,12 +139,13 @@ called 'cmake --build --preset release --target tests/bench/all tests/bench/race
 says 'benchmarks of release in elsewhere: --json x.json'
 
 # The browser is installed for the tests in it, which are left out where it cannot be.
-no_chromium='for name in "${@:4}"; do [[ $name == chromium ]] && echo "not-installed $name" || echo "installed $name"; done'
+no_chromium=$(dpkg_query not-installed chromium)
 stand_in dpkg-query "$no_chromium"
 stand_in apt-get 'exit 100'
 run 0 test
 says 'installing 1 Debian packages: chromium'
-says 'the tests in browsers are left out'
+[[ ${said##*$'\n'} == '  the tests in browsers are left out: they need the packages [web] of packages.txt' ]] ||
+  broken "the last line does not name what was left out"
 called "ctest --preset release -j $(nproc)"
 run 1 test web
 run 0 test debug
@@ -110,7 +163,7 @@ stand_in apt-get ''
 
 # A bare machine has no package lists: they are fetched, then it is tried again.
 stand_in apt-get 'case $* in *" update") touch "${0%/*}/../lists" ;; *) test -e "${0%/*}/../lists" ;; esac'
-stand_in dpkg-query 'for name in "${@:4}"; do [[ $name == cmake ]] && echo "not-installed $name" || echo "installed $name"; done'
+stand_in dpkg-query "$(dpkg_query not-installed cmake)"
 run 0 build
 called 'apt-get -q -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 update'
 

@@ -5,14 +5,17 @@
 # packages.txt brings: one that it names, one that those depend on, or one that every Debian has. A machine where more
 # is installed hides a package that is missing from the list; here dpkg says whose each file is, so that such a
 # machine notices, too. WITHOUT is a package that packages.txt is to be read without.
-import collections
 import glob
+import importlib.util
 import os
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+
+import debian
+from debian import output
 
 source, build = os.path.realpath(sys.argv[1]), os.path.realpath(sys.argv[2])
 without = sys.argv[3:]
@@ -24,107 +27,16 @@ optional = {
     "ffmpeg": "writes films, which no test wants",
     "git": "fetches the sources, which are here",
     "node": "[web] has it, and tests of programs for browsers are skipped without it",
-    "npm": "fetches Vite, an editor and a peer of benchmarks, which tests do without",
-    "npx": "starts what npm has fetched",
+    "npm": "[web] has it, and tests of programs for browsers are skipped without it",
+    "npx": "[web] has it, and tests of programs for browsers are skipped without it",
     "sudo": "installs packages, which are here",
     "tsc": "[web] has it, and tests of programs for browsers are skipped without it",
 }
 
 
-def output(*command, **environment):
-    """What a command prints; its failure is for the caller to see in that."""
-    return subprocess.run(
-        command, capture_output=True, text=True, errors="replace", env={**os.environ, "LC_ALL": "C", **environment}
-    ).stdout
-
-
 def skip(why):
     print(f"skipped: {why}")
     sys.exit(skipped)
-
-
-# ---- packages ---------------------------------------------------------------------------------------------------
-
-
-def listed():
-    """The packages of packages.txt, by section."""
-    packages = collections.defaultdict(list)
-    section = ""
-    with open(os.path.join(source, "packages.txt")) as lines:
-        for line in lines:
-            line = line.partition("#")[0].strip()
-            if line.startswith("["):
-                section = line.strip("[]")
-            elif line and line not in without:
-                packages[section].append(line)
-    return packages
-
-
-class Installed:
-    """What dpkg knows of the packages on this machine."""
-
-    def __init__(self):
-        self.depends = {}
-        self.present = set()  # what a Debian without anything has: debootstrap --variant=minbase
-        self.providers = collections.defaultdict(list)
-        form = r"${db:Status-Status}\t${Package}\t${Essential}\t${Priority}\t${Provides}\t${Pre-Depends}, ${Depends}\n"
-        for line in output("dpkg-query", "-W", "-f", form).splitlines():
-            status, package, essential, priority, provides, depends = line.split("\t")
-            if status != "installed":
-                continue
-            self.depends[package] = [self.names(group, "|") for group in depends.split(",")]
-            for name in self.names(provides, ","):
-                self.providers[name].append(package)
-            if essential == "yes" or priority == "required" or package == "apt":
-                self.present.add(package)
-
-    @staticmethod
-    def names(text, separator):
-        """`libc6 (>= 2.34) | libc6:any` without versions and architectures."""
-        return [re.split("[ (:]", part.strip())[0] for part in text.split(separator) if part.strip()]
-
-    def brought(self, packages):
-        """These packages and all that they depend on. Of alternatives apt takes the first unless another comes anyway,
-        so that they wait until nothing else does."""
-        found = set()
-        waiting = [*self.present, *packages]
-        choices = []
-        while waiting or choices:
-            if not waiting:
-                choice = choices.pop(0)
-                waiting = [] if found.intersection(choice) else choice[:1]
-                continue
-            package = waiting.pop()
-            if package in found:
-                continue
-            found.add(package)
-            for alternatives in self.depends.get(package, ()):
-                candidates = [one for name in alternatives for one in [name, *self.providers[name]]]
-                candidates = [one for one in candidates if one in self.depends]
-                if len(candidates) == 1:
-                    waiting += candidates
-                else:
-                    choices.append(candidates)
-        return found
-
-
-def owners(files):
-    """File: its package. A file of no package, such as one of our own or of a driver's installer, is left out."""
-    spellings = collections.defaultdict(set)  # as dpkg may know it: file
-    for file in files:
-        for name in (os.path.normpath(file), os.path.realpath(file)):
-            spellings[name].add(file)
-            merged = re.match("(/usr)?(/(?:bin|sbin|lib|lib32|lib64|libx32)/.*)", name)
-            if merged:  # /lib is /usr/lib, and packages say either
-                spellings[merged[2]].add(file)
-                spellings["/usr" + merged[2]].add(file)
-    found = {}
-    for line in output("dpkg-query", "-S", *spellings).splitlines():
-        package, _, name = line.partition(": ")
-        if not package.startswith("diversion "):
-            for file in spellings.get(name, ()):
-                found.setdefault(file, re.split("[:,]", package)[0])
-    return found
 
 
 # ---- what is used -----------------------------------------------------------------------------------------------
@@ -245,23 +157,41 @@ def started():
                 yield program, file
 
 
+def python_modules():
+    """Modules that our Python programs import: (file, who wants it)."""
+    for file, text, pattern in scripts():
+        if pattern is started_by_python:
+            for module in set(re.findall(r"^\s*(?:import|from) (\w+)", text, re.M)):
+                found = None if is_measurement(file) else importlib.util.find_spec(module)
+                if found and os.path.isabs(found.origin or ""):
+                    yield found.origin, file
+
+
+def shown_headers():
+    """Headers of the system that the C++ of documents and of projects built by tests includes: (file, who wants it)."""
+    folders = [place for form in ("/usr/include", "/usr/include/*-linux-gnu", "/usr/include/c++/*") for place in glob.glob(form)]
+    for pattern in ("README.md", "docs/**/*.md", "examples/**/*.md", "tests/consumer/**/*.[ch]pp", "tests/cli/**/*.[ch]pp"):
+        for file in glob.glob(os.path.join(source, pattern), recursive=True):
+            with open(file) as text:
+                for header in set(re.findall(r"^ *#include <([\w./+-]+)>", text.read(), re.M)):
+                    yield from ((path, file) for folder in folders if os.path.exists(path := os.path.join(folder, header)))
+
+
 # ---- the test ---------------------------------------------------------------------------------------------------
 
-if not shutil.which("dpkg-query"):
-    skip("this is no Debian; packages.txt is about Debian 12")
-with open("/etc/os-release") as release:
-    if not re.search('^VERSION_ID="?12"?$', release.read(), re.M):
-        skip("this is no Debian 12, which packages.txt is about")
-installed = Installed()
-packages = listed()
+why = debian.why_unknown()
+if why:
+    skip(why)
+installed = debian.Installed()
+packages = debian.listed(source, without)
 absent = [package for package in packages["build"] if package not in installed.depends]
 if absent:
     skip(f"{' '.join(absent)} of packages.txt not installed, so that their dependencies are not known")
 
 bare = installed.brought(packages["build"])
 everything = installed.brought([package for section in packages.values() for package in section])
-uses = {*read_by_the_build(), *linked(), *loaded(), *started()}
-owner = owners({file for file, user in uses})
+uses = {*read_by_the_build(), *linked(), *loaded(), *started(), *python_modules(), *shown_headers()}
+owner = debian.owners({file for file, user in uses})
 findings = {}  # one a file
 for file, user in sorted(uses):
     may = everything if is_measurement(user) else bare

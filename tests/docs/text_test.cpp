@@ -128,6 +128,8 @@ TEST_CASE("commands in sh blocks exist", "[text]") {
                                        "apt-get",
                                        "cd",
                                        "git",
+                                       "npm",
+                                       "npx",
                                        "skc"};
   for (const docs::Block* block : docs::blocksOf("sh")) {
     for (const std::string& line : docs::linesOf(block->text)) {
