@@ -44,7 +44,7 @@ def commands():
 def typed(words, folder):
     quick = {"npm_config_fetch_retries": "0", "npm_config_audit": "false", "npm_config_fund": "false", "npm_config_update_notifier": "false"}
     result = subprocess.run(words, cwd=folder, env={**os.environ, **quick, "npm_config_prefer_offline": "true"}, capture_output=True, text=True)
-    if result.returncode and re.search(r"npm (?:error|ERR!) (?:code|errno) (?:E(NOTFOUND|AI_AGAIN|CONN\w+|TIMEDOUT|HOSTUNREACH|NETUNREACH|403)|ERR_SOCKET_TIMEOUT)", result.stderr):
+    if result.returncode and re.search(r"npm (?:error|ERR!) (?:code|errno) (?:E(NOTFOUND|AI_AGAIN|CONN\w+|TIMEDOUT|HOSTUNREACH|NETUNREACH|403)|ERR_SOCKET_TIMEOUT|\w*CERT\w*)", result.stderr):
         print(f"skipped: npm reaches no registry: {result.stderr.splitlines()[0]}")
         sys.exit(chromium.skipped)
     assert result.returncode == 0, f"{' '.join(words)}: {result.stdout}{result.stderr}"
