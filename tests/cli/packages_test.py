@@ -6,7 +6,6 @@
 # is installed hides a package that is missing from the list; here dpkg says whose each file is, so that such a
 # machine notices, too. WITHOUT is a package that packages.txt is to be read without.
 import glob
-import importlib.util
 import os
 import re
 import shutil
@@ -158,13 +157,19 @@ def started():
 
 
 def python_modules():
-    """Modules that our Python programs import: (file, who wants it)."""
+    """Modules that our Python programs import, as Debian's own interpreter finds them: (file, who wants it)."""
+    importers, ours = {}, set()
     for file, text, pattern in scripts():
-        if pattern is started_by_python:
-            for module in set(re.findall(r"^\s*(?:import|from) (\w+)", text, re.M)):
-                found = None if is_measurement(file) else importlib.util.find_spec(module)
-                if found and os.path.isabs(found.origin or ""):
-                    yield found.origin, file
+        if pattern is started_by_python and not is_measurement(file):
+            ours.add(os.path.splitext(os.path.basename(file))[0])
+            importers.update((module, file) for module in re.findall(r"^\s*(?:import|from) (\w+)", text, re.M))
+    find = "import importlib.util, sys\nfor m in sys.argv[1:]: print(m, getattr(importlib.util.find_spec(m), 'origin', 'missing'))"
+    for line in output("/usr/bin/python3", "-I", "-c", find, *(importers.keys() - ours)).splitlines():
+        module, origin = line.split(maxsplit=1)
+        if origin == "missing":
+            sys.exit(f"{importers[module]} imports {module}, which no package here has")
+        if os.path.isabs(origin):
+            yield origin, importers[module]
 
 
 def shown_headers():
