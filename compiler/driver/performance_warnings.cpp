@@ -138,11 +138,25 @@ class Advisor {
     }
   }
 
+  /// Reports outputs whose result depends on the order of the elements, which the device therefore keeps.
   void appendOutputs() {
+    if (kernel_->choices.order == static_cast<std::uint8_t>(sk::Order::Any)) return;
     for (const KernelParam& param : kernel_->params) {
-      if (param.role == ParamRole::VariableOutput || param.role == ParamRole::Scatter)
-        report(Diag::SlowOrder, param.loc, {param.name});
+      if (param.role == ParamRole::VariableOutput) {
+        const std::string instead =
+            "where every element writes one value, an output 'out T " + param.name + "<>' is faster";
+        report(Diag::SlowOrder, param.loc, {param.name, instead});
+      }
+      if (param.role == ParamRole::Scatter && dependsOnOrder(param))
+        report(Diag::SlowOrder, param.loc,
+               {param.name, "[[order(any)]] in front of the kernel gives the order up"});
     }
+  }
+
+  /// False for minima, maxima and sums of integers.
+  static bool dependsOnOrder(const KernelParam& param) {
+    if (param.scatter == ScatterOp::Store) return true;
+    return param.scatter == ScatterOp::Add && !param.type.isInteger();
   }
 
   /// Reports once per location, which instances of a template and helpers of several kernels share.

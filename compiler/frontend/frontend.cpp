@@ -23,6 +23,7 @@
 #include "frontend/diagnostic_printer.hpp"
 #include "frontend/lower/lower_module.hpp"
 #include "frontend/prelude.hpp"
+#include "frontend/quotient_warnings.hpp"
 #include "frontend/tokens/float_literals.hpp"
 #include "frontend/tokens/token_editor.hpp"
 
@@ -48,6 +49,8 @@ std::vector<std::string> compilerArguments(const Options& options, const std::st
       "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all", "-fnative-half-arguments-and-returns",
       "-Wno-undefined-internal", "-Wno-undefined-inline", narrowingArgument,
       "-Wno-literal-range",   // lowering warns, because it knows which literals are doubles
+      "-Wtautological-unsigned-zero-compare",   // a loop that counts down past 0 never ends
+      "-Wno-vla-cxx-extension",   // lowering refuses them
       // a bad -W or a long cascade must not bury the first message
       "-ferror-limit", "20", "-fmessage-length=0"};
   for (const std::string& directory : options.includeDirectories) arguments.push_back("-I" + directory);
@@ -84,11 +87,13 @@ class Frontend::Unit {
     std::vector<clang::Token> tokens = lex();
     if (tokens.empty()) return std::nullopt;
     suffixFloats(tokens, compiler_.getPreprocessor());
-    EditedTokens edited = editTokens(tokens, compiler_.getPreprocessor(), *diagnostics_);
+    edited_ = editTokens(tokens, compiler_.getPreprocessor(), *diagnostics_);
     if (diagnostics_->hasErrors()) return std::nullopt;
-    parse(edited.tokens);
+    printer_->setSyntax(&edited_.syntax);
+    parse(edited_.tokens);
     if (diagnostics_->hasErrors()) return std::nullopt;
-    ir::Module module = lowerModule(compiler_.getSema(), edited.syntax, path, *diagnostics_);
+    warnOfQuotients(compiler_.getASTContext(), *diagnostics_);
+    ir::Module module = lowerModule(compiler_.getSema(), edited_.syntax, path, *diagnostics_);
     if (diagnostics_->hasErrors()) return std::nullopt;
     if (module.kernels.empty() && module.streams.empty() && !options_.isLibrary) {
       fail(Diag::NoKernels, path);
@@ -122,6 +127,7 @@ class Frontend::Unit {
     llvm::raw_ostream* messages = messages_.get();
     if (messages == nullptr) messages = &llvm::errs();
     auto printer = std::make_unique<DiagnosticPrinter>(*messages, &compiler_.getDiagnosticOpts());
+    printer_ = printer.get();
     compiler_.createDiagnostics(printer.release());  // takes ownership
     diagnostics_ = std::make_unique<ClangDiagnostics>(compiler_.getDiagnostics());
   }
@@ -227,7 +233,9 @@ class Frontend::Unit {
   std::string path_;
   std::unique_ptr<llvm::MemoryBuffer> text_;
   std::unique_ptr<llvm::raw_os_ostream> messages_;
+  EditedTokens edited_;
   clang::CompilerInstance compiler_;
+  DiagnosticPrinter* printer_ = nullptr;  ///< of the current engine
   std::unique_ptr<ClangDiagnostics> diagnostics_;
   std::shared_ptr<clang::DependencyCollector> dependencyCollector_;
   bool parsing_ = false;

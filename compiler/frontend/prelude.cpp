@@ -159,9 +159,10 @@ std::string matrixTypes() {
 }
 
 /// __sk_traits<T>: F, I, U and B are the floating-point, int, uint and bool types of T's width, f is F's
-/// component, and N is T's arithmetic type. F is float, except that double stays double.
+/// component, and N is T's arithmetic type. F is float, except that double stays double. Other types have none
+/// of them, so that intrinsics leave their arguments to overloads of the program's own.
 std::string typeTraits() {
-  std::string text = "template <class T> struct __sk_traits;\n";
+  std::string text = "template <class T> struct __sk_traits {};\n";
   for (const VectorFamily& family : families) {
     for (int width = 1; width <= 4; ++width) {
       const std::string suffix = width == 1 ? "" : std::to_string(width);
@@ -182,9 +183,7 @@ std::string typeTraits() {
   text +=
       "template <> struct __sk_traits<char32_t> : __sk_traits<bool> {};\n"
       "template <> struct __sk_traits<signed char> : __sk_traits<char> {};\n"
-      "template <class A> using __sk_one = __sk_traits<A>;\n"
-      "template <class... A> struct __sk_sum : __sk_traits<decltype((A() + ...))> {};\n"
-      "template <class A> struct __sk_sum<A> : __sk_traits<A> {};\n"
+      "template <class... A> using __sk_sum = __sk_traits<decltype((A() + ...))>;\n"
       "template <class... A> using __sk_F = typename __sk_sum<A...>::F;\n"
       "template <class... A> using __sk_f = decltype((typename __sk_traits<A>::f() + ...));\n"
       "template <class... A> using __sk_I = typename __sk_sum<A...>::I;\n"

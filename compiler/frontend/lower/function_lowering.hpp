@@ -66,6 +66,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr VisitConditionalOperator(const clang::ConditionalOperator* e);
   ir::ExprPtr VisitExtVectorElementExpr(const clang::ExtVectorElementExpr* e);
   ir::ExprPtr VisitMemberExpr(const clang::MemberExpr* e);
+  ir::ExprPtr VisitArrayInitLoopExpr(const clang::ArrayInitLoopExpr* e);
   ir::ExprPtr VisitArraySubscriptExpr(const clang::ArraySubscriptExpr* e);
   ir::ExprPtr VisitInitListExpr(const clang::InitListExpr* e);
   ir::ExprPtr VisitCXXParenListInitExpr(const clang::CXXParenListInitExpr* e);

@@ -239,7 +239,7 @@ void FunctionLowering::variable(const clang::VarDecl* declaration) {
     if (!uninitialised) init = value(initializer);
   }
   ir::Variable variable;
-  variable.name = declaration->getNameAsString();
+  variable.name = llvm::isa<clang::DecompositionDecl>(declaration) ? "t" : declaration->getNameAsString();
   variable.type = lowered;
   variable.isConst = type.isConstQualified();
   variable.loc = module_.loc(where);

@@ -66,6 +66,7 @@ ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
   if (const auto* array = context().getAsConstantArrayType(canonical)) {
     return arrayType(type(array->getElementType(), use), array->getSize().getZExtValue(), use);
   }
+  if (canonical->isVariableArrayType()) fail(Diag::ArrayLengthVaries, use);
   if (const clang::CXXRecordDecl* record = canonical->getAsCXXRecordDecl()) {
     if (isPrelude(record)) {
       if (const auto known = classType(record->getName())) return *known;

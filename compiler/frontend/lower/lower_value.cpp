@@ -81,6 +81,8 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
     abandonIfUnknown(e);
     return module_.constant(variable, where);
   }
+  if (const auto* binding = llvm::dyn_cast<clang::BindingDecl>(declared))   // auto [p, q] = f(x);
+    return value(binding->getBinding());
   if (llvm::isa<clang::FunctionDecl>(declared))
     module_.fail(Diag::Pointer, where, {declared->getType().getAsString()});
   return VisitExpr(e);
@@ -156,6 +158,8 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
       return convert(value(operand), module_.type(e->getType(), where).scalar);
     case clang::CK_VectorSplat: return splat(value(operand), module_.type(e->getType(), where).width);
     case clang::CK_BitCast: return vectorBitCast(e);
+    case clang::CK_LValueToRValueBitCast:  // __builtin_bit_cast
+      module_.fail(Diag::BitCast, where, {e->getType().getAsString()});
     case clang::CK_ToVoid: {
       discarded(operand);
       return ir::literal(false, module_.loc(where));
@@ -303,6 +307,11 @@ ExprPtr FunctionLowering::VisitMemberExpr(const clang::MemberExpr* e) {
   ExprPtr base = value(e->getBase());
   const ir::Type type = module_.structAt(base->type.index).fields[field->getFieldIndex()].type;
   return make(type, e->getMemberLoc(), ir::Member{std::move(base), field->getFieldIndex()});
+}
+
+/// The copy of a whole array that `auto [p, q] = array;` makes.
+ExprPtr FunctionLowering::VisitArrayInitLoopExpr(const clang::ArrayInitLoopExpr* e) {
+  return value(e->getCommonExpr()->getSourceExpr());
 }
 
 ExprPtr FunctionLowering::VisitArraySubscriptExpr(const clang::ArraySubscriptExpr* e) {

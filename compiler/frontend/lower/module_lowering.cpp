@@ -248,6 +248,9 @@ void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation w
     return;
   }
   if (ir::foldsBesideOutputs(kernel)) return;
+  const bool readsOther = count(ir::ParamRole::Iterator) + count(ir::ParamRole::Gather) > 0;
+  if (readsOther && count(ir::ParamRole::Input) == 0 && count(ir::ParamRole::Accumulator) != 0)
+    fail(Diag::FoldWithoutDomain, where, {ir::wordOf(kernel), kernel.name});
   if (count(ir::ParamRole::Input) == 0 || count(ir::ParamRole::Accumulator) == 0) {
     fail(Diag::ReduceParameters, where, {kernel.name, ir::wordOf(kernel)});
   }
@@ -269,6 +272,8 @@ void ModuleLowering::checkFoldedOutputs(const ir::Kernel& kernel, const KernelSy
   };
   if (const auto* appended = first({ir::ParamRole::VariableOutput, ir::ParamRole::Scatter}))
     abandon(Diag::FoldBesideAppend, {kernel.name, folded.name, appended->name});
+  if (first({ir::ParamRole::Output, ir::ParamRole::Input}) == nullptr)
+    abandon(Diag::FoldWithoutDomain, {"kernel", kernel.name});
   if (first({ir::ParamRole::Output}) == nullptr) {
     abandon(Diag::FoldWithoutOutput, {kernel.name, folded.name},
             {FixIt::replace(locOf(syntax.keyword), std::string(wordOf(FunctionKind::Reduce)))});

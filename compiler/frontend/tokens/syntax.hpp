@@ -101,6 +101,11 @@ class DeclarationSyntax {
   const StreamSyntax* stream(clang::SourceLocation name) const { return find(streams_, name); }
   const TableSyntax* table(clang::SourceLocation name) const { return find(tables_, name); }
   const ParamSyntax* param(clang::SourceLocation name) const { return find(params_, name); }
+  /// Calls visit(location of the name, parameter) for all parameters, in any order.
+  template <class Visit>
+  void forEachParam(Visit&& visit) const {
+    for (const auto& [name, param] : params_) visit(clang::SourceLocation::getFromRawEncoding(name), param);
+  }
 
  private:
   template <class Map>

@@ -11,7 +11,7 @@
   CASE(arrayDynamicIndex) CASE(arrayOfFloats) CASE(constantTable) CASE(structConstant)             \
   CASE(staticMembers) CASE(localStruct) CASE(sameNames) CASE(structInLoop) CASE(selfAssignment)    \
   CASE(arrayByReference) CASE(arrayParameter) CASE(boolMembers) CASE(templateStruct)             \
-  CASE(givesItself) CASE(thisObject)
+  CASE(givesItself) CASE(thisObject) CASE(structuredBindings) CASE(overloadedIntrinsics)
 // clang-format on
 
 namespace structs {
@@ -365,6 +365,37 @@ inline int givesItself(int x, int y) {
 inline int thisObject(int x, int y) {
   Counter a = {x, y};
   return a.twice().n + a.times(y) + a.same().calls;
+}
+
+struct Halves {
+  int low, high;
+};
+inline Halves halvesOf(int x) { return {x & 3, x >> 2}; }
+inline int structuredBindings(int x, int y) {
+  Halves given = {x, y};
+  auto [a, b] = given;   // a copy
+  a += 10;
+  b *= 2;
+  const auto [low, high] = halvesOf(x + y);
+  int list[3] = {x, y, 4};
+  auto [first, second, third] = list;
+  first += third++;
+  int sum = 0;
+  for (auto [i, end] = Halves{0, 3}; i < end; ++i) sum += i * second;
+  return a + 10 * b + 100 * low + 1000 * high + given.low + given.high + first + third + list[0] + sum;
+}
+
+inline Halves abs(Halves h) { return {h.low < 0 ? -h.low : h.low, h.high < 0 ? -h.high : h.high}; }
+inline Halves max(Halves a, Halves b) { return a.low > b.low ? a : b; }
+inline int length(Halves h) { return h.low + h.high; }
+template <class T>
+inline Both<T> sign(Both<T> v) {
+  return {v.a > 0 ? T(1) : T(-1), v.b > 0 ? T(1) : T(-1)};
+}
+inline int overloadedIntrinsics(int x, int y) {
+  const Halves h = {x, y}, larger = max(abs(h), halvesOf(y));
+  const Both<int> signs = sign(Both<int>{x, y});
+  return length(larger) + 10 * larger.low + 100 * signs.a + 1000 * signs.b;
 }
 
 }  // namespace structs
