@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <llvm/BinaryFormat/Dwarf.h>
+#include <llvm/IR/CFG.h>
 #include <llvm/IR/Instructions.h>
 #include <llvm/IR/Module.h>
 
@@ -47,6 +51,30 @@ bool isDescribable(const LeafMemory& leaf) {
   return !leaf.element->isVectorTy() || !leaf.element->getScalarType()->isIntegerTy(1);
 }
 
+/// Puts blocks in the order of execution: then before else, the body of a loop before what follows. Debuggers stop once more
+/// at a line whose code lies in two places.
+void layOut(llvm::Function& function) {
+  std::vector<llvm::BasicBlock*> finished;
+  std::set<const llvm::BasicBlock*> seen = {&function.getEntryBlock()};
+  std::vector<std::pair<llvm::BasicBlock*, unsigned>>
+      open;  ///< and how many successors are left, the last one first
+  const auto enter = [&](llvm::BasicBlock* block) {
+    open.emplace_back(block, block->getTerminator()->getNumSuccessors());
+  };
+  enter(&function.getEntryBlock());
+  while (!open.empty()) {
+    auto& [block, left] = open.back();
+    if (left == 0) {
+      finished.push_back(block);
+      open.pop_back();
+      continue;
+    }
+    llvm::BasicBlock* const next = block->getTerminator()->getSuccessor(--left);
+    if (seen.insert(next).second) enter(next);
+  }
+  for (std::size_t i = finished.size(); i-- > 1;) finished[i - 1]->moveAfter(finished[i]);
+}
+
 }  // namespace
 
 DebugInfo::DebugInfo(llvm::Module& code, const Module& module, bool isOptimized)
@@ -78,10 +106,13 @@ void DebugInfo::begin(llvm::IRBuilder<>& b, llvm::Function& code, const Function
   begun_ = &function;
   programs_.clear();
   scopes_ = {{program, nullptr, {}}};
-  b.SetCurrentDebugLocation(llvm::DILocation::get(b.getContext(), function.loc.line, 0, program));
+  // what loads arguments and counts elements has no line, so that a breakpoint on the kernel stops behind it
+  const unsigned line = isOptimized_ ? function.loc.line : 0;
+  b.SetCurrentDebugLocation(llvm::DILocation::get(b.getContext(), line, 0, program));
 }
 
 void DebugInfo::end(llvm::IRBuilder<>& b) {
+  if (!isOptimized_) layOut(*b.GetInsertBlock()->getParent());
   scopes_.clear();
   b.SetCurrentDebugLocation({});
 }
@@ -96,7 +127,7 @@ void DebugInfo::enter(llvm::IRBuilder<>& b, const Function& function) {
     if (program == nullptr) program = makeProgram(function);
     scopes_.push_back({program, before.get(), before});
   }
-  moveTo(b, function.loc);
+  if (isOptimized_ || &function != begun_) moveTo(b, function.loc);
 }
 
 void DebugInfo::leave(llvm::IRBuilder<>& b) {

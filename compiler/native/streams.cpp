@@ -30,6 +30,7 @@ void Streams::begin(llvm::Value* frame, llvm::Value* chunk, llvm::BasicBlock* pr
   frame_ = frame;
   chunk_ = chunk;
   prologue_ = prologue;
+  start_ = l.b.getCurrentDebugLocation();
   loads_.clear();
   beginRow(nullptr, prologue);
 }
@@ -47,6 +48,7 @@ llvm::Value* Streams::emitIn(llvm::BasicBlock* prologue, const std::function<llv
   } else {
     l.b.SetInsertPoint(prologue);
   }
+  l.b.SetCurrentDebugLocation(start_);  // a breakpoint at the line that needs the value is not to stop here
   return emit();
 }
 
@@ -449,6 +451,7 @@ llvm::Function* Streams::laneGather(std::uint32_t param) {
   known->addFnAttr(llvm::Attribute::Cold);
 
   const llvm::IRBuilderBase::InsertPointGuard guard(l.b);
+  l.b.SetCurrentDebugLocation({});  // which the function around owns
   llvm::LLVMContext& context = l.b.getContext();
   llvm::BasicBlock* const entry = llvm::BasicBlock::Create(context, "entry", known);
   llvm::BasicBlock* const loop = llvm::BasicBlock::Create(context, "lane", known);

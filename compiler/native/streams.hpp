@@ -144,6 +144,7 @@ class Streams {
   llvm::Value* frame_ = nullptr;
   llvm::Value* chunk_ = nullptr;
   llvm::BasicBlock* prologue_ = nullptr;  ///< of the function
+  llvm::DebugLoc start_;  ///< of the function
   llvm::BasicBlock* rowPrologue_ = nullptr;  ///< of a row of the chunk
   llvm::Value* rowNumber_ = nullptr;  ///< in the chunk; null if it has one row
   llvm::Value* element_ = nullptr;

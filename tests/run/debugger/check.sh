@@ -31,6 +31,14 @@ shows '^6	  return twice \+ 1;$'                    # in a function that the ker
 shows '^#1 .*heat \(.*heat\.sk:21$'
 shows '^twice = \{21, 17, 25, 21\}$'
 
+# A breakpoint on a kernel stops at its first statement, with its arguments; `next` goes through its lines once for all lanes.
+printed=$(OMP_NUM_THREADS=1 gdb -nx -batch -ex 'break pick' -ex 'run' -ex 'info args' -ex 'next' -ex 'info locals' \
+  -ex 'next' -ex 'next' -ex 'next' "$program" 2>&1)
+shows '^x = \{1, 2, 3, 4\}$'
+shows '^b = \{[0-9.]+, [0-9.]+, [0-9.]+, [0-9.]+\}$'
+lines=$(sed -n 's/^\(2[0-9]\)\t.*/\1/p' <<<"$printed" | tr '\n' ' ')
+[[ $lines == "25 26 27 29 " ]] || { printf 'broken: gdb stops at lines %s\n%s\n' "$lines" "$printed"; exit 1; }
+
 address=$(nm "$program" | sed -n 's/^\([0-9a-f]*\) t .*_heat\.run.*$/\1/p' | head -n 1)
 line=$(addr2line -e "$program" "$address")
 [[ $line == */debugger/heat.sk:9 ]] || { echo "broken: addr2line has $line"; exit 1; }
