@@ -38,6 +38,12 @@ Advice adviceOnReturn(const clang::Diagnostic& diagnostic, const DeclarationSynt
                                        isFold(kernel->kind) ? "the accumulator" : "an output, 'out T r<>'"})};
 }
 
+/// Advice on calling a member function that is not const for an object that is.
+Advice adviceOnMethod(const clang::Diagnostic& diagnostic) {
+  const std::string name = nameIn(diagnostic, 0);
+  return {name.empty() ? std::string() : format(Diag::MethodNotConst, {name})};
+}
+
 /// Advice on `constexpr float s = sqrt(2.0)`.
 Advice adviceOnConstexpr(const clang::Diagnostic& diagnostic) {
   const clang::NamedDecl* variable = declarationIn(diagnostic);
@@ -60,6 +66,7 @@ Advice adviceOn(const clang::Diagnostic& diagnostic, const DeclarationSyntax* sy
     case clang::diag::err_for_range_invalid: return {format(Diag::RangeFor, {})};
     case clang::diag::err_typecheck_assign_const: return adviceOnConstant(diagnostic);
     case clang::diag::err_constexpr_var_requires_const_init: return adviceOnConstexpr(diagnostic);
+    case clang::diag::err_member_function_call_bad_cvr: return adviceOnMethod(diagnostic);
     case clang::diag::ext_return_has_expr: return adviceOnReturn(diagnostic, syntax);
     case clang::diag::warn_unsigned_always_true_comparison: return adviceOnUnsigned(diagnostic);
     default: break;

@@ -58,9 +58,29 @@ Advice adviceOnForeignName(const clang::Diagnostic& diagnostic) {
   return {format(Diag::ForeignName, {name, instead->advice}), replaced(diagnostic, instead->word), isScope};
 }
 
+/// True if the text behind the diagnostic defines a function of this name: `int fact(int n) {`.
+bool isDefinedBelow(const clang::Diagnostic& diagnostic, llvm::StringRef name) {
+  const llvm::StringRef text = textAt(diagnostic);
+  for (std::size_t at = text.find(name, 1); at != llvm::StringRef::npos; at = text.find(name, at + 1)) {
+    const llvm::StringRef before = text.take_front(at), rest = text.drop_front(at + name.size()).ltrim();
+    const llvm::StringRef parameters = bracketedAt(rest);
+    const bool isTyped = before.ends_with(" ") && nameAt(before.rtrim().take_back(1)).size() == 1;
+    const bool hasBody = rest.drop_front(parameters.size()).ltrim().starts_with("{");
+    if (isTyped && rest.starts_with("(") && !parameters.empty() && hasBody) return true;
+  }
+  return false;
+}
+
+Advice adviceOnLaterFunction(const clang::Diagnostic& diagnostic) {
+  const std::string name = nameIn(diagnostic, 0);
+  if (name.empty() || !isDefinedBelow(diagnostic, name)) return {};
+  return {format(Diag::DefinedBelow, {name})};
+}
+
 /// Advice on an undeclared name.
 Advice adviceOnName(const clang::Diagnostic& diagnostic) {
   if (Advice advice = adviceOnForeignName(diagnostic); !advice.text.empty()) return advice;
+  if (Advice advice = adviceOnLaterFunction(diagnostic); !advice.text.empty()) return advice;
   const std::string name = nameIn(diagnostic, 0);
   const std::string_view intrinsic = intrinsicLike(name);
   if (intrinsic.empty()) return {};
@@ -96,6 +116,8 @@ Advice adviceOnNames(const clang::Diagnostic& diagnostic) {
     case clang::diag::err_undeclared_var_use:
     case clang::diag::err_unknown_typename: return adviceOnName(diagnostic);
     case clang::diag::err_undeclared_var_use_suggest:
+      if (Advice advice = adviceOnForeignName(diagnostic); !advice.text.empty()) return advice;
+      return adviceOnLaterFunction(diagnostic);
     case clang::diag::err_unknown_typename_suggest:
     case clang::diag::err_no_template:
     case clang::diag::err_no_template_suggest: return adviceOnForeignName(diagnostic);

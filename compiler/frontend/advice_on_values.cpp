@@ -94,8 +94,11 @@ Advice adviceOnArrayIndex(const clang::Diagnostic& diagnostic) {
   return {format(Diag::ArrayIndexType, {index.str()}), std::move(fixIts)};
 }
 
-/// Advice on `a(1, 2)` of a gather.
+/// Advice on `a(1, 2)` of a gather, and on `r[0]` of a variable output.
 Advice adviceOnCalledValue(const clang::Diagnostic& diagnostic) {
+  for (const clang::QualType type : typesIn(diagnostic)) {
+    if (isOfClass(type, variableOutputClass)) return {format(Diag::PushForm, {})};
+  }
   const int rank = gatherRankIn(diagnostic);
   if (rank == 0) return {};
   std::string indices;
@@ -127,12 +130,18 @@ Advice adviceOnScalarMember(const clang::Diagnostic& diagnostic) {
   return {format(Diag::ScalarMember, {value.str(), member.str()})};
 }
 
+/// True for "float3x3".
+bool isMatrixName(llvm::StringRef name) {
+  return name.consume_front("float") && name.size() == 3 && name[1] == 'x' && name[0] == name[2];
+}
+
 /// Advice on a member that a class of the prelude does not have.
 Advice adviceOnMissingMember(const clang::Diagnostic& diagnostic) {
   const auto* context = reinterpret_cast<const clang::DeclContext*>(diagnostic.getRawArg(1));
   const auto* type = llvm::dyn_cast_or_null<clang::NamedDecl>(context);
   if (type == nullptr || type->getIdentifier() == nullptr) return {};
-  if (type->getName().starts_with(gatherClass)) return adviceOnMember(nameIn(diagnostic, 0));
+  if (type->getName().starts_with(gatherClass)) return {format(Diag::StreamMember, {nameIn(diagnostic, 0)})};
+  if (isMatrixName(type->getName())) return {format(Diag::MatrixMember, {nameIn(diagnostic, 0)})};
   return {type->getName() == variableOutputClass ? format(Diag::PushForm, {}) : std::string()};
 }
 
@@ -209,6 +218,18 @@ Advice adviceOnPosition(const clang::Diagnostic& diagnostic, unsigned wanted) {
   return {};
 }
 
+/// Advice to take some of the components, or to add zeros for the missing ones.
+Advice otherWidth(llvm::StringRef text, unsigned given, unsigned wanted, const std::string& type) {
+  std::string instead = components(text, std::min(given, wanted));
+  if (given < wanted) {
+    instead = fmt::format("{}({}", type, std::string_view(text));
+    for (unsigned i = given; i < wanted; ++i) instead += ", 0";
+    instead += ")";
+  }
+  return {format(Diag::ComponentCount,
+                 {text.str(), fmt::format("{} components", given), wantedNumbers(wanted), instead})};
+}
+
 /// Advice on a vector where a number, or a vector of another width or type, is meant.
 Advice adviceOnWidth(clang::QualType from, clang::QualType to, llvm::StringRef text) {
   const unsigned given = widthOf(from), wanted = widthOf(to);
@@ -216,14 +237,7 @@ Advice adviceOnWidth(clang::QualType from, clang::QualType to, llvm::StringRef t
   const bool isNumber = to->isArithmeticType() || wanted > 1;
   if (!isNumber) return {};
   if (given == wanted) return {format(Diag::VectorConversion, {spellingOf(to), text.str()})};
-  std::string instead = components(text, std::min(given, wanted));
-  if (given < wanted) {
-    instead = fmt::format("{}({}", spellingOf(to), std::string_view(text));
-    for (unsigned i = given; i < wanted; ++i) instead += ", 0";
-    instead += ")";
-  }
-  return {format(Diag::ComponentCount,
-                 {text.str(), fmt::format("{} components", given), wantedNumbers(wanted), instead})};
+  return otherWidth(text, given, wanted, spellingOf(to));
 }
 
 /// Advice on initialising, assigning, passing or returning a value of another type.
@@ -334,9 +348,15 @@ Advice adviceOnWidths(const clang::Diagnostic& diagnostic) {
                  {fmt::format("{}{}", other.getUnqualifiedType().getAsString(), widthOf(wide)), text.str()})};
 }
 
-/// Advice on `v * m`.
+/// Advice on `v * m`, and on `m * v` where v has another width.
 Advice adviceOnMatrix(const clang::Diagnostic& diagnostic) {
   const std::vector<clang::QualType> types = typesIn(diagnostic);
+  if (types.size() == 2 && isOfClass(types[0], "float") && diagnostic.getNumRanges() > 1) {
+    const llvm::StringRef name = types[0]->getAsCXXRecordDecl()->getName(), text = textOf(diagnostic, 1);
+    const auto wanted = static_cast<unsigned>(name.back() - '0'), given = widthOf(types[1]);
+    if (!isMatrixName(name) || given < 2 || given == wanted || text.empty()) return {};
+    return otherWidth(text, given, wanted, fmt::format("float{}", wanted));
+  }
   const bool isProduct = characterAt(diagnostic) == '*' && types.size() == 2 && widthOf(types[0]) > 1;
   if (!isProduct || !isOfClass(types[1], "float") || diagnostic.getNumRanges() < 2) return {};
   return {format(Diag::VectorTimesMatrix, {textOf(diagnostic, 0).str(), textOf(diagnostic, 1).str()})};
@@ -392,6 +412,7 @@ std::size_t argumentsIn(llvm::StringRef call) {
 Advice adviceOnCall(const clang::Diagnostic& diagnostic) {
   const std::string name = nameIn(diagnostic, 0);
   if (name == "push") return {format(Diag::PushForm, {})};
+  if (name == "indexof" || name == "extentof") return {format(Diag::IndexOfWithout, {name, "r"}), {}, true};
   if (name == "neighbor") return {format(Diag::GatherArguments, {name, "an offset in each"})};
   if (name == "sample")
     return {format(Diag::GatherArguments, {name, "a position with a component for each"})};

@@ -50,6 +50,7 @@ std::vector<std::string> compilerArguments(const Options& options, const std::st
       "-Wno-undefined-internal", "-Wno-undefined-inline", narrowingArgument,
       "-Wno-literal-range",   // lowering warns, because it knows which literals are doubles
       "-Wtautological-unsigned-zero-compare",   // a loop that counts down past 0 never ends
+      "-Wuninitialized",   // a value of any kind, and another one on each device
       "-Wno-vla-cxx-extension",   // lowering refuses them
       // a bad -W or a long cascade must not bury the first message
       "-ferror-limit", "20", "-fmessage-length=0"};

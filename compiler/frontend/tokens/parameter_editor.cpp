@@ -156,6 +156,10 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
     diagnostics_.report(Diag::KernelReference, locOf(parts.type.back()), {nameOf(parts.name)});
     return;
   }
+  if (kind != FunctionKind::Helper && parts.type.back().is(tok::star)) {
+    diagnostics_.report(Diag::KernelPointer, locOf(parts.type.back()), {nameOf(parts.name)});
+    return;
+  }
   if (!resolveRole(parts, kind)) return;
   print(parts, kind, out);
 }
