@@ -41,6 +41,28 @@ template <class S, class T>
 concept StreamOf = requires { typename std::remove_cvref_t<S>::value_type; } &&
                    std::same_as<typename std::remove_cvref_t<S>::value_type, T>;
 
+namespace detail {
+
+template <class S>
+concept HasRegion = requires(const S& stream) {
+  { regionOf(stream) } -> std::same_as<StreamRegion>;
+};
+
+/// The region of an argument, which has been chosen by the type of its elements alone.
+template <class S>
+StreamRegion regionOfArgument(const S& stream) {
+  static_assert(HasRegion<S>,
+                "StreamKernel: kernels take streams, and this is memory of the host; create a stream, "
+                "device.stream<T>(shape), and write() the elements to it");
+  if constexpr (HasRegion<S>) {
+    return regionOf(stream);
+  } else {
+    return {};
+  }
+}
+
+}  // namespace detail
+
 /// An element input that is fitted to the domain. Created by stretch() and stride().
 template <class T>
 struct Fitted {
@@ -84,7 +106,7 @@ template <class T>
 class In {
  public:
   template <StreamOf<T> S>
-  In(const S& stream) : region_(regionOf(stream)) {}
+  In(const S& stream) : region_(detail::regionOfArgument(stream)) {}
   Argument argument() const { return {.region = region_}; }
 
  private:
@@ -96,7 +118,7 @@ template <class T>
 class ElementIn {
  public:
   template <StreamOf<T> S>
-  ElementIn(const S& stream) : argument_{.region = regionOf(stream)} {}
+  ElementIn(const S& stream) : argument_{.region = detail::regionOfArgument(stream)} {}
   ElementIn(const Fitted<T>& stream) : argument_{.region = stream.region, .fit = stream.fit} {}
   ElementIn(const InRows<T>& stream) : argument_{.region = stream.region, .rows = stream.rows} {}
   Argument argument() const { return argument_; }
@@ -109,7 +131,7 @@ template <class T>
 class Out {
  public:
   template <StreamOf<T> S>
-  Out(S&& stream) : region_(regionOf(stream)) {
+  Out(S&& stream) : region_(detail::regionOfArgument(stream)) {
     static_assert(isWritable<std::remove_reference_t<S>>,
                   "StreamKernel: the kernel writes this stream, but it is const");
   }
@@ -143,7 +165,7 @@ class Uniform {
     requires(std::is_arithmetic_v<V> && std::is_arithmetic_v<T> && !std::same_as<V, T>)
   Uniform(V value) : value_(static_cast<T>(value)) {}
   template <StreamOf<T> S>
-  Uniform(const S& stream) : region_(regionOf(stream)) {}
+  Uniform(const S& stream) : region_(detail::regionOfArgument(stream)) {}
   /// A pointer into this object, unless it is a stream.
   Argument argument() const { return value_ ? Argument{.value = &*value_} : Argument{.region = region_}; }
 

@@ -140,6 +140,17 @@ class Device {
     return Stream<T>(createStream(ElementTraits<T>::element(), shape, storage, name));
   }
 
+  /// Says which elements streams have.
+  template <class T>
+    requires(!ElementType<T>)
+  auto stream(const Shape&, Storage = Storage::Default, std::string_view = {}) {
+    static_assert(
+        ElementType<T>,
+        "StreamKernel: a stream holds bool, float, double, std::int32_t, std::uint32_t, 8 and 16 bits of "
+        "integers, sk::half, vectors such as sk::float4, or a struct of a .sk file, whose header has "
+        "to be included; for long and std::size_t take std::int32_t");
+  }
+
   /// Creates a scalar: a value on the device, undefined until something writes it, or `value`. Throws sk::Error if the
   /// device is out of memory.
   template <ElementType T>

@@ -8,7 +8,7 @@
 
 #include "misuse.sk.hpp"
 
-void call(sk::Stream<float>& f, const sk::Stream<float>& constant, sk::Scalar<float>& a) {
+void call(sk::Stream<float>& f, const sk::Stream<float>& constant, sk::Scalar<float>& a, sk::Device& device) {
   misuse::diffuse(1, constant, f);  // right
 #if WRONG == 1
   misuse::diffuse(1, f, constant);
@@ -16,6 +16,12 @@ void call(sk::Stream<float>& f, const sk::Stream<float>& constant, sk::Scalar<fl
   misuse::sum(f, constant.domain({0}, {1}));
 #elif WRONG == 3
   sk::Rows rows(std::vector<int>{0, 3, 5});
+#elif WRONG == 4
+  std::vector<float> memory(3);
+  misuse::diffuse(1, memory, f);
+#elif WRONG == 5
+  auto numbers = device.stream<long>({3});
 #endif
   a = 2.0f;  // right
+  static_cast<void>(device);
 }

@@ -8,7 +8,9 @@ string(REPLACE ":" ";-I" includes "-I${INCLUDES}")
 set(message_1 "the kernel writes this stream, but it is const")
 set(message_2 "${message_1}")
 set(message_3 "the starts of rows are a stream on the device")
-foreach(wrong RANGE 3)
+set(message_4 "kernels take streams, and this is memory of the host")
+set(message_5 "a stream holds bool, float")
+foreach(wrong RANGE 5)
   execute_process(
     COMMAND ${CXX} -std=c++20 -fsyntax-only -DWRONG=${wrong} ${includes} "${CMAKE_CURRENT_LIST_DIR}/calls.cpp"
     RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
