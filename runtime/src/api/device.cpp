@@ -14,6 +14,7 @@
 
 #include "assemble/assemble.hpp"
 #include "assemble/elements/storage.hpp"
+#include "call/check_setting.hpp"
 #include "device/stream_state.hpp"
 #include "gl_device/gl_device.hpp"
 #include "native/native_device.hpp"
@@ -254,6 +255,7 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
     }
     detail::StreamOwner stream(state().createStream(element, shape, storage).release());
     if (!name.empty()) stream->setName(name);
+    stream->isUnwritten = checksWritten();
     return stream;
   });
 }

@@ -13,6 +13,7 @@
 #include "call/check_argument.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
+#include "call/check_written.hpp"
 #include "call/dense_regions.hpp"
 #include "call/distribution.hpp"
 #include "call/placed.hpp"
@@ -242,6 +243,7 @@ void checkAndFold(const Reduction& reduction, std::span<const Argument> argument
     return checkAndFold(reduction, boxed.arguments, others, boxed.placed);
   }
   const FoldCall call(reduction, arguments, options, placed);
+  noteWritten(reduction.fold, arguments);
   LoopState* const recording = call.device().recording;
   if (recording == nullptr) return call.run();
   recording->add(std::make_unique<RecordedFold>(reduction, arguments, options, placed));

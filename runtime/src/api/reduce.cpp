@@ -13,6 +13,7 @@
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_rows.hpp"
+#include "call/check_written.hpp"
 #include "call/dense_regions.hpp"
 #include "call/distribution.hpp"
 #include "call/placed.hpp"
@@ -274,6 +275,7 @@ void checkAndReduce(const Reduction& reduction, std::span<const Argument> argume
     return checkAndReduce(reduction, boxed.arguments, values, others, scan, boxed.placed);
   }
   ResolvedReduction call = checkReduction(reduction, arguments, values, scan, placed);
+  noteWritten(reduction.fold, arguments);
   call.options = resolvedOptions(call, options);
   if (call.device.recording == nullptr) return runResolved(call);
   if (call.isToValues()) {

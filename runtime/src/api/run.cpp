@@ -11,6 +11,7 @@
 #include "call/check_call.hpp"
 #include "call/check_halos.hpp"
 #include "call/check_setting.hpp"
+#include "call/check_written.hpp"
 #include "call/dense_regions.hpp"
 #include "call/distribution.hpp"
 #include "call/placed.hpp"
@@ -112,6 +113,7 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   refuseScanOptions(kernel, options);
   std::optional<CheckedCall> checked = checkCall(kernel, arguments);
   if (!checked) return;
+  noteWritten(kernel, arguments);
   DeviceState& device = checked->device;
   checked->call.options = device.configuration.resolve(kernel, options);
   checkTables(kernel, checked->call.options);

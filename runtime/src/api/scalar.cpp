@@ -110,6 +110,7 @@ void runPass(DeviceState& device, std::span<const std::shared_ptr<ScalarNode>> n
   }
   PassBuilder builder(nodes);
   checkPass(builder.pass);
+  for (const ScalarPass::Output& output : builder.pass.outputs) output.stream->isUnwritten = false;
   if (device.recording != nullptr) noteUses(builder.pass, *device.recording);
   std::unique_ptr<RecordedCall> call = device.prepareScalars(std::move(builder.pass));
   if (device.recording != nullptr) {

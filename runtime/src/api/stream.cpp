@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "call/check_written.hpp"
 #include "call/dense_regions.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
@@ -128,7 +129,12 @@ StreamState& liveStream(const StreamRegion& region, std::string_view context) {
 }
 
 void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_view context) {
-  const StreamState& stream = *region.stream;
+  StreamState& stream = *region.stream;
+  if (isWritten) {
+    stream.isUnwritten = false;
+  } else {
+    checkWritten(stream, context);
+  }
   if (!stream.isBroken || (isWritten && isWhole(region))) return;
   throw Error(
       fmt::format(
@@ -398,6 +404,7 @@ StreamTexture detail::textureOf(StreamState* state, int plane) {
   return withHostMemory("texture", [&] {
     StreamState& stream = liveStream({state, {}, {}}, "texture");
     refuseInRecording(*stream.device, "texture");
+    stream.isUnwritten = false;  // the application may draw to it
     checkElementsOf({state, {}, {}}, false, "texture");
     checkPlane(stream, plane, "texture");
     return stream.texture(plane);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "call/check_written.hpp"
 #include "call/iterator.hpp"
 #include "device/device_state.hpp"
 #include "device/region.hpp"
@@ -97,6 +98,7 @@ StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const
          "the elements of '{}' are lost, since what wrote them has failed; write all of the stream first",
          parameter.name);
   }
+  checkWritten(kernel, parameter, stream);
   return stream;
 }
 

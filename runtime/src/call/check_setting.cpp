@@ -13,7 +13,7 @@ namespace sk {
 
 namespace {
 
-enum class Check : std::uint8_t { None, Folds, Halos };
+enum class Check : std::uint8_t { None, Folds, Halos, Written };
 
 Check chosenCheck() {
   static const Check chosen = [] {
@@ -21,7 +21,9 @@ Check chosenCheck() {
     if (value == nullptr || *value == '\0') return Check::None;
     if (std::string_view(value) == "folds") return Check::Folds;
     if (std::string_view(value) == "halos") return Check::Halos;
-    throw Error(fmt::format("there is no check '{}'; choose folds or halos, or unset SK_CHECK", value));
+    if (std::string_view(value) == "written") return Check::Written;
+    throw Error(
+        fmt::format("there is no check '{}'; choose folds, halos or written, or unset SK_CHECK", value));
   }();
   return chosen;
 }
@@ -30,5 +32,6 @@ Check chosenCheck() {
 
 bool checksFolds() { return chosenCheck() == Check::Folds; }
 bool checksHalos() { return chosenCheck() == Check::Halos; }
+bool checksWritten() { return chosenCheck() == Check::Written; }
 
 }  // namespace sk

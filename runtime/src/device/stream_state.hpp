@@ -72,6 +72,8 @@ class StreamState {
   /// Its elements are lost, because an operation failed while writing them. The next operation must overwrite
   /// all of them.
   bool isBroken = false;
+  /// The application has created it, and nothing has written any of its elements. Set only with SK_CHECK=written.
+  bool isUnwritten = false;
   detail::StreamOwner* holder = nullptr;  ///< the application's handle, or null
 
  protected:
@@ -88,7 +90,7 @@ class StreamState {
 StreamState& liveStream(const StreamRegion& region, std::string_view context);
 
 /// Throws sk::Error, with `context` in front, if the elements of a stream are lost, unless the operation
-/// writes (`isWritten`) all of them.
+/// writes (`isWritten`) all of them; and with SK_CHECK=written, if it reads what nothing has written.
 void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_view context);
 
 /// Whether a region is in bounds of its stream, which must be settled: a kernel that pushes changes the size.

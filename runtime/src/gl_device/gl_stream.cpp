@@ -286,6 +286,7 @@ void GlStream::exchangeElements(StreamState& other) noexcept {
   std::swap(layout, with.layout);
   std::swap(period_, with.period_);
   std::swap(isBroken, with.isBroken);
+  std::swap(isUnwritten, with.isUnwritten);
   labelPlanes();
   with.labelPlanes();
 }

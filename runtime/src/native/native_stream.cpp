@@ -149,6 +149,7 @@ void NativeStream::exchangeElements(StreamState& other) noexcept {
   std::swap(capacity_, with.capacity_);
   std::swap(bytes_, with.bytes_);
   std::swap(isBroken, with.isBroken);
+  std::swap(isUnwritten, with.isUnwritten);
 }
 
 bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {

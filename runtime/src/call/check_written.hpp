@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+//
+// SK_CHECK=written: finds reads of streams that the application has created and nothing has written. A stream counts as
+// written once an operation has written any element of it. Must not depend on the kind of device.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "sk/call.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+class StreamState;
+
+/// Throws sk::Error if a kernel or fold would read elements of `parameter` that nothing has written.
+void checkWritten(const program::Kernel& kernel, const program::Parameter& parameter,
+                  const StreamState& stream);
+
+/// Likewise for an operation that is no kernel; `context` names it.
+void checkWritten(const StreamState& stream, std::string_view context);
+
+/// Notes that a call writes its outputs. All of its arguments must have been checked before, because a stream may be both.
+void noteWritten(const program::Kernel& kernel, std::span<const Argument> arguments);
+
+}  // namespace sk
