@@ -46,8 +46,9 @@ constexpr std::size_t mostTokens = 1'000'000;
 std::vector<std::string> compilerArguments(const Options& options, const std::string& path) {
   std::vector<std::string> arguments = {
       "-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++", "-std=c++20", "-nostdsysteminc",
-      "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all", "-fnative-half-arguments-and-returns",
-      "-Wno-undefined-internal", "-Wno-undefined-inline", narrowingArgument,
+      "-nobuiltininc", "-fno-builtin", "-fno-rtti", "-flax-vector-conversions=all",
+      "-fnative-half-arguments-and-returns", "-Wno-undefined-internal", "-Wno-undefined-inline",
+      narrowingArgument,
       "-Wno-literal-range",   // lowering warns, because it knows which literals are doubles
       "-Wtautological-unsigned-zero-compare",   // a loop that counts down past 0 never ends
       "-Wuninitialized",   // a value of any kind, and another one on each device
@@ -182,6 +183,9 @@ class Frontend::Unit {
     compiler_.addDependencyCollector(dependencyCollector_);
     compiler_.createPreprocessor(clang::TU_Complete);
     clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
+    // Clang assigns an array, as a member of a struct, by __builtin_memcpy.
+    preprocessor.getBuiltinInfo().initializeBuiltins(preprocessor.getIdentifierTable(),
+                                                     compiler_.getLangOpts());
     preprocessor.setPredefines(preprocessor.getPredefines() + preludeText());
     compiler_.createASTContext();
     compiler_.setASTConsumer(std::make_unique<clang::ASTConsumer>());
