@@ -22,6 +22,7 @@ skipped = 77
 
 # Programs that are started only where somebody has them, and why a test can do without.
 optional = {
+    "clang++-19": "[fuzz] has it, and only ./dev fuzz cpp starts it",
     "chromium": "[web] has it, and tests of programs for browsers are skipped without it",
     "ffmpeg": "writes films, which no test wants",
     "git": "fetches the sources, which are here",

@@ -2,46 +2,24 @@
 #include "kernels/native_code.hpp"
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <stdexcept>
 
 #include <dlfcn.h>
-#include <unistd.h>
 
 #include "driver/native_library.hpp"
 #include "native/native.hpp"
 #include "program/stub.hpp"
 #include "sk/native/code.hpp"
+#include "temporary_folder.hpp"
 
 namespace fuzz {
 namespace {
 
-namespace fs = std::filesystem;
 using sk::native::Level;
 using sk::native::levelOfHardware;
 using skc::native::KernelRequest;
-
-/// A folder that is removed again.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "fuzz_kernels_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// Links an object file and loads it for as long as the process lives. Returns the addresses of the codes, whose symbols
 /// are hidden, as an application's are.

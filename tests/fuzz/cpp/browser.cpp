@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "cpp/browser.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "driver/compile.hpp"
+
+namespace fuzz::cpp {
+
+namespace fs = std::filesystem;
+
+void BrowserBatch::add(std::uint64_t number, const std::string& text,
+                       const std::vector<Outputs>& wanted) const {
+  const std::string stem = (folder_.path() / std::to_string(number)).string();
+  std::ofstream(stem + ".sk") << text;
+  skc::driver::Options options;
+  options.emit = skc::driver::Emit::Js;
+  options.outputDirectory = folder_.path().string();
+  if (skc::driver::compile(options, stem + ".sk") != 0)
+    throw std::runtime_error("skc --emit=js refuses the program");
+  std::ofstream json(stem + ".json");
+  json << R"({"number": )" << number << R"(, "kernels": [)";
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    json << fmt::format(R"({}{{"name": "{}", "r0": [{}], "r1": [{}], "r2": [{}]}})", k == 0 ? "" : ", ",
+                        wanted[k].kernel, fmt::join(wanted[k].r0, ", "), fmt::join(wanted[k].r1, ", "),
+                        fmt::join(wanted[k].r2, ", "));
+  }
+  json << "]}";
+}
+
+std::map<std::uint64_t, std::string> BrowserBatch::run() const {
+  std::string programs;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
+    if (entry.path().extension() != ".json" || entry.path().stem() == "samples") continue;
+    std::ostringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    programs += (programs.empty() ? "" : ", ") + text.str();
+  }
+  std::ofstream(folder_.path() / "samples.json")
+      << fmt::format(R"({{"a": [{}], "b": [{}], "c": [{}], "programs": [{}]}})", fmt::join(inputs().a, ", "),
+                     fmt::join(inputs().b, ", "), fmt::join(inputs().c, ", "), programs);
+  const std::string found = (folder_.path() / "found").string();
+  const std::string command =
+      fmt::format("python3 '{}/tests/fuzz/cpp/browser.py' '{}' '{}' '{}' >'{}'", SK_SOURCE_FOLDER,
+                  folder_.path().string(), SK_SOURCE_FOLDER, SK_BUILD_FOLDER, found);
+  if (std::system(command.c_str()) != 0) throw std::runtime_error("the browser does not run the programs");
+  std::map<std::uint64_t, std::string> differences;
+  std::ifstream in(found);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t colon = line.find(": ");
+    differences[std::stoull(line)] = "webgl2: " + line.substr(colon + 2);
+  }
+  return differences;
+}
+
+}  // namespace fuzz::cpp

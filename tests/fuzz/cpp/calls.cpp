@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+//
+// Calls of functions, methods and operators. No two references of a call get the same variable, or parts of it that
+// overlap, as language.md says.
+#include "cpp/body.hpp"
+
+namespace fuzz::cpp {
+
+bool Body::canCall(const Function& function) const {
+  return !isConstant_ && cost_ + multiplier_ * function.cost <= limit_ && size_ + function.size <= sizeLimit_;
+}
+
+std::optional<Expr> Body::call(const Accepts& acceptsResult, int depth) {
+  std::vector<const Function*> candidates;
+  for (const Function& function : unit_.functions) {
+    if (function.result >= 0 && acceptsResult(function.result) && canCall(function))
+      candidates.push_back(&function);
+  }
+  if (candidates.empty()) return std::nullopt;
+  return callOf(*random_.pick(candidates), depth);
+}
+
+std::optional<Expr> Body::callStatement(int depth) {
+  std::vector<const Function*> candidates;
+  for (const Function& function : unit_.functions) {
+    if (canCall(function)) candidates.push_back(&function);
+  }
+  if (candidates.empty()) return std::nullopt;
+  return callOf(*random_.pick(candidates), depth);
+}
+
+std::optional<Expr> Body::callOf(const Function& function, int depth) {
+  // References first: they need variables of their own.
+  const std::size_t count = function.parameters.size();
+  std::vector<std::optional<Place>> bound(count + 1);  // the last: the object of a method
+  std::uint64_t taken = 0;
+  std::vector<const Place*> mutableOnes;
+  const auto bindsApart = [&](const Place& candidate) {
+    for (const Place* other : mutableOnes) {
+      const std::uint64_t bit = std::uint64_t{1} << variableOf(candidate).bit;
+      if (bit != std::uint64_t{1} << variableOf(*other).bit) continue;
+      if (candidate.variable != other->variable || !unit_.has("parts")) return false;
+      const bool areMembers = !candidate.path.empty() && !other->path.empty() &&
+                              candidate.path[0].kind == Step::Kind::Field &&
+                              other->path[0].kind == Step::Kind::Field;
+      if (!areMembers || candidate.path[0].field == other->path[0].field) return false;
+    }
+    return true;
+  };
+  const auto bind = [&](std::size_t p, TypeId type) {
+    std::vector<Place> all;
+    for (Place& candidate : places([&](TypeId id) { return id == type; }, true, true)) {
+      if (bindsApart(candidate)) all.push_back(std::move(candidate));
+    }
+    if (all.empty()) return false;
+    bound[p] = std::move(all[random_.below(all.size())]);
+    mutableOnes.push_back(&*bound[p]);
+    taken |= std::uint64_t{1} << variableOf(*bound[p]).bit;
+    return true;
+  };
+  const bool isMutableMethod = function.owner >= 0 && !function.isConst;
+  if (isMutableMethod && !bind(count, function.owner)) return std::nullopt;
+  for (std::size_t p = 0; p < count; ++p) {
+    if (function.parameters[p].passing == Passing::Reference && !bind(p, function.parameters[p].type))
+      return std::nullopt;
+  }
+
+  std::vector<Expr> parts;
+  std::string text;
+  std::uint64_t heldByConst = 0;
+  const auto add = [&](Expr part) {
+    const bool isConflict = (part.effects.written() & heldByConst) != 0;
+    parts.push_back(isConflict ? literal(part.type) : std::move(part));
+  };
+  if (function.owner >= 0) {
+    if (isMutableMethod) {
+      const bool isOwn = variableOf(*bound[count]).name == "this" && bound[count]->path.empty();
+      if (isOwn && random_.chance(2, 3)) {
+        text = function.name + "(";
+      } else {
+        text = "$." + function.name + "(";
+        add(target(*bound[count], depth - 1));
+      }
+    } else {
+      Expr object = value(function.owner, depth - 1);
+      if (!unit_.has("constrefs")) heldByConst |= object.effects.reads;
+      text = "$." + function.name + "(";
+      add(std::move(object));
+    }
+    if (function.isInfix) text = "($ " + function.name + " ";
+  } else if (function.isInfix) {
+    text = "(";
+  } else {
+    text = function.name + "(";
+  }
+  for (std::size_t p = 0; p < count; ++p) {
+    const Parameter& parameter = function.parameters[p];
+    if (parameter.hasDefault && random_.chance(1, 2)) break;
+    if (p > 0) text += function.isInfix ? " " + function.name + " " : ", ";
+    text += "$";
+    if (parameter.passing == Passing::Reference) {
+      add(target(*bound[p], depth - 1));
+      continue;
+    }
+    Expr argument = function.isExact || parameter.passing == Passing::ConstReference
+                        ? value(parameter.type, depth - 1)
+                        : convertible(parameter.type, depth - 1);
+    argument = limited(std::move(argument), 0);
+    if (parameter.passing == Passing::ConstReference) {
+      // What a const reference shows must not change, unless C++ and skc agree about it.
+      const bool isShared = (argument.effects.reads & taken) != 0;
+      if (isShared && !unit_.has("aliasing")) argument = literal(parameter.type);
+      if (!unit_.has("constrefs")) heldByConst |= argument.effects.reads;
+    }
+    add(std::move(argument));
+  }
+  text += ")";
+  const TypeId type = function.result >= 0 ? function.result : Types::of(Scalar::Int);
+  Expr result = made(std::move(text), type, std::move(parts), true);
+  if (function.result < 0) {
+    result.type = -1;
+    result.node->type = -1;
+    result.node->simple.clear();
+  }
+  result.effects.calls |= taken;
+  callees_.insert(static_cast<std::size_t>(&function - unit_.functions.data()));
+  size_ += function.size;
+  cost_ += multiplier_ * function.cost;
+  return result;
+}
+
+}  // namespace fuzz::cpp

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+//
+// Integers of all sizes: what they are computed in follows C++'s promotions.
+#include "cpp/body.hpp"
+
+namespace fuzz::cpp {
+
+Expr Body::integer(int depth) {
+  const auto isInteger = [&](TypeId id) { return types_.isLikeInteger(id); };
+  if (depth <= 0 || isFull()) {
+    if (random_.chance(3, 4)) {
+      if (std::optional<Expr> found = read(isInteger, 0)) return std::move(*found);
+    }
+    return literal(random_.chance(2, 3) ? Types::of(Scalar::Int) : Types::of(Scalar::Uint));
+  }
+  switch (random_.below(16)) {
+    case 0: return literal(random_.chance(2, 3) ? Types::of(Scalar::Int) : Types::of(Scalar::Uint));
+    case 1:
+    case 2:
+      if (std::optional<Expr> found = read(isInteger, depth)) return std::move(*found);
+      return integerBinary(depth);
+    case 3: {
+      Expr any = integer(depth - 1);
+      const TypeId type = types_.promoted(any.type);
+      const std::size_t form = random_.below(4);
+      if (form == 3) return made("!$", Types::of(Scalar::Bool), listOf(std::move(any)));
+      return made(form == 0 ? "(-$)" : form == 1 ? "(~$)" : "(+$)", type, listOf(std::move(any)));
+    }
+    case 4: return comparison(depth);
+    case 5: {
+      Expr test = condition(depth - 1), yes = integer(depth - 1), no = integer(depth - 1);
+      const TypeId type = yes.type == no.type ? yes.type : types_.common(yes.type, no.type);
+      return made("($ ? $ : $)", type, listOf(std::move(test), std::move(yes), std::move(no)));
+    }
+    case 6:
+    case 7:
+    case 8:
+      if (std::optional<Expr> found = integerAssignment(depth)) return std::move(*found);
+      return integerBinary(depth);
+    case 9:
+    case 10:
+      if (std::optional<Expr> found = call(isInteger, depth)) return std::move(*found);
+      return integerBinary(depth);
+    case 11: {
+      const auto to = static_cast<TypeId>(random_.below(unit_.has("narrow") ? 7 : 1));
+      const TypeId type = unit_.has("narrow") ? to : Types::of(Scalar::Uint);
+      if (unit_.has("floats") && random_.chance(1, 4)) return converted(floating(depth - 1), type, false);
+      return converted(integer(depth - 1), type, false);
+    }
+    case 12:
+      if (unit_.has("comma")) {
+        Expr first = mayHaveEffects() ? effectExpression(depth - 1) : integer(depth - 1);
+        Expr second = integer(depth - 1);
+        const TypeId type = second.type;
+        return made("($, $)", type, listOf(std::move(first), std::move(second)));
+      }
+      return integerBinary(depth);
+    case 13:
+      if (std::optional<Expr> found =
+              memberOf(Types::of(random_.chance(1, 2) ? Scalar::Int : Scalar::Uint), depth))
+        return std::move(*found);
+      return integerBinary(depth);
+    case 14:
+      if (unit_.has("vectors")) {
+        const Scalar scalar = random_.chance(1, 2) ? Scalar::Int : Scalar::Uint;
+        const int count = random_.between(2, 4);
+        Expr vector = vectorOf(types_.vector(scalar, count), depth - 1);
+        const std::string name(1, "xyzw"[random_.below(static_cast<std::size_t>(count))]);
+        return made("$." + name, Types::of(scalar), listOf(std::move(vector)));
+      }
+      return integerBinary(depth);
+    default: return integerBinary(depth);
+  }
+}
+
+Expr Body::integerBinary(int depth) {
+  static const std::vector<std::string> operators = {"+", "-", "*", "&", "|", "^"};
+  Expr a = integer(depth - 1);
+  if (random_.chance(1, 5)) {  // E1 << E2 evaluates E1 first
+    Expr b = integer(depth - 1);
+    const TypeId count = types_.promoted(b.type), type = types_.promoted(a.type);
+    Expr masked = made("($ & 31)", count, listOf(std::move(b)), true);
+    return made(random_.chance(1, 2) ? "($ << $)" : "($ >> $)", type,
+                listOf(std::move(a), std::move(masked)));
+  }
+  Expr b = unsequenced(a, integer(depth - 1));
+  if (random_.chance(1, 5)) {
+    const TypeId divisor = types_.promoted(b.type), type = types_.common(a.type, b.type);
+    Expr positive =
+        made("(($ & " + std::to_string(random_.pick(std::vector<int>{7, 15, 255, 65535})) + ") + 1)", divisor,
+             listOf(std::move(b)), true);
+    return made(random_.chance(1, 2) ? "($ / $)" : "($ % $)", type,
+                listOf(std::move(a), std::move(positive)));
+  }
+  const TypeId type = types_.common(a.type, b.type);
+  return made("($ " + random_.pick(operators) + " $)", type, listOf(std::move(a), std::move(b)));
+}
+
+std::optional<Expr> Body::integerAssignment(int depth) {
+  if (!mayHaveEffects()) return std::nullopt;
+  const std::optional<Place> found = place([&](TypeId id) { return types_.isInteger(id); }, true);
+  if (!found) return std::nullopt;
+  const TypeId type = found->type;
+  const std::uint64_t bit = std::uint64_t{1} << variableOf(*found).bit;
+  const auto written = [&](Expr expr) {
+    expr.effects.writes |= bit;
+    return expr;
+  };
+  const bool isBool = type == Types::of(Scalar::Bool);
+  const std::size_t form = random_.below(isBool ? 2 : 8);
+  if (form == 0) return assignment(type, depth);
+  if (form >= 4 && form < 8) {
+    static const std::vector<std::string> steps = {"$++", "++$", "$--", "--$"};
+    return written(made("(" + steps[form - 4] + ")", type, listOf(target(*found, depth - 1))));
+  }
+  static const std::vector<std::string> operators = {
+      "+=", "-=", "*=", "&=", "|=", "^=", "<<=", ">>=", "/=", "%="};
+  std::size_t chosen = random_.below(operators.size());
+  if (isBool) chosen = 3 + random_.below(3);
+  Expr right = integer(depth - 1);
+  const TypeId promoted = types_.promoted(right.type);
+  if (chosen == 6 || chosen == 7) right = made("($ & 31)", promoted, listOf(std::move(right)), true);
+  if (chosen >= 8) right = made("(($ & 63) + 1)", promoted, listOf(std::move(right)), true);
+  Expr left = target(*found, depth - 1);
+  return written(made("($ " + operators[chosen] + " $)", type, listOf(std::move(left), std::move(right))));
+}
+
+}  // namespace fuzz::cpp

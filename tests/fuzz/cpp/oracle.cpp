@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "cpp/oracle.hpp"
+
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include <dlfcn.h>
+
+#include "temporary_folder.hpp"
+
+namespace fuzz::cpp {
+namespace {
+
+/// Overflow wraps, as in .sk. Everything else that C++ leaves undefined ends the process: the generator must not make it.
+constexpr const char* compilerCommand =
+    "clang++-19 -x c++ -std=c++20 -w -O0 -fPIC -shared -nostdlib -fwrapv -fno-strict-aliasing "
+    "-ffp-contract=off "
+    "-fsanitize=undefined -fno-sanitize=signed-integer-overflow,function,vptr,alignment,null,object-size "
+    "-fsanitize-trap=all -ftrivial-auto-var-init=pattern -include " SK_AS_CPP;
+
+std::string firstError(const std::string& file) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t at = line.find("error: ");
+    if (at != std::string::npos) return line.substr(at);
+  }
+  return "no message";
+}
+
+/// The program as C++: parameters of kernels are declared as in C++, and kernels can be called from outside.
+std::string asCpp(std::string text, std::vector<std::string>& kernels) {
+  constexpr std::string_view begin = "kernel void ";
+  std::string callable;
+  for (std::size_t at = 0; (at = text.find(begin, at)) != std::string::npos;) {
+    const std::size_t name = at + begin.size(), parameters = text.find('(', name);
+    kernels.push_back(text.substr(name, parameters - name));
+    callable += "SK_KERNEL(" + kernels.back() + ")\n";
+    if (text.compare(parameters, kernelParameters.size(), kernelParameters) != 0)
+      throw std::runtime_error("the parameters of a kernel are not " + std::string(kernelParameters));
+    text.replace(parameters, kernelParameters.size(),
+                 "(const int a, const uint b, const float c, int& r0, uint& r1, float& r2)");
+    text.replace(at, begin.size(), "void ");
+  }
+  return text + callable;
+}
+
+}  // namespace
+
+Oracle::Oracle(const std::string& text, const std::string& object, const std::vector<std::string>& symbols) {
+  const TemporaryFolder folder;
+  const auto named = [&](const char* name) { return (folder.path() / name).string(); };
+  std::string table = "extern \"C\" {\n";
+  for (const std::string& symbol : symbols) table += "extern const char " + symbol + "[];\n";
+  table += "extern const char* const codes[];\nconst char* const codes[] = {";
+  for (const std::string& symbol : symbols) table += symbol + ", ";
+  std::ofstream(named("program.cpp")) << asCpp(text, kernels_) << table << "nullptr};\n}\n";
+  std::string command =
+      std::string(compilerCommand) + " -o '" + named("program.so") + "' '" + named("program.cpp") + "'";
+  if (!object.empty()) {
+    std::ofstream(named("native.o"), std::ios::binary) << object;
+    command += " -x none '" + named("native.o") + "'";
+  }
+  command += " 2>'" + named("messages") + "'";
+  if (std::system(command.c_str()) != 0) throw std::runtime_error("Clang: " + firstError(named("messages")));
+  library_ = dlopen(named("program.so").c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library_ == nullptr)
+    throw std::runtime_error(std::string("the program cannot be loaded: ") + dlerror());
+  codes_ = static_cast<const sk::native::Code* const*>(dlsym(library_, "codes"));
+}
+
+std::vector<Outputs> Oracle::run() const {
+  using Run = void(const std::int32_t*, const std::uint32_t*, const float*, std::int32_t*, std::uint32_t*,
+                   float*, int);
+  std::vector<Outputs> all;
+  for (const std::string& kernel : kernels_) {
+    Outputs& outputs = all.emplace_back(Outputs{.kernel = kernel});
+    auto* const run = reinterpret_cast<Run*>(dlsym(library_, ("run_" + kernel).c_str()));
+    if (run == nullptr) throw std::runtime_error("there is no kernel " + kernel);
+    run(inputs().a.data(), inputs().b.data(), inputs().c.data(), outputs.r0.data(), outputs.r1.data(),
+        outputs.r2.data(), sampleCount);
+  }
+  return all;
+}
+
+}  // namespace fuzz::cpp

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+//
+// What the generated programs use of .sk, for Clang: compiled with this header, their meaning is that of C++.
+#pragma once
+
+using uint = unsigned;
+using uchar = unsigned char;
+using ushort = unsigned short;
+
+#define SK_VECTOR(name, element, width) typedef element name##width __attribute__((ext_vector_type(width)));
+#define SK_VECTORS(name, element) \
+  SK_VECTOR(name, element, 2) SK_VECTOR(name, element, 3) SK_VECTOR(name, element, 4)
+SK_VECTORS(int, int)
+SK_VECTORS(uint, unsigned)
+SK_VECTORS(float, float)
+
+template <class V>
+inline constexpr int width_of = 1;
+template <class T, int n>
+inline constexpr int width_of<T __attribute__((ext_vector_type(n)))> = n;
+
+/// `float4(v.xy, 1, 2)`: from parts, or the same number everywhere.
+template <class V, class... Parts>
+V make(Parts... parts) {
+  V result;
+  int next = 0;
+  const auto add = [&](auto part) {
+    if constexpr (width_of<decltype(part)> == 1) {
+      result[next++] = part;
+    } else {
+      for (int i = 0; i < width_of<decltype(part)>; ++i) result[next++] = part[i];
+    }
+  };
+  if constexpr (sizeof...(Parts) == 1) {
+    const auto all = [&](auto part) {
+      if constexpr (width_of<decltype(part)> == 1) {
+        for (int i = 0; i < width_of<V>; ++i) result[i] = part;
+      } else {
+        for (int i = 0; i < width_of<V>; ++i) result[i] = part[i];
+      }
+    };
+    (all(parts), ...);
+  } else {
+    (add(parts), ...);
+  }
+  return result;
+}
+
+template <class Row, int size>
+struct Matrix {
+  Row rows[size];
+  Matrix() = default;
+  template <class... Parts>
+  Matrix(Parts... parts) {
+    const auto all = make<float __attribute__((ext_vector_type(size * size)))>(parts...);
+    for (int i = 0; i < size * size; ++i) rows[i / size][i % size] = all[i];
+  }
+  Row& operator[](int i) { return rows[i]; }
+  const Row& operator[](int i) const { return rows[i]; }
+};
+using float2x2 = Matrix<float2, 2>;
+using float3x3 = Matrix<float3, 3>;
+using float4x4 = Matrix<float4, 4>;
+
+/// Makes a kernel callable for many elements.
+#define SK_KERNEL(name)                                                                                 \
+  extern "C" void run_##name(const int* a, const uint* b, const float* c, int* r0, uint* r1, float* r2, \
+                             int n) {                                                                   \
+    for (int i = 0; i < n; ++i) name(a[i], b[i], c[i], r0[i], r1[i], r2[i]);                            \
+  }
+
+// Macros without an argument list leave the types alone.
+#define int2(...) make<int2>(__VA_ARGS__)
+#define int3(...) make<int3>(__VA_ARGS__)
+#define int4(...) make<int4>(__VA_ARGS__)
+#define uint2(...) make<uint2>(__VA_ARGS__)
+#define uint3(...) make<uint3>(__VA_ARGS__)
+#define uint4(...) make<uint4>(__VA_ARGS__)
+#define float2(...) make<float2>(__VA_ARGS__)
+#define float3(...) make<float3>(__VA_ARGS__)
+#define float4(...) make<float4>(__VA_ARGS__)

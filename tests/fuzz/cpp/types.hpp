@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+//
+// The types of a generated program, and C++'s rules of conversion between its scalars.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fuzz::cpp {
+
+enum class Scalar : std::uint8_t { Bool, Char, Uchar, Short, Ushort, Int, Uint, Float };
+constexpr int scalarCount = 8;
+
+using TypeId = int;
+
+struct Field {
+  std::string name;
+  TypeId type;
+  bool hasDefault = false;
+};
+
+struct Type {
+  enum class Kind : std::uint8_t { Scalar, Vector, Matrix, Struct, Enum, Array };
+  Kind kind = Kind::Scalar;
+  Scalar scalar = Scalar::Int;  ///< of a scalar; a component; an enumeration: the underlying type
+  int count = 1;  ///< components, rows or elements
+  TypeId element = -1;  ///< of an array; of a matrix, the row; of a vector, the component
+  std::string name = {};  ///< with its namespaces; arrays have none
+  std::vector<Field> fields = {};
+  std::vector<std::string> enumerators = {};  ///< with all that is needed to name them
+  bool isScoped = false;  ///< enum class
+  bool isFixed = false;  ///< an enumeration whose underlying type is declared
+};
+
+/// All types of a program. Scalars are their own ids.
+class Types {
+ public:
+  Types();
+
+  const Type& operator[](TypeId id) const { return all_[static_cast<std::size_t>(id)]; }
+  Type& operator[](TypeId id) { return all_[static_cast<std::size_t>(id)]; }
+  int size() const { return static_cast<int>(all_.size()); }
+
+  static constexpr TypeId of(Scalar scalar) { return static_cast<TypeId>(scalar); }
+  TypeId vector(Scalar scalar, int count) const;  ///< of Int, Uint or Float
+  TypeId matrix(int count) const;
+  TypeId array(TypeId element, int count);
+  TypeId add(Type type);
+
+  bool isScalar(TypeId id) const { return (*this)[id].kind == Type::Kind::Scalar; }
+  bool isInteger(TypeId id) const { return isScalar(id) && id != of(Scalar::Float); }
+  /// Integers, and what becomes one by itself.
+  bool isLikeInteger(TypeId id) const {
+    return isInteger(id) || ((*this)[id].kind == Type::Kind::Enum && !(*this)[id].isScoped);
+  }
+  bool isFloat(TypeId id) const { return id == of(Scalar::Float); }
+  bool isAggregate(TypeId id) const {
+    return (*this)[id].kind == Type::Kind::Struct || (*this)[id].kind == Type::Kind::Array;
+  }
+  /// Without vectors and matrices, whose constants only .sk can compute.
+  bool isOfScalars(TypeId id) const;
+  /// How many scalars a value has.
+  int leaves(TypeId id) const;
+  /// Int or Uint: the type of an integer in arithmetic.
+  TypeId promoted(TypeId id) const;
+  /// The type of `a + b` for integers, or what becomes one.
+  TypeId common(TypeId a, TypeId b) const;
+  /// "int x" or "int x[3]".
+  std::string declare(TypeId id, const std::string& name) const;
+  std::string spell(TypeId id) const;
+  /// The simplest expression of this type; empty for arrays.
+  std::string simplest(TypeId id) const;
+
+ private:
+  std::vector<Type> all_;
+};
+
+}  // namespace fuzz::cpp

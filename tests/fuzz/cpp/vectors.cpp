@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+//
+// Vectors of int, uint and float: operators by component, swizzles, and what they are made from.
+#include "cpp/body.hpp"
+
+namespace fuzz::cpp {
+namespace {
+
+/// Components in a random order; without repetition if they are written.
+std::string swizzle(Random& random, int width, int count, bool isWritten) {
+  std::string letters = random.chance(1, 5) ? "rgba" : "xyzw", result;
+  letters.resize(static_cast<std::size_t>(width));
+  for (int i = 0; i < count; ++i) {
+    const std::size_t chosen = random.below(letters.size());
+    result += letters[chosen];
+    if (isWritten) letters.erase(chosen, 1);
+  }
+  return result;
+}
+
+}  // namespace
+
+Expr Body::vectorOf(TypeId type, int depth) {
+  if (depth <= 0 || isFull()) return vectorParts(type, 0);
+  const Type info = types_[type];
+  switch (random_.below(8)) {
+    case 0:
+    case 1: return vectorBinary(type, depth);
+    case 2: {  // components of another vector
+      const int width = random_.between(2, 4);
+      Expr whole = value(types_.vector(info.scalar, width), depth - 1);
+      Expr result =
+          made("$." + swizzle(random_, width, info.count, false), type, listOf(std::move(whole)), true);
+      result.range = storedRange;
+      return result;
+    }
+    case 3: {
+      Expr any = vectorOf(type, depth - 1);
+      const Range range = any.range;
+      Expr result = made(info.scalar != Scalar::Float && random_.chance(1, 2) ? "(~$)" : "(-$)", type,
+                         listOf(std::move(any)));
+      result.range = range;
+      return result;
+    }
+    case 4:
+      if (info.scalar == Scalar::Int) {  // a comparison's mask
+        const Scalar compared = unit_.has("floats") && random_.chance(1, 3) ? Scalar::Float
+                                : random_.chance(1, 2)                      ? Scalar::Int
+                                                                            : Scalar::Uint;
+        Expr a = value(types_.vector(compared, info.count), depth - 1);
+        Expr b = unsequenced(a, value(types_.vector(compared, info.count), depth - 1));
+        return made(random_.chance(1, 2) ? "($ < $)" : "($ == $)", type, listOf(std::move(a), std::move(b)));
+      }
+      return vectorParts(type, depth);
+    case 5:
+      if (std::optional<Expr> found = read([&](TypeId id) { return id == type; }, depth))
+        return std::move(*found);
+      return vectorParts(type, depth);
+    default: return vectorParts(type, depth);
+  }
+}
+
+Expr Body::vectorBinary(TypeId type, int depth) {
+  const Type info = types_[type];
+  const bool isFloat = info.scalar == Scalar::Float;
+  static const std::vector<std::string> ofFloats = {"+", "-", "*"};
+  static const std::vector<std::string> ofIntegers = {"+", "-", "*", "&", "|", "^"};
+  const std::string& op = random_.pick(isFloat ? ofFloats : ofIntegers);
+  Expr a = value(type, depth - 1);
+  Expr b = random_.chance(1, 3) ? value(info.element, depth - 1) : value(type, depth - 1);
+  b = unsequenced(a, std::move(b));
+  if (!isFloat && random_.chance(1, 6)) {
+    const std::string mask = types_.isScalar(b.type) ? "31" : types_.spell(type) + "(31)";
+    const TypeId count = b.type;
+    Expr masked = made(
+        "($ & " + std::string(info.scalar == Scalar::Uint && types_.isScalar(b.type) ? "31u" : mask) + ")",
+        count, listOf(std::move(b)), true);
+    return made(random_.chance(1, 2) ? "($ << $)" : "($ >> $)", type,
+                listOf(std::move(a), std::move(masked)));
+  }
+  Range range = {};
+  if (isFloat) {
+    a = limited(std::move(a), 7);
+    b = limited(std::move(b), 7);
+    range = op == "*" ? Range{a.range.magnitude + b.range.magnitude, a.range.fraction + b.range.fraction}
+                      : Range{std::max(a.range.magnitude, b.range.magnitude) + 1,
+                              std::max(a.range.fraction, b.range.fraction)};
+  }
+  Expr result = made("($ " + op + " $)", type, listOf(std::move(a), std::move(b)));
+  result.range = range;
+  return result;
+}
+
+/// float4(v.xy, 1, 2), or the same number everywhere.
+Expr Body::vectorParts(TypeId type, int depth) {
+  const Type info = types_[type];
+  std::string text = types_.spell(type) + "(";
+  std::vector<Expr> parts;
+  const auto number = [&] {
+    if (depth <= 0) return literal(info.element);
+    return limited(value(info.element, depth - 1), 0);
+  };
+  Range range = {};
+  const auto add = [&](Expr part) {
+    text += parts.empty() ? "$" : ", $";
+    range = {std::max(range.magnitude, part.range.magnitude), std::max(range.fraction, part.range.fraction)};
+    parts.push_back(std::move(part));
+  };
+  if (random_.chance(1, 6)) {
+    add(number());
+  } else {
+    for (int left = info.count; left > 0;) {
+      if (left >= 2 && depth > 0 && random_.chance(1, 4) && left < info.count) {
+        const int width = random_.between(2, left);
+        add(limited(value(types_.vector(info.scalar, width), depth - 1), 0));
+        left -= width;
+      } else {
+        add(number());
+        --left;
+      }
+    }
+  }
+  Expr result = made(text + ")", type, std::move(parts));
+  result.range = range;
+  return result;
+}
+
+/// `v.zx = w`, `v.yx += w`: as a statement.
+std::optional<Expr> Body::swizzleAssignment(int depth) {
+  const std::optional<Place> found =
+      place([&](TypeId id) { return types_[id].kind == Type::Kind::Vector; }, true);
+  if (!found) return std::nullopt;
+  const Type info = types_[found->type];
+  const bool isFloat = info.scalar == Scalar::Float;
+  const int count = random_.between(2, info.count);
+  const TypeId type = types_.vector(info.scalar, count);
+  const std::string components = swizzle(random_, info.count, count, true);
+  const bool isPlain = random_.chance(1, 2);
+  Expr right =
+      limited(random_.chance(1, 4) && !isPlain ? value(info.element, depth - 1) : value(type, depth - 1),
+              isPlain ? 0 : 7);
+  Expr left = target(*found, depth - 1);
+  static const std::vector<std::string> ofFloats = {"+=", "-="};
+  static const std::vector<std::string> ofIntegers = {"+=", "-=", "*=", "&=", "|=", "^="};
+  const std::string op = isPlain ? "=" : random_.pick(isFloat ? ofFloats : ofIntegers);
+  Expr result =
+      made("$." + components + " " + op + " $", type, listOf(std::move(left), std::move(right)), true);
+  result.node->simple.clear();
+  result.effects.writes |= std::uint64_t{1} << variableOf(*found).bit;
+  return result;
+}
+
+}  // namespace fuzz::cpp
