@@ -24,8 +24,10 @@ const clang::NamedDecl* declarationIn(const clang::Diagnostic& diagnostic) {
 /// Advice on assigning to an input, a uniform or another parameter that is constant.
 Advice adviceOnConstant(const clang::Diagnostic& diagnostic) {
   const clang::NamedDecl* assigned = declarationIn(diagnostic);
-  if (!llvm::isa_and_nonnull<clang::ParmVarDecl>(assigned)) return {};
-  return {format(Diag::ConstantAssigned, {assigned->getName().str()})};
+  const auto* parameter = llvm::dyn_cast_or_null<clang::ParmVarDecl>(assigned);
+  if (parameter == nullptr) return {};
+  const bool isArray = parameter->getType().getNonReferenceType()->isArrayType();
+  return {format(isArray ? Diag::ArrayAssigned : Diag::ConstantAssigned, {assigned->getName().str()})};
 }
 
 /// Advice on `return r;` in a kernel.

@@ -194,28 +194,31 @@ std::string typeTraits() {
 }
 
 constexpr std::string_view gathersAndStreams = R"(
+template <class T> struct __sk_element { using type = T; };
+template <class T, unsigned long n> struct __sk_element<T[n]> { using type = const T (&)[n]; };
+template <class T> using __sk_read = typename __sk_element<T>::type;
 template <class T> struct gather_1d {
-  T operator[](int) const; T operator[](uint) const; T operator[](float) const;
+  __sk_read<T> operator[](int) const; __sk_read<T> operator[](uint) const; __sk_read<T> operator[](float) const;
 };
 template <class T> struct gather_2d {
   gather_1d<T> operator[](int) const; gather_1d<T> operator[](uint) const;
-  gather_1d<T> operator[](float) const; T operator[](int2) const; T operator[](float2) const;
+  gather_1d<T> operator[](float) const; __sk_read<T> operator[](int2) const; __sk_read<T> operator[](float2) const;
 };
 template <class T> struct gather_3d {
   gather_2d<T> operator[](int) const; gather_2d<T> operator[](uint) const;
-  gather_2d<T> operator[](float) const; T operator[](int3) const; T operator[](float3) const;
+  gather_2d<T> operator[](float) const; __sk_read<T> operator[](int3) const; __sk_read<T> operator[](float3) const;
 };
 template <class T> struct gather_4d {
   gather_3d<T> operator[](int) const; gather_3d<T> operator[](uint) const;
-  gather_3d<T> operator[](float) const; T operator[](int4) const; T operator[](float4) const;
+  gather_3d<T> operator[](float) const; __sk_read<T> operator[](int4) const; __sk_read<T> operator[](float4) const;
 };
-template <class T> T neighbor(gather_1d<T> a, int dx);
-template <class T> T neighbor(gather_2d<T> a, int dx, int dy = 0);
-template <class T> T neighbor(gather_2d<T> a, int2 offset);
-template <class T> T neighbor(gather_3d<T> a, int dx, int dy = 0, int dz = 0);
-template <class T> T neighbor(gather_3d<T> a, int3 offset);
-template <class T> T neighbor(gather_4d<T> a, int dx, int dy = 0, int dz = 0, int dw = 0);
-template <class T> T neighbor(gather_4d<T> a, int4 offset);
+template <class T> __sk_read<T> neighbor(gather_1d<T> a, int dx);
+template <class T> __sk_read<T> neighbor(gather_2d<T> a, int dx, int dy = 0);
+template <class T> __sk_read<T> neighbor(gather_2d<T> a, int2 offset);
+template <class T> __sk_read<T> neighbor(gather_3d<T> a, int dx, int dy = 0, int dz = 0);
+template <class T> __sk_read<T> neighbor(gather_3d<T> a, int3 offset);
+template <class T> __sk_read<T> neighbor(gather_4d<T> a, int dx, int dy = 0, int dz = 0, int dw = 0);
+template <class T> __sk_read<T> neighbor(gather_4d<T> a, int4 offset);
 template <class...> using __sk_void = void;
 template <class T, class = void> struct __sk_sampled { using type = float; };
 template <class T> struct __sk_sampled<T, __sk_void<typename __sk_traits<T>::F>> {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ir/assigned.hpp"
 
+#include <algorithm>
+
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
 
@@ -29,6 +31,15 @@ bool assigns(const Block& block, VarId var) {
   bool found = false;
   forEachAssigned(block, [&](VarId assigned) { found = found || assigned == var; });
   return found;
+}
+
+std::vector<VarId> assignedIn(const Block& block) {
+  std::vector<VarId> variables;
+  forEachAssigned(block, [&](VarId var) { variables.push_back(var); });
+  std::ranges::sort(variables);
+  const auto repeated = std::ranges::unique(variables);
+  variables.erase(repeated.begin(), repeated.end());
+  return variables;
 }
 
 std::vector<bool> assignedVariables(const Function& function) {

@@ -13,6 +13,9 @@ namespace skc::ir {
 /// True if a statement of the block changes the variable.
 bool assigns(const Block& block, VarId var);
 
+/// The variables that the block's statements change, each once.
+std::vector<VarId> assignedIn(const Block& block);
+
 /// For each variable of the function, whether any of its statements changes it.
 std::vector<bool> assignedVariables(const Function& function);
 

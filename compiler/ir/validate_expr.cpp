@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/print.hpp"
 #include "ir/validate_rules.hpp"
 #include "ir/walk.hpp"
@@ -356,13 +359,27 @@ VarId checkLValue(const ExprContext& context, const Expr& expr) {
   return ref->var;
 }
 
+/// Checks the lvalues that one statement writes: none overlaps with another or moves it.
+void checkWritten(const Module& module, const std::vector<const Expr*>& written, const std::string& where) {
+  std::vector<VarId> roots;
+  for (const Expr* lvalue : written) roots.push_back(rootOf(*lvalue));
+  std::ranges::sort(roots);
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    require(!hasIndexOf(*written[i], roots),
+            where + "an index of an lvalue is a variable that the call writes");
+    for (std::size_t k = 0; k < i; ++k)
+      require(areDisjoint(module, *written[i], *written[k]),
+              where + "two of the lvalues that it writes overlap");
+  }
+}
+
 void checkArguments(const ExprContext& context, FunctionId callee, const std::vector<ExprPtr>& args,
                     bool allowInOut) {
   require(callee < context.module.functions.size(), "a callee is not in the table");
   const Function& function = context.module.functions[callee];
   const std::string where = fmt::format("call of '{}': ", function.name);
   require(args.size() == function.parameterCount, where + "too many or too few arguments");
-  std::vector<VarId> bound;
+  std::vector<const Expr*> written;
   for (std::size_t i = 0; i < args.size(); ++i) {
     const Variable& parameter = function.variables[i];
     require(args[i]->type == parameter.type, fmt::format("{}argument {} has another type", where, i));
@@ -372,14 +389,13 @@ void checkArguments(const ExprContext& context, FunctionId callee, const std::ve
       require(parameter.role == VarRole::Gather || allowInOut, where + "an expression writes a stream");
     } else if (parameter.role == VarRole::InOut) {
       require(allowInOut, where + "an expression has an effect");
-      const VarId root = checkLValue(context, *args[i]);
-      for (VarId other : bound)
-        require(other != root, where + "one variable is bound to two InOut parameters");
-      bound.push_back(root);
+      checkLValue(context, *args[i]);
+      written.push_back(args[i].get());
     } else {
       checkExpr(context, *args[i]);
     }
   }
+  checkWritten(context.module, written, where);
 }
 
 }  // namespace skc::ir

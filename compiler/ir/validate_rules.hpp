@@ -33,7 +33,8 @@ void checkExpr(const ExprContext& context, const Expr& expr);
 void checkAppendOutput(const ExprContext& context, StreamRef stream, Type value, std::uint8_t rank);
 /// Checks that the expression is an lvalue; returns the variable at its root.
 VarId checkLValue(const ExprContext& context, const Expr& expr);
-/// Checks arguments against the callee's parameters; InOut parameters need `allowInOut`.
+/// Checks arguments against the callee's parameters; InOut parameters need `allowInOut`, and their arguments must
+/// neither overlap nor have an index that the call changes.
 void checkArguments(const ExprContext& context, FunctionId callee, const std::vector<ExprPtr>& args,
                     bool allowInOut);
 void checkBinary(BinaryOp op, Type lhs, Type rhs, Type result);

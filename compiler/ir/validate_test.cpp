@@ -155,7 +155,8 @@ TEST_CASE("calls fit their functions") {
     CHECK_THAT(validate(module, Stage::Lowered), Catch::Contains(std::string(part)));
   };
   check("too many or too few", [&](KernelBuilder& k) { return callStmt(twice, exprs(k.ref(0))); });
-  check("bound to two InOut", [&](KernelBuilder& k) { return callStmt(twice, exprs(k.ref(0), k.ref(0))); });
+  check("lvalues that it writes overlap",
+        [&](KernelBuilder& k) { return callStmt(twice, exprs(k.ref(0), k.ref(0))); });
   check("no place", [&](KernelBuilder& k) { return callStmt(twice, exprs(k.ref(0), literal(1.0F))); });
   check("has another type", [&](KernelBuilder& k) { return callStmt(twice, exprs(k.ref(0), literal(1))); });
   check("has an effect", [&](KernelBuilder& k) {

@@ -216,7 +216,7 @@ class Predicator {
     return assign(std::move(place), select(mask(loc), std::move(assigned), std::move(old), loc), loc);
   }
 
-  /// Arguments and results that need a masked store go through copies.
+  /// Arguments and results that need a masked store go through copies. The call does not change their indices.
   void write(const Stmt& stmt, const CallStmt& n, Block& out) {
     const Loc loc = stmt.loc;
     const Function& callee = context_.module.functions[n.callee];
@@ -226,7 +226,6 @@ class Predicator {
       const bool isCopied = callee.variables[i].role == VarRole::InOut && blends(stmt, *n.args[i]);
       ExprPtr arg = value(n.args[i]);
       if (isCopied) {
-        keepIndices(*arg, out);
         const VarId copy = addVariable(function_, "copy", arg->type, VarRole::Local, loc);
         out.push_back(declare(copy, clone(arg), loc));
         after.push_back(blended(std::move(arg), ref(copy, loc), loc));
@@ -244,19 +243,6 @@ class Predicator {
     }
     out.push_back(callStmt(n.callee, std::move(args), std::move(place), loc));
     std::ranges::move(after, std::back_inserter(out));
-  }
-
-  /// Saves the indices of an lvalue, because the call may change their variables.
-  void keepIndices(Expr& place, Block& out) {
-    if (auto* n = std::get_if<Index>(&place.node);
-        n != nullptr && !std::holds_alternative<Literal>(n->index->node)) {
-      const VarId kept = addVariable(function_, "index", n->index->type, VarRole::Local, place.loc);
-      out.push_back(declare(kept, std::move(n->index), place.loc));
-      n->index = ref(kept, place.loc);
-    }
-    if (auto* n = std::get_if<Index>(&place.node)) keepIndices(*n->base, out);
-    if (auto* n = std::get_if<Member>(&place.node)) keepIndices(*n->base, out);
-    if (auto* n = std::get_if<Swizzle>(&place.node)) keepIndices(*n->base, out);
   }
 
   void write(const Stmt& stmt, const If& n, Block& out) {

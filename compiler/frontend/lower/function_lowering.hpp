@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Lowers one function's body. C++ expressions have side effects, the IR's do not: an expression's effects
-// become statements in front of its statement. Operands that C++ evaluates earlier are saved in temporaries
-// only if a later operand's effect could change them.
+// become statements in front of its statement. The order is C++17's, and left to right where C++ leaves it open.
+// A value that is needed after a later effect is saved in a temporary, and so are the indices of an lvalue, but
+// only if the effect could change them (docs/ir.md, "Lvalues and the order of evaluation").
 //
 //   v = u[i++] * 2;     ->     int t = i; i += 1; v = u[t] * 2;
 //   if (a && f(b))      ->     if (a && f(b))              if f has no effects (it takes values)
@@ -16,6 +17,7 @@
 
 #include "frontend/lower/module_lowering.hpp"
 #include "frontend/tokens/float_literals.hpp"
+#include "support/function_ref.hpp"
 
 namespace skc::frontend {
 
@@ -104,12 +106,16 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr valueInto(const clang::Expr* e, ir::Block& block, bool asDouble = false);
   Exprs valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions, bool asDoubles = false);
   void spill(ir::ExprPtr& e);
-  void pinLValue(ir::ExprPtr& e);
+  using Variables = std::vector<ir::VarId>;  ///< in ascending order
+  void keepValue(ir::ExprPtr& e, const Variables& changed);
+  void keepLocation(ir::ExprPtr& e, const Variables& changed);
+  void append(ir::Block effects);
   ir::ExprPtr place(const clang::Expr* e);
   struct Sides {
     ir::ExprPtr target, right;
   };
-  Sides sidesOf(const clang::BinaryOperator* e);
+  Sides sidesOf(const clang::Expr* left, ir::ExprPtr right);
+  ir::ExprPtr store(Sides sides, std::optional<ir::BinaryOp> op, Loc loc, bool wantValue);
   ir::ExprPtr assign(const clang::BinaryOperator* e, bool wantValue);
   ir::ExprPtr compoundAssign(const clang::CompoundAssignOperator* e, bool wantValue);
   ir::ExprPtr increment(const clang::UnaryOperator* e, bool wantValue);
@@ -144,7 +150,10 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr indexed(const clang::Expr* array, const clang::Expr* index, clang::SourceLocation where);
   ir::ExprPtr classValue(ir::Type type, llvm::ArrayRef<const clang::Expr*> args, clang::SourceLocation where);
   ir::ExprPtr matrix(ir::Type type, Exprs parts, clang::SourceLocation where);
-  ir::ExprPtr defaultStruct(const clang::CXXRecordDecl* record, clang::SourceLocation where);
+  ir::ExprPtr structInSteps(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits,
+                            clang::SourceLocation where);
+  ir::ExprPtr defaultStruct(const clang::CXXConstructorDecl* constructor, clang::SourceLocation where);
+  void fill(Exprs& elements, std::size_t length, FunctionRef<ir::ExprPtr()> element);
 
   // ---- calls (lower_call.cpp) -------------------------------------------------------------------
   ir::ExprPtr userCall(const clang::CallExpr* e, const clang::FunctionDecl* callee);
@@ -169,6 +178,18 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   static Subscripts subscriptsOf(const clang::CXXOperatorCallExpr* e);
   ir::ExprPtr indexFrom(const Subscripts& subscripts, ir::VarId stream);
   ir::ExprPtr argument(const clang::Expr* e, const ir::Variable& parameter);
+  /// True if a reference to `e` refers to an object of the caller, not to a temporary.
+  static bool namesObject(const clang::Expr* e);
+  struct Argument {
+    const clang::Expr* source;
+    bool isReference;  ///< bound to an object, not to a copy of its value
+    ir::ExprPtr value = nullptr;
+  };
+  std::vector<Argument> argumentsOf(const clang::CallExpr* e, const clang::FunctionDecl* callee) const;
+  void lowerArguments(std::vector<Argument>& arguments, const std::vector<ir::Variable>& parameters,
+                      bool rightToLeft);
+  void keepWritten(std::vector<Argument>& arguments, const std::vector<ir::Variable>& parameters);
+  void checkAliases(const std::vector<Argument>& arguments, ir::FunctionId callee);
   void abandonIfUnknown(const clang::Stmt* s) const;
   std::optional<ir::VarId> streamVariable(const clang::Expr* e) const;
   ir::VarId gatherVariable(const clang::Expr* e);
@@ -192,6 +213,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::Function function_;
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
   std::optional<ir::VarId> this_;
+  std::optional<ir::VarId> initialized_;  ///< `this` in the initialisers of its members
   bool returnsThis_ = false;
   ir::Block* out_ = nullptr;  ///< receives statements
   int depth_ = 0;  ///< nesting of expressions and statements

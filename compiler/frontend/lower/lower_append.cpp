@@ -10,6 +10,7 @@
 #include <clang/AST/ExprCXX.h>
 
 #include "frontend/lower/function_lowering.hpp"
+#include "ir/assigned.hpp"
 #include "ir/build.hpp"
 
 namespace skc::frontend {
@@ -89,11 +90,17 @@ std::optional<ir::ScatterOp> extremeOf(llvm::StringRef name) {
 /// `r[i] = v`, or `r[i] = min(r[i], v)`, where both lvalues must be the same expression.
 void FunctionLowering::scatterStore(const ScatterTarget& target, const clang::Expr* left,
                                     const clang::Expr* right) {
+  // C++ evaluates both lvalues, which are one element only if evaluating them changes nothing
+  ir::Block effects;
+  ir::Block* outer = std::exchange(out_, &effects);
+  indexFrom(target.subscripts, target.stream);
+  out_ = outer;
+  const bool hasEffects = !effects.empty();
   const auto isSame = [&](const clang::Expr* e) {
     llvm::FoldingSetNodeID a, b;
     left->IgnoreParens()->Profile(a, module_.context(), true);
     e->IgnoreParenImpCasts()->Profile(b, module_.context(), true);
-    return a == b && !left->HasSideEffects(module_.context(), /*IncludePossibleEffects=*/false);
+    return a == b && !hasEffects;
   };
   const auto* call = llvm::dyn_cast<clang::CallExpr>(right->IgnoreParenImpCasts());
   const clang::FunctionDecl* callee = call ? call->getDirectCallee() : nullptr;
@@ -139,17 +146,11 @@ ExprPtr FunctionLowering::combinedValue(const ScatterTarget& target, ExprPtr val
 void FunctionLowering::scatter(const ScatterTarget& target, ir::ScatterOp op, ExprPtr value) {
   ir::Block effects;
   ir::Block* outer = std::exchange(out_, &effects);
-  ExprPtr index;
-  try {
-    index = indexFrom(target.subscripts, target.stream);
-  } catch (const Abandoned&) {
-    out_ = outer;
-    throw;
-  }
+  ExprPtr index = indexFrom(target.subscripts, target.stream);
   out_ = outer;
   if (!effects.empty()) {
-    spill(value);
-    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+    keepValue(value, ir::assignedIn(effects));
+    append(std::move(effects));
   }
   emit(module_.loc(target.subscripts.where),
        ir::Scatter{{ir::StreamRef::Space::Variable, target.stream}, op, std::move(index), std::move(value)});

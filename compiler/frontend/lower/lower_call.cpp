@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Lowers calls of intrinsics (selected from the table by argument types), of gathers, and of the user's
-// functions and kernels.
+// Lowers calls of intrinsics (selected from the table by argument types) and of gathers. Those of the user's
+// functions are in lower_user_call.cpp.
 #include <algorithm>
 #include <cassert>
 
@@ -10,6 +10,7 @@
 
 #include "frontend/lower/function_lowering.hpp"
 #include "frontend/prelude.hpp"
+#include "ir/assigned.hpp"
 #include "ir/build.hpp"
 
 namespace skc::frontend {
@@ -36,11 +37,8 @@ ExprPtr FunctionLowering::VisitCXXOperatorCallExpr(const clang::CXXOperatorCallE
   const bool isCopy = e->getOperator() == clang::OO_Equal && callee->isTrivial();
   if (module_.isPrelude(callee) && !isCopy) return classOperator(e);
   if (isCopy) {
-    ExprPtr right = value(e->getArg(1));
-    ExprPtr target = place(e->getArg(0));
-    ExprPtr result = ir::clone(*target);
-    emit(module_.loc(e->getBeginLoc()), ir::Assign{std::move(target), std::nullopt, std::move(right)});
-    return result;
+    return store(sidesOf(e->getArg(0), value(e->getArg(1))), std::nullopt, module_.loc(e->getBeginLoc()),
+                 /*wantValue=*/true);
   }
   return userCall(e, callee);
 }
@@ -77,15 +75,7 @@ ExprPtr FunctionLowering::classOperator(const clang::CXXOperatorCallExpr* e) {
 /// `u += x` for a normalized value, `m *= n` for a matrix: the operation, then an assignment.
 ExprPtr FunctionLowering::classAssignment(ir::BinaryOp op, const clang::CXXOperatorCallExpr* e) {
   const Loc loc = module_.loc(e->getBeginLoc());
-  ExprPtr right = value(e->getArg(1));
-  ir::Block effects;
-  ir::Block* outer = std::exchange(out_, &effects);
-  ExprPtr target = place(e->getArg(0));
-  out_ = outer;
-  if (!effects.empty()) {
-    spill(right);
-    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
-  }
+  auto [target, right] = sidesOf(e->getArg(0), value(e->getArg(1)));
   const ir::Type type = target->type;
   ExprPtr left = convert(ir::clone(*target), ir::arithmeticScalar(type.scalar));
   ExprPtr result = ir::binary(op, std::move(left), std::move(right), loc);
@@ -228,7 +218,8 @@ ExprPtr FunctionLowering::intrinsic(ir::Intrinsic which, ir::Type result, Source
   return make(result, where, ir::IntrinsicCall{which, std::move(args)});
 }
 
-/// Lowers sincos(x, s, c), modf(x, whole) and frexp(x, e) to assignments of values without effects.
+/// Lowers sincos(x, s, c), modf(x, whole) and frexp(x, e) to assignments of values without effects, after all
+/// arguments have been evaluated.
 ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::StringRef name) {
   const SourceLocation where = e->getBeginLoc();
   const Loc loc = module_.loc(where);
@@ -239,22 +230,36 @@ ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::
   const ir::VarId kept = temporary(x->type, loc);
   const ir::Type type = x->type;
   emit(loc, ir::Declare{kept, std::move(x)});
+  Exprs targets;
+  Variables written;
+  for (unsigned i = 1; i < e->getNumArgs(); ++i) {
+    ir::Block effects;
+    ir::Block* outer = std::exchange(out_, &effects);
+    targets.push_back(place(e->getArg(i)));
+    out_ = outer;
+    const Variables changed = ir::assignedIn(effects);
+    for (std::size_t k = 0; k + 1 < targets.size(); ++k) keepLocation(targets[k], changed);
+    append(std::move(effects));
+  }
+  for (const ExprPtr& target : targets) written.push_back(ir::rootOf(*target));
+  std::ranges::sort(written);
+  for (ExprPtr& target : targets) keepLocation(target, written);
   const auto apply = [&](ir::Intrinsic which, ir::Type result) {
     return intrinsic(which, result, where, ir::exprs(ir::varRef(function_, kept, loc)));
   };
-  const auto store = [&](unsigned argument, ExprPtr stored) {
-    emit(loc, ir::Assign{place(e->getArg(argument)), std::nullopt, std::move(stored)});
+  const auto store = [&](unsigned target, ExprPtr stored) {
+    emit(loc, ir::Assign{std::move(targets[target]), std::nullopt, std::move(stored)});
   };
   if (name == "sincos") {
-    store(1, apply(ir::Intrinsic::Sin, type));
-    store(2, apply(ir::Intrinsic::Cos, type));
+    store(0, apply(ir::Intrinsic::Sin, type));
+    store(1, apply(ir::Intrinsic::Cos, type));
     return ir::literal(false, loc);
   }
   if (name == "modf") {
-    store(1, apply(ir::Intrinsic::Trunc, type));
+    store(0, apply(ir::Intrinsic::Trunc, type));
     return apply(ir::Intrinsic::ModfFraction, type);
   }
-  store(1, apply(ir::Intrinsic::FrexpExponent, type.withScalar(Scalar::Int)));
+  store(0, apply(ir::Intrinsic::FrexpExponent, type.withScalar(Scalar::Int)));
   return apply(ir::Intrinsic::FrexpMantissa, type);
 }
 

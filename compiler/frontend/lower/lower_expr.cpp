@@ -8,7 +8,9 @@
 #include <clang/AST/ExprCXX.h>
 
 #include "frontend/lower/function_lowering.hpp"
+#include "ir/assigned.hpp"
 #include "ir/build.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/operators.hpp"
 
 namespace skc::frontend {
@@ -79,42 +81,15 @@ bool isStable(const ExprPtr& e, const ir::Function& function) {
   return reference && function.variables[reference->var].isConst;
 }
 
-/// The access path from the root variable to an lvalue: members and constant indices; -1 is any index.
-std::vector<std::int64_t> pathOf(const ir::Expr& place) {
-  std::vector<std::int64_t> path;
-  const ir::Expr* e = &place;
-  while (!std::holds_alternative<ir::VarRef>(e->node)) {
-    if (const auto* member = std::get_if<ir::Member>(&e->node)) {
-      path.insert(path.begin(), member->field);
-      e = member->base.get();
-    } else if (const auto* index = std::get_if<ir::Index>(&e->node)) {
-      const auto* literal = std::get_if<ir::Literal>(&index->index->node);
-      path.insert(path.begin(), literal ? std::int64_t{literal->bits} : -1);
-      e = index->base.get();
-    } else {
-      path.clear();   // treats components of a vector as the whole
-      e = std::get<ir::Swizzle>(e->node).base.get();
-    }
-  }
-  return path;
-}
-
-/// True if two lvalues certainly have no component in common.
-bool areDisjoint(const ir::Expr& a, const ir::Expr& b) {
-  if (ir::rootOf(a) != ir::rootOf(b)) return true;
-  const std::vector<std::int64_t> first = pathOf(a), second = pathOf(b);
-  for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
-    if (first[i] < 0 || second[i] < 0) return false;
-    if (first[i] != second[i]) return true;
-  }
-  return false;
-}
-
-bool isLValue(const ir::Expr& e) {
+/// True if the expression names an object: an lvalue, a choice of two, or a part of these.
+bool isLocation(const ir::Expr& e) {
   if (std::holds_alternative<ir::VarRef>(e.node)) return true;
-  if (const auto* swizzle = std::get_if<ir::Swizzle>(&e.node)) return isLValue(*swizzle->base);
-  if (const auto* member = std::get_if<ir::Member>(&e.node)) return isLValue(*member->base);
-  if (const auto* index = std::get_if<ir::Index>(&e.node)) return isLValue(*index->base);
+  if (const auto* choice = std::get_if<ir::Select>(&e.node)) {
+    return choice->cond->type.isScalar() && isLocation(*choice->yes) && isLocation(*choice->no);
+  }
+  if (const auto* swizzle = std::get_if<ir::Swizzle>(&e.node)) return isLocation(*swizzle->base);
+  if (const auto* member = std::get_if<ir::Member>(&e.node)) return isLocation(*member->base);
+  if (const auto* index = std::get_if<ir::Index>(&e.node)) return isLocation(*index->base);
   return false;
 }
 
@@ -195,8 +170,9 @@ FunctionLowering::Exprs FunctionLowering::valuesInOrder(llvm::ArrayRef<const cla
     ir::Block effects;
     ExprPtr result = valueInto(e, effects, asDoubles);
     if (!effects.empty()) {
-      for (ExprPtr& earlier : values) spill(earlier);
-      for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+      const Variables changed = ir::assignedIn(effects);
+      for (ExprPtr& earlier : values) keepValue(earlier, changed);
+      append(std::move(effects));
     }
     values.push_back(std::move(result));
   }
@@ -212,17 +188,31 @@ void FunctionLowering::spill(ExprPtr& e) {
   e = ir::varRef(function_, kept, loc);
 }
 
-/// Fixes which element an lvalue refers to, not its value: only its indices are saved in temporaries.
-void FunctionLowering::pinLValue(ExprPtr& e) {
-  if (!isLValue(*e)) return spill(e);
+/// Saves the value of `e` if the coming effects could change it.
+void FunctionLowering::keepValue(ExprPtr& e, const Variables& changed) {
+  if (ir::readsAny(*e, changed)) spill(e);
+}
+
+/// Fixes which object `e` names, not its value: saves the indices and conditions that the coming effects could change.
+void FunctionLowering::keepLocation(ExprPtr& e, const Variables& changed) {
+  if (!isLocation(*e)) return keepValue(e, changed);
   if (auto* index = std::get_if<ir::Index>(&e->node)) {
-    pinLValue(index->base);
-    spill(index->index);
+    keepLocation(index->base, changed);
+    keepValue(index->index, changed);
   } else if (auto* member = std::get_if<ir::Member>(&e->node)) {
-    pinLValue(member->base);
+    keepLocation(member->base, changed);
   } else if (auto* swizzle = std::get_if<ir::Swizzle>(&e->node)) {
-    pinLValue(swizzle->base);
+    keepLocation(swizzle->base, changed);
+  } else if (auto* choice = std::get_if<ir::Select>(&e->node)) {
+    keepValue(choice->cond, changed);
+    keepLocation(choice->yes, changed);
+    keepLocation(choice->no, changed);
   }
+}
+
+/// Adds the effects of an expression, after what they could change has been kept.
+void FunctionLowering::append(ir::Block effects) {
+  for (ir::Stmt& s : effects) out_->push_back(std::move(s));
 }
 
 ir::VarId FunctionLowering::temporary(ir::Type type, Loc loc) {
@@ -241,73 +231,81 @@ ExprPtr FunctionLowering::place(const clang::Expr* e) {
     const std::string& gather = function_.variables[read->stream.id].name;
     module_.fail(Diag::GatherAssigned, e->getBeginLoc(), {gather + "[...]", gather});
   }
-  if (!isLValue(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
+  if (!ir::isLValue(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
   return result;
 }
 
-/// Evaluates both sides of an assignment, the right one first as in C++17.
-FunctionLowering::Sides FunctionLowering::sidesOf(const clang::BinaryOperator* e) {
-  ExprPtr right = value(e->getRHS());
+/// Evaluates the target of an assignment after its right side, as C++17 does.
+FunctionLowering::Sides FunctionLowering::sidesOf(const clang::Expr* left, ExprPtr right) {
   ir::Block effects;
   ir::Block* outer = std::exchange(out_, &effects);
-  ExprPtr target = place(e->getLHS());
+  ExprPtr target = place(left);
   out_ = outer;
   if (!effects.empty()) {
-    spill(right);
-    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+    keepValue(right, ir::assignedIn(effects));
+    append(std::move(effects));
   }
   return {std::move(target), std::move(right)};
 }
 
-ExprPtr FunctionLowering::assign(const clang::BinaryOperator* e, bool wantValue) {
-  auto [target, right] = sidesOf(e);
-  ExprPtr result = wantValue ? ir::clone(*target) : nullptr;
-  emit(module_.loc(e->getBeginLoc()), ir::Assign{std::move(target), std::nullopt, std::move(right)});
+/// Emits `target (op)= right`, and returns the target as a value if it is wanted, else null.
+ExprPtr FunctionLowering::store(Sides sides, std::optional<ir::BinaryOp> op, Loc loc, bool wantValue) {
+  ExprPtr result;
+  if (wantValue) {
+    keepLocation(sides.target, {ir::rootOf(*sides.target)});
+    result = ir::clone(*sides.target);
+  }
+  emit(loc, ir::Assign{std::move(sides.target), op, std::move(sides.right)});
   return result;
+}
+
+ExprPtr FunctionLowering::assign(const clang::BinaryOperator* e, bool wantValue) {
+  return store(sidesOf(e->getLHS(), value(e->getRHS())), std::nullopt, module_.loc(e->getBeginLoc()),
+               wantValue);
 }
 
 ExprPtr FunctionLowering::compoundAssign(const clang::CompoundAssignOperator* e, bool wantValue) {
   const ir::BinaryOp op = *binaryOpOf(e->getOpcode());
-  auto [target, right] = sidesOf(e);
+  Sides sides = sidesOf(e->getLHS(), value(e->getRHS()));
+  const ir::Type type = sides.target->type;
   const ir::Type computed = module_.type(e->getComputationResultType(), e->getOperatorLoc());
-  ExprPtr result = wantValue ? ir::clone(*target) : nullptr;
   const Loc loc = module_.loc(e->getBeginLoc());
   const bool isSignedRemainder =
       op == ir::BinaryOp::Rem && computed.scalar == ir::Scalar::Int;  // is a function in GLSL
   const bool isNumber = computed.isArithmetic() && !computed.isBool() && !computed.isNarrow();
-  if (isNumber && computed.scalar == target->type.scalar && !isSignedRemainder) {
-    if (isArithmeticOp(op)) right = withoutSplat(std::move(right));
-    emit(loc, ir::Assign{std::move(target), op, std::move(right)});
-    return result;
+  if (isNumber && computed.scalar == type.scalar && !isSignedRemainder) {
+    if (isArithmeticOp(op)) sides.right = withoutSplat(std::move(sides.right));
+    return store(std::move(sides), op, loc, wantValue);
   }
   // `i += 0.5f` computes in float and converts back; a storage type computes in its arithmetic type
-  const ir::Scalar scalar = target->type.scalar;
-  ExprPtr wide =
-      binary(op, convert(ir::clone(*target), computed.scalar), std::move(right), e->getOperatorLoc());
-  emit(loc, ir::Assign{std::move(target), std::nullopt, convert(std::move(wide), scalar)});
-  return result;
+  ExprPtr left = convert(ir::clone(*sides.target), computed.scalar);
+  ExprPtr wide = binary(op, std::move(left), std::move(sides.right), e->getOperatorLoc());
+  sides.right = convert(std::move(wide), type.scalar);
+  return store(std::move(sides), std::nullopt, loc, wantValue);
 }
 
 ExprPtr FunctionLowering::increment(const clang::UnaryOperator* e, bool wantValue) {
-  ExprPtr target = place(e->getSubExpr());
+  Sides sides{place(e->getSubExpr()), nullptr};
   const Loc loc = module_.loc(e->getBeginLoc());
-  if (target->type.isBool()) module_.fail(Diag::Statement, e->getBeginLoc(), {"++ of a bool"});
-  ExprPtr result;
+  const ir::Type type = sides.target->type;
+  if (type.isBool()) module_.fail(Diag::Statement, e->getBeginLoc(), {"++ of a bool"});
+  ExprPtr before;
   if (wantValue && e->isPostfix()) {
-    result = ir::clone(*target);
-    spill(result);
+    before = ir::clone(*sides.target);
+    spill(before);
   }
   const ir::BinaryOp op = e->isIncrementOp() ? ir::BinaryOp::Add : ir::BinaryOp::Sub;
-  const ir::Type type = target->type;
-  ExprPtr one = ir::literalOf(type.arithmeticType().component(), 1, loc);
-  if (wantValue && e->isPrefix()) result = ir::clone(*target);
+  sides.right = ir::literalOf(type.arithmeticType().component(), 1, loc);
+  const bool wantAfter = wantValue && e->isPrefix();
+  ExprPtr after;
   if (type.isNarrow()) {
-    ExprPtr wide = binary(op, ir::clone(*target), std::move(one), e->getOperatorLoc());
-    emit(loc, ir::Assign{std::move(target), std::nullopt, convert(std::move(wide), type.scalar)});
+    ExprPtr wide = binary(op, ir::clone(*sides.target), std::move(sides.right), e->getOperatorLoc());
+    sides.right = convert(std::move(wide), type.scalar);
+    after = store(std::move(sides), std::nullopt, loc, wantAfter);
   } else {
-    emit(loc, ir::Assign{std::move(target), op, std::move(one)});
+    after = store(std::move(sides), op, loc, wantAfter);
   }
-  return result;
+  return before ? std::move(before) : std::move(after);
 }
 
 // ---- operators ----------------------------------------------------------------------------------
@@ -459,6 +457,17 @@ ExprPtr FunctionLowering::select(ExprPtr cond, ExprPtr yes, ExprPtr no, SourceLo
   return make(type, where, ir::Select{std::move(cond), std::move(yes), std::move(no)});
 }
 
+bool FunctionLowering::namesObject(const clang::Expr* e) {
+  while (true) {
+    e = e->IgnoreParens();
+    const auto* cast = llvm::dyn_cast<clang::ImplicitCastExpr>(e);
+    if (!cast || cast->getCastKind() != clang::CK_NoOp) break;
+    e = cast->getSubExpr();
+  }
+  const bool isThis = e->getType()->isPointerType();  // the object of a call within a method
+  return isThis || (e->isLValue() && !llvm::isa<clang::MaterializeTemporaryExpr>(e));
+}
+
 ExprPtr FunctionLowering::argument(const clang::Expr* e, const ir::Variable& parameter) {
   switch (parameter.role) {
     case ir::VarRole::AppendOutput:
@@ -468,7 +477,13 @@ ExprPtr FunctionLowering::argument(const clang::Expr* e, const ir::Variable& par
                           module_.loc(e->getBeginLoc()));
     }
     case ir::VarRole::InOut: {
-      return place(e);  // Clang binds references only to the same type
+      if (namesObject(e)) return place(e);  // Clang binds references only to the same type
+      // a method that changes its object may be called on a value
+      ExprPtr object = value(e);
+      const Loc loc = object->loc;
+      const ir::VarId kept = temporary(object->type, loc);
+      emit(loc, ir::Declare{kept, std::move(object)});
+      return ir::varRef(function_, kept, loc);
     }
     case ir::VarRole::Element:
       // an argument of another type is a value, and is converted
@@ -496,70 +511,6 @@ void FunctionLowering::abandonIfUnknown(const clang::Stmt* s) const {
   if (!variable || !variable->isLocalVarDeclOrParm() || variables_.contains(variable)) return;
   if (variable->isStaticLocal() && variable->getType().isConstQualified()) return;
   throw Abandoned{};
-}
-
-/// Calls with reference parameters, or that may push or scatter, become statements; others stay expressions.
-ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
-  for (const clang::Stmt* part : e->children()) abandonIfUnknown(part);
-  const SourceLocation where = e->getBeginLoc();
-  const ir::FunctionId id = module_.function(callee, where);
-  const ir::Function& target = module_.functionAt(id);
-  std::vector<const clang::Expr*> sources;
-  if (const auto* method = llvm::dyn_cast<clang::CXXMemberCallExpr>(e)) {
-    sources.push_back(method->getImplicitObjectArgument());
-  }
-  sources.insert(sources.end(), e->arg_begin(), e->arg_end());
-
-  Exprs arguments;
-  std::vector<std::size_t> written;
-  bool hasEffects = target.result.isVoid();
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    const ir::Variable& parameter = target.variables[i];
-    ir::Block effects;
-    ir::Block* outer = std::exchange(out_, &effects);
-    ExprPtr lowered;
-    try {
-      lowered = argument(sources[i], parameter);
-    } catch (const Abandoned&) {
-      out_ = outer;
-      throw;
-    }
-    out_ = outer;
-    if (!effects.empty()) {
-      for (std::size_t k = 0; k < i; ++k) {
-        const ir::VarRole role = target.variables[k].role;
-        if (role == ir::VarRole::In || (role == ir::VarRole::Element && !streamVariable(sources[k])))
-          spill(arguments[k]);
-      }
-      for (ir::Stmt& s : effects) out_->push_back(std::move(s));
-    }
-    if (parameter.role == ir::VarRole::AppendOutput) hasEffects = true;
-    if (parameter.role == ir::VarRole::InOut) {
-      hasEffects = true;
-      for (const std::size_t other : written) {
-        if (areDisjoint(*arguments[other], *lowered)) continue;
-        module_.fail(Diag::AliasedArguments, sources[i]->getBeginLoc(),
-                     {function_.variables[ir::rootOf(*lowered)].name});
-      }
-      written.push_back(i);
-    }
-    arguments.push_back(std::move(lowered));
-  }
-  if (!hasEffects) return make(target.result, where, ir::Call{id, std::move(arguments)});
-  const Loc loc = module_.loc(where);
-  if (returnsThis(callee)) {
-    ExprPtr object = ir::clone(*arguments[0]);
-    emit(loc, ir::CallStmt{id, std::move(arguments), nullptr});
-    return object;
-  }
-  if (target.result.isVoid()) {
-    emit(loc, ir::CallStmt{id, std::move(arguments), nullptr});
-    return ir::literal(false, loc);  // never used: the call is void
-  }
-  const ir::VarId result = temporary(target.result, loc);
-  emit(loc, ir::Declare{result, nullptr});
-  emit(loc, ir::CallStmt{id, std::move(arguments), ir::varRef(function_, result, loc)});
-  return ir::varRef(function_, result, loc);
 }
 
 }  // namespace skc::frontend

@@ -108,6 +108,15 @@ void FunctionLowering::parameters(const clang::FunctionDecl* declaration) {
       variable.isConst = true;
     } else {
       const clang::QualType value = type.getNonReferenceType();
+      const clang::QualType written = parameter->getOriginalType();
+      if (const auto* array = module_.context().getAsConstantArrayType(written)) {   // by an alias
+        const ParamSyntax* declared = module_.syntax().param(where);
+        if (declared && declared->role == ir::ParamRole::Input)
+          module_.fail(Diag::ArrayAsElement, where, {variable.name});
+        module_.fail(Diag::ArrayDecays, where,
+                     {variable.name, std::to_string(array->getSize().getZExtValue()),
+                      array->getElementType().getUnqualifiedType().getAsString()});
+      }
       variable.type = module_.type(value, where);
       const ParamSyntax* syntax = module_.syntax().param(where);
       const bool mutableReference = type->isLValueReferenceType() && !value.isConstQualified();
@@ -374,7 +383,8 @@ void FunctionLowering::switchStatement(const clang::SwitchStmt* s) {
   }
   ir::Switch result;
   result.value = value(s->getCond());
-  if (result.value->type.isBool()) result.value = convert(std::move(result.value), ir::Scalar::Int);
+  if (!result.value->type.isInteger() || result.value->type.isNarrow())  // a bool, or a narrow enumeration
+    result.value = convert(std::move(result.value), ir::Scalar::Int);
   const auto* compound = llvm::dyn_cast<clang::CompoundStmt>(s->getBody());
   if (!compound) module_.fail(Diag::CaseInsideStatement, s->getBody()->getBeginLoc());
   for (const clang::Stmt* inner : compound->body()) {

@@ -11,6 +11,7 @@
 #include "frontend/clang_loc.hpp"
 #include "frontend/lower/function_lowering.hpp"
 #include "frontend/prelude.hpp"
+#include "ir/assigned.hpp"
 #include "ir/build.hpp"
 #include "ir/quantize.hpp"
 
@@ -47,8 +48,12 @@ ExprPtr FunctionLowering::VisitCXXRewrittenBinaryOperator(const clang::CXXRewrit
 ExprPtr FunctionLowering::VisitCXXDefaultArgExpr(const clang::CXXDefaultArgExpr* e) {
   return value(e->getExpr());
 }
+/// In the initialiser of a member, `this` is the object that is being initialised.
 ExprPtr FunctionLowering::VisitCXXDefaultInitExpr(const clang::CXXDefaultInitExpr* e) {
-  return value(e->getExpr());
+  const std::optional<ir::VarId> outer = std::exchange(this_, initialized_);
+  ExprPtr result = value(e->getExpr());
+  this_ = outer;
+  return result;
 }
 
 // ---- leaves ---------------------------------------------------------------------------------------
@@ -331,8 +336,8 @@ ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* i
   parts.push_back(valueInto(index, effects));
   if (!effects.empty()) {
     // the element is accessed after the index's effects; the array itself is not copied
-    pinLValue(parts[0]);
-    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+    keepLocation(parts[0], ir::assignedIn(effects));
+    append(std::move(effects));
   }
   const ir::Type outer = parts[0]->type;
   if (outer.kind != ir::Type::Kind::Array && !outer.isVector() && !outer.isMatrix()) {
@@ -359,12 +364,32 @@ ExprPtr FunctionLowering::VisitInitListExpr(const clang::InitListExpr* e) {
 
 ExprPtr FunctionLowering::VisitCXXParenListInitExpr(const clang::CXXParenListInitExpr* e) {
   std::vector<const clang::Expr*> inits(e->getInitExprs().begin(), e->getInitExprs().end());
-  return aggregate(module_.type(e->getType(), e->getBeginLoc()), inits, nullptr, e->getBeginLoc());
+  return aggregate(module_.type(e->getType(), e->getBeginLoc()), inits, e->getArrayFiller(),
+                   e->getBeginLoc());
 }
 
-/// A struct, array or vector from its parts; parts without an initialiser are zero (or the filler).
+namespace {
+
+/// True if the initialiser of a member names the object: `int b = a + 1;` of a struct with a member a.
+bool namesThis(const clang::Stmt* e) {
+  if (e == nullptr) return false;
+  if (llvm::isa<clang::CXXThisExpr>(e)) return true;
+  return std::ranges::any_of(e->children(), [](const clang::Stmt* part) { return namesThis(part); });
+}
+
+bool needsObject(const clang::Expr* init) {
+  const auto* given = llvm::dyn_cast_or_null<clang::CXXDefaultInitExpr>(init);
+  return given != nullptr && namesThis(given->getExpr());
+}
+
+}  // namespace
+
+/// A struct, array or vector from its parts. The elements of an array without an initialiser of their own have the
+/// filler's value; other parts without one are zero.
 ExprPtr FunctionLowering::aggregate(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits,
-                                    const clang::Expr*, SourceLocation where) {
+                                    const clang::Expr* filler, SourceLocation where) {
+  if (type.kind == ir::Type::Kind::Struct && std::ranges::any_of(inits, needsObject))
+    return structInSteps(type, inits, where);
   Exprs args = valuesInOrder(inits);
   if (type.isVector()) {
     int width = 0;
@@ -380,9 +405,45 @@ ExprPtr FunctionLowering::aggregate(ir::Type type, llvm::ArrayRef<const clang::E
     for (std::size_t i = args.size(); i < fields.size(); ++i) args.push_back(zero(fields[i].type, where));
   } else {
     const ir::Array array = module_.arrayAt(type.index);
-    for (std::size_t i = args.size(); i < array.length; ++i) args.push_back(zero(array.element, where));
+    fill(args, array.length, [&] { return filler ? value(filler) : zero(array.element, where); });
   }
   return make(type, where, ir::Construct{std::move(args)});
+}
+
+/// Adds elements to those of an array. Each is evaluated for itself if that has effects.
+void FunctionLowering::fill(Exprs& elements, std::size_t length, FunctionRef<ExprPtr()> element) {
+  const std::size_t first = elements.size();
+  while (elements.size() < length) {
+    ir::Block effects;
+    ir::Block* outer = std::exchange(out_, &effects);
+    ExprPtr added = element();
+    out_ = outer;
+    if (effects.empty()) {
+      while (elements.size() + 1 < length) elements.push_back(ir::clone(*added));
+    } else {
+      const Variables changed = ir::assignedIn(effects);
+      for (std::size_t i = first; i < elements.size(); ++i) keepValue(elements[i], changed);
+      append(std::move(effects));
+    }
+    elements.push_back(std::move(added));
+  }
+}
+
+/// Initialises a struct member by member, because an initialiser reads members before it.
+ExprPtr FunctionLowering::structInSteps(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits,
+                                        SourceLocation where) {
+  const Loc loc = module_.loc(where);
+  const ir::VarId object = temporary(type, loc);
+  emit(loc, ir::Declare{object, nullptr});
+  const std::vector<ir::StructField> fields = module_.structAt(type.index).fields;
+  for (std::uint32_t i = 0; i < fields.size(); ++i) {
+    const std::optional<ir::VarId> outer = std::exchange(initialized_, object);
+    ExprPtr given = i < inits.size() && inits[i] != nullptr ? value(inits[i]) : zero(fields[i].type, where);
+    initialized_ = outer;
+    ExprPtr member = make(fields[i].type, where, ir::Member{ir::varRef(function_, object, loc), i});
+    emit(loc, ir::Assign{std::move(member), std::nullopt, std::move(given)});
+  }
+  return ir::varRef(function_, object, loc);
 }
 
 ExprPtr FunctionLowering::zero(ir::Type type, SourceLocation where) {
@@ -407,7 +468,12 @@ ExprPtr FunctionLowering::VisitCXXConstructExpr(const clang::CXXConstructExpr* e
     return classValue(module_.type(e->getType(), e->getBeginLoc()), args, e->getBeginLoc());
   }
   if (constructor->isDefaultConstructor() && !constructor->isUserProvided()) {
-    return defaultStruct(constructor->getParent(), e->getBeginLoc());
+    const SourceLocation where = e->getBeginLoc();
+    const ir::Type type = module_.type(e->getType(), where);
+    if (type.kind != ir::Type::Kind::Array) return defaultStruct(constructor, where);
+    Exprs elements;
+    fill(elements, module_.arrayAt(type.index).length, [&] { return defaultStruct(constructor, where); });
+    return make(type, where, ir::Construct{std::move(elements)});
   }
   module_.fail(Diag::Constructor, e->getBeginLoc(), {constructor->getParent()->getNameAsString()});
 }
@@ -455,15 +521,23 @@ ExprPtr FunctionLowering::matrix(ir::Type type, Exprs parts, SourceLocation wher
 }
 
 /// `Hit h;` if Hit's members have initialisers, and `Hit()`: the other members are zero.
-ExprPtr FunctionLowering::defaultStruct(const clang::CXXRecordDecl* record, SourceLocation where) {
+ExprPtr FunctionLowering::defaultStruct(const clang::CXXConstructorDecl* constructor, SourceLocation where) {
+  const clang::CXXRecordDecl* record = constructor->getParent();
   const ir::Type type = module_.type(module_.context().getRecordType(record), where);
+  std::vector<const clang::Expr*> inits(module_.structAt(type.index).fields.size(), nullptr);
+  for (const clang::CXXCtorInitializer* init : constructor->inits()) {
+    if (init->isMemberInitializer()) inits[init->getMember()->getFieldIndex()] = init->getInit();
+  }
+  if (std::ranges::any_of(inits, needsObject)) return structInSteps(type, inits, where);
   Exprs args;
-  for (const clang::FieldDecl* field : record->fields()) {
-    if (const clang::Expr* init = field->getInClassInitializer()) {
-      args.push_back(value(init));
-    } else {
-      args.push_back(zero(module_.type(field->getType(), where), where));
-    }
+  for (std::size_t i = 0; i < inits.size(); ++i) {
+    ir::Block effects;
+    const ir::Type member = module_.structAt(type.index).fields[i].type;
+    ExprPtr given = inits[i] != nullptr ? valueInto(inits[i], effects) : zero(member, where);
+    const Variables changed = ir::assignedIn(effects);
+    for (ExprPtr& earlier : args) keepValue(earlier, changed);
+    append(std::move(effects));
+    args.push_back(std::move(given));
   }
   return make(type, where, ir::Construct{std::move(args)});
 }

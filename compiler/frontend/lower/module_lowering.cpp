@@ -225,9 +225,11 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
 
 /// Checks an element type of a stream, which may not contain arrays.
 void ModuleLowering::checkElement(ir::Type type, std::string_view name, SourceLocation where) {
+  if (type.kind == ir::Type::Kind::Array) fail(Diag::ArrayAsElement, where, {name});
   if (type.kind != ir::Type::Kind::Struct) return;
   for (const ir::StructField& field : module_.structs[type.index].fields) {
     if (field.type.kind == ir::Type::Kind::Array) fail(Diag::ArrayInElement, where, {name, field.name});
+    checkElement(field.type, fmt::format("{}.{}", name, field.name), where);
   }
 }
 
@@ -431,7 +433,7 @@ ir::ExprPtr ModuleLowering::evaluated(const clang::APValue& value, ir::Type type
       parts.push_back(
           evaluated(isGiven ? value.getArrayInitializedElt(i) : value.getArrayFiller(), element, loc));
     }
-  } else if (value.isStruct()) {
+  } else if (value.isStruct() && type.kind == ir::Type::Kind::Struct) {   // not a class of the prelude
     const std::vector<ir::StructField>& fields = module_.structs[type.index].fields;
     for (unsigned i = 0; i < value.getStructNumFields(); ++i) {
       parts.push_back(evaluated(value.getStructField(i), fields[i].type, loc));

@@ -49,7 +49,9 @@ class ModuleLowering {
 
   /// Lowers the definition of `declaration` at its first use. Reports recursion at `use`.
   ir::FunctionId function(const clang::FunctionDecl* declaration, clang::SourceLocation use);
+  /// The reference is valid until another function is lowered.
   const ir::Function& functionAt(ir::FunctionId id) const { return module_.functions[id]; }
+  const ir::Module& module() const { return module_; }
 
   /// A reference to a namespace-scope constant, which is lowered at its first use.
   ir::ExprPtr constant(const clang::VarDecl* declaration, clang::SourceLocation use);

@@ -30,6 +30,7 @@ struct ParameterEditor::Parts {
   Token open, close;               ///< the first and last bracket of either kind
   Tokens length;                   ///< `[9]` of a uniform array, with brackets
   int lengths = 0;                 ///< more than one is an error: an array of arrays
+  bool isArrayReference = false;   ///< `T (&w)[9]`
   Tokens value;                    ///< after `=`
   Token attribute;                 ///< the last word in [[...]]
   bool hasAttribute = false;
@@ -152,7 +153,7 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
   if (hasSecondQualifier(parts)) return;
   if (hasLateQualifier(parts)) return;
   if (!takeSuffix(parameter, at, parts)) return;
-  if (kind != FunctionKind::Helper && parts.type.back().is(tok::amp)) {
+  if (kind != FunctionKind::Helper && (parts.type.back().is(tok::amp) || parts.isArrayReference)) {
     diagnostics_.report(Diag::KernelReference, locOf(parts.type.back()), {nameOf(parts.name)});
     return;
   }
@@ -279,6 +280,17 @@ bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, P
       end = i;
       break;
     }
+  }
+  // `T (&w)[9]`
+  if (end > begin + 4 && end < parameter.size() && parameter[end - 1].is(tok::r_paren) &&
+      parameter[end - 2].is(tok::identifier) && parameter[end - 3].is(tok::amp) &&
+      parameter[end - 4].is(tok::l_paren)) {
+    parts.type.assign(parameter.begin() + static_cast<std::ptrdiff_t>(begin),
+                      parameter.begin() + static_cast<std::ptrdiff_t>(end) - 4);
+    parts.name = parameter[end - 2];
+    parts.isArrayReference = true;
+    at = end;
+    return true;
   }
   if (end < begin + 2 || parameter[end - 1].isNot(tok::identifier)) {
     const Token& place = begin < parameter.size() ? parameter[begin] : parameter.back();
@@ -408,8 +420,10 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
     const std::string brackets = repeated("[]", parts.lengths);
     return fail(Diag::ArrayOfLengths, {name, std::to_string(parts.lengths), brackets});
   }
+  const bool isReference =
+      kind == FunctionKind::Helper && (qualifier == "out" || qualifier == "inout") && !parts.isArrayReference;
   if (!parts.length.empty() &&
-      (parts.isElement || parts.rank > 0 || parts.hasAttribute || !qualifier.empty())) {
+      (parts.isElement || parts.rank > 0 || parts.hasAttribute || !(qualifier.empty() || isReference))) {
     return fail(Diag::ArrayParameter, {name});
   }
   if (parts.isElement && parts.rank > 0) return fail(Diag::StreamAndGather, {name});
@@ -517,13 +531,14 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
     case ir::ParamRole::Output:
     case ir::ParamRole::Accumulator:
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      out.push_back(builder_.make(tok::amp, place));
+      if (parts.length.empty()) out.push_back(builder_.make(tok::amp, place));
       break;
     case ir::ParamRole::Input: inputs_.push_back({parts.type.front(), parts.name}); [[fallthrough]];
     case ir::ParamRole::Uniform:
     case ir::ParamRole::Iterator:
     case ir::ParamRole::Spec:
-      if (parts.type.front().isNot(tok::kw_const)) out.push_back(builder_.word("const", start));
+      if (parts.type.front().isNot(tok::kw_const) && !parts.isArrayReference)
+        out.push_back(builder_.word("const", start));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       break;
   }

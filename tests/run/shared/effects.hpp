@@ -13,8 +13,17 @@
   CASE(referenceAndResult) CASE(referenceThroughTwo) CASE(resultIntoArgument)                      \
   CASE(elementAndIndexByReference) CASE(indexEvaluatedOnce) CASE(compoundIndexOnce)                \
   CASE(incrementElement) CASE(parameterIsCopy) CASE(constReferenceReads) CASE(discardedValues)     \
-  CASE(initialiserOrder) CASE(arrayOrder) CASE(logicalInArithmetic) CASE(negatedEffects)
+  CASE(initialiserOrder) CASE(arrayOrder) CASE(logicalInArithmetic) CASE(negatedEffects)           \
+  CASE(copyOutToOldElement) CASE(structRightFirst) CASE(laterArgumentMovesIndex)                   \
+  CASE(operatorRightFirst) CASE(targetAsValue) CASE(methodAndElement) CASE(methodMovesIndex)   \
+  CASE(harmlessAliases) CASE(elementsOfOneArray) CASE(referenceSeesLaterEffect)                    \
+  CASE(choiceByReference) CASE(changedTemporary) CASE(disjointParts) CASE(firstUsedInArgument)     \
+  CASE(operatorsOfOwnResults) CASE(membersReadMembers)
 // clang-format on
+
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wunsequenced"   // what C++ leaves open goes from left to right
+#endif
 
 namespace effects {
 
@@ -360,6 +369,197 @@ inline int negatedEffects(int x, int y) {
   r += ~bump(i);
   r = !isBelow(i, y) ? r : -r;
   return r * 10 + i;
+}
+
+// ---- lvalues that are written after something else has changed -----------------------------------
+
+inline void next(int& i, int& element) {
+  element = 5;
+  i = i + 1;
+}
+inline int copyOutToOldElement(int x, int y) {
+  int a[3] = {x, y, 1};
+  int i = x & 1;
+  next(i, a[i]);
+  return a[0] + 10 * a[1] + 100 * a[2] + 1000 * i;
+}
+
+struct Numbered {
+  int id;
+  int values[2];
+  int sum() const { return id + values[0] + 3 * values[1]; }
+  void take(int& from) {
+    id += from;
+    from = 7;
+  }
+  void moveTo(int& element, int to) {
+    id = to;
+    element += 100;
+  }
+};
+inline int structRightFirst(int x, int y) {
+  Pair s[4] = {};
+  int i = x & 1;
+#ifdef __clang__
+  s[i++] = Pair{i, x};
+  s[++i] = Pair{i += 0, y};
+#else   // g++ 12 does not follow C++17 here
+  s[i] = Pair{i, x};
+  i += 2;
+  s[i] = Pair{i - 1, y};
+#endif
+  return s[0].first + 3 * s[1].first + 7 * s[2].first + 11 * s[3].first + 13 * s[i].second;
+}
+
+// In C++ the order of arguments is the compiler's choice; here it is from left to right, as Clang's.
+inline int laterArgumentMovesIndex(int x, int y) {
+  int a[4] = {x, y, 1, 2};
+  int i = x & 1;
+#ifdef __clang__
+  int r = add(a[i], ++i) + add(a[i], bump(i));
+#else
+  const int first = i++;
+  int r = add(a[first], i);
+  const int second = i++;
+  r += add(a[second], second);
+#endif
+  return r + 10 * a[0] + 100 * a[1] + 1000 * a[2] + a[3];
+}
+
+struct Sum {
+  int a, b;
+  Sum& operator+=(const Sum& o) {
+    a += o.a;
+    b += o.b;
+    return *this;
+  }
+  Sum operator*(Sum o) const { return Sum{a * o.a - b * o.b, a * o.b + b * o.a}; }
+  Sum operator+(Sum o) const { return Sum{a + o.a, b + o.b}; }
+  void addAll(const Sum& o, const int& k) {
+    a += o.a * k;
+    b += o.b;
+  }
+};
+inline int operatorRightFirst(int x, int y) {
+  Sum s[4] = {{x, 1}, {y, 2}, {3, 4}, {5, 6}};
+  int i = 0;
+#ifdef __clang__
+  s[i++] += s[++i];
+#else
+  const int right = ++i;
+  s[i++] += s[right];
+#endif
+  return s[0].a + 3 * s[1].a + 7 * s[2].a + 11 * s[3].b + i;
+}
+
+inline int targetAsValue(int x, int y) {
+  int a[3] = {x & 1, y & 1, 2};
+  int r = (a[a[0]] = 2);
+  r += 10 * (a[a[1] & 1] += 1);
+  r += 100 * ++a[a[0] & 1];
+  return r + 1000 * (a[0] + 3 * a[1] + 9 * a[2]);
+}
+
+inline int methodAndElement(int x, int y) {
+  Numbered n[2] = {{x, {y, 2}}, {1, {3, 4}}};
+  n[0].take(n[1].values[1]);
+  n[1].take(n[0].id);
+  n[1].take(n[0].values[x & 1]);
+  return n[0].sum() + 100 * n[1].sum();
+}
+inline int methodMovesIndex(int x, int y) {
+  Numbered n = {x & 1, {y, 2}};
+  int a[2] = {y, x};
+  n.moveTo(a[n.id], 1 - n.id);
+  n.moveTo(a[n.id], n.id + 3);
+  return n.sum() + 7 * a[0] + 11 * a[1];
+}
+
+// Two references to one object, where only the order of reads and writes of the same number would matter.
+inline int harmlessAliases(int x, int y) {
+  Sum s = {x, y};
+  s += s;
+  s.addAll(s, y);
+  (s += s) += s;
+  return s.a + 10 * s.b;
+}
+inline int elementsOfOneArray(int x, int y) {
+  Sum s[3] = {{x, 1}, {y, 2}, {3, 4}};
+  int i = x & 1, j = y & 1;
+  s[i] += s[j];
+  s[j] += s[2];
+  return s[0].a + 3 * s[1].a + 7 * s[0].b + 11 * s[1].b;
+}
+
+inline int readBoth(const int& a, int b) { return a * 10 + b; }
+inline int referenceSeesLaterEffect(int x, int y) {
+  int i = x, a[2] = {x, y};
+#ifdef __clang__
+  return readBoth(i, ++i) + readBoth(a[i & 1], a[i & 1] += 3);
+#else
+  const int changed = ++i;
+  const int r = readBoth(i, changed);
+  const int element = a[i & 1] += 3;
+  return r + readBoth(a[i & 1], element);
+#endif
+}
+
+inline int choiceByReference(int x, int y) {
+  int i = x, j = y;
+#ifdef __clang__
+  return readBoth(x > y ? i : j, i += 5) + i;
+#else
+  const int changed = i += 5;
+  return readBoth(x > y ? i : j, changed) + i;
+#endif
+}
+
+inline int changedTemporary(int x, int y) {
+  int from = y;
+  Numbered{x, {1, 2}}.take(from);
+  Sum s = Sum{x, y} += Sum{1, 2};
+  return (Sum{s} += s).a + s.b + from;
+}
+
+inline void setOneByOther(int& a, int& b) {
+  a = b + 1;
+  b = a + 2;
+}
+inline int disjointParts(int x, int y) {
+  Numbered n = {x, {y, 1}};
+  setOneByOther(n.id, n.values[0]);
+  setOneByOther(n.values[1], n.values[0]);
+  setOneByOther(n.values[0], n.id);
+  return n.sum();
+}
+
+// Functions that are lowered when an argument needs them.
+inline int later(int x);
+template <class T>
+T twice(T x) {
+  return 2 * x;
+}
+inline int firstUsedInArgument(int x, int y) {
+  int i = x;
+  return readBoth(twice(x), later(y)) + add(i, twice(later(x)));
+}
+inline int later(int x) { return x - 1; }
+
+inline int operatorsOfOwnResults(int x, int y) {
+  Sum z = {x, y}, c = {1, 2};
+  z = z * z + c;
+  z = z + z * (z + c);
+  return z.a + 3 * z.b;
+}
+
+struct Chain {
+  int first = 3;
+  int second = first + 1;
+  int third = twice(second) + first;
+};
+inline int membersReadMembers(int x, int y) {
+  Chain a, b = {x}, c = {x, y}, d[2] = {{1, y}};
+  return a.third + 3 * b.third + 7 * c.third + 11 * d[0].third + 13 * d[1].third;
 }
 
 }  // namespace effects

@@ -11,7 +11,9 @@
   CASE(arrayDynamicIndex) CASE(arrayOfFloats) CASE(constantTable) CASE(structConstant)             \
   CASE(staticMembers) CASE(localStruct) CASE(sameNames) CASE(structInLoop) CASE(selfAssignment)    \
   CASE(arrayByReference) CASE(arrayParameter) CASE(boolMembers) CASE(templateStruct)             \
-  CASE(givesItself) CASE(thisObject) CASE(structuredBindings) CASE(overloadedIntrinsics)
+  CASE(givesItself) CASE(thisObject) CASE(structuredBindings) CASE(overloadedIntrinsics)         \
+  CASE(defaultsAtEveryDepth) CASE(defaultsInArrays) CASE(arraysByReference) CASE(fewerInitialisers) \
+  CASE(defaultsWithEffects) CASE(narrowEnumerations)
 // clang-format on
 
 namespace structs {
@@ -396,6 +398,136 @@ inline int overloadedIntrinsics(int x, int y) {
   const Halves h = {x, y}, larger = max(abs(h), halvesOf(y));
   const Both<int> signs = sign(Both<int>{x, y});
   return length(larger) + 10 * larger.low + 100 * signs.a + 1000 * signs.b;
+}
+
+struct Inner {
+  int a = 1;
+  float b;
+  int c = 3;
+};
+struct Middle {
+  Inner inner;
+  Inner given = {7};
+  Inner list[2];
+  int n = 2;
+};
+struct Outer {
+  Middle middle[2];
+  Middle last = {{4}, {}, {{5}}};
+};
+inline int weight(const Inner& i) { return i.a + 10 * i.c; }
+inline int weight(const Middle& m) {
+  return weight(m.inner) + 3 * weight(m.given) + 7 * weight(m.list[0]) + 11 * weight(m.list[1]) + m.n;
+}
+inline int weight(const Outer& o) { return weight(o.middle[0]) + 3 * weight(o.middle[1]) + 5 * weight(o.last); }
+inline int defaultsAtEveryDepth(int x, int y) {
+  Middle m;
+  Outer o, p = {};
+  p.middle[x & 1].n = y;
+  Outer q = Outer();
+  q.last.inner.a = x;
+  return weight(m) + weight(o) + 3 * weight(p) + 7 * weight(q) + weight(Middle{});
+}
+
+inline int defaultsInArrays(int x, int y) {
+  Inner none[3], empty[4] = {}, some[5] = {{x}, {}, {y, 2, x}};
+  some[4].a += none[x & 1].a;
+  int r = 0;
+  for (int i = 0; i < 5; ++i) r = 3 * r + weight(some[i]);
+  for (int i = 0; i < 4; ++i) r = 3 * r + weight(empty[i]);
+  return r + weight(none[2]);
+}
+
+struct Couple {
+  int first, second;
+};
+struct Grid {
+  Couple size = {4, 5};
+  int cells[6] = {1, 2};
+  bool open = true;
+};
+inline int fewerInitialisers(int x, int y) {
+  Grid g, h = {{x}}, k = {{x, y}, {y}}, list[3] = {{{1}, {x}, false}};
+  int flat[7] = {x, y};
+  Couple pairs[3] = {{x}, {}};
+  return g.size.second + g.cells[1] + 3 * h.size.second + 5 * h.cells[0] + 7 * k.cells[0] + 11 * k.cells[1] + 13 * k.open +
+         17 * list[0].open + 19 * list[2].open + 23 * list[1].cells[1] + flat[1] + flat[6] + pairs[0].second +
+         pairs[2].first;
+}
+
+inline int count(int& n) { return ++n; }
+inline int defaultsWithEffects(int x, int y) {
+  int n = x;
+  Couple p[3] = {{count(n), n}, {n, count(n)}};
+  Inner i = {count(n), 0, n};
+  Inner list[2] = {{n}, {count(n)}};
+  return p[0].first + 3 * p[0].second + 5 * p[1].first + 7 * p[1].second + weight(i) + 3 * weight(list[0]) +
+         5 * weight(list[1]) + n * y;
+}
+
+enum class Kind : unsigned char { Solid, Fluid, Gas };
+enum Signed : signed char { Below = -3, Above = 100 };
+enum class Wide : unsigned short { Low = 1, High = 65535 };
+enum class Flag : bool { Off, On };
+enum Plain { One = 1, Two };
+struct Tagged {
+  Kind kind = Kind::Gas;
+  Signed sign = Below;
+  Wide wide = Wide::High;
+  Flag flag = Flag::On;
+};
+inline int valueOf(Kind k) {
+  switch (k) {
+    case Kind::Solid: return 1;
+    case Kind::Fluid: return 20;
+    default: return 300;
+  }
+}
+inline int narrowEnumerations(int x, int y) {
+  Tagged t, list[3] = {{Kind::Solid}, {Kind::Fluid, Above}};
+  t.kind = Kind(x & 1);
+  int r = valueOf(t.kind) + valueOf(list[2].kind);
+  switch (list[y & 1].sign) {
+    case Below: r += 1000; break;
+    case Above: r += 2000; [[fallthrough]];
+    default: r += 4000;
+  }
+  switch (t.wide) {
+    case Wide::Low: r += 1; break;
+    case Wide::High: r += 7;
+  }
+  switch (x > y ? Flag::On : t.flag) {
+    case Flag::Off: r += 11; break;
+    case Flag::On: r += 13;
+  }
+  t.flag = Flag(y & 1);
+  r += t.flag == Flag::On ? 17 : 19;
+  r += int(t.wide) + t.sign * 5 + int(list[0].kind) + (t.kind < list[2].kind ? 23 : 29);
+  Plain p = x > 2 ? Two : One;
+  return r * p + (p << 3);
+}
+
+inline void swapEnds(int (&w)[4], int by) {
+  int first = w[0] + by;
+  w[0] = w[3];
+  w[3] = first;
+}
+template <int n>
+int totalOf(const int (&w)[n]) {
+  int sum = 0;
+  for (int i = 0; i < n; ++i) sum = 3 * sum + w[i];
+  return sum;
+}
+struct Row {
+  int cells[4] = {1, 2, 3, 4};
+  int total() const { return totalOf(cells); }
+};
+inline int arraysByReference(int x, int y) {
+  int w[4] = {x, y, 1, 2}, two[2] = {y, x};
+  Row rows[2];
+  swapEnds(w, y);
+  swapEnds(rows[x & 1].cells, x);
+  return totalOf(w) + 3 * totalOf(two) + 5 * rows[0].total() + 7 * totalOf(rows[1].cells);
 }
 
 }  // namespace structs

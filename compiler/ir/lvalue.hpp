@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// Lvalues: a variable, or a member, element or component of an lvalue. Answers which part of a variable an
+// lvalue names, and whether two of them can share a number.
+#pragma once
+
+#include <vector>
+
+#include "ir/ir.hpp"
+
+namespace skc::ir {
+
+/// True for a VarRef, and for a Member, Index or Swizzle of an lvalue.
+bool isLValue(const Expr& expr);
+
+/// True if the two lvalues certainly share no number. An index that is not a literal may name any element.
+bool areDisjoint(const Module& module, const Expr& a, const Expr& b);
+
+/// True if an expression reads one of the variables, which are in ascending order.
+bool readsAny(const Expr& expr, const std::vector<VarId>& variables);
+
+/// True if an index within the lvalue reads one of the variables, which are in ascending order. The variable at the lvalue's root does not count.
+bool hasIndexOf(const Expr& lvalue, const std::vector<VarId>& variables);
+
+/// True if the function may read a number of the parameter `read` after it has written the same number by way of the
+/// parameter `written`. If `sameObject`, the parameters stand for one object or for disjoint ones, as two lvalues of
+/// one type do; otherwise they may overlap in any way, and any read after any write counts.
+bool readsAfterWriting(const Module& module, const Function& function, VarId read, VarId written,
+                       bool sameObject);
+
+}  // namespace skc::ir
