@@ -12,6 +12,7 @@
 
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <clang/AST/StmtVisitor.h>
 
@@ -214,6 +215,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
   std::optional<ir::VarId> this_;
   std::optional<ir::VarId> initialized_;  ///< `this` in the initialisers of its members
+  std::unordered_set<ir::VarId> narrowSpecs_;  ///< ints that stand for values of narrow enumerations
   bool returnsThis_ = false;
   ir::Block* out_ = nullptr;  ///< receives statements
   int depth_ = 0;  ///< nesting of expressions and statements

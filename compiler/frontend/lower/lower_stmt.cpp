@@ -124,6 +124,10 @@ void FunctionLowering::parameters(const clang::FunctionDecl* declaration) {
       variable.isConst = !mutableReference && value.isConstQualified();
       variable.role = mutableReference ? ir::VarRole::InOut : ir::VarRole::In;
       if (syntax && syntax->role == ir::ParamRole::Input) variable.role = ir::VarRole::Element;
+      if (syntax && syntax->role == ir::ParamRole::Spec && value->isEnumeralType() && variable.type.isNarrow()) {
+        variable.type = variable.type.arithmeticType();
+        narrowSpecs_.insert(static_cast<ir::VarId>(function_.variables.size()));
+      }
       const bool byValue =
           syntax && syntax->role != ir::ParamRole::Output && syntax->role != ir::ParamRole::Accumulator;
       if (byValue && type->isReferenceType() && !value->isConstantArrayType()) {

@@ -74,7 +74,9 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
     const ir::Variable& variable = function_.variables[found->second];
     if (variable.role == ir::VarRole::Gather) module_.fail(Diag::GatherAsValue, where);
     if (variable.role == ir::VarRole::AppendOutput) module_.fail(Diag::AppendRead, where, {variable.name});
-    return make(variable.type, where, ir::VarRef{found->second});
+    ExprPtr read = make(variable.type, where, ir::VarRef{found->second});
+    if (!narrowSpecs_.contains(found->second)) return read;
+    return ir::convert(module_.type(e->getType(), where).scalar, std::move(read), module_.loc(where));
   }
   if (const auto* enumerator = llvm::dyn_cast<clang::EnumConstantDecl>(declared)) {
     const ir::Type type = module_.type(e->getType(), where);
@@ -222,6 +224,11 @@ ExprPtr widened(ir::Scalar from, std::uint32_t bits, Loc loc) {
 
 ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
   if (!e->type.isArithmetic() || e->type.scalar == scalar) return e;
+  if (auto* narrowed = std::get_if<ir::Convert>(&e->node); narrowed && e->type.isNarrow()) {
+    // an enumerator as a specialisation constant needs no wrapping, which would hide that it is one
+    const auto* spec = std::get_if<ir::VarRef>(&narrowed->operand->node);
+    if (spec && narrowSpecs_.contains(spec->var)) return convert(std::move(narrowed->operand), scalar);
+  }
   if (scalar == ir::Scalar::Bool) return toBool(std::move(e));
   const Loc loc = e->loc;
   if (ir::isReal(ir::arithmeticScalar(scalar)) && maskedBool(*e)) {
