@@ -16,6 +16,7 @@
 
 #include <clang/AST/StmtVisitor.h>
 
+#include "frontend/lower/aliases.hpp"
 #include "frontend/lower/module_lowering.hpp"
 #include "frontend/tokens/float_literals.hpp"
 #include "support/function_ref.hpp"
@@ -41,7 +42,8 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
  public:
   explicit FunctionLowering(ModuleLowering& module) : module_(module) {}
 
-  ir::Function function(const clang::FunctionDecl* declaration);
+  /// `aliases`: the version for calls whose references name parts of one object.
+  ir::Function function(const clang::FunctionDecl* declaration, const Aliases& aliases = {});
   /// True for a member function that returns `S&`, which can only end with `return *this;`. It is void in the
   /// IR, and a call's value is the object.
   static bool returnsThis(const clang::FunctionDecl* declaration);
@@ -86,6 +88,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
 
   // ---- statements (lower_stmt.cpp) --------------------------------------------------------------
   void parameters(const clang::FunctionDecl* declaration);
+  void aliasParameters(const Aliases& aliases);
   void body(const clang::Stmt* statement, ir::Block& into);
   void statement(const clang::Stmt* statement);
   bool checkedStatement(const clang::Stmt* statement);  ///< false after an error
@@ -190,7 +193,11 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void lowerArguments(std::vector<Argument>& arguments, const std::vector<ir::Variable>& parameters,
                       bool rightToLeft);
   void keepWritten(std::vector<Argument>& arguments, const std::vector<ir::Variable>& parameters);
-  void checkAliases(const std::vector<Argument>& arguments, ir::FunctionId callee);
+  /// Parameters of a call that may name parts of one object, by their numbers.
+  using Group = std::vector<std::uint32_t>;
+  std::vector<Group> aliasedGroups(const std::vector<Argument>& arguments, ir::FunctionId callee);
+  void joinAliases(const Group& group, std::vector<Argument>& arguments, Aliases& aliases);
+  ir::ExprPtr packed(Exprs indices, Loc loc);
   void abandonIfUnknown(const clang::Stmt* s) const;
   std::optional<ir::VarId> streamVariable(const clang::Expr* e) const;
   ir::VarId gatherVariable(const clang::Expr* e);
@@ -213,6 +220,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ModuleLowering& module_;
   ir::Function function_;
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
+  std::unordered_map<ir::VarId, ir::ExprPtr> aliases_;  ///< what parameters name that are parts of others
   std::optional<ir::VarId> this_;
   std::optional<ir::VarId> initialized_;  ///< `this` in the initialisers of its members
   std::unordered_set<ir::VarId> narrowSpecs_;  ///< ints that stand for values of narrow enumerations

@@ -54,7 +54,7 @@ bool FunctionLowering::returnsThis(const clang::FunctionDecl* declaration) {
          result->getPointeeType()->getAsCXXRecordDecl() == method->getParent();
 }
 
-ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration) {
+ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration, const Aliases& aliases) {
   function_.name = functionName(declaration);
   function_.loc = module_.loc(declaration->getLocation());
   returnsThis_ = returnsThis(declaration);
@@ -65,6 +65,7 @@ ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration) 
   function_.result = returnsThis_ ? ir::Type::voidType()
                                   : module_.type(declaration->getReturnType(), declaration->getLocation());
   parameters(declaration);
+  aliasParameters(aliases);
   function_.parameterCount = static_cast<std::uint32_t>(function_.variables.size());
   ir::Block body;
   out_ = &body;
@@ -124,7 +125,8 @@ void FunctionLowering::parameters(const clang::FunctionDecl* declaration) {
       variable.isConst = !mutableReference && value.isConstQualified();
       variable.role = mutableReference ? ir::VarRole::InOut : ir::VarRole::In;
       if (syntax && syntax->role == ir::ParamRole::Input) variable.role = ir::VarRole::Element;
-      if (syntax && syntax->role == ir::ParamRole::Spec && value->isEnumeralType() && variable.type.isNarrow()) {
+      if (syntax && syntax->role == ir::ParamRole::Spec && value->isEnumeralType() &&
+          variable.type.isNarrow()) {
         variable.type = variable.type.arithmeticType();
         narrowSpecs_.insert(static_cast<ir::VarId>(function_.variables.size()));
       }

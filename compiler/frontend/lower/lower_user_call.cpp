@@ -93,24 +93,142 @@ void FunctionLowering::keepWritten(std::vector<Argument>& arguments,
   }
 }
 
-/// References are passed as copies. Reports two of one object if the callee could tell the difference.
-void FunctionLowering::checkAliases(const std::vector<Argument>& arguments, ir::FunctionId callee) {
+/// References are passed as copies. Finds those that name parts of one object, where the function could tell the
+/// difference, and reports what no version of it could take.
+std::vector<FunctionLowering::Group> FunctionLowering::aliasedGroups(const std::vector<Argument>& arguments,
+                                                                     ir::FunctionId callee) {
   const ir::Module& module = module_.module();
   const ir::Function& function = module.functions[callee];
-  const auto isWritten = [&](std::size_t i) { return function.variables[i].role == ir::VarRole::InOut; };
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
+  const auto isWritten = [&](std::uint32_t i) { return function.variables[i].role == ir::VarRole::InOut; };
+  std::vector<Group> groups;
+  const auto groupOf = [&](std::uint32_t i) {
+    return std::ranges::find_if(groups, [&](const Group& g) { return std::ranges::find(g, i) != g.end(); });
+  };
+  for (std::uint32_t i = 0; i < arguments.size(); ++i) {
     if (!isWritten(i)) continue;
     const ir::Expr& written = *arguments[i].value;
-    for (std::size_t k = 0; k < arguments.size(); ++k) {
+    for (std::uint32_t k = 0; k < arguments.size(); ++k) {
       const bool isOther = isWritten(k) ? k > i : arguments[k].isReference;
       if (!isOther || !mayOverlap(module, *arguments[k].value, written)) continue;
-      const bool matters = isWritten(k) || ir::readsAfterWriting(module, function, static_cast<ir::VarId>(k),
-                                                                 static_cast<ir::VarId>(i),
-                                                                 arguments[k].value->type == written.type);
-      if (!matters) continue;
-      module_.fail(Diag::AliasedArguments, arguments[std::max(i, k)].source->getBeginLoc(),
-                   {function_.variables[ir::rootOf(written)].name});
+      if (!isWritten(k) &&
+          !ir::readsAfterWriting(module, function, k, i, arguments[k].value->type == written.type)) {
+        continue;
+      }
+      if (!ir::isLValue(*arguments[k].value)) {  // a choice of two objects
+        module_.fail(Diag::AliasedArguments, arguments[std::max(i, k)].source->getBeginLoc(),
+                     {function_.variables[ir::rootOf(written)].name});
+      }
+      const auto first = groupOf(i), second = groupOf(k);
+      if (first == groups.end() && second == groups.end()) {
+        groups.push_back({i, k});
+      } else if (first == groups.end()) {
+        second->push_back(i);
+      } else if (second == groups.end()) {
+        first->push_back(k);
+      } else if (first != second) {
+        first->insert(first->end(), second->begin(), second->end());
+        groups.erase(second);
+      }
     }
+  }
+  return groups;
+}
+
+/// Makes the first argument of a group the object that has all of them as parts, and the second the indices within.
+void FunctionLowering::joinAliases(const Group& group, std::vector<Argument>& arguments, Aliases& aliases) {
+  std::vector<std::vector<const ir::Expr*>> chains;
+  for (const std::uint32_t i : group) chains.push_back(chainOf(*arguments[i].value));
+  const std::size_t common = commonSteps(chains);
+  const std::uint32_t whole = group[0], second = group[1];
+  Exprs indices;
+  for (std::size_t g = 0; g < group.size(); ++g) {
+    Alias alias{whole, second, {}};
+    for (std::size_t at = common; at < chains[g].size(); ++at) {
+      if (const auto* member = std::get_if<ir::Member>(&chains[g][at]->node)) {
+        alias.steps.push_back({AliasStep::Kind::Field, member->field});
+        continue;
+      }
+      const ir::ExprPtr& index = std::get<ir::Index>(chains[g][at]->node).index;
+      const auto* literal = std::get_if<ir::Literal>(&index->node);
+      if (literal && index->type.scalar == ir::Scalar::Int) {
+        alias.steps.push_back({AliasStep::Kind::Element, literal->bits});
+      } else {
+        alias.steps.push_back({AliasStep::Kind::Index, static_cast<std::uint32_t>(indices.size())});
+        indices.push_back(ir::clone(*index));
+      }
+    }
+    aliases.parts.emplace(group[g], std::move(alias));
+  }
+  constexpr std::size_t mostIndices = 4;  // the components of an int4
+  if (indices.size() > mostIndices) {
+    module_.fail(Diag::AliasedArguments, arguments[second].source->getBeginLoc(),
+                 {function_.variables[ir::rootOf(*arguments[whole].value)].name});
+  }
+  aliases.indices.emplace(second, static_cast<int>(indices.size()));
+  const Loc loc = arguments[whole].value->loc;
+  const ir::VarId root = ir::rootOf(*arguments[whole].value);
+  ExprPtr object = common == 0 ? ir::varRef(function_, root, loc) : ir::clone(*chains[0][common - 1]);
+  aliases.wholes.emplace(whole, object->type);
+  arguments[whole].value = std::move(object);
+  arguments[second].value = packed(std::move(indices), loc);
+  for (std::size_t g = 2; g < group.size(); ++g) {  // no longer needed
+    aliases.indices.emplace(group[g], 0);
+    arguments[group[g]].value = packed({}, loc);
+  }
+}
+
+/// An int, or a vector of ints, of indices.
+ExprPtr FunctionLowering::packed(Exprs indices, Loc loc) {
+  for (ExprPtr& index : indices) {
+    if (index->type.scalar == ir::Scalar::Uint) {  // an index beyond the last int is the last element, too
+      ExprPtr most = ir::literal(std::uint32_t{0x7fffffff}, loc);
+      index = ir::intrinsic(ir::Intrinsic::Min, ir::exprs(std::move(index), std::move(most)), loc);
+    }
+    index = convert(std::move(index), ir::Scalar::Int);
+  }
+  if (indices.empty()) return ir::literal(0, loc);
+  if (indices.size() == 1) return std::move(indices[0]);
+  const ir::Type type = ir::Type::of(ir::Scalar::Int, static_cast<int>(indices.size()));
+  return ir::construct(type, std::move(indices), loc);
+}
+
+/// Turns parameters into the objects, indices and parts that a call with aliases passes.
+void FunctionLowering::aliasParameters(const Aliases& aliases) {
+  for (const auto& [parameter, type] : aliases.wholes) {
+    ir::Variable& variable = function_.variables[parameter];
+    variable.type = type;
+    variable.role = ir::VarRole::InOut;
+    variable.isConst = false;
+  }
+  for (const auto& [parameter, count] : aliases.indices) {
+    ir::Variable& variable = function_.variables[parameter];
+    variable.name += "_index";
+    variable.type = ir::Type::of(ir::Scalar::Int, std::max(count, 1));
+    variable.role = ir::VarRole::In;
+    variable.isConst = true;
+  }
+  for (const auto& [parameter, alias] : aliases.parts) {
+    const Loc loc = function_.variables[parameter].loc;
+    ExprPtr part = ir::varRef(function_, alias.whole, loc);
+    for (const AliasStep& step : alias.steps) {
+      switch (step.kind) {
+        case AliasStep::Kind::Field:
+          part = ir::member(module_.module(), std::move(part), step.value, loc);
+          break;
+        case AliasStep::Kind::Element:
+          part = ir::index(module_.module(), std::move(part),
+                           ir::literal(static_cast<std::int32_t>(step.value), loc), loc);
+          break;
+        case AliasStep::Kind::Index: {
+          ExprPtr index = ir::varRef(function_, alias.indices, loc);
+          if (index->type.isVector())
+            index = ir::swizzle(std::move(index), std::string_view("xyzw").substr(step.value, 1), loc);
+          part = ir::index(module_.module(), std::move(part), std::move(index), loc);
+          break;
+        }
+      }
+    }
+    aliases_.emplace(parameter, std::move(part));
   }
 }
 
@@ -118,7 +236,7 @@ void FunctionLowering::checkAliases(const std::vector<Argument>& arguments, ir::
 ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
   for (const clang::Stmt* part : e->children()) abandonIfUnknown(part);
   const SourceLocation where = e->getBeginLoc();
-  const ir::FunctionId id = module_.function(callee, where);
+  ir::FunctionId id = module_.function(callee, where);
   // copies: lowering an argument may add functions to the table
   const ir::Type resultType = module_.functionAt(id).result;
   const auto first = module_.functionAt(id).variables.begin();
@@ -128,7 +246,10 @@ ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::Functi
   const auto* operation = llvm::dyn_cast<clang::CXXOperatorCallExpr>(e);
   lowerArguments(arguments, parameters, operation != nullptr && operation->isAssignmentOp());
   keepWritten(arguments, parameters);
-  checkAliases(arguments, id);
+  ExprPtr object = returnsThis(callee) ? ir::clone(*arguments[0].value) : nullptr;
+  Aliases aliases;
+  for (const Group& group : aliasedGroups(arguments, id)) joinAliases(group, arguments, aliases);
+  if (!aliases.empty()) id = module_.function(callee, where, aliases);
   const bool hasEffects =
       resultType.isVoid() || std::ranges::any_of(parameters, [](const ir::Variable& parameter) {
         return parameter.role == ir::VarRole::InOut || parameter.role == ir::VarRole::AppendOutput;
@@ -138,7 +259,6 @@ ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::Functi
   if (!hasEffects) return make(resultType, where, ir::Call{id, std::move(values)});
   const Loc loc = module_.loc(where);
   if (returnsThis(callee)) {
-    ExprPtr object = ir::clone(*values[0]);
     emit(loc, ir::CallStmt{id, std::move(values), nullptr});
     return object;
   }

@@ -74,6 +74,8 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
     const ir::Variable& variable = function_.variables[found->second];
     if (variable.role == ir::VarRole::Gather) module_.fail(Diag::GatherAsValue, where);
     if (variable.role == ir::VarRole::AppendOutput) module_.fail(Diag::AppendRead, where, {variable.name});
+    if (const auto part = aliases_.find(found->second); part != aliases_.end())
+      return ir::clone(part->second);
     ExprPtr read = make(variable.type, where, ir::VarRef{found->second});
     if (!narrowSpecs_.contains(found->second)) return read;
     return ir::convert(module_.type(e->getType(), where).scalar, std::move(read), module_.loc(where));
@@ -96,6 +98,7 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
 }
 
 ExprPtr FunctionLowering::VisitCXXThisExpr(const clang::CXXThisExpr* e) {
+  if (const auto part = aliases_.find(*this_); part != aliases_.end()) return ir::clone(part->second);
   return make(function_.variables[*this_].type, e->getLocation(), ir::VarRef{*this_});
 }
 

@@ -445,10 +445,12 @@ ir::ExprPtr ModuleLowering::evaluated(const clang::APValue& value, ir::Type type
 
 // ---- functions ----------------------------------------------------------------------------------
 
-ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, SourceLocation use) {
+ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, SourceLocation use,
+                                        const Aliases& aliases) {
   const clang::FunctionDecl* definition = declaration->getDefinition();
   if (!definition) fail(Diag::FunctionWithoutBody, use, {declaration->getNameAsString()});
-  const auto found = functions_.find(definition);
+  const std::pair<const clang::Decl*, std::string> key{definition, aliases.key()};
+  const auto found = functions_.find(key);
   if (found != functions_.end()) {
     switch (found->second.progress) {
       case Progress::Lowering: fail(Diag::Recursion, use, {declaration->getNameAsString()});
@@ -462,20 +464,20 @@ ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, 
     }
     if (method->isVirtual()) fail(Diag::VirtualFunction, use, {method->getNameAsString()});
   }
-  functions_[definition] = {0, Progress::Lowering};
+  functions_[key] = {0, Progress::Lowering};
   try {
     FunctionLowering lowering(*this);
-    ir::Function lowered = lowering.function(definition);
+    ir::Function lowered = lowering.function(definition, aliases);
     if (const TableSyntax* declared = syntax_.table(definition->getLocation())) {
       lowered.table = table(definition, *declared);
     }
     // lowering added its callees first, so the table is in order of definition before use
     const auto id = static_cast<ir::FunctionId>(module_.functions.size());
     module_.functions.push_back(std::move(lowered));
-    functions_[definition] = {id, Progress::Done};
+    functions_[key] = {id, Progress::Done};
     return id;
   } catch (const Abandoned&) {
-    functions_[definition].progress = Progress::Failed;
+    functions_[key].progress = Progress::Failed;
     throw;
   }
 }

@@ -4,6 +4,7 @@
 // and cached. FunctionLowering lowers the bodies.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -29,6 +30,8 @@ class SourceManager;
 
 namespace skc::frontend {
 
+struct Aliases;
+
 /// Thrown after an error was reported: abandons the enclosing statement or declaration; lowering continues
 /// with the next one. It never leaves lowerModule.
 struct Abandoned {};
@@ -48,7 +51,9 @@ class ModuleLowering {
   std::optional<int> appendRank(clang::QualType type, clang::SourceLocation use, ir::Type& element);
 
   /// Lowers the definition of `declaration` at its first use. Reports recursion at `use`.
-  ir::FunctionId function(const clang::FunctionDecl* declaration, clang::SourceLocation use);
+  /// `aliases`: the version for calls whose references name parts of one object.
+  ir::FunctionId function(const clang::FunctionDecl* declaration, clang::SourceLocation use,
+                          const Aliases& aliases = {});
   /// The reference is valid until another function is lowered.
   const ir::Function& functionAt(ir::FunctionId id) const { return module_.functions[id]; }
   const ir::Module& module() const { return module_; }
@@ -113,7 +118,7 @@ class ModuleLowering {
   ir::Module module_;
   std::unordered_map<const clang::Decl*, std::uint32_t> structs_;
   std::unordered_map<const clang::Decl*, ir::ConstantId> constants_;
-  std::unordered_map<const clang::Decl*, FunctionEntry> functions_;
+  std::map<std::pair<const clang::Decl*, std::string>, FunctionEntry> functions_;  ///< by Aliases::key, too
   std::unordered_map<std::string, std::uint32_t> sourceIndex_;
   std::unordered_map<std::string, const clang::VarDecl*> generated_, generatedGlobals_;
   std::unordered_set<const clang::Decl*> failedConstants_, constantsInProgress_;

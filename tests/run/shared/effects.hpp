@@ -18,7 +18,8 @@
   CASE(operatorRightFirst) CASE(targetAsValue) CASE(methodAndElement) CASE(methodMovesIndex)   \
   CASE(harmlessAliases) CASE(elementsOfOneArray) CASE(referenceSeesLaterEffect)                    \
   CASE(choiceByReference) CASE(changedTemporary) CASE(disjointParts) CASE(firstUsedInArgument)     \
-  CASE(operatorsOfOwnResults) CASE(membersReadMembers)
+  CASE(operatorsOfOwnResults) CASE(membersReadMembers) CASE(referencesToOneObject)                 \
+  CASE(referencesToElements) CASE(methodAndOwnMember) CASE(aliasesPassedOn)
 // clang-format on
 
 #ifdef __clang__
@@ -560,6 +561,82 @@ struct Chain {
 inline int membersReadMembers(int x, int y) {
   Chain a, b = {x}, c = {x, y}, d[2] = {{1, y}};
   return a.third + 3 * b.third + 7 * c.third + 11 * d[0].third + 13 * d[1].third;
+}
+
+// ---- references to parts of one object -------------------------------------------------------------
+
+struct Pile {
+  int list[3];
+  Sum sums[2];
+  void addCrosswise(const Pile& o) {
+    sums[0].a += o.sums[1].b;
+    sums[1].b += o.sums[0].a;
+    list[1] = o.list[0] + list[1];
+    list[0] = o.list[1];
+  }
+  int store(int& to, int by) {
+    to += list[0] * by;
+    list[0] = 1;
+    list[1] += to;
+    return to;
+  }
+  int sum() const { return list[0] + 3 * list[1] + 7 * list[2] + 11 * sums[0].a + 13 * sums[1].b; }
+};
+inline void sortBoth(int& low, int& high) {
+  const int smaller = low < high ? low : high;
+  high = low < high ? high : low;
+  low = smaller;
+  high += low;
+}
+inline void addFirst(Sum& s, const int& k) {
+  s.a += k;
+  s.b += k;
+}
+inline int referencesToOneObject(int x, int y) {
+  int a = x;
+  sortBoth(a, a);
+  Sum s = {x, y};
+  addFirst(s, s.a);
+  addFirst(s, s.b);
+  s.addAll(s, s.a);
+  Pile p = {{x, y, 1}, {s, {2, 3}}};
+  p.addCrosswise(p);
+  return a + 10 * s.a + 100 * s.b + p.sum();
+}
+
+inline int referencesToElements(int x, int y) {
+  int a[4] = {x, y, 3, 4}, i = x & 3, j = y & 3;
+  sortBoth(a[i], a[j]);
+  sortBoth(a[3], a[j]);
+  Pile p[2] = {{{x, y, 1}, {{1, 2}, {3, 4}}}, {{5, 6, x}, {{y, 2}, {3, y}}}};
+  sortBoth(p[i & 1].list[j & 1], p[j & 1].list[i & 1]);
+  sortBoth(p[1].sums[i & 1].a, p[j & 1].sums[1].b);
+  p[i & 1].addCrosswise(p[j & 1]);
+  const unsigned k = static_cast<unsigned>(i);
+  sortBoth(p[0].list[k % 3], p[0].list[0]);
+  return a[0] + 3 * a[1] + 7 * a[2] + 11 * a[3] + 13 * p[0].sum() + 17 * p[1].sum();
+}
+
+inline int methodAndOwnMember(int x, int y) {
+  Pile p = {{x, y, 1}, {{1, 2}, {3, 4}}}, q[2] = {p, {{y, x, 2}, {{4, 3}, {2, 1}}}};
+  int i = x & 1, r = p.store(p.list[2], 2) + p.store(p.list[0], 3);
+  r += p.store(p.list[i], y) + q[i].store(q[1].list[y & 1], x);
+  q[i].store(p.list[1], 2);
+  return r + p.sum() + 3 * q[0].sum() + 5 * q[1].sum();
+}
+
+inline int combine(Pile& p, const Pile& q, int& element) {
+  p.addCrosswise(q);
+  element += q.list[0];
+  sortBoth(p.list[2], element);
+  return q.sum() + p.store(element, 2);
+}
+inline int aliasesPassedOn(int x, int y) {
+  Pile p = {{x, y, 1}, {{1, 2}, {3, y}}}, q[2] = {p, p};
+  int r = combine(p, p, p.list[x & 1]);
+  r += combine(q[x & 1], q[y & 1], q[0].list[y & 1]);
+  r += combine(p, q[1], q[0].list[1]);
+  return r + p.sum() + q[0].sum() * 3 + q[1].sum() * 5;
 }
 
 }  // namespace effects
