@@ -53,6 +53,39 @@ TEST_CASE("Matrix Market files of every kind are read") {
   CHECK(parseMarket("%%MatrixMarket matrix coordinate real general\n0 0 0\n", "a.mtx").matrix.rows == 0);
 }
 
+TEST_CASE("Matrix Market files are in free format") {
+  const std::string text =
+      "%%MatrixMarket matrix coordinate real general\n% a comment\n3 3 4\n1 1 2\n2 2 4\n3 1 1\n3 3 8";
+  const SparseMatrix wanted = parseMarket(text, "a.mtx").matrix;
+  CHECK(wanted.value == std::vector<double>{2, 4, 1, 8});
+  std::vector<std::string> same = {
+      "\xEF\xBB\xBF" + text,
+      "%%matrixmarket  Matrix   Coordinate\tReal General  \n3 3 4\n1 1 2\n2 2 4\n3 1 1\n3 3 8\n",
+      "%%MATRIXMARKET MATRIX COORDINATE REAL GENERAL\n3 3 4\n1 1 2.0D+00\n2 2 0.4d1\n3 1 10D-1\n3 3 .8D+01\n",
+      "%%MatrixMarket matrix coordinate double general\n%\n\n   \n%% another\n\t3\t3   4  \n\n   1 1 +2\n% "
+      "among\n2\t2\t4.\t\n  3   1   1e+00 % "
+      "behind\n3 3 0.8+001\n% at the end",
+      "%%MatrixMarket matrix coordinate integer general\n+3 3 5\n3 3 5\n3 3 3\n1 1 2\n2 2 4\n3 1 1",
+      "%%MatrixMarket matrix array real general\n% c\n3 3\n\n2\n0\n1\n\n0\n4\n0\n0\n0\n8\n"};
+  for (const std::string end : {"\r\n", "\r"}) {
+    same.emplace_back();
+    for (const char c : text) same.back() += c == '\n' ? end : std::string(1, c);
+  }
+  for (const std::string& each : same) {
+    CAPTURE(each);
+    const SparseMatrix read = parseMarket(each, "a.mtx").matrix;
+    CHECK(read.starts == wanted.starts);
+    CHECK(read.column == wanted.column);
+    CHECK(read.value == wanted.value);
+  }
+  // A skew-symmetric matrix has zeros on its diagonal, which a file may say.
+  const SparseMatrix skew =
+      parseMarket("%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 3\n1 1 0\n2 1 7\n2 2 -0.0\n",
+                  "a.mtx")
+          .matrix;
+  CHECK(multiply(skew, std::vector<double>{1, 1}) == std::vector<double>{-7, 7});
+}
+
 TEST_CASE("Broken Matrix Market files are refused with their line and column") {
   const std::string head = "%%MatrixMarket matrix coordinate real general\n";
   const std::pair<std::string, std::string> cases[] = {
@@ -71,14 +104,20 @@ TEST_CASE("Broken Matrix Market files are refused with their line and column") {
       {head + "2 2 1\n1 1 nan\n", "a.mtx:3:5: 'nan' is not finite"},
       {head + "2 2 1\n1 1 five\n", "a.mtx:3:5: 'five' is no number"},
       {head + "2 2 1\n1 1\n", "the value is missing"},
-      {head + "2 2 1\n1 1 2 3\n", "a number too many"},
+      {head + "2 2 1\n1 1 2 3\n", "a.mtx:3:7: '3' is too much; an entry is ROW COLUMN VALUE"},
+      {head + "2 2 1\n1 1 1e400\n", "a.mtx:3:5: '1e400' is not finite"},
+      {head + "2 2 1\n1.0 1 2\n", "a.mtx:3:1: '1.0' is no integer"},
+      {head + "2147483647 2147483647 1\n1 1 2\n",
+       "a.mtx:2:24: nearly all of 2147483647 rows are empty; is the size right?"},
+      {"%%MatrixMarket matrix array real general\n2147483647 0\n", "a.mtx:2:13: nearly all of"},
+      {head + "2 2 1 0\n", "a.mtx:2:7: '0' is too much; the size is ROWS COLUMNS ENTRIES"},
       {head + "2 2 2\n1 1 2\n", "the file ends after 1 of 2 entries"},
       {head + "2 2 1\n1 1 2\n1 2 2\n", "a.mtx:4:1: the file goes on after its last entry"},
       {head + "2 2 4611686018427387904\n1 1 2\n", "the file ends after 1 of"},
       {"%%MatrixMarket matrix coordinate real symmetric\n2 3 0\n", "a symmetric matrix is square"},
       {"%%MatrixMarket matrix coordinate real symmetric\n2 2 1\n1 2 1\n", "is above the diagonal"},
       {"%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n1 1 1\n",
-       "a skew-symmetric matrix has no entry (1, 1)"},
+       "the entry (1, 1) of a skew-symmetric matrix is 0, not 1"},
       {"%%MatrixMarket matrix array real general\n2 2\n1\n2\n3\n", "the file ends before row 2 of column 2"}};
   for (const auto& [text, message] : cases) {
     CAPTURE(text);

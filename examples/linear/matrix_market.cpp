@@ -60,23 +60,9 @@ Header readHeader(TextCursor& cursor) {
     header.symmetry = Symmetry::Skew;
   else if (symmetry != "general")
     cursor.fail("the symmetry is 'general', 'symmetric' or 'skew-symmetric'");
-  if (!cursor.word().empty()) cursor.fail("the line has a word too many");
+  cursor.endLine("the line ends with the symmetry");
+  cursor.setRules({.comment = '%'});  // the first line begins like a comment
   return header;
-}
-
-/// Goes to the next line that holds numbers, and returns its first word; empty at the end of the file.
-std::string_view nextWord(TextCursor& cursor) {
-  while (cursor.nextLine()) {
-    const std::string_view word = cursor.word();
-    if (!word.empty() && word.front() != '%') return word;
-  }
-  return {};
-}
-
-std::int64_t needInteger(TextCursor& cursor, std::string_view what) {
-  const std::string_view word = cursor.word();
-  if (word.empty()) cursor.fail(fmt::format("{} is missing", what));
-  return cursor.integerOf(word);
 }
 
 double finite(const TextCursor& cursor, std::string_view word) {
@@ -85,27 +71,27 @@ double finite(const TextCursor& cursor, std::string_view word) {
   return value;
 }
 
-void endLine(TextCursor& cursor) {
-  if (!cursor.word().empty()) cursor.fail("the line has a number too many");
-}
-
 /// Reads one matrix; `parseMarket` says in which order.
 class Reader {
  public:
   Reader(TextCursor& cursor, const Header& header) : cursor_(cursor), header_(header) {}
 
   void readSize() {
-    const std::string_view word = nextWord(cursor_);
+    const std::string_view word = cursor_.wordOnAnyLine();
     if (word.empty()) cursor_.fail("the line with the size is missing");
     rows_ = cursor_.integerOf(word);
-    columns_ = needInteger(cursor_, "the number of columns");
-    count_ = header_.isArray ? 0 : needInteger(cursor_, "the number of entries");
-    endLine(cursor_);
+    columns_ = cursor_.needInteger("the number of columns");
+    count_ = header_.isArray ? 0 : cursor_.needInteger("the number of entries");
+    cursor_.endLine(header_.isArray ? "the size is ROWS COLUMNS" : "the size is ROWS COLUMNS ENTRIES");
     constexpr std::int64_t most = 0x7fffffff;
     if (rows_ < 0 || columns_ < 0 || count_ < 0 || rows_ > most || columns_ > most)
       cursor_.fail(
           fmt::format("a matrix of {} x {} with {} entries cannot be stored; extents are from 0 to {}", rows_,
                       columns_, count_, most));
+    // Rows take memory, also empty ones, of which a small file may promise any number.
+    constexpr std::int64_t free = std::int64_t{1} << 24, rowsPerEntry = 64;
+    if ((rows_ - free) / rowsPerEntry > (header_.isArray ? rows_ * columns_ : count_))
+      cursor_.fail(fmt::format("nearly all of {} rows are empty; is the size right?", rows_));
     if (header_.symmetry != Symmetry::General && rows_ != columns_)
       cursor_.fail(fmt::format("a symmetric matrix is square; this one has {} x {}", rows_, columns_));
   }
@@ -114,10 +100,10 @@ class Reader {
   void readCoordinates(std::size_t fileSize) {
     entries_.reserve(std::min(static_cast<std::size_t>(count_) * 2, fileSize));
     for (std::int64_t i = 0; i < count_; ++i) {
-      const std::string_view word = nextWord(cursor_);
+      const std::string_view word = cursor_.wordOnAnyLine();
       if (word.empty()) cursor_.fail(fmt::format("the file ends after {} of {} entries", i, count_));
       const std::int64_t row = index(cursor_.integerOf(word), rows_, "row");
-      const std::int64_t column = index(needInteger(cursor_, "the column"), columns_, "column");
+      const std::int64_t column = index(cursor_.needInteger("the column"), columns_, "column");
       double value = 1.0;
       if (!header_.isPattern) {
         const std::string_view number = cursor_.word();
@@ -125,7 +111,7 @@ class Reader {
         value = finite(cursor_, number);
       }
       add(row, column, value);
-      endLine(cursor_);
+      cursor_.endLine(header_.isPattern ? "an entry is ROW COLUMN" : "an entry is ROW COLUMN VALUE");
     }
   }
 
@@ -135,18 +121,18 @@ class Reader {
       const std::int64_t first =
           header_.symmetry == Symmetry::General ? 0 : column + (header_.symmetry == Symmetry::Skew ? 1 : 0);
       for (std::int64_t row = first; row < rows_; ++row) {
-        const std::string_view word = nextWord(cursor_);
+        const std::string_view word = cursor_.wordOnAnyLine();
         if (word.empty())
           cursor_.fail(fmt::format("the file ends before row {} of column {}", row + 1, column + 1));
         const double value = finite(cursor_, word);
         if (value != 0.0) add(row, column, value);
-        endLine(cursor_);
+        cursor_.endLine("an array has one number a line");
       }
     }
   }
 
   MarketFile finish() {
-    if (!nextWord(cursor_).empty()) cursor_.fail("the file goes on after its last entry");
+    if (!cursor_.wordOnAnyLine().empty()) cursor_.fail("the file goes on after its last entry");
     MarketFile file;
     try {
       file.matrix = assemble(rows_, columns_, entries_, &file.duplicates);
@@ -169,8 +155,9 @@ class Reader {
       cursor_.fail(
           fmt::format("the entry ({}, {}) is above the diagonal; a symmetric file has those below it",
                       row + 1, column + 1));
-    if (header_.symmetry == Symmetry::Skew && row == column)
-      cursor_.fail(fmt::format("a skew-symmetric matrix has no entry ({}, {})", row + 1, column + 1));
+    if (header_.symmetry == Symmetry::Skew && row == column && value != 0.0)
+      cursor_.fail(fmt::format("the entry ({}, {}) of a skew-symmetric matrix is 0, not {}", row + 1,
+                               column + 1, value));
     entries_.push_back({row, column, value});
     if (header_.symmetry != Symmetry::General && row != column)
       entries_.push_back({column, row, header_.symmetry == Symmetry::Skew ? -value : value});

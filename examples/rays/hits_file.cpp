@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "support/text_cursor.hpp"
+#include "support/text_file.hpp"
 
 namespace rays {
 
@@ -42,23 +43,18 @@ Ray readRay(TextCursor& cursor, double first) {
     ray.most = static_cast<float>(cursor.needNumber("tmax"));
     if (std::isnan(ray.least) || std::isnan(ray.most)) cursor.fail("tmin and tmax must be numbers");
   }
-  if (!cursor.word().empty()) cursor.fail("a ray is ox oy oz dx dy dz [tmin tmax]");
+  cursor.endLine("a ray is ox oy oz dx dy dz [tmin tmax]");
   return ray;
 }
 
 }  // namespace
 
 std::vector<Ray> loadRays(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::error_code ignored;
-  if (!stream || std::filesystem::is_directory(file, ignored))
-    throw std::runtime_error(fmt::format("the rays '{}' do not exist or cannot be read", file.string()));
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  TextCursor cursor(file.string(), text);
+  const std::string text = examples::bytesOf(file, "the list of rays");
+  TextCursor cursor(file.string(), text, {.comment = '#'});
   std::vector<Ray> rays;
   while (cursor.nextLine()) {
-    const std::string_view word = cursor.word();
-    if (!word.empty() && word.front() != '#') rays.push_back(readRay(cursor, cursor.numberOf(word)));
+    if (const auto first = cursor.number()) rays.push_back(readRay(cursor, *first));
   }
   return rays;
 }

@@ -25,7 +25,6 @@ struct Mesh {
   std::vector<Corners> corners;  ///< one for each face, or none at all
   std::vector<Material> materials;
   std::vector<std::filesystem::path> textures;  ///< that Material::texture counts
-  std::vector<std::string> warnings;
 };
 
 /// OBJ or PLY, by the name's ending. Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong" where the file is text, and

@@ -10,18 +10,10 @@
 #include <utility>
 
 #include "shapes.hpp"
+#include "support/written_file.hpp"
 
 namespace rays {
 namespace {
-
-std::string objMessage(const std::string& text) {
-  try {
-    parseObj("a.obj", text, ".", true);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "none";
-}
 
 std::string plyMessage(const std::string& text) {
   try {
@@ -74,21 +66,30 @@ TEST_CASE("OBJ faces have polygons, relative indices and materials") {
   CHECK(mesh.materials[2].ior == Approx(1.4));
 }
 
-TEST_CASE("errors in OBJ files name the line and the column") {
-  CHECK(objMessage("v 0 0 0\nv 1 x 0\n") == "a.obj:2:5: 'x' is no number");
-  CHECK(objMessage("v 0 0\n") == "a.obj:1:6: z is missing");
-  CHECK(objMessage("v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 4\n") ==
-        "a.obj:4:7: there is no vertex 4; 3 are above this line");
-  CHECK(objMessage("v 0 0 0\nf 1 1 -2\n") == "a.obj:2:7: there is no vertex -2; 1 are above this line");
-  CHECK(objMessage("v 0 0 0\nf 1 1 -9223372036854775808\n") ==
-        "a.obj:2:7: there is no vertex -9223372036854775808; 1 are above this line");
-  CHECK(objMessage("v 0 0 0\nf 0 1 1\n") == "a.obj:2:3: 0 is no vertex; they count from 1");
-  CHECK(objMessage("v 0 0 0\nf 1 1\n") == "a.obj:2:6: a face has three corners at least, and this one has 2");
-  CHECK(objMessage("v 0 0 0\nf 1/1 1/1 1/1\n") ==
-        "a.obj:2:3: there is no texture vertex 1; 0 are above this line");
-  CHECK_THAT(objMessage("mtllib none.mtl\n"), Catch::StartsWith("a.obj:1:8: there is no file"));
-  CHECK(objMessage("") == "none");
-  CHECK(std::isnan(parseObj("a", "v nan 0 0\nv 1e999 0 1e-999\n", ".", true).points[0].x));
+TEST_CASE("MTL files are read like OBJ files") {
+  const examples::WrittenFile file(
+      "\xEF\xBB\xBF# made by C:\\tools\\\rnewmtl dark red\rKd 5.0D-1 \\\r0.25 # one is missing\rKe spectral "
+      "lamp.rfl\rmap_Kd -o 1 2 -clamp on "
+      "brick wall.png\rnewmtl mirror\rillum 3\rKs 1\rnewmtl glass\rTr .9",
+      "mesh_test.mtl");
+  const auto read = [](const std::string& text) {
+    return parseObj("a.obj", "mtllib mesh_test.mtl\n" + text, ".", true);
+  };
+  const Mesh mesh = read("v 0 0 0\nusemtl mirror\nf 1 1 1\nusemtl none\nf 1 1 1\n");
+  REQUIRE(mesh.materials.size() == 3);
+  CHECK(mesh.materials[0].name == "dark red");
+  CHECK(mesh.materials[0].colour == sk::float3{0.5f, 0.25f, 0.25f});
+  REQUIRE(mesh.textures.size() == 1);
+  CHECK(mesh.textures[0].filename() == "brick wall.png");
+  CHECK(mesh.materials[1].scattering == Scattering::Mirror);
+  CHECK(mesh.materials[1].colour == sk::float3{1, 1, 1});
+  CHECK(mesh.materials[2].scattering == Scattering::Glass);
+  CHECK(mesh.faces[0].material == 1);
+  CHECK(mesh.faces[1].material == -1);
+  const examples::WrittenFile wrong("newmtl a\nKd 1 x 0\n", "wrong.mtl");
+  CHECK_THROWS_WITH(parseObj("a.obj", "mtllib wrong.mtl\n", ".", true),
+                    Catch::Contains("wrong.mtl:2:6: 'x' is no number"));
+  CHECK(parseObj("a.obj", "mtllib none.mtl\n", ".", false).materials.empty());
 }
 
 TEST_CASE("PLY files are read as text and in both orders of bytes") {
@@ -121,6 +122,49 @@ TEST_CASE("PLY files are read as text and in both orders of bytes") {
   }
 }
 
+TEST_CASE("PLY elements come in any order, lines end in any way, and polygons are cut") {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string text;
+    for (const std::string_view line : {"ply",
+                                        "format ascii 1.0",
+                                        "comment a dart \\",
+                                        "obj_info -",
+                                        "element face 2",
+                                        "property list uchar float quality",
+                                        "property list uchar int vertex_index",
+                                        "element nothing 1000000000",
+                                        "element vertex 4",
+                                        "property float nz",
+                                        "property list uchar int tags",
+                                        "property float z",
+                                        "property float y",
+                                        "property float x",
+                                        "property float nx",
+                                        "property float ny",
+                                        "end_header",
+                                        "0 4 0 1",
+                                        "2 3",
+                                        "2 0.5 1D0 3 2 1 0",
+                                        "1 0 0 0 -1 0 0 1 2 7 8 0 1 0 0 0",
+                                        "1 0 0 0 1 0 0 1 0 0 10 0 0 0"})
+      text += std::string(line) + end;
+    const Mesh mesh = parsePly("a.ply", text);
+    REQUIRE(mesh.faces.size() == 3);
+    CHECK(mesh.points[3].y == 10.0);
+    CHECK(mesh.faces[0].points == std::array<std::uint32_t, 3>{3, 0, 1});
+    CHECK(mesh.faces[1].points == std::array<std::uint32_t, 3>{3, 1, 2});
+    CHECK(mesh.faces[2].points == std::array<std::uint32_t, 3>{2, 1, 0});
+    REQUIRE(mesh.corners.size() == 3);
+    CHECK(mesh.corners[2].normals[0] == sk::float3{0, 0, 1});
+
+    // The first byte of the body may be that of a line end.
+    std::string bytes = "ply" + end + "format binary_little_endian 1.0" + end + "element vertex 1" + end +
+                        "property uchar x" + end + "property uchar y" + end + "property uchar z" + end +
+                        "end_header" + end;
+    CHECK(parsePly("a.ply", bytes + "\n\r\n").points[0] == Vector{10, 13, 10});
+  }
+}
+
 TEST_CASE("errors in PLY files name their location") {
   const std::string faces =
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n";
@@ -135,6 +179,21 @@ TEST_CASE("errors in PLY files name their location") {
   CHECK_THAT(plyMessage(plyHead + faces + "3 0 1\n"), Catch::Contains("the file ends too early"));
   CHECK_THAT(plyMessage(plyHead + faces + "2 0 1\n"), Catch::Contains("a face has three corners at least"));
   CHECK_THAT(plyMessage(plyHead + faces + "3 0 1 0.5\n"), Catch::Contains("'0.5' is no integer"));
+  CHECK(plyMessage(plyHead + faces + "3 0 1 2 3\n") ==
+        "a.ply:14:9: the file goes on after its last element; the header has fewer");
+  CHECK(plyMessage(plyHead + "element vertex 4\n") == "a.ply:7:9: there is another element 'vertex' above");
+  CHECK(plyMessage(plyHead + "element face\n") == "a.ply:7:13: the number of elements is missing");
+  CHECK(plyMessage(plyHead + "element face 1\nproperty int vertex_indices\nend_header\n") ==
+        "a.ply:9:1: faces have no list 'vertex_indices'");
+  CHECK(plyMessage(
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n") ==
+        "a.ply:6:1: vertices have no property 'z'");
+  CHECK_THAT(plyMessage("ply\nformat ascii 1.0\nelement face 1\nproperty list float int "
+                        "vertex_index\nend_header\n3.5 0 0 0\n"),
+             Catch::EndsWith("a list cannot have 3.5 elements"));
+  CHECK_THAT(plyMessage("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int "
+                        "vertex_index\nend_header\n3 0 0 0\n"),
+             Catch::EndsWith("there is no vertex 0; they count from 0, and there are 0"));
   CHECK_THROWS_WITH(loadMesh("none.ply", true), Catch::Contains("does not exist"));
   CHECK_THROWS_WITH(loadMesh("none.stl", true), Catch::Contains("meshes are .obj or .ply files"));
 }

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// PLY files (G. Turk, "The PLY polygon file format", 1994), as text and binary in both orders of bytes. Elements other than
-// vertices and faces, and properties that nobody needs, are passed over; polygons become fans.
+// PLY files (G. Turk, "The PLY polygon file format", 1994), as text and binary in both orders of bytes. Elements come in any order; those
+// other than vertices and faces, and properties that nobody needs, are passed over; polygons are cut.
 #include "mesh.hpp"
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
-#include <limits>
 #include <map>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "support/text_cursor.hpp"
+#include "support/triangulation.hpp"
 
 namespace rays {
 
@@ -32,12 +38,25 @@ struct Element {
   std::string name;
   std::int64_t count = 0;
   std::vector<Property> properties{};
+
+  bool has(std::string_view property, bool isList = false) const {
+    return std::ranges::any_of(properties,
+                               [&](const Property& p) { return p.isList == isList && p.name == property; });
+  }
 };
 
 struct Header {
   Encoding encoding = Encoding::Text;
   std::vector<Element> elements;
+
+  const Element* find(std::string_view name) const {
+    const auto found = std::ranges::find(elements, name, &Element::name);
+    return found == elements.end() ? nullptr : &*found;
+  }
 };
+
+/// The names of the list that a face has of its corners.
+constexpr std::array<std::string_view, 2> cornerLists = {"vertex_indices", "vertex_index"};
 
 Number numberType(const TextCursor& cursor, std::string_view word) {
   static const std::map<std::string_view, Number> types = {
@@ -74,6 +93,27 @@ Property propertyOf(TextCursor& cursor) {
   return property;
 }
 
+Element elementOf(TextCursor& cursor, const Header& header) {
+  Element element{.name = std::string(cursor.word())};
+  if (header.find(element.name))
+    cursor.fail(fmt::format("there is another element '{}' above", element.name));
+  element.count = cursor.needInteger("the number of elements");
+  if (element.count < 0) cursor.fail("an element cannot be there less than 0 times");
+  return element;
+}
+
+/// Whether the mesh has what it needs, at the line that ends the header.
+void checkHeader(const TextCursor& cursor, const Header& header) {
+  if (const Element* vertex = header.find("vertex"); vertex && vertex->count > 0) {
+    for (const std::string_view name : {"x", "y", "z"}) {
+      if (!vertex->has(name)) cursor.fail(fmt::format("vertices have no property '{}'", name));
+    }
+  }
+  const Element* face = header.find("face");
+  if (face && face->count > 0 && !face->has(cornerLists[0], true) && !face->has(cornerLists[1], true))
+    cursor.fail("faces have no list 'vertex_indices'");
+}
+
 /// Leaves the cursor at the line `end_header`.
 Header readHeader(TextCursor& cursor) {
   if (!cursor.nextLine() || cursor.word() != "ply")
@@ -86,15 +126,13 @@ Header readHeader(TextCursor& cursor) {
       header.encoding = encodingOf(cursor, cursor.word());
       hasFormat = true;
     } else if (key == "element") {
-      Element element{.name = std::string(cursor.word())};
-      element.count = cursor.integerOf(cursor.word());
-      if (element.count < 0) cursor.fail("an element cannot be there less than 0 times");
-      header.elements.push_back(element);
+      header.elements.push_back(elementOf(cursor, header));
     } else if (key == "property") {
       if (header.elements.empty()) cursor.fail("a property comes after its element");
       header.elements.back().properties.push_back(propertyOf(cursor));
     } else if (key == "end_header") {
       if (!hasFormat) cursor.fail("the header has no line 'format'");
+      checkHeader(cursor, header);
       return header;
     } else if (key != "comment" && key != "obj_info" && !key.empty()) {
       cursor.fail(fmt::format("'{}' is no word of a PLY header", key));
@@ -107,7 +145,7 @@ Header readHeader(TextCursor& cursor) {
 class Body {
  public:
   Body(const std::string& name, std::string_view bytes, TextCursor& cursor, Encoding encoding)
-      : name_(name), bytes_(bytes), cursor_(cursor), encoding_(encoding), at_(cursor.nextLineAt()) {}
+      : name_(name), bytes_(bytes), cursor_(cursor), encoding_(encoding), at_(cursor.bytesBehind()) {}
 
   double read(Number type) {
     if (encoding_ == Encoding::Text) return readText(type);
@@ -123,6 +161,11 @@ class Body {
     }
     return 0.0;
   }
+  /// Text has nothing behind the last element.
+  void end() {
+    if (encoding_ == Encoding::Text && !cursor_.wordOnAnyLine().empty())
+      fail("the file goes on after its last element; the header has fewer");
+  }
   [[noreturn]] void fail(std::string_view message) const {
     if (encoding_ == Encoding::Text) cursor_.fail(message);
     throw std::runtime_error(fmt::format("{}: byte {}: {}", name_, at_, message));
@@ -131,11 +174,8 @@ class Body {
  private:
   /// The words of text files may stand on any lines.
   double readText(Number type) {
-    std::string_view word = cursor_.word();
-    while (word.empty()) {
-      if (!cursor_.nextLine()) cursor_.fail("the file ends too early");
-      word = cursor_.word();
-    }
+    const std::string_view word = cursor_.wordOnAnyLine();
+    if (word.empty()) cursor_.fail("the file ends too early");
     return type >= Number::Float ? cursor_.numberOf(word) : static_cast<double>(cursor_.integerOf(word));
   }
   template <class T>
@@ -160,7 +200,8 @@ class Body {
 
 std::int64_t readCount(Body& body, const Property& list) {
   const double count = body.read(list.countType);
-  if (!(count >= 0 && count <= 1e9)) body.fail(fmt::format("a list cannot have {} elements", count));
+  if (!(count >= 0 && count <= 1e9 && count == std::floor(count)))
+    body.fail(fmt::format("a list cannot have {} elements", count));
   return static_cast<std::int64_t>(count);
 }
 
@@ -169,72 +210,90 @@ void skip(Body& body, const Property& property) {
   for (std::int64_t i = 0; i < count; ++i) body.read(property.type);
 }
 
-/// What a mesh needs of each vertex.
-struct VertexData {
-  std::vector<sk::float3> normals;
-  std::vector<sk::float2> texture;
+/// What the body says: vertices, and the corners of all faces one behind the other.
+struct Polygons {
+  std::vector<Vector> points;
+  std::vector<sk::float3> normals;  ///< of each vertex, or none at all
+  std::vector<sk::float2> textures;  ///< of each vertex, or none at all
+  std::vector<std::uint32_t> corners;
+  std::vector<std::size_t> ends;  ///< of each face, in corners
 };
 
-void readVertices(Body& body, const Element& element, Mesh& mesh, VertexData& data) {
-  const auto has = [&](std::string_view name) {
-    return std::ranges::any_of(element.properties,
-                               [&](const Property& p) { return !p.isList && p.name == name; });
-  };
-  for (const std::string_view name : {"x", "y", "z"}) {
-    if (!has(name)) body.fail(fmt::format("vertices have no property '{}'", name));
+void readVertex(Body& body, const Element& element, Polygons& polygons) {
+  Vector p;
+  sk::float3 n{};
+  sk::float2 t{};
+  for (const Property& property : element.properties) {
+    if (property.isList) {
+      skip(body, property);
+      continue;
+    }
+    const double value = body.read(property.type);
+    if (property.name == "x") p.x = value;
+    if (property.name == "y") p.y = value;
+    if (property.name == "z") p.z = value;
+    if (property.name == "nx") n.x = static_cast<float>(value);
+    if (property.name == "ny") n.y = static_cast<float>(value);
+    if (property.name == "nz") n.z = static_cast<float>(value);
+    if (property.name == "s" || property.name == "u") t.x = static_cast<float>(value);
+    if (property.name == "t" || property.name == "v") t.y = static_cast<float>(value);
   }
-  const bool hasNormals = has("nx") && has("ny") && has("nz");
-  const bool hasTexture = (has("s") && has("t")) || (has("u") && has("v"));
-  for (std::int64_t i = 0; i < element.count; ++i) {
-    Vector p;
-    sk::float3 n{};
-    sk::float2 t{};
-    for (const Property& property : element.properties) {
-      if (property.isList) {
-        skip(body, property);
-        continue;
+  polygons.points.push_back(p);
+  polygons.normals.push_back(n);
+  polygons.textures.push_back(t);
+}
+
+/// `vertices` is how many the header promises, as they may follow the faces.
+void readFace(Body& body, const Element& element, std::int64_t vertices, Polygons& polygons) {
+  for (const Property& property : element.properties) {
+    if (!property.isList || std::ranges::find(cornerLists, property.name) == cornerLists.end()) {
+      skip(body, property);
+      continue;
+    }
+    const std::int64_t corners = readCount(body, property);
+    if (corners < 3)
+      body.fail(fmt::format("a face has three corners at least, and this one has {}", corners));
+    for (std::int64_t i = 0; i < corners; ++i) {
+      const double index = body.read(property.type);
+      if (!(index >= 0 && index < static_cast<double>(vertices) && index <= UINT32_MAX) ||
+          index != std::floor(index))
+        body.fail(fmt::format("there is no vertex {}; they count from 0, and there are {}", index, vertices));
+      polygons.corners.push_back(static_cast<std::uint32_t>(index));
+    }
+    polygons.ends.push_back(polygons.corners.size());
+  }
+}
+
+Polygons readBody(Body& body, const Header& header) {
+  const Element* const vertex = header.find("vertex");
+  const Element* const face = header.find("face");
+  Polygons polygons;
+  for (const Element& element : header.elements) {
+    if (element.properties.empty()) continue;  // however many there are, they take no bytes
+    for (std::int64_t i = 0; i < element.count; ++i) {
+      if (&element == vertex) {
+        readVertex(body, element, polygons);
+      } else if (&element == face) {
+        readFace(body, element, vertex ? vertex->count : 0, polygons);
+      } else {
+        for (const Property& property : element.properties) skip(body, property);
       }
-      const double value = body.read(property.type);
-      if (property.name == "x") p.x = value;
-      if (property.name == "y") p.y = value;
-      if (property.name == "z") p.z = value;
-      if (property.name == "nx") n.x = static_cast<float>(value);
-      if (property.name == "ny") n.y = static_cast<float>(value);
-      if (property.name == "nz") n.z = static_cast<float>(value);
-      if (property.name == "s" || property.name == "u") t.x = static_cast<float>(value);
-      if (property.name == "t" || property.name == "v") t.y = static_cast<float>(value);
-    }
-    mesh.points.push_back(p);
-    if (hasNormals) data.normals.push_back(n);
-    if (hasTexture) data.texture.push_back(t);
-  }
-}
-
-void readFace(Body& body, const Property& list, Mesh& mesh) {
-  const std::int64_t corners = readCount(body, list);
-  if (corners < 3) body.fail(fmt::format("a face has three corners at least, and this one has {}", corners));
-  std::array<std::uint32_t, 3> points{};
-  for (std::int64_t i = 0; i < corners; ++i) {
-    const double index = body.read(list.type);
-    if (!(index >= 0 && index < static_cast<double>(mesh.points.size())) || index != std::floor(index))
-      body.fail(fmt::format("there is no vertex {}; they count from 0, and there are {}", index,
-                            mesh.points.size()));
-    if (i >= 2) points[1] = points[2];
-    points[static_cast<std::size_t>(std::min<std::int64_t>(i, 2))] = static_cast<std::uint32_t>(index);
-    if (i >= 2) mesh.faces.push_back({points, -1});
-    if (i == 1) points[2] = points[1];
-  }
-}
-
-void readFaces(Body& body, const Element& element, Mesh& mesh) {
-  for (std::int64_t i = 0; i < element.count; ++i) {
-    for (const Property& property : element.properties) {
-      if (property.isList && (property.name == "vertex_indices" || property.name == "vertex_index"))
-        readFace(body, property, mesh);
-      else
-        skip(body, property);
     }
   }
+  body.end();
+  const auto has = [&](std::string_view name) { return vertex && vertex->has(name); };
+  if (!(has("nx") && has("ny") && has("nz"))) polygons.normals.clear();
+  if (!(has("s") && has("t")) && !(has("u") && has("v"))) polygons.textures.clear();
+  return polygons;
+}
+
+Corners cornersOf(const Polygons& polygons, const Face& face) {
+  Corners corners;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!polygons.normals.empty()) corners.normals[i] = polygons.normals[face.points[i]];
+    if (!polygons.textures.empty()) corners.texture[i] = polygons.textures[face.points[i]];
+  }
+  return corners;
 }
 
 }  // namespace
@@ -243,27 +302,24 @@ Mesh parsePly(const std::string& name, std::string_view bytes) {
   TextCursor cursor(name, bytes);
   const Header header = readHeader(cursor);
   Body body(name, bytes, cursor, header.encoding);
+  Polygons polygons = readBody(body, header);
   Mesh mesh;
-  VertexData data;
-  for (const Element& element : header.elements) {
-    if (element.name == "vertex") {
-      readVertices(body, element, mesh, data);
-    } else if (element.name == "face") {
-      readFaces(body, element, mesh);
-    } else {
-      for (std::int64_t i = 0; i < element.count && !element.properties.empty(); ++i)
-        for (const Property& property : element.properties) skip(body, property);
+  std::vector<Vector> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::size_t first = 0;
+  for (const std::size_t end : polygons.ends) {
+    const std::span face = std::span(polygons.corners).subspan(first, end - first);
+    positions.clear();
+    for (const std::uint32_t corner : face) positions.push_back(polygons.points[corner]);
+    examples::triangulate(positions, triangles);
+    for (const auto& [a, b, c] : triangles) {
+      mesh.faces.push_back({{face[a], face[b], face[c]}, -1});
+      if (!polygons.normals.empty() || !polygons.textures.empty())
+        mesh.corners.push_back(cornersOf(polygons, mesh.faces.back()));
     }
+    first = end;
   }
-  if (data.normals.empty() && data.texture.empty()) return mesh;
-  for (const Face& face : mesh.faces) {
-    Corners corners;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (!data.normals.empty()) corners.normals[i] = data.normals[face.points[i]];
-      if (!data.texture.empty()) corners.texture[i] = data.texture[face.points[i]];
-    }
-    mesh.corners.push_back(corners);
-  }
+  mesh.points = std::move(polygons.points);
   return mesh;
 }
 

@@ -3,7 +3,6 @@
 // From the fields of CSV to columns of numbers.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,17 +14,12 @@
 #include "csv_records.hpp"
 #include "data.hpp"
 #include "file_bytes.hpp"
+#include "support/text_cursor.hpp"
 
 namespace examples {
 namespace {
 
 constexpr float missing = std::numeric_limits<float>::quiet_NaN();
-
-std::string_view trimmed(std::string_view field) {
-  const std::size_t begin = field.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return field.substr(begin, field.find_last_not_of(" \t") - begin + 1);
-}
 
 bool isMissing(std::string_view field) {
   constexpr std::array<std::string_view, 7> words = {"", "NA", "N/A", "NaN", "nan", "NULL", "null"};
@@ -37,13 +31,11 @@ bool isMissing(std::string_view field) {
 std::optional<float> parseNumber(std::string_view field) {
   field = trimmed(field);
   if (isMissing(field)) return missing;
-  if (field.front() == '+') field.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc{} || end != field.data() + field.size()) return std::nullopt;
-  const bool tooLarge = std::isfinite(value) && std::abs(value) > double{std::numeric_limits<float>::max()};
-  if (tooLarge) return std::nullopt;
-  const auto rounded = static_cast<float>(value);
+  const std::optional<double> value = numberIn(field);
+  const bool isInfinity = value && field.find_first_of("iI") != std::string_view::npos;
+  if (!value || (std::abs(*value) > double{std::numeric_limits<float>::max()} && !isInfinity))
+    return std::nullopt;
+  const auto rounded = static_cast<float>(*value);
   return std::fpclassify(rounded) == FP_SUBNORMAL ? 0.0f : rounded;
 }
 

@@ -6,18 +6,17 @@
 
 #include <fmt/format.h>
 
+#include "support/text_cursor.hpp"
+
 namespace examples {
 
 CsvRecords::CsvRecords(std::string_view text, char separator, std::string name)
-    : text_(text), separator_(separator), name_(std::move(name)) {
-  if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // UTF-8's byte order mark
-}
+    : text_(withoutMark(text)), separator_(separator), name_(std::move(name)) {}
 
 bool CsvRecords::next(std::vector<std::string>& fields) {
   while (at_ < text_.size()) {
     record(fields);
-    const bool blank = fields.size() == 1 && fields.front().find_first_not_of(" \t") == std::string::npos;
-    if (!blank) return true;
+    if (fields.size() > 1 || !trimmed(fields.front()).empty()) return true;
   }
   return false;
 }
@@ -49,29 +48,24 @@ void CsvRecords::quoted(std::string& field) {
       if (at_ + 1 >= text_.size() || text_[at_ + 1] != '"') break;
       ++at_;
     }
-    if (c == '\n') ++line_;
+    if (lineEndAt(text_, at_) == 1) ++line_;  // of CR LF, at its LF
     field += c;
   }
   if (at_ >= text_.size()) fail(opened, "a quote is opened but never closed");
   ++at_;
-  if (at_ < text_.size() && text_[at_] != separator_ && !atRecordEnd()) {
+  if (at_ < text_.size() && text_[at_] != separator_ && lineEndAt(text_, at_) == 0) {
     fail(line_, "text follows a closing quote; double the quotes within a quoted field");
   }
 }
 
 void CsvRecords::plain(std::string& field) {
   const std::size_t begin = at_;
-  while (at_ < text_.size() && text_[at_] != separator_ && !atRecordEnd()) ++at_;
+  while (at_ < text_.size() && text_[at_] != separator_ && lineEndAt(text_, at_) == 0) ++at_;
   field.assign(text_.substr(begin, at_ - begin));
 }
 
-bool CsvRecords::atRecordEnd() const {
-  return text_[at_] == '\n' || (text_[at_] == '\r' && (at_ + 1 == text_.size() || text_[at_ + 1] == '\n'));
-}
-
 void CsvRecords::endLine() {
-  if (at_ < text_.size() && text_[at_] == '\r') ++at_;
-  if (at_ < text_.size() && text_[at_] == '\n') ++at_;
+  at_ += lineEndAt(text_, at_);
   ++line_;
 }
 

@@ -25,7 +25,6 @@ class CsvRecords {
   void record(std::vector<std::string>& fields);
   void quoted(std::string& field);
   void plain(std::string& field);
-  bool atRecordEnd() const;
   void endLine();
   [[noreturn]] void fail(std::int64_t line, std::string_view what) const;
 

@@ -43,17 +43,22 @@ TEST_CASE("fields and records") {
   CHECK(split("a;b", ';') == Records{{"a", "b"}});
   CHECK(split("\xEF\xBB\xBF"
               "a") == Records{{"a"}});
-  CHECK(split("a\rb") == Records{{"a\rb"}});
+  CHECK(split("a,b\r1,2\r") == Records{{"a", "b"}, {"1", "2"}});
+  CHECK(split("a\r\r\n\nb,\rc") == Records{{"a"}, {"b", ""}, {"c"}});
+  CHECK(split("\"a\rb\"\rc") == Records{{"a\rb"}, {"c"}});
   CHECK(split("").empty());
 }
 
 TEST_CASE("lines are counted through quoted line ends") {
-  CsvRecords reader("\"a\nb\"\n\nc\n", ',', "t.csv");
-  std::vector<std::string> fields;
-  REQUIRE(reader.next(fields));
-  CHECK(reader.line() == 1);
-  REQUIRE(reader.next(fields));
-  CHECK(reader.line() == 4);
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    const std::string text = "\"a" + end + "b\"" + end + end + "c" + end;
+    CsvRecords reader(text, ',', "t.csv");
+    std::vector<std::string> fields;
+    REQUIRE(reader.next(fields));
+    CHECK(reader.line() == 1);
+    REQUIRE(reader.next(fields));
+    CHECK(reader.line() == 4);
+  }
 }
 
 TEST_CASE("quotes that are wrong") {
@@ -89,6 +94,11 @@ TEST_CASE("selected columns come in the order asked for") {
 
 TEST_CASE("what float cannot hold") {
   CHECK(parse("a\n1e-40\n").columns[0].values.front() == 0.0f);
+  CHECK(parse("a\n1e-400\n").columns[0].values.front() == 0.0f);
+  CHECK(std::isinf(parse("a\n-inf\n").columns[0].values.front()));
+  CHECK(parse("id,a\n12D5,1\n").textColumns == std::vector<std::string>{"id"});
+  CHECK_THROWS_WITH(parse("a\n1\n1e400\n"), Catch::Contains(":3: column 'a': '1e400' is no number"));
+  CHECK_THROWS_WITH(parse("a\n1\n+-1\n"), Catch::Contains(":3: column 'a': '+-1' is no number"));
   CHECK_THROWS_WITH(parse("a\n1\n1e39\n"), Catch::Contains(":3: column 'a': '1e39' is no number"));
   CHECK_THROWS_WITH(parse("a\n1\n1.5.2\n"), Catch::Contains(":3: column 'a': '1.5.2' is no number"));
   CHECK_THROWS_WITH(parse("a\nx\n", {.select = {"a"}}), Catch::Contains(":2: column 'a': 'x' is no number"));

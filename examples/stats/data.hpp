@@ -25,7 +25,7 @@ struct CsvOptions {
   std::vector<std::string> select;  ///< columns to read, in this order; empty for all
 };
 
-/// Reads CSV (RFC 4180: quotes, doubled quotes, line ends of both kinds, line ends within quotes). The first
+/// Reads CSV (RFC 4180: quotes, doubled quotes, line ends within quotes; lines end with LF, CR LF or CR). The first
 /// line names the columns unless it is all numbers. An empty field, NA, NaN or null is a missing number, and
 /// so is what a short line lacks (but not nearly all columns of nearly all lines). A column without a single number is text and left out, unless selected.
 /// Throws std::runtime_error naming file, line and column for anything else that is no number.

@@ -8,7 +8,7 @@
 
 namespace examples {
 
-/// Throws std::runtime_error naming the file where it is missing, is no file, cannot be read or is empty.
+/// Throws std::runtime_error naming the file where it is missing, cannot be read or is empty.
 std::string readBytes(const std::filesystem::path& file);
 
 }  // namespace examples

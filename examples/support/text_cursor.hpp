@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// Words of a text file with their lines and columns. It knows no format.
+// Lines, words and numbers of text files. A byte order mark is passed over, and a line ends with LF, CR LF or CR, the last one also
+// with the text. It knows no format beyond how that comments and continues lines.
 #pragma once
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -16,78 +14,59 @@
 
 namespace examples {
 
+/// The text behind UTF-8's byte order mark, if it begins with one.
+std::string_view withoutMark(std::string_view text);
+/// Bytes of the line end at this position of the text: 0 where there is none, 1 for LF or CR, 2 for CR LF.
+std::size_t lineEndAt(std::string_view text, std::size_t at);
+/// Without blanks and tabs at both ends.
+std::string_view trimmed(std::string_view text);
+/// The number that this word is, infinities and NaN included; nullopt if it is none. What a double cannot hold is infinite or zero.
+std::optional<double> numberIn(std::string_view word);
+
+struct TextRules {
+  char comment = '\0';  ///< begins a comment at the start of a line or behind a blank; none if 0
+  bool continues = false;  ///< whether a line that ends with a backslash continues in the next
+};
+
 class TextCursor {
  public:
-  TextCursor(std::string file, std::string_view text) : file_(std::move(file)), text_(text) {}
+  TextCursor(std::string file, std::string_view text, TextRules rules = {});
+  /// Takes effect with the next line.
+  void setRules(TextRules rules) { rules_ = rules; }
 
-  /// Goes to the next line. False at the end of the text; the first call goes to the first line.
-  bool nextLine() {
-    if (started_) at_ = std::min(end_ + 1, text_.size() + 1);
-    started_ = true;
-    if (at_ >= text_.size()) return false;
-    ++line_;
-    begin_ = at_;
-    end_ = std::min(text_.find('\n', at_), text_.size());
-    return true;
-  }
+  /// Goes to the next line, past those that continue this one. False at the end of the text; the first call goes to the first line.
+  bool nextLine();
   /// The next word of the line; empty at its end.
-  std::string_view word() {
-    while (at_ < end_ && isBlank(text_[at_])) ++at_;
-    wordAt_ = at_;
-    while (at_ < end_ && !isBlank(text_[at_])) ++at_;
-    return text_.substr(wordAt_, at_ - wordAt_);
-  }
-  /// The next word as a number, infinities and NaN included; none at the end of the line. Throws where it is none.
-  std::optional<double> number() {
-    const std::string_view w = word();
-    if (w.empty()) return std::nullopt;
-    return numberOf(w);
-  }
-  double needNumber(std::string_view what) {
-    const std::optional<double> n = number();
-    if (!n) fail(fmt::format("{} is missing", what));
-    return *n;
-  }
-  double numberOf(std::string_view w) const {
-    double value = 0.0;
-    const std::string_view digits = !w.empty() && w.front() == '+' ? w.substr(1) : w;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error == std::errc::result_out_of_range) return outOfRange(digits);
-    if (error != std::errc() || end != digits.data() + digits.size())
-      fail(fmt::format("'{}' is no number", shown(w)));
-    return value;
-  }
-  /// As `number`, but whole.
-  std::int64_t integerOf(std::string_view w) const {
-    std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
-    if (error != std::errc() || end != w.data() + w.size()) fail(fmt::format("'{}' is no integer", shown(w)));
-    return value;
-  }
+  std::string_view word();
+  /// The next word of this line, or of the first later one that has any; empty at the end of the text.
+  std::string_view wordOnAnyLine();
+  /// What remains of the line, as one word.
+  std::string_view rest();
+  /// The next word as a number; nullopt at the end of the line. Throws if it is no number.
+  std::optional<double> number();
+  double needNumber(std::string_view what);
+  std::int64_t needInteger(std::string_view what);
+  /// Throws if there is another word in this line; `form` says what the line should be.
+  void endLine(std::string_view form);
+
+  /// As numberIn, and with the exponents that Fortran writes: 1.0D+3 and 1.0-100. Throws if the word is no number.
+  double numberOf(std::string_view word) const;
+  std::int64_t integerOf(std::string_view word) const;
   /// Throws "FILE:LINE:COLUMN: message", at the latest word.
-  [[noreturn]] void fail(std::string_view message) const {
-    throw std::runtime_error(
-        fmt::format("{}:{}:{}: {}", file_, std::max<std::size_t>(line_, 1), wordAt_ - begin_ + 1, message));
-  }
-  std::size_t line() const { return line_; }
-  /// Where the next line begins in the text.
-  std::size_t nextLineAt() const { return std::min(end_ + 1, text_.size()); }
+  [[noreturn]] void fail(std::string_view message) const;
+  /// Where the bytes behind this line begin, of which the first may look like a part of the line end: it ends like the first line.
+  std::size_t bytesBehind() const;
 
  private:
-  static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-  static std::string shown(std::string_view w) { return std::string(w.substr(0, 40)); }
-  /// from_chars leaves the value alone: zero or infinity, by the exponent's sign.
-  static double outOfRange(std::string_view digits) {
-    const std::size_t e = digits.find_first_of("eE");
-    const bool isSmall = e != std::string_view::npos && e + 1 < digits.size() && digits[e + 1] == '-';
-    const double value = isSmall ? 0.0 : HUGE_VAL;
-    return digits.front() == '-' ? -value : value;
-  }
+  bool enterLine();
 
   std::string file_;
   std::string_view text_;
-  bool started_ = false;
-  std::size_t at_ = 0, begin_ = 0, end_ = 0, wordAt_ = 0, line_ = 0;
+  TextRules rules_;
+  bool continues_ = false;  ///< the line goes on in the next one
+  std::size_t next_ = 0;  ///< where the next line begins
+  std::size_t begin_ = 0, end_ = 0, lineEnd_ = 0;  ///< of the line, of its words, and its line end
+  std::size_t at_ = 0, wordAt_ = 0, line_ = 0;
 };
 
 }  // namespace examples

@@ -15,7 +15,7 @@ class WrittenFile {
  public:
   explicit WrittenFile(const std::string& text, std::filesystem::path path = "written.toml")
       : path_(std::move(path)) {
-    std::ofstream(path_) << text;
+    std::ofstream(path_, std::ios::binary) << text;
   }
   ~WrittenFile() { std::filesystem::remove(path_); }
   WrittenFile(const WrittenFile&) = delete;

@@ -7,10 +7,11 @@
 #include <map>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "support/text_cursor.hpp"
+#include "support/obj_file.hpp"
 #include "support/text_file.hpp"
 
 namespace smooth {
@@ -171,31 +172,12 @@ void addNoise(Surface& s, double amplitude, std::uint32_t seed) {
 }
 
 Surface loadObj(const std::filesystem::path& file) {
-  const std::string text = examples::bytesOf(file, "the mesh");
-  examples::TextCursor cursor(file.string(), text);
+  examples::ObjFile obj =
+      examples::parseObj(file.string(), examples::bytesOf(file, "the mesh"), {.onlyFinite = true});
   Surface s;
-  while (cursor.nextLine()) {
-    const std::string_view key = cursor.word();
-    if (key == "v") {
-      const double x = cursor.needNumber("x"), y = cursor.needNumber("y"), z = cursor.needNumber("z");
-      if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
-        cursor.fail("a position is not finite");
-      s.points.push_back({x, y, z});
-    } else if (key == "f") {
-      std::vector<std::int32_t> corners;
-      const auto count = static_cast<std::int64_t>(s.points.size());
-      for (std::string_view word = cursor.word(); !word.empty(); word = cursor.word()) {
-        const std::int64_t index = cursor.integerOf(word.substr(0, word.find('/')));
-        if (index == 0 || index > count || index < -count)
-          cursor.fail(fmt::format("there is no vertex {}; {} are above this line", index, count));
-        corners.push_back(static_cast<std::int32_t>(index > 0 ? index - 1 : count + index));
-      }
-      if (corners.size() < 3)
-        cursor.fail(fmt::format("a face has three corners at least, and this one has {}", corners.size()));
-      for (std::size_t i = 2; i < corners.size(); ++i)
-        s.faces.push_back({corners[0], corners[i - 1], corners[i]});
-    }
-  }
+  s.points = std::move(obj.points);
+  for (const auto& [corners, material] : obj.triangles)
+    s.faces.push_back({corners[0].point, corners[1].point, corners[2].point});
   return s;
 }
 

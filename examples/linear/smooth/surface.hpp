@@ -50,7 +50,7 @@ Surface torus(int around, int across, double radius, double tube);
 /// Moves every point by up to `amplitude` in each direction; the same seed gives the same surface everywhere.
 void addNoise(Surface& surface, double amplitude, std::uint32_t seed);
 
-/// Positions and faces of an OBJ file; polygons become fans. Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong".
+/// Positions and faces of an OBJ file; polygons are cut into triangles. Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong".
 Surface loadObj(const std::filesystem::path& file);
 /// Positions have as many digits as it takes to read the same doubles again.
 void saveObj(const std::filesystem::path& file, const Surface& surface);
