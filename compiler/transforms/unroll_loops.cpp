@@ -186,7 +186,7 @@ class Unroller {
     iterations_ += counted->count;
     if (iterations_ > mostUnrolledIterations) {
       return {{},
-              fmt::format("with the loops in it, it takes {} rounds or more, and at most {} are unrolled",
+              fmt::format("with the loops in it, it has {} iterations or more, and at most {} are unrolled",
                           iterations_, mostUnrolledIterations)};
     }
     const std::int64_t expressions = counted->count * expressionsIn(loop.body);
@@ -196,7 +196,7 @@ class Unroller {
       Block body = bodyOf(loop, *counted, iteration);
       const IterationEnd end = removeJumps(module_, body);
       if (end == IterationEnd::Unknown)
-        return {{}, "elements may leave it, or a part of a round, at different times"};
+        return {{}, "elements may leave it, or a part of an iteration, at different times"};
       result.whyNot = writeInner(body);
       if (!result.whyNot.empty()) return result;
       append(result.iterations, std::move(body), loc);

@@ -141,7 +141,7 @@ TEST_CASE("a loop of unknown bounds, a changed counter or too many iterations st
         }) == "its body changes the counter 'i'");
   CHECK(whyNot([&](LoopKernel& s) {
           return block(s.loop(s.i, 0, 1000, read(s)));
-        }).starts_with("with the loops in it, it takes 1000 rounds"));
+        }).starts_with("with the loops in it, it has 1000 iterations"));
 }
 
 TEST_CASE("a nest is unrolled as a whole or not at all; a loop in one that stays, by itself") {
