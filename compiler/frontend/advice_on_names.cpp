@@ -60,10 +60,11 @@ Advice adviceOnForeignName(const clang::Diagnostic& diagnostic) {
 
 /// True if the text behind the diagnostic defines a function of this name: `int fact(int n) {`.
 bool isDefinedBelow(const clang::Diagnostic& diagnostic, llvm::StringRef name) {
+  constexpr std::size_t longestList = 1000;
   const llvm::StringRef text = textAt(diagnostic);
   for (std::size_t at = text.find(name, 1); at != llvm::StringRef::npos; at = text.find(name, at + 1)) {
     const llvm::StringRef before = text.take_front(at), rest = text.drop_front(at + name.size()).ltrim();
-    const llvm::StringRef parameters = bracketedAt(rest);
+    const llvm::StringRef parameters = bracketedAt(rest.take_front(longestList));
     const bool isTyped = before.ends_with(" ") && nameAt(before.rtrim().take_back(1)).size() == 1;
     const bool hasBody = rest.drop_front(parameters.size()).ltrim().starts_with("{");
     if (isTyped && rest.starts_with("(") && !parameters.empty() && hasBody) return true;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <cstdint>
 #include <iterator>
 #include <set>
 #include <string_view>
@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "frontend/diagnostic_parts.hpp"
+#include "frontend/prelude.hpp"
 #include "ir/intrinsics.hpp"
 #include "support/diagnostics.hpp"
 
@@ -31,7 +32,11 @@ constexpr llvm::StringRef gatherClass = "gather_", variableOutputClass = "variab
 /// The rank of the gather among the diagnostic's types; 0 if there is none.
 int gatherRankIn(const clang::Diagnostic& diagnostic) {
   for (const clang::QualType type : typesIn(diagnostic)) {
-    if (isOfClass(type, gatherClass)) return type->getAsCXXRecordDecl()->getName()[gatherClass.size()] - '0';
+    if (!isOfClass(type, gatherClass)) continue;
+    const llvm::StringRef name = type->getAsCXXRecordDecl()->getName();
+    for (int rank = 1; rank <= 4; ++rank) {
+      if (name == llvm::StringRef(gatherTemplateName(rank))) return rank;
+    }
   }
   return 0;
 }
@@ -264,8 +269,8 @@ Advice adviceOnIncompatible(const clang::Diagnostic& diagnostic) {
   if (types.size() < 2) return {};
   bool isTargetFirst = true;
   if (diagnostic.getID() == clang::diag::err_typecheck_convert_incompatible) {
-    constexpr int assigning = 0, initializing = 4;  // Sema::AssignmentAction
-    const auto action = diagnostic.getArgSInt(2);
+    constexpr std::uint64_t assigning = 0, initializing = 4;  // Sema::AssignmentAction
+    const std::uint64_t action = diagnostic.getRawArg(2);
     isTargetFirst = action == assigning || action == initializing;
   }
   return adviceOnConversion(diagnostic, types[isTargetFirst ? 1 : 0], types[isTargetFirst ? 0 : 1]);
@@ -359,6 +364,7 @@ Advice adviceOnMatrix(const clang::Diagnostic& diagnostic) {
   }
   const bool isProduct = characterAt(diagnostic) == '*' && types.size() == 2 && widthOf(types[0]) > 1;
   if (!isProduct || !isOfClass(types[1], "float") || diagnostic.getNumRanges() < 2) return {};
+  if (!isMatrixName(types[1]->getAsCXXRecordDecl()->getName())) return {};
   return {format(Diag::VectorTimesMatrix, {textOf(diagnostic, 0).str(), textOf(diagnostic, 1).str()})};
 }
 

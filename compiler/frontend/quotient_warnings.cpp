@@ -44,6 +44,9 @@ class QuotientChecker {
       if (declaration->isImplicit() || isPrelude(declaration)) continue;
       if (const auto* pattern = llvm::dyn_cast<clang::FunctionTemplateDecl>(declaration)) {
         for (const clang::FunctionDecl* instance : pattern->specializations()) function(instance);
+      } else if (const auto* classes = llvm::dyn_cast<clang::ClassTemplateDecl>(declaration)) {
+        for (const clang::ClassTemplateSpecializationDecl* instance : classes->specializations())
+          declarations(instance);
       } else if (const auto* one = llvm::dyn_cast<clang::FunctionDecl>(declaration)) {
         function(one);
       } else if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declaration)) {

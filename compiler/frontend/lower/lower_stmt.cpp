@@ -238,7 +238,7 @@ void FunctionLowering::declaration(const clang::DeclStmt* s) {
 void FunctionLowering::variable(const clang::VarDecl* declaration) {
   const SourceLocation where = declaration->getLocation();
   if (declaration->isStaticLocal() && !declaration->getType().isConstQualified()) {
-    module_.fail(Diag::StaticLocal, where, {declaration->getNameAsString()});
+    module_.fail(Diag::StaticLocal, where, {ModuleLowering::nameOf(declaration)});
   }
   if (declaration->hasExternalStorage())
     module_.fail(Diag::StaticLocal, where, {declaration->getNameAsString()});
@@ -254,7 +254,7 @@ void FunctionLowering::variable(const clang::VarDecl* declaration) {
     if (!uninitialised) init = value(initializer);
   }
   ir::Variable variable;
-  variable.name = llvm::isa<clang::DecompositionDecl>(declaration) ? "t" : declaration->getNameAsString();
+  variable.name = ModuleLowering::nameOf(declaration);
   variable.type = lowered;
   variable.isConst = type.isConstQualified();
   variable.loc = module_.loc(where);

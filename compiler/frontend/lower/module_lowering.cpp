@@ -352,15 +352,14 @@ ir::ExprPtr ModuleLowering::constant(const clang::VarDecl* declaration, SourceLo
   }
   if (!definition->getType().isConstQualified()) {
     failedConstants_.insert(definition);
-    fail(Diag::MutableGlobal, use, {definition->getNameAsString()});
+    fail(Diag::MutableGlobal, use, {nameOf(definition)});
   }
   auto found = constants_.find(definition);
   if (found == constants_.end()) {
     failedConstants_.insert(definition);  // removed on success
     ir::ExprPtr value = constantValue(declaration, inlineConstants_);
     failedConstants_.erase(definition);
-    ir::Constant entry{definition->getNameAsString(), value->type, std::move(value),
-                       loc(definition->getLocation())};
+    ir::Constant entry{nameOf(definition), value->type, std::move(value), loc(definition->getLocation())};
     found = constants_.emplace(definition, static_cast<ir::ConstantId>(module_.constants.size())).first;
     module_.constants.push_back(std::move(entry));
   }
@@ -489,6 +488,15 @@ clang::SourceManager& ModuleLowering::sources() const { return sema_.getSourceMa
 
 bool ModuleLowering::isGenerated(const clang::VarDecl* declaration) {
   return declaration->getName().starts_with("__sk_constant");
+}
+
+std::string ModuleLowering::nameOf(const clang::VarDecl* declaration) {
+  const auto* parts = llvm::dyn_cast<clang::DecompositionDecl>(declaration);
+  if (parts == nullptr) return declaration->getNameAsString();
+  std::string name;
+  for (const clang::BindingDecl* binding : parts->bindings())
+    name += (name.empty() ? "" : "_") + binding->getNameAsString();
+  return name;
 }
 
 bool ModuleLowering::isPrelude(const clang::Decl* declaration) const {

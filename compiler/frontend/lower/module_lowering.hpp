@@ -66,6 +66,8 @@ class ModuleLowering {
   bool isPrelude(const clang::Decl* declaration) const;
   /// True if it holds the value of a border or identity (parameter_editor.hpp).
   static bool isGenerated(const clang::VarDecl* declaration);
+  /// The variable's name; of `auto [p, q]`, which has none, "p_q".
+  static std::string nameOf(const clang::VarDecl* declaration);
   /// The name of a type as the user writes it, for messages.
   std::string spelling(ir::Type type) const;
 

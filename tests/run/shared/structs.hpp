@@ -372,6 +372,7 @@ inline int thisObject(int x, int y) {
 struct Halves {
   int low, high;
 };
+const auto [eleven, twelve] = Halves{11, 12};
 inline Halves halvesOf(int x) { return {x & 3, x >> 2}; }
 inline int structuredBindings(int x, int y) {
   Halves given = {x, y};
@@ -384,7 +385,8 @@ inline int structuredBindings(int x, int y) {
   first += third++;
   int sum = 0;
   for (auto [i, end] = Halves{0, 3}; i < end; ++i) sum += i * second;
-  return a + 10 * b + 100 * low + 1000 * high + given.low + given.high + first + third + list[0] + sum;
+  return a * eleven + 10 * b + twelve + 100 * low + 1000 * high + given.low + given.high + first + third +
+         list[0] + sum;
 }
 
 inline Halves abs(Halves h) { return {h.low < 0 ? -h.low : h.low, h.high < 0 ? -h.high : h.high}; }
