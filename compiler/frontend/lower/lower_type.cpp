@@ -49,7 +49,14 @@ ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
   }
   if (canonical->isReferenceType()) fail(Diag::ReferenceType, use, {qualified.getAsString()});
   if (const auto* enumeration = canonical->getAs<clang::EnumType>()) {
-    return type(enumeration->getDecl()->getIntegerType(), use);
+    const clang::EnumDecl* declaration = enumeration->getDecl();
+    const clang::QualType integer = declaration->getIntegerType();
+    if (context().getIntWidth(integer) <= 32) return type(integer, use);
+    // 64 bits whose values fit 32
+    const bool isSigned = integer->isSignedIntegerType();
+    if (declaration->getNumNegativeBits() <= 32 && declaration->getNumPositiveBits() <= (isSigned ? 31 : 32))
+      return ir::Type::of(isSigned ? ir::Scalar::Int : ir::Scalar::Uint);
+    fail(Diag::EnumTooWide, use, {declaration->getNameAsString()});
   }
   if (const auto* builtin = canonical->getAs<clang::BuiltinType>()) {
     if (const auto scalar = scalarOf(builtin)) return ir::Type::of(*scalar);

@@ -472,6 +472,8 @@ enum Signed : signed char { Below = -3, Above = 100 };
 enum class Wide : unsigned short { Low = 1, High = 65535 };
 enum class Flag : bool { Off, On };
 enum Plain { One = 1, Two };
+enum class Long : long { Negative = -5, Positive = 2147483647 };
+enum class Longer : unsigned long long { Zero, Most = 4294967295 };
 struct Tagged {
   Kind kind = Kind::Gas;
   Signed sign = Below;
@@ -506,6 +508,13 @@ inline int narrowEnumerations(int x, int y) {
   r += t.flag == Flag::On ? 17 : 19;
   r += int(t.wide) + t.sign * 5 + int(list[0].kind) + (t.kind < list[2].kind ? 23 : 29);
   Plain p = x > 2 ? Two : One;
+  Long l = x > y ? Long::Negative : Long::Positive;
+  Longer m = x < 0 ? Longer::Zero : Longer::Most;
+  switch (l) {
+    case Long::Negative: r += 31; break;
+    case Long::Positive: r += 37;
+  }
+  r += (l < Long::Positive ? 41 : 43) + (m > Longer::Zero ? 47 : 53) + int(l) + int(unsigned(m));
   return r * p + (p << 3);
 }
 
