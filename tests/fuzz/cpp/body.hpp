@@ -139,6 +139,7 @@ class Body {
   // Numbers (integers.cpp, floats.cpp, vectors.cpp)
   Expr integer(int depth);
   Expr integerBinary(int depth);
+  Expr intrinsic(int depth);
   std::optional<Expr> integerAssignment(int depth);
   Expr floating(int depth);
   Expr floatLeaf(int depth);

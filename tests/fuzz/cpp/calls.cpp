@@ -2,6 +2,8 @@
 //
 // Calls of functions, methods and operators. No two references of a call get the same variable, or parts of it that
 // overlap, as language.md says.
+#include <algorithm>
+
 #include "cpp/body.hpp"
 
 namespace fuzz::cpp {
@@ -72,49 +74,65 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
     const bool isConflict = (part.effects.written() & heldByConst) != 0;
     parts.push_back(isConflict ? literal(part.type) : std::move(part));
   };
+  const bool isSubscript = function.name == "[]", isCall = function.name == "()";
+  const bool isNamed = !function.isInfix && !isSubscript && !isCall;
   if (function.owner >= 0) {
+    const std::string begin = isSubscript        ? "$["
+                              : isCall           ? "$("
+                              : function.isInfix ? "($ " + function.name + " "
+                                                 : "$." + function.name + "(";
     if (isMutableMethod) {
       const bool isOwn = variableOf(*bound[count]).name == "this" && bound[count]->path.empty();
-      if (isOwn && random_.chance(2, 3)) {
+      if (isOwn && isNamed && random_.chance(2, 3)) {
         text = function.name + "(";
       } else {
-        text = "$." + function.name + "(";
+        text = begin;
         add(target(*bound[count], depth - 1));
       }
     } else {
       Expr object = value(function.owner, depth - 1);
       if (!unit_.has("constrefs")) heldByConst |= object.effects.reads;
-      text = "$." + function.name + "(";
+      text = begin;
       add(std::move(object));
     }
-    if (function.isInfix) text = "($ " + function.name + " ";
   } else if (function.isInfix) {
     text = "(";
   } else {
     text = function.name + "(";
   }
-  for (std::size_t p = 0; p < count; ++p) {
-    const Parameter& parameter = function.parameters[p];
-    if (parameter.hasDefault && random_.chance(1, 2)) break;
-    if (p > 0) text += function.isInfix ? " " + function.name + " " : ", ";
-    text += "$";
-    if (parameter.passing == Passing::Reference) {
-      add(target(*bound[p], depth - 1));
-      continue;
+  const auto addArguments = [&] {
+    for (std::size_t p = 0; p < count; ++p) {
+      const Parameter& parameter = function.parameters[p];
+      if (parameter.hasDefault && random_.chance(1, 2)) break;
+      if (p > 0) text += function.isInfix ? " " + function.name + " " : ", ";
+      text += "$";
+      if (parameter.passing == Passing::Reference) {
+        add(target(*bound[p], depth - 1));
+        continue;
+      }
+      Expr argument = function.isExact || parameter.passing == Passing::ConstReference
+                          ? value(parameter.type, depth - 1)
+                          : convertible(parameter.type, depth - 1);
+      argument = limited(std::move(argument), 0);
+      if (parameter.passing == Passing::ConstReference) {
+        // What a const reference shows must not change, unless C++ and skc agree about it.
+        const bool isShared = (argument.effects.reads & taken) != 0;
+        if (isShared && !unit_.has("aliasing")) argument = literal(parameter.type);
+        if (!unit_.has("constrefs")) heldByConst |= argument.effects.reads;
+      }
+      add(std::move(argument));
     }
-    Expr argument = function.isExact || parameter.passing == Passing::ConstReference
-                        ? value(parameter.type, depth - 1)
-                        : convertible(parameter.type, depth - 1);
-    argument = limited(std::move(argument), 0);
-    if (parameter.passing == Passing::ConstReference) {
-      // What a const reference shows must not change, unless C++ and skc agree about it.
-      const bool isShared = (argument.effects.reads & taken) != 0;
-      if (isShared && !unit_.has("aliasing")) argument = literal(parameter.type);
-      if (!unit_.has("constrefs")) heldByConst |= argument.effects.reads;
-    }
-    add(std::move(argument));
+    text += isSubscript ? "]" : ")";
+  };
+  addArguments();
+  const bool hasReferences = std::ranges::any_of(function.parameters, [](const Parameter& parameter) {
+    return parameter.passing == Passing::Reference;
+  });
+  if (function.returnsObject && isNamed && !hasReferences && random_.chance(1, 3)) {
+    text += "." + function.name + "(";
+    addArguments();
+    cost_ += multiplier_ * function.cost;
   }
-  text += ")";
   const TypeId type = function.result >= 0 ? function.result : Types::of(Scalar::Int);
   Expr result = made(std::move(text), type, std::move(parts), true);
   if (function.result < 0) {

@@ -55,6 +55,7 @@ Expr Body::literal(TypeId type) {
   switch (info.kind) {
     case Type::Kind::Enum: return made(random_.pick(info.enumerators), type, {});
     case Type::Kind::Scalar: break;
+    case Type::Kind::Matrix: return matrixOf(type, 0);
     default: return made(types_.simplest(type), type, {});
   }
   switch (info.scalar) {

@@ -13,6 +13,8 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
@@ -134,6 +136,7 @@ class Campaigns {
       for (std::uint64_t i = 0; i < count; ++i)
         functions += static_cast<std::uint64_t>(programOf(options_, first + i).functions);
       if (findings_ >= options_.mostFindings) break;
+      if (isatty(STDERR_FILENO) != 0) std::cerr << inputs << " programs, " << findings_ << " findings\r";
     }
     std::cout << inputs << " programs of " << functions << " functions, " << findings_ << " findings\n";
     for (const auto& [kind, count] : kinds_) std::cout << count << " x " << kind << "\n";

@@ -9,11 +9,11 @@
 namespace fuzz::cpp {
 
 const std::vector<std::string> constructs = {
-    "aliasing", "auto",        "braces",    "comma",      "constants",    "constrefs",
-    "defaults", "designators", "enums",     "floats",     "inits",        "jumps",
-    "loops",    "matrices",    "methods",   "namespaces", "narrow",       "narrow_enums",
-    "objects",  "operators",   "order",     "overloads",  "parts",        "references",
-    "structs",  "switch",      "templates", "vectors",    "whole_objects"};
+    "aliasing",    "auto",    "braces",       "comma",  "constants",  "constrefs",    "defaults",
+    "designators", "enums",   "floats",       "inits",  "intrinsics", "jumps",        "loops",
+    "matrices",    "methods", "namespaces",   "nested", "narrow",     "narrow_enums", "objects",
+    "operators",   "order",   "overloads",    "parts",  "references", "structs",      "switch",
+    "templates",   "vectors", "whole_objects"};
 
 namespace {
 
@@ -193,7 +193,7 @@ class Generator {
         if (chosen == 2) parameter.passing = Passing::ConstReference;
       }
       if (parameter.passing == Passing::Value && templated < 0 && !function.isInfix && i > 0 &&
-          i == count - 1 && random_.chance(1, 3))
+          i == count - 1 && parameter.type != function.owner && random_.chance(1, 3))
         parameter.hasDefault = true;
       const std::string name = "p" + std::to_string(i);
       const std::string spelling = parameter.type == templated ? "T" : types_.spell(parameter.type);
@@ -240,9 +240,9 @@ class Generator {
       function.isInfix = function.isExact = true;
       function.name = random_.chance(1, 2) ? "+=" : "-=";
       name = "operator" + function.name;
-      for (const Function& other : unit_.functions) {
-        if (other.owner == owner && other.name == function.name) return makeStatement("");
-      }
+    }
+    for (const Function& other : unit_.functions) {
+      if (other.owner == owner && other.name == function.name) return makeStatement("");
     }
     if (function.returnsObject) {
       std::string plain = types_.spell(owner);
@@ -254,7 +254,8 @@ class Generator {
     body.declareObject(owner, !function.isConst);
     declareConstants(body);
     if (function.returnsObject) body.mayReturnObject();
-    const std::string parameters = declareParameters(body, function, isInfix ? 1 : random_.between(0, 2));
+    const std::string parameters =
+        declareParameters(body, function, isInfix || function.name == "[]" ? 1 : random_.between(0, 2));
     NodePtr statements = body.statements(random_.between(1, 4));
     if (function.returnsObject) function.result = -1;
     const std::string end = function.isConst ? ") const {\n$\n}" : ") {\n$\n}";
@@ -382,7 +383,14 @@ class Generator {
 }  // namespace
 
 Program generate(std::uint64_t seed, std::uint64_t number, const std::set<std::string>& without) {
-  return Generator(seed, number, without).generate();
+  // A program that lacks some constructs has more of the others, and more of what they do to each other (Groce et al.,
+  // "Swarm testing", 2012).
+  Random random(seed, ~number);
+  std::set<std::string> lacking = without;
+  for (const std::string& construct : constructs) {
+    if (random.chance(1, 6)) lacking.insert(construct);
+  }
+  return Generator(seed, number, lacking).generate();
 }
 
 }  // namespace fuzz::cpp

@@ -13,7 +13,7 @@ Expr Body::integer(int depth) {
     }
     return literal(random_.chance(2, 3) ? Types::of(Scalar::Int) : Types::of(Scalar::Uint));
   }
-  switch (random_.below(16)) {
+  switch (random_.below(17)) {
     case 0: return literal(random_.chance(2, 3) ? Types::of(Scalar::Int) : Types::of(Scalar::Uint));
     case 1:
     case 2:
@@ -69,8 +69,23 @@ Expr Body::integer(int depth) {
         return made("$." + name, Types::of(scalar), listOf(std::move(vector)));
       }
       return integerBinary(depth);
+    case 15:
+      if (unit_.has("intrinsics")) return intrinsic(depth);
+      return integerBinary(depth);
     default: return integerBinary(depth);
   }
+}
+
+Expr Body::intrinsic(int depth) {
+  const TypeId type = Types::of(random_.chance(1, 2) ? Scalar::Int : Scalar::Uint);
+  Expr a = value(type, depth - 1);
+  const std::size_t form = random_.below(4);
+  if (form == 0 && type == Types::of(Scalar::Int)) return made("abs($)", type, listOf(std::move(a)));
+  Expr b = value(type, depth - 1);
+  if (form < 3)
+    return made(random_.chance(1, 2) ? "min($, $)" : "max($, $)", type, listOf(std::move(a), std::move(b)));
+  Expr c = value(type, depth - 1);
+  return made("clamp($, $, $)", type, listOf(std::move(a), std::move(b), std::move(c)));
 }
 
 Expr Body::integerBinary(int depth) {

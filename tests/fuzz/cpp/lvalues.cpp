@@ -98,6 +98,10 @@ Expr Body::spelled(const Place& place, int depth) {
     } else {
       text += "[$]";
       parts.push_back(index(type.count, depth));
+      // Vectors are no part of C++: whether Clang reads one before or after it computes the index depends on the context.
+      const std::uint64_t bit = std::uint64_t{1} << variable.bit;
+      if (step.kind == Step::Kind::Component && (parts.back().effects.written() & bit) != 0)
+        parts.back() = made("0", Types::of(Scalar::Int), {});
     }
     id = element;
   }
@@ -111,8 +115,24 @@ Expr Body::spelled(const Place& place, int depth) {
 
 Expr Body::target(const Place& place, int depth) {
   Expr result = spelled(place, depth);
-  result.node->simple.clear();
-  result.node->isGuard = true;
+  const auto keep = [&] {
+    result.node->simple.clear();
+    result.node->isGuard = true;
+  };
+  keep();
+  const TypeId type = place.type;
+  if (!mayHaveEffects() || depth <= 0 || !types_.isInteger(type) || !unit_.with("nested", 1, 10))
+    return result;
+  // An assignment is an lvalue, too: `(x = 3) += y`.
+  if (type != Types::of(Scalar::Bool) && random_.chance(1, 2)) {
+    result = made(random_.chance(1, 2) ? "(++$)" : "(--$)", type, listOf(std::move(result)));
+  } else {
+    Expr right = integer(depth - 1);
+    result = made(random_.chance(1, 2) || type == Types::of(Scalar::Bool) ? "($ = $)" : "($ += $)", type,
+                  listOf(std::move(result), std::move(right)));
+  }
+  keep();
+  result.effects.writes |= std::uint64_t{1} << variableOf(place).bit;
   return result;
 }
 

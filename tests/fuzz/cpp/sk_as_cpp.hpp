@@ -62,6 +62,20 @@ using float2x2 = Matrix<float2, 2>;
 using float3x3 = Matrix<float3, 3>;
 using float4x4 = Matrix<float4, 4>;
 
+template <class T>
+T min(T a, T b) {
+  return b < a ? b : a;
+}
+template <class T>
+T max(T a, T b) {
+  return a < b ? b : a;
+}
+template <class T>
+T clamp(T x, T low, T high) {
+  return min(max(x, low), high);
+}
+inline int abs(int x) { return x < 0 ? -x : x; }
+
 /// Makes a kernel callable for many elements.
 #define SK_KERNEL(name)                                                                                 \
   extern "C" void run_##name(const int* a, const uint* b, const float* c, int* r0, uint* r1, float* r2, \

@@ -203,7 +203,10 @@ NodePtr Body::loop() {
       text += random_.chance(1, 2) ? "; ++" + name : "; " + name + "++";
       if (mayHaveEffects() && unit_.with("comma", 1, 4)) {
         text += ", $";
+        const std::size_t position = variables_.size() - 1;
+        variables_[position].below = trips + 1;  // it has been incremented
         parts.push_back(effectExpression(2).node);
+        variables_[position].below = trips;
       }
       text += ") {\n$}";
       break;
