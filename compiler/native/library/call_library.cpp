@@ -2,6 +2,7 @@
 #include "native/library/call_library.hpp"
 
 #include <map>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -48,7 +49,7 @@ class KernelCalls {
   FunctionId ofVectors(Intrinsic intrinsic, FunctionId scalars, const std::vector<Type>& types, Type result) {
     std::vector<std::uint8_t> widths;
     for (const Type& type : types) widths.push_back(type.width);
-    const auto [known, isNew] = ofVectors_.try_emplace({intrinsic, widths}, 0);
+    const auto [known, isNew] = ofVectors_.try_emplace({intrinsic, types.front().scalar, widths}, 0);
     if (!isNew) return known->second;
     const FunctionId component = copyFunction(module_, scalars, copies_);
     Function wrapper;
@@ -75,7 +76,7 @@ class KernelCalls {
   Module& module_;
   const LinkedFunctions& linked_;
   FunctionCopies copies_;
-  std::map<std::pair<Intrinsic, std::vector<std::uint8_t>>, FunctionId> ofVectors_;
+  std::map<std::tuple<Intrinsic, Scalar, std::vector<std::uint8_t>>, FunctionId> ofVectors_;
 };
 
 }  // namespace
