@@ -146,6 +146,28 @@ TEST_CASE("a float2 iterator runs x along the rows and y along the columns") {
   });
 }
 
+TEST_CASE("a ramp between the largest floats") {
+  onSomeLayouts([](sk::Device& device) {
+    for (const std::int64_t n : {1, 2, 3, 7, 100, 4097}) {
+      for (const auto& [begin, end] :
+           {std::pair{3e38F, -3e38F}, std::pair{-3.4e38F, 3.4e38F}, std::pair{-1e38F, 3e38F}}) {
+        auto r = device.stream<float>({n});
+        auto i = device.stream<int>({n});
+        auto u = device.stream<unsigned>({n});
+        iterators::scalars(sk::iter(begin, end), sk::iter(0, 0), sk::iter(0U, 0U), r, i, u);
+        const std::vector<float> got = r.read();
+        const double length = double{end} - double{begin};
+        for (std::int64_t k = 0; k < n; ++k) {
+          const double wanted = double{begin} + length * static_cast<double>(k) / static_cast<double>(n);
+          INFO(n << " steps from " << begin << ": " << k);
+          CHECK(std::fabs(got[static_cast<std::size_t>(k)] - wanted) <=
+                0x1p-23 * std::fabs(length) + 0x1p-24 * std::fabs(wanted));
+        }
+      }
+    }
+  });
+}
+
 TEST_CASE("iterators in views, in place, and in kernels that call kernels") {
   onSomeLayouts([](sk::Device& device) {
     const sk::Shape shape = {61, 67};

@@ -70,8 +70,9 @@ IteratorStep stepOf(const program::Parameter& parameter, const void* ends, const
     const std::int64_t steps = stepsOf(parameter, domain, c);
     if (field.scalar == program::Scalar::Float) {
       const double difference = double{std::bit_cast<float>(end)} - double{std::bit_cast<float>(begin)};
-      step[static_cast<std::size_t>(c)] =
-          std::bit_cast<std::uint32_t>(static_cast<float>(difference / static_cast<double>(steps)));
+      // one step may be too long for a float only if it is never taken
+      const auto length = static_cast<float>(steps == 1 ? 0 : difference / static_cast<double>(steps));
+      step[static_cast<std::size_t>(c)] = std::bit_cast<std::uint32_t>(length);
     } else {
       const std::int64_t difference = integerOf(field.scalar, end) - integerOf(field.scalar, begin);
       step[static_cast<std::size_t>(c)] = static_cast<std::uint32_t>(difference / steps);

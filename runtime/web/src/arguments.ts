@@ -229,7 +229,7 @@ export function stepsOf(kernel: string, parameter: Parameter, element: Element, 
     if (scalar !== 'float' && difference % steps !== 0) {
       fail(kernel, `the iterator '${parameter.name}' goes from ${from} to ${ends[width + c]} in ${steps} steps, which are not whole; choose ends whose difference ${steps} divides, or iterate over float`, 'shape');
     }
-    return difference / steps;
+    return steps === 1 && scalar === 'float' ? 0 : difference / steps;  // one step may be too long for a float
   });
   return { begin, step };
 }

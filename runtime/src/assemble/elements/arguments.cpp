@@ -113,8 +113,15 @@ std::string iteratorValue(ProgramText& program, const Parameter& iterator, const
   } else {
     index += swizzles[iterator.element->fields.front().width - 1u];
   }
-  return fmt::format("{} + {}({}) * {}", parameterUniform(program, type, "begin", iterator), type, index,
-                     parameterUniform(program, type, "step", iterator));
+  const int width = iterator.element->fields.front().width;
+  const bool isFloat = iterator.element->fields.front().scalar == program::Scalar::Float;
+  const bool isSplat = width > 1 && access.addressing == Addressing::Linear;
+  if (isFloat && isSplat) index = fmt::format("ivec{}({})", width, index);
+  const std::string begin = parameterUniform(program, type, "begin", iterator);
+  const std::string step = parameterUniform(program, type, "step", iterator);
+  if (!isFloat) return fmt::format("{} + {}({}) * {}", begin, type, index, step);
+  program.require(Function::Ramp);
+  return fmt::format("sk_ramp({}, {}, {})", begin, index, step);
 }
 
 std::string specConstant(ProgramText& program, const Parameter& parameter, std::uint32_t bits) {

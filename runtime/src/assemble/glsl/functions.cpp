@@ -22,6 +22,7 @@ std::string_view text(Function function) {
     case Function::Mirror: return library::mirror;
     case Function::MirrorOnce: return library::mirrorOnce;
     case Function::ToHalf: return library::toHalf;
+    case Function::Ramp: return library::ramp;
     case Function::Local: return library::local;
     case Function::Sampled: return library::sampled;
   }

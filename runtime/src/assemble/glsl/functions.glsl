@@ -121,6 +121,24 @@ float sk_to_half(float sk_x) {
   return uintBitsToFloat((sk_b & 0x80000000u) | sk_r);
 }
 
+//// ramp
+// Element k of a ramp from a in steps of s. Where k steps exceed the largest float, though the ramp's ends do not, it takes them in
+// two parts.
+float sk_ramp(float sk_a, int sk_k, float sk_s) {
+  float sk_d = float(sk_k) * sk_s;
+  int sk_h = sk_k / 2;
+  return abs(sk_d) < 3e38 ? sk_a + sk_d : (sk_a + float(sk_h) * sk_s) + float(sk_k - sk_h) * sk_s;
+}
+vec2 sk_ramp(vec2 sk_a, ivec2 sk_k, vec2 sk_s) {
+  return vec2(sk_ramp(sk_a.x, sk_k.x, sk_s.x), sk_ramp(sk_a.y, sk_k.y, sk_s.y));
+}
+vec3 sk_ramp(vec3 sk_a, ivec3 sk_k, vec3 sk_s) {
+  return vec3(sk_ramp(sk_a.xy, sk_k.xy, sk_s.xy), sk_ramp(sk_a.z, sk_k.z, sk_s.z));
+}
+vec4 sk_ramp(vec4 sk_a, ivec4 sk_k, vec4 sk_s) {
+  return vec4(sk_ramp(sk_a.xy, sk_k.xy, sk_s.xy), sk_ramp(sk_a.zw, sk_k.zw, sk_s.zw));
+}
+
 //// local
 // Where the invocation is in its work group of 8 x 16: eight after one another fetch a line of the cache, 2 x 4 texels.
 ivec2 sk_local() {

@@ -38,6 +38,7 @@ enum class Function : std::uint8_t {
   Mirror,
   MirrorOnce,
   ToHalf,  ///< rounds a float to half, as a float
+  Ramp,  ///< element of an iterator of floats
   Local,  ///< position of an invocation in its work group, groupOfWideTexels
   Sampled,  ///< texel of a 2-D texture, sampled at its centre
 };
