@@ -71,6 +71,13 @@ Advice adviceOn(const clang::Diagnostic& diagnostic, const DeclarationSyntax* sy
     case clang::diag::err_member_function_call_bad_cvr: return adviceOnMethod(diagnostic);
     case clang::diag::ext_return_has_expr: return adviceOnReturn(diagnostic, syntax);
     case clang::diag::warn_unsigned_always_true_comparison: return adviceOnUnsigned(diagnostic);
+    // what C++ leaves undefined, and kernels do not
+    case clang::diag::warn_remainder_division_by_zero: return {format(Diag::DivisionByZero, {})};
+    case clang::diag::warn_shift_negative:
+    case clang::diag::warn_shift_gt_typewidth: return {format(Diag::ShiftCount, {})};
+    case clang::diag::warn_impcast_literal_float_to_integer_out_of_range:
+    case clang::diag::warn_impcast_float_to_integer_out_of_range:
+      return {format(Diag::ConversionOutOfRange, {spellingOf(typesIn(diagnostic).back())})};
     default: break;
   }
   if (Advice advice = adviceOnNames(diagnostic); !advice.text.empty()) return advice;

@@ -425,8 +425,9 @@ Advice adviceOnCall(const clang::Diagnostic& diagnostic) {
   const std::set<std::size_t> counts = argumentCounts(name);
   llvm::StringRef rest = textAt(diagnostic);
   if (counts.empty() || !rest.consume_front(name)) return {};
-  const std::size_t given = argumentsIn(bracketedAt(rest.ltrim()));
-  if (counts.contains(given)) return {};
+  const llvm::StringRef arguments = bracketedAt(rest.ltrim());
+  const std::size_t given = argumentsIn(arguments);
+  if (counts.contains(given)) return {format(Diag::IntrinsicOperands, {name, arguments.str()})};
   std::string taken;
   for (const std::size_t count : counts) taken += fmt::format("{}{}", taken.empty() ? "" : " or ", count);
   return {format(Diag::ArgumentCount,

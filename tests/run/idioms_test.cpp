@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// idioms.sk against plain C++. All results are exact: values are small multiples of 1/256.
+// idioms.sk against plain C++. Results are exact, because values are small multiples of 1/256; overloads of intrinsics state their
+// bound.
+#include <algorithm>
+#include <cmath>
+
 #include "idioms.sk.hpp"
 #include "support/devices.hpp"
 #include "support/values.hpp"
@@ -74,6 +78,30 @@ TEST_CASE("names of GLSL's types and functions, and letters beyond ASCII, are fr
     auto area = device.stream<float>({count});
     idioms::maß(streamOf<float>(device, x), area);
     CHECK(difference(area.read(), [](std::size_t i) { return 3.25f * x[i] * x[i]; }) == "");
+  });
+}
+
+TEST_CASE("intrinsics are overloaded for structs") {
+  onGlAndNative([](sk::Device& device) {
+    auto r = device.stream<float4>({count}), s = device.stream<float4>({count});
+    idioms::overloads(streamOf<float>(device, x), r, s);
+    const auto isNear = [](float got, double wanted) {
+      return std::fabs(got - wanted) <= 1e-4 * (1 + std::fabs(wanted));
+    };
+    for (std::size_t i = 0; i < r.read().size(); ++i) {
+      const double v = std::fabs(double{x[i]}) + 1, a = std::max(v, 2.0), b = std::max(v, 3.0);
+      const double da = v < 2 ? 0 : 1, db = v < 3 ? 0 : 1;
+      INFO(x[i]);
+      CHECK(isNear(r.read()[i].x, std::sin(v * v) + a * b));
+      CHECK(isNear(r.read()[i].y, std::cos(v * v) * 2 * v + da * b + a * db));
+      CHECK(isNear(r.read()[i].z, std::sqrt(v) + v * v));
+      CHECK(isNear(r.read()[i].w, 1 / (2 * std::sqrt(v)) + 2 * v));
+      const double u = std::fabs(double{x[i]}), low = std::clamp(double{x[i]}, -0.5, 0.5);
+      CHECK(isNear(s.read()[i].x, 0.75 * (std::min(u, 1.0) + std::min(u, 2.0)) + 0.25 * (low - low)));
+      CHECK(isNear(s.read()[i].y, std::sqrt(2.0) * u));
+      CHECK(s.read()[i].z == 0);
+      CHECK(s.read()[i].w == std::floor(x[i]));
+    }
   });
 }
 

@@ -200,6 +200,10 @@ bool isOfDoubles(const clang::Expr* e) {
 ExprPtr FunctionLowering::tableIntrinsic(const clang::CallExpr* e, llvm::StringRef name) {
   const bool areDoubles = std::any_of(e->arg_begin(), e->arg_end(), isOfDoubles);
   Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), areDoubles);
+  if ((name == "mod" || name == "fmod") &&
+      llvm::all_of(args, [](const ExprPtr& arg) { return arg->type.arithmeticType().isInteger(); })) {
+    module_.fail(Diag::IntegerRemainder, e->getBeginLoc(), {std::string_view(name)});
+  }
   std::optional<Match> match = bestMatch(name, module_.type(e->getType(), e->getBeginLoc()), args);
   if (!match) {
     std::string types;
