@@ -105,10 +105,34 @@ std::string dot(Polyfills& polyfills, Type type) {
   return "sk_dot";
 }
 
+/// Defines what lengths and directions of vectors share: the magnitude of the largest component, the largest of finite
+/// numbers and infinity; and division of a vector by a power of 2.
+void defineForLengths(Polyfills& polyfills, Type type) {
+  dot(polyfills, type);
+  defineByComponent(polyfills, "sk_ldexp", type, {type, Type::of(Scalar::Int)});
+  std::string text =
+      fmt::format("sk_double sk_largest({} a) {{\n  sk_double m = sk_abs(a.x), n;\n", nameOf(type));
+  for (std::size_t c = 1; c < type.width; ++c) {
+    text += fmt::format("  n = sk_abs(a.{});\n  m = sk_choose(sk_less(m, n) || sk_isnan(m), n, m);\n",
+                        letters[c]);
+  }
+  polyfills.add(text + "  return m;\n}\n");
+}
+
 std::string length(Polyfills& polyfills, Type type) {
-  if (type.isVector()) dot(polyfills, type);
-  polyfills.add(fmt::format("sk_double sk_length({} a) {{ return {}; }}\n", nameOf(type),
-                            type.isVector() ? "sk_sqrt(sk_dot(a, a))" : "sk_abs(a)"));
+  if (type.isScalar()) {
+    polyfills.add("sk_double sk_length(sk_double a) { return sk_abs(a); }\n");
+    return "sk_length";
+  }
+  defineForLengths(polyfills, type);
+  polyfills.add(
+      fmt::format("sk_double sk_length({0} a) {{\n"
+                  "  sk_double m = sk_largest(a);\n"
+                  "  if (sk_isinf(m)) return m;\n"
+                  "  int e = sk_square_exponent(m);\n"
+                  "  {0} b = sk_ldexp(a, -e);\n"
+                  "  return sk_ldexp(sk_sqrt(sk_dot(b, b)), e);\n}}\n",
+                  nameOf(type)));
   return "sk_length";
 }
 
@@ -120,10 +144,23 @@ std::string distance(Polyfills& polyfills, Type type) {
   return "sk_distance";
 }
 
+/// A zero vector keeps its zeros.
 std::string normalize(Polyfills& polyfills, Type type) {
-  length(polyfills, type);
+  if (type.isScalar()) {
+    polyfills.add(
+        "sk_double sk_normalize(sk_double a) {\n"
+        "  return sk_choose(sk_equal(a, sk_to_double(0.0)), a, sk_div(a, sk_abs(a)));\n}\n");
+    return "sk_normalize";
+  }
+  defineForLengths(polyfills, type);
   defineByComponent(polyfills, "sk_div", type, {type, type.component()});
-  polyfills.add(fmt::format("{0} sk_normalize({0} a) {{ return sk_div(a, sk_length(a)); }}\n", nameOf(type)));
+  polyfills.add(
+      fmt::format("{0} sk_normalize({0} a) {{\n"
+                  "  {0} b = sk_ldexp(a, -sk_square_exponent(sk_largest(a)));\n"
+                  "  sk_double square = sk_dot(b, b);\n"
+                  "  if (sk_equal(square, sk_to_double(0.0))) return a;\n"
+                  "  return sk_div(b, sk_sqrt(square));\n}}\n",
+                  nameOf(type)));
   return "sk_normalize";
 }
 
@@ -226,6 +263,10 @@ std::string doubleConverted(Polyfills& polyfills, Type from, Type to, const std:
     return doubleConverted(polyfills, from.withScalar(Scalar::Int), to,
                            call(glslSpelling(Scalar::Int, from.width), {operand}));
   }
+  if (to.scalar == Scalar::Half) {
+    defineByComponent(polyfills, "sk_to_odd", to, {from});
+    return call(polyfills.quantize(to), {call("sk_to_odd", {operand})});
+  }
   const std::string function = "sk_to_" + glslSpelling(to.scalar, 1).substr(to.isDouble() ? 3 : 0);
   defineByComponent(polyfills, function, to, {from});
   return call(function, {operand});
@@ -245,7 +286,7 @@ std::string doubleVector(Polyfills& polyfills, Type type, const std::vector<Type
                                                : fmt::format("{}.{}", "abcd"[i], letters[c]));
     }
   }
-  components.resize(type.width, components.front());   // broadcast a scalar
+  components.resize(type.width, components.front());  // broadcast a scalar
   polyfills.add(fmt::format("{} {}({}) {{ return {}; }}\n", nameOf(type), function, join(parameters, ", "),
                             call(nameOf(type), components)));
   return call(function, texts);

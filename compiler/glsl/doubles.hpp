@@ -31,7 +31,7 @@ std::string doubleIntrinsic(Polyfills& polyfills, ir::Intrinsic intrinsic, const
 /// Several components of a vector.
 std::string doubleSwizzle(Polyfills& polyfills, ir::Type base, const std::vector<std::uint8_t>& components,
                           const std::string& vector);
-/// The component at a computed index (int or uint).
+/// The component at a computed index: an int of a component of the vector.
 std::string doubleComponent(Polyfills& polyfills, ir::Type base, const std::string& vector,
                             const std::string& index);
 /// `vector` with these components, or the one at a computed index, replaced by `value`.

@@ -151,6 +151,27 @@ Part asFloat(Lanes& l, const Part& real) {
   llvm::Type* const type = l.sameShape(real.value, l.b.getFloatTy());
   return real.value->getType() == type ? real : Part{l.b.CreateFPTrunc(real.value, type)};
 }
+/// Rounds a real number to float so that rounding the result to half gives the half nearest to the number: to the nearest
+/// float if that is exact or odd, else to its odd neighbour on the other side of the number (Boldo and Melquiond, "Emulation of
+/// FMA and correctly rounded sums: proved algorithms using rounding to odd", 2008).
+Part asOddFloat(Lanes& l, const Part& real) {
+  llvm::Value* const x = real.value;
+  const Part nearest = asFloat(l, real);
+  if (nearest.value == x) return nearest;
+  llvm::Type* const word = l.sameShape(x, l.int32());
+  const auto magnitude = [&](llvm::Value* value) {
+    return l.b.CreateUnaryIntrinsic(llvm::Intrinsic::fabs, value);
+  };
+  llvm::Value* const exact = magnitude(x);
+  llvm::Value* const rounded = magnitude(l.b.CreateFPExt(nearest.value, x->getType()));
+  llvm::Value* const bits = l.b.CreateBitCast(nearest.value, word);
+  llvm::Value* step =
+      l.b.CreateSelect(l.b.CreateFCmpOGT(rounded, exact), l.integer(word, -1), l.integer(word, 0));
+  step = l.b.CreateSelect(l.b.CreateFCmpOLT(rounded, exact), l.integer(word, 1), step);
+  llvm::Value* const isOdd = l.b.CreateTrunc(bits, l.sameShape(x, l.b.getInt1Ty()));
+  llvm::Value* const odd = l.b.CreateSelect(isOdd, bits, l.b.CreateAdd(bits, step));
+  return {l.b.CreateBitCast(odd, nearest.value->getType())};
+}
 Part asReal(Lanes& l, const Part& value) {
   llvm::Type* const type = l.sameShape(value.value, l.real());
   return value.value->getType() == type ? value : Part{l.b.CreateFPExt(value.value, type)};
@@ -172,7 +193,7 @@ Part toNarrow(Lanes& l, Scalar narrow, const Part& number) {
     llvm::Value* const word = l.value(number);
     return {l.b.CreateTrunc(word, l.sameShape(word, l.type(narrow)))};
   }
-  return narrow == Scalar::Half ? halfOfFloat(l, asFloat(l, number))
+  return narrow == Scalar::Half ? halfOfFloat(l, asOddFloat(l, number))
                                 : normalizedOfFloat(l, narrow, asFloat(l, number));
 }
 
@@ -215,6 +236,7 @@ static llvm::Value* saturatedInts(Lanes& l, llvm::Value* x) {
 Part convert(Lanes& l, Scalar from, Scalar to, const Part& operand) {
   if (from == to) return operand;
   if (isNarrow(from)) return convert(l, arithmeticScalar(from), to, fromNarrow(l, from, operand));
+  if (to == Scalar::Half && from == Scalar::Double) return toNarrow(l, to, operand);
   if (isNarrow(to)) return toNarrow(l, to, convert(l, from, arithmeticScalar(to), operand));
   const bool areWords =
       (from == Scalar::Int || from == Scalar::Uint) && (to == Scalar::Int || to == Scalar::Uint);

@@ -37,7 +37,7 @@ class Formula {
 
   /// A constant of the type of `like`.
   Part number(const Part& like, double value) const;
-  /// A constant with more digits than a double has.
+  /// A constant with more digits or a larger exponent than a double has, decimal or hexadecimal.
   Part decimal(const Part& like, const char* text) const;
 
   Part abs(const Part& x) const;

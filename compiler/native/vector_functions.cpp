@@ -21,13 +21,27 @@ Part largest(const Formula& f, const Parts& a) {
   return most;
 }
 
-/// A power of 2 by which to scale a vector with this largest component, so that no square overflows or
-/// underflows. It is in the range of float, even for doubles.
+/// Powers of 2: vectors whose largest component is below `small`, or at least `large`, are multiplied by `up` or `down`.
+/// Then no square overflows, and none that counts underflows.
+struct LengthScales {
+  const char *small, *large, *up, *down;
+};
+
+LengthScales lengthScales(const Part& part) {
+  const llvm::Type* const type = part.value->getType()->getScalarType();
+  if (type->isFloatTy()) return {"0x1p-40", "0x1p62", "0x1p86", "0x1p-66"};
+  if (type->isDoubleTy()) return {"0x1p-400", "0x1p500", "0x1p600", "0x1p-600"};
+  return {"0x1p-8000", "0x1p8000", "0x1p8500", "0x1p-8500"};
+}
+
+/// The power of 2 by which to multiply a vector with this largest component.
 Part lengthScale(const Formula& f, const Part& most) {
+  const LengthScales scales = lengthScales(most);
   const Part small =
-      f.select(f.less(most, f.number(most, 0x1p-40)), f.number(most, 0x1p86), f.number(most, 1));
-  const Part isLarge = binary(f.l, BinaryOp::GreaterEqual, Scalar::Float, most, f.number(most, 0x1p62));
-  return f.select(isLarge, f.number(most, 0x1p-66), small);
+      f.select(f.less(most, f.decimal(most, scales.small)), f.decimal(most, scales.up), f.number(most, 1));
+  const Part isLarge =
+      binary(f.l, BinaryOp::GreaterEqual, Scalar::Float, most, f.decimal(most, scales.large));
+  return f.select(isLarge, f.decimal(most, scales.down), small);
 }
 
 /// An n by n matrix in row-major order, without one row and one column.

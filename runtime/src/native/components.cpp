@@ -9,6 +9,7 @@
 #include "sk/native/quad_type.hpp"
 #include "sk/scalar_bytes.hpp"
 #include "support/checked_size.hpp"
+#include "support/round_to_odd.hpp"
 
 namespace sk {
 
@@ -34,6 +35,18 @@ void convertStrided(const std::byte* from, std::size_t fromStride, std::byte* to
   }
 }
 
+/// Likewise to floats that are rounded to half afterwards.
+template <class From>
+void convertToOdd(const std::byte* from, std::size_t fromStride, std::byte* to, std::size_t toStride,
+                  std::int64_t count) {
+  for (std::int64_t i = 0; i < count; ++i, from += fromStride, to += toStride) {
+    From value;
+    std::memcpy(&value, from, sizeof value);
+    const float converted = roundedToOdd(static_cast<double>(value));
+    std::memcpy(to, &converted, sizeof converted);
+  }
+}
+
 template <class From>
 void convertFrom(const std::byte* from, std::size_t fromStride, std::byte* to, std::size_t toStride,
                  std::size_t toBytes, std::int64_t count) {
@@ -44,8 +57,9 @@ void convertFrom(const std::byte* from, std::size_t fromStride, std::byte* to, s
   }
 }
 
-/// Copies values; converts real ones if their sizes differ.
-void move(const Values<const std::byte>& from, const Values<std::byte>& to, std::int64_t count) {
+/// Copies values; converts real ones if their sizes differ. `areRoundedAgain`: floats are rounded to half afterwards.
+void move(const Values<const std::byte>& from, const Values<std::byte>& to, std::int64_t count,
+          bool areRoundedAgain = false) {
   if (from.bytes == to.bytes) {
     if (from.stride == from.bytes && to.stride == to.bytes) {
       if (count > 0) std::memcpy(to.first, from.first, static_cast<std::size_t>(count) * from.bytes);
@@ -59,6 +73,8 @@ void move(const Values<const std::byte>& from, const Values<std::byte>& to, std:
       default: return copyStrided<16>(from.first, from.stride, to.first, to.stride, count);
     }
   }
+  if (areRoundedAgain && from.bytes == sizeof(double) && to.bytes == sizeof(float))
+    return convertToOdd<double>(from.first, from.stride, to.first, to.stride, count);
   switch (from.bytes) {
     case sizeof(float):
       return convertFrom<float>(from.first, from.stride, to.first, to.stride, to.bytes, count);
@@ -127,7 +143,7 @@ void Components::copy(const Components& others, const Run& from, const Run& to) 
   for (std::size_t c = 0; c < types_.size(); ++c) {
     native::inParallel(to.count, 1, native::Deal::Evenly, [&](native::Range part) {
       move(others.valuesOf(c, from.part(part.begin, part.end)), valuesOf(c, to.part(part.begin, part.end)),
-           part.end - part.begin);
+           part.end - part.begin, holdsHalves_);
     });
   }
 }
@@ -154,7 +170,7 @@ void Components::write(const Run& run, const std::byte* elements, std::size_t el
     const Values<std::byte> held = valuesOf(c, run);
     move({elements + types_[c].offset, elementBytes, types_[c].hostBytes}, held, run.count);
     if (types_[c].scalar != program::Scalar::Bool) continue;
-    for (std::int64_t i = 0; i < run.count; ++i) {   // any byte that is not 0 is true
+    for (std::int64_t i = 0; i < run.count; ++i) {  // any byte that is not 0 is true
       std::byte& value = held.first[static_cast<std::size_t>(i) * held.stride];
       value = std::byte{value != std::byte{0}};
     }
@@ -178,7 +194,7 @@ void Components::readReals(const Run& run, double* values) const {
 void Components::writeReals(const Run& run, const double* values) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
     move({reinterpret_cast<const std::byte*>(values + c), types_.size() * sizeof(double), sizeof(double)},
-         valuesOf(c, run), run.count);
+         valuesOf(c, run), run.count, holdsHalves_);
   }
 }
 

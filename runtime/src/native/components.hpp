@@ -88,6 +88,8 @@ class Components {
   void writeReals(const Run& run, const double* values);
   /// Sets one scalar of elements; `values` have the type of the arrays.
   void writeScalars(std::size_t component, const Run& run, const std::byte* values);
+  /// From now on, doubles are converted to floats that roundToHalf() rounds as if they were the doubles.
+  void holdHalves() { holdsHalves_ = true; }
   /// Rounds floats to half precision.
   void roundToHalf(std::int64_t count);
 
@@ -97,6 +99,7 @@ class Components {
   Values<const std::byte> valuesOf(std::size_t component, const Run& run) const;
 
   RealType real_ = RealType::Float;
+  bool holdsHalves_ = false;
   std::vector<ComponentType> types_;
   std::vector<ArrayMemory> arrays_;
   std::vector<void*> pointers_;

@@ -78,6 +78,7 @@ NativeStream::NativeStream(NativeDevice& on, const program::Element& type, const
   try {
     const RealType least = storage >= Storage::Extended ? RealType::Double : RealType::Float;
     components = Components(type, std::max(least, on.real()), extents.size());
+    if (storage == Storage::Half) components.holdHalves();
   } catch (const NoMemory& error) {
     throw Error(fmt::format("'{}' has no memory for a stream of {} of shape {}: an array of {} bytes",
                             on.name(), type.name, toString(extents), error.bytes()),
@@ -229,6 +230,7 @@ void NativeStream::writeScalars(const StreamRegion& region, std::size_t offset, 
 void NativeStream::keepStorage() {
   if (storage == Storage::Half && components.real() == RealType::Float) {
     components.roundToHalf(shape.size());
+    components.holdHalves();  // they may have been exchanged
   }
 }
 

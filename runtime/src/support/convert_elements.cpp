@@ -6,6 +6,7 @@
 
 #include "sk/narrow.hpp"
 #include "sk/scalar_bytes.hpp"
+#include "support/round_to_odd.hpp"
 
 namespace sk {
 
@@ -45,22 +46,9 @@ double loadReal(program::Scalar scalar, const std::byte* place) {
   return scalar == program::Scalar::Half ? float{load<half>(place)} : load<float>(place);
 }
 
-/// Rounds a double to float, to odd, so that a second rounding to half gives the correctly rounded result.
-float toOdd(double value) {
-  const auto nearest = static_cast<float>(value);
-  if (static_cast<double>(nearest) == value || value != value) return nearest;
-  auto bits = load<std::uint32_t>(reinterpret_cast<const std::byte*>(&nearest));
-  const bool isBeyond = (nearest > value) == (value > 0);  // its magnitude is too large
-  if (isBeyond) --bits;
-  bits |= 1u;
-  float odd;
-  std::memcpy(&odd, &bits, sizeof odd);
-  return odd;
-}
-
 void keepReal(program::Scalar scalar, std::byte* place, double value) {
   if (scalar == program::Scalar::Double) return keep(place, value);
-  if (scalar == program::Scalar::Half) return keep(place, half(toOdd(value)));
+  if (scalar == program::Scalar::Half) return keep(place, half(roundedToOdd(value)));
   keep(place, static_cast<float>(value));
 }
 

@@ -205,16 +205,19 @@ std::string widened(ProgramText& program, const Field& field, const std::string&
   return fmt::format("sk_widen{}({})", field.width, value);
 }
 
-/// Converts doubles to a float or a vector of floats.
+/// Converts doubles to a float or a vector of floats, or to floats that are rounded once more, to half.
 std::string narrowed(ProgramText& program, const Field& field, const std::string& value) {
-  if (field.width == 1) return fmt::format("sk_to_float({})", value);
-  const std::string signature = fmt::format("vec{0} sk_narrow{0}(sk_double{0} sk_v)", field.width);
+  const bool isRoundedAgain = field.scalar == Scalar::Half;
+  const std::string_view one = isRoundedAgain ? "sk_to_odd" : "sk_to_float";
+  if (field.width == 1) return fmt::format("{}({})", one, value);
+  const std::string all = fmt::format("sk_{}{}", isRoundedAgain ? "odd" : "narrow", field.width);
+  const std::string signature = fmt::format("vec{0} {1}(sk_double{0} sk_v)", field.width, all);
   if (!program.isDefined(signature)) {
     std::vector<std::string> parts;
-    for (int c = 0; c < field.width; ++c) parts.push_back(fmt::format("sk_to_float(sk_v.{})", "xyzw"[c]));
+    for (int c = 0; c < field.width; ++c) parts.push_back(fmt::format("{}(sk_v.{})", one, "xyzw"[c]));
     program.function(signature, {fmt::format("return vec{}({});", field.width, fmt::join(parts, ", "))});
   }
-  return fmt::format("sk_narrow{}({})", field.width, value);
+  return fmt::format("{}({})", all, value);
 }
 
 /// Converts the contents of a plane's texel to the program's value.

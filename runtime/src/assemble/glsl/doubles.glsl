@@ -71,6 +71,13 @@ sk_double sk_ldexp(sk_double a, int e) {
   return sk_double(uvec2(a.bits.x, (a.bits.y & 0x800fffffu) | (uint(scaled) << 20)));
 }
 
+// The power of 2 by which to divide numbers, of which this is the largest magnitude, so that no square overflows and none that
+// counts underflows.
+int sk_square_exponent(sk_double a) {
+  int e = int((a.bits.y >> 20) & 0x7ffu) - 1023;
+  return abs(e) < 400 || e == 1024 || e == -1023 ? 0 : e;
+}
+
 //// pair
 struct sk_double { float hi, lo; };
 
@@ -270,7 +277,26 @@ sk_double sk_ldexp(sk_double a, int e) {
   return sk_double(hi, sk_is_finite(hi) ? sk_scaled(a.lo, e) : 0.0);
 }
 
+
+// The power of 2 by which to divide numbers, of which this is the largest magnitude, so that the squares neither overflow nor
+// lose their second float.
+int sk_square_exponent(sk_double a) {
+  int e = int((floatBitsToUint(a.hi) >> 23) & 0xffu) - 127;
+  return abs(e) < 24 || e == 128 || e == -127 ? 0 : e;
+}
+
 //// common
+// A float that rounds to the half that is nearest to the double: the nearest float if that is exact or odd, else its odd neighbour
+// on the other side of the double.
+float sk_to_odd(sk_double a) {
+  float f = sk_to_float(a);
+  sk_double rest = sk_sub(a, sk_to_double(f)), zero = sk_to_double(0.0);
+  int bits = floatBitsToInt(f);
+  bool isAbove = sk_less(zero, rest), isBelow = sk_less(rest, zero);
+  if ((bits & 1) != 0 || !(isAbove || isBelow)) return f;
+  return intBitsToFloat(isAbove == (bits >= 0) ? bits + 1 : bits - 1);
+}
+
 struct sk_double2 { sk_double x, y; };
 struct sk_double3 { sk_double x, y, z; };
 struct sk_double4 { sk_double x, y, z, w; };
