@@ -13,6 +13,7 @@
 #include "glsl/doubles.hpp"
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/partial_operations.hpp"
+#include "ir/evaluate.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"
 #include "support/overloaded.hpp"
@@ -62,11 +63,12 @@ bool isNonNegative(const Expr& expr) {
   return n != nullptr && static_cast<std::int32_t>(n->bits) >= 0;
 }
 
-/// The component of a vector that an index selects, if the index is constant.
+/// The component of a vector that an index selects, if the index is constant; the nearest one to an index outside.
 std::optional<std::uint32_t> knownComponent(const Index& n) {
   const auto* literal = std::get_if<Literal>(&n.index->node);
-  return literal != nullptr && literal->bits < n.base->type.width ? std::optional(literal->bits)
-                                                                  : std::nullopt;
+  if (literal == nullptr) return std::nullopt;
+  const bool isBelow = n.index->type.scalar == Scalar::Int && static_cast<std::int32_t>(literal->bits) < 0;
+  return isBelow ? 0 : std::min<std::uint32_t>(literal->bits, n.base->type.width - 1U);
 }
 
 /// True if GLSL can assign to the text of this lvalue. Components of double vectors are members of a struct:
@@ -101,7 +103,7 @@ class GlslExpr {
     }
     const auto& n = std::get<Index>(lvalue.node);
     return assigned(*n.base, doubleWithComponent(context_.polyfills, n.base->type, text(*n.base),
-                                                 intText(*n.index), value));
+                                                 intIndexText(n), value));
   }
 
   /// "place += value", or its expansion if GLSL has no such operator for these operands.
@@ -115,7 +117,16 @@ class GlslExpr {
 
  private:
   Parts parts(const Expr& expr) const {
+    if (const auto bits = formulaOfLiterals(expr)) return literalText(expr.type, *bits);
     return match(expr.node, [&](const auto& node) { return print(expr.type, node); });
+  }
+
+  /// The value of a formula of float literals. Devices might divide less precisely when they compile.
+  std::optional<std::uint32_t> formulaOfLiterals(const Expr& expr) const {
+    const bool isFormula =
+        std::holds_alternative<Binary>(expr.node) || std::holds_alternative<Convert>(expr.node);
+    if (!isFormula || !expr.type.isScalar() || !expr.type.isFloat()) return std::nullopt;
+    return evaluateInFloat(context_.module, expr, Constants::Keep);
   }
 
   Parts print(Type type, const Literal& n) const {
@@ -288,11 +299,11 @@ class GlslExpr {
     if (const auto component = knownComponent(n)) {
       return {text(*n.base, Precedence::Primary) + "." + "xyzw"[*component]};
     }
-    return {doubleComponent(context_.polyfills, n.base->type, text(*n.base), intText(*n.index))};
+    return {doubleComponent(context_.polyfills, n.base->type, text(*n.base), intIndexText(n))};
   }
 
-  std::string intText(const Expr& index) const {
-    return index.type.scalar == Scalar::Int ? text(index) : "int(" + text(index) + ")";
+  std::string intIndexText(const Index& n) const {
+    return n.index->type.scalar == Scalar::Int ? indexText(n) : "int(" + indexText(n) + ")";
   }
 
   std::string operand(BinaryOp outer, const Expr& expr, Precedence around) const {

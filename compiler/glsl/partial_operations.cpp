@@ -15,7 +15,7 @@ using namespace ir;
 /// True if every component of a value is a known constant that satisfies the predicate.
 template <class Predicate>
 bool isKnown(const Module& module, const Expr& expr, Predicate isGood) {
-  if (const auto bits = evaluate(module, expr, Constants::LookThrough)) return isGood(*bits);
+  if (const auto bits = evaluateInFloat(module, expr, Constants::LookThrough)) return isGood(*bits);
   if (const auto* n = std::get_if<ConstantRef>(&expr.node)) {
     return isKnown(module, *module.constants[n->constant].value, isGood);
   }

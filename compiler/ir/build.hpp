@@ -24,6 +24,11 @@ ExprPtr literal(double value, Loc loc = {});
 ExprPtr literal(std::int32_t value, Loc loc = {});
 ExprPtr literal(std::uint32_t value, Loc loc = {});
 ExprPtr literal(bool value, Loc loc = {});
+/// A float literal whose source text stands for the double `text`, of which `value` is the nearest float. A wide variant of
+/// the kernel sees `text`, so that a text is rounded once in every precision.
+ExprPtr literal(float value, double text, Loc loc = {});
+/// The double that a float literal stands for: its text, or its float.
+double wideValue(const Literal& literal);
 /// `value` in a type that can represent it: a Literal for a scalar, a splat for a vector.
 ExprPtr literalOf(Type type, int value, Loc loc = {});
 
@@ -63,7 +68,7 @@ std::vector<ExprPtr> exprs(E... items) {
 VarId rootOf(const Expr& place);
 
 ExprPtr clone(const Expr& expr);
-ExprPtr clone(const ExprPtr& expr);   ///< null stays null
+ExprPtr clone(const ExprPtr& expr);  ///< null stays null
 
 // ---- statements -------------------------------------------------------------------------------
 

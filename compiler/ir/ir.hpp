@@ -69,8 +69,8 @@ using TableId = std::uint32_t;
 struct Expr;
 using ExprPtr = std::unique_ptr<Expr>;
 
-/// A scalar; vectors of literals are Constructs. `bits` holds bool 0/1, int32, uint32 or float32 bits, for a
-/// narrow scalar the bits of its arithmetic type, for a double the lower half; `high` holds the upper half.
+/// A scalar; vectors of literals are Constructs. `bits` holds bool 0/1, int32, uint32 or float32 bits, for a narrow scalar the
+/// bits of its arithmetic type, for a double the lower half. `high`: a double's upper half; wideValue() reads that of a float.
 struct Literal { std::uint32_t bits; std::uint32_t high = 0; };
 struct VarRef { VarId var; };
 struct ConstantRef { ConstantId constant; };

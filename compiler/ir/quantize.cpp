@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "ir/build.hpp"
+
 namespace skc::ir {
 namespace {
 
@@ -32,6 +34,19 @@ float nearestNormalized(float x, float least, float scale) {
 float normalizedScale(Scalar narrow) {
   assert(row(narrow).one > 0 && "not a normalized scalar");
   return row(narrow).one;
+}
+
+float roundedToOdd(double value) {
+  const auto nearest = static_cast<float>(value);
+  const auto bits = std::bit_cast<std::uint32_t>(nearest);
+  if (std::isnan(value) || double{nearest} == value || (bits & 1U) != 0) return nearest;
+  const bool isBeyond = std::fabs(double{nearest}) > std::fabs(value);
+  return std::bit_cast<float>(isBeyond ? bits - 1 : bits + 1);
+}
+
+std::uint32_t quantize(Scalar narrow, const Literal& literal) {
+  if (narrow != Scalar::Half) return quantize(narrow, literal.bits);
+  return quantize(narrow, std::bit_cast<std::uint32_t>(roundedToOdd(wideValue(literal))));
 }
 
 std::uint32_t quantize(Scalar narrow, std::uint32_t bits) {

@@ -12,12 +12,18 @@
 
 #include <cstdint>
 
-#include "ir/type.hpp"
+#include "ir/ir.hpp"
 
 namespace skc::ir {
 
 /// Takes and returns bits of the arithmetic type. `narrow` is a narrow scalar.
 std::uint32_t quantize(Scalar narrow, std::uint32_t bits);
+/// Likewise for a literal of floats, from its text, which is rounded to half once.
+std::uint32_t quantize(Scalar narrow, const Literal& literal);
+
+/// Rounds to a float that quantizes to the half that is nearest to `value`: to the nearest one if that is exact or odd, else to its
+/// odd neighbour on the other side of `value`.
+float roundedToOdd(double value);
 
 /// The integer that represents 1 in unorm8, snorm8, unorm16, snorm16: 255, 127, 65535, 32767.
 float normalizedScale(Scalar narrow);

@@ -55,7 +55,8 @@ Parts FunctionCode::parts(const Expr& expr, const Literal& n) {
       return {{l.number(l.type(scalar), value)}};
     }
     case Scalar::Float: {
-      const Part value = {l.number(l.real(), double{std::bit_cast<float>(n.bits)})};
+      const bool isFloat = l.real()->isFloatTy();
+      const Part value = {l.number(l.real(), isFloat ? double{std::bit_cast<float>(n.bits)} : wideValue(n))};
       return {convert(l, Scalar::Float, scalar, value)};
     }
     default: return {convert(l, arithmeticScalar(scalar), scalar, {b.getInt32(n.bits)})};

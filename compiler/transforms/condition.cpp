@@ -42,7 +42,10 @@ bool isLiteral(const Expr& condition, bool value) {
 
 bool isSame(const Expr& a, const Expr& b) {
   if (a.type != b.type || a.node.index() != b.node.index()) return false;
-  if (const auto* n = std::get_if<Literal>(&a.node)) return n->bits == std::get<Literal>(b.node).bits;
+  if (const auto* n = std::get_if<Literal>(&a.node)) {
+    const auto& other = std::get<Literal>(b.node);
+    return n->bits == other.bits && n->high == other.high;
+  }
   if (const auto* n = std::get_if<VarRef>(&a.node)) return n->var == std::get<VarRef>(b.node).var;
   if (const auto* n = std::get_if<Convert>(&a.node)) {
     return isSame(*n->operand, *std::get<Convert>(b.node).operand);

@@ -62,8 +62,16 @@ class ConstantFolder {
       }
       return;
     }
+    if (auto* n = std::get_if<Unary>(&slot->node)) return negate(slot, *n);
     if (auto* n = std::get_if<Binary>(&slot->node)) dropNeutral(slot, *n);
     if (std::holds_alternative<Index>(slot->node)) nameComponent(slot);
+  }
+
+  /// Negates a float literal, which may have another value in each precision.
+  static void negate(ExprPtr& slot, const Unary& n) {
+    const auto* literal = std::get_if<Literal>(&n.operand->node);
+    if (n.op != UnaryOp::Negate || literal == nullptr || !slot->type.isFloat()) return;
+    slot = makeExpr(slot->type, Literal{literal->bits ^ 0x80000000U, literal->high}, slot->loc);
   }
 
   /// Rewrites `v[1]` of a vector to `v.y`, which later transforms recognise.
@@ -137,9 +145,13 @@ class ConstantFolder {
 
 bool isInteger(Type type) { return type.isInteger() || type.isBool(); }
 
-/// A literal, or a vector or an array of literals.
+/// A literal, a formula of float literals that has another value in each precision, or a vector or an array of those.
 bool isLiteral(const Expr& expr) {
   if (std::holds_alternative<Literal>(expr.node)) return true;
+  if (expr.type.isFloat() && expr.type.isScalar()) {
+    if (const auto* n = std::get_if<Unary>(&expr.node)) return isLiteral(*n->operand);
+    if (const auto* n = std::get_if<Binary>(&expr.node)) return isLiteral(*n->lhs) && isLiteral(*n->rhs);
+  }
   const auto* n = std::get_if<Construct>(&expr.node);
   return n != nullptr && (expr.type.isVector() || expr.type.kind == Type::Kind::Array) &&
          std::ranges::all_of(n->args, [](const ExprPtr& arg) { return isLiteral(*arg); });

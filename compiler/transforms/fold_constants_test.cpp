@@ -3,11 +3,14 @@
 // Promises: values are computed only if every device agrees; constants keep their names; dead branches go.
 #include "transforms/fold_constants.hpp"
 
+#include <bit>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include <catch2/catch.hpp>
 
+#include "ir/evaluate.hpp"
 #include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
@@ -33,12 +36,34 @@ std::string folded(BinaryOp op, ExprPtr a, ExprPtr b) {
   return folded(binary(op, std::move(a), std::move(b)));
 }
 
-TEST_CASE("floats are computed with one rounding to 32 bits") {
-  CHECK(folded(Div, literal(1.0F), literal(3.0F)) == "0.33333334");
-  CHECK(folded(Add, literal(16777216.0F), literal(1.0F)) == "16777216.0");
+TEST_CASE("floats are computed if all variants of a kernel have the same result") {
+  CHECK(folded(Div, literal(1.0F), literal(4.0F)) == "0.25");
+  CHECK(folded(Add, literal(2.0F), literal(0.5F)) == "2.5");
+  CHECK(folded(Div, literal(1.0F), literal(3.0F)) == "1.0 / 3.0");
+  CHECK(folded(Add, literal(16777216.0F), literal(1.0F)) == "16777216.0 + 1.0");
+  CHECK(folded(Mul, literal(131072.0F), literal(0.125F)) == "131072.0 * 0.125");  // infinity in halves
+  CHECK(folded(Mul, literal(0.1F, 0.1), literal(3.0F)) == "0.1 * 3.0");
+  CHECK(folded(unary(UnaryOp::Negate, literal(0.1F, 0.1))) == "-0.1");
+  CHECK(folded(Greater, literal(0.1F, 0.1), literal(0.0F)) == "true");
+  CHECK(folded(Equal, literal(0.1F, 0.1), literal(0.1F)) == "0.1 == 0.1");
   CHECK(folded(Mul, literal(-0.0F), literal(2.0F)) == "-0.0");
   CHECK(folded(unary(UnaryOp::Negate, literal(0.0F))) == "-0.0");
   CHECK(folded(Less, literal(1.0F), literal(2.0F)) == "true");
+}
+
+TEST_CASE("in floats, every operation rounds to 32 bits") {
+  const Module module = testModule();
+  const auto value = [&](const ExprPtr& expr) {
+    const auto bits = evaluateInFloat(module, *expr, Constants::Keep);
+    return bits ? std::optional(std::bit_cast<float>(*bits)) : std::nullopt;
+  };
+  CHECK(value(binary(Div, literal(1.0F), literal(3.0F))) == 1.0F / 3);
+  CHECK(value(binary(Add, literal(16777216.0F), literal(1.0F))) == 16777216.0F);
+  CHECK(value(binary(Mul, literal(0.1F, 0.1), literal(3.0F))) == 0.1F * 3);
+  CHECK(value(convert(Scalar::Float, literal(16777217))) == 16777216.0F);
+  CHECK(value(convert(Scalar::Float, convert(Scalar::Half, binary(Div, literal(1.0F), literal(3.0F))))) ==
+        0x1.554p-2F);
+  CHECK(!value(binary(Mul, literal(1e30F), literal(1e30F))));
 }
 
 TEST_CASE("what devices may disagree about is left alone") {
@@ -67,7 +92,8 @@ TEST_CASE("integers wrap") {
 
 TEST_CASE("conversions are C++'s") {
   CHECK(folded(convert(Scalar::Int, literal(-1.9F))) == "-1");
-  CHECK(folded(convert(Scalar::Float, literal(16777217))) == "16777216.0");
+  CHECK(folded(convert(Scalar::Float, literal(2047))) == "2047.0");
+  CHECK(folded(convert(Scalar::Float, literal(16777217))) == "float(16777217)");
   CHECK(folded(convert(Scalar::Bool, literal(0.5F))) == "true");
   CHECK(folded(convert(Scalar::Uint, literal(-1))) == "4294967295u");
 }

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "transforms/round_halves.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "ir/build.hpp"
 #include "ir/declared_kernels.hpp"
+#include "ir/evaluate.hpp"
 #include "ir/quantize.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
@@ -23,7 +26,7 @@ using namespace ir;
 ExprPtr rounded(ExprPtr value) {
   const Loc loc = value->loc;
   if (const auto* n = std::get_if<Literal>(&value->node)) {
-    return literal(std::bit_cast<float>(quantize(Scalar::Half, n->bits)), loc);
+    return literal(std::bit_cast<float>(quantize(Scalar::Half, *n)), loc);
   }
   return convert(Scalar::Float, convert(Scalar::Half, std::move(value), loc), loc);
 }
@@ -41,11 +44,22 @@ bool isReadOfStream(const Expr& expr) {
          std::holds_alternative<Sample>(expr.node);
 }
 
+bool holdsFloat(const Module& module, Type type) {
+  if (type.kind == Type::Kind::Array) return holdsFloat(module, module.arrays[type.index].element);
+  if (type.kind != Type::Kind::Struct) return type.isFloat();
+  return std::ranges::any_of(module.structs[type.index].fields,
+                             [&](const StructField& field) { return holdsFloat(module, field.type); });
+}
+
+/// From constants to those with the same value, computed in halves.
+using HalfConstants = std::map<ConstantId, ConstantId>;
+
 /// Rewrites one function of a half variant.
 class Rounder {
  public:
   /// `kernel`: the kernel if this is its entry, whose arguments are rounded when read; else null.
-  Rounder(Module& module, const Kernel* kernel) : module_(module), kernel_(kernel) {}
+  Rounder(Module& module, const Kernel* kernel, HalfConstants& constants)
+      : module_(module), kernel_(kernel), constants_(constants) {}
 
   void run(FunctionId id) {
     walkStmts(module_.functions[id].body, [&](Stmt& stmt) { statement(stmt); });
@@ -98,6 +112,10 @@ class Rounder {
 
   void value(ExprPtr& slot) {
     Expr& expr = *slot;
+    if (auto* n = std::get_if<ConstantRef>(&expr.node)) {
+      n->constant = halfOf(n->constant);
+      return;
+    }
     const bool isPart = &rootOfRead(expr) != &expr;
     if (isPart) {
       partOf(expr);
@@ -107,7 +125,23 @@ class Rounder {
     if (expr.type.isFloat() && isRounded(expr)) slot = rounded(std::move(slot));
   }
 
-  /// CountedLoop the part taken of a read, not the read itself, which may be a struct; indices are expressions.
+  ConstantId halfOf(ConstantId id) {
+    if (!holdsFloat(module_, module_.constants[id].type)) return id;
+    if (const auto known = constants_.find(id); known != constants_.end()) return known->second;
+    ExprPtr rounded = clone(module_.constants[id].value);
+    Rounder(module_, nullptr, constants_).value(rounded);
+    rewriteExprs(rounded, [&](ExprPtr& slot) {  // drivers want constants of literals
+      const auto bits =
+          slot->type.isFloat() ? evaluateInFloat(module_, *slot, Constants::Keep) : std::nullopt;
+      if (bits) slot = makeExpr(slot->type, Literal{*bits}, slot->loc);
+    });
+    const Constant& plain = module_.constants[id];
+    Constant half{plain.name + "_half", plain.type, std::move(rounded), plain.loc};
+    module_.constants.push_back(std::move(half));
+    return constants_[id] = static_cast<ConstantId>(module_.constants.size() - 1);
+  }
+
+  /// Rounds the part taken of a read, not the read itself, which may be a struct; indices are expressions.
   void partOf(Expr& expr) {
     forEachOperand(expr, [&](ExprPtr& operand) {
       const bool isBase =
@@ -122,7 +156,7 @@ class Rounder {
   bool isUnrounded(const Expr& expr) const {
     const Expr& root = rootOfRead(expr);
     if (const auto* n = std::get_if<VarRef>(&root.node)) return isArgument(n->var);
-    return isReadOfStream(root) || std::holds_alternative<ConstantRef>(root.node);
+    return isReadOfStream(root);
   }
 
   bool isArgument(VarId var) const {
@@ -135,7 +169,7 @@ class Rounder {
     if (&rootOfRead(expr) != &expr) return isUnrounded(expr);
     return match(
         expr.node, [](const Literal&) { return true; }, [&](const VarRef& n) { return isArgument(n.var); },
-        [](const ConstantRef&) { return true; }, [](const Unary&) { return false; },
+        [](const ConstantRef&) { return false; }, [](const Unary&) { return false; },
         [](const Binary&) { return true; }, [](const Select&) { return false; },
         [](const Convert& n) { return n.operand->type.scalar != Scalar::Half; },
         [](const Construct&) { return false; }, [](const Swizzle&) { return false; },
@@ -148,9 +182,10 @@ class Rounder {
 
   Module& module_;
   const Kernel* kernel_;
+  HalfConstants& constants_;
 };
 
-KernelId roundKernel(Module& module, KernelId id) {
+KernelId roundKernel(Module& module, KernelId id, HalfConstants& constants) {
   FunctionCopies copies;
   const FunctionId entry = copyFunction(module, module.kernels[id].entry, copies);
   dropTables(module, copies);
@@ -163,7 +198,7 @@ KernelId roundKernel(Module& module, KernelId id) {
     variant.reduction = Reduction{{}, kernel.reduction->operands, kernel.reduction->seeded};
     variant.reduction->commutative = kernel.reduction->commutative;
   }
-  for (const auto& [from, to] : copies) Rounder(module, to == entry ? &variant : nullptr).run(to);
+  for (const auto& [from, to] : copies) Rounder(module, to == entry ? &variant : nullptr, constants).run(to);
   module.kernels.push_back(std::move(variant));
   return static_cast<KernelId>(module.kernels.size() - 1);
 }
@@ -180,16 +215,17 @@ bool computesFloats(const Module& module, const Kernel& kernel) {
 }  // namespace
 
 void roundHalves(Module& module, Diagnostics&) {
+  HalfConstants constants;
   forEachDeclaredKernel(module, [&](KernelId id) {
     const bool readsOutputs = module.kernels[id].isPart && module.kernels[id].reduction;
     if (module.kernels[id].isSynthesized || readsOutputs || !computesFloats(module, module.kernels[id]))
       return;
     const std::optional<KernelId> combine =
         module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
-    const KernelId half = roundKernel(module, id);
+    const KernelId half = roundKernel(module, id, constants);
     module.kernels[id].variants.half = half;
     if (!combine) return;
-    const KernelId halfCombine = *combine == id ? half : roundKernel(module, *combine);
+    const KernelId halfCombine = *combine == id ? half : roundKernel(module, *combine, constants);
     module.kernels[half].reduction->combine = halfCombine;
     module.kernels[halfCombine].reduction->combine = halfCombine;
   });

@@ -10,6 +10,8 @@
 //              r = half(a_half + half(t_half * half(b[0])));
 //            }
 //
+// Literals are rounded from their text, and constants computed in halves.
+//
 // Float has at least two more bits than twice those of half, so + - * / and sqrt give the results of IEEE
 // 754's binary16 (Figueroa, When is double rounding innocuous?, 1995); other functions are rounded once more.
 #pragma once

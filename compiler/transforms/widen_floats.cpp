@@ -232,7 +232,7 @@ class Widener {
       if (const auto wide = within.wideOf->find(n->var); wide != within.wideOf->end()) n->var = wide->second;
       expr.type = within.function->variables[n->var].type;
     } else if (std::holds_alternative<Literal>(expr.node) && expr.type.isFloat()) {
-      slot = literal(double{std::bit_cast<float>(std::get<Literal>(expr.node).bits)}, expr.loc);
+      slot = literal(wideValue(std::get<Literal>(expr.node)), expr.loc);
     } else if (auto* constant = std::get_if<ConstantRef>(&expr.node)) {
       constant->constant = wideOf(constant->constant);
       expr.type = types_.of(expr.type);
@@ -246,14 +246,15 @@ class Widener {
     }
   }
 
-  /// Converts to and from narrow types through float, which represents all their values.
+  /// Converts to and from narrow types through float, which represents all their values; a double to half in one step, which
+  /// rounds once.
   static void conversion(ExprPtr& slot) {
     ExprPtr& operand = std::get<Convert>(slot->node).operand;
     const Type to = slot->type.isFloat() ? slot->type.withScalar(Scalar::Double) : slot->type;
     if (operand->type.isNarrow() && to.isDouble()) {
       const Scalar arithmetic = operand->type.arithmeticType().scalar;
       operand = convert(arithmetic, std::move(operand), slot->loc);
-    } else if (operand->type.isDouble() && to.isNarrow()) {
+    } else if (operand->type.isDouble() && to.isNarrow() && to.scalar != Scalar::Half) {
       operand = convert(to.arithmeticType().scalar, std::move(operand), slot->loc);
     }
     if (operand->type == to) {

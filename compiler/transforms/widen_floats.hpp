@@ -11,8 +11,8 @@
 //              r = a + t_wide * b[0];
 //            }
 //
-// Literals keep their value as floats, so that variants differ by their arithmetic alone. Values that are
-// scattered or pushed are rounded to float there. A reduce's accumulators are doubles between its passes, and
+// Literals get the value of their text, which wideValue() reads. Values that are scattered or pushed are
+// rounded to float there. A reduce's accumulators are doubles between its passes, and
 // a kernel `finish` rounds them to float at the end. A kernel that uses what doubles do not support, such as
 // matrices, has no wide variant, and records why.
 #pragma once

@@ -4,8 +4,10 @@
 // small multiples of 1/256, so that sums and products are exact even in pairs of floats; other tests state their bound.
 #include "doubles.sk.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numeric>
 
 #include "support/double_configs.hpp"
@@ -109,6 +111,109 @@ TEST_CASE("geometry of doubles") {
       CHECK(std::fabs(actual[i].z - distance) <= distance * 0x1p-45);
       CHECK(std::fabs(actual[i].w - 1) <= 0x1p-43);
       CHECK((crosses[i] == sk::double3{y * w - z * v, z * u - x * w, x * v - y * u}));
+    }
+  });
+}
+
+TEST_CASE("an index outside a vector of doubles takes the nearest component") {
+  const std::vector<int> indices = {-2147483647 - 1, -5, -1, 0, 1, 2, 3, 4, 2147483647};
+  const std::vector<sk::double3> a(indices.size(), sk::double3{1, 2, 4});
+  const auto n = static_cast<std::int64_t>(indices.size());
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
+    auto read = device.stream<sk::double2>({n}), known = device.stream<sk::double2>({n});
+    auto written = device.stream<sk::double3>({n}), changed = device.stream<sk::double3>({n});
+    outside(streamOf<sk::double3>(device, a), streamOf<int>(device, indices), read, written, changed, known);
+    const auto reads = read.read(), knowns = known.read();
+    const auto writes = written.read(), changes = changed.read();
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+      INFO(indices[i]);
+      const auto at = static_cast<std::size_t>(std::clamp(indices[i], 0, 2));
+      const std::size_t unsignedAt = indices[i] < 0 ? 2 : at;
+      double wanted[3] = {1, 2, 4};
+      CHECK(reads[i].x == wanted[at]);
+      CHECK(reads[i].y == (unsignedAt == 0 ? 2 : 1));
+      wanted[at] = 0.5;
+      CHECK(writes[i] == sk::double3{wanted[0], wanted[1], wanted[2]});
+      double sums[3] = {1, 2, 4};
+      sums[unsignedAt] += 0.25;
+      CHECK(changes[i] == sk::double3{sums[0], sums[1], sums[2]});
+      CHECK(knowns[i] == sk::double2{5, 4});
+    }
+  });
+}
+
+TEST_CASE("lengths and directions of vectors whose squares overflow or vanish") {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  std::vector<double> scales = {1,       0x1p-20, 0x1p20,  0x1p-50, 0x1p50,
+                                0x1p-80, 0x1p80,  0x1p100, 0x1p-98, 0x1p123};
+  const std::size_t ofPairs = scales.size();
+  scales.insert(scales.end(),
+                {0x1p300, 0x1p-300, 0x1p600, 0x1p-600, 0x1p1000, 0x1p-1000, 0x1p1021, 0x1p-1020});
+  const std::size_t ofGl = scales.size();
+  scales.insert(scales.end(), {0x1p-1030, 0x1p-1074});
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
+    const std::size_t tried = config.profile == "native" ? scales.size() : config.isNative() ? ofGl : ofPairs;
+    std::vector<sk::double2> a;
+    std::vector<sk::double3> b;
+    std::vector<sk::double4> c;
+    for (std::size_t i = 0; i < tried; ++i) {
+      const double s = scales[i];
+      a.push_back({3 * s, -4 * s});
+      b.push_back({-s, 2 * s, -2 * s});
+      c.push_back({s, -s, s, s});
+    }
+    a.insert(a.end(), {{0, -0.0}, {inf, 1}, {NAN, -inf}, {NAN, 1}});
+    b.insert(b.end(), {{0, 0, 0}, {1, -inf, 2}, {-inf, 1, NAN}, {1, 2, NAN}});
+    c.insert(c.end(), {{0, 0, 0, 0}, {1, 1, 1, inf}, {inf, NAN, 0, 0}, {NAN, NAN, NAN, NAN}});
+    const auto n = static_cast<std::int64_t>(a.size());
+    auto r = device.stream<sk::double4>({n}), w = device.stream<sk::double4>({n});
+    auto u = device.stream<sk::double2>({n});
+    auto v = device.stream<sk::double3>({n});
+    lengths(streamOf<sk::double2>(device, a), streamOf<sk::double3>(device, b),
+            streamOf<sk::double4>(device, c), r, u, v, w);
+    const auto length = r.read(), fours = w.read();
+    const auto twos = u.read();
+    const auto threes = v.read();
+    const double bound = static_cast<double>(precisionOf(config)) * 4;
+    const auto isNear = [&](double got, double wanted) {
+      return std::fabs(got - wanted) <= bound * std::fabs(wanted) + 0x1p-1074;
+    };
+    for (std::size_t i = 0; i < tried; ++i) {
+      INFO(scales[i]);
+      CHECK(isNear(length[i].x, 5 * scales[i]));
+      CHECK(isNear(length[i].y, 3 * scales[i]));
+      CHECK(isNear(length[i].z, 2 * scales[i]));
+      CHECK(isNear(length[i].w, std::sqrt(5.0) * scales[i]));
+      CHECK((isNear(twos[i].x, 0.6) && isNear(twos[i].y, -0.8)));
+      CHECK((isNear(threes[i].x, -1 / 3.0) && isNear(threes[i].y, 2 / 3.0) && isNear(threes[i].z, -2 / 3.0)));
+      CHECK((isNear(fours[i].x, 0.5) && isNear(fours[i].y, -0.5) && isNear(fours[i].w, 0.5)));
+    }
+    CHECK((length[tried].x == 0 && length[tried].y == 0 && length[tried].z == 0 && length[tried].w == 0));
+    CHECK((twos[tried] == sk::double2{0, 0} && threes[tried] == sk::double3{0, 0, 0}));
+    CHECK(fours[tried] == sk::double4{0, 0, 0, 0});
+    for (std::size_t i = 1; i < 3; ++i)
+      CHECK((length[tried + i].x == inf && length[tried + i].y == inf && length[tried + i].z == inf));
+    CHECK((std::isnan(length[tried + 3].x) && std::isnan(length[tried + 3].y) &&
+           std::isnan(length[tried + 3].z)));
+    auto magnitude = device.stream<double>({4}), direction = device.stream<double>({4});
+    oneSigned(streamOf<double>(device, {-1e30, 1e-30, -0.0, -inf}), magnitude, direction);
+    CHECK((isNear(magnitude.read()[0], 1e30) && magnitude.read()[2] == 0 && magnitude.read()[3] == inf));
+    CHECK((direction.read()[0] == -1 && direction.read()[1] == 1 && direction.read()[2] == 0));
+  });
+}
+
+TEST_CASE("functions of vectors of floats and of doubles in one kernel") {
+  onEveryDoubleConfig([](sk::Device& device, const DoubleConfig& config) {
+    const std::vector<float> x = {0.5F, -2, 3};
+    const std::vector<double> y = {0.1, -1.7, 2.9};
+    auto r = device.stream<float>({3});
+    auto s = device.stream<double>({3});
+    auto v = device.stream<sk::float3>({3});
+    ofBothTypes(streamOf<float>(device, x), streamOf<double>(device, y), r, s, v);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      CHECK(std::fabs(r.read()[i] - std::sin(x[i])) < 1e-6);
+      CHECK(std::fabs(s.read()[i] - std::sin(y[i])) < (config.isNative() ? 1e-15 : 1e-12));
+      CHECK(std::fabs(v.read()[i].z - std::sqrt(std::fabs(x[i]))) < 1e-6);
     }
   });
 }

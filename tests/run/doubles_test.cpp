@@ -246,6 +246,54 @@ TEST_CASE("literals take the precision of their place") {
   });
 }
 
+TEST_CASE("integer literals keep their meaning beside doubles") {
+  onEveryDoubleConfig([](sk::Device& device, const DoubleConfig&) {
+    auto r = device.stream<sk::double4>({1}), s = device.stream<sk::double4>({1});
+    auto t = device.stream<sk::float2>({1});
+    integerLiterals(streamOf<double>(device, {2}), streamOf<float>(device, {1}), r, s, t);
+    const sk::double4 a = r.read()[0], b = s.read()[0];
+    CHECK(a == sk::double4{4294967295.0, 0, 0, 5.25});
+    CHECK(!std::signbit(a.y));
+    CHECK((b.x == 8589934590.0 && b.y == 3000000002.0 && b.z == 4294967299.0));
+    CHECK(std::fabs(b.w - 1 / 3.0) < 1e-13);
+    CHECK(t.read()[0] == sk::float2{3e9F, 1});
+  });
+}
+
+TEST_CASE("doubles become the nearest half, rounded once") {
+  // Halfway between two halves and a little more or less, which a float would lose; beyond the largest half; denormals.
+  std::vector<double> x;
+  for (const double half : {1.0, 1 + 0x1p-10, 1000.5, 65472.0, 0x1p-14, 0x1p-20, 0x1p-24, 0.0}) {
+    const double unit = std::ldexp(1.0, std::max(half == 0 ? -14 : std::ilogb(half), -14) - 10);
+    for (const double rest : {0.0, 0x1p-30, -0x1p-30, 0x1p-34, -0x1p-34, 0.25, -0.25})
+      x.push_back(half + unit * (0.5 + rest));
+  }
+  x.insert(x.end(), {65519.99999999, 65520.0, 1e10, 1e30, -1e30, 1e-12, infinity, -infinity, std::nan("")});
+  const auto nearest = [](double value) {
+    if (!(std::fabs(value) < 65520)) return std::isnan(value) ? value : std::copysign(infinity, value);
+    const double unit = std::ldexp(1.0, std::max(value == 0 ? -14 : std::ilogb(value), -14) - 10);
+    return std::nearbyint(value / unit) * unit;
+  };
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
+    const auto n = static_cast<std::int64_t>(x.size());
+    auto r = device.stream<sk::half>({n}), g = device.stream<sk::half>({n});
+    auto v = device.stream<sk::half2>({n});
+    toHalves(streamOf<double>(device, x), streamOf<float>(device, std::vector<float>(x.size(), 0)), r, v, g);
+    const auto one = r.read(), sum = g.read();
+    const auto two = v.read();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      INFO(x[i]);
+      const auto is = [&](sk::half got, double wanted) {
+        return isSame(double{float{got}}, nearest(wanted));
+      };
+      CHECK(is(one[i], x[i]));
+      CHECK(is(sum[i], x[i]));
+      CHECK(is(two[i].x, -x[i]));
+      CHECK(is(two[i].y, x[i]));
+    }
+  });
+}
+
 TEST_CASE("conversions to and from doubles are exact") {
   std::vector<int> i = {0,         1,     -1,    2147483647, -2147483647 - 1, 16777217,
                         -16777217, 65535, 65536, -65536,     -65537};

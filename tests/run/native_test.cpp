@@ -66,7 +66,7 @@ TEST_CASE("native passes are counted, too") {
   CHECK(count.bytesWritten == 64 * 4);
 }
 
-TEST_CASE("the reference computes in double, of the floats that it is given") {
+TEST_CASE("the reference computes in double, of the floats that it is given and the texts of literals") {
   sk::Device device = sk::Device::reference();
   const std::vector<float> x{0.1F, 3.0F, 1e6F};
   const auto in = streamOf(device, x);
@@ -75,12 +75,12 @@ TEST_CASE("the reference computes in double, of the floats that it is given") {
   const std::vector<double> exact = r.readReals();
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double v = x[i];
-    CHECK(exact[i] == (v + double{1e-9F}) - v + v * v * double{1e-12F});
+    CHECK(exact[i] == (v + 1e-9) - v + v * v * 1e-12);
     CHECK(r.read()[i] == static_cast<float>(exact[i]));
   }
   auto twice = device.stream<float>({3});
   cancel(r, twice);  // streams hold doubles between calls
-  CHECK(twice.readReals()[0] == (exact[0] + double{1e-9F}) - exact[0] + exact[0] * exact[0] * double{1e-12F});
+  CHECK(twice.readReals()[0] == (exact[0] + 1e-9) - exact[0] + exact[0] * exact[0] * 1e-12);
 }
 
 TEST_CASE("sums have the error of a tree, not of a loop") {

@@ -97,6 +97,53 @@ TEST_CASE("functions, arrays, gathers and constants") {
   });
 }
 
+TEST_CASE("literals and formulas of literals have the precision of the variant") {
+  const auto check = [](sk::Device& device, Precision precision, double bound) {
+    auto x = streamOf<float>(device, {3});
+    auto r = device.stream<sk::float4>({1}, sk::Storage::Double);
+    auto s = device.stream<sk::float2>({1}, sk::Storage::Double);
+    auto u = device.stream<sk::float2>({1}, sk::Storage::Double);
+    precision::formulas.with({.precision = precision})(x, r, s);
+    precision::formulasOfUniforms.with({.precision = precision})(1, 3, 1e-4F, 16777214, x, u);
+    const std::vector<double> a = r.readReals(), b = s.readReals(), c = u.readReals();
+    CHECK(std::fabs(a[0] - 1) <= bound);
+    CHECK(std::fabs(c[0] - 1) <= bound);
+    CHECK(std::fabs(a[1] - 1) <= bound);
+    CHECK(std::fabs(a[2] - 3 * 0.1) <= bound);
+    CHECK(std::fabs(a[3] + 3 * double{0.1F}) <= bound);
+    CHECK(std::fabs(b[0] - (3 + 1e-4 * 16777214.0)) <= 4096 * bound);
+    CHECK(std::fabs(b[1] - (precision == Precision::Single ? 3 : 4)) <= bound);
+  };
+  onEveryTarget([&](sk::Device& device) {
+    for (const Precision precision : widePrecisions(device)) check(device, precision, 0x1p-42);
+    check(device, Precision::Single, 0x1p-21);
+    auto x = streamOf<float>(device, {0});
+    auto r = device.stream<sk::float4>({1});
+    auto s = device.stream<sk::float2>({1}), u = device.stream<sk::float2>({1});
+    precision::formulas.with({.precision = Precision::Half})(x, r, s);
+    precision::formulasOfUniforms.with({.precision = Precision::Half})(1, 3, 1e-4F, 16777214, x, u);
+    CHECK(s.read()[0].x == std::numeric_limits<float>::infinity());
+    CHECK(u.read()[0].y == std::numeric_limits<float>::infinity());
+  });
+  sk::Device reference = sk::Device::reference();
+  check(reference, Precision::Default, 0x1p-51);
+}
+
+TEST_CASE("the text of a literal is rounded to half once") {
+  onEveryTarget([](sk::Device& device) {
+    auto x = streamOf<float>(device, {1});
+    auto r = device.stream<sk::half2>({1});
+    auto s = device.stream<sk::float2>({1});
+    precision::halfLiterals(x, r, s);
+    CHECK(float{r.read()[0].x} == 1 + 0x1p-10F);
+    CHECK(float{r.read()[0].y} == 1 + 0x1p-10F);
+    precision::halfLiterals.with({.precision = Precision::Half})(x, r, s);
+    CHECK(float{r.read()[0].x} == 1 + 0x1p-10F);
+    CHECK(s.read()[0].x == 1 + 0x1p-10F);
+    CHECK(s.read()[0].y == float{sk::half(0.1F)});
+  });
+}
+
 TEST_CASE("structs and vectors") {
   sk::Device reference = sk::Device::reference();
   onEveryTarget([&](sk::Device& device) {

@@ -88,7 +88,7 @@ TEST_CASE("functions are right to half a unit of double") {
   check(18, [](Quad v) { return v; });
   check(19, rintq);
   check(20, [](Quad v) {
-    return powq(v, static_cast<Quad>(1.5F)) + sqrtq(v * v + 4) + fmodq(v, static_cast<Quad>(0.3F)) + v * 8;
+    return powq(v, static_cast<Quad>(1.5F)) + sqrtq(v * v + 4) + fmodq(v, static_cast<Quad>(0.3)) + v * 8;
   });
 }
 

@@ -66,6 +66,30 @@ TEST_CASE("halves are rounded to nearest, by the host and by kernels") {
   });
 }
 
+TEST_CASE("doubles are rounded to halves once, by the host and by kernels") {
+  onSomeLayouts([](sk::Device& device) {
+    const bool hasDoubles = device.profile() != "essl300";
+    const auto options = sk::CallOptions{.precision = hasDoubles ? Precision::Double : Precision::Extended};
+    auto h = device.stream<float>({4}, Storage::Half);
+    const std::vector<double> x = {1 + 0x1p-11 + 0x1p-30, 1 + 0x1p-11 - 0x1p-30, -1 - 0x1p-11 - 0x1p-34,
+                                   65520 - 0x1p-20};
+    const std::vector<float> wanted = {1 + 0x1p-10F, 1, -1 - 0x1p-10F, 65504};
+    h.writeReals(x);
+    CHECK(h.read() == wanted);
+    std::vector<float> head, tail;
+    for (const double value : x) {
+      head.push_back(static_cast<float>(value));
+      tail.push_back(static_cast<float>(value - double{head.back()}));
+    }
+    auto a = device.stream<float>({4}), b = device.stream<float>({4});
+    a.write(head);
+    b.write(tail);
+    h.fill(0);
+    precision::added.with(options)(a, b, h);
+    CHECK(h.read() == wanted);
+  });
+}
+
 TEST_CASE("doubles keep what is computed in doubles") {
   sk::Device reference = sk::Device::reference();
   onSomeLayouts([&](sk::Device& device) {

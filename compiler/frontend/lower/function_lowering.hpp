@@ -139,7 +139,10 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   llvm::APFloat literalValue(const clang::FloatingLiteral* e, const llvm::fltSemantics& semantics,
                              std::string_view type);
   LiteralParts partsOf(const clang::FloatingLiteral* e) const;
+  bool isOfContext(const clang::FloatingLiteral* e) const;
+  double textValue(const clang::FloatingLiteral* e) const;
   ir::ExprPtr integerConstant(const clang::Expr* e, ir::Type type);
+  std::optional<double> integerValue(const clang::Expr* e) const;
   ir::ExprPtr zero(ir::Type type, clang::SourceLocation where);
   ir::ExprPtr convert(ir::ExprPtr e, ir::Scalar scalar);
   ir::ExprPtr splat(ir::ExprPtr e, int width);

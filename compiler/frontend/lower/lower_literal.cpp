@@ -6,6 +6,7 @@
 //
 //   double d = 0.1;              the nearest double
 //   d *= 1.0 / 3.0;              divided in double
+//   d += 1 / 3;                  0: integers keep C++'s meaning
 //   double e = 0.1f;             a float, as written
 //   float f = 0.1;               rounded once, from the text
 #include <algorithm>
@@ -49,6 +50,22 @@ bool isArithmetic(clang::BinaryOperatorKind kind) {
 
 bool isSign(clang::UnaryOperatorKind kind) { return kind == clang::UO_Plus || kind == clang::UO_Minus; }
 
+/// True for a formula of nothing but integer literals, which C++ computes in integers: `1 / 2` is 0, `-1u` is 4294967295.
+bool isIntegerFormula(const clang::Expr* e) {
+  e = e->IgnoreParenImpCasts();
+  if (!e->getType()->isIntegerType()) return false;
+  if (llvm::isa<clang::IntegerLiteral>(e)) return true;
+  if (const auto* sign = llvm::dyn_cast<clang::UnaryOperator>(e)) {
+    return (isSign(sign->getOpcode()) || sign->getOpcode() == clang::UO_Not) &&
+           isIntegerFormula(sign->getSubExpr());
+  }
+  const auto* operation = llvm::dyn_cast<clang::BinaryOperator>(e);
+  return operation &&
+         (operation->isAdditiveOp() || operation->isMultiplicativeOp() || operation->isBitwiseOp() ||
+          operation->isShiftOp()) &&
+         isIntegerFormula(operation->getLHS()) && isIntegerFormula(operation->getRHS());
+}
+
 }  // namespace
 
 /// The literal as written in the source.
@@ -83,9 +100,10 @@ llvm::APFloat FunctionLowering::literalValue(const clang::FloatingLiteral* e,
 }
 
 ExprPtr FunctionLowering::VisitFloatingLiteral(const clang::FloatingLiteral* e) {
-  const llvm::APFloat value = literalValue(e, llvm::APFloat::IEEEsingle(), "float");
-  return literal(ir::Type::of(ir::Scalar::Float),
-                 static_cast<std::uint32_t>(value.bitcastToAPInt().getZExtValue()), e->getLocation());
+  const float value = literalValue(e, llvm::APFloat::IEEEsingle(), "float").convertToFloat();
+  const Loc loc = module_.loc(e->getLocation());
+  if (!isOfContext(e)) return ir::literal(value, loc);
+  return ir::literal(value, textValue(e), loc);
 }
 
 ExprPtr FunctionLowering::doubleLiteral(const clang::FloatingLiteral* e) {
@@ -93,13 +111,31 @@ ExprPtr FunctionLowering::doubleLiteral(const clang::FloatingLiteral* e) {
   return ir::literal(value.convertToDouble(), module_.loc(e->getLocation()));
 }
 
+/// True unless the literal has the suffix of floats.
+bool FunctionLowering::isOfContext(const clang::FloatingLiteral* e) const {
+  const std::string suffix(partsOf(e).suffix);
+  return suffix != "f" && suffix != "F";
+}
+
+/// The double nearest to the literal's text.
+double FunctionLowering::textValue(const clang::FloatingLiteral* e) const {
+  llvm::APFloat value(llvm::APFloat::IEEEdouble());
+  auto status = value.convertFromString(partsOf(e).digits, llvm::APFloat::rmNearestTiesToEven);
+  if (!status) {
+    llvm::consumeError(status.takeError());
+    bool inexact = false;
+    value = e->getValue();
+    value.convert(llvm::APFloat::IEEEdouble(), llvm::APFloat::rmNearestTiesToEven, &inexact);
+  }
+  return value.convertToDouble();
+}
+
 bool FunctionLowering::isLiterals(const clang::Expr* e) const {
   e = bare(e);
   if (const auto* literal = llvm::dyn_cast<clang::FloatingLiteral>(e)) {
-    const std::string_view suffix = partsOf(literal).suffix;
-    return suffix != "f" && suffix != "F";
+    return isOfContext(literal);
   }
-  if (llvm::isa<clang::IntegerLiteral>(e)) return true;
+  if (e->getType()->isIntegerType()) return isIntegerFormula(e);
   if (const auto* sign = llvm::dyn_cast<clang::UnaryOperator>(e))
     return isSign(sign->getOpcode()) && isLiterals(sign->getSubExpr());
   if (const auto* operation = llvm::dyn_cast<clang::BinaryOperator>(e)) {
@@ -116,6 +152,11 @@ ExprPtr FunctionLowering::literalsAsDouble(const clang::Expr* e) {
   const Level level(depth_);
   checkDepth(e->getExprLoc());
   e = bare(e);
+  if (e->getType()->isIntegerType()) {  // computed in integers, and then converted
+    if (const std::optional<double> number = integerValue(e))
+      return ir::literal(*number, module_.loc(e->getExprLoc()));
+    return convert(value(e), ir::Scalar::Double);
+  }
   if (const auto* literal = llvm::dyn_cast<clang::FloatingLiteral>(e)) return doubleLiteral(literal);
   if (const auto* sign = llvm::dyn_cast<clang::UnaryOperator>(e)) {
     ExprPtr operand = literalsAsDouble(sign->getSubExpr());
@@ -136,13 +177,11 @@ ExprPtr FunctionLowering::literalsAsDouble(const clang::Expr* e) {
     return ir::binary(op, std::move(lhs), literalsAsDouble(operation->getRHS()),
                       module_.loc(operation->getOperatorLoc()));
   }
-  if (const auto* choice = llvm::dyn_cast<clang::ConditionalOperator>(e)) {
-    ExprPtr cond = condition(choice->getCond());
-    ExprPtr yes = literalsAsDouble(choice->getTrueExpr());
-    return select(std::move(cond), std::move(yes), literalsAsDouble(choice->getFalseExpr()),
-                  choice->getQuestionLoc());
-  }
-  return convert(value(e), ir::Scalar::Double);  // an integer
+  const auto* choice = llvm::cast<clang::ConditionalOperator>(e);
+  ExprPtr cond = condition(choice->getCond());
+  ExprPtr yes = literalsAsDouble(choice->getTrueExpr());
+  return select(std::move(cond), std::move(yes), literalsAsDouble(choice->getFalseExpr()),
+                choice->getQuestionLoc());
 }
 
 /// Lowers an expression that is converted to double.

@@ -18,7 +18,7 @@ namespace skc::frontend {
 std::uint32_t ModuleLowering::generatedNumber(const std::string& name) {
   const clang::VarDecl* variable = generatedGlobals_.at(name);
   const ir::ExprPtr value = constantValue(variable, /*inlined=*/true);
-  const std::optional<std::uint32_t> bits = ir::evaluate(module_, *value, ir::Constants::LookThrough);
+  const std::optional<std::uint32_t> bits = ir::evaluateInFloat(module_, *value, ir::Constants::LookThrough);
   if (!bits) fail(Diag::NotConstant, variable->getLocation());
   return *bits;
 }

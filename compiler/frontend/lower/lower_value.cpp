@@ -135,6 +135,15 @@ ExprPtr FunctionLowering::integerConstant(const clang::Expr* e, ir::Type type) {
   return literal(type, static_cast<std::uint32_t>(number.getExtValue()), e->getBeginLoc());
 }
 
+/// The value of an integer constant of any type that fits in an int or a uint.
+std::optional<double> FunctionLowering::integerValue(const clang::Expr* e) const {
+  clang::Expr::EvalResult result;
+  if (e->isValueDependent() || !e->EvaluateAsInt(result, module_.context())) return std::nullopt;
+  const llvm::APSInt& number = result.Val.getInt();
+  const bool fits = number.isNegative() ? number.isSignedIntN(32) : number.isIntN(32);
+  return fits ? std::optional(static_cast<double>(number.getExtValue())) : std::nullopt;
+}
+
 // ---- casts ----------------------------------------------------------------------------------------
 
 ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
@@ -156,9 +165,10 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
       return convert(value(operand), module_.type(e->getType(), where).scalar);
     case clang::CK_IntegralToFloating:
       if (!isKernelInteger(operand->getType())) {
-        if (ExprPtr constant = integerConstant(operand, ir::Type::of(ir::Scalar::Int))) {
-          return convert(std::move(constant), module_.type(e->getType(), where).scalar);
-        }
+        const std::optional<double> number = integerValue(operand);
+        const bool isDouble = module_.type(e->getType(), where).scalar == ir::Scalar::Double;
+        if (number && isDouble) return ir::literal(*number, module_.loc(where));
+        if (number) return ir::literal(static_cast<float>(*number), *number, module_.loc(where));
       }
       return convert(value(operand), module_.type(e->getType(), where).scalar);
     case clang::CK_FloatingToIntegral:
@@ -238,7 +248,9 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
     module_.diagnostics().report(Diag::MaskConverted, loc,
                                  {module_.spelling(ir::Type::of(scalar, e->type.width))});
   }
-  if ((e->type.isNarrow() && scalar == ir::Scalar::Double) || (e->type.isDouble() && ir::isNarrow(scalar))) {
+  // a double becomes a half in one step, which rounds once
+  const bool isNarrowed = e->type.isDouble() && ir::isNarrow(scalar) && scalar != ir::Scalar::Half;
+  if ((e->type.isNarrow() && scalar == ir::Scalar::Double) || isNarrowed) {
     const ir::Scalar arithmetic = ir::arithmeticScalar(e->type.isNarrow() ? e->type.scalar : scalar);
     return convert(convert(std::move(e), arithmetic), scalar);
   }
@@ -253,22 +265,29 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
       e->type = e->type.arithmeticType();
       return convert(std::move(e), scalar);
     }
+    if (e->type.isDouble() && scalar == ir::Scalar::Half) {
+      const float odd =
+          ir::roundedToOdd(std::bit_cast<double>(std::uint64_t{constant->high} << 32 | constant->bits));
+      const std::uint32_t half = ir::quantize(scalar, std::bit_cast<std::uint32_t>(odd));
+      return ir::makeExpr(ir::Type::of(scalar), ir::Literal{half}, loc);
+    }
     if (ir::isNarrow(scalar) && e->type.scalar != arithmetic) {
       return convert(convert(std::move(e), arithmetic), scalar);
     }
     if (ir::isNarrow(scalar)) {
-      constant->bits = ir::quantize(scalar, constant->bits);
+      *constant = {ir::quantize(scalar, *constant)};
       e->type = ir::Type::of(scalar);
       return e;
     }
     // `v = 1` reads better as 1.0 than as float(1); ints round as on the device
     if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Float) {
-      return ir::literal(static_cast<float>(static_cast<std::int32_t>(constant->bits)), loc);
+      const auto number = static_cast<std::int32_t>(constant->bits);
+      return ir::literal(static_cast<float>(number), static_cast<double>(number), loc);
     }
     if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Uint)
       return ir::literal(constant->bits, loc);
     if (e->type.scalar == ir::Scalar::Uint && scalar == ir::Scalar::Float) {
-      return ir::literal(static_cast<float>(constant->bits), loc);
+      return ir::literal(static_cast<float>(constant->bits), static_cast<double>(constant->bits), loc);
     }
   }
   return ir::convert(scalar, std::move(e), loc);

@@ -290,6 +290,7 @@ int sk_square_exponent(sk_double a) {
 // on the other side of the double.
 float sk_to_odd(sk_double a) {
   float f = sk_to_float(a);
+  if (sk_isinf(a) || sk_isnan(a)) return f;
   sk_double rest = sk_sub(a, sk_to_double(f)), zero = sk_to_double(0.0);
   int bits = floatBitsToInt(f);
   bool isAbove = sk_less(zero, rest), isBelow = sk_less(rest, zero);
