@@ -13,9 +13,13 @@ cmake_policy(VERSION 3.25)
 # Compiles each file at build time, again when it or a file that it includes has changed, and adds
 # the stubs and the object file with the native code to <target>. The target's own sources then
 # include a kernel's header by the path of its .sk file: "heat.sk.hpp", "solver/heat.sk.hpp"; files
-# outside of the source folder by their name. To be called in the folder that makes the target, which
-# also links sk::runtime. With the option --quad the target also links libquadmath, where __float128
-# is another type than long double.
+# outside of the source folder by their name. So do the sources of what links <target>, if that is a
+# library. To be called in the folder that makes the target, which also links sk::runtime (PUBLIC, if
+# others include its kernels' headers). With the option --quad the target also links libquadmath, where
+# __float128 is another type than long double.
+#
+# .sk files and the target's sources find headers that they share in the source folder and in
+# INCLUDE_DIRECTORIES. A library that installs kernels' headers installs such headers beside them.
 #
 # The variable SK_LEVELS names the levels of the CPU that native code is compiled for, as skc's --levels does: native, for
 # programs that run on this machine alone, compiles soonest. Without it, native code has all levels.
@@ -37,7 +41,11 @@ function(sk_add_kernels target)
   foreach(folder IN LISTS arg_INCLUDE_DIRECTORIES)
     file(REAL_PATH "${folder}" folder BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
     list(APPEND options "-I${folder}")
+    sk_include_for_kernels("${target}" "${folder}")
   endforeach()
+  list(APPEND options "-I${CMAKE_CURRENT_SOURCE_DIR}")
+  sk_include_for_kernels("${target}" "${CMAKE_CURRENT_BINARY_DIR}/${target}.sk")
+  sk_include_for_kernels("${target}" "${CMAKE_CURRENT_SOURCE_DIR}")
 
   if("--quad" IN_LIST options AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|i.86|ppc64le")
     target_link_libraries(${target} PRIVATE quadmath)
@@ -46,6 +54,17 @@ function(sk_add_kernels target)
   foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
     sk_add_kernel_file("${target}" "${file}" "${options}")
   endforeach()
+endfunction()
+
+# sk_include_for_kernels(TARGET FOLDER): adds a folder in which compilers find what kernels need, for the target and for what links it.
+# An installed library has no such folders.
+function(sk_include_for_kernels target folder)
+  get_target_property(type "${target}" TYPE)
+  if(type MATCHES "^(STATIC|SHARED|OBJECT)_LIBRARY$")
+    target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${folder}>")
+  else()
+    target_include_directories(${target} PRIVATE "${folder}")
+  endif()
 endfunction()
 
 # sk_native_options(LIST): appends to skc's options what the build says of native code.
@@ -111,7 +130,8 @@ function(sk_add_kernel_file target file options)
     string(MD5 hash "${folder}")
     string(SUBSTRING "${hash}" 0 8 hash)
     set(output "${tree}/outside-${hash}")
-    target_include_directories(${target} PRIVATE "${output}")
+    sk_include_for_kernels("${target}" "${output}")
+    sk_include_for_kernels("${target}" "${folder}")
   endif()
   string(REGEX REPLACE "/\\.?$" "" output "${output}")
   cmake_path(GET source FILENAME name)
@@ -136,7 +156,6 @@ function(sk_add_kernel_file target file options)
   if(object)
     sk_add_object("${target}" "${object}")
   endif()
-  target_include_directories(${target} PRIVATE "${tree}")
 endfunction()
 
 # sk_add_object(TARGET OBJECT): links an object file that skc writes. CMake does not hand on the objects of

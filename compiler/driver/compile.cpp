@@ -21,6 +21,7 @@
 #include "frontend/frontend.hpp"
 #include "ir/clone_module.hpp"
 #include "ir/print.hpp"
+#include "program/cpp_names.hpp"
 #include "program/descriptors.hpp"
 #include "program/json.hpp"
 #include "program/stub.hpp"
@@ -29,6 +30,7 @@
 #include "transforms/predicate.hpp"
 #include "transforms/transforms.hpp"
 #include "web/js_module.hpp"
+#include "web/js_names.hpp"
 
 namespace skc::driver {
 namespace {
@@ -137,9 +139,12 @@ std::string makeEscaped(const std::string& path) {
 std::string fileName(const ir::Module& module) { return fs::path(module.file).filename().string(); }
 
 emit::Stub stubOf(const Options& options, const ir::Module& module) {
-  return emit::emitStub(
-      module, emit::Program(module, {options.fragmentTarget, options.computeTarget}), fileName(module),
-      {.native = options.nativeTarget, .quad = options.quad, .withLibrary = options.library});
+  return emit::emitStub(module, emit::Program(module, {options.fragmentTarget, options.computeTarget}),
+                        fileName(module),
+                        {.native = options.nativeTarget,
+                         .quad = options.quad,
+                         .includeDirectories = options.includeDirectories,
+                         .withLibrary = options.library});
 }
 
 std::string nativeText(const Options& options, const ir::Module& module, native::Output output) {
@@ -232,6 +237,8 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   if (!frontend.diagnostics().hasErrors() && wantsPerformanceWarnings(options.warnings)) {
     warnOfPerformance(*module, frontend.diagnostics());
   }
+  if (options.emit == Emit::Stubs) emit::reportCppNames(*module, frontend.diagnostics());
+  if (options.emit == Emit::Js) web::reportJsNames(*module, frontend.diagnostics());
   if (frontend.diagnostics().hasErrors()) return std::nullopt;
   printPredicated(job, *module);
   return module;

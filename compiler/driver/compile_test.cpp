@@ -111,6 +111,44 @@ TEST_CASE("mistakes come back as messages, with the name that was given") {
   CHECK(contains(unknown.messages, "'x.sk' has no kernel 'thrice'; it has twice"));
 }
 
+TEST_CASE("names that C++ or JavaScript cannot have are reported") {
+  const auto messages = [](Emit emit, const std::string& text) {
+    Options options;
+    options.emit = emit;
+    options.nativeTarget = false;
+    return compileText(options, "x.sk", text).messages;
+  };
+  const std::string body = "(float x<>, out float r<>) { r = x; }\n";
+  CHECK(contains(messages(Emit::Stubs, "kernel void index" + body),
+                 "x.sk:1:13: warning: 'index' is declared by headers of C++, so C++ programs call this "
+                 "kernel 'index_'; in a "
+                 "namespace it would keep its name"));
+  CHECK(messages(Emit::Stubs, "namespace a { kernel void index" + body + "}").empty());
+  CHECK(messages(Emit::Js, "kernel void index" + body).empty());
+  CHECK(contains(messages(Emit::Stubs, "namespace a { kernel void linux" + body + "}"),
+                 "'linux' is a macro, so C++ programs call this kernel 'linux_'; another name would stay"));
+  const std::string structs =
+      "struct tm { float unix; };\nkernel void f(tm x<>, out tm r<>) { r = x; }\nkernel void tm" + body;
+  CHECK(contains(messages(Emit::Stubs, structs),
+                 "x.sk:1:8: warning: 'tm' is declared by headers of C++, so C++ programs "
+                 "call this struct 'tm_'"));
+  CHECK(contains(messages(Emit::Stubs, structs),
+                 "x.sk:1:8: warning: 'unix' is a macro in C++, so programs cannot write "
+                 "the name of this member"));
+  CHECK(contains(messages(Emit::Stubs,
+                          "template <class T> struct P { T a; };\nusing A = P<int>;\nusing B = P<float>;\n"
+                          "kernel void f(A a<>, out B r<>) { r.a = float(a.a); }\n"),
+                 "warning: 'P' is a type's name, too, so C++ programs call this struct 'P_2'"));
+  CHECK(contains(messages(Emit::Js, "kernel void function" + body),
+                 "x.sk:1:13: warning: 'function' is a word of JavaScript or TypeScript, so JavaScript "
+                 "programs call this "
+                 "kernel 'function_'"));
+  CHECK(messages(Emit::Js, "namespace a { kernel void function" + body + "}").empty());
+  CHECK(contains(
+      messages(Emit::Js, "namespace a { namespace b { kernel void f" + body + "} }\nkernel void a_b" + body),
+      "warning: 'a_b' is another export's name, so JavaScript programs call this namespace 'a_b_2'"));
+}
+
 TEST_CASE("one compilation leaves nothing for the next") {
   Options options;
   options.emit = Emit::Glsl;

@@ -12,6 +12,7 @@
 #include <clang/Frontend/CompilerInvocation.h>
 #include <clang/Frontend/Utils.h>
 #include <clang/Lex/Preprocessor.h>
+#include <clang/Lex/PreprocessorOptions.h>
 #include <clang/Parse/Parser.h>
 #include <clang/Sema/Sema.h>
 #include <llvm/Support/MemoryBuffer.h>
@@ -42,6 +43,8 @@ namespace {
 constexpr std::uintmax_t largestFile = std::uintmax_t{4} << 20;
 /// A few lines of nested macros can expand to more tokens than fit in memory.
 constexpr std::size_t mostTokens = 1'000'000;
+/// Where the headers are that skc has in memory.
+constexpr const char* ownHeaders = "/sk-headers";
 
 std::vector<std::string> compilerArguments(const Options& options, const std::string& path) {
   std::vector<std::string> arguments = {
@@ -55,6 +58,8 @@ std::vector<std::string> compilerArguments(const Options& options, const std::st
       "-Wno-vla-cxx-extension",   // lowering refuses them
       // a bad -W or a long cascade must not bury the first message
       "-ferror-limit", "20", "-fmessage-length=0"};
+  // Programs' headers ask for the macro where they differ; the folder comes before that of the runtime's own header.
+  arguments.insert(arguments.end(), {"-D__SKC__=1", std::string("-I") + ownHeaders});
   for (const std::string& directory : options.includeDirectories) arguments.push_back("-I" + directory);
   for (const std::string& definition : options.definitions) arguments.push_back("-D" + definition);
   for (const std::string& warning : options.warnings) {
@@ -181,6 +186,9 @@ class Frontend::Unit {
     compiler_.createSourceManager(compiler_.getFileManager());
     dependencyCollector_ = std::make_shared<clang::DependencyCollector>();
     compiler_.addDependencyCollector(dependencyCollector_);
+    compiler_.getPreprocessorOpts().addRemappedFile(
+        std::string(ownHeaders) + "/sk/types.hpp",
+        llvm::MemoryBuffer::getMemBufferCopy(typesHeaderText(), "sk/types.hpp").release());
     compiler_.createPreprocessor(clang::TU_Complete);
     clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
     // Clang assigns an array, as a member of a struct, by __builtin_memcpy.

@@ -285,6 +285,20 @@ std::string preludeText() {
                      normalizedTypes(), matrixTypes(), typeTraits(), gathersAndStreams, intrinsics());
 }
 
+std::string typesHeaderText() {
+  std::string text = "#pragma GCC system_header\nnamespace sk {\nusing ::half;\n";
+  const auto add = [&](const std::string& name) {
+    text += fmt::format("using ::{0};\nusing ::__sk_make_{0};\n", name);
+  };
+  for (int width = 2; width <= 4; ++width) {
+    for (const VectorFamily& family : families) add(fmt::format("{}{}", family.scalar, width));
+    for (const std::string_view name : normalized) add(fmt::format("{}x{}", name, width));
+    add(fmt::format("float{0}x{0}", width));
+  }
+  for (const std::string_view name : normalized) text += fmt::format("using ::{};\n", name);
+  return text + "}\n";
+}
+
 bool isVectorTypeName(std::string_view name) {
   if (name.size() < 4) return false;
   const char width = name.back();

@@ -16,6 +16,9 @@ namespace skc::frontend {
 /// The prelude's text, wrapped in line markers that name it and mark it as a system header.
 std::string preludeText();
 
+/// The text of <sk/types.hpp> for .sk files, which include it where C++ shares a header with them: the names of its types.
+std::string typesHeaderText();
+
 /// True for type names whose `T(...)` takes components or rows: "float2" .. "unorm8x4", "float2x2" ...
 bool isVectorTypeName(std::string_view name);
 

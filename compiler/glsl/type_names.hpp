@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ir/ir.hpp"
+#include "support/namer.hpp"
 
 namespace skc::emit {
 
@@ -32,13 +33,5 @@ class TypeNames {
 
 /// "float", "bvec2"; a narrow scalar's arithmetic type; "sk_double", "sk_double2" (doubles.hpp).
 std::string glslSpelling(ir::Scalar scalar, int width);
-
-/// `base`, or the first of base_2, base_3 ... that is not taken.
-template <class Predicate>
-std::string uniqueName(const std::string& base, Predicate&& isTaken) {
-  std::string name = base;
-  for (int i = 2; isTaken(name); ++i) name = base + (base.back() == '_' ? "" : "_") + std::to_string(i);
-  return name;
-}
 
 }  // namespace skc::emit

@@ -3,22 +3,53 @@
 
 #include <algorithm>
 #include <cctype>
-#include <set>
+#include <map>
 
-#include "glsl/type_names.hpp"
 #include "ir/print.hpp"
+#include "program/shared_headers.hpp"
+#include "program/used_structs.hpp"
+#include "support/namer.hpp"
 
 namespace skc::emit {
 namespace {
 
 using namespace ir;
 
-std::string camelCase(std::string_view name) {
-  std::string result = pascalCase(name);
-  const auto first = static_cast<unsigned char>(result.front());
-  if (first < 0x80) result.front() = static_cast<char>(std::tolower(first));
-  return result;
-}
+bool isReservedInGlobalScope(std::string_view name) { return isGlobalCName(name) || isMacro(name); }
+bool isReservedForStruct(std::string_view name) { return isReservedInGlobalScope(name) || isCTag(name); }
+
+/// The names of each namespace.
+class Scopes {
+ public:
+  /// Structs, their aliases and namespaces are there before kernels.
+  explicit Scopes(const Module& module) {
+    for (const std::uint32_t index : usedStructs(module)) {
+      const Struct& type = module.structs[index];
+      Namer& names = namesOf(type.scope);
+      names.reserve(cppName(module, type));
+      for (const std::string& alias : type.aliases) names.reserve(alias);
+      reserveNamespaces(type.scope);
+    }
+    for (const Kernel& kernel : module.kernels) reserveNamespaces(kernel.scope);
+    for (const DeclaredStream& stream : module.streams) reserveNamespaces(stream.scope);
+  }
+
+  Namer& namesOf(const std::vector<std::string>& scope) {
+    return scopes_.try_emplace(qualifier(scope), scope.empty() ? isReservedInGlobalScope : isMacro)
+        .first->second;
+  }
+
+ private:
+  void reserveNamespaces(std::vector<std::string> scope) {
+    while (!scope.empty()) {
+      std::string name = std::move(scope.back());
+      scope.pop_back();
+      namesOf(scope).reserve(std::move(name));
+    }
+  }
+
+  std::map<std::string, Namer> scopes_;
+};
 
 }  // namespace
 
@@ -38,58 +69,113 @@ std::string pascalCase(std::string_view name) {
   return isName ? result : "K" + result;
 }
 
-std::vector<Callable> callables(const Module& module, const Program& program) {
-  std::set<std::string> taken;   // qualified names
-  for (const Struct& type : module.structs) taken.insert(qualifier(type.scope) + type.name);
+std::string camelCase(std::string_view name) {
+  std::string result = pascalCase(name);
+  const auto first = static_cast<unsigned char>(result.front());
+  if (first < 0x80) result.front() = static_cast<char>(std::tolower(first));
+  return result;
+}
+
+std::vector<Callable> callables(const Module& module) {
   std::vector<Callable> list;
-  std::vector<std::string> names;   // by callable, as in the .sk file
-  for (std::size_t i = 0; i < program.units().size(); ++i) {
-    const Kernel& kernel = module.kernels[program.units()[i].id];
-    const std::string scope = qualifier(kernel.scope);
-    const auto known = std::find(names.begin(), names.end(), scope + kernel.name);
-    if (known != names.end()) {
-      list[static_cast<std::size_t>(known - names.begin())].units.push_back(i);
+  std::vector<const Kernel*> kernels;   // the first of each callable
+  std::size_t unit = 0;
+  for (const Kernel& kernel : module.kernels) {
+    if (!isUnit(kernel)) continue;
+    const auto known = std::ranges::find_if(kernels, [&](const Kernel* other) {
+      return other->scope == kernel.scope && other->name == kernel.name;
+    });
+    if (known != kernels.end()) {
+      list[static_cast<std::size_t>(known - kernels.begin())].units.push_back(unit++);
       continue;
     }
-    const auto isTaken = [&](const std::string& name) {
-      return taken.contains(scope + name) || (kernel.scope.empty() && isGlobalCName(name));
-    };
-    Callable callable{kernel.scope, kernel.name, {}, {i}};
-    while (isTaken(callable.object)) callable.object += '_';
-    taken.insert(scope + callable.object);
-    callable.type = uniqueName(pascalCase(kernel.name) + pascalCase(wordOf(kernel)), isTaken);
-    taken.insert(scope + callable.type);
-    names.push_back(scope + kernel.name);
-    list.push_back(std::move(callable));
+    kernels.push_back(&kernel);
+    list.push_back({kernel.scope, {}, {}, {unit++}});
+  }
+  Scopes scopes(module);
+  for (std::size_t i = 0; i < list.size(); ++i)
+    list[i].object = scopes.namesOf(list[i].scope).take(kernels[i]->name);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string type = pascalCase(kernels[i]->name) + pascalCase(wordOf(*kernels[i]));
+    list[i].type = scopes.namesOf(list[i].scope).take(type);
   }
   return list;
-}
-
-std::vector<std::string> descriptorNames(const Module& module, const Program& program) {
-  std::vector<std::string> names;
-  for (const Unit& unit : program.units()) {
-    names.push_back(uniqueName(camelCase(module.kernels[unit.id].name), [&](const std::string& name) {
-      return std::find(names.begin(), names.end(), name) != names.end();
-    }));
-  }
-  return names;
-}
-
-std::vector<std::string> tableNames(const Module& module) {
-  std::vector<std::string> names;
-  for (const Table& table : module.tables) {
-    names.push_back(uniqueName("sk_" + camelCase(table.name), [&](const std::string& name) {
-      return std::find(names.begin(), names.end(), name) != names.end();
-    }));
-  }
-  return names;
 }
 
 std::string cppType(const Module& module, Type type, const std::vector<std::string>& scope) {
   if (type.isVector() || type.isMatrix()) return "sk::" + print(module, type);
   if (type.isScalar()) return std::string(row(type.scalar).cpp);
   const Struct& entry = module.structs[type.index];
-  return entry.scope == scope ? entry.name : qualifier(entry.scope) + entry.name;
+  const std::string name = cppName(module, entry);
+  return entry.scope == scope ? name : qualifier(entry.scope) + name;
+}
+
+std::string cppName(const Module& module, const Struct& type) {
+  if (isShared(module, type)) return type.name;
+  Namer names(type.scope.empty() ? isReservedForStruct : isMacro);
+  const auto isSame = [&](const Struct& other) {
+    return other.name == type.name && other.scope == type.scope;
+  };
+  if (std::ranges::count_if(module.structs, isSame) == 1) return names.take(type.name);
+  // Instances of a template, and structs within structs.
+  for (const std::uint32_t index : usedStructs(module)) {
+    const Struct& other = module.structs[index];
+    if (&other == &type) break;
+    if (isSame(other)) names.take(other.name);
+  }
+  return names.take(type.name);
+}
+
+std::string cppName(const Kernel& kernel, const KernelParam& param) {
+  std::string name = param.name;
+  const auto isTaken = [&] {
+    return isMacro(name) ||
+           (name != param.name && std::ranges::count(kernel.params, name, &KernelParam::name) > 0);
+  };
+  while (isTaken()) name += '_';
+  return name;
+}
+
+namespace {
+
+/// Why C++ has a kernel or struct of this name, if it is not its own name.
+std::string_view whatHas(const std::string& name, bool isGlobal) {
+  if (isMacro(name)) return "a macro";
+  return isGlobal && (isGlobalCName(name) || isCTag(name)) ? "declared by headers of C++"
+                                                           : "a type's name, too";
+}
+
+void reportName(Diagnostics& diagnostics, Loc loc, std::string_view kind, const std::string& name,
+                const std::string& given, bool isGlobal) {
+  if (name == given) return;
+  const bool helps = isGlobal && !isMacro(name);
+  diagnostics.report(Diag::NameTaken, loc,
+                     {name, whatHas(name, isGlobal), "C++", kind, given,
+                      helps ? "in a namespace it would keep its name" : "another name would stay"});
+}
+
+}  // namespace
+
+void reportCppNames(const Module& module, Diagnostics& diagnostics) {
+  const auto reportMacro = [&](const std::string& name, std::string_view kind, Loc loc) {
+    if (isMacro(name)) diagnostics.report(Diag::NameIsMacro, loc, {name, kind});
+  };
+  for (const std::uint32_t index : usedStructs(module)) {
+    const Struct& type = module.structs[index];
+    if (type.isSynthesized || isShared(module, type)) continue;
+    reportName(diagnostics, type.loc, "struct", type.name, cppName(module, type), type.scope.empty());
+    for (const StructField& field : type.fields) reportMacro(field.name, "member", type.loc);
+  }
+  for (const DeclaredStream& stream : module.streams) reportMacro(stream.name, "stream", stream.loc);
+  std::vector<const Kernel*> units;
+  for (const Kernel& kernel : module.kernels) {
+    if (isUnit(kernel)) units.push_back(&kernel);
+  }
+  for (const Callable& callable : callables(module)) {
+    const Kernel& kernel = *units[callable.units.front()];
+    for (const std::string& scope : kernel.scope) reportMacro(scope, "namespace", kernel.loc);
+    reportName(diagnostics, kernel.loc, wordOf(kernel), kernel.name, callable.object, kernel.scope.empty());
+  }
 }
 
 }  // namespace skc::emit

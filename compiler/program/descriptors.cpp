@@ -94,7 +94,7 @@ class Builder {
  private:
   void add(KernelId id) {
     const Kernel& kernel = module_.kernels[id];
-    if (kernel.pass || kernel.isSynthesized || kernel.isPart) return;
+    if (!isUnit(kernel)) return;
     Unit unit{.id = id, .kernel = whole(kernel)};
     unit.kernel.options = {.accumulate = static_cast<sk::Accumulate>(kernel.choices.accumulate),
                            .precision = static_cast<sk::Precision>(kernel.choices.precision),

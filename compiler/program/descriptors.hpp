@@ -23,6 +23,11 @@ struct Unit {
   bool isScan = false;
 };
 
+/// True if C++ can call the kernel, so that a unit describes it.
+inline bool isUnit(const ir::Kernel& kernel) {
+  return !kernel.pass && !kernel.isSynthesized && !kernel.isPart;
+}
+
 /// The kinds of GLSL programs that may be assembled.
 struct GlslTargets {
   bool fragment = true;

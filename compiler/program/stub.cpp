@@ -17,29 +17,30 @@ bool mayBeStream(const KernelParam& param) {
   return param.role == ParamRole::Uniform && param.type.kind != Type::Kind::Array;
 }
 
-std::string parameter(const Module& module, const KernelParam& param, Uniforms uniforms,
+std::string parameter(const Module& module, const Kernel& kernel, const KernelParam& param, Uniforms uniforms,
                       const std::vector<std::string>& scope) {
+  const std::string name = cppName(kernel, param);
   if (param.type.kind == Type::Kind::Array) {
     const Array& array = module.arrays[param.type.index];
     return fmt::format("std::span<const {}, {}> {}", cppType(module, array.element, scope), array.length,
-                       param.name);
+                       name);
   }
   const std::string type = cppType(module, param.type, scope);
   const auto stream = [&](std::string_view direction) {
     const std::string taken = fmt::format("sk::{}<{}>", direction, type);
-    return param.neededIf ? fmt::format("const sk::Optional<{}>& {}", taken, param.name)
-                          : fmt::format("const {}& {}", taken, param.name);
+    return param.neededIf ? fmt::format("const sk::Optional<{}>& {}", taken, name)
+                          : fmt::format("const {}& {}", taken, name);
   };
   switch (param.role) {
-    case ParamRole::Spec: return fmt::format("{} {}", type, param.name);
-    case ParamRole::Iterator: return fmt::format("const sk::Iter<{}>& {}", type, param.name);
+    case ParamRole::Spec: return fmt::format("{} {}", type, name);
+    case ParamRole::Iterator: return fmt::format("const sk::Iter<{}>& {}", type, name);
     case ParamRole::Uniform:
-      if (uniforms == Uniforms::Streams) return fmt::format("const sk::Uniform<{}>& {}", type, param.name);
-      return param.type.isArithmetic() ? fmt::format("{} {}", type, param.name)
-                                       : fmt::format("const {}& {}", type, param.name);
+      if (uniforms == Uniforms::Streams) return fmt::format("const sk::Uniform<{}>& {}", type, name);
+      return param.type.isArithmetic() ? fmt::format("{} {}", type, name)
+                                       : fmt::format("const {}& {}", type, name);
     case ParamRole::Input: return stream("ElementIn");
     case ParamRole::Gather: return stream("In");
-    case ParamRole::VariableOutput: return fmt::format("const sk::VariableOut<{}>& {}", type, param.name);
+    case ParamRole::VariableOutput: return fmt::format("const sk::VariableOut<{}>& {}", type, name);
     case ParamRole::Output:
     case ParamRole::Scatter:
     case ParamRole::Accumulator: break;
@@ -76,14 +77,14 @@ std::string parameterList(const Module& module, const Kernel& kernel, Form form,
   std::vector<std::string> list;
   for (const KernelParam& param : kernel.params) {
     const bool isReturned = param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
-    if (!isReturned) list.push_back(parameter(module, param, uniforms, scope));
+    if (!isReturned) list.push_back(parameter(module, kernel, param, uniforms, scope));
   }
   return join(list, ", ") + ") const";
 }
 
 Stub emitStub(const Module& module, const Program& program, std::string_view fileName,
               const StubOptions& options) {
-  StubParts parts{callables(module, program), {}, fileName, options};
+  StubParts parts{callables(module), {}, fileName, options};
   parts.streams = streamStructs(module, parts.callables, fileName);
   Stub stub;
   stub.header = stubHeader(module, program, parts);

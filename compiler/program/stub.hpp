@@ -23,6 +23,8 @@ struct Stub {
 struct StubOptions {
   bool native = true;  ///< the descriptors refer to native code
   bool quad = false;  ///< the native code also computes in __float128
+  std::vector<std::string> includeDirectories =
+      {};  ///< where C++ finds headers that it shares with .sk files
   bool withLibrary = false;  ///< the source lists its descriptors: sk/library.hpp
 };
 

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include "ir/print.hpp"
+#include "program/descriptor_names.hpp"
 #include "program/stub_parts.hpp"
+#include "support/namer.hpp"
 #include "support/text.hpp"
 
 namespace skc::emit {
@@ -44,15 +46,15 @@ class FunctionWriter {
       case Form::ReduceToStream:
       case Form::Scan:
       case Form::Fold:
-        text_ += fmt::format("  sk::{}(sk::program::{}Reduction, {}, this->options);\n",
-                             form == Form::Fold ? "fold" : wordOf(kernel), names_[unit],
+        text_ += fmt::format("  sk::{}(sk::program::{}, {}, this->options);\n",
+                             form == Form::Fold ? "fold" : wordOf(kernel), names_[unit] + Part::Reduction,
                              arguments(kernel, form, uniforms));
     }
     text_ += "}\n";
   }
 
   void run(const Kernel& kernel, std::size_t unit, Uniforms uniforms) {
-    text_ += fmt::format("  sk::run(sk::program::{}Kernel, {}, this->options);\n", names_[unit],
+    text_ += fmt::format("  sk::run(sk::program::{}, {}, this->options);\n", names_[unit] + Part::Kernel,
                          arguments(kernel, Form::Run, uniforms));
   }
 
@@ -61,7 +63,7 @@ class FunctionWriter {
     std::vector<std::string> items;
     for (const KernelParam& param : kernel.params) {
       const bool isReturned = param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
-      items.push_back(isReturned ? "{}" : argument(param, uniforms));
+      items.push_back(isReturned ? "{}" : argument(kernel, param, uniforms));
     }
     const std::string list = localName(kernel, "arguments");
     const std::string head = fmt::format("  const sk::Argument {}[] = {{", list);
@@ -69,14 +71,15 @@ class FunctionWriter {
     return list;
   }
 
-  static std::string argument(const KernelParam& param, Uniforms uniforms) {
-    if (param.role == ParamRole::Iterator) return fmt::format("sk::argumentOf({})", param.name);
-    if (param.type.kind == Type::Kind::Array) return fmt::format("{{.value = {}.data()}}", param.name);
+  static std::string argument(const Kernel& kernel, const KernelParam& param, Uniforms uniforms) {
+    const std::string name = cppName(kernel, param);
+    if (param.role == ParamRole::Iterator) return fmt::format("sk::argumentOf({})", name);
+    if (param.type.kind == Type::Kind::Array) return fmt::format("{{.value = {}.data()}}", name);
     const bool isValue = param.role == ParamRole::Uniform && uniforms == Uniforms::Values;
     if (isValue || param.role == ParamRole::Spec) {
-      return fmt::format("{{.value = &{}}}", param.name);
+      return fmt::format("{{.value = &{}}}", name);
     }
-    return param.name + ".argument()";
+    return name + ".argument()";
   }
 
   void reduceToValue(const Kernel& kernel, std::size_t unit, Uniforms uniforms) {
@@ -93,18 +96,15 @@ class FunctionWriter {
     const std::string results = localName(kernel, "results");
     const std::string head = fmt::format("  void* const {}[] = {{", results);
     text_ += wrapLine(head + join(places, ", ") + "};", 100, head.size()) + "\n";
-    text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {}, {}, this->options);\n  return {};\n",
-                         names_[unit], list, results, value);
+    text_ += fmt::format("  sk::reduce(sk::program::{}, {}, {}, this->options);\n  return {};\n",
+                         names_[unit] + Part::Reduction, list, results, value);
   }
 
   /// A name for a local variable that differs from all parameters.
   static std::string localName(const Kernel& kernel, std::string name) {
-    const auto isTaken = [&] {
-      return std::any_of(kernel.params.begin(), kernel.params.end(),
-                         [&](const KernelParam& param) { return param.name == name; });
-    };
-    while (isTaken()) name += '_';
-    return name;
+    Namer names;
+    for (const KernelParam& param : kernel.params) names.reserve(cppName(kernel, param));
+    return names.take(std::move(name));
   }
 
   const Kernel& kernelOf(std::size_t unit) const { return module_.kernels[program_.units()[unit].id]; }

@@ -11,10 +11,11 @@
 
 #include "glsl/type_names.hpp"
 #include "ir/print.hpp"
+#include "program/cpp_names.hpp"
+#include "program/descriptor_names.hpp"
 #include "program/elements.hpp"
 #include "program/options_text.hpp"
 #include "program/stub_parts.hpp"
-#include "program/variant_names.hpp"
 #include "support/text.hpp"
 
 namespace skc::emit {
@@ -22,17 +23,17 @@ namespace skc::emit {
 using namespace ir;
 
 std::string conditionName(const std::string& unit, const sk::program::Parameter& param) {
-  return fmt::format("{}Needs_{}", unit, param.symbol);
+  return ofParameter(unit, Part::Needs, param.symbol);
 }
 
 std::string elementName(const std::string& unit, const sk::program::Parameter& param) {
-  return fmt::format("{}Element_{}", unit, param.symbol);
+  return ofParameter(unit, Part::Element, param.symbol);
 }
 
 namespace {
 
 std::string haloName(const std::string& unit, const sk::program::Parameter& param) {
-  return fmt::format("{}Halo_{}", unit, param.symbol);
+  return ofParameter(unit, Part::Halo, param.symbol);
 }
 
 std::string distanceText(const sk::program::Distance& distance) {
@@ -63,7 +64,7 @@ std::string haloText(const std::string& unit, const sk::program::Parameter& para
 
 std::string lastMembers(const std::string& unit, const sk::program::Parameter& param, std::size_t number) {
   std::string text;
-  if (!param.layers.empty()) text += fmt::format(", .layers = {}Layers{}", unit, number);
+  if (!param.layers.empty()) text += ", .layers = " + numbered(unit, Part::Layers, number);
   if (!param.halo.empty()) text += ", .halo = " + haloName(unit, param);
   if (param.haloShapes != 0) text += fmt::format(", .haloShapes = {}u", param.haloShapes);
   return text;
@@ -71,7 +72,7 @@ std::string lastMembers(const std::string& unit, const sk::program::Parameter& p
 
 std::string elementOf(const Module& module, Type type) {
   if (type.kind == Type::Kind::Struct && module.structs[type.index].isSynthesized) {
-    return fmt::format("&{}Element", TypeNames(module).structName(type.index));
+    return "&" + (synthesizedStructName(TypeNames(module).structName(type.index)) + Part::Element);
   }
   const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";
   const std::string name = type.isVector() ? spelling(type.scalar, type.width) : cppType(module, type);

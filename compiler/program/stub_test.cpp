@@ -32,6 +32,9 @@ TEST_CASE("the header") {
 #include <sk/call.hpp>
 #include <sk/sk.hpp>
 
+#ifndef SK_STRUCT_3Hit
+#define SK_STRUCT_3Hit 0x9a819cd3
+
 struct Hit {
   float t;
   int id;
@@ -45,6 +48,10 @@ struct sk::ElementTraits<Hit> {
   static constexpr sk::program::Element value{"Hit", "Hit", sizeof(Hit), fields};
   static constexpr const sk::program::Element& element() { return value; }
 };
+
+#elif SK_STRUCT_3Hit != 0x9a819cd3
+#error "the .sk files of these headers declare Hit differently"
+#endif  // SK_STRUCT_3Hit
 
 namespace heat {
 
@@ -262,7 +269,7 @@ Module awkwardModule() {
 
 TEST_CASE("awkward names and nested structs") {
   const Stub stub = stubOf(awkwardModule());
-  CHECK(contains(stub.header, "#ifndef SK_STRUCT_geometry_Ray\n"));
+  CHECK(contains(stub.header, "#ifndef SK_STRUCT_8geometry3Ray\n"));
   CHECK(contains(
       stub.header,
       "namespace geometry::pairs {\n\nstruct Pair {\n  geometry::Ray first;\n  unsigned count;\n};\n"));

@@ -113,4 +113,10 @@ std::string wrapLine(std::string_view line, std::size_t limit, std::size_t conti
   return result + std::string(line);
 }
 
+std::uint64_t textHash(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return hash;
+}
+
 }  // namespace skc

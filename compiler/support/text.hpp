@@ -3,6 +3,7 @@
 // Text utilities that all printers share.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,5 +24,9 @@ std::string join(std::span<const std::string> items, std::string_view separator)
 /// binary operators, preferring the fewest open brackets and the lowest precedence. Continuation lines begin
 /// in column `continuation`; 0 means four more than the line itself. String literals are not broken.
 std::string wrapLine(std::string_view line, std::size_t limit = 100, std::size_t continuation = 0);
+
+/// A hash that is the same everywhere: 64-bit FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo, "The FNV Non-Cryptographic Hash Algorithm",
+/// IETF draft).
+std::uint64_t textHash(std::string_view text);
 
 }  // namespace skc

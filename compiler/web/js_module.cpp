@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Prints FILE.sk.js. Programs share the texts of kernels' bodies, which are constants of their own. What is not exported has a
-// name with $, which no kernel has. Of the package, only the features that its kernels need are named, so that bundlers leave out
+// name with $, which JsNames gives to nothing else. Of the package, only the features that its kernels need are named, so that bundlers leave out
 // the rest.
 #include "web/js_module.hpp"
 
@@ -21,6 +21,7 @@
 #include "program/used_structs.hpp"
 #include "support/text.hpp"
 #include "web/ahead_programs.hpp"
+#include "web/js_names.hpp"
 #include "web/offered.hpp"
 #include "web/sum_variants.hpp"
 #include "web/typings.hpp"
@@ -56,7 +57,8 @@ std::string_view nameOf(E enumerator) {
 
 class ScriptWriter {
  public:
-  ScriptWriter(const ir::Module& module, const emit::Program& program) : module_(module), program_(program) {}
+  ScriptWriter(const ir::Module& module, const emit::Program& program, const JsNames& names)
+      : module_(module), program_(program), jsNames_(names) {}
 
   std::string text(std::string_view fileName) {
     Json callables = Json::array();
@@ -435,27 +437,25 @@ class ScriptWriter {
     std::string text;
     for (const std::uint32_t index : emit::usedStructs(module_)) {
       if (module_.structs[index].isSynthesized) continue;
-      text += fmt::format("export const {} = $file.struct(\"{}\");\n", structName(module_, index),
+      text += fmt::format("export const {} = $file.struct(\"{}\");\n", jsNames_.structName(index),
                           ir::print(module_, ir::Type::structType(index)));
     }
-    std::map<std::string, std::string> scopes;
-    for (const Export& one : exportsOf(module_, program_)) {
-      std::string units;
-      for (const std::size_t unit : one.units) units += (units.empty() ? "" : ", ") + std::to_string(unit);
-      if (one.scope.empty()) {
-        text += fmt::format("export const {} = $file.callable({});\n", jsName(one.name), units);
-      } else {
-        scopes[jsName(join(one.scope, "_"))] +=
-            fmt::format("  {}: $file.callable({}),\n", jsName(one.name), units);
+    for (const Scope& scope : jsNames_.scopes()) {
+      if (!scope.name.empty()) text += fmt::format("export const {} = {{\n", scope.name);
+      for (const Export& one : scope.exports) {
+        std::string units;
+        for (const std::size_t unit : one.units) units += (units.empty() ? "" : ", ") + std::to_string(unit);
+        text += scope.name.empty() ? fmt::format("export const {} = $file.callable({});\n", one.name, units)
+                                   : fmt::format("  {}: $file.callable({}),\n", one.name, units);
       }
+      if (!scope.name.empty()) text += "};\n";
     }
-    for (const auto& [scope, members] : scopes)
-      text += fmt::format("export const {} = {{\n{}}};\n", scope, members);
     return text;
   }
 
   const ir::Module& module_;
   const emit::Program& program_;
+  const JsNames& jsNames_;
   Json elements_ = Json::array();
   std::vector<std::string> texts_;  ///< shared parts of programs, contents of template literals
   std::vector<std::string> programs_;  ///< contents of template literals
@@ -467,8 +467,9 @@ class ScriptWriter {
 }  // namespace
 
 JsModule jsModule(const ir::Module& module, const emit::Program& program, std::string_view fileName) {
-  return {.script = ScriptWriter(module, program).text(fileName),
-          .types = typings(module, program, fileName)};
+  const JsNames names(module);
+  return {.script = ScriptWriter(module, program, names).text(fileName),
+          .types = typings(module, program, names, fileName)};
 }
 
 }  // namespace skc::web

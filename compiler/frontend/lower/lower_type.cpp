@@ -8,6 +8,8 @@
 #include <clang/AST/ASTContext.h>
 #include <clang/AST/DeclCXX.h>
 #include <clang/AST/DeclTemplate.h>
+#include <clang/AST/PrettyPrinter.h>
+#include <llvm/Support/raw_ostream.h>
 
 #include "frontend/lower/module_lowering.hpp"
 #include "frontend/prelude.hpp"
@@ -116,6 +118,16 @@ std::optional<int> ModuleLowering::appendRank(clang::QualType qualified, SourceL
   return std::nullopt;
 }
 
+/// A struct's name as C++ writes it: "Pair<float>".
+std::string ModuleLowering::cppName(const clang::CXXRecordDecl* record) const {
+  std::string name;
+  llvm::raw_string_ostream stream(name);
+  clang::PrintingPolicy policy(context().getLangOpts());
+  policy.FullyQualifiedName = true;
+  record->getNameForDiagnostic(stream, policy, /*Qualified=*/false);
+  return name;
+}
+
 /// The struct's name; for `typedef struct { ... } A;`, A; for one without a name, an unused name.
 std::string ModuleLowering::structName(const clang::CXXRecordDecl* record) const {
   if (const std::string name = record->getNameAsString(); !name.empty()) return name;
@@ -133,7 +145,6 @@ void ModuleLowering::addAlias(const clang::TypedefNameDecl* alias) {
   if (found == structs_.end() || isPrelude(alias)) return;
   ir::Struct& known = module_.structs[found->second];
   if (known.name == alias->getNameAsString() || known.scope != scopeOf(alias)) return;
-  if (llvm::isa<clang::ClassTemplateSpecializationDecl>(found->first)) return;
   known.aliases.push_back(alias->getNameAsString());
 }
 
@@ -153,7 +164,8 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
   }
   if (record->field_empty()) fail(Diag::StructEmpty, use, {name});
   ir::Struct entry;
-  entry.name = structName(record);
+  const bool isInstance = llvm::isa<clang::ClassTemplateSpecializationDecl>(record);
+  entry.name = isInstance && isInCppHeader(record) ? cppName(record) : structName(record);
   entry.scope = scopeOf(record);
   entry.loc = loc(record->getLocation());
   for (const clang::FieldDecl* field : record->fields()) {

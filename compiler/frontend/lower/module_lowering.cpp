@@ -22,6 +22,7 @@
 #include "ir/print.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
+#include "support/header_files.hpp"
 
 namespace skc::frontend {
 
@@ -53,6 +54,7 @@ ir::Module ModuleLowering::run(const std::string& file) {
   declarations(context().getTranslationUnitDecl());
   addAliases(context().getTranslationUnitDecl());
   if (!diagnostics_.hasErrors()) pairReductions();
+  if (!diagnostics_.hasErrors()) keepOwnKernels();
   return std::move(module_);
 }
 
@@ -135,7 +137,61 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   checkKernelShape(kernel, where);
   if (const std::string_view kind = withoutVariants(kernel); kernel.choices.ahead != 0 && !kind.empty())
     diagnostics_.report(Diag::VariantsUnused, kernel.loc, {kernel.name, std::string(kind)});
+  const bool isInstance =
+      declaration->getTemplateSpecializationKind() == clang::TSK_ExplicitInstantiationDefinition;
+  isOwn_.push_back(isOwn(isInstance ? declaration->getPointOfInstantiation() : where));
   module_.kernels.push_back(std::move(kernel));
+}
+
+/// True if the declaration is in the main file, or in a file that this includes and that is no .sk file.
+bool ModuleLowering::isOwn(SourceLocation where) const {
+  clang::FileID file = sources().getFileID(sources().getExpansionLoc(where));
+  while (file != sources().getMainFileID()) {
+    const clang::OptionalFileEntryRef entry = sources().getFileEntryRefForID(file);
+    const SourceLocation includedAt = sources().getIncludeLoc(file);
+    if ((entry && isKernelFile(entry->getName())) || includedAt.isInvalid()) return false;
+    file = sources().getFileID(includedAt);
+  }
+  return true;
+}
+
+/// Removes the kernels of included .sk files, which the stubs of those files offer. What combines partial results of this file's
+/// own kernels stays, as if synthesized.
+void ModuleLowering::keepOwnKernels() {
+  std::vector<bool> stays = isOwn_;
+  for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
+    const ir::Kernel& kernel = module_.kernels[id];
+    if (isOwn_[id] && kernel.reduction && kernel.reduction->combine) stays[*kernel.reduction->combine] = true;
+  }
+  const bool hasOwn = std::ranges::find(isOwn_, true) != isOwn_.end();
+  if (!isOwn_.empty() && !hasOwn && module_.streams.empty()) {
+    const ir::Kernel& first = module_.kernels.front();
+    diagnostics_.report(Diag::NoOwnKernels, first.loc,
+                        {module_.file, first.name, module_.sources[first.loc.file]});
+  }
+  for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
+    const ir::Kernel& kernel = module_.kernels[id];
+    for (ir::KernelId other = 0; isOwn_[id] && other < module_.kernels.size(); ++other) {
+      const ir::Kernel& included = module_.kernels[other];
+      if (isOwn_[other] || included.name != kernel.name || included.scope != kernel.scope) continue;
+      diagnostics_.report(Diag::OverloadOfIncluded, kernel.loc,
+                          {kernel.name, module_.sources[included.loc.file]});
+      break;
+    }
+  }
+  std::vector<ir::KernelId> numbers;
+  std::vector<ir::Kernel> kernels;
+  for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
+    numbers.push_back(static_cast<ir::KernelId>(kernels.size()));
+    if (!stays[id]) continue;
+    kernels.push_back(std::move(module_.kernels[id]));
+    kernels.back().isSynthesized = !isOwn_[id];
+  }
+  for (ir::Kernel& kernel : kernels) {
+    if (kernel.reduction && kernel.reduction->combine)
+      kernel.reduction->combine = numbers[*kernel.reduction->combine];
+  }
+  module_.kernels = std::move(kernels);
 }
 
 /// Turns the instances that `template kernel void f<...>(...);` requests into kernels.
@@ -503,11 +559,20 @@ bool ModuleLowering::isPrelude(const clang::Decl* declaration) const {
   return sources().isInSystemHeader(declaration->getLocation());
 }
 
+/// True if C++ programs include the file that has the declaration.
+bool ModuleLowering::isInCppHeader(const clang::Decl* declaration) const {
+  const clang::PresumedLoc presumed =
+      sources().getPresumedLoc(sources().getExpansionLoc(declaration->getLocation()));
+  return presumed.isValid() && isCppHeader(presumed.getFilename());
+}
+
 std::vector<std::string> ModuleLowering::scopeOf(const clang::Decl* declaration) const {
   std::vector<std::string> scope;
   for (const clang::DeclContext* outer = declaration->getDeclContext(); outer; outer = outer->getParent()) {
     const auto* space = llvm::dyn_cast<clang::NamespaceDecl>(outer);
     if (space && !space->isAnonymousNamespace()) scope.push_back(space->getNameAsString());
+    const auto* record = llvm::dyn_cast<clang::CXXRecordDecl>(outer);
+    if (record && isInCppHeader(declaration)) scope.push_back(cppName(record));
   }
   std::reverse(scope.begin(), scope.end());
   return scope;

@@ -97,6 +97,8 @@ class ModuleLowering {
   void checkFoldedOutputs(const ir::Kernel& kernel, const KernelSyntax& syntax);
   void checkKernelShape(const ir::Kernel& kernel, clang::SourceLocation where);
   void pairReductions();
+  bool isOwn(clang::SourceLocation where) const;
+  void keepOwnKernels();
   void stream(const clang::VarDecl* declaration, const StreamSyntax& syntax);
   ir::TableId table(const clang::FunctionDecl* declaration, const TableSyntax& syntax);
   std::uint32_t generatedNumber(const std::string& name);
@@ -107,11 +109,13 @@ class ModuleLowering {
   ir::ExprPtr evaluated(const clang::VarDecl* declaration);
   ir::ExprPtr evaluated(const clang::APValue& value, ir::Type type, Loc loc) const;
   std::string structName(const clang::CXXRecordDecl* record) const;
+  std::string cppName(const clang::CXXRecordDecl* record) const;
   void addAlias(const clang::TypedefNameDecl* alias);
   void addAliases(const clang::DeclContext* scope);
   ir::Type structType(const clang::CXXRecordDecl* declaration, clang::SourceLocation use);
   ir::Type arrayType(ir::Type element, std::uint64_t length, clang::SourceLocation use);
   void checkSize(ir::Type type, clang::SourceLocation use);
+  bool isInCppHeader(const clang::Decl* declaration) const;
   std::vector<std::string> scopeOf(const clang::Decl* declaration) const;
 
   clang::Sema& sema_;
@@ -125,6 +129,7 @@ class ModuleLowering {
   std::unordered_map<std::string, const clang::VarDecl*> generated_, generatedGlobals_;
   std::unordered_set<const clang::Decl*> failedConstants_, constantsInProgress_;
   bool inlineConstants_ = false;
+  std::vector<bool> isOwn_;  ///< by kernel: the main file's stubs offer it
 };
 
 }  // namespace skc::frontend

@@ -125,7 +125,7 @@ openPage({
   controls: [
     { name: 'pattern', label: 'Pattern', choices: Object.entries(patterns).map(([key, [, , words]]) => [key, words]), value: 'theta' },
   ],
-  sources: ['sk/lattice/reaction.sk', 'sk/lattice/boundary.sk', 'sk/gallery/brush.sk', 'sk/lattice/view.sk'],
+  sources: ['sk/lattice/reaction.inc', 'sk/lattice/boundary.sk', 'sk/gallery/brush.sk', 'sk/lattice/view.sk'],
   create,
   accuracy: {
     note: 'The same steps in three precisions, against doubles in JavaScript. The doubles are the same file, compiled with another type. Times are those of a step of the ' +
