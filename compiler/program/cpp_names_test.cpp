@@ -49,7 +49,7 @@ TEST_CASE("objects and their types") {
   const std::vector<Callable> list = callables(module);
   REQUIRE(list.size() == 3);
   CHECK(list[0].object == "gray_scott");
-  CHECK(list[0].type == "GrayScottKernel_2");
+  CHECK(list[0].type == "GrayScottKernel_");
   CHECK(list[0].units == std::vector<std::size_t>{0, 3});
   CHECK(list[1].object == "exp_");
   CHECK(list[2].object == "exp");

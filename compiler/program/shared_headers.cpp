@@ -50,6 +50,9 @@ std::vector<std::string> sharedHeaders(const Module& module, const std::vector<s
   return paths;
 }
 
+namespace {
+
+/// Empty for a struct of a .sk file.
 std::string layoutCheck(const Module& module, std::uint32_t index) {
   const Struct& type = module.structs[index];
   if (!isShared(module, type)) return {};
@@ -67,6 +70,14 @@ std::string layoutCheck(const Module& module, std::uint32_t index) {
       fmt::format("sizeof({}) == {}", name, elementLayout(module, types, Type::structType(index)).size));
   return fmt::format("static_assert({},\n              \"{} is another struct in C++ than in kernels\");\n",
                      join(members, " &&\n                  "), name.substr(2));
+}
+
+}  // namespace
+
+std::string layoutChecks(const Module& module) {
+  std::string text;
+  for (const std::uint32_t index : usedStructs(module)) text += layoutCheck(module, index);
+  return text;
 }
 
 }  // namespace skc::emit

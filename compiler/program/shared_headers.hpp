@@ -17,7 +17,7 @@ bool isShared(const ir::Module& module, const ir::Struct& type);
 /// contains the header, else to the .sk file's folder.
 std::vector<std::string> sharedHeaders(const ir::Module& module, const std::vector<std::string>& folders);
 
-/// The text that checks, in FILE.sk.cpp, that a shared struct is the same for C++ as for kernels; empty for other structs.
-std::string layoutCheck(const ir::Module& module, std::uint32_t index);
+/// The text that checks, in FILE.sk.cpp, that shared structs are the same for C++ as for kernels; empty if there are none.
+std::string layoutChecks(const ir::Module& module);
 
 }  // namespace skc::emit

@@ -24,7 +24,11 @@ static_assert(std::ranges::is_sorted(words) && std::ranges::is_sorted(types), "f
 bool isJsWord(std::string_view name) { return std::binary_search(std::begin(words), std::end(words), name); }
 
 /// The constants that a module does not export begin with $, which C++ compilers allow in names, too.
-bool isReserved(std::string_view name) { return isJsWord(name) || name.starts_with('$'); }
+bool isReserved(std::string_view name) {
+  const bool isText =
+      name.starts_with("$text") && name.find_first_not_of("0123456789", 5) == std::string_view::npos;
+  return isJsWord(name) || isText || name == "$file" || name == "$programs" || name == "$sk";
+}
 bool isReservedType(std::string_view name) {
   return isReserved(name) || std::binary_search(std::begin(types), std::end(types), name);
 }

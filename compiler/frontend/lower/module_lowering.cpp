@@ -2,6 +2,7 @@
 #include "frontend/lower/module_lowering.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -158,6 +159,9 @@ bool ModuleLowering::isOwn(SourceLocation where) const {
 /// Removes the kernels of included .sk files, which the stubs of those files offer. What combines partial results of this file's
 /// own kernels stays, as if synthesized.
 void ModuleLowering::keepOwnKernels() {
+  const auto fileOf = [&](const ir::Kernel& kernel) {
+    return std::filesystem::path(module_.sources[kernel.loc.file]).lexically_normal().string();
+  };
   std::vector<bool> stays = isOwn_;
   for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
     const ir::Kernel& kernel = module_.kernels[id];
@@ -166,16 +170,14 @@ void ModuleLowering::keepOwnKernels() {
   const bool hasOwn = std::ranges::find(isOwn_, true) != isOwn_.end();
   if (!isOwn_.empty() && !hasOwn && module_.streams.empty()) {
     const ir::Kernel& first = module_.kernels.front();
-    diagnostics_.report(Diag::NoOwnKernels, first.loc,
-                        {module_.file, first.name, module_.sources[first.loc.file]});
+    diagnostics_.report(Diag::NoOwnKernels, first.loc, {module_.file, first.name, fileOf(first)});
   }
   for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
     const ir::Kernel& kernel = module_.kernels[id];
     for (ir::KernelId other = 0; isOwn_[id] && other < module_.kernels.size(); ++other) {
       const ir::Kernel& included = module_.kernels[other];
       if (isOwn_[other] || included.name != kernel.name || included.scope != kernel.scope) continue;
-      diagnostics_.report(Diag::OverloadOfIncluded, kernel.loc,
-                          {kernel.name, module_.sources[included.loc.file]});
+      diagnostics_.report(Diag::OverloadOfIncluded, kernel.loc, {kernel.name, fileOf(included)});
       break;
     }
   }
