@@ -11,6 +11,7 @@
 
 #include "glsl/type_names.hpp"
 #include "ir/print.hpp"
+#include "program/cpp_literals.hpp"
 #include "program/cpp_names.hpp"
 #include "program/descriptor_names.hpp"
 #include "program/elements.hpp"
@@ -115,6 +116,38 @@ std::string parameterText(const Module& module, const std::string& unit, const s
     text += fmt::format(", .firstPlane = {}, .planeCount = {}", param.firstPlane, param.planeCount);
   }
   return text;
+}
+
+std::string kernelText(const sk::program::Kernel& kernel, const std::string& name, std::size_t column,
+                       const std::string& codeSymbol) {
+  const std::string declarations = kernel.declarations.empty() ? "{}" : name + Part::Declarations;
+  const std::string body = kernel.body.empty() ? "{}" : name + Part::Body;
+  std::vector<std::string> members = {
+      fmt::format(".name = \"{}\"", kernel.name), fmt::format(".entry = \"{}\"", kernel.entry),
+      ".declarations = " + declarations,          ".body = " + body,
+      ".parameters = " + name + Part::Parameters, ".sources = sources"};
+  if (kernel.usesIndex) members.emplace_back(".usesIndex = true");
+  if (kernel.usesExtent) members.emplace_back(".usesExtent = true");
+  if (kernel.usesLoops) members.emplace_back(".usesLoops = true");
+  if (kernel.usesDoubles) members.emplace_back(".usesDoubles = true");
+  if (kernel.usesExactSums) members.emplace_back(".usesExactSums = true");
+  if (!kernel.intrinsics.empty()) members.push_back(fmt::format(".intrinsics = {}", name + Part::Intrinsics));
+  if (kernel.planCount > 0) {
+    members.push_back(fmt::format(".plans = {}", name + Part::Plans));
+    members.push_back(fmt::format(".planCount = {}", kernel.planCount));
+  }
+  if (kernel.options != sk::CallOptions{}) members.push_back(".options = " + optionsText(kernel.options));
+  if (kernel.half != nullptr) members.push_back(fmt::format(".half = &{}", name + Part::Half + Part::Kernel));
+  if (kernel.wide != nullptr) members.push_back(fmt::format(".wide = &{}", name + Part::Wide + Part::Kernel));
+  if (!kernel.whyNotHalf.empty()) members.push_back(".whyNotHalf = " + quoted(kernel.whyNotHalf));
+  if (!kernel.whyNotWide.empty()) members.push_back(".whyNotWide = " + quoted(kernel.whyNotWide));
+  if (!kernel.tables.empty()) members.push_back(fmt::format(".tables = {}", name + Part::Tables));
+  if (!kernel.unrolled.empty()) members.push_back(fmt::format(".unrolled = {}", name + Part::Unrolled));
+  if (!kernel.drawn) members.emplace_back(".drawn = false");
+  if (!kernel.dispatched) members.emplace_back(".dispatched = false");
+  if (!codeSymbol.empty()) members.push_back(".code = &native::" + codeSymbol);
+  const std::string newLine = "\n" + std::string(column, ' ');
+  return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
 }
 
 }  // namespace skc::emit

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Prints the parameters of descriptors for FILE.sk.cpp, and the names of the constants to which they refer.
+// Prints the kernels and parameters of descriptors for FILE.sk.cpp, and the names of the constants to which they refer.
 #pragma once
 
 #include <cstddef>
@@ -28,5 +28,9 @@ std::string elementOf(const ir::Module& module, ir::Type type);
 /// A parameter's initializer, without the closing bracket.
 std::string parameterText(const ir::Module& module, const std::string& unit,
                           const sk::program::Parameter& param, const ir::KernelParam& declared);
+
+/// A kernel's initializer. One member per line; the first follows the bracket if that is far to the right.
+std::string kernelText(const sk::program::Kernel& kernel, const std::string& name, std::size_t column,
+                       const std::string& codeSymbol = {});
 
 }  // namespace skc::emit

@@ -16,7 +16,6 @@
 #include "program/descriptor_members.hpp"
 #include "program/descriptor_names.hpp"
 #include "program/elements.hpp"
-#include "program/options_text.hpp"
 #include "program/shared_headers.hpp"
 #include "program/stub_parameters.hpp"
 #include "program/stub_parts.hpp"
@@ -26,7 +25,6 @@ namespace skc::emit {
 namespace {
 
 using namespace ir;
-using sk::CallOptions;
 
 class SourceWriter {
  public:
@@ -497,42 +495,6 @@ class SourceWriter {
     if (items.empty()) return;
     const std::string head = fmt::format("constexpr {} {}[] = {{", type, name);
     text_ += wrapLine(head + join(items, ", ") + "};", 100, 4) + "\n";
-  }
-
-  /// One member per line; the first follows the bracket if that is far to the right.
-  static std::string kernelText(const sk::program::Kernel& kernel, const std::string& name,
-                                std::size_t column, const std::string& codeSymbol = {}) {
-    const std::string declarations = kernel.declarations.empty() ? "{}" : name + Part::Declarations;
-    const std::string body = kernel.body.empty() ? "{}" : name + Part::Body;
-    std::vector<std::string> members = {
-        fmt::format(".name = \"{}\"", kernel.name), fmt::format(".entry = \"{}\"", kernel.entry),
-        ".declarations = " + declarations,          ".body = " + body,
-        ".parameters = " + name + Part::Parameters, ".sources = sources"};
-    if (kernel.usesIndex) members.emplace_back(".usesIndex = true");
-    if (kernel.usesExtent) members.emplace_back(".usesExtent = true");
-    if (kernel.usesLoops) members.emplace_back(".usesLoops = true");
-    if (kernel.usesDoubles) members.emplace_back(".usesDoubles = true");
-    if (kernel.usesExactSums) members.emplace_back(".usesExactSums = true");
-    if (!kernel.intrinsics.empty())
-      members.push_back(fmt::format(".intrinsics = {}", name + Part::Intrinsics));
-    if (kernel.planCount > 0) {
-      members.push_back(fmt::format(".plans = {}", name + Part::Plans));
-      members.push_back(fmt::format(".planCount = {}", kernel.planCount));
-    }
-    if (kernel.options != CallOptions{}) members.push_back(".options = " + optionsText(kernel.options));
-    if (kernel.half != nullptr)
-      members.push_back(fmt::format(".half = &{}", name + Part::Half + Part::Kernel));
-    if (kernel.wide != nullptr)
-      members.push_back(fmt::format(".wide = &{}", name + Part::Wide + Part::Kernel));
-    if (!kernel.whyNotHalf.empty()) members.push_back(".whyNotHalf = " + quoted(kernel.whyNotHalf));
-    if (!kernel.whyNotWide.empty()) members.push_back(".whyNotWide = " + quoted(kernel.whyNotWide));
-    if (!kernel.tables.empty()) members.push_back(fmt::format(".tables = {}", name + Part::Tables));
-    if (!kernel.unrolled.empty()) members.push_back(fmt::format(".unrolled = {}", name + Part::Unrolled));
-    if (!kernel.drawn) members.emplace_back(".drawn = false");
-    if (!kernel.dispatched) members.emplace_back(".dispatched = false");
-    if (!codeSymbol.empty()) members.push_back(".code = &native::" + codeSymbol);
-    const std::string newLine = "\n" + std::string(column, ' ');
-    return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
   }
 
   void conditionSteps(const std::string& unit, const sk::program::Parameter& param) {
