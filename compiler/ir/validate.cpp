@@ -96,9 +96,8 @@ class FunctionChecker {
     checkBinary(*n.op, n.place->type, n.value->type, n.place->type);
   }
   void rule(const CallStmt& n) {
-    checkArguments(context_, n.callee, n.args, true);
+    checkArguments(context_, n.callee, n.args, true, n.result.get());
     if (!n.result) return;
-    checkLValue(context_, *n.result);
     require(n.result->type == context_.module.functions[n.callee].result, "a call's result has another type");
   }
   void rule(const If& n) {

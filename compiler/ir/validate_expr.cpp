@@ -374,7 +374,7 @@ void checkWritten(const Module& module, const std::vector<const Expr*>& written,
 }
 
 void checkArguments(const ExprContext& context, FunctionId callee, const std::vector<ExprPtr>& args,
-                    bool allowInOut) {
+                    bool allowInOut, const Expr* result) {
   require(callee < context.module.functions.size(), "a callee is not in the table");
   const Function& function = context.module.functions[callee];
   const std::string where = fmt::format("call of '{}': ", function.name);
@@ -394,6 +394,10 @@ void checkArguments(const ExprContext& context, FunctionId callee, const std::ve
     } else {
       checkExpr(context, *args[i]);
     }
+  }
+  if (result != nullptr) {
+    checkLValue(context, *result);
+    written.push_back(result);
   }
   checkWritten(context.module, written, where);
 }

@@ -34,9 +34,9 @@ void checkAppendOutput(const ExprContext& context, StreamRef stream, Type value,
 /// Checks that the expression is an lvalue; returns the variable at its root.
 VarId checkLValue(const ExprContext& context, const Expr& expr);
 /// Checks arguments against the callee's parameters; InOut parameters need `allowInOut`, and their arguments must
-/// neither overlap nor have an index that the call changes.
+/// neither overlap, with the result's lvalue (or null) either, nor have an index that the call changes.
 void checkArguments(const ExprContext& context, FunctionId callee, const std::vector<ExprPtr>& args,
-                    bool allowInOut);
+                    bool allowInOut, const Expr* result = nullptr);
 void checkBinary(BinaryOp op, Type lhs, Type rhs, Type result);
 
 }  // namespace skc::ir

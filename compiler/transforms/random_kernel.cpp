@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ir/kernel_builder.hpp"
+#include "ir/lvalue.hpp"
 
 namespace skc {
 
@@ -163,9 +164,19 @@ class BodyGenerator {
   }
   void callAny(Block& out) {
     if (changing_.empty()) return change(out);
-    ExprPtr changed = place();
-    ExprPtr result = oneIn(2) ? place() : nullptr;
+    ExprPtr changed = kept(place(), out);
+    ExprPtr result = oneIn(2) ? kept(place(), out) : nullptr;
+    if (result && !areDisjoint(module_, *changed, *result)) result = nullptr;
     out.push_back(callStmt(any(changing_), exprs(value(1), std::move(changed)), std::move(result)));
+  }
+  /// The lvalue with its index in a variable that nothing changes.
+  ExprPtr kept(ExprPtr place, Block& out) {
+    auto* index = std::get_if<Index>(&place->node);
+    if (index == nullptr) return place;
+    const VarId number = addVariable(function_, "kept", index->index->type);
+    out.push_back(declare(number, std::move(index->index)));
+    index->index = ref(number);
+    return place;
   }
   void jump(Block& out) {
     Block left;
