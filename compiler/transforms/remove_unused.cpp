@@ -9,6 +9,7 @@
 #include "ir/build.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
+#include "ir/walk_module.hpp"
 
 namespace skc {
 namespace {
@@ -96,34 +97,6 @@ void keep(std::vector<T>& table, const std::vector<bool>& used) {
   table = std::move(kept);
 }
 
-/// fn(expr) for every expression of the module.
-template <class Fn>
-void forEachExpr(Module& module, Fn&& fn) {
-  for (Constant& constant : module.constants) walkExprs(*constant.value, fn);
-  for (Function& function : module.functions) walkExprs(function.body, fn);
-  for (Kernel& kernel : module.kernels) {
-    for (KernelParam& param : kernel.params) {
-      if (param.border) walkExprs(*param.border, fn);
-      if (param.identity) walkExprs(*param.identity, fn);
-    }
-  }
-}
-
-/// fn(type) for the type of every expression and declaration in kernels and functions.
-template <class Fn>
-void forEachType(Module& module, Fn&& fn) {
-  forEachExpr(module, [&](Expr& expr) { fn(expr.type); });
-  for (Constant& constant : module.constants) fn(constant.type);
-  for (Function& function : module.functions) {
-    fn(function.result);
-    for (Variable& var : function.variables) fn(var.type);
-  }
-  for (Kernel& kernel : module.kernels) {
-    for (KernelParam& param : kernel.params) fn(param.type);
-  }
-  for (DeclaredStream& stream : module.streams) fn(stream.type);
-}
-
 void removeFunctions(Module& module) {
   std::vector<bool> used(module.functions.size(), false);
   for (const Kernel& kernel : module.kernels) {
@@ -131,7 +104,7 @@ void removeFunctions(Module& module) {
   }
   const std::vector<std::uint32_t> numbers = renumber(used);
   keep(module.functions, used);
-  forEachExpr(module, [&](Expr& expr) {
+  walkExprs(module, [&](Expr& expr) {
     if (auto* n = std::get_if<Call>(&expr.node)) n->callee = numbers[n->callee];
   });
   for (Function& function : module.functions) {
@@ -149,19 +122,16 @@ void removeConstants(Module& module) {
   const auto mark = [&](Expr& expr) {
     if (const auto* n = std::get_if<ConstantRef>(&expr.node)) used[n->constant] = true;
   };
-  for (Function& function : module.functions) walkExprs(function.body, mark);
-  for (Kernel& kernel : module.kernels) {
-    for (KernelParam& param : kernel.params) {
-      if (param.border) walkExprs(*param.border, mark);
-      if (param.identity) walkExprs(*param.identity, mark);
-    }
-  }
+  std::vector<Constant> constants =
+      std::exchange(module.constants, {});  // their values count only if they are used
+  walkExprs(module, mark);
+  module.constants = std::move(constants);
   for (std::size_t i = used.size(); i-- > 0;) {   // a constant refers only to earlier ones
     if (used[i]) walkExprs(*module.constants[i].value, mark);
   }
   const std::vector<std::uint32_t> numbers = renumber(used);
   keep(module.constants, used);
-  forEachExpr(module, [&](Expr& expr) {
+  walkExprs(module, [&](Expr& expr) {
     if (auto* n = std::get_if<ConstantRef>(&expr.node)) n->constant = numbers[n->constant];
   });
 }
@@ -179,7 +149,7 @@ void removeTypes(Module& module) {
       self(self, module.arrays[type.index].element);
     }
   };
-  forEachType(module, [&](Type& type) { mark(mark, type); });
+  walkTypes(module, [&](Type& type) { mark(mark, type); });
   const std::vector<std::uint32_t> structNumbers = renumber(structs);
   const std::vector<std::uint32_t> arrayNumbers = renumber(arrays);
   const auto apply = [&](Type& type) {
@@ -188,11 +158,8 @@ void removeTypes(Module& module) {
   };
   keep(module.structs, structs);
   keep(module.arrays, arrays);
-  for (Struct& type : module.structs) {
-    for (StructField& field : type.fields) apply(field.type);
-  }
-  for (Array& array : module.arrays) apply(array.element);
-  forEachType(module, apply);
+  walkTypesInTypes(module, apply);
+  walkTypes(module, apply);
 }
 
 }  // namespace

@@ -110,6 +110,40 @@ TEST_CASE("functions, constants and types without use go, and the others are ren
   CHECK(body(module, 1) == "{\n  r = used(o.inner.a + used);\n}\n");
 }
 
+TEST_CASE(
+    "whatever refers to a type or a constant is renumbered: held types, plans and conditions of streams") {
+  Module module = testModule();
+  module.structs.push_back({"Unused", {}, {{"a", floatType}}, {}});
+  module.structs.push_back({"Pair", {}, {{"a", floatType}, {"b", floatType}}, {}});
+  module.structs.push_back(
+      {"WidePair", {}, {{"a", Type::of(Scalar::Double)}, {"b", Type::of(Scalar::Double)}}, {}});
+  const Type pair = Type::structType(1), wide = Type::structType(2);
+  module.constants.push_back({"unused", intType, literal(1), {}});
+  module.constants.push_back({"two", intType, literal(2), {}});
+  KernelBuilder k(module, "f");
+  const VarId mode = k.spec("mode", intType);
+  const VarId p = k.input("p", wide);
+  const VarId r = k.output("r", wide);
+  ExprPtr condition = binary(BinaryOp::Equal, k.ref(mode), constantRef(module, 1));
+  k.finish(block(assign(k.ref(r), k.ref(p))));
+  Kernel& kernel = module.kernels[0];
+  kernel.params[p].held = pair;
+  kernel.params[r].held = pair;
+  kernel.params[p].neededIf = std::move(condition);
+  kernel.plans.push_back(
+      Plan{.limits = {}, .temporaries = {{"t", pair, 1, 1}}, .bundles = {{wide, {}}}, .passes = {}});
+  run(module);
+  REQUIRE(module.structs.size() == 2);
+  const Kernel& after = module.kernels[0];
+  CHECK(after.params[p].type == Type::structType(1));
+  CHECK(after.params[p].held == Type::structType(0));
+  CHECK(after.params[r].held == Type::structType(0));
+  CHECK(after.plans[0].temporaries[0].type == Type::structType(0));
+  CHECK(after.plans[0].bundles[0].type == Type::structType(1));
+  REQUIRE(module.constants.size() == 1);
+  CHECK(print(module, module.functions[0], *after.params[p].neededIf) == "mode == two");
+}
+
 TEST_CASE("the combining kernel's function and the constants of borders and identities are needed") {
   Module module = testModule();
   module.constants.push_back({"zero", floatType, literal(0.0F), {}});
