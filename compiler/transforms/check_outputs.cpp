@@ -98,10 +98,12 @@ class DefiniteAssignment {
     }
     const auto& index = std::get<ir::Index>(place.node);
     const std::vector<std::size_t> base = components(*index.base);
-    const auto* literal = std::get_if<ir::Literal>(&index.index->node);
+    const std::optional<std::int64_t> number = integer(*index.index);
     const std::size_t size = width(place.type);
-    if (!literal || (literal->bits + 1) * size > base.size()) return base;
-    const auto first = static_cast<std::ptrdiff_t>(literal->bits * size);
+    if (!number) return base;
+    const auto last = static_cast<std::int64_t>(base.size() / size) - 1;
+    const std::int64_t nearest = std::clamp<std::int64_t>(*number, 0, last);  // as everywhere
+    const auto first = static_cast<std::ptrdiff_t>(nearest) * static_cast<std::ptrdiff_t>(size);
     return {base.begin() + first, base.begin() + first + static_cast<std::ptrdiff_t>(size)};
   }
 
