@@ -172,29 +172,54 @@ bool checkIdentities(const Module& module, const Kernel& kernel, const FoldPatte
   return isRight;
 }
 
-bool checkByTrial(const Module& module, const Kernel& kernel, Diagnostics& diagnostics) {
-  const FoldTrial order = tryAssociativity(module, kernel);
-  if (order.fails()) {
-    diagnostics.report(Diag::ReduceOrder, kernel.loc, {kernel.name, order.example});
-    return false;
+bool checkOwnCombination(const Module& module, KernelId id, bool combinesOthers, Diagnostics& diagnostics) {
+  const Kernel& kernel = module.kernels[id];
+  if (!combinesOthers) {
+    const FoldTrial order = tryAssociativity(module, id);
+    // no elements make sense of `t += x; t += x;`
+    const bool isStrict = foldsElementTwice(kernel, module.functions[kernel.entry]);
+    if (order.fails || (isStrict && order.failsOnce)) {
+      diagnostics.report(Diag::ReduceOrder, kernel.loc, {kernel.name, order.example});
+      return false;
+    }
+    if (order.mayFail)
+      diagnostics.report(Diag::ReduceOrderDoubtful, kernel.loc, {kernel.name, order.example});
   }
-  if (order.mayFail())
-    diagnostics.report(Diag::ReduceOrderDoubtful, kernel.loc, {kernel.name, order.example});
   const auto accumulator = std::ranges::find(kernel.params, ParamRole::Accumulator, &KernelParam::role);
   const bool isGiven =
       std::ranges::any_of(kernel.params, [](const KernelParam& param) { return !!param.identity; });
   if (!isGiven) {
-    if (!computesWithOthers(module, kernel)) return true;
+    if (!computesWithOthers(module, id)) return true;
     diagnostics.report(
         Diag::ReduceBothReadings, accumulator->loc,
         {kernel.name, print(module, accumulator->type), accumulator->name, accumulatorWordOf(kernel)});
     return false;
   }
-  const IdentityTrial start = tryIdentity(module, kernel);
-  if (!start.fails()) return true;
+  const IdentityTrial start = tryIdentity(module, id);
+  if (!start.fails || (combinesOthers && !start.isIdempotent)) return true;
   diagnostics.report(start.isIdempotent ? Diag::ReduceStartBound : Diag::ReduceStart, accumulator->loc,
                      {kernel.name, start.example});
   return start.isIdempotent;
+}
+
+bool checkCombination(const Module& module, KernelId id, Diagnostics& diagnostics) {
+  const Kernel& kernel = module.kernels[id];
+  const FoldTrial order = tryCombination(module, id);
+  const std::string advice =
+      module.kernels[*kernel.reduction->combine].isSynthesized
+          ? "fold by one operator"
+          : "the overload that folds accumulators has to join results as the fold would";
+  if (order.fails) {
+    diagnostics.report(Diag::ReduceCombination, kernel.loc, {kernel.name, order.example, advice});
+    return order.runs;
+  }
+  if (order.mayFail)
+    diagnostics.report(Diag::ReduceCombinationDoubtful, kernel.loc, {kernel.name, order.example});
+  if (kernel.reduction->seeded) return order.runs;
+  const FoldTrial start = tryStart(module, id);
+  const auto accumulator = std::ranges::find(kernel.params, ParamRole::Accumulator, &KernelParam::role);
+  if (start.fails) diagnostics.report(Diag::ReduceStart, accumulator->loc, {kernel.name, start.example});
+  return order.runs;
 }
 
 }  // namespace skc

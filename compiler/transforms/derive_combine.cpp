@@ -116,14 +116,14 @@ class State {
     if (pattern) addIdentities(kernel, *pattern);
     const bool isDerived = pattern && !kernel.reduction->combine;
     if (kernel.reduction->combine) {
-      if (!checkCombination(kernel)) return;
+      if (!checkOverload(kernel)) return;
       needInputs(module_.kernels[*kernel.reduction->combine]);
     } else if (foldsBesideOutputs(kernel) && !pattern && foldsAccumulators(kernel)) {
       if (!combineByFoldAlone(id, !isGiven)) return;
     } else if (!foldsBesideOutputs(kernel) && (pattern ? pattern->isPlain : foldsAccumulators(kernel))) {
-      if (!checkOwnCombination(kernel, id)) return;
-      if (!pattern && !checkByTrial(module_, kernel, diagnostics_)) return;
+      if (!checkIndex(kernel, id)) return;
       combineByItself(kernel, id, !isGiven);
+      if (!pattern) unknown_.push_back(id);
     } else if (pattern) {
       const KernelId combine = makeCombination(module_, id, *pattern);
       std::vector<std::uint32_t> operands(module_.kernels[combine].params.size());
@@ -131,8 +131,28 @@ class State {
     } else {
       return needCombine(kernel);
     }
-    module_.kernels[id].reduction->commutative = isDerived;
+    Reduction& reduction = *module_.kernels[id].reduction;
+    // a component that no operator folds keeps what its run starts from
+    reduction.commutative = isDerived && (!reduction.seeded || hasIdentities(module_.kernels[id]));
     needIdentities(module_.kernels[id]);
+    derived_.push_back(id);
+  }
+
+  /// Tries all folds on numbers. An overload that combines results of others meets no other values.
+  void check() {
+    std::vector<bool> combinesOthers(module_.kernels.size(), false);
+    for (const KernelId id : derived_) {
+      const KernelId combine = *module_.kernels[id].reduction->combine;
+      if (combine != id && checkCombination(module_, id, diagnostics_)) combinesOthers[combine] = true;
+    }
+    for (const KernelId id : derived_) {
+      if (module_.kernels[id].reduction->combine != id) continue;
+      if (std::ranges::find(unknown_, id) != unknown_.end()) {
+        checkOwnCombination(module_, id, combinesOthers[id], diagnostics_);
+      } else if (!combinesOthers[id]) {
+        checkCombination(module_, id, diagnostics_);
+      }
+    }
   }
 
  private:
@@ -161,11 +181,11 @@ class State {
 
   /// Makes a reduce without the outputs, which combines its own results and the kernel's.
   bool combineByFoldAlone(KernelId id, bool seeded) {
-    if (!checkOwnCombination(module_.kernels[id], id)) return false;
+    if (!checkIndex(module_.kernels[id], id)) return false;
     FoldCopy copy(module_, id, "_combine");
     copy.dropOutputs();
     const KernelId alone = copy.finishFold(seeded);
-    if (!checkByTrial(module_, module_.kernels[alone], diagnostics_)) return false;
+    if (!checkOwnCombination(module_, alone, false, diagnostics_)) return false;
     Kernel& kernel = module_.kernels[id];
     Reduction reduction{alone, {}, seeded};
     for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
@@ -185,12 +205,12 @@ class State {
   }
 
   /// Partial results have no index.
-  bool checkCombination(const Kernel& kernel) {
+  bool checkOverload(const Kernel& kernel) {
     const std::optional<Loc> place = usesIndex(module_, module_.kernels[*kernel.reduction->combine]);
     if (place) diagnostics_.report(Diag::CombineUsesIndex, *place, {kernel.name});
     return !place;
   }
-  bool checkOwnCombination(const Kernel& kernel, KernelId id) {
+  bool checkIndex(const Kernel& kernel, KernelId id) {
     const std::optional<Loc> place = usesIndex(module_, kernel);
     const bool isReported = std::any_of(  // it is the overload that combines for another
         module_.kernels.begin(), module_.kernels.end(),
@@ -245,6 +265,8 @@ class State {
 
   Module& module_;
   Diagnostics& diagnostics_;
+  std::vector<KernelId> derived_;  ///< without an error
+  std::vector<KernelId> unknown_;  ///< combine their own results by no known operator
 };
 
 }  // namespace
@@ -254,6 +276,7 @@ void deriveCombine(Module& module, Diagnostics& diagnostics) {
   forEachDeclaredKernel(module, [&](KernelId id) {
     if (module.kernels[id].reduction) state.derive(id);
   });
+  state.check();
 }
 
 }  // namespace skc

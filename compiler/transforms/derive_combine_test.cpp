@@ -61,6 +61,18 @@ Block fold(KernelBuilder& k, BinaryOp op, ExprPtr value) {
   return block(assign(k.ref(total), op, std::move(value)));
 }
 
+/// The module after derive-combine, with a reduce that `make` declares.
+Module derived(const std::function<void(Module&)>& make) {
+  Module module = testModule();
+  make(module);
+  REQUIRE(validate(module, Stage::Specialized) == "");
+  DiagnosticLog log;
+  deriveCombine(module, log);
+  REQUIRE_FALSE(log.hasErrors());
+  REQUIRE(validate(module, Stage::Specialized) == "");
+  return module;
+}
+
 TEST_CASE("x itself: the entry combines, and without an identity the fold starts with its first element") {
   const Outcome sum = derive([](Module&, KernelBuilder& k) { return fold(k, Add, k.ref(x)); });
   CHECK(sum.combine == "entry");
@@ -221,6 +233,59 @@ TEST_CASE("a general body on one type combines by itself; without an identity it
   CHECK_FALSE(derive(floatType, floatType, literal(9.0F), last).seeded);
 }
 
+TEST_CASE(
+    "x itself, twice, is no known operator, unless a loop repeats it; neither are overlapping components") {
+  const auto add = [](KernelBuilder& k, std::uint32_t line) {
+    Stmt stmt = assign(k.ref(total), Add, k.ref(x));
+    stmt.loc = atLine(line);
+    return stmt;
+  };
+  const Outcome twice = derive([&](Module&, KernelBuilder& k) { return block(add(k, 4), add(k, 5)); });
+  CHECK(twice.error.find(
+            "'fold' is not associative, so partial results do not combine: 1, 0.5 and 0.75 give 3.5 where "
+            "the first two are folded first, and 5 where the last two are") == 0);
+  const Outcome unrolled = derive([&](Module&, KernelBuilder& k) { return block(add(k, 4), add(k, 4)); });
+  CHECK(unrolled.combine == "{\n  total += total_part;\n}\n");
+  CHECK_FALSE(unrolled.seeded);
+
+  const Type float2 = Type::of(Scalar::Float, 2);
+  const auto by = [](KernelBuilder& k, const char* components, BinaryOp op, std::uint32_t line) {
+    const auto part = [&](VarId var) {
+      return components[1] == 0 ? swizzle(k.ref(var), components) : k.ref(var);
+    };
+    Stmt stmt = assign(part(total), op, part(x));
+    stmt.loc = atLine(line);
+    return stmt;
+  };
+  const auto overlapping = derive(float2, float2, nullptr, [&](Module&, KernelBuilder& k) {
+    return block(by(k, "x", Add, 4), by(k, "y", Mul, 5), by(k, "xy", Add, 6));
+  });
+  CHECK(overlapping.error.find("'fold' is not associative") == 0);
+  const auto reversed = derive(float2, float2, nullptr, [&](Module&, KernelBuilder& k) {
+    return block(by(k, "xy", Add, 4), by(k, "x", Add, 5));
+  });
+  CHECK(reversed.error.find("'fold' is not associative") == 0);
+  const auto disjoint = derive(float2, float2, nullptr, [&](Module&, KernelBuilder& k) {
+    return block(by(k, "x", Add, 4), by(k, "y", Mul, 5));
+  });
+  CHECK(disjoint.combine == "entry");
+}
+
+TEST_CASE("a component that nothing folds keeps the first element's, so the order matters") {
+  const Type float2 = Type::of(Scalar::Float, 2);
+  for (const bool isWhole : {false, true}) {
+    const Module module = derived([&](Module& m) {
+      KernelBuilder k(m, "part");
+      const VarId element = k.input("v", float2);
+      const VarId sum = k.accumulator("sum", float2);
+      const auto part = [&](VarId var) { return isWhole ? k.ref(var) : swizzle(k.ref(var), "x"); };
+      k.finish(block(assign(part(sum), Add, part(element))));
+    });
+    CHECK(module.kernels[0].reduction->seeded);
+    CHECK(module.kernels[0].reduction->commutative == isWhole);
+  }
+}
+
 TEST_CASE("subtraction and division are errors that say what to do") {
   const auto error = [](BinaryOp op) {
     return derive([op](Module&, KernelBuilder& k) { return fold(k, op, k.ref(x)); }).error;
@@ -258,6 +323,54 @@ void addOverload(Module& module) {
   module.kernels[0].reduction = Reduction{1, {0, 0}, false};
 }
 
+/// reduce void fold(float a<>, reduce float b<>) { b = `combined` of a and b; }
+void addCombination(Module& module, const std::function<ExprPtr(ExprPtr a, ExprPtr b)>& combined) {
+  KernelBuilder k(module, "fold", 9);
+  const VarId a = k.input("a", floatType);
+  const VarId b = k.accumulator("b", floatType);
+  k.finish(block(assign(k.ref(b), combined(k.ref(a), k.ref(b)))));
+  module.kernels[0].reduction = Reduction{1, {0, 0}, false};
+}
+
+TEST_CASE("an overload has to combine as the fold does") {
+  const Body sum = [](Module&, KernelBuilder& k) { return fold(k, Add, convert(Scalar::Float, k.ref(x))); };
+  const auto withOverload = [&](const std::function<ExprPtr(ExprPtr, ExprPtr)>& combined, float identity) {
+    return derive(intType, floatType, literal(identity), sum, [&](Module& m) { addCombination(m, combined); })
+        .error;
+  };
+  CHECK(withOverload([](ExprPtr a, ExprPtr b) { return binary(Add, std::move(a), std::move(b)); }, 0) == "");
+  CHECK(withOverload(
+            [](ExprPtr a, ExprPtr b) { return intrinsic(Intrinsic::Max, exprs(std::move(a), std::move(b))); },
+            0)
+            .find("partial results of 'fold' do not combine to what it folds: 1, 6 and 7 give 14 one after "
+                  "the other, and "
+                  "13 where the result of the first is combined with that of the other two") == 0);
+  const auto withoutOne = [](ExprPtr a, ExprPtr b) {
+    return binary(Sub, binary(Add, std::move(a), std::move(b)), literal(1.0F));
+  };
+  CHECK(withOverload(withoutOne, 1) == "");   // each run starts from 1
+  CHECK(withOverload(withoutOne, 0).find("partial results of 'fold' do not combine") == 0);
+}
+
+TEST_CASE("an overload may rely on what partial results are") {
+  const Body least = [](Module&, KernelBuilder& k) {   // 0 stands for no element
+    ExprPtr isLess = binary(Less, convert(Scalar::Float, k.ref(x)), k.ref(total));
+    ExprPtr isFirst = binary(Equal, k.ref(total), literal(0.0F));
+    return block(ifStmt(binary(LogicalOr, std::move(isFirst), std::move(isLess)),
+                        block(assign(k.ref(total), convert(Scalar::Float, k.ref(x))))));
+  };
+  const auto overload = [](Module& m) {
+    addCombination(m, [](ExprPtr a, ExprPtr b) {
+      ExprPtr isEmpty = binary(Equal, clone(b), literal(0.0F)),
+              nothing = binary(Equal, clone(a), literal(0.0F));
+      ExprPtr lower = intrinsic(Intrinsic::Min, exprs(clone(a), clone(b)));
+      return select(std::move(isEmpty), std::move(a),
+                    select(std::move(nothing), std::move(b), std::move(lower)));
+    });
+  };
+  CHECK(derive(intType, floatType, literal(0.0F), least, overload).error == "");
+}
+
 TEST_CASE("the author's overload stays, and an identity must be there or follow") {
   const Body general = [](Module&, KernelBuilder& k) {
     return block(assign(k.ref(total), binary(Sub, k.ref(total), convert(Scalar::Float, k.ref(x)))),
@@ -267,18 +380,6 @@ TEST_CASE("the author's overload stays, and an identity must be there or follow"
   CHECK(derive(intType, floatType, nullptr, general, addOverload).error ==
         "'fold' folds 'int' into 'float', so it needs a value to start from; write 'reduce float total<> = "
         "...'");
-}
-
-/// The module after derive-combine, with a reduce that `make` declares.
-Module derived(const std::function<void(Module&)>& make) {
-  Module module = testModule();
-  make(module);
-  REQUIRE(validate(module, Stage::Specialized) == "");
-  DiagnosticLog log;
-  deriveCombine(module, log);
-  REQUIRE_FALSE(log.hasErrors());
-  REQUIRE(validate(module, Stage::Specialized) == "");
-  return module;
 }
 
 TEST_CASE("several accumulators combine each with its own part, and uniforms need not come along") {

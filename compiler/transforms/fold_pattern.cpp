@@ -59,15 +59,20 @@ std::optional<FoldOp> selfFold(const Expr& value, const StaticLValue& lvalue) {
 
 /// Adds a part; false if one of its components is folded by another operator already.
 bool add(std::vector<FoldPart>& parts, FoldPart part) {
+  FoldPart* same = nullptr;
   for (FoldPart& other : parts) {
     if (other.accumulator != part.accumulator || other.members != part.members) continue;
     if (other.op == part.op) {
-      other.components |= part.components;
-      return true;
+      same = &other;
+    } else if ((other.components & part.components) != 0) {
+      return false;
     }
-    if ((other.components & part.components) != 0) return false;
   }
-  parts.push_back(std::move(part));
+  if (same == nullptr) {
+    parts.push_back(std::move(part));
+  } else {
+    same->components |= part.components;
+  }
   return true;
 }
 
@@ -101,9 +106,40 @@ class Recogniser {
       forEachOperand(stmt, [&](const ExprPtr& operand) { matches = matches && reads(*operand) == 0; });
     });
     if (!matches || pattern.parts.empty()) return std::nullopt;
-    pattern.isPlain = foldsAccumulators(kernel_) &&
-                      std::all_of(body.begin(), body.end(), [&](const Stmt& stmt) { return isPlain(stmt); });
+    if (!arePlain(body)) return pattern;
+    const Overlap overlap = overlapOf(body);
+    if (overlap == Overlap::Repeated) return std::nullopt;
+    pattern.isPlain = overlap == Overlap::None;
     return pattern;
+  }
+
+  bool arePlain(const Block& body) const {
+    return foldsAccumulators(kernel_) &&
+           std::ranges::all_of(body, [&](const Stmt& stmt) { return isPlain(stmt); });
+  }
+
+  enum class Overlap : std::uint8_t { None, InLoop, Repeated };
+
+  /// Whether plain statements fold into the same component by the same operator. An unrolled loop repeats one statement of
+  /// the source.
+  Overlap overlapOf(const Block& body) const {
+    std::vector<FoldPart> parts;
+    for (const Stmt& stmt : body) {
+      if (std::optional<FoldPart> part = foldOf(stmt)) parts.push_back(std::move(*part));
+    }
+    Overlap overlap = Overlap::None;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const FoldPart& a = parts[i];
+      for (std::size_t j = 0; j < i; ++j) {
+        const FoldPart& b = parts[j];
+        if (a.op != b.op) continue;
+        if (a.accumulator != b.accumulator || a.members != b.members || (a.components & b.components) == 0)
+          continue;
+        if (a.loc.token != b.loc.token || a.loc.line != b.loc.line) return Overlap::Repeated;
+        overlap = Overlap::InLoop;
+      }
+    }
+    return overlap;
   }
 
  private:
@@ -192,6 +228,11 @@ bool foldsAccumulators(const Kernel& kernel) {
     if (param.role == ParamRole::Accumulator) accumulators.push_back(param.type);
   }
   return inputs == accumulators;
+}
+
+bool foldsElementTwice(const Kernel& kernel, const Function& entry) {
+  const Recogniser recogniser(kernel);
+  return recogniser.arePlain(entry.body) && recogniser.overlapOf(entry.body) == Recogniser::Overlap::Repeated;
 }
 
 std::optional<FoldPattern> recogniseFold(const Kernel& kernel, const Function& entry) {

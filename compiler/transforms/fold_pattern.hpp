@@ -2,7 +2,9 @@
 //
 // Recognises reduces whose body only folds into accumulators, or members of them, by known operators: every
 // statement that uses an accumulator is `place op= f`, `place = place op f` or `place = min(place, f)`, and
-// no f reads one. Whatever its loops and branches, the body is then `accumulator op f(elements)`.
+// no f reads one. Whatever its loops and branches, the body is then `accumulator op f(elements)`. A body that only folds
+// the element itself, but more than once, as in `t += x; t += x;`, is not recognised: it could as well start from
+// its first element, with another result.
 #pragma once
 
 #include <cstdint>
@@ -20,21 +22,26 @@ using FoldOp = std::variant<ir::BinaryOp, ir::Intrinsic>;
 /// Components of an accumulator, or of a scalar, vector or matrix member, and the operator that folds them.
 struct FoldPart {
   ir::VarId accumulator;
-  std::vector<std::uint32_t> members;   ///< path from the accumulator to the member
-  ir::Type type;                        ///< type of the member
-  unsigned components;                  ///< bit i: component i
+  std::vector<std::uint32_t> members;  ///< path from the accumulator to the member
+  ir::Type type;  ///< type of the member
+  unsigned components;  ///< bit i: component i
   FoldOp op;
-  Loc loc;                          ///< of the first statement that folds into the part
+  Loc loc;  ///< of the first statement that folds into the part
   bool isWhole() const { return components == (1U << type.width) - 1; }
 };
 
 struct FoldPattern {
-  std::vector<FoldPart> parts;   ///< in statement order; each component is in one part only
-  bool isPlain;  ///< the body is only `accumulator op= its element`, whole or by member
+  std::vector<FoldPart> parts;  ///< in statement order; each component is in one part only
+  bool
+      isPlain;  ///< the body is only `accumulator op= its element`, whole or by member, each component at most once
 };
 
 /// The pattern of a reduce with this entry function.
 std::optional<FoldPattern> recogniseFold(const ir::Kernel& kernel, const ir::Function& entry);
+
+/// True if the body only folds the element itself, but into some component more than once by one operator, as in
+/// `t += x; t += x;`.
+bool foldsElementTwice(const ir::Kernel& kernel, const ir::Function& entry);
 
 /// The part that a statement of a reduce folds into, if the statement uses accumulators in no other way.
 std::optional<FoldPart> foldedBy(const ir::Kernel& kernel, const ir::Stmt& stmt);

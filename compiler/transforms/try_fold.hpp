@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// Tests a reduce that combines its own results on numbers: whether (a op b) op c equals a op (b op c), and
-// whether the result of an empty run is neutral. The device determines how partial results combine, so a fold
-// that fails either test has no single result.
+// Tries a fold on numbers at compile time: whether folding all elements one after the other equals folding
+// blocks of them and combining the results, and whether the value that a block starts from is neutral. The device
+// chooses the blocks, so a fold that fails has no single result.
+//
+// Elements are few and small: integers, and floats of which sums and products are exact. An author may know more
+// about elements than their types say (they are positive, sorted, flags, of length 1), so a fold fails only if it
+// fails for numbers of every kind (see Kind in try_fold.cpp). One that fails for some kinds may fail.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "ir/ir.hpp"
@@ -13,23 +16,30 @@
 namespace skc {
 
 struct FoldTrial {
-  int tried = 0;  ///< samples that gave a result
-  int failed = 0;  ///< samples that failed
-  std::string example;  ///< the first failure, in words
-  bool fails() const { return tried > 0 && failed == tried; }
-  bool mayFail() const { return 2 * failed >= tried && failed > 0; }
+  bool runs = false;  ///< at least one try gave a result
+  bool failsOnce = false;  ///< it fails for some numbers
+  bool fails = false;  ///< it fails for numbers of every kind
+  bool mayFail = false;  ///< it fails for some numbers that most programs have
+  std::string example = {};  ///< a failure, in words
 };
 
-/// Tries elements that are numbers of moderate size.
-FoldTrial tryAssociativity(const ir::Module& module, const ir::Kernel& kernel);
+/// Tries whether a fold that combines its own results is associative: (a op b) op c equals a op (b op c).
+FoldTrial tryAssociativity(const ir::Module& module, ir::KernelId id);
 
-/// Folds such elements into the identities, which the reduce must have.
+/// Tries whether the results of blocks combine to the result of all elements.
+FoldTrial tryCombination(const ir::Module& module, ir::KernelId id);
+
+/// Tries whether combining a result with the identities changes it.
+FoldTrial tryStart(const ir::Module& module, ir::KernelId id);
+
+/// Tries whether an element that is folded into the identities stays what it is, for a fold that combines its own
+/// results.
 struct IdentityTrial : FoldTrial {
   bool isIdempotent = false;  ///< combining any number of identities changes nothing
 };
-IdentityTrial tryIdentity(const ir::Module& module, const ir::Kernel& kernel);
+IdentityTrial tryIdentity(const ir::Module& module, ir::KernelId id);
 
 /// True if a result depends on uniform or spec parameters other than by choosing one of the two values.
-bool computesWithOthers(const ir::Module& module, const ir::Kernel& kernel);
+bool computesWithOthers(const ir::Module& module, ir::KernelId id);
 
 }  // namespace skc

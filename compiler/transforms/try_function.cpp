@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -20,18 +21,33 @@ using namespace ir;
 struct CannotEvaluate {};
 
 double wrapped(Scalar scalar, std::int64_t value) {
-  const auto bits = static_cast<std::uint32_t>(value);
-  return arithmeticScalar(scalar) == Scalar::Uint ? double{static_cast<double>(bits)}
-                                                  : static_cast<double>(static_cast<std::int32_t>(bits));
+  switch (scalar) {
+    case Scalar::Char: return static_cast<std::int8_t>(value);
+    case Scalar::Uchar: return static_cast<std::uint8_t>(value);
+    case Scalar::Short: return static_cast<std::int16_t>(value);
+    case Scalar::Ushort: return static_cast<std::uint16_t>(value);
+    case Scalar::Uint: return static_cast<std::uint32_t>(value);
+    default: return static_cast<std::int32_t>(value);
+  }
 }
 
 double converted(Scalar from, Scalar to, double value) {
   if (to == Scalar::Bool) return value != 0 ? 1 : 0;
   const Scalar arithmetic = arithmeticScalar(to);
   if (isReal(arithmetic)) return value;
-  if (!isReal(arithmeticScalar(from))) return wrapped(arithmetic, static_cast<std::int64_t>(value));
-  if (!(std::fabs(value) < 2147483648.0)) throw CannotEvaluate{};
-  return wrapped(arithmetic, static_cast<std::int64_t>(value));
+  if (isReal(arithmeticScalar(from)) && !(std::fabs(value) < 2147483648.0)) throw CannotEvaluate{};
+  return wrapped(to, static_cast<std::int64_t>(value));
+}
+
+/// The bits of a float, if the number is one.
+std::uint32_t bitsOfFloat(double value) {
+  const auto number = static_cast<float>(value);
+  if (double{number} != value) throw CannotEvaluate{};
+  return std::bit_cast<std::uint32_t>(number);
+}
+
+double floatOfBits(double bits) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(static_cast<std::int64_t>(bits)));
 }
 
 double comparison(BinaryOp op, double a, double b) {
@@ -119,6 +135,22 @@ std::optional<double> ofOne(Intrinsic intrinsic, double x) {
     case Intrinsic::Fract:
     case Intrinsic::Frac: return x - std::floor(x);
     case Intrinsic::Saturate: return std::fmin(std::fmax(x, 0), 1);
+    case Intrinsic::Radians: return x * (std::numbers::pi / 180);
+    case Intrinsic::Degrees: return x * (180 / std::numbers::pi);
+    case Intrinsic::Asinh: return std::asinh(x);
+    case Intrinsic::Acosh: return std::acosh(x);
+    case Intrinsic::Atanh: return std::atanh(x);
+    case Intrinsic::Isnan: return std::isnan(x) ? 1 : 0;
+    case Intrinsic::Isinf: return std::isinf(x) ? 1 : 0;
+    case Intrinsic::Isfinite: return std::isfinite(x) ? 1 : 0;
+    case Intrinsic::FloatBitsToInt:
+    case Intrinsic::AsInt: return static_cast<std::int32_t>(bitsOfFloat(x));
+    case Intrinsic::FloatBitsToUint:
+    case Intrinsic::AsUint: return bitsOfFloat(x);
+    case Intrinsic::IntBitsToFloat:
+    case Intrinsic::UintBitsToFloat:
+    case Intrinsic::AsFloatInt:
+    case Intrinsic::AsFloatUint: return floatOfBits(x);
     default: return std::nullopt;
   }
 }
@@ -132,6 +164,8 @@ std::optional<double> ofSeveral(Intrinsic intrinsic, double x, double y, double 
     case Intrinsic::Clamp: return std::fmin(std::fmax(x, y), z);
     case Intrinsic::Mix:
     case Intrinsic::Lerp: return x + (y - x) * z;
+    case Intrinsic::MixBool: return z != 0 ? y : x;
+    case Intrinsic::Ldexp: return std::ldexp(x, static_cast<int>(y));
     case Intrinsic::Step: return y < x ? 0 : 1;
     case Intrinsic::Pow: return std::pow(x, y);
     case Intrinsic::AtanYX:
@@ -145,7 +179,8 @@ std::optional<double> ofSeveral(Intrinsic intrinsic, double x, double y, double 
 
 class Interpreter {
  public:
-  explicit Interpreter(const Module& module) : module_(module) {}
+  Interpreter(const Module& module, const TriedStreams& streams, int& steps)
+      : module_(module), streams_(streams), steps_(steps) {}
 
   std::vector<Numbers> call(FunctionId id, std::vector<Numbers> arguments) {
     Numbers result;
@@ -166,8 +201,7 @@ class Interpreter {
   };
 
   void tick() {
-    constexpr int mostSteps = 20'000;
-    if (++steps_ > mostSteps) throw CannotEvaluate{};
+    if (steps_-- <= 0) throw CannotEvaluate{};
   }
 
   std::size_t size(Type type) const {
@@ -229,12 +263,14 @@ class Interpreter {
   Flow callStatement(Frame& frame, const CallStmt& n) {
     const Function& callee = module_.functions[n.callee];
     std::vector<Numbers> arguments;
-    for (const ExprPtr& arg : n.args) arguments.push_back(of(frame, *arg));
+    std::vector<std::pair<std::size_t, Slots>> places;  // before the call changes what their indices are
+    for (std::size_t i = 0; i < n.args.size(); ++i) {
+      arguments.push_back(of(frame, *n.args[i]));
+      if (callee.variables[i].role == VarRole::InOut) places.emplace_back(i, slots(frame, *n.args[i]));
+    }
     Numbers result;
     const std::vector<Numbers> ends = call(n.callee, std::move(arguments), result);
-    for (std::size_t i = 0; i < n.args.size(); ++i) {
-      if (callee.variables[i].role == VarRole::InOut) store(frame, *n.args[i], ends[i]);
-    }
+    for (const auto& [i, place] : places) store(frame, place, ends[i]);
     if (n.result) store(frame, *n.result, result);
     return Flow::Next;
   }
@@ -323,7 +359,9 @@ class Interpreter {
   }
 
   void store(Frame& frame, const Expr& place, const Numbers& value) {
-    const Slots at = slots(frame, place);
+    store(frame, slots(frame, place), value);
+  }
+  static void store(Frame& frame, const Slots& at, const Numbers& value) {
     for (std::size_t i = 0; i < at.numbers.size(); ++i) {
       frame.variables[at.var][at.numbers[i]] = value.size() == 1 ? value[0] : value.at(i);
     }
@@ -365,11 +403,21 @@ class Interpreter {
           return result;
         },
         [&](const IntrinsicCall& n) { return intrinsic(frame, n, expr.type); },
-        [](const GatherRead&) -> Numbers { throw CannotEvaluate{}; },
-        [](const NeighborRead&) -> Numbers { throw CannotEvaluate{}; },
-        [](const Sample&) -> Numbers { throw CannotEvaluate{}; },
-        [](const IndexOf&) -> Numbers { throw CannotEvaluate{}; },
-        [](const ExtentOf&) -> Numbers { throw CannotEvaluate{}; });
+        [&](const GatherRead& n) { return read(n.stream, of(frame, *n.index), {}); },
+        [&](const NeighborRead& n) { return read(n.stream, of(frame, *n.offset), streams_.index); },
+        [&](const Sample& n) { return read(n.stream, of(frame, *n.position), {}); },  // any value does
+        [&](const IndexOf&) { return Numbers(streams_.index.begin(), streams_.index.end()); },
+        [&](const ExtentOf&) { return Numbers(streams_.extent.begin(), streams_.extent.end()); });
+  }
+
+  /// The element at an index, from an origin.
+  Numbers read(const StreamRef& stream, const Numbers& at, TriedStreams::Index index) const {
+    if (stream.space != StreamRef::Space::KernelParameter || !streams_.read) throw CannotEvaluate{};
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (!(std::fabs(at[i]) < 2147483648.0)) throw CannotEvaluate{};
+      index[i] += static_cast<std::int64_t>(std::floor(at[i]));
+    }
+    return streams_.read(stream.id, index);
   }
 
   Numbers part(const Numbers& all, std::size_t from, Type type) const {
@@ -463,6 +511,10 @@ class Interpreter {
     };
     if (n.intrinsic == Intrinsic::Dot) return {dot(args[0], args[1])};
     if (n.intrinsic == Intrinsic::Length) return {std::sqrt(dot(args[0], args[0]))};
+    if (n.intrinsic == Intrinsic::Distance) {
+      for (std::size_t i = 0; i < args[0].size(); ++i) args[0][i] -= args[1].at(i);
+      return {std::sqrt(dot(args[0], args[0]))};
+    }
     if (n.intrinsic == Intrinsic::Normalize) {
       const double length = std::sqrt(dot(args[0], args[0]));
       for (double& v : args[0]) v = length == 0 ? 0 : v / length;
@@ -491,15 +543,18 @@ class Interpreter {
   }
 
   const Module& module_;
-  int steps_ = 0, depth_ = 0;
+  const TriedStreams& streams_;
+  int& steps_;
+  int depth_ = 0;
 };
 
 }  // namespace
 
 std::optional<std::vector<Numbers>> tryFunction(const Module& module, FunctionId id,
-                                                std::vector<Numbers> arguments) {
+                                                std::vector<Numbers> arguments, const TriedStreams& streams,
+                                                int& steps) {
   try {
-    return Interpreter(module).call(id, std::move(arguments));
+    return Interpreter(module, streams, steps).call(id, std::move(arguments));
   } catch (const CannotEvaluate&) {
     return std::nullopt;
   } catch (const std::out_of_range&) {
@@ -509,7 +564,8 @@ std::optional<std::vector<Numbers>> tryFunction(const Module& module, FunctionId
 
 std::optional<Numbers> tryConstant(const Module& module, const Expr& expr) {
   try {
-    return Interpreter(module).constant(expr);
+    int steps = 20'000;
+    return Interpreter(module, {}, steps).constant(expr);
   } catch (const CannotEvaluate&) {
     return std::nullopt;
   } catch (const std::out_of_range&) {
