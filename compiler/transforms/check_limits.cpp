@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "split/cost.hpp"
 
@@ -41,23 +42,51 @@ bool isStream(const KernelParam& param) {
 
 }  // namespace
 
+KernelSize sizeOf(const Module& module, const Kernel& kernel) {
+  KernelSize size{.parameters = kernel.params.size()};
+  for (const KernelParam& param : kernel.params) {
+    if (isRead(param)) ++size.reads;
+    if (isStream(param)) size.planes += split::planesOf(module, param.type).size();
+  }
+  return size;
+}
+
+bool fits(const KernelSize& size) {
+  return size.parameters <= mostParameters && size.reads <= mostReads && size.planes <= mostPlanes;
+}
+
 void checkLimits(const Module& module, Diagnostics& diagnostics) {
   for (const Kernel& kernel : module.kernels) {
-    std::size_t reads = 0, planes = 0, vectors = 0;
+    std::size_t vectors = 0;
     for (const KernelParam& param : kernel.params) {
-      if (isRead(param)) ++reads;
       if (param.role == ParamRole::Uniform) vectors += vectorsOf(module, param.type);
-      if (isStream(param)) planes += split::planesOf(module, param.type).size();
     }
-    const auto require = [&](Diag diag, std::size_t count, std::size_t most) {
-      if (count <= most) return;
+    const auto report = [&](Diag diag, std::size_t count, std::size_t most) {
       diagnostics.report(diag, kernel.loc, {kernel.name, std::to_string(count), std::to_string(most)});
     };
-    require(Diag::KernelParameters, kernel.params.size(), mostParameters);
-    require(Diag::KernelReads, reads, mostReads);
-    require(Diag::KernelPlanes, planes, mostPlanes);
-    require(Diag::UniformSize, vectors, promisedVectors);
+    const KernelSize size = sizeOf(module, kernel);
+    if (size.parameters > mostParameters) report(Diag::KernelParameters, size.parameters, mostParameters);
+    if (size.reads > mostReads) report(Diag::KernelReads, size.reads, mostReads);
+    if (size.planes > mostPlanes) report(Diag::KernelPlanes, size.planes, mostPlanes);
+    if (vectors > promisedVectors) report(Diag::UniformSize, vectors, promisedVectors);
   }
+}
+
+bool checkCombinationFits(const Module& module, const Kernel& kernel, Diagnostics& diagnostics) {
+  const KernelSize size = sizeOf(module, module.kernels[*kernel.reduction->combine]);
+  if (fits(size)) return true;
+  const auto report = [&](std::size_t count, std::string_view what, std::size_t most) {
+    diagnostics.report(Diag::CombinationSize, kernel.loc,
+                       {kernel.name, std::to_string(count), std::string(what), std::to_string(most)});
+  };
+  if (size.parameters > mostParameters) {
+    report(size.parameters, "parameters", mostParameters);
+  } else if (size.reads > mostReads) {
+    report(size.reads, "streams to read", mostReads);
+  } else {
+    report(size.planes, "members", mostPlanes);
+  }
+  return false;
 }
 
 }  // namespace skc

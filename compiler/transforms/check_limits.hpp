@@ -5,11 +5,29 @@
 // devices' space. Kernels that exceed what a device can do in one pass are left to split-kernels.
 #pragma once
 
+#include <cstddef>
+
 #include "ir/ir.hpp"
 #include "support/diagnostics.hpp"
 
 namespace skc {
 
+/// What descriptors and keys number.
+struct KernelSize {
+  std::size_t parameters = 0;
+  std::size_t reads = 0;  ///< streams that are read
+  std::size_t planes = 0;  ///< of all streams
+};
+KernelSize sizeOf(const ir::Module& module, const ir::Kernel& kernel);
+
+/// True if a kernel of this size can be described. Transforms ask before they add parameters to one.
+bool fits(const KernelSize& size);
+
+/// Checks the kernels as they are declared.
 void checkLimits(const ir::Module& module, Diagnostics& diagnostics);
+
+/// Checks the kernel that combines the results of a fold, which has two parameters for each accumulator. Returns false
+/// after an error.
+bool checkCombinationFits(const ir::Module& module, const ir::Kernel& kernel, Diagnostics& diagnostics);
 
 }  // namespace skc

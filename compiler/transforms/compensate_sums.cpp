@@ -11,6 +11,7 @@
 #include "ir/build.hpp"
 #include "ir/declared_kernels.hpp"
 #include "ir/walk.hpp"
+#include "transforms/check_limits.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_identity.hpp"
@@ -221,13 +222,36 @@ class CompensatedVariantBuilder {
 
 }  // namespace
 
-void compensateSums(Module& module, Diagnostics&) {
+namespace {
+
+/// True if the kernels of the variant can be described: each sum adds an accumulator to the fold, and two parameters to
+/// the kernel that combines results.
+bool variantFits(const Module& module, KernelId id, const std::vector<FloatSum>& sums) {
+  const Kernel& kernel = module.kernels[id];
+  const auto withErrors = [&](const Kernel& plain, std::size_t each) {
+    KernelSize size = sizeOf(module, plain);
+    size.parameters += each * sums.size();
+    size.reads += (each - 1) * sums.size();
+    size.planes += each * sums.size();
+    return size;
+  };
+  return fits(withErrors(kernel, 1)) && fits(withErrors(module.kernels[*kernel.reduction->combine], 2));
+}
+
+}  // namespace
+
+void compensateSums(Module& module, Diagnostics& diagnostics) {
   forEachDeclaredKernel(module, [&](KernelId id) {
     const Kernel& kernel = module.kernels[id];
     // Runs of this variant start from identities, because a first element has no error to start with.
     if (!kernel.reduction || kernel.isSynthesized || !hasIdentities(kernel)) return;
     std::vector<FloatSum> sums = floatSums(module, id);
-    if (!sums.empty()) CompensatedVariantBuilder(module, id, std::move(sums)).make();
+    if (sums.empty()) return;
+    if (!variantFits(module, id, sums)) {
+      diagnostics.report(Diag::SumsNotCompensated, kernel.loc, {kernel.name, std::to_string(sums.size())});
+      return;
+    }
+    CompensatedVariantBuilder(module, id, std::move(sums)).make();
   });
 }
 

@@ -11,6 +11,7 @@
 #include "ir/print.hpp"
 #include "ir/reach.hpp"
 #include "transforms/check_folds.hpp"
+#include "transforms/check_limits.hpp"
 #include "transforms/combine_part.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_identity.hpp"
@@ -135,7 +136,7 @@ class State {
     // a component that no operator folds keeps what its run starts from
     reduction.commutative = isDerived && (!reduction.seeded || hasIdentities(module_.kernels[id]));
     needIdentities(module_.kernels[id]);
-    derived_.push_back(id);
+    if (checkCombinationFits(module_, module_.kernels[id], diagnostics_)) derived_.push_back(id);
   }
 
   /// Tries all folds on numbers. An overload that combines results of others meets no other values.

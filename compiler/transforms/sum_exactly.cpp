@@ -12,6 +12,7 @@
 #include "ir/build.hpp"
 #include "ir/declared_kernels.hpp"
 #include "ir/walk.hpp"
+#include "transforms/check_limits.hpp"
 #include "transforms/exact_term.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
@@ -101,6 +102,10 @@ class ExactSummation {
   void sum(KernelId id, const ScalarSum& scalar) {
     const bool areProducts = hasProducts(id, scalar);
     const Format& format = areProducts ? ofProducts : ofFloats;
+    KernelSize size = sizeOf(module_, module_.kernels[id]);
+    size.parameters += format.groups + 1;  // the digits and flags
+    size.planes += format.groups + 1;
+    if (!fits(size)) return;
     ExactSum exact{.fold = makeFold(id, scalar, format),
                    .finish = makeFinish(id, scalar, format),
                    .accumulator = scalar.whole.accumulator,

@@ -15,6 +15,8 @@
 #include "ir/declared_kernels.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
+#include "split/cost.hpp"
+#include "transforms/check_limits.hpp"
 #include "transforms/copy_functions.hpp"
 #include "transforms/synthesized_kernel.hpp"
 #include "transforms/wide_types.hpp"
@@ -303,6 +305,18 @@ bool computesFloats(const Module& module, const WideTypes& types, const Kernel& 
   return false;
 }
 
+/// True if the results of a fold, as doubles, fit into the kernel that combines them.
+bool resultsFit(const Module& module, const Kernel& combine) {
+  KernelSize size = sizeOf(module, combine);
+  for (const KernelParam& param : combine.params) {
+    if (param.role != ParamRole::Input && param.role != ParamRole::Accumulator) continue;
+    for (const Type plane : split::planesOf(module, param.type)) {
+      if (plane.isFloat() && plane.width > 2) ++size.planes;   // a plane holds two doubles
+    }
+  }
+  return fits(size);
+}
+
 }  // namespace
 
 void widenFloats(Module& module, Diagnostics&) {
@@ -319,6 +333,8 @@ void widenFloats(Module& module, Diagnostics&) {
     const std::optional<KernelId> combine =
         module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
     if (combine && obstacle.empty()) obstacle = obstacles.of(module.kernels[*combine]);
+    if (combine && obstacle.empty() && !resultsFit(module, module.kernels[*combine]))
+      obstacle = "its results have too many members as doubles";
     if (!obstacle.empty()) {
       module.kernels[id].variants.whyNotWide = std::move(obstacle);
       return;
