@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "driver/native_library.hpp"
 
-#include <cstdlib>
-#include <iostream>
 #include <optional>
 #include <sstream>
 #include <string>
 
 #include "frontend/frontend.hpp"
+#include "support/internal_error.hpp"
 
 namespace skc::driver {
 
@@ -20,8 +19,7 @@ ir::Module compileLibrary(std::string_view file, std::string_view text) {
   frontend::Frontend frontend(options);
   std::optional<ir::Module> module = frontend.compile(std::string(file), std::string(text));
   if (module) return std::move(*module);
-  std::cerr << "skc: internal error: the library of native code does not compile\n" << messages.str();
-  std::abort();
+  internalError("the library of native code does not compile: " + messages.str());
 }
 
 native::LinkedFunctions linkNativeLibrary(ir::Module& module) {

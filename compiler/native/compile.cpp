@@ -5,6 +5,7 @@
 #include <llvm/IR/LegacyPassManager.h>
 #include <llvm/IR/Module.h>
 #include <llvm/IR/Verifier.h>
+#include <llvm/Support/ErrorHandling.h>
 #include <llvm/Support/raw_ostream.h>
 
 #include "analysis/stream_uses.hpp"
@@ -21,6 +22,7 @@
 #include "native/records.hpp"
 #include "native/row_plan.hpp"
 #include "native/target.hpp"
+#include "support/internal_error.hpp"
 #include "transforms/predicate.hpp"
 
 namespace skc::native {
@@ -67,6 +69,7 @@ class Compilation {
 
   void add(const KernelRequest& request) {
     const Kernel& kernel = plain_.kernels[request.kernel];
+    noteActivity("native code", kernel.name);
     const SlotPlan slots = planSlots(plain_, kernel);
     CodeTable table{.symbol = request.symbol,
                     .entries = {},
@@ -93,8 +96,8 @@ class Compilation {
 
   std::string write(Output output) {
     if (debug_) debug_->finish();
-    if (llvm::verifyModule(code_, &llvm::errs()))
-      llvm::report_fatal_error("skc wrote LLVM IR that is not valid");
+    verify();
+    noteActivity("native code, in LLVM");
     if (options_.optimizes) optimize(code_, target_.machine());
     llvm::SmallVector<char, 0> bytes;
     llvm::raw_svector_ostream stream(bytes);
@@ -201,6 +204,14 @@ class Compilation {
                              codegen.lanes, block.rows});
   }
 
+  /// A violation is a bug of skc: tells the first one.
+  void verify() const {
+    std::string violations;
+    llvm::raw_string_ostream stream(violations);
+    if (llvm::verifyModule(code_, &stream))
+      internalError("invalid LLVM IR: " + violations.substr(0, violations.find('\n')));
+  }
+
   const Version& versionFor(Real real) {
     if (real == Real::Float) return ofFloats_;
     if (!ofOthers_) ofOthers_.emplace(clone(plain_));
@@ -241,6 +252,12 @@ std::string compile(const Module& module, const std::vector<KernelRequest>& kern
   if (output != Output::Llvm) compilation.discardNames();
   for (const KernelRequest& request : kernels) compilation.add(request);
   return compilation.write(output);
+}
+
+void setNoMemoryHandler(void (*handler)()) {
+  static void (*called)() = nullptr;
+  called = handler;
+  llvm::install_bad_alloc_error_handler([](void*, const char*, bool) { called(); });
 }
 
 }  // namespace skc::native

@@ -47,4 +47,7 @@ std::vector<std::string_view> levelNames(const std::string& triple);
 std::string compile(const ir::Module& module, const std::vector<KernelRequest>& kernels,
                     const CompileLibrary& compileLibrary, const Options& options, Output output);
 
+/// From now on, calls the function where LLVM or Clang finds no more memory; it must not return.
+void setNoMemoryHandler(void (*handler)());
+
 }  // namespace skc::native

@@ -2,8 +2,6 @@
 #include "transforms/predicate.hpp"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <ranges>
 #include <string>
 #include <utility>
@@ -11,9 +9,9 @@
 
 #include "analysis/uniformity.hpp"
 #include "analysis/validate_predicated.hpp"
-#include "ir/print.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
+#include "support/internal_error.hpp"
 #include "transforms/blend_cost.hpp"
 #include "transforms/hoist_calls.hpp"
 #include "transforms/predicate_function.hpp"
@@ -73,14 +71,11 @@ std::set<FunctionId> maskedFunctions(const Module& module, const Kernel& kernel,
   return masked;
 }
 
-/// A violation is a bug of skc: prints the module.
+/// A violation is a bug of skc.
 void validateOrAbort([[maybe_unused]] const Module& module) {
 #ifndef NDEBUG
   const std::string violation = analysis::validatePredicated(module);
-  if (violation.empty()) return;
-  std::fprintf(stderr, "skc: internal error: invalid IR after predicate: %s\n\n%s", violation.c_str(),
-               print(module).c_str());
-  std::abort();
+  if (!violation.empty()) internalError("invalid IR after predicate: " + violation);
 #endif
 }
 

@@ -2,16 +2,15 @@
 #include "transforms/transforms.hpp"
 
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <iterator>
 #include <string>
 #include <string_view>
 
-#include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "split/split_folds.hpp"
 #include "split/split_kernels.hpp"
+#include "support/internal_error.hpp"
 #include "transforms/assign_rows.hpp"
 #include "transforms/bound_pushes.hpp"
 #include "transforms/compensate_sums.hpp"
@@ -115,14 +114,11 @@ constexpr Transform transforms[] = {
                          const TransformOptions& options) { split::splitKernels(module, options.limits); }},
 };
 
-/// A violation is a bug of skc: names the transform after which it appeared, and prints the module.
+/// A violation is a bug of skc: names the transform after which it appeared.
 void validateOrAbort(const ir::Module& module, ir::Stage stage, std::string_view after) {
   if (!validatesTransforms()) return;
   const std::string violation = ir::validate(module, stage);
-  if (violation.empty()) return;
-  std::fprintf(stderr, "skc: internal error: invalid IR after %s: %s\n\n%s", std::string(after).c_str(),
-               violation.c_str(), ir::print(module).c_str());
-  std::abort();
+  if (!violation.empty()) internalError("invalid IR after " + std::string(after) + ": " + violation);
 }
 
 }  // namespace
@@ -148,10 +144,12 @@ bool validatesTransforms() {
 void runTransforms(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options) {
   validateOrAbort(module, ir::Stage::Lowered, "the frontend");
   for (const Transform& transform : transforms) {
+    noteActivity(transform.name);
     transform.run(module, diagnostics, options);
     if (diagnostics.hasErrors()) return;
+    if (options.after)
+      options.after(transform.name, module);  // first, so that an invalid module can be printed
     validateOrAbort(module, ir::Stage::Specialized, transform.name);
-    if (options.after) options.after(transform.name, module);
   }
 }
 
