@@ -74,3 +74,23 @@ TEST_CASE("specialisations, and instances that only kernels call") {
     CHECK(i.read() == std::vector<int>{1, -2});
   });
 }
+
+TEST_CASE("lists that end in >>, comparisons in lists, and constraints") {
+  onGlAndNative([](sk::Device& device) {
+    const auto resultOf = [&](const auto& kernel) {
+      auto x = streamOf<float>(device, {2}, {1, 2});
+      auto r = device.stream<float>({2});
+      kernel(x, r);
+      return r.read();
+    };
+    using Values = std::vector<float>;
+    CHECK(resultOf(templates::nested) == Values{1, 2});
+    CHECK(resultOf(templates::compared) == Values{6, 7});
+    CHECK(resultOf(templates::constrained) == Values{3, 4});
+    CHECK(resultOf(templates::doubled) == Values{2, 4});
+    CHECK(resultOf(templates::constrainedLast) == Values{2, 3});
+    CHECK(resultOf(templates::specialised) == Values{102, 202});
+    CHECK(resultOf(templates::added_1) == Values{2, 3});
+    CHECK(resultOf(templates::picked) == Values{3, 4});
+  });
+}

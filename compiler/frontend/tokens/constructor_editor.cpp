@@ -98,19 +98,24 @@ void ConstructorEditor::noteBraces(const Tokens& out) {
   const Token& token = out.back();
   if (token.isOneOf(tok::kw_struct, tok::kw_class, tok::kw_union, tok::kw_enum)) sawRecord_ = true;
   if (token.isOneOf(tok::kw_const, tok::kw_constexpr)) sawConst_ = true;
+  if (token.is(tok::kw_requires)) {
+    sawConstraint_ = true;
+    sawRecord_ = false;   // the `class` of a template's parameter
+  }
   if (sawNamespace_ && token.is(tok::identifier)) namespace_ += "::" + nameOf(token);
   if (token.is(tok::kw_namespace)) sawNamespace_ = true;
   if (token.is(tok::l_brace)) {
     const bool isInside = !braces_.empty() && braces_.back().holdsStatements && !sawRecord_;
     const bool isFunction =
-        out.size() > 1 && out[out.size() - 2].isOneOf(tok::r_paren, tok::kw_const, tok::kw_noexcept);
+        (out.size() > 1 && out[out.size() - 2].isOneOf(tok::r_paren, tok::kw_const, tok::kw_noexcept)) ||
+        (sawConstraint_ && !sawRecord_);
     braces_.push_back(
         {sawNamespace_ ? namespace_ : "{" + std::to_string(bracesSeen_++), isInside || isFunction});
   } else if (token.is(tok::r_brace) && !braces_.empty()) {
     braces_.pop_back();
   }
   if (token.isOneOf(tok::l_brace, tok::r_brace, tok::semi)) {
-    sawRecord_ = sawNamespace_ = sawConst_ = false;
+    sawRecord_ = sawNamespace_ = sawConst_ = sawConstraint_ = false;
     namespace_.clear();
   }
 }

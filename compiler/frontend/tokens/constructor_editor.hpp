@@ -59,6 +59,7 @@ class ConstructorEditor {
   bool sawNamespace_ = false;
   bool sawRecord_ = false;        ///< `struct` or similar, in this statement
   bool sawConst_ = false;         ///< `const` or `constexpr`, in this statement
+  bool sawConstraint_ = false;    ///< `requires`, in this declaration
   std::string declared_;          ///< vector type of the variables being declared, or empty
   int depth_ = 0;                 ///< of parentheses and brackets, in this declaration
 };

@@ -42,17 +42,24 @@ struct ParameterEditor::Parts {
 
 namespace {
 
+bool isKind(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind kind) {
+  return at < tokens.size() && tokens[at].is(kind);
+}
+
 /// Splits the tokens between the parentheses at commas outside any bracket.
 std::vector<std::vector<Token>> splitAtCommas(const std::vector<Token>& declared) {
   std::vector<std::vector<Token>> parts(1);
   int depth = 0;
-  bool isValue = false;   // after `=`, `<` is a comparison
+  bool isValue = false;   // after `=`, `<` is a comparison, but in `Pair<int, int>{0, 1}`
   for (std::size_t i = 1; i + 1 < declared.size(); ++i) {
     const Token& token = declared[i];
     if (token.isOneOf(tok::l_paren, tok::l_square, tok::l_brace)) ++depth;
     if (token.isOneOf(tok::r_paren, tok::r_square, tok::r_brace)) --depth;
     if (token.is(tok::equal)) isValue = true;
-    if (const std::size_t end = token.is(tok::less) && !isValue ? endOfList(declared, i) : 0; end != 0) {
+    std::size_t end = token.is(tok::less) ? endOfList(declared, i) : 0;
+    if (isValue && !(isKind(declared, end + 1, tok::l_brace) || isKind(declared, end + 1, tok::l_paren)))
+      end = 0;
+    if (end != 0) {
       parts.back().insert(parts.back().end(), declared.begin() + static_cast<std::ptrdiff_t>(i),
                           declared.begin() + static_cast<std::ptrdiff_t>(end) + 1);
       i = end;
@@ -67,10 +74,6 @@ std::vector<std::vector<Token>> splitAtCommas(const std::vector<Token>& declared
   }
   if (parts.size() == 1 && parts.front().empty()) parts.clear();
   return parts;
-}
-
-bool isKind(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind kind) {
-  return at < tokens.size() && tokens[at].is(kind);
 }
 
 /// `({0, 1})` without its parentheses, which C++ does not allow there; any other value unchanged.
@@ -98,10 +101,13 @@ bool isQualifier(const Token& token) {
   return isNamedWord(token, {"out", "inout", "reduce", "scan", "iter", "vout", "spec", "kernel"});
 }
 
-/// True for the `<` of a type: `sk::Scalar<float> k`.
-bool isTemplateArguments(const std::vector<Token>& parameter, std::size_t less) {
-  const std::size_t end = endOfList(parameter, less);
-  return end != 0 && isKind(parameter, end + 1, tok::identifier);
+/// The index of the `>` that closes the list of a type, as in `sk::Scalar<float> k`; 0 for other `<`.
+std::size_t endOfArguments(const std::vector<Token>& parameter, std::size_t less) {
+  const std::size_t end = less > 0 ? endOfList(parameter, less) : 0;
+  const bool goesOn =
+      end != 0 && end + 1 < parameter.size() &&
+      (parameter[end + 1].isOneOf(tok::coloncolon, tok::amp) || parameter[end + 1].getIdentifierInfo());
+  return goesOn ? end : 0;
 }
 
 std::string repeated(std::string_view text, int times) {
@@ -260,7 +266,8 @@ void ParameterEditor::takeQualifier(const Tokens& parameter, std::size_t& at, Pa
   const auto isWordOrScope = [&](std::size_t i) {
     return i < parameter.size() && (parameter[i].getIdentifierInfo() || parameter[i].is(tok::coloncolon));
   };
-  if (!isWordOrScope(at + 1) || !isWordOrScope(at + 2)) return;
+  const bool isList = isKind(parameter, at + 2, tok::less) && endOfArguments(parameter, at + 2) != 0;
+  if (!isWordOrScope(at + 1) || !(isWordOrScope(at + 2) || isList)) return;
   if (isQualifier(parameter[at])) {
     parts.qualifier = parameter[at++];
     parts.hasQualifier = true;
@@ -272,10 +279,14 @@ bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, P
   const std::size_t begin = at;
   std::size_t end = parameter.size();
   for (std::size_t i = begin; i < parameter.size(); ++i) {
-    const bool stream =
-        parameter[i].is(tok::less) &&
-        (i + 1 == parameter.size() || parameter[i + 1].isOneOf(tok::greater, tok::greaterequal) ||
-         (i > begin + 1 && parameter[i - 1].is(tok::identifier) && !isTemplateArguments(parameter, i)));
+    const bool isLess = parameter[i].is(tok::less);
+    const bool isEmpty =
+        isLess && (i + 1 == parameter.size() || parameter[i + 1].isOneOf(tok::greater, tok::greaterequal));
+    if (const std::size_t close = isLess && !isEmpty ? endOfArguments(parameter, i) : 0; close != 0) {
+      i = close;
+      continue;
+    }
+    const bool stream = isEmpty || (isLess && i > begin + 1 && parameter[i - 1].is(tok::identifier));
     if (stream || parameter[i].isOneOf(tok::l_square, tok::equal)) {
       end = i;
       break;

@@ -13,7 +13,7 @@ namespace tok = clang::tok;
 void StreamEditor::edit(TokenCursor& cursor, Tokens& out) {
   cursor.take();   // `stream`
   Tokens type;
-  while (cursor.peek(1).isNot(tok::less) && !cursor.atEndOfDeclaration()) type.push_back(cursor.take());
+  takeType(cursor, type);
   Tokens edited;
   bool isRight = !type.empty() || fail(Diag::StreamDeclaration, cursor.peek());
   for (bool isLast = false; isRight && !isLast;) {
@@ -24,6 +24,19 @@ void StreamEditor::edit(TokenCursor& cursor, Tokens& out) {
   if (isRight) out.insert(out.end(), edited.begin(), edited.end());
   while (!cursor.atEndOfDeclaration()) cursor.take();
   if (cursor.at(tok::semi)) cursor.take();
+}
+
+/// Takes what precedes the first name: `float` or `Pair<float>`.
+void StreamEditor::takeType(TokenCursor& cursor, Tokens& type) {
+  while (!cursor.atEndOfDeclaration()) {
+    std::size_t count = 1;
+    if (cursor.at(1, tok::less)) {
+      const std::size_t end = cursor.endOfList(1);
+      if (end == 0 || !cursor.at(end + 1, tok::identifier) || !cursor.at(end + 2, tok::less)) return;
+      count = end + 1;
+    }
+    for (; count > 0; --count) type.push_back(cursor.take());
+  }
 }
 
 /// Takes `name<extents>` before a comma or a semicolon.
@@ -71,7 +84,10 @@ bool StreamEditor::takeExtents(TokenCursor& cursor, std::vector<Tokens>& extents
     if (token.isOneOf(tok::r_paren, tok::r_square)) --depth;
     if (!isBegun) extents.emplace_back();
     isBegun = true;
-    extents.back().push_back(cursor.take());
+    // `Count<int>::value`, `count<int>()`
+    std::size_t end = token.is(tok::less) ? cursor.endOfList(0) : 0;
+    if (!cursor.at(end + 1, tok::coloncolon) && !cursor.at(end + 1, tok::l_paren)) end = 0;
+    for (std::size_t i = 0; i <= end; ++i) extents.back().push_back(cursor.take());
   }
   return fail(Diag::StreamExtents, cursor.peek());
 }

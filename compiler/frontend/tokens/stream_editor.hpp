@@ -33,6 +33,7 @@ class StreamEditor {
  private:
   using Tokens = std::vector<clang::Token>;
 
+  static void takeType(TokenCursor& cursor, Tokens& type);
   bool takeDeclarator(TokenCursor& cursor, const Tokens& type, Tokens& out);
   bool takeExtents(TokenCursor& cursor, std::vector<Tokens>& extents);
   ExtentSyntax extent(const Tokens& written, Tokens& out);

@@ -4,6 +4,14 @@
 #include <algorithm>
 
 namespace skc::frontend {
+namespace {
+
+/// Whether a token can follow the parameters of a template.
+bool beginsDeclaration(const clang::Token& token) {
+  return token.isOneOf(clang::tok::coloncolon, clang::tok::l_square) || token.getIdentifierInfo() != nullptr;
+}
+
+}  // namespace
 
 std::vector<clang::Token> TokenCursor::takeParenthesized() {
   std::vector<clang::Token> taken;
@@ -45,7 +53,65 @@ std::size_t endOfList(const std::vector<clang::Token>& tokens, std::size_t less)
     if (token.is(clang::tok::r_paren) && --parentheses < 0) return 0;
     if (parentheses > 0) continue;
     if (token.is(clang::tok::less)) ++depth;
-    if (token.is(clang::tok::greater) && --depth == 0) return i;
+    depth -= closedLists(token);
+    if (depth == 0) return i;
+    if (depth < 0) return 0;
+  }
+  return 0;
+}
+
+std::size_t nameAtEnd(const std::vector<clang::Token>& tokens) {
+  if (tokens.empty()) return 0;
+  const std::size_t last = tokens.size() - 1;
+  if (closedLists(tokens[last]) == 0) return tokens[last].is(clang::tok::identifier) ? last : 0;
+  constexpr std::size_t longest = 256;
+  int depth = 0;
+  int parentheses = 0;
+  for (std::size_t i = last; i > 0 && last - i < longest; --i) {
+    if (tokens[i].is(clang::tok::r_paren)) ++parentheses;
+    if (tokens[i].is(clang::tok::l_paren)) --parentheses;
+    if (parentheses > 0) continue;
+    depth += closedLists(tokens[i]);
+    if (tokens[i].isNot(clang::tok::less) || --depth > 0) continue;
+    return depth == 0 && tokens[i - 1].is(clang::tok::identifier) ? i - 1 : 0;
+  }
+  return 0;
+}
+
+std::size_t TokenCursor::endOfList(std::size_t less) const {
+  const std::size_t at = position_ + less;
+  const std::size_t end = at > 0 && at < tokens_.size() ? frontend::endOfList(tokens_, at) : 0;
+  return end == 0 ? 0 : end - position_;
+}
+
+std::size_t TokenCursor::templateParameters(
+    const llvm::SmallPtrSetImpl<const clang::IdentifierInfo*>& templates) const {
+  const auto isKnown = [&](const clang::Token& name) { return templates.contains(name.getIdentifierInfo()); };
+  if (const std::size_t count = templateParameters(isKnown); count != 0) return count;
+  // members of other templates, whose declarations nobody has looked at
+  return templateParameters([](const clang::Token&) { return true; });
+}
+
+std::size_t TokenCursor::templateParameters(FunctionRef<bool(const clang::Token&)> opensAfter) const {
+  constexpr std::size_t longest = 1024;   // tokens; bounds the time for many unclosed `<`
+  int lists = 0;
+  int brackets = 0;
+  for (std::size_t i = 0; i < longest && !at(i, clang::tok::eof); ++i) {
+    const clang::Token& token = peek(i);
+    if (token.isOneOf(clang::tok::l_paren, clang::tok::l_square, clang::tok::l_brace)) ++brackets;
+    if (token.isOneOf(clang::tok::r_paren, clang::tok::r_square, clang::tok::r_brace) && --brackets < 0)
+      return 0;
+    if (brackets > 0) continue;
+    if (token.is(clang::tok::semi)) return 0;
+    if (token.is(clang::tok::less)) {
+      const bool opens = i == 0 || at(i - 1, clang::tok::kw_template) ||
+                         (i > 1 && at(i - 2, clang::tok::kw_template)) ||
+                         (at(i - 1, clang::tok::identifier) && opensAfter(peek(i - 1)));
+      if (opens) ++lists;
+    }
+    lists -= closedLists(token);
+    if (lists < 0) return 0;
+    if (lists == 0) return beginsDeclaration(peek(i + 1)) ? i + 1 : 0;
   }
   return 0;
 }

@@ -8,6 +8,9 @@
 
 #include <clang/Basic/IdentifierTable.h>
 #include <clang/Lex/Token.h>
+#include <llvm/ADT/SmallPtrSet.h>
+
+#include "support/function_ref.hpp"
 
 namespace skc::frontend {
 
@@ -22,8 +25,16 @@ inline bool isWord(const clang::Token& token, llvm::StringRef word) {
   return token.is(clang::tok::identifier) && token.getIdentifierInfo()->getName() == word;
 }
 
-/// The index of the `>` that closes the list opened at `less`; 0 if that `<` opens no list.
+/// How many template lists a token closes: two for the `>>` of `Pair<Pair<T>>`.
+inline int closedLists(const clang::Token& token) {
+  return token.is(clang::tok::greater) ? 1 : token.is(clang::tok::greatergreater) ? 2 : 0;
+}
+
+/// The index of the `>` or `>>` that closes the list opened at `less`; 0 if that `<` opens no list.
 std::size_t endOfList(const std::vector<clang::Token>& tokens, std::size_t less);
+
+/// The index of the name in `void f` or, with arguments of a template, `void f<Pair<float>>`; 0 if no name ends the tokens.
+std::size_t nameAtEnd(const std::vector<clang::Token>& tokens);
 
 class TokenCursor {
  public:
@@ -34,6 +45,7 @@ class TokenCursor {
     return tokens_[std::min(position_ + ahead, tokens_.size() - 1)];
   }
   bool at(clang::tok::TokenKind kind) const { return peek().is(kind); }
+  bool at(std::size_t ahead, clang::tok::TokenKind kind) const { return peek(ahead).is(kind); }
   bool atEndOfDeclaration() const {
     return peek().isOneOf(clang::tok::eof, clang::tok::semi, clang::tok::l_brace, clang::tok::r_brace);
   }
@@ -46,8 +58,16 @@ class TokenCursor {
   std::vector<clang::Token> peekBraced() const;
   /// Takes `( ... )` with its parentheses; empty if no `)` closes it before a brace or the end.
   std::vector<clang::Token> takeParenthesized();
+  /// How far ahead the token is that closes the list opened by the `<` that is `less` ahead; 0 if that opens none.
+  std::size_t endOfList(std::size_t less) const;
+  /// The number of tokens of the `<...>` of a template, which begins here; 0 if nothing closes it. `templates` are the names
+  /// that are known to be templates: `N < 3` is a comparison otherwise.
+  std::size_t templateParameters(const llvm::SmallPtrSetImpl<const clang::IdentifierInfo*>& templates) const;
 
  private:
+  /// The same, if the names of which opensAfter(name) is true have lists.
+  std::size_t templateParameters(FunctionRef<bool(const clang::Token&)> opensAfter) const;
+
   const std::vector<clang::Token>& tokens_;
   std::size_t position_ = 0;
 };

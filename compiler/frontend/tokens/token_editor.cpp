@@ -83,26 +83,62 @@ class Editor {
     }
   }
 
-  /// Edits the `template <...>` of the declaration that follows, or `template kernel void f<float>(...);`.
+  /// Edits the `template <...> requires ...` of the declaration that follows, or `template kernel void f<float>(...);`.
   void editTemplate() {
     copyToken();
-    if (atKernel()) editInstantiation();
-    if (cursor_.at(tok::less)) {
-      int depth = 0;
-      do {
-        if (cursor_.at(tok::less)) ++depth;
-        if (cursor_.at(tok::greater)) --depth;
-        copyToken();
-      } while (depth > 0 && !cursor_.at(tok::eof));
-    }
+    if (atKernel()) return editInstantiation();
+    if (!cursor_.at(tok::less)) return copyDeclaration();  // `template struct Pair<float>;`
+    copyTokens(cursor_.templateParameters(templates_));
+    if (cursor_.at(tok::kw_requires)) copyConstraint();
+    noteTemplate();
     if (atDeclarationWord("stream")) diagnostics_.report(Diag::StreamTemplate, locOf(cursor_.peek()));
+  }
+
+  /// Remembers the name that a template declares.
+  void noteTemplate() {
+    constexpr std::size_t longest = 64;  // tokens of a function's result
+    std::size_t at = 1;
+    if (!cursor_.peek().isOneOf(tok::kw_struct, tok::kw_class, tok::kw_using, tok::kw_concept)) {
+      while (at < longest && !cursor_.peek(at).isOneOf(tok::l_paren, tok::equal, tok::semi, tok::l_brace))
+        ++at;
+      --at;
+    }
+    if (cursor_.at(at, tok::identifier)) templates_.insert(cursor_.peek(at).getIdentifierInfo());
+  }
+
+  /// Copies `requires Small<T> && (sizeof(T) == 4)`.
+  void copyConstraint() {
+    do {
+      copyToken();  // `requires`, `&&` or `||`
+      if (cursor_.at(tok::l_paren)) {
+        copyParentheses();
+      } else if (cursor_.at(tok::kw_requires)) {
+        copyToken();
+        if (cursor_.at(tok::l_paren)) copyParentheses();
+        if (cursor_.at(tok::l_brace)) copyBraces();
+      } else {
+        copyConcept();
+      }
+    } while (cursor_.at(tok::ampamp) || cursor_.at(tok::pipepipe));
+  }
+
+  /// Copies `true` or a name such as `space::Small<T>::value`.
+  void copyConcept() {
+    if (cursor_.at(tok::coloncolon)) copyToken();
+    while (cursor_.peek().getIdentifierInfo() != nullptr) {
+      copyToken();
+      if (const std::size_t end = cursor_.at(tok::less) ? cursor_.endOfList(0) : 0; end != 0)
+        copyTokens(end + 1);
+      if (!cursor_.at(tok::coloncolon)) return;
+      copyToken();
+      if (cursor_.at(tok::kw_template)) copyToken();
+    }
   }
 
   /// Clang instantiates; lowering checks that the template is a kernel's.
   void editInstantiation() {
     const Token start = cursor_.take();
-    std::vector<Token> head;
-    while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());
+    const std::vector<Token> head = takeHead();
     const std::vector<Token> declared =
         cursor_.at(tok::l_paren) ? cursor_.takeParenthesized() : std::vector<Token>();
     if (head.size() < 2 || declared.empty() || !cursor_.at(tok::semi)) {
@@ -111,7 +147,7 @@ class Editor {
       return copyDeclaration();
     }
     for (const Token& token : head) syntax_.addInstantiation(token.getLocation());
-    std::vector<Token> constants;   // unused: the template declares them
+    std::vector<Token> constants;  // unused: the template declares them
     ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, constants);
     const std::vector<Token> edited = parameters.edit(declared, kindOf(start));
     out_.insert(out_.end(), head.begin(), head.end());
@@ -119,17 +155,14 @@ class Editor {
     copyToken();
   }
 
-  /// The index of a function's name in the tokens before its parameters, `void f` or, for a specialisation,
-  /// `void f<float>`; 0 if there is none.
-  static std::size_t nameAt(const std::vector<Token>& head) {
-    if (head.empty()) return 0;
-    std::size_t at = head.size() - 1;
-    if (head[at].isNot(tok::greater)) return at;
-    for (int depth = 0; at > 0; --at) {
-      if (head[at].is(tok::greater)) ++depth;
-      if (head[at].is(tok::less) && --depth == 0) return at - 1;
+  /// Takes what precedes the parameters of a function: `void f` or, for a specialisation, `void f<(1 > 0)>`.
+  std::vector<Token> takeHead() {
+    std::vector<Token> head;
+    while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) {
+      const std::size_t end = cursor_.at(tok::less) ? cursor_.endOfList(0) : 0;
+      for (std::size_t i = 0; i <= end; ++i) head.push_back(cursor_.take());
     }
-    return 0;
+    return head;
   }
 
   void editStream() {
@@ -154,6 +187,9 @@ class Editor {
   std::size_t brookStream() const {
     const std::size_t at = listedName();
     if (at == 0) return 0;
+    for (std::size_t i = 0; i < at; ++i) {  // `extern template struct Pair<float>;`
+      if (cursor_.peek(i).isOneOf(tok::kw_template, tok::kw_struct, tok::kw_class)) return 0;
+    }
     for (std::size_t i = at + 2; !cursor_.peek(i).isOneOf(tok::eof, tok::semi, tok::l_brace, tok::less);
          ++i) {
       if (cursor_.peek(i).is(tok::greater))
@@ -176,7 +212,7 @@ class Editor {
   /// `[[table(lo, hi, n, linear)]] float f(float x) { ... }`
   void editTable(std::size_t behind) {
     const Token attribute = cursor_.peek(2);
-    const bool isTemplate = !out_.empty() && out_.back().is(tok::greater);
+    const bool isTemplate = !out_.empty() && closedLists(out_.back()) > 0;
     const std::optional<TableSyntax> table =
         takeTable(cursor_, behind, TokenBuilder(preprocessor_), diagnostics_, constants_, out_);
     const bool isKernel = atKernel();
@@ -207,10 +243,9 @@ class Editor {
     kernel.choices = choices;
     kernel.kind = kindOf(start);
     kernel.keyword = start.getLocation();
-    std::vector<Token> head;  // result type and name
-    while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());
-    const std::size_t at = nameAt(head);
-    if (at == 0 || head[at].isNot(tok::identifier) || !cursor_.at(tok::l_paren)) {
+    const std::vector<Token> head = takeHead();  // result type and name
+    const std::size_t at = nameAtEnd(head);
+    if (at == 0 || !cursor_.at(tok::l_paren)) {
       const Token& place = head.empty() || cursor_.at(tok::l_paren) ? start : cursor_.peek();
       diagnostics_.report(Diag::KernelHead, locOf(place), {wordOf(kernel.kind)});
       return copyDeclaration();
@@ -227,6 +262,7 @@ class Editor {
     syntax_.add(head[at].getLocation(), std::move(kernel));
     out_.insert(out_.end(), head.begin(), head.end());
     out_.insert(out_.end(), edited.begin(), edited.end());
+    if (cursor_.at(tok::kw_requires)) copyConstraint();
     if (cursor_.at(tok::l_brace)) {
       for (const ParameterEditor::Input& input : parameters.inputs()) refuseIfOnlyAssigned(input);
       refuseCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
@@ -286,9 +322,9 @@ class Editor {
         if (!initializer && (function || !record)) return function;
         continue;
       }
-      if (token.is(tok::l_paren) && !initializer && !function && !out_.empty() &&
-          out_.back().is(tok::identifier)) {
-        function = out_.back();
+      const std::size_t name = token.is(tok::l_paren) && !initializer && !function ? nameAtEnd(out_) : 0;
+      if (name != 0) {
+        function = out_[name];
         const std::vector<Token> declared = cursor_.takeParenthesized();
         if (declared.empty()) {
           diagnostics_.report(Diag::UnclosedParameters, locOf(*function), {nameOf(*function)});
@@ -318,6 +354,19 @@ class Editor {
       if (cursor_.at(tok::l_brace)) ++depth;
       if (cursor_.at(tok::r_brace)) --depth;
     }
+  }
+
+  void copyTokens(std::size_t count) {
+    for (; count > 0; --count) copyToken();
+  }
+
+  void copyParentheses() {
+    int depth = 0;
+    do {
+      if (cursor_.at(tok::l_paren)) ++depth;
+      if (cursor_.at(tok::r_paren)) --depth;
+      copyToken();
+    } while (depth > 0 && !cursor_.at(tok::eof));
   }
 
   void copyBraces() {
@@ -388,6 +437,8 @@ class Editor {
   ConstructorEditor constructors_;
   std::vector<Token> out_;
   DeclarationSyntax syntax_;
+  llvm::SmallPtrSet<const clang::IdentifierInfo*, 16>
+      templates_;  ///< names of templates, which `<` may follow
   int constants_ = 0;
 };
 
