@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/uniformity.hpp"
 
+#include <algorithm>
+#include <ranges>
 #include <utility>
 
 #include "analysis/divergence_walk.hpp"
@@ -71,12 +73,12 @@ Uniformity::Uniformity(const Module& module, const Kernel& kernel, Axis axis)
 }
 
 void Uniformity::propagate(const std::vector<FunctionId>& functions) {
-  for (bool isNew = true; isNew;) {
-    isNew = false;
-    for (const FunctionId id : functions) {
-      const bool found = DivergenceWalk(*this, id).run();
-      isNew = isNew || found;
-    }
+  // results flow from callees to callers, arguments the other way: each round goes both ways
+  bool isNew = true;
+  const auto walk = [&](FunctionId id) { isNew = DivergenceWalk(*this, id).run() || isNew; };
+  while (std::exchange(isNew, false)) {
+    std::ranges::for_each(functions, walk);
+    if (isNew) std::ranges::for_each(std::views::reverse(functions), walk);
   }
 }
 

@@ -25,8 +25,10 @@
 #include "program/descriptors.hpp"
 #include "program/json.hpp"
 #include "program/stub.hpp"
+#include "support/internal_error.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/check_outputs.hpp"
+#include "transforms/check_sizes.hpp"
 #include "transforms/predicate.hpp"
 #include "transforms/transforms.hpp"
 #include "web/js_module.hpp"
@@ -223,16 +225,20 @@ void printPredicated(const Job& job, const ir::Module& module) {
 /// Runs everything before the emitters; returns nullopt after errors.
 std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend) {
   const Options& options = job.options;
+  noteActivity("parsing and lowering " + job.file);
   std::optional<ir::Module> module =
       frontend.compile(job.file, job.text == nullptr ? std::nullopt : std::optional(*job.text));
   if (!module || options.emit == Emit::Ast) return module;
   if (!options.kernel.empty() && !selectKernel(*module, options.kernel, job.messages)) return std::nullopt;
   checkLimits(*module, frontend.diagnostics());
+  checkSizes(*module, frontend.diagnostics());
   checkOutputs(*module, frontend.diagnostics());  // before any transform: it checks the code as written
   if (!frontend.diagnostics().hasErrors()) {
     TransformOptions transforms = transformOptions(options, job.output);
     transforms.precisions = transforms.precisions || (options.emit == Emit::Js && wantsPrecisions(*module));
     runTransforms(*module, frontend.diagnostics(), transforms);
+    if (!frontend.diagnostics().hasErrors())
+      checkSizes(*module, frontend.diagnostics());  // unrolled loops are larger
   }
   if (!frontend.diagnostics().hasErrors() && wantsPerformanceWarnings(options.warnings)) {
     warnOfPerformance(*module, frontend.diagnostics());
@@ -240,6 +246,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   if (options.emit == Emit::Stubs) emit::reportCppNames(*module, frontend.diagnostics());
   if (options.emit == Emit::Js) web::reportJsNames(*module, frontend.diagnostics());
   if (frontend.diagnostics().hasErrors()) return std::nullopt;
+  noteActivity("output");
   printPredicated(job, *module);
   return module;
 }

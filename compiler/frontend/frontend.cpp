@@ -2,8 +2,10 @@
 #include "frontend/frontend.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <ostream>
 #include <system_error>
+#include <vector>
 
 #include <clang/AST/ASTConsumer.h>
 #include <clang/AST/ASTContext.h>
@@ -20,6 +22,7 @@
 #include <llvm/Support/raw_os_ostream.h>
 
 #include "frontend/clang_diagnostics.hpp"
+#include "frontend/clang_limits.hpp"
 #include "frontend/clang_loc.hpp"
 #include "frontend/diagnostic_printer.hpp"
 #include "frontend/lower/lower_module.hpp"
@@ -83,10 +86,44 @@ class Frontend::Unit {
   }
 
   ~Unit() {
-    if (parsing_) compiler_.getDiagnosticClient().EndSourceFile();
+    if (wasStopped_) {
+      static_cast<void>(owned_.release());
+    } else if (parsing_) {
+      compiler_.getDiagnosticClient().EndSourceFile();
+    }
   }
 
   std::optional<ir::Module> compile(const std::string& path, std::optional<std::string> text) {
+    try {
+      return compileUnlimited(path, std::move(text));
+    } catch (const ClangStopped&) {
+      abandon();
+      return std::nullopt;
+    }
+  }
+
+  void dumpAst(std::ostream& out) const {
+    if (wasStopped_ || !compiler_.hasASTContext()) return;
+    llvm::raw_os_ostream stream(out);
+    const clang::SourceManager& sources = compiler_.getSourceManager();
+    for (const clang::Decl* declaration : compiler_.getASTContext().getTranslationUnitDecl()->decls()) {
+      if (declaration->isImplicit() || sources.isInSystemHeader(declaration->getLocation())) continue;
+      declaration->dump(stream);
+    }
+  }
+
+  std::vector<std::string> dependencies() const {
+    std::vector<std::string> files{path_};
+    for (const std::string& file : dependencyCollector_->getDependencies()) {
+      if (file != path_) files.push_back(file);
+    }
+    return files;
+  }
+
+  Diagnostics& diagnostics() { return *diagnostics_; }
+
+ private:
+  std::optional<ir::Module> compileUnlimited(const std::string& path, std::optional<std::string> text) {
     path_ = path;
     text_ = text ? llvm::MemoryBuffer::getMemBufferCopy(*text, path) : readFile(path);
     const bool isInMemory = text.has_value() || options_.isIsolated;
@@ -109,27 +146,13 @@ class Frontend::Unit {
     return module;
   }
 
-  void dumpAst(std::ostream& out) const {
-    if (!compiler_.hasASTContext()) return;
-    llvm::raw_os_ostream stream(out);
-    const clang::SourceManager& sources = compiler_.getSourceManager();
-    for (const clang::Decl* declaration : compiler_.getASTContext().getTranslationUnitDecl()->decls()) {
-      if (declaration->isImplicit() || sources.isInSystemHeader(declaration->getLocation())) continue;
-      declaration->dump(stream);
-    }
+  /// Leaves the memory of Clang as it is after ClangStopped; only the diagnostics still work.
+  void abandon() {
+    static std::vector<clang::CompilerInstance*> abandoned;
+    abandoned.push_back(&compiler_);
+    wasStopped_ = true;
   }
 
-  std::vector<std::string> dependencies() const {
-    std::vector<std::string> files{path_};
-    for (const std::string& file : dependencyCollector_->getDependencies()) {
-      if (file != path_) files.push_back(file);
-    }
-    return files;
-  }
-
-  Diagnostics& diagnostics() { return *diagnostics_; }
-
- private:
   void createDiagnostics() {
     llvm::raw_ostream* messages = messages_.get();
     if (messages == nullptr) messages = &llvm::errs();
@@ -198,6 +221,8 @@ class Frontend::Unit {
     compiler_.createASTContext();
     compiler_.setASTConsumer(std::make_unique<clang::ASTConsumer>());
     compiler_.createSema(clang::TU_Complete, nullptr);
+    limitPreprocessing(preprocessor, *diagnostics_);
+    limitTemplates(compiler_.getSema(), *diagnostics_);
     compiler_.getDiagnosticClient().BeginSourceFile(compiler_.getLangOpts(), &preprocessor);
     parsing_ = true;
     return compiler_.InitializeSourceManager(compiler_.getFrontendOpts().Inputs.front());
@@ -247,11 +272,13 @@ class Frontend::Unit {
   std::unique_ptr<llvm::MemoryBuffer> text_;
   std::unique_ptr<llvm::raw_os_ostream> messages_;
   EditedTokens edited_;
-  clang::CompilerInstance compiler_;
+  std::unique_ptr<clang::CompilerInstance> owned_ = std::make_unique<clang::CompilerInstance>();
+  clang::CompilerInstance& compiler_ = *owned_;
   DiagnosticPrinter* printer_ = nullptr;  ///< of the current engine
   std::unique_ptr<ClangDiagnostics> diagnostics_;
   std::shared_ptr<clang::DependencyCollector> dependencyCollector_;
   bool parsing_ = false;
+  bool wasStopped_ = false;  ///< by ClangStopped
 };
 
 Frontend::Frontend(const Options& options) : unit_(std::make_unique<Unit>(options)) {}

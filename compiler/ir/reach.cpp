@@ -2,6 +2,8 @@
 #include "ir/reach.hpp"
 
 #include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "ir/walk.hpp"
 
@@ -9,10 +11,12 @@ namespace skc::ir {
 namespace {
 
 enum class Mark : std::uint8_t { New, Open, Done };
+/// A kernel calls few of a module's functions, so that a mark for each of these would cost more than the visit.
+using Marks = std::unordered_map<FunctionId, Mark>;
 
 /// Visits the call graph depth first; returns false if it finds a cycle.
-bool visit(const Module& module, FunctionId id, std::vector<Mark>& marks, std::vector<FunctionId>& order) {
-  if (id >= marks.size() || marks[id] == Mark::Done) return true;
+bool visit(const Module& module, FunctionId id, Marks& marks, std::vector<FunctionId>& order) {
+  if (id >= module.functions.size() || marks[id] == Mark::Done) return true;
   if (marks[id] == Mark::Open) return false;
   marks[id] = Mark::Open;
   for (FunctionId callee : callees(module.functions[id])) {
@@ -27,8 +31,9 @@ bool visit(const Module& module, FunctionId id, std::vector<Mark>& marks, std::v
 
 std::vector<FunctionId> callees(const Function& function) {
   std::vector<FunctionId> found;
+  std::unordered_set<FunctionId> known;
   const auto add = [&](FunctionId id) {
-    if (std::find(found.begin(), found.end(), id) == found.end()) found.push_back(id);
+    if (known.insert(id).second) found.push_back(id);
   };
   walkStmts(function.body, [&](const Stmt& stmt) {
     if (const auto* n = std::get_if<CallStmt>(&stmt.node)) add(n->callee);
@@ -40,7 +45,7 @@ std::vector<FunctionId> callees(const Function& function) {
 }
 
 std::vector<FunctionId> functionsOf(const Module& module, const Kernel& kernel) {
-  std::vector<Mark> marks(module.functions.size(), Mark::New);
+  Marks marks;
   std::vector<FunctionId> order;
   visit(module, kernel.entry, marks, order);
   return order;
@@ -67,7 +72,7 @@ std::optional<Loc> usesIndex(const Module& module, const Kernel& kernel) {
 }
 
 std::optional<FunctionId> findRecursion(const Module& module) {
-  std::vector<Mark> marks(module.functions.size(), Mark::New);
+  Marks marks;
   std::vector<FunctionId> order;
   for (FunctionId id = 0; id < module.functions.size(); ++id) {
     if (!visit(module, id, marks, order)) return id;

@@ -35,7 +35,8 @@ void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
 }
 
 /// The cost of a node itself, without its operands.
-double nodeCost(const Module& module, const Expr& expr, const std::vector<double>& functions) {
+double nodeCost(const Module& module, const Expr& expr,
+                const std::unordered_map<FunctionId, double>& functions) {
   const double width = expr.type.width * (expr.type.isDouble() ? doubleCost : 1);
   return match(
       expr.node, [](const Literal&) { return 0.0; }, [](const VarRef&) { return 0.0; },
@@ -43,7 +44,7 @@ double nodeCost(const Module& module, const Expr& expr, const std::vector<double
       [&](const Binary&) { return width; }, [&](const Select&) { return width; },
       [&](const Convert&) { return width; }, [](const Construct&) { return 0.0; },
       [](const Swizzle&) { return 0.0; }, [](const Member&) { return 0.0; },
-      [](const Index&) { return addressCost; }, [&](const Call& n) { return functions[n.callee]; },
+      [](const Index&) { return addressCost; }, [&](const Call& n) { return functions.at(n.callee); },
       [&](const IntrinsicCall&) { return intrinsicCost * width; },
       [&](const GatherRead&) { return addressCost + elementCost(module, expr.type); },
       [&](const NeighborRead&) { return addressCost + elementCost(module, expr.type); },
@@ -71,15 +72,9 @@ double elementCost(const Module& module, Type type) {
   return cost;
 }
 
-CostModel::CostModel(const Module& module) : module_(module), functions_(module.functions.size(), 0) {
-  std::vector<bool> known(module.functions.size(), false);
-  const auto learn = [&](const auto& self, FunctionId id) -> void {
-    if (known[id]) return;
-    known[id] = true;
-    for (FunctionId callee : callees(module.functions[id])) self(self, callee);
+CostModel::CostModel(const Module& module, const Kernel& kernel) : module_(module) {
+  for (const FunctionId id : functionsOf(module, kernel))   // callees first
     functions_[id] = block(module.functions[id].body, nullptr);
-  };
-  for (FunctionId id = 0; id < module.functions.size(); ++id) learn(learn, id);
 }
 
 double CostModel::run(const Block& body, const Slice& slice) const { return block(body, &slice); }
@@ -99,7 +94,7 @@ double CostModel::statement(const Stmt& stmt, const Slice* slice) const {
   return match(
       stmt.node, [&](const Declare&) { return simple(); },
       [&](const Assign& n) { return once + (n.op ? n.place->type.width : 0); },
-      [&](const CallStmt& n) { return once + functions_[n.callee]; },
+      [&](const CallStmt& n) { return once + functions_.at(n.callee); },
       [&](const If& n) { return once + block(n.then, slice) + block(n.otherwise, slice); },
       [&](const Loop& n) {
         const std::optional<std::int64_t> known = tripCount(module_, n);

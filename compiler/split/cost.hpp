@@ -6,6 +6,7 @@
 // tabulates the model.
 #pragma once
 
+#include <unordered_map>
 #include <vector>
 
 #include "ir/ir.hpp"
@@ -27,7 +28,7 @@ double elementCost(const ir::Module& module, ir::Type type);
 
 class CostModel {
  public:
-  explicit CostModel(const ir::Module& module);
+  CostModel(const ir::Module& module, const ir::Kernel& kernel);
 
   /// Cost of running the statements in a slice of this body: arithmetic and gathers, without the reads and
   /// writes of parameters.
@@ -39,7 +40,8 @@ class CostModel {
   double expression(const ir::Expr& expr) const;
 
   const ir::Module& module_;
-  std::vector<double> functions_;   ///< cost of one call
+  std::unordered_map<ir::FunctionId, double>
+      functions_;   ///< cost of one call of each function that the kernel needs
 };
 
 }  // namespace skc::split

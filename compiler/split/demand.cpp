@@ -29,8 +29,7 @@ void unite(VarSet& set, const VarSet& other) {
 
 }  // namespace
 
-Demand::Demand(const Module& module, const Kernel& kernel)
-    : module_(module), kernel_(kernel), functions_(module.functions.size()) {
+Demand::Demand(const Module& module, const Kernel& kernel) : module_(module), kernel_(kernel) {
   for (FunctionId id : functionsOf(module, kernel)) {   // callees first
     VarSet params(kernel.params.size(), false);
     if (id != kernel.entry) {
@@ -41,13 +40,13 @@ Demand::Demand(const Module& module, const Kernel& kernel)
 }
 
 void Demand::collect(const Stmt& stmt, VarSet& params) const {
-  if (const auto* n = std::get_if<CallStmt>(&stmt.node)) unite(params, functions_[n->callee]);
+  if (const auto* n = std::get_if<CallStmt>(&stmt.node)) unite(params, functions_.at(n->callee));
   forEachOperand(stmt, [&](const ExprPtr& operand) { collect(*operand, params); });
 }
 
 void Demand::collect(const Expr& expr, VarSet& params) const {
   walkExprs(expr, [&](const Expr& inner) {
-    if (const auto* n = std::get_if<Call>(&inner.node)) unite(params, functions_[n->callee]);
+    if (const auto* n = std::get_if<Call>(&inner.node)) unite(params, functions_.at(n->callee));
     if (const std::optional<std::uint32_t> param = streamOf(inner)) params[*param] = true;
   });
 }

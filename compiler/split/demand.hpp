@@ -3,6 +3,7 @@
 // Computes which parameters of a kernel a slice needs, and how many planes these have.
 #pragma once
 
+#include <unordered_map>
 #include <vector>
 
 #include "ir/ir.hpp"
@@ -24,7 +25,7 @@ class Demand {
 
   const ir::Module& module_;
   const ir::Kernel& kernel_;
-  std::vector<VarSet> functions_;   ///< streams that a call of the function reads; empty until computed
+  std::unordered_map<ir::FunctionId, VarSet> functions_;   ///< streams that a call of the function reads
 };
 
 /// The planes that a kernel writes and reads as a single pass.

@@ -26,7 +26,7 @@ class Planner {
         entry_(module.functions[kernel.entry]),
         limits_(limits),
         slicer_(module, entry_),
-        costs_(module),
+        costs_(module, kernel),
         demand_(module, kernel) {
     addOutputs();
     addCandidates();

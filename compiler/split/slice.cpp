@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <ranges>
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
@@ -23,7 +24,8 @@ void forEachWritten(const Module& module, const CallStmt& call, Fn&& fn) {
   if (call.result) fn(rootOf(*call.result));
 }
 
-/// Marks the statements that a slice needs, up to a fixed point.
+/// Marks the statements that a slice needs, up to a fixed point. Goes backwards, from uses to what they use, so that few rounds
+/// are needed.
 class Marker {
  public:
   Marker(const Module& module, const Function& function, const Slicer& slicer, const VarSet& wanted,
@@ -41,7 +43,7 @@ class Marker {
   Slice run(std::optional<VarId>& early) {
     do {
       changed_ = false;
-      for (top_ = 0; top_ < end_; ++top_) visit(function_.body[top_], {});
+      for (top_ = end_; top_-- > 0;) visit(function_.body[top_], {});
     } while (changed_ && !early_);
     early = early_;
     return std::move(slice_);
@@ -72,11 +74,12 @@ class Marker {
 
   bool visit(const Block& block, Jumps jumps) {
     bool needed = false;
-    for (const Stmt& stmt : block) needed = visit(stmt, jumps) || needed;
+    for (const Stmt& stmt : std::views::reverse(block)) needed = visit(stmt, jumps) || needed;
     return needed;
   }
 
   bool visit(const Stmt& stmt, Jumps jumps) {
+    isKept_ = slice_.kept.contains(&stmt);
     const bool needed = match(stmt.node, [&](const auto& node) { return step(node, jumps); });
     if (needed) changed_ = slice_.kept.insert(&stmt).second || changed_;
     return needed;
@@ -106,32 +109,28 @@ class Marker {
     if (then || otherwise) read(*n.cond);
     return then || otherwise;
   }
+  /// The jumps out of a statement count from the round after that in which the statement was found to be needed. (To visit it
+  /// twice in one round would take time exponential in the nesting.)
   bool step(const Loop& n, Jumps) {
-    const auto parts = [&](Jumps jumps) {
-      const bool step = visit(n.step, {}), body = visit(n.body, jumps);
-      return step || body;
-    };
-    if (!parts({})) return false;
+    const Jumps jumps{isKept_, isKept_};
+    const bool step = visit(n.step, {}), body = visit(n.body, jumps);
+    if (!step && !body && !jumps.breaks) return false;
     if (n.cond) read(*n.cond);
-    parts({true, true});
     visit(n.init, {});
     return true;
   }
   bool step(const Switch& n, Jumps jumps) {
-    const auto cases = [&](Jumps inner) {
-      bool needed = false;
-      for (const Case& one : n.cases) needed = visit(one.body, inner) || needed;
-      return needed;
-    };
-    if (!cases({false, jumps.continues})) return false;
-    read(*n.value);
-    return cases({true, jumps.continues});
+    bool needed = isKept_;
+    const Jumps inner{isKept_, jumps.continues};
+    for (const Case& one : std::views::reverse(n.cases)) needed = visit(one.body, inner) || needed;
+    if (needed) read(*n.value);
+    return needed;
   }
   bool step(const Break&, Jumps jumps) { return jumps.breaks; }
   bool step(const Continue&, Jumps jumps) { return jumps.continues; }
-  bool step(const Return&, Jumps) { return true; }   // kept, so that nothing after it runs
+  bool step(const Return&, Jumps) { return true; }  // kept, so that nothing after it runs
   bool step(const Scope& n, Jumps jumps) { return visit(n.body, jumps); }
-  bool step(const Push& n, Jumps) {   // kept, since it has a side effect
+  bool step(const Push& n, Jumps) {  // kept, since it has a side effect
     read(*n.value);
     return true;
   }
@@ -146,8 +145,9 @@ class Marker {
   const Slicer& slicer_;
   const VarSet& loadable_;
   Slice slice_;
-  std::size_t end_ = 0;   ///< statements after the last write of a wanted variable are dropped
+  std::size_t end_ = 0;  ///< statements after the last write of a wanted variable are dropped
   std::size_t top_ = 0;
+  bool isKept_ = false;  ///< whether the statement that is visited is already known to be needed
   bool changed_ = false;
   std::optional<VarId> early_;
 };

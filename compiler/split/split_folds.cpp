@@ -124,7 +124,7 @@ class State {
 
   double costOf(const Kernel& kernel, const Slice& slice) const {
     const Function& entry = module_.functions[kernel.entry];
-    double cost = CostModel(module_).run(entry.body, slice);
+    double cost = CostModel(module_, kernel).run(entry.body, slice);
     const VarSet params = Demand(module_, kernel).params(slice);
     for (VarId i = 0; i < kernel.params.size(); ++i) {
       if ((params[i] && kernel.params[i].role == ParamRole::Input) || slice.loaded[i])

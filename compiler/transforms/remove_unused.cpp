@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,64 +19,80 @@ using namespace ir;
 
 // ---- locals -----------------------------------------------------------------------------------
 
-/// Marks variables that evaluating an lvalue reads: those in indices, not the root.
-void markLValue(const Expr& lvalue, std::vector<bool>& read);
-
-void markRead(const Expr& expr, std::vector<bool>& read) {
+void addRead(const Expr& expr, std::vector<VarId>& read) {
   walkExprs(expr, [&](const Expr& inner) {
-    if (const auto* n = std::get_if<VarRef>(&inner.node)) read[n->var] = true;
+    if (const auto* n = std::get_if<VarRef>(&inner.node)) read.push_back(n->var);
   });
 }
 
-void markLValue(const Expr& lvalue, std::vector<bool>& read) {
+/// Adds the variables that evaluating an lvalue reads: those in indices, not the root.
+void addReadByLValue(const Expr& lvalue, std::vector<VarId>& read) {
   if (const auto* n = std::get_if<Index>(&lvalue.node)) {
-    markRead(*n->index, read);
-    markLValue(*n->base, read);
+    addRead(*n->index, read);
+    addReadByLValue(*n->base, read);
   } else if (const auto* m = std::get_if<Member>(&lvalue.node)) {
-    markLValue(*m->base, read);
+    addReadByLValue(*m->base, read);
   } else if (const auto* s = std::get_if<Swizzle>(&lvalue.node)) {
-    markLValue(*s->base, read);
+    addReadByLValue(*s->base, read);
   }
 }
 
-/// Which variables are read. An argument of a call counts, since the call may read it; so does a variable
-/// that receives a call's result, since the call stays.
-std::vector<bool> readVariables(const Function& function) {
-  std::vector<bool> read(function.variables.size(), false);
-  walkStmts(function.body, [&](const Stmt& stmt) {
-    if (const auto* n = std::get_if<Assign>(&stmt.node)) {
-      markLValue(*n->place, read);
-      markRead(*n->value, read);
-      return;
-    }
-    forEachOperand(stmt, [&](const ExprPtr& operand) { markRead(*operand, read); });
-  });
+/// The variables that a statement reads, apart from its blocks. An argument of a call counts, since the call may read it; so
+/// does a variable that receives a call's result, since the call stays.
+std::vector<VarId> readBy(const Stmt& stmt) {
+  std::vector<VarId> read;
+  if (const auto* n = std::get_if<Assign>(&stmt.node)) {
+    addReadByLValue(*n->place, read);
+    addRead(*n->value, read);
+  } else {
+    forEachOperand(stmt, [&](const ExprPtr& operand) { addRead(*operand, read); });
+  }
   return read;
 }
 
-bool removeWrites(Block& block, const std::vector<bool>& dead) {
-  const auto writesDead = [&](const Stmt& stmt) {
-    if (const auto* n = std::get_if<Declare>(&stmt.node)) return static_cast<bool>(dead[n->var]);
-    if (const auto* n = std::get_if<Assign>(&stmt.node)) return static_cast<bool>(dead[rootOf(*n->place)]);
-    return false;
-  };
-  bool changed = std::erase_if(block, writesDead) > 0;
-  for (Stmt& stmt : block) {
-    forEachBlock(stmt, [&](Block& inner) { changed = removeWrites(inner, dead) || changed; });
-  }
-  return changed;
+/// The variable that a statement declares or assigns to, if that is all it does.
+std::optional<VarId> written(const Stmt& stmt) {
+  if (const auto* n = std::get_if<Declare>(&stmt.node)) return n->var;
+  if (const auto* n = std::get_if<Assign>(&stmt.node)) return rootOf(*n->place);
+  return std::nullopt;
+}
+
+void removeWrites(Block& block, const std::vector<bool>& dead) {
+  std::erase_if(block, [&](const Stmt& stmt) {
+    const std::optional<VarId> var = written(stmt);
+    return var && dead[*var];
+  });
+  for (Stmt& stmt : block) forEachBlock(stmt, [&](Block& inner) { removeWrites(inner, dead); });
 }
 
 void removeDeadLocals(Function& function) {
-  bool changed = true;
-  while (changed) {   // the variables that a dead local was computed from may be dead now
-    std::vector<bool> dead = readVariables(function);
-    dead.flip();
-    for (std::size_t i = 0; i < dead.size(); ++i) {
-      dead[i] = dead[i] && function.variables[i].role == VarRole::Local;
+  // the statements that read each variable; those that write a variable stop to count when it is found dead
+  std::vector<std::size_t> readers(function.variables.size(), 0);
+  std::vector<std::vector<VarId>> neededFor(function.variables.size());
+  walkStmts(function.body, [&](const Stmt& stmt) {
+    const std::optional<VarId> var = written(stmt);
+    for (const VarId read : readBy(stmt)) {
+      ++readers[read];
+      if (var) neededFor[*var].push_back(read);
     }
-    changed = removeWrites(function.body, dead);
+  });
+  std::vector<bool> dead(function.variables.size(), false);
+  std::vector<VarId> found;
+  const auto look = [&](VarId var) {
+    if (readers[var] > 0 || dead[var] || function.variables[var].role != VarRole::Local) return;
+    dead[var] = true;
+    found.push_back(var);
+  };
+  for (VarId var = 0; var < function.variables.size(); ++var) look(var);
+  while (!found.empty()) {  // the variables that a dead local was computed from may be dead now
+    const VarId var = found.back();
+    found.pop_back();
+    for (const VarId read : std::exchange(neededFor[var], {})) {
+      --readers[read];
+      look(read);
+    }
   }
+  removeWrites(function.body, dead);
 }
 
 // ---- tables -----------------------------------------------------------------------------------
@@ -165,7 +182,7 @@ void removeTypes(Module& module) {
 }  // namespace
 
 void removeUnused(Module& module, Diagnostics&) {
-  for (Function& function : module.functions) removeDeadLocals(function);   // first: they use the rest
+  for (Function& function : module.functions) removeDeadLocals(function);  // first: they use the rest
   removeFunctions(module);
   removeConstants(module);
   removeTypes(module);

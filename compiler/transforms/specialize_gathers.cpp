@@ -2,7 +2,8 @@
 #include "transforms/specialize_gathers.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,10 +63,15 @@ class GatherSpecializer {
  private:
   /// The stream that each parameter of a function is bound to; `domain` for other parameters.
   using Binding = std::vector<StreamRef>;
+  /// What an instance is made from.
   struct Instance {
     FunctionId source;
     Binding binding;
-    FunctionId specialized;
+    bool operator<(const Instance& other) const {
+      if (source != other.source) return source < other.source;
+      const auto keyOf = [](StreamRef stream) { return std::pair(stream.space, stream.id); };
+      return std::ranges::lexicographical_compare(binding, other.binding, {}, keyOf, keyOf);
+    }
   };
 
   void specialize(Kernel& kernel) {
@@ -85,11 +91,10 @@ class GatherSpecializer {
     for (std::size_t i = 0; i < binding.size(); ++i) {
       if (!uses[i]) binding[i] = domain;
     }
-    for (const Instance& instance : instances_) {
-      if (instance.source == source && instance.binding == binding) return instance.specialized;
-    }
-    const FunctionId specialized = make(source, binding, false);
-    instances_.push_back({source, std::move(binding), specialized});
+    Instance instance{source, std::move(binding)};
+    if (const auto known = instances_.find(instance); known != instances_.end()) return known->second;
+    const FunctionId specialized = make(source, instance.binding, false);
+    instances_.emplace(std::move(instance), specialized);
     return specialized;
   }
 
@@ -134,7 +139,7 @@ class GatherSpecializer {
 
   /// For each parameter, whether the function depends on which stream it is bound to.
   const std::vector<bool>& usesOf(FunctionId id) {
-    if (!uses_[id].empty()) return uses_[id];
+    if (uses_[id]) return *uses_[id];
     Function& function = module_.functions[id];
     std::vector<bool> uses(function.variables.size(), false);
     walkExprs(function.body, [&](Expr& expr) {
@@ -152,17 +157,16 @@ class GatherSpecializer {
       }
     });
     uses_[id] = std::move(uses);
-    return uses_[id];
+    return *uses_[id];
   }
 
   /// If a kernel has several copies of one function, names them after the streams that they read.
   void nameInstances(const Kernel& kernel) {
-    for (const Instance& instance : instances_) {
-      const auto copies = std::count_if(instances_.begin(), instances_.end(), [&](const Instance& other) {
-        return other.source == instance.source;
-      });
-      if (copies == 1) continue;
-      std::string& name = functions_[instance.specialized].name;
+    std::map<FunctionId, std::size_t> copies;
+    for (const auto& [instance, specialized] : instances_) ++copies[instance.source];
+    for (const auto& [instance, specialized] : instances_) {
+      if (copies[instance.source] == 1) continue;
+      std::string& name = functions_[specialized].name;
       const std::vector<bool>& uses = usesOf(instance.source);
       for (std::size_t i = 0; i < instance.binding.size(); ++i) {
         const StreamRef stream = instance.binding[i];
@@ -174,8 +178,8 @@ class GatherSpecializer {
 
   Module& module_;
   std::vector<Function> functions_;
-  std::vector<Instance> instances_;        ///< of the current kernel, without its entry
-  std::vector<std::vector<bool>> uses_;    ///< per function, computed at first use
+  std::map<Instance, FunctionId> instances_;              ///< of the current kernel, without its entry
+  std::vector<std::optional<std::vector<bool>>> uses_;    ///< per function, computed at first use
 };
 
 }  // namespace

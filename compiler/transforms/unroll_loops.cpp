@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ class LoopVariantVariables {
     bool found = false;
     walkExprs(expr, [&](const Expr& inner) {
       const auto* ref = std::get_if<VarRef>(&inner.node);
-      found = found || (ref != nullptr && std::ranges::find(variables_, ref->var) != variables_.end());
+      found = found || (ref != nullptr && variables_.contains(ref->var));
     });
     return found;
   }
@@ -47,14 +48,14 @@ class LoopVariantVariables {
  private:
   void follow(const Stmt& stmt, bool always) {
     if (const auto* n = std::get_if<Declare>(&stmt.node)) {
-      if (always || (n->init && mentions(*n->init))) variables_.push_back(n->var);
+      if (always || (n->init && mentions(*n->init))) variables_.insert(n->var);
     }
     if (const auto* n = std::get_if<Assign>(&stmt.node)) {
-      if (always || mentions(*n->value)) variables_.push_back(rootOf(*n->place));
+      if (always || mentions(*n->value)) variables_.insert(rootOf(*n->place));
     }
   }
 
-  std::vector<VarId> variables_;
+  std::unordered_set<VarId> variables_;
 };
 
 /// fn(index) for each neighbour's offset, and each index of a gather, an array, a vector or a scatter output.

@@ -279,6 +279,35 @@ for ((i = 0; i < ${#declaration}; ++i)); do
 done
 echo "skc's command line holds, with $slips slips in a declaration"
 
+# A crash ends with a short report and status 1, or with the signal, for debuggers. An skc that waits for its file is easy to hit.
+mkfifo waits.sk
+for expected in 1 139; do
+  line='a crash of skc' out='' status=0
+  setting=()
+  ((expected == 1)) || setting=(SKC_CRASH=signal)
+  (ulimit -c 0; exec env "${setting[@]}" "$skc" --emit=ir waits.sk) 2>err.txt &
+  until [[ $(readlink "/proc/$!/exe") == "$skc" ]]; do sleep 0.05; done
+  sleep 0.5
+  kill -SEGV $!
+  wait $! 2>/dev/null || status=$?
+  err=$(<err.txt)
+  ((status == expected)) || broken "status $status, not $expected"
+  says 'skc: internal error: segmentation fault'
+  says 'skc --emit=ir waits.sk'
+  (($(wc -l <err.txt) <= 6)) || broken 'the report is not short'
+done
+
+# Macros that need more memory than there is, and files that include each other without end.
+{
+  echo '#define F(x) x x x x x x x x x x x x x x x x x x x x x'
+  printf 'kernel void f(out float r<>) { r = %s1%s; }\n' "$(printf 'F(%.0s' {1..40})" "$(printf ')%.0s' {1..40})"
+} >explodes.sk
+(ulimit -v 3000000; "$skc" --emit=ir explodes.sk 2>err.txt) && broken 'no error'
+err=$(<err.txt) && says 'skc: this takes more memory than there is'
+printf '#if __INCLUDE_LEVEL__ < 100\n#include "twice.sk"\n#include "twice.sk"\n#endif\nkernel void f(out float r<>) { r = 0; }\n' >twice.sk
+run 1 --emit=ir twice.sk
+says 'this is file number 10000 to be included'
+
 # Structs that typedefs name.
 cat >pairs.sk <<'EOF'
 typedef struct { float a; } A;

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/clang_limits.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <clang/Basic/SourceManager.h>
+#include <clang/Lex/MacroArgs.h>
+#include <clang/Lex/PPCallbacks.h>
+#include <clang/Lex/Preprocessor.h>
+#include <clang/Sema/Sema.h>
+#include <clang/Sema/TemplateInstCallback.h>
+
+#include "frontend/clang_loc.hpp"
+#include "support/diagnostics.hpp"
+
+namespace skc::frontend {
+namespace {
+
+// Each takes Clang about a second.
+constexpr std::size_t mostTokensToExpand = 10'000'000;
+constexpr std::size_t tokensOfExpansion = 100;   // as many tokens take as long as an expansion without arguments
+constexpr int mostIncludes = 10'000;
+constexpr int mostInstantiations = 100'000;
+
+class PreprocessingLimits : public clang::PPCallbacks {
+ public:
+  PreprocessingLimits(clang::Preprocessor& preprocessor, Diagnostics& diagnostics)
+      : preprocessor_(preprocessor), diagnostics_(diagnostics) {}
+
+  void MacroExpands(const clang::Token& name, const clang::MacroDefinition&, clang::SourceRange,
+                    const clang::MacroArgs* arguments) override {
+    tokens_ += tokensOfExpansion;
+    for (unsigned i = 0; arguments != nullptr && i < arguments->getNumMacroArguments(); ++i)
+      tokens_ += clang::MacroArgs::getArgLength(arguments->getUnexpArgument(i));
+    if (tokens_ > mostTokensToExpand) stop(Diag::TooManyExpansions, name.getLocation());
+  }
+
+  void InclusionDirective(clang::SourceLocation place, const clang::Token&, llvm::StringRef, bool,
+                          clang::CharSourceRange, clang::OptionalFileEntryRef, llvm::StringRef, llvm::StringRef,
+                          const clang::Module*, bool, clang::SrcMgr::CharacteristicKind) override {
+    if (++includes_ == mostIncludes) stop(Diag::TooManyIncludes, place, std::to_string(mostIncludes));
+  }
+
+ private:
+  [[noreturn]] void stop(Diag diag, clang::SourceLocation place, std::string_view argument = {}) {
+    const clang::SourceLocation written = preprocessor_.getSourceManager().getExpansionLoc(place);
+    diagnostics_.report(diag, locOf(written), {argument});
+    throw ClangStopped();
+  }
+
+  clang::Preprocessor& preprocessor_;
+  Diagnostics& diagnostics_;
+  std::size_t tokens_ = 0;
+  int includes_ = 0;
+};
+
+class TemplateLimits : public clang::TemplateInstantiationCallback {
+ public:
+  explicit TemplateLimits(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+
+  void initialize(const clang::Sema&) override {}
+  void finalize(const clang::Sema&) override {}
+  void atTemplateBegin(const clang::Sema&, const clang::Sema::CodeSynthesisContext& context) override {
+    if (++instantiations_ != mostInstantiations) return;
+    diagnostics_.report(Diag::TooManyInstantiations, locOf(context.PointOfInstantiation),
+                        {std::to_string(mostInstantiations)});
+    throw ClangStopped();
+  }
+  void atTemplateEnd(const clang::Sema&, const clang::Sema::CodeSynthesisContext&) override {}
+
+ private:
+  Diagnostics& diagnostics_;
+  int instantiations_ = 0;
+};
+
+}  // namespace
+
+void limitPreprocessing(clang::Preprocessor& preprocessor, Diagnostics& diagnostics) {
+  preprocessor.addPPCallbacks(std::make_unique<PreprocessingLimits>(preprocessor, diagnostics));
+}
+
+void limitTemplates(clang::Sema& sema, Diagnostics& diagnostics) {
+  sema.TemplateInstCallbacks.push_back(std::make_unique<TemplateLimits>(diagnostics));
+}
+
+}  // namespace skc::frontend
