@@ -31,7 +31,8 @@ void StreamEditor::takeType(TokenCursor& cursor, Tokens& type) {
   while (!cursor.atEndOfDeclaration()) {
     std::size_t count = 1;
     if (cursor.at(1, tok::less)) {
-      const std::size_t end = cursor.endOfList(1);
+      const bool isType = type.empty() || type.back().isOneOf(tok::coloncolon, tok::kw_const, tok::kw_struct);
+      const std::size_t end = isType ? cursor.endOfList(1) : 0;
       if (end == 0 || !cursor.at(end + 1, tok::identifier) || !cursor.at(end + 2, tok::less)) return;
       count = end + 1;
     }
