@@ -35,6 +35,12 @@ bool areOpposite(const Expr& a, const Expr& b) {
 
 }  // namespace
 
+bool isTooLong(const Expr& condition) {
+  int nodes = 0;
+  walkExprs(condition, [&](const Expr&) { ++nodes; });
+  return nodes > mostNodes;
+}
+
 bool isLiteral(const Expr& condition, bool value) {
   const auto* n = std::get_if<Literal>(&condition.node);
   return n != nullptr && (n->bits != 0) == value;
@@ -98,6 +104,8 @@ ExprPtr comparison(BinaryOp op, ExprPtr lhs, ExprPtr rhs) {
 
 void AnyOf::add(const Expr& condition) {
   if (isLiteral(condition, false)) return;
+  if (terms_.size() > static_cast<std::size_t>(mostNodes) && !isLiteral(condition, true))
+    return add(*literal(true));  // take() would give up
   if (const Binary* either = asBinary(condition, BinaryOp::LogicalOr)) {
     add(*either->lhs);
     return add(*either->rhs);
@@ -116,9 +124,7 @@ ExprPtr AnyOf::take() {
   if (terms_.empty()) return nullptr;
   ExprPtr all = std::move(terms_.front());
   for (std::size_t i = 1; i < terms_.size(); ++i) all = orOf(*all, *terms_[i]);
-  int nodes = 0;
-  walkExprs(*all, [&](const Expr&) { ++nodes; });
-  return isLiteral(*all, true) || nodes > mostNodes ? nullptr : std::move(all);
+  return isLiteral(*all, true) || isTooLong(*all) ? nullptr : std::move(all);
 }
 
 }  // namespace skc

@@ -10,6 +10,8 @@
 
 namespace skc {
 
+/// Whether a condition has more parts than a person would read; such a condition is dropped.
+bool isTooLong(const ir::Expr& condition);
 bool isLiteral(const ir::Expr& condition, bool value);
 /// Structural equality of expressions without calls, members and streams; others are never equal.
 bool isSame(const ir::Expr& a, const ir::Expr& b);

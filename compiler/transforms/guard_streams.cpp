@@ -23,6 +23,8 @@ using PassedValues = std::vector<ExprPtr>;
 /// Each call is analysed separately. If a program has more calls than this along its call tree, all its
 /// streams count as needed.
 constexpr int mostAnalysedCalls = 2000;
+/// A switch with more counts as one on an unknown value: its conditions would be too long.
+constexpr std::size_t mostCases = 60;
 
 bool isFollowed(BinaryOp op, Type operands) {
   const bool givesBool = isComparison(op) || op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr;
@@ -103,15 +105,16 @@ class UseAnalysis {
       const auto* branch = std::get_if<If>(&stmt.node);
       if (branch == nullptr) continue;
       const ExprPtr cond = value(frame, *branch->cond);
-      if (cond && leaves(branch->then)) guard = andOf(*guard, *notOf(*cond));
-      if (cond && leaves(branch->otherwise)) guard = andOf(*guard, *cond);
+      if (!cond || isTooLong(*guard)) continue;   // a shorter guard holds more often
+      if (leaves(branch->then)) guard = andOf(*guard, *notOf(*cond));
+      if (leaves(branch->otherwise)) guard = andOf(*guard, *cond);
     }
   }
 
   void statement(Frame& frame, const Declare& n, const Expr& guard) {
     if (!n.init) return;
     expression(frame, *n.init, guard);
-    if (!frame.changed[n.var]) frame.values[n.var] = value(frame, *n.init);
+    if (!frame.changed[n.var]) frame.values[n.var] = shortValue(frame, *n.init);
   }
   void statement(Frame& frame, const Assign& n, const Expr& guard) {
     expression(frame, *n.place, guard);
@@ -138,7 +141,7 @@ class UseAnalysis {
   void statement(Frame& frame, const Switch& n, const Expr& guard) {
     expression(frame, *n.value, guard);
     const ExprPtr chosen = value(frame, *n.value);
-    if (!chosen) {
+    if (!chosen || valuesOf(n) > mostCases) {
       for (const Case& one : n.cases) block(frame, one.body, guard);
       return;
     }
@@ -160,6 +163,12 @@ class UseAnalysis {
     if (n.value) expression(frame, *n.value, guard);
   }
   void statement(Frame& frame, const Scope& n, const Expr& guard) { block(frame, n.body, guard); }
+
+  static std::size_t valuesOf(const Switch& choice) {
+    std::size_t count = 0;
+    for (const Case& one : choice.cases) count += one.values.size() + 1;
+    return count;
+  }
 
   static ExprPtr entersCase(const Switch& choice, const Case& one, const Expr& chosen) {
     const auto isOneOf = [&](const std::vector<std::int64_t>& values) {
@@ -220,8 +229,14 @@ class UseAnalysis {
 
   void call(Frame& frame, FunctionId callee, const std::vector<ExprPtr>& args, const Expr& guard) {
     PassedValues values(module_.functions[callee].variables.size());
-    for (std::size_t i = 0; i < args.size(); ++i) values[i] = value(frame, *args[i]);
+    for (std::size_t i = 0; i < args.size(); ++i) values[i] = shortValue(frame, *args[i]);
     analyse(callee, std::move(values), guard);
+  }
+
+  /// The value if it is short: one that stands for a variable may be repeated in the next.
+  ExprPtr shortValue(const Frame& frame, const Expr& expr) const {
+    ExprPtr known = value(frame, expr);
+    return known && !isTooLong(*known) ? std::move(known) : nullptr;
   }
 
   /// A scalar in terms of the kernel's Spec variables; null if it depends on anything else.
