@@ -17,10 +17,12 @@
 //   * Matrices are lists of rows: an Index gives a row, Construct takes all of them. They support
 //     + - * == !=, * and / with a scalar, and * with a vector on the right, which is a column.
 //   * A place (an lvalue: left side, or argument of an InOut parameter) is a VarRef of a mutable
-//     variable, or a Member, Index or Swizzle without repeated components of a place.
+//     variable, or a Member, Index or Swizzle without repeated components of a place. A statement evaluates its
+//     expressions first, those in the indices of its places too, then changes variables.
 //   * One loop node keeps the shape that its author wrote. `continue` goes to `step`, then `cond`.
 //   * A function's parameters are its first `parameterCount` variables. `In` is a copy;
-//     `InOut` copies in and out, and no variable is bound to two InOut parameters of one call.
+//     `InOut` copies in and out. The places that one call writes do not overlap, and none of their indices
+//     reads a variable that the call writes: the order of copying out makes no difference.
 //     `Gather`, `Element` and `AppendOutput` parameters stand for streams. They may only be used by stream
 //     expressions (GatherRead, NeighborRead, Sample, IndexOf, ExtentOf), by stream statements (Push, Scatter)
 //     if they are AppendOutputs, and as arguments; a VarRef may also read an Element.
