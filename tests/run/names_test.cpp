@@ -22,29 +22,29 @@ TEST_CASE("kernels are named after every part of a descriptor's name") {
   sk::Device device = sk::Device::native();
   auto x = device.stream<float>({2}), r = device.stream<float>({2});
   x.write(std::vector<float>{1, 2});
-  scale(3, x, r);
+  parts::scale(3, x, r);
   CHECK(r.read() == std::vector<float>{3, 6});
-  CHECK(sum(x) == 3);
-  CHECK(sum.with({.accumulate = sk::Accumulate::Exact})(x) == 3);
+  CHECK(parts::sum(x) == 3);
+  CHECK(parts::sum.with({.accumulate = sk::Accumulate::Exact})(x) == 3);
   auto total = device.stream<float>({1});
-  fold(x, r, total);
+  parts::fold(x, r, total);
   CHECK(total.read() == std::vector<float>{6});
   const auto isShifted = [&](int by) {
     const auto number = static_cast<float>(by);
     return r.read() == std::vector<float>{1 + number, 2 + number};
   };
 #define SKC_PART(Word)          \
-  scale##Word(x, r);            \
+  parts::scale##Word(x, r);            \
   CHECK(isShifted(Word));       \
-  sum_##Word(x, r);             \
+  parts::sum_##Word(x, r);             \
   CHECK(isShifted(100 + Word)); \
-  fold##Word(x, r);             \
+  parts::fold##Word(x, r);             \
   CHECK(isShifted(200 + Word));
 #include "../../compiler/program/descriptor_parts.def"
 #undef SKC_PART
-  blur(x, r);
+  parts::blur(x, r);
   CHECK(isShifted(1));
-  BlurKernel(x, r);
+  parts::BlurKernel(x, r);
   CHECK(isShifted(2));
 }
 
