@@ -84,8 +84,8 @@ TEST_CASE("lists that end in >>, comparisons in lists, and constraints") {
       return r.read();
     };
     using Values = std::vector<float>;
-    CHECK(resultOf(templates::nested) == Values{1, 2});
-    CHECK(resultOf(templates::compared) == Values{6, 7});
+    CHECK(resultOf(templates::nested_Pair) == Values{1, 2});
+    CHECK(resultOf(templates::compared_1_true_true_5) == Values{6, 7});
     CHECK(resultOf(templates::constrained) == Values{3, 4});
     CHECK(resultOf(templates::doubled) == Values{2, 4});
     CHECK(resultOf(templates::constrainedLast) == Values{2, 3});
