@@ -56,9 +56,9 @@ says 'usage: ./dev COMMAND'
 run 1 build relaese
 says "no preset 'relaese': release, debug, asan or tsan"
 run 1 fuzz runtime
-says 'fuzz what? mutate, kernels or parse_NAME'
+says 'fuzz what? mutate, kernels, cpp or parse_NAME'
 run 1 fuzz parse_nothing
-says 'fuzz what? mutate, kernels or parse_NAME'
+says 'fuzz what? mutate, kernels, cpp or parse_NAME'
 never_called cmake
 
 # All is installed: no apt-get; configure, build, test, whose closing line comes last.
@@ -202,7 +202,7 @@ says 'no C++ compiler found'
 says 'cmake could not configure'
 
 # packages.txt: every line says one package, under a section.
-awk '/^#/ || !NF { next } /^\[(build|lint|bench|web)\]$/ { section = 1; next }
+awk '/^#/ || !NF { next } /^\[(build|lint|bench|web|fuzz)\]$/ { section = 1; next }
      !section || !/^[a-z0-9][a-z0-9.+-]+( +#.*)?$/ { print "packages.txt:" NR ": " $0; bad = 1 }
      END { exit bad }' "$root/packages.txt"
 echo "./dev does what ./dev help says"
