@@ -64,6 +64,8 @@ class TemplateLimits : public clang::TemplateInstantiationCallback {
   void initialize(const clang::Sema&) override {}
   void finalize(const clang::Sema&) override {}
   void atTemplateBegin(const clang::Sema&, const clang::Sema::CodeSynthesisContext& context) override {
+    // what calls of the prelude's functions deduce is no instantiation, and costs little
+    if (context.Kind != clang::Sema::CodeSynthesisContext::TemplateInstantiation) return;
     if (++instantiations_ != mostInstantiations) return;
     diagnostics_.report(Diag::TooManyInstantiations, locOf(context.PointOfInstantiation),
                         {std::to_string(mostInstantiations)});

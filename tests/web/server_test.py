@@ -21,6 +21,10 @@ own_type = {"Content-Type": "text/x-streamkernel"}
 bomb = """template <int A, int B> struct Bomb { static constexpr int value = Bomb<A - 1, 2 * B>::value + Bomb<A - 1, 2 * B + 1>::value; };
 template <int B> struct Bomb<0, B> { static constexpr int value = 1; };
 kernel void f(out float r<>) { r = Bomb<30, 1>::value; }"""
+# Valid, and more than two seconds of work.
+slow = ("#define TERM(j) r += sin(neighbor(a, j, j / 2) * x) + pow(x, r);\n"
+        "#define TEN(j) TERM(j) TERM(j + 1) TERM(j + 2) TERM(j + 3) TERM(j + 4) TERM(j + 5) TERM(j + 6) TERM(j + 7) TERM(j + 8) TERM(j + 9)\n"
+        + "".join(f"kernel void k{i}(float x<>, float a[][], out float r<>) {{ r = x; TEN(0) TEN(10) TEN(20) TEN(30) }}\n" for i in range(400)))
 # An expansion of 10^12 words.
 macros = "#define A0 1 +\n" + "".join(f"#define A{i + 1} {f'A{i} ' * 10}\n" for i in range(12)) + "kernel void f(out float r<>) { r = A12 1; }"
 
@@ -114,6 +118,8 @@ def check_programs(address):
 
 def check_limits(address):
     said = errors(address, bomb)[-1]["text"]
+    assert "templates have been instantiated" in said, said
+    said = errors(address, slow)[-1]["text"]
     assert "stopped after 2 s of CPU time" in said or "MiB here" in said, said
     assert errors(address, macros)
     assert compiled(address, program)["messages"] == [], "the server is alive after that"
