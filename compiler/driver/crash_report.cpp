@@ -97,7 +97,8 @@ void reportCrashes(int argc, const char* const* argv) {
   const char* const wanted = std::getenv("SKC_CRASH");
   keepsSignal = wanted != nullptr && std::string_view(wanted) == "signal";
   static std::string text =
-      "This is a bug of skc " SKC_VERSION ", not of your program. Please report it with the .sk file and this command:\n  " +
+      "This is a bug of skc " SKC_VERSION
+      ", not of your program. Please report it with the .sk file and this command:\n  " +
       commandOf(argc, argv) + "\n'--print-after=all' adds the module as it was after each transform.\n";
   advice = &text;
   limitMemory();
@@ -108,7 +109,7 @@ void reportCrashes(int argc, const char* const* argv) {
   alternative.ss_sp = stack;
   alternative.ss_size = sizeof stack;
   sigaltstack(&alternative, nullptr);
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = onCrash;
   action.sa_flags = SA_ONSTACK;
   for (const int signal : signals) sigaction(signal, &action, nullptr);

@@ -166,7 +166,8 @@ TEST_CASE("reductions and outputs that are appended to reach as their elements d
 }
 
 TEST_CASE("a promise counts where nothing is known") {
-  const std::string head = "kernel void f([[halo(2, 3)]] float u[][], out float r<>) { int2 p = indexof(r).xy; ";
+  const std::string head =
+      "kernel void f([[halo(2, 3)]] float u[][], out float r<>) { int2 p = indexof(r).xy; ";
   CHECK(reachIn(head + "r = u[int(u[p])][p.x + 1]; }") == "x 0 to 1, y -3 to 3, as promised");
   CHECK(reachIn(head + "r = sample(u, float2(p)); }") == "x -2 to 2, y -3 to 3, as promised");
   CHECK(reachIn("kernel void f([[halo(1)]] float u[][][], out float r<>) { r = 0;"

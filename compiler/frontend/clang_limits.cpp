@@ -21,7 +21,8 @@ namespace {
 
 // Each takes Clang about a second.
 constexpr std::size_t mostTokensToExpand = 10'000'000;
-constexpr std::size_t tokensOfExpansion = 10;   // as many tokens take as long as an expansion without arguments
+constexpr std::size_t tokensOfExpansion =
+    10;   // as many tokens take as long as an expansion without arguments
 constexpr int mostIncludes = 10'000;
 constexpr int mostInstantiations = 100'000;
 
@@ -39,8 +40,9 @@ class PreprocessingLimits : public clang::PPCallbacks {
   }
 
   void InclusionDirective(clang::SourceLocation place, const clang::Token&, llvm::StringRef, bool,
-                          clang::CharSourceRange, clang::OptionalFileEntryRef, llvm::StringRef, llvm::StringRef,
-                          const clang::Module*, bool, clang::SrcMgr::CharacteristicKind) override {
+                          clang::CharSourceRange, clang::OptionalFileEntryRef, llvm::StringRef,
+                          llvm::StringRef, const clang::Module*, bool,
+                          clang::SrcMgr::CharacteristicKind) override {
     if (++includes_ == mostIncludes) stop(Diag::TooManyIncludes, place, std::to_string(mostIncludes));
   }
 

@@ -23,12 +23,14 @@ void internalError(std::string_view what) {
 bool isInternalErrorPrinted() { return isPrinted; }
 
 void noteActivity(std::string_view phase, std::string_view kernel) {
-  const auto length = [](std::string_view text) { return static_cast<int>(std::min<std::size_t>(text.size(), 80)); };
+  const auto length = [](std::string_view text) {
+    return static_cast<int>(std::min<std::size_t>(text.size(), 80));
+  };
   if (kernel.empty()) {
     std::snprintf(activity, sizeof activity, "%.*s", length(phase), phase.data());
   } else {
-    std::snprintf(activity, sizeof activity, "%.*s, kernel '%.*s'", length(phase), phase.data(), length(kernel),
-                  kernel.data());
+    std::snprintf(activity, sizeof activity, "%.*s, kernel '%.*s'", length(phase), phase.data(),
+                  length(kernel), kernel.data());
   }
 }
 

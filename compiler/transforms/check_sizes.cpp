@@ -26,7 +26,7 @@ class InlinedSizes {
   explicit InlinedSizes(const Module& module) : module_(module) {}
 
   std::uint64_t of(const Kernel& kernel) {
-    for (const FunctionId id : functionsOf(module_, kernel)) {   // callees first
+    for (const FunctionId id : functionsOf(module_, kernel)) {  // callees first
       if (!known_.contains(id)) known_[id] = count(module_.functions[id].body);
     }
     return known_.at(kernel.entry);

@@ -143,7 +143,7 @@ void removeConstants(Module& module) {
       std::exchange(module.constants, {});  // their values count only if they are used
   walkExprs(module, mark);
   module.constants = std::move(constants);
-  for (std::size_t i = used.size(); i-- > 0;) {   // a constant refers only to earlier ones
+  for (std::size_t i = used.size(); i-- > 0;) {  // a constant refers only to earlier ones
     if (used[i]) walkExprs(*module.constants[i].value, mark);
   }
   const std::vector<std::uint32_t> numbers = renumber(used);

@@ -311,7 +311,7 @@ bool resultsFit(const Module& module, const Kernel& combine) {
   for (const KernelParam& param : combine.params) {
     if (param.role != ParamRole::Input && param.role != ParamRole::Accumulator) continue;
     for (const Type plane : split::planesOf(module, param.type)) {
-      if (plane.isFloat() && plane.width > 2) ++size.planes;   // a plane holds two doubles
+      if (plane.isFloat() && plane.width > 2) ++size.planes;  // a plane holds two doubles
     }
   }
   return fits(size);

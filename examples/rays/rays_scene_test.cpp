@@ -164,7 +164,8 @@ TEST_CASE("rays are lines of six or eight numbers") {
   CHECK_THAT(raysMessage("\n0 0 a 0 0 1\n"), Catch::Contains(":2:5: 'a' is no number"));
   CHECK_THAT(raysMessage("0 0 0 0 1\n"), Catch::Contains("dz is missing"));
   CHECK_THAT(raysMessage("0 0 0 0 0 1 2\n"), Catch::Contains("tmax is missing"));
-  CHECK_THAT(raysMessage("0 0 0 0 0 1 2 3 4\n"), Catch::Contains(":1:17: '4' is too much; a ray is ox oy oz"));
+  CHECK_THAT(raysMessage("0 0 0 0 0 1 2 3 4\n"),
+             Catch::Contains(":1:17: '4' is too much; a ray is ox oy oz"));
   CHECK_THAT(raysMessage("nan 0 0 0 0 1\n"), Catch::Contains("must be finite"));
 }
 

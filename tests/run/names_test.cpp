@@ -34,11 +34,11 @@ TEST_CASE("kernels are named after every part of a descriptor's name") {
     return r.read() == std::vector<float>{1 + number, 2 + number};
   };
 #define SKC_PART(Word)          \
-  parts::scale##Word(x, r);            \
+  parts::scale##Word(x, r);     \
   CHECK(isShifted(Word));       \
-  parts::sum_##Word(x, r);             \
+  parts::sum_##Word(x, r);      \
   CHECK(isShifted(100 + Word)); \
-  parts::fold##Word(x, r);             \
+  parts::fold##Word(x, r);      \
   CHECK(isShifted(200 + Word));
 #include "../../compiler/program/descriptor_parts.def"
 #undef SKC_PART

@@ -85,7 +85,8 @@ TEST_CASE("every way of writing a stream counts", "[.written]") {
     CHECK(reads([&](sk::Stream<float>& u) { sum(x, u); }) == "no error");
     CHECK(reads([&](sk::Stream<float>& u) { squares(x, u, device.stream<float>({1})); }) == "no error");
     CHECK(reads([&](sk::Stream<float>& u) { squares(x, x, u); }) == "no error");
-    CHECK(reads([&](sk::Stream<float>& u) { device.record([&] { doubled(x, u); }).repeat(1); }) == "no error");
+    CHECK(reads([&](sk::Stream<float>& u) { device.record([&] { doubled(x, u); }).repeat(1); }) ==
+          "no error");
     auto unwritten = device.stream<float>({count});
     std::swap(unwritten, x);
     CHECK(errorOf([&] { x.read(); }) == unread("read"));
