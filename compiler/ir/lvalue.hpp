@@ -19,7 +19,8 @@ bool areDisjoint(const Module& module, const Expr& a, const Expr& b);
 /// True if an expression reads one of the variables, which are in ascending order.
 bool readsAny(const Expr& expr, const std::vector<VarId>& variables);
 
-/// True if an index within the lvalue reads one of the variables, which are in ascending order. The variable at the lvalue's root does not count.
+/// True if an index within the lvalue reads one of the variables, which are in ascending order. The variable at the
+/// lvalue's root does not count.
 bool hasIndexOf(const Expr& lvalue, const std::vector<VarId>& variables);
 
 /// True if the function may read a number of the parameter `read` after it has written the same number by way of the

@@ -273,7 +273,7 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false)
       ->check(CLI::IsMember(fuzz::cpp::constructs));
   app.add_option("--minutes", options.minutes, "How long, instead of --count");
-  app.add_option("--findings", options.mostFindings, "Stop after so many");
+  app.add_option("--findings", options.mostFindings, "Stop after this many findings");
   app.add_option("--budget", options.budget, "How many smaller programs are tried for a finding");
   app.add_flag("--store", options.isStoring,
                "Write programs with their results to --out, or the results of the files");
