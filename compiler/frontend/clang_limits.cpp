@@ -25,6 +25,8 @@ constexpr std::size_t tokensOfExpansion =
     10;   // as many tokens take as long as an expansion without arguments
 constexpr int mostIncludes = 10'000;
 constexpr int mostInstantiations = 100'000;
+/// Bytes of the AST that instantiations add: types in types in types, each of which is small.
+constexpr std::size_t mostInstantiatedMemory = std::size_t{192} << 20;
 
 class PreprocessingLimits : public clang::PPCallbacks {
  public:
@@ -63,20 +65,25 @@ class TemplateLimits : public clang::TemplateInstantiationCallback {
  public:
   explicit TemplateLimits(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
-  void initialize(const clang::Sema&) override {}
+  void initialize(const clang::Sema& sema) override { before_ = memoryOf(sema); }
   void finalize(const clang::Sema&) override {}
-  void atTemplateBegin(const clang::Sema&, const clang::Sema::CodeSynthesisContext& context) override {
+  void atTemplateBegin(const clang::Sema& sema,
+                       const clang::Sema::CodeSynthesisContext& context) override {
     // what calls of the prelude's functions deduce is no instantiation, and costs little
     if (context.Kind != clang::Sema::CodeSynthesisContext::TemplateInstantiation) return;
-    if (++instantiations_ != mostInstantiations) return;
-    diagnostics_.report(Diag::TooManyInstantiations, locOf(context.PointOfInstantiation),
-                        {std::to_string(mostInstantiations)});
+    if (++instantiations_ < mostInstantiations && memoryOf(sema) - before_ < mostInstantiatedMemory) return;
+    diagnostics_.report(Diag::TooManyInstantiations, locOf(context.PointOfInstantiation));
     throw ClangStopped();
   }
   void atTemplateEnd(const clang::Sema&, const clang::Sema::CodeSynthesisContext&) override {}
 
  private:
+  static std::size_t memoryOf(const clang::Sema& sema) {
+    return sema.getASTContext().getASTAllocatedMemory();
+  }
+
   Diagnostics& diagnostics_;
+  std::size_t before_ = 0;
   int instantiations_ = 0;
 };
 
