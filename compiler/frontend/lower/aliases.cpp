@@ -34,11 +34,13 @@ std::string Aliases::key() const {
       key += fmt::format(".{}:{}", static_cast<int>(step.kind), step.value);
     key += ' ';
   }
-  for (const auto& [parameter, type] : wholes) {
-    key += fmt::format("{}:{}:{}:{}:{} ", parameter, static_cast<int>(type.kind),
-                       static_cast<int>(type.scalar), static_cast<int>(type.width), type.index);
+  for (const auto* types : {&wholes, &indices}) {
+    for (const auto& [parameter, type] : *types) {
+      key += fmt::format("{}:{}:{}:{}:{} ", parameter, static_cast<int>(type.kind),
+                         static_cast<int>(type.scalar), static_cast<int>(type.width), type.index);
+    }
+    key += '|';
   }
-  for (const auto& [parameter, count] : indices) key += fmt::format("{}#{} ", parameter, count);
   return key;
 }
 

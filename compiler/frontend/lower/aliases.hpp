@@ -35,7 +35,7 @@ struct Alias {
 struct Aliases {
   std::map<std::uint32_t, Alias> parts;  ///< by parameter
   std::map<std::uint32_t, ir::Type> wholes;  ///< by parameter: the type of the object
-  std::map<std::uint32_t, int> indices;  ///< by parameter: how many indices it receives, at most 4
+  std::map<std::uint32_t, ir::Type> indices;  ///< by parameter: the type of the indices that it receives
 
   bool empty() const { return parts.empty(); }
   /// Differs for any two versions of one function.

@@ -120,10 +120,13 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   };
   Sides sidesOf(const clang::Expr* left, ir::ExprPtr right);
   ir::ExprPtr store(Sides sides, std::optional<ir::BinaryOp> op, Loc loc, bool wantValue);
+  void withObject(ir::ExprPtr location, FunctionRef<void(ir::ExprPtr)> use);
+  void assign(Sides sides, std::optional<ir::BinaryOp> op, Loc loc);
   ir::ExprPtr assign(const clang::BinaryOperator* e, bool wantValue);
   ir::ExprPtr compoundAssign(const clang::CompoundAssignOperator* e, bool wantValue);
   ir::ExprPtr increment(const clang::UnaryOperator* e, bool wantValue);
   ir::ExprPtr condition(const clang::Expr* e) { return toBool(value(e)); }
+  void hoistDeclarations(ir::Block& block);
   void checkDepth(clang::SourceLocation where);
   void emit(Loc loc, ir::Stmt::Node node);
   ir::VarId temporary(ir::Type type, Loc loc);
@@ -199,8 +202,17 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   /// Parameters of a call that may name parts of one object, by their numbers.
   using Group = std::vector<std::uint32_t>;
   std::vector<Group> aliasedGroups(const std::vector<Argument>& arguments, ir::FunctionId callee);
+  bool needsBranch(const std::vector<Argument>& arguments, std::size_t i, ir::FunctionId callee) const;
+  struct UserCall {
+    const clang::FunctionDecl* callee;
+    clang::SourceLocation where;
+    ir::FunctionId id;
+    std::optional<ir::VarId> result;
+  };
+  void emitCall(const UserCall& call, std::vector<Argument> arguments);
   void joinAliases(const Group& group, std::vector<Argument>& arguments, Aliases& aliases);
-  ir::ExprPtr packed(Exprs indices, Loc loc);
+  ir::Type indexType(std::size_t count, clang::SourceLocation where);
+  ir::ExprPtr packed(Exprs indices, clang::SourceLocation where);
   void abandonIfUnknown(const clang::Stmt* s) const;
   std::optional<ir::VarId> streamVariable(const clang::Expr* e) const;
   ir::VarId gatherVariable(const clang::Expr* e);
@@ -223,6 +235,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ModuleLowering& module_;
   ir::Function function_;
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
+  std::unordered_set<const clang::Decl*> initialising_;  ///< variables whose initial values are being lowered
   std::unordered_map<ir::VarId, ir::ExprPtr> aliases_;  ///< what parameters name that are parts of others
   std::optional<ir::VarId> this_;
   std::optional<ir::VarId> initialized_;  ///< `this` in the initialisers of its members

@@ -9,6 +9,7 @@
 #include <clang/AST/ExprCXX.h>
 
 #include "frontend/lower/function_lowering.hpp"
+#include "frontend/lower/locations.hpp"
 #include "frontend/prelude.hpp"
 #include "ir/assigned.hpp"
 #include "ir/build.hpp"
@@ -245,14 +246,14 @@ ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::
     for (std::size_t k = 0; k + 1 < targets.size(); ++k) keepLocation(targets[k], changed);
     append(std::move(effects));
   }
-  for (const ExprPtr& target : targets) written.push_back(ir::rootOf(*target));
+  for (const ExprPtr& target : targets) std::ranges::copy(rootsOf(*target), std::back_inserter(written));
   std::ranges::sort(written);
   for (ExprPtr& target : targets) keepLocation(target, written);
   const auto apply = [&](ir::Intrinsic which, ir::Type result) {
     return intrinsic(which, result, where, ir::exprs(ir::varRef(function_, kept, loc)));
   };
   const auto store = [&](unsigned target, ExprPtr stored) {
-    emit(loc, ir::Assign{std::move(targets[target]), std::nullopt, std::move(stored)});
+    assign({std::move(targets[target]), std::move(stored)}, std::nullopt, loc);
   };
   if (name == "sincos") {
     store(0, apply(ir::Intrinsic::Sin, type));

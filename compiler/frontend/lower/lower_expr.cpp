@@ -8,6 +8,7 @@
 #include <clang/AST/ExprCXX.h>
 
 #include "frontend/lower/function_lowering.hpp"
+#include "frontend/lower/locations.hpp"
 #include "ir/assigned.hpp"
 #include "ir/build.hpp"
 #include "ir/lvalue.hpp"
@@ -79,18 +80,6 @@ bool isStable(const ExprPtr& e, const ir::Function& function) {
     return true;
   const auto* reference = std::get_if<ir::VarRef>(&e->node);
   return reference && function.variables[reference->var].isConst;
-}
-
-/// True if the expression names an object: an lvalue, a choice of two, or a part of these.
-bool isLocation(const ir::Expr& e) {
-  if (std::holds_alternative<ir::VarRef>(e.node)) return true;
-  if (const auto* choice = std::get_if<ir::Select>(&e.node)) {
-    return choice->cond->type.isScalar() && isLocation(*choice->yes) && isLocation(*choice->no);
-  }
-  if (const auto* swizzle = std::get_if<ir::Swizzle>(&e.node)) return isLocation(*swizzle->base);
-  if (const auto* member = std::get_if<ir::Member>(&e.node)) return isLocation(*member->base);
-  if (const auto* index = std::get_if<ir::Index>(&e.node)) return isLocation(*index->base);
-  return false;
 }
 
 }  // namespace
@@ -224,14 +213,14 @@ ir::VarId FunctionLowering::temporary(ir::Type type, Loc loc) {
   return static_cast<ir::VarId>(function_.variables.size() - 1);
 }
 
-/// Lowers `e` as an lvalue. Clang has checked that it is assignable.
+/// Lowers `e` as a location. Clang has checked that it is assignable.
 ExprPtr FunctionLowering::place(const clang::Expr* e) {
   ExprPtr result = value(e);
   if (const auto* read = std::get_if<ir::GatherRead>(&result->node)) {  // of structs, which C++ can assign to
     const std::string& gather = function_.variables[read->stream.id].name;
     module_.fail(Diag::GatherAssigned, e->getBeginLoc(), {gather + "[...]", gather});
   }
-  if (!ir::isLValue(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
+  if (!isLocation(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
   return result;
 }
 
@@ -248,15 +237,40 @@ FunctionLowering::Sides FunctionLowering::sidesOf(const clang::Expr* left, ExprP
   return {std::move(target), std::move(right)};
 }
 
+/// Lets `use` emit statements for the object that a location names: once, or once in each branch of a choice.
+void FunctionLowering::withObject(ExprPtr location, FunctionRef<void(ExprPtr)> use) {
+  ir::Select* choice = choiceIn(*location);
+  if (choice == nullptr) return use(std::move(location));
+  const Loc loc = location->loc;
+  ir::If branch;
+  branch.cond = std::move(choice->cond);
+  choice->cond = ir::literal(true, loc);
+  ExprPtr other = ir::clone(*location);
+  choose(location, true);
+  choose(other, false);
+  ir::Block* outer = std::exchange(out_, &branch.then);
+  withObject(std::move(location), use);
+  out_ = &branch.otherwise;
+  withObject(std::move(other), use);
+  out_ = outer;
+  emit(loc, std::move(branch));
+}
+
 /// Emits `target (op)= right`, and returns the target as a value if it is wanted, else null.
 ExprPtr FunctionLowering::store(Sides sides, std::optional<ir::BinaryOp> op, Loc loc, bool wantValue) {
   ExprPtr result;
   if (wantValue) {
-    keepLocation(sides.target, {ir::rootOf(*sides.target)});
+    keepLocation(sides.target, rootsOf(*sides.target));
     result = ir::clone(*sides.target);
   }
-  emit(loc, ir::Assign{std::move(sides.target), op, std::move(sides.right)});
+  assign(std::move(sides), op, loc);
   return result;
+}
+
+void FunctionLowering::assign(Sides sides, std::optional<ir::BinaryOp> op, Loc loc) {
+  if (choiceIn(*sides.target) != nullptr) spill(sides.right);
+  withObject(std::move(sides.target),
+             [&](ExprPtr object) { emit(loc, ir::Assign{std::move(object), op, ir::clone(*sides.right)}); });
 }
 
 ExprPtr FunctionLowering::assign(const clang::BinaryOperator* e, bool wantValue) {
@@ -431,6 +445,23 @@ ExprPtr FunctionLowering::logical(const clang::BinaryOperator* e) {
   return ir::varRef(function_, result, loc);
 }
 
+/// Declares the block's variables in front of it, so that they can be used behind it.
+void FunctionLowering::hoistDeclarations(ir::Block& block) {
+  ir::Block rest;
+  for (ir::Stmt& s : block) {
+    auto* declare = std::get_if<ir::Declare>(&s.node);
+    if (declare == nullptr) {
+      rest.push_back(std::move(s));
+      continue;
+    }
+    ExprPtr initial = std::move(declare->init);
+    emit(s.loc, ir::Declare{declare->var, nullptr});
+    if (initial)
+      rest.push_back(ir::assign(ir::varRef(function_, declare->var, s.loc), std::move(initial), s.loc));
+  }
+  block = std::move(rest);
+}
+
 ExprPtr FunctionLowering::VisitConditionalOperator(const clang::ConditionalOperator* e) {
   const SourceLocation where = e->getQuestionLoc();
   ExprPtr cond = condition(e->getCond());
@@ -444,6 +475,13 @@ ExprPtr FunctionLowering::VisitConditionalOperator(const clang::ConditionalOpera
   if (yesEffects.empty() && noEffects.empty())
     return select(std::move(cond), std::move(yes), std::move(no), where);
   const Loc loc = module_.loc(where);
+  if (e->isGLValue() && isLocation(*yes) && isLocation(*no)) {  // names one of two objects after the effects
+    spill(cond);
+    hoistDeclarations(yesEffects);
+    hoistDeclarations(noEffects);
+    emit(loc, ir::If{ir::clone(*cond), std::move(yesEffects), std::move(noEffects)});
+    return select(std::move(cond), std::move(yes), std::move(no), where);
+  }
   const ir::VarId result = temporary(yes->type, loc);
   emit(loc, ir::Declare{result, nullptr});
   yesEffects.push_back(ir::assign(ir::varRef(function_, result, loc), std::move(yes), loc));
@@ -510,6 +548,8 @@ void FunctionLowering::abandonIfUnknown(const clang::Stmt* s) const {
   const auto* variable = reference ? llvm::dyn_cast<clang::VarDecl>(reference->getDecl()) : nullptr;
   if (!variable || !variable->isLocalVarDeclOrParm() || variables_.contains(variable)) return;
   if (variable->isStaticLocal() && variable->getType().isConstQualified()) return;
+  if (initialising_.contains(variable))
+    module_.fail(Diag::OwnInitialValue, s->getBeginLoc(), {ModuleLowering::nameOf(variable)});
   throw Abandoned{};
 }
 

@@ -251,7 +251,11 @@ void FunctionLowering::variable(const clang::VarDecl* declaration) {
     const bool uninitialised = construct && construct->getNumArgs() == 0 &&
                                construct->getConstructor()->isTrivial() &&
                                !construct->requiresZeroInitialization();
-    if (!uninitialised) init = value(initializer);
+    if (!uninitialised) {
+      initialising_.insert(declaration);
+      init = value(initializer);
+      initialising_.erase(declaration);
+    }
   }
   ir::Variable variable;
   variable.name = ModuleLowering::nameOf(declaration);

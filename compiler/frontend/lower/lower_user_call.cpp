@@ -8,6 +8,7 @@
 #include <clang/AST/ExprCXX.h>
 
 #include "frontend/lower/function_lowering.hpp"
+#include "frontend/lower/locations.hpp"
 #include "ir/assigned.hpp"
 #include "ir/build.hpp"
 #include "ir/lvalue.hpp"
@@ -85,7 +86,8 @@ void FunctionLowering::keepWritten(std::vector<Argument>& arguments,
                                    const std::vector<ir::Variable>& parameters) {
   Variables changed;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (parameters[i].role == ir::VarRole::InOut) changed.push_back(ir::rootOf(*arguments[i].value));
+    if (parameters[i].role == ir::VarRole::InOut)
+      std::ranges::copy(rootsOf(*arguments[i].value), std::back_inserter(changed));
   }
   std::ranges::sort(changed);
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -93,8 +95,24 @@ void FunctionLowering::keepWritten(std::vector<Argument>& arguments,
   }
 }
 
+/// True if argument `i` names one of two objects, and only a branch can tell the call which one: the function changes it, or
+/// may see it change.
+bool FunctionLowering::needsBranch(const std::vector<Argument>& arguments, std::size_t i,
+                                   ir::FunctionId callee) const {
+  if (choiceIn(*arguments[i].value) == nullptr) return false;
+  const ir::Module& module = module_.module();
+  const ir::Function& function = module.functions[callee];
+  const auto isWritten = [&](std::size_t p) { return function.variables[p].role == ir::VarRole::InOut; };
+  if (isWritten(i)) return true;
+  if (!arguments[i].isReference || !isLocation(*arguments[i].value)) return false;
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    if (isWritten(k) && mayOverlap(module, *arguments[i].value, *arguments[k].value)) return true;
+  }
+  return false;
+}
+
 /// References are passed as copies. Finds those that name parts of one object, where the function could tell the
-/// difference, and reports what no version of it could take.
+/// difference.
 std::vector<FunctionLowering::Group> FunctionLowering::aliasedGroups(const std::vector<Argument>& arguments,
                                                                      ir::FunctionId callee) {
   const ir::Module& module = module_.module();
@@ -113,10 +131,6 @@ std::vector<FunctionLowering::Group> FunctionLowering::aliasedGroups(const std::
       if (!isWritten(k) &&
           !ir::readsAfterWriting(module, function, k, i, arguments[k].value->type == written.type)) {
         continue;
-      }
-      if (!ir::isLValue(*arguments[k].value)) {  // a choice of two objects
-        module_.fail(Diag::AliasedArguments, arguments[std::max(i, k)].source->getBeginLoc(),
-                     {function_.variables[ir::rootOf(written)].name});
       }
       const auto first = groupOf(i), second = groupOf(k);
       if (first == groups.end() && second == groups.end()) {
@@ -159,26 +173,30 @@ void FunctionLowering::joinAliases(const Group& group, std::vector<Argument>& ar
     }
     aliases.parts.emplace(group[g], std::move(alias));
   }
-  constexpr std::size_t mostIndices = 4;  // the components of an int4
-  if (indices.size() > mostIndices) {
-    module_.fail(Diag::AliasedArguments, arguments[second].source->getBeginLoc(),
-                 {function_.variables[ir::rootOf(*arguments[whole].value)].name});
-  }
-  aliases.indices.emplace(second, static_cast<int>(indices.size()));
+  const SourceLocation where = arguments[second].source->getBeginLoc();
   const Loc loc = arguments[whole].value->loc;
   const ir::VarId root = ir::rootOf(*arguments[whole].value);
   ExprPtr object = common == 0 ? ir::varRef(function_, root, loc) : ir::clone(*chains[0][common - 1]);
   aliases.wholes.emplace(whole, object->type);
   arguments[whole].value = std::move(object);
-  arguments[second].value = packed(std::move(indices), loc);
+  aliases.indices.emplace(second, indexType(indices.size(), where));
+  arguments[second].value = packed(std::move(indices), where);
   for (std::size_t g = 2; g < group.size(); ++g) {  // no longer needed
-    aliases.indices.emplace(group[g], 0);
-    arguments[group[g]].value = packed({}, loc);
+    aliases.indices.emplace(group[g], indexType(0, where));
+    arguments[group[g]].value = packed({}, where);
   }
 }
 
-/// An int, or a vector of ints, of indices.
-ExprPtr FunctionLowering::packed(Exprs indices, Loc loc) {
+/// The type of what passes indices: an int, a vector of ints, or an array of them.
+ir::Type FunctionLowering::indexType(std::size_t count, SourceLocation where) {
+  constexpr std::size_t widest = 4;
+  if (count > widest) return module_.arrayType(ir::Type::of(ir::Scalar::Int), count, where);
+  return ir::Type::of(ir::Scalar::Int, static_cast<int>(std::max<std::size_t>(count, 1)));
+}
+
+/// The indices as one value.
+ExprPtr FunctionLowering::packed(Exprs indices, SourceLocation where) {
+  const Loc loc = module_.loc(where);
   for (ExprPtr& index : indices) {
     if (index->type.scalar == ir::Scalar::Uint) {  // an index beyond the last int is the last element, too
       ExprPtr most = ir::literal(std::uint32_t{0x7fffffff}, loc);
@@ -188,7 +206,7 @@ ExprPtr FunctionLowering::packed(Exprs indices, Loc loc) {
   }
   if (indices.empty()) return ir::literal(0, loc);
   if (indices.size() == 1) return std::move(indices[0]);
-  const ir::Type type = ir::Type::of(ir::Scalar::Int, static_cast<int>(indices.size()));
+  const ir::Type type = indexType(indices.size(), where);
   return ir::construct(type, std::move(indices), loc);
 }
 
@@ -200,10 +218,10 @@ void FunctionLowering::aliasParameters(const Aliases& aliases) {
     variable.role = ir::VarRole::InOut;
     variable.isConst = false;
   }
-  for (const auto& [parameter, count] : aliases.indices) {
+  for (const auto& [parameter, type] : aliases.indices) {
     ir::Variable& variable = function_.variables[parameter];
     variable.name += "_index";
-    variable.type = ir::Type::of(ir::Scalar::Int, std::max(count, 1));
+    variable.type = type;
     variable.role = ir::VarRole::In;
     variable.isConst = true;
   }
@@ -223,6 +241,9 @@ void FunctionLowering::aliasParameters(const Aliases& aliases) {
           ExprPtr index = ir::varRef(function_, alias.indices, loc);
           if (index->type.isVector())
             index = ir::swizzle(std::move(index), std::string_view("xyzw").substr(step.value, 1), loc);
+          else if (!index->type.isScalar())
+            index = ir::index(module_.module(), std::move(index),
+                              ir::literal(static_cast<std::int32_t>(step.value), loc), loc);
           part = ir::index(module_.module(), std::move(part), std::move(index), loc);
           break;
         }
@@ -232,11 +253,36 @@ void FunctionLowering::aliasParameters(const Aliases& aliases) {
   }
 }
 
+/// Emits a call as a statement, in the branches that its arguments need.
+void FunctionLowering::emitCall(const UserCall& call, std::vector<Argument> arguments) {
+  const Loc loc = module_.loc(call.where);
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (!needsBranch(arguments, i, call.id)) continue;
+    ExprPtr location = std::move(arguments[i].value);
+    return withObject(std::move(location), [&](ExprPtr object) {
+      std::vector<Argument> chosen;
+      for (std::size_t k = 0; k < arguments.size(); ++k) {
+        const Argument& other = arguments[k];
+        chosen.push_back(
+            {other.source, other.isReference, k == i ? std::move(object) : ir::clone(*other.value)});
+      }
+      emitCall(call, std::move(chosen));
+    });
+  }
+  Aliases aliases;
+  for (const Group& group : aliasedGroups(arguments, call.id)) joinAliases(group, arguments, aliases);
+  const ir::FunctionId id = aliases.empty() ? call.id : module_.function(call.callee, call.where, aliases);
+  Exprs values;
+  for (Argument& argument : arguments) values.push_back(std::move(argument.value));
+  emit(loc,
+       ir::CallStmt{id, std::move(values), call.result ? ir::varRef(function_, *call.result, loc) : nullptr});
+}
+
 /// Calls with reference parameters, or that may push or scatter, become statements; others stay expressions.
 ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
   for (const clang::Stmt* part : e->children()) abandonIfUnknown(part);
   const SourceLocation where = e->getBeginLoc();
-  ir::FunctionId id = module_.function(callee, where);
+  const ir::FunctionId id = module_.function(callee, where);
   // copies: lowering an argument may add functions to the table
   const ir::Type resultType = module_.functionAt(id).result;
   const auto first = module_.functionAt(id).variables.begin();
@@ -246,29 +292,28 @@ ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::Functi
   const auto* operation = llvm::dyn_cast<clang::CXXOperatorCallExpr>(e);
   lowerArguments(arguments, parameters, operation != nullptr && operation->isAssignmentOp());
   keepWritten(arguments, parameters);
-  ExprPtr object = returnsThis(callee) ? ir::clone(*arguments[0].value) : nullptr;
-  Aliases aliases;
-  for (const Group& group : aliasedGroups(arguments, id)) joinAliases(group, arguments, aliases);
-  if (!aliases.empty()) id = module_.function(callee, where, aliases);
   const bool hasEffects =
       resultType.isVoid() || std::ranges::any_of(parameters, [](const ir::Variable& parameter) {
         return parameter.role == ir::VarRole::InOut || parameter.role == ir::VarRole::AppendOutput;
       });
-  Exprs values;
-  for (Argument& argument : arguments) values.push_back(std::move(argument.value));
-  if (!hasEffects) return make(resultType, where, ir::Call{id, std::move(values)});
+  if (!hasEffects) {
+    Exprs values;
+    for (Argument& argument : arguments) values.push_back(std::move(argument.value));
+    return make(resultType, where, ir::Call{id, std::move(values)});
+  }
   const Loc loc = module_.loc(where);
   if (returnsThis(callee)) {
-    emit(loc, ir::CallStmt{id, std::move(values), nullptr});
+    ExprPtr object = ir::clone(*arguments[0].value);
+    emitCall({callee, where, id, std::nullopt}, std::move(arguments));
     return object;
   }
   if (resultType.isVoid()) {
-    emit(loc, ir::CallStmt{id, std::move(values), nullptr});
+    emitCall({callee, where, id, std::nullopt}, std::move(arguments));
     return ir::literal(false, loc);  // never used: the call is void
   }
   const ir::VarId result = temporary(resultType, loc);
   emit(loc, ir::Declare{result, nullptr});
-  emit(loc, ir::CallStmt{id, std::move(values), ir::varRef(function_, result, loc)});
+  emitCall({callee, where, id, result}, std::move(arguments));
   return ir::varRef(function_, result, loc);
 }
 

@@ -23,6 +23,7 @@
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "support/header_files.hpp"
+#include "support/internal_error.hpp"
 
 namespace skc::frontend {
 
@@ -93,8 +94,8 @@ void ModuleLowering::declarations(const clang::DeclContext* scope) {
           this->function(function, function->getLocation());
         }
       }
-    } catch (const Abandoned&) {
-      // already reported; continue with the other declarations
+    } catch (const Abandoned&) {  // already reported; continue with the other declarations
+      if (!diagnostics_.hasErrors()) internalError("a declaration was left out, and no error says why");
     }
   }
 }

@@ -61,6 +61,7 @@ class ModuleLowering {
   /// A reference to a namespace-scope constant, which is lowered at its first use.
   ir::ExprPtr constant(const clang::VarDecl* declaration, clang::SourceLocation use);
   const ir::Struct& structAt(std::uint32_t index) const { return module_.structs[index]; }
+  ir::Type arrayType(ir::Type element, std::uint64_t length, clang::SourceLocation use);
   const ir::Array& arrayAt(std::uint32_t index) const { return module_.arrays[index]; }
 
   bool isPrelude(const clang::Decl* declaration) const;
@@ -113,7 +114,6 @@ class ModuleLowering {
   void addAlias(const clang::TypedefNameDecl* alias);
   void addAliases(const clang::DeclContext* scope);
   ir::Type structType(const clang::CXXRecordDecl* declaration, clang::SourceLocation use);
-  ir::Type arrayType(ir::Type element, std::uint64_t length, clang::SourceLocation use);
   void checkSize(ir::Type type, clang::SourceLocation use);
   bool isInCppHeader(const clang::Decl* declaration) const;
   std::vector<std::string> scopeOf(const clang::Decl* declaration) const;

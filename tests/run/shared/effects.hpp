@@ -19,7 +19,8 @@
   CASE(harmlessAliases) CASE(elementsOfOneArray) CASE(referenceSeesLaterEffect)                    \
   CASE(choiceByReference) CASE(changedTemporary) CASE(disjointParts) CASE(firstUsedInArgument)     \
   CASE(operatorsOfOwnResults) CASE(membersReadMembers) CASE(referencesToOneObject)                 \
-  CASE(referencesToElements) CASE(methodAndOwnMember) CASE(aliasesPassedOn)
+  CASE(referencesToElements) CASE(methodAndOwnMember) CASE(aliasesPassedOn)      \
+  CASE(choicesAsTargets) CASE(choicesByReference) CASE(choicesWithEffects) CASE(manyIndices)
 // clang-format on
 
 #ifdef __clang__

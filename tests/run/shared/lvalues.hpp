@@ -36,7 +36,7 @@ inline int structRightFirst(int x, int y) {
 #ifdef __clang__
   s[i++] = Pair{i, x};
   s[++i] = Pair{i += 0, y};
-#else   // g++ 12 does not follow C++17 here
+#else  // g++ 12 does not follow C++17 here
   s[i] = Pair{i, x};
   i += 2;
   s[i] = Pair{i - 1, y};
@@ -269,6 +269,66 @@ inline int aliasesPassedOn(int x, int y) {
   r += combine(q[x & 1], q[y & 1], q[0].list[y & 1]);
   r += combine(p, q[1], q[0].list[1]);
   return r + p.sum() + q[0].sum() * 3 + q[1].sum() * 5;
+}
+
+inline int choicesAsTargets(int x, int y) {
+  int a = x, b = y, list[3] = {x, y, 2};
+  (x > y ? a : b) = 5;
+  (a > 2 ? a : list[b & 1]) += 3;
+  int after = (a > b ? a : b) *= 2;
+  after += (x > 0 ? (y > 0 ? a : b) : list[2])++;
+  --(b > a ? b : list[x & 1]);
+  Sum s = {x, y}, t = {y, x}, u[2] = {s, t};
+  (x > y ? s : t).a = 7;
+  (y > 1 ? s : u[x & 1]) = u[y & 1];
+  (x > 2 ? u[0] : x > 1 ? s : t).b -= (y > x ? s : t).a++;
+  return after + a + 3 * b + 5 * list[0] + 7 * list[1] + 11 * list[2] + 13 * s.a + 17 * s.b + 19 * t.a +
+         23 * t.b + 29 * u[0].a + 31 * u[0].b + 37 * u[1].a + 41 * u[1].b;
+}
+
+inline int choicesByReference(int x, int y) {
+  Pile p = {{x, y, 1}, {{1, 2}, {3, y}}}, q = {{y, 2, x}, {{4, x}, {2, 1}}};
+  int i = x & 1, k = y, r = bump(x > y ? i : k = 4);
+  p.addCrosswise(x > 1 ? p : q);
+  (y > 1 ? q : p).addCrosswise(x > y ? p : q);
+  sortBoth(x > 2 ? p.list[i & 1] : q.list[0], y > 2 ? p.list[0] : q.list[1]);
+  (x > 3 ? p : q).store((y > 3 ? p : q).list[1], 2);
+  addFirst(x > 0 ? p.sums[0] : q.sums[1], (y > 0 ? p.sums[0] : q.sums[1]).a);
+  r += (x > y ? p : q).store(p.list[2], 3) + 100 * i;
+  return r + k + p.sum() + 3 * q.sum();
+}
+
+inline int choicesWithEffects(int x, int y) {
+  Pile p = {{x, y, 1}, {{1, 2}, {3, y}}}, q = {{y, 2, x}, {{4, x}, {2, 1}}};
+  int list[4] = {x, y, 3, 4}, i = 0;
+  (x > y ? list[i++] : list[++i]) = 9;
+  (x > 1 ? ++i : list[i]) += 2;
+  p.addCrosswise(y > 1 ? p : (q = p));
+  addFirst(p.sums[1], (x > 2 ? p.sums[i++ & 1] : (q.sums[1] = p.sums[1])).b);
+  const int r = (x > y ? i += 2 : list[2]) + i++;
+  return r + list[0] + 3 * list[1] + 5 * list[2] + 7 * list[3] + 11 * i + 13 * p.sum() + 17 * q.sum();
+}
+
+inline void rotate(int& a, int& b, int& c) {
+  const int old = a;
+  a = b;
+  b = c + a;
+  c = old;
+}
+struct Grid {
+  Pile p[3];
+};
+inline int manyIndices(int x, int y) {
+  Grid g[2] = {
+      {{{{1, 2, x}, {{3, 4}, {5, y}}}, {{6, 7, 8}, {{9, x}, {1, 2}}}, {{3, y, 5}, {{6, 7}, {8, 9}}}}}, {}};
+  g[1] = g[0];
+  const int i = x & 1, j = y & 1, k = (x + y) & 1;
+  rotate(g[i].p[j].list[k], g[j].p[k + 1].list[i], g[k].p[i].list[j + 1]);
+  rotate(g[1 - i].p[j].sums[k].a, g[j].p[k].sums[i].a, g[0].p[2 - i].sums[1].a);
+  rotate(g[i].p[j].list[k], g[j].p[k].list[i], g[1].p[0].list[2]);
+  int sum = 0;
+  for (int n = 0; n < 6; ++n) sum = sum * 3 + g[n / 3].p[n % 3].sum();
+  return sum;
 }
 
 }  // namespace effects
