@@ -94,6 +94,12 @@ TEST_CASE("vector comparisons are masks, and conditions see through them", "[fro
   CHECK(inKernel("bool4 m = bool4(w > 1); v = m.x;") == "bool4 m = w > float4{1.0};\nv = float(m.x);\n");
 }
 
+TEST_CASE("a member function takes a reference to an array of vectors", "[frontend]") {
+  CHECK(inKernel("struct S { float k; float f(float2 (&q)[1]) const { return k * q[0].x; } };"
+                 "float2 q[1] = {w.xy}; v = S{x}.f(q);")
+            .find("f(") != std::string::npos);
+}
+
 TEST_CASE("gathers are indexed with x first", "[frontend]") {
   CHECK(inKernel("int2 p = indexof(v).xy; v = u[p.y][p.x] + u[p] + neighbor(u, 1, -1);") ==
         "int2 p = indexof(domain).xy;\nv = u[int2{p.x, p.y}] + u[p] + neighbor(u, int2{1, -1});\n");

@@ -28,7 +28,8 @@ void ConstructorEditor::copy(TokenCursor& cursor, Tokens& out) {
   const Token token = out.back();
   if (token.is(tok::semi)) noteAlias(out);
   noteBraces(out);
-  if (token.is(tok::identifier) && cursor.at(tok::l_paren)) {
+  const bool isDeclarator = cursor.peek(1).is(tok::amp);  // `float4 (&w)[2]`
+  if (token.is(tok::identifier) && cursor.at(tok::l_paren) && !isDeclarator) {
     const Name name = nameEndingAt(out, out.size());
     const std::string vector = vectorNamed(name);
     if (!vector.empty()) {

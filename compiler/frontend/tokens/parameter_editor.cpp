@@ -104,9 +104,10 @@ bool isQualifier(const Token& token) {
 /// The index of the `>` that closes the list of a type, as in `sk::Scalar<float> k`; 0 for other `<`.
 std::size_t endOfArguments(const std::vector<Token>& parameter, std::size_t less) {
   const std::size_t end = less > 0 ? endOfList(parameter, less) : 0;
-  const bool goesOn =
-      end != 0 && end + 1 < parameter.size() &&
-      (parameter[end + 1].isOneOf(tok::coloncolon, tok::amp) || parameter[end + 1].getIdentifierInfo());
+  if (end == 0 || end + 1 >= parameter.size()) return 0;
+  const Token& next = parameter[end + 1];
+  const bool isArrayReference = next.is(tok::l_paren) && isKind(parameter, end + 2, tok::amp);
+  const bool goesOn = next.isOneOf(tok::coloncolon, tok::amp) || next.getIdentifierInfo() || isArrayReference;
   return goesOn ? end : 0;
 }
 

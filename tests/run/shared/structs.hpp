@@ -533,9 +533,20 @@ struct Row {
   int cells[4] = {1, 2, 3, 4};
   int total() const { return totalOf(cells); }
 };
+template <class T, int n>
+struct Cells {
+  T cells[n];
+  int add(const int (&w)[2]) { return cells[0] += w[0] * w[1]; }
+};
+inline int sumOf(Cells<int, 2> (&w)[2], int d) {
+  w[1].cells[d & 1] += d;
+  return w[0].cells[0] + w[1].cells[1];
+}
 inline int arraysByReference(int x, int y) {
   int w[4] = {x, y, 1, 2}, two[2] = {y, x};
   Row rows[2];
+  Cells<int, 2> pairs[2] = {{{x, 3}}, {{5, y}}};
+  x += sumOf(pairs, y) + pairs[1].add(two);
   swapEnds(w, y);
   swapEnds(rows[x & 1].cells, x);
   return totalOf(w) + 3 * totalOf(two) + 5 * rows[0].total() + 7 * totalOf(rows[1].cells);
