@@ -31,19 +31,35 @@ struct Effects {
 /// The float values of an expression: multiples of 2^-fraction up to 2^magnitude.
 struct Range {
   int magnitude = 0, fraction = 0;
-  bool isExact() const { return magnitude + fraction <= 24; }
 };
 
-/// The range of every variable: what is stored has at most 2^14, and sums in place add to that.
-constexpr Range storedRange = {21, 2};
-/// What `lim` gives.
-constexpr Range limitedRange = {6, 2};
+/// What every target computes exactly with floats or doubles, and what variables of them hold. Some targets have pairs of
+/// floats for doubles; 42 bits leave these some room.
+struct Precision {
+  int bits;  ///< of any value
+  int most;  ///< the magnitude of any value: `lim` converts to int
+  int fraction;  ///< of what is stored, and of what `lim` gives
+  int stored;  ///< the magnitude of what is stored, but for copies
+  bool holds(Range range) const {
+    return range.magnitude <= most && range.magnitude + range.fraction <= bits;
+  }
+  /// The range of every variable: sums in place add to what is stored.
+  Range ofVariables() const { return {copyMagnitude, fraction}; }
+  Range limited() const { return {6, fraction}; }
+
+  static constexpr int copyMagnitude = 21;  ///< no other range has this one
+};
+constexpr Precision singlePrecision = {24, 24, 2, 14}, doublePrecision = {42, 28, 12, 18};
+inline const Precision& precisionOf(const Type& type) {
+  return type.scalar == Scalar::Double ? doublePrecision : singlePrecision;
+}
 
 struct Expr {
   NodePtr node;
   TypeId type;
   Effects effects = {};
   Range range = {};
+  bool mayBeComponent = false;  ///< may be an lvalue that is a component of a vector
 };
 
 /// A list of expressions, which cannot be copied.
@@ -118,11 +134,16 @@ class Body {
   Expr index(int count, int depth);
   std::optional<Expr> read(const Accepts& accepts, int depth);
   const Variable& variableOf(const Place& place) const { return variables_[place.variable]; }
+  static bool isComponent(const Place& place) {
+    return !place.path.empty() && place.path.back().kind == Step::Kind::Component;
+  }
 
   // All types (expressions.cpp)
   Expr made(std::string text, TypeId type, std::vector<Expr> parts, bool isGuard = false);
   Expr literal(TypeId type);
   Expr choice(TypeId type, int depth);
+  /// A value instead of an lvalue that is a component of a vector.
+  Expr noComponent(Expr expr);
   std::optional<Expr> assignment(TypeId type, int depth);
   std::optional<Expr> memberOf(TypeId type, int depth);
   Expr converted(Expr expr, TypeId type, bool mayStayImplicit);
@@ -141,13 +162,22 @@ class Body {
   Expr integerBinary(int depth);
   Expr intrinsic(int depth);
   std::optional<Expr> integerAssignment(int depth);
-  Expr floating(int depth);
-  Expr floatLeaf(int depth);
+  /// Float, or sometimes Double.
+  TypeId pickFloating();
+  bool hasFloating() const { return unit_.has("floats") || unit_.has("doubles"); }
+  Expr floating(TypeId type, int depth);
+  Expr floating(int depth) { return floating(pickFloating(), depth); }
+  Expr floatLeaf(TypeId type, int depth);
+  /// What stands beside a float or a double, and becomes one.
+  Expr floatOperand(TypeId type, int depth);
+  Expr floatBinary(TypeId type, int depth);
+  Expr floatIntrinsic(TypeId type, int depth);
   Expr limited(Expr expr, int bits);
-  Expr exact(Expr expr);
-  std::optional<Expr> floatAssignment(int depth);
+  std::optional<Expr> floatAssignment(TypeId type, int depth);
+  Scalar pickVectorScalar();
   Expr vectorOf(TypeId type, int depth);
   Expr vectorBinary(TypeId type, int depth);
+  Expr mask(Scalar scalar, int count, int depth);
   Expr vectorParts(TypeId type, int depth);
   std::optional<Expr> swizzleAssignment(int depth);
 
@@ -161,6 +191,7 @@ class Body {
   NodePtr statement();
   NodePtr block(int count);
   NodePtr declaration();
+  NodePtr bindings();
   NodePtr effect();
   NodePtr branch();
   NodePtr loop();

@@ -61,18 +61,37 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
     return true;
   };
   const bool isMutableMethod = function.owner >= 0 && !function.isConst;
-  if (isMutableMethod && !bind(count, function.owner)) return std::nullopt;
+  const bool isOfTemporary = isMutableMethod && unit_.with("temporaries", 1, 5);
+  if (isMutableMethod && !isOfTemporary && !bind(count, function.owner)) return std::nullopt;
   for (std::size_t p = 0; p < count; ++p) {
     if (function.parameters[p].passing == Passing::Reference && !bind(p, function.parameters[p].type))
       return std::nullopt;
+  }
+  // Arrays that do not change: a copy in .sk, where C++ passes a pointer.
+  for (std::size_t p = 0; p < count; ++p) {
+    const Parameter& parameter = function.parameters[p];
+    if (types_[parameter.type].kind != Type::Kind::Array || parameter.passing == Passing::Reference) continue;
+    const bool mayShare = parameter.passing == Passing::ConstReference && unit_.has("aliasing");
+    std::vector<Place> all = places([&](TypeId id) { return id == parameter.type; }, !parameter.takesConst);
+    std::erase_if(all, [&](const Place& candidate) {
+      const bool isPointer = candidate.path.empty() && variableOf(candidate).isPointer;
+      if (isPointer && parameter.passing == Passing::ConstReference) return true;
+      return !mayShare && (taken & std::uint64_t{1} << variableOf(candidate).bit) != 0;
+    });
+    if (all.empty()) return std::nullopt;
+    bound[p] = std::move(all[random_.below(all.size())]);
   }
 
   std::vector<Expr> parts;
   std::string text;
   std::uint64_t heldByConst = 0;
+  const auto isConflict = [&](const Expr& part) { return (part.effects.written() & heldByConst) != 0; };
   const auto add = [&](Expr part) {
-    const bool isConflict = (part.effects.written() & heldByConst) != 0;
-    parts.push_back(isConflict ? literal(part.type) : std::move(part));
+    parts.push_back(isConflict(part) ? literal(part.type) : std::move(part));
+  };
+  const auto addTarget = [&](const Place& place) {
+    Expr part = target(place, depth - 1);
+    parts.push_back(isConflict(part) ? target(place, 0) : std::move(part));
   };
   const bool isSubscript = function.name == "[]", isCall = function.name == "()";
   const bool isNamed = !function.isInfix && !isSubscript && !isCall;
@@ -81,13 +100,19 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
                               : isCall           ? "$("
                               : function.isInfix ? "($ " + function.name + " "
                                                  : "$." + function.name + "(";
-    if (isMutableMethod) {
+    if (isOfTemporary) {
+      std::optional<Expr> object;
+      if (random_.chance(1, 2)) object = call([&](TypeId id) { return id == function.owner; }, depth - 1);
+      if (!object) object = structOf(function.owner, depth - 1);
+      text = begin;
+      add(std::move(*object));
+    } else if (isMutableMethod) {
       const bool isOwn = variableOf(*bound[count]).name == "this" && bound[count]->path.empty();
       if (isOwn && isNamed && random_.chance(2, 3)) {
         text = function.name + "(";
       } else {
         text = begin;
-        add(target(*bound[count], depth - 1));
+        addTarget(*bound[count]);
       }
     } else {
       Expr object = value(function.owner, depth - 1);
@@ -107,7 +132,14 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
       if (p > 0) text += function.isInfix ? " " + function.name + " " : ", ";
       text += "$";
       if (parameter.passing == Passing::Reference) {
-        add(target(*bound[p], depth - 1));
+        addTarget(*bound[p]);
+        continue;
+      }
+      if (bound[p]) {
+        Expr array = target(*bound[p], 0);
+        const bool isHeld = parameter.passing == Passing::Value || !unit_.has("constrefs");
+        if (isHeld) heldByConst |= array.effects.reads;
+        parts.push_back(std::move(array));
         continue;
       }
       Expr argument = function.isExact || parameter.passing == Passing::ConstReference
@@ -119,6 +151,8 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
         const bool isShared = (argument.effects.reads & taken) != 0;
         if (isShared && !unit_.has("aliasing")) argument = literal(parameter.type);
         if (!unit_.has("constrefs")) heldByConst |= argument.effects.reads;
+        argument = noComponent(std::move(argument));
+        argument.node->isGuard = true;  // else the reducer may leave a component
       }
       add(std::move(argument));
     }

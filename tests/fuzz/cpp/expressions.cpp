@@ -14,7 +14,7 @@ Expr Body::made(std::string text, TypeId type, std::vector<Expr> parts, bool isG
     result.effects = result.effects | part.effects;
     result.node->children.push_back(std::move(part.node));
   }
-  if (types_.isFloat(type)) result.range = storedRange;
+  if (types_.hasFloats(type)) result.range = precisionOf(types_[type]).ofVariables();
   spend(1);
   return result;
 }
@@ -62,8 +62,14 @@ Expr Body::literal(TypeId type) {
     case Scalar::Bool: return made(random_.chance(1, 2) ? "true" : "false", type, {});
     case Scalar::Int: return made(random_.pick(ints), type, {});
     case Scalar::Uint: return made(random_.pick(uints), type, {});
-    case Scalar::Float: {
-      const auto& [text, range] = random_.pick(floats);
+    case Scalar::Float:
+    case Scalar::Double: {
+      const auto& [single, range] = random_.pick(floats);
+      // In .sk, a literal alone is a float.
+      const std::string number = single.substr(0, single.rfind('f'));
+      const std::string text = info.scalar == Scalar::Float ? single
+                               : number.front() == '('      ? "double" + number + ")"
+                                                            : "double(" + number + ")";
       Expr result = made(text, type, {});
       result.range = range;
       return result;
@@ -81,22 +87,38 @@ Expr Body::unsequenced(const Expr& first, Expr second) {
 Expr Body::converted(Expr expr, TypeId type, bool mayStayImplicit) {
   if (expr.type == type) return expr;
   const Type& from = types_[expr.type];
-  const bool toFloat = types_.isFloat(type), fromFloat = types_.isFloat(expr.type);
+  const bool toFloat = types_.isFloating(type), fromFloat = types_.isFloating(expr.type);
   Range range = {};
-  if (toFloat) {  // only few bits
+  if (toFloat && fromFloat) {
+    range = expr.range;
+    const bool isNarrower = type == Types::of(Scalar::Float);
+    if (isNarrower && !singlePrecision.holds(range)) {
+      expr = made("lim($)", expr.type, listOf(std::move(expr)), true);
+      range = expr.range = doublePrecision.limited();
+    }
+    // What is stored has few bits.
+    const bool isFine =
+        range.fraction <= singlePrecision.fraction && range.magnitude <= singlePrecision.stored;
+    if (isNarrower && !isFine) mayStayImplicit = false;
+  } else if (toFloat) {  // only few bits
     const bool isSmall = from.scalar != Scalar::Int && from.scalar != Scalar::Uint;
     range = {isSmall ? (from.scalar == Scalar::Short || from.scalar == Scalar::Ushort ? 16 : 8) : 7, 0};
     if (from.kind == Type::Kind::Enum || !isSmall || range.magnitude > 8) {
       const TypeId promoted = types_.promoted(expr.type);
-      expr = made(from.isScoped ? "(int($) & 127)" : "($ & 127)",
+      const bool isLong = !mayStayImplicit && type == Types::of(Scalar::Double) && random_.chance(1, 2);
+      const std::string mask = isLong ? "0x3ffffff" : "127";
+      expr = made((from.isScoped ? "(int($) & " : "($ & ") + mask + ")",
                   from.isScoped ? Types::of(Scalar::Int) : promoted, listOf(std::move(expr)), true);
-      range = {7, 0};
+      range = {isLong ? 26 : 7, 0};
     }
   } else if (fromFloat && type != Types::of(Scalar::Bool) && type != Types::of(Scalar::Int)) {
     expr = made("int($)", Types::of(Scalar::Int), listOf(std::move(expr)), true);
     if (types_[type].kind == Type::Kind::Enum) return literal(type);
   }
   if (types_[type].kind == Type::Kind::Enum) mayStayImplicit = false;
+  const TypeId underlying = Types::of(types_[type].scalar);
+  if (types_[type].isWide && expr.type != underlying)
+    expr = made(types_.spell(underlying) + "($)", underlying, listOf(std::move(expr)), true);
   if (types_[expr.type].kind == Type::Kind::Enum && types_[expr.type].isScoped) mayStayImplicit = false;
   if (expr.type == type) return expr;
   if (mayStayImplicit && random_.chance(2, 3)) {
@@ -115,9 +137,10 @@ Expr Body::converted(Expr expr, TypeId type, bool mayStayImplicit) {
 
 Expr Body::convertible(TypeId type, int depth) {
   if (!types_.isScalar(type)) return value(type, depth);
-  if (types_.isFloat(type)) {
+  if (types_.isFloating(type)) {
     if (random_.chance(1, 5)) return converted(integer(depth - 1), type, true);
-    return exact(floating(depth));
+    if (random_.chance(1, 5)) return converted(floating(depth - 1), type, true);
+    return floating(type, depth);
   }
   if (type == Types::of(Scalar::Bool) && random_.chance(2, 3)) return condition(depth);
   if (type == Types::of(Scalar::Int) && random_.chance(1, 8))
@@ -163,7 +186,7 @@ Expr Body::value(TypeId type, int depth) {
     case Type::Kind::Array: return braces(type, depth);
     case Type::Kind::Scalar: break;
   }
-  if (types_.isFloat(type)) return exact(floating(depth));
+  if (types_.isFloating(type)) return floating(type, depth);
   if (type == Types::of(Scalar::Bool)) return converted(condition(depth), type, false);
   return converted(integer(depth), type, false);
 }
@@ -172,7 +195,18 @@ Expr Body::choice(TypeId type, int depth) {
   Expr test = condition(depth - 1), yes = value(type, depth - 1), no = value(type, depth - 1);
   const Range range = {std::max(yes.range.magnitude, no.range.magnitude),
                        std::max(yes.range.fraction, no.range.fraction)};
-  Expr result = made("($ ? $ : $)", type, listOf(std::move(test), std::move(yes), std::move(no)));
+  Expr result = made("($ ? $ : $)", type,
+                     listOf(std::move(test), noComponent(std::move(yes)), noComponent(std::move(no))));
+  result.range = range;
+  return result;
+}
+
+/// Clang 19 gives the old value where it binds a reference to a component that is assigned, and refuses to choose such lvalues.
+Expr Body::noComponent(Expr expr) {
+  if (!expr.mayBeComponent) return expr;
+  const Range range = expr.range;
+  const TypeId type = expr.type;
+  Expr result = made(types_.spell(type) + "($)", type, listOf(std::move(expr)), true);
   result.range = range;
   return result;
 }
@@ -185,6 +219,7 @@ std::optional<Expr> Body::assignment(TypeId type, int depth) {
     return std::nullopt;
   Expr right = limited(convertible(type, depth - 1), 0), left = target(*found, depth - 1);
   Expr result = made("($ = $)", type, listOf(std::move(left), std::move(right)));
+  result.mayBeComponent = isComponent(*found);
   result.effects.writes |= std::uint64_t{1} << variableOf(*found).bit;
   return result;
 }
@@ -210,11 +245,11 @@ std::optional<Expr> Body::memberOf(TypeId type, int depth) {
 
 Expr Body::comparison(int depth) {
   static const std::vector<std::string> operators = {"==", "!=", "<", "<=", ">", ">="};
-  if (unit_.has("floats") && random_.chance(1, 4)) {
+  if (hasFloating() && random_.chance(1, 4)) {
     Expr a = floating(depth - 1);
     Expr b = unsequenced(a, floating(depth - 1));
     return made("($ " + random_.pick(operators) + " $)", Types::of(Scalar::Bool),
-                listOf(exact(std::move(a)), exact(std::move(b))));
+                listOf(std::move(a), std::move(b)));
   }
   Expr a = integer(depth - 1);
   Expr b = unsequenced(a, integer(depth - 1));
@@ -229,7 +264,13 @@ Expr Body::condition(int depth) {
       return std::move(*found);
     return literal(type);
   }
-  switch (random_.below(9)) {
+  switch (random_.below(10)) {
+    case 9:
+      if (unit_.has("vectors") && unit_.has("masks")) {
+        Expr test = mask(pickVectorScalar(), random_.between(2, 4), depth - 1);
+        return made(random_.chance(1, 2) ? "any($)" : "all($)", type, listOf(std::move(test)));
+      }
+      return comparison(depth);
     case 0: return made("!$", type, listOf(condition(depth - 1)));
     case 1:
     case 2: {
@@ -238,7 +279,7 @@ Expr Body::condition(int depth) {
     }
     case 3: return integer(depth - 1);
     case 4:
-      if (unit_.has("floats")) return floating(depth - 1);
+      if (hasFloating()) return floating(depth - 1);
       return comparison(depth);
     case 5:
       if (std::optional<Expr> found = call([&](TypeId id) { return id == type; }, depth))
@@ -276,8 +317,7 @@ Expr Body::matrixOf(TypeId type, int depth) {
 Expr Body::initialiser(TypeId type, int depth) {
   if (types_[type].kind == Type::Kind::Array) return braces(type, depth);
   if (types_[type].kind == Type::Kind::Struct && random_.chance(1, 2)) return braces(type, depth);
-  Expr result = convertible(type, depth);
-  return types_.isFloat(result.type) ? limited(std::move(result), 0) : std::move(result);
+  return limited(convertible(type, depth), 0);
 }
 
 Expr Body::braces(TypeId type, int depth) {

@@ -2,6 +2,8 @@
 //
 // Floats. The range of each expression is known, and where a result might round, its operands pass through `lim`, a
 // function of every generated program.
+#include <algorithm>
+
 #include "cpp/body.hpp"
 
 namespace fuzz::cpp {
@@ -9,78 +11,121 @@ namespace {
 
 Range sum(Range a, Range b) {
   Range range = {std::max(a.magnitude, b.magnitude) + 1, std::max(a.fraction, b.fraction)};
-  if (range.magnitude == storedRange.magnitude) ++range.magnitude;  // that is the mark of copies
+  if (range.magnitude == Precision::copyMagnitude) ++range.magnitude;
   return range;
 }
 
-Range product(Range a, Range b) { return {a.magnitude + b.magnitude, a.fraction + b.fraction}; }
+Range product(Range a, Range b) {
+  Range range = {a.magnitude + b.magnitude, a.fraction + b.fraction};
+  if (range.magnitude == Precision::copyMagnitude) ++range.magnitude;
+  return range;
+}
+
+Range either(Range a, Range b) {
+  return {std::max(a.magnitude, b.magnitude), std::max(a.fraction, b.fraction)};
+}
 
 }  // namespace
 
 /// A value that may be stored, or, if `bits` is not 0, one below 2^bits.
 Expr Body::limited(Expr expr, int bits) {
-  const Type& type = types_[expr.type];
-  const bool isFloat =
-      types_.isFloat(expr.type) || (type.kind == Type::Kind::Vector && type.scalar == Scalar::Float);
-  if (!isFloat) return expr;
+  if (expr.type < 0 || !types_.hasFloats(expr.type)) return expr;
+  const Precision& precision = precisionOf(types_[expr.type]);
   const Range range = expr.range;
-  const bool isCopy = range.magnitude == storedRange.magnitude;
-  const bool isFine = bits == 0 ? range.fraction <= 2 && (range.magnitude <= 14 || isCopy)
-                                : range.fraction <= 2 && range.magnitude <= bits;
-  if (isFine) return expr;
+  const bool isCopy = range.magnitude == Precision::copyMagnitude;
+  const bool isSmall = bits == 0 ? range.magnitude <= precision.stored || isCopy : range.magnitude <= bits;
+  if (isSmall && range.fraction <= precision.fraction) return expr;
   const TypeId id = expr.type;
-  Expr result = made("lim($)", id, listOf(exact(std::move(expr))), true);
-  result.range = limitedRange;
+  Expr result = made("lim($)", id, listOf(std::move(expr)), true);
+  result.range = precision.limited();
   return result;
 }
 
-/// Makes sure that the value itself has been computed without rounding.
-Expr Body::exact(Expr expr) { return expr; }
-
-Expr Body::floatLeaf(int depth) {
-  if (random_.chance(3, 4)) {
-    if (std::optional<Expr> found = read([&](TypeId id) { return types_.isFloat(id); }, depth))
-      return std::move(*found);
-  }
-  if (random_.chance(1, 3) && !isFull() && depth > 0)
-    return converted(integer(depth - 1), Types::of(Scalar::Float), false);
-  return literal(Types::of(Scalar::Float));
+TypeId Body::pickFloating() {
+  const bool isDouble = unit_.has("doubles") && (!unit_.has("floats") || random_.chance(1, 3));
+  return Types::of(isDouble ? Scalar::Double : Scalar::Float);
 }
 
-Expr Body::floating(int depth) {
-  const TypeId type = Types::of(Scalar::Float);
-  if (depth <= 0 || isFull()) return floatLeaf(0);
-  switch (random_.below(12)) {
+Expr Body::floatLeaf(TypeId type, int depth) {
+  if (random_.chance(3, 4)) {
+    if (std::optional<Expr> found = read([&](TypeId id) { return id == type; }, depth))
+      return std::move(*found);
+  }
+  if (random_.chance(1, 3) && !isFull() && depth > 0) return converted(integer(depth - 1), type, false);
+  return literal(type);
+}
+
+Expr Body::floatOperand(TypeId type, int depth) {
+  if (depth > 0 && random_.chance(1, 8)) return converted(integer(depth - 1), type, true);
+  if (type == Types::of(Scalar::Double) && unit_.has("floats") && random_.chance(1, 4))
+    return floating(Types::of(Scalar::Float), depth);
+  return floating(type, depth);
+}
+
+Expr Body::floatBinary(TypeId type, int depth) {
+  const Precision& precision = precisionOf(types_[type]);
+  const bool isProduct = random_.chance(2, 5);
+  Expr a = floatOperand(type, depth - 1);
+  Expr b = unsequenced(a, a.type == type ? floatOperand(type, depth - 1) : floating(type, depth - 1));
+  const auto range = [&] { return isProduct ? product(a.range, b.range) : sum(a.range, b.range); };
+  if (!precision.holds(range())) {
+    a = limited(std::move(a), 7);
+    b = limited(std::move(b), 7);
+  }
+  const Range exact = range();
+  std::string& text = b.node->text;
+  const bool isLiteral = b.node->children.empty() && text.starts_with("double(") && text.size() > 9;
+  if (isLiteral && a.type == type && !a.node->children.empty() && random_.chance(1, 2))
+    text = text.substr(6);  // beside a double, a literal is one by itself
+  const std::string op = isProduct ? "*" : random_.chance(1, 2) ? "+" : "-";
+  Expr result = made("($ " + op + " $)", type, listOf(std::move(a), std::move(b)), true);
+  result.range = exact;
+  return result;
+}
+
+Expr Body::floatIntrinsic(TypeId type, int depth) {
+  Expr a = floating(type, depth - 1);
+  Range range = a.range;
+  static const std::vector<std::string> steps = {"floor", "ceil", "trunc", "round"};
+  const std::size_t form = random_.below(8);
+  std::string text;
+  std::vector<Expr> parts;
+  parts.push_back(std::move(a));
+  const auto add = [&] {
+    parts.push_back(floating(type, depth - 1));
+    range = either(range, parts.back().range);
+  };
+  if (form < 3) {
+    text = random_.pick(steps) + "($)";
+    range = sum({range.magnitude, 0}, {0, 0});
+  } else if (form == 3) {
+    text = "abs($)";
+  } else if (form == 4) {
+    text = "fract($)";
+    range = {0, range.fraction};
+  } else if (form < 7) {
+    text = random_.chance(1, 2) ? "min($, $)" : "max($, $)";
+    add();
+  } else {
+    text = "clamp($, $, $)";
+    add();
+    add();
+  }
+  Expr result = made(std::move(text), type, std::move(parts), true);
+  result.range = range;
+  return result;
+}
+
+Expr Body::floating(TypeId type, int depth) {
+  if (depth <= 0 || isFull()) return floatLeaf(type, 0);
+  switch (random_.below(13)) {
     case 0:
     case 1:
-    case 2: {
-      Expr a = floating(depth - 1);
-      Expr b = unsequenced(a, floating(depth - 1));
-      if (!sum(a.range, b.range).isExact()) {
-        a = limited(std::move(a), 7);
-        b = limited(std::move(b), 7);
-      }
-      const Range range = sum(a.range, b.range);
-      Expr result =
-          made(random_.chance(1, 2) ? "($ + $)" : "($ - $)", type, listOf(std::move(a), std::move(b)), true);
-      result.range = range;
-      return result;
-    }
+    case 2:
     case 3:
-    case 4: {
-      Expr a = floating(depth - 1);
-      Expr b = unsequenced(a, floating(depth - 1));
-      if (!product(a.range, b.range).isExact()) {
-        a = limited(std::move(a), 7);
-        b = limited(std::move(b), 7);
-      }
-      const Range range = product(a.range, b.range);
-      Expr result = made("($ * $)", type, listOf(std::move(a), std::move(b)), true);
-      result.range = range;
-      return result;
-    }
+    case 4: return floatBinary(type, depth);
     case 5: {
-      Expr any = floating(depth - 1);
+      Expr any = floating(type, depth - 1);
       const Range range = any.range;
       Expr result = made("(-$)", type, listOf(std::move(any)));
       result.range = range;
@@ -90,21 +135,23 @@ Expr Body::floating(int depth) {
     case 7:
       if (std::optional<Expr> found = call([&](TypeId id) { return id == type; }, depth))
         return std::move(*found);
-      return floatLeaf(depth);
+      return floatLeaf(type, depth);
     case 8:
     case 9:
-      if (std::optional<Expr> found = floatAssignment(depth)) return std::move(*found);
-      return floatLeaf(depth);
+      if (std::optional<Expr> found = floatAssignment(type, depth)) return std::move(*found);
+      return floatLeaf(type, depth);
     case 10:
       if (std::optional<Expr> found = memberOf(type, depth)) return std::move(*found);
-      return floatLeaf(depth);
-    default: return floatLeaf(depth);
+      return floatLeaf(type, depth);
+    case 11:
+      if (unit_.has("intrinsics") && !isConstant_) return floatIntrinsic(type, depth);
+      return floatLeaf(type, depth);
+    default: return floatLeaf(type, depth);
   }
 }
 
-std::optional<Expr> Body::floatAssignment(int depth) {
+std::optional<Expr> Body::floatAssignment(TypeId type, int depth) {
   if (!mayHaveEffects()) return std::nullopt;
-  const TypeId type = Types::of(Scalar::Float);
   const std::size_t form = random_.below(3);
   if (form == 0) return assignment(type, depth);
   const std::optional<Place> found = place(type, true);
@@ -116,12 +163,14 @@ std::optional<Expr> Body::floatAssignment(int depth) {
     result = made(random_.pick(steps), type, listOf(target(*found, depth - 1)), true);
   } else {
     Expr right = limited(convertible(type, depth - 1), 7);
-    if (!types_.isFloat(right.type)) right = converted(std::move(right), type, false);
+    if (right.type != type && !types_.isInteger(right.type))
+      right = limited(converted(std::move(right), type, type == Types::of(Scalar::Double)), 7);
     Expr left = target(*found, depth - 1);
     result = made(random_.chance(1, 2) ? "($ += $)" : "($ -= $)", type,
                   listOf(std::move(left), std::move(right)), true);
   }
   result.effects.writes |= bit;
+  result.mayBeComponent = isComponent(*found);
   return result;
 }
 

@@ -57,7 +57,9 @@ std::string check(const Node& root, Targets& targets, const fuzz::cpp::BrowserBa
   const auto [module, messages] = skc::driver::translateText({}, "random.sk", text);
   if (!module) {
     const fuzz::cpp::Oracle oracle(text, {}, {});  // it must be C++
-    return "refused: " + messages;
+    const std::size_t error = messages.find("error: ");  // behind warnings
+    return "refused: " +
+           (error == std::string::npos ? messages : messages.substr(messages.rfind('\n', error) + 1));
   }
   fuzz::cpp::NativeObject native;
   if (targets.has("native")) {

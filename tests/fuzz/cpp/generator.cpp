@@ -9,11 +9,12 @@
 namespace fuzz::cpp {
 
 const std::vector<std::string> constructs = {
-    "aliasing",    "auto",    "braces",       "comma",  "constants",  "constrefs",    "defaults",
-    "designators", "enums",   "floats",       "inits",  "intrinsics", "jumps",        "loops",
-    "matrices",    "methods", "namespaces",   "nested", "narrow",     "narrow_enums", "objects",
-    "operators",   "order",   "overloads",    "parts",  "references", "structs",      "switch",
-    "templates",   "vectors", "whole_objects"};
+    "aliasing",    "arrays",       "auto",           "bindings",       "braces",   "comma",     "constants",
+    "constrefs",   "defaults",     "designators",    "doubles",        "enums",    "floats",    "inits",
+    "intrinsics",  "jumps",        "loops",          "masks",          "matrices", "methods",   "namespaces",
+    "narrow",      "narrow_enums", "narrow_vectors", "nested",         "objects",  "operators", "order",
+    "overloads",   "parts",        "references",     "static_members", "structs",  "switch",    "templates",
+    "temporaries", "vectors",      "whole_objects",  "wide_enums"};
 
 namespace {
 
@@ -26,6 +27,22 @@ const char* const prologue =
     "float3 lim(float3 v) { return float3(lim(v.x), lim(v.y), lim(v.z)); }\n"
     "float4 lim(float4 v) { return float4(lim(v.x), lim(v.y), lim(v.z), lim(v.w)); }";
 
+/// The parameters of templates.
+struct Templated {
+  TypeId type = -1;  ///< is spelled T
+  bool hasLength = false;  ///< the first parameter is an array of N elements
+};
+
+/// Doubles become multiples of 2^-12 below 64. The first difference keeps the number in the range of int.
+const char* const prologueOfDoubles =
+    "double lim(double x) {\n"
+    "double part = x - 4096.0 * double(int(x * 0.000244140625));\n"
+    "return double(int(part * 4096.0) % 262144) * 0.000244140625;\n"
+    "}\n"
+    "double2 lim(double2 v) { return double2(lim(v.x), lim(v.y)); }\n"
+    "double3 lim(double3 v) { return double3(lim(v.x), lim(v.y), lim(v.z)); }\n"
+    "double4 lim(double4 v) { return double4(lim(v.x), lim(v.y), lim(v.z), lim(v.w)); }";
+
 class Generator {
  public:
   Generator(std::uint64_t seed, std::uint64_t number, const std::set<std::string>& without)
@@ -33,6 +50,7 @@ class Generator {
 
   Program generate() {
     add(makeStatement(prologue), "");
+    if (unit_.has("doubles")) add(makeStatement(prologueOfDoubles), "");
     for (int i = 0; i < 2; ++i) types_.array(pickElement(), random_.between(2, 5));
     const int count = random_.between(16, 32);
     for (int i = 0; i < count; ++i) {
@@ -75,13 +93,8 @@ class Generator {
       const auto id = static_cast<TypeId>(random_.below(static_cast<std::size_t>(types_.size())));
       const Type& type = types_[id];
       if (type.kind == Type::Kind::Array || types_.leaves(id) > 12) continue;
-      if (type.kind == Type::Kind::Vector && !unit_.has("vectors")) continue;
-      if (type.kind == Type::Kind::Matrix && (!unit_.has("matrices") || random_.chance(3, 4))) continue;
-      if (type.kind != Type::Kind::Struct && type.scalar == Scalar::Float && !unit_.has("floats")) continue;
-      if (type.kind == Type::Kind::Scalar && type.scalar < Scalar::Int && type.scalar != Scalar::Bool &&
-          !unit_.has("narrow"))
-        continue;
-      return id;
+      if (type.kind == Type::Kind::Matrix && random_.chance(3, 4)) continue;
+      if (unit_.mayHave(id)) return id;
     }
   }
 
@@ -97,11 +110,16 @@ class Generator {
     Type type{.kind = Type::Kind::Enum, .name = qualified(space, name)};
     type.isScoped = random_.chance(1, 2);
     type.isFixed = type.isScoped || random_.chance(1, 2);
+    type.isWide = type.isScoped && unit_.with("wide_enums", 1, 4);
     std::string text = type.isScoped ? "enum class " + name : "enum " + name;
     int most = 1000;
     if (type.isFixed) {
       const bool isSaid = !type.isScoped || random_.chance(2, 3);
-      if (isSaid) {
+      if (type.isWide) {
+        type.scalar = random_.chance(1, 2) ? Scalar::Int : Scalar::Uint;
+        text += type.scalar == Scalar::Int ? " : " : " : unsigned ";
+        text += random_.chance(1, 2) ? "long" : "long long";
+      } else if (isSaid) {
         type.scalar = static_cast<Scalar>(
             unit_.has("narrow") && unit_.has("narrow_enums") ? random_.between(1, 6) : random_.between(5, 6));
         text += " : " + types_.spell(Types::of(type.scalar));
@@ -145,18 +163,23 @@ class Generator {
     const std::string space = newSpace(), name = unit_.newName("S");
     Type type{.kind = Type::Kind::Struct, .name = qualified(space, name)};
     const bool isTemplate = unit_.with("templates", 1, 4);
-    const TypeId parameter = isTemplate ? pickScalar() : -1;
-    if (isTemplate) type.name += "<" + types_.spell(parameter) + ">";
+    const TypeId parameter = isTemplate ? (random_.chance(1, 2) ? pickScalar() : pickElement()) : -1;
+    const int number = isTemplate && random_.chance(1, 3) ? random_.between(2, 3) : 0;
+    if (isTemplate)
+      type.name += "<" + types_.spell(parameter) + (number != 0 ? ", " + std::to_string(number) + ">" : ">");
     NodePtr members = makeList();
     const int count = random_.between(1, 4);
     for (int i = 0; i < count; ++i) {
       TypeId member = pickElement();
       if (isTemplate && (i == 0 || random_.chance(1, 2))) member = parameter;
       const bool isT = isTemplate && member == parameter;
-      if (random_.chance(1, 4)) member = types_.array(member, random_.between(2, 3));
+      const bool hasNumber = number != 0 && (i == 0 || random_.chance(1, 4));
+      if (hasNumber || random_.chance(1, 4))
+        member = types_.array(member, hasNumber ? number : random_.between(2, 3));
       Field field{.name = std::string("m") + static_cast<char>('a' + i), .type = member};
       std::string text = types_.declare(member, field.name);
-      if (isT && types_.isScalar(member)) text = "T " + field.name;
+      if (isT) text.replace(0, types_.spell(parameter).size(), "T");
+      if (hasNumber) text.replace(text.rfind('['), std::string::npos, "[N]");
       if (unit_.with("defaults", 1, 2)) {
         field.hasDefault = true;
         Body body(unit_, -1, 100, 100);
@@ -170,47 +193,80 @@ class Generator {
       }
       type.fields.push_back(std::move(field));
     }
+    if (unit_.with("static_members", 1, 4)) addStaticMember(*members, type.name);
     const TypeId id = types_.add(type);
     NodePtr methods = makeList();
     if (unit_.has("methods")) {
       const int methodCount = random_.between(0, 3);
       for (int i = 0; i < methodCount; ++i) methods->children.push_back(method(id));
     }
-    const std::string head = isTemplate ? "template <class T>\nstruct " : "struct ";
+    const std::string head = !isTemplate   ? "struct "
+                             : number == 0 ? "template <class T>\nstruct "
+                                           : "template <class T, int N>\nstruct ";
     add(makeStatement(head + name + " {\n$$};", std::move(members), std::move(methods)), space);
     if (unit_.with("operators", 1, 2)) addOperator(id, space);
   }
 
-  /// Declares parameters in a body, and gives their text; `templated` is spelled T.
+  void addStaticMember(Node& members, const std::string& owner) {
+    const std::string name = unit_.newName("c");
+    const TypeId element = pickScalar(),
+                 type = random_.chance(1, 3) ? types_.array(element, random_.between(2, 5)) : element;
+    Body body(unit_, -1, 100, 100);
+    body.stayConstant();
+    Expr value = types_[type].kind == Type::Kind::Array ? body.braces(type, 0) : body.value(type, 0);
+    members.children.push_back(
+        makeStatement("static constexpr " + types_.declare(type, name) + " = $;", std::move(value.node)));
+    unit_.constants.push_back({.name = owner + "::" + name, .type = type, .isReferable = false});
+  }
+
+  TypeId pickArray() {
+    std::vector<TypeId> arrays;
+    for (TypeId id = 0; id < types_.size(); ++id) {
+      if (types_[id].kind == Type::Kind::Array && types_.leaves(id) <= 16) arrays.push_back(id);
+    }
+    return arrays.empty() ? types_.array(Types::of(Scalar::Int), 3) : random_.pick(arrays);
+  }
+
+  /// Declares parameters in a body, and gives their text.
   std::string declareParameters(Body& body, Function& function, int count, TypeId first = -1,
-                                TypeId templated = -1) {
+                                Templated template_ = {}) {
     std::string text;
+    const TypeId templated = template_.type;
     for (int i = 0; i < count; ++i) {
       Parameter parameter{.type = i == 0 && first >= 0 ? first : pickElement()};
+      if (!(i == 0 && first >= 0) && !function.isInfix && unit_.with("arrays", 1, 6))
+        parameter.type = pickArray();
+      const bool isArray = types_[parameter.type].kind == Type::Kind::Array;
       const std::size_t chosen = random_.below(5);
       if (unit_.has("references")) {
         if (chosen < 2) parameter.passing = Passing::Reference;
         if (chosen == 2) parameter.passing = Passing::ConstReference;
       }
-      if (parameter.passing == Passing::Value && templated < 0 && !function.isInfix && i > 0 &&
+      // Templates deduce nothing from pointers, and methods take references alone.
+      if (isArray && ((i == 0 && first >= 0) || function.owner >= 0) && parameter.passing == Passing::Value)
+        parameter.passing = Passing::ConstReference;
+      if (parameter.passing == Passing::Value && !isArray && templated < 0 && !function.isInfix && i > 0 &&
           i == count - 1 && parameter.type != function.owner && random_.chance(1, 3))
         parameter.hasDefault = true;
       const std::string name = "p" + std::to_string(i);
-      const std::string spelling = parameter.type == templated ? "T" : types_.spell(parameter.type);
       text += i == 0 ? "" : ", ";
-      const bool isConstValue = parameter.passing == Passing::Value && random_.chance(1, 8);
-      text += parameter.passing == Passing::ConstReference ? "const " + spelling + "& " + name
-              : parameter.passing == Passing::Reference
-                  ? spelling + "& " + name
-                  : (isConstValue ? "const " : "") + spelling + " " + name;
+      const bool isConstValue = parameter.passing == Passing::Value && random_.chance(1, isArray ? 2 : 8);
+      parameter.takesConst = isConstValue || parameter.passing == Passing::ConstReference;
+      std::string declared = parameter.passing == Passing::Value
+                                 ? types_.declare(parameter.type, name)
+                                 : types_.declareReference(parameter.type, name);
+      const TypeId element = isArray ? types_[parameter.type].element : parameter.type;
+      if (element == templated) declared.replace(0, types_.spell(element).size(), "T");
+      if (i == 0 && template_.hasLength) declared.replace(declared.rfind('['), std::string::npos, "[N]");
+      text += (parameter.passing == Passing::ConstReference || isConstValue ? "const " : "") + declared;
       if (parameter.hasDefault) text += " = " + types_.simplest(parameter.type);
       if (parameter.hasDefault && types_.simplest(parameter.type).empty()) {
         text.resize(text.size() - 3);
         parameter.hasDefault = false;
       }
-      body.declare(
-          name, parameter.type,
-          parameter.passing == Passing::Reference || (parameter.passing == Passing::Value && !isConstValue));
+      const bool isValue = parameter.passing == Passing::Value;
+      const bool isMutable = isValue ? !isConstValue && !isArray : parameter.passing == Passing::Reference;
+      body.declare(name, parameter.type, isMutable).isPointer = isArray && isValue;
       function.parameters.push_back(parameter);
     }
     return text;
@@ -287,23 +343,58 @@ class Generator {
     add(std::move(node), space);
   }
 
+  /// The type and the value of a template's parameter N; `length` if it is not 0.
+  std::pair<TypeId, std::string> templateNumber(int length) {
+    if (length != 0) return {Types::of(Scalar::Int), std::to_string(length)};
+    std::vector<TypeId> enums;
+    for (TypeId id = 0; id < types_.size(); ++id) {
+      if (types_[id].kind == Type::Kind::Enum) enums.push_back(id);
+    }
+    switch (random_.below(5)) {
+      case 0: return {Types::of(Scalar::Bool), random_.chance(1, 2) ? "true" : "false"};
+      case 1: return {Types::of(Scalar::Uint), std::to_string(random_.between(0, 9)) + "u"};
+      case 2:
+        if (!enums.empty()) {
+          const TypeId type = random_.pick(enums);
+          return {type, random_.pick(types_[type].enumerators)};
+        }
+        break;
+      default: break;
+    }
+    return {Types::of(Scalar::Int), std::to_string(random_.between(-2, 9))};
+  }
+
   void addFunction() {
     std::string space = newSpace();
     std::string name = unit_.newName("f");
     Function function;
     if (random_.chance(4, 5)) function.result = pickElement();
-    TypeId first = -1, templated = -1;
-    std::string head;
-    bool hasNumber = false;
+    TypeId first = -1;
+    Templated template_;
+    std::string head, arguments;
+    TypeId numberType = -1;
     if (unit_.with("templates", 1, 6)) {
       function.isExact = true;
-      if (random_.chance(1, 2)) {
-        templated = first = pickElement();
-        head = "template <class T>\n";
-      } else {
-        hasNumber = true;
-        head = "template <int N>\n";
+      const bool hasType = random_.chance(1, 2), hasNumber = !hasType || random_.chance(1, 4);
+      const bool isOfArray = unit_.with("arrays", 1, 3);
+      if (hasType) {
+        template_.type = first = pickElement();
+        if (isOfArray) first = types_.array(template_.type, random_.between(2, 5));
+        head = "class T";
+        arguments = types_.spell(template_.type);
+      } else if (isOfArray) {
+        first = pickArray();
       }
+      if (hasNumber) {
+        template_.hasLength = isOfArray;
+        const auto [type, number] = templateNumber(isOfArray ? types_[first].count : 0);
+        numberType = type;
+        head += (head.empty() ? "" : ", ") + types_.spell(type) + " N";
+        arguments += (arguments.empty() ? "" : ", ") + number;
+      }
+      // Deduced, or given.
+      if ((!hasNumber || isOfArray) && random_.chance(1, 2)) arguments.clear();
+      head = "template <" + head + ">\n";
     } else if (unit_.with("overloads", 1, 5)) {
       std::vector<Function*> others;
       for (Function& other : unit_.functions) {
@@ -331,18 +422,14 @@ class Generator {
     function.name = qualified(space, name);
     Body body(unit_, function.result, functionCost, functionSize);
     declareConstants(body);
-    if (hasNumber) {
-      Variable& number = body.declare("N", Types::of(Scalar::Int), false);
-      number.isReferable = false;
-    }
+    if (numberType >= 0) body.declare("N", numberType, false).isReferable = false;
     const std::string parameters =
-        declareParameters(body, function, random_.between(first >= 0 ? 1 : 0, 4), first, templated);
+        declareParameters(body, function, random_.between(first >= 0 ? 1 : 0, 4), first, template_);
     if (function.isExact) {
       for (Parameter& parameter : function.parameters) parameter.hasDefault = false;
     }
-    if (templated >= 0 || hasNumber) templates_.insert(function.name);
-    if (templated >= 0 && random_.chance(1, 2)) function.name += "<" + types_.spell(templated) + ">";
-    if (hasNumber) function.name += "<" + std::to_string(random_.between(-2, 9)) + ">";
+    if (template_.type >= 0 || numberType >= 0) templates_.insert(function.name);
+    if (!arguments.empty()) function.name += "<" + arguments + ">";
     const std::string prefix = random_.chance(1, 6) ? "inline " : "";
     head += prefix + (function.result < 0 ? "void" : types_.spell(function.result)) + " " + name + "(" +
             parameters + ") {\n$\n}";

@@ -30,7 +30,8 @@ Expr Body::integer(int depth) {
     case 5: {
       Expr test = condition(depth - 1), yes = integer(depth - 1), no = integer(depth - 1);
       const TypeId type = yes.type == no.type ? yes.type : types_.common(yes.type, no.type);
-      return made("($ ? $ : $)", type, listOf(std::move(test), std::move(yes), std::move(no)));
+      return made("($ ? $ : $)", type,
+                  listOf(std::move(test), noComponent(std::move(yes)), noComponent(std::move(no))));
     }
     case 6:
     case 7:
@@ -44,7 +45,7 @@ Expr Body::integer(int depth) {
     case 11: {
       const auto to = static_cast<TypeId>(random_.below(unit_.has("narrow") ? 7 : 1));
       const TypeId type = unit_.has("narrow") ? to : Types::of(Scalar::Uint);
-      if (unit_.has("floats") && random_.chance(1, 4)) return converted(floating(depth - 1), type, false);
+      if (hasFloating() && random_.chance(1, 4)) return converted(floating(depth - 1), type, false);
       return converted(integer(depth - 1), type, false);
     }
     case 12:
@@ -52,7 +53,10 @@ Expr Body::integer(int depth) {
         Expr first = mayHaveEffects() ? effectExpression(depth - 1) : integer(depth - 1);
         Expr second = integer(depth - 1);
         const TypeId type = second.type;
-        return made("($, $)", type, listOf(std::move(first), std::move(second)));
+        const bool mayBeComponent = second.mayBeComponent;
+        Expr result = made("($, $)", type, listOf(std::move(first), std::move(second)));
+        result.mayBeComponent = mayBeComponent;
+        return result;
       }
       return integerBinary(depth);
     case 13:
@@ -62,9 +66,10 @@ Expr Body::integer(int depth) {
       return integerBinary(depth);
     case 14:
       if (unit_.has("vectors")) {
-        const Scalar scalar = random_.chance(1, 2) ? Scalar::Int : Scalar::Uint;
+        Scalar scalar = random_.chance(1, 2) ? Scalar::Int : Scalar::Uint;
+        if (unit_.with("narrow_vectors", 1, 4)) scalar = static_cast<Scalar>(random_.between(1, 4));
         const int count = random_.between(2, 4);
-        Expr vector = vectorOf(types_.vector(scalar, count), depth - 1);
+        Expr vector = vectorOf(Types::vector(scalar, count), depth - 1);
         const std::string name(1, "xyzw"[random_.below(static_cast<std::size_t>(count))]);
         return made("$." + name, Types::of(scalar), listOf(std::move(vector)));
       }
@@ -119,6 +124,7 @@ std::optional<Expr> Body::integerAssignment(int depth) {
   const std::uint64_t bit = std::uint64_t{1} << variableOf(*found).bit;
   const auto written = [&](Expr expr) {
     expr.effects.writes |= bit;
+    expr.mayBeComponent = isComponent(*found);
     return expr;
   };
   const bool isBool = type == Types::of(Scalar::Bool);

@@ -108,7 +108,7 @@ Expr Body::spelled(const Place& place, int depth) {
   const std::uint64_t bit = std::uint64_t{1} << variable.bit;
   Expr result = made(std::move(text), place.type, std::move(parts));
   result.effects.reads |= bit;
-  result.range = storedRange;
+  result.range = precisionOf(types_[place.type]).ofVariables();
   if (variable.below != 0) result.range = {4, 0};
   return result;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -30,7 +31,7 @@ std::string firstError(const std::string& file) {
   return "no message";
 }
 
-/// The program as C++: parameters of kernels are declared as in C++, and kernels can be called from outside.
+/// The program as C++: parameters of kernels are declared as in C++, references to arrays of vectors avoid macros, and kernels can be called from outside.
 std::string asCpp(std::string text, std::vector<std::string>& kernels) {
   constexpr std::string_view begin = "kernel void ";
   std::string callable;
@@ -44,7 +45,9 @@ std::string asCpp(std::string text, std::vector<std::string>& kernels) {
                  "(const int a, const uint b, const float c, int& r0, uint& r1, float& r2)");
     text.replace(at, begin.size(), "void ");
   }
-  return text + callable;
+  // `int2 (&w)[3]` is no call of the macro int2.
+  static const std::regex arrays("\\b((?:u?char|u?short|u?int|float|double)[234]) \\(&");
+  return std::regex_replace(text, arrays, "$1_t (&") + callable;
 }
 
 }  // namespace

@@ -7,12 +7,19 @@ using uint = unsigned;
 using uchar = unsigned char;
 using ushort = unsigned short;
 
-#define SK_VECTOR(name, element, width) typedef element name##width __attribute__((ext_vector_type(width)));
+#define SK_VECTOR(name, element, width)                                \
+  typedef element name##width __attribute__((ext_vector_type(width))); \
+  typedef name##width name##width##_t;  // in front of a parenthesis
 #define SK_VECTORS(name, element) \
   SK_VECTOR(name, element, 2) SK_VECTOR(name, element, 3) SK_VECTOR(name, element, 4)
 SK_VECTORS(int, int)
 SK_VECTORS(uint, unsigned)
 SK_VECTORS(float, float)
+SK_VECTORS(double, double)
+SK_VECTORS(char, char)
+SK_VECTORS(uchar, unsigned char)
+SK_VECTORS(short, short)
+SK_VECTORS(ushort, unsigned short)
 
 template <class V>
 inline constexpr int width_of = 1;
@@ -74,7 +81,41 @@ template <class T>
 T clamp(T x, T low, T high) {
   return min(max(x, low), high);
 }
-inline int abs(int x) { return x < 0 ? -x : x; }
+template <class T>
+T abs(T x) {
+  return x < 0 ? -x : x;
+}
+inline float floor(float x) { return __builtin_floorf(x); }
+inline float ceil(float x) { return __builtin_ceilf(x); }
+inline float trunc(float x) { return __builtin_truncf(x); }
+inline float round(float x) { return __builtin_rintf(x); }
+inline double floor(double x) { return __builtin_floor(x); }
+inline double ceil(double x) { return __builtin_ceil(x); }
+inline double trunc(double x) { return __builtin_trunc(x); }
+inline double round(double x) { return __builtin_rint(x); }
+template <class T>
+T fract(T x) {
+  return x - floor(x);
+}
+
+/// What is done with a mask.
+template <class Mask, class V>
+V select(Mask mask, V yes, V no) {
+  for (int i = 0; i < width_of<V>; ++i) yes[i] = mask[i] ? yes[i] : no[i];
+  return yes;
+}
+template <class Mask>
+bool any(Mask mask) {
+  bool result = false;
+  for (int i = 0; i < width_of<Mask>; ++i) result |= mask[i] != 0;
+  return result;
+}
+template <class Mask>
+bool all(Mask mask) {
+  bool result = true;
+  for (int i = 0; i < width_of<Mask>; ++i) result &= mask[i] != 0;
+  return result;
+}
 
 /// Makes a kernel callable for many elements.
 #define SK_KERNEL(name)                                                                                 \
@@ -93,3 +134,18 @@ inline int abs(int x) { return x < 0 ? -x : x; }
 #define float2(...) make<float2>(__VA_ARGS__)
 #define float3(...) make<float3>(__VA_ARGS__)
 #define float4(...) make<float4>(__VA_ARGS__)
+#define double2(...) make<double2>(__VA_ARGS__)
+#define double3(...) make<double3>(__VA_ARGS__)
+#define double4(...) make<double4>(__VA_ARGS__)
+#define char2(...) make<char2>(__VA_ARGS__)
+#define char3(...) make<char3>(__VA_ARGS__)
+#define char4(...) make<char4>(__VA_ARGS__)
+#define uchar2(...) make<uchar2>(__VA_ARGS__)
+#define uchar3(...) make<uchar3>(__VA_ARGS__)
+#define uchar4(...) make<uchar4>(__VA_ARGS__)
+#define short2(...) make<short2>(__VA_ARGS__)
+#define short3(...) make<short3>(__VA_ARGS__)
+#define short4(...) make<short4>(__VA_ARGS__)
+#define ushort2(...) make<ushort2>(__VA_ARGS__)
+#define ushort3(...) make<ushort3>(__VA_ARGS__)
+#define ushort4(...) make<ushort4>(__VA_ARGS__)

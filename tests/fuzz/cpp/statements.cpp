@@ -11,12 +11,8 @@ TypeId Body::pickType(bool mayBeArray) {
     const Type& type = types_[id];
     if (type.kind == Type::Kind::Array && !mayBeArray) continue;
     if (types_.leaves(id) > 24) continue;
-    if (type.kind == Type::Kind::Vector && !unit_.has("vectors")) continue;
-    if (type.kind == Type::Kind::Matrix && (!unit_.has("matrices") || random_.chance(2, 3))) continue;
-    if (type.scalar == Scalar::Float && type.kind != Type::Kind::Struct && !unit_.has("floats")) continue;
-    const bool isNarrow =
-        type.kind == Type::Kind::Scalar && type.scalar != Scalar::Bool && type.scalar < Scalar::Int;
-    if (isNarrow && (!unit_.has("narrow") || random_.chance(1, 2))) continue;
+    if (type.kind == Type::Kind::Matrix && random_.chance(2, 3)) continue;
+    if (!unit_.mayHave(id)) continue;
     return id;
   }
 }
@@ -56,7 +52,44 @@ NodePtr Body::statement() {
   return makeStatement("{\n$}", block(pickCount()));
 }
 
+/// `auto [x, y] = s;`
+NodePtr Body::bindings() {
+  const TypeId type = pickType(true);
+  const Type info = types_[type];
+  const bool isArray = info.kind == Type::Kind::Array;
+  if ((!isArray && info.kind != Type::Kind::Struct) || isFull()) return nullptr;
+  bool isConst = random_.chance(1, 4);
+  std::optional<Expr> whole;
+  if (isArray) {
+    std::vector<Place> all = places([&](TypeId id) { return id == type; }, false);
+    std::erase_if(all, [&](const Place& place) { return place.path.empty() && variableOf(place).isPointer; });
+    if (all.empty()) return nullptr;
+    const Place& chosen = random_.pick(all);
+    isConst |= !variableOf(chosen).isMutable;  // elements stay const
+    whole = target(chosen, 0);
+  } else {
+    whole = value(type, 2);
+  }
+  std::string names;
+  std::vector<TypeId> parts(static_cast<std::size_t>(info.count), info.element);
+  if (!isArray) {
+    parts.clear();
+    for (const Field& field : info.fields) parts.push_back(field.type);
+  }
+  for (const TypeId part : parts) {
+    const std::string name = unit_.newName("x");
+    names += names.empty() ? name : ", " + name;
+    declare(name, part, !isConst);
+  }
+  const std::size_t form = isArray ? 0 : random_.below(4);
+  const std::string end = form == 3 ? "]{$};" : form == 2 ? "]($);" : "] = $;";
+  return makeStatement((isConst ? "const auto [" : "auto [") + names + end, std::move(whole->node));
+}
+
 NodePtr Body::declaration() {
+  if (unit_.with("bindings", 1, 4)) {
+    if (NodePtr node = bindings()) return node;
+  }
   const TypeId type = pickType(true);
   const Type::Kind kind = types_[type].kind;
   const bool isArray = kind == Type::Kind::Array;
@@ -115,8 +148,8 @@ Expr Body::effectExpression(int depth) {
       if (std::optional<Expr> found = integerAssignment(depth)) return std::move(*found);
       break;
     case 2:
-      if (unit_.has("floats")) {
-        if (std::optional<Expr> found = floatAssignment(depth)) return std::move(*found);
+      if (hasFloating()) {
+        if (std::optional<Expr> found = floatAssignment(pickFloating(), depth)) return std::move(*found);
       }
       break;
     case 3:
@@ -323,7 +356,8 @@ bool Body::addCall(Node& list, const Function& function) {
   if (!canCall(function)) return false;
   if (function.owner >= 0) list.children.push_back(variable(function.owner));
   for (const Parameter& parameter : function.parameters) {
-    if (parameter.passing == Passing::Reference) list.children.push_back(variable(parameter.type));
+    const bool isArray = types_[parameter.type].kind == Type::Kind::Array;
+    if (parameter.passing == Passing::Reference || isArray) list.children.push_back(variable(parameter.type));
   }
   std::optional<Expr> called = callOf(function, 2);
   if (!called) return false;
@@ -339,7 +373,9 @@ bool Body::addCall(Node& list, const Function& function) {
 }
 
 NodePtr Body::foldOf(const std::string& text, TypeId type) {
-  if (types_.isFloat(type)) return makeStatement("r2 = lim(r2 * 0.5f + lim(" + text + "));");
+  if (type == Types::of(Scalar::Float)) return makeStatement("r2 = lim(r2 * 0.5f + lim(" + text + "));");
+  if (type == Types::of(Scalar::Double))
+    return makeStatement("r0 = r0 * 31 + int(" + text + ") + int(lim(" + text + ") * 4096.0);");
   if (type == Types::of(Scalar::Uint)) return makeStatement("r1 = r1 * 31u + " + text + ";");
   return makeStatement("r0 = r0 * 31 + int(" + text + ");");
 }

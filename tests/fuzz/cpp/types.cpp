@@ -7,15 +7,16 @@
 namespace fuzz::cpp {
 namespace {
 
-constexpr const char* scalarNames[scalarCount] = {"bool",   "char", "uchar", "short",
-                                                  "ushort", "int",  "uint",  "float"};
+constexpr const char* scalarNames[scalarCount] = {"bool", "char", "uchar", "short", "ushort",
+                                                  "int",  "uint", "float", "double"};
 
 }  // namespace
 
 Types::Types() {
   for (int i = 0; i < scalarCount; ++i)
     all_.push_back({.kind = Type::Kind::Scalar, .scalar = static_cast<Scalar>(i), .name = scalarNames[i]});
-  for (const Scalar scalar : {Scalar::Int, Scalar::Uint, Scalar::Float}) {
+  for (int first = 1; first < scalarCount; ++first) {
+    const auto scalar = static_cast<Scalar>(first);
     for (int width = 2; width <= 4; ++width) {
       all_.push_back({.kind = Type::Kind::Vector,
                       .scalar = scalar,
@@ -34,11 +35,9 @@ Types::Types() {
   }
 }
 
-TypeId Types::vector(Scalar scalar, int count) const {
-  return scalarCount + (of(scalar) - of(Scalar::Int)) * 3 + count - 2;
-}
+TypeId Types::vector(Scalar scalar, int count) { return scalarCount + (of(scalar) - 1) * 3 + count - 2; }
 
-TypeId Types::matrix(int count) const { return scalarCount + 9 + count - 2; }
+TypeId Types::matrix(int count) const { return scalarCount + 3 * (scalarCount - 1) + count - 2; }
 
 TypeId Types::array(TypeId element, int count) {
   for (int i = 0; i < size(); ++i) {
@@ -96,6 +95,11 @@ std::string Types::declare(TypeId id, const std::string& name) const {
   return spell(id) + " " + name + suffix;
 }
 
+std::string Types::declareReference(TypeId id, const std::string& name) const {
+  if ((*this)[id].kind == Type::Kind::Array) return declare(id, "(&" + name + ")");
+  return spell(id) + "& " + name;
+}
+
 std::string Types::spell(TypeId id) const { return (*this)[id].name; }
 
 std::string Types::simplest(TypeId id) const {
@@ -107,6 +111,7 @@ std::string Types::simplest(TypeId id) const {
         case Scalar::Int: return "0";
         case Scalar::Uint: return "0u";
         case Scalar::Float: return "0.0f";
+        case Scalar::Double: return "double(0)";
         default: return spell(id) + "(0)";
       }
     case Type::Kind::Vector: return spell(id) + "(" + simplest(type.element) + ")";

@@ -9,8 +9,8 @@
 
 namespace fuzz::cpp {
 
-enum class Scalar : std::uint8_t { Bool, Char, Uchar, Short, Ushort, Int, Uint, Float };
-constexpr int scalarCount = 8;
+enum class Scalar : std::uint8_t { Bool, Char, Uchar, Short, Ushort, Int, Uint, Float, Double };
+constexpr int scalarCount = 9;
 
 using TypeId = int;
 
@@ -31,6 +31,7 @@ struct Type {
   std::vector<std::string> enumerators = {};  ///< with all that is needed to name them
   bool isScoped = false;  ///< enum class
   bool isFixed = false;  ///< an enumeration whose underlying type is declared
+  bool isWide = false;  ///< an enumeration of 64 bits, whose values have the 32 of `scalar`
 };
 
 /// All types of a program. Scalars are their own ids.
@@ -43,18 +44,31 @@ class Types {
   int size() const { return static_cast<int>(all_.size()); }
 
   static constexpr TypeId of(Scalar scalar) { return static_cast<TypeId>(scalar); }
-  TypeId vector(Scalar scalar, int count) const;  ///< of Int, Uint or Float
+  static TypeId vector(Scalar scalar, int count);  ///< of any scalar but Bool
   TypeId matrix(int count) const;
   TypeId array(TypeId element, int count);
   TypeId add(Type type);
 
   bool isScalar(TypeId id) const { return (*this)[id].kind == Type::Kind::Scalar; }
-  bool isInteger(TypeId id) const { return isScalar(id) && id != of(Scalar::Float); }
+  bool isInteger(TypeId id) const { return isScalar(id) && (*this)[id].scalar < Scalar::Float; }
   /// Integers, and what becomes one by itself.
   bool isLikeInteger(TypeId id) const {
     return isInteger(id) || ((*this)[id].kind == Type::Kind::Enum && !(*this)[id].isScoped);
   }
-  bool isFloat(TypeId id) const { return id == of(Scalar::Float); }
+  /// Float or Double.
+  bool isFloating(TypeId id) const { return isScalar(id) && (*this)[id].scalar >= Scalar::Float; }
+  /// Float or Double, or a vector of them.
+  bool hasFloats(TypeId id) const {
+    const Type& type = (*this)[id];
+    return (type.kind == Type::Kind::Scalar || type.kind == Type::Kind::Vector) &&
+           type.scalar >= Scalar::Float;
+  }
+  /// A scalar or a vector of 8 or 16 bits, not a bool.
+  bool isNarrow(TypeId id) const {
+    const Type& type = (*this)[id];
+    return (type.kind == Type::Kind::Scalar || type.kind == Type::Kind::Vector) &&
+           type.scalar > Scalar::Bool && type.scalar < Scalar::Int;
+  }
   bool isAggregate(TypeId id) const {
     return (*this)[id].kind == Type::Kind::Struct || (*this)[id].kind == Type::Kind::Array;
   }
@@ -68,6 +82,8 @@ class Types {
   TypeId common(TypeId a, TypeId b) const;
   /// "int x" or "int x[3]".
   std::string declare(TypeId id, const std::string& name) const;
+  /// "int& x", or "int (&x)[3]".
+  std::string declareReference(TypeId id, const std::string& name) const;
   std::string spell(TypeId id) const;
   /// The simplest expression of this type; empty for arrays.
   std::string simplest(TypeId id) const;

@@ -23,6 +23,7 @@ struct Parameter {
   TypeId type;
   Passing passing = Passing::Value;
   bool hasDefault = false;
+  bool takesConst = true;  ///< of an array as a value: C++ passes a pointer to const
 };
 
 struct Function {
@@ -47,6 +48,7 @@ struct Variable {
   TypeId type = 0;
   bool isMutable = false;
   bool isReferable = true;  ///< can be bound to a reference
+  bool isPointer = false;  ///< an array that C++ passes as a pointer
   int bit = 0;  ///< its bit in Effects
   int below = 0;  ///< if not 0: an integer from 0 to this, exclusive
 };
@@ -59,6 +61,19 @@ struct Unit {
   /// True with probability `count` / `of`, if the construct is not left out.
   bool with(const char* construct, std::size_t count, std::size_t of) {
     return random.chance(count, of) && has(construct);
+  }
+  /// Chooses among the types that are not left out, some more seldom than others.
+  bool mayHave(TypeId id) {
+    const Type& type = types[id];
+    if (type.kind == Type::Kind::Struct || type.kind == Type::Kind::Enum || type.kind == Type::Kind::Array)
+      return true;
+    const bool isVector = type.kind == Type::Kind::Vector;
+    if (isVector && !has("vectors")) return false;
+    if (type.kind == Type::Kind::Matrix && !has("matrices")) return false;
+    if (type.scalar == Scalar::Float && !has("floats")) return false;
+    if (type.scalar == Scalar::Double && (!has("doubles") || random.chance(1, 2))) return false;
+    if (!types.isNarrow(id)) return true;
+    return has(isVector ? "narrow_vectors" : "narrow") && (!isVector || random.chance(1, 3));
   }
   /// Marks functions, and those that they call, as reached.
   void reach(const std::set<std::size_t>& called) {

@@ -20,6 +20,17 @@ std::string swizzle(Random& random, int width, int count, bool isWritten) {
 
 }  // namespace
 
+Scalar Body::pickVectorScalar() {
+  for (;;) {
+    const auto scalar = static_cast<Scalar>(random_.between(1, scalarCount - 1));
+    const bool isNarrow = scalar < Scalar::Int;
+    if (isNarrow && (!unit_.has("narrow_vectors") || random_.chance(1, 2))) continue;
+    if (scalar == Scalar::Float && !unit_.has("floats")) continue;
+    if (scalar == Scalar::Double && !unit_.has("doubles")) continue;
+    return scalar;
+  }
+}
+
 Expr Body::vectorOf(TypeId type, int depth) {
   if (depth <= 0 || isFull()) return vectorParts(type, 0);
   const Type info = types_[type];
@@ -28,28 +39,37 @@ Expr Body::vectorOf(TypeId type, int depth) {
     case 1: return vectorBinary(type, depth);
     case 2: {  // components of another vector
       const int width = random_.between(2, 4);
-      Expr whole = value(types_.vector(info.scalar, width), depth - 1);
+      Expr whole = value(Types::vector(info.scalar, width), depth - 1);
+      const Range range = whole.range;
       Expr result =
           made("$." + swizzle(random_, width, info.count, false), type, listOf(std::move(whole)), true);
-      result.range = storedRange;
+      result.range = range;
       return result;
     }
     case 3: {
       Expr any = vectorOf(type, depth - 1);
       const Range range = any.range;
-      Expr result = made(info.scalar != Scalar::Float && random_.chance(1, 2) ? "(~$)" : "(-$)", type,
+      Expr result = made(info.scalar < Scalar::Float && random_.chance(1, 2) ? "(~$)" : "(-$)", type,
                          listOf(std::move(any)));
       result.range = range;
       return result;
     }
     case 4:
       if (info.scalar == Scalar::Int) {  // a comparison's mask
-        const Scalar compared = unit_.has("floats") && random_.chance(1, 3) ? Scalar::Float
-                                : random_.chance(1, 2)                      ? Scalar::Int
-                                                                            : Scalar::Uint;
-        Expr a = value(types_.vector(compared, info.count), depth - 1);
-        Expr b = unsequenced(a, value(types_.vector(compared, info.count), depth - 1));
-        return made(random_.chance(1, 2) ? "($ < $)" : "($ == $)", type, listOf(std::move(a), std::move(b)));
+        const Scalar compared = random_.pick(std::vector<Scalar>{Scalar::Int, Scalar::Uint, Scalar::Float});
+        if (compared != Scalar::Float || unit_.has("floats")) return mask(compared, info.count, depth);
+      }
+      if (unit_.has("masks")) {
+        Expr test = mask(info.scalar, info.count, depth - 1), yes = value(type, depth - 1),
+             no = value(type, depth - 1);
+        const Range range = {std::max(yes.range.magnitude, no.range.magnitude),
+                             std::max(yes.range.fraction, no.range.fraction)};
+        const bool isPlain = (test.effects | yes.effects | no.effects).written() == 0;
+        const std::string name = types_.spell(type), both = name + "($) : " + name + "($))";
+        Expr result = made(isPlain && random_.chance(1, 2) ? "($ ? " + both : "select($, $, $)", type,
+                           listOf(std::move(test), std::move(yes), std::move(no)));
+        result.range = range;
+        return result;
       }
       return vectorParts(type, depth);
     case 5:
@@ -60,17 +80,32 @@ Expr Body::vectorOf(TypeId type, int depth) {
   }
 }
 
+/// A comparison of vectors: -1 where true. Its type is that of its numbers, of as many bits.
+Expr Body::mask(Scalar scalar, int count, int depth) {
+  static const std::vector<std::string> operators = {"==", "!=", "<", "<=", ">", ">="};
+  const TypeId type = Types::vector(scalar, count);
+  Expr a = value(type, depth - 1);
+  Expr b = unsequenced(a, value(type, depth - 1));
+  const TypeId result =
+      scalar == Scalar::Float || scalar == Scalar::Uint ? Types::vector(Scalar::Int, count) : type;
+  Expr test = made("($ " + random_.pick(operators) + " $)", result, listOf(std::move(a), std::move(b)), true);
+  if (types_[result].scalar != Scalar::Int) test.node->simple.clear();
+  return test;
+}
+
 Expr Body::vectorBinary(TypeId type, int depth) {
   const Type info = types_[type];
-  const bool isFloat = info.scalar == Scalar::Float;
+  const bool isFloat = types_.hasFloats(type);
   static const std::vector<std::string> ofFloats = {"+", "-", "*"};
   static const std::vector<std::string> ofIntegers = {"+", "-", "*", "&", "|", "^"};
   const std::string& op = random_.pick(isFloat ? ofFloats : ofIntegers);
   Expr a = value(type, depth - 1);
   Expr b = random_.chance(1, 3) ? value(info.element, depth - 1) : value(type, depth - 1);
   b = unsequenced(a, std::move(b));
-  if (!isFloat && random_.chance(1, 6)) {
-    const std::string mask = types_.isScalar(b.type) ? "31" : types_.spell(type) + "(31)";
+  if (!isFloat && random_.chance(1, 6) && !(types_.isNarrow(type) && types_.isScalar(b.type))) {
+    const bool isByte = info.scalar == Scalar::Char || info.scalar == Scalar::Uchar;
+    const std::string most = isByte ? "7" : types_.isNarrow(type) ? "15" : "31";
+    const std::string mask = types_.isScalar(b.type) ? most : types_.spell(type) + "(" + most + ")";
     const TypeId count = b.type;
     Expr masked = made(
         "($ & " + std::string(info.scalar == Scalar::Uint && types_.isScalar(b.type) ? "31u" : mask) + ")",
@@ -112,7 +147,7 @@ Expr Body::vectorParts(TypeId type, int depth) {
     for (int left = info.count; left > 0;) {
       if (left >= 2 && depth > 0 && random_.chance(1, 4) && left < info.count) {
         const int width = random_.between(2, left);
-        add(limited(value(types_.vector(info.scalar, width), depth - 1), 0));
+        add(limited(value(Types::vector(info.scalar, width), depth - 1), 0));
         left -= width;
       } else {
         add(number());
@@ -131,9 +166,9 @@ std::optional<Expr> Body::swizzleAssignment(int depth) {
       place([&](TypeId id) { return types_[id].kind == Type::Kind::Vector; }, true);
   if (!found) return std::nullopt;
   const Type info = types_[found->type];
-  const bool isFloat = info.scalar == Scalar::Float;
+  const bool isFloat = types_.hasFloats(found->type);
   const int count = random_.between(2, info.count);
-  const TypeId type = types_.vector(info.scalar, count);
+  const TypeId type = Types::vector(info.scalar, count);
   const std::string components = swizzle(random_, info.count, count, true);
   const bool isPlain = random_.chance(1, 2);
   Expr right =
