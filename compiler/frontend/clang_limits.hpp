@@ -15,6 +15,9 @@ class Diagnostics;
 
 namespace skc::frontend {
 
+/// More than anybody nests by hand, and than drivers' compilers reliably accept.
+inline constexpr int deepestNesting = 1000;
+
 /// Thrown where a bound is reached, after an error has been reported. Clang knows no exceptions: its functions are left without
 /// their destructors, so that its objects may only be abandoned.
 struct ClangStopped {};

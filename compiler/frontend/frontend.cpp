@@ -30,6 +30,7 @@
 #include "frontend/quotient_warnings.hpp"
 #include "frontend/tokens/float_literals.hpp"
 #include "frontend/tokens/token_editor.hpp"
+#include "support/crash_recovery.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
 // LLVM's headers poison memory that their allocators have not handed out; libclang-cpp, built without the
@@ -238,16 +239,24 @@ class Frontend::Unit {
     return files;
   }
 
-  /// Returns no tokens after reporting that there are too many.
+  /// Returns no tokens after reporting that there are too many, or too many blocks in each other.
   std::vector<clang::Token> lex() {
     clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
     preprocessor.EnterMainSourceFile();
     std::vector<clang::Token> tokens;
+    int depth = 0;  // of braces
     do {
       preprocessor.Lex(tokens.emplace_back());
       if (tokens.size() > mostTokens) {
         const auto place = compiler_.getSourceManager().getExpansionLoc(tokens.back().getLocation());
         diagnostics_->report(Diag::TooManyTokens, locOf(place), {std::to_string(mostTokens)});
+        return {};
+      }
+      if (tokens.back().is(clang::tok::l_brace)) ++depth;
+      if (tokens.back().is(clang::tok::r_brace)) --depth;
+      if (depth > deepestNesting) {
+        const auto place = compiler_.getSourceManager().getExpansionLoc(tokens.back().getLocation());
+        diagnostics_->report(Diag::NestedTooDeep, locOf(place), {std::to_string(deepestNesting)});
         return {};
       }
     } while (tokens.back().isNot(clang::tok::eof));
@@ -257,14 +266,25 @@ class Frontend::Unit {
   /// Does what clang::ParseAST does, but from tokens instead of the main file.
   void parse(const std::vector<clang::Token>& tokens) {
     clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
-    clang::Parser parser(preprocessor, compiler_.getSema(), /*SkipFunctionBodies=*/false);
+    auto owned =
+        std::make_unique<clang::Parser>(preprocessor, compiler_.getSema(), /*SkipFunctionBodies=*/false);
+    clang::Parser& parser = *owned;
     preprocessor.EnterTokenStream(tokens, /*DisableMacroExpansion=*/true, /*IsReinject=*/false);
-    parser.Initialize();
-    clang::Parser::DeclGroupPtrTy group;
-    clang::Sema::ModuleImportState imports;
-    for (bool atEnd = parser.ParseFirstTopLevelDecl(group, imports); !atEnd;
-         atEnd = parser.ParseTopLevelDecl(group, imports)) {
-    }
+    clang::SourceLocation reached;
+    preprocessor.setTokenWatcher([&](const clang::Token& token) { reached = token.getLocation(); });
+    const bool isParsed = survivesCrash([&] {
+      parser.Initialize();
+      clang::Parser::DeclGroupPtrTy group;
+      clang::Sema::ModuleImportState imports;
+      for (bool atEnd = parser.ParseFirstTopLevelDecl(group, imports); !atEnd;
+           atEnd = parser.ParseTopLevelDecl(group, imports)) {
+      }
+    });
+    preprocessor.setTokenWatcher(nullptr);
+    if (isParsed) return;
+    static_cast<void>(owned.release());
+    diagnostics_->report(Diag::ClangCrashed, locOf(reached));
+    throw ClangStopped();
   }
 
   Options options_;

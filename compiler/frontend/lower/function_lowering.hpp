@@ -16,6 +16,7 @@
 
 #include <clang/AST/StmtVisitor.h>
 
+#include "frontend/clang_limits.hpp"
 #include "frontend/lower/aliases.hpp"
 #include "frontend/lower/module_lowering.hpp"
 #include "frontend/tokens/float_literals.hpp"
@@ -34,9 +35,6 @@ class Level {
  private:
   int& depth_;
 };
-
-/// More than anybody nests by hand, and than drivers' compilers reliably accept.
-inline constexpr int deepestNesting = 1000;
 
 class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::ExprPtr> {
  public:

@@ -20,6 +20,12 @@ const ir::Expr* baseOf(const ir::Expr& e) {
   return base == nullptr ? nullptr : base->get();
 }
 
+/// True for the values of constants, and for elements of gathers.
+bool isUnchanging(const ir::Expr& e) {
+  return std::holds_alternative<ir::ConstantRef>(e.node) || std::holds_alternative<ir::Literal>(e.node) ||
+         std::holds_alternative<ir::Construct>(e.node) || std::holds_alternative<ir::GatherRead>(e.node);
+}
+
 void addRoots(const ir::Expr& location, std::vector<ir::VarId>& roots) {
   if (const auto* variable = std::get_if<ir::VarRef>(&location.node)) {
     roots.push_back(variable->var);
@@ -34,11 +40,18 @@ void addRoots(const ir::Expr& location, std::vector<ir::VarId>& roots) {
 }  // namespace
 
 bool isLocation(const ir::Expr& e) {
-  if (std::holds_alternative<ir::VarRef>(e.node)) return true;
   if (const auto* choice = std::get_if<ir::Select>(&e.node))
     return choice->cond->type.isScalar() && isLocation(*choice->yes) && isLocation(*choice->no);
-  const ir::Expr* base = baseOf(e);
-  return base != nullptr && isLocation(*base);
+  if (const ir::Expr* base = baseOf(e)) return isLocation(*base);
+  return std::holds_alternative<ir::VarRef>(e.node) || isUnchanging(e);
+}
+
+bool isWritable(const ir::Expr& location) {
+  if (std::holds_alternative<ir::VarRef>(location.node)) return true;
+  if (const auto* choice = std::get_if<ir::Select>(&location.node))
+    return isWritable(*choice->yes) && isWritable(*choice->no);
+  const ir::Expr* base = baseOf(location);
+  return base != nullptr && isWritable(*base);
 }
 
 std::vector<ir::VarId> rootsOf(const ir::Expr& location) {

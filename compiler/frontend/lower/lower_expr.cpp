@@ -196,6 +196,8 @@ void FunctionLowering::keepLocation(ExprPtr& e, const Variables& changed) {
     keepValue(choice->cond, changed);
     keepLocation(choice->yes, changed);
     keepLocation(choice->no, changed);
+  } else if (!std::holds_alternative<ir::VarRef>(e->node)) {
+    keepValue(e, changed);
   }
 }
 
@@ -220,7 +222,7 @@ ExprPtr FunctionLowering::place(const clang::Expr* e) {
     const std::string& gather = function_.variables[read->stream.id].name;
     module_.fail(Diag::GatherAssigned, e->getBeginLoc(), {gather + "[...]", gather});
   }
-  if (!isLocation(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
+  if (!isLocation(*result) || !isWritable(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
   return result;
 }
 

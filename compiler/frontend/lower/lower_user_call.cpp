@@ -104,7 +104,7 @@ bool FunctionLowering::needsBranch(const std::vector<Argument>& arguments, std::
   const ir::Function& function = module.functions[callee];
   const auto isWritten = [&](std::size_t p) { return function.variables[p].role == ir::VarRole::InOut; };
   if (isWritten(i)) return true;
-  if (!arguments[i].isReference || !isLocation(*arguments[i].value)) return false;
+  if (!arguments[i].isReference) return false;
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     if (isWritten(k) && mayOverlap(module, *arguments[i].value, *arguments[k].value)) return true;
   }

@@ -20,7 +20,7 @@
   CASE(choiceByReference) CASE(changedTemporary) CASE(disjointParts) CASE(firstUsedInArgument)     \
   CASE(operatorsOfOwnResults) CASE(membersReadMembers) CASE(referencesToOneObject)                 \
   CASE(referencesToElements) CASE(methodAndOwnMember) CASE(aliasesPassedOn)      \
-  CASE(choicesAsTargets) CASE(choicesByReference) CASE(choicesWithEffects) CASE(manyIndices)
+  CASE(choicesAsTargets) CASE(choicesByReference) CASE(choicesWithEffects) CASE(choicesOfConstants) CASE(manyIndices)
 // clang-format on
 
 #ifdef __clang__

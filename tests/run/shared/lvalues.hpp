@@ -315,6 +315,20 @@ inline void rotate(int& a, int& b, int& c) {
   b = c + a;
   c = old;
 }
+const int fixedThree = 3;
+const Pile fixedPile = {{4, 5, 6}, {{1, 2}, {3, 4}}};
+inline int choicesOfConstants(int x, int y) {
+  Pile p = {{x, y, 1}, {{1, 2}, {3, y}}};
+  int i = x & 1;
+  p.addCrosswise(x > 1 ? p : fixedPile);
+  addFirst(p.sums[1], x > 2 ? p.sums[1].a : fixedThree);
+  addFirst(p.sums[i], (x > 0 ? p : fixedPile).sums[y & 1].b);
+  sortBoth(p.list[i], p.list[x > y ? 2 : fixedThree - 2]);
+  const int r =
+      readBoth(y > 0 ? i : fixedThree, i += 3) + readBoth((x > 1 ? p : fixedPile).list[i & 1], p.list[1] = 9);
+  return r + p.sum() + 100 * i;
+}
+
 struct Grid {
   Pile p[3];
 };
