@@ -173,17 +173,17 @@ std::optional<std::string> glslAddition(const GlslContext& first, const GlslCont
     const bool isThere = std::ranges::count(first.polyfills.functions(), polyfill) > 0;
     if (!isThere) text += polyfill + "\n";
   }
-  const std::vector<FunctionId> there = functionsOf(first.module, first.kernel);
+  const std::vector<FunctionId> functions = functionsOf(first.module, first.kernel);
+  const std::set<FunctionId> there(functions.begin(), functions.end());
   std::set<std::string> taken;
-  for (const FunctionId id : there) taken.insert(first.names.function(id));
-  for (ConstantId id = 0; id < first.module.constants.size(); ++id) taken.insert(first.names.constant(id));
+  for (const FunctionId id : functions) taken.insert(first.names.function(id));
   LineWriter writer;
   for (const FunctionId id : functionsOf(second.module, second.kernel)) {
     const std::string& name = second.names.function(id);
-    if (std::ranges::find(there, id) != there.end()) {
+    if (there.contains(id)) {
       if (first.names.function(id) != name) return std::nullopt;
     } else {
-      if (taken.contains(name)) return std::nullopt;
+      if (taken.contains(name) || first.types.isConstantName(name)) return std::nullopt;
       writeFunction(second, id, writer);
     }
   }

@@ -50,7 +50,7 @@ std::vector<bool> functionConstants(const Module& module) {
 
 std::string constantText(const GlslContext& context, ConstantId id) {
   const Constant& constant = context.module.constants[id];
-  const std::string& name = context.names.constant(id);
+  const std::string& name = context.types.constantUse(id);
   const std::string value = glslExpr(context, std::nullopt, *constant.value);
   const bool isFunction = name.back() == ')';
   const std::string text =

@@ -133,7 +133,7 @@ class GlslExpr {
     return type.isDouble() ? Parts{doubleLiteral(n)} : literalText(type, n.bits);
   }
   Parts print(Type, const VarRef& n) const { return {context_.names.variable(*function_, n.var)}; }
-  Parts print(Type, const ConstantRef& n) const { return {context_.names.constant(n.constant)}; }
+  Parts print(Type, const ConstantRef& n) const { return {context_.types.constantUse(n.constant)}; }
   Parts print(Type type, const Unary& n) const {
     if (type.isDouble()) return {doubleNegated(context_.polyfills, type, text(*n.operand))};
     if (n.op == UnaryOp::LogicalNot && type.isVector()) return {"not(" + text(*n.operand) + ")"};

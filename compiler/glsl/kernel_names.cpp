@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 #include <string_view>
+#include <utility>
 
-#include "glsl/constants.hpp"
 #include "glsl/words.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
@@ -46,8 +46,8 @@ Names builtinsOf(const Function& function) {
 /// inner variable would hide one that the IR can still refer to.
 class VariableNamer {
  public:
-  VariableNamer(const Function& function, const Names& avoid, bool isEntry)
-      : function_(function), avoid_(avoid), names_(function.variables.size()) {
+  VariableNamer(const Function& function, const TypeNames& types, const Names& avoid, bool isEntry)
+      : function_(function), types_(types), avoid_(avoid), names_(function.variables.size()) {
     for (VarId i = 0; i < function.parameterCount; ++i) name(i, isEntry);
     block(function.body);
   }
@@ -59,15 +59,38 @@ class VariableNamer {
     std::string base = glslSafe(function_.variables[var].name);
     if (base.empty()) base = "unnamed";
     if (isSymbol && base.front() == '_') base.insert(0, "p");  // the name is prefixed with `sk_at_`
-    names_[var] =
-        uniqueName(base, [&](const std::string& n) { return avoid_.contains(n) || visible_.contains(n); });
+    names_[var] = unique(base);
     visible_.insert(names_[var]);
+    order_.push_back(names_[var]);
+  }
+
+  /// Begins with the number that follows the last one given, instead of 2: what was given is visible.
+  std::string unique(const std::string& base) {
+    const auto isTaken = [&](const std::string& n) {
+      return types_.isStructName(n) || avoid_.contains(n) || visible_.contains(n);
+    };
+    if (!isTaken(base)) return base;
+    const std::string start = base + (base.back() == '_' ? "" : "_");
+    int& number = numbers_.try_emplace(base, 2).first->second;
+    changes_.emplace_back(base, number);
+    while (isTaken(start + std::to_string(number))) ++number;
+    return start + std::to_string(number);
+  }
+
+  /// Runs `inside`; what it names leaves its scope.
+  template <class Fn>
+  void scoped(Fn&& inside) {
+    const std::size_t names = order_.size(), changes = changes_.size();
+    inside();
+    for (; order_.size() > names; order_.pop_back()) visible_.erase(order_.back());
+    for (; changes_.size() > changes; changes_.pop_back())
+      numbers_[changes_.back().first] = changes_.back().second;
   }
 
   void block(const Block& statements) {
-    const Names outside = visible_;
-    for (const Stmt& stmt : statements) statement(stmt);
-    visible_ = outside;
+    scoped([&] {
+      for (const Stmt& stmt : statements) statement(stmt);
+    });
   }
 
   void statement(const Stmt& stmt) {
@@ -75,83 +98,67 @@ class VariableNamer {
     const bool sharesScope =
         std::holds_alternative<Loop>(stmt.node) || std::holds_alternative<Switch>(stmt.node);
     if (!sharesScope) return forEachBlock(stmt, [&](const Block& inner) { block(inner); });
-    const Names outside = visible_;  // a loop's init, step and body; the cases of a switch
-    forEachBlock(stmt, [&](const Block& inner) {
-      for (const Stmt& one : inner) statement(one);
+    scoped([&] {  // a loop's init, step and body; the cases of a switch
+      forEachBlock(stmt, [&](const Block& inner) {
+        for (const Stmt& one : inner) statement(one);
+      });
     });
-    visible_ = outside;
   }
 
   const Function& function_;
+  const TypeNames& types_;
   const Names& avoid_;
   std::vector<std::string> names_;
   Names visible_;
+  std::vector<std::string> order_;  ///< the visible names, the last one last
+  std::map<std::string, int> numbers_;  ///< for each name, a number below which all are taken
+  std::vector<std::pair<std::string, int>> changes_;  ///< what these were before
 };
 
-/// Names the globals of a body. Functions may share a name if their parameters differ.
-class GlobalNamer {
+/// Names the functions of a body. They may share a name if their parameters differ.
+class FunctionNamer {
  public:
-  explicit GlobalNamer(const TypeNames& types, const Module& module) : types_(types) {
-    for (std::uint32_t i = 0; i < module.structs.size(); ++i) taken_.insert(types.structName(i));
-  }
+  explicit FunctionNamer(const TypeNames& types) : types_(types) {}
 
-  std::string constant(const Constant& constant) {
-    std::string name =
-        uniqueName(base(constant.name), [&](const std::string& n) { return taken_.contains(n); });
-    taken_.insert(name);
-    return name;
-  }
-
-  std::string function(const Function& function) {
+  std::string name(const Function& function) {
     std::string parameters;
     for (VarId i = 0; i < function.parameterCount; ++i) {
       const Variable& var = function.variables[i];
       const bool isParameter = var.role != VarRole::Gather && var.role != VarRole::AppendOutput;
       if (isParameter) parameters += types_.glsl(var.type) + ",";
     }
-    std::string name = uniqueName(base(function.name), [&](const std::string& n) {
-      return taken_.contains(n) || overloads_.contains(n + "(" + parameters);
-    });
+    const auto isTaken = [&](const std::string& n) {
+      return types_.isStructName(n) || types_.isConstantName(n) || overloads_.contains(n + "(" + parameters);
+    };
+    std::string name = unique_.find(glslSafeGlobal(function.name), isTaken, "(" + parameters);
     overloads_.insert(name + "(" + parameters);
     return name;
   }
 
  private:
-  static std::string base(const std::string& name) {
-    std::string safe = glslSafe(name);
-    return isGlslFunction(safe) ? safe + "_" : safe;
-  }
-
   const TypeNames& types_;
-  Names taken_;
   Names overloads_;  ///< "name(float,vec2,"
+  UniqueNames unique_;
 };
 
 }  // namespace
 
 KernelNames::KernelNames(const Module& module, const Kernel& kernel, const TypeNames& types)
     : entry_(kernel.entry) {
-  GlobalNamer globals(types, module);
-  std::vector<std::string> constantNames;
-  for (const Constant& constant : module.constants) constantNames.push_back(globals.constant(constant));
+  FunctionNamer namer(types);
   const std::vector<FunctionId> functions = functionsOf(module, kernel);
-  functions_[entry_].name = globals.function(module.functions[entry_]);  // first: it keeps its name
+  functions_[entry_].name = namer.name(module.functions[entry_]);  // first: it keeps its name
   for (FunctionId id : functions) {
-    if (id != entry_) functions_[id].name = globals.function(module.functions[id]);
+    if (id != entry_) functions_[id].name = namer.name(module.functions[id]);
   }
   for (FunctionId id : functions) {
     const Function& function = module.functions[id];
     Names avoid = builtinsOf(function);
-    for (std::uint32_t i = 0; i < module.structs.size(); ++i) avoid.insert(types.structName(i));
     for (FunctionId callee : callees(function)) avoid.insert(functions_[callee].name);
     walkExprs(function.body, [&](const Expr& expr) {
-      if (const auto* n = std::get_if<ConstantRef>(&expr.node)) avoid.insert(constantNames[n->constant]);
+      if (const auto* n = std::get_if<ConstantRef>(&expr.node)) avoid.insert(types.constantName(n->constant));
     });
-    functions_[id].variables = VariableNamer(function, avoid, id == entry_).take();
-  }
-  const std::vector<bool> isFunction = functionConstants(module);
-  for (std::size_t i = 0; i < isFunction.size(); ++i) {
-    constants_.push_back(constantNames[i] + (isFunction[i] ? "()" : ""));
+    functions_[id].variables = VariableNamer(function, types, avoid, id == entry_).take();
   }
 }
 

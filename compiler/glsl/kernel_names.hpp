@@ -18,8 +18,6 @@ class KernelNames {
   KernelNames(const ir::Module& module, const ir::Kernel& kernel, const TypeNames& types);
 
   const std::string& function(ir::FunctionId id) const { return functions_.at(id).name; }
-  /// The text of a use of a constant: its name, or a call if it must be a function (constants.hpp).
-  const std::string& constant(ir::ConstantId id) const { return constants_[id]; }
   const std::string& variable(ir::FunctionId id, ir::VarId var) const {
     return functions_.at(id).variables[var];
   }
@@ -34,7 +32,6 @@ class KernelNames {
 
   ir::FunctionId entry_;
   std::map<ir::FunctionId, FunctionNames> functions_;
-  std::vector<std::string> constants_;
 };
 
 }  // namespace skc::emit

@@ -136,8 +136,8 @@ TEST_CASE("overloads keep their name while their parameters differ; built-ins ar
   CHECK(names.function(second) == "half_of");
   CHECK(names.function(third) == "half_of_2");
   CHECK(names.function(noise) == "noise1_");
-  CHECK(names.constant(0) == "mix_");
   const TypeNames types(s.module);
+  CHECK(types.constantName(0) == "mix_");
   CHECK(types.structName(0) == "Hit");
   CHECK(types.structName(1) == "b_Hit");
   CHECK(types.fieldName(1, 0) == "input_");

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "glsl/type_names.hpp"
 
-#include <algorithm>
 #include <array>
 #include <string_view>
 
+#include "glsl/constants.hpp"
 #include "glsl/words.hpp"
 
 namespace skc::emit {
@@ -12,34 +12,57 @@ namespace {
 
 using namespace ir;
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
+/// Different names for several things.
+class TakenNames {
+ public:
+  explicit TakenNames(std::set<std::string>& taken) : taken_(taken) {}
+  bool isTaken(const std::string& name) const { return taken_.contains(name); }
+  std::string take(const std::string& wanted) {
+    std::string name = unique_.find(wanted, [&](const std::string& n) { return isTaken(n); });
+    taken_.insert(name);
+    return name;
+  }
+
+ private:
+  std::set<std::string>& taken_;
+  UniqueNames unique_;
+};
 
 /// The struct's own name, with its namespaces if another struct has that name already.
-std::string nameOf(const Struct& type, const std::vector<std::string>& taken) {
-  const auto isTaken = [&](const std::string& name) { return contains(taken, name); };
+std::string nameOf(const Struct& type, TakenNames& names) {
   const std::string name = glslSafe(type.name) + (isGlslFunction(type.name) ? "_" : "");
-  if (!isTaken(name)) return name;
+  if (!names.isTaken(name)) return names.take(name);
   std::string qualified;
   for (const std::string& part : type.scope) qualified += part + "_";
-  return uniqueName(glslSafe(qualified + type.name), isTaken);
+  return names.take(glslSafe(qualified + type.name));
 }
 
 /// Renames `length`: glslang takes `.length` for the beginning of an array's `.length()` everywhere.
-std::string nameOf(const StructField& field, const std::vector<std::string>& taken) {
-  const std::string name = glslSafe(field.name) + (field.name == "length" ? "_" : "");
-  return uniqueName(name, [&](const std::string& n) { return contains(taken, n); });
+std::string nameOf(const StructField& field, TakenNames& names) {
+  return names.take(glslSafe(field.name) + (field.name == "length" ? "_" : ""));
 }
 
 }  // namespace
 
 TypeNames::TypeNames(const Module& module) : module_(&module) {
+  TakenNames structs(structNames_);
   for (const Struct& type : module.structs) {
-    structs_.push_back(nameOf(type, structs_));
+    structs_.push_back(nameOf(type, structs));
+    std::set<std::string> taken;
+    TakenNames members(taken);
     std::vector<std::string> fields;
-    for (const StructField& field : type.fields) fields.push_back(nameOf(field, fields));
+    for (const StructField& field : type.fields) fields.push_back(nameOf(field, members));
     fields_.push_back(std::move(fields));
+  }
+  UniqueNames constants;
+  const std::vector<bool> isFunction = functionConstants(module);
+  for (ConstantId id = 0; id < module.constants.size(); ++id) {
+    const std::string name =
+        constants.find(glslSafeGlobal(module.constants[id].name),
+                       [&](const std::string& n) { return isStructName(n) || isConstantName(n); });
+    constants_.push_back(name);
+    constantNames_.insert(name);
+    constantUses_.push_back(name + (isFunction[id] ? "()" : ""));
   }
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Spells the types of a module in GLSL. Structs and their members have the same names in all kernels of the
-// module, because they share descriptors of elements.
+// Spells the types and constants of a module in GLSL. Structs and their members have the same names in all kernels of the
+// module, because they share descriptors of elements; constants have, so that they are named only once.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,19 @@ class TypeNames {
   const std::string& fieldName(std::uint32_t index, std::uint32_t field) const {
     return fields_[index][field];
   }
+  bool isStructName(const std::string& name) const { return structNames_.contains(name); }
+
+  const std::string& constantName(ir::ConstantId id) const { return constants_[id]; }
+  bool isConstantName(const std::string& name) const { return constantNames_.contains(name); }
+  /// The text of a use of a constant: its name, or a call if it must be a function (constants.hpp).
+  const std::string& constantUse(ir::ConstantId id) const { return constantUses_[id]; }
 
  private:
   const ir::Module* module_;
   std::vector<std::string> structs_;
   std::vector<std::vector<std::string>> fields_;
+  std::vector<std::string> constants_, constantUses_;
+  std::set<std::string> structNames_, constantNames_;
 };
 
 /// "float", "bvec2"; a narrow scalar's arithmetic type; "sk_double", "sk_double2" (doubles.hpp).

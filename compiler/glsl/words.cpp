@@ -130,4 +130,10 @@ std::string glslSafe(std::string_view name) {
   return safe;
 }
 
+std::string glslSafeGlobal(std::string_view name) {
+  std::string safe = glslSafe(name);
+  if (isGlslFunction(safe)) safe += '_';
+  return safe;
+}
+
 }  // namespace skc::emit

@@ -19,4 +19,7 @@ bool isGlslFunction(std::string_view name);
 /// letters beyond ASCII their code points.
 std::string glslSafe(std::string_view name);
 
+/// The same for a name of global scope, which must not redefine a built-in function: `mix` gives "mix_".
+std::string glslSafeGlobal(std::string_view name);
+
 }  // namespace skc::emit

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <utility>
 
 #include "ir/print.hpp"
 #include "program/shared_headers.hpp"
@@ -79,14 +80,13 @@ std::string camelCase(std::string_view name) {
 std::vector<Callable> callables(const Module& module) {
   std::vector<Callable> list;
   std::vector<const Kernel*> kernels;   // the first of each callable
+  std::map<std::pair<std::vector<std::string>, std::string>, std::size_t> known;
   std::size_t unit = 0;
   for (const Kernel& kernel : module.kernels) {
     if (!isUnit(kernel)) continue;
-    const auto known = std::ranges::find_if(kernels, [&](const Kernel* other) {
-      return other->scope == kernel.scope && other->name == kernel.name;
-    });
-    if (known != kernels.end()) {
-      list[static_cast<std::size_t>(known - kernels.begin())].units.push_back(unit++);
+    const auto [callable, isNew] = known.try_emplace({kernel.scope, kernel.name}, list.size());
+    if (!isNew) {
+      list[callable->second].units.push_back(unit++);
       continue;
     }
     kernels.push_back(&kernel);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include "program/cpp_names.hpp"
 #include "support/namer.hpp"
@@ -18,20 +19,38 @@ constexpr std::string_view words[] = {
 #undef SKC_PART
 };
 
-/// True if constants of the two prefixes could have the same name: one prefix is the other followed by a part. A number behind the
-/// prefix rules that out, since no part contains an underscore before a digit.
-bool mayMeet(std::string_view a, std::string_view b) {
-  if (a.size() > b.size()) std::swap(a, b);
-  if (!b.starts_with(a)) return false;
-  const std::string_view rest = b.substr(a.size());
-  return rest.empty() || (startsWithPart(rest) && rest.find('_') == std::string_view::npos);
-}
+/// Prefixes none of which could give a constant the name of another's.
+class Prefixes {
+ public:
+  std::string take(const std::string& wanted) {
+    std::string name = unique_.find(wanted, [&](const std::string& n) { return meetsAny(n); });
+    known_.insert(name);
+    return name;
+  }
 
-void add(std::vector<std::string>& names, const std::string& wanted) {
-  names.push_back(uniqueName(wanted, [&](const std::string& name) {
-    return std::ranges::any_of(names, [&](const std::string& other) { return mayMeet(name, other); });
-  }));
-}
+ private:
+  /// True if constants of two prefixes could have the same name, where `rest` is what the longer one has more than the other: it is a
+  /// part. A number behind the prefix rules that out, since no part contains an underscore before a digit.
+  static bool isPart(std::string_view rest) {
+    return startsWithPart(rest) && rest.find('_') == std::string_view::npos;
+  }
+
+  bool meetsAny(const std::string& name) const {
+    if (known_.contains(name)) return true;
+    const std::string_view text = name;
+    for (std::size_t size = 0; size < text.size(); ++size) {
+      if (isPart(text.substr(size)) && known_.contains(text.substr(0, size))) return true;
+    }
+    for (auto longer = known_.lower_bound(name); longer != known_.end() && longer->starts_with(name);
+         ++longer) {
+      if (isPart(std::string_view(*longer).substr(name.size()))) return true;
+    }
+    return false;
+  }
+
+  std::set<std::string, std::less<>> known_;
+  UniqueNames unique_;
+};
 
 /// Prefixes that no unit has, since theirs have an underscore before a digit only.
 std::string ownName(std::string_view name) { return std::string("sk_").append(name); }
@@ -47,14 +66,17 @@ bool startsWithPart(std::string_view text) {
 }
 
 std::vector<std::string> descriptorNames(const Module& module, const Program& program) {
+  Prefixes prefixes;
   std::vector<std::string> names;
-  for (const Unit& unit : program.units()) add(names, camelCase(module.kernels[unit.id].name));
+  for (const Unit& unit : program.units())
+    names.push_back(prefixes.take(camelCase(module.kernels[unit.id].name)));
   return names;
 }
 
 std::vector<std::string> tableNames(const Module& module) {
+  Prefixes prefixes;
   std::vector<std::string> names;
-  for (const Table& table : module.tables) add(names, ownName(camelCase(table.name)));
+  for (const Table& table : module.tables) names.push_back(prefixes.take(ownName(camelCase(table.name))));
   return names;
 }
 

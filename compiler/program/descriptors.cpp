@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -24,7 +26,7 @@ using namespace ir;
 struct Program::Storage {
   std::deque<std::string> strings;
   std::deque<std::vector<sk::program::Field>> fields;
-  std::deque<std::pair<Type, sk::program::Element>> elements;
+  std::map<std::tuple<Type::Kind, Scalar, std::uint8_t, std::uint32_t>, sk::program::Element> elements;
   std::deque<std::vector<sk::program::ConditionStep>> conditions;
   std::deque<std::vector<sk::program::Reach>> reaches;
   std::deque<std::vector<sk::program::Parameter>> parameters;
@@ -53,13 +55,6 @@ struct Program::Storage {
   std::vector<Unit> units;
 
   std::string_view keep(std::string text) { return strings.emplace_back(std::move(text)); }
-
-  const sk::program::Element* find(Type type) const {
-    for (const auto& [known, element] : elements) {
-      if (known == type) return &element;
-    }
-    return nullptr;
-  }
 };
 
 namespace {
@@ -425,7 +420,9 @@ class Builder {
   }
 
   const sk::program::Element& element(Type type) {
-    if (const sk::program::Element* known = storage_.find(type)) return *known;
+    const auto key = std::tuple(type.kind, type.scalar, type.width, type.index);
+    if (const auto known = storage_.elements.find(key); known != storage_.elements.end())
+      return known->second;
     const ElementLayout layout = elementLayout(module_, types_, type);
     std::vector<sk::program::Field>& fields = storage_.fields.emplace_back();
     for (const Plane& plane : layout.planes) {
@@ -439,7 +436,7 @@ class Builder {
                               .glsl = storage_.keep(types_.glsl(type)),
                               .size = layout.size,
                               .fields = fields};
-    return storage_.elements.emplace_back(type, made).second;
+    return storage_.elements.emplace(key, made).first->second;
   }
 
   const Module& module_;

@@ -53,7 +53,7 @@ std::vector<std::string> sharedHeaders(const Module& module, const std::vector<s
 namespace {
 
 /// Empty for a struct of a .sk file.
-std::string layoutCheck(const Module& module, std::uint32_t index) {
+std::string layoutCheck(const Module& module, const TypeNames& types, std::uint32_t index) {
   const Struct& type = module.structs[index];
   if (!isShared(module, type)) return {};
   const std::string name = "::" + cppType(module, Type::structType(index));
@@ -65,7 +65,6 @@ std::string layoutCheck(const Module& module, std::uint32_t index) {
     members.push_back(fmt::format("sk::detail::holds<decltype({}::{}), {}{}>", name, field.name, held,
                                   isArray ? fmt::format("[{}]", array->length) : ""));
   }
-  const TypeNames types(module);
   members.push_back(
       fmt::format("sizeof({}) == {}", name, elementLayout(module, types, Type::structType(index)).size));
   return fmt::format("static_assert({},\n              \"{} is another struct in C++ than in kernels\");\n",
@@ -75,8 +74,9 @@ std::string layoutCheck(const Module& module, std::uint32_t index) {
 }  // namespace
 
 std::string layoutChecks(const Module& module) {
+  const TypeNames types(module);
   std::string text;
-  for (const std::uint32_t index : usedStructs(module)) text += layoutCheck(module, index);
+  for (const std::uint32_t index : usedStructs(module)) text += layoutCheck(module, types, index);
   return text;
 }
 

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "glsl/type_names.hpp"
 #include "ir/print.hpp"
 #include "program/cpp_literals.hpp"
 #include "program/cpp_names.hpp"
@@ -71,27 +70,28 @@ std::string lastMembers(const std::string& unit, const sk::program::Parameter& p
   return text;
 }
 
-std::string elementOf(const Module& module, Type type) {
+std::string elementOf(const Module& module, const TypeNames& types, Type type) {
   if (type.kind == Type::Kind::Struct && module.structs[type.index].isSynthesized) {
-    return "&" + (synthesizedStructName(TypeNames(module).structName(type.index)) + Part::Element);
+    return "&" + (synthesizedStructName(types.structName(type.index)) + Part::Element);
   }
   const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";
   const std::string name = type.isVector() ? spelling(type.scalar, type.width) : cppType(module, type);
   return fmt::format("&ElementTraits<{}{}>::element()", scope, name);
 }
 
-std::string parameterText(const Module& module, const std::string& unit, const sk::program::Parameter& param,
-                          const KernelParam& declared) {
+std::string parameterText(const Module& module, const TypeNames& types, const std::string& unit,
+                          const sk::program::Parameter& param, const KernelParam& declared) {
   constexpr std::string_view roles[] = {"Uniform",        "Input",   "Output",   "Gather", "Accumulator",
                                         "VariableOutput", "Scatter", "Iterator", "Spec"};
   constexpr std::string_view scatterOps[] = {"Store", "Add", "Min", "Max"};
   constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
-  const std::string element = declared.type.kind == Type::Kind::Array ? "&" + elementName(unit, param)
-                                                                      : elementOf(module, declared.type);
+  const std::string element = declared.type.kind == Type::Kind::Array
+                                  ? "&" + elementName(unit, param)
+                                  : elementOf(module, types, declared.type);
   std::string text =
       fmt::format("{{.name = \"{}\", .symbol = \"{}\", .role = Role::{}, .element = {}", param.name,
                   param.symbol, roles[static_cast<std::size_t>(param.role)], element);
-  if (declared.held) text += ", .held = " + elementOf(module, *declared.held);
+  if (declared.held) text += ", .held = " + elementOf(module, types, *declared.held);
   if (param.rank > 0) text += fmt::format(", .rank = {}", param.rank);
   if (param.role == sk::program::Role::Gather) {
     text += fmt::format(", .boundary = Boundary::{}", boundaries[static_cast<std::size_t>(param.boundary)]);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 
+#include "glsl/type_names.hpp"
 #include "ir/ir.hpp"
 #include "sk/program.hpp"
 
@@ -23,10 +24,10 @@ std::string haloText(const std::string& unit, const sk::program::Parameter& para
 std::string lastMembers(const std::string& unit, const sk::program::Parameter& param, std::size_t number);
 
 /// A pointer to the descriptor of the elements of this type.
-std::string elementOf(const ir::Module& module, ir::Type type);
+std::string elementOf(const ir::Module& module, const TypeNames& types, ir::Type type);
 
 /// A parameter's initializer, without the closing bracket.
-std::string parameterText(const ir::Module& module, const std::string& unit,
+std::string parameterText(const ir::Module& module, const TypeNames& types, const std::string& unit,
                           const sk::program::Parameter& param, const ir::KernelParam& declared);
 
 /// A kernel's initializer. One member per line; the first follows the bracket if that is far to the right.

@@ -3,6 +3,7 @@
 // Prints FILE.sk.cpp: the descriptors as constants, and the other definitions of the file.
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -30,10 +31,13 @@ class SourceWriter {
  public:
   SourceWriter(const Module& module, const Program& program, NativeSymbols& symbols)
       : module_(module),
+        types_(module),
         program_(program),
         symbols_(symbols),
         names_(descriptorNames(module, program)),
-        tableNames_(tableNames(module)) {}
+        tableNames_(tableNames(module)) {
+    for (std::size_t i = 0; i < program.units().size(); ++i) unitOf_.emplace(program.units()[i].id, i);
+  }
 
   std::string text(const StubParts& parts) {
     options_ = parts.options;
@@ -373,10 +377,9 @@ class SourceWriter {
   /// The name of the combining descriptor, which is printed at its first use: "sum", "squaresCombine".
   std::string combination(std::size_t unit, const sk::program::Reduction& made) {
     const KernelId id = *kernelOf(unit).reduction->combine;
-    for (std::size_t other = 0; other < names_.size(); ++other) {
-      if (program_.units()[other].id != id) continue;
-      descriptors(other);
-      return names_[other];
+    if (const auto other = unitOf_.find(id); other != unitOf_.end()) {
+      descriptors(other->second);
+      return names_[other->second];
     }
     const std::string name = names_[unit] + Part::Combine;
     kernel(made.combine, id, name, combining(inAnyReal(Speed::Best)));
@@ -395,7 +398,7 @@ class SourceWriter {
     }
     text_ += fmt::format("constexpr Parameter {}[] = {{\n", name + Part::Parameters);
     for (std::size_t i = 0; i < declared.params.size(); ++i) {
-      const std::string row = parameterText(module_, name, kernel.parameters[i], declared.params[i]);
+      const std::string row = parameterText(module_, types_, name, kernel.parameters[i], declared.params[i]);
       text_ += wrapLine("    " + row + lastMembers(name, kernel.parameters[i], i) + "},", 100, 5) + "\n";
     }
     text_ += "};\n\n";
@@ -467,7 +470,7 @@ class SourceWriter {
     }
     std::vector<std::string> temporaries;
     for (const Temporary& temporary : declared.temporaries) {
-      temporaries.push_back(elementOf(module_, temporary.type));
+      temporaries.push_back(elementOf(module_, types_, temporary.type));
     }
     std::vector<std::string> bundles;
     for (std::size_t i = 0; i < made.bundles.size(); ++i) {
@@ -532,15 +535,14 @@ class SourceWriter {
 
   /// Prints the element of a struct that does not exist in C++.
   void synthesizedElement(std::uint32_t index) {
-    const TypeNames types(module_);
-    const ElementLayout layout = elementLayout(module_, types, Type::structType(index));
+    const ElementLayout layout = elementLayout(module_, types_, Type::structType(index));
     std::vector<std::string> fields;
     for (const Plane& plane : layout.planes) {
       const std::string part = plane.part < 0 ? "" : fmt::format(", {}", plane.part);
       fields.push_back(fmt::format("{{\"{}\", Scalar::{}, {}, {}{}}}", plane.path,
                                    ir::row(plane.type.scalar).name, plane.type.width, plane.offset, part));
     }
-    const std::string& glsl = types.structName(index);
+    const std::string& glsl = types_.structName(index);
     element(synthesizedStructName(glsl) + Part::Element, fields, print(module_, Type::structType(index)),
             glsl, layout.size);
   }
@@ -564,10 +566,12 @@ class SourceWriter {
   const Kernel& kernelOf(std::size_t unit) const { return module_.kernels[program_.units()[unit].id]; }
 
   const Module& module_;
+  TypeNames types_;
   const Program& program_;
   NativeSymbols& symbols_;
   StubOptions options_;
   std::vector<std::string> names_;
+  std::map<KernelId, std::size_t> unitOf_;
   std::vector<std::string> tableNames_;
   bool isScan_ = false;  ///< of the unit whose descriptors are being printed
   std::vector<bool> isWritten_;  ///< descriptors printed, by unit

@@ -75,6 +75,8 @@ double elementCost(const Module& module, Type type) {
 CostModel::CostModel(const Module& module, const Kernel& kernel) : module_(module) {
   for (const FunctionId id : functionsOf(module, kernel))   // callees first
     functions_[id] = block(module.functions[id].body, nullptr);
+  walkStmts(module.functions[kernel.entry].body,
+            [&](const Stmt& stmt) { operands_[&stmt] = operands(stmt); });
 }
 
 double CostModel::run(const Block& body, const Slice& slice) const { return block(body, &slice); }
@@ -87,9 +89,15 @@ double CostModel::block(const Block& body, const Slice* slice) const {
   return cost;
 }
 
+double CostModel::operands(const Stmt& stmt) const {
+  if (const auto known = operands_.find(&stmt); known != operands_.end()) return known->second;
+  double cost = 0;
+  forEachOperand(stmt, [&](const ExprPtr& operand) { cost += expression(*operand); });
+  return cost;
+}
+
 double CostModel::statement(const Stmt& stmt, const Slice* slice) const {
-  double once = 0;
-  forEachOperand(stmt, [&](const ExprPtr& operand) { once += expression(*operand); });
+  const double once = operands(stmt);
   const auto simple = [&] { return once; };
   return match(
       stmt.node, [&](const Declare&) { return simple(); },

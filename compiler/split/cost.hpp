@@ -38,10 +38,13 @@ class CostModel {
   double block(const ir::Block& body, const Slice* slice) const;
   double statement(const ir::Stmt& stmt, const Slice* slice) const;
   double expression(const ir::Expr& expr) const;
+  /// The cost of a statement's own expressions.
+  double operands(const ir::Stmt& stmt) const;
 
   const ir::Module& module_;
   std::unordered_map<ir::FunctionId, double>
       functions_;   ///< cost of one call of each function that the kernel needs
+  std::unordered_map<const ir::Stmt*, double> operands_;   ///< of the statements of the kernel's entry
 };
 
 }  // namespace skc::split

@@ -37,6 +37,13 @@ Demand::Demand(const Module& module, const Kernel& kernel) : module_(module), ke
     }
     functions_[id] = std::move(params);
   }
+  walkStmts(module.functions[kernel.entry].body, [&](const Stmt& stmt) {
+    VarSet params(kernel.params.size(), false);
+    collect(stmt, params);
+    for (VarId i = 0; i < params.size(); ++i) {
+      if (params[i]) streams_[&stmt].push_back(i);
+    }
+  });
 }
 
 void Demand::collect(const Stmt& stmt, VarSet& params) const {
@@ -58,7 +65,11 @@ VarSet Demand::params(const Slice& slice) const {
     // conditions (neededIf) may depend on any Spec parameter
     params[i] = role == ParamRole::Spec || (slice.used[i] && role != ParamRole::Output);
   }
-  for (const Stmt* stmt : slice.kept) collect(*stmt, params);
+  for (const Stmt* stmt : slice.kept) {
+    const auto streams = streams_.find(stmt);
+    if (streams == streams_.end()) continue;
+    for (const VarId param : streams->second) params[param] = true;
+  }
   return params;
 }
 

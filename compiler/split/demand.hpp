@@ -26,6 +26,8 @@ class Demand {
   const ir::Module& module_;
   const ir::Kernel& kernel_;
   std::unordered_map<ir::FunctionId, VarSet> functions_;   ///< streams that a call of the function reads
+  std::unordered_map<const ir::Stmt*, std::vector<ir::VarId>>
+      streams_;   ///< what statements of the entry read; without those that read none
 };
 
 /// The planes that a kernel writes and reads as a single pass.

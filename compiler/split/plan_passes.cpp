@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <ranges>
 #include <utility>
 
+#include "ir/walk.hpp"
 #include "split/bundles.hpp"
 #include "split/cost.hpp"
 #include "split/demand.hpp"
@@ -17,6 +19,11 @@ using namespace ir;
 
 /// Number of values considered for saving: the most expensive ones.
 constexpr std::size_t mostCandidates = 24;
+/// Number of targets considered for a place in a pass: those that are final next.
+constexpr std::size_t mostMembers = 32;
+/// Number of statements in the bodies of all passes that are considered. After that, no more values are saved, and a pass is
+/// only offered as many targets as it has draw buffers, so that the time for a large kernel does not grow with the cube of its size.
+constexpr std::size_t mostStatements = 200'000;
 
 class Planner {
  public:
@@ -28,6 +35,7 @@ class Planner {
         slicer_(module, entry_),
         costs_(module, kernel),
         demand_(module, kernel) {
+    walkStmts(entry_.body, [&](const Stmt&) { ++bodySize_; });
     addOutputs();
     addCandidates();
   }
@@ -37,16 +45,27 @@ class Planner {
     Passes best = passesFor(saved);
     const double costWithoutTemporaries = costOf(best);
     while (const auto next = bestAddition(saved, costOf(best))) {
-      saved.push_back(*next);
-      best = passesFor(saved);
+      Targets more = saved;
+      more.push_back(*next);
+      Passes passes = passesFor(more);
+      if (costOf(passes) >= costOf(best)) break;  // fewer targets were offered than when it was chosen
+      saved = std::move(more);
+      best = std::move(passes);
     }
     return finish(std::move(saved), std::move(best), costWithoutTemporaries);
   }
 
  private:
-  using TargetId = std::size_t;               ///< index into targets_
+  using TargetId = std::size_t;  ///< index into targets_
   using Targets = std::vector<TargetId>;
-  using Passes = std::vector<const PlannedPass*>;   ///< point into known_
+  /// A pass whose slice is not kept, since most of those considered are not taken.
+  struct Considered {
+    Targets group;
+    VarSet offered;
+    VarSet loaded;  ///< Slice::loaded
+    double cost = 0;
+  };
+  using Passes = std::vector<const Considered*>;  ///< point into known_
 
   // ---- targets ------------------------------------------------------------------------------------
 
@@ -94,6 +113,7 @@ class Planner {
   std::optional<TargetId> bestAddition(const Targets& saved, double limit) {
     std::optional<TargetId> best;
     for (TargetId candidate : candidates_) {
+      if (statements_ > mostStatements) break;
       if (std::ranges::find(saved, candidate) != saved.end()) continue;
       Targets more = saved;
       more.push_back(candidate);
@@ -107,7 +127,7 @@ class Planner {
 
   static double costOf(const Passes& passes) {
     double cost = 0;
-    for (const PlannedPass* pass : passes) cost += pass->cost;
+    for (const Considered* pass : passes) cost += pass->cost;
     return cost;
   }
 
@@ -140,12 +160,13 @@ class Planner {
                                      const VarSet& computed) {
     std::optional<TargetId> best;
     double gain = 0;
-    for (TargetId candidate : open) {
+    const std::size_t offeredTargets = statements_ > mostStatements ? limits_.drawBuffers : mostMembers;
+    for (TargetId candidate : open | std::views::take(offeredTargets)) {
       Targets more = group;
       more.push_back(candidate);
       if (planesOfAll(more) > limits_.drawBuffers) continue;
-      const PlannedPass& joined = passOf(more, offered);
-      if (!isSubset(joined.slice.loaded, computed)) continue;
+      const Considered& joined = passOf(more, offered);
+      if (!isSubset(joined.loaded, computed)) continue;
       const double apart = passOf(group, offered).cost + passOf({candidate}, offered).cost;
       if (apart - joined.cost <= gain) continue;
       gain = apart - joined.cost;
@@ -168,11 +189,15 @@ class Planner {
   }
 
   /// The pass that writes these targets, from a cache.
-  const PlannedPass& passOf(Targets group, VarSet offered) {
+  const Considered& passOf(Targets group, VarSet offered) {
     std::ranges::sort(group);
     for (TargetId id : group) offered[targets_[id].var] = false;  // the pass computes it
     const auto [entry, isNew] = known_.try_emplace({group, offered});
-    if (isNew) entry->second = makePass(group, offered);
+    if (isNew) {
+      PlannedPass pass = makePass(group, offered);
+      entry->second = {std::move(group), std::move(offered), std::move(pass.slice.loaded), pass.cost};
+      statements_ += bodySize_;
+    }
     return entry->second;
   }
 
@@ -244,7 +269,7 @@ class Planner {
       plan.saved.push_back(targets_[id].var);
       plan.computeCosts.push_back(computeCost(targets_[id].var));
     }
-    for (const PlannedPass* pass : passes) plan.passes.push_back(*pass);
+    for (const Considered* pass : passes) plan.passes.push_back(makePass(pass->group, pass->offered));
     std::vector<PassReads> reads;
     for (const PlannedPass& pass : plan.passes) {
       reads.push_back({demand_.params(pass.slice),
@@ -265,7 +290,9 @@ class Planner {
   Demand demand_;
   std::vector<Target> targets_;
   Targets outputs_, candidates_;
-  std::map<std::pair<Targets, VarSet>, PlannedPass> known_;
+  std::map<std::pair<Targets, VarSet>, Considered> known_;
+  std::size_t bodySize_ = 0;  ///< statements of the kernel's body
+  std::size_t statements_ = 0;  ///< statements that considered passes went through
 };
 
 }  // namespace

@@ -4,9 +4,11 @@
 // that a target reserves are in its own tables (glsl/words, program/cpp_words, web/js_words).
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace skc {
 
@@ -17,6 +19,25 @@ std::string uniqueName(const std::string& base, Predicate&& isTaken) {
   for (int i = 2; isTaken(name); ++i) name = base + (base.back() == '_' ? "" : "_") + std::to_string(i);
   return name;
 }
+
+/// Finds the names that uniqueName() finds, in a scope that no name leaves. It remembers which numbers are taken, so that
+/// a thousand equal names take no longer than a thousand different ones.
+class UniqueNames {
+ public:
+  /// `group`: names that `isTaken` treats alike, if `base` alone does not say so.
+  template <class Predicate>
+  std::string find(const std::string& base, Predicate&& isTaken, const std::string& group = {}) {
+    if (!isTaken(base)) return base;
+    const std::string start = base + (base.back() == '_' ? "" : "_");
+    int& number = next_.try_emplace(base + group, 2).first->second;
+    std::string name = start + std::to_string(number);
+    while (isTaken(name)) name = start + std::to_string(++number);
+    return name;
+  }
+
+ private:
+  std::map<std::string, int> next_;
+};
 
 /// The names of one scope of generated text.
 class Namer {
@@ -33,7 +54,7 @@ class Namer {
   std::string take(std::string wanted) {
     while (isReserved(wanted)) wanted += '_';
     std::string name =
-        uniqueName(wanted, [&](const std::string& n) { return isReserved(n) || given_.contains(n); });
+        unique_.find(wanted, [&](const std::string& n) { return isReserved(n) || given_.contains(n); });
     given_.insert(name);
     return name;
   }
@@ -43,6 +64,7 @@ class Namer {
 
   IsReserved isReserved_;
   std::set<std::string> reserved_, given_;
+  UniqueNames unique_;
 };
 
 }  // namespace skc

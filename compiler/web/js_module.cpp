@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <unordered_map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -337,11 +338,9 @@ class ScriptWriter {
       fields.push_back(std::move(json));
     }
     Json json = {{"name", element.name}, {"size", element.size}, {"fields", std::move(fields)}};
-    for (std::size_t i = 0; i < elements_.size(); ++i) {
-      if (elements_[i] == json) return i;
-    }
-    elements_.push_back(std::move(json));
-    return elements_.size() - 1;
+    const auto [entry, isNew] = elementIndices_.emplace(json.dump(), elements_.size());
+    if (isNew) elements_.push_back(std::move(json));
+    return entry->second;
   }
 
   /// Structs by the index of their element, with the members' paths in place of GLSL's.
@@ -412,24 +411,44 @@ class ScriptWriter {
   void share(std::string& program, const std::string& part) {
     constexpr std::size_t leastShared = 40;
     if (part.size() < leastShared || program.find(part) == std::string::npos) return;
-    const auto found = std::ranges::find(texts_, part);
-    const auto index = static_cast<std::size_t>(found - texts_.begin());
-    if (found == texts_.end()) texts_.push_back(part);
-    replaceAll(program, part, fmt::format("${{$text{}}}", index));
+    const auto [entry, isNew] = textIndices_.emplace(part, texts_.size());
+    if (isNew) texts_.push_back(part);
+    replaceAll(program, part, fmt::format("${{$text{}}}", entry->second));
   }
 
-  /// Shares functions and declarations that several programs have.
+  /// Shares functions and declarations that several programs have. Only programs that have the paragraph's rarest line are searched
+  /// for it, so that the time does not grow with the square of the file.
   void shareParagraphs() {
     constexpr std::string_view end = "\n\n";
     std::map<std::string, int> counts;
-    for (const std::string& program : programs_) {
+    std::unordered_map<std::string, std::vector<std::size_t>> programsWith;  // by line, in order
+    for (std::size_t i = 0; i < programs_.size(); ++i) {
+      const std::string& program = programs_[i];
       for (std::size_t from = 0, to = 0; (to = program.find(end, from)) != std::string::npos;
            from = to + end.size())
         ++counts[program.substr(from, to + 1 - from)];
+      forEachLine(program, [&](std::string line) {
+        std::vector<std::size_t>& programs = programsWith[std::move(line)];
+        if (programs.empty() || programs.back() != i) programs.push_back(i);
+      });
     }
     for (const auto& [paragraph, count] : counts) {
       if (count == 1) continue;
-      for (std::string& program : programs_) share(program, paragraph);
+      const std::vector<std::size_t>* fewest = nullptr;
+      forEachLine(paragraph, [&](const std::string& line) {
+        const std::vector<std::size_t>& programs = programsWith.at(line);
+        if (fewest == nullptr || programs.size() < fewest->size()) fewest = &programs;
+      });
+      for (const std::size_t i : *fewest) share(programs_[i], paragraph);
+    }
+  }
+
+  template <class Fn>
+  static void forEachLine(std::string_view text, Fn&& fn) {
+    while (!text.empty()) {
+      const std::string_view line = text.substr(0, text.find('\n'));
+      fn(std::string(line));
+      text.remove_prefix(std::min(line.size() + 1, text.size()));
     }
   }
 
@@ -457,7 +476,9 @@ class ScriptWriter {
   const emit::Program& program_;
   const JsNames& jsNames_;
   Json elements_ = Json::array();
+  std::map<std::string, std::size_t> elementIndices_;  ///< by their texts
   std::vector<std::string> texts_;  ///< shared parts of programs, contents of template literals
+  std::map<std::string, std::size_t> textIndices_;
   std::vector<std::string> programs_;  ///< contents of template literals
   std::map<std::string, std::size_t> programIndices_;
   std::set<std::string>

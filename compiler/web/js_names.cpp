@@ -67,8 +67,14 @@ JsNames::JsNames(const ir::Module& module) {
   std::for_each(structs.begin(), firstScoped, nameStruct);
 
   std::map<std::string, Namer> members;
-  std::map<std::string, std::string> given;  // by qualified name in the file
-  scopes_.emplace_back();
+  std::map<std::string, std::size_t> exportOf;  // in its scope, by qualified name in the file
+  std::map<std::vector<std::string>, std::size_t> scopeOf;
+  const auto findScope = [&](const std::vector<std::string>& path) -> Scope& {
+    const auto [known, isNew] = scopeOf.try_emplace(path, scopes_.size());
+    if (isNew) scopes_.push_back({{}, path, {}});
+    return scopes_[known->second];
+  };
+  findScope({});
   std::size_t unit = 0;
   for (const bool isGlobal : {true, false}) {
     unit = 0;
@@ -77,26 +83,21 @@ JsNames::JsNames(const ir::Module& module) {
       if (!emit::isUnit(kernel)) continue;
       const std::size_t number = unit++;
       if (kernel.scope.empty() != isGlobal) continue;
-      Scope& scope = scopeOf(kernel.scope);
+      Scope& scope = findScope(kernel.scope);
       if (!isGlobal && scope.name.empty()) scope.name = values.take(join(kernel.scope, "_"));
-      const auto [entry, isNew] = given.try_emplace(ir::qualifier(kernel.scope) + kernel.name);
+      const auto [known, isNew] =
+          exportOf.try_emplace(ir::qualifier(kernel.scope) + kernel.name, scope.exports.size());
       if (isNew) {
         Namer& names = isGlobal
                            ? values
                            : members.try_emplace(ir::qualifier(kernel.scope), isReservedMember).first->second;
-        entry->second = names.take(kernel.name);
-        scope.exports.push_back({entry->second, {}});
+        scope.exports.push_back({names.take(kernel.name), {}});
       }
-      std::ranges::find(scope.exports, entry->second, &Export::name)->units.push_back(number);
+      scope.exports[known->second].units.push_back(number);
     }
   }
   for (const std::uint32_t index : structs)
     structs_[index].arrays = interfaces.take(structs_[index].name + "Arrays");
-}
-
-Scope& JsNames::scopeOf(const std::vector<std::string>& path) {
-  const auto known = std::ranges::find(scopes_, path, &Scope::path);
-  return known != scopes_.end() ? *known : scopes_.emplace_back(Scope{{}, path, {}});
 }
 
 void reportJsNames(const ir::Module& module, Diagnostics& diagnostics) {

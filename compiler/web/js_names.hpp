@@ -45,8 +45,6 @@ class JsNames {
     std::string name, arrays;
   };
 
-  Scope& scopeOf(const std::vector<std::string>& path);
-
   std::vector<Scope> scopes_;
   std::map<std::uint32_t, StructNames> structs_;
 };

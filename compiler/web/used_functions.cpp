@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <set>
+#include <map>
+#include <unordered_set>
 #include <vector>
 
 namespace skc::web {
@@ -66,32 +67,47 @@ std::vector<Part> partsOf(std::string_view program) {
   return parts;
 }
 
-void addWords(std::string_view text, std::set<std::string_view>& words) {
-  while (!text.empty()) {
-    const auto end = std::ranges::find_if_not(text, isWord);
-    const std::string_view word(text.begin(), end);
-    if (!word.empty()) words.insert(word);
-    text.remove_prefix(std::max<std::size_t>(word.size(), 1));
+/// Words in the order in which they were found first.
+class Words {
+ public:
+  void add(std::string_view text) {
+    while (!text.empty()) {
+      const auto end = std::ranges::find_if_not(text, isWord);
+      const std::string_view word(text.begin(), end);
+      if (!word.empty() && known_.insert(word).second) list_.push_back(word);
+      text.remove_prefix(std::max<std::size_t>(word.size(), 1));
+    }
   }
-}
+  std::size_t size() const { return list_.size(); }
+  std::string_view operator[](std::size_t number) const { return list_[number]; }
+
+ private:
+  std::unordered_set<std::string_view> known_;
+  std::vector<std::string_view> list_;
+};
 
 }  // namespace
 
 std::string withUsedFunctions(std::string_view program, std::string_view more) {
   if (program.find("#if") != std::string_view::npos) return std::string(program);
   const std::vector<Part> parts = partsOf(program);
-  std::set<std::string_view> words = {"main"};
-  addWords(more, words);
-  for (const Part& part : parts) {
-    if (part.name.empty()) addWords(part.text, words);
+  Words words;
+  words.add("main");
+  words.add(more);
+  std::multimap<std::string_view, std::size_t> functions;  // parts, by name
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].name.empty()) {
+      words.add(parts[i].text);
+    } else {
+      functions.emplace(parts[i].name, i);
+    }
   }
   std::vector<bool> isUsed(parts.size());
-  for (bool hasChanged = true; hasChanged;) {
-    hasChanged = false;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      if (isUsed[i] || parts[i].name.empty() || !words.contains(parts[i].name)) continue;
-      isUsed[i] = hasChanged = true;
-      addWords(parts[i].text, words);
+  for (std::size_t w = 0; w < words.size(); ++w) {  // what a function that is used adds comes later
+    const auto [first, last] = functions.equal_range(words[w]);
+    for (auto function = first; function != last; ++function) {
+      isUsed[function->second] = true;
+      words.add(parts[function->second].text);
     }
   }
   std::string used;
