@@ -43,6 +43,7 @@ void ClangDiagnostics::report(Diag diag, Loc loc, std::initializer_list<std::str
   const DiagRow& entry = row(diag);
   const clang::DiagnosticIDs::Level level = levelOf(entry.severity, engine_);
   if (level == clang::DiagnosticIDs::Ignored) return;
+  reported_.insert(diag);
   // The text is passed as an argument, because `%` has a meaning in Clang's format strings.
   const unsigned id = engine_.getDiagnosticIDs()->getCustomDiagID(level, "%0");
   const clang::DiagnosticBuilder message = engine_.Report(clangLocation(loc), id);

@@ -3,6 +3,8 @@
 // Reports our diagnostics through Clang's engine: the same form, carets, colours, limits and -W switches.
 #pragma once
 
+#include <set>
+
 #include <clang/Basic/Diagnostic.h>
 
 #include "support/diagnostics.hpp"
@@ -23,7 +25,10 @@ class ClangDiagnostics : public Diagnostics {
     return engine_.hasErrorOccurred() || engine_.getClient()->getNumErrors() != 0;
   }
 
+  bool hasReported(Diag diag) const { return reported_.contains(diag); }
+
  private:
+  std::set<Diag> reported_;
   clang::DiagnosticsEngine& engine_;
 };
 

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "frontend/clang_limits.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <unordered_set>
+#include <utility>
+#include <vector>
 
 #include <clang/Basic/SourceManager.h>
 #include <clang/Lex/MacroArgs.h>
+#include <clang/Lex/MacroInfo.h>
 #include <clang/Lex/PPCallbacks.h>
 #include <clang/Lex/Preprocessor.h>
 #include <clang/Sema/Sema.h>
@@ -33,11 +38,14 @@ class PreprocessingLimits : public clang::PPCallbacks {
   PreprocessingLimits(clang::Preprocessor& preprocessor, Diagnostics& diagnostics)
       : preprocessor_(preprocessor), diagnostics_(diagnostics) {}
 
-  void MacroExpands(const clang::Token& name, const clang::MacroDefinition&, clang::SourceRange,
+  void MacroExpands(const clang::Token& name, const clang::MacroDefinition& macro, clang::SourceRange,
                     const clang::MacroArgs* arguments) override {
-    tokens_ += tokensOfExpansion;
-    for (unsigned i = 0; arguments != nullptr && i < arguments->getNumMacroArguments(); ++i)
-      tokens_ += clang::MacroArgs::getArgLength(arguments->getUnexpArgument(i));
+    // An expansion within an argument of another is repeated wherever that other names the argument.
+    while (!enclosing_.empty() && !enclosing_.back().places.contains(name.getLocation().getRawEncoding()))
+      enclosing_.pop_back();
+    const std::size_t times = enclosing_.empty() ? 1 : enclosing_.back().times;
+    tokens_ += times * tokensOfExpansion;
+    if (arguments != nullptr) enter(*macro.getMacroInfo(), *arguments, times);
     if (tokens_ > mostTokensToExpand) stop(Diag::TooManyExpansions, name.getLocation());
   }
 
@@ -49,6 +57,30 @@ class PreprocessingLimits : public clang::PPCallbacks {
   }
 
  private:
+  /// An expansion whose arguments may hold others.
+  struct Enclosing {
+    std::unordered_set<clang::SourceLocation::UIntTy> places;  ///< of the arguments' tokens
+    std::size_t times;  ///< how often what they expand to is copied
+  };
+
+  void enter(const clang::MacroInfo& macro, const clang::MacroArgs& arguments, std::size_t times) {
+    std::vector<std::size_t> uses(macro.getNumParams());
+    for (const clang::Token& token : macro.tokens()) {
+      const int parameter = token.getIdentifierInfo() ? macro.getParameterNum(token.getIdentifierInfo()) : -1;
+      if (parameter >= 0) ++uses[static_cast<std::size_t>(parameter)];
+    }
+    Enclosing entry{{}, 1};
+    for (unsigned i = 0; i < arguments.getNumMacroArguments() && i < uses.size(); ++i) {
+      const clang::Token* const first = arguments.getUnexpArgument(i);
+      const unsigned length = clang::MacroArgs::getArgLength(first);
+      tokens_ += times * std::max<std::size_t>(uses[i], 1) * length;
+      for (unsigned k = 0; k < length; ++k) entry.places.insert(first[k].getLocation().getRawEncoding());
+      entry.times = std::max(entry.times, uses[i]);
+    }
+    entry.times = std::min(entry.times * times, mostTokensToExpand);
+    enclosing_.push_back(std::move(entry));
+  }
+
   [[noreturn]] void stop(Diag diag, clang::SourceLocation place, std::string_view argument = {}) {
     const clang::SourceLocation written = preprocessor_.getSourceManager().getExpansionLoc(place);
     diagnostics_.report(diag, locOf(written), {argument});
@@ -57,6 +89,7 @@ class PreprocessingLimits : public clang::PPCallbacks {
 
   clang::Preprocessor& preprocessor_;
   Diagnostics& diagnostics_;
+  std::vector<Enclosing> enclosing_;
   std::size_t tokens_ = 0;
   int includes_ = 0;
 };
@@ -67,8 +100,7 @@ class TemplateLimits : public clang::TemplateInstantiationCallback {
 
   void initialize(const clang::Sema& sema) override { before_ = memoryOf(sema); }
   void finalize(const clang::Sema&) override {}
-  void atTemplateBegin(const clang::Sema& sema,
-                       const clang::Sema::CodeSynthesisContext& context) override {
+  void atTemplateBegin(const clang::Sema& sema, const clang::Sema::CodeSynthesisContext& context) override {
     // what calls of the prelude's functions deduce is no instantiation, and costs little
     if (context.Kind != clang::Sema::CodeSynthesisContext::TemplateInstantiation) return;
     if (++instantiations_ < mostInstantiations && memoryOf(sema) - before_ < mostInstantiatedMemory) return;

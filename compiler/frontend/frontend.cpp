@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "frontend/frontend.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <ostream>
@@ -104,7 +105,8 @@ class Frontend::Unit {
   }
 
   void dumpAst(std::ostream& out) const {
-    if (wasStopped_ || !compiler_.hasASTContext()) return;
+    // Clang takes quadratic time to print a deep tree
+    if (wasStopped_ || !compiler_.hasASTContext() || diagnostics_->hasReported(Diag::NestedTooDeep)) return;
     llvm::raw_os_ostream stream(out);
     const clang::SourceManager& sources = compiler_.getSourceManager();
     for (const clang::Decl* declaration : compiler_.getASTContext().getTranslationUnitDecl()->decls()) {
@@ -245,6 +247,7 @@ class Frontend::Unit {
     preprocessor.EnterMainSourceFile();
     std::vector<clang::Token> tokens;
     int depth = 0;  // of braces
+    int qualifiers = 0;  // in a name such as a::b::c
     do {
       preprocessor.Lex(tokens.emplace_back());
       if (tokens.size() > mostTokens) {
@@ -252,9 +255,12 @@ class Frontend::Unit {
         diagnostics_->report(Diag::TooManyTokens, locOf(place), {std::to_string(mostTokens)});
         return {};
       }
-      if (tokens.back().is(clang::tok::l_brace)) ++depth;
-      if (tokens.back().is(clang::tok::r_brace)) --depth;
-      if (depth > deepestNesting) {
+      const clang::Token& token = tokens.back();
+      if (token.is(clang::tok::l_brace)) ++depth;
+      if (token.is(clang::tok::r_brace)) --depth;
+      if (token.is(clang::tok::coloncolon)) ++qualifiers;
+      if (!token.isOneOf(clang::tok::coloncolon, clang::tok::identifier)) qualifiers = 0;
+      if (std::max(depth, qualifiers) > deepestNesting) {
         const auto place = compiler_.getSourceManager().getExpansionLoc(tokens.back().getLocation());
         diagnostics_->report(Diag::NestedTooDeep, locOf(place), {std::to_string(deepestNesting)});
         return {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "judge.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <string>
 #include <vector>
@@ -27,8 +28,17 @@ constexpr OutputKind outputKinds[] = {
 bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
 /// A module without kernels has no GLSL and no plan.
+/// True if nothing is ever stored in the kernel's outputs.
+bool storesNothing(const skc::ir::Kernel& kernel) {
+  return std::ranges::all_of(kernel.params, [](const skc::ir::KernelParam& param) {
+    using Role = skc::ir::ParamRole;
+    if (param.role == Role::VariableOutput || param.role == Role::Scatter) return param.pushes == 0;
+    return param.role != Role::Output && param.role != Role::Accumulator;
+  });
+}
+
 bool mayBeEmpty(Emit emit, const skc::ir::Module& module) {
-  return module.kernels.empty() && (emit == Emit::Glsl || emit == Emit::Plan);
+  return (emit == Emit::Glsl || emit == Emit::Plan) && std::ranges::all_of(module.kernels, storesNothing);
 }
 
 /// What is wrong with skc's messages, or "".

@@ -166,9 +166,10 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
     case clang::CK_IntegralToFloating:
       if (!isKernelInteger(operand->getType())) {
         const std::optional<double> number = integerValue(operand);
-        const bool isDouble = module_.type(e->getType(), where).scalar == ir::Scalar::Double;
-        if (number && isDouble) return ir::literal(*number, module_.loc(where));
-        if (number) return ir::literal(static_cast<float>(*number), *number, module_.loc(where));
+        const ir::Scalar to = module_.type(e->getType(), where).scalar;
+        if (number && to == ir::Scalar::Float)
+          return ir::literal(static_cast<float>(*number), *number, module_.loc(where));
+        if (number) return convert(ir::literal(*number, module_.loc(where)), to);
       }
       return convert(value(operand), module_.type(e->getType(), where).scalar);
     case clang::CK_FloatingToIntegral:
