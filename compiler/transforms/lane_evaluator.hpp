@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// For tests: runs functions of ints and bools for several elements at once, one per lane. Control flow
-// follows lane 0 and must be uniform, so functions as the frontend produces them run with a single lane.
+// For tests: runs functions for several elements at once, one per lane. Control flow follows lane 0 and must be uniform,
+// so functions as the frontend produces them run with a single lane. It knows all scalars but halves and normalized
+// types, and the intrinsics that never round.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@ namespace skc {
 
 class LaneEvaluator {
  public:
-  using Value = std::vector<std::int32_t>;  ///< all scalars in order
+  using Value = std::vector<double>;  ///< all scalars in order; a double represents every int, uint and float
   using Lanes = std::vector<Value>;
 
   /// `inFull`: `&&`, `||` and `?:` evaluate all their operands. Values are checked against `shapes`.
@@ -33,6 +34,7 @@ class LaneEvaluator {
 
  private:
   enum class Flow : std::uint8_t { Next, Break, Continue, Return };
+  using Offsets = std::vector<std::size_t>;
   struct Frame {
     ir::FunctionId id;
     const ir::Function& function;
@@ -46,8 +48,8 @@ class LaneEvaluator {
   Flow loop(Frame& frame, const ir::Loop& loop);
   Flow choice(Frame& frame, const ir::Switch& choice);
   void assign(Frame& frame, const ir::Expr& place, const Lanes& value);
-  std::int32_t* scalars(Frame& frame, const ir::Expr& place, std::size_t lane,
-                        std::vector<std::size_t>& swizzle);
+  /// Where the scalars of an lvalue are in its root variable, for each lane.
+  std::vector<Offsets> offsets(Frame& frame, const ir::Expr& place);
   Lanes unassigned(ir::FunctionId id, ir::VarId var) const;
   void check(const Frame& frame, ir::VarId var) const;
   void tick() {
@@ -55,12 +57,16 @@ class LaneEvaluator {
   }
 
   Lanes of(Frame& frame, const ir::Expr& expr);
-  Lanes logical(Frame& frame, const ir::Binary& n);
+  Lanes logical(Frame& frame, const ir::Binary& n, std::size_t size);
+  Lanes intrinsic(Frame& frame, const ir::IntrinsicCall& n, ir::Type type);
   bool uniform(Frame& frame, const ir::Expr& expr);
   std::size_t size(ir::Type type) const;
+  std::size_t fieldOffset(ir::Type type, std::uint32_t field) const;
+  void addLeaves(ir::Type type, std::size_t first, Offsets& leaves) const;
   template <class Fn>
   Lanes each(Fn&& fn) const {
     Lanes lanes;
+    lanes.reserve(count_);
     for (std::size_t i = 0; i < count_; ++i) lanes.push_back(fn(i));
     return lanes;
   }

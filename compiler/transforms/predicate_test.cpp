@@ -24,7 +24,7 @@ using namespace ir;
 using Lanes = LaneEvaluator::Lanes;
 
 struct Outcome {
-  std::vector<std::int32_t> r;
+  LaneEvaluator::Value r;
   std::vector<LaneEvaluator::Value> pushed;
   bool operator==(const Outcome&) const = default;
 };
@@ -35,8 +35,8 @@ Outcome run(const Module& module, std::int32_t u, const std::vector<std::int32_t
   LaneEvaluator evaluator(module, count, inFull, shapes);
   evaluator.firstIndex = static_cast<std::int32_t>(first);
   std::vector<Lanes> arguments(4, Lanes(count, {0}));
-  arguments[0] = Lanes(count, {u});
-  for (std::size_t i = 0; i < count; ++i) arguments[1][i] = {x[first + i]};
+  arguments[0] = Lanes(count, {static_cast<double>(u)});
+  for (std::size_t i = 0; i < count; ++i) arguments[1][i] = {static_cast<double>(x[first + i])};
   const Kernel& kernel = module.kernels.front();
   if (entryMask(module, kernel)) arguments.emplace_back(count, LaneEvaluator::Value{1});
   const std::vector<Lanes> after = evaluator.run(kernel.entry, std::move(arguments));

@@ -164,7 +164,9 @@ Expr Body::value(TypeId type, int depth) {
         if (std::optional<Expr> found = read([&](TypeId id) { return id == type; }, depth))
           return std::move(*found);
         break;
-      case 2: return choice(type, depth);
+      case 2:
+        if (kind != Type::Kind::Vector || unit_.has("vector_choices")) return choice(type, depth);
+        break;
       case 3:
         if (std::optional<Expr> found = assignment(type, depth)) return std::move(*found);
         break;

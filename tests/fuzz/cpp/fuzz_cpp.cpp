@@ -20,6 +20,7 @@
 #include "command.hpp"
 #include "cpp/browser.hpp"
 #include "cpp/generator.hpp"
+#include "cpp/lanes.hpp"
 #include "cpp/oracle.hpp"
 #include "cpp/reducer.hpp"
 #include "cpp/targets.hpp"
@@ -76,6 +77,7 @@ std::string check(const Node& root, Targets& targets, const fuzz::cpp::BrowserBa
     return found == ids.end() ? nullptr : oracle.code(static_cast<std::size_t>(found - ids.begin()));
   };
   std::string wrong = targets.difference(*module, codeOf, wanted);
+  if (wrong.empty() && targets.has("lanes")) wrong = fuzz::cpp::differenceOfLanes(*module, wanted);
   if (wrong.empty() && targets.has("webgl2")) batch.add(number, text, wanted);
   return wrong;
 }
@@ -221,8 +223,14 @@ void store(const Options& options) {
 /// Compares stored programs with their stored results.
 int runStored(const Options& options) {
   Targets targets(setOf(options.targets));
+  const fuzz::cpp::BrowserBatch batch;
   int findings = 0;
-  for (const std::string& file : options.files) {
+  const auto report = [&](const std::string& file, const std::string& finding) {
+    std::cout << file << ": " << finding << "\n";
+    ++findings;
+  };
+  for (std::size_t number = 0; number < options.files.size(); ++number) {
+    const std::string& file = options.files[number];
     const fuzz::Verdict verdict = verdictOf(targets, [&]() -> std::string {
       const auto [module, messages] = skc::driver::translateText({}, file, textOf(file));
       if (!module) return "refused: " + messages;
@@ -236,12 +244,17 @@ int runStored(const Options& options) {
         }
         return nullptr;
       };
-      return targets.difference(*module, codeOf,
-                                fuzz::cpp::parsed(textOf(fs::path(file).replace_extension(".expected"))));
+      const std::vector<Outputs> wanted =
+          fuzz::cpp::parsed(textOf(fs::path(file).replace_extension(".expected")));
+      if (targets.has("webgl2")) batch.add(number, textOf(file), wanted);
+      std::string wrong = targets.difference(*module, codeOf, wanted);
+      if (wrong.empty() && targets.has("lanes")) wrong = fuzz::cpp::differenceOfLanes(*module, wanted);
+      return wrong;
     });
-    if (verdict.finding.empty()) continue;
-    std::cout << file << ": " << verdict.finding << "\n";
-    ++findings;
+    if (!verdict.finding.empty()) report(file, verdict.finding);
+  }
+  if (targets.has("webgl2")) {
+    for (const auto& [number, wrong] : batch.run()) report(options.files[number], wrong);
   }
   std::cout << options.files.size() << " stored programs, " << findings << " findings\n";
   return findings == 0 ? 0 : 1;
@@ -266,10 +279,11 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"fuzz_cpp: compares random programs with what they mean in C++", "fuzz_cpp"};
   options.addTo(app, "program");
-  app.add_option("--targets", options.targets, "What to run: native, glsl330, glsl430, essl300, webgl2")
+  app.add_option("--targets", options.targets,
+                 "What to run: native, lanes, glsl330, glsl430, essl300, webgl2")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"native", "glsl330", "glsl430", "essl300", "webgl2"}));
+      ->check(CLI::IsMember({"native", "lanes", "glsl330", "glsl430", "essl300", "webgl2"}));
   app.add_option("--without", options.without, "Constructs to leave out")
       ->delimiter(',')
       ->allow_extra_args(false)
