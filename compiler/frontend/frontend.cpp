@@ -246,7 +246,7 @@ class Frontend::Unit {
     clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
     preprocessor.EnterMainSourceFile();
     std::vector<clang::Token> tokens;
-    int depth = 0;  // of braces
+    int depth = 0;  // of brackets
     int qualifiers = 0;  // in a name such as a::b::c
     do {
       preprocessor.Lex(tokens.emplace_back());
@@ -256,8 +256,8 @@ class Frontend::Unit {
         return {};
       }
       const clang::Token& token = tokens.back();
-      if (token.is(clang::tok::l_brace)) ++depth;
-      if (token.is(clang::tok::r_brace)) --depth;
+      if (token.isOneOf(clang::tok::l_brace, clang::tok::l_paren, clang::tok::l_square)) ++depth;
+      if (token.isOneOf(clang::tok::r_brace, clang::tok::r_paren, clang::tok::r_square)) --depth;
       if (token.is(clang::tok::coloncolon)) ++qualifiers;
       if (!token.isOneOf(clang::tok::coloncolon, clang::tok::identifier)) qualifiers = 0;
       if (std::max(depth, qualifiers) > deepestNesting) {

@@ -79,6 +79,7 @@ void limitMemory(std::uint64_t megabytes) {
     limitTime(0);
     if (!verdict.finding.empty()) reporter.tell('f', number, verdict.finding);
     reporter.tell('t', number, verdict.tally);
+    if (verdict.endsProcess) _exit(0);
   }
   std::exit(0);  // runs the sanitizer's leak check, unlike _exit
 }
@@ -147,7 +148,7 @@ class Runner {
             tailOf(fileno(log))});
     }
     std::fclose(log);
-    return death.empty() ? end : current + 1;
+    return current + 1;
   }
 
   /// Reads the child's messages until it closes the pipe.

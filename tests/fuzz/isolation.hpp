@@ -15,6 +15,7 @@ namespace fuzz {
 struct Verdict {
   std::string finding;  ///< what is wrong; empty if nothing is
   std::string tally;  ///< the input's category in the summary, such as "accepted" or "refused"
+  bool endsProcess = false;  ///< the process may be damaged: the next input needs another
 };
 
 struct Finding {

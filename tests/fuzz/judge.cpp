@@ -58,7 +58,7 @@ Verdict compile(const Program& program, bool withGlslang) {
   const auto [module, messages] = skc::driver::translateText(options, program.path, program.text);
   const char* const tally = module ? "accepted" : "refused";
   if (const std::string mistake = mistakeIn(messages, module.has_value()); !mistake.empty() || !module) {
-    return {mistake, tally};
+    return {mistake, tally, contains(messages, "here Clang crashed")};
   }
   std::vector<std::string> listings;
   for (const OutputKind& kind : outputKinds) {

@@ -413,7 +413,7 @@ ExprPtr FunctionLowering::binary(ir::BinaryOp op, ExprPtr lhs, ExprPtr rhs, Sour
     rhs = std::move(bare);
   }
   const bool compares = ir::isComparison(op) && lhs->type.isVector();
-  if (lhs->type.isVector() && lhs->type.isBool()) {
+  if (lhs->type.isBool() && (lhs->type.isVector() || rhs->type.isVector())) {
     const auto logical = ofBools(op);
     if (!logical) module_.fail(Diag::Statement, where, {"arithmetic of bool vectors"});
     op = *logical;
