@@ -131,6 +131,8 @@ class Body {
   Expr spelled(const Place& place, int depth);
   /// An lvalue that is written: the reducer leaves it one.
   Expr target(const Place& place, int depth);
+  /// `(c ? x : y)`
+  Expr targetChoice(const Place& yes, const Place& no, int depth);
   Expr index(int count, int depth);
   std::optional<Expr> read(const Accepts& accepts, int depth);
   const Variable& variableOf(const Place& place) const { return variables_[place.variable]; }

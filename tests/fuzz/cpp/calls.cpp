@@ -36,6 +36,7 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
   const std::size_t count = function.parameters.size();
   std::vector<std::optional<Place>> bound(count + 1);  // the last: the object of a method
   std::uint64_t taken = 0;
+  std::vector<std::optional<Place>> others(count + 1);  // of choices among two
   std::vector<const Place*> mutableOnes;
   const auto bindsApart = [&](const Place& candidate) {
     for (const Place* other : mutableOnes) {
@@ -58,6 +59,12 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
     bound[p] = std::move(all[random_.below(all.size())]);
     mutableOnes.push_back(&*bound[p]);
     taken |= std::uint64_t{1} << variableOf(*bound[p]).bit;
+    std::erase_if(all, [&](const Place& candidate) { return !bindsApart(candidate); });
+    if (!all.empty() && unit_.with("lvalue_choices", 1, 6)) {
+      others[p] = std::move(all[random_.below(all.size())]);
+      mutableOnes.push_back(&*others[p]);
+      taken |= std::uint64_t{1} << variableOf(*others[p]).bit;
+    }
     return true;
   };
   const bool isMutableMethod = function.owner >= 0 && !function.isConst;
@@ -89,7 +96,13 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
   const auto add = [&](Expr part) {
     parts.push_back(isConflict(part) ? literal(part.type) : std::move(part));
   };
-  const auto addTarget = [&](const Place& place) {
+  const auto addTarget = [&](std::size_t p) {
+    const Place& place = *bound[p];
+    if (others[p]) {
+      Expr part = targetChoice(place, *others[p], isFull() ? 0 : depth - 1);
+      parts.push_back(isConflict(part) ? targetChoice(place, *others[p], 0) : std::move(part));
+      return;
+    }
     Expr part = target(place, depth - 1);
     parts.push_back(isConflict(part) ? target(place, 0) : std::move(part));
   };
@@ -108,11 +121,11 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
       add(std::move(*object));
     } else if (isMutableMethod) {
       const bool isOwn = variableOf(*bound[count]).name == "this" && bound[count]->path.empty();
-      if (isOwn && isNamed && random_.chance(2, 3)) {
+      if (isOwn && isNamed && !others[count] && random_.chance(2, 3)) {
         text = function.name + "(";
       } else {
         text = begin;
-        addTarget(*bound[count]);
+        addTarget(count);
       }
     } else {
       Expr object = value(function.owner, depth - 1);
@@ -132,7 +145,7 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
       if (p > 0) text += function.isInfix ? " " + function.name + " " : ", ";
       text += "$";
       if (parameter.passing == Passing::Reference) {
-        addTarget(*bound[p]);
+        addTarget(p);
         continue;
       }
       if (bound[p]) {

@@ -121,6 +121,14 @@ Expr Body::target(const Place& place, int depth) {
   };
   keep();
   const TypeId type = place.type;
+  if (mayHaveEffects() && depth > 0 && place.isReferable && unit_.with("lvalue_choices", 1, 16)) {
+    const std::vector<Place> others = places([&](TypeId id) { return id == type; }, true, true);
+    if (!others.empty()) {
+      result = targetChoice(place, random_.pick(others), depth);
+      result.effects.writes |= result.effects.reads;  // either of them, and what the condition reads
+      return result;
+    }
+  }
   if (!mayHaveEffects() || depth <= 0 || !types_.isInteger(type) || !unit_.with("nested", 1, 10))
     return result;
   // An assignment is an lvalue, too: `(x = 3) += y`.
@@ -133,6 +141,14 @@ Expr Body::target(const Place& place, int depth) {
   }
   keep();
   result.effects.writes |= std::uint64_t{1} << variableOf(place).bit;
+  return result;
+}
+
+Expr Body::targetChoice(const Place& yes, const Place& no, int depth) {
+  Expr test = condition(depth - 1), first = target(yes, 0), second = target(no, 0);
+  Expr result =
+      made("($ ? $ : $)", yes.type, listOf(std::move(test), std::move(first), std::move(second)), true);
+  result.node->simple.clear();
   return result;
 }
 
