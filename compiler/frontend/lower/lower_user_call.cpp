@@ -106,7 +106,9 @@ bool FunctionLowering::needsBranch(const std::vector<Argument>& arguments, std::
   if (isWritten(i)) return true;
   if (!arguments[i].isReference) return false;
   for (std::size_t k = 0; k < arguments.size(); ++k) {
-    if (isWritten(k) && mayOverlap(module, *arguments[i].value, *arguments[k].value)) return true;
+    // A choice that the call writes has its branch first.
+    const bool isObject = isWritten(k) && choiceIn(*arguments[k].value) == nullptr;
+    if (isObject && mayOverlap(module, *arguments[i].value, *arguments[k].value)) return true;
   }
   return false;
 }

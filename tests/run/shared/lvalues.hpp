@@ -286,6 +286,10 @@ inline int choicesAsTargets(int x, int y) {
          23 * t.b + 29 * u[0].a + 31 * u[0].b + 37 * u[1].a + 41 * u[1].b;
 }
 
+inline void addSum(const Pile& from, int& to) {
+  to += from.sum();
+  to += 3 * from.sum();
+}
 inline int choicesByReference(int x, int y) {
   Pile p = {{x, y, 1}, {{1, 2}, {3, y}}}, q = {{y, 2, x}, {{4, x}, {2, 1}}};
   int i = x & 1, k = y, r = bump(x > y ? i : k = 4);
@@ -295,6 +299,8 @@ inline int choicesByReference(int x, int y) {
   (x > 3 ? p : q).store((y > 3 ? p : q).list[1], 2);
   addFirst(x > 0 ? p.sums[0] : q.sums[1], (y > 0 ? p.sums[0] : q.sums[1]).a);
   r += (x > y ? p : q).store(p.list[2], 3) + 100 * i;
+  addSum(x > 1 ? p : q, y > 2 ? i : k);
+  addSum(y > 1 ? p : q, (x > 2 ? p : q).list[0]);
   return r + k + p.sum() + 3 * q.sum();
 }
 
