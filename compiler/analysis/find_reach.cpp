@@ -59,10 +59,11 @@ class FunctionWalk {
     for (std::size_t p = 0; p < arguments.size(); ++p) {
       if (hasLeaves(function_.variables[p])) state_.variables[p] = arguments[p];
     }
+    const IndexState start = state_;
     block(function_.body);
     leave();
     Outcome outcome{std::move(result_), {}};
-    if (!returned_.isReachable) returned_ = state_;
+    if (!returned_.isReachable) returned_ = start;  // it never returns
     for (std::uint32_t p = 0; p < function_.parameterCount; ++p)
       outcome.parameters.push_back(returned_.variables[p]);
     return outcome;
