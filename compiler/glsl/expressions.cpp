@@ -94,9 +94,16 @@ class GlslExpr {
     return whole.precedence < around ? "(" + whole.text + ")" : whole.text;
   }
 
+  /// The text of an lvalue that GLSL can assign to.
+  std::string targetText(const Expr& lvalue) const {
+    const auto* n = std::get_if<Index>(&lvalue.node);
+    if (n == nullptr || !n->base->type.isVector() || n->base->type.isDouble()) return text(lvalue);
+    return text(*n->base, Precedence::Primary) + "[" + indexText(*n) + "]";
+  }
+
   /// If GLSL cannot assign to `lvalue`, assigns to what contains it a copy with that part replaced.
   std::string assigned(const Expr& lvalue, const std::string& value) const {
-    if (isGlslLValue(lvalue)) return text(lvalue) + " = " + value;
+    if (isGlslLValue(lvalue)) return targetText(lvalue) + " = " + value;
     if (const auto* n = std::get_if<Swizzle>(&lvalue.node)) {
       return assigned(*n->base,
                       doubleWith(context_.polyfills, n->base->type, n->components, text(*n->base), value));
@@ -110,7 +117,7 @@ class GlslExpr {
   std::string combined(BinaryOp op, const Expr& lvalue, const Expr& value) const {
     const bool isCall = lvalue.type.isDouble() || takesQuotient(op, lvalue, value);
     if (!isCall && !mayShiftTooFar(context_.module, op, value)) {
-      return fmt::format("{} {}= {}", text(lvalue), spelling(op), text(value));
+      return fmt::format("{} {}= {}", targetText(lvalue), spelling(op), text(value));
     }
     return assigned(lvalue, binary(lvalue.type, op, lvalue, value).text);
   }
@@ -181,6 +188,10 @@ class GlslExpr {
   }
   Parts print(Type, const Index& n) const {
     if (n.base->type.isDouble()) return doubleIndex(n);
+    if (n.base->type.isVector() && !knownComponent(n)) {
+      const std::string function = context_.polyfills.component(n.base->type, n.index->type);
+      return {fmt::format("{}({}, {})", function, text(*n.base), text(*n.index))};
+    }
     return {text(*n.base, Precedence::Primary) + "[" + indexText(n) + "]"};
   }
   Parts print(Type, const Call& n) const {

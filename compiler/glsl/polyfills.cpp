@@ -179,4 +179,17 @@ std::string Polyfills::select(Type type) {
   return "sk_select";
 }
 
+std::string Polyfills::component(Type vector, Type index) {
+  const bool isUint = index.scalar == ir::Scalar::Uint;
+  std::string choice;
+  for (int i = 0; i + 1 < vector.width; ++i) {
+    const std::string next = isUint ? fmt::format("{}u", i + 1) : std::to_string(i + 1);
+    choice += fmt::format("i < {} ? v.{} : ", next, "xyzw"[i]);
+  }
+  add(fmt::format("{} sk_component({} v, {} i) {{\n  return {}v.{};\n}}\n", glslSpelling(vector.scalar, 1),
+                  glslSpelling(vector.scalar, vector.width), isUint ? "uint" : "int", choice,
+                  "xyzw"[vector.width - 1]));
+  return "sk_component";
+}
+
 }  // namespace skc::emit

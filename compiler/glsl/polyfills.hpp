@@ -20,6 +20,9 @@ class Polyfills {
   std::string logical(ir::BinaryOp op, int width);
   /// Componentwise select between two vectors of int, uint or bool; returns the function's name.
   std::string select(ir::Type type);
+  /// A component of a vector at an index that is computed, the nearest one to an index outside; returns the function's name.
+  /// Chromium 156 with SwiftShader takes another component for `c ? u : vec2(v[i], 0)`.
+  std::string component(ir::Type vector, ir::Type index);
   /// / or % of integers, defined for all operands; returns the function's name. GLSL's are undefined if the
   /// divisor is 0, the quotient is out of range, or, for %, an operand is negative.
   std::string quotient(ir::BinaryOp op, ir::Type lhs, ir::Type rhs);

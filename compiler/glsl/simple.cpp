@@ -87,8 +87,10 @@ class SimplePrinter {
  private:
   std::string step(const Assign& n, const Stmt& stmt) const {
     const auto* value = std::get_if<Literal>(&n.value->node);
-    const bool isOne =
-        value != nullptr && value->bits == 1 && n.place->type.isScalar() && n.place->type.isInteger();
+    const auto* index = std::get_if<Index>(&n.place->node);
+    const bool isComponent = index != nullptr && index->base->type.isVector();
+    const bool isOne = value != nullptr && value->bits == 1 && n.place->type.isScalar() &&
+                       n.place->type.isInteger() && !isComponent;
     if (isOne && n.op == BinaryOp::Add) return "++" + expr(n.place);
     if (isOne && n.op == BinaryOp::Sub) return "--" + expr(n.place);
     return *simple(stmt);
