@@ -23,6 +23,7 @@ void BrowserBatch::add(std::uint64_t number, const std::string& text,
   skc::driver::Options options;
   options.emit = skc::driver::Emit::Js;
   options.profile = "webgl2";
+  options.warnings = {"no-everything"};
   options.outputDirectory = folder_.path().string();
   if (skc::driver::compile(options, stem + ".sk") != 0)
     throw std::runtime_error("skc --emit=js refuses the program");
