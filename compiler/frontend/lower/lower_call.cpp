@@ -101,6 +101,11 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
     Exprs args = valuesInOrder({e->getArg(0), e->getArg(1), e->getArg(2)}, type.isDouble());
     ExprPtr cond = toBool(std::move(args[0]));
     for (std::size_t i = 1; i < 3; ++i) {
+      const ir::Type given = args[i]->type;
+      if (given.isVector() && given.width != type.width) {
+        module_.fail(Diag::NoIntrinsic, e->getBeginLoc(),
+                     {"select", module_.spelling(args[1]->type) + ", " + module_.spelling(args[2]->type)});
+      }
       if (type.isArithmetic()) args[i] = splat(convert(std::move(args[i]), type.scalar), type.width);
     }
     if (cond->type.isVector() && (!type.isVector() || cond->type.width != type.width)) {

@@ -413,9 +413,11 @@ ExprPtr FunctionLowering::binary(ir::BinaryOp op, ExprPtr lhs, ExprPtr rhs, Sour
     rhs = std::move(bare);
   }
   const bool compares = ir::isComparison(op) && lhs->type.isVector();
-  if (lhs->type.isBool() && (lhs->type.isVector() || rhs->type.isVector())) {
+  const bool haveBools = lhs->type.isBool() || rhs->type.isBool();
+  if (haveBools && (lhs->type.isVector() || rhs->type.isVector())) {
     const auto logical = ofBools(op);
-    if (!logical) module_.fail(Diag::Statement, where, {"arithmetic of bool vectors"});
+    if (!logical || lhs->type.isBool() != rhs->type.isBool())
+      module_.fail(Diag::Statement, where, {"arithmetic of bool vectors"});
     op = *logical;
   }
   ExprPtr result = ir::binary(op, std::move(lhs), std::move(rhs), module_.loc(where));

@@ -243,8 +243,8 @@ class Generator {
         if (chosen < 2) parameter.passing = Passing::Reference;
         if (chosen == 2) parameter.passing = Passing::ConstReference;
       }
-      // Templates deduce nothing from pointers, and methods take references alone.
-      if (isArray && ((i == 0 && first >= 0) || function.owner >= 0) && parameter.passing == Passing::Value)
+      // Templates deduce nothing from pointers, whose conversions would make overloads ambiguous; methods take references alone.
+      if (isArray && (first >= 0 || function.owner >= 0) && parameter.passing == Passing::Value)
         parameter.passing = Passing::ConstReference;
       if (parameter.passing == Passing::Value && !isArray && templated < 0 && !function.isInfix && i > 0 &&
           i == count - 1 && parameter.type != function.owner && random_.chance(1, 3))
@@ -402,7 +402,12 @@ class Generator {
         if (other.owner >= 0 || other.isInfix || other.parameters.empty() ||
             other.name.find('<') != std::string::npos || templates_.count(other.name) != 0)
           continue;
-        if (std::ranges::none_of(other.parameters, &Parameter::hasDefault)) others.push_back(&other);
+        const auto isUnsuitable = [&](const Parameter& parameter) {
+          const bool isPointer =
+              types_[parameter.type].kind == Type::Kind::Array && parameter.passing == Passing::Value;
+          return parameter.hasDefault || isPointer;
+        };
+        if (std::ranges::none_of(other.parameters, isUnsuitable)) others.push_back(&other);
       }
       if (!others.empty()) {
         Function& other = *random_.pick(others);

@@ -53,9 +53,8 @@ Expr Body::integer(int depth) {
         Expr first = mayHaveEffects() ? effectExpression(depth - 1) : integer(depth - 1);
         Expr second = integer(depth - 1);
         const TypeId type = second.type;
-        const bool mayBeComponent = second.mayBeComponent;
         Expr result = made("($, $)", type, listOf(std::move(first), std::move(second)));
-        result.mayBeComponent = mayBeComponent;
+        result.mayBeComponent = true;
         return result;
       }
       return integerBinary(depth);
