@@ -49,8 +49,9 @@ Expr Body::vectorOf(TypeId type, int depth) {
     case 3: {
       Expr any = vectorOf(type, depth - 1);
       const Range range = any.range;
-      Expr result = made(info.scalar < Scalar::Float && random_.chance(1, 2) ? "(~$)" : "(-$)", type,
-                         listOf(std::move(any)));
+      Expr result = made(
+          info.scalar < Scalar::Float && unit_.has("vector_bits") && random_.chance(1, 2) ? "(~$)" : "(-$)",
+          type, listOf(std::move(any)));
       result.range = range;
       return result;
     }
@@ -98,11 +99,12 @@ Expr Body::vectorBinary(TypeId type, int depth) {
   const bool isFloat = types_.hasFloats(type);
   static const std::vector<std::string> ofFloats = {"+", "-", "*"};
   static const std::vector<std::string> ofIntegers = {"+", "-", "*", "&", "|", "^"};
-  const std::string& op = random_.pick(isFloat ? ofFloats : ofIntegers);
+  const bool hasBits = !isFloat && unit_.has("vector_bits");
+  const std::string& op = random_.pick(hasBits ? ofIntegers : ofFloats);
   Expr a = value(type, depth - 1);
   Expr b = random_.chance(1, 3) ? value(info.element, depth - 1) : value(type, depth - 1);
   b = unsequenced(a, std::move(b));
-  if (!isFloat && random_.chance(1, 6) && !(types_.isNarrow(type) && types_.isScalar(b.type))) {
+  if (hasBits && random_.chance(1, 6) && !(types_.isNarrow(type) && types_.isScalar(b.type))) {
     const bool isByte = info.scalar == Scalar::Char || info.scalar == Scalar::Uchar;
     const std::string most = isByte ? "7" : types_.isNarrow(type) ? "15" : "31";
     const std::string mask = types_.isScalar(b.type) ? most : types_.spell(type) + "(" + most + ")";
@@ -177,7 +179,8 @@ std::optional<Expr> Body::swizzleAssignment(int depth) {
   Expr left = target(*found, depth - 1);
   static const std::vector<std::string> ofFloats = {"+=", "-="};
   static const std::vector<std::string> ofIntegers = {"+=", "-=", "*=", "&=", "|=", "^="};
-  const std::string op = isPlain ? "=" : random_.pick(isFloat ? ofFloats : ofIntegers);
+  const std::string op =
+      isPlain ? "=" : random_.pick(isFloat || !unit_.has("vector_bits") ? ofFloats : ofIntegers);
   Expr result =
       made("$." + components + " " + op + " $", type, listOf(std::move(left), std::move(right)), true);
   result.node->simple.clear();
