@@ -50,9 +50,9 @@ std::map<std::uint64_t, std::string> BrowserBatch::run() const {
                      fmt::join(inputs().b, ", "), fmt::join(inputs().c, ", "), programs);
   const std::string found = (folder_.path() / "found").string();
   static const TemporaryFolder package;  // is built once for all batches
-  const std::string command = fmt::format(
-      "python3 '{}/tests/fuzz/cpp/browser.py' '{}' '{}' '{}' '{}' >'{}'", SK_SOURCE_FOLDER,
-      folder_.path().string(), SK_SOURCE_FOLDER, SK_BUILD_FOLDER, (package.path() / "built").string(), found);
+  const std::string command = fmt::format("python3 '{}/tests/fuzz/cpp/browser.py' '{}' '{}' '{}' '{}' >'{}'",
+                                          SK_SOURCE_FOLDER, folder_.path().string(), SK_SOURCE_FOLDER,
+                                          SK_BUILD_FOLDER, (package.path() / "built").string(), found);
   if (std::system(command.c_str()) != 0) throw std::runtime_error("the browser does not run the programs");
   std::map<std::uint64_t, std::string> differences;
   std::ifstream in(found);

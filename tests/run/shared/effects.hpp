@@ -24,7 +24,7 @@
 // clang-format on
 
 #ifdef __clang__
-#pragma clang diagnostic ignored "-Wunsequenced"   // what C++ leaves open goes from left to right
+#pragma clang diagnostic ignored "-Wunsequenced"  // what C++ leaves open goes from left to right
 #endif
 
 namespace effects {

@@ -421,7 +421,9 @@ inline int weight(const Inner& i) { return i.a + 10 * i.c; }
 inline int weight(const Middle& m) {
   return weight(m.inner) + 3 * weight(m.given) + 7 * weight(m.list[0]) + 11 * weight(m.list[1]) + m.n;
 }
-inline int weight(const Outer& o) { return weight(o.middle[0]) + 3 * weight(o.middle[1]) + 5 * weight(o.last); }
+inline int weight(const Outer& o) {
+  return weight(o.middle[0]) + 3 * weight(o.middle[1]) + 5 * weight(o.last);
+}
 inline int defaultsAtEveryDepth(int x, int y) {
   Middle m;
   Outer o, p = {};
@@ -452,9 +454,9 @@ inline int fewerInitialisers(int x, int y) {
   Grid g, h = {{x}}, k = {{x, y}, {y}}, list[3] = {{{1}, {x}, false}};
   int flat[7] = {x, y};
   Couple pairs[3] = {{x}, {}};
-  return g.size.second + g.cells[1] + 3 * h.size.second + 5 * h.cells[0] + 7 * k.cells[0] + 11 * k.cells[1] + 13 * k.open +
-         17 * list[0].open + 19 * list[2].open + 23 * list[1].cells[1] + flat[1] + flat[6] + pairs[0].second +
-         pairs[2].first;
+  return g.size.second + g.cells[1] + 3 * h.size.second + 5 * h.cells[0] + 7 * k.cells[0] + 11 * k.cells[1] +
+         13 * k.open + 17 * list[0].open + 19 * list[2].open + 23 * list[1].cells[1] + flat[1] + flat[6] +
+         pairs[0].second + pairs[2].first;
 }
 
 inline int count(int& n) { return ++n; }
