@@ -241,30 +241,27 @@ class Frontend::Unit {
     return files;
   }
 
-  /// Returns no tokens after reporting that there are too many, or too many blocks in each other.
+  /// Returns no tokens after reporting that there are too many, or that brackets or names nest too deep.
   std::vector<clang::Token> lex() {
     clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
     preprocessor.EnterMainSourceFile();
     std::vector<clang::Token> tokens;
     int depth = 0;  // of brackets
     int qualifiers = 0;  // in a name such as a::b::c
+    const auto stop = [&](Diag diag, std::size_t most) -> std::vector<clang::Token> {
+      const auto place = compiler_.getSourceManager().getExpansionLoc(tokens.back().getLocation());
+      diagnostics_->report(diag, locOf(place), {std::to_string(most)});
+      return {};
+    };
     do {
       preprocessor.Lex(tokens.emplace_back());
-      if (tokens.size() > mostTokens) {
-        const auto place = compiler_.getSourceManager().getExpansionLoc(tokens.back().getLocation());
-        diagnostics_->report(Diag::TooManyTokens, locOf(place), {std::to_string(mostTokens)});
-        return {};
-      }
+      if (tokens.size() > mostTokens) return stop(Diag::TooManyTokens, mostTokens);
       const clang::Token& token = tokens.back();
       if (token.isOneOf(clang::tok::l_brace, clang::tok::l_paren, clang::tok::l_square)) ++depth;
       if (token.isOneOf(clang::tok::r_brace, clang::tok::r_paren, clang::tok::r_square)) --depth;
       if (token.is(clang::tok::coloncolon)) ++qualifiers;
       if (!token.isOneOf(clang::tok::coloncolon, clang::tok::identifier)) qualifiers = 0;
-      if (std::max(depth, qualifiers) > deepestNesting) {
-        const auto place = compiler_.getSourceManager().getExpansionLoc(tokens.back().getLocation());
-        diagnostics_->report(Diag::NestedTooDeep, locOf(place), {std::to_string(deepestNesting)});
-        return {};
-      }
+      if (std::max(depth, qualifiers) > deepestNesting) return stop(Diag::NestedTooDeep, deepestNesting);
     } while (tokens.back().isNot(clang::tok::eof));
     return tokens;
   }

@@ -15,7 +15,11 @@ constexpr std::size_t stackSize = 1 << 16;
 
 thread_local sigjmp_buf* returnPoint = nullptr;
 
-void onCrash(int) { siglongjmp(*returnPoint, 1); }
+void onCrash(int signal) {
+  if (returnPoint != nullptr) siglongjmp(*returnPoint, 1);
+  std::signal(signal, SIG_DFL);  // of another thread
+  raise(signal);
+}
 
 /// Handles the signals of crashes, on a stack of its own, during its lifetime.
 class Handlers {

@@ -46,11 +46,11 @@ bool isLocation(const ir::Expr& e) {
   return std::holds_alternative<ir::VarRef>(e.node) || isUnchanging(e);
 }
 
-bool isWritable(const ir::Expr& location) {
-  if (std::holds_alternative<ir::VarRef>(location.node)) return true;
-  if (const auto* choice = std::get_if<ir::Select>(&location.node))
-    return isWritable(*choice->yes) && isWritable(*choice->no);
-  const ir::Expr* base = baseOf(location);
+bool isWritable(const ir::Expr& e) {
+  if (std::holds_alternative<ir::VarRef>(e.node)) return true;
+  if (const auto* choice = std::get_if<ir::Select>(&e.node))
+    return choice->cond->type.isScalar() && isWritable(*choice->yes) && isWritable(*choice->no);
+  const ir::Expr* base = baseOf(e);
   return base != nullptr && isWritable(*base);
 }
 

@@ -13,8 +13,8 @@
 namespace skc::frontend {
 
 bool isLocation(const ir::Expr& e);
-/// True if no object that the location may name is a constant or an element of a gather.
-bool isWritable(const ir::Expr& location);
+/// True for a location that never names a constant or an element of a gather.
+bool isWritable(const ir::Expr& e);
 
 /// The variables that a location may name or be a part of, in ascending order.
 std::vector<ir::VarId> rootsOf(const ir::Expr& location);

@@ -222,7 +222,7 @@ ExprPtr FunctionLowering::place(const clang::Expr* e) {
     const std::string& gather = function_.variables[read->stream.id].name;
     module_.fail(Diag::GatherAssigned, e->getBeginLoc(), {gather + "[...]", gather});
   }
-  if (!isLocation(*result) || !isWritable(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
+  if (!isWritable(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
   return result;
 }
 
