@@ -44,6 +44,35 @@ TEST_CASE("a text compiles without a file") {
   }
 }
 
+TEST_CASE("kernels whose structs WebGL refuses are not offered in browsers") {
+  Options options;
+  options.emit = Emit::Js;
+  const auto moduleOf = [&](const std::string& body) {
+    return compileText(options, "deep.sk",
+                       "struct A { float x; };\nstruct B { A a[2]; };\nstruct C { B b; };\n"
+                       "struct D { C c; };\nstruct E { D d; };\nstruct F { C c; double3 y; };\n"
+                       "struct G { F f; };\n" +
+                           body)
+        .output;
+  };
+  const auto with = [&](const std::string& type, const std::string& member) {
+    return moduleOf("kernel void deep(float x<>, out float r<>) { " + type + " t; t." + member +
+                    " = x; r = t." + member + "; }\n");
+  };
+  CHECK_FALSE(contains(with("D", "c.b.a[0].x"), "levels deep"));
+  CHECK(contains(with("E", "d.c.b.a[0].x"), "its structs are nested 5 levels deep, but WebGL takes 4"));
+  CHECK_FALSE(contains(with("F", "c.b.a[0].x"), "levels deep"));
+  CHECK(contains(with("G", "f.c.b.a[0].x"), "its structs are nested 5 levels deep"));
+  // what is offered in floats may not be in pairs of floats, each of which is a struct
+  const std::string inPairs = moduleOf(
+      "[[variants(extended)]] kernel void deep(float x<>, out float r<>) { D t; t.c.b.a[1].x = x; r = "
+      "t.c.b.a[1].x * x; }\n"
+      "reduce void deepest(float x<>, reduce float r<>) { D t; t.c.b.a[1].x = x; r += t.c.b.a[1].x; }\n");
+  CHECK(contains(inPairs, R"("extended":{"whyNot":"its structs are nested 5 levels deep)"));
+  CHECK(contains(inPairs, R"("extended":"its structs are nested 5 levels deep)"));
+  CHECK_FALSE(contains(inPairs, R"("name":"deep","whyNot")"));
+}
+
 TEST_CASE("products and sums are fused in entries of their own alone, and never in the library") {
   Options options;
   options.emit = Emit::Llvm;

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "program/used_structs.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
 
 namespace skc::emit {
 namespace {
@@ -22,6 +26,26 @@ struct Finder {
   }
 };
 
+class Levels {
+ public:
+  explicit Levels(const Module& module) : module_(module), ofStructs_(module.structs.size(), 0) {}
+
+  int of(Type type) {
+    if (type.kind == Type::Kind::Array) return of(module_.arrays[type.index].element);
+    if (type.kind != Type::Kind::Struct) return type.scalar != Scalar::Double ? 0 : type.isScalar() ? 1 : 2;
+    int& levels = ofStructs_[type.index];
+    if (levels > 0) return levels;
+    int inner = 0;
+    for (const StructField& field : module_.structs[type.index].fields)
+      inner = std::max(inner, of(field.type));
+    return levels = 1 + inner;
+  }
+
+ private:
+  const Module& module_;
+  std::vector<int> ofStructs_;
+};
+
 }  // namespace
 
 std::vector<std::uint32_t> usedStructs(const Module& module) {
@@ -32,6 +56,17 @@ std::vector<std::uint32_t> usedStructs(const Module& module) {
   }
   for (const DeclaredStream& stream : module.streams) finder.add(stream.type);
   return std::move(finder.list);
+}
+
+int structLevels(const Module& module, const Kernel& kernel) {
+  Levels levels(module);
+  int most = 0;
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    const Function& function = module.functions[id];
+    for (const Variable& variable : function.variables) most = std::max(most, levels.of(variable.type));
+    walkExprs(function.body, [&](const Expr& expr) { most = std::max(most, levels.of(expr.type)); });
+  }
+  return most;
 }
 
 }  // namespace skc::emit

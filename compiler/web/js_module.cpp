@@ -87,7 +87,7 @@ class ScriptWriter {
 
  private:
   Json callable(const emit::Unit& unit) {
-    if (const std::string why = whyNotOffered(unit); !why.empty())
+    if (const std::string why = whyNotOffered(module_, unit); !why.empty())
       return {{"name", unit.kernel.name}, {"whyNot", why}};
     const Forms forms(module_.kernels[unit.id].choices, unit.kernel.options);
     const bool views = ir::isAhead(module_.kernels[unit.id].choices, ir::Ahead::Views);
@@ -106,7 +106,7 @@ class ScriptWriter {
                                              !fast               ? ""
                                              : precision.empty() ? "fast"
                                                                  : " fast");
-        others[name] = kernelFormIn(unit.kernel, precision, fast, views);
+        others[name] = kernelFormIn(unit.id, unit.kernel, precision, fast, views);
       }
     }
     json["forms"] = std::move(others);
@@ -140,14 +140,24 @@ class ScriptWriter {
     return profile;
   }
 
+  /// Why WebGL refuses the variant of a kernel that computes in pairs of floats; "" if it takes it or there is none.
+  std::string whyNestsTooDeepInPairs(ir::KernelId id) const {
+    const std::optional<ir::KernelId> wide = module_.kernels[id].variants.wide;
+    return wide ? whyNestsTooDeep(module_, module_.kernels[*wide]) : std::string();
+  }
+
   /// A kernel in another precision; null if it is the same as without.
-  Json kernelFormIn(const Kernel& kernel, std::string_view precision, bool fast, bool views) {
+  Json kernelFormIn(ir::KernelId id, const Kernel& kernel, std::string_view precision, bool fast,
+                    bool views) {
     const bool isHalf = precision == "half";
     const Kernel* form = precision.empty() ? &kernel : isHalf ? kernel.half : kernel.wide;
     const std::string_view why = isHalf ? kernel.whyNotHalf : kernel.whyNotWide;
     if (form == nullptr) return why.empty() ? Json() : Json{{"whyNot", why}};
     if (precision.empty() && kernel.intrinsics.empty()) return {};
     if (isTooLarge(*form)) return {{"whyNot", "its streams have too many planes for this precision"}};
+    if (form == kernel.wide) {
+      if (const std::string deep = whyNestsTooDeepInPairs(id); !deep.empty()) return {{"whyNot", deep}};
+    }
     return kernelForm(*form, profileOf(fast), views);
   }
 
@@ -241,7 +251,8 @@ class ScriptWriter {
       json["accumulate"] = nameOf(unit.kernel.options.accumulate);
     if (unit.isScan) json["scans"] = true;
     Json variants = Json::object();
-    for (const SumVariants& sums : sumVariants(reduction, unit.isScan)) {
+    for (SumVariants& sums : sumVariants(reduction, unit.isScan)) {
+      if (sums.name == "extended" && sums.whyNot.empty()) sums.whyNot = whyNestsTooDeepInPairs(unit.id);
       if (!sums.whyNot.empty()) {
         variants[sums.name] = sums.whyNot;
         continue;

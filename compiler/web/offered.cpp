@@ -7,6 +7,7 @@
 
 #include "assemble/append/append_passes.hpp"
 #include "assemble/program/plans.hpp"
+#include "program/used_structs.hpp"
 #include "web/ahead_programs.hpp"
 #include "web/sum_variants.hpp"
 
@@ -84,8 +85,20 @@ std::string whyTooLarge(const Kernel& kernel) {
 
 }  // namespace
 
-std::string whyNotOffered(const emit::Unit& unit) {
+std::string whyNestsTooDeep(const ir::Module& module, const ir::Kernel& kernel) {
+  constexpr int most = 4;  // by the specification of WebGL
+  const int levels = emit::structLevels(module, kernel);
+  if (levels <= most) return {};
+  return fmt::format(
+      "its structs are nested {} levels deep, but WebGL takes {}; a double is a struct there, too; put "
+      "members of the "
+      "inner structs into the outer ones",
+      levels, most);
+}
+
+std::string whyNotOffered(const ir::Module& module, const emit::Unit& unit) {
   const Kernel& kernel = unit.kernel;
+  if (std::string why = whyNestsTooDeep(module, module.kernels[unit.id]); !why.empty()) return why;
   if (unit.reduction != nullptr) {
     if (std::string why = whyTooManyPlanes(*unit.reduction, unit.isScan); !why.empty()) return why;
     return unit.reduction->parts == nullptr ? std::string() : whyTooLarge(unit.reduction->parts->map);

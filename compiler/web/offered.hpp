@@ -21,7 +21,10 @@ bool hasAppendOutputs(const sk::program::Kernel& kernel);
 /// Whether a kernel has too many planes for one pass, and no plan either.
 bool isTooLarge(const sk::program::Kernel& kernel);
 
+/// Why WebGL refuses the structs of a kernel, and what to do instead; "" if it takes them.
+std::string whyNestsTooDeep(const ir::Module& module, const ir::Kernel& kernel);
+
 /// Why a kernel or reduction cannot be called from a browser, and what to do instead; "" if it can.
-std::string whyNotOffered(const emit::Unit& unit);
+std::string whyNotOffered(const ir::Module& module, const emit::Unit& unit);
 
 }  // namespace skc::web

@@ -61,7 +61,7 @@ class TypesWriter {
   }
 
   std::string callableType(const emit::Unit& unit) const {
-    if (const std::string why = whyNotOffered(unit); !why.empty()) {
+    if (const std::string why = whyNotOffered(module_, unit); !why.empty()) {
       return fmt::format("sk.NotOffered<\"{}\">", why);
     }
     std::vector<std::string> all, taken, values;

@@ -17,7 +17,7 @@ import package
 seconds = 1200
 
 if not chromium.path:
-    sys.exit("chromium is not installed; './dev test web' installs it")
+    sys.exit("skipped: chromium is not installed; './dev test web' installs it")  # standard output has the differences
 with tempfile.TemporaryDirectory() as pages:
     if not os.path.exists(built):
         package.build(source, built, build)
