@@ -7,6 +7,7 @@
 #include <clang/AST/ExprCXX.h>
 #include <clang/AST/Stmt.h>
 #include <clang/AST/StmtCXX.h>
+#include <llvm/ADT/ScopeExit.h>
 
 #include "frontend/lower/function_lowering.hpp"
 #include "ir/build.hpp"
@@ -253,8 +254,8 @@ void FunctionLowering::variable(const clang::VarDecl* declaration) {
                                !construct->requiresZeroInitialization();
     if (!uninitialised) {
       initialising_.insert(declaration);
+      const auto done = llvm::make_scope_exit([&] { initialising_.erase(declaration); });  // after errors, too
       init = value(initializer);
-      initialising_.erase(declaration);
     }
   }
   ir::Variable variable;
