@@ -18,8 +18,8 @@ TrueSum::TrueSum() {
 }
 TrueSum::~TrueSum() { mpfr_clears(sum_, magnitude_, product_, nullptr); }
 
-void TrueSum::addProduct(float x, float y) {
-  mpfr_set_flt(product_, x, MPFR_RNDN);
+void TrueSum::addProduct(double x, double y) {
+  mpfr_set_d(product_, x, MPFR_RNDN);
   mpfr_mul_d(product_, product_, y, MPFR_RNDN);
   mpfr_add(sum_, sum_, product_, MPFR_RNDN);
   mpfr_abs(product_, product_, MPFR_RNDN);
@@ -30,7 +30,7 @@ float TrueSum::rounded() const { return mpfr_get_flt(sum_, MPFR_RNDN); }
 double TrueSum::value() const { return mpfr_get_d(sum_, MPFR_RNDN); }
 double TrueSum::magnitude() const { return mpfr_get_d(magnitude_, MPFR_RNDN); }
 
-double TrueSum::errorOf(float result) const {
+double TrueSum::errorOf(double result) const {
   mpfr_t difference;
   mpfr_init2(difference, 1500);
   mpfr_sub_d(difference, sum_, result, MPFR_RNDN);

@@ -19,13 +19,14 @@ class TrueSum {
   TrueSum(const TrueSum&) = delete;
   TrueSum& operator=(const TrueSum&) = delete;
 
-  void add(float x) { addProduct(x, 1); }
-  void addProduct(float x, float y);
+  /// Floats, or doubles whose products lie between 2^-500 and 2^500.
+  void add(double x) { addProduct(x, 1); }
+  void addProduct(double x, double y);
 
   /// The nearest float, which may be denormal; ties to even.
   float rounded() const;
   /// |result - sum|.
-  double errorOf(float result) const;
+  double errorOf(double result) const;
   double magnitude() const;  ///< sum of |x * y|
   /// magnitude() / |sum|; infinity if the sum is 0.
   double condition() const;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// Runs cases on the devices of a process.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "numbers/bounds.hpp"
+#include "numbers/case.hpp"
+#include "sk/sk.hpp"
+
+namespace fuzz::numbers {
+
+/// The names of targets: native, glsl330, glsl430, essl300, webgl2.
+extern const std::vector<std::string> targetNames;
+
+/// Whether a target can run a case: some have no doubles, rows, or contraction.
+bool canRun(const std::string& target, const Case& one);
+
+Arithmetic arithmeticOf(const std::string& target, const Case& one);
+
+class Devices {
+ public:
+  /// The results of a case: a list for each output. Throws sk::Error.
+  std::vector<Values> run(const std::string& target, const Case& one);
+
+ private:
+  sk::Device& device(const std::string& target, const Case& one);
+
+  std::map<std::string, sk::Device> devices_;
+};
+
+}  // namespace fuzz::numbers

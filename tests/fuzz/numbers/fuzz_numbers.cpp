@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+//
+// fuzz_numbers: calls the kernels of adversary.sk with numbers made to hurt, on any target, and compares the results with exact
+// ones and with the bounds of docs/accuracy.md. Case N of a seed is always the same. A case with a finding is made smaller. With
+// files, it runs the cases that they hold. The exit status is 1 after a finding.
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+
+#include "command.hpp"
+#include "numbers/devices.hpp"
+#include "numbers/generator.hpp"
+#include "numbers/shrink.hpp"
+#include "numbers/verdict.hpp"
+#include "sk/error.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using fuzz::numbers::Case;
+using fuzz::numbers::Devices;
+
+struct Options : fuzz::Command {
+  Options() { count = 1000, seconds = 120; }
+  std::vector<std::string> targets{"native"}, files;
+  double minutes = 0;
+  std::uint64_t mostFindings = 40;
+  int budget = 400;
+};
+
+std::string mistakeOn(Devices& devices, const std::string& target, const Case& one) {
+  try {
+    return mistakeOf(one, devices.run(target, one), arithmeticOf(target, one));
+  } catch (const sk::Error& error) {
+    return std::string("throws ") + error.what();
+  }
+}
+
+/// What findings about one mistake have in common.
+std::string kindOf(const std::string& target, const Case& one, const std::string& what) {
+  const std::size_t place = what.starts_with("output") ? 8 : 0;
+  return fmt::format("{} {} {} {} {}", target, one.operation, static_cast<int>(one.options.accumulate),
+                     static_cast<int>(one.options.precision),
+                     what.starts_with("throws") ? what : what.substr(0, place));
+}
+
+std::string report(const std::string& target, const Case& one, const std::string& what) {
+  std::string text = fmt::format("{}: {}\n  {}\n", target, described(one), what);
+  for (std::size_t k = 0; k < one.inputs.size(); ++k) {
+    std::vector<std::string> numbers;
+    for (std::size_t i = 0; i < std::min<std::size_t>(one.inputs[k].size(), 48); ++i)
+      numbers.push_back(fuzz::numbers::shown(one.inputs[k][i]));
+    text += fmt::format("  input {} has {} numbers: {}\n", k, one.inputs[k].size(), fmt::join(numbers, ", "));
+  }
+  return text;
+}
+
+class Campaigns {
+ public:
+  explicit Campaigns(const Options& options) : options_(options) {}
+
+  int run() {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(60 * options_.minutes);
+    const bool isTimed = options_.minutes > 0;
+    const std::uint64_t slice = isTimed ? 2000 : options_.count;
+    for (std::uint64_t first = options_.first; first == options_.first || isTimed; first += slice) {
+      if (isTimed && std::chrono::steady_clock::now() > end) break;
+      runSlice(first, slice);
+      if (findings_ >= options_.mostFindings) break;
+    }
+    for (const auto& [name, count] : tallies_) std::cout << name << ": " << count << "\n";
+    std::cout << cases_ << " cases, " << findings_ << " findings\n";
+    for (const auto& [kind, count] : kinds_) std::cout << count << " x " << kind << "\n";
+    return findings_ == 0 ? 0 : 1;
+  }
+
+ private:
+  void runSlice(std::uint64_t first, std::uint64_t count) {
+    fuzz::Campaign campaign{.first = first, .count = count, .batch = 4000, .seconds = options_.seconds};
+    std::map<std::string, int> kinds;  // of the child
+    std::optional<Devices> devices;
+    campaign.begin = [&] { devices.emplace(); };
+    campaign.check = [&](std::uint64_t number) { return check(*devices, kinds, number); };
+    campaign.onFinding = [&](const fuzz::Finding& finding) { keep(finding); };
+    const fuzz::Summary summary = fuzz::run(campaign);
+    cases_ += summary.inputs;
+    for (const auto& [tally, cases] : summary.tallies) {
+      std::istringstream names(tally);
+      for (std::string name; names >> name;) tallies_[name] += cases;
+    }
+  }
+
+  /// Runs a case on all targets, in a child process.
+  fuzz::Verdict check(Devices& devices, std::map<std::string, int>& kinds, std::uint64_t number) const {
+    const Case one = fuzz::numbers::generate(options_.seed, number);
+    fuzz::Verdict verdict;
+    for (const std::string& target : options_.targets) {
+      if (target == "webgl2" || !canRun(target, one)) continue;
+      verdict.tally += target + " ";
+      const std::string wrong = mistakeOn(devices, target, one);
+      if (wrong.empty() || !verdict.finding.empty()) continue;
+      const std::string kind = kindOf(target, one, wrong);
+      fuzz::numbers::Shrunk best{one, wrong};
+      if (++kinds[kind] <= 2) {
+        const auto find = [&](std::span<const Case> cases) -> std::optional<fuzz::numbers::Failure> {
+          for (std::size_t i = 0; i < cases.size(); ++i) {
+            if (!canRun(target, cases[i])) continue;
+            const std::string what = mistakeOn(devices, target, cases[i]);
+            if (!what.empty() && what.starts_with("throws") == wrong.starts_with("throws"))
+              return fuzz::numbers::Failure{i, what};
+          }
+          return std::nullopt;
+        };
+        best = fuzz::numbers::shrunk(one, wrong, find, options_.budget, 1);
+      }
+      verdict.finding =
+          kind + "\n" + report(target, best.smallest, best.what) + "\f" + written(best.smallest);
+    }
+    return verdict;
+  }
+
+  void keep(const fuzz::Finding& finding) {
+    ++findings_;
+    // What a child says is the kind, a report for people, and the smallest case.
+    const std::size_t line = finding.what.find('\n'), page = finding.what.find('\f');
+    const bool isWhole = page != std::string::npos;
+    const std::string kind = finding.what.substr(0, line);
+    const bool isNew = ++kinds_[kind] <= 2;
+    const std::string text = isWhole ? finding.what.substr(page + 1)
+                                     : written(fuzz::numbers::generate(options_.seed, finding.number));
+    const fs::path file = options_.keep("numbers", finding, text, ".json");
+    if (!isNew) return;
+    fuzz::Finding shown = finding;
+    if (isWhole) shown.what = finding.what.substr(line + 1, page - line - 1);
+    fuzz::tell(
+        "case", shown,
+        "fuzz_numbers --targets " + fmt::format("{} {}", fmt::join(options_.targets, ","), file.string()));
+  }
+
+  const Options& options_;
+  std::uint64_t cases_ = 0, findings_ = 0;
+  std::map<std::string, int> kinds_;
+  std::map<std::string, std::uint64_t> tallies_;
+};
+
+std::string textOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error("cannot read " + file.string());
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+int runFiles(const Options& options) {
+  Devices devices;
+  int findings = 0;
+  for (const std::string& file : options.files) {
+    const Case one = fuzz::numbers::parsed(textOf(file));
+    for (const std::string& target : options.targets) {
+      if (!canRun(target, one)) continue;
+      const std::string wrong = mistakeOn(devices, target, one);
+      if (wrong.empty()) continue;
+      ++findings;
+      std::cout << file << "\n" << report(target, one, wrong);
+    }
+  }
+  std::cout << options.files.size() << " cases, " << findings << " findings\n";
+  return findings == 0 ? 0 : 1;
+}
+
+int fuzzNumbers(const Options& options) {
+  if (!options.files.empty()) return runFiles(options);
+  if (!options.show) return Campaigns(options).run();
+  for (std::uint64_t i = 0; i < options.count; ++i)
+    std::cout << written(fuzz::numbers::generate(options.seed, options.first + i)) << "\n";
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{
+      "fuzz_numbers: compares what kernels make of numbers that hurt with what docs/accuracy.md promises",
+      "fuzz_numbers"};
+  options.addTo(app, "case");
+  app.add_option("--targets", options.targets,
+                 "What to run: " + fmt::format("{}", fmt::join(fuzz::numbers::targetNames, ", ")))
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(fuzz::numbers::targetNames));
+  app.add_option("--minutes", options.minutes, "How long, instead of --count");
+  app.add_option("--findings", options.mostFindings, "Stop after this many findings");
+  app.add_option("--budget", options.budget, "How many smaller cases are tried for a finding");
+  app.add_option("files", options.files, "Cases to run");
+  CLI11_PARSE(app, argc, argv);
+  return fuzz::guarded("fuzz_numbers", [&] { return fuzzNumbers(options); });
+}
