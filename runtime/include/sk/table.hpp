@@ -29,10 +29,10 @@ struct TableReport {
   std::string function;  ///< qualified, as in the .sk file
   TableRange range;
   Interpolation interpolation;
-  /// Predicted largest absolute error over the range: from the largest differences of the function's values
-  /// plus the rounding of the argument and the result.
+  /// A bound of the absolute error of every lookup in the range, against the function in double: from irregular samples,
+  /// more of them where the function bends, and from the rounding of the argument and of the result.
   double predicted;
-  /// Largest absolute error found by looking up eight arguments per interval in float arithmetic.
+  /// Largest absolute error found by looking up eight arguments per interval, and at least 4096, in float arithmetic.
   double measured;
   float worst;  ///< the argument of the largest error found
 };

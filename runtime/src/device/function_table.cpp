@@ -2,7 +2,6 @@
 #include "device/function_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "assemble/glsl/tables.hpp"
 #include "call/resolved_call.hpp"
+#include "device/interpolation_error.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
 #include "sk/error.hpp"
@@ -22,17 +22,19 @@ namespace {
 
 using program::Table;
 
-/// Samples per interval: enough for the function's fourth derivative and for nearly exact slopes.
+/// Samples per interval: enough for nearly exact slopes.
 constexpr int parts = 8;
 
-constexpr double roundoff = 0x1p-24;
+/// Lookups that are measured, at least.
+constexpr std::size_t leastMeasured = 4096;
 
 std::string named(const Table& table, const TableRange& range) {
   return fmt::format("the table of '{}' over [{}, {}]", table.function, range.low, range.high);
 }
 
-/// The function's values, computed in double.
-std::vector<double> valuesAt(const Table& table, const std::vector<double>& arguments) {
+/// The function's values, computed in double. Throws sk::Error if one is no finite float.
+std::vector<double> valuesAt(const Table& table, const TableRange& range,
+                             const std::vector<double>& arguments) {
   const auto count = static_cast<std::int64_t>(arguments.size());
   NativeDevice device(RealType::Double);
   device.checkProgram(*table.values);
@@ -45,6 +47,12 @@ std::vector<double> valuesAt(const Table& table, const std::vector<double>& argu
   device.run(resolveCall(*table.values, list, device.limits));
   std::vector<double> values(arguments.size());
   y->readReals(detail::wholeRegion(y.get()), values.data());
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    if (std::abs(values[j]) <= std::numeric_limits<float>::max()) continue;
+    throw Error(fmt::format(
+        "{}: its value at {} is {}, which nothing can be interpolated with; give it another range",
+        named(table, range), arguments[j], values[j]));
+  }
   return values;
 }
 
@@ -56,13 +64,7 @@ class Samples {
     std::vector<double> arguments(static_cast<std::size_t>(range.intervals) * parts + 1);
     for (std::size_t j = 0; j < arguments.size(); ++j) arguments[j] = low_ + static_cast<double>(j) * step_;
     arguments.back() = range.high;
-    values_ = valuesAt(table, arguments);
-    for (std::size_t j = 0; j < values_.size(); ++j) {
-      if (std::isfinite(values_[j])) continue;
-      throw Error(fmt::format(
-          "{}: its value at {} is {}, which nothing can be interpolated with; give it another range",
-          named(table, range), arguments[j], values_[j]));
-    }
+    values_ = valuesAt(table, range, arguments);
   }
 
   /// The value at the lower end of an interval.
@@ -78,24 +80,6 @@ class Samples {
       return parts * (25 * f(j) - 48 * f(j - 1) + 36 * f(j - 2) - 16 * f(j - 3) + 3 * f(j - 4)) / 12;
     }
     return parts * (f(j - 2) - 8 * f(j - 1) + 8 * f(j + 1) - f(j + 2)) / 12;
-  }
-
-  double largestValue() const {
-    return std::abs(*std::ranges::max_element(values_, {}, [](double v) { return std::abs(v); }));
-  }
-  /// The largest difference of this order (1 to 4) of neighbouring samples, as a derivative per interval
-  /// length.
-  double largestDerivative(int order) const {
-    constexpr std::array<std::array<int, 5>, 5> weights = {
-        {{1}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}, {1, -4, 6, -4, 1}}};
-    const auto reach = static_cast<std::size_t>(order);
-    double largest = 0;
-    for (std::size_t j = 0; j + reach < values_.size(); ++j) {
-      double difference = 0;
-      for (std::size_t k = 0; k <= reach; ++k) difference += weights[reach][k] * values_[j + k];
-      largest = std::max(largest, std::abs(difference));
-    }
-    return largest * std::pow(parts, order);
   }
 
  private:
@@ -138,24 +122,20 @@ std::vector<float> coefficientsFor(const Samples& samples, std::int32_t interval
   return coefficients;
 }
 
-/// Interpolation error (h^2/8 of the second derivative, or h^4/384 of the fourth), three roundings of the
-/// position in the interval, and the rounding of the polynomial.
-double predictedError(const Samples& samples, const TableRange& range, bool isCubic) {
-  const double truncation = isCubic ? samples.largestDerivative(4) / 384 : samples.largestDerivative(2) / 8;
-  const double place = 3 * roundoff * range.intervals * samples.largestDerivative(1);
-  return truncation + place + 3 * roundoff * samples.largestValue();
-}
-
+/// Looks up some arguments in each interval, irregularly placed.
 void measure(const Table& table, FunctionTable& result) {
+  constexpr double goldenRatio = 0.6180339887498949;
   const TableRange& range = result.report.range;
-  const std::size_t count = static_cast<std::size_t>(range.intervals) * parts;
+  const std::size_t count = std::max(static_cast<std::size_t>(range.intervals) * parts, leastMeasured);
   const double width = double{range.high} - range.low;
   std::vector<double> arguments(count);
   for (std::size_t j = 0; j < count; ++j) {
-    const double x = range.low + width * (static_cast<double>(j) + 0.5) / static_cast<double>(count);
+    const auto number = static_cast<double>(j);
+    const double within = number * goldenRatio - std::floor(number * goldenRatio);
+    const double x = range.low + width * (number + within) / static_cast<double>(count);
     arguments[j] = std::clamp(static_cast<float>(x), range.low, range.high);
   }
-  const std::vector<double> right = valuesAt(table, arguments);
+  const std::vector<double> right = valuesAt(table, range, arguments);
   const native::Table looked = result.native();
   for (std::size_t j = 0; j < count; ++j) {
     const auto x = static_cast<float>(arguments[j]);
@@ -164,6 +144,23 @@ void measure(const Table& table, FunctionTable& result) {
     result.report.measured = error;
     result.report.worst = x;
   }
+}
+
+/// Bounds the error of all lookups.
+void predict(const Table& table, FunctionTable& result) {
+  const TableRange& range = result.report.range;
+  const FunctionValues values = [&](const std::vector<double>& x) { return valuesAt(table, range, x); };
+  const InterpolationError error = interpolationError(values, range, result.report.interpolation,
+                                                      result.coefficients, result.report.measured);
+  if (error.unresolved) {
+    throw Error(
+        fmt::format("{}: the function changes so fast between {} and {} that no bound of the table's error "
+                    "is known; give it a narrower "
+                    "range without that, or compute the function (Tables::Off, or [[tables(off)]] in front "
+                    "of the kernel)",
+                    named(table, range), error.unresolved->first, error.unresolved->second));
+  }
+  result.report.predicted = std::max(error.bound, result.report.measured);
 }
 
 }  // namespace
@@ -176,12 +173,11 @@ native::Table FunctionTable::native() const {
 FunctionTable buildTable(const Table& table, const TableRange& range) {
   const float scale = perUnit(table, range);
   const Samples samples(table, range);
-  const bool isCubic = table.interpolation == Interpolation::Cubic;
-  FunctionTable result{.report = {std::string(table.function), range, table.interpolation,
-                                  predictedError(samples, range, isCubic), 0, range.low},
+  FunctionTable result{.report = {std::string(table.function), range, table.interpolation, 0, 0, range.low},
                        .coefficients = coefficientsFor(samples, range.intervals, table.interpolation),
                        .perUnit = scale};
   measure(table, result);
+  predict(table, result);
   return result;
 }
 

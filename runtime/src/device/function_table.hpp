@@ -23,8 +23,8 @@ struct FunctionTable {
   native::Table native() const;
 };
 
-/// Throws sk::Error if the function has no native code, if a value in the range is not finite, or if floats
-/// cannot distinguish the range's intervals.
+/// Throws sk::Error if the function has no native code, if a value in the range is not finite, if floats
+/// cannot distinguish the range's intervals, or if the function changes too fast for a bound of the error.
 FunctionTable buildTable(const program::Table& table, const TableRange& range);
 
 /// The tables of a device.
