@@ -18,7 +18,7 @@ if(TARGET sk_mpi)   # targets of their own: they need an MPI where they are used
 endif()
 install(EXPORT StreamKernelTargets NAMESPACE sk:: DESTINATION "${packageFolder}")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/sk" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
-        FILES_MATCHING PATTERN "*.hpp")
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "*.def")
 
 if(SK_BUILD_COMPILER)
   # An LLVM outside of the linker's own folders is found by the installed skc too.

@@ -43,6 +43,24 @@ says "cannot write 'no/such/folder.json'"
 
 small=(--size 4096 --rounds 2)
 
+# Functions of one float over every K-th float, beside their bounds; others, and those of doubles, over drawn numbers.
+run 0 --exhaustive exp,atan --every 1000003 --device native,software --profile glsl330,essl300 --json all.json
+for profile in native glsl330 essl300; do matches "^  exp +$profile +4295 +[0-9.]+ +[0-9.]+  yes (x = |no result but the nearest)"; done
+[[ $out != *' NO '* ]] || broken "a function breaks its bound"
+python3 -c "
+import json
+records = json.load(open('all.json'))['records']
+assert [r['function'] for r in records] == 3 * ['exp'] + 3 * ['atan'], records
+for r in records:
+    assert r['arguments'] == 4295 and r['every'] == 1000003 and 0.4 < r['largest'] <= r['bound'] and r['within_bound'], r
+    assert not r['worst'] or r['worst'][0]['error'] == r['largest'] > 0.5, r"
+run 0 --exhaustive pow,tan --precision double --draws 1000 --device software --profile glsl330
+for function in pow tan; do matches "^  $function +glsl330 +[0-9]+ +[0-9.]+ +[0-9.]+  yes x = "; done
+run 1 --exhaustive exp,pow
+says "there is no function 'pow' to try: it is one of all, sin, cos, "
+run 1 sum --exhaustive exp
+says '--exhaustive tries functions, no programs or files; leave them out'
+
 # Sums: what each mode keeps, natively and with GL; each within its bound.
 for device in native ''; do
   run 0 sum ${device:+--device "$device"} --data illconditioned "${small[@]}"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: accurate intrinsics are within 3 ulp over all floats, with the special cases of C99 (annex F), on every profile
-// and natively. The reference is the C library in double, whose error is about 1e-9 ulp of a float.
+// Promises: accurate intrinsics are within the bounds of sk/error_bounds.def over all floats, 3 ulp at most, with the special cases of
+// C99 (annex F), on every profile and natively. The reference is the C library in double, whose error is about 1e-9 ulp of a float.
 //
-// Bounds are the errors of docs/accuracy.md with some room. A device may read denormals as 0, and give 0 for a denormal
-// result.
+// A device may read denormals as 0, and give 0 for a denormal result. The worst of all arguments are those of exhaustive.json.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -18,8 +17,10 @@
 #include <catch2/catch.hpp>
 
 #include "intrinsics.sk.hpp"
+#include "sk/error_bounds.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
+#include "support/exhaustive_runs.hpp"
 #include "support/values.hpp"
 
 namespace run_tests {
@@ -104,52 +105,54 @@ Worst worst(sk::Device& device, const auto& kernel, const Unary& exact, const st
 struct Case {
   const char* name;
   std::function<Worst(sk::Device&, const std::vector<float>&)> measure;
-  double bound;  ///< in ulp, for our GLSL functions
   std::vector<Range> ranges;  ///< ranges that are hard to compute
 };
 
-#define MEASURED(f, exact, bound, ...)                                          \
+#define MEASURED(f, exact, ...)                                                 \
   Case {                                                                        \
     #f,                                                                         \
         [](sk::Device& device, const std::vector<float>& values) {              \
           return worst(device, of_##f, [](double x) { return exact; }, values); \
         },                                                                      \
-        bound, {                                                                \
+    {                                                                           \
       __VA_ARGS__                                                               \
     }                                                                           \
   }
 
 // clang-format off
 const Case cases[] = {
-    MEASURED(sin, std::sin(x), 1.7, {-4, 4}, {-3000, 3000}, {3000, 1e7}, {6.2831845, 6.2831862}, {1e10, 3.4e38}),
-    MEASURED(cos, std::cos(x), 1.7, {-4, 4}, {-3000, 3000}, {3000, 1e7}, {1.5707960, 1.5707968}, {1e10, 3.4e38}),
-    MEASURED(tan, std::tan(x), 2.9, {-4, 4}, {-3000, 3000}, {3000, 1e7}, {1.5707960, 1.5707968}, {1e10, 3.4e38}),
-    MEASURED(asin, std::asin(x), 1.7, {-1, 1}, {0.49, 0.51}, {0.999, 1}, {-1e-3, 1e-3}),
-    MEASURED(acos, std::acos(x), 1.4, {-1, 1}, {0.49, 0.51}, {0.999, 1}, {-1e-3, 1e-3}),
-    MEASURED(atan, std::atan(x), 2.3, {-10, 10}, {0.9, 1.1}, {-1e-3, 1e-3}, {100, 1e8}),
-    MEASURED(sinh, std::sinh(x), 1.7, {-90, 90}, {-2, 2}, {88, 89.5}, {-1e-3, 1e-3}),
-    MEASURED(cosh, std::cosh(x), 1.5, {-90, 90}, {-2, 2}, {88, 89.5}, {-1e-3, 1e-3}),
-    MEASURED(tanh, std::tanh(x), 1.4, {-10, 10}, {-1, 1}, {8, 10}, {-1e-3, 1e-3}),
-    MEASURED(asinh, std::asinh(x), 2.4, {-10, 10}, {0.9, 1.2}, {1e8, 1e10}, {-1e-3, 1e-3}),
-    MEASURED(acosh, std::acosh(x), 2.4, {1, 10}, {1, 1.0001}, {1.4, 1.6}, {1e8, 1e10}),
-    MEASURED(atanh, std::atanh(x), 1.5, {-1, 1}, {0.45, 0.55}, {0.999, 1}, {-1e-3, 1e-3}),
-    MEASURED(exp, std::exp(x), 1.3, {-1, 1}, {-104, 89}, {88.7, 88.73}, {-88, -86}),
-    MEASURED(exp2, std::exp2(x), 1.3, {-1, 1}, {-150, 128}, {127, 128}, {-127, -125}),
-    MEASURED(log, std::log(x), 0.9, {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
-    MEASURED(log2, std::log2(x), 1.4, {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
-    MEASURED(log10, std::log10(x), 2.2, {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
-    MEASURED(sqrt, std::sqrt(x), 1.0, {0, 10}, {1e30, 3e38}),
-    MEASURED(inversesqrt, 1 / std::sqrt(x), 2.0, {0, 10}, {1e30, 3e38}),
-    MEASURED(radians, x * 0.017453292519943295, 1.5, {-400, 400}),
-    MEASURED(degrees, x * 57.295779513082321, 1.5, {-10, 10}),
+    MEASURED(sin, std::sin(x), {-4, 4}, {-3000, 3000}, {3000, 1e7}, {6.2831845, 6.2831862}, {1e10, 3.4e38}),
+    MEASURED(cos, std::cos(x), {-4, 4}, {-3000, 3000}, {3000, 1e7}, {1.5707960, 1.5707968}, {1e10, 3.4e38}),
+    MEASURED(tan, std::tan(x), {-4, 4}, {-3000, 3000}, {3000, 1e7}, {1.5707960, 1.5707968}, {1e10, 3.4e38}),
+    MEASURED(asin, std::asin(x), {-1, 1}, {0.49, 0.51}, {0.999, 1}, {-1e-3, 1e-3}),
+    MEASURED(acos, std::acos(x), {-1, 1}, {0.49, 0.51}, {0.999, 1}, {-1e-3, 1e-3}),
+    MEASURED(atan, std::atan(x), {-10, 10}, {0.9, 1.1}, {-1e-3, 1e-3}, {100, 1e8}),
+    MEASURED(sinh, std::sinh(x), {-90, 90}, {-2, 2}, {88, 89.5}, {-1e-3, 1e-3}),
+    MEASURED(cosh, std::cosh(x), {-90, 90}, {-2, 2}, {88, 89.5}, {-1e-3, 1e-3}),
+    MEASURED(tanh, std::tanh(x), {-10, 10}, {-1, 1}, {8, 10}, {-1e-3, 1e-3}),
+    MEASURED(asinh, std::asinh(x), {-10, 10}, {0.9, 1.2}, {1e8, 1e10}, {-1e-3, 1e-3}),
+    MEASURED(acosh, std::acosh(x), {1, 10}, {1, 1.0001}, {1.4, 1.6}, {1e8, 1e10}),
+    MEASURED(atanh, std::atanh(x), {-1, 1}, {0.45, 0.55}, {0.999, 1}, {-1e-3, 1e-3}),
+    MEASURED(exp, std::exp(x), {-1, 1}, {-104, 89}, {88.7, 88.73}, {-88, -86}),
+    MEASURED(exp2, std::exp2(x), {-1, 1}, {-150, 128}, {127, 128}, {-127, -125}),
+    MEASURED(log, std::log(x), {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
+    MEASURED(log2, std::log2(x), {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
+    MEASURED(log10, std::log10(x), {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
+    MEASURED(sqrt, std::sqrt(x), {0, 10}, {1e30, 3e38}),
+    MEASURED(inversesqrt, 1 / std::sqrt(x), {0, 10}, {1e30, 3e38}),
+    MEASURED(radians, x * 0.017453292519943295, {-400, 400}),
+    MEASURED(degrees, x * 57.295779513082321, {-10, 10}),
 };
 // clang-format on
 
-/// The bound in ulp of native code: docs/accuracy.md has 0.51 for skc's own functions; the others are a root, or one or
-/// two operations.
-double nativeBound(std::string_view name) {
-  const bool isOperation = name == "inversesqrt" || name == "radians" || name == "degrees";
-  return isOperation ? 1.5 : 0.51;
+/// The bound in ulp on a device, of error_bounds.def. GL's own roots have those of ARB_shader_precision, and keep them with room here.
+double boundOf(const std::string& function, const sk::Device& device) {
+  const bool isNative = device.profile() == "native";
+  const sk::ErrorBound* bound = sk::errorBoundOf(function, sk::BoundedType::Float,
+                                                 isNative ? sk::BoundedCode::Native : sk::BoundedCode::Glsl);
+  if (bound != nullptr) return bound->bound;
+  REQUIRE((function == "sqrt" || function == "inversesqrt"));
+  return 2;
 }
 
 TEST_CASE("functions of one float, over all of them") {
@@ -158,9 +161,48 @@ TEST_CASE("functions of one float, over all of them") {
     onEveryTarget([&](sk::Device& device) {
       const Worst error = one.measure(device, x);
       INFO(one.name << ": " << error.error << " ulp: " << error.where);
-      CHECK(error.error <=
-            (device.profile() == "native" ? std::min(one.bound, nativeBound(one.name)) : one.bound));
+      CHECK(error.error <= boundOf(one.name, device));
     });
+  }
+}
+
+TEST_CASE("the worst arguments of all floats") {
+  const std::vector<numerics::ExhaustiveRun> runs = numerics::exhaustiveRuns();
+  for (const Case& one : cases) {
+    std::vector<float> x(count, 1.0F);
+    std::size_t used = 0;
+    double recorded = 0;  // natively, where bits are the same on every CPU
+    for (const numerics::ExhaustiveRun& run : runs) {
+      if (run.function != one.name) continue;
+      for (const numerics::ExhaustiveCase& worst : run.worst) x[used++] = worst.x;
+      if (run.profile == "native") recorded = run.largest;
+    }
+    if (used == 0) continue;
+    onEveryTarget([&](sk::Device& device) {
+      const Worst error = one.measure(device, x);
+      INFO(one.name << ": " << error.error << " ulp: " << error.where);
+      CHECK(error.error <= boundOf(one.name, device));
+      if (device.profile() == "native" && recorded > 0.5)
+        CHECK(error.error == Approx(recorded).epsilon(1e-7));
+    });
+  }
+}
+
+TEST_CASE("bounds for all arguments are those of the runs over all arguments") {
+  const std::vector<numerics::ExhaustiveRun> runs = numerics::exhaustiveRuns();
+  for (const sk::ErrorBound& bound : sk::errorBounds) {
+    if (bound.known != sk::KnownBy::AllArguments) continue;
+    double largest = 0;
+    for (const numerics::ExhaustiveRun& run : runs) {
+      const bool isNative = run.profile == "native";
+      if (run.function != bound.function || isNative != (bound.code == sk::BoundedCode::Native)) continue;
+      INFO(run.function << " " << run.profile);
+      CHECK(run.arguments == std::uint64_t{1} << 32);
+      CHECK(run.largest <= bound.bound);
+      largest = std::max(largest, run.largest);
+    }
+    INFO(bound.function);
+    CHECK(bound.seen == Approx(largest).epsilon(1e-5));
   }
 }
 
@@ -199,19 +241,18 @@ TEST_CASE("powers and angles, over all pairs of floats") {
                                   pairs("whole", {{-20, 20}}, {{-3, 3}}, 33)};
   for (const Pairs& one : all) {
     onEveryTarget([&](sk::Device& device) {
-      const double ours = device.profile() == "native" ? 1.0 : 1.5;
       const Worst power =
           worst(device, of_pow, [](double a, double b) { return std::pow(a, b); }, one.x, one.y);
       INFO(one.name << ": pow " << power.error << " ulp: " << power.where);
-      CHECK(power.error <= ours);
+      CHECK(power.error <= boundOf("pow", device));
       const Worst angle =
           worst(device, of_atan2, [](double a, double b) { return std::atan2(a, b); }, one.x, one.y);
       INFO(one.name << ": atan2 " << angle.error << " ulp: " << angle.where);
-      CHECK(angle.error <= (device.profile() == "native" ? 1.5 : 2.3));
+      CHECK(angle.error <= boundOf("atan2", device));
       const Worst left =
           worst(device, of_fmod, [](double a, double b) { return std::fmod(a, b); }, one.x, one.y);
       INFO(one.name << ": fmod " << left.error << " ulp: " << left.where);
-      CHECK(left.error == 0);
+      CHECK(left.error <= boundOf("fmod", device));
     });
   }
 }
@@ -299,10 +340,11 @@ TEST_CASE("lengths of all vectors") {
       length.add(ulps(gotDistances[i], exact), gotDistances[i], exact, v[i].x);
       unit.add(ulps(gotUnits[i].x, v[i].x / exact), gotUnits[i].x, v[i].x / exact, v[i].x);
     }
-    // Three squares and two sums, whose error the root halves, and the root itself: below 2.5 ulp.
-    // The quotient adds 0.5. docs/accuracy.md has the largest that were seen.
-    CHECK(length.error <= 2.0);
-    CHECK(unit.error <= 3.0);
+    const auto bound = [](const char* function) {
+      return sk::errorBoundOf(function, sk::BoundedType::Float, sk::BoundedCode::Glsl)->bound;
+    };
+    CHECK(length.error <= bound("length"));
+    CHECK(unit.error <= bound("normalize"));
   });
 }
 

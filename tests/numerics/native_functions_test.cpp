@@ -3,17 +3,13 @@
 // Promises: the functions that native code calls for intrinsics (compiler/native/library) are within their error bounds over
 // all numbers, fmod of floats is exact, and special cases are those of C99, annex F. The reference is MPFR.
 //
-// The bound for floats is 0.5 ulp for rounding to float, and 0.01 ulp for the polynomials, whose errors float_functions.sk
-// states, and for rounding doubles. docs/accuracy.md lists the errors over every 61st float, which this test measures with
-// SK_STRIDE=61 against the C library in double, whose error is about 1e-9 ulp of a float. The bounds for doubles are the
-// largest errors over 16 million arguments each, with some room.
+// The bounds are those of sk/error_bounds.def: for floats 0.5 ulp for rounding to float, and 0.01 ulp at most for the polynomials,
+// whose errors float_functions.sk states, and for rounding doubles. exhaustive.json has the worst arguments.
 #include <mpfr.h>
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <iostream>
 #include <random>
 #include <sstream>
 #include <string>
@@ -23,14 +19,23 @@
 #include <catch2/catch.hpp>
 
 #include "native_functions.sk.hpp"
+#include "sk/error_bounds.hpp"
 #include "sk/sk.hpp"
+#include "support/exhaustive_runs.hpp"
 #include "support/function_oracle.hpp"
 
 namespace {
 
 using numerics::FunctionOracle;
 
-constexpr double floatBound = 0.51;
+template <class Real>
+double boundOf(std::string_view function) {
+  const sk::BoundedType type = std::is_same_v<Real, float> ? sk::BoundedType::Float : sk::BoundedType::Double;
+  const sk::ErrorBound* bound = sk::errorBoundOf(function, type, sk::BoundedCode::Native);
+  INFO(function);
+  REQUIRE(bound != nullptr);
+  return bound->bound;
+}
 
 template <class Real>
 sk::Stream<Real> streamOf(sk::Device& device, const std::vector<Real>& values) {
@@ -74,38 +79,35 @@ struct UnaryCase {
   std::vector<Real> (*compute)(const std::vector<Real>&);
   numerics::Unary exact;
   double (*inDouble)(double);
-  double boundOfDoubles;
   Real low, high;  ///< the range of most of the random arguments
-
-  double bound() const { return std::is_same_v<Real, float> ? floatBound : boundOfDoubles; }
 };
 
-#define UNARY(f, boundOfDoubles, low, high)                                                  \
+#define UNARY(f, low, high)                                                                  \
   UnaryCase<Real> {                                                                          \
     #f, [](const std::vector<Real>& x) { return computed(functions::of_##f, x); }, mpfr_##f, \
-        [](double x) { return std::f(x); }, boundOfDoubles, low, high                        \
+        [](double x) { return std::f(x); }, low, high                                        \
   }
 
 // clang-format off
 template <class Real>
 const UnaryCase<Real> unaryCases[] = {
-    UNARY(sin, 0.8, -10, 10),
-    UNARY(cos, 0.8, -10, 10),
-    UNARY(tan, 2.2, -10, 10),
-    UNARY(asin, 1.2, -1, 1),
-    UNARY(acos, 0.8, -1, 1),
-    UNARY(atan, 1.7, -4, 4),
-    UNARY(sinh, 1.8, -30, 30),
-    UNARY(cosh, 1.2, -30, 30),
-    UNARY(tanh, 1.5, -10, 10),
-    UNARY(asinh, 1.8, -4, 4),
-    UNARY(acosh, 1.1, 1, 4),
-    UNARY(atanh, 1.8, -1, 1),
-    UNARY(exp, 0.8, -104, 89),
-    UNARY(exp2, 0.8, -150, 128),
-    UNARY(log, 0.9, 0.5F, 2),
-    UNARY(log2, 0.9, 0.5F, 2),
-    UNARY(log10, 0.8, 0.5F, 2),
+    UNARY(sin, -10, 10),
+    UNARY(cos, -10, 10),
+    UNARY(tan, -10, 10),
+    UNARY(asin, -1, 1),
+    UNARY(acos, -1, 1),
+    UNARY(atan, -4, 4),
+    UNARY(sinh, -30, 30),
+    UNARY(cosh, -30, 30),
+    UNARY(tanh, -10, 10),
+    UNARY(asinh, -4, 4),
+    UNARY(acosh, 1, 4),
+    UNARY(atanh, -1, 1),
+    UNARY(exp, -104, 89),
+    UNARY(exp2, -150, 128),
+    UNARY(log, 0.5F, 2),
+    UNARY(log2, 0.5F, 2),
+    UNARY(log10, 0.5F, 2),
 };
 // clang-format on
 
@@ -119,6 +121,10 @@ Real anyBits(std::mt19937_64& random) {
 template <class Real>
 std::vector<Real> argumentsOf(const UnaryCase<Real>& one) {
   std::vector<Real> x = numerics::specialNumbers<Real>();
+  for (const numerics::ExhaustiveRun& run : numerics::exhaustiveRuns()) {
+    if (run.function != one.name) continue;
+    for (const numerics::ExhaustiveCase& worst : run.worst) x.push_back(worst.x);
+  }
   const std::vector<Real> hard = numerics::nearMultiplesOfHalfPi<Real>(200, 500);
   x.insert(x.end(), hard.begin(), hard.end());
   std::mt19937_64 random(1);
@@ -141,7 +147,7 @@ TEMPLATE_TEST_CASE("functions of one number against MPFR", "", float, double) {
     for (std::size_t i = 0; i < x.size(); ++i)
       worst.add(oracle.error(one.exact, x[i], results[i]), results[i], x[i]);
     INFO(one.name << ": " << worst.error << " ulp: " << worst.where);
-    CHECK(worst.error <= one.bound());
+    CHECK(worst.error <= boundOf<TestType>(one.name));
   }
 }
 
@@ -155,9 +161,7 @@ double errorOf(float result, double exact) {
 }
 
 TEST_CASE("functions of one float, swept over all of them") {
-  const char* wanted = std::getenv("SK_STRIDE");
-  const std::uint64_t stride = wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : 6101;
-  REQUIRE(stride > 0);
+  constexpr std::uint64_t stride = 6101;
   for (const UnaryCase<float>& one : unaryCases<float>) {
     Worst worst;
     std::vector<float> x;
@@ -169,9 +173,8 @@ TEST_CASE("functions of one float, swept over all of them") {
         worst.add(errorOf(results[i], one.inDouble(x[i])), results[i], x[i]);
       x.clear();
     }
-    if (wanted != nullptr) std::cout << one.name << " " << worst.error << " " << worst.where << "\n";
     INFO(one.name << ": " << worst.error << " ulp: " << worst.where);
-    CHECK(worst.error <= floatBound);
+    CHECK(worst.error <= boundOf<float>(one.name));
   }
 }
 
@@ -180,31 +183,32 @@ struct BinaryCase {
   const char* name;
   std::vector<Real> (*compute)(const std::vector<Real>&, const std::vector<Real>&);
   numerics::Binary exact;
-  double bound;
 };
 
-#define BINARY(Real, f, exact, bound)                                \
+#define BINARY(Real, f, exact)                                       \
   BinaryCase<Real> {                                                 \
     #f,                                                              \
         [](const std::vector<Real>& x, const std::vector<Real>& y) { \
           return computed(functions::of_##f, x, y);                  \
         },                                                           \
-        exact, bound                                                 \
+        exact                                                        \
   }
 
 template <class Real>
 const std::vector<BinaryCase<Real>> binaryCases = {};
 template <>
 const std::vector<BinaryCase<float>> binaryCases<float> = {
-    BINARY(float, pow, mpfr_pow, floatBound),       BINARY(float, atan, mpfr_atan2, floatBound),
-    BINARY(float, atan2, mpfr_atan2, floatBound),   BINARY(float, fmod, mpfr_fmod, 0),
-    BINARY(float, mod, numerics::floorModulo, 0.5),
+    BINARY(float, pow, mpfr_pow),
+    BINARY(float, atan, mpfr_atan2),
+    BINARY(float, atan2, mpfr_atan2),
+    BINARY(float, fmod, mpfr_fmod),
+    BINARY(float, mod, numerics::floorModulo),
 };
 template <>
 const std::vector<BinaryCase<double>> binaryCases<double> = {
-    BINARY(double, pow, mpfr_pow, 0.8),
-    BINARY(double, atan, mpfr_atan2, 1.9),
-    BINARY(double, atan2, mpfr_atan2, 1.9),
+    BINARY(double, pow, mpfr_pow),
+    BINARY(double, atan, mpfr_atan2),
+    BINARY(double, atan2, mpfr_atan2),
 };
 
 /// All pairs of special numbers, and random pairs: any bits, close together, whole, and for powers near 1 and of moderate size.
@@ -246,7 +250,7 @@ TEMPLATE_TEST_CASE("functions of two numbers against MPFR", "", float, double) {
     for (std::size_t i = 0; i < x.size(); ++i)
       worst.add(oracle.error(one.exact, x[i], y[i], results[i]), results[i], x[i], y[i]);
     INFO(one.name << ": " << worst.error << " ulp: " << worst.where);
-    CHECK(worst.error <= one.bound);
+    CHECK(worst.error <= boundOf<TestType>(one.name == std::string_view("atan") ? "atan2" : one.name));
   }
 }
 

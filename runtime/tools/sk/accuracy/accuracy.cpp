@@ -20,6 +20,7 @@
 
 #include "accuracy/chart.hpp"
 #include "accuracy/file/options.hpp"
+#include "accuracy/functions/functions.hpp"
 #include "accuracy/gnuplot.hpp"
 #include "accuracy/programs.hpp"
 #include "accuracy/table.hpp"
@@ -38,6 +39,7 @@ struct Options {
   std::string size;  ///< as in --size
   Measurement measurement{.size = std::size_t{1} << 20, .rounds = 15};
   FileOptions file;
+  FunctionOptions functions;
   std::optional<double> tolerance;
   std::string jsonFile;
   std::string chartFile;
@@ -133,7 +135,7 @@ void runFile(const Options& options) {
   sk::Device device(sk::DeviceOptions{.device = options.device, .profile = options.profile});
   printHead(options, device);
   const auto [all, skipped] =
-      measureFile(device, library.list(), measurement, [&](const Experiment& experiment) {
+      measureFile(device, library.list(), library.precise(), measurement, [&](const Experiment& experiment) {
         fmt::print("{}", tableOf(experiment, true, options.tolerance));
         std::fflush(stdout);
       });
@@ -160,6 +162,18 @@ void runPrograms(const Options& options) {
   writeFiles(options, device, all);
 }
 
+void runFunctions(const Options& options) {
+  if (!options.programs.empty() || !options.file.used().empty())
+    throw std::runtime_error("--exhaustive tries functions, no programs or files; leave them out");
+  const Json records = measureFunctions(options.functions, options.device, options.profile);
+  if (options.jsonFile.empty()) return;
+  const Json json = {{"schema", schema}, {"streamkernel", SK_VERSION}, {"records", records}};
+  std::ofstream out(options.jsonFile);
+  out << json.dump(2) << '\n';
+  out.close();
+  if (!out) throw std::runtime_error(fmt::format("cannot write '{}'", options.jsonFile));
+}
+
 void runAccuracy(Options& options) {
   if (!options.size.empty()) {
     options.measurement.size = 1;
@@ -168,6 +182,10 @@ void runAccuracy(Options& options) {
   }
   if (!options.chartFile.empty()) checkChartName(options.chartFile);
   if (!options.jsonFile.empty()) checkWritable(options.jsonFile);
+  if (!options.functions.functions.empty()) {
+    runFunctions(options);
+    return;
+  }
   const bool hasFile = std::any_of(options.programs.begin(), options.programs.end(), isFile);
   hasFile ? runFile(options) : runPrograms(options);
 }
@@ -219,6 +237,7 @@ void addAccuracy(CLI::App& app) {
   command->add_option("--chart", options->chartFile, "Also draw error over time, by gnuplot, as .svg or .png")
       ->type_name("FILE");
   options->file.addTo(*command);
+  options->functions.addTo(*command);
   command->callback([options] { runAccuracy(*options); });
 }
 

@@ -3,6 +3,7 @@
 // The device's own functions and ours over ranges of arguments, with the kernel of `sk info`. The reference
 // device runs it in double.
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,8 @@
 #include "info/function_numbers.hpp"
 #include "info/functions.sk.hpp"
 #include "info/numbers.hpp"
+#include "info/probes.hpp"
+#include "sk/error_bounds.hpp"
 
 namespace sk_tool {
 
@@ -39,7 +42,14 @@ constexpr FunctionCase functionCases[] = {
     {.name = "pow", .function = f_pow, .low = 0.001, .high = 1000, .low2 = -10, .high2 = 10, .fastBound = 16},
 };
 
-constexpr double accurateBound = 3;  ///< ulp, sk/options.hpp
+/// The bound in ulp of our own function, which the first word of the name calls.
+double accurateBoundOf(const FunctionCase& function, const sk::Device& device) {
+  const std::string_view name = function.name;
+  const sk::ErrorBound* bound =
+      sk::errorBoundOf(name.substr(0, name.find(' ')), sk::BoundedType::Float,
+                       isNative(device) ? sk::BoundedCode::Native : sk::BoundedCode::Glsl);
+  return bound == nullptr ? 0 : bound->bound;
+}
 
 std::string aboutOf(const FunctionCase& function, std::size_t count) {
   std::string about = fmt::format("{} numbers in [{:g}, {:g}]", count, function.low, function.high);
@@ -92,10 +102,11 @@ Experiment measureFunction(sk::Device& device, const Measurement& measurement, c
                                  }};
                   }};
     };
-    experiment.rows = compareModes(device,
-                                   {mode("fast", sk::Intrinsics::Fast, function.fastBound),
-                                    mode("accurate", sk::Intrinsics::Accurate, accurateBound)},
-                                   measurement.rounds);
+    experiment.rows =
+        compareModes(device,
+                     {mode("fast", sk::Intrinsics::Fast, function.fastBound),
+                      mode("accurate", sk::Intrinsics::Accurate, accurateBoundOf(function, device))},
+                     measurement.rounds);
   });
   return experiment;
 }

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+//
+// The errors of a device's functions of one float over all 2^32 arguments, or every k-th. Prints nothing.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "accuracy/functions/truth.hpp"
+#include "sk/device.hpp"
+
+namespace sk_tool {
+
+/// An argument with a large error.
+struct SweptCase {
+  float x = 0, got = 0;
+  double wanted = 0;
+  double error = 0;  ///< in ulp, computed in long double
+};
+
+struct FunctionErrors {
+  std::uint64_t arguments = 0;
+  std::uint64_t notNearest = 0;  ///< results that are not the float nearest to the exact value
+  double largest = 0;  ///< in ulp; infinite if a result is of another class
+  /// The largest errors above 0.5, the largest one first, of arguments that differ in more than their sign.
+  std::vector<SweptCase> worst = {};
+};
+
+constexpr std::uint64_t allFloats = std::uint64_t{1} << 32;
+
+/// Returns the errors of each device. All but native code may read a denormal argument as 0 and return 0 for a denormal
+/// result. `progress` is called with the part that is done.
+std::vector<FunctionErrors> sweep(std::span<sk::Device> devices, const UnaryFunction& function,
+                                  std::uint64_t every, const std::function<void(double)>& progress);
+
+}  // namespace sk_tool
