@@ -28,6 +28,12 @@ namespace math {
 // 0 instead of 1/2 where cos(x) rounds to 1, that is below 2^-12, and up to twice as much a little above.
 kernel void cancel(float x<>, out float r<>) { r = (1 - cos(x)) / (x * x); }
 kernel void roots(float x<>, out float r<>) { r = sqrt(x + 1) - sqrt(x); }
+// Loses all digits next to the root of 2 alone.
+kernel void pole(float x<>, out float r<>, out float s<>) {
+  r = 1 / (x * x - 2);
+  s = x;
+}
+kernel void overflow(float x<>, out float r<>) { r = x * 1e38 * 10 / 1e38; }
 }
 struct Body { float2 at; int kind; };
 // The sum of squares overflows where its root does not.
@@ -58,7 +64,7 @@ for option in --kernel --range --set --no-extremes -I -D --skc; do prints "  $op
 for device in native ''; do
   run 0 kernels.sk "${small[@]}" ${device:+--device "$device"} --kernel cancel --range x=0:1 --json all.json
   matches '^math::cancel, drawn: 4096 elements; x in \[0, 1\]$'
-  matches '^    single +x = 0x1.*p-[0-9]+: r is 0x'
+  matches '^    single +x = [0-9.e-]+ \(0x1.*p-[0-9]+\): r is [0-9.e-]+ \(0x'
   json "
 worst = kernels['math::cancel', 'single']['worst']
 x = worst['inputs']['x']
@@ -73,6 +79,35 @@ json "
 assert kernels['math::roots', 'single']['worst']['inputs']['x']['value'] > 1e4
 assert kernels['math::roots', 'single']['metrics']['rel err'] > 1e-4
 assert kernels['math::roots', 'double']['metrics']['rel err'] < 1e-7"
+
+# Near the worst of the drawn numbers there are worse ones, which are found; the errors of each result stand apart.
+run 0 kernels.sk "${small[@]}" --device native --kernel pole --range x=1:2 --json all.json
+matches '^  of each result$'
+matches '^    single +s +0 +0 +0 +0 +0$'
+json "
+single = kernels['math::pole', 'single']
+assert single['metrics']['rel err'] > 0.02, single['metrics']   # 6e-4 is the largest error of 4,096 numbers
+assert abs(single['worst']['inputs']['x']['value'] - 2 ** 0.5) < 1e-6, single['worst']
+r, s = (single['outputs'][name]['metrics'] for name in 'rs')
+assert s['max ulp'] == 0 and r['max ulp'] == single['metrics']['max ulp'] and r['rel err'] == single['metrics']['rel err'], (r, s)"
+
+# Where every result is of another class, no error is 0.
+run 0 kernels.sk "${small[@]}" --device native --kernel overflow --range x=1:2 --no-extremes --json all.json
+json "
+single = kernels['math::overflow', 'single']['metrics']
+assert single['wrong class'] > 4096 and single['max ulp'] is None and single['rel err'] is None, single
+assert kernels['math::overflow', 'double']['metrics']['max ulp'] < 1"
+
+# The reference loses its digits, too: MPFR says so (with g++ on x86-64, and where libmpfr is installed).
+if [[ $(uname -m) == x86_64 ]] && echo '#include <mpfr.h>' | "${CXX:-c++}" -E -x c++ - >/dev/null 2>&1; then
+  run 0 kernels.sk "${small[@]}" --device native --kernel cancel --range x=0:1 --json all.json
+  prints 'but MPFR has 0.5 (0x1p-1): the reference is wrong here'
+  json "
+example = kernels['math::cancel', 'single']['extremes']['example']
+assert example['reference_differs'] and example['by_mpfr']['value'] == 0.5 and example['wanted']['value'] == 0, example
+worst = kernels['math::cancel', 'single']['worst']
+assert not worst['reference_differs'] and abs(worst['by_mpfr']['value'] - worst['wanted']['value']) < 1e-15, worst"
+fi
 
 # A function with a table, computed and looked up: off by h^2 / 4 at most, in the middle of an interval.
 run 0 kernels.sk "${small[@]}" --kernel look --range x=0.5:1 --json all.json
@@ -130,7 +165,7 @@ assert single['worst']['inputs']['x']['value'] == 0.5 and 'extremes' not in sing
 
 # What makes no sense, and what is missing.
 run 1 kernels.sk "${small[@]}" --kernel nosuch
-says "the file has no kernel 'nosuch'; it has math::cancel, math::roots, pull, look, ramp, parity, keep, sum, largest"
+says "the file has no kernel 'nosuch'; it has math::cancel, math::roots, math::pole, math::overflow, pull, look, ramp, parity, keep, sum, largest"
 run 1 kernels.sk "${small[@]}" --kernel parity
 says "parity: there are no floats in its results"
 run 1 kernels.sk "${small[@]}" --kernel keep

@@ -57,8 +57,10 @@ Grade gradeElements(const std::vector<float>& results, const std::vector<double>
   }
   if (wrongClass > 0) relative = HUGE_VAL;
   return {.metrics = {{"rel err", relative},
-                      {"max ulp", std::max(largest, 0.0)},
-                      {"mean ulp", numbers == 0 ? 0 : sum / static_cast<double>(numbers)},
+                      {"max ulp", numbers == 0 && wrongClass > 0 ? HUGE_VAL : std::max(largest, 0.0)},
+                      {"mean ulp", numbers > 0      ? sum / static_cast<double>(numbers)
+                                   : wrongClass > 0 ? HUGE_VAL
+                                                    : 0},
                       {"wrong class", wrongClass}},
           .worst = inputsAt(inputs, worst)};
 }

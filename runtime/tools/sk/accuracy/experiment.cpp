@@ -29,6 +29,11 @@ Json recordOf(const Experiment& experiment, const Row& row) {
                     {"milliseconds", row.time.milliseconds},
                     {"ratios", row.time.rounds}};
   for (const Metric& metric : row.grade.metrics) record["metrics"][metric.name] = numberOf(metric.value);
+  for (const OutputErrors& output : row.grade.outputs) {
+    Json& one = record["outputs"][output.name];
+    for (const Metric& metric : output.metrics) one["metrics"][metric.name] = numberOf(metric.value);
+    one["worst"] = output.worst;
+  }
   if (row.grade.bound) {
     record["bound"] = numberOf(*row.grade.bound);
     record["bounded"] = experiment.bounded;

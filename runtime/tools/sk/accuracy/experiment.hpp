@@ -28,14 +28,23 @@ struct ExtremeCounts {
   Json example = {};  ///< of either kind, as Grade::worst; null if there is none
 };
 
+/// The errors of one scalar of a kernel's results.
+struct OutputErrors {
+  std::string name;
+  std::vector<Metric> metrics;
+  Json worst;  ///< as Grade::worst
+};
+
 /// The errors of a mode.
 struct Grade {
   std::vector<Metric> metrics = {};  ///< the first is the relative error, by which modes are compared
   std::optional<double> bound = {};  ///< for the metric that Experiment::bounded names
   bool isWithinBound = true;
   /// For programs that compute each element independently: the inputs of the largest error. For kernels of a
-  /// file: "index" and "inputs" (not for reductions), "result" (its name), "got" and "wanted".
+  /// file: "index" and "inputs" (not for reductions), "result" (its name), "got" and "wanted"; if MPFR has checked the
+  /// reference, "by_mpfr" and "reference_differs".
   Json worst = {};
+  std::vector<OutputErrors> outputs = {};  ///< if there are several
   std::optional<ExtremeCounts> extremes = {};
 
   double error() const { return metrics.front().value; }
@@ -62,6 +71,7 @@ struct Experiment {
   std::string program = {};
   std::string data = {};
   std::string about = {};  ///< describes the data: number and condition
+  bool isReferenceChecked = false;  ///< by MPFR, at the worst inputs
   std::string bounded = {};  ///< the metric to which bounds apply
   std::vector<Row> rows = {};  ///< the first is the baseline
 };

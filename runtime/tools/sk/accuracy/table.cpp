@@ -41,7 +41,17 @@ std::string headsOf(const Experiment& experiment) {
   return line + '\n';
 }
 
-/// For example "x = 0x1p-12, y = 0x1p+0: r is 0x0p+0, not 0x1p-1"; only a few of many inputs.
+/// "0.5 (0x1p-1)": as few digits as identify a float or a double, and its bits; integers and what has no digits once.
+std::string numberText(const Json& number) {
+  const std::string hex = number["hex"].get<std::string>();
+  if (number["value"].is_null() || hex.find("0x") == std::string::npos) return hex;
+  const double value = number["value"].get<double>();
+  return fmt::format(
+      "{} ({})",
+      number.contains("bits") ? fmt::format("{}", static_cast<float>(value)) : fmt::format("{}", value), hex);
+}
+
+/// For example "x = 0.5 (0x1p-1): r is 0 (0x0p+0), not 1 (0x1p+0)"; only a few of many inputs.
 std::string caseText(const Json& one) {
   constexpr std::size_t most = 6;
   std::vector<std::string> inputs;
@@ -49,7 +59,7 @@ std::string caseText(const Json& one) {
     for (const auto& [name, value] : one["inputs"].items()) {
       const bool isIndex = value.contains("index");
       inputs.push_back(fmt::format("{} {} {}", name, isIndex ? "at" : "=",
-                                   value[isIndex ? "index" : "hex"].get<std::string>()));
+                                   isIndex ? value["index"].get<std::string>() : numberText(value)));
     }
   }
   if (inputs.empty() && one.contains("index")) {
@@ -59,9 +69,12 @@ std::string caseText(const Json& one) {
     inputs.resize(most);
     inputs.emplace_back("...");
   }
-  return fmt::format("{}{}{} is {}, not {}", fmt::join(inputs, ", "), inputs.empty() ? "" : ": ",
-                     one["result"].get<std::string>(), one["got"]["hex"].get<std::string>(),
-                     one["wanted"]["hex"].get<std::string>());
+  std::string text =
+      fmt::format("{}{}{} is {}, not {}", fmt::join(inputs, ", "), inputs.empty() ? "" : ": ",
+                  one["result"].get<std::string>(), numberText(one["got"]), numberText(one["wanted"]));
+  if (one.value("reference_differs", false))
+    text += fmt::format("; but MPFR has {}: the reference is wrong here", numberText(one["by_mpfr"]));
+  return text;
 }
 
 /// The largest errors of a file's kernels.
@@ -69,9 +82,30 @@ std::string worstOf(const Experiment& experiment) {
   std::string text;
   for (const Row& row : experiment.rows) {
     const bool hasWorst = !row.isRefused() && row.grade.worst.contains("result") && row.grade.error() > 0;
-    if (hasWorst) text += fmt::format("    {:<17}{}\n", row.mode, caseText(row.grade.worst));
+    if (hasWorst) text += fmt::format("    {:<18} {}\n", row.mode, caseText(row.grade.worst));
   }
   return text.empty() ? "" : "  the largest error\n" + text;
+}
+
+/// The errors of each scalar of the results, if there are several.
+std::string outputsOf(const Experiment& experiment) {
+  std::string text;
+  for (const Row& row : experiment.rows) {
+    for (const OutputErrors& output : row.grade.outputs) {
+      if (row.isRefused()) continue;
+      if (text.empty()) {
+        text = fmt::format("  of each result\n    {:<18} {:<18}", "", "");
+        for (const Metric& metric : output.metrics)
+          text += fmt::format("{:>{}}", metric.name, widthOf(metric));
+        text += '\n';
+      }
+      text += fmt::format("    {:<18} {:<18}", row.mode, output.name);
+      for (const Metric& metric : output.metrics)
+        text += fmt::format("{:>{}}", boundText(metric.value), widthOf(metric));
+      text += '\n';
+    }
+  }
+  return text;
 }
 
 std::string extremesOf(const Experiment& experiment) {
@@ -80,10 +114,10 @@ std::string extremesOf(const Experiment& experiment) {
     if (!row.grade.extremes) continue;
     const ExtremeCounts& counts = *row.grade.extremes;
     if (text.empty()) {
-      text = fmt::format("  of {} results of extreme inputs\n    {:<17}{:>14}{:>14}\n", counts.tried, "",
+      text = fmt::format("  of {} results of extreme inputs\n    {:<18} {:>14}{:>14}\n", counts.tried, "",
                          "another class", "> 1 % off");
     }
-    text += fmt::format("    {:<17}{:>14}{:>14}", row.mode, counts.otherClass, counts.otherValue);
+    text += fmt::format("    {:<18} {:>14}{:>14}", row.mode, counts.otherClass, counts.otherValue);
     if (!counts.example.is_null()) text += fmt::format("   {}", caseText(counts.example));
     text += '\n';
   }
@@ -106,7 +140,7 @@ std::string tableOf(const Experiment& experiment, bool hasHeads, std::optional<d
                             : lineOf(row, !experiment.bounded.empty());
     text += '\n';
   }
-  text += worstOf(experiment) + extremesOf(experiment);
+  text += outputsOf(experiment) + worstOf(experiment) + extremesOf(experiment);
   if (tolerance) text += verdictOf(experiment, *tolerance);
   return text + '\n';
 }

@@ -26,39 +26,94 @@ double relativeError(Scalar scalar, double got, double wanted) {
 
 }  // namespace
 
-void ErrorSizes::add(const Results& got, const Results& wanted, std::size_t inputs, int draw) {
+double ulpsOf(Scalar scalar, double got, double wanted) {
+  if (!isReal(scalar)) return got == wanted ? 0 : HUGE_VAL;
+  const double reachable = roundedTo(scalar, wanted);
+  if (!std::isfinite(reachable) || !std::isfinite(got))
+    return classOf(reachable) == classOf(got) ? 0 : HUGE_VAL;
+  return std::fabs(got - wanted) / ulpOf(scalar, wanted);
+}
+
+std::vector<Metric> ScalarErrors::metrics() const {
+  const bool isOther = wrongClass > 0;
+  return {{"rel err", isOther ? HUGE_VAL : relative},
+          {"abs err", isOther ? HUGE_VAL : absolute},
+          {"max ulp", isOther && wrongClass == tried ? HUGE_VAL : largest},
+          {"mean ulp", isOther && wrongClass == tried ? HUGE_VAL
+                       : numbers == 0                 ? 0
+                                                      : sum / static_cast<double>(numbers)},
+          {"wrong class", static_cast<double>(wrongClass)}};
+}
+
+void ErrorSizes::add(const Results& got, const Results& wanted, std::size_t inputs, int draw, bool isDrawn) {
   for (std::size_t c = 0; c < scalars_.size(); ++c) {
     const Scalar scalar = scalars_[c].scalar;
+    ScalarErrors& errors = errors_[c];
     for (std::size_t i = 0; i < got[c].size(); ++i) {
       const ErrorPlace place{inputs, draw, i, c, got[c][i], wanted[c][i]};
+      const double ulps = ulpsOf(scalar, place.got, place.wanted);
       if (!isReal(scalar)) {
-        wrongInteger_ += place.got == place.wanted ? 0 : 1;
+        errors.wrongInteger += ulps == 0 ? 0 : 1;
         continue;
       }
-      const double reachable = roundedTo(scalar, place.wanted);
-      if (!std::isfinite(reachable) || !std::isfinite(place.got)) {
-        if (classOf(reachable) != classOf(place.got) && ++wrongClass_ == 1) worst_ = place;
+      ++errors.tried;
+      if (std::isinf(ulps)) {
+        if (++errors.wrongClass == 1) errors.worst = place;
+        keep(place, ulps);
         continue;
       }
-      relative_ = std::max(relative_, relativeError(scalar, place.got, place.wanted));
-      const double ulps = std::fabs(place.got - place.wanted) / ulpOf(scalar, place.wanted);
-      sum_ += ulps;
-      ++numbers_;
-      if (ulps <= largest_) continue;
-      largest_ = ulps;
-      if (wrongClass_ == 0) worst_ = place;
+      if (!std::isfinite(place.got)) continue;  // as it should be
+      errors.relative = std::max(errors.relative, relativeError(scalar, place.got, place.wanted));
+      errors.absolute = std::max(errors.absolute, std::fabs(place.got - place.wanted));
+      if (isDrawn) {
+        errors.sum += ulps;
+        ++errors.numbers;
+      }
+      if (ulps > 0) keep(place, ulps);
+      if (ulps <= errors.largest && !(errors.largest == 0 && errors.tried == 1)) continue;
+      errors.largest = ulps;
+      if (errors.wrongClass == 0) errors.worst = place;
     }
   }
 }
 
+void ErrorSizes::keep(const ErrorPlace& place, double ulps) {
+  constexpr std::size_t kept = 32;
+  if (largest_.size() == kept && ulps <= largest_.back().ulps) return;
+  const auto at = std::ranges::find_if(largest_, [&](const LargeError& one) { return one.ulps < ulps; });
+  largest_.insert(at, {place, ulps});
+  if (largest_.size() > kept) largest_.pop_back();
+}
+
+ScalarErrors ErrorSizes::total() const {
+  ScalarErrors total;
+  bool isFirst = true;
+  for (std::size_t c = 0; c < errors_.size(); ++c) {
+    if (!isReal(scalars_[c].scalar)) {
+      total.wrongInteger += errors_[c].wrongInteger;
+      continue;
+    }
+    const ScalarErrors& one = errors_[c];
+    const bool isWorse = total.wrongClass == 0 && (one.wrongClass > 0 || one.largest > total.largest);
+    if (isFirst || isWorse) total.worst = one.worst;
+    isFirst = false;
+    total.relative = std::max(total.relative, one.relative);
+    total.absolute = std::max(total.absolute, one.absolute);
+    total.largest = std::max(total.largest, one.largest);
+    total.sum += one.sum;
+    total.numbers += one.numbers;
+    total.tried += one.tried;
+    total.wrongClass += one.wrongClass;
+  }
+  return total;
+}
+
 std::vector<Metric> ErrorSizes::metrics() const {
-  std::vector<Metric> metrics{{"rel err", wrongClass_ > 0 ? HUGE_VAL : relative_},
-                              {"max ulp", std::max(largest_, 0.0)},
-                              {"mean ulp", numbers_ == 0 ? 0 : sum_ / static_cast<double>(numbers_)},
-                              {"wrong class", static_cast<double>(wrongClass_)}};
+  const ScalarErrors all = total();
+  std::vector<Metric> metrics = all.metrics();
   const auto isInteger = [](const ResultScalar& scalar) { return !isReal(scalar.scalar); };
   if (std::any_of(scalars_.begin(), scalars_.end(), isInteger)) {
-    metrics.push_back({"wrong int", static_cast<double>(wrongInteger_)});
+    metrics.push_back({"wrong int", static_cast<double>(all.wrongInteger)});
   }
   return metrics;
 }

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "accuracy/file/call.hpp"
 
@@ -21,25 +22,52 @@ struct ErrorPlace {
   double got = 0, wanted = 0;
 };
 
+/// A result with a large error.
+struct LargeError {
+  ErrorPlace place;
+  double ulps = 0;  ///< infinite if the result is of another class
+};
+
+/// The errors of one scalar of the results.
+struct ScalarErrors {
+  double relative = 0, absolute = 0, largest = 0;  ///< the last in ulp
+  double sum = 0;  ///< of errors in ulp
+  std::size_t numbers = 0;  ///< results of the right class that are drawn
+  std::size_t tried = 0, wrongClass = 0, wrongInteger = 0;
+  ErrorPlace worst = {};  ///< the first result of a wrong class, else the largest error in ulp
+
+  /// "rel err" and "abs err" (infinite if a class is wrong), "max ulp" (infinite if no result is of the right class), "mean
+  /// ulp", "wrong class".
+  std::vector<Metric> metrics() const;
+};
+
 /// Errors of ordinary results. Results that are not finite, or should not be, count as of the wrong class;
 /// integers count as right or wrong.
 class ErrorSizes {
  public:
-  explicit ErrorSizes(std::span<const ResultScalar> scalars) : scalars_(scalars) {}
+  explicit ErrorSizes(std::span<const ResultScalar> scalars) : scalars_(scalars), errors_(scalars.size()) {}
 
-  void add(const Results& got, const Results& wanted, std::size_t inputs, int draw);
-  /// "rel err" (infinite if a class is wrong), "max ulp", "mean ulp", "wrong class"; "wrong int" if there are
-  /// integers.
+  /// Adds the results of drawn inputs, or of inputs that were looked for, which do not count in means.
+  void add(const Results& got, const Results& wanted, std::size_t inputs, int draw, bool isDrawn = true);
+  /// Of all scalars; also "wrong int" if there are integers.
   std::vector<Metric> metrics() const;
   /// The first result of a wrong class, else the largest error in ulp.
-  const ErrorPlace& worst() const { return worst_; }
+  ErrorPlace worst() const { return total().worst; }
+  const std::vector<ScalarErrors>& scalars() const { return errors_; }
+  /// The largest errors, each of another element, the largest first.
+  const std::vector<LargeError>& largest() const { return largest_; }
 
  private:
+  ScalarErrors total() const;
+  void keep(const ErrorPlace& place, double ulps);
+
   std::span<const ResultScalar> scalars_;
-  ErrorPlace worst_;
-  double relative_ = 0, largest_ = -1, sum_ = 0;
-  std::size_t numbers_ = 0, wrongClass_ = 0, wrongInteger_ = 0;
+  std::vector<ScalarErrors> errors_;
+  std::vector<LargeError> largest_;
 };
+
+/// The error of one result in ulp: infinite if it is of another class, or a wrong integer.
+double ulpsOf(sk::program::Scalar scalar, double got, double wanted);
 
 /// Results of extreme inputs: counts results with a scalar of another class than the reference's, and other
 /// results with a scalar that is off by more than 1 %. Classes are NaN, each infinity, 0 and finite numbers.

@@ -145,6 +145,10 @@ class Drawing {
     if (parameter.role == Role::Spec && !range) return std::vector<double>(count, 1);
     std::vector<double> values(count);
     for (double& value : values) value = drawScalar(scalar, range, numbers_);
+    if (extremes_ == Extremes::AtExponents) {
+      if (!isValue(parameter) && isDrawnReal(scalar, range)) moveToExponents(values, scalar, range);
+      return values;
+    }
     const bool isWhere =
         extremes_ != Extremes::None && isValue(parameter) == (extremes_ == Extremes::InValues);
     if (!isWhere || parameter.role == Role::Spec || !isDrawnReal(scalar, range)) return values;
@@ -154,6 +158,18 @@ class Drawing {
     }
     ++place_;
     return values;
+  }
+
+  /// Makes three of four numbers powers of 2 or one of their neighbours, with the same sign, in their range.
+  void moveToExponents(std::vector<double>& values, Scalar scalar, const std::optional<Range>& range) {
+    for (double& value : values) {
+      const double unit = numbers_.unit();
+      if (value == 0 || unit > 0.75) continue;
+      const double end = std::copysign(std::exp2(std::ilogb(value)), value);
+      const double moved = end + std::floor(numbers_.unit() * 5 - 2) * ulpOf(scalar, end) / 2;
+      const double stored = roundedTo(scalar, moved);
+      if (!range || (stored >= range->low && stored <= range->high)) value = stored;
+    }
   }
 
   /// First makes each scalar extreme alone, with each of its extremes; later several at once. Gathers have
@@ -219,6 +235,127 @@ Inputs drawInputs(const Subject& subject, const Ranges& ranges, const Extent& ex
   return Drawing(subject, ranges, extent, extremes).draw();
 }
 
+bool isElementwise(const Subject& subject) {
+  if (subject.isReduce()) return false;
+  for (const Parameter& parameter : subject.parameters()) {
+    if (parameter.role != Role::Input && !isResult(parameter) && parameter.role != Role::Uniform &&
+        parameter.role != Role::Spec)
+      return false;
+  }
+  return true;
+}
+
+Inputs inputsAt(const Subject& subject, const Inputs& inputs, int draw,
+                std::span<const std::size_t> elements) {
+  const auto count = static_cast<std::int64_t>(elements.size());
+  Inputs at{.extent = {.domain = {count}, .results = {count}, .draws = 1}, .parameters = {}, .elements = {}};
+  for (std::int64_t i = 0; i < count; ++i) at.elements.push_back(i);
+  for (std::size_t p = 0; p < inputs.parameters.size(); ++p) {
+    const Parameter& parameter = subject.parameters()[p];
+    ParameterInput input{.shape = {count}, .bytes = {}};
+    const auto take = [&](std::size_t number) {
+      const auto from =
+          inputs.parameters[p].bytes.begin() + static_cast<std::ptrdiff_t>(number * parameter.element->size);
+      input.bytes.insert(input.bytes.end(), from,
+                         from + static_cast<std::ptrdiff_t>(parameter.element->size));
+    };
+    if (isValue(parameter)) {
+      take(static_cast<std::size_t>(draw));
+    } else if (!isResult(parameter)) {
+      for (const std::size_t element : elements) take(element);
+    }
+    at.parameters.push_back(std::move(input));
+  }
+  return at;
+}
+
+namespace {
+
+/// Inputs of `count` elements, each scalar of which `scalarOf` returns, given the scalar's place, its range, those of the
+/// elements of `from`, and the number of the element.
+template <class ScalarOf>
+Inputs madeFrom(const Subject& subject, const Ranges& ranges, const Inputs& from, std::int64_t count,
+                const ScalarOf& scalarOf) {
+  const std::vector<std::size_t> none;
+  Inputs made = inputsAt(subject, from, 0, none);
+  made.extent.domain = made.extent.results = {count};
+  for (std::int64_t i = 0; i < count; ++i) made.elements.push_back(i);
+  for (std::size_t p = 0; p < made.parameters.size(); ++p) {
+    const Parameter& parameter = subject.parameters()[p];
+    if (isValue(parameter)) continue;
+    made.parameters[p].shape = {count};
+    if (isResult(parameter)) continue;
+    const std::size_t size = parameter.element->size;
+    made.parameters[p].bytes.resize(static_cast<std::size_t>(count) * size);
+    const std::vector<std::optional<Range>> given = ranges.of(parameter);
+    const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
+    for (std::size_t c = 0; c < places.size(); ++c) {
+      const auto old = [&](std::size_t i) {
+        return load(places[c].scalar, from.parameters[p].bytes.data() + i * size + places[c].offset);
+      };
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+        store(places[c].scalar, scalarOf(places[c], given[c], old, i),
+              made.parameters[p].bytes.data() + i * size + places[c].offset);
+      }
+    }
+  }
+  return made;
+}
+
+}  // namespace
+
+Inputs inputsNear(const Subject& subject, const Ranges& ranges, const Inputs& centres, std::int64_t count,
+                  unsigned seed) {
+  Numbers numbers(seed);
+  const auto known = static_cast<std::size_t>(centres.extent.domain.size());
+  return madeFrom(
+      subject, ranges, centres, count,
+      [&](const ScalarPlace& place, const std::optional<Range>& range, const auto& old, std::size_t i) {
+        const double centre = old(i % known);
+        if (i < known || !isDrawnReal(place.scalar, range) || !std::isfinite(centre)) return centre;
+        const double u = numbers.unit(), side = 2 * numbers.unit() - 1;
+        if (u < 0.25) return centre;  // so that others change alone
+        const double ulp = ulpOf(place.scalar, centre);
+        const double near = u < 0.5 ? centre + std::round(8 * side) * ulp
+                                    : centre + centre * side * std::exp2(-24 * numbers.unit());
+        return range ? std::clamp(near, range->low, range->high) : near;
+      });
+}
+
+Inputs inputsBetween(const Subject& subject, const Inputs& ends, std::int64_t countOfEach) {
+  const std::int64_t pairs = ends.extent.domain.size() / 2;
+  return madeFrom(subject, {}, ends, pairs * countOfEach,
+                  [&](const ScalarPlace& place, const std::optional<Range>&, const auto& old, std::size_t i) {
+                    const std::size_t pair = i / static_cast<std::size_t>(countOfEach);
+                    const std::size_t step = i % static_cast<std::size_t>(countOfEach);
+                    const double low = old(2 * pair), high = old(2 * pair + 1);
+                    if (!isReal(place.scalar)) return low;
+                    return low + (high - low) * (static_cast<double>(step) + 0.5) /
+                                     static_cast<double>(countOfEach);
+                  });
+}
+
+std::vector<std::vector<double>> drawnReals(const Subject& subject, const Ranges& ranges,
+                                            const Inputs& inputs) {
+  std::vector<std::vector<double>> all;
+  for (std::size_t p = 0; p < inputs.parameters.size(); ++p) {
+    const Parameter& parameter = subject.parameters()[p];
+    if (parameter.role != Role::Input) continue;
+    const std::vector<std::optional<Range>> given = ranges.of(parameter);
+    const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
+    for (std::size_t c = 0; c < places.size(); ++c) {
+      if (!isDrawnReal(places[c].scalar, given[c])) continue;
+      std::vector<double>& values =
+          all.emplace_back(static_cast<std::size_t>(inputs.parameters[p].shape.size()));
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = load(places[c].scalar,
+                         inputs.parameters[p].bytes.data() + i * parameter.element->size + places[c].offset);
+      }
+    }
+  }
+  return all;
+}
+
 int rankOf(const Subject& subject) {
   int rank = 1;
   for (const Parameter& parameter : subject.parameters()) {
@@ -257,7 +394,8 @@ std::size_t extremeScalars(const Subject& subject, const Ranges& ranges, Extreme
   std::size_t count = 0;
   for (const Parameter& parameter : subject.parameters()) {
     const bool isElement = parameter.role == Role::Input || parameter.role == Role::Gather;
-    const bool counts = extremes == Extremes::InElements ? isElement : parameter.role == Role::Uniform;
+    const bool isOfElements = extremes == Extremes::InElements || extremes == Extremes::AtExponents;
+    const bool counts = isOfElements ? isElement : parameter.role == Role::Uniform;
     if (!counts || extremes == Extremes::None) continue;
     const std::vector<std::optional<Range>> given = ranges.of(parameter);
     const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);

@@ -16,8 +16,8 @@
 namespace sk_tool {
 
 /// The location of extremes: limits of formats, and the ends of ranges. Only reals are extreme: an integer
-/// might be a trip count.
-enum class Extremes : std::uint8_t { None, InElements, InValues };
+/// might be a trip count. AtExponents: ordinary elements, in which reals are powers of 2 and their neighbours.
+enum class Extremes : std::uint8_t { None, InElements, InValues, AtExponents };
 
 /// The number of inputs to draw.
 struct Extent {
@@ -39,6 +39,21 @@ struct Inputs {
 };
 
 Inputs drawInputs(const Subject& subject, const Ranges& ranges, const Extent& extent, Extremes extremes);
+
+/// Whether each result depends on one element alone, and on host values.
+bool isElementwise(const Subject& subject);
+/// The inputs of some elements, with the host values of one draw, for an elementwise subject.
+Inputs inputsAt(const Subject& subject, const Inputs& inputs, int draw,
+                std::span<const std::size_t> elements);
+/// Elements near those of inputsAt(): from the ones next to them to some that differ in all but the first bits. The reals stay in
+/// their ranges. Of `count` elements, the first are the given ones.
+Inputs inputsNear(const Subject& subject, const Ranges& ranges, const Inputs& centres, std::int64_t count,
+                  unsigned seed);
+/// Elements evenly between the first of inputsAt() and the second, the third and the fourth ...
+Inputs inputsBetween(const Subject& subject, const Inputs& ends, std::int64_t countOfEach);
+/// The scalars of elements that are drawn and real, one for each scalar: its values in all elements.
+std::vector<std::vector<double>> drawnReals(const Subject& subject, const Ranges& ranges,
+                                            const Inputs& inputs);
 
 /// The rank of the domain that the gathers and iterators require.
 int rankOf(const Subject& subject);

@@ -34,6 +34,8 @@ fs::path ownFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); 
 /// The files that skc generates.
 struct Compiled {
   fs::path header, source, object;
+  /// Defines the functions of __float128 by MPFR; empty: libquadmath's are linked.
+  fs::path precise = {};
 
   Compiled(const fs::path& folder, const fs::path& file) {
     const std::string base = (folder / file.filename()).string();
@@ -84,12 +86,17 @@ void runCompiler(const Compiled& compiled, const fs::path& library) {
       // keeps only descriptors and what they refer to: the stubs call the runtime, which is not linked here
       "-fvisibility=hidden", "-ffunction-sections", "-Wl,--gc-sections", "-I" + headerFolder().string(),
       compiled.source.string(), compiled.object.string(), "-o", library.string()};
+  if (!compiled.precise.empty()) {
+    for (const char* word : {compiled.precise.c_str(), "-lmpfr"}) options.emplace_back(word);
+  } else {
 #if defined(__x86_64__) || defined(__i386__) || defined(__powerpc64__)
-  options.emplace_back("-lquadmath");  // __float128 is not long double there
+    options.emplace_back("-lquadmath");  // __float128 is not long double there
 #endif
+  }
   for (Words words : compilers) {
     words.insert(words.end(), options.begin(), options.end());
-    const std::optional<int> status = runProgram(words);
+    const std::optional<int> status =
+        runProgram(words, compiled.precise.empty() ? Messages::Shown : Messages::Hidden);
     if (!status) continue;
     if (*status == 0) return;
     throw std::runtime_error(fmt::format(
@@ -113,9 +120,10 @@ std::string keyOf(const Compiled& compiled) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(headers / "sk")) {
     newest = std::max(newest, entry.last_write_time());
   }
-  return fmt::format("StreamKernel {}, CXX '{}', headers in {} of {}: {}{}{}", SK_VERSION, variable("CXX"),
-                     headers.string(), newest.time_since_epoch().count(), textOf(compiled.header),
-                     textOf(compiled.source), textOf(compiled.object));
+  return fmt::format("StreamKernel {}, CXX '{}', {}headers in {} of {}: {}{}{}", SK_VERSION, variable("CXX"),
+                     compiled.precise.empty() ? "" : "MPFR, ", headers.string(),
+                     newest.time_since_epoch().count(), textOf(compiled.header), textOf(compiled.source),
+                     textOf(compiled.object));
 }
 
 /// Caches the library, because a compilation takes a second or more.
@@ -132,25 +140,49 @@ void linkKept(const Compiled& compiled, const fs::path& library) {
 
 }  // namespace
 
+namespace {
+
+const sk::program::Library* listIn(void* object) {
+  return static_cast<const sk::program::Library*>(::dlsym(object, sk::program::librarySymbol));
+}
+
+}  // namespace
+
 KernelLibrary::KernelLibrary(const fs::path& file, const BuildOptions& options) {
   const TemporaryFolder folder;
   runSkc(file, options, folder.path());
+  Compiled compiled(folder.path(), file);
   const fs::path library = folder.path() / "kernels.so";
-  linkKept(Compiled(folder.path(), file), library);
+  linkKept(compiled, library);
   object_ = ::dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (object_ == nullptr) {
     throw std::runtime_error(
         fmt::format("cannot load the kernels: {}; is '{}' a place for programs? TMPDIR names another",
                     ::dlerror(), folder.path().parent_path().string()));
   }
-  list_ = static_cast<const sk::program::Library*>(::dlsym(object_, sk::program::librarySymbol));
+  list_ = listIn(object_);
   if (list_ == nullptr) {
     ::dlclose(object_);
     throw std::runtime_error(
         "this skc is of another version; name the one that belongs to this program by --skc");
   }
+#if defined(__x86_64__)
+  compiled.precise = folder.path() / "precise.cpp";
+  std::ofstream(compiled.precise) << "#include <sk/native/quads_by_mpfr.hpp>\n";
+  const fs::path precise = folder.path() / "precise.so";
+  try {
+    linkKept(compiled, precise);
+  } catch (const std::runtime_error&) {
+    return;  // there is no MPFR
+  }
+  preciseObject_ = ::dlopen(precise.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  if (preciseObject_ != nullptr) preciseList_ = listIn(preciseObject_);
+#endif
 }
 
-KernelLibrary::~KernelLibrary() { ::dlclose(object_); }
+KernelLibrary::~KernelLibrary() {
+  if (preciseObject_ != nullptr) ::dlclose(preciseObject_);
+  ::dlclose(object_);
+}
 
 }  // namespace sk_tool

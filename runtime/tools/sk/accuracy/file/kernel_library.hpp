@@ -28,10 +28,14 @@ class KernelLibrary {
   KernelLibrary& operator=(const KernelLibrary&) = delete;
 
   const sk::program::Library& list() const { return *list_; }
+  /// The same kernels, whose reference computes by MPFR; null if there is no MPFR for the C++ compiler, or if it is not an x86-64.
+  const sk::program::Library* precise() const { return preciseList_; }
 
  private:
   void* object_;
   const sk::program::Library* list_;
+  void* preciseObject_ = nullptr;
+  const sk::program::Library* preciseList_ = nullptr;
 };
 
 }  // namespace sk_tool

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // Calls a kernel on several sets of inputs: ordinary elements, which are also timed; if it has uniforms,
-// fewer elements with several draws of the uniforms; elements with extremes among them; and extreme uniforms.
+// fewer elements with several draws of the uniforms; elements at powers of 2; elements with extremes among them; and extreme uniforms.
+// Then it looks for larger errors near the largest ones, and where errors jump. The reference is checked by MPFR at the worst inputs.
 #include "accuracy/file/measure.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -15,6 +18,7 @@
 #include "accuracy/compare_modes.hpp"
 #include "accuracy/file/call.hpp"
 #include "accuracy/file/errors.hpp"
+#include "accuracy/progress.hpp"
 #include "sk/error.hpp"
 #include "sk/native/code.hpp"
 
@@ -33,6 +37,9 @@ using sk::program::Role;
 constexpr std::int64_t usualSize = std::int64_t{1} << 20;
 constexpr int draws = 16;  ///< of uniforms
 constexpr std::int64_t extremeMixes = 512;  ///< elements beyond those with a single extreme scalar
+constexpr std::int64_t exponentElements = 1 << 13;  ///< elements at powers of 2
+constexpr std::int64_t mostSearched = 1 << 12;  ///< elements of a round of the search for larger errors
+constexpr int searchRounds = 3;
 constexpr std::int64_t extremeBlock = 64;  ///< elements of a reduction, one of which is extreme
 
 // ---- what is measured -----------------------------------------------------------------------------
@@ -166,8 +173,9 @@ Extent extremeExtent(const Subject& subject, std::int64_t count, int drawn) {
 
 /// Inputs with their results, on the device and on the reference.
 struct Set {
-  Set(sk::Device& device, sk::Device& reference, const Subject& subject, Inputs drawn, Extremes kind)
-      : inputs(std::move(drawn)), extremes(kind), call(device, subject, inputs) {
+  Set(sk::Device& device, sk::Device& reference, const Subject& subject, Inputs drawn, Extremes kind,
+      bool areDrawn = true)
+      : inputs(std::move(drawn)), extremes(kind), isDrawn(areDrawn), call(device, subject, inputs) {
     Call exact(reference, subject, inputs);
     for (int draw = 0; draw < inputs.extent.draws; ++draw) {
       exact.run({.precision = Precision::Single}, draw);  // overrides the kernel's declaration
@@ -177,29 +185,43 @@ struct Set {
   Set(const Set&) = delete;
   Set& operator=(const Set&) = delete;
 
+  bool isOrdinary() const { return extremes == Extremes::None || extremes == Extremes::AtExponents; }
+
   Inputs inputs;
   Extremes extremes;
+  bool isDrawn;  ///< else looked for; such results do not count in means
   Call call;
   std::vector<Results> truths;  ///< one per draw
+};
+
+/// The reference, and the kernels in which MPFR computes it.
+struct References {
+  sk::Device quad = sk::Device::reference(sk::Reference::Quad);
+  const sk::program::Library* precise = nullptr;
 };
 
 // ---- results --------------------------------------------------------------------------------------
 
 class Measured {
  public:
-  Measured(sk::Device& device, sk::Device& reference, const Subject& subject,
+  Measured(sk::Device& device, References& references, const Subject& subject,
            const FileMeasurement& measurement)
       : device_(device),
-        reference_(reference),
+        references_(references),
         subject_(subject),
         measurement_(measurement),
-        scalars_(resultScalars(subject)) {
+        scalars_(resultScalars(subject)),
+        progress_(subject.name()) {
     const sk::Shape domain = domainOf();
     size_ = domain.size();
     add(ordinaryExtent(subject, domain, 1), Extremes::None);
     if (hasDrawnValues(subject, measurement.ranges)) {
       add(ordinaryExtent(subject, cubeOf(domain.rank(), std::max<std::int64_t>(size_ / draws, 1)), draws),
           Extremes::None);
+    }
+    if (extremeScalars(subject, measurement.ranges, Extremes::AtExponents) > 0 && !subject.isReduce()) {
+      add(ordinaryExtent(subject, cubeOf(domain.rank(), std::min(size_, exponentElements)), 1),
+          Extremes::AtExponents);
     }
     if (!measurement.hasExtremes) return;
     addExtremes(Extremes::InElements);
@@ -209,13 +231,17 @@ class Measured {
   Experiment experiment() {
     Experiment experiment{.program = subject_.name(), .data = "drawn", .about = about(), .bounded = ""};
     std::vector<Mode> modes;
-    for (const CallMode& mode : modesOf(subject_, device_)) {
-      modes.push_back({mode.name, [this, options = mode.options] {
-                         return Trial{[this, options] { sets_.front()->call.run(options, 0); },
-                                      [this, options] { return grade(options); }};
+    const std::vector<CallMode> all = modesOf(subject_, device_);
+    for (std::size_t m = 0; m < all.size(); ++m) {
+      modes.push_back({all[m].name, [this, m, &all] {
+                         progress_.show(static_cast<double>(m) / static_cast<double>(all.size()));
+                         return Trial{
+                             [this, &options = all[m].options] { sets_.front()->call.run(options, 0); },
+                             [this, &options = all[m].options] { return grade(options); }};
                        }});
     }
     experiment.rows = compareModes(device_, modes, measurement_.rounds);
+    experiment.isReferenceChecked = references_.precise != nullptr && isElementwise(subject_);
     return experiment;
   }
 
@@ -227,9 +253,72 @@ class Measured {
   }
 
   void add(const Extent& extent, Extremes extremes) {
-    sets_.push_back(std::make_unique<Set>(device_, reference_, subject_,
+    sets_.push_back(std::make_unique<Set>(device_, references_.quad, subject_,
                                           drawInputs(subject_, measurement_.ranges, extent, extremes),
                                           extremes));
+  }
+
+  /// Adds inputs that were looked for, and their errors.
+  void addFound(Inputs inputs, const sk::CallOptions& options, ErrorSizes& sizes) {
+    sets_.push_back(
+        std::make_unique<Set>(device_, references_.quad, subject_, std::move(inputs), Extremes::None, false));
+    Set& set = *sets_.back();
+    set.call.run(options, 0);
+    sizes.add(set.call.results(), set.truths.front(), sets_.size() - 1, 0, false);
+  }
+
+  /// An eighth of the drawn elements, within limits.
+  std::int64_t searched() const { return std::clamp<std::int64_t>(size_ / 8, 512, mostSearched); }
+
+  /// Looks for larger errors near the largest ones.
+  void searchNearWorst(const sk::CallOptions& options, ErrorSizes& sizes) {
+    for (int round = 0; round < searchRounds && !sizes.largest().empty(); ++round) {
+      const ErrorPlace first = sizes.largest().front().place;
+      std::vector<std::size_t> elements;
+      for (const LargeError& one : sizes.largest()) {
+        if (one.place.inputs == first.inputs && one.place.draw == first.draw)
+          elements.push_back(one.place.result);
+      }
+      const Inputs centres = inputsAt(subject_, sets_[first.inputs]->inputs, first.draw, elements);
+      addFound(inputsNear(subject_, measurement_.ranges, centres, searched(), static_cast<unsigned>(round)),
+               options, sizes);
+    }
+  }
+
+  /// Looks between drawn elements that are neighbours in the only scalar and whose errors differ most: branches may change there.
+  void searchJumps(const sk::CallOptions& options, ErrorSizes& sizes) {
+    const Set& drawn = *sets_.front();
+    const std::vector<std::vector<double>> reals = drawnReals(subject_, measurement_.ranges, drawn.inputs);
+    if (reals.size() != 1) return;
+    const std::vector<double>& x = reals.front();
+    std::vector<double> ulps(x.size(), 0);
+    sets_.front()->call.run(options, 0);
+    const Results results = sets_.front()->call.results();
+    for (std::size_t c = 0; c < scalars_.size(); ++c) {
+      for (std::size_t i = 0; i < x.size(); ++i)
+        ulps[i] = std::max(ulps[i], ulpsOf(scalars_[c].scalar, results[c][i], drawn.truths.front()[c][i]));
+    }
+    std::vector<std::size_t> order(x.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return x[i]; });
+    // A jump is as large as the ratio of errors, of which those below an ulp are alike.
+    const auto jump = [&](std::size_t at) {
+      const double a = std::max(ulps[order[at]], 1.0), b = std::max(ulps[order[at + 1]], 1.0);
+      return a == b ? 0 : std::max(a, b) / std::min(a, b);
+    };
+    constexpr std::size_t most = 64;
+    std::vector<std::size_t> jumps(order.empty() ? 0 : order.size() - 1);
+    std::iota(jumps.begin(), jumps.end(), std::size_t{0});
+    const auto end = jumps.begin() + static_cast<std::ptrdiff_t>(std::min(most, jumps.size()));
+    std::partial_sort(jumps.begin(), end, jumps.end(),
+                      [&](std::size_t a, std::size_t b) { return jump(a) > jump(b); });
+    std::vector<std::size_t> elements;
+    for (auto it = jumps.begin(); it != end; ++it) {
+      if (jump(*it) > 0) elements.insert(elements.end(), {order[*it], order[*it + 1]});
+    }
+    if (elements.empty()) return;
+    const Inputs ends = inputsAt(subject_, drawn.inputs, 0, elements);
+    addFound(inputsBetween(subject_, ends, searched() / static_cast<std::int64_t>(most)), options, sizes);
   }
 
   void addExtremes(Extremes where) {
@@ -252,23 +341,41 @@ class Measured {
   Grade grade(const sk::CallOptions& options) {
     ErrorSizes sizes(scalars_);
     ErrorCounts counts(scalars_);
-    for (std::size_t s = 0; s < sets_.size(); ++s) {
+    const std::size_t drawn = sets_.size();
+    for (std::size_t s = 0; s < drawn; ++s) {
       Set& set = *sets_[s];
       for (int draw = 0; draw < set.inputs.extent.draws; ++draw) {
         set.call.run(options, draw);
         const Results results = set.call.results();
         const Results& truth = set.truths[static_cast<std::size_t>(draw)];
-        if (set.extremes == Extremes::None) {
-          sizes.add(results, truth, s, draw);
+        if (set.isOrdinary()) {
+          sizes.add(results, truth, s, draw, set.extremes == Extremes::None);
         } else {
           counts.add(results, truth, s, draw);
         }
       }
     }
+    if (isElementwise(subject_) &&
+        !drawnReals(subject_, measurement_.ranges, sets_.front()->inputs).empty()) {
+      searchJumps(options, sizes);
+      searchNearWorst(options, sizes);
+    }
     Grade grade{.metrics = sizes.metrics()};
     grade.worst = caseOf(sizes.worst(), !subject_.isReduce());
+    if (scalars_.size() > 1) grade.outputs = outputsOf(sizes);
     if (counts.tried() > 0) grade.extremes = extremesOf(counts);
+    sets_.resize(drawn);  // each mode has worst inputs of its own
     return grade;
+  }
+
+  std::vector<OutputErrors> outputsOf(const ErrorSizes& sizes) const {
+    std::vector<OutputErrors> outputs;
+    for (std::size_t c = 0; c < scalars_.size(); ++c) {
+      if (!isReal(scalars_[c].scalar)) continue;
+      const ScalarErrors& errors = sizes.scalars()[c];
+      outputs.push_back({scalars_[c].name, errors.metrics(), caseOf(errors.worst, !subject_.isReduce())});
+    }
+    return outputs;
   }
 
   ExtremeCounts extremesOf(const ErrorCounts& counts) const {
@@ -289,30 +396,59 @@ class Measured {
     json["result"] = scalar.name;
     json["got"] = jsonOf(scalar.scalar, place.got);
     json["wanted"] = jsonOf(sk::program::Scalar::Double, place.wanted);
+    if (const std::optional<double> precise = hasInputs ? preciselyAt(place) : std::nullopt) {
+      json["by_mpfr"] = jsonOf(sk::program::Scalar::Double, *precise);
+      json["reference_differs"] = !isSameIn(scalar.scalar, place.wanted, *precise);
+    }
     return json;
   }
 
+  /// The right result by MPFR; nullopt if there is none here.
+  std::optional<double> preciselyAt(const ErrorPlace& place) const {
+    if (references_.precise == nullptr || !isElementwise(subject_)) return std::nullopt;
+    const auto isIt = [&](const sk::program::Kernel* kernel) {
+      return kernel->name == subject_.signature().name;
+    };
+    const auto kernel = std::ranges::find_if(references_.precise->kernels, isIt);
+    if (kernel == references_.precise->kernels.end()) return std::nullopt;
+    const Subject subject{.kernel = *kernel};
+    const std::size_t element[] = {place.result};
+    const Inputs inputs = inputsAt(subject_, sets_[place.inputs]->inputs, place.draw, element);
+    Call call(references_.quad, subject, inputs);
+    call.run({.precision = Precision::Single}, 0);
+    return call.exactResults()[place.scalar].front();
+  }
+
+  /// Whether two right results are the same as far as an error in this type can show: to an eighth of a unit in the last place.
+  static bool isSameIn(sk::program::Scalar scalar, double a, double b) {
+    if (std::isnan(a) || std::isnan(b)) return std::isnan(a) == std::isnan(b);
+    if (std::isinf(a) || std::isinf(b) || a == 0 || b == 0)
+      return a == b || (roundedTo(scalar, a) == roundedTo(scalar, b));
+    return std::fabs(a - b) <= ulpOf(scalar, b) / 8;
+  }
+
   sk::Device& device_;
-  sk::Device& reference_;
+  References& references_;
   const Subject& subject_;
   const FileMeasurement& measurement_;
   std::vector<ResultScalar> scalars_;
   std::int64_t size_ = 0;
   std::vector<std::unique_ptr<Set>> sets_;  ///< the first one is timed
+  Progress progress_;
 };
 
 }  // namespace
 
 FileResults measureFile(sk::Device& device, const sk::program::Library& library,
-                        const FileMeasurement& measurement,
+                        const sk::program::Library* precise, const FileMeasurement& measurement,
                         const std::function<void(const Experiment&)>& report) {
   FileResults results;
   const std::vector<Subject> subjects = chosenSubjects(library, measurement.kernel, results.skipped);
   measurement.ranges.check(subjects);
-  sk::Device reference = sk::Device::reference(sk::Reference::Quad);
+  References references{.precise = precise};
   for (const Subject& subject : subjects) {
     try {
-      results.experiments.push_back(Measured(device, reference, subject, measurement).experiment());
+      results.experiments.push_back(Measured(device, references, subject, measurement).experiment());
     } catch (const sk::Error& error) {  // even the plainest mode fails
       results.skipped.emplace_back(error.what());
       continue;

@@ -30,10 +30,10 @@ struct FileResults {
   std::vector<std::string> skipped;
 };
 
-/// Passes each experiment to `report` as soon as it is finished. Throws std::runtime_error if no kernel can
+/// `precise` has the same kernels, whose reference MPFR computes; it may be null. Passes each experiment to `report` as soon as it is finished. Throws std::runtime_error if no kernel can
 /// be measured or has the name, or if options name parameters that do not exist.
 FileResults measureFile(sk::Device& device, const sk::program::Library& library,
-                        const FileMeasurement& measurement,
+                        const sk::program::Library* precise, const FileMeasurement& measurement,
                         const std::function<void(const Experiment&)>& report);
 
 }  // namespace sk_tool
