@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The tables of facts against the documents that explain them: every diagnostic has its section in
-// docs/errors.md, every intrinsic its row in docs/language.md, and nothing else has.
+// docs/errors.md, every intrinsic its row in docs/language.md, and nothing else has; docs/accuracy.md has the bounds of
+// errors that programs read.
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -12,6 +13,7 @@
 #include <catch2/catch.hpp>
 
 #include "markdown.hpp"
+#include "sk/error_bounds.hpp"
 
 namespace {
 
@@ -128,4 +130,78 @@ TEST_CASE("docs/language.md lists every intrinsic with its signatures", "[tables
     INFO(name);
     CHECK(there.contains(name));
   }
+}
+
+namespace {
+
+/// The cells of a table's row.
+std::vector<std::string> cellsOf(const std::string& row) {
+  std::vector<std::string> cells;
+  std::istringstream in(row.substr(row.find('|') + 1));
+  for (std::string cell; std::getline(in, cell, '|');) cells.push_back(docs::trimmed(cell));
+  return cells;
+}
+
+std::string spelled(double number, int digits) {
+  std::ostringstream out;
+  out.precision(digits);
+  out << number;
+  return out.str();
+}
+
+/// Bounds in the rows of a section of docs/accuracy.md: `column` has one number for each function that the first cell names.
+/// Returns how many were compared.
+std::size_t compareBounds(const std::vector<const docs::Piece*>& rows, std::size_t column,
+                          sk::BoundedType type, sk::BoundedCode code) {
+  std::size_t compared = 0;
+  for (const docs::Piece* row : rows) {
+    const std::vector<std::string> cells = cellsOf(row->text);
+    const std::vector<std::string> functions = codesIn(cells.front());
+    std::istringstream numbers(cells.at(column));
+    const std::vector<std::string> bounds{std::istream_iterator<std::string>(numbers), {}};
+    if (bounds.empty() || functions.empty()) continue;
+    INFO("docs/accuracy.md:" << row->line << ": " << row->text);
+    REQUIRE(bounds.size() == functions.size());
+    for (std::size_t i = 0; i < functions.size(); ++i) {
+      const sk::ErrorBound* bound = sk::errorBoundOf(functions[i], type, code);
+      INFO(functions[i]);
+      REQUIRE(bound != nullptr);
+      CHECK(bounds[i] == spelled(bound->bound, 6));
+      ++compared;
+    }
+  }
+  return compared;
+}
+
+/// The rows of the n-th table of a section, without its head.
+std::vector<const docs::Piece*> tableIn(const docs::Document& document, const std::string& section,
+                                        std::size_t n) {
+  std::vector<const docs::Piece*> rows;
+  std::size_t table = 0;
+  int last = -1;
+  for (const docs::Piece& row : document.rows) {
+    if (row.section != section) continue;
+    if (last >= 0 && row.line > last + 2) ++table;
+    last = row.line;
+    if (table == n) rows.push_back(&row);
+  }
+  REQUIRE(rows.size() > 1);
+  rows.erase(rows.begin());
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("docs/accuracy.md has the bounds of sk/error_bounds.def", "[tables]") {
+  const docs::Document& accuracy = document("docs/accuracy.md");
+  using sk::BoundedCode;
+  using sk::BoundedType;
+  const std::size_t compared =
+      compareBounds(tableIn(accuracy, "Intrinsics and defined arithmetic", 0), 1, BoundedType::Float,
+                    BoundedCode::Glsl) +
+      compareBounds(tableIn(accuracy, "Native functions", 0), 1, BoundedType::Float, BoundedCode::Native) +
+      compareBounds(tableIn(accuracy, "Native functions", 1), 1, BoundedType::Double, BoundedCode::Native) +
+      compareBounds(tableIn(accuracy, "Functions of doubles", 0), 1, BoundedType::Double, BoundedCode::Glsl) +
+      compareBounds(tableIn(accuracy, "Functions of doubles", 0), 2, BoundedType::Pair, BoundedCode::Glsl);
+  CHECK(compared == std::size(sk::errorBounds));  // each has its place
 }

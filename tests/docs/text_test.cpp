@@ -114,6 +114,76 @@ TEST_CASE("headings of a document have anchors of their own", "[text]") {
   }
 }
 
+namespace {
+
+/// What a comment <!-- test: FILE "NAME" "NAME" --> says: a file in the repository, and tests in it.
+struct NamedTests {
+  std::string file;
+  std::vector<std::string> names;
+};
+
+std::vector<NamedTests> testsIn(const std::string& text) {
+  static const std::regex comment(R"re(<!-- test: ([^ ]+)((?: "[^"]*")*) -->)re"), quoted(R"re("([^"]*)")re");
+  std::vector<NamedTests> tests;
+  for (std::sregex_iterator it(text.begin(), text.end(), comment), end; it != end; ++it) {
+    NamedTests& test = tests.emplace_back(NamedTests{(*it)[1], {}});
+    const std::string names = (*it)[2];
+    for (std::sregex_iterator name(names.begin(), names.end(), quoted); name != end; ++name)
+      test.names.push_back((*name)[1]);
+  }
+  return tests;
+}
+
+/// Paragraphs, lists and tables, with the comments behind them; nothing of code, quotes and headings.
+std::vector<docs::Piece> paragraphsOf(const docs::Document& document) {
+  std::vector<docs::Piece> paragraphs;
+  bool isCode = false, isPrelude = false, isNew = true;
+  int number = 0;
+  for (const std::string& line : docs::linesOf(docs::readFile(fs::path(SK_DOCS_SOURCE) / document.name))) {
+    ++number;
+    if (line.starts_with("```")) isCode = !isCode;
+    if (line.starts_with("<!-- prelude")) isPrelude = true;
+    const bool isText = !isCode && !isPrelude && !line.starts_with("```") && !line.starts_with("#") &&
+                        !line.starts_with("> ") && !line.starts_with("![");
+    if (line == "-->") isPrelude = false;
+    if (line.empty() || !isText) {
+      // A comment of what an example shows belongs to the block below it, and one behind a blank line to no paragraph.
+      isNew = true;
+      continue;
+    }
+    if (isNew) paragraphs.push_back({"", "", number});
+    isNew = false;
+    paragraphs.back().text += line + "\n";
+  }
+  std::erase_if(paragraphs, [](const docs::Piece& piece) {
+    return piece.text.starts_with("<!-- sk ") || piece.text == "-->\n";
+  });
+  return paragraphs;
+}
+
+}  // namespace
+
+TEST_CASE("every paragraph of docs/accuracy.md names the tests of its promises", "[text]") {
+  const docs::Document* accuracy = documentAt("docs/accuracy.md");
+  REQUIRE(accuracy != nullptr);
+  for (const docs::Piece& paragraph : paragraphsOf(*accuracy)) {
+    INFO("docs/accuracy.md:" << paragraph.line << ": " << paragraph.text);
+    const std::vector<NamedTests> tests = testsIn(paragraph.text);
+    const bool promisesNothing = paragraph.text.find("<!-- no promise -->") != std::string::npos;
+    CHECK((!tests.empty() || promisesNothing));
+    for (const NamedTests& test : tests) {
+      const fs::path file = fs::path(SK_DOCS_SOURCE) / test.file;
+      INFO(test.file);
+      REQUIRE(fs::exists(file));
+      const std::string text = docs::readFile(file);
+      for (const std::string& name : test.names) {
+        INFO(name);
+        CHECK(text.find('"' + name + '"') != std::string::npos);
+      }
+    }
+  }
+}
+
 TEST_CASE("commands in sh blocks exist", "[text]") {
   const std::string help = docs::run("./dev help", SK_DOCS_SOURCE).output;
   const fs::path folder = docs::workFolder("commands");
@@ -193,7 +263,7 @@ bool isOfWeb(const std::string& language) { return language == "ts" || language 
 TEST_CASE("blocks of code are of kinds that are checked", "[text]") {
   const std::set<std::string> checked = {"sk", "c++", "glsl", "ir", "sh", "console", "cmake"};
   for (const docs::Document& document : docs::documents()) {
-    if (document.name.starts_with("examples/")) continue;   // usage lines, in words
+    if (document.name.starts_with("examples/")) continue;  // usage lines, in words
     for (const docs::Block& block : document.blocks) {
       INFO(block.place() << ": '" << block.language << "'");
       CHECK((checked.contains(block.language) || block.language == "text" || isOfWeb(block.language)));
