@@ -250,10 +250,34 @@ void RankReduction::wait() {
   check(MPI_Wait(&stepsRequest_, MPI_STATUS_IGNORE), call_.reduction.fold.name);
 }
 
-void RankReduction::finish(std::span<void* const> results) {
+void RankReduction::finish() {
   wait();
   for (std::size_t k = 0; k < steps_.size(); ++k) finishStep(k);
   finishWords();
+}
+
+void RankReduction::store(std::span<const StreamRegion> results) {
+  if (!doubles_) {
+    for (std::size_t k = 0; k < values_.size(); ++k) detail::write(results[k], values_[k].data(), 1);
+    return;
+  }
+  const auto inDoubles = [&](std::size_t k) {
+    return detail::reshaped(doubles_->regions[k], results[k].shape);
+  };
+  const program::WideReduction* const wide = steps_.front()->variant.wide;
+  if (wide == nullptr) {
+    for (std::size_t k = 0; k < results.size(); ++k) detail::copy(inDoubles(k), results[k]);
+    return;
+  }
+  std::vector<Argument> arguments;
+  for (std::size_t k = 0; k < results.size(); ++k) arguments.push_back({.region = inDoubles(k)});
+  for (const StreamRegion& region : results) arguments.push_back({.region = region});
+  sk::run(wide->finish, arguments,
+          {.precision = isExtended(call_.options) ? Precision::Extended : Precision::Double});
+}
+
+void RankReduction::finish(std::span<void* const> results) {
+  finish();
   for (std::size_t k = 0; k < values_.size(); ++k)
     std::memcpy(results[k], values_[k].data(), values_[k].size());
 }
@@ -339,6 +363,7 @@ void RankReduction::finishStep(std::size_t number) {
     }
     ++next;
   }
+  if (isWide(call_.options)) doubles_.emplace(std::move(result));
   if (variant.second == nullptr) return;
   for (; next < finished.size(); ++next) errors.push_back(finished[next].data());
   addErrors(call_.reduction, *variant.second, values, errors);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,8 +41,12 @@ class RankReduction {
   void start();
   bool isReady();
   void wait();
-  /// Waits, and stores the results: one value for each accumulator.
+  /// Waits, and combines the parts of all ranks, which may read the arguments of the call.
+  void finish();
+  /// The same, and stores the results: one value for each accumulator.
   void finish(std::span<void* const> results);
+  /// Stores the results to streams of one element, one for each accumulator, after finish(): what was folded in doubles is not rounded to floats before.
+  void store(std::span<const StreamRegion> results);
 
  private:
   /// Accumulators that travel to all ranks.
@@ -78,6 +83,7 @@ class RankReduction {
   bool hasElements_;
   OwnedArguments arguments_;
   std::vector<Bytes> values_;  ///< one for each accumulator
+  std::optional<Accumulators> doubles_;  ///< the same, if the call computes in doubles
   ResolvedReduction call_;
   DenseArguments dense_;
   std::vector<std::unique_ptr<Step>> steps_;

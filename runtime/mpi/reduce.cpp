@@ -27,11 +27,10 @@ using program::Role;
 
 namespace {
 
-/// Values in host memory for the arguments of accumulators, which are streams of one element.
+/// The arguments of accumulators, which are streams of one element, and values in host memory for them.
 class StreamResults {
  public:
-  StreamResults(const Reduction& reduction, std::span<const Argument> arguments)
-      : reduction_(reduction), arguments_(arguments) {
+  StreamResults(const Reduction& reduction, std::span<const Argument> arguments) {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
       const Parameter& parameter = reduction.fold.parameters[i];
       if (parameter.role != Role::Accumulator) continue;
@@ -43,24 +42,16 @@ class StreamResults {
              "element, or take the value that the call returns",
              parameter.name, toString(region.shape));
       }
+      regions.push_back(region);
       bytes_.emplace_back(parameter.element->size);
     }
     for (Bytes& one : bytes_) values.push_back(one.data());
   }
 
-  void store() const {
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < arguments_.size(); ++i) {
-      if (reduction_.fold.parameters[i].role == Role::Accumulator)
-        detail::write(arguments_[i].region, values[next++], 1);
-    }
-  }
-
+  std::vector<StreamRegion> regions;
   std::vector<void*> values;
 
  private:
-  const Reduction& reduction_;
-  std::span<const Argument> arguments_;
   std::vector<Bytes> bytes_;
 };
 
@@ -126,8 +117,18 @@ void DomainState::reduce(const Reduction& reduction, std::span<const Argument> a
   begin(*this, reduction, arguments, chosen);
   if (results.empty()) {
     const StreamResults targets(reduction, arguments);
-    reduce(reduction, arguments, targets.values, chosen);
-    return targets.store();
+    if (later != nullptr) return reduceLater(reduction, arguments, targets.values, chosen);
+    if (parts.ranks() == 1) {
+      std::vector<Argument> own = mpi::ownArguments(arguments);
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        if (reduction.fold.parameters[i].role == Role::Accumulator)  // one element in any rank
+          own[i].region = detail::reshaped(own[i].region, Shape{1});
+      }
+      return sk::reduce(reduction, own, chosen);
+    }
+    const std::unique_ptr<RankReduction> all = started(*this, reduction, arguments, chosen);
+    all->finish();
+    return all->store(targets.regions);
   }
   if (later != nullptr) return reduceLater(reduction, arguments, results, chosen);
   if (parts.ranks() == 1) return sk::reduce(reduction, mpi::ownArguments(arguments), results, chosen);
@@ -174,16 +175,19 @@ void DomainState::fold(const Reduction& reduction, std::span<const Argument> arg
     const bool isTogether = device.profile() == "native" && chosen.accumulate != Accumulate::Exact &&
                             !needsPrecisionVariant(chosen);
     if (isTogether) {  // native code stores elements while it folds
-      started(*this, reduction, arguments, chosen)->finish(targets.values);
+      const std::unique_ptr<RankReduction> all = started(*this, reduction, arguments, chosen);
+      all->finish();
+      all->store(targets.regions);
     } else {  // values are not stored yet, so that the kernel may overwrite what is folded
       std::vector<Argument> inputs(arguments.begin(), arguments.end());
       for (std::size_t i = 0; i < inputs.size(); ++i) {
         if (reduction.fold.parameters[i].role == Role::Output) inputs[i].region.distributed = nullptr;
       }
-      started(*this, reduction, inputs, chosen)->finish(targets.values);
+      const std::unique_ptr<RankReduction> all = started(*this, reduction, inputs, chosen);
+      all->finish();
       storeOwnOutputs(*this, reduction, arguments, chosen);
+      all->store(targets.regions);
     }
-    targets.store();
   }
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (reduction.fold.parameters[i].role != Role::Output) continue;

@@ -93,6 +93,26 @@ TEST_CASE("compensated and extended sums keep their bounds over ranks") {
   });
 }
 
+TEST_CASE("streams of doubles keep what is folded in doubles") {
+  double total = 0;
+  for (std::int64_t k = 0; k < shape.size(); ++k) total += static_cast<double>(k % 7) / 3;
+  forEachSplit({.shape = shape}, [&](sk::Domain& domain) {
+    auto x = domain.stream<float>(sk::Storage::Double), r = domain.stream<float>(sk::Storage::Double);
+    auto thirds = domain.stream<float>();
+    thirds.fill([](const sk::Index& i) { return static_cast<float>((i[0] * 14 + i[1]) % 7); });
+    const sk::CallOptions inDoubles{.precision = sk::Precision::Extended};
+    third.with(inDoubles)(thirds, x);
+    auto folded = domain.device().stream<float>({1}, sk::Storage::Double);
+    auto other = domain.device().stream<float>({1, 1}, sk::Storage::Double);
+    sum.with(inDoubles)(x, folded);
+    CHECK(std::abs(folded.readReals()[0] - total) <= std::ldexp(total, -40));
+    both.with(inDoubles)(x, other, folded);
+    CHECK(std::abs(other.readReals()[0] - total) <= std::ldexp(total, -40));
+    twice.with(inDoubles)(x, r, folded);
+    CHECK(std::abs(folded.readReals()[0] - total) <= std::ldexp(total, -40));
+  });
+}
+
 TEST_CASE("integers, extrema and the first of equals are those of one device") {
   const auto hit = [](const sk::Index& i) {
     return Hit{static_cast<float>((i[0] * 5 + i[1] * 3) % 11), static_cast<int>(i[0] * 14 + i[1])};

@@ -164,6 +164,71 @@ TEST_CASE("structs, vectors, gathers and reduces") {
   });
 }
 
+/// Thirds of numbers, so that no float holds one of them.
+std::vector<double> thirds(std::size_t n) {
+  std::vector<double> x;
+  for (std::size_t i = 0; i < n; ++i) x.push_back((static_cast<double>(i * 37 % 101) - 40) / 3);
+  return x;
+}
+
+double sumOf(const std::vector<double>& x, std::size_t begin, std::size_t end, int power = 1) {
+  long double sum = 0;
+  for (std::size_t i = begin; i < end; ++i) sum += power == 1 ? x[i] : static_cast<long double>(x[i]) * x[i];
+  return static_cast<double>(sum);
+}
+
+TEST_CASE("a reduce in doubles keeps them in a stream of doubles") {
+  const std::vector<double> x = thirds(300);
+  const std::array<double, 4> sums = {sumOf(x, 0, 75), sumOf(x, 75, 150), sumOf(x, 150, 225),
+                                      sumOf(x, 225, 300)};
+  const std::vector<std::int32_t> starts = {0, 75, 150, 225, 300};
+  const auto check = [&](sk::Device& device, const sk::CallOptions& options) {
+    constexpr double bound = 0x1p-34;  // 300 terms of at most 20, with 2^-44 of the sum of magnitudes
+    const auto isSum = [&](const std::vector<double>& got) {
+      REQUIRE(got.size() == sums.size());
+      for (std::size_t i = 0; i < sums.size(); ++i) CHECK(std::fabs(got[i] - sums[i]) <= bound);
+    };
+    auto s = device.stream<float>({300}, Storage::Double);
+    s.writeReals(x);
+    for (const Storage storage : {Storage::Extended, Storage::Double}) {
+      auto blocks = device.stream<float>({4}, storage), inRows = device.stream<float>({4}, storage);
+      precision::sum.with(options)(s, blocks);
+      isSum(blocks.readReals());
+      auto at = device.stream<std::int32_t>({5});
+      at.write(starts);
+      precision::sum.with(options)(sk::Rows(at)(s), inRows);
+      isSum(inRows.readReals());
+      auto strided = device.stream<float>({8}, storage);
+      strided.fill(0);
+      auto every = sk::stride(strided, {2});
+      precision::sum.with(options)(s, every);
+      const std::vector<double> all = strided.readReals();
+      isSum({all[0], all[2], all[4], all[6]});
+      auto running = device.stream<float>({300}, storage);
+      precision::running.with(options)(s, running);
+      CHECK(std::fabs(running.readReals()[299] - sumOf(x, 0, 300)) <= bound);
+      auto moments = device.stream<precision::Moments>({1}, storage);
+      precision::moments.with(options)(s, 0.0F, moments);
+      CHECK(std::fabs(moments.readReals()[1] - sumOf(x, 0, 300)) <= bound);
+      CHECK(std::fabs(moments.readReals()[2] - sumOf(x, 0, 300, 2)) <= 16 * bound);
+      auto r = device.stream<float>({300}, storage);
+      auto total = device.stream<float>({1}, storage), most = device.stream<float>({1}, storage);
+      precision::doubled.with(options)(s, r, total, most);
+      CHECK(std::fabs(total.readReals()[0] - 2 * sumOf(x, 0, 300)) <= bound);
+      CHECK(std::fabs(most.readReals()[0] - 2 * x[30]) <= bound);
+    }
+    // Halves are rounded once.
+    auto half = device.stream<float>({1}, Storage::Half), one = device.stream<float>({1}, Storage::Double);
+    one.writeReals(std::vector<double>{1 + 0x1p-11 + 0x1p-40});
+    precision::sum.with(options)(one, half);
+    CHECK(half.readReals()[0] == 1 + 0x1p-10);
+  };
+  onEveryTarget([&](sk::Device& device) { check(device, {.precision = Precision::Extended}); });
+  onEveryTarget([&](sk::Device& device) { check(device, {.accumulate = sk::Accumulate::Extended}); });
+  for (const char* name : {"glsl430", "native"})
+    check(run_tests::device(name), {.precision = Precision::Double});
+}
+
 TEST_CASE("the storage of a stream that a switch leaves out does not matter") {
   sk::Device device({.device = "gl", .profile = "essl300", .limits = "guaranteed"});  // draws to 4 planes
   auto x = device.stream<float>({2}, Storage::Half);

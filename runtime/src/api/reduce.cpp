@@ -143,9 +143,11 @@ CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions&
 
 namespace {
 
-/// Whether a result stream stores its floats as halves or doubles.
+/// Whether results have to be computed as floats, and stored afterwards as the halves or doubles that their streams hold. What is
+/// folded in doubles is stored without that step, so that a stream of doubles gets all bits of them.
 bool isStoredInOtherPrecision(const ResolvedReduction& call) {
   if (call.isToValues()) return false;
+  if (isWide(call.options) && call.domain.size() != 0) return false;
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     if (call.reduction.fold.parameters[i].role == Role::Accumulator &&
         call.arguments[i].region.stream->storage != Storage::Single) {
@@ -181,8 +183,6 @@ void reduceByTemporaries(const ResolvedReduction& call, const std::function<void
     }
   });
 }
-
-namespace {}  // namespace
 
 void addErrors(const Reduction& reduction, const CompensatedReduction& second, std::span<void* const> values,
                std::span<void* const> errors) {
