@@ -15,7 +15,7 @@ struct HostMemory {
 };
 
 /// On Linux, MemTotal and MemAvailable of /proc/meminfo, or less if a control group of this process, as of a container, has a limit
-/// (/sys/fs/cgroup, version 2): pages of files that it could drop count as available. Elsewhere unknown. `root` is the folder that has
+/// (/sys/fs/cgroup, versions 1 and 2): pages of files that it could drop count as available. Elsewhere unknown. `root` is the folder that has
 /// proc and sys.
 HostMemory hostMemory(const std::filesystem::path& root = "/");
 
