@@ -440,7 +440,13 @@ double Flow::divergenceMean() {
 
 double Flow::kineticEnergy() const {
   double sum = 0.0;
-  for (const linear::Vector& v : velocity_) sum += sumOfSquares.with(arithmetic_.foldOptions())(v);
+  for (int axis = 0; axis < model_.rank(); ++axis) {
+    const auto call = [&](const auto& reduce) {
+      sum +=
+          reduce.with(arithmetic_.foldOptions())(grid_->bounds, grid_->box, grid_->cell, velocity_[at(axis)]);
+    };
+    forAxis(axis, call, squares_0, squares_1, squares_2);
+  }
   return 0.5 * sum * std::pow(model_.spacing, model_.rank());
 }
 

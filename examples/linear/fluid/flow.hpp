@@ -76,7 +76,8 @@ class Flow {
   double divergence();
   /// The root mean square of div u * spacing, in double precision.
   double divergenceMean();
-  double kineticEnergy() const;  ///< of all faces, with density 1
+  double kineticEnergy()
+      const;  ///< of the fluid, with density 1: half of a face's square beside a wall, nothing of walls
   double total(Scalar scalar);  ///< times the volume of a cell
   std::pair<double, double> range(Scalar scalar);
   const GridArguments& grid() const { return *grid_; }

@@ -140,6 +140,34 @@ TEST_CASE("a projection by multigrid is that by Chebyshev's iteration, in fewer 
     }
 }
 
+TEST_CASE("the energy is that of the fluid, also beside walls that move") {
+  sk::Device device = sk::Device::native();
+  for (const bool hasCells : {false, true}) {
+    for (const std::int64_t n : {16, 64}) {
+      Model m;  // Couette's flow between a wall at rest and one that moves with 1
+      m.cells = {4, n, 1};
+      m.spacing = 1.0 / static_cast<double>(n);
+      m.sides = {Side::Periodic, Side::Periodic, Side::Wall, Side::Wall, Side::Periodic, Side::Periodic};
+      m.sideVelocity[3] = {1.0, 0.0, 0.0};
+      if (hasCells) m.obstacles.push_back({Sphere{{-5.0, 0.0, 0.0}, 0.1}, {}});
+      Flow flow(device, m);
+      std::vector<double> u = flow.velocity(0);
+      const auto row = u.size() / static_cast<std::size_t>(n + 2);
+      for (std::size_t i = row; i < u.size() - row; ++i)
+        u[i] = (static_cast<double>(i / row) - 0.5) * m.spacing;
+      flow.writeVelocity(0, u);
+      // The midpoint rule for the integral of u^2 / 2 from 0 to 1, which is 1/6, times the width.
+      const double width = 4.0 * m.spacing;
+      CHECK(std::abs(flow.kineticEnergy() / width - 1.0 / 6.0) <= 1.01 * m.spacing * m.spacing / 24.0 + 1e-6);
+    }
+  }
+  Model inflow = everything(false);
+  inflow.obstacles.clear();
+  Flow flow(device, inflow, {1.0, 0.0, 0.0});
+  const double area = 13.0 * 10.0 * 0.01;
+  CHECK(flow.kineticEnergy() == Approx(0.5 * area).epsilon(1e-6));
+}
+
 TEST_CASE("sides that follow from an index are those that a stream of cells has") {
   sk::Device device = sk::Device::native();
   for (const bool isSpace : {false, true}) {
