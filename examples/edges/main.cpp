@@ -99,6 +99,7 @@ examples::Picture inputPicture(const Settings& s) {
 }
 
 void findEdges(examples::Application& app, const Settings& s) {
+  examples::checkPngName(s.output);
   std::optional<examples::Thresholds> thresholds;
   if (s.high > 0.0f) thresholds = {s.low, s.high};
   if (s.low > s.high)

@@ -2,7 +2,9 @@
 #include "support/application.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <stdexcept>
@@ -26,6 +28,17 @@ std::string oneLine(std::string text) {
 std::string duration(double milliseconds) {
   if (milliseconds >= 1000.0) return fmt::format("{:.1f} s", milliseconds / 1000.0);
   return fmt::format("{:.{}f} ms", milliseconds, milliseconds >= 100.0 ? 0 : milliseconds >= 10.0 ? 1 : 2);
+}
+
+/// No option means NaN. Ranges let it pass, since it is neither below nor above their bounds.
+void refuseNan(const CLI::App& cli) {
+  for (const CLI::Option* option : cli.get_options()) {
+    if (!option->get_type_name().starts_with("FLOAT")) continue;
+    for (const std::string& text : option->results()) {
+      if (std::isnan(std::strtod(text.c_str(), nullptr)))
+        throw CLI::ValidationError(option->get_name(), fmt::format("'{}' is no number", text));
+    }
+  }
 }
 
 /// Nearer to its bound, or further past it.
@@ -62,6 +75,7 @@ void Application::verified(const Verification& verification) {
 void Application::parse(int argc, char** argv) {
   try {
     cli_.parse(argc, argv);
+    refuseNan(cli_);
   } catch (const CLI::CallForHelp&) {
     throw;
   } catch (const CLI::ParseError& error) {

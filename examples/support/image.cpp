@@ -94,7 +94,13 @@ void blend(Image& image, int x, int y, const sk::float3& colour, float share) {
   }
 }
 
+void checkPngName(const std::filesystem::path& file) {
+  if (file.extension() == ".png" || file.extension() == ".PNG") return;
+  throw std::runtime_error(fmt::format("'{}' is no picture; its name must end in .png", file.string()));
+}
+
 void savePng(const std::filesystem::path& file, const Image& image) {
+  checkPngName(file);
   std::error_code ignored;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
   if (stbi_write_png(file.c_str(), image.width, image.height, 3, image.rgb.data(), image.width * 3) == 0) {

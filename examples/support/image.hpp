@@ -38,7 +38,9 @@ void paste(Image& image, const Image& part, int x, int y);
 /// Mixes a colour into a pixel, `share` of it (in [0, 1]); a pixel outside is nothing.
 void blend(Image& image, int x, int y, const sk::float3& colour, float share);
 
-/// Creates the file's folder. Throws std::runtime_error where the file cannot be written.
+/// Throws std::runtime_error unless the name ends in .png.
+void checkPngName(const std::filesystem::path& file);
+/// Creates the file's folder. Throws std::runtime_error where the file cannot be written, or as checkPngName does.
 void savePng(const std::filesystem::path& file, const Image& image);
 
 }  // namespace examples

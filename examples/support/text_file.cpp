@@ -9,9 +9,14 @@
 
 #include <fmt/format.h>
 
+#include "support/host_memory.hpp"
+
 namespace examples {
 
 std::string bytesOf(const std::filesystem::path& file, std::string_view what) {
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+  if (!unknown) requireMemory(fmt::format("{} '{}'", what, file.string()), 2.0 * static_cast<double>(size));
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream bytes;
   std::error_code ignored;
