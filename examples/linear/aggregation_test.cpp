@@ -423,7 +423,7 @@ TEST_CASE("Matrices that smoothed aggregation cannot take are told, with what ca
   const Entry zero[] = {{0, 1, 1.0}, {1, 0, 1.0}, {1, 1, 1.0}};
   CHECK_THROWS_WITH(solveWith(device, assemble(2, 2, zero), {1, 2}),
                     "row 1 has no diagonal entry, or 0, and the preconditioner 'aggregation' divides by it; "
-                    "take 'spai0' or 'none'");
+                    "take --preconditioner none");
   const Entry negative[] = {{0, 0, 1.0}, {1, 1, -2.0}};
   CHECK_THROWS_WITH(solveWith(device, assemble(2, 2, negative), {1, 2}),
                     "row 2 has the diagonal entry -2, and the preconditioner 'aggregation' needs positive "

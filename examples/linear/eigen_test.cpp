@@ -112,9 +112,12 @@ TEST_CASE("Solutions are Eigen's, on devices of every precision") {
       const SparseMatrix& a = isSymmetric ? anisotropic : windy;
       const Solution s = solveWith(device, a, b, {.solver = solver, .settings = {.tolerance = 1e-11}});
       CHECK(s.outcome == Outcome::Converged);
-      CHECK(s.residualPlace == "device");
       checkSolution(a, b, s);
     }
+    // Far from rounding errors, only norms come to the host.
+    CHECK(
+        solveWith(device, anisotropic, b, {.solver = "cg", .settings = {.tolerance = 1e-4}}).residualPlace ==
+        "device");
   }
 }
 

@@ -26,14 +26,16 @@ bool hasFewDiagonals(const SparseMatrix& a) {
 bool isMostlyFull(const SparseMatrix& a) { return a.entries() > 0 && 2 * a.entries() >= a.rows * a.columns; }
 
 constexpr LayoutKind layouts[] = {
-    {"rows", "compressed rows, balanced whatever their lengths", makeRows, always, bytesOfRows},
-    {"slices", "SELL-C-sigma: slices of 32 rows of similar lengths", makeSlices, always, bytesOfSlices},
-    {"buckets", "rows of one length together (Bolz and others 2003)", makeBuckets, onDemand, bytesOfBuckets},
+    {"rows", "compressed rows, balanced whatever their lengths", makeRows, always, bytesOfRows, 1.0, 1.0},
+    {"slices", "SELL-C-sigma: slices of 32 rows of similar lengths", makeSlices, always, bytesOfSlices, 1.0,
+     1.0},
+    {"buckets", "rows of one length together (Bolz and others 2003)", makeBuckets, onDemand, bytesOfBuckets,
+     1.0, 1.0},
     {"diagonals", "one stream for each diagonal (Krueger and Westermann 2003)", makeDiagonals,
-     hasFewDiagonals, bytesOfDiagonals},
+     hasFewDiagonals, bytesOfDiagonals, 0.25, 0.5},
     {"points", "an addition for each entry (Krueger and Westermann 2003)", makePoints, onDemand,
-     bytesOfPoints},
-    {"dense", "all elements", makeDense, isMostlyFull, bytesOfDense},
+     bytesOfPoints, 1.0, 1.0},
+    {"dense", "all elements", makeDense, isMostlyFull, bytesOfDense, 0.5, 0.5},
 };
 
 }  // namespace
@@ -83,22 +85,29 @@ double secondsOf(sk::Device& device, Matrix& matrix, const Arithmetic& arithmeti
   return best;
 }
 
-std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const SparseMatrix& a, std::string_view layout,
-                                   const Arithmetic& arithmetic, std::vector<LayoutTrial>* trials) {
-  if (layout != "auto") return rowNamed(layoutKinds(), layout, "layout").make(device, a, arithmetic);
-  const LayoutKind* best = &layouts[0];
-  double least = 0.0;
+std::vector<LayoutCost> layoutCosts(const sk::Device& device, const SparseMatrix& a,
+                                    const Arithmetic& arithmetic) {
+  const bool isNative = device.profile() == "native";
+  // An element of x for each entry: those that only fill read one, too, and bytes() counts them with the matrix.
+  const std::int64_t entryBytes = bytesOf(arithmetic.matrix);
+  const double elements = static_cast<double>(bytesOf(arithmetic.vectors) * a.entries());
+  std::vector<LayoutCost> costs;
   for (const LayoutKind& kind : layouts) {
     if (!kind.suits(a)) continue;
-    const std::unique_ptr<Matrix> matrix = kind.make(device, a, arithmetic);
-    const double seconds = secondsOf(device, *matrix, arithmetic);
-    if (trials != nullptr) trials->push_back({kind.name, seconds});
-    if (least == 0.0 || seconds < least) {
-      least = seconds;
-      best = &kind;
-    }
+    const double bytes = static_cast<double>(kind.bytes(a, entryBytes)) + elements;
+    costs.push_back({kind.name, (isNative ? kind.native : kind.others) * bytes});
   }
-  return best->make(device, a, arithmetic);
+  std::ranges::stable_sort(costs, {}, &LayoutCost::bytes);
+  return costs;
+}
+
+std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const SparseMatrix& a, std::string_view layout,
+                                   const Arithmetic& arithmetic, std::vector<LayoutCost>* costs) {
+  if (layout != "auto") return rowNamed(layoutKinds(), layout, "layout").make(device, a, arithmetic);
+  const std::vector<LayoutCost> all = layoutCosts(device, a, arithmetic);
+  if (costs != nullptr) *costs = all;
+  const std::string_view best = all.empty() ? layouts[0].name : all.front().layout;
+  return rowNamed(layoutKinds(), best, "layout").make(device, a, arithmetic);
 }
 
 }  // namespace linear

@@ -21,27 +21,34 @@ struct LayoutKind {
   std::string_view does;
   /// Copies a matrix to the device. Throws std::runtime_error if the layout cannot hold it.
   std::unique_ptr<Matrix> (*make)(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
-  /// Whether a trial of this layout is worth its memory for the matrix.
+  /// Whether the automatic choice considers the layout for the matrix.
   bool (*suits)(const SparseMatrix& a);
   /// Bytes that the layout takes of a device, with entries of `entryBytes`: without copying anything. Not negative, also if the layout cannot hold the matrix.
   std::int64_t (*bytes)(const SparseMatrix& a, std::int64_t entryBytes);
+  /// What a byte costs, natively and on other devices: measured beside those of "rows".
+  double native, others;
 };
 
 std::span<const LayoutKind> layoutKinds();
 
-/// How long one product took with a layout, in a trial.
-struct LayoutTrial {
+/// What a product is expected to cost with a layout: bytes of the matrix and of the elements of x that it reads, as if by "rows".
+struct LayoutCost {
   std::string_view layout;
-  double seconds = 0.0;
+  double bytes = 0.0;
 };
 
 /// The time of one product, the best of three.
 double secondsOf(sk::Device& device, Matrix& matrix, const Arithmetic& arithmetic);
 
-/// Copies a matrix to the device in the named layout. "auto" tries those that suit the matrix, and takes the one whose product is
-/// the fastest; `trials` receives their times. Throws std::runtime_error for an unknown name, with the known ones.
+/// The layouts that suit a matrix, with their costs, the cheapest first. A model, not a trial: the choice depends on the matrix, its storage and the kind of device, and on nothing that else runs
+/// on the machine.
+std::vector<LayoutCost> layoutCosts(const sk::Device& device, const SparseMatrix& a,
+                                    const Arithmetic& arithmetic);
+
+/// Copies a matrix to the device in the named layout. "auto" takes the one with the least cost; `costs` receives all of them. Throws std::runtime_error for an unknown name,
+/// with the known ones.
 std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const SparseMatrix& a, std::string_view layout,
-                                   const Arithmetic& arithmetic, std::vector<LayoutTrial>* trials = nullptr);
+                                   const Arithmetic& arithmetic, std::vector<LayoutCost>* costs = nullptr);
 
 std::unique_ptr<Matrix> makeRows(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);
 std::unique_ptr<Matrix> makeSlices(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <span>
 #include <stdexcept>
 
@@ -152,6 +153,7 @@ class PointMatrix : public Matrix {
  public:
   PointMatrix(sk::Device& device, const SparseMatrix& a, const Arithmetic& arithmetic)
       : Matrix(arithmetic),
+        device_(device),
         rows_(a.rows),
         columns_(a.columns),
         value_(device.stream<float>({a.entries()}, arithmetic.matrix)),
@@ -159,8 +161,12 @@ class PointMatrix : public Matrix {
         column_(device.stream<int>({a.entries()})) {
     std::vector<int> row;
     row.reserve(a.column.size());
-    for (std::int64_t i = 0; i < a.rows; ++i)
+    for (std::int64_t i = 0; i < a.rows; ++i) {
       row.insert(row.end(), static_cast<std::size_t>(a.length(i)), static_cast<int>(i));
+      starts_.push_back(static_cast<int>(a.starts[static_cast<std::size_t>(i)]));
+    }
+    starts_.push_back(static_cast<int>(a.entries()));
+    if (!scatters(device)) groupRows();
     update(a);
     row_.write(row);
     column_.write(a.column);
@@ -171,18 +177,32 @@ class PointMatrix : public Matrix {
   sk::Shape range() const override { return {rows_}; }
   using Matrix::multiply;
   void multiply(const Vector& x, Vector& y) override {
+    if (!scatters(device_) && value_.size() != 0) {
+      if (!rowsOf_) groupRows();
+      rowProduct.with(foldOptions())((*rowsOf_)(value_), (*rowsOf_)(column_), x, y);
+      return;
+    }
     y.fill(0.0f);
     if (value_.size() != 0) pointProduct.with(options())(value_, row_, column_, x, y);
   }
-  bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "points"; }
   std::int64_t stored() const override { return value_.size(); }
   std::int64_t bytes() const override { return (entryBytes() + 8) * value_.size(); }
 
  private:
+  /// For sums that scatter outputs cannot hold: entries are in the order of their rows, and are added row by row.
+  void groupRows() {
+    auto starts = device_.stream<int>({rows_ + 1});
+    starts.write(starts_);
+    rowsOf_.emplace(starts);
+  }
+
+  sk::Device& device_;
   std::int64_t rows_, columns_;
   Vector value_;
   sk::Stream<int> row_, column_;
+  std::vector<int> starts_;
+  std::optional<sk::Rows> rowsOf_;
 };
 
 using RowsByLength = std::map<std::int64_t, std::vector<int>>;
@@ -240,6 +260,13 @@ struct Bucket {
     else
       bucketProduct.with(options)(length, value, wide, row, x, y);
   }
+  /// The same, one row's sum after the other.
+  void multiplyInOrder(const sk::CallOptions& options, const Vector& x, sk::View<float> sums) {
+    if (narrow)
+      bucketSums.with(options)(length, value, narrow, row, x, sums);
+    else
+      bucketSums.with(options)(length, value, wide, row, x, sums);
+  }
 
   std::vector<int> rows;
   int length;
@@ -254,12 +281,14 @@ class BucketMatrix : public Matrix {
   BucketMatrix(sk::Device& device, const SparseMatrix& a, const RowsByLength& rowsByLength,
                const Arithmetic& arithmetic)
       : Matrix(arithmetic),
+        device_(device),
         rows_(a.rows),
         columns_(a.columns),
         bytes_(bytesOfBuckets(a, bytesOf(arithmetic.matrix))) {
     for (const auto& [length, rows] : rowsByLength)
       if (length > 0) buckets_.emplace_back(device, a, rows, arithmetic);
     hasEmptyRows_ = rowsByLength.contains(0);
+    if (!scatters(device)) order();
   }
 
   void update(const SparseMatrix& a) final {
@@ -269,10 +298,10 @@ class BucketMatrix : public Matrix {
   sk::Shape range() const override { return {rows_}; }
   using Matrix::multiply;
   void multiply(const Vector& x, Vector& y) override {
+    if (!scatters(device_) && !buckets_.empty()) return multiplyInOrder(x, y);
     if (hasEmptyRows_ || buckets_.empty()) y.fill(0.0f);
     for (Bucket& b : buckets_) b.multiply(options(), x, y);
   }
-  bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "buckets"; }
   std::int64_t stored() const override {
     std::int64_t sum = 0;
@@ -287,9 +316,33 @@ class BucketMatrix : public Matrix {
   }
 
  private:
+  /// For sums that scatter outputs cannot hold: they go to a stream in the order of the buckets, from which rows take them.
+  void order() {
+    std::vector<int> place(static_cast<std::size_t>(rows_), -1);
+    int next = 0;
+    for (const Bucket& b : buckets_)
+      for (const int row : b.rows) place[static_cast<std::size_t>(row)] = next++;
+    place_ = device_.stream<int>({rows_});
+    place_.write(place);
+    sums_ = device_.stream<float>({next}, sk::Storage::Double);
+  }
+  void multiplyInOrder(const Vector& x, Vector& y) {
+    if (!sums_) order();
+    std::int64_t first = 0;
+    for (Bucket& b : buckets_) {
+      const auto last = first + static_cast<std::int64_t>(b.rows.size());
+      b.multiplyInOrder(options(), x, sums_.domain({first}, {last}));
+      first = last;
+    }
+    takeSums.with(options())(place_, sums_, y);
+  }
+
+  sk::Device& device_;
   std::int64_t rows_, columns_, bytes_;
   std::vector<Bucket> buckets_;
   bool hasEmptyRows_ = false;
+  sk::Stream<int> place_;  ///< of a row's sum, or -1
+  sk::Stream<float> sums_;
 };
 
 }  // namespace

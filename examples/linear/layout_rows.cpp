@@ -35,7 +35,6 @@ class RowsMatrix : public Matrix {
   void multiply(const Vector& x, Vector& y) override {
     rowProduct.with(foldOptions())(rowsOf_(value_), rowsOf_(column_), x, y);
   }
-  bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "rows"; }
   std::int64_t stored() const override { return value_.size(); }
   std::int64_t bytes() const override { return bytes_; }
@@ -81,7 +80,6 @@ class DenseMatrix : public Matrix {
     if (shape.size() == 0) return y.fill(0.0f);
     denseProduct.with(foldOptions())(value_, x.reshape({1, shape[1]}), y.reshape({shape[0], 1}));
   }
-  bool multipliesInDoubles() const override { return false; }
   std::string layout() const override { return "dense"; }
   std::int64_t stored() const override { return value_.size(); }
   std::int64_t bytes() const override { return entryBytes() * value_.size(); }

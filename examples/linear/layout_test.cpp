@@ -187,11 +187,79 @@ TEST_CASE("Offsets of 16 bits are taken where they fit, and products have the bi
   CHECK(bytesOf(near, "buckets", 4) < bytesOf(mixed, "buckets", 4));
 }
 
+TEST_CASE("Every layout multiplies in the precision that is asked for, on every device") {
+  // Values that floats do not hold, in rows of very different lengths.
+  SparseMatrix square = irregular(67, 67), wide = irregular(41, 83);
+  for (SparseMatrix* a : {&square, &wide})
+    for (double& v : a->value) v /= 3.0;
+  const auto check = [&](sk::Device& device, const Arithmetic& arithmetic, double roundoff) {
+    CAPTURE(device.profile());
+    for (const LayoutKind& kind : layoutKinds()) {
+      for (const SparseMatrix* a : {&square, &wide}) {
+        if (kind.name == "diagonals" && a->rows != a->columns) continue;
+        CAPTURE(kind.name, a->rows);
+        std::vector<double> x = randomVector(a->columns);
+        for (double& v : x) v /= 7.0;
+        const auto isProduct = [&](const std::vector<double>& y) {
+          const std::vector<double> expected = multiply(*a, x);
+          REQUIRE(y.size() == expected.size());
+          for (std::size_t i = 0; i < y.size(); ++i) {
+            double magnitudes = 0.0;
+            for (auto k = static_cast<std::size_t>(a->starts[i]);
+                 k < static_cast<std::size_t>(a->starts[i + 1]); ++k)
+              magnitudes += std::abs(a->value[k] * x[static_cast<std::size_t>(a->column[k])]);
+            CHECK(std::abs(y[i] - expected[i]) <=
+                  70.0 * roundoff * magnitudes);  // 67 entries in the longest row
+          }
+        };
+        const std::unique_ptr<Matrix> matrix = kind.make(device, *a, arithmetic);
+        Vector in = device.stream<float>(matrix->domain(), arithmetic.vectors),
+               out = device.stream<float>(matrix->range(), arithmetic.vectors),
+               xy = device.stream<float>({1}, arithmetic.sums());
+        in.writeReals(x);
+        matrix->multiply(in, out);
+        isProduct(out.readReals());
+        // A matrix for floats that stores doubles multiplies in doubles where it is asked to.
+        const std::unique_ptr<Matrix> other = kind.make(device, *a, {.matrix = arithmetic.matrix});
+        other->multiplyIn(arithmetic, in, out);
+        isProduct(out.readReals());
+        if (a->rows != a->columns) continue;
+        matrix->multiply(in, out, xy);
+        const std::vector<double> y = multiply(*a, x);
+        double expected = 0.0, magnitudes = 0.0;
+        for (std::size_t i = 0; i < y.size(); ++i) {
+          expected += x[i] * y[i];
+          magnitudes += std::abs(x[i] * y[i]);
+        }
+        CHECK(std::abs(xy.readReals()[0] - expected) <= 140.0 * roundoff * std::max(1.0, magnitudes));
+      }
+    }
+  };
+  const Arithmetic inDoubles{
+      .precision = sk::Precision::Double, .matrix = sk::Storage::Double, .vectors = sk::Storage::Double};
+  const Arithmetic inPairs{.precision = sk::Precision::Extended,
+                           .matrix = sk::Storage::Extended,
+                           .vectors = sk::Storage::Extended};
+  for (sk::Device& device : testDevices()) {
+    if (device.profile() != "essl300") check(device, inDoubles, 0x1p-53);
+    check(device, inPairs, 0x1p-44);
+  }
+}
+
 TEST_CASE("The automatic choice takes a layout that suits the matrix, and unknown names are told") {
   sk::Device device = sk::Device::native();
-  std::vector<LayoutTrial> trials;
-  makeMatrix(device, assemble(poisson({32, 32})), "auto", {}, &trials);
-  REQUIRE(trials.size() == 3);  // rows, slices, diagonals
+  const SparseMatrix grid = assemble(poisson({32, 32}));
+  std::vector<LayoutCost> costs;
+  const std::string layout = makeMatrix(device, grid, "auto", {}, &costs)->layout();
+  REQUIRE(costs.size() == 3);  // rows, slices, diagonals
+  CHECK(layout == costs.front().layout);
+  CHECK(costs[0].bytes <= costs[1].bytes);
+  // No clock has a say: the costs are the same numbers again.
+  const std::vector<LayoutCost> again = layoutCosts(device, grid, {});
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    CHECK(again[i].layout == costs[i].layout);
+    CHECK(again[i].bytes == costs[i].bytes);
+  }
   CHECK_THROWS_WITH(makeMatrix(device, irregular(5, 5), "csr", {}),
                     "no layout is called 'csr'; there are rows, slices, buckets, diagonals, points, dense");
 }

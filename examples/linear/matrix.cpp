@@ -58,6 +58,13 @@ void Matrix::multiplyIn(const Arithmetic& arithmetic, const Vector& x, Vector& y
   foldOptions_ = foldOptions;
 }
 
+bool Matrix::scatters(sk::Device& device) const {
+  if (device.profile() == "native") return true;
+  const bool isSingle =
+      options_.precision == sk::Precision::Single || options_.precision == sk::Precision::Default;
+  return isSingle && (vectors_ == sk::Storage::Single || vectors_ == sk::Storage::Default);
+}
+
 void Matrix::update(const SparseMatrix&) {
   throw std::runtime_error("a matrix in the layout '" + layout() + "' cannot take other values");
 }

@@ -58,9 +58,6 @@ class Matrix {
   /// y = A x, computed in another arithmetic than the matrix was made for: its entries stay as they are stored.
   void multiplyIn(const Arithmetic& arithmetic, const Vector& x, Vector& y);
 
-  /// Whether products in doubles are possible: results of reduces are rounded to floats, and scatter outputs hold floats.
-  virtual bool multipliesInDoubles() const { return true; }
-
   /// Whether an iteration of conjugate gradients costs less in two passes, of which each computes A p.
   virtual bool isFused() const { return false; }
   /// p <- r + (rr / before) p, or r if before is 0, and pq, of one element, becomes p . A p.
@@ -84,14 +81,18 @@ class Matrix {
 
  protected:
   explicit Matrix(const Arithmetic& arithmetic)
-      : options_(arithmetic.options()),
+      : vectors_(arithmetic.vectors),
+        options_(arithmetic.options()),
         foldOptions_(arithmetic.foldOptions()),
         entryBytes_(bytesOf(arithmetic.matrix)) {}
   std::int64_t entryBytes() const { return entryBytes_; }
   const sk::CallOptions& options() const { return options_; }
   const sk::CallOptions& foldOptions() const { return foldOptions_; }
+  /// Whether scatter outputs hold y = A x as it is computed and stored. Except natively, they hold floats.
+  bool scatters(sk::Device& device) const;
 
  private:
+  sk::Storage vectors_;
   sk::CallOptions options_, foldOptions_;
   std::int64_t entryBytes_;
 };

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "support/host_memory.hpp"
 #include "support/text_cursor.hpp"
 #include "support/text_file.hpp"
 
@@ -71,6 +72,14 @@ double finite(const TextCursor& cursor, std::string_view word) {
   return value;
 }
 
+/// A number of the file's field.
+double valueOf(const TextCursor& cursor, std::string_view word, const Header& header) {
+  const double value = finite(cursor, word);
+  if (header.isInteger && value != std::floor(value))
+    cursor.fail(fmt::format("'{}' is no integer, which the first line promises", word));
+  return value;
+}
+
 /// Reads one matrix; `parseMarket` says in which order.
 class Reader {
  public:
@@ -94,6 +103,13 @@ class Reader {
       cursor_.fail(fmt::format("nearly all of {} rows are empty; is the size right?", rows_));
     if (header_.symmetry != Symmetry::General && rows_ != columns_)
       cursor_.fail(fmt::format("a symmetric matrix is square; this one has {} x {}", rows_, columns_));
+    // What assemble() takes for rows at once, and operatorOf() for rows and columns; entries are bounded by the size of the file.
+    try {
+      examples::requireMemory(fmt::format("a matrix of {} x {}", rows_, columns_),
+                              40.0 * static_cast<double>(rows_) + 8.0 * static_cast<double>(columns_));
+    } catch (const std::runtime_error& error) {
+      cursor_.fail(error.what());
+    }
   }
 
   /// The file's own size bounds the memory that a wrong count may ask for.
@@ -108,7 +124,7 @@ class Reader {
       if (!header_.isPattern) {
         const std::string_view number = cursor_.word();
         if (number.empty()) cursor_.fail("the value is missing");
-        value = finite(cursor_, number);
+        value = valueOf(cursor_, number, header_);
       }
       add(row, column, value);
       cursor_.endLine(header_.isPattern ? "an entry is ROW COLUMN" : "an entry is ROW COLUMN VALUE");
@@ -124,7 +140,7 @@ class Reader {
         const std::string_view word = cursor_.wordOnAnyLine();
         if (word.empty())
           cursor_.fail(fmt::format("the file ends before row {} of column {}", row + 1, column + 1));
-        const double value = finite(cursor_, word);
+        const double value = valueOf(cursor_, word, header_);
         if (value != 0.0) add(row, column, value);
         cursor_.endLine("an array has one number a line");
       }

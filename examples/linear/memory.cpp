@@ -42,11 +42,14 @@ MemoryNeed memoryNeed(const System& system, const MemoryChoices& choices, bool h
       4.0 * unknowns;
   const int basis = choices.method.hasBasis ? choices.restart : 0;
   constexpr int residualVectors = 5;
+  const std::int64_t copyInDoubles = keepsEntries(system.matrix(), choices.arithmetic.matrix)
+                                         ? 0
+                                         : system.matrixBytes(choices.layout, 8) / choices.devices;
   return {.matrix = system.matrixBytes(choices.layout, bytesOf(choices.arithmetic.matrix)) / choices.devices,
           .method = rounded((choices.method.vectors + basis) * vector),
           .preconditioner =
               rounded(choices.preconditioner.vectors * vector + choices.preconditioner.matrices * copy),
-          .residual = hasDoubles ? rounded(residualVectors * 8.0 * unknowns) : 0};
+          .residual = hasDoubles ? rounded(residualVectors * 8.0 * unknowns) + copyInDoubles : 0};
 }
 
 void checkMemory(sk::Device& device, const System& system, const MemoryChoices& choices) {

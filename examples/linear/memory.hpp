@@ -29,7 +29,8 @@ struct MemoryNeed {
   std::int64_t matrix = 0;  ///< for "auto", of the smallest layout that suits it
   std::int64_t method = 0;
   std::int64_t preconditioner = 0;  ///< an estimate where that depends on more than sizes
-  std::int64_t residual = 0;  ///< in double precision; 0 if the host computes it
+  std::int64_t residual =
+      0;  ///< in double precision, and a copy of the matrix if its entries are rounded; 0 if the host computes it
 
   std::int64_t total() const { return matrix + method + preconditioner + residual; }
 };

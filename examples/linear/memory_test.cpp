@@ -55,6 +55,10 @@ TEST_CASE("A solve needs the bytes of its matrix and its vectors") {
   CHECK(stored.method == 37 * 2 * 1024);  // 30 steps before it begins anew
   CHECK(stored.preconditioner == 0);
   CHECK(stored.residual == 0);
+  // Entries that floats round are stored once more, in doubles.
+  const System thirds("poisson:32x32:0.3,0.7", {});
+  CHECK(memoryNeed(thirds, choicesOf("cg", "jacobi", "slices", single), true).residual ==
+        5 * 8 * 1024 + thirds.matrixBytes("slices", 8));
 }
 
 TEST_CASE("A device with too little memory is told what is needed, what there is, and what needs less") {

@@ -73,6 +73,11 @@ std::int64_t Method::repeatAtOnce(std::int64_t most) {
   return ran;
 }
 
+void Method::keep() {
+  if (!kept_) kept_ = vector();
+  x_.copyTo(kept_);
+}
+
 State Method::state() const { return static_cast<State>(state_.read()[0]); }
 
 double Method::residualSquared() const { return rr_.readReals()[0]; }
@@ -96,7 +101,7 @@ constexpr MethodKind methods[] = {
     {"stationary", "x + M (b - A x): the preconditioner by itself", false, 5, makeStationary},
     {"sor", "successive over-relaxation by colours; Gauss-Seidel's iteration for --omega 1", false, 5,
      makeRelaxation},
-    {"bicgstab", "stabilised biconjugate gradients, for any matrix", false, 9, makeBiconjugateGradients},
+    {"bicgstab", "stabilised biconjugate gradients, for any matrix", false, 10, makeBiconjugateGradients},
     {"gmres", "generalised minimal residuals, for any matrix; begins anew after --restart steps", false, 7,
      makeGeneralizedMinimalResiduals, true},
 };

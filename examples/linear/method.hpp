@@ -45,6 +45,9 @@ class Method {
   double residualSquared() const;
   /// What the iterations so far have come to, on the device.
   virtual const Vector& x() { return x_; }
+  /// Copies x, to which restore() goes back: for methods whose residual rises by the way, and may not come down again.
+  void keep();
+  void restore() { kept_.copyTo(x_); }
   std::vector<double> solution() { return x().readReals(); }
 
   sk::Device& device() const { return device_; }
@@ -71,7 +74,7 @@ class Method {
   Preconditioner* preconditioner_;
   Arithmetic arithmetic_;
   sk::CallOptions options_, foldOptions_;
-  Vector x_, r_;
+  Vector x_, r_, kept_;
   Vector rr_, limit_;
   sk::Stream<int> state_;
   sk::Stream<bool> done_;

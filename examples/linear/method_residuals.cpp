@@ -37,7 +37,7 @@ class MinimalResiduals : public Method {
   void start() override {
     for (Vector* v : {&vBefore_, &w_, &wBefore_}) v->fill(0.0f);
     precondition(r_, z_, vz_);
-    minresStart.with(options_)(vz_, numbers_, rr_);
+    minresStart.with(options_)(vz_, numbers_, rr_, state_);
   }
 
   /// r_ is v of this step.

@@ -173,7 +173,7 @@ std::unique_ptr<Method> makeRelaxation(const MethodParts& parts) {
   if (!(parts.settings.omega > 0.0 && parts.settings.omega < 2.0))
     throw std::runtime_error(
         fmt::format("the relaxation factor {} is not between 0 and 2", parts.settings.omega));
-  checkDiagonal(*parts.settings.a, "the solver 'sor'");
+  checkDiagonal(*parts.settings.a, "the solver 'sor'", "--solver gmres --preconditioner none");
   return std::make_unique<Relaxation>(parts);
 }
 

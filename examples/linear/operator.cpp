@@ -32,15 +32,19 @@ Operator operatorOf(const SparseMatrix& a) {
   o.diagonal = diagonal(a);
   if (!std::isfinite(o.infinityNorm))
     throw std::runtime_error("the matrix has entries that are not finite, or whose sums are not");
+  std::vector<double> columns(static_cast<std::size_t>(a.columns), 0.0);
   for (std::size_t i = 0; i < static_cast<std::size_t>(a.rows); ++i) {
     double squares = 0.0, sum = 0.0;
+    o.longestRow = std::max(o.longestRow, a.length(static_cast<std::int64_t>(i)));
     for (auto k = static_cast<std::size_t>(a.starts[i]); k < static_cast<std::size_t>(a.starts[i + 1]); ++k) {
       squares += a.value[k] * a.value[k];
       sum += std::abs(a.value[k]);
+      columns[static_cast<std::size_t>(a.column[k])] += std::abs(a.value[k]);
     }
     o.rowSquares.push_back(squares);
     if (o.diagonal[i] != 0.0) o.jacobiBound = std::max(o.jacobiBound, sum / std::abs(o.diagonal[i]));
   }
+  for (const double sum : columns) o.oneNorm = std::max(o.oneNorm, sum);
   o.sparse = &a;
   o.multiply = [&a](std::span<const double> x) { return linear::multiply(a, x); };
   o.hasConstantKernel = annihilatesOnes(o);
@@ -55,6 +59,7 @@ Operator operatorOf(const Stencil& a) {
   o.diagonal.assign(n, a.centre);
   o.hasConstantKernel = hasConstantKernel(a);
   o.stencil = a;
+  o.longestRow = 2 * a.grid.rank() + 1;
   o.multiply = [a](std::span<const double> x) { return linear::multiply(a, x); };
   if (isDirichlet(a)) {  // no visit of every element, for the inner ones bound the others
     double sum = std::abs(a.centre), squares = a.centre * a.centre;
@@ -63,7 +68,7 @@ Operator operatorOf(const Stencil& a) {
       sum += 2 * std::abs(c);
       squares += 2 * c * c;
     }
-    o.infinityNorm = sum;
+    o.infinityNorm = o.oneNorm = sum;
     o.rowSquares.assign(n, squares);
     o.jacobiBound = a.centre != 0.0 ? sum / std::abs(a.centre) : 0.0;
     o.scale = powerOfTwo(o.infinityNorm);
@@ -87,6 +92,7 @@ Operator operatorOf(const Stencil& a) {
     o.infinityNorm = std::max(o.infinityNorm, sums[i]);
     if (o.diagonal[i] != 0.0) o.jacobiBound = std::max(o.jacobiBound, sums[i] / std::abs(o.diagonal[i]));
   }
+  o.oneNorm = o.infinityNorm;  // it is symmetric
   o.scale = powerOfTwo(o.infinityNorm);
   return o;
 }

@@ -20,6 +20,8 @@ namespace linear {
 struct Operator {
   std::int64_t size = 0;
   double infinityNorm = 0.0;
+  double oneNorm = 0.0;  ///< the largest sum of magnitudes of a column
+  std::int64_t longestRow = 0;  ///< entries of the row that has the most
   std::vector<double> diagonal;
   std::vector<double> rowSquares;  ///< the sum of squares of each row
   /// The largest of (sum of magnitudes of a row) / |diagonal|: bounds the eigenvalues of the matrix after Jacobi's scaling.

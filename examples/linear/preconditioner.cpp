@@ -85,6 +85,8 @@ std::unique_ptr<Preconditioner> makeJacobi(const PreconditionerParts& parts) {
 }
 
 std::unique_ptr<Preconditioner> makeSpai0(const PreconditionerParts& parts) {
+  // The best entry for such a row is 0, and nothing would be left of its residual.
+  checkDiagonal(parts.a, "the preconditioner 'spai0'");
   return std::make_unique<Diagonal>(parts, leastSquaresDiagonal);
 }
 

@@ -228,14 +228,14 @@ std::unique_ptr<Preconditioner> makeIncomplete(const PreconditionerParts& parts,
   std::int64_t failed = factorise(factors, isCholesky);
   if (failed >= 0 && !isCholesky)
     throw std::runtime_error(
-        fmt::format("the preconditioner 'ilu0' has a pivot of 0 in row {}; take 'spai0' or 'none'",
+        fmt::format("the preconditioner 'ilu0' has a pivot of 0 in row {}; take --preconditioner none",
                     ordering.order[static_cast<std::size_t>(failed)] + 1));
   // T. Manteuffel, "An incomplete factorization technique for positive definite linear systems" (1980): a larger diagonal has pivots above 0.
   for (double shift = 1e-3; failed >= 0; shift *= 4.0) {
     if (shift > 1.0)
       throw std::runtime_error(fmt::format(
           "the preconditioner 'ic0' has no positive pivot in row {}, even with a diagonal of twice the size: "
-          "the matrix is not positive definite; take --solver minres --preconditioner jacobi",
+          "the matrix is not positive definite; take --solver minres --preconditioner none",
           ordering.order[static_cast<std::size_t>(failed)] + 1));
     factors = p;
     for (std::size_t i = 0; i < static_cast<std::size_t>(p.rows); ++i)
@@ -270,13 +270,11 @@ std::unique_ptr<Relaxer> makeRelaxer(sk::Device& device, Matrix& matrix, const O
   return std::make_unique<RowsRelaxer>(device, permuted(scaledA, ordering), ordering, arithmetic);
 }
 
-void checkDiagonal(const Operator& a, std::string_view what) {
+void checkDiagonal(const Operator& a, std::string_view what, std::string_view instead) {
   const auto zero = std::ranges::find(a.diagonal, 0.0);
   if (zero != a.diagonal.end())
-    throw std::runtime_error(
-        fmt::format("row {} has no diagonal entry, or 0, and {} divides by it; take "
-                    "'spai0' or 'none'",
-                    zero - a.diagonal.begin() + 1, what));
+    throw std::runtime_error(fmt::format("row {} has no diagonal entry, or 0, and {} divides by it; take {}",
+                                         zero - a.diagonal.begin() + 1, what, instead));
 }
 
 std::unique_ptr<Preconditioner> makeSor(const PreconditionerParts& parts) {

@@ -32,7 +32,8 @@ std::unique_ptr<Relaxer> makeRelaxer(sk::Device& device, Matrix& matrix, const O
                                      const Arithmetic& arithmetic);
 
 /// Throws std::runtime_error, naming the row, if a diagonal entry is 0. `what` divides by it.
-void checkDiagonal(const Operator& a, std::string_view what);
+void checkDiagonal(const Operator& a, std::string_view what,
+                   std::string_view instead = "--preconditioner none");
 
 /// Preconditioners of relaxation.cpp: for PreconditionerKind::make.
 std::unique_ptr<Preconditioner> makeSor(const PreconditionerParts& parts);

@@ -16,9 +16,9 @@ std::string textOf(const Account& account, const Solution& solution) {
   fmt::format_to(out, "layout {}", account.layout);
   if (!account.offsetBits.empty()) fmt::format_to(out, ", offsets of {} bits", account.offsetBits);
   if (account.stored > 0) fmt::format_to(out, ", {} entries stored for {}", account.stored, account.entries);
-  for (std::size_t i = 0; i < account.trials.size(); ++i)
-    fmt::format_to(out, "{}{} {:.3g} ms", i == 0 ? "; a product takes with " : ", ", account.trials[i].layout,
-                   account.trials[i].seconds * 1000.0);
+  for (std::size_t i = 0; i < account.costs.size(); ++i)
+    fmt::format_to(out, "{}{} {:.3g} KB", i == 0 ? "; estimated cost of a product: " : ", ",
+                   account.costs[i].layout, account.costs[i].bytes / 1000.0);
   if (account.hierarchy) {
     std::string sizes;
     for (const HierarchyAccount::Level& level : account.hierarchy->levels)
@@ -30,9 +30,8 @@ std::string textOf(const Account& account, const Solution& solution) {
   if (solution.restarts > 0)
     fmt::format_to(out, ", begun anew {} times for the residual in double precision", solution.restarts);
   fmt::format_to(
-      out,
-      "\nresidual {:.3g} (in double precision; {:.3g} as the method computed it), backward error {:.3g}\n",
-      solution.residualTrue, solution.residualRecurred, solution.backwardError);
+      out, "\nresidual {:.3g} (known to {:.1g}; {:.3g} as the method computed it), backward error {:.3g}\n",
+      solution.residualTrue, solution.residualError, solution.residualRecurred, solution.backwardError);
   if (solution.removedMean != 0.0)
     fmt::format_to(out, "the right-hand side's mean {:.6g} was removed, for no x reaches a constant\n",
                    solution.removedMean);
@@ -45,6 +44,7 @@ std::string jsonOf(const Account& account, const Solution& solution) {
   json["iterations"] = solution.iterations;
   json["restarts"] = solution.restarts;
   json["residual_true"] = solution.residualTrue;
+  json["residual_error"] = solution.residualError;
   json["residual_recurred"] = solution.residualRecurred;
   json["backward_error"] = solution.backwardError;
   json["removed_mean"] = solution.removedMean;

@@ -22,7 +22,7 @@ struct Account {
   std::string layout = "none";
   std::int64_t stored = 0;  ///< entries that the layout holds; 0 if it holds none
   std::string offsetBits;  ///< Matrix::offsetBits
-  std::vector<LayoutTrial> trials;
+  std::vector<LayoutCost> costs;  ///< of the automatic choice
   std::vector<LevelRate> rates;  ///< of multigrid on its grids, where they were measured
   std::optional<HierarchyAccount> hierarchy;  ///< of the preconditioner
 
@@ -33,7 +33,7 @@ struct Account {
 };
 
 std::string textOf(const Account& account, const Solution& solution);
-/// An object with outcome, iterations, restarts, residual_true, residual_recurred, backward_error, removed_mean, seconds, layout, fill, device and rates: the mean
+/// An object with outcome, iterations, restarts, residual_true, residual_error (a bound of the error of residual_true, in its unit), residual_recurred, backward_error, removed_mean, seconds, layout, fill, device and rates: the mean
 /// reduction of the residual `per_iteration`, and for each of multigrid's grids its extents, the fastest first, and the rate of a cycle. Numbers that are not
 /// finite are null. For a preconditioner that has built levels, also hierarchy: levels (unknowns, entries and layout of each), operator_complexity and
 /// setup_seconds; for a layout with offsets, offset_bits.

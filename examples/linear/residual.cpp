@@ -47,14 +47,8 @@ std::vector<std::unique_ptr<Matrix>> exactMatrices(sk::Device& device, const Mat
     }
     return sum;
   }
-  const auto isKept = [&](double v) { return isExact(v * a.scale, arithmetic.matrix); };
-  const bool areKept =
-      a.sparse == nullptr && isDirichlet(*a.stencil)
-          ? isKept(a.stencil->centre) && std::ranges::all_of(a.stencil->along, isKept)
-          : std::ranges::all_of(a.sparse != nullptr ? a.sparse->value : assemble(*a.stencil).value, isKept);
-  if (!areKept || !matrix.multipliesInDoubles())
-    sum.push_back(makeMatrix(device, scaled(sparseOf(a), a.scale),
-                             matrix.multipliesInDoubles() ? matrix.layout() : "slices", doubleArithmetic()));
+  if (!keepsEntries(a, arithmetic.matrix))
+    sum.push_back(makeMatrix(device, scaled(sparseOf(a), a.scale), matrix.layout(), doubleArithmetic()));
   return sum;
 }
 
@@ -71,7 +65,9 @@ class DeviceResidual : public Residual {
     const Space space = matrix.space(device);
     for (Vector* v : {&b_, &x_, &xNext_, &r_, &rNext_}) *v = space.stream<float>(sk::Storage::Double);
     if (exact_.size() > 1) q_ = space.stream<float>(sk::Storage::Double);
-    for (Vector* v : {&rr_, &largestR_, &largestX_}) *v = device.stream<float>({1}, sk::Storage::Double);
+    for (Vector* v : {&rr_, &xx_, &largestR_, &largestX_})
+      *v = device.stream<float>({1}, sk::Storage::Double);
+    if (space.isDivided()) whole_ = space.undivided().stream<float>(sk::Storage::Double);
   }
 
   void update() override {
@@ -82,19 +78,28 @@ class DeviceResidual : public Residual {
   }
 
   Norms start(std::span<const double> b) override {
+    hostB_.assign(b.begin(), b.end());
     b_.writeReals(b);
     x_.fill(0.0f);
     largest_ = 0.0;
     xNext_.fill(0.0f);
     residualOf.with(foldOptions_)(b_, xNext_, r_, rr_, largestR_);
-    return norms();
+    const Norms norms = normsIfExact();
+    normB_ = norms.two;
+    return norms;
   }
 
   Norms attempt(const Vector& step, double scale) override {
-    addStep.with(foldOptions_)(static_cast<float>(scale), step, x_, xNext_, largestX_);
+    addStep.with(foldOptions_)(static_cast<float>(scale), step, x_, xNext_, largestX_, xx_);
     multiply();
     residualOf.with(foldOptions_)(b_, rNext_, rNext_, rr_, largestR_);
-    return norms();
+    Norms norms = normsIfExact();
+    norms.error += roundingOfResidual(a_, a_.scale * boundOfNorm(a_), std::sqrt(xx_.readReals()[0]), normB_);
+    isOfHost_ = !isKnown(norms);
+    if (!isOfHost_) return norms;
+    const PreciseResidual precise = preciseResidual(a_, a_.scale, elementsOf(xNext_), hostB_);
+    rNext_.writeReals(precise.r);
+    return precise.norms;
   }
 
   void accept() override {
@@ -107,7 +112,7 @@ class DeviceResidual : public Residual {
 
   double largestOfSolution() const override { return largest_; }
   std::vector<double> solution() override { return x_.readReals(); }
-  std::string_view place() const override { return "device"; }
+  std::string_view place() const override { return isOfHost_ ? "host" : "device"; }
 
  private:
   /// rNext_ = A xNext_
@@ -120,7 +125,17 @@ class DeviceResidual : public Residual {
     }
   }
 
-  Norms norms() const { return {std::sqrt(rr_.readReals()[0]), largestR_.readReals()[0]}; }
+  /// If the elements of the residual are.
+  Norms normsIfExact() const {
+    const double two = std::sqrt(rr_.readReals()[0]);
+    return {two, largestR_.readReals()[0], (static_cast<double>(a_.size) + 8.0) * 0x1p-53 * two};
+  }
+  /// On every rank.
+  std::vector<double> elementsOf(const Vector& v) {
+    if (!v.isDivided()) return v.readReals();
+    v.copyTo(whole_);
+    return whole_.readReals();
+  }
 
   sk::Device& device_;
   Matrix& matrix_;
@@ -128,15 +143,12 @@ class DeviceResidual : public Residual {
   Arithmetic arithmetic_;
   std::vector<std::unique_ptr<Matrix>> exact_;
   sk::CallOptions options_, foldOptions_;
-  Vector b_, x_, xNext_, r_, rNext_, q_, rr_, largestR_, largestX_;
-  double largest_ = 0.0;
+  Vector b_, x_, xNext_, r_, rNext_, q_, rr_, xx_, largestR_, largestX_;
+  Vector whole_;  ///< of vectors that are divided over ranks, all elements
+  std::vector<double> hostB_;
+  double largest_ = 0.0, normB_ = 0.0;
+  bool isOfHost_ = false;
 };
-
-double largestOf(std::span<const double> v) {
-  double largest = 0.0;
-  for (const double x : v) largest = std::isnan(x) ? x : std::max(largest, std::abs(x));
-  return largest;
-}
 
 class HostResidual : public Residual {
  public:
@@ -150,7 +162,9 @@ class HostResidual : public Residual {
     b_.assign(b.begin(), b.end());
     r_ = b_;
     x_.assign(b.size(), 0.0);
-    return norms(r_);
+    const Norms norms = normsOf(r_);
+    normB_ = norms.two;
+    return norms;
   }
 
   Norms attempt(const Vector& step, double scale) override {
@@ -158,7 +172,12 @@ class HostResidual : public Residual {
     for (std::size_t i = 0; i < next_.size(); ++i) next_[i] = x_[i] + scale * next_[i];
     rNext_ = a_.multiply(next_);
     for (std::size_t i = 0; i < next_.size(); ++i) rNext_[i] = b_[i] - a_.scale * rNext_[i];
-    return norms(rNext_);
+    Norms norms = normsOf(rNext_);
+    norms.error += roundingOfResidual(a_, a_.scale * boundOfNorm(a_), normsOf(next_).two, normB_);
+    if (isKnown(norms)) return norms;
+    PreciseResidual precise = preciseResidual(a_, a_.scale, next_, b_);
+    rNext_ = std::move(precise.r);
+    return precise.norms;
   }
 
   void accept() override {
@@ -172,7 +191,7 @@ class HostResidual : public Residual {
     r.writeReals(scaledR);
   }
 
-  double largestOfSolution() const override { return largestOf(x_); }
+  double largestOfSolution() const override { return normsOf(x_).infinity; }
   std::vector<double> solution() override { return x_; }
   std::string_view place() const override { return "host"; }
 
@@ -183,18 +202,22 @@ class HostResidual : public Residual {
     v.copyTo(whole_);
     return whole_.readReals();
   }
-  static Norms norms(std::span<const double> r) {
-    double sum = 0.0;
-    for (const double v : r) sum += v * v;
-    return {std::sqrt(sum), largestOf(r)};
-  }
 
   const Operator& a_;
   Vector whole_;  ///< of vectors that are divided over ranks, all elements
   std::vector<double> b_, x_, r_, next_, rNext_;
+  double normB_ = 0.0;
 };
 
 }  // namespace
+
+bool keepsEntries(const Operator& a, sk::Storage storage) {
+  const auto isKept = [&](double v) { return isExact(v * a.scale, storage); };
+  if (a.sparse != nullptr) return std::ranges::all_of(a.sparse->value, isKept);
+  if (isDirichlet(*a.stencil))
+    return isKept(a.stencil->centre) && std::ranges::all_of(a.stencil->along, isKept);
+  return std::ranges::all_of(assemble(*a.stencil).value, isKept);
+}
 
 Arithmetic doubleArithmetic() {
   return {.precision = sk::Precision::Double,
@@ -224,7 +247,7 @@ std::unique_ptr<Residual> makeResidual(sk::Device& device, Matrix& matrix, const
 std::string asymmetryOnDevice(sk::Device& device, Matrix& matrix, const Operator& a,
                               const Arithmetic& arithmetic) {
   if (!a.asymmetry.empty() || a.sparse == nullptr) return a.asymmetry;
-  const bool isDouble = hasDoubles(device) && matrix.multipliesInDoubles();
+  const bool isDouble = hasDoubles(device);
   const Arithmetic in = isDouble ? doubleArithmetic() : arithmetic;
   Vector u, v, p, q;
   for (Vector* w : {&u, &v, &p, &q}) *w = matrix.space(device).stream<float>(in.vectors);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The residual b - A x in double precision, and the x that solves have added up: on the device, where it has doubles of its own, else on all threads of the
-// host. Everything is scaled by powers of two: A as on the device, and b so that its largest element is from 1 to 2.
+// The residual b - A x in double precision, and the x that solves have added up: on the device, where it has doubles of its own, else on the
+// host. Where doubles do not give the norm to 1 %, the host computes it with twice their digits (precise.hpp). Everything is scaled by powers of two: A as on the device,
+// and b so that its largest element is from 1 to 2.
 #pragma once
 
 #include <memory>
@@ -14,13 +15,9 @@
 
 #include "matrix.hpp"
 #include "operator.hpp"
+#include "precise.hpp"
 
 namespace linear {
-
-struct Norms {
-  double two = 0.0;
-  double infinity = 0.0;
-};
 
 class Residual {
  public:
@@ -37,14 +34,17 @@ class Residual {
   virtual void writeTo(Vector& r, double scale) = 0;
   virtual double largestOfSolution() const = 0;
   virtual std::vector<double> solution() = 0;
-  /// "device" or "host".
+  /// Where the latest residual was computed: "device" or "host".
   virtual std::string_view place() const = 0;
 };
 
-/// `matrix` is a.scale * A on the device. If it stores every entry exactly and multiplies in doubles, it serves; otherwise the device gets a second copy of the
+/// `matrix` is a.scale * A on the device. If it stores every entry exactly, it serves; otherwise the device gets a second copy of the
 /// matrix. Both must outlive the residual.
 std::unique_ptr<Residual> makeResidual(sk::Device& device, Matrix& matrix, const Operator& a,
                                        const Arithmetic& arithmetic);
+
+/// Whether a.scale * A is stored exactly; otherwise residuals need a second copy of the matrix, in doubles. Stencils without entries need none.
+bool keepsEntries(const Operator& a, sk::Storage storage);
 
 /// Computing and storing everything in doubles.
 Arithmetic doubleArithmetic();

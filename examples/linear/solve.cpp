@@ -61,22 +61,36 @@ class Refinement {
     norms_ = residual_.start(scaled);
     normB_ = norms_.two;
     solution_.outcome = outcome();
-    solution_.residualTrue = normB_ > 0.0 ? norms_.two / normB_ : 0.0;
     const double scale =
         a_.scale * a_.infinityNorm * residual_.largestOfSolution() + std::ldexp(largestB, -exponent);
     solution_.backwardError = scale > 0.0 ? norms_.infinity / scale : 0.0;
     solution_.x = residual_.solution();
+    if (isProjected && !solution_.x.empty()) removeMean(scaled);
+    noteResidual();
     for (double& v : solution_.x) v = std::ldexp(v * a_.scale, exponent);
-    if (isProjected && !solution_.x.empty()) {
-      const double mean = meanOf(solution_.x);
-      for (double& v : solution_.x) v -= mean;
-    }
     solution_.residualPlace = residual_.place();
     solution_.seconds = watch.milliseconds() / 1000.0;
     return std::move(solution_);
   }
 
  private:
+  /// Of x, which rounds it once more.
+  void removeMean(std::span<const double> b) {
+    const double mean = meanOf(solution_.x);
+    for (double& v : solution_.x) v -= mean;
+    const double normX = normsOf(solution_.x).two;
+    norms_.error += roundingOfResidual(a_, a_.scale * boundOfNorm(a_), normX, 0.0);
+    if (!isKnown(norms_)) norms_ = preciseResidual(a_, a_.scale, solution_.x, b).norms;
+  }
+
+  void noteResidual() {
+    if (!(normB_ > 0.0)) return;
+    solution_.residualTrue = norms_.two / normB_;
+    // The norm of b is rounded, too.
+    solution_.residualError =
+        norms_.error / normB_ + (static_cast<double>(a_.size) + 4.0) * 0x1p-53 * solution_.residualTrue;
+  }
+
   Outcome outcome() {
     if (a_.hasConstantKernel && !a_.isGrid() && !addsUpToZero(b_) && findAsymmetry(a_).empty())
       return Outcome::SingularAndIncompatible;
@@ -117,6 +131,7 @@ class Refinement {
     double least = solution_.residualRecurred = norms_.two / normB_;
     std::int64_t leastAt = solution_.iterations;
     const std::int64_t firstAt = solution_.iterations;
+    double kept = 0.0;  // the residual of what the method keeps, if that is above 0
     while (state == Running && solution_.iterations < settings_.most) {
       const std::int64_t ran = method_.advance(settings_.every, settings_.most - solution_.iterations);
       state = method_.state();
@@ -128,12 +143,17 @@ class Refinement {
       if (solution_.residualRecurred < 0.99 * least) {
         least = solution_.residualRecurred;
         leastAt = solution_.iterations;
+        if (method_.attempts() > 1) {
+          method_.keep();
+          kept = least;
+        }
       }
       // Plateaus grow with the number of iterations that a system needs.
-      if (ran == 0 ||
-          solution_.iterations - leastAt > std::max(method_.patience(), (solution_.iterations - firstAt) / 2))
-        break;
+      const std::int64_t patience =
+          std::max({method_.patience(), settings_.patience, (solution_.iterations - firstAt) / 2});
+      if (ran == 0 || solution_.iterations - leastAt > patience) break;
     }
+    if (kept > 0.0 && !(solution_.residualRecurred <= kept)) method_.restore();
     return state;
   }
 

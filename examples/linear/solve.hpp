@@ -32,6 +32,8 @@ struct SolveSettings {
   double tolerance = 1e-8;  ///< of ||b - A x|| / ||b||, in double precision
   std::int64_t most = 10000;  ///< iterations
   std::int64_t every = 16;  ///< iterations between two looks at the residual
+  std::int64_t patience =
+      0;  ///< iterations without progress that are allowed, if the method itself allows fewer
   /// Mixed-precision refinement: begins anew with the residual in double precision, and adds up the solutions in double
   /// precision, until the tolerance is reached. Without it, the method runs once.
   bool refines = true;
@@ -50,7 +52,10 @@ struct Solution {
   Outcome outcome = Outcome::Stagnated;
   std::int64_t iterations = 0;
   std::int64_t restarts = 0;
-  double residualTrue = 0.0;  ///< ||b - A x|| / ||b||, computed in double precision; 2-norms
+  double residualTrue =
+      0.0;  ///< ||b - A x|| / ||b||, computed in double precision, or in more where that is not enough; 2-norms
+  /// A bound of the error of residualTrue: at most a hundredth of it, unless it is close to the range's end.
+  double residualError = 0.0;
   double residualRecurred = 0.0;  ///< the same, as the method computed it last
   double backwardError = 0.0;  ///< ||b - A x|| / (||A|| ||x|| + ||b||); infinity norms
   std::string_view residualPlace = "host";  ///< where the true residual was computed: "device" or "host"

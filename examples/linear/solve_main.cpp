@@ -111,12 +111,11 @@ void addOptions(CLI::App& cli, Settings& s) {
          "a call\n  levels      the order of the matrix, which needs fewer iterations")
       ->check(CLI::IsMember({"colours", "levels"}))
       ->capture_default_str();
-  cli.add_option(
-         "--layout", s.layout,
-         described(
-             "how the device holds the matrix:\n  auto        the fastest of those that suit it, by a trial\n"
-             "  stencil     not at all: coefficients of a grid",
-             linear::layoutKinds()))
+  cli.add_option("--layout", s.layout,
+                 described("how the device holds the matrix:\n  auto        the one whose product should "
+                           "cost least: a model, not a trial\n"
+                           "  stencil     not at all: coefficients of a grid",
+                           linear::layoutKinds()))
       ->capture_default_str();
   cli.add_option("--precision", s.precision, "what iterations compute in: half, single, extended or double")
       ->capture_default_str();
@@ -190,6 +189,34 @@ void checkDivisible(const examples::Ranks& ranks, const linear::Operator& a,
         "mpirun");
 }
 
+/// What to try where a solve has not converged; "" if there is nothing to say.
+std::string adviceFor(const linear::MethodKind& method, const linear::PreconditionerKind& preconditioner,
+                      const linear::Arithmetic& arithmetic, const linear::Solution& solution) {
+  const bool isWide =
+      arithmetic.precision == sk::Precision::Double && arithmetic.vectors == sk::Storage::Double;
+  switch (solution.outcome) {
+    case linear::Outcome::NotPositiveDefinite:
+      if (method.name == "minres")
+        return fmt::format(
+            "minres takes any symmetric matrix, but the preconditioner '{}' must be positive definite, which "
+            "it "
+            "is not if diagonal entries are below 0; take --preconditioner none",
+            preconditioner.name);
+      return fmt::format("'{}' needs a positive definite matrix; take --solver minres --preconditioner none",
+                         method.name);
+    case linear::Outcome::Breakdown: return "take --solver gmres, which has no such breakdown";
+    case linear::Outcome::Stagnated:
+      return isWide ? "another preconditioner may help"
+                    : "take --precision double --storage double, or another preconditioner";
+    case linear::Outcome::NotFinite: return isWide ? "" : "take --precision double --storage double";
+    case linear::Outcome::Converged:
+    case linear::Outcome::SingularAndCompatible:
+    case linear::Outcome::SingularAndIncompatible:
+    case linear::Outcome::MostIterations: break;
+  }
+  return "";
+}
+
 void writeFiles(const Settings& s, const linear::Account& account, const linear::Solution& solution) {
   if (!s.solution.empty()) linear::writeMarketVector(s.solution, solution.x);
   if (!s.svg.empty())
@@ -239,7 +266,7 @@ void solveSystem(examples::Application& app, Settings& s) {
         device, system,
         {methodKind, preconditionerKind, s.layout, arithmetic, s.restart, app.ranks().count()});
     const std::unique_ptr<linear::Matrix> matrix =
-        system.makeMatrix(space, s.layout, arithmetic, &account.trials);
+        system.makeMatrix(space, s.layout, arithmetic, &account.costs);
     checkSymmetry(device, *matrix, arithmetic, methodKind, preconditionerKind, a);
     const std::unique_ptr<linear::Preconditioner> preconditioner = preconditionerKind.make(
         device, *matrix, a, arithmetic,
@@ -265,6 +292,9 @@ void solveSystem(examples::Application& app, Settings& s) {
       examples::placeOf(app.ranks(), device.name()), solution.seconds * 1000.0);
   fmt::print("{}{}", linear::textOf(account, solution),
              linear::textChart(solution.history, s.solve.tolerance));
+  if (const std::string advice = adviceFor(methodKind, preconditionerKind, arithmetic, solution);
+      !advice.empty())
+    fmt::print("{}\n", advice);
   if (space.isFirst()) writeFiles(s, account, solution);
   examples::Verification verification("||b - A x|| / ||b|| in double precision", s.solve.tolerance,
                                       "--tolerance");

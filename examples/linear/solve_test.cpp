@@ -107,6 +107,55 @@ TEST_CASE("Refinement reaches the backward error of double precision from each p
   }
 }
 
+/// ||b - A x|| / ||b|| with 113 bits.
+double residualInQuad(const SparseMatrix& a, const std::vector<double>& x, const std::vector<double>& b) {
+  using Quad = __float128;
+  Quad residual = 0, norm = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    Quad r = b[i];
+    for (auto k = static_cast<std::size_t>(a.starts[i]); k < static_cast<std::size_t>(a.starts[i + 1]); ++k)
+      r -= Quad(a.value[k]) * Quad(x[static_cast<std::size_t>(a.column[k])]);
+    residual += r * r;
+    norm += Quad(b[i]) * Quad(b[i]);
+  }
+  return std::sqrt(static_cast<double>(residual / norm));
+}
+
+TEST_CASE(
+    "The reported residual is the true one to 1 %, also where doubles leave only rounding errors of it") {
+  // Hilbert's matrix and a right-hand side for which x is huge: ||A|| ||x|| is up to 10^12 times ||b||.
+  std::vector<Entry> entries;
+  constexpr std::int64_t n = 12;
+  for (std::int64_t i = 0; i < n; ++i)
+    for (std::int64_t k = 0; k < n; ++k) entries.push_back({i, k, 1.0 / static_cast<double>(i + k + 1)});
+  const SparseMatrix hilbert = assemble(n, n, entries), grid = assemble(poisson({13, 11}));
+  for (const char* profile : {"native", "essl300"}) {  // the device computes residuals, and the host
+    sk::Device device = profile == std::string_view("native")
+                            ? sk::Device::native()
+                            : sk::Device(sk::DeviceOptions{.device = "software", .profile = profile});
+    for (const SparseMatrix* a : {&hilbert, &grid}) {
+      const std::vector<double> b = wavy(a->rows);
+      for (const double tolerance : {1e-2, 1e-8, 1e-15, 0.0}) {
+        for (const bool inDoubles : {false, true}) {
+          if (inDoubles && profile != std::string_view("native")) continue;
+          CAPTURE(profile, a->rows, tolerance, inDoubles);
+          Arithmetic arithmetic;
+          if (inDoubles)
+            arithmetic = {.precision = sk::Precision::Double,
+                          .matrix = sk::Storage::Double,
+                          .vectors = sk::Storage::Double};
+          const Solution s = solveWith(
+              device, *a, b,
+              {.arithmetic = arithmetic, .settings = {.tolerance = tolerance, .most = 300, .every = 8}});
+          const double exact = residualInQuad(*a, s.x, b);
+          CHECK(std::abs(s.residualTrue - exact) <= s.residualError);
+          CHECK(s.residualError <= 0.01001 * exact);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("Devices that draw solve like native ones") {
   const SparseMatrix a = assemble(poisson({9, 10}));
   const std::vector<double> b = multiply(a, ones(a.columns));
@@ -170,6 +219,13 @@ TEST_CASE("Minimal residuals solve what is indefinite, and what is singular and 
           Outcome::SingularAndCompatible);
   }
   sk::Device device = sk::Device::native();
+  // A matrix with negative diagonal entries, whose quotients are no positive definite preconditioner.
+  SparseMatrix negative = assemble(poisson({6, 5}));
+  for (double& v : negative.value) v = -v;
+  CHECK(solveWith(device, negative, wavy(negative.rows), {.solver = "minres", .preconditioner = "jacobi"})
+            .outcome == Outcome::NotPositiveDefinite);
+  CHECK(solveWith(device, negative, wavy(negative.rows), {.solver = "minres", .preconditioner = "none"})
+            .outcome == Outcome::Converged);
   CHECK(solveWith(device, free, ones(30), {.solver = "minres"}).outcome == Outcome::SingularAndIncompatible);
 }
 

@@ -13,6 +13,7 @@
 #include "compact.hpp"
 #include "matrix_market.hpp"
 #include "named.hpp"
+#include "support/host_memory.hpp"
 
 namespace linear {
 
@@ -92,11 +93,16 @@ std::vector<Ends> endsNamed(std::string_view text, int rank) {
   return ends;
 }
 
-void checkSize(const Stencil& a) {
+/// `entries` of a row are stored, in coordinates, compressed rows and by the grid; none of a stencil.
+void checkSize(const Stencil& a, int entries) {
   constexpr std::int64_t most = 0x7fffffff;
   if (a.size() > most)
     throw std::runtime_error(
         fmt::format("a grid of {} elements is too large; at most {} can be solved", a.size(), most));
+  constexpr int vectors =
+      6;  // the diagonal, squares of rows, sums, the right-hand side, and two while it is scaled
+  examples::requireMemory(fmt::format("a grid of {} elements", a.size()),
+                          (8.0 * vectors + 56.0 * entries) * static_cast<double>(a.size()));
 }
 
 constexpr std::string_view filePrefix = "coefficients=";
@@ -151,7 +157,9 @@ GridEquation equationOf(std::string_view text) {
       a.ends = before;
     }
   }
-  checkSize(a);
+  const bool isStored = isCompact || !file.empty() || !pattern.empty();
+  const int neighbours = isCompact ? (a.grid.rank() == 2 ? 9 : 27) : 2 * a.grid.rank() + 1;
+  checkSize(a, isStored ? neighbours : 0);
   if (isCompact && (!file.empty() || !pattern.empty()))
     throw std::runtime_error("compact discretisations need constant coefficients");
   if (!file.empty()) return {a, readMarketVector(std::filesystem::path(file)), false};
@@ -213,13 +221,13 @@ sk::Shape System::shape() const {
 
 std::unique_ptr<Matrix> System::makeMatrix(sk::Device& device, std::string_view layout,
                                            const Arithmetic& arithmetic,
-                                           std::vector<LayoutTrial>* trials) const {
-  return makeMatrix(Space(device, shape()), layout, arithmetic, trials);
+                                           std::vector<LayoutCost>* costs) const {
+  return makeMatrix(Space(device, shape()), layout, arithmetic, costs);
 }
 
 std::unique_ptr<Matrix> System::makeMatrix(const Space& space, std::string_view layout,
                                            const Arithmetic& arithmetic,
-                                           std::vector<LayoutTrial>* trials) const {
+                                           std::vector<LayoutCost>* costs) const {
   const bool wantsStencil = layout == "stencil";
   if (stencil_ && (wantsStencil || layout == "auto"))
     return linear::makeMatrix(space, scaled(*stencil_, operator_.scale), arithmetic);
@@ -235,7 +243,7 @@ std::unique_ptr<Matrix> System::makeMatrix(const Space& space, std::string_view 
                     "a grid, or start it without mpirun",
                     layout));
   const SparseMatrix sparse = scaled(stencil_ ? assemble(*stencil_) : sparse_, operator_.scale);
-  return linear::makeMatrix(space.device(), sparse, layout, arithmetic, trials);
+  return linear::makeMatrix(space.device(), sparse, layout, arithmetic, costs);
 }
 
 }  // namespace linear

@@ -38,10 +38,10 @@ class System {
 
   /// Copies the scaled matrix to a device: a stencil where "auto" or "stencil" asks for a grid's layout.
   std::unique_ptr<Matrix> makeMatrix(sk::Device& device, std::string_view layout,
-                                     const Arithmetic& arithmetic, std::vector<LayoutTrial>* trials) const;
+                                     const Arithmetic& arithmetic, std::vector<LayoutCost>* costs) const;
   /// The same for vectors in a space, whose shape is the grid's if it is divided over ranks. Throws std::runtime_error if the matrix cannot be divided.
   std::unique_ptr<Matrix> makeMatrix(const Space& space, std::string_view layout,
-                                     const Arithmetic& arithmetic, std::vector<LayoutTrial>* trials) const;
+                                     const Arithmetic& arithmetic, std::vector<LayoutCost>* costs) const;
   /// The shape of vectors: the grid's, or {unknowns}.
   sk::Shape shape() const;
 

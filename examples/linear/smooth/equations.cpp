@@ -15,6 +15,27 @@ std::size_t entryAt(const linear::SparseMatrix& a, std::int32_t row, std::int32_
   return static_cast<std::size_t>(std::lower_bound(first, last, column) - a.column.begin());
 }
 
+/// For each point, one that stands for all points that edges connect with it.
+std::vector<std::int32_t> partsOf(const linear::SparseMatrix& a) {
+  std::vector<std::int32_t> part(static_cast<std::size_t>(a.rows), -1), next;
+  for (std::int32_t first = 0; first < a.rows; ++first) {
+    if (part[static_cast<std::size_t>(first)] >= 0) continue;
+    part[static_cast<std::size_t>(first)] = first;
+    next.assign(1, first);
+    while (!next.empty()) {
+      const auto row = static_cast<std::size_t>(next.back());
+      next.pop_back();
+      for (auto k = static_cast<std::size_t>(a.starts[row]); k < static_cast<std::size_t>(a.starts[row + 1]);
+           ++k) {
+        if (part[static_cast<std::size_t>(a.column[k])] >= 0) continue;
+        part[static_cast<std::size_t>(a.column[k])] = first;
+        next.push_back(a.column[k]);
+      }
+    }
+  }
+  return part;
+}
+
 }  // namespace
 
 Equations::Equations(const Surface& s) {
@@ -31,6 +52,7 @@ Equations::Equations(const Surface& s) {
   }
   laplacian_ = linear::assemble(n, n, entries);
   matrix_ = laplacian_;
+  part_ = partsOf(laplacian_);
 
   for (std::int32_t i = 0; i < n; ++i) diagonal_.push_back(entryAt(laplacian_, i, i));
   edges_.resize(s.faces.size());
@@ -44,12 +66,16 @@ Equations::Equations(const Surface& s) {
 }
 
 void Equations::update(const Surface& s, const Faults& faults, double timeStep, bool fixesBoundary) {
-  std::vector<bool> stays(s.points.size(), false);
+  std::vector<bool>& stays = stays_;
+  stays.assign(s.points.size(), false);
   if (fixesBoundary) stays = faults.boundary;
   for (const std::int32_t i : faults.isolated) stays[static_cast<std::size_t>(i)] = true;
 
-  std::vector<double> mass(s.points.size(), 0.0);
+  std::vector<double>& mass = mass_;
+  mass.assign(s.points.size(), 0.0);
   double total = 0.0;
+  leastEigenvalue_ = 1.0;
+  largestMass_ = 0.0;
   std::ranges::fill(laplacian_.value, 0.0);
   auto degenerate = faults.degenerate.begin();
   for (std::size_t f = 0; f < s.faces.size(); ++f) {
@@ -82,6 +108,28 @@ void Equations::update(const Surface& s, const Faults& faults, double timeStep, 
       matrix_.value[k] = isKnown ? 0.0 : laplacian_.value[k];
     }
     matrix_.value[diagonal_[i]] += stays[i] ? mean : mass[i];
+    if (stays[i]) continue;
+    const double part = mass[i] / matrix_.value[diagonal_[i]];
+    leastEigenvalue_ = std::min(leastEigenvalue_, part);
+    largestMass_ = std::max(largestMass_, part);
+  }
+}
+
+void Equations::keepCentres(std::span<double> change) const {
+  struct Centre {
+    double mass = 0.0, moved = 0.0;
+    bool isHeld = false;
+  };
+  std::vector<Centre> centres(change.size());
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    Centre& c = centres[static_cast<std::size_t>(part_[i])];
+    c.mass += mass_[i];
+    c.moved += mass_[i] * change[i];
+    c.isHeld = c.isHeld || stays_[i];
+  }
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    const Centre& c = centres[static_cast<std::size_t>(part_[i])];
+    if (!c.isHeld && c.mass > 0.0) change[i] -= c.moved / c.mass;
   }
 }
 

@@ -7,7 +7,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sk/sk.hpp>
@@ -21,17 +23,22 @@ struct FlowSettings {
   bool keepsVolume = false;  ///< scales about the centre after each step, for closed surfaces
   bool fixesBoundary = true;  ///< otherwise boundaries shrink, too
   std::string layout = "auto";  ///< of the matrix, as solve --layout takes it
+  std::string precision = "auto";  ///< "single", "extended", "double", or "auto" for what the matrix needs
   double tolerance = 1e-8;  ///< of a step's true residual
 };
 
 struct StepReport {
   std::int64_t iterations = 0;  ///< of three solves, for x, y and z
-  double residual = 0.0;  ///< the largest of their true residuals, as a part of the right-hand side
+  double residual =
+      0.0;  ///< the largest of their true residuals, as a part of the right-hand side, with rows and columns scaled by the diagonal
   double volume = 0.0;
   double area = 0.0;
   double secondsSolving =
       0.0;  ///< of the step, in the three solves; the rest computes the matrix and copies it to the device
 };
+
+/// The names that FlowSettings::precision takes.
+std::span<const std::string_view> precisionNames();
 
 class Flow {
  public:
@@ -47,6 +54,8 @@ class Flow {
   const Faults& faults() const { return faults_; }
   /// The layout in use; settings.layout before the first step.
   const std::string& layout() const { return layout_; }
+  /// The precision of the latest step's iterations; settings.precision before the first.
+  const std::string& precision() const { return precision_; }
 
  private:
   class Solver;  ///< flow.cpp's own
@@ -57,7 +66,7 @@ class Flow {
   Surface surface_;
   FlowSettings settings_;
   Faults faults_;
-  std::string layout_;
+  std::string layout_, precision_;
   double volume_;
   std::unique_ptr<Solver> solver_;  ///< made by the first step
   std::int64_t steps_ = 0;

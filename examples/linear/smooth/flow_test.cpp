@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -118,6 +119,84 @@ TEST_CASE("The matrix is symmetric, its Laplacian does not see constants, and M 
       for (std::size_t i = 0; i < x.size(); ++i) energy += x[i] * lx[i];
     }
     CHECK(energy == Approx(2.0 * timeStep * areaOf(noisy)).epsilon(1e-12));
+  }
+}
+
+/// A sphere of which some vertices almost lie on an edge beside them: its triangles are then `thin` times as high as they are wide.
+Surface spoiled(double thin) {
+  Surface s = sphere(2, 1.0);
+  std::vector<bool> isMoved(s.points.size(), false);
+  for (std::size_t f = 0; f < s.faces.size(); f += 17) {
+    const auto& [i, j, k] = s.faces[f];
+    const auto at = [](std::int32_t p) { return static_cast<std::size_t>(p); };
+    if (isMoved[at(i)] || isMoved[at(j)] || isMoved[at(k)]) continue;
+    const Vector middle = 0.5 * (s.points[at(j)] + s.points[at(k)]);
+    s.points[at(i)] = middle + thin * (s.points[at(i)] - middle);
+    for (const std::int32_t p : {i, j, k}) isMoved[at(p)] = true;
+  }
+  return s;
+}
+
+TEST_CASE("Meshes with slivers flow in the precision that their matrix needs") {
+  for (const bool hasDoubles : {true, false}) {
+    sk::Device device = hasDoubles
+                            ? sk::Device::native()
+                            : sk::Device(sk::DeviceOptions{.device = "software", .profile = "essl300"});
+    CAPTURE(hasDoubles);
+    Flow flow(device, spoiled(1e-7), {.timeStep = 0.01, .layout = "rows"});
+    const double before = areaOf(flow.surface());
+    for (int i = 0; i < (hasDoubles ? 5 : 1); ++i) CHECK(flow.step().residual <= 1e-8);
+    CHECK(flow.precision() == (hasDoubles ? "double" : "extended"));
+    CHECK(areaOf(flow.surface()) < before);
+  }
+  sk::Device device = sk::Device::native();
+  Flow round(device, sphere(2, 1.0), {.timeStep = 0.01, .layout = "rows"});
+  round.step();
+  CHECK(round.precision() == "single");
+  CHECK_THROWS_WITH(Flow(device, sphere(1, 1.0), {.precision = "half"}),
+                    "no precision is called 'half'; there are auto, single, extended, double");
+}
+
+TEST_CASE("The bound of the least eigenvalue holds") {
+  for (const double thin : {1.0, 1e-2, 1e-4}) {
+    const Surface s = spoiled(thin);
+    Equations equations(s);
+    equations.update(s, inspect(s), 0.01, false);
+    // Rayleigh's quotients of the matrix scaled by its diagonal, for many vectors, among them peaks at each point.
+    const linear::SparseMatrix& a = equations.matrix();
+    const std::vector<double> d = linear::diagonal(a);
+    double least = 1.0;
+    std::minstd_rand random(3);
+    for (std::size_t k = 0; k < 2 * s.points.size(); ++k) {
+      std::vector<double> x(s.points.size(), k < s.points.size() ? 0.0 : 1.0);
+      if (k < x.size()) x[k] = 1.0;
+      if (k > x.size())
+        for (double& v : x) v = static_cast<double>(random() % 1000) - 500.0;
+      const std::vector<double> ax = linear::multiply(a, x);
+      double above = 0.0, below = 0.0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        above += x[i] * ax[i];
+        below += x[i] * d[i] * x[i];
+      }
+      least = std::min(least, above / below);
+    }
+    CHECK(equations.leastEigenvalue() <= least);
+    CHECK(equations.leastEigenvalue() > 0.0);
+  }
+}
+
+TEST_CASE("A step of any length ends at the centre of each part") {
+  sk::Device device = sk::Device::native();
+  Surface two = sphere(1, 1.0);
+  const auto first = static_cast<std::int32_t>(two.points.size());
+  const Surface other = torus(12, 8, 1.0, 0.4);
+  for (const Vector& p : other.points) two.points.push_back(p + Vector{5.0, 1.0, 0.0});
+  for (const Triangle& f : other.faces) two.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
+  Flow flow(device, two, {.timeStep = 1e12, .layout = "rows"});
+  CHECK(flow.step().residual <= 1e-8);
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(two.points.size()); ++i) {
+    const Vector centre = i < first ? Vector{0.0, 0.0, 0.0} : Vector{5.0, 1.0, 0.0};
+    CHECK(length(flow.surface().points[static_cast<std::size_t>(i)] - centre) < 1e-5);
   }
 }
 

@@ -28,7 +28,7 @@ struct Settings {
   std::filesystem::path input, obj, picture;
   std::optional<std::int64_t> steps;
   std::optional<double> timeStep;
-  std::optional<std::string> layout;
+  std::optional<std::string> layout, precision;
 };
 
 struct Scene {
@@ -79,6 +79,7 @@ Scene readScene(const std::filesystem::path& file) {
     f.fixesBoundary = flow->choice("boundary", boundaries).value_or(0) == 0;
     f.tolerance = flow->number("tolerance", {1e-14, 0.1}).value_or(f.tolerance);
     f.layout = flow->text("layout").value_or(f.layout);
+    f.precision = smooth::precisionNames()[flow->choice("precision", smooth::precisionNames()).value_or(0)];
     scene.steps = flow->integer("steps", {1, 1e9}).value_or(scene.steps);
   }
   table.finish();
@@ -87,20 +88,25 @@ Scene readScene(const std::filesystem::path& file) {
 
 void run(examples::Application& app, const Settings& s) {
   Scene scene;
+  if (!s.picture.empty()) examples::checkPngName(s.picture);
   if (s.input.extension() == ".obj") {
     scene.name = s.input.filename().string();
     scene.surface = smooth::loadObj(s.input);
-  } else {
+  } else if (s.input.extension() == ".toml") {
     scene = readScene(s.input);
+  } else {
+    throw std::runtime_error(fmt::format(
+        "'{}' is neither a mesh, .obj, nor a scene, .toml; convert other meshes to OBJ", s.input.string()));
   }
   if (s.steps) scene.steps = *s.steps;
   if (s.timeStep) scene.flow.timeStep = *s.timeStep;
   if (s.layout) scene.flow.layout = *s.layout;
+  if (s.precision) scene.flow.precision = *s.precision;
 
   sk::Device device(app.device());
   smooth::Flow flow(device, scene.surface, scene.flow);
   const std::string faults = smooth::textOf(flow.faults());
-  examples::Verification verification("||b - A x|| / ||b|| of each step, in double precision",
+  examples::Verification verification("||b - A x|| / ||b|| of each step, rows scaled by the diagonal",
                                       scene.flow.tolerance, "the tolerance");
   fmt::print("{:>6} {:>12} {:>12} {:>10} {:>10}\n", "step", "volume", "area", "iterations", "residual");
   fmt::print("{:>6} {:>12.6g} {:>12.6g}\n", 0, smooth::volumeOf(scene.surface),
@@ -116,8 +122,9 @@ void run(examples::Application& app, const Settings& s) {
     verification.note(i, report.residual);
   }
   progress.clear();
-  app.report(fmt::format("{}, {} vertices, {} steps of {:.3g}, layout {}", scene.name,
-                         scene.surface.points.size(), scene.steps, scene.flow.timeStep, flow.layout()),
+  app.report(fmt::format("{}, {} vertices, {} steps of {:.3g}, layout {}, in {} precision", scene.name,
+                         scene.surface.points.size(), scene.steps, scene.flow.timeStep, flow.layout(),
+                         flow.precision()),
              device.name(), watch.milliseconds());
   fmt::print("{}", faults);
   if (!s.obj.empty()) smooth::saveObj(s.obj, flow.surface());
@@ -150,6 +157,8 @@ int main(int argc, char** argv) {
                  "a squared length, in place of the scene's; 0.001 of a mesh")
       ->check(CLI::Range(1e-12, 1e12));
   cli.add_option("--layout", settings.layout, "of the matrix, as solve --layout takes it");
+  cli.add_option("--precision", settings.precision,
+                 "of the iterations: single, extended, double, or auto for what the matrix needs (default)");
   cli.add_option("--obj", settings.obj, "file for the surface at the end");
   cli.add_option("-o,--output", settings.picture, "picture of the surface before and after, .png");
   const examples::StudyOptions study(app, "measure flows whose solution is known", smooth::studies());
