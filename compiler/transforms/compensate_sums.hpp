@@ -22,7 +22,7 @@
 //
 // sumError is the error of a float addition, itself a float, and productError the error of a multiplication
 // (Dekker, Numer. Math. 18, 1971). A sum of n terms (sum_terms.hpp) then has one rounding of its own and an
-// error of about (log n)^2 u^2 times the sum of magnitudes: Sum2 and Dot2 of Ogita, Rump and Oishi (SIAM J.
+// error of 2 (d + 1)^2 u^2 times the sum of magnitudes, in a tree of depth d: Sum2 and Dot2 of Ogita, Rump and Oishi (SIAM J.
 // Sci. Comput. 26, 2005) over a tree. float_sums.hpp defines which accumulators and members are such sums;
 // all others are folded and combined as before, possibly by the author's own reduce. A reduce without
 // identities has no variant. If an element adds only one input or the product of two, a double holds that

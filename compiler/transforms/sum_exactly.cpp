@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "transforms/sum_exactly.hpp"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +14,7 @@
 #include "ir/build.hpp"
 #include "ir/declared_kernels.hpp"
 #include "ir/walk.hpp"
+#include "sk/exact_digits.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/exact_term.hpp"
 #include "transforms/float_sums.hpp"
@@ -43,6 +46,8 @@ struct Digits {
   std::vector<VarId> groups;
   VarId flags = 0;
 };
+
+using Load = sk::program::DigitLoad<std::int32_t>;
 
 /// Statements that settle the digits: they become small, but keep their sum.
 void settle(Block& block, Function& function, const Digits& digits) {
@@ -99,13 +104,18 @@ class ExactSummation {
  public:
   explicit ExactSummation(Module& module) : module_(module) {}
 
-  void sum(KernelId id, const ScalarSum& scalar) {
-    const bool areProducts = hasProducts(id, scalar);
-    const Format& format = areProducts ? ofProducts : ofFloats;
+  /// Whether the variant of a sum can be described.
+  bool hasRoom(KernelId id, const ScalarSum& scalar) const {
+    const Format& format = hasProducts(id, scalar) ? ofProducts : ofFloats;
     KernelSize size = sizeOf(module_, module_.kernels[id]);
     size.parameters += format.groups + 1;  // the digits and flags
     size.planes += format.groups + 1;
-    if (!fits(size)) return;
+    return fits(size);
+  }
+
+  void sum(KernelId id, const ScalarSum& scalar) {
+    const bool areProducts = hasProducts(id, scalar);
+    const Format& format = areProducts ? ofProducts : ofFloats;
     ExactSum exact{.fold = makeFold(id, scalar, format),
                    .finish = makeFinish(id, scalar, format),
                    .accumulator = scalar.whole.accumulator,
@@ -135,45 +145,92 @@ class ExactSummation {
                                                   construct(digitsType, exprs(literal(0)))));
     }
     digits.flags = copy.addAccumulator("flags", intType, literal(0));
-    const Rewriting rewriting{module_.kernels[id], sum, format, digits};
-    Block& body = copy.entry().body;
-    if (rewriting.rewrite(copy.entry(), body, false) > 1) {
-      Block start;
-      settle(start, copy.entry(), digits);
-      body.insert(body.begin(), std::make_move_iterator(start.begin()), std::make_move_iterator(start.end()));
-    }
+    const Rewriting rewriting{module_.kernels[id], sum, format, digits, copy.entry()};
+    rewriting.rewriteElement();
     copy.dropAccumulators();
     copy.dropOutputs();
     return copy.finish(combine);
   }
 
   /// Replaces accumulators by digits.
+  ///
+  /// A run folds as many elements as digits have room for terms (program::longestRun), so that an element may add one term
+  /// as it is. An element that may add more settles before the first, and again where its terms have used the room. In a
+  /// loop, the first term of an iteration settles, whatever the iterations before have added.
   struct Rewriting {
     const Kernel& kernel;
     const ScalarSum& sum;
     const Format& format;
     const Digits& digits;
+    Function& entry;
 
-    /// Returns the number of terms that an element adds without settling.
-    int rewrite(Function& entry, Block& block, bool inLoop) const {
-      int terms = 0;
+    void rewriteElement() const {
+      const TermCount terms = countTerms(entry.body);
+      const bool addsOne = terms.outsideLoops + (terms.isInLoop ? 1 : 0) <= 1;
+      rewrite(entry.body, addsOne ? Load(Load::most - 1) : Load::settled());
+      if (addsOne) return;
+      Block start;
+      settle(start, entry, digits);
+      entry.body.insert(entry.body.begin(), std::make_move_iterator(start.begin()),
+                        std::make_move_iterator(start.end()));
+    }
+
+   private:
+    struct TermCount {
+      std::int64_t outsideLoops = 0;  ///< the most on a path
+      bool isInLoop = false;
+    };
+    struct Loads {
+      Load end;  ///< the most at the end of a block
+      Load peak;  ///< the most after a term
+    };
+
+    TermCount countTerms(const Block& block) const {
+      TermCount count;
+      for (const Stmt& stmt : block) {
+        if (foldedBy(kernel, stmt)) count.outsideLoops += std::ssize(termsOf(kernel, stmt, sum));
+        TermCount inner;
+        forEachBlock(stmt, [&](const Block& nested) {
+          const TermCount one = countTerms(nested);
+          inner = {std::max(inner.outsideLoops, one.outsideLoops), inner.isInLoop || one.isInLoop};
+        });
+        if (std::holds_alternative<Loop>(stmt.node)) inner = {0, inner.isInLoop || inner.outsideLoops > 0};
+        count.outsideLoops += inner.outsideLoops;
+        count.isInLoop = count.isInLoop || inner.isInLoop;
+      }
+      return count;
+    }
+
+    /// Rewrites a block before which the digits have at most this load.
+    Loads rewrite(Block& block, Load load) const {
+      Load peak;
       Block rewritten;
       for (Stmt& stmt : block) {
+        Loads inner{load, {}};
         const bool isLoop = std::holds_alternative<Loop>(stmt.node);
-        forEachBlock(stmt, [&](Block& inner) { terms += rewrite(entry, inner, inLoop || isLoop); });
+        forEachBlock(stmt, [&](Block& nested) {
+          const Loads one = rewrite(nested, isLoop ? Load(Load::most) : load);
+          inner = {std::max(inner.end, one.end), std::max(inner.peak, one.peak)};
+        });
+        load = isLoop ? std::max(load, inner.peak) : inner.end;
+        peak = std::max(peak, inner.peak);
         if (!foldedBy(kernel, stmt)) {
           rewritten.push_back(std::move(stmt));
           continue;
         }
         // this variant does not have the other accumulators
         for (const Term& term : termsOf(kernel, stmt, sum)) {
-          if (inLoop) settle(rewritten, entry, digits);
+          if (load.room() == 0) {
+            settle(rewritten, entry, digits);
+            load = Load::settled();
+          }
           add(rewritten, entry, digits, format, *term.value, term.factor.get());
-          terms += inLoop ? 0 : 1;
+          load = load + Load(1);
+          peak = std::max(peak, load);
         }
       }
       block = std::move(rewritten);
-      return terms;
+      return {load, peak};
     }
   };
 
@@ -185,7 +242,7 @@ class ExactSummation {
     const Digits parts = addDigits(synthesized, format, ParamRole::Input, "_part");
     const Digits totals = addDigits(synthesized, format, ParamRole::Accumulator);
     Block& body = synthesized.entry.body;
-    Digits settled;   // inputs must not change
+    Digits settled;  // inputs must not change
     for (const VarId part : parts.groups) {
       settled.groups.push_back(
           addVariable(synthesized.entry, fmt::format("part_{}", settled.groups.size()), digitsType));
@@ -220,7 +277,7 @@ class ExactSummation {
     total.flags = addVariable(entry, "sum_flags", intType);
     entry.body.push_back(declare(total.flags, varRef(entry, digits.flags)));
     settle(entry.body, entry, total);
-    if (!kernel.reduction->seeded) {   // the identity is a summand
+    if (!kernel.reduction->seeded) {  // the identity is a summand
       const ExprPtr identity = scalarOf(clone(param.identity), sum);
       add(entry.body, entry, total, format, *identity, nullptr);
       settle(entry.body, entry, total);
@@ -262,6 +319,14 @@ class ExactSummation {
   std::array<std::optional<KernelId>, mostGroups + 1> combinations_ = {};
 };
 
+/// True if all that floats are added to are sums, so that an exact call adds none of them inexactly.
+bool areAll(const std::vector<ScalarSum>& sums, const FoldPattern& pattern) {
+  return std::ranges::all_of(pattern.parts, [&](const FoldPart& part) {
+    if (part.op != FoldOp(BinaryOp::Add) || part.type.scalar != Scalar::Float) return true;
+    return std::ranges::any_of(sums, [&](const ScalarSum& sum) { return sum.whole.holds(part); });
+  });
+}
+
 /// The scalars of a reduce that are sums of floats.
 std::vector<ScalarSum> scalarSums(const Module& module, KernelId id) {
   const Kernel& kernel = module.kernels[id];
@@ -283,8 +348,13 @@ void sumExactly(Module& module, Diagnostics&) {
     const Kernel& kernel = module.kernels[id];
     if (!kernel.reduction || kernel.isSynthesized) return;
     // otherwise other statements use the accumulators, which the variant with digits does not have
-    if (!recogniseFold(kernel, module.functions[kernel.entry])) return;
-    for (const ScalarSum& sum : scalarSums(module, id)) state.sum(id, sum);
+    const std::optional<FoldPattern> pattern = recogniseFold(kernel, module.functions[kernel.entry]);
+    if (!pattern) return;
+    const std::vector<ScalarSum> sums = scalarSums(module, id);
+    const bool haveRoom =
+        std::ranges::all_of(sums, [&](const ScalarSum& sum) { return state.hasRoom(id, sum); });
+    if (!haveRoom || !areAll(sums, *pattern)) return;
+    for (const ScalarSum& sum : sums) state.sum(id, sum);
   });
 }
 

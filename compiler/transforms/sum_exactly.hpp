@@ -16,8 +16,9 @@
 //   and, once per file, the reduce that combines digits.
 //
 // The digits of a product of two floats are exact, and take twice as many positions; other summands
-// (sum_terms.hpp) are rounded to float first. A digit has room for 32 summands: an element that may add more
-// than one settles the digits before. All arithmetic is on integers, on which all devices agree.
+// (sum_terms.hpp) are rounded to float first. Digits have room for the terms of a run whose elements add one each
+// (sk/exact_digits.hpp); an element that may add more settles its digits. All arithmetic is on integers, on which all
+// devices agree.
 //
 // Native code does not fold digits: the runtime adds terms to an accumulator of its own. ExactSum::term
 // (exact_term.hpp) describes the terms.

@@ -14,7 +14,7 @@ compiler/support      support
 compiler/ir           support ir
 compiler/analysis     support ir analysis
 compiler/split        support ir split
-compiler/transforms   support ir analysis transforms split
+compiler/transforms   support ir analysis transforms split sk/exact_digits.hpp
 compiler/native       support ir analysis transforms native llvm sk/native/code.hpp sk/native/table.hpp
 compiler/native/library support ir transforms native
 compiler/glsl         support ir analysis glsl sk/program.hpp
@@ -39,7 +39,7 @@ runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_b
 runtime/src/assemble/glsl     sk/program.hpp sk/arithmetic.hpp sk/limits.hpp ASSEMBLE assemble/glsl
 runtime/src/assemble/elements sk/program.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements
 runtime/src/assemble/append   sk/program.hpp ASSEMBLE assemble/glsl assemble/elements assemble/append
-runtime/src/assemble/reduce   sk/program.hpp sk/types.hpp sk/limits.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/reduce assemble/program/sample_kernels.hpp
+runtime/src/assemble/reduce   sk/program.hpp sk/exact_digits.hpp sk/types.hpp sk/limits.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/reduce assemble/program/sample_kernels.hpp
 runtime/mpi           sk support device call api native gl assemble
 runtime/tools         sk support/cache_folder.hpp native probe/probe.hpp assemble/nearest_word.hpp
 runtime/tests         sk support trace device call gl gl_device native assemble epoxy

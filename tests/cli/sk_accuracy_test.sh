@@ -69,12 +69,14 @@ for device in native ''; do
   below 0.9 "$(errorOf tree)"
   below "$(errorOf compensated)" 0.1
   [[ $out != *' NO'* ]] || broken "a mode breaks its bound"
+  run 0 sum dot moments ${device:+--device "$device"} --data tiny "${small[@]}"
+  [[ $out != *' NO'* ]] || broken "a mode breaks its bound where numbers are tiny"
 done
 
 # Every program.
 run 0 "${small[@]}" --json all.json --chart all.svg
 for program in sum dot moments diffusion polynomial transcendentals tables; do matches "^$program, [a-z 0-9]+: "; done
-for data in uniform signed wide illconditioned; do matches "^sum, $data: 4096 numbers"; done
+for data in uniform signed wide illconditioned tiny; do matches "^sum, $data: 4096 numbers"; done
 matches '^  mode +time \[quartiles\] +rel err +scaled +bound  ok$'
 matches '^  single +1\.00 \[1\.00 1\.00\]'
 matches 'PARETO$'

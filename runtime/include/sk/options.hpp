@@ -29,13 +29,13 @@ enum class Storage : std::uint8_t {
   Double,  ///< doubles
 };
 
-/// How a reduction adds n floats. S is the sum of their magnitudes, u = 2^-24.
+/// How a reduction adds floats: S is the sum of their magnitudes, d the depth of the tree (docs/accuracy.md, Sums), u = 2^-24.
 enum class Accumulate : std::uint8_t {
   Default,  ///< Compensated, if the reduction sums floats and the device has room for it
-  Tree,  ///< plain additions in a tree: the error is about u S log n
-  Compensated,  ///< sums rounding errors, too: the error is u times the result plus (log n)^2 u^2 S
-  /// The whole reduction in pairs of floats, or in doubles on a software renderer: the error is u times the
-  /// result plus 2^-44 S log n.
+  Tree,  ///< plain additions in a tree: the error is at most d u S
+  Compensated,  ///< sums rounding errors, too: the error is at most u times the result plus 2 (d + 1)^2 u^2 S
+  /// The whole reduction in pairs of floats, or in doubles on a software renderer: the error is at most u times the
+  /// result plus (d + 1) 2^-44 S.
   Extended,
   Exact,  ///< the exact sum, rounded once: the same bits in every order, on every device
 };

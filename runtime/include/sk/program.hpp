@@ -36,6 +36,7 @@
 #include <span>
 #include <string_view>
 
+#include "sk/exact_digits.hpp"
 #include "sk/options.hpp"
 #include "sk/table.hpp"
 
@@ -313,8 +314,12 @@ struct FoldParts;
 struct WideReduction;
 struct ExactSum;
 
-/// Most elements, or partial results, that a run folds one after the other; exact sums have no room for more.
-inline constexpr int longestRun = 32;
+/// Most elements, or partial results, that a run folds one after the other: as many terms as the digits of an exact sum
+/// have room for.
+inline constexpr int longestRun = DigitLoad<std::int32_t>().room();
+/// The same for a run that continues from accumulators that were combined.
+inline constexpr int longestContinuedRun = DigitLoad<std::int32_t>::combined().room();
+static_assert(longestRun == 32 && longestContinuedRun == 30);
 
 /// The term that a sum of floats adds for each element, if the runtime can add it itself: one input, or the
 /// product of two. For an exact sum, it may be a kernel with all parameters of the fold except accumulators and Outputs,

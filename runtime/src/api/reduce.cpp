@@ -38,7 +38,9 @@ const CompensatedReduction* compensatedVariant(const ResolvedReduction& call) {
   const Accumulate requested = call.options.accumulate;
   const CompensatedReduction* second = reduction.compensated;
   if (requested == Accumulate::Exact && reduction.exact.empty()) {
-    fail(reduction.fold, "it has no sum of floats to add exactly; call it without Accumulate::Exact");
+    fail(reduction.fold,
+         "it has no sum of floats to add exactly, or others beside it that cannot be; call it without "
+         "Accumulate::Exact");
   }
   if (requested == Accumulate::Compensated && second == nullptr) {
     fail(reduction.fold,

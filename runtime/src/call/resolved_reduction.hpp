@@ -61,6 +61,13 @@ struct ResolvedReduction {
 };
 
 /// Whether the reduction stores elements to other outputs than its accumulators.
+/// Whether a call folds the terms of an exact sum to digits (sk/exact_digits.hpp): only such a reduction has no exact
+/// variant of its own in an exact call.
+inline bool foldsDigits(const ResolvedReduction& call) {
+  return call.options.accumulate == Accumulate::Exact && call.reduction.exact.empty() &&
+         !call.reduction.seeded;
+}
+
 inline bool storesBeside(const ResolvedReduction& call) {
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     const bool isOutput = call.reduction.fold.parameters[i].role == program::Role::Output;

@@ -70,8 +70,8 @@ struct Call {
 /// What a scan stores for each element of its domain.
 struct ScanOf {
   bool isExclusive = false;  ///< the accumulators before folding it, else those after
-  /// Accumulators are combined with the identity after each run (program::longestRun): those of exact sums have no
-  /// room for more. Others have.
+  /// Accumulators are combined with the identity after each run (leafRounds), because those of exact sums have no room for
+  /// more terms (sk/exact_digits.hpp).
   bool combinesRuns = false;
 };
 

@@ -18,7 +18,7 @@ namespace sk {
 
 namespace {
 
-constexpr int digitBits = 26;
+using program::digitBits;
 constexpr std::int64_t digitMask = (std::int64_t{1} << digitBits) - 1;
 constexpr std::uint32_t infinityBits = 0x7f800000;
 
@@ -151,7 +151,22 @@ void ExactAccumulator::add(std::int64_t count, const float* x) {
 
 void ExactAccumulator::add(std::int64_t count, const float* x, const float* y) { addAll(count, x, y); }
 
+void ExactAccumulator::reserve(Load load) {
+  if (load_.room() < load.terms()) {
+    settle(digits_, digitCount_);
+    load_ = Load::settled();
+  }
+  load_ = load_ + load;
+}
+
 void ExactAccumulator::add(const ExactAccumulator& other) {
+  if (other.load_ > Load(Load::most / 2)) {
+    ExactAccumulator settled = other;
+    settle(settled.digits_, digitCount_);
+    settled.load_ = Load::settled();
+    return add(settled);
+  }
+  reserve(other.load_);
   for (int k = 0; k < digitCount_; ++k) digits_[k] += other.digits_[k];
   flags_ |= other.flags_;
 }
@@ -164,11 +179,13 @@ void ExactAccumulator::addAll(std::int64_t count, const Factors*... x) {
       addBlock(blockAt(count - first), (x + first)...);
     }
   }
+  reserve(Load(count - first));
   for (; first < count; ++first) addOne(x[first]...);
 }
 
 template <class... Factors>
 void ExactAccumulator::addBlock(int count, const Factors*... x) {
+  reserve(Load(count + 2));  // what remains of each term, and both sums
   const std::uint32_t largest[] = {largestOf(x, count)...};
   int exponent = 0;  // all terms are below this power of 2
   bool isPlain = true;
@@ -248,6 +265,7 @@ ExactAccumulator ExactAccumulator::ofWords(std::span<const std::int64_t> words) 
   const std::size_t digits = words.size() - 4;
   ExactAccumulator sum(digits == mostDigits ? Of::Products : Of::Floats);
   std::copy_n(words.begin(), digits, sum.digits_);
+  sum.load_ = Load(Load::most);
   for (std::size_t k = 0; k < 4; ++k) sum.flags_ |= words[digits + k] != 0 ? 1U << k : 0U;
   return sum;
 }

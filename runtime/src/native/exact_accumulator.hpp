@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "sk/exact_digits.hpp"
+
 namespace sk {
 
 class ExactAccumulator {
@@ -17,7 +19,7 @@ class ExactAccumulator {
 
   explicit ExactAccumulator(Of terms) : digitCount_(terms == Of::Products ? 24 : 12) {}
 
-  /// Adds `count` terms; there is room for 2^36 in all.
+  /// Adds `count` terms.
   void add(std::int64_t count, const float* x);
   void add(std::int64_t count, const float* x, const float* y);
   void add(const ExactAccumulator& other);
@@ -28,13 +30,14 @@ class ExactAccumulator {
   /// all of them are -0.
   float rounded() const;
 
-  /// All that has been added, in words whose sums over several accumulators are the words of their sum. There may be 2^36
-  /// of them.
+  /// All that has been added, in words whose sums over several accumulators are the words of their sum. There may be
+  /// Load::most of them.
   std::vector<std::int64_t> words() const;
   /// The accumulator that has such words.
   static ExactAccumulator ofWords(std::span<const std::int64_t> words);
 
  private:
+  using Load = program::DigitLoad<std::int64_t>;
   static constexpr int mostDigits = 24;
 
   /// What has been added, apart from -0.
@@ -48,9 +51,12 @@ class ExactAccumulator {
   void addOne(float x);
   void addOne(float x, float y);
   void addWhole(double x);
+  /// Makes room for numbers with this load, which are going to be added.
+  void reserve(Load load);
 
   int digitCount_;
-  std::int64_t digits_[mostDigits] = {};  ///< longer than 26 bits until they are settled
+  std::int64_t digits_[mostDigits] = {};
+  Load load_;  ///< of the digits
   std::uint32_t flags_ = 0;
 };
 

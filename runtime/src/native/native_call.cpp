@@ -55,11 +55,9 @@ CodeChoice codeChoice(RealType real, const CallOptions& options) {
           .mayReorder = options.order == Order::Any};
 }
 
-/// Only a reduction to digits has no exact variant of its own in an exact call.
 std::optional<native::ScanOf> scanOf(const ResolvedReduction& call) {
   if (!call.scan) return std::nullopt;
-  const bool foldsDigits = call.options.accumulate == Accumulate::Exact && call.reduction.exact.empty();
-  return native::ScanOf{.isExclusive = call.scan->isExclusive, .combinesRuns = foldsDigits};
+  return native::ScanOf{.isExclusive = call.scan->isExclusive, .combinesRuns = foldsDigits(call)};
 }
 
 bool hasDoubles(const program::Element& element) {

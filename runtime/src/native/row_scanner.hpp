@@ -15,6 +15,9 @@ namespace sk {
 
 /// Combines accumulators with identities after each run of elements.
 class RunCombiner {
+  /// The first run may continue from a leaf that was not combined.
+  static_assert(program::DigitLoad<std::int32_t>(leafRounds).room() >= leafRounds);
+
  public:
   RunCombiner(const ScanProgram& program, std::int64_t columns)
       : combiner_(combinerOf(program.fold)), identities_(identitiesOf(program, columns)) {}

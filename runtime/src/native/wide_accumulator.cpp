@@ -96,7 +96,7 @@ void WideAccumulator::addTerm(Quad x) {
   for (mantissa >>= wordBits - shift; mantissa != 0; mantissa >>= wordBits) {
     *digit++ += sign * lowestDigit(mantissa);
   }
-  if (++unsettled_ == mostUnsettled) settle();
+  if (++unsettled_ >= mostUnsettled) settle();
 }
 
 void WideAccumulator::add(const WideAccumulator& other) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "assemble/reduce/fold_text.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -151,8 +152,16 @@ std::string FoldText::elementOf(std::size_t i, std::string_view lane) const {
 void FoldText::startFromIdentities(std::string_view indent) {
   for (const Parameter* accumulator : accumulators_) {
     statement(fmt::format("{}{} {} = {};", indent, accumulator->element->glsl, total(*accumulator),
-                          accumulator->identity));
+                          identityOf(*accumulator)));
   }
+}
+
+std::string_view FoldText::identityOf(const Parameter& accumulator) const {
+  auto before = std::ranges::find(accumulators_, &accumulator) - accumulators_.begin();
+  for (const Parameter& parameter : reduction_.fold.parameters) {
+    if (parameter.role == Role::Accumulator && before-- == 0) return parameter.identity;
+  }
+  return {};
 }
 
 void FoldText::startFromElements(const std::function<std::string(std::size_t i)>& valueOf) {

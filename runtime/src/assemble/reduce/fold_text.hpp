@@ -59,6 +59,8 @@ class FoldText {
   std::string total(const program::Parameter& accumulator) const { return held(folded_, accumulator); }
   std::string held(std::string_view name, const program::Parameter& accumulator) const;
   void startFromIdentities(std::string_view indent = "");
+  /// The identity of an accumulator, which the fold has, also for passes that combine.
+  std::string_view identityOf(const program::Parameter& accumulator) const;
   /// Declares the accumulators. Each starts as the input at its position among the accumulators, of which
   /// valueOf(i) is the first value; `i` is a parameter.
   void startFromElements(const std::function<std::string(std::size_t i)>& valueOf);

@@ -3,12 +3,17 @@
 // Tests which programs and passes are planned for reductions.
 #include "assemble/reduce/reduce_plan.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
 #include "assemble/program/sample_kernels.hpp"
+#include "assemble/reduce/digit_loads.hpp"
 
 using namespace sk::assemble;
 
@@ -161,4 +166,122 @@ TEST_CASE("as many elements as there may be are folded to one") {
       CHECK(left == 1);
     }
   }
+}
+
+TEST_CASE("digits of exact sums have room for what an invocation folds") {
+  const auto division = [](const Index4& blocks, bool byTexel, bool byGroups, bool ofDigits) {
+    return Division{.blocks = blocks,
+                    .byIndex = byGroups,
+                    .byTexel = byTexel,
+                    .inAnyOrder = true,
+                    .inGroups = true,
+                    .byGroups = byGroups,
+                    .ofDigits = ofDigits};
+  };
+  for (const std::int32_t width : {4, 32, 512, 40000}) {
+    for (const std::int32_t height : {1, 7, 33, 1030, 4096}) {
+      for (const bool byTexel : {false, true}) {
+        for (const std::int32_t longRun : {0, 16, 64}) {
+          for (const bool grouped : {false, true}) {
+            const RegionLayout plane{.packed = byTexel, .extent = {width, height, 1, 1}};
+            const ReduceLimits limits{.texture = {32768, mostLayers}, .grouped = grouped, .longRun = longRun};
+            INFO(width << " x " << height << ", runs of " << longRun);
+            CHECK(keepsRoom(
+                planReduction(plane, valueLayout(), limits, division({1, 1, 1, 1}, byTexel, false, true))));
+            if (!grouped) continue;
+            const RegionLayout rows{.extent = {1, height, 1, 1}};
+            CHECK(keepsRoom(planReduction(plane, rows, limits, division(rows.extent, byTexel, true, true))));
+          }
+        }
+      }
+    }
+  }
+  // the check finds invocations that fold too much
+  const RegionLayout plane{.packed = true, .extent = {40000, 2, 1, 1}}, rows{.extent = {1, 2, 1, 1}};
+  const ReduceLimits limits{.texture = {32768, mostLayers}, .grouped = true};
+  CHECK_FALSE(keepsRoom(planReduction(plane, rows, limits, division(rows.extent, true, true, false))));
+}
+
+namespace {
+
+Index4 valueOf(const ReducePass& pass, std::string_view uniform) {
+  return std::ranges::find(pass.uniforms, uniform, &UniformValue::name)->value;
+}
+
+/// The most additions of a pass that a number, or a partial result, takes part in.
+std::int64_t additionsOf(const ReducePass& pass) {
+  const ReduceVariant& variant = pass.variant;
+  const std::int64_t each = variant.packed ? lanes : 1;
+  const std::int64_t ofGroup = variant.twoBlocks ? 7 : 8;
+  if (variant.walk == Walk::GroupedPartials) return valueOf(pass, "sk_fan")[0] - 1 + ofGroup;
+  if (variant.walk == Walk::Rows || variant.walk == Walk::PartialRows) {
+    const Index4 shape = valueOf(pass, "sk_run_shape");
+    const std::int64_t run = std::int64_t{shape[0]} * shape[1] + (variant.column && variant.run == 0 ? 1 : 0);
+    const std::int64_t part = variant.part;
+    // of the first part: those in it, then the other parts, and what remains
+    const std::int64_t inRun =
+        part == 0 ? run * each - 1 : part * each - 1 + run / part - 1 + run % part * each;
+    return inRun + (variant.grouped ? ofGroup : 0);
+  }
+  const std::int64_t fan = valueOf(pass, "sk_fan")[0];
+  if (!variant.grouped) return fan * each - 1;
+  const std::int64_t invocations = std::int64_t{1} << ofGroup;
+  return (fan + invocations - 1) / invocations * each - 1 + ofGroup;
+}
+
+/// docs/accuracy.md, "Sums"
+double statedDepth(double count, bool byBlocks) {
+  const double fewer = byBlocks ? count / 0x1p16 : count;
+  const double passes = fewer <= 1 ? 0 : std::ceil(std::log(fewer) / std::log(30.0) - 1e-12);
+  return 31 * passes + (byBlocks ? 518 : 8);
+}
+
+}  // namespace
+
+TEST_CASE("no tree is deeper than stated") {
+  for (const std::int32_t width : {1, 2, 4, 17, 32, 33, 100, 512, 1028, 4096}) {
+    for (const std::int32_t height : {1, 2, 7, 8, 31, 33, 100, 271, 1030, 4096}) {
+      for (const bool byTexel : {false, true}) {
+        if (byTexel && width % lanes != 0) continue;
+        const auto count = static_cast<double>(width * height);
+        for (const bool inAnyOrder : {false, true}) {
+          for (const bool grouped : {false, true}) {
+            const RegionLayout plane{.packed = byTexel, .extent = {width, height, 1, 1}};
+            // as GlDevice has it
+            const ReduceLimits limits{
+                .texture = {32768, mostLayers}, .grouped = grouped, .longRun = grouped ? 0 : 64};
+            Division division{
+                .blocks = {1, 1, 1, 1}, .byTexel = byTexel, .inAnyOrder = inAnyOrder, .inGroups = true};
+            std::int64_t depth = 0;
+            for (const ReducePass& pass : planReduction(plane, valueLayout(), limits, division))
+              depth += additionsOf(pass);
+            INFO(width << " x " << height << (byTexel ? " packed" : "") << (grouped ? " in groups" : ""));
+            CHECK(static_cast<double>(depth) <= statedDepth(count, false));
+          }
+        }
+      }
+    }
+  }
+  std::int64_t deepest = 0;
+  for (const std::int32_t width : {64, 512, 1028, 32768, 65536, 300000}) {
+    for (const std::int32_t height : {2, 8, 2048}) {  // many rows are folded two at a time
+      for (const bool byTexel : {false, true}) {
+        const RegionLayout plane{.packed = byTexel, .extent = {width, height, 1, 1}};
+        const Division division{.blocks = {1, height, 1, 1},
+                                .byIndex = true,
+                                .byTexel = byTexel,
+                                .inAnyOrder = true,
+                                .inGroups = true,
+                                .byGroups = true};
+        const ReduceLimits limits{.texture = {32768, mostLayers}, .grouped = true};
+        std::int64_t depth = 0;
+        for (const ReducePass& pass : planReduction(plane, {.extent = division.blocks}, limits, division))
+          depth += additionsOf(pass);
+        INFO(width << " x " << height << (byTexel ? " packed" : ""));
+        CHECK(static_cast<double>(depth) <= statedDepth(width, true));
+        if (width <= 65536) deepest = std::max(deepest, depth);
+      }
+    }
+  }
+  CHECK(deepest == 518);
 }

@@ -9,6 +9,7 @@
 #include <cassert>
 #include <utility>
 
+#include "assemble/reduce/digit_loads.hpp"
 #include "sk/scalar_bytes.hpp"
 
 namespace sk::assemble {
@@ -86,6 +87,7 @@ class Planner {
       }
     }
     passes_.back().variant.toBuffer = limits_.toBuffer;
+    assert(!division_.ofDigits || keepsRoom(passes_));
     return std::move(passes_);
   }
 
@@ -245,8 +247,7 @@ class Planner {
 
   /// Adds a pass in which a work group folds a block or a part of one.
   void addBlocks() {
-    constexpr std::int32_t mostOfInvocation = 64;
-    const std::int32_t runs = divideUp(left_, groupSize * mostOfInvocation);
+    const std::int32_t runs = divideUp(left_, groupSize * mostOfInvocation());
     ReducePass pass{};
     pass.toResult = runs == 1;
     pass.variant.walk = Walk::Index;
@@ -267,9 +268,15 @@ class Planner {
     passes_.push_back(std::move(pass));
   }
 
+  /// The most elements or texels that an invocation of such a pass folds.
+  std::int32_t mostOfInvocation() const {
+    return division_.ofDigits ? program::longestRun / (division_.byTexel ? lanes : 1) : 64;
+  }
+
   /// Whether work groups fold two blocks each: there are enough rows of blocks, a row of texels high each.
   bool mayJoinBlocks() const {
     constexpr std::int32_t enoughBlocks = 2048;
+    if (division_.ofDigits && left_ > groupSize / 2 * mostOfInvocation()) return false;
     const std::int32_t rows = division_.blocks[1];
     return division_.inAnyOrder && division_.byTexel && !result_.linear && !result_.strided &&
            blocks_ >= enoughBlocks && rows % 2 == 0 && input_.extent[1] == rows &&

@@ -79,6 +79,7 @@ struct Division {
   /// Work groups fold the blocks (block_program.hpp). With byTexel, all inputs are packed, and their texels have the same
   /// x.
   bool byGroups = false;
+  bool ofDigits = false;  ///< folds the terms of an exact sum (sk/exact_digits.hpp)
 };
 
 /// Plans the passes that fold elements into `result`, whose elements are the blocks, in order. Neither is

@@ -101,6 +101,9 @@ struct ReduceVariant {
   /// ScanUnit::Tile: the only pass; its groups share a buffer at binding 0, which is 0 at first: a word, then two for each
   /// accumulator and tile.
   bool chained = false;
+  /// Scans of the terms of an exact sum (sk/exact_digits.hpp). Items of partial results are combined with the identities,
+  /// even where they could start a run, so that every result has been combined; rows settle digits that have no more room.
+  bool ofDigits = false;
   bool carried = false;  ///< scans: reads the results of the runs before
   bool carryLayered = false;  ///< of these
   RowPass rows = RowPass::None;

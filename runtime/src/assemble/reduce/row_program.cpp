@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <utility>
 
 #include <fmt/format.h>
@@ -107,7 +108,9 @@ class RowText : FoldText {
     return calling(kernel_, [&](std::size_t i, std::size_t) { return elementAt(i, number); });
   }
 
-  bool startsFromElement() const { return isOfPartials(variant_.walk) || reduction_.seeded; }
+  bool startsFromElement() const {
+    return isOfPartials(variant_.walk) ? !variant_.ofDigits : reduction_.seeded;
+  }
   bool hasIdentities() const {
     return std::ranges::none_of(accumulators_,
                                 [](const Parameter* accumulator) { return accumulator->identity.empty(); });
@@ -280,10 +283,21 @@ class RowText : FoldText {
       startFromIdentities();
     }
     if (variant_.carried) continueFromCarry(isSeeded);
+    const bool mustSettle = variant_.ofDigits && variant_.carried && !isOfPartials(variant_.walk);
+    if (mustSettle) program_.foreign(reduction_.addition);
     statement(fmt::format("for (int sk_k = {}; sk_k < sk_count; ++sk_k) {{", isSeeded ? 1 : 0));
+    if (mustSettle) settleDigits();
     moveTo("sk_at + sk_k", "  ");
     statement("  " + foldAt("sk_at + sk_k"));
     statement("}");
+  }
+
+  /// Combines digits with zero where a piece has used the room that its carry leaves.
+  void settleDigits() {
+    assert(!reduction_.addition.empty());
+    const auto zero = [&](std::size_t, std::size_t k) { return std::string(identityOf(*accumulators_[k])); };
+    statement(
+        fmt::format("  if (sk_k == {}) {}", program::longestContinuedRun, calling(reduction_.combine, zero)));
   }
 
   void continueFromCarry(bool isSeeded) {

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <optional>
 
+#include "assemble/reduce/digit_loads.hpp"
 #include "assemble/reduce/scan_tiles.hpp"
 
 namespace sk::assemble {
@@ -58,6 +59,7 @@ class ScanPlanner {
     addDomain(pass, result_, false);
     setGroups(pass, levels_[0]);
     plan.scans.push_back(std::move(pass));
+    assert(!access_.ofDigits || keepsRoom(plan));
     return plan;
   }
 
@@ -77,12 +79,12 @@ class ScanPlanner {
   /// Chooses what an invocation computes. Lines that are one element apart are walked side by side, each by invocations
   /// of its own; a line whose elements are neighbours is divided into tiles, unless it is short.
   void divide(Level& level) const {
-    constexpr std::int32_t shortLine = 128, longestWalk = 32;
+    constexpr std::int32_t shortLine = 128;
     const bool isOfElements = levels_.size() == 1;
     const std::int32_t most = isOfElements ? access_.elementRun : access_.partialRun;
     if (limits_.grouped && level.inner > 1) {
       level.unit = ScanUnit::Run;
-      level.run = longestWalk;
+      level.run = access_.ofDigits ? program::longestContinuedRun : program::longestRun;
     } else if (limits_.grouped && most > 0 && (lines_ == 1 || level.length >= shortLine)) {
       level.unit = ScanUnit::Tile;
       level.run = runInTile(level.length, most, isOfElements);
@@ -126,6 +128,7 @@ class ScanPlanner {
         scan == ScanPass::Folds && source.unit == ScanUnit::Run ? ScanUnit::Item : source.unit;
     pass.variant.run = static_cast<std::uint8_t>(source.run);
     pass.variant.packed = level == 0 && access_.byTexel;
+    pass.variant.ofDigits = level > 0 && scan != ScanPass::Folds && access_.ofDigits;
     pass.variant.axes = decodedRank({.extent = extent_});
     pass.variant.sourceLayered = source.layout.layered;
     pass.uniforms = {{"sk_inner", false, {source.inner}},

@@ -25,6 +25,8 @@ namespace sk::assemble {
 /// The elements of a run (ReduceLimits::fanIn). An item of a level folds half a run on average, and the results of runs
 /// take passes of their own.
 inline constexpr std::int32_t scanRun = 16;
+/// A run of an exact sum may continue from another one (sk/exact_digits.hpp), also in browsers.
+static_assert(program::DigitLoad<std::int32_t>(scanRun).room() >= scanRun);
 
 struct ScanPlan {
   std::vector<ReducePass> folds;  ///< from the elements to one run in each line
@@ -48,6 +50,7 @@ struct ScanAccess {
   /// dispatches can (scan_tiles.hpp).
   std::int32_t elementRun = 0, partialRun = 0;
   bool chained = false;  ///< one pass scans all tiles of the elements, if they are one line
+  bool ofDigits = false;  ///< folds the terms of an exact sum (sk/exact_digits.hpp)
   std::int32_t patience =
       1024;  ///< how often a group looks for the result of a tile before it folds it itself
 };

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: a dispatched scan takes one pass, or three while the totals of its tiles fit into one, whose groups cover all
-// items; lines that are one element apart are walked side by side.
+// items; lines that are one element apart are walked side by side. Digits of exact sums have room for what runs add.
 #include <catch2/catch.hpp>
 
+#include "assemble/reduce/digit_loads.hpp"
 #include "assemble/reduce/scan_plan.hpp"
 #include "assemble/reduce/scan_tiles.hpp"
 
@@ -93,4 +94,29 @@ TEST_CASE("lines across rows are walked side by side, and short lines item by it
   CHECK(groupsOf(across.scans.back()) == (32 * 100 + tileGroup - 1) / tileGroup);
   const ScanPlan along = plan(plane, {100, 1}, access);
   CHECK(along.scans.back().variant.unit == ScanUnit::Item);
+}
+
+TEST_CASE("digits of exact sums have room for runs") {
+  constexpr ReduceLimits drawn{.texture = {16384, 256, true}, .fanIn = scanRun};
+  for (const std::int32_t length : {1, 16, 31, 32, 100, 4000, 1 << 20}) {
+    for (const std::int32_t inner : {1, 3}) {
+      for (const bool byTexel : {false, true}) {
+        if (byTexel && (inner > 1 || length % lanes != 0)) continue;
+        RegionLayout elements = byTexel ? packedLine(length) : RegionLayout{.extent = {inner, length, 1, 1}};
+        if (!byTexel && inner == 1) elements.extent = {length, 1, 1, 1};
+        ScanAccess access{.byIndex = false, .byTexel = byTexel, .ofDigits = true};
+        for (const std::int32_t tileRun : {0, 1, 2}) {  // of 52 bytes of accumulators: 1
+          access.elementRun = access.partialRun = tileRun;
+          for (const ReduceLimits& limits : {drawn, dispatched}) {
+            INFO(length << ", " << inner << " apart, " << tileRun);
+            const ScanPlan scan = planScan(elements, elements, limits, {length, inner}, access, false);
+            CHECK(keepsRoom(scan));
+          }
+        }
+      }
+    }
+  }
+  // the check finds runs that are too long
+  const RegionLayout plane{.extent = {3, 100, 1, 1}};
+  CHECK_FALSE(keepsRoom(plan(plane, {100, 3}, {.byIndex = false})));
 }

@@ -26,7 +26,10 @@ class ScanText : protected FoldText {
   bool isOneLine() const { return variant_.runs == Runs::OneBlock; }
   bool isExclusive() const { return variant_.scan == ScanPass::Exclusive; }
   /// Whether folds start from their first item.
-  bool isSeeded() const { return !isExclusive() && (isOfPartials(variant_.walk) || reduction_.seeded); }
+  bool isSeeded() const {
+    const bool startsFromItem = isOfPartials(variant_.walk) ? !variant_.ofDigits : reduction_.seeded;
+    return startsFromItem && !isExclusive();
+  }
   /// Whether the result is packed, too: the accumulators after, or before, each of the four elements.
   bool keepsLanes() const { return variant_.packed && variant_.scan != ScanPass::Folds; }
   std::string keptOf(const program::Parameter& accumulator) const { return held("sk_kept", accumulator); }

@@ -207,7 +207,7 @@ class TileScanText : ScanText {
     for (const Parameter* accumulator : accumulators_) {
       const bool hasIdentity = !isSeeded();
       statement(hasIdentity ? fmt::format("{} {} = {};", accumulator->element->glsl, total(*accumulator),
-                                          accumulator->identity)
+                                          identityOf(*accumulator))
                             : fmt::format("{} {};", accumulator->element->glsl, total(*accumulator)));
     }
   }
@@ -334,7 +334,7 @@ class TileScanText : ScanText {
     if (!isSeeded()) {
       statement("} else {");
       for (const Parameter* accumulator : accumulators_)
-        statement(fmt::format("  {} = {};", total(*accumulator), accumulator->identity));
+        statement(fmt::format("  {} = {};", total(*accumulator), identityOf(*accumulator)));
     }
     statement("}");
   }
@@ -378,7 +378,7 @@ class TileScanText : ScanText {
     if (!isSeeded()) {
       statement("} else {");
       for (const Parameter* accumulator : accumulators_)
-        statement(fmt::format("  {} = {};", total(*accumulator), accumulator->identity));
+        statement(fmt::format("  {} = {};", total(*accumulator), identityOf(*accumulator)));
     }
     statement("}");
     foldRun(true, written);

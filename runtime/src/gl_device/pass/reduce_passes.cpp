@@ -78,6 +78,7 @@ ReducePasses::ReducePasses(GlDevice& device, const ResolvedReduction& call)
       specs_(specsOf(call.reduction.fold, call.arguments)),
       isScan_(call.scan.has_value()),
       isInRows_(call.rows != nullptr),
+      ofDigits_(foldsDigits(call)),
       placed_(call.placed),
       blocks_(xFirst(call.blocks)) {
   findOperands(call.arguments, call.domain);
@@ -111,7 +112,8 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
                                     .byTexel = byTexel_,
                                     .inAnyOrder = reduction_.commutative,
                                     .inGroups = assemble::foldsInGroups(reduction_),
-                                    .byGroups = byGroups_};
+                                    .byGroups = byGroups_,
+                                    .ofDigits = ofDigits_};
   const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
   startAll(passes);
   for (const ReducePass& pass : passes) {
@@ -143,6 +145,7 @@ void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* cons
       .texture = device_.textureLimits(), .fanIn = assemble::scanRun, .grouped = isDispatched};
   const assemble::Lines lines = assemble::linesOf(elements_.extent, blocks_);
   assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
+  access.ofDigits = ofDigits_;
   if (isDispatched && device_.tilesScans)
     assemble::addTiles(access, reduction_, device_.chainsScans && !device_.bound.isLogged());
   access.patience = device_.scanPatience.value_or(access.patience);

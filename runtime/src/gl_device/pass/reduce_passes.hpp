@@ -133,6 +133,7 @@ class ReducePasses {
   assemble::RegionLayout elements_;
   const bool isScan_;
   const bool isInRows_;  ///< of different lengths
+  const bool ofDigits_;  ///< folds the terms of an exact sum
   const FoldedBox placed_;
   bool byGroups_ = false;
   bool byTexel_ = false;

@@ -148,6 +148,7 @@ void ReducePasses::scanRows(const RowsState& rows, const RegionLayout& result,
     const std::array<Operand, 1> tables = {tableOperand(levels[i].places)};
     useTable(pass, tables.front());
     pass.variant.rows = i == 0 && isExclusive ? RowPass::Exclusive : RowPass::Inclusive;
+    pass.variant.ofDigits = ofDigits_;
     if (i + 1 < levels.size()) {
       pass.variant.carried = true;
       pass.variant.carryLayered = layouts[i + 1].layered;

@@ -224,7 +224,7 @@ void addAccuracy(CLI::App& app) {
       ->check(CLI::Range(1, 10'000));
   command
       ->add_option("--data", measurement.data,
-                   "What sums add: uniform, signed, wide, illconditioned (default: each of them)")
+                   "What sums add: uniform, signed, wide, illconditioned, tiny (default: each of them)")
       ->type_name("KIND")
       ->transform(CLI::CheckedTransformer(dataByName()).description(""));
   command

@@ -14,7 +14,11 @@ namespace {
 
 constexpr double cancellation = 1e12;
 
-float draw(SumData data, Numbers& numbers) {
+float draw(SumData data, bool hasFactors, Numbers& numbers) {
+  if (data == SumData::Tiny) {
+    const double least = hasFactors ? 0x1p-63 : 0x1p-126, most = hasFactors ? 0x1p-45 : 0x1p-90;
+    return numbers.anySign(numbers.logarithmic(least, most));
+  }
   if (data == SumData::Uniform) return numbers.linear(0, 1);
   if (data == SumData::Signed) return numbers.linear(-1, 1);
   return numbers.anySign(numbers.logarithmic(std::exp(-10), std::exp(10)));
@@ -54,9 +58,9 @@ void cancel(Pairs& pairs, bool hasFactors, Numbers& numbers) {
 Pairs drawPairs(SumData data, std::size_t count, bool hasFactors, unsigned seed) {
   Numbers numbers(seed);
   Pairs pairs{std::vector<float>(count), std::vector<float>(count, 1.0F)};
-  for (float& x : pairs.x) x = draw(data, numbers);
+  for (float& x : pairs.x) x = draw(data, hasFactors, numbers);
   if (hasFactors) {
-    for (float& y : pairs.y) y = draw(data, numbers);
+    for (float& y : pairs.y) y = draw(data, hasFactors, numbers);
   }
   if (data == SumData::IllConditioned) cancel(pairs, hasFactors, numbers);
   return pairs;

@@ -11,7 +11,7 @@
 
 namespace sk_tool {
 
-enum class SumData : std::uint8_t { Uniform, Signed, Wide, IllConditioned };
+enum class SumData : std::uint8_t { Uniform, Signed, Wide, IllConditioned, Tiny };
 
 struct SumDataName {
   SumData data;
@@ -19,11 +19,12 @@ struct SumDataName {
   std::string_view about;
 };
 
-inline constexpr std::array<SumDataName, 4> sumDataNames{{
+inline constexpr std::array<SumDataName, 5> sumDataNames{{
     {SumData::Uniform, "uniform", "in [0, 1]"},
     {SumData::Signed, "signed", "in [-1, 1]"},
     {SumData::Wide, "wide", "of either sign, magnitudes from e^-10 to e^10"},
     {SumData::IllConditioned, "illconditioned", "that cancel but for 10^-12 of them"},
+    {SumData::Tiny, "tiny", "of either sign, which, or whose products, are 2^-126 to 2^-90"},
 }};
 
 struct Pairs {

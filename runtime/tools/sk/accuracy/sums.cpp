@@ -39,45 +39,55 @@ struct Truth {
 /// One per result, in the order of the reduction.
 using Truths = std::vector<Truth>;
 
+/// How a device adds so many numbers, as docs/accuracy.md has it ("Sums").
+struct Additions {
+  double depth;  ///< the most additions that a number takes part in
+  double lost;  ///< what they lose where numbers are flushed to 0, or rounded to a denormal
+};
+
 struct SumMode {
   const char* name;
   sk::CallOptions options;
-  /// Bound of the relative error of a sum with a condition, in a tree in which a summand takes part in
-  /// `depth` additions.
-  double (*bound)(double condition, double depth);
+  /// Bound of the absolute error of a sum. `magnitude`: the sum of magnitudes.
+  double (*bound)(double sum, double magnitude, const Additions& additions);
 };
 
-/// Bounds of sk/options.hpp (Higham, Accuracy and Stability of Numerical Algorithms, section 4.2; Ogita, Rump
-/// and Oishi 2005 for compensated sums and dot products). Each includes one rounding to float.
+/// Bounds of docs/accuracy.md (Higham, Accuracy and Stability of Numerical Algorithms, section 4.2; Ogita, Rump
+/// and Oishi 2005 for compensated sums and dot products). Each includes the rounding of products.
 constexpr SumMode sumModes[] = {
     {"tree",
      {.accumulate = Accumulate::Tree},
-     [](double condition, double depth) { return (depth + 1) * u * condition; }},
+     [](double, double magnitude, const Additions& a) { return (a.depth + 1) * u * magnitude + a.lost; }},
     {"compensated",
      {.accumulate = Accumulate::Compensated},
-     [](double condition, double depth) { return u + (depth + 1) * (depth + 1) * u * u * condition; }},
+     [](double sum, double magnitude, const Additions& a) {
+       return u * sum + 2 * (a.depth + 1) * (a.depth + 1) * u * u * magnitude + a.lost;
+     }},
     {"extended",
      {.accumulate = Accumulate::Extended},
-     [](double condition, double depth) { return u + (depth + 1) * 0x1p-44 * condition; }},
+     [](double sum, double magnitude, const Additions& a) {
+       return u * sum + (a.depth + 1) * 0x1p-44 * magnitude + a.lost;
+     }},
     {"double",
      {.precision = sk::Precision::Double},
-     [](double condition, double depth) { return u + (depth + 1) * 0x1p-53 * condition; }},
-    {"exact", {.accumulate = Accumulate::Exact}, [](double, double) { return u; }},
+     [](double sum, double magnitude, const Additions& a) {
+       return u * sum + (a.depth + 1) * 0x1p-53 * magnitude + a.lost;
+     }},
+    {"exact",
+     {.accumulate = Accumulate::Exact},
+     [](double sum, double, const Additions&) { return std::max(u * sum, 0x1p-150); }},
     {"half", {.precision = sk::Precision::Half}, nullptr},
 };
 
-/// The most additions in which a summand takes part: each pass of a reduction folds runs of 32, or fewer
-/// natively, and the first may combine 8 of them.
-double depthOf(std::size_t count) {
-  double depth = 7;
-  for (std::size_t left = count; left > 1; left = (left + 31) / 32) {
-    depth += static_cast<double>(std::min<std::size_t>(left, 32) - 1);
-  }
-  return depth;
+Additions additionsOf(const sk::Device& device, std::size_t count) {
+  const double n = static_cast<double>(count), log2 = std::log2(std::max(n, 2.0));
+  if (device.profile() == "native") return {24 + log2, n * 0x1p-149};
+  return {31 * std::ceil(log2 / std::log2(30.0)) + 8, n * 0x1p-122};
 }
 
 /// Of several results, the worst counts.
-Grade gradeOf(const SumMode& mode, const Truths& truths, const std::vector<float>& results, double depth) {
+Grade gradeOf(const SumMode& mode, const Truths& truths, const std::vector<float>& results,
+              const Additions& additions) {
   double relative = 0, scaled = 0, bound = 0;
   bool isWithin = true;
   for (std::size_t i = 0; i < truths.size(); ++i) {
@@ -88,7 +98,8 @@ Grade gradeOf(const SumMode& mode, const Truths& truths, const std::vector<float
     relative = std::max(relative, itsRelative);
     scaled = std::max(scaled, error == 0 ? 0 : error / (u * truth.magnitude));
     if (mode.bound == nullptr) continue;
-    const double itsBound = mode.bound(truth.condition(), depth);
+    const double sum = std::fabs(truth.sum.value());
+    const double itsBound = mode.bound(sum, truth.magnitude, additions) / sum;
     bound = std::max(bound, itsBound);
     isWithin = isWithin && itsRelative <= itsBound;
   }
@@ -108,8 +119,9 @@ std::vector<Row> compareSums(sk::Device& device, const Measurement& measurement,
     candidates.push_back({mode.name, [&] {
                             auto results = std::make_shared<std::vector<float>>();
                             return Trial{[&mode, &call, results] { *results = call(mode.options); },
-                                         [&mode, &truths, &measurement, results] {
-                                           return gradeOf(mode, truths, *results, depthOf(measurement.size));
+                                         [&mode, &truths, &measurement, &device, results] {
+                                           return gradeOf(mode, truths, *results,
+                                                          additionsOf(device, measurement.size));
                                          }};
                           }});
   }
