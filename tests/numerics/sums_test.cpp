@@ -384,6 +384,10 @@ TEST_CASE("what sums no floats is refused") {
   sk::Device& device = run_tests::device("glsl330");
   CHECK_THROWS_WITH(sums::largest.with(exact)(streamOf<float>(device, {1, 2})),
                     Catch::Contains("largest") && Catch::Contains("no sum of floats"));
+  const auto x = streamOf<float>(device, {1, 2});
+  CHECK_THROWS_WITH(sums::withMatrix.with(exact)(x), Catch::Contains("others beside it that cannot be"));
+  CHECK_THROWS_WITH(sums::halved.with(exact)(x), Catch::Contains("others beside it that cannot be"));
+  CHECK(sums::halved(x).s == 3);
 }
 
 /// Terms of up to 2^50 that cancel except for two small ones, in an order in which sums of doubles must round.
