@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cpp/browser.hpp"
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "browser_page.hpp"
 #include "driver/compile.hpp"
 
 namespace fuzz::cpp {
@@ -48,18 +48,8 @@ std::map<std::uint64_t, std::string> BrowserBatch::run() const {
   std::ofstream(folder_.path() / "samples.json")
       << fmt::format(R"({{"a": [{}], "b": [{}], "c": [{}], "programs": [{}]}})", fmt::join(inputs().a, ", "),
                      fmt::join(inputs().b, ", "), fmt::join(inputs().c, ", "), programs);
-  const std::string found = (folder_.path() / "found").string();
-  static const TemporaryFolder package;  // is built once for all batches
-  const std::string command = fmt::format("python3 '{}/tests/fuzz/cpp/browser.py' '{}' '{}' '{}' '{}' >'{}'",
-                                          SK_SOURCE_FOLDER, folder_.path().string(), SK_SOURCE_FOLDER,
-                                          SK_BUILD_FOLDER, (package.path() / "built").string(), found);
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("the browser does not run the programs");
-  std::map<std::uint64_t, std::string> differences;
-  std::ifstream in(found);
-  for (std::string line; std::getline(in, line);) {
-    const std::size_t colon = line.find(": ");
-    differences[std::stoull(line)] = "webgl2: " + line.substr(colon + 2);
-  }
+  std::map<std::uint64_t, std::string> differences = reportsOf(folder_.path(), "cpp/programs.mjs");
+  for (auto& [number, difference] : differences) difference.insert(0, "webgl2: ");
   return differences;
 }
 

@@ -125,6 +125,18 @@ Case parsed(const std::string& text) {
   return one;
 }
 
+std::string optionsInBrowsers(const Case& one) {
+  Json json = Json::object();
+  const sk::CallOptions& options = one.options;
+  if (options.accumulate != sk::Accumulate::Default)
+    json["accumulate"] = nameOf(accumulateNames, options.accumulate);
+  if (options.precision != sk::Precision::Default)
+    json["precision"] = nameOf(precisionNames, options.precision);
+  if (options.scan == sk::Scan::Exclusive) json["scan"] = "exclusive";
+  if (options.along) json["along"] = *options.along;
+  return json.dump();
+}
+
 std::string described(const Case& one) {
   std::string text = one.operation;
   const auto add = [&](const char* what, const std::string& value) {

@@ -41,6 +41,9 @@ sk::Shape shapeOf(const std::vector<std::int64_t>& extents);
 std::string written(const Case& one);
 Case parsed(const std::string& text);
 
+/// The options of a case as runtime/web takes them, as JSON.
+std::string optionsInBrowsers(const Case& one);
+
 /// What a reader wants to know of a case, on one line, without its data.
 std::string described(const Case& one);
 /// A number in decimal and, unless it is a small integer, in hexadecimal.

@@ -111,10 +111,10 @@ void sprinkleSpecials(Random& random, Values& x) {
 
 }  // namespace
 
-Values terms(Random& random, std::size_t count, const Range& range) {
+Values terms(Random& random, std::size_t count, const Range& range, std::size_t kind) {
   Values x(count);
   if (count == 0) return x;
-  switch (random.below(12)) {
+  switch (kind) {
     case 0:
     case 1: fillCarries(random, x, range); break;
     case 2: fillEqual(random, x, range); break;

@@ -17,8 +17,9 @@ struct Range {
 };
 inline constexpr Range floatRange{-149, 127, 24}, doubleRange{-240, 240, 53};
 
-/// Elements of an accumulator, made such that sums of them are hard.
-Values terms(Random& random, std::size_t count, const Range& range);
+/// Elements of an accumulator, made such that sums of them are hard. There are several kinds of such numbers.
+inline constexpr std::size_t kindsOfTerms = 12;
+Values terms(Random& random, std::size_t count, const Range& range, std::size_t kind);
 /// Arguments of functions.
 Values arguments(Random& random, std::size_t count, Data data, bool areDoubles);
 Values integers(Random& random, std::size_t count, bool areSigned);

@@ -107,11 +107,38 @@ bool canRun(const std::string& target, const Case& one) {
   if (one.options.contraction == sk::Contraction::Fast && !isNative) return false;
   if (one.options.precision == sk::Precision::Double && (isPairs && !isNative)) return false;
   if (isNative) return true;
-  if (isWeb && (!one.starts.empty() || one.view == View::Reshaped || one.storage != sk::Storage::Single ||
-                one.textureLimit != 0))
-    return false;
-  if (one.storage == sk::Storage::Double && target == "essl300") return false;
-  return !(operation.hasDoubles && one.view != View::Whole && isWeb);
+  if (isWeb) {  // docs/browser.md, How it differs from C++
+    const bool isMap = operation.kind == Kind::Map, isWhole = one.view == View::Whole;
+    const bool hasVariants = operation.name == "operators" || operation.name == "literals";
+    if (!one.starts.empty() || one.view == View::Reshaped || one.storage != sk::Storage::Single ||
+        one.textureLimit != 0)
+      return false;
+    if (!isWhole && (isMap || operation.kind == Kind::Fold)) return false;
+    return one.options.precision == sk::Precision::Default || hasVariants;
+  }
+  return one.storage != sk::Storage::Double || target != "essl300";
+}
+
+bool isToValue(const Case& one) {
+  return operationNamed(one.operation).kind == Kind::Reduce && one.result.empty() && one.starts.empty();
+}
+
+std::vector<std::vector<std::int64_t>> outputShapes(const Case& one) {
+  const Operation& operation = operationNamed(one.operation);
+  std::vector<std::vector<std::int64_t>> shapes;
+  std::size_t component = 0;
+  for (const Element output : operation.outputs) {
+    const bool isFolded = component >= operation.componentsOfElementOutputs() && operation.kind != Kind::Scan;
+    component += static_cast<std::size_t>(components(output));
+    std::vector<std::int64_t> shape = one.shape;
+    if (isFolded && !one.starts.empty()) {
+      shape = {static_cast<std::int64_t>(one.starts.size()) - 1};
+    } else if (isFolded) {
+      shape = one.result.empty() ? std::vector<std::int64_t>(one.shape.size(), 1) : one.result;
+    }
+    shapes.push_back(shape);
+  }
+  return shapes;
 }
 
 Arithmetic arithmeticOf(const std::string& target, const Case& one) {
@@ -169,23 +196,15 @@ std::vector<Values> Devices::run(const std::string& target, const Case& one) {
     call.rows = (*rows)(*starts).rows;
   }
   std::vector<Values> results;
-  const bool isValue = operation.kind == Kind::Reduce && one.result.empty() && one.starts.empty();
-  if (isValue) {
+  if (isToValue(one)) {
     call.values = &results;
     operation.call(call);
     return results;
   }
-  std::size_t component = 0;
-  for (const Element output : operation.outputs) {
-    const bool isFolded = component >= operation.componentsOfElementOutputs() && operation.kind != Kind::Scan;
-    component += static_cast<std::size_t>(components(output));
-    std::vector<std::int64_t> shape = one.shape;
-    if (isFolded && !one.starts.empty())
-      shape = {static_cast<std::int64_t>(one.starts.size()) - 1};
-    else if (isFolded)
-      shape = one.result.empty() ? std::vector<std::int64_t>(one.shape.size(), 1) : one.result;
-    withElement(output, [&]<class T>(T) {
-      auto placed = place<T>(on, shape, one.view, sk::Storage::Single);
+  const std::vector<std::vector<std::int64_t>> shapes = outputShapes(one);
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    withElement(operation.outputs[k], [&]<class T>(T) {
+      auto placed = place<T>(on, shapes[k], one.view, sk::Storage::Single);
       call.outputs.push_back(placed.region);
       streams.emplace_back(std::move(placed.stream));
     });

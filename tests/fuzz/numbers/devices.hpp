@@ -19,6 +19,11 @@ extern const std::vector<std::string> targetNames;
 /// Whether a target can run a case: some have no doubles, rows, or contraction.
 bool canRun(const std::string& target, const Case& one);
 
+/// Whether a case folds to values, and not to streams.
+bool isToValue(const Case& one);
+/// The shapes of the streams that a case writes.
+std::vector<std::vector<std::int64_t>> outputShapes(const Case& one);
+
 Arithmetic arithmeticOf(const std::string& target, const Case& one);
 
 class Devices {

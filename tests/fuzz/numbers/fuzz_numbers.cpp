@@ -17,6 +17,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
+#include "numbers/browser.hpp"
 #include "numbers/devices.hpp"
 #include "numbers/generator.hpp"
 #include "numbers/shrink.hpp"
@@ -32,6 +33,7 @@ using fuzz::numbers::Devices;
 struct Options : fuzz::Command {
   Options() { count = 1000, seconds = 120; }
   std::vector<std::string> targets{"native"}, files;
+  bool hasBrowser() const { return std::ranges::count(targets, "webgl2") > 0; }
   double minutes = 0;
   std::uint64_t mostFindings = 40;
   int budget = 400;
@@ -43,6 +45,23 @@ std::string mistakeOn(Devices& devices, const std::string& target, const Case& o
   } catch (const sk::Error& error) {
     return std::string("throws ") + error.what();
   }
+}
+
+/// What is wrong with each of some cases in a browser, or "".
+std::vector<std::string> mistakesInBrowser(std::span<const Case> cases) {
+  std::vector<std::string> mistakes(cases.size(), "gives no result");
+  for (const auto& [number, result] : fuzz::numbers::runInBrowser(cases)) {
+    const auto* values = std::get_if<std::vector<fuzz::numbers::Values>>(&result);
+    mistakes[number] = values == nullptr
+                           ? std::get<std::string>(result)
+                           : mistakeOf(cases[number], *values, arithmeticOf("webgl2", cases[number]));
+  }
+  return mistakes;
+}
+
+/// Whether a case that was made smaller has a mistake like the first one's.
+bool areAlike(const std::string& mistake, const std::string& first) {
+  return !mistake.empty() && mistake.starts_with("throws") == first.starts_with("throws");
 }
 
 /// What findings about one mistake have in common.
@@ -85,6 +104,13 @@ class Campaigns {
 
  private:
   void runSlice(std::uint64_t first, std::uint64_t count) {
+    if (options_.targets != std::vector<std::string>{"webgl2"}) runOnDevices(first, count);
+    constexpr std::uint64_t most = 1000;  // in one page
+    for (std::uint64_t done = 0; options_.hasBrowser() && done < count; done += most)
+      runInBrowser(first + done, std::min(most, count - done));
+  }
+
+  void runOnDevices(std::uint64_t first, std::uint64_t count) {
     fuzz::Campaign campaign{.first = first, .count = count, .batch = 4000, .seconds = options_.seconds};
     std::map<std::string, int> kinds;  // of the child
     std::optional<Devices> devices;
@@ -108,24 +134,61 @@ class Campaigns {
       verdict.tally += target + " ";
       const std::string wrong = mistakeOn(devices, target, one);
       if (wrong.empty() || !verdict.finding.empty()) continue;
-      const std::string kind = kindOf(target, one, wrong);
-      fuzz::numbers::Shrunk best{one, wrong};
-      if (++kinds[kind] <= 2) {
-        const auto find = [&](std::span<const Case> cases) -> std::optional<fuzz::numbers::Failure> {
-          for (std::size_t i = 0; i < cases.size(); ++i) {
-            if (!canRun(target, cases[i])) continue;
-            const std::string what = mistakeOn(devices, target, cases[i]);
-            if (!what.empty() && what.starts_with("throws") == wrong.starts_with("throws"))
-              return fuzz::numbers::Failure{i, what};
-          }
-          return std::nullopt;
-        };
-        best = fuzz::numbers::shrunk(one, wrong, find, options_.budget, 1);
-      }
-      verdict.finding =
-          kind + "\n" + report(target, best.smallest, best.what) + "\f" + written(best.smallest);
+      const auto find = [&](std::span<const Case> cases) -> std::optional<fuzz::numbers::Failure> {
+        for (std::size_t i = 0; i < cases.size(); ++i) {
+          if (!canRun(target, cases[i])) continue;
+          const std::string what = mistakeOn(devices, target, cases[i]);
+          if (areAlike(what, wrong)) return fuzz::numbers::Failure{i, what};
+        }
+        return std::nullopt;
+      };
+      verdict.finding = findingOf(target, one, wrong, find, 1, kinds);
     }
     return verdict;
+  }
+
+  /// The kind of a finding, a report for people, and the smallest case, if it is one of the first of its kind.
+  std::string findingOf(const std::string& target, const Case& one, const std::string& wrong,
+                        const fuzz::numbers::FindFailure& find, std::size_t together,
+                        std::map<std::string, int>& kinds) const {
+    const std::string kind = kindOf(target, one, wrong);
+    fuzz::numbers::Shrunk best{one, wrong};
+    if (++kinds[kind] <= 2) best = fuzz::numbers::shrunk(one, wrong, find, options_.budget, together);
+    return kind + "\n" + report(target, best.smallest, best.what) + "\f" + written(best.smallest);
+  }
+
+  void runInBrowser(std::uint64_t first, std::uint64_t count) {
+    std::vector<Case> cases;
+    std::vector<std::uint64_t> numbers;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      Case one = fuzz::numbers::generate(options_.seed, first + i);
+      if (!canRun("webgl2", one)) continue;
+      cases.push_back(std::move(one));
+      numbers.push_back(first + i);
+    }
+    tallies_["webgl2"] += cases.size();
+    if (options_.targets.size() == 1) cases_ += count;
+    const std::vector<std::string> mistakes = mistakesInBrowser(cases);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      if (mistakes[i].empty()) continue;
+      const auto find = [&](std::span<const Case> candidates) -> std::optional<fuzz::numbers::Failure> {
+        std::vector<Case> possible;
+        std::vector<std::size_t> places;
+        for (std::size_t k = 0; k < candidates.size(); ++k) {
+          if (!canRun("webgl2", candidates[k])) continue;
+          possible.push_back(candidates[k]);
+          places.push_back(k);
+        }
+        const std::vector<std::string> found = mistakesInBrowser(possible);
+        for (std::size_t k = 0; k < found.size(); ++k) {
+          if (areAlike(found[k], mistakes[i])) return fuzz::numbers::Failure{places[k], found[k]};
+        }
+        return std::nullopt;
+      };
+      keep({.number = numbers[i],
+            .what = findingOf("webgl2", cases[i], mistakes[i], find, 100, browserKinds_),
+            .log = {}});
+    }
   }
 
   void keep(const fuzz::Finding& finding) {
@@ -148,7 +211,7 @@ class Campaigns {
 
   const Options& options_;
   std::uint64_t cases_ = 0, findings_ = 0;
-  std::map<std::string, int> kinds_;
+  std::map<std::string, int> kinds_, browserKinds_;
   std::map<std::string, std::uint64_t> tallies_;
 };
 
@@ -167,7 +230,8 @@ int runFiles(const Options& options) {
     const Case one = fuzz::numbers::parsed(textOf(file));
     for (const std::string& target : options.targets) {
       if (!canRun(target, one)) continue;
-      const std::string wrong = mistakeOn(devices, target, one);
+      const std::string wrong = target == "webgl2" ? mistakesInBrowser(std::span(&one, 1)).front()
+                                                   : mistakeOn(devices, target, one);
       if (wrong.empty()) continue;
       ++findings;
       std::cout << file << "\n" << report(target, one, wrong);

@@ -101,7 +101,7 @@ void chooseOptions(Random& random, const Operation& operation, Case& made) {
   }
 }
 
-Values valuesOf(Random& random, const Parameter& parameter, const Case& made) {
+Values valuesOf(Random& random, const Parameter& parameter, const Case& made, std::size_t kindOfTerms) {
   if (parameter.data == Data::Trips)
     return {static_cast<double>(random.pick(std::array{1, 2, 31, 32, 33, 40, 64, 100, 254, 255, 256, 300}))};
   const std::size_t count =
@@ -109,7 +109,11 @@ Values valuesOf(Random& random, const Parameter& parameter, const Case& made) {
       static_cast<std::size_t>(components(parameter.element));
   const bool isDouble = parameter.element == Element::Double;
   if (parameter.data == Data::Integers) return integers(random, count, parameter.element == Element::Int);
-  if (parameter.data == Data::Terms) return terms(random, count, isDouble ? doubleRange : floatRange);
+  if (parameter.data == Data::Terms) {
+    // Often of one kind, as products carry only where both factors do.
+    const std::size_t kind = random.chance(1, 2) ? kindOfTerms : random.below(kindsOfTerms);
+    return terms(random, count, isDouble ? doubleRange : floatRange, kind);
+  }
   return arguments(random, count, parameter.data, isDouble);
 }
 
@@ -279,8 +283,9 @@ Case generate(std::uint64_t seed, std::uint64_t number) {
   if (operation.hasDoubles && random.chance(1, 4)) made.isPairs = true;
   if (operation.isForReals && !operation.hasDoubles && random.chance(1, 10))
     made.storage = random.pick(std::array{sk::Storage::Half, sk::Storage::Double});
+  const std::size_t kindOfTerms = random.below(kindsOfTerms);
   for (const Parameter& parameter : operation.inputs)
-    made.inputs.push_back(valuesOf(random, parameter, made));
+    made.inputs.push_back(valuesOf(random, parameter, made, kindOfTerms));
   return made;
 }
 

@@ -99,10 +99,9 @@ bool MapJudge::isRounded(double wanted, double got, double scale) const {
 }
 
 bool MapJudge::accepts(const char* name, double error, double nearest, double got) const {
-  const FunctionBounds& bounds = boundsOf(name);
   const bool isWide =
       options.precision == sk::Precision::Double || options.precision == sk::Precision::Extended;
-  if (error <= (isWide ? 0.51 : arithmetic.isNative ? bounds.native : bounds.gl)) return true;
+  if (error <= (isWide ? 0.51 : boundOf(name, sk::BoundedType::Float, arithmetic.isNative))) return true;
   if (!arithmetic.flushesDenormals) return false;
   if (options.precision == sk::Precision::Extended && std::fabs(nearest) < 0x1p-78 &&
       std::fabs(got - nearest) <= 0x1p-124)
@@ -122,15 +121,17 @@ bool MapJudge::isFunction(const char* name, numerics::Binary function, double x,
 }
 
 bool MapJudge::acceptsWide(const char* name, double error, double nearest, double got) const {
-  const FunctionBounds& bounds = boundsOf(name);
-  if (arithmetic.isNative) return error <= bounds.nativeDoubles;
+  if (arithmetic.isNative) return error <= boundOf(name, sk::BoundedType::Double, true);
   if (std::isnan(nearest) || std::isnan(got)) return std::isnan(nearest) && std::isnan(got);
   const double most = arithmetic.hasPairs ? 0x1.fffffcp127 : std::numeric_limits<double>::max();
   if (std::fabs(nearest) >= most) return std::fabs(got) >= most && std::signbit(got) == std::signbit(nearest);
   if (arithmetic.hasPairs && std::fabs(nearest) < 0x1p-78) return std::fabs(got - nearest) <= 0x1p-124;
   if (std::fabs(nearest) < 0x1p-1022) return std::fabs(got - nearest) <= 0x1p-1022;
   const double relative = std::fabs((got - nearest) / nearest);
-  return relative <= (arithmetic.hasPairs ? std::exp2(bounds.pairs) : (bounds.glDoubles + 0.5) * 0x1p-53);
+  // `nearest` is rounded itself.
+  return relative <=
+         (boundOf(name, arithmetic.hasPairs ? sk::BoundedType::Pair : sk::BoundedType::Double, false) + 0.5) *
+             0x1p-53;
 }
 
 bool MapJudge::isWideFunction(const char* name, numerics::Unary function, double x, double got) const {

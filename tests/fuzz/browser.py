@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 #
-# browser.py FOLDER SOURCE BUILD PACKAGE: runs the modules NUMBER.sk.js of a folder in Chromium, and compares what their kernels compute with
-# samples.json. Prints a line for each difference: the number, a colon, and what differs. Chromium starts once for all modules.
-# The JavaScript package is built into the folder PACKAGE, unless it is there already.
+# browser.py FOLDER SOURCE BUILD PACKAGE PAGE: runs the module PAGE, which has the files of a folder beside it, in Chromium. It posts pairs of
+# a number and a text; each is printed as a line with a colon between. The JavaScript package is built into the folder PACKAGE,
+# unless it is there already.
 import os
 import shutil
 import sys
 import tempfile
 
-folder, source, build, built = (os.path.realpath(path) for path in sys.argv[1:5])
+folder, source, build, built, page = (os.path.realpath(path) for path in sys.argv[1:6])
 here = os.path.dirname(os.path.realpath(__file__))
 sys.path.append(os.path.join(source, "tests/web"))
 import chromium
@@ -22,10 +22,10 @@ with tempfile.TemporaryDirectory() as pages:
     if not os.path.exists(built):
         package.build(source, built, build)
     os.symlink(built, f"{pages}/streamkernel")
-    for name in ("browser.html", "browser.mjs"):
-        shutil.copy(f"{here}/{name}", pages)
+    shutil.copy(f"{here}/browser.html", pages)
+    shutil.copy(page, f"{pages}/page.mjs")
     for name in os.listdir(folder):
         os.symlink(f"{folder}/{name}", f"{pages}/{name}")
     report = chromium.report_of(pages, "browser.html", seconds)
-for number, difference in report:
-    print(f"{number}: {difference}".replace("\n", "\1"))
+for number, text in report:
+    print(f"{number}: {text}".replace("\n", "\1"))

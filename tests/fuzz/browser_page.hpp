@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+//
+// Runs a module in Chromium, which takes seconds to start.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace fuzz {
+
+/// What the page of tests/fuzz with this name, which has the files of a folder beside it, reports by number. Throws
+/// std::runtime_error if the browser fails.
+std::map<std::uint64_t, std::string> reportsOf(const std::filesystem::path& folder, const std::string& page);
+
+}  // namespace fuzz
