@@ -17,6 +17,7 @@ struct Arithmetic {
   bool isNative = false;
   bool flushesDenormals = false;  ///< may take denormal numbers as 0
   bool hasPairs = false;  ///< doubles are pairs of floats
+  bool isDispatched = false;  ///< has compute programs
   int ranks = 1;  ///< that share a stream
 };
 
@@ -41,30 +42,43 @@ struct SumFacts {
   double magnitude = 0;  ///< sum of the magnitudes of the terms
   double sum = 0;
   bool areDoubles = false;  ///< the accumulator is a double
-  bool areProducts = false;
+
+  /// Partial results have more bits than floats.
+  bool isWide() const {
+    return precision == sk::Precision::Double || precision == sk::Precision::Extended ||
+           accumulate == sk::Accumulate::Extended;
+  }
 };
+
+/// The most additions that a term takes part in: docs/accuracy.md, Sums.
+inline double depthOf(const SumFacts& facts, const Arithmetic& arithmetic) {
+  const double n = std::max(facts.elements, 2.0), runs = std::ceil(std::log2(n) / std::log2(30.0));
+  double depth = 8 + 31 * runs;
+  if (arithmetic.isNative) {
+    depth = facts.isScan ? n : 24 + std::log2(n);
+  } else if (facts.isScan) {
+    depth = 64 * runs;
+  } else if (arithmetic.isDispatched && n >= 512) {
+    depth = 518 + 31 * runs;
+  }
+  return depth * std::max(facts.terms / n, 1.0) + arithmetic.ranks - 1;
+}
 
 /// The largest error of a sum that is not exact.
 inline double boundOf(const SumFacts& facts, const Arithmetic& arithmetic) {
   constexpr double u = 0x1p-24;
-  // An element adds its terms one after the other, and the elements form a tree.
-  // A native scan adds elements one after the other.
-  const bool isSequential = facts.isScan && arithmetic.isNative;
-  const double ofElement = std::max(1.0, facts.terms / std::max(1.0, facts.elements));
-  const double depth = isSequential ? facts.terms + 1 : std::log2(std::max(2.0, facts.elements)) + ofElement;
-  // Each rank before rounds twice more (docs/domains.md).
+  // Of the ranks before, each rounds a scan twice more (docs/domains.md).
   const double ofRanks = facts.isScan && arithmetic.ranks > 1 ? 2.0 * arithmetic.ranks : 0;
-  if (facts.areDoubles) {
-    const double unit = arithmetic.hasPairs ? 0x1p-44 : 0x1p-53;
-    return (facts.terms + ofRanks) * unit * facts.magnitude;
-  }
-  const double own = ofRanks * u * facts.magnitude + u * std::fabs(facts.sum) +
-                     (arithmetic.flushesDenormals ? 0x1p-126 : 0x1p-150);
-  if (facts.precision == sk::Precision::Extended || facts.precision == sk::Precision::Double ||
-      facts.accumulate == sk::Accumulate::Extended)
-    return own + 0x1p-44 * depth * facts.magnitude;
-  if (facts.accumulate == sk::Accumulate::Tree) return own + u * depth * facts.magnitude;
-  return own + depth * depth * u * u * facts.magnitude;
+  const double depth = depthOf(facts, arithmetic) + 1;  // a product is rounded, too
+  if (facts.areDoubles)
+    return (depth + ofRanks) * (arithmetic.hasPairs ? 0x1p-44 : 0x1p-53) * facts.magnitude;
+  const double lost =
+      facts.terms * (arithmetic.flushesDenormals ? 0x1p-122 : 0x1p-149) + ofRanks * u * facts.magnitude;
+  if (facts.accumulate == sk::Accumulate::Tree && !facts.isWide()) return lost + depth * u * facts.magnitude;
+  const double own = lost + u * std::fabs(facts.sum);
+  if (facts.precision == sk::Precision::Double) return own + depth * 0x1p-53 * facts.magnitude;
+  if (facts.isWide()) return own + depth * 0x1p-44 * facts.magnitude;
+  return own + 2 * depth * depth * u * u * facts.magnitude;
 }
 
 }  // namespace fuzz::numbers

@@ -20,6 +20,7 @@
 #include "numbers/browser.hpp"
 #include "numbers/devices.hpp"
 #include "numbers/generator.hpp"
+#include "numbers/operations.hpp"
 #include "numbers/shrink.hpp"
 #include "numbers/verdict.hpp"
 #include "sk/error.hpp"
@@ -32,12 +33,16 @@ using fuzz::numbers::Devices;
 
 struct Options : fuzz::Command {
   Options() { count = 1000, seconds = 120; }
-  std::vector<std::string> targets{"native"}, files;
+  std::vector<std::string> targets{"native"}, operations, files;
   bool hasBrowser() const { return std::ranges::count(targets, "webgl2") > 0; }
   double minutes = 0;
   std::uint64_t mostFindings = 40;
   int budget = 400;
 };
+
+Case caseOf(const Options& options, std::uint64_t number) {
+  return fuzz::numbers::generate(options.seed, number, options.operations);
+}
 
 std::string mistakeOn(Devices& devices, const std::string& target, const Case& one) {
   try {
@@ -127,7 +132,7 @@ class Campaigns {
 
   /// Runs a case on all targets, in a child process.
   fuzz::Verdict check(Devices& devices, std::map<std::string, int>& kinds, std::uint64_t number) const {
-    const Case one = fuzz::numbers::generate(options_.seed, number);
+    const Case one = caseOf(options_, number);
     fuzz::Verdict verdict;
     for (const std::string& target : options_.targets) {
       if (target == "webgl2" || !canRun(target, one)) continue;
@@ -161,7 +166,7 @@ class Campaigns {
     std::vector<Case> cases;
     std::vector<std::uint64_t> numbers;
     for (std::uint64_t i = 0; i < count; ++i) {
-      Case one = fuzz::numbers::generate(options_.seed, first + i);
+      Case one = caseOf(options_, first + i);
       if (!canRun("webgl2", one)) continue;
       cases.push_back(std::move(one));
       numbers.push_back(first + i);
@@ -198,8 +203,8 @@ class Campaigns {
     const bool isWhole = page != std::string::npos;
     const std::string kind = finding.what.substr(0, line);
     const bool isNew = ++kinds_[kind] <= 2;
-    const std::string text = isWhole ? finding.what.substr(page + 1)
-                                     : written(fuzz::numbers::generate(options_.seed, finding.number));
+    const std::string text =
+        isWhole ? finding.what.substr(page + 1) : written(caseOf(options_, finding.number));
     const fs::path file = options_.keep("numbers", finding, text, ".json");
     if (!isNew) return;
     fuzz::Finding shown = finding;
@@ -245,7 +250,7 @@ int fuzzNumbers(const Options& options) {
   if (!options.files.empty()) return runFiles(options);
   if (!options.show) return Campaigns(options).run();
   for (std::uint64_t i = 0; i < options.count; ++i)
-    std::cout << written(fuzz::numbers::generate(options.seed, options.first + i)) << "\n";
+    std::cout << written(caseOf(options, options.first + i)) << "\n";
   return 0;
 }
 
@@ -262,6 +267,13 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(fuzz::numbers::targetNames));
+  std::vector<std::string> names;
+  for (const fuzz::numbers::Operation& one : fuzz::numbers::operations()) names.emplace_back(one.name);
+  app.add_option("--operations", options.operations,
+                 "What to call, of the kernels of adversary.sk: by default, all")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(names));
   app.add_option("--minutes", options.minutes, "How long, instead of --count");
   app.add_option("--findings", options.mostFindings, "Stop after this many findings");
   app.add_option("--budget", options.budget, "How many smaller cases are tried for a finding");

@@ -251,13 +251,15 @@ void addSimplerData(const Case& one, std::vector<Case>& all) {
 
 }  // namespace
 
-Case generate(std::uint64_t seed, std::uint64_t number) {
+Case generate(std::uint64_t seed, std::uint64_t number, const std::vector<std::string>& operations) {
   Random random(seed, number);
   Case made;
   const bool isFold = random.chance(3, 5);
   std::vector<const Operation*> choices;
-  for (const Operation& one : operations()) {
-    if ((one.kind != Kind::Map) == isFold) choices.push_back(&one);
+  for (const Operation& one : numbers::operations()) {
+    const bool isChosen =
+        operations.empty() ? (one.kind != Kind::Map) == isFold : std::ranges::count(operations, one.name) > 0;
+    if (isChosen) choices.push_back(&one);
   }
   const Operation& operation = *random.pick(choices);
   made.operation = operation.name;

@@ -63,10 +63,9 @@ class SumJudge {
   numerics::TrueSum sum_;
   double terms_ = 0;
   double flushed_ = 0;  ///< what is lost if denormal numbers are 0
-  double below_ = 0, countBelow_ = 0;  ///< magnitude and number of the products below 2^-100
+  double below_ = 0;  ///< magnitude of the products below 2^-100
   bool isUnknown_ = false, hasNan_ = false, hasPositive_ = false, hasNegative_ = false,
        hasOnlyNegativeZeros_ = true, mayBeNan_ = false;
-  bool areProducts_ = false;
 };
 
 }  // namespace fuzz::numbers

@@ -142,10 +142,12 @@ class Verdict {
     return {};
   }
 
-  bool isWide() const {
-    const sk::Precision precision = case_.options.precision;
-    return precision == sk::Precision::Double || precision == sk::Precision::Extended ||
-           case_.options.accumulate == sk::Accumulate::Extended;
+  SumFacts factsOf(std::size_t elements, FoldKind kind) const {
+    return {.accumulate = case_.options.accumulate,
+            .precision = case_.options.precision,
+            .isScan = operation_.kind == Kind::Scan,
+            .elements = static_cast<double>(elements),
+            .areDoubles = kind == FoldKind::DoubleSum};
   }
 
   void addTerms(std::size_t element, Terms& terms) const {
@@ -154,13 +156,13 @@ class Verdict {
   }
 
   std::string mistakeOfReduce(const std::vector<std::size_t>& group, std::size_t result) const {
-    Fold fold(operation_, arithmetic_, isWide());
+    Fold fold(operation_, arithmetic_, factsOf(0, FoldKind::FloatSum).isWide());
     for (const std::size_t element : group) fold.add(*this, element);
     return mistakeAt(fold, result, result);
   }
 
   std::string mistakeOfScan(const std::vector<std::size_t>& group) const {
-    Fold fold(operation_, arithmetic_, isWide());
+    Fold fold(operation_, arithmetic_, factsOf(0, FoldKind::FloatSum).isWide());
     for (std::size_t i = 0; i < group.size(); ++i) {
       if (case_.options.scan != sk::Scan::Exclusive) fold.add(*this, group[i]);
       std::string wrong = mistakeAt(fold, group[i], i);
@@ -200,11 +202,7 @@ class Verdict {
       const FoldKind kind = operation_.folds[k];
       std::string wrong;
       if (kind == FoldKind::FloatSum || kind == FoldKind::DoubleSum) {
-        const SumFacts facts{.accumulate = case_.options.accumulate,
-                             .precision = case_.options.precision,
-                             .isScan = operation_.kind == Kind::Scan,
-                             .elements = static_cast<double>(fold.elements),
-                             .areDoubles = kind == FoldKind::DoubleSum};
+        const SumFacts facts = factsOf(fold.elements, kind);
         wrong = fold.sums[k].mistake(got, facts, arithmetic_, operation_.startsFromZero);
       } else if (const double wanted = fold.others[k].value(); got != wanted) {
         const bool isFlushed = arithmetic_.flushesDenormals && isDenormal(wanted) && got == 0;
