@@ -16,6 +16,8 @@ constexpr double roundoff = 0x1p-24;
 constexpr std::size_t leastSamples = std::size_t{1} << 16;  ///< of the whole range
 constexpr std::size_t chunkSamples = std::size_t{1} << 17;  ///< that are kept at once
 constexpr double slack = 1.5;  ///< a bound may exceed the largest error that was seen by this factor
+/// Allowed between samples, over what a continued chord misses. Even at the cusp of a square root, twice as much would do.
+constexpr double safety = 4;
 
 /// A polynomial of an interval, in its own coordinate t from 0 to 1.
 struct Piece {
@@ -35,7 +37,10 @@ struct Piece {
 class Pieces {
  public:
   Pieces(const TableRange& range, Interpolation interpolation, std::span<const float> coefficients)
-      : range_(range), degree_(interpolation == Interpolation::Cubic ? 3 : 1), coefficients_(coefficients) {}
+      : range_(range),
+        perUnit_(range.intervals / width()),
+        degree_(interpolation == Interpolation::Cubic ? 3 : 1),
+        coefficients_(coefficients) {}
 
   Piece piece(std::int32_t interval) const {
     Piece piece{.degree = degree_};
@@ -48,7 +53,7 @@ class Pieces {
     return interval == range_.intervals ? range_.high : range_.low + width() * interval / range_.intervals;
   }
   double at(double x) const {
-    const double place = (x - range_.low) / width() * range_.intervals;
+    const double place = (x - range_.low) * perUnit_;
     const auto interval = static_cast<std::int32_t>(std::clamp(place, 0.0, range_.intervals - 1.0));
     return piece(interval).at(place - interval);
   }
@@ -68,6 +73,7 @@ class Pieces {
 
  private:
   TableRange range_;
+  double perUnit_;
   int degree_;
   std::span<const float> coefficients_;
 };
@@ -91,7 +97,7 @@ class Search {
   Search(const FunctionValues& values, const TableRange& range, const Pieces& pieces, double seen)
       : values_(values), range_(range), pieces_(pieces), rounding_(pieces.rounding()), largest_(seen) {
     const auto intervals = static_cast<std::size_t>(range.intervals);
-    perInterval_ = std::max<std::size_t>(intervals > leastSamples ? 8 : 16, leastSamples / intervals);
+    perInterval_ = std::max<std::size_t>(16, leastSamples / intervals);
     left_ = 64 * leastSamples + 64 * intervals;
   }
 
@@ -136,15 +142,19 @@ class Search {
     }
     arguments.push_back(pieces_.node(to));
     if (arguments.front() < 0 && arguments.back() > 0) {
-      arguments.push_back(0);
-      std::ranges::sort(arguments);
+      arguments.insert(std::ranges::lower_bound(arguments, 0.0), 0.0);
     }
     const auto doubles = std::ranges::unique(arguments);
     arguments.erase(doubles.begin(), doubles.end());
     std::vector<Sample> samples = sampled(arguments);
     while (!unresolved_ && refine(samples)) {
     }
-    for (std::size_t i = 0; i + 1 < samples.size(); ++i) bound_ = std::max(bound_, boundBetween(samples, i));
+    for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+      const double bound = boundBetween(samples, i);
+      if (bound <= bound_) continue;
+      bound_ =
+          hasFloatBetween(samples[i].x, samples[i + 1].x) ? bound : std::max(bound_, largerEnd(samples, i));
+    }
   }
 
   /// How far the chord of two samples on one side of samples i and i + 1 misses the far one when it is continued.
@@ -161,21 +171,23 @@ class Search {
     return std::abs(near.error + slope * (far.x - near.x) - far.error);
   }
 
+  static double largerEnd(const std::vector<Sample>& samples, std::size_t i) {
+    return std::max(std::abs(samples[i].error), std::abs(samples[i + 1].error));
+  }
   /// A bound of the error between samples i and i + 1.
   static double boundBetween(const std::vector<Sample>& samples, std::size_t i) {
-    const double ends = std::max(std::abs(samples[i].error), std::abs(samples[i + 1].error));
-    if (!hasFloatBetween(samples[i].x, samples[i + 1].x)) return ends;
-    return ends + std::max(missed(samples, i, true), missed(samples, i, false));
+    return largerEnd(samples, i) + safety * std::max(missed(samples, i, true), missed(samples, i, false));
   }
 
   /// Adds samples where the bound is too large for the errors that were seen. Returns false if it is nowhere.
   bool refine(std::vector<Sample>& samples) {
     std::vector<double> arguments;
+    const double most = allowed();
     for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
       const double low = samples[i].x, width = samples[i + 1].x - low;
-      if (boundBetween(samples, i) <= allowed()) continue;
+      if (boundBetween(samples, i) <= most || !hasFloatBetween(low, samples[i + 1].x)) continue;
       const double x = low + width * (0.4 + 0.2 * irregular(++number_));
-      if (x <= low || x >= samples[i + 1].x || !hasFloatBetween(low, samples[i + 1].x)) continue;
+      if (x <= low || x >= samples[i + 1].x) continue;
       arguments.push_back(x);
       if (arguments.size() > left_) {
         unresolved_ = {low, samples[i + 1].x};

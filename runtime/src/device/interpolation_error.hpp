@@ -25,9 +25,9 @@ struct InterpolationError {
 
 /// The polynomials are those of native::Table. `seen` is an error that occurs.
 ///
-/// Between two samples, the error is at most the larger of the two, and what the chord of two samples on either side misses
-/// when it is continued across. That is at least twice of what a kink adds, and 4 to 8 times of what a curve adds to it. Samples are
-/// irregular, so that no period hides between them.
+/// Between two samples, the error is at most the larger of the two, and 4 times of what the chord of two samples on either side
+/// misses when it is continued across: 8 times of what a kink adds, at least 16 times of what a curve does, and 2.7 times of what the
+/// cusp of a square root does. Samples are irregular, so that no period hides between them.
 InterpolationError interpolationError(const FunctionValues& values, const TableRange& range,
                                       Interpolation interpolation, std::span<const float> coefficients,
                                       double seen);

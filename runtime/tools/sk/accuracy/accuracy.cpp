@@ -23,6 +23,7 @@
 #include "accuracy/functions/functions.hpp"
 #include "accuracy/gnuplot.hpp"
 #include "accuracy/programs.hpp"
+#include "accuracy/progress.hpp"
 #include "accuracy/table.hpp"
 #include "info/device_info.hpp"
 
@@ -151,8 +152,13 @@ void runPrograms(const Options& options) {
   sk::Device device(sk::DeviceOptions{.device = options.device, .profile = options.profile});
   printHead(options, device);
   std::vector<Experiment> all;
-  for (const Program* program : chosen) {
-    std::vector<Experiment> experiments = program->measure(device, options.measurement);
+  for (std::size_t p = 0; p < chosen.size(); ++p) {
+    std::vector<Experiment> experiments;
+    {
+      Progress progress(std::string(chosen[p]->name));
+      progress.show(static_cast<double>(p) / static_cast<double>(chosen.size()));
+      experiments = chosen[p]->measure(device, options.measurement);
+    }
     for (Experiment& experiment : experiments) {
       fmt::print("{}", tableOf(experiment, &experiment == &experiments.front(), options.tolerance));
       all.push_back(std::move(experiment));

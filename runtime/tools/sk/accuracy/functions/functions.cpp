@@ -65,22 +65,20 @@ std::vector<sk::Device> chosenDevices(const std::string& devices, const std::str
   return chosen;
 }
 
+/// Null if there is none, as for kernels of floats that native code computes in doubles: they call the C library.
 const sk::ErrorBound* boundOf(const std::string& function, sk::Precision precision,
                               const sk::Device& device) {
-  const BoundedCode code = isNative(device) ? BoundedCode::Native : BoundedCode::Glsl;
-  BoundedType type = BoundedType::Float;
-  if (precision == sk::Precision::Double || (precision == sk::Precision::Extended && isNative(device))) {
-    type = BoundedType::Double;
-  } else if (precision == sk::Precision::Extended) {
-    type = BoundedType::Pair;
-  }
-  return sk::errorBoundOf(function, type, code);
+  const bool isSingle = precision == sk::Precision::Single;
+  if (isNative(device))
+    return isSingle ? sk::errorBoundOf(function, BoundedType::Float, BoundedCode::Native) : nullptr;
+  const BoundedType type = isSingle                               ? BoundedType::Float
+                           : precision == sk::Precision::Extended ? BoundedType::Pair
+                                                                  : BoundedType::Double;
+  return sk::errorBoundOf(function, type, BoundedCode::Glsl);
 }
 
 /// A number in decimal and in hexadecimal.
 std::string both(double value) { return fmt::format("{:.9g} ({})", value, hexOf(Scalar::Double, value)); }
-
-Json numberJson(Scalar scalar, double value) { return jsonOf(scalar, value); }
 
 struct Line {
   std::string function;
@@ -139,9 +137,9 @@ void sweepFloats(const FunctionOptions& options, std::vector<sk::Device>& device
                            both(one.wanted), errors.notNearest);
       }
       for (const SweptCase& one : errors.worst) {
-        worst.push_back({{"x", numberJson(Scalar::Float, one.x)},
-                         {"got", numberJson(Scalar::Float, one.got)},
-                         {"wanted", numberJson(Scalar::Double, one.wanted)},
+        worst.push_back({{"x", jsonOf(Scalar::Float, one.x)},
+                         {"got", jsonOf(Scalar::Float, one.got)},
+                         {"wanted", jsonOf(Scalar::Double, one.wanted)},
                          {"error", std::isfinite(one.error) ? Json(one.error) : Json("infinite")}});
       }
       const Line line{
@@ -183,10 +181,10 @@ void sampleFunctions(const FunctionOptions& options, sk::Precision precision,
                            both(one.got), both(one.wanted));
       }
       for (const SampledCase& one : errors.worst) {
-        Json json = {{"x", numberJson(Scalar::Double, one.x)}};
-        if (isBinary) json["y"] = numberJson(Scalar::Double, one.y);
-        json["got"] = numberJson(Scalar::Double, one.got);
-        json["wanted"] = numberJson(Scalar::Double, one.wanted);
+        Json json = {{"x", jsonOf(Scalar::Double, one.x)}};
+        if (isBinary) json["y"] = jsonOf(Scalar::Double, one.y);
+        json["got"] = jsonOf(Scalar::Double, one.got);
+        json["wanted"] = jsonOf(Scalar::Double, one.wanted);
         json["error"] = std::isfinite(one.error) ? Json(one.error) : Json("infinite");
         worst.push_back(json);
       }

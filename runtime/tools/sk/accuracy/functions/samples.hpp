@@ -28,8 +28,8 @@ struct SampledErrors {
 
 /// Of functions in single, extended or double precision. Errors of floats and of native doubles are in ulp, those of GL's
 /// doubles and of pairs of floats in 2^-53 of the result, where it is not too small for the representation
-/// (docs/accuracy.md, Functions of doubles). An eighth more arguments than `count` are drawn near the worst. `progress` is called with the part that is done. Throws
-/// sk::Error if the device lacks the precision.
+/// (docs/accuracy.md, Functions of doubles). An eighth more arguments than `count` are drawn near the worst. `progress` is
+/// called with the part that is done. Throws sk::Error if the device lacks the precision.
 SampledErrors sample(sk::Device& device, const UnaryFunction& function, sk::Precision precision,
                      std::uint64_t count, const std::function<void(double)>& progress);
 SampledErrors sample(sk::Device& device, const BinaryFunction& function, sk::Precision precision,
