@@ -153,6 +153,8 @@ void SumJudge::add(double a, double b) {
     flushed_ += std::isfinite(product) ? std::fabs(product) : 0;
     mayBeNan_ = mayBeNan_ || !std::isfinite(product);
   }
+  const double least = std::min(std::fabs(a), std::fabs(b));
+  if (std::isfinite(product) && least < 0x1p-78) tiny_ += std::fabs(product);
   if (b != 1 && std::fabs(product) < 0x1p-100) below_ += std::fabs(product);
   if (std::isnan(product)) {
     hasNan_ = true;
@@ -177,7 +179,8 @@ std::string SumJudge::mistake(double got, SumFacts facts, const Arithmetic& arit
   facts.sum = sum_.value();
   facts.magnitude = sum_.magnitude();
   facts.terms = terms_;
-  const double most = facts.areDoubles ? 0x1p1000 : 0x1p126;
+  const bool arePairs = !arithmetic.isNative && (facts.areDoubles ? arithmetic.hasPairs : facts.isWide());
+  const double most = !facts.areDoubles ? 0x1p126 : arePairs ? 0x1p120 : 0x1p1000;
   const bool mayOverflow = !isExact && facts.magnitude >= most;
   if (hasPositive_ || hasNegative_) {
     const double wanted = hasPositive_ ? infinity : -infinity;
@@ -194,7 +197,8 @@ std::string SumJudge::mistake(double got, SumFacts facts, const Arithmetic& arit
   }
   if (!std::isfinite(got)) return differs(facts.sum, "not");
   const double below = mayFlush && !facts.areDoubles ? 0x1p-24 * below_ : 0;
-  const double bound = boundOf(facts, arithmetic) + below + (mayFlush ? flushed_ : 0);
+  const double ofPairs = arePairs ? 0x1p-11 * tiny_ + terms_ * 0x1p-122 : 0;
+  const double bound = boundOf(facts, arithmetic) + below + ofPairs + (mayFlush ? flushed_ : 0);
   const double error = sum_.errorOf(got);
   if (error <= bound) return {};
   return fmt::format(
