@@ -22,7 +22,8 @@ constexpr std::array<std::string_view, 3> traversalNames = {"stack", "leaves", "
 constexpr std::array<std::string_view, 2> machineNames = {"megakernel", "wavefront"};
 constexpr std::array<std::string_view, 3> sortNames = {"none", "origin", "direction"};
 constexpr std::array<std::string_view, 2> intersectionNames = {"watertight", "moller"};
-constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
+constexpr std::array<std::string_view, 3> precisionNames = {"single", "double", "extended"};
+constexpr std::array precisions = {sk::Precision::Single, sk::Precision::Double, sk::Precision::Extended};
 constexpr std::array<std::string_view, 2> storageNames = {"single", "half"};
 /// Rays of one call; more come in several.
 constexpr std::size_t batch = std::size_t{1} << 20;
@@ -97,7 +98,7 @@ DeviceSettings settingsOf(const SceneTable& table) {
       static_cast<HowToIntersect>(table.choice("intersection", intersectionNames).value_or(0));
   settings.machine = static_cast<PathMachine>(table.choice("machine", machineNames).value_or(0));
   settings.sort = static_cast<RaySort>(table.choice("sort", sortNames).value_or(0));
-  if (table.choice("precision", precisionNames).value_or(0) == 1) settings.precision = sk::Precision::Double;
+  settings.precision = precisions[table.choice("precision", precisionNames).value_or(0)];
   settings.storage = static_cast<VertexStorage>(table.choice("storage", storageNames).value_or(0));
   settings.bvh.bins = static_cast<int>(table.integer("bins", Range{2, 64}).value_or(settings.bvh.bins));
   settings.bvh.leaf = static_cast<int>(table.integer("leaf", Range{1, 7}).value_or(settings.bvh.leaf));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "device_scene.hpp"
 
+#include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -98,6 +100,17 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& given, const DeviceSet
   wide_ = streamOf(device, std::move(wide.nodes));
   children_ = streamOf(device, std::move(wide.children));
   shapes_.emplace(device, bvh_.order, model, settings.storage);
+}
+
+void DeviceScene::explain(const sk::Error& error) const {
+  const bool isAboutDoubles = precision_ == sk::Precision::Double &&
+                              error.kind() == sk::Error::Kind::Device &&
+                              std::string_view(error.what()).find("no doubles") != std::string_view::npos;
+  if (isAboutDoubles)
+    throw std::runtime_error(
+        fmt::format("'{}' has no doubles; write precision = \"extended\" in [bvh] for pairs of floats, or "
+                    "choose another device",
+                    device_->name()));
 }
 
 unsigned DeviceScene::kernelTest() const {

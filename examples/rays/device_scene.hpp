@@ -85,10 +85,15 @@ class DeviceScene {
   /// The arguments that all kernels begin with, up to the shapes, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
-    kernel.with({.precision = precision_})(kernelTest(), kernelTraversal(), contracted_, hasTriangles_,
-                                           hasSpheres_, hasPlanes_, nodeCount_, planeCount_, firstPlane_,
-                                           planes_, nodes_, wide_, children_, shapes_->floats,
-                                           shapes_->halves, shapes_->numbers, std::forward<More>(more)...);
+    try {
+      kernel.with({.precision = precision_})(kernelTest(), kernelTraversal(), contracted_, hasTriangles_,
+                                             hasSpheres_, hasPlanes_, nodeCount_, planeCount_, firstPlane_,
+                                             planes_, nodes_, wide_, children_, shapes_->floats,
+                                             shapes_->halves, shapes_->numbers, std::forward<More>(more)...);
+    } catch (const sk::Error& error) {
+      explain(error);
+      throw;
+    }
   }
 
   sk::Device& device() const { return *device_; }
@@ -103,6 +108,8 @@ class DeviceScene {
   std::vector<std::string> warnings() const;
 
  private:
+  /// Throws std::runtime_error, with what a scene may say instead, if the device lacks the doubles that the scene asks for.
+  void explain(const sk::Error& error) const;
   /// kernels::ShapeTest.
   unsigned kernelTest() const;
   /// kernels::Traversal.

@@ -72,7 +72,8 @@ void saveHits(const std::filesystem::path& file, std::span<const Hit> hits, int 
       fmt::format_to(out, "{},{}", i % std::size_t(width), i / std::size_t(width));
     else
       fmt::format_to(out, "{}", i);
-    fmt::format_to(out, ",{},{},{},{}\n", hit.id, hit.t, hit.u, hit.v);
+    // A sum with 0 has no negative zero, which says nothing of a hit.
+    fmt::format_to(out, ",{},{},{},{}\n", hit.id, hit.t + 0.0f, hit.u + 0.0f, hit.v + 0.0f);
     if (text.size() < 65536 && i + 1 < hits.size()) continue;
     stream << text;
     text.clear();

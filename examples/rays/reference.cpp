@@ -14,6 +14,7 @@ namespace {
 using examples::vecOf;
 
 constexpr double clearlyInside = 1e-3;
+constexpr double roundings = 0x1p-20;  ///< 16 of floats, of the lengths that a hit is computed from
 /// Limits the tests of rays against shapes that a verification may take.
 constexpr std::size_t mostTests = 20'000'000;
 
@@ -36,7 +37,7 @@ std::optional<Meeting> meetSphere(const Sphere& sphere, const Ray& ray) {
   if (discriminant < 0) return std::nullopt;
   for (const double t : {(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a}) {
     const double across = std::abs(dot(d, f + t * d)) / sphere.radius;
-    if (counts(ray, t)) return Meeting{t, across / std::sqrt(a), across};
+    if (counts(ray, t)) return Meeting{t, across / std::sqrt(a), HUGE_VAL, across};
   }
   return std::nullopt;
 }
@@ -46,7 +47,7 @@ std::optional<Meeting> meetPlane(const Plane& plane, const Ray& ray) {
   const double across = dot(n, vecOf<double>(ray.direction));
   const double t = (plane.distance - dot(n, vecOf<double>(ray.origin))) / across;
   if (across == 0 || !counts(ray, t)) return std::nullopt;
-  return Meeting{t, 1.0, std::abs(across)};
+  return Meeting{t, 1.0, HUGE_VAL, std::abs(across)};
 }
 
 /// The distance of the hit's point from the surface that it names.
@@ -63,7 +64,9 @@ double ownError(const Model& model, const Ray& ray, const Hit& hit) {
   const auto found = std::ranges::lower_bound(model.triangles, hit.id, {}, &Triangle::id);
   if (found == model.triangles.end() || found->id != hit.id) return HUGE_VAL;
   const Meeting meeting = meet(*found, ray);
-  return meeting.inside < -clearlyInside ? HUGE_VAL : std::abs(hit.t - meeting.t) * meeting.across;
+  const bool isBeside =
+      meeting.inside < -clearlyInside && meeting.margin < -roundings * scaleOf(ray, meeting.t);
+  return isBeside ? HUGE_VAL : std::abs(hit.t - meeting.t) * meeting.across;
 }
 
 }  // namespace
@@ -76,7 +79,11 @@ Meeting meet(const Triangle& triangle, const Ray& ray) {
   const double sum = u + v + w;
   if (sum == 0) return {};
   const Vector n = normalized(cross(b - a, c - a));
-  return {dot(n, a) / dot(n, d), std::min({u / sum, v / sum, w / sum}), std::abs(dot(n, d))};
+  const auto from = [&](double weight, const Vector& edge) {
+    return weight * (sum > 0 ? 1 : -1) / std::max(length(cross(d, edge)), 1e-300);
+  };
+  return {dot(n, a) / dot(n, d), std::min({u / sum, v / sum, w / sum}),
+          std::min({from(u, c - b), from(v, a - c), from(w, b - a)}), std::abs(dot(n, d))};
 }
 
 double errorOf(const Model& model, const Ray& ray, const Hit& hit) {
@@ -84,6 +91,7 @@ double errorOf(const Model& model, const Ray& ray, const Hit& hit) {
   // How far a surface that is clearly met lies before what was found.
   const auto missed = [&](const Meeting& meeting) {
     if (meeting.inside < clearlyInside || meeting.t >= hit.t || !counts(ray, meeting.t)) return;
+    if (meeting.margin < roundings * scaleOf(ray, meeting.t)) return;
     error =
         std::max(error, hit.id < 0 ? HUGE_VAL : (hit.t - meeting.t) * meeting.across / scaleOf(ray, hit.t));
   };
@@ -98,7 +106,7 @@ double errorOf(const Model& model, const Ray& ray, const Hit& hit) {
 }
 
 examples::Verification checkEngine(Engine& engine, const Model& model, int width, int height) {
-  examples::Verification verification("rays of pixels against all shapes", 0x1p-20,
+  examples::Verification verification("rays of pixels against all shapes", roundings,
                                       "16 roundings of floats, of the lengths that a hit is computed from");
   const std::vector<Ray> all = primaryRays(model.camera, width, height);
   const std::size_t shapes = std::max<std::size_t>(1, model.triangles.size() + model.spheres.size());

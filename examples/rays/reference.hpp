@@ -16,13 +16,15 @@ namespace rays {
 struct Meeting {
   double t = HUGE_VAL;
   double inside = -1.0;  ///< the least weight of a corner; negative outside the triangle
+  double margin =
+      -HUGE_VAL;  ///< the least distance of the ray from an edge, seen along the ray; negative outside
   double across = 0.0;   ///< the ray's length along the normal, for t = 1
 };
 Meeting meet(const Triangle& triangle, const Ray& ray);
 
 /// How far a hit's point is from the surface that it names, or a surface that was missed is before it, relative to the lengths that it was computed
-/// from. Infinite where something was missed as a whole. What a ray meets within a thousandth of a triangle's edge
-/// may be a hit or none.
+/// from. Infinite where something was missed as a whole. What a ray meets within a thousandth of a triangle, or within the roundings of its
+/// corners, from an edge may be a hit or none: needles may be no wider than that.
 double errorOf(const Model& model, const Ray& ray, const Hit& hit);
 
 /// Traces some of the rays through the picture's pixels, as many as loops over all shapes can follow in a moment.
