@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <set>
 #include <utility>
@@ -370,16 +371,27 @@ std::string unitListing(const Profile& profile, const emit::Unit& unit, std::str
                                 : withoutForm(unit, precision, kernel.whyNotWide);
 }
 
+/// The barrier that most devices of the profile take, or the one of SK_BARRIER.
+sk::Barrier barrierOf(const Profile& profile) {
+  const char* const variable = std::getenv("SK_BARRIER");
+  const std::string_view chosen = variable == nullptr ? "" : variable;
+  if (chosen == "none") return sk::Barrier::None;
+  return profile.es || chosen == "xor" ? sk::Barrier::Xor : sk::Barrier::Precise;
+}
+
 }  // namespace
 
 std::string glslListing(const ir::Module& module, std::string_view profileName, std::string_view precision) {
   const emit::Program program(module);
   Profile profile = *sk::assemble::findProfile(profileName);
   if (precision == "extended") profile.doubles = sk::assemble::Doubles::Pairs;
+  profile.barrier = barrierOf(profile);
   std::string text;
   for (const emit::Unit& unit : program.units()) {
     if (!text.empty()) text += "\n";
-    text += unitListing(profile, unit, precision, module.kernels[unit.id].choices);
+    const ir::Choices& choices = module.kernels[unit.id].choices;
+    profile.exact = static_cast<sk::Contraction>(choices.contraction) != sk::Contraction::Fast;
+    text += unitListing(profile, unit, precision, choices);
   }
   return text;
 }

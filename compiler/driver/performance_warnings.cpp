@@ -9,6 +9,7 @@
 #include "analysis/stream_uses.hpp"
 #include "assemble/assemble.hpp"
 #include "assemble/glsl/intrinsics.hpp"
+#include "assemble/glsl/own_arithmetic.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
@@ -120,7 +121,8 @@ class Advisor {
     };
     if (std::ranges::none_of(program.parameters, mayPack) || sk::assemble::mayWritePacked(program)) return;
     if (program.usesLoops) return loops();
-    const std::size_t length = program.body.size(), calls = sk::assemble::lengthOfCalls(program);
+    const std::size_t length = sk::assemble::lengthOfBody(program.body),
+                      calls = sk::assemble::lengthOfCalls(program);
     if (length > sk::assemble::longestPackedBody) return tooLong(length, sk::assemble::longestPackedBody);
     if (calls > sk::assemble::longestPackedCalls) tooLong(calls, sk::assemble::longestPackedCalls);
   }

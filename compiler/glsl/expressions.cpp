@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,9 +14,11 @@
 #include "glsl/doubles.hpp"
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/partial_operations.hpp"
+#include "ir/build.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"
+#include "sk/arithmetic_marks.hpp"
 #include "support/overloaded.hpp"
 #include "support/text.hpp"
 
@@ -23,11 +26,37 @@ namespace skc::emit {
 namespace {
 
 using namespace ir;
+namespace mark = sk::program::mark;
 
 struct Parts {
   std::string text;
   Precedence precedence = Precedence::Primary;
+  bool isOperation = false;  ///< of floats or vectors of them: it may need a barrier
 };
+
+bool isFloats(Type type) {
+  return (type.isScalar() || type.isVector() || type.isMatrix()) &&
+         arithmeticScalar(type.scalar) == Scalar::Float;
+}
+
+/// True if GLSL's own function of floats adds or multiplies.
+bool computes(Intrinsic intrinsic) {
+  switch (intrinsic) {
+    case Intrinsic::Radians:
+    case Intrinsic::Degrees:
+    case Intrinsic::InverseSqrt:
+    case Intrinsic::Rsqrt:
+    case Intrinsic::Fma:
+    case Intrinsic::Dot:
+    case Intrinsic::Cross:
+    case Intrinsic::Faceforward:
+    case Intrinsic::Reflect:
+    case Intrinsic::Refract:
+    case Intrinsic::Determinant:
+    case Intrinsic::Inverse: return true;
+    default: return false;
+  }
+}
 
 Parts signedText(std::string text) {
   const bool isNegative = text.front() == '-';
@@ -84,14 +113,35 @@ bool isGlslLValue(const Expr& lvalue) {
   return true;
 }
 
+/// True for what a sum or product loses. What it is added to loses so little that any order will do.
+bool isRoundingError(const Expr& expr) {
+  const auto* n = std::get_if<IntrinsicCall>(&expr.node);
+  return n != nullptr && (n->intrinsic == Intrinsic::SumError || n->intrinsic == Intrinsic::ProductError);
+}
+
+/// True if the assembler has a function for it that computes what native code computes.
+bool hasFormula(Intrinsic intrinsic) {
+  return intrinsic == Intrinsic::Dot || intrinsic == Intrinsic::Cross || intrinsic == Intrinsic::Reflect ||
+         intrinsic == Intrinsic::Refract || intrinsic == Intrinsic::Faceforward;
+}
+
 class GlslExpr {
  public:
-  GlslExpr(const GlslContext& context, std::optional<FunctionId> function)
-      : context_(context), function_(function) {}
+  GlslExpr(const GlslContext& context, std::optional<FunctionId> function, bool isStored = false)
+      : context_(context), function_(function), isStored_(isStored || !context.marks || !function) {}
 
   std::string text(const Expr& expr, Precedence around = Precedence::Lowest) const {
+    if (!isStored_ && isComputed(expr)) {
+      const Scope scope(isStored_, true);
+      return fmt::format("{}{}{}{}", mark::value, digitOf(expr.type), text(expr, around), mark::valueEnd);
+    }
     const Parts whole = parts(expr);
-    return whole.precedence < around ? "(" + whole.text + ")" : whole.text;
+    const bool isMarked = whole.isOperation && context_.marks && function_;
+    if (whole.precedence < around) {
+      return isMarked ? fmt::format("{}{}{}", mark::bracketed, whole.text, mark::bracketedEnd)
+                      : "(" + whole.text + ")";
+    }
+    return isMarked ? fmt::format("{}{}{}", mark::operation, whole.text, mark::operationEnd) : whole.text;
   }
 
   /// The text of an lvalue that GLSL can assign to.
@@ -117,12 +167,66 @@ class GlslExpr {
   std::string combined(BinaryOp op, const Expr& lvalue, const Expr& value) const {
     const bool isCall = lvalue.type.isDouble() || takesQuotient(op, lvalue, value);
     if (!isCall && !mayShiftTooFar(context_.module, op, value)) {
+      if (!isStored_ && isFloats(lvalue.type)) {
+        return fmt::format("{} = {}{}{}{}", targetText(lvalue), mark::value, digitOf(lvalue.type),
+                           storedText(lvalue, op, value), mark::valueEnd);
+      }
+      if (context_.marks && isFloats(lvalue.type) && !lvalue.type.isMatrix() && !isRoundingError(value)) {
+        return fmt::format("{}{}{}{}{}{}{}", mark::compound, targetText(lvalue), mark::compoundNext,
+                           spelling(op), mark::compoundNext, text(value, Precedence::LogicalOr),
+                           mark::compoundEnd);
+      }
       return fmt::format("{} {}= {}", targetText(lvalue), spelling(op), text(value));
     }
     return assigned(lvalue, binary(lvalue.type, op, lvalue, value).text);
   }
 
  private:
+  /// Sets a flag while it lives.
+  class Scope {
+   public:
+    Scope(bool& flag, bool value) : flag_(flag), before_(std::exchange(flag, value)) {}
+    ~Scope() { flag_ = before_; }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    bool& flag_;
+    bool before_;
+  };
+
+  /// An operation whose value goes to a variable.
+  std::string storedText(const Expr& lhs, BinaryOp op, const Expr& rhs) const {
+    const Scope scope(isStored_, true);
+    const Parts whole = binary(lhs.type, op, lhs, rhs);
+    return whole.isOperation ? fmt::format("{}{}{}", mark::operation, whole.text, mark::operationEnd)
+                             : whole.text;
+  }
+
+  /// The text of an expression that a function gets, or that decides what is computed: what it computes goes to no variable.
+  std::string passedText(const Expr& expr, Precedence around = Precedence::Lowest) const {
+    const Scope scope(isStored_, !context_.marks || !function_);
+    return text(expr, around);
+  }
+
+  /// True if this node adds, multiplies or divides floats when the program runs.
+  bool isComputed(const Expr& expr) const {
+    if (!isFloats(expr.type)) return false;
+    if (const auto* n = std::get_if<Binary>(&expr.node)) {
+      return row(n->op).precedence >= Precedence::Additive && !formulaOfLiterals(expr);
+    }
+    if (const auto* n = std::get_if<Convert>(&expr.node)) {  // to the same floats
+      return isFloats(n->operand->type) && !expr.type.isNarrow() && isComputed(*n->operand);
+    }
+    const auto* n = std::get_if<IntrinsicCall>(&expr.node);
+    return n != nullptr && computes(n->intrinsic);
+  }
+
+  /// How the mark of a value says its type.
+  static char digitOf(Type type) {
+    return static_cast<char>('0' + (type.isMatrix() ? type.width + 3 : std::max<int>(type.width, 1)));
+  }
+
   Parts parts(const Expr& expr) const {
     if (const auto bits = formulaOfLiterals(expr)) return literalText(expr.type, *bits);
     return match(expr.node, [&](const auto& node) { return print(expr.type, node); });
@@ -154,17 +258,17 @@ class GlslExpr {
       return {fmt::format("{}({}, {}, {})", context_.polyfills.select(type), text(*n.cond), text(*n.yes),
                           text(*n.no))};
     }
-    return {fmt::format("{} ? {} : {}", text(*n.cond, Precedence::LogicalOr),
+    return {fmt::format("{} ? {} : {}", passedText(*n.cond, Precedence::LogicalOr),
                         text(*n.yes, Precedence::LogicalOr), text(*n.no, Precedence::Conditional)),
             Precedence::Conditional};
   }
   Parts print(Type type, const Convert& n) const {
     if (type.isDouble() || n.operand->type.isDouble()) {
-      return {doubleConverted(context_.polyfills, n.operand->type, type, text(*n.operand))};
+      return {doubleConverted(context_.polyfills, n.operand->type, type, passedText(*n.operand))};
     }
     const bool keepsArithmetic = arithmeticScalar(n.operand->type.scalar) == arithmeticScalar(type.scalar);
     if (keepsArithmetic && !type.isNarrow()) return parts(*n.operand);
-    const std::string value = text(*n.operand);
+    const std::string value = passedText(*n.operand);
     const std::string conversion = mayNotHold(context_.module, type, *n.operand)
                                        ? context_.polyfills.truncated(type)
                                        : context_.types.glsl(type);
@@ -190,12 +294,13 @@ class GlslExpr {
     if (n.base->type.isDouble()) return doubleIndex(n);
     if (n.base->type.isVector() && !knownComponent(n)) {
       const std::string function = context_.polyfills.component(n.base->type, n.index->type);
-      return {fmt::format("{}({}, {})", function, text(*n.base), text(*n.index))};
+      return {fmt::format("{}({}, {})", function, passedText(*n.base), passedText(*n.index))};
     }
     return {text(*n.base, Precedence::Primary) + "[" + indexText(n) + "]"};
   }
   Parts print(Type, const Call& n) const {
     const std::string_view prefix = context_.module.functions[n.callee].table ? "sk_table_" : "";
+    const Scope scope(isStored_, !context_.marks || !function_);
     return {fmt::format("{}{}{}", prefix, context_.names.function(n.callee), list(n.args))};
   }
   Parts print(Type, const IntrinsicCall& n) const {
@@ -204,8 +309,16 @@ class GlslExpr {
     if (argument.isDouble()) {
       return {doubleIntrinsic(context_.polyfills, n.intrinsic, typesOf(n.args), texts(n.args))};
     }
-    if (const auto defined = definedIntrinsic(n)) return definedCall(*defined, n.args);
+    if (const auto defined = definedIntrinsic(n)) {
+      const Scope scope(isStored_, !context_.marks || !function_);
+      return definedCall(*defined, n.args);
+    }
+    if (n.intrinsic == Intrinsic::Fma) return multiplyAdd(n.args);
     context_.polyfills.intrinsic(n.intrinsic, argument);
+    const bool isGlslOwn = entry.polyfill.empty();
+    const Scope scope(isStored_, isGlslOwn ? isStored_ : !context_.marks || !function_);
+    if (hasFormula(n.intrinsic) && context_.marks && function_)
+      return {fmt::format("{}{}{}", mark::function, entry.glsl, list(n.args))};
     const bool usesVectorColumn = argument.isVector() && !entry.glslVector.empty();
     const std::string_view pattern = usesVectorColumn ? entry.glslVector : entry.glsl;
     if (pattern.find('$') == std::string_view::npos) return {std::string(pattern) + list(n.args)};
@@ -213,13 +326,13 @@ class GlslExpr {
     return fromPattern(withTypes(pattern, argument), n.args);
   }
   Parts print(Type, const GatherRead& n) const {
-    return {call("sk_at", n.stream) + "(" + text(*n.index) + ")"};
+    return {call("sk_at", n.stream) + "(" + passedText(*n.index) + ")"};
   }
   Parts print(Type, const NeighborRead& n) const {
-    return {call("sk_near", n.stream) + "(" + text(*n.offset) + ")"};
+    return {call("sk_near", n.stream) + "(" + passedText(*n.offset) + ")"};
   }
   Parts print(Type, const Sample& n) const {
-    return {call("sk_sample", n.stream) + "(" + text(*n.position) + ")"};
+    return {call("sk_sample", n.stream) + "(" + passedText(*n.position) + ")"};
   }
   Parts print(Type, const IndexOf& n) const {
     const bool isInput = n.stream.space == StreamRef::Space::KernelParameter &&
@@ -250,7 +363,19 @@ class GlslExpr {
     const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
     const std::string second =
         mayShiftTooFar(context_.module, op, rhs) ? "(" + shiftCount(rhs) + ")" : operand(op, right, tighter);
-    return {fmt::format("{} {} {}", operand(op, left, precedence), spelling(op), second), precedence};
+    const bool isOperation = isFloats(type) && !type.isMatrix() && precedence >= Precedence::Additive;
+    return {fmt::format("{} {} {}", operand(op, left, precedence), spelling(op), second), precedence,
+            isOperation};
+  }
+
+  /// fma(a, b, c), which GLSL 3.30 lacks.
+  Parts multiplyAdd(const std::vector<ExprPtr>& args) const {
+    const std::string product =
+        fmt::format("{} * {}", text(*args[0], Precedence::Multiplicative), text(*args[1], Precedence::Unary));
+    const bool isMarked = context_.marks && function_;
+    return {fmt::format("{}{}{} + {}", isMarked ? mark::operation : "", product,
+                        isMarked ? mark::operationEnd : "", text(*args[2], Precedence::Multiplicative)),
+            Precedence::Additive, true};
   }
 
   /// True if a quotient or remainder must be a call. C++'s % differs from GLSL's for negative ints.
@@ -291,7 +416,7 @@ class GlslExpr {
   /// loop's variable, and may have incremented that register by then: `a[i] = a[i + 1]` stores to a[i + 1]. A
   /// computed index has a register of its own.
   std::string indexText(const Index& n) const {
-    const std::string index = text(*n.index);
+    const std::string index = passedText(*n.index);
     const Type base = n.base->type;
     const bool isArray = base.kind == Type::Kind::Array;
     const std::uint32_t last = (isArray ? context_.module.arrays[base.index].length : base.width) - 1;
@@ -359,18 +484,38 @@ class GlslExpr {
 
   const GlslContext& context_;
   std::optional<FunctionId> function_;
+  /// What is printed goes to a variable that the assembler may declare `precise`. GLSL computes precisely only what such a
+  /// variable of the same function gets, directly or from others.
+  mutable bool isStored_;
 };
 
 }  // namespace
 
+bool isDeclaredPrecise(const Function& function, VarId var) {
+  return var >= function.parameterCount || function.variables[var].role == VarRole::InOut;
+}
+
+bool holdsFloats(const Module& module, Type type) {
+  if (type.kind == Type::Kind::Array) return holdsFloats(module, module.arrays[type.index].element);
+  if (type.kind != Type::Kind::Struct) return isFloats(type);
+  return std::ranges::any_of(module.structs[type.index].fields,
+                             [&](const StructField& field) { return holdsFloats(module, field.type); });
+}
+
+std::string_view declarationMark(const GlslContext& context, Type type) {
+  return context.marks && holdsFloats(context.module, type) ? mark::declared : std::string_view();
+}
+
 std::string glslExpr(const GlslContext& context, std::optional<FunctionId> function, const Expr& expr,
-                     Precedence around) {
-  return GlslExpr(context, function).text(expr, around);
+                     Precedence around, bool isStored) {
+  return GlslExpr(context, function, isStored).text(expr, around);
 }
 
 std::string glslAssignment(const GlslContext& context, FunctionId function, const Expr& place,
                            std::optional<BinaryOp> op, const Expr& value) {
-  const GlslExpr printer(context, function);
+  const bool isStored = holdsFloats(context.module, place.type) &&
+                        isDeclaredPrecise(context.module.functions[function], rootOf(place));
+  const GlslExpr printer(context, function, isStored);
   return op ? printer.combined(*op, place, value) : printer.assigned(place, printer.text(value));
 }
 

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "glsl/kernel_names.hpp"
 #include "glsl/polyfills.hpp"
@@ -21,11 +22,21 @@ struct GlslContext {
   const KernelNames& names;
   const ir::Kernel& kernel;
   Polyfills& polyfills;
+  /// Write the marks of sk/arithmetic_marks.hpp where floats are computed.
+  bool marks = false;
 };
 
-/// `function` is the function that contains the expression; unset for a constant expression.
+/// True if a variable of this type holds floats, which GLSL's `precise` is for.
+bool holdsFloats(const ir::Module& module, ir::Type type);
+/// True unless the variable is a parameter that is passed by value, for which GLSL has no `precise`.
+bool isDeclaredPrecise(const ir::Function& function, ir::VarId var);
+/// The mark in front of the declaration of a variable, or nothing.
+std::string_view declarationMark(const GlslContext& context, ir::Type type);
+
+/// `function` is the function that contains the expression; unset for a constant expression. `isStored`: its value goes to a
+/// variable of the function that has a declarationMark().
 std::string glslExpr(const GlslContext& context, std::optional<ir::FunctionId> function, const ir::Expr& expr,
-                     ir::Precedence around = ir::Precedence::Lowest);
+                     ir::Precedence around = ir::Precedence::Lowest, bool isStored = false);
 
 /// "place = value", "place += value".
 std::string glslAssignment(const GlslContext& context, ir::FunctionId function, const ir::Expr& place,

@@ -41,6 +41,26 @@ struct Fixture {
   }
 };
 
+TEST_CASE("marks say where floats are computed") {
+  Fixture t;
+  const auto marked = [&](ExprPtr expr, bool isStored) {
+    const TypeNames types(t.module);
+    const KernelNames names(t.module, t.module.kernels[0], types);
+    const GlslContext context{t.module, types, names, t.module.kernels[0], t.polyfills, /*marks=*/true};
+    return glslExpr(context, 0, *expr, Precedence::Lowest, isStored);
+  };
+  const auto sum = [&] { return binary(Add, t.ref(t.f), t.ref(t.x)); };
+  CHECK(marked(binary(Mul, sum(), literal(0.1F)), true) == "$($[f + x$] * 0.1$)");
+  CHECK(marked(binary(Mul, sum(), literal(0.1F)), false) == "$v1$($[f + x$] * 0.1$)$;");
+  CHECK(marked(binary(Less, sum(), t.ref(t.f)), true) == "$(f + x$) < f");
+  CHECK(marked(binary(Less, sum(), t.ref(t.f)), false) == "$v1$(f + x$)$; < f");
+  CHECK(marked(intrinsic(Intrinsic::Sin, exprs(sum())), true) == "sk_sin($v1$(f + x$)$;)");
+  CHECK(marked(intrinsic(Intrinsic::Sqrt, exprs(sum())), true) == "sqrt($(f + x$))");
+  CHECK(marked(intrinsic(Intrinsic::Dot, exprs(t.ref(t.v), t.ref(t.v))), false) == "$v1$fdot(v, v)$;");
+  CHECK(marked(binary(Add, t.ref(t.i), t.ref(t.i)), false) == "i + i");
+  CHECK(marked(binary(Mul, literal(2.0F), literal(0.5F)), false) == "1.0");
+}
+
 TEST_CASE("literals read back as the same value and type") {
   Fixture t;
   CHECK(t.text(literal(1.0F)) == "1.0");

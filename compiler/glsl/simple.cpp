@@ -23,7 +23,10 @@ class SimplePrinter {
   Text simple(const Stmt& stmt) const {
     return match(
         stmt.node,
-        [&](const Declare& n) -> Text { return context_.types.declaration(typeOf(n), name(n)) + init(n); },
+        [&](const Declare& n) -> Text {
+          return std::string(declarationMark(context_, typeOf(n))) +
+                 context_.types.declaration(typeOf(n), name(n)) + init(n);
+        },
         [&](const Assign& n) -> Text { return glslAssignment(context_, id_, *n.place, n.op, *n.value); },
         [&](const CallStmt& n) -> Text {
           std::vector<std::string> args;
@@ -62,7 +65,9 @@ class SimplePrinter {
       const Declare& n = std::get<Declare>(block[i].node);
       declarators.push_back(name(n) + init(n));
     }
-    return context_.types.glsl(typeOf(std::get<Declare>(block[first].node))) + " " + join(declarators, ", ");
+    const Type type = typeOf(std::get<Declare>(block[first].node));
+    return std::string(declarationMark(context_, type)) + context_.types.glsl(type) + " " +
+           join(declarators, ", ");
   }
 
   /// "int i = 0, n = 9" or "i = 0, n = 9".
@@ -98,7 +103,11 @@ class SimplePrinter {
 
   Type typeOf(const Declare& n) const { return context_.module.functions[id_].variables[n.var].type; }
   std::string name(const Declare& n) const { return context_.names.variable(id_, n.var); }
-  std::string init(const Declare& n) const { return n.init ? " = " + expr(n.init) : ""; }
+  std::string init(const Declare& n) const {
+    if (!n.init) return "";
+    const bool isStored = holdsFloats(context_.module, typeOf(n));
+    return " = " + glslExpr(context_, id_, *n.init, Precedence::Lowest, isStored);
+  }
   std::string expr(const ExprPtr& e) const { return glslExpr(context_, id_, *e); }
 
   const GlslContext& context_;

@@ -293,8 +293,10 @@ std::string glslHead(const GlslContext& context, FunctionId id) {
   for (VarId i = 0; i < function.parameterCount; ++i) {
     const Variable& var = function.variables[i];
     if (var.role == VarRole::Gather || var.role == VarRole::AppendOutput) continue;
-    parameters.push_back(std::string(direction(context, id, i)) +
-                         context.types.declaration(var.type, context.names.variable(id, i)));
+    parameters.push_back(
+        std::string(isDeclaredPrecise(function, i) ? declarationMark(context, var.type) : "") +
+        std::string(direction(context, id, i)) +
+        context.types.declaration(var.type, context.names.variable(id, i)));
   }
   return fmt::format("{} {}({})", context.types.glsl(function.result), context.names.function(id),
                      join(parameters, ", "));

@@ -115,7 +115,8 @@ Part modulo(const Formula& f, const Part& x, const Part& y) {
 }
 
 Part mix(const Formula& f, const Part& x, const Part& y, const Part& t) {
-  return f.add(f.mul(x, f.sub(f.number(t, 1), t)), f.mul(y, t));
+  const Part between = f.add(f.mul(x, f.sub(f.number(t, 1), t)), f.mul(y, t));
+  return f.select(f.equal(t, f.number(t, 0)), x, f.select(f.equal(t, f.number(t, 1)), y, between));
 }
 
 Part clamp(const Formula& f, Scalar scalar, const Part& x, const Part& low, const Part& high) {

@@ -16,6 +16,7 @@ Part sign(const Formula& f, ir::Scalar scalar, const Part& x);
 Part fraction(const Formula& f, const Part& x);
 /// The remainder with the sign of y: fmod(x, y), which is exact, plus y if their signs differ.
 Part modulo(const Formula& f, const Part& x, const Part& y);
+/// x * (1 - t) + y * t, where x itself belongs to 0 and y to 1, with the sign of a zero.
 Part mix(const Formula& f, const Part& x, const Part& y, const Part& t);
 Part clamp(const Formula& f, ir::Scalar scalar, const Part& x, const Part& low, const Part& high);
 Part smoothstep(const Formula& f, const Part& low, const Part& high, const Part& x);

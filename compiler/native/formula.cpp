@@ -15,6 +15,15 @@ Part Formula::decimal(const Part& like, const char* text) const {
   return {llvm::ConstantFP::get(like.value->getType()->getScalarType(), llvm::StringRef(text))};
 }
 
+Part Formula::multiplyAdd(const Part& a, const Part& c, const Part& d) const {
+  if (!l.b.getFastMathFlags().allowContract()) return add(mul(a, c), d);
+  Part x = a, y = c, z = d;
+  l.unify(x, y);
+  l.unify(x, z);
+  l.unify(y, z);
+  return {l.b.CreateIntrinsic(llvm::Intrinsic::fma, {x.value->getType()}, {x.value, y.value, z.value})};
+}
+
 Part Formula::abs(const Part& x) const { return {l.b.CreateUnaryIntrinsic(llvm::Intrinsic::fabs, x.value)}; }
 
 Part Formula::copySign(const Part& magnitude, const Part& sign) const {

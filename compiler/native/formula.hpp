@@ -27,6 +27,9 @@ class Formula {
   Part sub(const Part& a, const Part& c) const { return op(BinaryOp::Sub, a, c); }
   Part mul(const Part& a, const Part& c) const { return op(BinaryOp::Mul, a, c); }
   Part div(const Part& a, const Part& c) const { return op(BinaryOp::Div, a, c); }
+  /// a * c + d: rounded once where the flags of the builder allow contraction, else twice. A product and a sum would stay apart
+  /// where the product has another use.
+  Part multiplyAdd(const Part& a, const Part& c, const Part& d) const;
   Part less(const Part& a, const Part& c) const { return op(BinaryOp::Less, a, c); }
   Part equal(const Part& a, const Part& c) const { return op(BinaryOp::Equal, a, c); }
   Part differs(const Part& a, const Part& c) const { return op(BinaryOp::NotEqual, a, c); }

@@ -165,7 +165,7 @@ class Builder {
   sk::program::Kernel describe(const Kernel& kernel, const Plan* plan = nullptr, const Pass* pass = nullptr) {
     const KernelNames names(module_, kernel, types_);
     Polyfills polyfills;
-    const GlslContext context{module_, types_, names, kernel, polyfills};
+    const GlslContext context{module_, types_, names, kernel, polyfills, /*marks=*/true};
     const analysis::StreamUses uses = analysis::streamUses(module_, kernel);
     GlslBody text = kernel.isNativeOnly ? GlslBody() : glslBody(context);
     std::vector<sk::program::Parameter>& parameters = storage_.parameters.emplace_back();
@@ -212,8 +212,8 @@ class Builder {
     }
     const KernelNames names[] = {{module_, fold, types_}, {module_, combine, types_}};
     Polyfills polyfills[2];
-    const GlslContext contexts[] = {{module_, types_, names[0], fold, polyfills[0]},
-                                    {module_, types_, names[1], combine, polyfills[1]}};
+    const GlslContext contexts[] = {{module_, types_, names[0], fold, polyfills[0], /*marks=*/true},
+                                    {module_, types_, names[1], combine, polyfills[1], /*marks=*/true}};
     for (const GlslContext& context : contexts) glslBody(context);
     return storage_.keep(glslAddition(contexts[0], contexts[1]).value_or(""));
   }

@@ -22,8 +22,8 @@ namespace {
 using namespace ir;
 using enum BinaryOp;
 
-/// Writes the module's kernels and reduces as whole programs, with accurate intrinsics and the device's, to a
-/// folder, and returns glslang's messages.
+/// Writes the module's kernels and reduces as whole programs, with accurate intrinsics and the device's, and with both barriers,
+/// to a folder, and returns glslang's messages.
 std::string glslangOn(const Module& module, std::string_view folderName) {
   const ToolFolder folder(folderName);
   const Program program(module);
@@ -32,6 +32,10 @@ std::string glslangOn(const Module& module, std::string_view folderName) {
     for (const Unit& unit : program.units()) {
       for (const bool accurate : {true, false}) {
         profile.accurate = accurate;
+        profile.barrier = accurate && !profile.es ? sk::Barrier::Precise : sk::Barrier::Xor;
+        // glslang has `precise` of GLSL 4.00, but not of the extension
+        if (profile.barrier == sk::Barrier::Precise && profile.stage == sk::assemble::Stage::Fragment)
+          profile.version = "#version 400 core";
         sk::assemble::Variant variant;
         variant.access.resize(unit.kernel.parameters.size(), {.addressing = sk::assemble::Addressing::Plane});
         const std::string text = unit.reduction != nullptr

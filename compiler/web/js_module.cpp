@@ -16,6 +16,7 @@
 #include "assemble/append/append_passes.hpp"
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/append/point_program.hpp"
+#include "assemble/glsl/own_arithmetic.hpp"
 #include "ir/print.hpp"
 #include "program/descriptor_lists.hpp"
 #include "program/elements.hpp"
@@ -91,8 +92,9 @@ class ScriptWriter {
       return {{"name", unit.kernel.name}, {"whyNot", why}};
     const Forms forms(module_.kernels[unit.id].choices, unit.kernel.options);
     const bool views = ir::isAhead(module_.kernels[unit.id].choices, ir::Ahead::Views);
+    isExact_ = unit.kernel.options.contraction != sk::Contraction::Fast;
     if (unit.reduction != nullptr) return reductionUnit(unit);
-    Json json = kernelForm(unit.kernel, webProfile(), views);
+    Json json = kernelForm(unit.kernel, profileOf(false), views);
     if (forms.isDefault() || hasAppendOutputs(unit.kernel)) return json;
     if (forms.declared.precision != sk::Precision::Default) json["precision"] = forms.declaredPrecision();
     if (forms.declared.intrinsics != sk::Intrinsics::Default)
@@ -134,9 +136,10 @@ class ScriptWriter {
     bool half, extended, fast;
   };
 
-  static sk::assemble::Profile profileOf(bool fast) {
+  sk::assemble::Profile profileOf(bool fast) const {
     sk::assemble::Profile profile = webProfile();
     profile.accurate = !fast;
+    profile.exact = isExact_;
     return profile;
   }
 
@@ -265,7 +268,7 @@ class ScriptWriter {
     json["variants"] = std::move(variants);
     if (sumsEverything(reduction)) json["sumsAll"] = true;
     if (reduction.parts != nullptr) {
-      json["map"] = kernelForm(reduction.parts->map, webProfile(), false);
+      json["map"] = kernelForm(reduction.parts->map, profileOf(false), false);
       json["mapOperands"] = reduction.parts->mapOperands;
     }
     return json;
@@ -273,8 +276,9 @@ class ScriptWriter {
 
   Json variantOf(const SumVariant& variant, bool scans, bool isRare) {
     Json finish = kernelOf(*variant.finish), inputs = Json::array();
-    finish["programs"] = programsOf(
-        kernelPrograms(webProfile(), *variant.finish, {.packed = false, .views = false}), {variant.finish});
+    finish["programs"] =
+        programsOf(kernelPrograms(profileOf(false), *variant.finish, {.packed = false, .views = false}),
+                   {variant.finish});
     for (const auto& [isOwn, index] : variant.inputs) inputs.push_back({isOwn, index});
     // Where there are no elements, the plain reduction has the identities.
     const bool byIndex = (isRare && !scans) || findsByIndex(*variant.reduction);
@@ -291,7 +295,7 @@ class ScriptWriter {
             {"combineOperands", reduction.combineOperands},
             {"commutative", reduction.commutative},
             {"byIndex", calls.byIndex},
-            {"programs", programsOf(reducePrograms(webProfile(), reduction, calls),
+            {"programs", programsOf(reducePrograms(profileOf(false), reduction, calls),
                                     {&reduction.fold, &reduction.combine})}};
   }
 
@@ -410,7 +414,7 @@ class ScriptWriter {
     const std::size_t body = text.find("\n\n");  // after the precisions
     if (body != std::string::npos) share(text, text.substr(0, body + 1));
     for (const Kernel* kernel : kernels) {
-      share(text, escaped(std::string(kernel->body)));
+      share(text, escaped(sk::assemble::bodyText(profileOf(false), kernel->body)));
       share(text, escaped(std::string(kernel->declarations)));
     }
     const auto [entry, isNew] = programIndices_.emplace(text, programs_.size());
@@ -490,6 +494,7 @@ class ScriptWriter {
   std::map<std::string, std::size_t> elementIndices_;  ///< by their texts
   std::vector<std::string> texts_;  ///< shared parts of programs, contents of template literals
   std::map<std::string, std::size_t> textIndices_;
+  bool isExact_ = true;  ///< assemble::Profile::exact of the callable that is written
   std::vector<std::string> programs_;  ///< contents of template literals
   std::map<std::string, std::size_t> programIndices_;
   std::set<std::string>

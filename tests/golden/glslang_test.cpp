@@ -4,6 +4,7 @@
 // this repository, in every profile. (Of glsl330, whose programs are those of essl300 but for what they begin with,
 // it compiles the programs of this folder.)
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <sstream>
@@ -71,8 +72,19 @@ std::map<std::string, std::vector<std::string>> programsByKernel(const std::vect
 
 }  // namespace
 
+namespace {
+
+/// Lets skc show programs with the barrier that both languages have.
+struct SameBarrier {
+  SameBarrier() { setenv("SK_BARRIER", "xor", 1); }
+  ~SameBarrier() { unsetenv("SK_BARRIER"); }
+};
+
+}  // namespace
+
 // Tests rely on it, and leave one of the two profiles out (onEveryDoubleConfig, tests/run/support/devices.hpp).
 TEST_CASE("on essl300, programs are those of glsl330 with another header") {
+  const SameBarrier same;
   const std::vector<fs::path> files = {fs::path(SK_SOURCE_FOLDER) / "tests/run/precision.sk"};
   const auto desktop = programsOf(files, "glsl330", " --precision=extended");
   const auto embedded = programsOf(files, "essl300", " --precision=extended");
@@ -84,6 +96,7 @@ TEST_CASE("on essl300, programs are those of glsl330 with another header") {
 
 // There are two exceptions: doubles, which are pairs of floats on essl300, and more outputs than a pass has there.
 TEST_CASE("so are those of all .sk files, but for doubles and many outputs") {
+  const SameBarrier same;
   const std::vector<fs::path> files = kernelFiles();
   const auto desktop = programsByKernel(programsOf(files, "glsl330"));
   const auto embedded = programsByKernel(programsOf(files, "essl300"));

@@ -2,8 +2,11 @@
 //
 // Promises: native code rounds every operation unless a call, the source or a file asks for contraction. Then it fuses
 // products with sums, but neither in library functions nor in compensated and exact sums.
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <random>
+#include <string>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -123,7 +126,97 @@ TEST_CASE("sums are contracted in a plain tree alone") {
   CHECK(dotOf(sk::Accumulate::Tree, Contraction::Fast) != dotOf(sk::Accumulate::Tree, Contraction::Exact));
 }
 
-TEST_CASE("other devices take the choice, and ignore it") {
+TEST_CASE("fma is fused where its product has another use") {
+  if (!codeFuses()) {
+    WARN("this CPU has no fused multiply-add, or the kernels are not optimised");
+    return;
+  }
+  sk::Device device = sk::Device::native();
+  const std::vector<float> a(count, 1 + 0x1p-23F), c(count, -(1 + 0x1p-22F));
+  auto r = device.stream<float>({count}), s = device.stream<float>({count});
+  contraction::twice.with({.contraction = Contraction::Fast})(streamOf(device, a), streamOf(device, a),
+                                                              streamOf(device, c), r, s);
+  CHECK(r.read() == std::vector<float>(count, 0x1p-46F));
+  CHECK(s.read() == std::vector<float>(count, std::fma(a[0], a[0], -c[0])));
+}
+
+/// `count` floats in [1, 100), the same in every run.
+std::vector<float> someFloats(unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<float> list;
+  for (std::int64_t i = 0; i < count; ++i)
+    list.push_back(1 + 99 * static_cast<float>(random() >> 8) * 0x1p-24F);
+  return list;
+}
+
+std::vector<sk::float4> someVectors(unsigned seed) {
+  const std::vector<float> x = someFloats(seed), y = someFloats(seed + 1), z = someFloats(seed + 2);
+  std::vector<sk::float4> list;
+  for (std::size_t i = 0; i < x.size(); ++i) list.push_back({x[i], y[i], z[i], x[x.size() - 1 - i]});
+  return list;
+}
+
+/// The bits of what kernels of float arithmetic compute.
+struct Written {
+  std::vector<std::vector<sk::float4>> vectors;
+  std::vector<std::vector<float>> floats;
+
+  Written(sk::Device& device, const sk::CallOptions& options) {
+    const auto a = streamOf(device, someFloats(1)), b = streamOf(device, someFloats(2)),
+               c = streamOf(device, someFloats(3));
+    auto p = device.stream<sk::float4>({count}), q = device.stream<sk::float4>({count}),
+         r = device.stream<sk::float4>({count}), s = device.stream<sk::float4>({count});
+    contraction::written.with(options)(a, b, c, p, q, r, s);
+    for (const auto* each : {&p, &q, &r, &s}) vectors.push_back(each->read());
+    auto u = device.stream<sk::float4>({count}), v = device.stream<sk::float4>({count});
+    u.write(someVectors(4));
+    v.write(someVectors(7));
+    auto f = device.stream<float>({count});
+    vectors::writtenOfVectors.with(options)(u, v, a, p, q, r, f);
+    for (const auto* each : {&p, &q, &r}) vectors.push_back(each->read());
+    floats.push_back(f.read());
+    auto pushes = device.stream<float>({0});
+    contraction::pushed.with(options)(a, pushes);
+    floats.push_back(pushes.read());
+  }
+};
+
+/// How many results differ, by component; empty if all have the same bits.
+std::string differences(const Written& a, const Written& b) {
+  std::string text;
+  for (std::size_t i = 0; i < a.vectors.size(); ++i) {
+    std::array<int, 4> wrong{};
+    for (std::size_t k = 0; k < a.vectors[i].size(); ++k) {
+      const sk::float4 &x = a.vectors[i][k], &y = b.vectors[i][k];
+      wrong[0] += x.x != y.x;
+      wrong[1] += x.y != y.y;
+      wrong[2] += x.z != y.z;
+      wrong[3] += x.w != y.w;
+    }
+    if (wrong == std::array<int, 4>{}) continue;
+    text += "vectors " + std::to_string(i) + ":";
+    for (const int each : wrong) text += " " + std::to_string(each);
+    text += "; ";
+  }
+  for (std::size_t i = 0; i < a.floats.size(); ++i)
+    if (a.floats[i] != b.floats[i]) text += "floats " + std::to_string(i) + "; ";
+  return text;
+}
+
+TEST_CASE("operations are computed as they are written, with the bits of native code") {
+  sk::Device native = sk::Device::native();
+  const Written expected(native, {});
+  for (const char* profile : {"glsl330", "glsl430", "essl300"}) {
+    INFO(profile);
+    sk::Device& device = run_tests::device(profile);
+    CHECK(differences(Written(device, {}), expected) == "");
+  }
+  INFO("glsl330 without `precise`");
+  sk::Device barred({.device = "software", .profile = "glsl330", .barrier = "xor"});
+  CHECK(differences(Written(barred, {}), expected) == "");
+}
+
+TEST_CASE("devices that contract by themselves may do so where a call allows it") {
   const Squares in;
   onEveryTarget([&](sk::Device& device) {
     const auto results = resultsOf(device, contraction::residue.with({.contraction = Contraction::Fast}), in);

@@ -64,12 +64,12 @@ enum class Tables : std::uint8_t {
   On,  ///< looks them up, with the error that Device::tables() reports
 };
 
-/// Whether native code may fuse a product with the sum that uses it, as in `a * b + c`, into one operation
-/// that rounds once. GL devices ignore the choice: GLSL leaves it to the driver.
+/// Whether a compiler may fuse a product with the sum that uses it, as in `a * b + c`, into one operation that rounds once.
+/// On GL devices it may also combine and cancel operations, as GLSL allows.
 enum class Contraction : std::uint8_t {
   Default,  ///< the choice of the kernel's declaration, else Exact
-  Exact,  ///< rounds every operation, in the order of the text: the same bits on every CPU
-  Fast,  ///< fuses if the CPU has the operation; compensated and exact sums do not change
+  Exact,  ///< rounds every operation of a kernel, in the order of the text: the same bits on every CPU
+  Fast,  ///< fuses if the CPU has the operation; GL devices do as they like; compensated and exact sums do not change
 };
 
 /// How a kernel is executed. Results are the same, except for the order in which a reduction adds.

@@ -46,8 +46,10 @@ struct Profile {
   /// (compiler/transforms/expand_selects.hpp). No sk::Device has such a profile.
   bool webgl = false;
   bool accurate = true;  ///< use our own functions for intrinsics that devices get wrong
-  Barrier barrier =
-      Barrier::Xor;  ///< Precise needs GL_ARB_gpu_shader5, which devices of the profile may have
+  /// What keeps floats from being simplified. Precise needs GL_ARB_gpu_shader5, which most devices with OpenGL have.
+  Barrier barrier = Barrier::Xor;
+  /// Contraction::Exact: a kernel's own operations are computed as they are written (glsl/own_arithmetic.hpp).
+  bool exact = true;
   bool tables = true;  ///< look functions with tables up
   /// Compute programs fetch a texel once for all neighbours in a work group, which is faster on GPUs.
   bool sharesTexels = true;

@@ -114,7 +114,8 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     limits.uniformComponents = profile.uniformComponents;
   }
   if (choices.barrier) {
-    arithmetic_ = {.exactSums = *choices.barrier != Barrier::None, .barrier = *choices.barrier};
+    arithmetic_ = {
+        .exactSums = *choices.barrier != Barrier::None, .barrier = *choices.barrier, .asWritten = false};
   }
   const gl::CurrentScope current(context);
   limits.memory = memoryInfo().whole;
@@ -230,11 +231,13 @@ void GlDevice::selectDrawnPrograms(const program::Kernel& kernel, const CallOpti
 }
 
 void GlDevice::selectPrograms(const CallOptions& options, assemble::Stage stage) {
-  const ProgramCacheKey key{.stage = stage,
-                            .accurate = options.intrinsics != Intrinsics::Fast,
-                            .doubles = computesInPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
-                            .barrier = barrier,
-                            .tables = options.tables != Tables::Off};
+  const ProgramCacheKey key{
+      .stage = stage,
+      .accurate = options.intrinsics != Intrinsics::Fast,
+      .doubles = computesInPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
+      .barrier = barrier,
+      .exact = options.contraction != Contraction::Fast && !(arithmetic_ && arithmetic_->asWritten),
+      .tables = options.tables != Tables::Off};
   if (programs_ != nullptr && key == cacheKey_) {
     return;
   }
@@ -244,6 +247,7 @@ void GlDevice::selectPrograms(const CallOptions& options, assemble::Stage stage)
     cacheProfile.accurate = key.accurate;
     cacheProfile.doubles = key.doubles;
     cacheProfile.barrier = key.barrier;
+    cacheProfile.exact = key.exact;
     cacheProfile.tables = key.tables;
     found = caches_.try_emplace(key, *this, cacheProfile).first;
   }
@@ -307,7 +311,7 @@ void GlDevice::needExactSums(const program::Kernel& kernel) {
 void GlDevice::checkProgram(const program::Kernel& kernel) {
   if (kernel.usesDoubles && profile.doubles == assemble::Doubles::Pairs) {
     needExactSums(kernel);
-  } else if (kernel.usesExactSums) {
+  } else if (kernel.usesExactSums || barrier == Barrier::Xor) {
     arithmetic();
   }
 }

@@ -66,6 +66,7 @@ struct ProgramCacheKey {
   bool accurate = true;
   assemble::Doubles doubles = assemble::Doubles::Native;
   Barrier barrier = Barrier::Xor;
+  bool exact = true;  ///< assemble::Profile::exact
   bool tables = true;
   auto operator<=>(const ProgramCacheKey&) const = default;
 };

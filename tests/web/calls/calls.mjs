@@ -71,8 +71,8 @@ const cases = {
     start[128 * 256 + 128] = 1000;
     const u = filled(device, 'float', [256, 256], start);
     for (let step = 0; step < 100; ++step) k.diffuse(0.2, u, u);
-    // Each step rounds six times, or less where the driver contracts; 100 steps of values up to 1000 that fall fast.
-    same('heat', await u.read(), 600, 4);
+    // The same bits, but where values are denormal, and those that come of them.
+    same('heat', await u.read(), 2 ** -90);
     // Heat is conserved but for the steps' roundings, and a tree of 2^16 numbers rounds 16 times.
     const values = [await k.sum(u), await k.sum.with({ accumulate: 'tree' })(u)];
     same('heat sum', values, 8, 1000);
@@ -84,9 +84,22 @@ const cases = {
     for (const n of [1, 7, 256, 1000, 100003]) {
       const [x, y, r] = [random(device, [n], 1), random(device, [n], 2), device.stream('float', [n])];
       k.saxpy(2.5, x, y, r);
-      same(`saxpy ${n}`, await r.read(), 2, 4); // two roundings of numbers below 4, or one
+      same(`saxpy ${n}`, await r.read());
       same(`sums ${n}`, [await k.sum(r), await k.last(r), await k.dot(x, y)], 8, Math.max(4, Math.sqrt(n)));
     }
+  },
+
+  // Operations are those of the text, in its order.
+  async arithmetic(device) {
+    const n = 4096;
+    const [x, y, r] = [random(device, [n], 14), random(device, [n], 15), device.stream('float', [n])];
+    const [p, q, s] = [1, 2, 3].map(() => device.stream('float4', [n]));
+    k.written(x, y, p, q, s);
+    same('written p', await p.read());
+    same('written q', await q.read());
+    same('written r', await s.read());
+    k.loose(x, r);
+    same('loose', await r.read(), 2, 1);
   },
 
   async boundaries(device) {

@@ -43,6 +43,19 @@ struct Calls : Streams {
     }
   }
 
+  void arithmetic() {
+    constexpr std::int64_t n = 4096;
+    auto x = random({n}, 14), y = random({n}, 15), r = device.stream<float>({n});
+    auto p = device.stream<sk::float4>({n}), q = device.stream<sk::float4>({n}),
+         s = device.stream<sk::float4>({n});
+    written(x, y, p, q, s);
+    print("written p", p.read());
+    print("written q", q.read());
+    print("written r", s.read());
+    loose(x, r);
+    print("loose", r.read());
+  }
+
   void boundaries() {
     for (const auto& [h, w] : {std::pair{29, 37}, {48, 64}, {1, 8}, {3, 3}}) {
       auto a = random({h, w}, 3), b = random({h, w}, 4), c = random({h, w}, 5), d = random({w}, 6);
@@ -269,6 +282,7 @@ int main() {
   Calls calls;
   calls.heat();
   calls.elements();
+  calls.arithmetic();
   calls.boundaries();
   calls.exact();
   calls.records();

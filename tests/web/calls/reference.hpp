@@ -39,6 +39,10 @@ template <class T>
 void number(const sk::Vector3<T>& v) {
   std::printf("%.17g,%.17g,%.17g", double(v.x), double(v.y), double(v.z));
 }
+template <class T>
+void number(const sk::Vector4<T>& v) {
+  std::printf("%.17g,%.17g,%.17g,%.17g", double(v.x), double(v.y), double(v.z), double(v.w));
+}
 
 inline void beginCase(const std::string& name) {
   static bool isFirst = true;

@@ -10,13 +10,11 @@ sk_double sk_sum(sk_double a, sk_double b) {
   sk_precise double s = sk_keep(sk_value(a) + sk_value(b));
   return sk_of(s);
 }
-bool sk_is_negative(sk_double a) { return a.bits.y >> 31 != 0u; }
 int sk_exponent(sk_double a) { return int(a.bits.y - 0x3fe6a09eu) >> 20; }
 sk_double sk_cut(sk_double a) { return sk_double(a.bits & uvec2(0xf8000000u, 0xffffffffu)); }
 
 //// pairBasics
 sk_double sk_sum(sk_double a, sk_double b) { return sk_add(a, b); }
-bool sk_is_negative(sk_double a) { return floatBitsToUint(a.hi) >> 31 != 0u; }
 int sk_exponent(sk_double a) { return int(floatBitsToUint(a.hi) - 0x3f3504f3u) >> 23; }
 sk_double sk_cut(sk_double a) { return sk_double(a.hi, 0.0); }
 // p * x + c, for |c| not below |p * x|.

@@ -11,8 +11,11 @@ std::string_view doubleExtensions(Doubles form) {
   return form == Doubles::Native ? "#extension GL_ARB_gpu_shader_fp64 : require\n" : "";
 }
 
-std::string doubleDefinitions(Doubles form) {
-  return std::string(form == Doubles::Native ? library::native : library::pair).append(library::common);
+std::string doubleDefinitions(Doubles form, Barrier own) {
+  if (form == Doubles::Pairs) return std::string(library::pair).append(library::common);
+  const std::string_view definition =
+      own == Barrier::Precise ? "#define sk_written precise\n" : "#define sk_written\n";
+  return std::string(definition).append(library::native).append(library::common);
 }
 
 }  // namespace sk::assemble

@@ -45,19 +45,25 @@ uint sk_to_uint(sk_double a) {
   return x >= 4294967296.0lf ? 0xffffffffu : x > 0.0lf ? uint(x) : 0u;
 }
 sk_double sk_neg(sk_double a) { return sk_double(a.bits ^ uvec2(0u, 0x80000000u)); }
-sk_double sk_add(sk_double a, sk_double b) { return sk_of(sk_value(a) + sk_value(b)); }
-sk_double sk_sub(sk_double a, sk_double b) { return sk_of(sk_value(a) - sk_value(b)); }
-sk_double sk_mul(sk_double a, sk_double b) { return sk_of(sk_value(a) * sk_value(b)); }
-sk_double sk_div(sk_double a, sk_double b) { return sk_of(sk_value(a) / sk_value(b)); }
+bool sk_is_negative(sk_double a) { return int(a.bits.y) < 0; }
+sk_double sk_add(sk_double a, sk_double b) { sk_written double r = sk_value(a) + sk_value(b); return sk_of(r); }
+sk_double sk_sub(sk_double a, sk_double b) { sk_written double r = sk_value(a) - sk_value(b); return sk_of(r); }
+sk_double sk_mul(sk_double a, sk_double b) { sk_written double r = sk_value(a) * sk_value(b); return sk_of(r); }
+sk_double sk_div(sk_double a, sk_double b) { sk_written double r = sk_value(a) / sk_value(b); return sk_of(r); }
 bool sk_less(sk_double a, sk_double b) { return sk_value(a) < sk_value(b); }
 bool sk_less_equal(sk_double a, sk_double b) { return sk_value(a) <= sk_value(b); }
 bool sk_equal(sk_double a, sk_double b) { return sk_value(a) == sk_value(b); }
 sk_double sk_abs(sk_double a) { return sk_double(a.bits & uvec2(0xffffffffu, 0x7fffffffu)); }
 // From 2^52 on, all are whole. Of infinity, Mesa's functions are NaN.
 bool sk_is_whole(sk_double a) { return (a.bits.y & 0x7fffffffu) >= 0x43300000u; }
-sk_double sk_floor(sk_double a) { return sk_is_whole(a) ? a : sk_of(floor(sk_value(a))); }
-sk_double sk_trunc(sk_double a) { return sk_is_whole(a) ? a : sk_of(trunc(sk_value(a))); }
-sk_double sk_round(sk_double a) { return sk_is_whole(a) ? a : sk_of(roundEven(sk_value(a))); }
+// r with the sign of a: Mesa's functions lose that of a zero.
+sk_double sk_signed(double r, sk_double a) {
+  uvec2 b = unpackDouble2x32(r);
+  return sk_double(uvec2(b.x, (b.y & 0x7fffffffu) | (a.bits.y & 0x80000000u)));
+}
+sk_double sk_floor(sk_double a) { return sk_is_whole(a) ? a : sk_signed(floor(sk_value(a)), a); }
+sk_double sk_trunc(sk_double a) { return sk_is_whole(a) ? a : sk_signed(trunc(sk_value(a)), a); }
+sk_double sk_round(sk_double a) { return sk_is_whole(a) ? a : sk_signed(roundEven(sk_value(a)), a); }
 sk_double sk_sqrt(sk_double a) { return sk_of(sqrt(sk_value(a))); }
 bool sk_isinf(sk_double a) { return sk_abs(a).bits == uvec2(0u, 0x7ff00000u); }
 // What is below the smallest normal double is 0.
@@ -123,6 +129,7 @@ sk_double sk_two_product(float a, float b) {
 }
 
 sk_double sk_neg(sk_double a) { return sk_double(-a.hi, -a.lo); }
+bool sk_is_negative(sk_double a) { return floatBitsToInt(a.hi) < 0; }
 
 sk_double sk_add(sk_double a, sk_double b) {
   sk_double s = sk_two_sum(a.hi, b.hi);
@@ -286,6 +293,14 @@ int sk_square_exponent(sk_double a) {
 }
 
 //// common
+// The order of minima and maxima, in which -0 is below 0.
+bool sk_precedes(sk_double a, sk_double b) { return sk_less(a, b) || (sk_equal(a, b) && sk_is_negative(a)); }
+// A zero with the sign of a; any other number itself.
+sk_double sk_zero_like(sk_double r, sk_double a) {
+  sk_double zero = sk_to_double(0.0);
+  return sk_choose(sk_equal(r, zero), sk_choose(sk_is_negative(a), sk_neg(zero), zero), r);
+}
+
 // A float that rounds to the half that is nearest to the double: the nearest float if that is exact or odd, else its odd neighbour
 // on the other side of the double.
 float sk_to_odd(sk_double a) {

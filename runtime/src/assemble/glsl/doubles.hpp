@@ -22,7 +22,8 @@ namespace sk::assemble {
 
 /// The #extension lines at the beginning of a program that uses doubles; each ends its line.
 std::string_view doubleExtensions(Doubles form);
-/// The definitions, which precede all others except, for pairs, those of exact_sums.hpp.
-std::string doubleDefinitions(Doubles form);
+/// The definitions, which precede all others except, for pairs, those of exact_sums.hpp. Operations of native doubles are
+/// precise with that barrier (barrierOfBodies()), which needs exactExtensions().
+std::string doubleDefinitions(Doubles form, Barrier own);
 
 }  // namespace sk::assemble

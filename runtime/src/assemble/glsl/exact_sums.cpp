@@ -7,8 +7,10 @@
 
 namespace sk::assemble {
 
-std::string_view exactExtensions(Barrier barrier) {
-  return barrier == Barrier::Precise ? "#extension GL_ARB_gpu_shader5 : require\n" : "";
+std::string_view exactExtensions(const Profile& profile) {
+  const bool hasPrecise = profile.stage == Stage::Compute;  // GLSL 4.30
+  return profile.barrier == Barrier::Precise && !hasPrecise ? "#extension GL_ARB_gpu_shader5 : require\n"
+                                                            : "";
 }
 
 std::string_view exactDefinitions(Barrier barrier) {

@@ -8,12 +8,12 @@
 
 #include <string_view>
 
-#include "sk/arithmetic.hpp"
+#include "assemble/assemble.hpp"
 
 namespace sk::assemble {
 
 /// The #extension line at the beginning of a program that has such floats; ends its line.
-std::string_view exactExtensions(Barrier barrier);
+std::string_view exactExtensions(const Profile& profile);
 /// Defines sk_precise, and sk_keep() for float, vec2, vec3 and vec4.
 std::string_view exactDefinitions(Barrier barrier);
 

@@ -311,7 +311,8 @@ float sk_fmod(float x, float y) {
   v += v < 0 ? m : 0;
   v += v < 0 ? m : 0;
   v -= v >= m ? m : 0;
-  return sk_with_sign(sk_scale(float(v), e - 150), x);
+  bool isDenormal = e <= 23 && v < (0x800000 >> (e - 1));
+  return sk_with_sign(isDenormal ? intBitsToFloat(v << (e - 1)) : sk_scale(float(v), e - 150), x);
 }
 
 //// lengthScale

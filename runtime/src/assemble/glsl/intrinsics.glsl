@@ -217,16 +217,26 @@ float sk_fract(float x) {
 }
 
 //// mod
+// x * 2^64, also where x is denormal.
+float sk_raised(float x) {
+  uint bits = floatBitsToUint(x), m = bits & 0x7fffffffu;
+  return m < 0x800000u ? sk_with_sign(float(m) * 2.5849394e-26, x) : x * 1.8446744e19;
+}
 float sk_mod(float x, float y) {
   float r = sk_fmod(x, y);
-  return r != 0.0 && (r < 0.0) != (y < 0.0) ? r + y : r;
+  int bits = floatBitsToInt(r), of_y = floatBitsToInt(y);
+  if ((bits & 0x7fffffff) == 0 || (bits ^ of_y) >= 0) return r;
+  if ((of_y & 0x7fffffff) >= 0x20000000) return r + y;
+  float s = sk_raised(r) + sk_raised(y);   // many devices take denormal numbers as 0
+  if (abs(s) < 2.1684043e-19) return sk_with_sign(intBitsToFloat(int(abs(s) * 3.8685626e25)), y);
+  return s * 5.4210109e-20;
 }
 
 //// mix
 float sk_mix(float x, float y, float t) {
   sk_precise float a = sk_keep(x * (1.0 - t));
   sk_precise float b = sk_keep(y * t);
-  return a + b;
+  return t == 0.0 ? x : t == 1.0 ? y : a + b;
 }
 
 //// step
@@ -239,7 +249,11 @@ float sk_smoothstep(float low, float high, float x) {
 }
 
 //// sign
-float sk_sign(float x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
+// By the bits: some compilers negate the 0 of a choice between 0 and -1.
+float sk_sign(float x) {
+  uint bits = floatBitsToUint(x);
+  return uintBitsToFloat((bits & 0x7fffffffu) - 1u < 0x7f800000u ? (bits & 0x80000000u) | 0x3f800000u : 0u);
+}
 
 //// isnan
 bool sk_isnan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }

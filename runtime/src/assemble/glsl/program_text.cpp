@@ -12,6 +12,7 @@
 #include "assemble/glsl/doubles.hpp"
 #include "assemble/glsl/exact_sums.hpp"
 #include "assemble/glsl/intrinsics.hpp"
+#include "assemble/glsl/own_arithmetic.hpp"
 #include "assemble/glsl/tables.hpp"
 
 namespace sk::assemble {
@@ -212,14 +213,18 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
                                 const program::Kernel& kernel) const {
   std::string program = fmt::format("{}\n// {}\n", profile.version, comment);
   const IntrinsicTexts intrinsics = intrinsicTexts(kernel.intrinsics, profile.accurate);
-  const bool hasExactFloats = kernel.usesExactSums || intrinsics.useExactFloats ||
+  const bool hasPreciseDoubles = kernel.usesDoubles && profile.doubles == Doubles::Native &&
+                                 barrierOfBodies(profile) == Barrier::Precise;
+  const std::string body = bodyText(profile, kernel.body), more = bodyText(profile, foreign_);
+  const bool guards = hasPreciseDoubles || guardsOperations(profile, body) || guardsOperations(profile, more);
+  const bool hasExactFloats = guards || kernel.usesExactSums || intrinsics.useExactFloats ||
                               callDoubleIntrinsics(kernel.intrinsics) ||
                               (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
-  if (hasExactFloats) program += exactExtensions(profile.barrier);
+  if (hasExactFloats) program += exactExtensions(profile);
   if (profile.es) program += esPrecision;
   if (hasExactFloats) program += exactDefinitions(profile.barrier);
-  if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles);
+  if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles, barrierOfBodies(profile));
   program += doubleIntrinsicDefinitions(kernel.intrinsics, profile.doubles, profile.barrier);
   program += intrinsics.definitions;
   addForeign(program, kernel.declarations);
@@ -232,8 +237,9 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   addFunctions(program, used_);
   program += functions_;
   program += tableDefinitions(kernel.tables, profile.tables);
-  addForeign(program, kernel.body);
-  addForeign(program, foreign_);
+  program += bodyDefinitions(profile, body + more);
+  addForeign(program, body);
+  addForeign(program, more);
   return program + mainOf(prologue_ + main_);
 }
 

@@ -18,6 +18,7 @@
 #include "assemble/elements/planes.hpp"
 #include "assemble/elements/storage.hpp"
 #include "assemble/glsl/intrinsics.hpp"
+#include "assemble/glsl/own_arithmetic.hpp"
 #include "assemble/glsl/program_text.hpp"
 #include "assemble/reduce/group_fold.hpp"
 
@@ -350,7 +351,7 @@ bool mayPack(const program::Element& held) {
 namespace {
 
 bool mayRunInSequence(const Kernel& kernel) {
-  return !kernel.usesLoops && kernel.body.size() <= longestPackedBody &&
+  return !kernel.usesLoops && lengthOfBody(kernel.body) <= longestPackedBody &&
          lengthOfCalls(kernel) <= longestPackedCalls;
 }
 

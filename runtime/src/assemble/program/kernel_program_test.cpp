@@ -379,6 +379,48 @@ TEST_CASE("a kernel with loops leaves fragments beside its domain before it does
             .find("return;") == std::string::npos);
 }
 
+TEST_CASE("a kernel's own operations are guarded as the profile and the call say") {
+  Kernel kernel = samples::saxpy;
+  const std::string marked =
+      "void saxpy($pfloat a, float x, float y, $pout float r) {\n"
+      "  $pfloat p = $(a * $[x + y$]$);\n"
+      "  if ($v1$(p - x$)$; < $v1$[x + y$]$;) r = g($v1$fdot($v2$(x * y$)$;, p)$;);\n"
+      "  $=r$,+$,$(p * x$)$.;\n"
+      "}\n";
+  kernel.body = marked;
+  const auto bodyOf = [&](sk::Barrier barrier, bool exact) {
+    Profile profile = glsl;
+    profile.barrier = barrier;
+    profile.exact = exact;
+    const std::string text = kernelProgram(profile, kernel, {.access = {{}, {}, {}, {}}});
+    const std::size_t from = text.find("void saxpy("), to = text.find("}\n", from) + 2;
+    return text.substr(from, to - from);
+  };
+  const std::string plain =
+      "void saxpy(float a, float x, float y, out float r) {\n"
+      "  float p = a * (x + y);\n"
+      "  if (p - x < (x + y)) r = g(dot(x * y, p));\n"
+      "  r += p * x;\n"
+      "}\n";
+  CHECK(bodyOf(sk::Barrier::None, true) == plain);
+  CHECK(bodyOf(sk::Barrier::Precise, false) == plain);
+  CHECK(bodyOf(sk::Barrier::Xor, false) == plain);
+  CHECK(
+      bodyOf(sk::Barrier::Precise, true) ==
+      "void saxpy(precise float a, float x, float y, precise out float r) {\n"
+      "  precise float p = a * (x + y);\n"
+      "  if ((sk_exact1 = p - x) < (sk_exact1 = x + y)) r = g((sk_exact1 = sk_exact_dot((sk_exact2 = x * y), "
+      "p)));\n"
+      "  r += p * x;\n"
+      "}\n");
+  CHECK(bodyOf(sk::Barrier::Xor, true) ==
+        "void saxpy(float a, float x, float y, out float r) {\n"
+        "  float p = sk_keep(a * sk_keep(x + y));\n"
+        "  if (sk_keep(p - x) < sk_keep(x + y)) r = g(sk_exact_dot(sk_keep(x * y), p));\n"
+        "  r = sk_keep(r + sk_keep(p * x));\n"
+        "}\n");
+}
+
 TEST_CASE("a kernel that calls much library code writes no packed texels") {
   const auto packs = [](std::string_view called, Intrinsic intrinsic, int calls, std::uint8_t widths = 1) {
     const IntrinsicUse use{intrinsic, widths};

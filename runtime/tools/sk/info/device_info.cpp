@@ -43,6 +43,7 @@ void measure(sk::Device& device, Json& info) {
   if (hasGl) info["allocates"] = probeAllocations(device);
   info["operations"] = probeOperations(device);
   info["contraction"] = probeContraction(device);
+  info["own_operations"] = probeOwnOperations(device);
   info["functions"] = probeFunctions(device);
   info["special_values"] = probeSpecialValues(device);
   if (hasGl) {

@@ -121,17 +121,45 @@ Json probeOperations(sk::Device& device) {
 
 Json probeContraction(sk::Device& device) {
   const Products given;
+  sk::CallOptions free = fast;  // as the driver likes; native code would fuse where it is asked to
+  if (!isNative(device)) free.contraction = sk::Contraction::Fast;
   auto a = streamOf(device, given.a);
   auto b = streamOf(device, given.b);
   auto c = streamOf(device, given.c);
   auto r = device.stream<float>(a.shape());
   Json json;
-  probes::multiplyAdd.with(fast)(a, b, c, r);
+  probes::multiplyAdd.with(free)(a, b, c, r);
   json["a * b + c"] = given.judge(r.read());
-  probes::fusedMultiplyAdd.with(fast)(a, b, c, r);
+  probes::fusedMultiplyAdd.with(free)(a, b, c, r);
   json["fma of a kernel"] = given.judge(r.read());
   if (!isNative(device)) json["fma of GLSL"] = judgeOwnFma(device, given);
   return json;
+}
+
+Json probeOwnOperations(sk::Device& device) {
+  Numbers numbers(4);
+  std::vector<float> a;
+  for (std::size_t i = 0; i < 4096; ++i) a.push_back(numbers.linear(1, 100));
+  const auto x = streamOf(device, a);
+  auto r = device.stream<sk::float4>(x.shape());
+  const auto differ = [&](sk::Contraction contraction) {
+    probes::combined.with({.contraction = contraction})(x, r);
+    const std::vector<sk::float4> got = r.read();
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      volatile float tenth = a[i] * 0.1F, third = a[i] * 0.3F, sum = a[i] + 1e6F;
+      wrong += (got[i].x != tenth * 10) + (got[i].y != third * 0.7F) + (got[i].z != sum + 3.3F) +
+               (got[i].w != sum - 1e6F);
+    }
+    return static_cast<double>(wrong) / static_cast<double>(4 * a.size());
+  };
+  const sk::Arithmetic& arithmetic = device.arithmetic();
+  const sk::Barrier barrier = arithmetic.asWritten ? sk::Barrier::None : arithmetic.barrier;
+  return {{"differ_exact", differ(sk::Contraction::Exact)},
+          {"differ_fast", differ(sk::Contraction::Fast)},
+          {"by", barrier == sk::Barrier::Precise ? "precise"
+                 : barrier == sk::Barrier::Xor   ? "xor"
+                                                 : "none"}};
 }
 
 }  // namespace sk_tool

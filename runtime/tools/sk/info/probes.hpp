@@ -16,6 +16,7 @@ Json probeProcessor();  ///< "processor": for native devices
 Json probeAllocations(sk::Device& device);  ///< "allocates"
 Json probeOperations(sk::Device& device);  ///< "operations": + - * / sqrt fma
 Json probeContraction(sk::Device& device);  ///< "contraction": of a * b + c, and what fma is
+Json probeOwnOperations(sk::Device& device);  ///< "own_operations": whether kernels compute what is written
 Json probeFunctions(sk::Device& device);  ///< "functions"
 Json probeSpecialValues(sk::Device& device);  ///< "special_values"
 Json probeExactSums(sk::Device& device);  ///< "exact_sums"

@@ -24,6 +24,7 @@ class Report {
     hasGl ? driver() : processor();
     operations();
     contraction();
+    ownOperations();
     if (hasGl) exactSums();
     functions();
     specialValues();
@@ -88,6 +89,16 @@ class Report {
       line(subject, "{} is {}", what, textOf(is));
       subject = "";
     }
+  }
+
+  void ownOperations() {
+    if (!info_.contains("own_operations")) return;
+    const Json& own = info_.at("own_operations");
+    const std::string by = textOf(own.at("by"));
+    line("as written", "{:.3g} % of a kernel's own operations differ{}", 100 * number(own, "differ_exact"),
+         by == "none" ? ", without a barrier"
+                      : fmt::format(" behind {}, {:.3g} % with Contraction::Fast", by,
+                                    100 * number(own, "differ_fast")));
   }
 
   void exactSums() {

@@ -11,7 +11,7 @@
 namespace sk_tool {
 
 /// The version of the entries; cached reports of other versions are ignored.
-inline constexpr int infoSchema = 2;
+inline constexpr int infoSchema = 3;
 
 /// Returns several lines. Throws Json::exception if an entry is missing or has an unexpected type.
 std::string report(const Json& info);

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+//
+// Marks in the GLSL of a kernel's body (sk/program.hpp) that say where floats are computed. The assembler replaces them by
+// what keeps a driver's compiler from reordering, combining or contracting these operations, or removes them. A mark begins
+// with `$`, which is no character of GLSL.
+#pragma once
+
+#include <string_view>
+
+namespace sk::program::mark {
+
+/// In front of the type of a variable that holds floats: `precise`, or nothing.
+inline constexpr std::string_view declared = "$p";
+/// Around one operation of floats or vectors of them: `sk_keep(...)`, or nothing.
+inline constexpr std::string_view operation = "$(", operationEnd = "$)";
+/// The same around an operation in brackets, which `sk_keep(...)` replaces.
+inline constexpr std::string_view bracketed = "$[", bracketedEnd = "$]";
+/// Around an expression whose value goes to no variable of the function: its value is assigned to a precise variable there, or
+/// nothing. A digit follows: the width of a vector, or 5, 6 and 7 for matrices of 2, 3 and 4 columns.
+inline constexpr std::string_view value = "$v", valueEnd = "$;";
+/// `$= PLACE $, OPERATOR $, VALUE $.`: a compound assignment.
+inline constexpr std::string_view compound = "$=", compoundNext = "$,", compoundEnd = "$.";
+/// In front of the name of GLSL's dot, cross, reflect, refract or faceforward: `sk_exact_`, which makes it the name of ours, or
+/// nothing.
+inline constexpr std::string_view function = "$f";
+
+}  // namespace sk::program::mark

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include "assemble/glsl/own_arithmetic.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace sk::assemble {
+namespace {
+
+constexpr char first = '$';
+
+/// The suffix of the variable for a value, by the digit of its mark, and its type.
+struct Kept {
+  std::string_view name, type;
+};
+constexpr std::array<Kept, 7> kept{{{"sk_exact1", "float"},
+                                    {"sk_exact2", "vec2"},
+                                    {"sk_exact3", "vec3"},
+                                    {"sk_exact4", "vec4"},
+                                    {"sk_exact2x2", "mat2"},
+                                    {"sk_exact3x3", "mat3"},
+                                    {"sk_exact4x4", "mat4"}}};
+
+class Resolver {
+ public:
+  explicit Resolver(Barrier barrier) : barrier_(barrier) {}
+
+  std::string text(std::string_view body) {
+    for (std::size_t at = 0; at < body.size();) {
+      const std::size_t next = std::min(body.find(first, at), body.size());
+      result_ += body.substr(at, next - at);
+      if (next == body.size()) break;
+      at = replace(body, next + 1);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  /// Replaces the mark whose second character is at `at`; returns where the text goes on.
+  std::size_t replace(std::string_view body, std::size_t at) {
+    const bool isXor = barrier_ == Barrier::Xor, isPrecise = barrier_ == Barrier::Precise;
+    switch (body[at]) {
+      case 'p': result_ += isPrecise ? "precise " : ""; break;
+      case '(': result_ += isXor ? "sk_keep(" : ""; break;
+      case ')': result_ += isXor ? ")" : ""; break;
+      case '[':
+        brackets_.push_back(!isBracketed_);
+        result_ += isXor ? "sk_keep(" : isBracketed_ ? "" : "(";
+        break;
+      case ']':
+        result_ += isXor || brackets_.back() ? ")" : "";
+        brackets_.pop_back();
+        break;
+      case 'v': {
+        const Kept& variable = kept[static_cast<std::size_t>(body[++at] - '1')];
+        if (isPrecise) result_ += fmt::format("({} = ", variable.name);
+        isBracketed_ = isPrecise;   // another pair of brackets around the whole value would say nothing
+        return at + 1;
+      }
+      case ';': result_ += isPrecise ? ")" : ""; break;
+      case '=': places_.push_back({result_.size()}); break;
+      case ',': compoundPart(); break;
+      case '.':
+        if (isXor) result_ += ")";
+        places_.pop_back();
+        break;
+      case 'f': result_ += isXor || isPrecise ? "sk_exact_" : ""; break;
+      default: assert(false && "no such mark");
+    }
+    isBracketed_ = false;
+    return at + 1;
+  }
+
+  /// "x += y", or "x = sk_keep(x + y)".
+  void compoundPart() {
+    Place& place = places_.back();
+    if (place.text.empty()) {
+      place.text = result_.substr(place.start);
+      result_ += barrier_ == Barrier::Xor ? fmt::format(" = sk_keep({} ", place.text) : std::string(" ");
+    } else {
+      result_ += barrier_ == Barrier::Xor ? " " : "= ";
+    }
+  }
+
+  struct Place {
+    std::size_t start;
+    std::string text = {};
+  };
+
+  Barrier barrier_;
+  std::string result_;
+  bool isBracketed_ = false;
+  std::vector<bool> brackets_;
+  std::vector<Place> places_;
+};
+
+constexpr std::array<std::string_view, 4> vectorTypes = {"float", "vec2", "vec3", "vec4"};
+
+/// The sum of the components of `p`, from the first on.
+std::string sumOf(int width) {
+  std::string text = "p.x";
+  for (int c = 1; c < width; ++c) text = fmt::format("sk_keep({} + p.{})", text, "xyzw"[c]);
+  return text;
+}
+
+/// What GLSL's functions of vectors compute, in the order in which native code does (compiler/native/vector_functions.cpp). `$T` is
+/// the type, `$S` the sum of the products.
+struct Geometry {
+  std::string_view name, text;
+};
+constexpr std::array<Geometry, 4> geometry = {{
+    {"dot",
+     "float sk_exact_dot($T a, $T b) {\n"
+     "  sk_precise $T p = sk_keep(a * b);\n"
+     "  sk_precise float s = $S;\n"
+     "  return s;\n"
+     "}\n"},
+    {"reflect",
+     "$T sk_exact_reflect($T i, $T n) {\n"
+     "  sk_precise $T p = sk_keep(n * (2.0 * sk_exact_dot(n, i)));\n"
+     "  sk_precise $T r = sk_keep(i - p);\n"
+     "  return r;\n"
+     "}\n"},
+    {"refract",
+     "$T sk_exact_refract($T i, $T n, float eta) {\n"
+     "  float d = sk_exact_dot(n, i);\n"
+     "  sk_precise float s = sk_keep(1.0 - sk_keep(d * d));\n"
+     "  sk_precise float t = sk_keep(sk_keep(eta * eta) * s);\n"
+     "  sk_precise float k = sk_keep(1.0 - t);\n"
+     "  sk_precise float u = sk_keep(sk_keep(eta * d) + sqrt(k));\n"
+     "  sk_precise $T r = sk_keep(sk_keep(i * eta) - sk_keep(n * u));\n"
+     "  return k < 0.0 ? $T(0.0) : r;\n"
+     "}\n"},
+    {"faceforward",
+     "$T sk_exact_faceforward($T n, $T i, $T reference) {\n"
+     "  return sk_exact_dot(reference, i) < 0.0 ? n : -n;\n"
+     "}\n"},
+}};
+
+constexpr std::string_view exactCross =
+    "vec3 sk_exact_cross(vec3 a, vec3 b) {\n"
+    "  sk_precise vec3 r = sk_keep(sk_keep(a.yzx * b.zxy) - sk_keep(b.yzx * a.zxy));\n"
+    "  return r;\n"
+    "}\n";
+
+/// The functions that the text calls, for all widths.
+std::string geometryDefinitions(std::string_view text) {
+  const auto calls = [&](std::string_view name) {
+    return text.find(fmt::format("sk_exact_{}(", name)) != std::string_view::npos;
+  };
+  std::string definitions;
+  bool isNeeded = false;  // by functions below
+  for (const Geometry& one : geometry) isNeeded = isNeeded || calls(one.name);
+  for (const Geometry& one : geometry) {
+    if (!calls(one.name) && !(isNeeded && one.name == "dot")) continue;
+    for (int width = 1; width <= 4; ++width) {
+      std::string definition(one.text);
+      const auto replace = [&](std::string_view what, const std::string& by) {
+        for (std::size_t at; (at = definition.find(what)) != std::string::npos;)
+          definition.replace(at, 2, by);
+      };
+      replace("$T", std::string(vectorTypes[static_cast<std::size_t>(width - 1)]));
+      replace("$S", width == 1 ? "p" : sumOf(width));
+      definitions += definition;
+    }
+  }
+  return definitions + std::string(calls("cross") ? exactCross : "");
+}
+
+}  // namespace
+
+Barrier barrierOfBodies(const Profile& profile) { return profile.exact ? profile.barrier : Barrier::None; }
+
+std::string bodyText(const Profile& profile, std::string_view body) {
+  return Resolver(barrierOfBodies(profile)).text(body);
+}
+
+std::size_t lengthOfBody(std::string_view body) { return Resolver(Barrier::None).text(body).size(); }
+
+bool guardsOperations(const Profile& profile, std::string_view text) {
+  const auto has = [&](std::string_view what) { return text.find(what) != std::string_view::npos; };
+  if (barrierOfBodies(profile) == Barrier::None) return false;
+  return has("sk_exact") || has(barrierOfBodies(profile) == Barrier::Xor ? "sk_keep(" : "precise ");
+}
+
+std::string bodyDefinitions(const Profile& profile, std::string_view text) {
+  std::string definitions;
+  if (barrierOfBodies(profile) == Barrier::Precise) {
+    for (const Kept& variable : kept) {
+      if (text.find(fmt::format("({} =", variable.name)) != std::string_view::npos)
+        definitions += fmt::format("precise {} {};\n", variable.type, variable.name);
+    }
+  }
+  if (text.find("sk_exact_") != std::string_view::npos) definitions += geometryDefinitions(text);
+  return definitions;
+}
+
+}  // namespace sk::assemble

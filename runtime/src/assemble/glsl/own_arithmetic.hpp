@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// The arithmetic of a kernel's body: replaces the marks of sk/arithmetic_marks.hpp.
+//
+//   $pfloat s = $(a * $[b + c$]$);
+//   float s = a * (b + c);                           as the driver likes
+//   precise float s = a * (b + c);                   with GLSL's `precise`
+//   float s = sk_keep(a * sk_keep(b + c));           with a uniform that is 0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "assemble/assemble.hpp"
+
+namespace sk::assemble {
+
+/// The barrier of the kernel's own operations: the profile's, or none if the call allows contraction.
+Barrier barrierOfBodies(const Profile& profile);
+
+/// The body as GLSL.
+std::string bodyText(const Profile& profile, std::string_view body);
+
+/// The number of characters without marks.
+std::size_t lengthOfBody(std::string_view body);
+
+/// True if `text`, a result of bodyText(), has operations with a barrier, for which the program must define what exact_sums.hpp
+/// does.
+bool guardsOperations(const Profile& profile, std::string_view text);
+
+/// Declares the variables and functions that `text`, a result of bodyText(), uses and exactDefinitions() does not define.
+std::string bodyDefinitions(const Profile& profile, std::string_view text);
+
+}  // namespace sk::assemble
