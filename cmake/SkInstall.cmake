@@ -30,7 +30,6 @@ if(SK_BUILD_TOOLS)
   install(TARGETS sk)
 endif()
 
-find_package(OpenMP QUIET COMPONENTS CXX)   # which runtime/src links
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/StreamKernelConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/StreamKernelConfig.cmake"
   INSTALL_DESTINATION "${packageFolder}" PATH_VARS CMAKE_INSTALL_BINDIR)

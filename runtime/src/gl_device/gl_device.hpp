@@ -36,7 +36,6 @@
 #include "gl_device/transfer/buffered_transfer.hpp"
 #include "gl_device/transfer/gl_staging.hpp"
 #include "gl_device/transfer/transfer_buffers.hpp"
-#include "native/rest_threads.hpp"
 #include "probe/target_choice.hpp"
 #include "support/cache_folder.hpp"
 
@@ -244,7 +243,6 @@ class DeviceScope {
     device.sortedWords.trim();
     device.groupStates.trim();
     device.transferBuffers.trim();
-    if (device.isSoftware()) native::restThreads();
   }
 
  private:

@@ -17,17 +17,17 @@ struct Range {
 
 /// How a loop is divided among threads.
 enum class Deal : std::uint8_t {
-  Evenly,  ///< each thread gets one contiguous range, the same one each time
-  AsTheyCome,  ///< small ranges, to the next free thread
+  Evenly,  ///< each thread begins with neighbouring ranges, the same ones each time
+  AsTheyCome,  ///< smaller ranges, to the next free thread
 };
 
-/// The number of threads that inParallel would use: one if the loop is small or runs inside another of our
-/// loops.
+/// The most threads that inParallel would use: one if the loop is small, or runs inside another of ours or of OpenMP's.
 std::int64_t threadsFor(std::int64_t count, std::int64_t cost);
 
 /// Calls work(context, range) for ranges that partition the numbers below `count`, on several threads if
-/// there is enough work. `cost` is the work per number, in elements or similar units. Rethrows an exception
-/// of `work` after all calls end.
+/// there is enough work. `cost` is the work per number, in elements or similar units. The caller's thread works on all ranges
+/// itself, and others take some of them: it waits for none that has not begun. Rethrows an exception of `work`, after which
+/// ranges that have not begun are left out, when all calls have ended.
 void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(void*, Range), void* context);
 
 template <class Work>
