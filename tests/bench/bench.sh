@@ -3,6 +3,7 @@
 #
 # bench.sh BUILD_DIR [--json FILE] [--chart DIR] [--document FILE] [ARGUMENTS of sk_race]: what ./dev bench runs once
 # everything is built. Without arguments of sk_race, sk_bench runs, too. bench.sh BUILD_DIR costs ARGUMENTS...: sk_bench alone.
+# bench.sh BUILD_DIR busy ARGUMENTS...: native calls beside busy processes.
 set -euo pipefail
 build=${1:?usage: bench.sh BUILD_DIR [--json FILE] [--chart DIR] [--document FILE] [ARGUMENTS of sk_race]}
 shift
@@ -12,6 +13,10 @@ race=$build/tests/bench/race/sk_race
 
 if [[ ${1:-} == costs ]]; then
   exec "$costs" "${@:2}"
+fi
+
+if [[ ${1:-} == busy ]]; then
+  exec python3 -B "$here/busy.py" "$race" "${@:2}"
 fi
 
 telling=() racing=()

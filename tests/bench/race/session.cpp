@@ -14,6 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "load.hpp"
+
 namespace race {
 namespace {
 
@@ -118,10 +120,12 @@ std::vector<Session::Entry> Session::entriesOf(const Program& program, bool with
       addWith(ours, fmt::format("{} contracted", ours.name), program.ours, contracted);
     }
   }
-  if (!withPeers) return entries;
   for (const Contender& peer : peers_) {
-    if (peer.program == program.name) entries.push_back({peer, false});
+    if (withPeers && peer.program == program.name) entries.push_back({peer, false});
   }
+  const std::regex wanted(settings_.only);
+  std::erase_if(entries,
+                [&](const Entry& entry) { return !std::regex_search(entry.contender.name, wanted); });
   return entries;
 }
 
@@ -179,16 +183,23 @@ void Session::runProblem(const Program& program, int log2, bool withPeers) {
       tasks.push_back(std::move(task));
     }
   }
-  const auto seconds = race(runners, settings_.patience, awake_);
-  const Work work = program.work(sizeOf(log2));
+  tell(runs, race(runners, settings_.patience, awake_));
+  if (settings_.busyProcesses == 0) return;
+  const Load load(settings_.busyProcesses);
+  for (Run& run : runs) run.contender += " beside load";
+  tell(runs, race(runners, settings_.patience, awake_));
+}
+
+void Session::tell(const std::vector<Run>& runs, const std::vector<std::vector<double>>& seconds) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    runs[i].seconds = seconds[i];
+    runs_.push_back(runs[i]);
+    runs_.back().seconds = seconds[i];
+    const Work work = runs[i].program->work(sizeOf(runs[i].log2));
     const double median = medianOf(seconds[i]);
     fmt::print("  {:<22} {:>10.4g} ms {:>9.3g} GB/s", runs[i].contender, 1e3 * median,
                work.bytes / median / 1e9);
     if (work.operations > 0) fmt::print(" {:>9.3g} Gop/s", work.operations / median / 1e9);
     fmt::print("\n");
-    runs_.push_back(std::move(runs[i]));
   }
   std::fflush(stdout);
 }

@@ -21,7 +21,10 @@ namespace race {
 struct Settings {
   std::string filter = ".*";  ///< a regular expression that is found in the names of the programs to run
   std::vector<int> sizes = {};  ///< logarithms to base 2; none: each program's own
+  std::string only =
+      ".*";  ///< a regular expression that is found in the names of the contenders that take part
   bool withPeers = true;
+  int busyProcesses = 0;  ///< if there are any, all problems are solved beside them once more
   double longestSeconds = 3;  ///< whoever is expected to take longer for a problem does not take part
   Patience patience = {};
 };
@@ -67,6 +70,8 @@ class Session {
   /// The task, which has run once and was right; none, and an absence, where it cannot be had.
   std::unique_ptr<Task> checkedTask(const Program& program, int log2, const Contender& contender,
                                     const Problem& problem, const Check& check);
+  /// Prints and keeps the times of these runs, round by round.
+  void tell(const std::vector<Run>& runs, const std::vector<std::vector<double>>& seconds);
   void leaveOut(const Program& program, int log2, const Contender& contender, std::string why, bool isWrong);
 
   const Settings& settings_;
