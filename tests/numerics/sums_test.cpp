@@ -208,6 +208,9 @@ TEST_CASE("partial sums overflow, and the sum does not") {
     CHECK(exactSum(device, x) == 1.5F);
     CHECK(exactSum(device, {3e38F, 3e38F}) == inf);
     CHECK(exactSum(device, {-3e38F, -3e38F}) == -inf);
+    // Beyond the range of floats, and rounded up to a power of 2.
+    CHECK(exactSum(device, {0x1.fffffep127F, 0x1.fffffep127F, 0x1p104F, 0x1p103F}) == inf);
+    CHECK(exactSum(device, {-0x1.fffffep127F, -0x1.fffffep127F, -0x1p104F, -0x1p103F}) == -inf);
   });
 }
 
