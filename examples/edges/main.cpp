@@ -15,6 +15,7 @@
 #include "still_life.hpp"
 #include "support/application.hpp"
 #include "support/colormap.hpp"
+#include "support/image.hpp"
 #include "support/stopwatch.hpp"
 
 namespace {

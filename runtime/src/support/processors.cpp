@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <thread>
+
+#include "support/control_groups.hpp"
 
 #if defined(__linux__)
 #include <sched.h>
@@ -20,21 +20,6 @@ namespace sk {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The path of this process in a hierarchy of control groups: "" stands for version 2, and names for controllers of version 1.
-std::optional<std::string> groupOf(const fs::path& root, std::string_view controller) {
-  std::ifstream in(root / "proc/self/cgroup");
-  for (std::string line; std::getline(in, line);) {  // NUMBER:CONTROLLERS:/PATH
-    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
-    if (second == std::string::npos || second + 1 >= line.size()) continue;
-    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
-    const bool isOurs = controller.empty()
-                            ? controllers == ",,"
-                            : controllers.find("," + std::string(controller) + ",") != std::string::npos;
-    if (isOurs) return line.substr(second + 2);
-  }
-  return std::nullopt;
-}
 
 /// Processors of version 2: "QUOTA PERIOD", or "max PERIOD".
 std::optional<double> quotaOf(const fs::path& file) {
@@ -52,15 +37,6 @@ std::optional<double> oldQuotaOf(const fs::path& folder) {
   return quota / period;
 }
 
-/// The least quota of a group and of those around it.
-template <class Quota>
-void limitByGroups(double& processors, const fs::path& all, fs::path group, Quota&& quota) {
-  for (;; group = group.parent_path()) {
-    if (const std::optional<double> most = quota(all / group)) processors = std::min(processors, *most);
-    if (group.empty() || !group.has_relative_path()) return;
-  }
-}
-
 /// Ranks of an MPI program on this machine, by what starters of ranks leave in the environment; 1 if there is nothing.
 int ranksHere() {
   for (const char* name :
@@ -74,10 +50,10 @@ int ranksHere() {
 
 int withinQuota(int processors, const fs::path& root) {
   double most = processors;
-  const fs::path all = root / "sys/fs/cgroup";
-  if (const auto group = groupOf(root, ""))
-    limitByGroups(most, all, *group, [](const fs::path& folder) { return quotaOf(folder / "cpu.max"); });
-  if (const auto group = groupOf(root, "cpu")) limitByGroups(most, all / "cpu", *group, oldQuotaOf);
+  for (const fs::path& folder : controlGroups(root, ""))
+    most = std::min(most, quotaOf(folder / "cpu.max").value_or(most));
+  for (const fs::path& folder : controlGroups(root, "cpu"))
+    most = std::min(most, oldQuotaOf(folder).value_or(most));
   return std::max(1, static_cast<int>(most));
 }
 

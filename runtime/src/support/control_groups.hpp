@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace sk {
+
+/// The folders of the control groups that limit this process, its own first and then those around it. A controller's name, such as
+/// "memory" or "cpu", asks for the first version of control groups, and "" for the second. Files are read below `root`. A container may
+/// see its own group as the outermost one, whatever path it is told.
+std::vector<std::filesystem::path> controlGroups(const std::filesystem::path& root,
+                                                 std::string_view controller);
+
+}  // namespace sk
