@@ -7,6 +7,7 @@
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
 #include "call/precision.hpp"
+#include "call/resolved_call.hpp"
 #include "combine_each.hpp"
 #include "native/exact_accumulator.hpp"
 #include "support/convert_elements.hpp"
@@ -272,8 +273,8 @@ void RankReduction::store(std::span<const StreamRegion> results) {
   std::vector<Argument> arguments;
   for (std::size_t k = 0; k < results.size(); ++k) arguments.push_back({.region = inDoubles(k)});
   for (const StreamRegion& region : results) arguments.push_back({.region = region});
-  sk::run(wide->finish, arguments,
-          {.precision = isExtended(call_.options) ? Precision::Extended : Precision::Double});
+  // Its results are doubles for streams that hold floats, which calls of an application do not pass.
+  call_.device.run(resolveCall(wide->finish, arguments, call_.device.limits, call_.options));
 }
 
 void RankReduction::finish(std::span<void* const> results) {

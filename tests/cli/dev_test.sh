@@ -56,9 +56,9 @@ says 'usage: ./dev COMMAND'
 run 1 build relaese
 says "no preset 'relaese': release, debug, asan or tsan"
 run 1 fuzz runtime
-says 'fuzz what? mutate, kernels, cpp or parse_NAME'
+says 'fuzz what? mutate, kernels, cpp, numbers or parse_NAME'
 run 1 fuzz parse_nothing
-says 'fuzz what? mutate, kernels, cpp or parse_NAME'
+says 'fuzz what? mutate, kernels, cpp, numbers or parse_NAME'
 never_called cmake
 
 # All is installed: no apt-get; configure, build, test, whose closing line comes last.

@@ -17,7 +17,7 @@ compiler/split        support ir split
 compiler/transforms   support ir analysis transforms split sk/exact_digits.hpp
 compiler/native       support ir analysis transforms native llvm sk/native/code.hpp sk/native/table.hpp
 compiler/native/library support ir transforms native
-compiler/glsl         support ir analysis glsl sk/program.hpp
+compiler/glsl         support ir analysis glsl sk/program.hpp sk/arithmetic_marks.hpp
 compiler/program      support ir analysis native/kernel_request.hpp glsl program assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/web          support ir glsl program assemble web sk/program.hpp
 compiler/frontend     support ir frontend clang llvm
@@ -33,7 +33,7 @@ runtime/src/native    sk support trace device call native assemble probe/copy_ba
 runtime/src/probe     sk support trace device call gl gl_device probe assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
 runtime/src/toml      toml
-runtime/src/gl_device sk support trace device call probe gl gl_device assemble native/rest_threads.hpp
+runtime/src/gl_device sk support trace device call probe gl gl_device assemble
 runtime/src/gl_device/memory sk gl gl_device/memory device/region.hpp assemble
 runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_bytes.hpp assemble
 runtime/src/assemble/glsl     sk/program.hpp sk/arithmetic.hpp sk/limits.hpp ASSEMBLE assemble/glsl

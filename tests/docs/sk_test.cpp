@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "command.hpp"
+#include "glslang.hpp"
 #include "listings.hpp"
 #include "markdown.hpp"
 
@@ -28,26 +29,6 @@ std::string firstMessage(const std::string& output, const std::string& file) {
   return {};
 }
 
-/// Each program of a listing as a file of its own.
-std::vector<std::string> writePrograms(const std::string& listing, const fs::path& folder,
-                                       const std::string& prefix) {
-  std::vector<std::string> names;
-  std::string program;
-  const auto flush = [&] {
-    if (program.empty()) return;
-    const bool isCompute = program.find("local_size_x") != std::string::npos;
-    names.push_back(fmt::format("{}.{}.{}", prefix, names.size(), isCompute ? "comp" : "frag"));
-    docs::writeFile(folder / names.back(), program);
-    program.clear();
-  };
-  for (const std::string& line : docs::linesOf(listing)) {
-    if (line.starts_with("#version")) flush();
-    program += line + "\n";
-  }
-  flush();
-  return names;
-}
-
 }  // namespace
 
 TEST_CASE("every .sk block compiles, for every profile, to GLSL that glslang accepts", "[sk]") {
@@ -59,20 +40,16 @@ TEST_CASE("every .sk block compiles, for every profile, to GLSL that glslang acc
     docs::writeFile(folder / docs::fileName(*block), docs::wholeFile(*block));
     files += fmt::format(" '{}'", docs::fileName(*block));
   }
-  std::string programs;
   for (const std::string profile : {"glsl330", "glsl430", "essl300"}) {
     const docs::Outcome outcome = docs::run(
         fmt::format("skc -Werror --emit=glsl --profile={}{} >{}.txt", profile, files, profile), folder);
     INFO(outcome.output);
     REQUIRE(outcome.status == 0);
-    for (const std::string& name :
-         writePrograms(docs::readFile(folder / (profile + ".txt")), folder, profile)) {
-      programs += " " + name;
+    for (const auto& complaints :
+         glslang::complaintsOf(glslang::programsOf(docs::readFile(folder / (profile + ".txt"))))) {
+      for (const glslang::Complaint& complaint : complaints) FAIL_CHECK(profile + ": " + complaint.text);
     }
   }
-  const docs::Outcome checked = docs::run(fmt::format("'{}'{}", SK_DOCS_GLSLANG, programs), folder);
-  INFO(checked.output);
-  CHECK(checked.status == 0);
 }
 
 TEST_CASE("every block that is shown as wrong gives the message that is quoted above it", "[sk]") {

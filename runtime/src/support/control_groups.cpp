@@ -6,10 +6,11 @@
 
 namespace sk {
 
-std::vector<std::filesystem::path> controlGroups(const std::filesystem::path& root,
-                                                 std::string_view controller) {
-  std::filesystem::path own;  // the outermost group if no line tells
-  std::ifstream in(root / "proc/self/cgroup");
+// Strings, since paths of libstdc++ 12 free memory twice where it is exhausted while they are joined.
+std::vector<std::string> controlGroups(const std::filesystem::path& root, std::string_view controller) {
+  const std::string start = root.string() == "/" ? std::string() : root.string();
+  std::string own;  // the outermost group if no line tells
+  std::ifstream in(start + "/proc/self/cgroup");
   for (std::string line;
        std::getline(in, line);) {  // NUMBER:CONTROLLERS:/PATH; version 2 names no controllers
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);
@@ -18,13 +19,15 @@ std::vector<std::filesystem::path> controlGroups(const std::filesystem::path& ro
     const bool isOurs = controller.empty()
                             ? line.starts_with("0::/")
                             : controllers.find("," + std::string(controller) + ",") != std::string::npos;
-    if (isOurs) own = line.substr(second + 2);
+    if (isOurs) own = line.substr(second + 1);
   }
-  std::vector<std::filesystem::path> folders;
-  const std::filesystem::path all = root / "sys/fs/cgroup" / controller;
-  for (std::filesystem::path group = own;; group = group.parent_path()) {
-    folders.push_back(all / group);
-    if (group.empty() || !group.has_relative_path()) return folders;
+  while (own.ends_with('/')) own.pop_back();
+  std::vector<std::string> folders;
+  const std::string all =
+      start + "/sys/fs/cgroup" + (controller.empty() ? "" : "/" + std::string(controller));
+  for (;; own.resize(own.rfind('/'))) {
+    folders.push_back(all + own);
+    if (own.find('/') == std::string::npos) return folders;
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,7 +11,6 @@ namespace sk {
 /// The folders of the control groups that limit this process, its own first and then those around it. A controller's name, such as
 /// "memory" or "cpu", asks for the first version of control groups, and "" for the second. Files are read below `root`. A container may
 /// see its own group as the outermost one, whatever path it is told.
-std::vector<std::filesystem::path> controlGroups(const std::filesystem::path& root,
-                                                 std::string_view controller);
+std::vector<std::string> controlGroups(const std::filesystem::path& root, std::string_view controller);
 
 }  // namespace sk

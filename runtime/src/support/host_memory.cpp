@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The number after a key at the beginning of a line.
-std::optional<std::int64_t> numberAfter(const fs::path& file, std::string_view key) {
+std::optional<std::int64_t> numberAfter(const std::string& file, std::string_view key) {
   std::ifstream in(file);
   std::string word, rest;
   while (in >> word) {
@@ -27,7 +27,7 @@ std::optional<std::int64_t> numberAfter(const fs::path& file, std::string_view k
 }
 
 /// The number that is all of a file; nullopt for "max".
-std::optional<std::int64_t> numberIn(const fs::path& file) {
+std::optional<std::int64_t> numberIn(const std::string& file) {
   std::ifstream in(file);
   std::int64_t number = 0;
   return in >> number ? std::optional(number) : std::nullopt;
@@ -41,17 +41,21 @@ constexpr GroupFiles version1{"memory", "memory.limit_in_bytes", "memory.usage_i
                               "total_inactive_file"};
 constexpr GroupFiles version2{"", "memory.max", "memory.current", "inactive_file"};
 
+std::string withName(const std::string& folder, std::string_view name) {
+  return folder + "/" + std::string(name);
+}
+
 void limit(std::optional<std::int64_t>& bytes, std::int64_t most) {
   bytes = std::max<std::int64_t>(0, std::min(bytes.value_or(most), most));
 }
 
 /// A group is also limited by all groups around it.
 void limitByGroups(HostMemory& memory, const fs::path& root, const GroupFiles& files) {
-  for (const fs::path& folder : controlGroups(root, files.controller)) {
-    if (const auto most = numberIn(folder / files.most)) {
+  for (const std::string& folder : controlGroups(root, files.controller)) {
+    if (const auto most = numberIn(withName(folder, files.most))) {
       limit(memory.whole, *most);
-      const std::int64_t used = numberIn(folder / files.used).value_or(0) -
-                                numberAfter(folder / "memory.stat", files.droppable).value_or(0);
+      const std::int64_t used = numberIn(withName(folder, files.used)).value_or(0) -
+                                numberAfter(folder + "/memory.stat", files.droppable).value_or(0);
       limit(memory.available, *most - used);
     }
   }
@@ -61,10 +65,10 @@ void limitByGroups(HostMemory& memory, const fs::path& root, const GroupFiles& f
 
 HostMemory hostMemory(const fs::path& root) {
   constexpr std::int64_t kibibyte = 1024;
+  const std::string meminfo = root.string() + "/proc/meminfo";
   HostMemory memory;
-  if (const auto whole = numberAfter(root / "proc/meminfo", "MemTotal:")) memory.whole = kibibyte * *whole;
-  if (const auto free = numberAfter(root / "proc/meminfo", "MemAvailable:"))
-    memory.available = kibibyte * *free;
+  if (const auto whole = numberAfter(meminfo, "MemTotal:")) memory.whole = kibibyte * *whole;
+  if (const auto free = numberAfter(meminfo, "MemAvailable:")) memory.available = kibibyte * *free;
   limitByGroups(memory, root, version2);
   limitByGroups(memory, root, version1);
   return memory;

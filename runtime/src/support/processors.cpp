@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "support/control_groups.hpp"
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Processors of version 2: "QUOTA PERIOD", or "max PERIOD".
-std::optional<double> quotaOf(const fs::path& file) {
+std::optional<double> quotaOf(const std::string& file) {
   std::ifstream in(file);
   double quota = 0, period = 0;
   if (!(in >> quota >> period) || quota <= 0 || period <= 0) return std::nullopt;
@@ -30,8 +31,8 @@ std::optional<double> quotaOf(const fs::path& file) {
 }
 
 /// Processors of version 1, whose files hold one number each; -1 stands for no quota.
-std::optional<double> oldQuotaOf(const fs::path& folder) {
-  std::ifstream quotaFile(folder / "cpu.cfs_quota_us"), periodFile(folder / "cpu.cfs_period_us");
+std::optional<double> oldQuotaOf(const std::string& folder) {
+  std::ifstream quotaFile(folder + "/cpu.cfs_quota_us"), periodFile(folder + "/cpu.cfs_period_us");
   double quota = 0, period = 0;
   if (!(quotaFile >> quota) || !(periodFile >> period) || quota <= 0 || period <= 0) return std::nullopt;
   return quota / period;
@@ -50,9 +51,9 @@ int ranksHere() {
 
 int withinQuota(int processors, const fs::path& root) {
   double most = processors;
-  for (const fs::path& folder : controlGroups(root, ""))
-    most = std::min(most, quotaOf(folder / "cpu.max").value_or(most));
-  for (const fs::path& folder : controlGroups(root, "cpu"))
+  for (const std::string& folder : controlGroups(root, ""))
+    most = std::min(most, quotaOf(folder + "/cpu.max").value_or(most));
+  for (const std::string& folder : controlGroups(root, "cpu"))
     most = std::min(most, oldQuotaOf(folder).value_or(most));
   return std::max(1, static_cast<int>(most));
 }

@@ -22,8 +22,8 @@ Barrier barrierOfBodies(const Profile& profile);
 /// The body as GLSL.
 std::string bodyText(const Profile& profile, std::string_view body);
 
-/// The number of characters without marks.
-std::size_t lengthOfBody(std::string_view body);
+/// The number of characters without marks. Ends to count where there are more than `most`.
+std::size_t lengthOfBody(std::string_view body, std::size_t most = std::string_view::npos);
 
 /// True if `text`, a result of bodyText(), has operations with a barrier, for which the program must define what exact_sums.hpp
 /// does.

@@ -351,7 +351,9 @@ bool mayPack(const program::Element& held) {
 namespace {
 
 bool mayRunInSequence(const Kernel& kernel) {
-  return !kernel.usesLoops && lengthOfBody(kernel.body) <= longestPackedBody &&
+  return !kernel.usesLoops &&
+         (kernel.body.size() <= longestPackedBody ||
+          lengthOfBody(kernel.body, longestPackedBody) <= longestPackedBody) &&
          lengthOfCalls(kernel) <= longestPackedCalls;
 }
 
