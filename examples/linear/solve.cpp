@@ -74,7 +74,7 @@ class Refinement {
   }
 
  private:
-  /// Of x, which rounds it once more.
+  /// Subtracts the mean of x, which rounds x once more, and measures the residual again where its error is no longer small.
   void removeMean(std::span<const double> b) {
     const double mean = meanOf(solution_.x);
     for (double& v : solution_.x) v -= mean;

@@ -40,7 +40,7 @@ class DigitLoad {
   /// The sum of two settled numbers, which combining leaves.
   static constexpr DigitLoad combined() { return settled() + settled(); }
 
-  /// As many terms as have this load.
+  /// The number of terms whose digits add up to this load.
   constexpr std::int64_t terms() const { return load_; }
   /// The terms that can still be added.
   constexpr std::int64_t room() const { return most - load_; }

@@ -60,7 +60,6 @@ struct ResolvedReduction {
                        std::span<void* const> otherValues) const;
 };
 
-/// Whether the reduction stores elements to other outputs than its accumulators.
 /// Whether a call folds the terms of an exact sum to digits (sk/exact_digits.hpp): only such a reduction has no exact
 /// variant of its own in an exact call.
 inline bool foldsDigits(const ResolvedReduction& call) {
@@ -68,6 +67,7 @@ inline bool foldsDigits(const ResolvedReduction& call) {
          !call.reduction.seeded;
 }
 
+/// Whether the reduction stores elements to other outputs than its accumulators.
 inline bool storesBeside(const ResolvedReduction& call) {
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     const bool isOutput = call.reduction.fold.parameters[i].role == program::Role::Output;

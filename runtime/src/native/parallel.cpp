@@ -16,8 +16,8 @@ constexpr std::int64_t worthAThread = 1 << 13;
 /// Work that is worth waking threads that sleep.
 constexpr std::int64_t worthWaking = 1 << 16;
 
-/// The number of pieces of a loop: so many that threads end at about the same time and none that is kept from running holds
-/// much, and none much shorter than what is worth a thread.
+/// The number of pieces of a loop. With many pieces, threads end at about the same time, and a thread that the system stops
+/// holds little work. No piece is much shorter than what is worth a thread.
 std::int64_t piecesOf(std::int64_t count, std::optional<std::int64_t> work, std::int64_t threads, Deal deal) {
   const bool isEven = deal == Deal::Evenly;
   const std::int64_t few = isEven ? 1 : 16, many = isEven ? 8 : 64;

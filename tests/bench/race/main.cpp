@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   cli.add_option("--peers", c.peers, "the folder of the peers' libraries (default: that of sk_race)");
   cli.add_flag("--no-peers", c.noPeers, "ours alone");
   cli.add_option("--only", c.settings.only, "a regular expression: contenders whose names it is found in");
-  cli.add_option("--busy", c.settings.busyProcesses, "then once more, beside so many busy processes")
+  cli.add_option("--busy", c.settings.busyProcesses, "measure again beside this number of busy processes")
       ->check(CLI::Range(0, 1024));
   cli.add_option("--json", c.json, "write the times to this file");
   CLI11_PARSE(cli, argc, argv);

@@ -67,7 +67,7 @@ inline double depthOf(const SumFacts& facts, const Arithmetic& arithmetic) {
 /// The largest error of a sum that is not exact.
 inline double boundOf(const SumFacts& facts, const Arithmetic& arithmetic) {
   constexpr double u = 0x1p-24;
-  // Of the ranks before, each rounds a scan twice more (docs/domains.md).
+  // Each rank before this one rounds a scan twice more (docs/domains.md).
   const double ofRanks = facts.isScan && arithmetic.ranks > 1 ? 2.0 * arithmetic.ranks : 0;
   const double depth = depthOf(facts, arithmetic) + 1;  // a product is rounded, too
   if (facts.areDoubles)

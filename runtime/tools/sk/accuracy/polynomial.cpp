@@ -30,7 +30,7 @@ struct Case {
   double (*right)(const Coefficients& coefficients, double x);
 };
 
-/// Of a polynomial whose terms do not cancel: by Horner's rule in long double.
+/// Evaluates a polynomial whose terms do not cancel, by Horner's rule in long double.
 double byHorner(const Coefficients& coefficients, double x) {
   long double value = 0;
   for (std::size_t k = coefficients.size(); k-- > 0;) value = value * x + coefficients[k];

@@ -39,7 +39,7 @@ struct Truth {
 /// One per result, in the order of the reduction.
 using Truths = std::vector<Truth>;
 
-/// How a device adds so many numbers, as docs/accuracy.md has it ("Sums").
+/// How a device adds this number of terms, as docs/accuracy.md says under "Sums".
 struct Additions {
   double depth;  ///< the most additions that a number takes part in
   double lost;  ///< what they lose where numbers are flushed to 0, or rounded to a denormal

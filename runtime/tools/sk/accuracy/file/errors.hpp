@@ -49,7 +49,7 @@ class ErrorSizes {
 
   /// Adds the results of drawn inputs, or of inputs that were looked for, which do not count in means.
   void add(const Results& got, const Results& wanted, std::size_t inputs, int draw, bool isDrawn = true);
-  /// Of all scalars; also "wrong int" if there are integers.
+  /// The metrics over all scalars, with "wrong int" if there are integers.
   std::vector<Metric> metrics() const;
   /// The first result of a wrong class, else the largest error in ulp.
   ErrorPlace worst() const { return total().worst; }

@@ -43,7 +43,7 @@ Format formatOf(const sk::Device& device, sk::Precision precision) {
           std::numeric_limits<float>::max()};
 }
 
-/// x, truncated to so many bits.
+/// Truncates x to this number of bits.
 double truncated(double x, int digits) {
   const int exponent = x == 0 || !std::isfinite(x) ? 0 : std::ilogb(x);
   return std::ldexp(std::trunc(std::ldexp(x, digits - 1 - exponent)), exponent - digits + 1);
@@ -78,7 +78,7 @@ class Sampling {
   const Format& format() const { return format_; }
   double unit() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
   double between(double low, double high) { return low + (high - low) * unit(); }
-  /// Of any exponent and sign.
+  /// A number with any exponent and sign.
   double any() {
     const auto exponents = static_cast<std::uint64_t>(format_.largest - format_.smallest + 1);
     const int exponent = format_.smallest + static_cast<int>(random_() % exponents);

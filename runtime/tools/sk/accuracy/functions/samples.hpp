@@ -26,7 +26,7 @@ struct SampledErrors {
   double largest() const { return worst.empty() ? 0 : worst.front().error; }
 };
 
-/// Of functions in single, extended or double precision. Errors of floats and of native doubles are in ulp, those of GL's
+/// Measures functions in single, extended or double precision. Errors of floats and of native doubles are in ulp, those of GL's
 /// doubles and of pairs of floats in 2^-53 of the result, where it is not too small for the representation
 /// (docs/accuracy.md, Functions of doubles). An eighth more arguments than `count` are drawn near the worst. `progress` is
 /// called with the part that is done. Throws sk::Error if the device lacks the precision.
