@@ -71,9 +71,19 @@ class BvhEngine : public Engine {
 
   std::vector<std::string> account() override { return scene_.account(); }
   const Model& model() const override { return scene_.model(); }
+  TriangleTest triangleTest() const override {
+    return {settings_.intersection == HowToIntersect::Watertight, roundoffOf(settings_.precision)};
+  }
   std::vector<std::string> warnings() const override { return scene_.warnings(); }
 
  private:
+  static double roundoffOf(sk::Precision precision) {
+    // Pairs of floats lose a few of their 48 bits in each operation.
+    return precision == sk::Precision::Double     ? 0x1p-53
+           : precision == sk::Precision::Extended ? 0x1p-44
+                                                  : 0x1p-24;
+  }
+
   static Hit hitOf(const kernels::Found& f) {
     return f.which.x < 0 ? Hit{} : Hit{f.which.x, f.hit.x, f.hit.y, f.hit.z};
   }

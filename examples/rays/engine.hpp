@@ -66,6 +66,12 @@ class Renderer {
   std::vector<sk::float3> variance();
 };
 
+/// How an engine tests triangles, which bounds the errors of its hits (docs/rays.md, "Needles").
+struct TriangleTest {
+  bool isWatertight = true;  ///< otherwise weights come from products of edges, as Möller's test has them
+  double roundoff = 0x1p-24;  ///< half the distance from 1 to the next number of its arithmetic
+};
+
 class Engine {
  public:
   virtual ~Engine() = default;
@@ -81,6 +87,7 @@ class Engine {
   virtual std::vector<std::string> account() { return {}; }
   /// The model that hits are those of. It may differ from the given one by roundings that the scene has asked for.
   virtual const Model& model() const = 0;
+  virtual TriangleTest triangleTest() const = 0;
   /// Sentences for the user about what the scene loses by its settings.
   virtual std::vector<std::string> warnings() const { return {}; }
 };

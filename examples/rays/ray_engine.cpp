@@ -96,6 +96,9 @@ class OctreeEngine : public RayEngine, public StreamTracer {
 
   const BucketCount& count() const override { return count_; }
   const Model& model() const override { return shapes_.model; }
+  TriangleTest triangleTest() const override {
+    return {.isWatertight = settings_.test == BucketTest::Watertight};
+  }
 
   std::vector<std::string> account() override {
     return {

@@ -50,23 +50,35 @@ std::optional<Meeting> meetPlane(const Plane& plane, const Ray& ray) {
   return Meeting{t, 1.0, HUGE_VAL, std::abs(across)};
 }
 
-/// The distance of the hit's point from the surface that it names.
-double ownError(const Model& model, const Ray& ray, const Hit& hit) {
+/// The lengths that a distance to a triangle is computed from, and what stands for its needleError() among them.
+double scaleOf(const Triangle& triangle, const Ray& ray, double t, const TriangleTest& test) {
+  const double scale = scaleOf(ray, t);
+  return scale + needleError(triangle, test, scale) / roundings;
+}
+
+/// The lengths whose roundings decide beside an edge whether there is a hit. The signs of edge functions are exact; those of other tests are not.
+double uncertain(const Triangle& triangle, const Ray& ray, double t, const TriangleTest& test) {
+  return test.isWatertight ? scaleOf(ray, t) : scaleOf(triangle, ray, t, test);
+}
+
+/// The distance of the hit's point from the surface that it names, relative to the lengths that it was computed from.
+double ownError(const Model& model, const Ray& ray, const Hit& hit, const TriangleTest& test) {
   const Vector p = at(ray, hit.t);
   if (hit.id >= model.planeId(0)) {
     const Plane& plane = model.planes[static_cast<std::size_t>(hit.id - model.planeId(0))];
-    return std::abs(dot(vecOf<double>(plane.normal), p) - plane.distance);
+    return std::abs(dot(vecOf<double>(plane.normal), p) - plane.distance) / scaleOf(ray, hit.t);
   }
   if (hit.id >= model.sphereId(0)) {
     const Sphere& sphere = model.spheres[static_cast<std::size_t>(hit.id - model.sphereId(0))];
-    return std::abs(length(p - vecOf<double>(sphere.centre)) - sphere.radius);
+    return std::abs(length(p - vecOf<double>(sphere.centre)) - sphere.radius) / scaleOf(ray, hit.t);
   }
   const auto found = std::ranges::lower_bound(model.triangles, hit.id, {}, &Triangle::id);
   if (found == model.triangles.end() || found->id != hit.id) return HUGE_VAL;
   const Meeting meeting = meet(*found, ray);
-  const bool isBeside =
-      meeting.inside < -clearlyInside && meeting.margin < -roundings * scaleOf(ray, meeting.t);
-  return isBeside ? HUGE_VAL : std::abs(hit.t - meeting.t) * meeting.across;
+  const bool isBeside = meeting.inside < -clearlyInside &&
+                        meeting.margin < -roundings * uncertain(*found, ray, meeting.t, test);
+  return isBeside ? HUGE_VAL
+                  : std::abs(hit.t - meeting.t) * meeting.across / scaleOf(*found, ray, hit.t, test);
 }
 
 }  // namespace
@@ -86,21 +98,36 @@ Meeting meet(const Triangle& triangle, const Ray& ray) {
           std::min({from(u, c - b), from(v, a - c), from(w, b - a)}), std::abs(dot(n, d))};
 }
 
-double errorOf(const Model& model, const Ray& ray, const Hit& hit) {
-  double error = hit.id < 0 ? 0.0 : ownError(model, ray, hit) / scaleOf(ray, hit.t);
-  // How far a surface that is clearly met lies before what was found.
-  const auto missed = [&](const Meeting& meeting) {
-    if (meeting.inside < clearlyInside || meeting.t >= hit.t || !counts(ray, meeting.t)) return;
-    if (meeting.margin < roundings * scaleOf(ray, meeting.t)) return;
-    error =
-        std::max(error, hit.id < 0 ? HUGE_VAL : (hit.t - meeting.t) * meeting.across / scaleOf(ray, hit.t));
+double needleError(const Triangle& triangle, const TriangleTest& test, double scale) {
+  const auto a = vecOf<double>(triangle.a), b = vecOf<double>(triangle.b), c = vecOf<double>(triangle.c);
+  const double longest = std::max({length(b - a), length(c - b), length(a - c)});
+  const double area = 0.5 * length(cross(b - a, c - a));
+  if (!(area > 0.0)) return 0.0;
+  const double across = longest * longest / area;
+  return test.roundoff * across * (test.isWatertight ? 3.0 * longest : 9.0 * scale);
+}
+
+double errorOf(const Model& model, const Ray& ray, const Hit& hit, const TriangleTest& test) {
+  double error = hit.id < 0 ? 0.0 : ownError(model, ray, hit, test);
+  // How far a surface that is clearly met lies before what was found, relative to `scale`.
+  const auto missed = [&](const Meeting& meeting, double scale) {
+    error = std::max(error, hit.id < 0 ? HUGE_VAL : (hit.t - meeting.t) * meeting.across / scale);
   };
-  for (const Triangle& triangle : model.triangles) missed(meet(triangle, ray));
+  const auto isBefore = [&](const Meeting& meeting) {
+    return meeting.inside >= clearlyInside && meeting.t < hit.t && counts(ray, meeting.t);
+  };
+  for (const Triangle& triangle : model.triangles) {
+    const Meeting meeting = meet(triangle, ray);
+    if (isBefore(meeting) && meeting.margin >= roundings * uncertain(triangle, ray, meeting.t, test))
+      missed(meeting, scaleOf(triangle, ray, hit.t, test));
+  }
   for (const Sphere& sphere : model.spheres) {
-    if (const auto meeting = meetSphere(sphere, ray)) missed(*meeting);
+    const auto meeting = meetSphere(sphere, ray);
+    if (meeting && isBefore(*meeting)) missed(*meeting, scaleOf(ray, hit.t));
   }
   for (const Plane& plane : model.planes) {
-    if (const auto meeting = meetPlane(plane, ray)) missed(*meeting);
+    const auto meeting = meetPlane(plane, ray);
+    if (meeting && isBefore(*meeting)) missed(*meeting, scaleOf(ray, hit.t));
   }
   return error;
 }
@@ -108,6 +135,7 @@ double errorOf(const Model& model, const Ray& ray, const Hit& hit) {
 examples::Verification checkEngine(Engine& engine, const Model& model, int width, int height) {
   examples::Verification verification("rays of pixels against all shapes", roundings,
                                       "16 roundings of floats, of the lengths that a hit is computed from");
+  const TriangleTest test = engine.triangleTest();
   const std::vector<Ray> all = primaryRays(model.camera, width, height);
   const std::size_t shapes = std::max<std::size_t>(1, model.triangles.size() + model.spheres.size());
   const std::size_t count = std::clamp<std::size_t>(mostTests / shapes, 1, 2000);
@@ -119,7 +147,7 @@ examples::Verification checkEngine(Engine& engine, const Model& model, int width
   std::vector<Hit> hits(rays.size());
   engine.closest(rays, hits);
   for (std::size_t i = 0; i < rays.size(); ++i)
-    verification.note(static_cast<std::int64_t>(i), errorOf(model, rays[i], hits[i]));
+    verification.note(static_cast<std::int64_t>(i), errorOf(model, rays[i], hits[i], test));
   return verification;
 }
 

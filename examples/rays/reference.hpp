@@ -22,10 +22,14 @@ struct Meeting {
 };
 Meeting meet(const Triangle& triangle, const Ray& ray);
 
+/// The length by which a thin triangle's hits may be off, beside the 16 roundings of floats that hits of any shape have (docs/rays.md, "Needles").
+/// `scale` is what a distance is computed from.
+double needleError(const Triangle& triangle, const TriangleTest& test, double scale);
+
 /// How far a hit's point is from the surface that it names, or a surface that was missed is before it, relative to the lengths that it was computed
-/// from. Infinite where something was missed as a whole. What a ray meets within a thousandth of a triangle, or within the roundings of its
+/// from; of a triangle, these include a sixteenth of the roundings that its needleError() takes. Infinite where something was missed as a whole. What a ray meets within a thousandth of a triangle, or within the roundings of its
 /// corners, from an edge may be a hit or none: needles may be no wider than that.
-double errorOf(const Model& model, const Ray& ray, const Hit& hit);
+double errorOf(const Model& model, const Ray& ray, const Hit& hit, const TriangleTest& test = {});
 
 /// Traces some of the rays through the picture's pixels, as many as loops over all shapes can follow in a moment.
 examples::Verification checkEngine(Engine& engine, const Model& model, int width, int height);

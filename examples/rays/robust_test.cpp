@@ -143,6 +143,57 @@ TEST_CASE("nothing passes between slivers") {
     CHECK(misses(hitsOf(device, model, raysToEdges(model, {}, 10'000, 37), way)) == 0);
 }
 
+TEST_CASE(
+    "hits of needles of any aspect ratio keep the bound that grows with it, and precise ones the bound of "
+    "all triangles") {
+  for (const char* name : {"native", "essl300"}) {
+    const bool isNative = name == std::string("native");
+    sk::Device device = isNative ? sk::Device::native()
+                                 : sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
+    for (const sk::Precision precision : {sk::Precision::Single, sk::Precision::Double}) {
+      // The study of needles checks pairs of floats.
+      if (!isNative && precision != sk::Precision::Single) continue;
+      double plain = 0.0;
+      for (const double aspect : {1e1, 1e3, 1e5, 1e7}) {
+        CAPTURE(name, static_cast<int>(precision), aspect);
+        const Model model = needles(aspect, 50, 5);
+        const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, {.precision = precision});
+        const TriangleTest test = engine->triangleTest();
+        CHECK(test.roundoff <= 0x1p-24);
+        const std::vector<Ray> rays = raysToTriangles(model, isNative ? 500 : 200, 61);
+        const std::vector<Hit> hits = traceRays(*engine, model, rays);
+        double worst = 0.0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          worst = std::max(worst, errorOf(model, rays[i], hits[i], test));
+          plain = std::max(plain, errorOf(model, rays[i], hits[i], {.roundoff = 0.0}));
+        }
+        CHECK(worst <= 0x1p-20);
+      }
+      // What all other triangles keep would not do for floats.
+      CHECK((plain <= 0x1p-20) == (precision != sk::Precision::Single));
+    }
+  }
+}
+
+TEST_CASE("a scene of needles passes its verification") {
+  // A bipyramid of many sides.
+  Mesh pyramid;
+  constexpr std::uint32_t sides = 4096;
+  pyramid.points = {{0.01, 0.5, 0.003}, {-0.02, -0.5, 0.01}};
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    pyramid.points.push_back({0.5 * std::cos(angle), 0.0, 0.5 * std::sin(angle)});
+    const std::uint32_t next = 2 + (i + 1) % sides;
+    pyramid.faces.push_back({.points = {0, 2 + i, next}});
+    pyramid.faces.push_back({.points = {1, next, 2 + i}});
+  }
+  Model model = inUnits(rays::modelOf(pyramid));
+  model.camera.from = {0.3, 0.4, 2.0};
+  sk::Device device = sk::Device::native();
+  const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, {});
+  CHECK(checkEngine(*engine, engine->model(), 12, 12).passed());
+}
+
 TEST_CASE("copies and triangles without an area change no hit") {
   sk::Device device = sk::Device::native();
   const Model model = rays::modelOf(icosphere(3, false));

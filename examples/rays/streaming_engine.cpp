@@ -60,6 +60,9 @@ class StreamingEngine : public Engine {
   }
 
   const Model& model() const override { return scene_.model; }
+  TriangleTest triangleTest() const override {
+    return {.isWatertight = settings_.intersection == HowToIntersect::Watertight};
+  }
 
  private:
   sk::Stream<kernels::Found> find(bool anyHit, std::span<const Ray> rays) {

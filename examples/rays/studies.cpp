@@ -9,6 +9,7 @@ std::span<const Study> studies() {
   static constexpr std::array all = {
       Study{"leaks", "what tests of triangles miss at edges and vertices, and how exact their distances are",
             studyLeaks},
+      Study{"needles", "how the errors of distances grow with the aspect ratio of triangles", studyNeedles},
       Study{"alike", "how far apart pictures are by every mode, on fragment, compute and native", studyAlike},
       Study{"light", "means of pictures that are known, by each way to reach lights", studyLight},
       Study{"convergence", "how fast errors fall with independent samples and with Sobol's",

@@ -19,6 +19,41 @@ Model modelOf(const Mesh& mesh, Vector moved) {
   return model;
 }
 
+Model needles(double aspect, std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  const auto direction = [&] { return normalized(Vector{normal(random), normal(random), normal(random)}); };
+  Mesh mesh;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector from = 0.4 * direction(), along = direction();
+    const Vector across = normalized(cross(along, direction()));
+    const auto first = static_cast<std::uint32_t>(mesh.points.size());
+    mesh.points.push_back(from);
+    mesh.points.push_back(from + along);
+    mesh.points.push_back(from + (i % 3 == 0 ? 1.0 : 0.4) * along + (1.0 / aspect) * across);
+    mesh.faces.push_back({.points = {first, first + 1, first + 2}});
+  }
+  return modelOf(mesh);
+}
+
+std::vector<Ray> raysToTriangles(const Model& model, std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Triangle& t = model.triangles[random() % model.triangles.size()];
+    double u = uniform(random), v = uniform(random);
+    if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+    const Vector at = (1.0 - u - v) * examples::vecOf<double>(t.a) + u * examples::vecOf<double>(t.b) +
+                      v * examples::vecOf<double>(t.c);
+    const Vector from =
+        (i % 2 == 0 ? 2.0 : 0.1) * normalized(Vector{normal(random), normal(random), normal(random)});
+    rays.push_back({.origin = toFloat3(from), .direction = toFloat3(normalized(at - from))});
+  }
+  return rays;
+}
+
 std::vector<Ray> raysToEdges(const Model& model, Vector moved, std::size_t count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -24,6 +24,7 @@ using examples::Study;
 std::span<const Study> studies();
 
 Findings studyLeaks(sk::Device& device, bool isSmall);
+Findings studyNeedles(sk::Device& device, bool isSmall);
 /// Every scene by every mode on every device; the given one does not matter.
 Findings studyAlike(sk::Device& device, bool isSmall);
 Findings studyLight(sk::Device& device, bool isSmall);
@@ -56,6 +57,11 @@ double closestRate(sk::Device& device, const Model& model, std::span<const Ray> 
 
 /// A mesh alone, moved, its ids from 0.
 Model modelOf(const Mesh& mesh, Vector moved = {});
+
+/// Triangles of length 1 in all directions, each `aspect` times as long as it is high, as far as floats have such.
+Model needles(double aspect, std::size_t count, unsigned seed);
+/// From outside and from inside, at points inside of triangles.
+std::vector<Ray> raysToTriangles(const Model& model, std::size_t count, unsigned seed);
 
 /// From near `moved`, inside a closed mesh that was moved there, to its vertices and to points of its edges, as floats have them.
 std::vector<Ray> raysToEdges(const Model& model, Vector moved, std::size_t count, unsigned seed);

@@ -98,7 +98,8 @@ void Equations::update(const Surface& s, const Faults& faults, double timeStep, 
     }
     total += 0.5 * twiceArea;
   }
-  const double mean = total / static_cast<double>(std::max<std::size_t>(s.points.size(), 1));
+  // 1 where no triangle is left.
+  const double mean = total > 0.0 ? total / static_cast<double>(s.points.size()) : 1.0;
   for (std::size_t i = 0; i < s.points.size(); ++i) {
     for (auto k = static_cast<std::size_t>(laplacian_.starts[i]);
          k < static_cast<std::size_t>(laplacian_.starts[i + 1]); ++k) {

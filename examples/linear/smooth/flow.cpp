@@ -88,7 +88,13 @@ class Flow::Solver {
 
   static bool isSolved(const linear::Solution& change) {
     return change.outcome == linear::Outcome::Converged ||
-           change.outcome == linear::Outcome::SingularAndCompatible;
+           change.outcome == linear::Outcome::SingularAndCompatible || isAsExactAsDoubles(change);
+  }
+
+  /// x solves equations whose entries differ from these by less than their own rounding errors (J. Rigal and J. Gaches, "On the compatibility of a given solution with
+  /// the data of a linear system", 1967). Where a surface has almost shrunk to curves, condition numbers exceed 10^8, and no double x has a residual below the tolerance.
+  static bool isAsExactAsDoubles(const linear::Solution& change) {
+    return change.outcome == linear::Outcome::Stagnated && change.backwardError <= mostBackwardError;
   }
 
   std::string layout() const { return matrix_->layout(); }
@@ -162,7 +168,8 @@ Flow::Flow(sk::Device& device, Surface surface, const FlowSettings& settings)
       faults_(inspect(surface_)),
       layout_(settings.layout),
       precision_(settings.precision),
-      volume_(volumeOf(surface_)) {
+      volume_(volumeOf(surface_)),
+      area_(areaOf(surface_)) {
   checkPrecision(settings.precision);
   if (faults_.degenerate.size() == surface_.faces.size())
     throw std::runtime_error("the surface has no triangle with an area; nothing can flow");
@@ -184,13 +191,14 @@ StepReport Flow::step() {
     for (const Vector& p : surface_.points) x.push_back(p.*component);
     const linear::Solution change = solver_->changeOf(x);
     if (!Solver::isSolved(change))
-      throw std::runtime_error(fmt::format(
-          "step {}: the equations were not solved: {}, residual {:.2g}; take a smaller time step{}", steps_,
-          linear::nameOf(change.outcome), change.residualTrue,
-          solver_->precision() == "single" ? ", or the precision 'auto'" : ""));
+      throw std::runtime_error(fmt::format("step {}: the equations were not solved: {}, residual {:.2g}; {}",
+                                           steps_, linear::nameOf(change.outcome), change.residualTrue,
+                                           wayOut()));
     for (std::size_t i = 0; i < x.size(); ++i) surface_.points[i].*component += change.x[i];
     report.iterations += change.iterations;
     report.residual = std::max(report.residual, change.residualTrue);
+    if (Solver::isAsExactAsDoubles(change))
+      report.backwardError = std::max(report.backwardError, change.backwardError);
     report.secondsSolving += change.seconds;
   }
   precision_ = solver_->precision();
@@ -201,8 +209,22 @@ StepReport Flow::step() {
   return report;
 }
 
+std::string Flow::wayOut() const {
+  const double left = areaOf(surface_) / area_;
+  // Weights of triangles along curves and across them then differ by more than doubles resolve.
+  if (left < 0x1p-12)
+    return fmt::format(
+        "{:.2g} of the area is left: the surface has almost shrunk to curves or points; take fewer steps",
+        left);
+  return solver_->precision() == "single" ? "take a smaller time step, or the precision 'auto'"
+                                          : "take a smaller time step";
+}
+
 void Flow::restoreVolume() {
   const double factor = std::cbrt(volume_ / volumeOf(surface_));
+  if (!std::isfinite(factor))
+    throw std::runtime_error(fmt::format(
+        "step {}: the surface has no volume left that could be restored; take a smaller time step", steps_));
   const Vector centre = centreOf(surface_);
   for (Vector& p : surface_.points) p = centre + factor * (p - centre);
 }

@@ -27,10 +27,15 @@ struct FlowSettings {
   double tolerance = 1e-8;  ///< of a step's true residual
 };
 
+/// What a step's backward error may be if its residual stays above the tolerance: 512 roundings of doubles, less than the cotangents of thin triangles lose.
+inline constexpr double mostBackwardError = 0x1p-44;
+
 struct StepReport {
   std::int64_t iterations = 0;  ///< of three solves, for x, y and z
   double residual =
       0.0;  ///< the largest of their true residuals, as a part of the right-hand side, with rows and columns scaled by the diagonal
+  /// The largest backward error (linear::Solution) of solves whose residual stays above the tolerance because no double x is better; 0 if all reach it.
+  double backwardError = 0.0;
   double volume = 0.0;
   double area = 0.0;
   double secondsSolving =
@@ -47,7 +52,7 @@ class Flow {
   ~Flow();
   Flow(Flow&&) noexcept;
 
-  /// Throws std::runtime_error if the equations are not solved to the tolerance.
+  /// Throws std::runtime_error if the equations are not solved, to the tolerance or as exactly as doubles can.
   StepReport step();
 
   const Surface& surface() const { return surface_; }
@@ -61,13 +66,15 @@ class Flow {
   class Solver;  ///< flow.cpp's own
 
   void restoreVolume();
+  /// What to do if a step's equations were not solved.
+  std::string wayOut() const;
 
   sk::Device& device_;
   Surface surface_;
   FlowSettings settings_;
   Faults faults_;
   std::string layout_, precision_;
-  double volume_;
+  double volume_, area_;  ///< at first
   std::unique_ptr<Solver> solver_;  ///< made by the first step
   std::int64_t steps_ = 0;
 };

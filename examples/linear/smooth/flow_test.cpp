@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -155,6 +156,47 @@ TEST_CASE("Meshes with slivers flow in the precision that their matrix needs") {
   CHECK(round.precision() == "single");
   CHECK_THROWS_WITH(Flow(device, sphere(1, 1.0), {.precision = "half"}),
                     "no precision is called 'half'; there are auto, single, extended, double");
+}
+
+TEST_CASE("A step is solved to the tolerance, or as exactly as doubles can") {
+  sk::Device device = sk::Device::native();
+  Surface noisy = sphere(2, 1.0);
+  addNoise(noisy, 0.05, 7);
+  Flow flow(device, noisy, {.timeStep = 0.01, .layout = "rows", .tolerance = 1e-18});
+  const StepReport exact = flow.step();
+  CHECK(exact.residual > 1e-18);
+  CHECK(exact.residual < 1e-12);
+  CHECK(exact.backwardError > 0.0);
+  CHECK(exact.backwardError <= mostBackwardError);
+  Flow usual(device, noisy, {.timeStep = 0.01, .layout = "rows"});
+  CHECK(usual.step().backwardError == 0.0);
+}
+
+/// Steps while they succeed, at most 20; the area shrinks in each. Returns why there is no further step.
+std::string endOf(Flow& flow) {
+  double area = areaOf(flow.surface());
+  try {
+    for (int i = 0; i < 20; ++i) {
+      const double next = flow.step().area;
+      CHECK(next < area);
+      area = next;
+    }
+  } catch (const std::runtime_error& error) {
+    CHECK(area < 1e-3);
+    return error.what();
+  }
+  return "";
+}
+
+TEST_CASE("Surfaces flow until they are curves or points, and the message says so") {
+  sk::Device device = sk::Device::native();
+  Flow ball(device, sphere(1, 1.0), {.timeStep = 0.2, .layout = "rows"});
+  CHECK_THAT(endOf(ball),
+             Catch::Contains("the surface has almost shrunk to curves or points; take fewer steps"));
+  // A thin ring becomes a circle, on which triangles have an area and no height that doubles resolve beside their length.
+  Flow ring(device, torus(48, 16, 1.0, 0.1), {.layout = "rows"});
+  CHECK_THAT(endOf(ring),
+             Catch::Contains("the surface has almost shrunk to curves or points; take fewer steps"));
 }
 
 TEST_CASE("The bound of the least eigenvalue holds") {
