@@ -28,6 +28,7 @@ class CallPlan {
 
  private:
   void takeOthers();
+  void checkInputs() const;
   void exchangeOthers() const;
   void makeRoom(const domain::Depth& further);
   static void addRequest(std::vector<HaloRequest>& requests, DomainStreamState* stream,

@@ -245,14 +245,16 @@ StreamRegion DomainStreamState::placed(StreamState* state) const {
 
 StreamRegion DomainStreamState::placed() const { return placed(local_.get()); }
 
-StreamRegion DomainStreamState::part(const Box& box) const {
+StreamRegion DomainStreamState::part(const Box& box) const { return part(local_.get(), box); }
+
+StreamRegion DomainStreamState::part(StreamState* state, const Box& box) const {
   const Box held = domain::grown(domain->own, domain->parts.haloOf(domain->rank, allocated));
   Box local = box;
   for (int d = 0; d < box.begin.rank(); ++d) {
     local.begin[d] -= held.begin[d];
     local.end[d] -= held.begin[d];
   }
-  return detail::partOf(detail::wholeRegion(local_.get()), local.begin, local.end);
+  return detail::partOf(detail::wholeRegion(state), local.begin, local.end);
 }
 
 void DomainStreamState::deepen(const Depth& depth) {
@@ -263,15 +265,18 @@ void DomainStreamState::deepen(const Depth& depth) {
   detail::StreamOwner deeper;
   try {
     deeper = create();
+    if (from.stream->isLost()) {
+      deeper->markLost();
+    } else {
+      detail::copy(from, part(deeper.get(), domain->own));
+    }
   } catch (...) {
     allocated = before;
     throw;
   }
-  const detail::StreamOwner old = std::move(local_);
   local_ = std::move(deeper);
   spare_ = {};
   valid = {};
-  detail::copy(from, part(domain->own));
 }
 
 StreamRegion DomainStreamState::spare() {

@@ -33,6 +33,7 @@ class DomainStreamState final : public detail::DistributedStream {
   StreamRegion placed() const;
   /// The elements of a box of the whole, all of which are held.
   StreamRegion part(const Box& box) const;
+  StreamRegion part(StreamState* state, const Box& box) const;
   /// Makes room for a halo; the elements of the rank stay, the halo is invalid afterwards.
   void deepen(const domain::Depth& depth);
   /// An array like the one of the elements, to be written while that is read; exchange() then takes it.

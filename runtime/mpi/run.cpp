@@ -278,18 +278,37 @@ std::vector<domain::Piece> CallPlan::piecesOf(const Box& box) const {
   return pieces;
 }
 
+/// Refuses what the call would refuse after the first messages, which nobody would receive then.
+void CallPlan::checkInputs() const {
+  for (const SpreadArgument& one : spread_) {
+    if (!one.isWritten) checkElementsOf(one.stream->placed(), false, kernel_.name);
+  }
+}
+
 void CallPlan::exchangeHalos() const {
+  checkInputs();
   exchangeOthers();
   if (!requests_.empty()) Exchange(domain_, requests_).finish();
 }
 
 void CallPlan::run(const CallOptions& options, const Compute& compute) {
+  checkInputs();
   exchangeOthers();
   const bool isOneBox = !options.box.isWhole() || domain_.parts.ranks() == 1;
   if (isOneBox) {
     arguments_ = ownArguments(arguments_);
   } else {
     replaceArguments();
+  }
+  WriteScope writes, repairs;
+  for (const SpreadArgument& one : spread_) {
+    if (!one.isWritten || std::ranges::find(swapped_, one.stream) != swapped_.end()) continue;
+    StreamState* const written = one.stream->placed().stream;
+    writes.add(written);
+    if (!written->isLost() || !options.box.isWhole()) continue;
+    repairs.add(written);  // all of its elements come, if not in one box
+    repairs.begin();
+    written->setWritten();
   }
   CallOptions part = options;
   const auto computeBox = [&](const Box& box) {
@@ -301,6 +320,7 @@ void CallPlan::run(const CallOptions& options, const Compute& compute) {
       }
       part.box = piece.box;
       compute(moved, part);
+      writes.begin();  // until the other boxes are there, too
     }
   };
   if (requests_.empty()) {
@@ -314,6 +334,8 @@ void CallPlan::run(const CallOptions& options, const Compute& compute) {
     exchange.finish();
     for (const Box& box : overlaps ? domain::difference(box_, inner) : std::vector{box_}) computeBox(box);
   }
+  writes.commit();
+  repairs.commit();
   for (DomainStreamState* stream : swapped_) stream->exchange();
   for (const SpreadArgument& one : spread_) {
     if (one.isWritten) one.stream->valid = beyond_;

@@ -10,6 +10,7 @@
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/stream_state.hpp"
+#include "device/write_scope.hpp"
 #include "domain_state.hpp"
 #include "sk/error.hpp"
 #include "strips.hpp"
@@ -94,19 +95,18 @@ void detail::copyToWhole(DomainStreamState* stream, const StreamRegion& whole) {
   const StreamRegion own = stream->part(domain.own);
   if (domain.parts.ranks() == 1) return copy(own, whole);
   const std::vector<std::byte> all = bytesOfAll(domain, own);
-  try {
-    whole.stream->isBroken = false;  // all of its elements are written
-    const std::byte* from = all.data();
-    for (int rank = 0; rank < domain.parts.ranks(); ++rank) {
-      const Box box = domain.parts.boxOf(rank);
-      const StreamRegion part = partOf(whole, box.begin, box.end);
-      mpi::writeBytes(part, from);
-      from += mpi::bytesOf(part);
-    }
-  } catch (...) {
-    whole.stream->isBroken = true;
-    throw;
+  WriteScope writes;
+  writes.add(whole.stream);
+  writes.begin();
+  whole.stream->setWritten();  // its elements come in parts, all of them
+  const std::byte* from = all.data();
+  for (int rank = 0; rank < domain.parts.ranks(); ++rank) {
+    const Box box = domain.parts.boxOf(rank);
+    const StreamRegion part = partOf(whole, box.begin, box.end);
+    mpi::writeBytes(part, from);
+    from += mpi::bytesOf(part);
   }
+  writes.commit();
 }
 
 void detail::copyFromWhole(DomainStreamState* stream, const StreamRegion& whole) {

@@ -71,6 +71,7 @@ Scene::Scene(sk::Device& on, std::int64_t rows)
   pushed = device.stream<float>({3});
   indices = device.stream<std::int32_t>({size, 8});
   bins = device.stream<std::int32_t>({size + 7});
+  for (auto& stream : halves) stream = device.stream<float>({size, 1}, sk::Storage::Half);
   for (auto& stream : wide) stream = device.stream<sk::float4>({size, 8});
   reset();
 }
@@ -85,12 +86,14 @@ void Scene::reset() {
   pushed.write(numbers(pushed, 50));
   indices.write(numbers(indices, 0));
   bins.write(numbers(bins, 60));
+  for (auto& stream : halves) stream.write(numbers(stream, 65));
   for (auto& stream : wide) stream.write(numbers(stream, 70));
 }
 
 Scene::Elements Scene::elements() const {
   Elements all = {bytesOf(x),    bytesOf(r),      bytesOf(s),       bytesOf(box),
                   bytesOf(part), bytesOf(pushed), bytesOf(indices), bytesOf(bins)};
+  for (const auto& stream : halves) all.push_back(bytesOf(stream));
   for (const auto& stream : wide) all.push_back(bytesOf(stream));
   return all;
 }
@@ -147,6 +150,8 @@ const std::vector<Scenario>& scenarios() {
       {"reduce integers",
        [](Scene& of) { expect(count(of.indices) == static_cast<int>(sumOfNumbers(of.x.size())), "count"); }},
       {"reduce to a stream", [](Scene& of) { sum(of.x, of.part); }, false, false, true},
+      {"reduce to two streams of halves", [](Scene& of) { extremes(of.x, of.halves[0], of.halves[1]); },
+       false, false, true},
       {"reduce exactly to a stream",
        [](Scene& of) { sum.with({.accumulate = sk::Accumulate::Exact})(of.x, of.part); }, false, false, true},
       {"scan", [](Scene& of) { running(of.x, of.r); }, false, true},

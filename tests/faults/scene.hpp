@@ -29,6 +29,7 @@ class Scene {
   const std::vector<float> fives;  ///< as many as `x` has elements
   const std::vector<std::int32_t> rowStarts;  ///< of `x`
   sk::Stream<float> x, r, s, box, part, pushed;
+  sk::Stream<float> halves[2];  ///< of the shape of `part`, stored as halves
   sk::Stream<std::int32_t> indices, bins;
   sk::Stream<sk::float4> wide[6];
 };

@@ -9,7 +9,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "device/stream_state.hpp"
 #include "domain.sk.hpp"
+#include "domain_state.hpp"
 #include "error_of.hpp"
 #include "ranks.hpp"
 #include "sk/mpi.hpp"
@@ -53,6 +55,26 @@ std::vector<sk::Index> splits() {
     if (ranksOfWorld() % rows == 0) all.emplace_back(rows, ranksOfWorld() / rows);
   }
   return all;
+}
+
+/// As after a write of each rank that has failed.
+void lose(const sk::DomainStream<float>& stream) { stream.state()->placed().stream->markLost(); }
+
+TEST_CASE("a lost stream is whole again once a kernel writes all of it") {
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {26, 17}, .periodic = around});
+  auto u = domain.stream<float>(), v = domain.stream<float>(), expected = domain.stream<float>();
+  u.scatter(starts({26, 17}));
+  lose(v);
+  CHECK_THROWS_AS(v.gather(), sk::Error);
+  diffuse(0.125F, u, v);
+  diffuse(0.125F, u, expected);
+  CHECK(areSame(wholeOf(v), wholeOf(expected)));
+  lose(u);
+  CHECK_THROWS_AS(skewed(u, v), sk::Error);  // which needs a deeper halo
+  CHECK_THROWS_AS(u.gather(), sk::Error);
+  auto at = domain.stream<sk::int2>();
+  placed(v, v, v, v, u, at);
+  CHECK(u.gather().size() == (domain.rank() == 0 ? 26 * 17 : 0));
 }
 
 TEST_CASE("a stream is filled, gathered and scattered by the indices of the whole") {

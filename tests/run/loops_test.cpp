@@ -4,6 +4,7 @@
 // are swapped in each iteration; it ends where its condition says; and what cannot be repeated is refused.
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -196,6 +197,39 @@ TEST_CASE("what a loop cannot repeat is refused, and the device goes on") {
     CHECK_THAT(errorOf([&] { nothing.repeat(1); }), Contains("device.record"));
     loop.repeat(2);
     CHECK(x.read() == std::vector<float>{3, 4, 5});
+  });
+}
+
+TEST_CASE("a recording that is given up leaves nothing behind") {
+  onEveryTarget([](sk::Device& device) {
+    auto total = device.scalar<float>(3);
+    auto made = device.scalar<float>(1);
+    const auto giveUp = [&] {
+      device.record([&] {
+        total = total + 1;
+        made = sk::Scalar<float>(total * 2);
+        throw std::runtime_error("the application gives up");
+      });
+    };
+    CHECK_THROWS_AS(giveUp(), std::runtime_error);
+    total = total * 10;
+    CHECK(total.read() == 30);
+  });
+}
+
+TEST_CASE("a stream that ends while calls are recorded is no longer looked at") {
+  onEveryTarget([](sk::Device& device) {
+    auto u = streamOf(device, wave(101)), v = streamOf(device, wave(101)), w = streamOf(device, wave(101));
+    const auto assign = [&] {
+      device.record([&] {
+        loops::smooth(v, w);
+        u = std::move(v);  // ends the stream of u, which no call uses
+        v = std::move(w);
+      });
+    };
+    CHECK_THAT(errorOf(assign), Contains("another stream was assigned to a stream"));
+    loops::smooth(u, v);
+    CHECK(v.read().size() == 101);
   });
 }
 

@@ -21,6 +21,7 @@
 #include "device/loop_state.hpp"
 #include "device/reordering.hpp"
 #include "device/stream_state.hpp"
+#include "device/write_scope.hpp"
 #include "sk/error.hpp"
 #include "sk/host_vector.hpp"
 #include "sk/limits.hpp"
@@ -151,14 +152,12 @@ void permute(const StreamRegion& region, const Permutation& order) {
 
 /// `values` may be null. If they cannot follow the keys, these are lost.
 void permuteBoth(const StreamRegion& keys, const StreamRegion* values, const Permutation& order) {
+  WriteScope writes;
+  writes.add(keys.stream);
   permute(keys, order);
-  if (values == nullptr) return;
-  try {
-    permute(*values, order);
-  } catch (...) {
-    keys.stream->isBroken = true;
-    throw;
-  }
+  writes.begin();
+  if (values != nullptr) permute(*values, order);
+  writes.commit();
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ void restoreLostResults(const ResolvedReduction& call) {
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     const Parameter& parameter = call.reduction.fold.parameters[i];
     const StreamRegion& region = call.arguments[i].region;
-    if (parameter.role != Role::Accumulator || !region.stream->isBroken) continue;
+    if (parameter.role != Role::Accumulator || !region.stream->isLost()) continue;
     const std::vector<std::byte> zeros(parameter.element->size);
     region.stream->fill(region, zeros.data());
   }
@@ -79,18 +79,16 @@ void reduceToStreams(const ResolvedReduction& call) {
   const Reduction& reduction = call.reduction;
   std::vector<Sum> sums;  // compute all sums before storing any: a result may be an input
   for (const ExactSum& sum : reduction.exact) sums.push_back(fold(sum, call));
-  bool hasBegun = false;
-  writeInSteps(reduction, call.arguments, hasBegun, [&] {
-    if (sumsEverything(reduction)) {
-      restoreLostResults(call);
-    } else {
-      call.device.reduce(call);
-      hasBegun = true;
-    }
-    for (std::size_t k = 0; k < sums.size(); ++k, hasBegun = true) {
-      finish(sums[k], reduction.exact[k], call.arguments);
-    }
-  });
+  WriteScope writes;
+  addResults(writes, call);
+  if (sumsEverything(reduction)) {
+    restoreLostResults(call);
+  } else {
+    call.device.reduce(call);
+  }
+  writes.begin();
+  for (std::size_t k = 0; k < sums.size(); ++k) finish(sums[k], reduction.exact[k], call.arguments);
+  writes.commit();
 }
 
 }  // namespace

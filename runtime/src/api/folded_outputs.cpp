@@ -22,6 +22,7 @@
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/region.hpp"
+#include "device/write_scope.hpp"
 #include "sk/call.hpp"
 #include "support/checked_size.hpp"
 
@@ -130,9 +131,13 @@ class FoldCall {
   void runParts() const {
     if (call_.blocks.size() == 0) return map();
     if (isTogether()) return reduceResolved(call_);
+    WriteScope writes;  // of what the first part writes
     if (readsOutputs()) {
+      addArguments(writes, call_, Role::Output);
       map();
-      return orBreak(Role::Output, [&] { foldAfter(); });
+      writes.begin();
+      foldAfter();
+      return writes.commit();
     }
     std::vector<Argument> alone(call_.arguments.begin(), call_.arguments.end());
     for (std::size_t i = 0; i < alone.size(); ++i) {
@@ -140,38 +145,23 @@ class FoldCall {
     }
     const ResolvedReduction fold = call_.of(call_.reduction, alone, {});
     if (!hasMap_ || !readsWritten(parts_.map, mapArguments_, call_, Role::Accumulator)) {
+      addArguments(writes, call_, Role::Accumulator);
       reduceResolved(fold);
-      orBreak(Role::Accumulator, [&] { map(); });
-    } else if (!readsWritten(call_.reduction.fold, call_.arguments, call_, Role::Output)) {
+      writes.begin();
       map();
-      orBreak(Role::Output, [&] { reduceResolved(fold); });
+    } else if (!readsWritten(call_.reduction.fold, call_.arguments, call_, Role::Output)) {
+      addArguments(writes, call_, Role::Output);
+      map();
+      writes.begin();
+      reduceResolved(fold);
     } else {
-      bool hasMapped = false;
-      orBreak(
-          Role::Output,
-          [&] {
-            reduceByTemporaries(fold, [&] {
-              map();
-              hasMapped = true;
-            });
-          },
-          hasMapped);
+      addArguments(writes, call_, Role::Output);
+      reduceByTemporaries(fold, [&] {
+        map();
+        writes.begin();
+      });
     }
-  }
-
-  /// Runs a later part of the call. If it throws, marks what an earlier part has written, parameters of this role.
-  template <class Part>
-  void orBreak(Role written, Part&& part, const bool& hasWritten = true) const {
-    try {
-      part();
-    } catch (...) {
-      for (std::size_t i = 0; i < call_.arguments.size(); ++i) {
-        StreamState* const stream = call_.arguments[i].region.stream;
-        if (hasWritten && call_.reduction.fold.parameters[i].role == written && stream != nullptr)
-          stream->isBroken = true;
-      }
-      throw;
-    }
+    writes.commit();
   }
 
   bool isTogether() const {

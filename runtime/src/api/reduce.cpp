@@ -163,6 +163,8 @@ bool isStoredInOtherPrecision(const ResolvedReduction& call) {
 
 void reduceByTemporaries(const ResolvedReduction& call, const std::function<void()>& between) {
   TemporaryResults floats(call);
+  WriteScope writes;
+  addResults(writes, call);
   std::vector<Argument> all(call.arguments.begin(), call.arguments.end());
   std::vector<std::size_t> results;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -173,17 +175,18 @@ void reduceByTemporaries(const ResolvedReduction& call, const std::function<void
   }
   reduceResolved(call.of(call.reduction, all, {}));
   between();
-  bool hasBegun = storesBeside(call);
-  writeInSteps(call.reduction, call.arguments, hasBegun, [&] {
-    for (const std::size_t i : results) {
-      if (call.arguments[i].region.stream->copyFrom(all[i].region, call.arguments[i].region)) continue;
+  if (storesBeside(call)) writes.begin();
+  for (const std::size_t i : results) {
+    StreamState& result = *call.arguments[i].region.stream;
+    if (!result.copyFrom(all[i].region, call.arguments[i].region)) {
       std::vector<std::byte> elements(static_cast<std::size_t>(all[i].region.shape.size()) *
                                       call.reduction.fold.parameters[i].element->size);
       all[i].region.stream->read(all[i].region, elements.data());
-      call.arguments[i].region.stream->write(call.arguments[i].region, elements.data());
-      hasBegun = true;
+      result.write(call.arguments[i].region, elements.data());
     }
-  });
+    writes.begin();
+  }
+  writes.commit();
 }
 
 void addErrors(const Reduction& reduction, const CompensatedReduction& second, std::span<void* const> values,
@@ -205,19 +208,19 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
   std::vector<void*> values(call.values.begin(), call.values.end());
   values.insert(values.end(), errors.values.begin(), errors.values.end());
   checkReduction(second.reduction, all, values, call.scan, call.placed);
+  WriteScope writes;
+  addResults(writes, call);
   call.device.reduce(call.of(second.reduction, all, values));
   if (call.isToValues()) addErrors(call.reduction, second, call.values, errors.values);
   if (call.isToValues()) return;
-  writeInSteps(call.reduction, call.arguments, true, [&] {
-    const std::vector<Argument> results = resultsWithSums(second, call.arguments);
-    std::vector<Argument> finished = results;
-    finished.insert(finished.end(), errors.arguments.begin(), errors.arguments.end());
-    finished.insert(finished.end(), results.begin(), results.end());
-    run(second.finish, finished,
-        {.precision = Precision::Single,
-         .intrinsics = call.options.intrinsics,
-         .tables = call.options.tables});
-  });
+  writes.begin();
+  const std::vector<Argument> results = resultsWithSums(second, call.arguments);
+  std::vector<Argument> finished = results;
+  finished.insert(finished.end(), errors.arguments.begin(), errors.arguments.end());
+  finished.insert(finished.end(), results.begin(), results.end());
+  run(second.finish, finished,
+      {.precision = Precision::Single, .intrinsics = call.options.intrinsics, .tables = call.options.tables});
+  writes.commit();
 }
 
 }  // namespace

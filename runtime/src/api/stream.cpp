@@ -135,7 +135,7 @@ void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_vie
   } else {
     checkWritten(stream, context);
   }
-  if (!stream.isBroken || (isWritten && isWhole(region))) return;
+  if (!stream.isLost() || (isWritten && isWhole(region))) return;
   throw Error(
       fmt::format(
           "{}: the elements of this stream of shape {} are lost, since what wrote them has failed; write all "

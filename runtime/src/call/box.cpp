@@ -129,7 +129,7 @@ void checkBoxedCall(const Kernel& kernel, std::span<const Argument> arguments, c
     }
     if (parameter.role != Role::Output || !assemble::isNeeded(parameter, specs)) continue;
     const bool isOverwritten = isAll(box, domain) && !isPlaced(arguments[i].region);
-    if (arguments[i].region.stream->isBroken && !isOverwritten) {
+    if (arguments[i].region.stream->isLost() && !isOverwritten) {
       fail(Error::Kind::Lost, kernel,
            "the elements of '{}' are lost, since what wrote them has failed, and a box would restore only "
            "some; write "

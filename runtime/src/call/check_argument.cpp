@@ -93,7 +93,7 @@ StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const
          parameter.name, toString(region.shape), stream.shape.size());
   }
   const bool isWritten = parameter.role == Role::Output || parameter.role == Role::Accumulator;
-  if (stream.isBroken && !(isWritten && isWhole(region))) {
+  if (stream.isLost() && !(isWritten && isWhole(region))) {
     fail(Error::Kind::Lost, kernel,
          "the elements of '{}' are lost, since what wrote them has failed; write all of the stream first",
          parameter.name);

@@ -7,6 +7,7 @@
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "device/region.hpp"
+#include "device/write_scope.hpp"
 
 namespace sk {
 
@@ -73,20 +74,17 @@ void DenseArguments::replace(std::size_t i, bool isRead, bool isWritten) {
 
 // Streams that got no elements before an error hold a mixture with those that did.
 void DenseArguments::finish() const {
-  bool hasBegun = false;
-  try {
-    for (const Temporary& one : temporaries_) {
-      if (!one.isWritten) continue;
-      const StreamRegion& region = given_[one.argument].region;
-      region.stream->copyFrom(arguments_[one.argument].region, region);
-      hasBegun = true;
-    }
-  } catch (...) {
-    for (const Temporary& one : temporaries_) {
-      if (hasBegun && one.isWritten) given_[one.argument].region.stream->isBroken = true;
-    }
-    throw;
+  WriteScope writes;
+  for (const Temporary& one : temporaries_) {
+    if (one.isWritten) writes.add(given_[one.argument].region.stream);
   }
+  for (const Temporary& one : temporaries_) {
+    if (!one.isWritten) continue;
+    const StreamRegion& region = given_[one.argument].region;
+    region.stream->copyFrom(arguments_[one.argument].region, region);
+    writes.begin();
+  }
+  writes.commit();
 }
 
 bool needsDenseArguments(const Kernel& kernel, std::span<const Argument> arguments) {

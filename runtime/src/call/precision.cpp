@@ -104,6 +104,8 @@ void reduceWide(const ResolvedReduction& call, const WideReduction& wide) {
   }
   std::vector<Argument> finished = doubles.arguments;
   for (const std::size_t i : results) finished.push_back(call.arguments[i]);
+  WriteScope writes;
+  addResults(writes, call);
   call.device.reduce(call.of(wide.reduction, folded, doubles.values));
   if (call.isToValues()) {
     for (std::size_t k = 0; k < results.size(); ++k) {
@@ -114,9 +116,9 @@ void reduceWide(const ResolvedReduction& call, const WideReduction& wide) {
     }
     return;
   }
-  writeInSteps(reduction, call.arguments, storesBeside(call), [&] {
-    call.device.run(resolveCall(wide.finish, finished, call.device.limits, call.options));
-  });
+  if (storesBeside(call)) writes.begin();
+  call.device.run(resolveCall(wide.finish, finished, call.device.limits, call.options));
+  writes.commit();
 }
 
 }  // namespace sk

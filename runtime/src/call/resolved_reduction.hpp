@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "device/stream_state.hpp"
+#include "device/write_scope.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
@@ -76,22 +77,17 @@ inline bool storesBeside(const ResolvedReduction& call) {
   return false;
 }
 
-/// Calls steps(), which write the result streams of a reduction one after the other. If an exception
-/// interrupts them, these streams and other outputs are marked as broken. `hasBegun` must be true as soon as a step, or
-/// the fold before, has written something.
-template <class Steps>
-void writeInSteps(const program::Reduction& reduction, std::span<const Argument> arguments,
-                  const bool& hasBegun, Steps&& steps) {
-  try {
-    steps();
-  } catch (...) {
-    for (std::size_t i = 0; hasBegun && i < arguments.size(); ++i) {
-      const program::Role role = reduction.fold.parameters[i].role;
-      const bool isWritten = role == program::Role::Accumulator || role == program::Role::Output;
-      if (isWritten && arguments[i].region.stream != nullptr) arguments[i].region.stream->isBroken = true;
-    }
-    throw;
+/// Adds the arguments of a role.
+inline void addArguments(WriteScope& writes, const ResolvedReduction& call, program::Role role) {
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    if (call.reduction.fold.parameters[i].role == role) writes.add(call.arguments[i].region.stream);
   }
+}
+
+/// Adds the streams of a reduction's results, and its other outputs.
+inline void addResults(WriteScope& writes, const ResolvedReduction& call) {
+  addArguments(writes, call, program::Role::Accumulator);
+  addArguments(writes, call, program::Role::Output);
 }
 
 /// Temporaries for accumulators that are not results, in host memory or in streams like the results.

@@ -42,6 +42,7 @@ LoopState::LoopState(DeviceState& device) : device_(&device) {
 }
 
 LoopState::~LoopState() {
+  if (isRecording()) dropScalars();
   endRecording();
   runner_.reset();  // before the streams whose elements it may hold
   if (device_ != nullptr) std::erase(device_->loops, this);
@@ -66,9 +67,24 @@ void LoopState::use(StreamState* stream) {
 }
 
 bool LoopState::keep(StreamState* stream) noexcept {
-  if (!uses(stream)) return false;
-  kept_.push_back(stream);
-  return true;
+  if (uses(stream)) {
+    kept_.push_back(stream);
+    return true;
+  }
+  for (Held& held : held_) {
+    if (held.stream == stream) held.stream = nullptr;
+  }
+  return false;
+}
+
+/// Drops the operations with scalars of a recording that is given up: scalars that they assign to keep their values, and
+/// those that they make have none.
+void LoopState::dropScalars() noexcept {
+  const PendingScalars dropped = std::exchange(device_->pendingScalars, {});
+  for (const std::shared_ptr<ScalarNode>& node : dropped.nodes) {
+    if (node->state != ScalarNode::State::Pending) continue;
+    node->state = node->target != nullptr ? ScalarNode::State::Done : ScalarNode::State::Lost;
+  }
 }
 
 void LoopState::finish() {
@@ -98,7 +114,7 @@ void LoopState::finish() {
 void LoopState::findExchanges(std::span<const std::pair<StreamState*, StreamState*>> moved) {
   std::unordered_map<StreamState*, StreamState*> next(moved.begin(), moved.end());
   for (const auto& [before, after] : moved) {
-    if (!next.contains(after)) {
+    if (before == nullptr || !next.contains(after)) {
       throw Error(
           "record: another stream was assigned to a stream; only swaps of streams that existed before, as by "
           "std::swap(u, v), can be repeated",

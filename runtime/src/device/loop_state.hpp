@@ -48,7 +48,7 @@ class LoopState {
   static bool isTrue(const StreamRegion& done);
 
   /// Keeps a stream that its owner has destroyed, if a call uses it or may have recorded it. Returns whether it
-  /// does.
+  /// does; otherwise the loop forgets the stream.
   bool keep(StreamState* stream) noexcept;
 
   /// The device is about to end, or has ended.
@@ -69,12 +69,13 @@ class LoopState {
  private:
   /// A stream, and the handle that held it when recording began.
   struct Held {
-    StreamState* stream;
+    StreamState* stream;  ///< null once it has ended
     detail::StreamOwner* holder;
   };
   void failIfLost() const;
   bool isRecording() const;
   void endRecording() noexcept;
+  void dropScalars() noexcept;
   void findExchanges(std::span<const std::pair<StreamState*, StreamState*>> moved);
 
   DeviceState* device_;  ///< null after the device has ended

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "device/transfer_state.hpp"
 #include "sk/call.hpp"
@@ -56,6 +57,14 @@ class StreamState {
   /// device has no buffers.
   virtual void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) = 0;
 
+  /// Its elements are lost, because an operation failed while writing them. The next operation must overwrite
+  /// all of them.
+  bool isLost() const { return isLost_; }
+  /// Operations call neither of these, but have a WriteScope (device/write_scope.hpp).
+  void markLost() noexcept { isLost_ = true; }
+  /// A write has succeeded: the elements are those that were to be written.
+  virtual void setWritten() noexcept { isLost_ = false; }
+
   /// The name shown by debuggers and in the trace.
   virtual void setName(std::string_view given) { name = given; }
 
@@ -69,18 +78,20 @@ class StreamState {
   const Storage storage;
   Shape shape;  ///< valid once the stream is settled
   std::string name;  ///< may be empty
-  /// Its elements are lost, because an operation failed while writing them. The next operation must overwrite
-  /// all of them.
-  bool isBroken = false;
   /// The application has created it, and nothing has written any of its elements. Set only with SK_CHECK=written.
   bool isUnwritten = false;
   detail::StreamOwner* holder = nullptr;  ///< the application's handle, or null
 
  protected:
+  void exchangeMarks(StreamState& other) noexcept {
+    std::swap(isLost_, other.isLost_);
+    std::swap(isUnwritten, other.isUnwritten);
+  }
   /// Adds the stream to its device's list.
   StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as);
 
  private:
+  bool isLost_ = false;
   StreamState* previous_ = nullptr;
   StreamState* next_ = nullptr;
 };

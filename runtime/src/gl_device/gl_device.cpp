@@ -472,7 +472,7 @@ void GlDevice::throwPendingError() {
   throwIfLost();
   for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
     auto& stream = static_cast<GlStream&>(*state);
-    stream.isBroken = stream.isBroken || stream.wasWrittenIn(unchecked);
+    if (stream.wasWrittenIn(unchecked)) stream.markLost();
   }
   throw Error(
       fmt::format(

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "assemble/elements/planes.hpp"
+#include "device/write_scope.hpp"
 #include "gl_device/append/histo_pyramid.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/pass/pass.hpp"
@@ -85,7 +86,7 @@ void GlStream::replaceElements(std::vector<RenderTarget>& elements, Layout&& lis
 }
 
 void GlStream::setWritten() noexcept {
-  isBroken = false;
+  StreamState::setWritten();
   period_ = owner().period();
 }
 
@@ -94,7 +95,7 @@ void GlStream::settle() {
     return;
   }
   const DeviceScope scope(owner());
-  const std::int32_t count = isBroken ? 0 : readTotal(owner(), total_);
+  const std::int32_t count = isLost() ? 0 : readTotal(owner(), total_);
   layout = withSize(layout, count);
   shape = Shape(count);
   owner().pool.release(std::move(total_));
@@ -136,12 +137,14 @@ bool GlStream::writesThroughBuffer(const StreamRegion& region) const {
 
 void GlStream::uploadHeld(const StreamRegion& region, const std::byte* elements, bool isBuffered) {
   const TransferRegion what = transferRegion(region);
+  WriteScope writes;
+  writes.add(this);
   if (isBuffered) {
-    writeBuffered(owner(), *what.element, planes, what.place, elements, isBroken);
+    writeBuffered(owner(), *what.element, planes, what.place, elements, writes);
   } else {
-    upload(owner(), *what.element, planes, what.place, elements, isBroken);
+    upload(owner(), *what.element, planes, what.place, elements, writes);
   }
-  setWritten();
+  writes.commit();
 }
 
 void GlStream::downloadHeld(const StreamRegion& region, std::byte* elements) {
@@ -230,19 +233,20 @@ void GlStream::fill(const StreamRegion& region, const std::byte* value) {
     const UnreservedScope unreserved(owner().pool);  // a loop keeps the texel
     const gl::UnloggedScope unlogged(owner().bound);
     one.planes = owner().acquirePlanes(*what.element, {1, 1}, "the value of fill()");
-    bool ignored = false;
-    upload(owner(), *what.element, one.planes, single, texel.data(), ignored);
+    WriteScope ofNoStream;
+    upload(owner(), *what.element, one.planes, single, texel.data(), ofNoStream);
   }
   const std::vector<assemble::Rect> rects = assemble::drawnTexels(what.place);
   prepareCopy(owner(), *what.element, single, what.place, /*byKernel=*/true);
-  isBroken = true;
+  StreamState* const written[] = {this};
+  WriteScope writes(written);
   for (std::size_t plane = 0; plane < planes.size(); ++plane) {
     const Operand operands[] = {{nullptr, single, std::span(one.planes).subspan(plane, 1)}, {}};
     RenderTarget* const targets[] = {&planes[plane]};
     runKernel(owner(), copyKernel(what.element->fields[plane]), operands, what.place, rects, targets);
   }
   owner().pool.keep(one.planes);
-  setWritten();
+  writes.commit();
 }
 
 bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
@@ -272,11 +276,12 @@ bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
     before.planes = acquirePlanesFor(layout);
     copyRegion(owner(), held(), planes, layout.whole, before.planes, layout.whole);
   }
-  isBroken = true;
+  StreamState* const written[] = {this};
+  WriteScope writes(written);
   const std::span<RenderTarget> read = &source == this ? before.planes : source.planes;
   isMerged ? mergeTexels(owner(), held(), read, sourcePlace, planes.front(), place)
            : copyRegion(owner(), held(), read, sourcePlace, planes, place);
-  setWritten();
+  writes.commit();
   return true;
 }
 
@@ -285,8 +290,7 @@ void GlStream::exchangeElements(StreamState& other) noexcept {
   std::swap(planes, with.planes);
   std::swap(layout, with.layout);
   std::swap(period_, with.period_);
-  std::swap(isBroken, with.isBroken);
-  std::swap(isUnwritten, with.isUnwritten);
+  exchangeMarks(other);
   labelPlanes();
   with.labelPlanes();
 }

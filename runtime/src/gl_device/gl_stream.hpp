@@ -69,8 +69,7 @@ class GlStream final : public StreamState {
   /// The layout of the first `count` elements of a list.
   static Layout withSize(Layout list, std::int32_t count);
 
-  /// Must be called after a write has succeeded: the stream is not broken any more.
-  void setWritten() noexcept;
+  void setWritten() noexcept override;
   bool wasWrittenIn(std::int64_t period) const { return period_ == period; }
 
  private:

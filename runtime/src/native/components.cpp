@@ -203,11 +203,11 @@ void Components::writeScalars(std::size_t component, const Run& run, const std::
   move({values, bytes, bytes}, valuesOf(component, run), run.count);
 }
 
-void Components::roundToHalf(std::int64_t count) {
+void Components::roundToHalf(const Run& run) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
     if (types_[c].scalar != program::Scalar::Float) continue;
-    auto* floats = reinterpret_cast<float*>(arrays_[c].get());
-    std::transform(floats, floats + count, floats, [](float x) { return float{half(x)}; });
+    auto* const floats = reinterpret_cast<float*>(arrays_[c].get()) + run.first;
+    for (std::int64_t i = 0; i < run.count; ++i) floats[i * run.step] = float{half(floats[i * run.step])};
   }
 }
 

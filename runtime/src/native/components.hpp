@@ -91,7 +91,7 @@ class Components {
   /// From now on, doubles are converted to floats that roundToHalf() rounds as if they were the doubles.
   void holdHalves() { holdsHalves_ = true; }
   /// Rounds floats to half precision.
-  void roundToHalf(std::int64_t count);
+  void roundToHalf(const Run& run);
 
  private:
   void allocate(std::int64_t count);

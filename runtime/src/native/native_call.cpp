@@ -230,12 +230,14 @@ class PreparedRun final : public RecordedCall {
   bool mayRun() { return operands_.mayRunAgain(); }
 
   void run() override {
+    operands_.beginAgain();
+    WriteScope writes(operands_.writtenInPlace());
     {
       const NativePass traced(device_, kernel_, {}, resolved_.arguments, resolved_.domain);
-      operands_.beginAgain();
       code_.run(call_);
     }
     operands_.settleAgain();
+    writes.commit();
   }
 
  private:

@@ -142,7 +142,7 @@ class Evaluation {
       auto& stream = nativeStream({output.stream, {}, {}});
       std::memcpy(stream.components.arrays()[0], steps_[output.step].bytes.data(),
                   stream.components.types()[0].storedBytes);
-      stream.isBroken = false;
+      stream.setWritten();
     }
   }
 

@@ -108,11 +108,11 @@ void NativeStream::countBytes() noexcept {
 NativeDevice& NativeStream::owner() const { return static_cast<NativeDevice&>(*device); }
 
 void NativeStream::write(const StreamRegion& region, const std::byte* elements) {
-  isBroken = false;  // from here on nothing throws
+  setWritten();  // from here on nothing throws
   forEachRun(region, [&](const Run& run, std::int64_t number) {
     components.write(run, elements + static_cast<std::size_t>(number) * element->size, element->size);
   });
-  keepStorage();
+  keepStorage(region);
 }
 
 void NativeStream::read(const StreamRegion& region, std::byte* elements) {
@@ -128,18 +128,18 @@ void NativeStream::readReals(const StreamRegion& region, double* values) {
 }
 
 void NativeStream::writeReals(const StreamRegion& region, const double* values) {
-  isBroken = false;  // from here on nothing throws
+  setWritten();  // from here on nothing throws
   forEachRun(region, [&](const Run& run, std::int64_t number) {
     components.writeReals(run, values + static_cast<std::size_t>(number) * components.arrays().size());
   });
-  keepStorage();
+  keepStorage(region);
 }
 
 void NativeStream::fill(const StreamRegion& region, const std::byte* value) {
-  isBroken = false;  // from here on nothing throws
+  setWritten();  // from here on nothing throws
   const AffineRegion all = affine(region);
   forEachRow(all, [&](std::int64_t row) { components.fill(rowOf(all, row), value); });
-  keepStorage();
+  keepStorage(region);
 }
 
 void NativeStream::exchangeElements(StreamState& other) noexcept {
@@ -149,8 +149,7 @@ void NativeStream::exchangeElements(StreamState& other) noexcept {
   std::swap(room_, with.room_);
   std::swap(capacity_, with.capacity_);
   std::swap(bytes_, with.bytes_);
-  std::swap(isBroken, with.isBroken);
-  std::swap(isUnwritten, with.isUnwritten);
+  exchangeMarks(other);
 }
 
 bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
@@ -158,10 +157,10 @@ bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   const AffineRegion here = affine(to), there = affine(from);
   Components before;  // overlapping elements are read with their old values
   if (&source == this) before = components.clone(shape.size(), components.real());
-  isBroken = false;  // from here on nothing throws
+  setWritten();  // from here on nothing throws
   const Components& read = &source == this ? before : source.components;
   forEachRow(here, [&](std::int64_t row) { components.copy(read, rowOf(there, row), rowOf(here, row)); });
-  keepStorage();
+  keepStorage(to);
   return true;
 }
 
@@ -227,11 +226,11 @@ void NativeStream::writeScalars(const StreamRegion& region, std::size_t offset, 
 }
 
 // A reference rounds nothing, because storage is measured against it.
-void NativeStream::keepStorage() {
-  if (storage == Storage::Half && components.real() == RealType::Float) {
-    components.roundToHalf(shape.size());
-    components.holdHalves();  // they may have been exchanged
-  }
+void NativeStream::keepStorage(const StreamRegion& region) {
+  if (storage != Storage::Half || components.real() != RealType::Float || region.shape.size() == 0) return;
+  const AffineRegion all = affine(region);
+  forEachRow(all, [&](std::int64_t row) { components.roundToHalf(rowOf(all, row)); });
+  components.holdHalves();  // they may have been exchanged
 }
 
 Components& NativeStream::spare() {
@@ -277,7 +276,7 @@ void NativeStream::replaceElements(Components&& pushed, std::int64_t count, std:
   capacity_ = std::max(capacity, count);
   spare_ = {};
   shape = Shape(count);
-  isBroken = false;
+  setWritten();
   countBytes();
 }
 

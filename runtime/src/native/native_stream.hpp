@@ -43,8 +43,8 @@ class NativeStream final : public StreamState {
   /// Arrays for a call to push to, which held the stream's elements before the last call that pushed; none if there are none.
   native::Pushed takeRoom() { return std::exchange(room_, {}); }
 
-  /// Rounds floats to half precision if that is the stream's storage. Must follow every write.
-  void keepStorage();
+  /// Rounds the floats of a region to half precision if that is the stream's storage. Must follow every write to it.
+  void keepStorage(const StreamRegion& region);
 
   /// Arrays for a call to write to while it reads the stream's own. They are uninitialised at first, and kept
   /// for later calls.

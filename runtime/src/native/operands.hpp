@@ -17,6 +17,7 @@
 #include "call/iterator.hpp"
 #include "call/resolved_call.hpp"
 #include "device/region.hpp"
+#include "device/write_scope.hpp"
 #include "native/coalesce.hpp"
 #include "native/extents.hpp"
 #include "native/native_device.hpp"
@@ -91,7 +92,7 @@ class Operands {
       NativeStream& stream = nativeStream(region);
       if (isWrittenInPlace(i)) writtenInPlace_.push_back(&stream);
       if (writesWholeStream(i) && isReplaced(region)) replaced_.push_back(&stream);
-      if (isWritten(role)) results_.push_back(&stream);
+      if (isWritten(role)) results_.push_back(region);
       if (role == Role::Uniform || list_[i].components.empty()) continue;
       lent_.push_back({i, &stream, isWritten(role) && isReplaced(region)});
     }
@@ -105,21 +106,23 @@ class Operands {
       list_[lent.operand].components =
           (lent.isSpare ? lent.stream->spare() : lent.stream->components).arrays();
     }
-    for (NativeStream* const stream : writtenInPlace_) stream->isBroken = true;
   }
+  std::span<StreamState* const> writtenInPlace() const { return writtenInPlace_; }
   void settleAgain() {
     for (NativeStream* const stream : replaced_) stream->exchange();
-    for (NativeStream* const stream : results_) {
-      stream->keepStorage();
-      stream->isBroken = false;
+    for (const StreamRegion& region : results_) {
+      NativeStream& stream = nativeStream(region);
+      stream.keepStorage(region);
+      stream.setWritten();
     }
   }
 
-  /// Marks the streams that are written in place as broken until settle().
-  void begin() noexcept {
+  /// From here on, until settle(), the streams that are written in place change.
+  void begin() {
     for (std::size_t i = 0; i < list_.size(); ++i) {
-      if (isWrittenInPlace(i)) nativeStream(arguments_[i].region).isBroken = true;
+      if (isWrittenInPlace(i)) writes_.add(arguments_[i].region.stream);
     }
+    writes_.begin();
   }
 
   /// Gives streams what was pushed to them and what was written to a copy or to spare arrays. What may throw
@@ -147,11 +150,13 @@ class Operands {
     }
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (isWritten(kernel_.parameters[i].role) && arguments_[i].region.stream != nullptr) {
-        NativeStream& stream = nativeStream(arguments_[i].region);
-        stream.keepStorage();
-        stream.isBroken = false;
+        const StreamRegion& region = arguments_[i].region;
+        NativeStream& stream = nativeStream(region);
+        stream.keepStorage(list_[i].pushed == nullptr ? region : detail::wholeRegion(&stream));
+        stream.setWritten();
       }
     }
+    writes_.commit();
   }
 
   /// The arrays of a stream to write to; if the call computes in another real type, those of a copy.
@@ -348,8 +353,11 @@ class Operands {
   std::vector<Operand> list_;
   std::list<Components> kept_;
   std::vector<Held> held_;  ///< uniforms
-  std::vector<Lent> lent_;  ///< this and the next three: for beginAgain() and settleAgain()
-  std::vector<NativeStream*> writtenInPlace_, replaced_, results_;
+  std::vector<Lent> lent_;  ///< this and the next two lines: for beginAgain() and settleAgain()
+  std::vector<StreamState*> writtenInPlace_;
+  std::vector<NativeStream*> replaced_;
+  std::vector<StreamRegion> results_;
+  WriteScope writes_;
   std::list<native::Pushed> pushed_;
   std::vector<std::pair<const NativeStream*, const Components*>> copies_;  ///< for reading
   std::list<std::pair<NativeStream*, Components>> written_;

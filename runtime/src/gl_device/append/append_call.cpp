@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "assemble/append/append_passes.hpp"
+#include "device/write_scope.hpp"
 #include "gl_device/append/append_dispatch.hpp"
 #include "gl_device/append/append_operands.hpp"
 #include "gl_device/append/histo_pyramid.hpp"
@@ -84,9 +85,10 @@ class AppendCall {
     }
     outputs.copy();
     for (auto& [stream, scatterer] : scatterers) {
-      stream->isBroken = true;
+      StreamState* const written[] = {stream};
+      WriteScope writes(written);
       scatterer.run();
-      stream->setWritten();
+      writes.commit();
     }
     outputs.exchange();
     for (const std::unique_ptr<List>& list : lists) {

@@ -13,6 +13,7 @@
 #include "assemble/append/append_groups.hpp"
 #include "assemble/append/append_passes.hpp"
 #include "call/check_argument.hpp"
+#include "device/write_scope.hpp"
 #include "gl/commands.hpp"
 #include "gl_device/append/append_operands.hpp"
 #include "gl_device/append/histo_pyramid.hpp"
@@ -113,10 +114,12 @@ class AppendDispatch {
     for (const auto& list : lists_) takePlanes(*list);
     isCounted ? bindStatesAgain() : bindStates();
     findOwners();
-    outputs.begin();
+    WriteScope writes;
     for (const auto& target : targets_) {
-      if (target->copy.planes.empty()) streamOf(target->parameter).isBroken = true;
+      if (target->copy.planes.empty()) writes.add(&streamOf(target->parameter));
     }
+    outputs.begin();
+    writes.begin();
     if (isCounted || lists_.empty() || mayWait()) {
       dispatch(program, task_, isCounted ? GroupStep::Store : GroupStep::All, &outputs);
     } else {
@@ -127,6 +130,7 @@ class AppendDispatch {
     outputs.copy();
     for (const auto& list : lists_) combineRecords(*list);
     outputs.exchange();
+    writes.commit();
     for (const auto& target : targets_) settleTarget(*target);
     for (const auto& list : lists_) {
       if (!list->isOfRecords) settleList(*list);
@@ -395,9 +399,10 @@ class AppendDispatch {
   void combineRecords(GroupList& list) {
     if (!list.records) return;
     GlStream& stream = streamOf(list.parameter);
-    stream.isBroken = true;
+    StreamState* const written[] = {&stream};
+    WriteScope writes(written);
     list.records->combine(stream);
-    stream.setWritten();
+    writes.commit();
   }
 
   void settleList(GroupList& list) noexcept {

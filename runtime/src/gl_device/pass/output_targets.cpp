@@ -53,6 +53,7 @@ OutputTargets::OutputTargets(GlDevice& device, const program::Kernel& kernel,
       addNewPlanes(i);
       continue;
     }
+    drawnInPlace_.add(arguments_[i].region.stream);
     for (RenderTarget& plane : operands_[i].planes) {
       add(plane);
     }
@@ -96,7 +97,9 @@ void OutputTargets::addNewPlanes(std::size_t output) {
   for (RenderTarget& plane : drawn.planes) {
     add(plane);
   }
-  if (!isSwapped) prepareCopy(device_, held, drawnPart(output), writtenPart(output));
+  if (isSwapped) return;
+  prepareCopy(device_, held, drawnPart(output), writtenPart(output));
+  copied_.add(arguments_[output].region.stream);
 }
 
 RegionLayout OutputTargets::drawnPart(std::size_t output) const {
@@ -117,24 +120,19 @@ std::vector<std::span<RenderTarget>> OutputTargets::planesOfOutputs() const {
   return planes;
 }
 
-void OutputTargets::begin() noexcept {
-  for (std::size_t i = 0; i < arguments_.size(); ++i) {
-    const bool isNew = i < newPlanes_.size() && newPlanes_[i];
-    if (isOutput(i) && !isNew) glStream(arguments_[i].region).isBroken = true;
-  }
-}
-
 void OutputTargets::copy() {
+  copied_.begin();
   for (std::size_t i = 0; i < newPlanes_.size(); ++i) {
     if (!newPlanes_[i] || placementOf(i) == Placement::Swap) continue;
     GlStream& stream = glStream(arguments_[i].region);
-    stream.isBroken = true;
     copyRegion(device_, stream.held(), newPlanes_[i]->drawn.planes, drawnPart(i), stream.planes,
                writtenPart(i));
   }
 }
 
 void OutputTargets::exchange() noexcept {
+  drawnInPlace_.commit();
+  copied_.commit();
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     if (!isOutput(i)) continue;
     GlStream& stream = glStream(arguments_[i].region);

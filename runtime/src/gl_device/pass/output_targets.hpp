@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "assemble/condition.hpp"
+#include "device/write_scope.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/memory/layout.hpp"
@@ -38,9 +39,8 @@ class OutputTargets {
   /// The planes to draw to, one entry per argument; empty if the argument is not an output.
   std::vector<std::span<RenderTarget>> planesOfOutputs() const;
 
-  /// Must be called before passes draw. Marks the outputs that are drawn in place as broken, until
-  /// putInPlace().
-  void begin() noexcept;
+  /// Must be called before passes draw: the outputs that are drawn in place change from here on, until putInPlace().
+  void begin() noexcept { drawnInPlace_.begin(); }
   /// Moves outputs that were drawn to new planes to their streams; passes must not read the old elements any
   /// more. Copies come first, because they may fail.
   void putInPlace() {
@@ -90,6 +90,7 @@ class OutputTargets {
   const Box box_;
   std::array<RenderTarget*, gl::maxDrawBuffers> targets_{};
   std::size_t count_ = 0;
+  WriteScope drawnInPlace_, copied_;
   std::vector<std::unique_ptr<NewPlanes>> newPlanes_;  ///< one per argument, null if drawn in place; or empty
 };
 

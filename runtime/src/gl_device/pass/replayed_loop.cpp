@@ -14,6 +14,7 @@
 
 #include "device/loop_runner.hpp"
 #include "device/loop_state.hpp"
+#include "device/write_scope.hpp"
 #include "gl/command_log.hpp"
 #include "gl/commands.hpp"
 #include "gl/loop_gate.hpp"
@@ -284,6 +285,8 @@ class ReplayedLoop final : public LoopRunner {
     const auto all = conditions(loop, done);
     if (!all) return std::nullopt;
     prepareToPlace(loop);
+    WriteScope writes;
+    for (const LoopState::Used& used : loop.used()) writes.add(used.stream);
     std::string log;
     hasGate_ = gate_.open(device_.bound, groups_, device_.isGuest(), log);
     if (!hasGate_) return std::nullopt;
@@ -299,6 +302,7 @@ class ReplayedLoop final : public LoopRunner {
       }
       gate_.ask(device_.bound);
     };
+    writes.begin();
     try {
       // the device has commands while the host waits for what it answered before
       giveSome();
@@ -309,16 +313,21 @@ class ReplayedLoop final : public LoopRunner {
       if (given == most || state.isDone) state = gate_.lastAnswer(device_.bound);
     } catch (...) {
       gate_.close(device_.bound);
-      for (const LoopState::Used& used : loop.used()) used.stream->isBroken = true;
       throw;
     }
     gate_.close(device_.bound);
+    if (!state.isDone && state.ran != given) {  // nobody knows which iterations have run
+      hasGate_ = false;
+      device_.throwPendingError();
+      throw Error(fmt::format("a loop: '{}' has ended it after {} of {} iterations, without a reason; its "
+                              "streams are lost; write "
+                              "them and run it again, which takes another way on this device",
+                              device_.name(), state.ran, given),
+                  Error::Kind::Lost);
+    }
     count(*first, state.ran);
     place(loop, cycle_[(*first + static_cast<std::size_t>(state.ran)) % cycle_.size()].before);
-    if (!state.isDone && state.ran != given) {  // the driver has failed to run the gate
-      device_.throwPendingError();
-      hasGate_ = false;
-    }
+    writes.commit();
     return state;
   }
 

@@ -113,7 +113,7 @@ void readToBuffer(GlDevice& device, RenderTarget& plane, const RegionLayout& reg
 }
 
 void writeBuffered(GlDevice& device, const Element& element, std::span<RenderTarget> planes,
-                   const RegionLayout& region, const std::byte* elements, bool& isBroken) {
+                   const RegionLayout& region, const std::byte* elements, WriteScope& writes) {
   const auto count = static_cast<std::size_t>(assemble::elements(region.extent));
   std::size_t bytes = 0;
   for (const RenderTarget& plane : planes) bytes += aligned(count * plane.texture.format().texelBytes());
@@ -132,7 +132,7 @@ void writeBuffered(GlDevice& device, const Element& element, std::span<RenderTar
     offset += aligned(count * planes[i].texture.format().texelBytes());
   }
   if (!bound.unmap()) failForMemory(device, bytes);
-  isBroken = true;
+  writes.begin();
   offset = 0;
   for (RenderTarget& plane : planes) {
     const std::size_t texelBytes = plane.texture.format().texelBytes();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "assemble/region_layout.hpp"
+#include "device/write_scope.hpp"
 #include "gl_device/memory/render_target.hpp"
 #include "gl_device/transfer/copy_regions.hpp"
 #include "gl_device/transfer/transfer_buffers.hpp"
@@ -71,9 +72,9 @@ void readToBuffer(GlDevice& device, RenderTarget& plane, const assemble::RegionL
                   std::size_t offset);
 
 /// Copies all elements of a region, row-major in host memory, to its planes, without waiting for the device.
-/// The caller may change `elements` afterwards. Throws sk::Error if memory is exhausted. Sets `isBroken` before
+/// The caller may change `elements` afterwards. Throws sk::Error if memory is exhausted. Begins `writes` before
 /// the planes change.
 void writeBuffered(GlDevice& device, const program::Element& element, std::span<RenderTarget> planes,
-                   const assemble::RegionLayout& region, const std::byte* elements, bool& isBroken);
+                   const assemble::RegionLayout& region, const std::byte* elements, WriteScope& writes);
 
 }  // namespace sk

@@ -73,8 +73,9 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
     const std::size_t part = read.add(*what.element, stream.planes, what.place);
     const std::size_t again = read.add(*what.element, stream.planes, what.place);
     read.begin();
-    upload(device, *what.element, stream.planes, what.place, bitsOf(element, count).data(), stream.isBroken);
-    stream.isBroken = false;
+    WriteScope writes;
+    upload(device, *what.element, stream.planes, what.place, bitsOf(element, count).data(), writes);
+    writes.commit();
     read.wait();
     CHECK(read.isReady());
     read.take(again, found.data());
@@ -87,8 +88,9 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
   {
     const DeviceScope scope(device);
     const GlStream::TransferRegion what = stream.transferRegion(region);
-    writeBuffered(device, *what.element, stream.planes, what.place, given.data(), stream.isBroken);
-    stream.isBroken = false;
+    WriteScope writes;
+    writeBuffered(device, *what.element, stream.planes, what.place, given.data(), writes);
+    writes.commit();
   }
   stream.read(region, found.data());
   CHECK(areEqual(element, given, found));

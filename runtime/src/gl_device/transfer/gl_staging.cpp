@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "assemble/transfer/staging_program.hpp"
+#include "device/write_scope.hpp"
 #include "gl/commands.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
@@ -67,6 +68,7 @@ std::size_t GlStaging::bytesOf(const StreamRegion& box) const {
 }
 
 std::byte* GlStaging::room(std::size_t bytes) {
+  boxes_.clear();  // of an exchange that has failed before it copied them
   wait();
   const DeviceScope scope(device_);
   const auto size = static_cast<std::int64_t>(bytes);
@@ -97,19 +99,24 @@ void GlStaging::copy(const StreamRegion& box, std::size_t offset) {
 void GlStaging::flush() {
   const TraceScope traced(device_.trace.get(), "transfer", way_ == Way::ToHost ? "pack" : "unpack");
   const DeviceScope scope(device_);
-  std::ranges::stable_sort(boxes_, {}, [](const PlaneBox& box) { return std::pair(box.stream, box.plane); });
-  const std::span<const PlaneBox> all = boxes_;
+  std::vector<PlaneBox> boxes =
+      std::exchange(boxes_, {});  // those of a call that fails are forgotten with it
+  std::ranges::stable_sort(boxes, {}, [](const PlaneBox& box) { return std::pair(box.stream, box.plane); });
+  WriteScope writes;
+  if (way_ == Way::ToDevice) {
+    for (const PlaneBox& box : boxes) writes.add(box.stream);
+    writes.begin();
+  }
+  const std::span<const PlaneBox> all = boxes;
   for (std::size_t begin = 0; begin < all.size();) {
     std::size_t end = begin + 1;
     while (end < all.size() && end - begin < assemble::stagedBoxes && all[end].isOfPlane(all[begin])) ++end;
-    if (way_ == Way::ToDevice) all[begin].stream->isBroken = true;
     copyBoxes(all.subspan(begin, end - begin));
     begin = end;
   }
-  if (way_ == Way::ToDevice) {
-    for (const PlaneBox& box : boxes_) box.stream->setWritten();
-  }
-  boxes_.clear();
+  writes.commit();
+  boxes.clear();
+  boxes_ = std::move(boxes);  // its memory
   gl::finishMapped(device_.bound);
   fence_ = gl::Fence::insert(device_.bound.deletions);
   if (!fence_) device_.throwPendingError();

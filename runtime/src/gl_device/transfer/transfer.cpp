@@ -55,12 +55,12 @@ void readTight(GlDevice& device, RenderTarget& plane, const CopyRegion& part, st
 }  // namespace
 
 void upload(GlDevice& device, const Element& element, std::span<RenderTarget> planes,
-            const RegionLayout& region, const std::byte* elements, bool& isBroken) {
+            const RegionLayout& region, const std::byte* elements, WriteScope& writes) {
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const PlaneOfElements plane{element, element.fields[i], planes[i].texture.format(), region};
     const std::size_t texelBytes = plane.format.texelBytes();
     const auto write = [&](const CopyRegion& part, const std::byte* texels) {
-      isBroken = true;
+      writes.begin();
       writeTexels(device, planes[i], part.rect, texels);
     };
     forEachCopyRegion(region, writesByRows(region, texelBytes), [&](const CopyRegion& part) {

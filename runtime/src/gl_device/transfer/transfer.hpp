@@ -8,6 +8,7 @@
 #include <span>
 
 #include "assemble/region_layout.hpp"
+#include "device/write_scope.hpp"
 #include "gl_device/memory/render_target.hpp"
 #include "sk/program.hpp"
 
@@ -15,10 +16,10 @@ namespace sk {
 
 class GlDevice;
 
-/// Copies all elements of a region, row-major in host memory, to its planes. Sets `isBroken` before they
+/// Copies all elements of a region, row-major in host memory, to its planes. Begins `writes` before they
 /// change.
 void upload(GlDevice& device, const program::Element& element, std::span<RenderTarget> planes,
-            const assemble::RegionLayout& region, const std::byte* elements, bool& isBroken);
+            const assemble::RegionLayout& region, const std::byte* elements, WriteScope& writes);
 
 /// Copies all elements of a region from its planes to host memory, row-major. Waits for the device. Throws
 /// sk::Error like GlDevice::throwPendingError().
