@@ -219,8 +219,9 @@ Device::~Device() = default;
 Device::Device(Device&& other) noexcept = default;
 Device& Device::operator=(Device&& other) noexcept = default;
 
-Device Device::adopt(const DeviceOptions& options) {
+Device Device::adopt(const DeviceOptions& given) {
   return withHostMemory(aDevice, [&] {
+    const DeviceOptions options = withEnvironment(given);
     const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles,
                                             options.barrier, options.profile, true);
     return Device(

@@ -13,6 +13,7 @@
 
 #include "native/entries.hpp"
 #include "native/float_vectors.hpp"
+#include "support/rounds_as_written.hpp"
 
 namespace sk {
 

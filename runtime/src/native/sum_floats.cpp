@@ -11,6 +11,7 @@
 #include "native/fold_program.hpp"
 #include "native/scan_blocks.hpp"
 #include "native/scan_floats.hpp"
+#include "support/rounds_as_written.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstring>
 
+#include "support/rounds_as_written.hpp"
+
 namespace sk {
 
 namespace {

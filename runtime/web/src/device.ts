@@ -382,12 +382,20 @@ export class Device {
   resetState(): void {
     const gl = this.context;
     this.forgetState();
-    for (const name of [gl.SCISSOR_TEST, gl.BLEND, gl.DEPTH_TEST, gl.STENCIL_TEST, gl.CULL_FACE, gl.RASTERIZER_DISCARD]) gl.disable(name);
-    gl.disable(gl.DITHER);
+    const toggles = [
+      gl.SCISSOR_TEST, gl.BLEND, gl.DEPTH_TEST, gl.STENCIL_TEST, gl.CULL_FACE, gl.RASTERIZER_DISCARD, gl.DITHER, gl.SAMPLE_ALPHA_TO_COVERAGE,
+      gl.SAMPLE_COVERAGE,
+    ];
+    for (const name of toggles) gl.disable(name);
     gl.colorMask(true, true, true, true);
     gl.bindVertexArray(null);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
     gl.bindBuffer(gl.PIXEL_UNPACK_BUFFER, null);
+    const pixelParameters = [
+      gl.UNPACK_ROW_LENGTH, gl.UNPACK_IMAGE_HEIGHT, gl.UNPACK_SKIP_PIXELS, gl.UNPACK_SKIP_ROWS, gl.UNPACK_SKIP_IMAGES, gl.PACK_ROW_LENGTH,
+      gl.PACK_SKIP_PIXELS, gl.PACK_SKIP_ROWS,
+    ];
+    for (const name of pixelParameters) gl.pixelStorei(name, 0);
     gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
     gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
     for (let unit = 0; unit < this.limits.textureUnits; ++unit) gl.bindSampler(unit, null);

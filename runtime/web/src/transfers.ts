@@ -100,7 +100,11 @@ export class Transfers {
           continue;
         }
         gl.bindBuffer(gl.PIXEL_PACK_BUFFER, first.buffer);
-        first.finish();
+        try {
+          first.finish();
+        } catch (error) {
+          first.fail(error as SkError); // this read alone: its elements are more than the page has memory for
+        }
         gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
         gl.deleteBuffer(first.buffer);
         gl.deleteSync(first.sync);

@@ -285,9 +285,15 @@ const cases = {
     const context = document.createElement('canvas').getContext('webgl2');
     const device = await Device.create({ context });
     await refused('misuse', 'the canvas that it was made with', () => device.draw(device.stream('float', [2, 2]), document.getElementById('picture')));
-    context.enable(context.BLEND);
-    context.enable(context.SCISSOR_TEST);
+    const toggles = ['BLEND', 'SCISSOR_TEST', 'DEPTH_TEST', 'STENCIL_TEST', 'CULL_FACE', 'DITHER', 'SAMPLE_ALPHA_TO_COVERAGE', 'SAMPLE_COVERAGE'];
+    for (const name of toggles) context.enable(context[name]);
+    context.sampleCoverage(0, false);
     context.colorMask(true, false, false, false);
+    const pixelParameters = {
+      UNPACK_ALIGNMENT: 8, UNPACK_ROW_LENGTH: 101, UNPACK_IMAGE_HEIGHT: 103, UNPACK_SKIP_PIXELS: 3, UNPACK_SKIP_ROWS: 2, UNPACK_SKIP_IMAGES: 1,
+      UNPACK_FLIP_Y_WEBGL: true, UNPACK_PREMULTIPLY_ALPHA_WEBGL: true, PACK_ALIGNMENT: 8, PACK_ROW_LENGTH: 107, PACK_SKIP_PIXELS: 3, PACK_SKIP_ROWS: 2,
+    };
+    for (const [name, value] of Object.entries(pixelParameters)) context.pixelStorei(context[name], value);
     context.bindFramebuffer(context.FRAMEBUFFER, null);
     await cases.records(device);
     context.useProgram(null);

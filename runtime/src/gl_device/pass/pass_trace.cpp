@@ -121,9 +121,12 @@ void PassTrace::collect() {
     Timed& pass = timed_.front();
     const std::optional<std::int64_t> end = pass.end ? pass.end.result() : std::nullopt;
     if (!end) return;
-    const Trace::Time began = std::max(*pass.begin.result() + hostAhead_, lastEnd_);
-    lastEnd_ = std::max(*end + hostAhead_, began);
-    trace_.devicePass(pass.record, began, lastEnd_, "GL timer query");
+    if (const std::optional<std::int64_t> begin =
+            pass.begin.result()) {  // none if the context was lost between both
+      const Trace::Time began = std::max(*begin + hostAhead_, lastEnd_);
+      lastEnd_ = std::max(*end + hostAhead_, began);
+      trace_.devicePass(pass.record, began, lastEnd_, "GL timer query");
+    }
     idle_.push_back(std::move(pass.begin));
     idle_.push_back(std::move(pass.end));
     timed_.pop_front();

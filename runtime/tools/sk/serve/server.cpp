@@ -34,8 +34,10 @@ void refuse(httplib::Response& response, int status, const std::string& why) {
   response.set_header("Connection", "close");  // a body that nobody has read may follow
 }
 
-/// "127.0.0.1:8000" or "localhost:8000".
+/// "127.0.0.1:8000" or "localhost:8000"; browsers leave port 80 out.
 bool isOwnHost(const std::string& given, int port) {
+  constexpr int portOfHttp = 80;
+  if (port == portOfHttp && (given == host || given == "localhost")) return true;
   return given == fmt::format("{}:{}", host, port) || given == fmt::format("localhost:{}", port);
 }
 
