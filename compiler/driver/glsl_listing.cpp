@@ -390,7 +390,7 @@ std::string glslListing(const ir::Module& module, std::string_view profileName, 
   for (const emit::Unit& unit : program.units()) {
     if (!text.empty()) text += "\n";
     const ir::Choices& choices = module.kernels[unit.id].choices;
-    profile.exact = static_cast<sk::Contraction>(choices.contraction) != sk::Contraction::Fast;
+    profile.asWritten = static_cast<sk::Contraction>(choices.contraction) != sk::Contraction::Fast;
     text += unitListing(profile, unit, precision, choices);
   }
   return text;

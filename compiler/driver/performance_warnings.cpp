@@ -121,7 +121,7 @@ class Advisor {
     };
     if (std::ranges::none_of(program.parameters, mayPack) || sk::assemble::mayWritePacked(program)) return;
     if (program.usesLoops) return loops();
-    const std::size_t length = sk::assemble::lengthOfBody(program.body),
+    const std::size_t length = program.bodyLength,
                       calls = sk::assemble::lengthOfCalls(program);
     if (length > sk::assemble::longestPackedBody) return tooLong(length, sk::assemble::longestPackedBody);
     if (calls > sk::assemble::longestPackedCalls) tooLong(calls, sk::assemble::longestPackedCalls);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/copied_values.hpp"
 #include "glsl/constants.hpp"
 #include "glsl/line_writer.hpp"
 #include "glsl/statements.hpp"
@@ -131,7 +132,10 @@ std::string constantsText(const GlslContext& context, Predicate&& isWanted) {
 
 }  // namespace
 
-GlslBody glslBody(const GlslContext& context) {
+GlslBody glslBody(const GlslContext& given) {
+  const analysis::CopiedValues copied = analysis::copiedValues(given.module, given.kernel);
+  GlslContext context = given;
+  context.copied = &copied;
   Used byParams(context.module);
   for (const KernelParam& param : context.kernel.params) {
     for (const ExprPtr* expr : {&param.border, &param.identity}) {

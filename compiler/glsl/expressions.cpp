@@ -18,6 +18,7 @@
 #include "ir/evaluate.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"
+#include "ir/walk.hpp"
 #include "sk/arithmetic_marks.hpp"
 #include "support/overloaded.hpp"
 #include "support/text.hpp"
@@ -32,6 +33,7 @@ struct Parts {
   std::string text;
   Precedence precedence = Precedence::Primary;
   bool isOperation = false;  ///< of floats or vectors of them: it may need a barrier
+  bool isKnown = false;  ///< a float whose value compilers may know
 };
 
 bool isFloats(Type type) {
@@ -61,6 +63,31 @@ bool computes(Intrinsic intrinsic) {
 Parts signedText(std::string text) {
   const bool isNegative = text.front() == '-';
   return {std::move(text), isNegative ? Precedence::Unary : Precedence::Primary};
+}
+
+bool isZero(std::uint32_t bits) { return std::bit_cast<float>(bits) == 0; }
+
+/// The mark of the literal 0, with its sign.
+Parts markedZero(std::uint32_t bits) { return signedText((bits == 0 ? "" : "-") + std::string(mark::zero)); }
+
+/// True unless the value of a constant is made of literals other than 0.
+bool mayHoldZero(const Expr& value) {
+  if (const auto* n = std::get_if<Literal>(&value.node)) return value.type.isFloat() && isZero(n->bits);
+  if (const auto* n = std::get_if<Unary>(&value.node)) return mayHoldZero(*n->operand);
+  const auto* n = std::get_if<Construct>(&value.node);
+  return n == nullptr || std::ranges::any_of(n->args, [](const ExprPtr& arg) { return mayHoldZero(*arg); });
+}
+
+/// True for a literal, or a vector of literals.
+bool isLiteral(const Expr& expr) {
+  if (const auto* n = std::get_if<Construct>(&expr.node))
+    return std::ranges::all_of(n->args, [](const ExprPtr& arg) { return isLiteral(*arg); });
+  return std::holds_alternative<Literal>(expr.node);
+}
+
+/// True if the values of these functions are those of an argument, so that a literal 0 among them loses nothing.
+bool chooses(Intrinsic intrinsic) {
+  return intrinsic == Intrinsic::Min || intrinsic == Intrinsic::Max || intrinsic == Intrinsic::Clamp;
 }
 
 /// True for large numbers that read better in hexadecimal: 0x7f800000, 0x00ffffff.
@@ -136,7 +163,9 @@ class GlslExpr {
       return fmt::format("{}{}{}{}", mark::value, digitOf(expr.type), text(expr, around), mark::valueEnd);
     }
     const Parts whole = parts(expr);
-    const bool isMarked = whole.isOperation && context_.marks && function_;
+    const bool isMarked = needsBarrier(expr) && whole.isOperation;
+    if (needsBarrier(expr) && (whole.isKnown || isKnownPart(expr)))
+      return fmt::format("{}{}{}", mark::known, whole.text, mark::knownEnd);
     if (whole.precedence < around) {
       return isMarked ? fmt::format("{}{}{}", mark::bracketed, whole.text, mark::bracketedEnd)
                       : "(" + whole.text + ")";
@@ -209,6 +238,46 @@ class GlslExpr {
     return text(expr, around);
   }
 
+  /// The text of an operand that is compared: if it is a literal 0, no compiler can make anything else of it.
+  std::string comparedText(const Expr& expr, Precedence around = Precedence::Lowest) const {
+    const Scope scope(isCompared_, isLiteral(expr));
+    return text(expr, around);
+  }
+
+  /// False where nothing is computed when the program runs, and for values that are only copied.
+  bool needsBarrier(const Expr& expr) const {
+    return context_.marks && function_ && (context_.copied == nullptr || context_.copied->count(&expr) == 0);
+  }
+
+  /// True for a constant, or the part of one that is the first to be a float or a vector, if it may hold 0.
+  bool isKnownPart(const Expr& expr) const {
+    if (!isFloats(expr.type) || expr.type.isMatrix()) return false;
+    const Expr* whole = &expr;
+    while (whole == &expr || !isFloats(whole->type) || whole->type.isMatrix()) {
+      if (const auto* n = std::get_if<ConstantRef>(&whole->node))
+        return mayHoldZero(*context_.module.constants[n->constant].value);
+      if (const auto* n = std::get_if<Member>(&whole->node)) {
+        whole = n->base.get();
+      } else if (const auto* element = std::get_if<Index>(&whole->node)) {
+        whole = element->base.get();
+      } else {
+        return false;
+      }
+    }
+    return false;
+  }
+
+  /// True if no compiler can know the value, since the expression reads what only the running program has.
+  static bool isUnknown(const Expr& expr) {
+    bool is = false;
+    walkExprs(expr, [&](const Expr& inner) {
+      is = is || std::holds_alternative<IndexOf>(inner.node) ||
+           std::holds_alternative<GatherRead>(inner.node) ||
+           std::holds_alternative<NeighborRead>(inner.node) || isFloats(inner.type);
+    });
+    return is;
+  }
+
   /// True if this node adds, multiplies or divides floats when the program runs.
   bool isComputed(const Expr& expr) const {
     if (!isFloats(expr.type)) return false;
@@ -228,8 +297,12 @@ class GlslExpr {
   }
 
   Parts parts(const Expr& expr) const {
-    if (const auto bits = formulaOfLiterals(expr)) return literalText(expr.type, *bits);
-    return match(expr.node, [&](const auto& node) { return print(expr.type, node); });
+    std::optional<std::uint32_t> literal = formulaOfLiterals(expr);
+    if (const auto* n = std::get_if<Literal>(&expr.node); n != nullptr && !expr.type.isDouble())
+      literal = n->bits;
+    if (!literal) return match(expr.node, [&](const auto& node) { return print(expr.type, node); });
+    const bool isMarkedZero = isFloats(expr.type) && isZero(*literal) && !isCompared_ && needsBarrier(expr);
+    return isMarkedZero ? markedZero(*literal) : literalText(expr.type, *literal);
   }
 
   /// The value of a formula of float literals. Devices might divide less precisely when they compile.
@@ -273,7 +346,11 @@ class GlslExpr {
                                        ? context_.polyfills.truncated(type)
                                        : context_.types.glsl(type);
     const std::string converted = keepsArithmetic ? value : conversion + "(" + value + ")";
-    return {type.isNarrow() ? context_.polyfills.quantize(type) + "(" + converted + ")" : converted};
+    if (type.isNarrow()) return {context_.polyfills.quantize(type) + "(" + converted + ")"};
+    // an int may be a loop's, which compilers know where they unroll it
+    const bool isKnown = type.isFloat() && arithmeticScalar(n.operand->type.scalar) != Scalar::Bool &&
+                         !keepsArithmetic && !isUnknown(*n.operand);
+    return {converted, Precedence::Primary, /*isOperation=*/false, isKnown};
   }
   Parts print(Type type, const Construct& n) const {
     if (type.isDouble()) return {doubleVector(context_.polyfills, type, typesOf(n.args), texts(n.args))};
@@ -311,7 +388,7 @@ class GlslExpr {
     }
     if (const auto defined = definedIntrinsic(n)) {
       const Scope scope(isStored_, !context_.marks || !function_);
-      return definedCall(*defined, n.args);
+      return definedCall(*defined, n.args, chooses(n.intrinsic));
     }
     if (n.intrinsic == Intrinsic::Fma) return multiplyAdd(n.args);
     context_.polyfills.intrinsic(n.intrinsic, argument);
@@ -321,7 +398,9 @@ class GlslExpr {
       return {fmt::format("{}{}{}", mark::function, entry.glsl, list(n.args))};
     const bool usesVectorColumn = argument.isVector() && !entry.glslVector.empty();
     const std::string_view pattern = usesVectorColumn ? entry.glslVector : entry.glsl;
-    if (pattern.find('$') == std::string_view::npos) return {std::string(pattern) + list(n.args)};
+    if (pattern.find('$') == std::string_view::npos) {
+      return {std::string(pattern) + (chooses(n.intrinsic) ? comparedList(n.args) : list(n.args))};
+    }
     if (pattern == "$0") return parts(*n.args[0]);
     return fromPattern(withTypes(pattern, argument), n.args);
   }
@@ -346,6 +425,7 @@ class GlslExpr {
       return {doubleBinary(context_.polyfills, op, lhs.type, rhs.type, text(lhs), text(rhs))};
     }
     const bool isVector = lhs.type.isVector();
+    if (isComparison(op)) return comparison(op, lhs, rhs);
     if (const std::optional<Intrinsic> function = row(op).vectors; isVector && function) {
       return {fmt::format("{}{}", row(*function).glsl, pair(lhs, rhs))};
     }
@@ -364,8 +444,21 @@ class GlslExpr {
     const std::string second =
         mayShiftTooFar(context_.module, op, rhs) ? "(" + shiftCount(rhs) + ")" : operand(op, right, tighter);
     const bool isOperation = isFloats(type) && !type.isMatrix() && precedence >= Precedence::Additive;
-    return {fmt::format("{} {} {}", operand(op, left, precedence), spelling(op), second), precedence,
-            isOperation};
+    std::string first = operand(op, left, precedence);
+    // a difference with itself is not 0, nor a quotient 1, if it is infinite or NaN
+    if (isOperation && first == second && (op == BinaryOp::Sub || op == BinaryOp::Div) && context_.marks)
+      first = fmt::format("{}{}{}", mark::known, first, mark::knownEnd);
+    return {fmt::format("{} {} {}", first, spelling(op), second), precedence, isOperation};
+  }
+
+  Parts comparison(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
+    if (const std::optional<Intrinsic> function = row(op).vectors; lhs.type.isVector() && function)
+      return {fmt::format("{}({}, {})", row(*function).glsl, comparedText(lhs), comparedText(rhs))};
+    const Precedence precedence = row(op).precedence;
+    const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
+    return {fmt::format("{} {} {}", comparedOperand(op, lhs, precedence), spelling(op),
+                        comparedOperand(op, rhs, tighter)),
+            precedence};
   }
 
   /// fma(a, b, c), which GLSL 3.30 lacks.
@@ -392,13 +485,14 @@ class GlslExpr {
   }
 
   /// Calls a function that the assembler defines, all of whose arguments have one width.
-  Parts definedCall(sk::program::Intrinsic intrinsic, const std::vector<ExprPtr>& args) const {
+  Parts definedCall(sk::program::Intrinsic intrinsic, const std::vector<ExprPtr>& args, bool isChoice) const {
     std::uint8_t width = 1;
     for (const ExprPtr& arg : args) width = std::max(width, arg->type.width);
     std::vector<std::string> list;
     for (const ExprPtr& arg : args) {
       const bool isNarrower = arg->type.width < width;
-      list.push_back(isNarrower ? fmt::format("vec{}({})", width, text(*arg)) : text(*arg));
+      const std::string value = isChoice ? comparedText(*arg) : text(*arg);
+      list.push_back(isNarrower ? fmt::format("vec{}({})", width, value) : value);
     }
     return {fmt::format("{}({})", context_.polyfills.defined(intrinsic, width), join(list, ", "))};
   }
@@ -449,6 +543,11 @@ class GlslExpr {
     return text(expr, clearer ? Precedence::Unary : around);
   }
 
+  std::string comparedOperand(BinaryOp outer, const Expr& expr, Precedence around) const {
+    const Scope scope(isCompared_, isLiteral(expr));
+    return operand(outer, expr, around);
+  }
+
   std::string pair(const Expr& a, const Expr& b) const { return "(" + text(a) + ", " + text(b) + ")"; }
 
   std::vector<std::string> texts(const std::vector<ExprPtr>& items) const {
@@ -460,6 +559,11 @@ class GlslExpr {
     std::vector<Type> types;
     for (const ExprPtr& item : items) types.push_back(item->type);
     return types;
+  }
+  std::string comparedList(const std::vector<ExprPtr>& items) const {
+    std::vector<std::string> texts;
+    for (const ExprPtr& item : items) texts.push_back(comparedText(*item));
+    return "(" + join(texts, ", ") + ")";
   }
   std::string list(const std::vector<ExprPtr>& items) const { return "(" + join(texts(items), ", ") + ")"; }
 
@@ -487,6 +591,7 @@ class GlslExpr {
   /// What is printed goes to a variable that the assembler may declare `precise`. GLSL computes precisely only what such a
   /// variable of the same function gets, directly or from others.
   mutable bool isStored_;
+  mutable bool isCompared_ = false;  ///< what is printed is a literal whose value goes into no operation
 };
 
 }  // namespace

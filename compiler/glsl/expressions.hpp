@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "analysis/copied_values.hpp"
 #include "glsl/kernel_names.hpp"
 #include "glsl/polyfills.hpp"
 #include "glsl/type_names.hpp"
@@ -24,6 +25,8 @@ struct GlslContext {
   Polyfills& polyfills;
   /// Write the marks of sk/arithmetic_marks.hpp where floats are computed.
   bool marks = false;
+  /// Expressions that need no marks of operations, because their values are only copied; null: none.
+  const analysis::CopiedValues* copied = nullptr;
 };
 
 /// True if a variable of this type holds floats, which GLSL's `precise` is for.

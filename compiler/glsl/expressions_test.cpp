@@ -59,6 +59,37 @@ TEST_CASE("marks say where floats are computed") {
   CHECK(marked(intrinsic(Intrinsic::Dot, exprs(t.ref(t.v), t.ref(t.v))), false) == "$v1$fdot(v, v)$;");
   CHECK(marked(binary(Add, t.ref(t.i), t.ref(t.i)), false) == "i + i");
   CHECK(marked(binary(Mul, literal(2.0F), literal(0.5F)), false) == "1.0");
+  CHECK(marked(binary(Add, t.ref(t.f), literal(-0.0F)), true) == "$(f + -$0$)");
+  CHECK(marked(binary(Mul, t.ref(t.f), binary(Sub, literal(1.0F), literal(1.0F))), true) == "$(f * $0$)");
+  CHECK(marked(binary(Less, t.ref(t.f), literal(0.0F)), true) == "f < 0.0");
+  CHECK(marked(binary(Sub, t.ref(t.x), t.ref(t.x)), true) == "$($<x$> - x$)");
+  CHECK(marked(binary(Mul, convert(Scalar::Float, t.ref(t.i)), t.ref(t.x)), true) == "$($<float(i)$> * x$)");
+}
+
+TEST_CASE("values that are only copied to outputs have no marks of operations") {
+  Module module = testModule();
+  KernelBuilder k(module, "k");
+  const VarId x = k.input("x", floatType), r = k.output("r", floatType), s = k.output("s", floatType);
+  const VarId p = k.local("p", floatType), q = k.local("q", floatType);
+  const auto ref = [&](VarId var) { return k.ref(var); };
+  Block body;
+  body.push_back(declare(p, binary(Mul, ref(x), literal(0.1F))));  // is added
+  body.push_back(declare(q, binary(Add, ref(p), literal(0.2F))));  // is copied
+  body.push_back(assign(ref(r), select(binary(Less, ref(x), ref(p)), ref(q), literal(0.0F))));
+  body.push_back(assign(ref(s), binary(Sub, ref(x), ref(p))));
+  body.push_back(assign(ref(s), Mul, ref(x)));  // which computes with what s had
+  k.finish(std::move(body));
+  const analysis::CopiedValues copied = analysis::copiedValues(module, module.kernels[0]);
+  const auto isCopied = [&](std::size_t statement) {
+    const Stmt& stmt = module.functions[0].body[statement];
+    const auto* declared = std::get_if<Declare>(&stmt.node);
+    return copied.count((declared != nullptr ? declared->init : std::get<Assign>(stmt.node).value).get()) == 1;
+  };
+  CHECK_FALSE(isCopied(0));
+  CHECK(isCopied(1));
+  CHECK(isCopied(2));
+  CHECK_FALSE(isCopied(3));
+  CHECK_FALSE(isCopied(4));
 }
 
 TEST_CASE("literals read back as the same value and type") {

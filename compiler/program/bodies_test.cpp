@@ -22,9 +22,7 @@ using enum BinaryOp;
 
 /// A body as it is where drivers may compute floats as they like.
 std::string plain(std::string_view body) {
-  sk::assemble::Profile profile = *sk::assemble::findProfile("glsl330");
-  profile.exact = false;
-  return sk::assemble::bodyText(profile, body);
+  return sk::assemble::unmarked(body);
 }
 
 TEST_CASE("a kernel with a helper, a constant and a loop") {

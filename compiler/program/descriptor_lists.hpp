@@ -214,6 +214,7 @@ struct Members<p::Kernel> {
       Member{"entry", &p::Kernel::entry},
       Member{"declarations", &p::Kernel::declarations},
       Member{"body", &p::Kernel::body},
+      Member{"bodyLength", &p::Kernel::bodyLength},
       Member{"parameters", &p::Kernel::parameters},
       OmittedMember{&p::Kernel::sources},  // the file's
       Member{"usesIndex", &p::Kernel::usesIndex},

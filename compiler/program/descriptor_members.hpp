@@ -18,7 +18,7 @@ static_assert(printsAll<sk::program::Field, 5> && printsAll<sk::program::Element
                   printsAll<sk::program::Layer, 3> && printsAll<sk::program::Parameter, 24> &&
                   printsAll<sk::program::Reach, 5> && printsAll<sk::program::IntrinsicUse, 3> &&
                   printsAll<sk::program::Table, 4> && printsAll<sk::program::TableUse, 2> &&
-                  printsAll<sk::program::Kernel, 24> && printsAll<sk::program::UnrolledKernel, 3> &&
+                  printsAll<sk::program::Kernel, 25> && printsAll<sk::program::UnrolledKernel, 3> &&
                   printsAll<sk::program::PassOperand, 2> && printsAll<sk::program::Pass, 2> &&
                   printsAll<sk::program::ArgumentPlane, 2> && printsAll<sk::program::Bundle, 3> &&
                   printsAll<sk::program::Plan, 5> && printsAll<sk::program::SumTerm, 2> &&

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "analysis/stream_uses.hpp"
+#include "assemble/glsl/own_arithmetic.hpp"
 #include "glsl/body.hpp"
 #include "ir/print.hpp"
 #include "ir/reach.hpp"
@@ -179,12 +180,14 @@ class Builder {
     for (const FunctionId id : tabulatedFunctionsOf(module_, kernel)) {
       tables.push_back({storage_.tableList[*module_.functions[id].table], storage_.keep(names.function(id))});
     }
+    const std::size_t length = sk::assemble::unmarked(text.body).size();
     std::string name = qualifier(kernel.scope) + kernel.name;
     if (kernel.pass) name += fmt::format(" (pass {} of {})", kernel.pass->number, kernel.pass->count);
     return {.name = storage_.keep(std::move(name)),
             .entry = storage_.keep(names.function(kernel.entry)),
             .declarations = storage_.keep(std::move(text.declarations)),
             .body = storage_.keep(std::move(text.body)),
+            .bodyLength = length,
             .parameters = parameters,
             .sources = storage_.sources,
             .usesIndex = uses.domainIndex,

@@ -125,6 +125,7 @@ std::string kernelText(const sk::program::Kernel& kernel, const std::string& nam
   std::vector<std::string> members = {
       fmt::format(".name = \"{}\"", kernel.name), fmt::format(".entry = \"{}\"", kernel.entry),
       ".declarations = " + declarations,          ".body = " + body,
+      fmt::format(".bodyLength = {}", kernel.bodyLength),
       ".parameters = " + name + Part::Parameters, ".sources = sources"};
   if (kernel.usesIndex) members.emplace_back(".usesIndex = true");
   if (kernel.usesExtent) members.emplace_back(".usesExtent = true");

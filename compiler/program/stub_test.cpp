@@ -108,6 +108,7 @@ constexpr Kernel diffuseKernel = {
     .entry = "diffuse",
     .declarations = {},
     .body = diffuseBody,
+    .bodyLength = 364,
     .parameters = diffuseParameters,
     .sources = sources,
     .usesIndex = true};
@@ -117,6 +118,7 @@ constexpr Kernel diffuseKernel = {
     .entry = "nearest",
     .declarations = nearestDeclarations,
     .body = nearestBody,
+    .bodyLength = 79,
     .parameters = nearestParameters,
     .sources = sources};
 

@@ -29,9 +29,10 @@ std::string linesWith(std::string_view start, std::string_view text) {
 
 }  // namespace
 
-HeldValue heldValue(const sk::assemble::Profile& profile, const sk::program::Kernel& kernel,
+HeldValue heldValue(sk::assemble::Profile profile, const sk::program::Kernel& kernel,
                     const sk::program::Parameter& uniform) {
   constexpr std::string_view entry = "sk_nothing";
+  profile.asWritten = false;  // the program may have nothing that keeps floats
   sk::program::Kernel alone{.name = uniform.name,
                             .entry = entry,
                             .declarations = {},

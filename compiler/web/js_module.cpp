@@ -139,7 +139,7 @@ class ScriptWriter {
   sk::assemble::Profile profileOf(bool fast) const {
     sk::assemble::Profile profile = webProfile();
     profile.accurate = !fast;
-    profile.exact = isExact_;
+    profile.asWritten = isExact_;
     return profile;
   }
 

@@ -20,6 +20,7 @@
 
 #include "bench.sk.hpp"
 #include "compile_time.hpp"
+#include "contraction.hpp"
 #include "functions.hpp"
 #include "hand_written.hpp"
 #include "loop_cost.hpp"
@@ -40,6 +41,7 @@ struct Settings {
   std::filesystem::path json;
   bool check = false;
   bool withoutCompiler = false;
+  bool onlyContraction = false;
 };
 
 /// What the host spends on a call that the device has next to nothing to do for. Waiting is left out.
@@ -116,10 +118,9 @@ void compileTimes(const Settings& settings, bench::Report& report) {
   std::filesystem::remove_all(folder);
 }
 
-int measureAll(const Settings& settings) {
+void measureMost(const Settings& settings, bench::Report& report) {
   sk::Device device(settings.device);
   const bench::PlainContext context(device.name());
-  bench::Report report(device.name());
   bench::SideBySide sideBySide(device, context, {settings.rounds, settings.sampleMilliseconds}, report);
   sideBySide.control(2048);
   for (const int size : {1024, 2048}) sideBySide.saxpy(size);
@@ -131,6 +132,14 @@ int measureAll(const Settings& settings) {
   viewCosts(device, settings, report);
   bench::warmStart(settings.device, std::min(settings.rounds, 9), report);
   if (!settings.withoutCompiler) compileTimes(settings, report);
+}
+
+int measureAll(const Settings& settings) {
+  bench::Report report(sk::Device(settings.onlyContraction ? "software" : settings.device).name());
+  if (settings.onlyContraction)
+    bench::contractions(settings.rounds, settings.sampleMilliseconds, report);
+  else
+    measureMost(settings, report);
   fmt::print("\n{}\n", report.allPassed() ? "every bar holds" : "a bar is missed");
   if (!settings.json.empty()) {
     std::ofstream file(settings.json);
@@ -159,6 +168,8 @@ int main(int argc, char** argv) {
   cli.add_option("--sources", s.sources, "folder of the examples, whose .sk files are compiled");
   cli.add_flag("--without-compiler", s.withoutCompiler, "leave out how long compilers take");
   cli.add_flag("--check", s.check, "exit status 1 where a bar is missed");
+  cli.add_flag("--contraction", s.onlyContraction,
+               "measure what Contraction::Exact costs on the software renderer, and nothing else");
   CLI11_PARSE(cli, argc, argv);
   try {
     return measureAll(s);

@@ -2,7 +2,7 @@
 #
 # browser.py FOLDER SOURCE BUILD PACKAGE PAGE: runs the module PAGE, which has the files of a folder beside it, in Chromium. It posts pairs of
 # a number and a text; each is printed as a line with a colon between. The JavaScript package is built into the folder PACKAGE,
-# unless it is there already.
+# unless it is there already. The exit status is 3 if the page posts nothing, not even progress, for SK_PAGE_SECONDS (300).
 import os
 import shutil
 import sys
@@ -14,7 +14,8 @@ sys.path.append(os.path.join(source, "tests/web"))
 import chromium
 import package
 
-seconds = 1200
+seconds = float(os.environ.get("SK_PAGE_SECONDS", "300"))
+hung = 3
 
 if not chromium.path:
     sys.exit("skipped: chromium is not installed; './dev test web' installs it")  # standard output has the differences
@@ -26,6 +27,10 @@ with tempfile.TemporaryDirectory() as pages:
     shutil.copy(page, f"{pages}/page.mjs")
     for name in os.listdir(folder):
         os.symlink(f"{folder}/{name}", f"{pages}/{name}")
-    report = chromium.report_of(pages, "browser.html", seconds)
+    try:
+        report = chromium.report_of(pages, "browser.html", seconds)
+    except chromium.Silent as silence:
+        print(silence, file=sys.stderr)
+        sys.exit(hung)
 for number, text in report:
     print(f"{number}: {text}".replace("\n", "\1"))

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include <sys/wait.h>
+
 #include "temporary_folder.hpp"
 
 namespace fuzz {
@@ -18,8 +20,10 @@ std::map<std::uint64_t, std::string> reportsOf(const std::filesystem::path& fold
        {here + "browser.py", folder.string(), std::string(SK_SOURCE_FOLDER), std::string(SK_BUILD_FOLDER),
         (package.path() / "built").string(), here + page})
     command += " '" + argument + "'";
-  if (std::system((command + " >'" + found + "'").c_str()) != 0)
-    throw std::runtime_error("the browser does not run " + page);
+  constexpr int hung = 3;  // browser.py's
+  const int status = std::system((command + " >'" + found + "'").c_str());
+  if (WIFEXITED(status) && WEXITSTATUS(status) == hung) throw HungPage("the browser's page hangs");
+  if (status != 0) throw std::runtime_error("the browser does not run " + page);
   std::map<std::uint64_t, std::string> reports;
   std::ifstream in(found);
   for (std::string line; std::getline(in, line);)

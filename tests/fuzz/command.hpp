@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 
 #include "isolation.hpp"
@@ -33,6 +34,27 @@ struct Command {
   std::filesystem::path keep(const std::string& prefix, const Finding& finding, const std::string& text,
                              const std::string& suffix = ".sk") const;
 };
+
+/// The options of a fuzzer that runs slices of inputs, for some time or until it has found much.
+struct SlicedCommand : Command {
+  double minutes = 0;
+  std::uint64_t mostFindings = 20;
+
+  void addTo(CLI::App& app, const std::string& input);
+
+  /// Calls `run` for slices of inputs: for all of `count`, or, if `minutes` > 0, for that long. `run` returns the number of findings
+  /// so far, and the last slice is the one in which there are `mostFindings`.
+  void forSlices(std::uint64_t slice,
+                 const std::function<std::uint64_t(std::uint64_t first, std::uint64_t count)>& run) const;
+};
+
+/// Counts findings by what they have in common.
+using Kinds = std::map<std::string, int>;
+/// Prints how often there was each kind.
+void conclude(const Kinds& kinds);
+
+/// The text of a file. Throws std::runtime_error if there is none.
+std::string textOf(const std::filesystem::path& file);
 
 /// Prints a finding, such as "mutant 7: died by signal 11"; `input` is "mutant", and `again` the command that reproduces it.
 void tell(const std::string& input, const Finding& finding, const std::string& again);

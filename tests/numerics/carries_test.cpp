@@ -18,12 +18,14 @@
 #include "sums.sk.hpp"
 #include "support/devices.hpp"
 #include "support/oracle.hpp"
+#include "support/streams.hpp"
 
 namespace numerics {
 namespace {
 
 using run_tests::onEveryTarget;
 using run_tests::onGlAndNative;
+using run_tests::streamOf;
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -32,17 +34,6 @@ constexpr sk::CallOptions compensated{.accumulate = sk::Accumulate::Compensated}
 constexpr sk::CallOptions tree{.accumulate = sk::Accumulate::Tree};
 
 std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
-
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values, const sk::Shape& shape) {
-  auto stream = device.stream<T>(shape);
-  stream.write(values);
-  return stream;
-}
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
-  return streamOf(device, values, sk::Shape(static_cast<std::int64_t>(values.size())));
-}
 
 /// Has all bits of its mantissa set. The powers of two put these bits at each place of a digit of 26 bits.
 float fullMantissa(int power) { return std::ldexp(0x1.fffffep0F, power); }

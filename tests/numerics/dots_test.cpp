@@ -16,11 +16,13 @@
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
 #include "support/oracle.hpp"
+#include "support/streams.hpp"
 
 namespace numerics {
 namespace {
 
 using run_tests::onEveryTarget;
+using run_tests::streamOf;
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 constexpr double u = 0x1p-24;
@@ -28,13 +30,6 @@ constexpr sk::CallOptions compensated{.accumulate = sk::Accumulate::Compensated}
 constexpr sk::CallOptions exact{.accumulate = sk::Accumulate::Exact};
 
 std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
-
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
-  auto stream = device.stream<T>({static_cast<std::int64_t>(values.size())});
-  stream.write(values);
-  return stream;
-}
 
 float exactDot(sk::Device& device, const std::vector<float>& x, const std::vector<float>& y) {
   return dots::dot.with(exact)(streamOf(device, x), streamOf(device, y));

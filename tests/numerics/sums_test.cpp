@@ -18,11 +18,13 @@
 #include "sums.sk.hpp"
 #include "support/devices.hpp"
 #include "support/oracle.hpp"
+#include "support/streams.hpp"
 
 namespace numerics {
 namespace {
 
 using run_tests::onEveryTarget;
+using run_tests::streamOf;
 
 constexpr double u = 0x1p-24;
 constexpr float inf = std::numeric_limits<float>::infinity();
@@ -33,17 +35,6 @@ constexpr sk::CallOptions compensated{.accumulate = sk::Accumulate::Compensated}
 constexpr sk::CallOptions tree{.accumulate = sk::Accumulate::Tree};
 
 std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
-
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values, const sk::Shape& shape) {
-  auto stream = device.stream<T>(shape);
-  stream.write(values);
-  return stream;
-}
-template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
-  return streamOf(device, values, sk::Shape(static_cast<std::int64_t>(values.size())));
-}
 
 float exactSum(sk::Device& device, const std::vector<float>& x) {
   return sums::sum.with(exact)(streamOf(device, x));

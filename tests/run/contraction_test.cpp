@@ -3,8 +3,10 @@
 // Promises: native code rounds every operation unless a call, the source or a file asks for contraction. Then it fuses
 // products with sums, but neither in library functions nor in compensated and exact sums.
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -214,6 +216,82 @@ TEST_CASE("operations are computed as they are written, with the bits of native 
   INFO("glsl330 without `precise`");
   sk::Device barred({.device = "software", .profile = "glsl330", .barrier = "xor"});
   CHECK(differences(Written(barred, {}), expected) == "");
+}
+
+bool isSame(float a, float b) {
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (std::isnan(a) && std::isnan(b));
+}
+
+/// What the kernels of known values compute.
+std::vector<float> known(sk::Device& device) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  std::vector<float> x, y;
+  for (const float a : {0.0F, -0.0F, 1.5F, -1.5F, infinity, -infinity}) {
+    for (const float b : {0.0F, -0.0F, 2.5F, -2.5F, infinity}) {
+      x.push_back(a);
+      y.push_back(b);
+    }
+  }
+  const auto size = static_cast<std::int64_t>(x.size());
+  auto p = device.stream<sk::float4>({size}), q = device.stream<sk::float4>({size}),
+       r = device.stream<sk::float4>({size}), s = device.stream<sk::float4>({size});
+  contraction::known(streamOf(device, x), streamOf(device, y), 0.0F, p, q, r, s);
+  std::vector<float> values;
+  for (const auto* each : {&p, &q, &r, &s}) {
+    for (const sk::float4& one : each->read()) values.insert(values.end(), {one.x, one.y, one.z, one.w});
+  }
+  return values;
+}
+
+/// What the kernel computes of normalized integers.
+std::vector<float> converted(sk::Device& device) {
+  std::vector<sk::unorm16> given;
+  for (int i = 0; i < 65536; i += 7) given.push_back(sk::unorm16(static_cast<float>(i) / 65535));
+  const auto size = static_cast<std::int64_t>(given.size());
+  auto x = device.stream<sk::unorm16>({size}), r = device.stream<sk::unorm16>({size});
+  auto s = device.stream<float>({size});
+  x.write(given);
+  contraction::converted(x, r, s);
+  std::vector<float> values = s.read();
+  for (const sk::unorm16 one : r.read()) values.push_back(static_cast<float>(one));
+  return values;
+}
+
+std::vector<float> copied(sk::Device& device) {
+  auto p = device.stream<sk::float4>({count});
+  auto q = device.stream<float>({count}), r = device.stream<float>({0});
+  contraction::copied(streamOf(device, someFloats(1)), streamOf(device, someFloats(2)), p, q, r);
+  std::vector<float> values = q.read();
+  for (const sk::float4& one : p.read()) values.insert(values.end(), {one.x, one.y, one.z, one.w});
+  const std::vector<float> pushes = r.read();
+  values.insert(values.end(), pushes.begin(), pushes.end());
+  return values;
+}
+
+TEST_CASE("zeros and other values that compilers know change no bits, nor do conversions and copies") {
+  sk::Device native = sk::Device::native();
+  sk::Device barred({.device = "software", .profile = "glsl330", .barrier = "xor"});
+  const auto compare = [&](std::vector<float> (*values)(sk::Device&)) {
+    const std::vector<float> expected = values(native);
+    const auto differences = [&](sk::Device& device) {
+      const std::vector<float> found = values(device);
+      REQUIRE(found.size() == expected.size());
+      std::vector<std::size_t> places;
+      for (std::size_t i = 0; i < found.size(); ++i)
+        if (!isSame(found[i], expected[i])) places.push_back(i);
+      return places;
+    };
+    const std::vector<std::size_t> none;
+    for (const char* profile : {"glsl330", "glsl430", "essl300"}) {
+      INFO(profile);
+      CHECK(differences(run_tests::device(profile)) == none);
+    }
+    INFO("glsl330 without `precise`");
+    CHECK(differences(barred) == none);
+  };
+  compare(known);
+  compare(converted);
+  compare(copied);
 }
 
 TEST_CASE("devices that contract by themselves may do so where a call allows it") {

@@ -47,31 +47,37 @@ def started(arguments):
         browser.wait()
 
 
+class Silent(SystemExit):
+    """A page reports nothing. Ends the test that does not catch it."""
+
+
 class Pages(http.server.SimpleHTTPRequestHandler):
-    """Serves a folder, and takes the report of a page."""
+    """Serves a folder, and takes the report of a page. What it posts to `progress` says only that it does not hang."""
 
     extensions_map = {**http.server.SimpleHTTPRequestHandler.extensions_map, ".mjs": "text/javascript", ".js": "text/javascript"}
 
     def do_POST(self):
         body = self.rfile.read(int(self.headers["Content-Length"]))
-        self.server.report = json.loads(body)
+        if self.path != "/progress":
+            self.server.report = json.loads(body)
         self.send_response(204)
         self.end_headers()
-        self.server.reported.set()
+        self.server.heard.set()
 
     def log_message(self, *arguments):
         pass
 
 
 def report_of(folder, page, seconds):
-    """What a page of this folder posts, as JSON. Ends the test if it posts nothing."""
+    """What a page of this folder posts, as JSON. Raises Silent if it posts nothing for so long."""
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Pages, directory=folder))
-    server.report, server.reported = None, threading.Event()
+    server.report, server.heard = None, threading.Event()
     threading.Thread(target=server.serve_forever, daemon=True).start()
     address = f"http://127.0.0.1:{server.server_address[1]}/{page}"
     with tempfile.TemporaryDirectory() as profile, started(command(profile, "--remote-debugging-port=0", address)):
-        server.reported.wait(seconds)
+        while server.report is None and server.heard.wait(seconds):
+            server.heard.clear()
     server.shutdown()
     if server.report is None:
-        sys.exit(f"{page} reports nothing within {seconds} s")
+        raise Silent(f"{page} reports nothing within {seconds} s")
     return server.report

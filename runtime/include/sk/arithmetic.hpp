@@ -22,7 +22,8 @@ struct Arithmetic {
   bool exactSums = true;
   /// The barrier that this requires. Native code needs none.
   Barrier barrier = Barrier::None;
-  /// Whether the device computes a kernel's own operations as they are written even without a barrier, as a trial has shown.
+  /// Whether the device computes a kernel's own operations as they are written even without a barrier, as a trial has shown in
+  /// each kind of program.
   /// Contraction::Exact then needs none. Not tried, and false, where the barrier is `precise`, which costs nothing.
   bool asWritten = true;
 };

@@ -20,6 +20,12 @@ inline constexpr std::string_view bracketed = "$[", bracketedEnd = "$]";
 inline constexpr std::string_view value = "$v", valueEnd = "$;";
 /// `$= PLACE $, OPERATOR $, VALUE $.`: a compound assignment.
 inline constexpr std::string_view compound = "$=", compoundNext = "$,", compoundEnd = "$.";
+/// Around an operand that may be 0 and whose value a compiler may know, such as a constant, or that is the other operand, too: a
+/// function that hides it, or nothing. Compilers take `x + 0.0` for x, which is not so for -0, and `x * 0.0` and `x - x` for 0, which
+/// is not so for infinities, some of them (Mesa's) even where `precise` forbids it.
+inline constexpr std::string_view known = "$<", knownEnd = "$>";
+/// The literal 0, hidden likewise, or `0.0`.
+inline constexpr std::string_view zero = "$0";
 /// In front of the name of GLSL's dot, cross, reflect, refract or faceforward: `sk_exact_`, which makes it the name of ours, or
 /// nothing.
 inline constexpr std::string_view function = "$f";

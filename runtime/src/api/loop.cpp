@@ -55,7 +55,10 @@ void detail::LoopDeleter::operator()(LoopState* state) const noexcept { delete s
 
 detail::Recording::Recording(DeviceState& device)
     : state_(withHostMemory("record", [&] {
-        if (device.recording == nullptr) flushScalars(device);
+        if (device.recording == nullptr) {
+          flushScalars(device);
+          device.arithmetic();  // its trial runs programs, which are not to be recorded
+        }
         return LoopOwner(new LoopState(device));
       })) {}
 

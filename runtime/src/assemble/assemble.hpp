@@ -49,7 +49,7 @@ struct Profile {
   /// What keeps floats from being simplified. Precise needs GL_ARB_gpu_shader5, which most devices with OpenGL have.
   Barrier barrier = Barrier::Xor;
   /// Contraction::Exact: a kernel's own operations are computed as they are written (glsl/own_arithmetic.hpp).
-  bool exact = true;
+  bool asWritten = true;
   bool tables = true;  ///< look functions with tables up
   /// Compute programs fetch a texel once for all neighbours in a work group, which is faster on GPUs.
   bool sharesTexels = true;
@@ -126,7 +126,7 @@ bool mayWritePacked(const program::Kernel& kernel);
 /// Likewise for a kernel with append outputs and Work::Groups, over a domain whose texels hold four elements.
 bool mayGroupPacked(const program::Kernel& kernel);
 
-/// The longest body, in characters, for which this is worthwhile, and the total length of the functions that
+/// The longest body (program::Kernel::bodyLength) for which this is worthwhile, and the total length of the functions that
 /// it calls, counted per call: software drivers take some 10 s for four times as many.
 constexpr std::size_t longestPackedBody = 4096, longestPackedCalls = 28672;
 

@@ -236,7 +236,7 @@ void GlDevice::selectPrograms(const CallOptions& options, assemble::Stage stage)
       .accurate = options.intrinsics != Intrinsics::Fast,
       .doubles = computesInPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
       .barrier = barrier,
-      .exact = options.contraction != Contraction::Fast && !(arithmetic_ && arithmetic_->asWritten),
+      .asWritten = options.contraction != Contraction::Fast && !(arithmetic_ && arithmetic_->asWritten),
       .tables = options.tables != Tables::Off};
   if (programs_ != nullptr && key == cacheKey_) {
     return;
@@ -247,7 +247,7 @@ void GlDevice::selectPrograms(const CallOptions& options, assemble::Stage stage)
     cacheProfile.accurate = key.accurate;
     cacheProfile.doubles = key.doubles;
     cacheProfile.barrier = key.barrier;
-    cacheProfile.exact = key.exact;
+    cacheProfile.asWritten = key.asWritten;
     cacheProfile.tables = key.tables;
     found = caches_.try_emplace(key, *this, cacheProfile).first;
   }

@@ -65,7 +65,7 @@ struct ProgramCacheKey {
   bool accurate = true;
   assemble::Doubles doubles = assemble::Doubles::Native;
   Barrier barrier = Barrier::Xor;
-  bool exact = true;  ///< assemble::Profile::exact
+  bool asWritten = true;  ///< assemble::Profile::asWritten
   bool tables = true;
   auto operator<=>(const ProgramCacheKey&) const = default;
 };

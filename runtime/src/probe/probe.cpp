@@ -14,6 +14,7 @@
 
 #include "device/stream_state.hpp"
 #include "gl_device/gl_device.hpp"
+#include "probe/own_operations.hpp"
 #include "sk/error.hpp"
 #include "sk/types.hpp"
 #include "support/cache_folder.hpp"
@@ -129,77 +130,6 @@ std::string_view nameOf(Barrier barrier) {
     if (one == barrier) return name;
   }
   return {};
-}
-
-/// Operations that a compiler may combine, cancel or contract; without divisions, which need not be rounded correctly.
-const program::Kernel& ownOperations() {
-  using program::Role;
-  static constexpr std::array<program::Parameter, 4> parameters{
-      {{.name = "x", .symbol = "x", .role = Role::Input, .element = &ElementTraits<float4>::element()},
-       {.name = "p", .symbol = "p", .role = Role::Output, .element = &ElementTraits<float4>::element()},
-       {.name = "q", .symbol = "q", .role = Role::Output, .element = &ElementTraits<float4>::element()},
-       {.name = "r", .symbol = "r", .role = Role::Output, .element = &ElementTraits<float4>::element()}}};
-  static constexpr program::Kernel kernel{
-      .name = "operations as they are written",
-      .entry = "sk_own_operations",
-      .declarations = {},
-      .body =
-          "void sk_own_operations(vec4 x, out vec4 p, out vec4 q, out vec4 r) {\n"
-          "  p = vec4(x.x * 0.1 * 10.0, x.x * 0.3 * 0.7, x.x + 1e6 + 3.3, x.x + 1e6 - 1e6);\n"
-          "  q = vec4(x.x + x.y - x.x, x.x * x.y + x.x * x.z, x.x * x.y - x.z, x.x - x.y + x.y);\n"
-          "  r = vec4(dot(x.xyz, x.yzw), dot(x, x.wzyx), x.z - (x.z - x.x), x.x * x.x - x.y * x.y);\n"
-          "}\n",
-      .parameters = parameters,
-      .sources = {}};
-  return kernel;
-}
-
-/// What these operations are according to IEEE 754. Each result is stored, so that no compiler of the host contracts it.
-std::array<float4, 3> operationsAsWritten(const float4& x) {
-  const auto times = [](float a, float b) {
-    volatile float product = a * b;
-    return float{product};
-  };
-  const auto plus = [](float a, float b) {
-    volatile float sum = a + b;
-    return float{sum};
-  };
-  const float sum = plus(plus(times(x.x, x.y), times(x.y, x.z)), times(x.z, x.w));
-  const float all = plus(plus(plus(times(x.x, x.w), times(x.y, x.z)), times(x.z, x.y)), times(x.w, x.x));
-  return {{{times(times(x.x, 0.1F), 10), times(times(x.x, 0.3F), 0.7F), plus(plus(x.x, 1e6F), 3.3F),
-            plus(plus(x.x, 1e6F), -1e6F)},
-           {plus(plus(x.x, x.y), -x.x), plus(times(x.x, x.y), times(x.x, x.z)), plus(times(x.x, x.y), -x.z),
-            plus(plus(x.x, -x.y), x.y)},
-           {sum, all, plus(x.z, -plus(x.z, -x.x)), plus(times(x.x, x.x), -times(x.y, x.y))}}};
-}
-
-/// True if the device computes them so without a barrier.
-bool computesAsWritten(GlDevice& device, std::string_view key) {
-  if (const std::optional<std::string> text = device.cache.read("arithmetic", key)) return *text == "kept\n";
-  std::vector<float4> given;
-  std::mt19937 random(2026);
-  const auto number = [&] { return 1 + 99 * static_cast<float>(random() >> 8) * 0x1p-24F; };
-  for (std::size_t i = 0; i < pairCount; ++i) given.push_back({number(), number(), number(), number()});
-  const Shape shape{32, static_cast<std::int64_t>(given.size()) / 32};
-  const auto make = [&] {
-    return device.createStream(ElementTraits<float4>::element(), shape, Storage::Single);
-  };
-  const auto x = make(), p = make(), q = make(), r = make();
-  const std::array<Argument, 4> arguments{{{.region = detail::wholeRegion(x.get())},
-                                           {.region = detail::wholeRegion(p.get())},
-                                           {.region = detail::wholeRegion(q.get())},
-                                           {.region = detail::wholeRegion(r.get())}}};
-  detail::write(arguments[0].region, given.data(), given.size());
-  device.runUnchecked(ownOperations(), arguments, {.contraction = Contraction::Fast});
-  bool isKept = true;
-  for (std::size_t output = 0; output < 3; ++output) {
-    std::vector<float4> found(given.size());
-    detail::read(arguments[output + 1].region, found.data(), found.size());
-    for (std::size_t i = 0; i < given.size(); ++i)
-      isKept = isKept && found[i] == operationsAsWritten(given[i])[output];
-  }
-  device.cache.write("arithmetic", key, isKept ? "kept\n" : "changed\n");
-  return isKept;
 }
 
 /// The result of an earlier process; nullopt if there is none.

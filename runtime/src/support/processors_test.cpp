@@ -1,35 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "support/processors.hpp"
 
-#include <fstream>
-#include <string>
-
 #include <catch2/catch.hpp>
+
+#include "support/test_root.hpp"
 
 namespace sk {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// A folder that stands for the root of a machine.
-class Root {
- public:
-  Root() { fs::remove_all(path_); }
-  ~Root() { fs::remove_all(path_); }
-  Root(const Root&) = delete;
-  Root& operator=(const Root&) = delete;
-  void write(const std::string& file, const std::string& text) const {
-    fs::create_directories((path_ / file).parent_path());
-    std::ofstream(path_ / file) << text;
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_ = fs::temp_directory_path() / "sk_processors_test";
-};
-
 TEST_CASE("quotas of control groups limit the processors") {
-  const Root root;
+  const TestRoot root;
   CHECK(withinQuota(8, root.path()) == 8);  // no groups at all
   root.write("proc/self/cgroup", "0::/outer/inner\n");
   root.write("sys/fs/cgroup/outer/inner/cpu.max", "max 100000\n");
@@ -44,7 +24,7 @@ TEST_CASE("quotas of control groups limit the processors") {
 }
 
 TEST_CASE("quotas of the first version of control groups count as well") {
-  const Root root;
+  const TestRoot root;
   root.write("proc/self/cgroup", "5:memory:/x\n4:cpu,cpuacct:/docker/abc\n0::/\n");
   root.write("sys/fs/cgroup/cpu/docker/abc/cpu.cfs_quota_us", "-1\n");
   root.write("sys/fs/cgroup/cpu/docker/abc/cpu.cfs_period_us", "100000\n");

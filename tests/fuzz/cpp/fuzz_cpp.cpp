@@ -4,19 +4,18 @@
 // makes of them. Program N of a seed is always the same. A program with a finding is reduced. With files, it runs these and
 // compares with the results that are stored beside them, for which it needs no Clang. The exit status is 1 after a finding.
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 
+#include "browser_page.hpp"
 #include "command.hpp"
 #include "cpp/browser.hpp"
 #include "cpp/generator.hpp"
@@ -37,11 +36,9 @@ using fuzz::cpp::Node;
 using fuzz::cpp::Outputs;
 using fuzz::cpp::Targets;
 
-struct Options : fuzz::Command {
+struct Options : fuzz::SlicedCommand {
   Options() { count = 100, seconds = 60; }
   std::vector<std::string> targets{"native"}, without, files;
-  double minutes = 0;
-  std::uint64_t mostFindings = 20;
   int budget = 400;
   bool isStoring = false;
 };
@@ -128,37 +125,46 @@ class Campaigns {
   explicit Campaigns(const Options& options) : options_(options) {}
 
   int run() {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(60 * options_.minutes);
-    const bool isTimed = options_.minutes > 0;
-    std::uint64_t inputs = 0, functions = 0;
-    const std::uint64_t slice = 25;
-    for (std::uint64_t first = options_.first; isTimed || first < options_.first + options_.count;
-         first += slice) {
-      if (isTimed && std::chrono::steady_clock::now() > end) break;
-      const std::uint64_t count = isTimed ? slice : std::min(slice, options_.first + options_.count - first);
-      Targets targets(setOf(options_.targets));
-      const fuzz::cpp::BrowserBatch batch;
-      fuzz::Campaign campaign{.first = first, .count = count, .batch = slice, .seconds = options_.seconds};
-      campaign.check = [&](std::uint64_t number) {
-        const fuzz::cpp::Program program = programOf(options_, number);
-        return verdictOf(targets, [&] { return check(*program.root, targets, batch, number); });
-      };
-      campaign.onFinding = [&](const fuzz::Finding& finding) { keep(finding); };
-      inputs += fuzz::run(campaign).inputs;
-      if (targets.has("webgl2")) {
-        for (const auto& [number, wrong] : batch.run()) keep({.number = number, .what = wrong, .log = {}});
-      }
-      for (std::uint64_t i = 0; i < count; ++i)
-        functions += static_cast<std::uint64_t>(programOf(options_, first + i).functions);
-      if (findings_ >= options_.mostFindings) break;
-      if (isatty(STDERR_FILENO) != 0) std::cerr << inputs << " programs, " << findings_ << " findings\r";
-    }
-    std::cout << inputs << " programs of " << functions << " functions, " << findings_ << " findings\n";
-    for (const auto& [kind, count] : kinds_) std::cout << count << " x " << kind << "\n";
-    return findings_ == 0 ? 0 : 1;
+    constexpr std::uint64_t slice = 25;
+    options_.forSlices(slice, [&](std::uint64_t first, std::uint64_t count) {
+      runSlice(first, count);
+      if (isatty(STDERR_FILENO) != 0) std::cerr << inputs_ << " programs, " << findings_ << " findings\r";
+      return findings_;
+    });
+    std::cout << inputs_ << " programs of " << functions_ << " functions, " << findings_ << " findings";
+    if (lost_ > 0) std::cout << "; " << lost_ << " programs did not run, because a page hung";
+    std::cout << "\n";
+    fuzz::conclude(kinds_);
+    return findings_ == 0 && lost_ == 0 ? 0 : 1;
   }
 
  private:
+  void runSlice(std::uint64_t first, std::uint64_t count) {
+    Targets targets(setOf(options_.targets));
+    const fuzz::cpp::BrowserBatch batch;
+    fuzz::Campaign campaign{.first = first, .count = count, .batch = count, .seconds = options_.seconds};
+    campaign.check = [&](std::uint64_t number) {
+      const fuzz::cpp::Program program = programOf(options_, number);
+      return verdictOf(targets, [&] { return check(*program.root, targets, batch, number); });
+    };
+    campaign.onFinding = [&](const fuzz::Finding& finding) { keep(finding); };
+    inputs_ += fuzz::run(campaign).inputs;
+    if (targets.has("webgl2")) runInBrowser(batch, first, count);
+    for (std::uint64_t i = 0; i < count; ++i)
+      functions_ += static_cast<std::uint64_t>(programOf(options_, first + i).functions);
+  }
+
+  /// A page that hangs costs its slice; the next slice has another.
+  void runInBrowser(const fuzz::cpp::BrowserBatch& batch, std::uint64_t first, std::uint64_t count) {
+    try {
+      for (const auto& [number, wrong] : batch.run()) keep({.number = number, .what = wrong, .log = {}});
+    } catch (const fuzz::HungPage& error) {
+      lost_ += count;
+      std::cout << "programs " << first << " to " << first + count - 1 << ": " << error.what() << "\n"
+                << std::flush;
+    }
+  }
+
   /// The finding about a program, or nothing.
   std::optional<fuzz::Finding> findingOf(const Node& root, std::uint64_t number) const {
     Targets targets(setOf(options_.targets));
@@ -201,21 +207,14 @@ class Campaigns {
   }
 
   const Options& options_;
-  std::uint64_t findings_ = 0;
-  std::map<std::string, int> kinds_;
+  std::uint64_t inputs_ = 0, functions_ = 0, findings_ = 0;
+  std::uint64_t lost_ = 0;  ///< programs whose page hung
+  fuzz::Kinds kinds_;
 };
-
-std::string textOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error("cannot read " + file.string());
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 /// Writes what Clang computes for a stored program, in the file that runStored() compares with.
 void storeResults(const fs::path& file) {
-  const fuzz::cpp::Oracle oracle(textOf(file), {}, {});
+  const fuzz::cpp::Oracle oracle(fuzz::textOf(file), {}, {});
   std::ofstream(fs::path(file).replace_extension(".expected")) << written(oracle.run());
 }
 
@@ -243,7 +242,7 @@ int runStored(const Options& options) {
   for (std::size_t number = 0; number < options.files.size(); ++number) {
     const std::string& file = options.files[number];
     const fuzz::Verdict verdict = verdictOf(targets, [&]() -> std::string {
-      const auto [module, messages] = skc::driver::translateText({}, file, textOf(file));
+      const auto [module, messages] = skc::driver::translateText({}, file, fuzz::textOf(file));
       if (!module) return "refused: " + messages;
       skc::emit::Program program(*module);
       std::optional<skc::emit::Program> withCode;
@@ -256,8 +255,8 @@ int runStored(const Options& options) {
         return nullptr;
       };
       const std::vector<Outputs> wanted =
-          fuzz::cpp::parsed(textOf(fs::path(file).replace_extension(".expected")));
-      if (targets.has("webgl2")) batch.add(number, textOf(file), inBrowsers(*module, wanted));
+          fuzz::cpp::parsed(fuzz::textOf(fs::path(file).replace_extension(".expected")));
+      if (targets.has("webgl2")) batch.add(number, fuzz::textOf(file), inBrowsers(*module, wanted));
       std::string wrong = targets.difference(*module, codeOf, wanted);
       if (wrong.empty() && targets.has("lanes")) wrong = fuzz::cpp::differenceOfLanes(*module, wanted);
       return wrong;
@@ -299,8 +298,6 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(fuzz::cpp::constructs));
-  app.add_option("--minutes", options.minutes, "How long, instead of --count");
-  app.add_option("--findings", options.mostFindings, "Stop after this many findings");
   app.add_option("--budget", options.budget, "How many smaller programs are tried for a finding");
   app.add_flag("--store", options.isStoring,
                "Write programs with their results to --out, or the results of the files");

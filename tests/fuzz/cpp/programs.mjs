@@ -48,5 +48,6 @@ for (const program of samples.programs) {
     device = await Device.create();
   }
   if (wrong) report.push([program.number, wrong]);
+  await fetch('progress', { method: 'POST' });
 }
 await fetch('report', { method: 'POST', body: JSON.stringify(report) });

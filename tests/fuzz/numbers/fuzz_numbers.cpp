@@ -4,7 +4,6 @@
 // ones and with the bounds of docs/accuracy.md. Case N of a seed is always the same. A case with a finding is made smaller. With
 // files, it runs the cases that they hold. The exit status is 1 after a finding.
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -16,6 +15,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "browser_page.hpp"
 #include "command.hpp"
 #include "numbers/browser.hpp"
 #include "numbers/devices.hpp"
@@ -31,12 +31,10 @@ namespace fs = std::filesystem;
 using fuzz::numbers::Case;
 using fuzz::numbers::Devices;
 
-struct Options : fuzz::Command {
-  Options() { count = 1000, seconds = 120; }
+struct Options : fuzz::SlicedCommand {
+  Options() { count = 1000, seconds = 120, mostFindings = 40; }
   std::vector<std::string> targets{"native"}, operations, files;
   bool hasBrowser() const { return std::ranges::count(targets, "webgl2") > 0; }
-  double minutes = 0;
-  std::uint64_t mostFindings = 40;
   int budget = 400;
 };
 
@@ -93,31 +91,38 @@ class Campaigns {
   explicit Campaigns(const Options& options) : options_(options) {}
 
   int run() {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(60 * options_.minutes);
-    const bool isTimed = options_.minutes > 0;
-    const std::uint64_t slice = isTimed ? 2000 : options_.count;
-    for (std::uint64_t first = options_.first; first == options_.first || isTimed; first += slice) {
-      if (isTimed && std::chrono::steady_clock::now() > end) break;
-      runSlice(first, slice);
-      if (findings_ >= options_.mostFindings) break;
-    }
+    options_.forSlices(options_.minutes > 0 ? 2000 : options_.count,
+                       [&](std::uint64_t first, std::uint64_t count) {
+                         runSlice(first, count);
+                         return findings_;
+                       });
     for (const auto& [name, count] : tallies_) std::cout << name << ": " << count << "\n";
-    std::cout << cases_ << " cases, " << findings_ << " findings\n";
-    for (const auto& [kind, count] : kinds_) std::cout << count << " x " << kind << "\n";
-    return findings_ == 0 ? 0 : 1;
+    std::cout << cases_ << " cases, " << findings_ << " findings";
+    if (lost_ > 0) std::cout << "; " << lost_ << " cases did not run, because a page hung";
+    std::cout << "\n";
+    fuzz::conclude(kinds_);
+    return findings_ == 0 && lost_ == 0 ? 0 : 1;
   }
 
  private:
   void runSlice(std::uint64_t first, std::uint64_t count) {
     if (options_.targets != std::vector<std::string>{"webgl2"}) runOnDevices(first, count);
     constexpr std::uint64_t most = 1000;  // in one page
-    for (std::uint64_t done = 0; options_.hasBrowser() && done < count; done += most)
-      runInBrowser(first + done, std::min(most, count - done));
+    for (std::uint64_t done = 0; options_.hasBrowser() && done < count; done += most) {
+      const std::uint64_t begin = first + done, size = std::min(most, count - done);
+      try {
+        runInBrowser(begin, size);
+      } catch (const fuzz::HungPage& error) {  // the next cases have another page
+        lost_ += size;
+        std::cout << "cases " << begin << " to " << begin + size - 1 << ": " << error.what() << "\n"
+                  << std::flush;
+      }
+    }
   }
 
   void runOnDevices(std::uint64_t first, std::uint64_t count) {
     fuzz::Campaign campaign{.first = first, .count = count, .batch = 4000, .seconds = options_.seconds};
-    std::map<std::string, int> kinds;  // of the child
+    fuzz::Kinds kinds;  // of the child
     std::optional<Devices> devices;
     campaign.begin = [&] { devices.emplace(); };
     campaign.check = [&](std::uint64_t number) { return check(*devices, kinds, number); };
@@ -131,7 +136,7 @@ class Campaigns {
   }
 
   /// Runs a case on all targets, in a child process.
-  fuzz::Verdict check(Devices& devices, std::map<std::string, int>& kinds, std::uint64_t number) const {
+  fuzz::Verdict check(Devices& devices, fuzz::Kinds& kinds, std::uint64_t number) const {
     const Case one = caseOf(options_, number);
     fuzz::Verdict verdict;
     for (const std::string& target : options_.targets) {
@@ -155,7 +160,7 @@ class Campaigns {
   /// The kind of a finding, a report for people, and the smallest case, if it is one of the first of its kind.
   std::string findingOf(const std::string& target, const Case& one, const std::string& wrong,
                         const fuzz::numbers::FindFailure& find, std::size_t together,
-                        std::map<std::string, int>& kinds) const {
+                        fuzz::Kinds& kinds) const {
     const std::string kind = kindOf(target, one, wrong);
     fuzz::numbers::Shrunk best{one, wrong};
     if (++kinds[kind] <= 2) best = fuzz::numbers::shrunk(one, wrong, find, options_.budget, together);
@@ -216,23 +221,16 @@ class Campaigns {
 
   const Options& options_;
   std::uint64_t cases_ = 0, findings_ = 0;
-  std::map<std::string, int> kinds_, browserKinds_;
+  std::uint64_t lost_ = 0;  ///< cases whose page hung
+  fuzz::Kinds kinds_, browserKinds_;
   std::map<std::string, std::uint64_t> tallies_;
 };
-
-std::string textOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error("cannot read " + file.string());
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 int runFiles(const Options& options) {
   Devices devices;
   int findings = 0;
   for (const std::string& file : options.files) {
-    const Case one = fuzz::numbers::parsed(textOf(file));
+    const Case one = fuzz::numbers::parsed(fuzz::textOf(file));
     for (const std::string& target : options.targets) {
       if (!canRun(target, one)) continue;
       const std::string wrong = target == "webgl2" ? mistakesInBrowser(std::span(&one, 1)).front()
@@ -274,8 +272,6 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(names));
-  app.add_option("--minutes", options.minutes, "How long, instead of --count");
-  app.add_option("--findings", options.mostFindings, "Stop after this many findings");
   app.add_option("--budget", options.budget, "How many smaller cases are tried for a finding");
   app.add_option("files", options.files, "Cases to run");
   CLI11_PARSE(app, argc, argv);

@@ -198,7 +198,7 @@ std::string SumJudge::mistake(double got, SumFacts facts, const Arithmetic& arit
   if (!std::isfinite(got)) return differs(facts.sum, "not");
   const double below = mayFlush && !facts.areDoubles ? 0x1p-24 * below_ : 0;
   const double ofPairs = arePairs ? 0x1p-11 * tiny_ + terms_ * 0x1p-122 : 0;
-  const double bound = boundOf(facts, arithmetic) + below + ofPairs + (mayFlush ? flushed_ : 0);
+  const double bound = boundOfSum(facts, arithmetic) + below + ofPairs + (mayFlush ? flushed_ : 0);
   const double error = sum_.errorOf(got);
   if (error <= bound) return {};
   return fmt::format(

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "assemble/condition.hpp"
+#include "sk/arithmetic_marks.hpp"
 
 namespace sk::assemble {
 
@@ -129,7 +130,10 @@ std::string specConstant(ProgramText& program, const Parameter& parameter, std::
   const program::Scalar scalar = parameter.element->fields.front().scalar;
   program.variable(fmt::format("const {}", parameter.element->glsl),
                    fmt::format("{} = {}", name, glslLiteral(scalar, bits)));
-  return name;
+  // compilers know it, and it may be 0
+  return scalar == program::Scalar::Float
+             ? fmt::format("{}{}{}", program::mark::known, name, program::mark::knownEnd)
+             : name;
 }
 
 void defineAbsent(ProgramText& program, const Parameter& parameter) {

@@ -18,3 +18,11 @@ vec4 sk_keep(vec4 x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
 //// preciseBarrier
 #define sk_precise precise
 #define sk_keep(x) (x)
+
+//// knownValues
+// Hides what a compiler knows, beside `precise`.
+uniform uint sk_zero;   // never set, hence 0
+float sk_known(float x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
+vec2 sk_known(vec2 x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
+vec3 sk_known(vec3 x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
+vec4 sk_known(vec4 x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cctype>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "glsl_text/exact_sums.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -69,6 +70,9 @@ class Resolver {
         if (isXor) result_ += ")";
         places_.pop_back();
         break;
+      case '<': result_ += isXor ? "sk_keep(" : isPrecise ? "sk_known(" : ""; break;
+      case '>': result_ += isXor || isPrecise ? ")" : ""; break;
+      case '0': result_ += isXor ? "sk_keep(0.0)" : isPrecise ? "sk_known(0.0)" : "0.0"; break;
       case 'f': result_ += isXor || isPrecise ? "sk_exact_" : ""; break;
       default: assert(false && "no such mark");
     }
@@ -98,36 +102,6 @@ class Resolver {
   std::vector<bool> brackets_;
   std::vector<Place> places_;
 };
-
-/// Operands that are the literal 0, or a vector of it, pass the barrier, too: compilers take `x + 0.0` for x, which is not so for -0, and
-/// `x * 0.0` for 0.
-std::string withZerosKept(std::string_view text) {
-  constexpr std::string_view zero = "0.0";
-  const auto isPartOfNumber = [&](std::size_t at) {
-    return at < text.size() &&
-           (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '.' || text[at] == '_');
-  };
-  std::string result;
-  std::size_t done = 0;
-  for (std::size_t at = text.find(zero); at != std::string_view::npos;
-       at = text.find(zero, at + zero.size())) {
-    std::size_t begin = at, end = at + zero.size();
-    if ((begin > 0 && isPartOfNumber(begin - 1)) || isPartOfNumber(end)) continue;
-    const std::string_view before = text.substr(0, begin);
-    const bool isVector = before.ends_with("vec2(") || before.ends_with("vec3(") || before.ends_with("vec4(");
-    if (isVector && text.substr(end).starts_with(")")) begin -= 5, ++end;
-    const std::string_view left = text.substr(0, begin), right = text.substr(end);
-    const bool isOperand = left.ends_with(" + ") || left.ends_with(" - ") || left.ends_with(" * ") ||
-                           right.starts_with(" + ") || right.starts_with(" - ") || right.starts_with(" * ");
-    if (!isOperand) continue;
-    result += text.substr(done, begin - done);
-    result += "sk_keep(";
-    result += text.substr(begin, end - begin);
-    result += ")";
-    done = end;
-  }
-  return result += text.substr(done);
-}
 
 constexpr std::array<std::string_view, 4> vectorTypes = {"float", "vec2", "vec3", "vec4"};
 
@@ -204,47 +178,27 @@ std::string geometryDefinitions(std::string_view text) {
 
 }  // namespace
 
-Barrier barrierOfBodies(const Profile& profile) { return profile.exact ? profile.barrier : Barrier::None; }
+Barrier barrierOfBodies(const Profile& profile) {
+  return profile.asWritten ? profile.barrier : Barrier::None;
+}
 
 std::string bodyText(const Profile& profile, std::string_view body) {
-  const Barrier barrier = barrierOfBodies(profile);
-  std::string text = Resolver(barrier).text(body);
-  return barrier == Barrier::Xor ? withZerosKept(text) : text;
+  return Resolver(barrierOfBodies(profile)).text(body);
 }
 
-// Asked in every call: it allocates nothing, and looks at few characters.
-std::size_t lengthOfBody(std::string_view body, std::size_t most) {
-  std::size_t length = 0;
-  bool isPlaceDone = false;
-  for (std::size_t at = 0; at < body.size() && length <= most; ++at) {
-    if (body[at] != first) {
-      ++length;
-      continue;
-    }
-    switch (body[++at]) {
-      case '[':
-      case ']': ++length; break;
-      case 'v': ++at; break;
-      case '=': isPlaceDone = false; break;
-      case ',':
-        length += isPlaceDone ? 2 : 1;  // "= ", and " " before
-        isPlaceDone = true;
-        break;
-      default: break;
-    }
-  }
-  return length;
-}
+std::string unmarked(std::string_view body) { return Resolver(Barrier::None).text(body); }
 
 bool guardsOperations(const Profile& profile, std::string_view text) {
   const auto has = [&](std::string_view what) { return text.find(what) != std::string_view::npos; };
   if (barrierOfBodies(profile) == Barrier::None) return false;
-  return has("sk_exact") || has(barrierOfBodies(profile) == Barrier::Xor ? "sk_keep(" : "precise ");
+  return has("sk_exact") || has("sk_known(") ||
+         has(barrierOfBodies(profile) == Barrier::Xor ? "sk_keep(" : "precise ");
 }
 
 std::string bodyDefinitions(const Profile& profile, std::string_view text) {
   std::string definitions;
   if (barrierOfBodies(profile) == Barrier::Precise) {
+    if (text.find("sk_known(") != std::string_view::npos) definitions += library::knownValues;
     for (const Kept& variable : kept) {
       if (text.find(fmt::format("({} =", variable.name)) != std::string_view::npos)
         definitions += fmt::format("precise {} {};\n", variable.type, variable.name);

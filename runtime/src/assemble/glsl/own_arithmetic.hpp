@@ -8,7 +8,6 @@
 //   float s = sk_keep(a * sk_keep(b + c));           with a uniform that is 0
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -19,11 +18,11 @@ namespace sk::assemble {
 /// The barrier of the kernel's own operations: the profile's, or none if the call allows contraction.
 Barrier barrierOfBodies(const Profile& profile);
 
-/// The body as GLSL.
+/// The body, or another text with marks, as GLSL.
 std::string bodyText(const Profile& profile, std::string_view body);
 
-/// The number of characters without marks. Ends to count where there are more than `most`.
-std::size_t lengthOfBody(std::string_view body, std::size_t most = std::string_view::npos);
+/// The body without marks.
+std::string unmarked(std::string_view body);
 
 /// True if `text`, a result of bodyText(), has operations with a barrier, for which the program must define what exact_sums.hpp
 /// does.

@@ -215,9 +215,12 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   const IntrinsicTexts intrinsics = intrinsicTexts(kernel.intrinsics, profile.accurate);
   const bool hasPreciseDoubles = kernel.usesDoubles && profile.doubles == Doubles::Native &&
                                  barrierOfBodies(profile) == Barrier::Precise;
-  const std::string body = bodyText(profile, kernel.body), more = bodyText(profile, foreign_);
-  const bool guards = hasPreciseDoubles || guardsOperations(profile, body) || guardsOperations(profile, more);
-  const bool hasExactFloats = guards || kernel.usesExactSums || intrinsics.useExactFloats ||
+  const auto textOf = [&](std::string_view text) { return bodyText(profile, text); };
+  const std::string body = textOf(kernel.body), more = textOf(foreign_), ours = textOf(ownText()),
+                    main = textOf(mainOf(prologue_ + main_));
+  const auto guards = [&](std::string_view text) { return guardsOperations(profile, text); };
+  const bool hasExactFloats = hasPreciseDoubles || guards(body) || guards(more) || guards(main) ||
+                              guards(ours) || kernel.usesExactSums || intrinsics.useExactFloats ||
                               callDoubleIntrinsics(kernel.intrinsics) ||
                               (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
@@ -229,18 +232,23 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   program += intrinsics.definitions;
   addForeign(program, kernel.declarations);
   program += '\n';
-  if (!isDrawn()) program += "uniform ivec4 sk_rect;\n";
-  addLines(program, uniforms_);
-  program += declarationOfOutputs();
-  if (!isDrawn()) program += "ivec2 sk_pixel;\n";
-  addLines(program, variables_);
-  addFunctions(program, used_);
-  program += functions_;
+  program += ours;
   program += tableDefinitions(kernel.tables, profile.tables);
-  program += bodyDefinitions(profile, body + more);
+  program += bodyDefinitions(profile, body + more + main);
   addForeign(program, body);
   addForeign(program, more);
-  return program + mainOf(prologue_ + main_);
+  return program + main;
+}
+
+std::string ProgramText::ownText() const {
+  std::string text;
+  if (!isDrawn()) text += "uniform ivec4 sk_rect;\n";
+  addLines(text, uniforms_);
+  text += declarationOfOutputs();
+  if (!isDrawn()) text += "ivec2 sk_pixel;\n";
+  addLines(text, variables_);
+  addFunctions(text, used_);
+  return text + functions_;
 }
 
 /// Outputs are variables in both stages; compute programs then copy them to images or to a buffer.

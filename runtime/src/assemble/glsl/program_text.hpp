@@ -157,6 +157,8 @@ class ProgramText {
   void defineWith(std::string_view signature, std::string_view lines);
 
   bool isDrawn() const { return stage_ == Stage::Fragment; }
+  /// Declarations and functions of the assembler's own, with marks.
+  std::string ownText() const;
   std::string declarationOfOutputs() const;
   std::string declarationOfBuffer() const;
   std::string mainOf(const std::string& body) const;

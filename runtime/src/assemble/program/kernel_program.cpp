@@ -351,9 +351,7 @@ bool mayPack(const program::Element& held) {
 namespace {
 
 bool mayRunInSequence(const Kernel& kernel) {
-  return !kernel.usesLoops &&
-         (kernel.body.size() <= longestPackedBody ||
-          lengthOfBody(kernel.body, longestPackedBody) <= longestPackedBody) &&
+  return !kernel.usesLoops && kernel.bodyLength <= longestPackedBody &&
          lengthOfCalls(kernel) <= longestPackedCalls;
 }
 

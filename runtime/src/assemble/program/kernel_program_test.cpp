@@ -386,12 +386,13 @@ TEST_CASE("a kernel's own operations are guarded as the profile and the call say
       "  $pfloat p = $(a * $[x + y$]$);\n"
       "  if ($v1$(p - x$)$; < $v1$[x + y$]$;) r = g($v1$fdot($v2$(x * y$)$;, p)$;);\n"
       "  $=r$,+$,$(p * x$)$.;\n"
+      "  r = $($<float(1)$> * -$0$);\n"
       "}\n";
   kernel.body = marked;
-  const auto bodyOf = [&](sk::Barrier barrier, bool exact) {
+  const auto bodyOf = [&](sk::Barrier barrier, bool asWritten) {
     Profile profile = glsl;
     profile.barrier = barrier;
-    profile.exact = exact;
+    profile.asWritten = asWritten;
     const std::string text = kernelProgram(profile, kernel, {.access = {{}, {}, {}, {}}});
     const std::size_t from = text.find("void saxpy("), to = text.find("}\n", from) + 2;
     return text.substr(from, to - from);
@@ -401,6 +402,7 @@ TEST_CASE("a kernel's own operations are guarded as the profile and the call say
       "  float p = a * (x + y);\n"
       "  if (p - x < (x + y)) r = g(dot(x * y, p));\n"
       "  r += p * x;\n"
+      "  r = float(1) * -0.0;\n"
       "}\n";
   CHECK(bodyOf(sk::Barrier::None, true) == plain);
   CHECK(bodyOf(sk::Barrier::Precise, false) == plain);
@@ -412,12 +414,14 @@ TEST_CASE("a kernel's own operations are guarded as the profile and the call say
       "  if ((sk_exact1 = p - x) < (sk_exact1 = x + y)) r = g((sk_exact1 = sk_exact_dot((sk_exact2 = x * y), "
       "p)));\n"
       "  r += p * x;\n"
+      "  r = sk_known(float(1)) * -sk_known(0.0);\n"
       "}\n");
   CHECK(bodyOf(sk::Barrier::Xor, true) ==
         "void saxpy(float a, float x, float y, out float r) {\n"
         "  float p = sk_keep(a * sk_keep(x + y));\n"
         "  if (sk_keep(p - x) < sk_keep(x + y)) r = g(sk_exact_dot(sk_keep(x * y), p));\n"
         "  r = sk_keep(r + sk_keep(p * x));\n"
+        "  r = sk_keep(sk_keep(float(1)) * -sk_keep(0.0));\n"
         "}\n");
 }
 

@@ -15,6 +15,7 @@
 #include "accuracy/exact_sum.hpp"
 #include "accuracy/programs.hpp"
 #include "info/numbers.hpp"
+#include "sk/sum_bounds.hpp"
 
 namespace sk_tool {
 
@@ -39,55 +40,39 @@ struct Truth {
 /// One per result, in the order of the reduction.
 using Truths = std::vector<Truth>;
 
-/// How a device adds this number of terms, as docs/accuracy.md says under "Sums".
-struct Additions {
-  double depth;  ///< the most additions that a number takes part in
-  double lost;  ///< what they lose where numbers are flushed to 0, or rounded to a denormal
-};
-
 struct SumMode {
   const char* name;
   sk::CallOptions options;
-  /// Bound of the absolute error of a sum. `magnitude`: the sum of magnitudes.
-  double (*bound)(double sum, double magnitude, const Additions& additions);
+  bool isBounded = true;
 };
 
-/// Bounds of docs/accuracy.md (Higham, Accuracy and Stability of Numerical Algorithms, section 4.2; Ogita, Rump
-/// and Oishi 2005 for compensated sums and dot products). Each includes the rounding of products.
 constexpr SumMode sumModes[] = {
-    {"tree",
-     {.accumulate = Accumulate::Tree},
-     [](double, double magnitude, const Additions& a) { return (a.depth + 1) * u * magnitude + a.lost; }},
-    {"compensated",
-     {.accumulate = Accumulate::Compensated},
-     [](double sum, double magnitude, const Additions& a) {
-       return u * sum + 2 * (a.depth + 1) * (a.depth + 1) * u * u * magnitude + a.lost;
-     }},
-    {"extended",
-     {.accumulate = Accumulate::Extended},
-     [](double sum, double magnitude, const Additions& a) {
-       return u * sum + (a.depth + 1) * 0x1p-44 * magnitude + a.lost;
-     }},
-    {"double",
-     {.precision = sk::Precision::Double},
-     [](double sum, double magnitude, const Additions& a) {
-       return u * sum + (a.depth + 1) * 0x1p-53 * magnitude + a.lost;
-     }},
-    {"exact",
-     {.accumulate = Accumulate::Exact},
-     [](double sum, double, const Additions&) { return std::max(u * sum, 0x1p-150); }},
-    {"half", {.precision = sk::Precision::Half}, nullptr},
+    {"tree", {.accumulate = Accumulate::Tree}},
+    {"compensated", {.accumulate = Accumulate::Compensated}},
+    {"extended", {.accumulate = Accumulate::Extended}},
+    {"double", {.precision = sk::Precision::Double}},
+    {"exact", {.accumulate = Accumulate::Exact}},
+    {"half", {.precision = sk::Precision::Half}, false},
 };
 
-Additions additionsOf(const sk::Device& device, std::size_t count) {
-  const double n = static_cast<double>(count), log2 = std::log2(std::max(n, 2.0));
-  if (device.profile() == "native") return {24 + log2, n * 0x1p-149};
-  return {31 * std::ceil(log2 / std::log2(30.0)) + 8, n * 0x1p-122};
+/// Bound of the absolute error of a sum of `count` terms.
+double boundOf(const SumMode& mode, const sk::Device& device, std::size_t count, double sum,
+               double magnitude) {
+  if (mode.options.accumulate == Accumulate::Exact) return std::max(u * sum, 0x1p-150);
+  const bool isNative = device.profile() == "native";
+  const double n = static_cast<double>(count);
+  return sk::boundOfSum({.accumulate = mode.options.accumulate,
+                         .precision = mode.options.precision,
+                         .elements = n,
+                         .terms = n,
+                         .magnitude = magnitude,
+                         .sum = sum},
+                        {.isNative = isNative, .flushesDenormals = !isNative});  // a sum to a value is drawn
 }
 
 /// Of several results, the worst counts.
-Grade gradeOf(const SumMode& mode, const Truths& truths, const std::vector<float>& results,
-              const Additions& additions) {
+Grade gradeOf(const SumMode& mode, const sk::Device& device, std::size_t count, const Truths& truths,
+              const std::vector<float>& results) {
   double relative = 0, scaled = 0, bound = 0;
   bool isWithin = true;
   for (std::size_t i = 0; i < truths.size(); ++i) {
@@ -97,14 +82,14 @@ Grade gradeOf(const SumMode& mode, const Truths& truths, const std::vector<float
     const double itsRelative = error == 0 ? 0 : error / std::fabs(truth.sum.value());
     relative = std::max(relative, itsRelative);
     scaled = std::max(scaled, error == 0 ? 0 : error / (u * truth.magnitude));
-    if (mode.bound == nullptr) continue;
+    if (!mode.isBounded) continue;
     const double sum = std::fabs(truth.sum.value());
-    const double itsBound = mode.bound(sum, truth.magnitude, additions) / sum;
+    const double itsBound = boundOf(mode, device, count, sum, truth.magnitude) / sum;
     bound = std::max(bound, itsBound);
     isWithin = isWithin && itsRelative <= itsBound;
   }
   Grade grade{.metrics = {{"rel err", relative}, {"scaled", scaled}}};
-  if (mode.bound != nullptr) grade.bound = bound;
+  if (mode.isBounded) grade.bound = bound;
   grade.isWithinBound = isWithin;
   return grade;
 }
@@ -120,8 +105,7 @@ std::vector<Row> compareSums(sk::Device& device, const Measurement& measurement,
                             auto results = std::make_shared<std::vector<float>>();
                             return Trial{[&mode, &call, results] { *results = call(mode.options); },
                                          [&mode, &truths, &measurement, &device, results] {
-                                           return gradeOf(mode, truths, *results,
-                                                          additionsOf(device, measurement.size));
+                                           return gradeOf(mode, device, measurement.size, truths, *results);
                                          }};
                           }});
   }
