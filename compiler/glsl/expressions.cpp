@@ -13,12 +13,12 @@
 #include "analysis/stream_uses.hpp"
 #include "glsl/doubles.hpp"
 #include "glsl/float_intrinsics.hpp"
+#include "glsl/known_values.hpp"
 #include "glsl/partial_operations.hpp"
 #include "ir/build.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"
-#include "ir/walk.hpp"
 #include "sk/arithmetic_marks.hpp"
 #include "support/overloaded.hpp"
 #include "support/text.hpp"
@@ -65,25 +65,8 @@ Parts signedText(std::string text) {
   return {std::move(text), isNegative ? Precedence::Unary : Precedence::Primary};
 }
 
-bool isZero(std::uint32_t bits) { return std::bit_cast<float>(bits) == 0; }
-
 /// The mark of the literal 0, with its sign.
 Parts markedZero(std::uint32_t bits) { return signedText((bits == 0 ? "" : "-") + std::string(mark::zero)); }
-
-/// True unless the value of a constant is made of literals other than 0.
-bool mayHoldZero(const Expr& value) {
-  if (const auto* n = std::get_if<Literal>(&value.node)) return value.type.isFloat() && isZero(n->bits);
-  if (const auto* n = std::get_if<Unary>(&value.node)) return mayHoldZero(*n->operand);
-  const auto* n = std::get_if<Construct>(&value.node);
-  return n == nullptr || std::ranges::any_of(n->args, [](const ExprPtr& arg) { return mayHoldZero(*arg); });
-}
-
-/// True for a literal, or a vector of literals.
-bool isLiteral(const Expr& expr) {
-  if (const auto* n = std::get_if<Construct>(&expr.node))
-    return std::ranges::all_of(n->args, [](const ExprPtr& arg) { return isLiteral(*arg); });
-  return std::holds_alternative<Literal>(expr.node);
-}
 
 /// True if the values of these functions are those of an argument, so that a literal 0 among them loses nothing.
 bool chooses(Intrinsic intrinsic) {
@@ -164,7 +147,7 @@ class GlslExpr {
     }
     const Parts whole = parts(expr);
     const bool isMarked = needsBarrier(expr) && whole.isOperation;
-    if (needsBarrier(expr) && (whole.isKnown || isKnownPart(expr)))
+    if (needsBarrier(expr) && (whole.isKnown || mayBeKnownZero(context_.module, expr)))
       return fmt::format("{}{}{}", mark::known, whole.text, mark::knownEnd);
     if (whole.precedence < around) {
       return isMarked ? fmt::format("{}{}{}", mark::bracketed, whole.text, mark::bracketedEnd)
@@ -247,35 +230,6 @@ class GlslExpr {
   /// False where nothing is computed when the program runs, and for values that are only copied.
   bool needsBarrier(const Expr& expr) const {
     return context_.marks && function_ && (context_.copied == nullptr || context_.copied->count(&expr) == 0);
-  }
-
-  /// True for a constant, or the part of one that is the first to be a float or a vector, if it may hold 0.
-  bool isKnownPart(const Expr& expr) const {
-    if (!isFloats(expr.type) || expr.type.isMatrix()) return false;
-    const Expr* whole = &expr;
-    while (whole == &expr || !isFloats(whole->type) || whole->type.isMatrix()) {
-      if (const auto* n = std::get_if<ConstantRef>(&whole->node))
-        return mayHoldZero(*context_.module.constants[n->constant].value);
-      if (const auto* n = std::get_if<Member>(&whole->node)) {
-        whole = n->base.get();
-      } else if (const auto* element = std::get_if<Index>(&whole->node)) {
-        whole = element->base.get();
-      } else {
-        return false;
-      }
-    }
-    return false;
-  }
-
-  /// True if no compiler can know the value, since the expression reads what only the running program has.
-  static bool isUnknown(const Expr& expr) {
-    bool is = false;
-    walkExprs(expr, [&](const Expr& inner) {
-      is = is || std::holds_alternative<IndexOf>(inner.node) ||
-           std::holds_alternative<GatherRead>(inner.node) ||
-           std::holds_alternative<NeighborRead>(inner.node) || isFloats(inner.type);
-    });
-    return is;
   }
 
   /// True if this node adds, multiplies or divides floats when the program runs.

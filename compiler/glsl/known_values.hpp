@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+//
+// Which operands of floats a driver's compiler may know, so that it might take `x + 0.0` for x or `x * 0.0` for 0.
+#pragma once
+
+#include <cstdint>
+
+#include "ir/ir.hpp"
+
+namespace skc::emit {
+
+/// True for the bits of the floats 0 and -0.
+bool isZero(std::uint32_t bits);
+
+/// True for a literal, or a vector of literals.
+bool isLiteral(const ir::Expr& expr);
+
+/// True for a constant that is a float or a vector, or the part of a constant that is the first to be one, if it may hold 0.
+bool mayBeKnownZero(const ir::Module& module, const ir::Expr& expr);
+
+/// True if no compiler can know the value, since the expression reads what only the running program has.
+bool isUnknown(const ir::Expr& expr);
+
+}  // namespace skc::emit
