@@ -144,7 +144,12 @@ bool acceptsLiterals(const Judge& judge, Arguments x, std::size_t output, double
   }
   if (!std::isfinite(x[0])) return true;  // what is infinite times a literal 0
   const auto toFloat = [](double v) { return static_cast<double>(static_cast<float>(v)); };
+  const auto flushed = [](double v) {
+    return std::fabs(v) < 0x1p-126 ? std::copysign(0.0, v) : static_cast<double>(static_cast<float>(v));
+  };
   return judge.equals(static_cast<float>(literalsOf(x[0], toFloat)[output]), got) ||
+         (judge.arithmetic.flushesDenormals &&
+          judge.equals(static_cast<float>(literalsOf(x[0], flushed)[output]), got)) ||
          (output == 3 && got == 0);
 }
 
