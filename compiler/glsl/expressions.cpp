@@ -295,6 +295,9 @@ class GlslExpr {
     }
     const bool keepsArithmetic = arithmeticScalar(n.operand->type.scalar) == arithmeticScalar(type.scalar);
     if (keepsArithmetic && !type.isNarrow()) return parts(*n.operand);
+    // NVIDIA (580) takes bool(floor(x)) and bool(ceil(x)) for false in conditions
+    if (type.isScalar() && type.scalar == Scalar::Bool && isFloats(n.operand->type))
+      return {passedText(*n.operand, Precedence::Relational) + " != 0.0", Precedence::Equality};
     const std::string value = passedText(*n.operand);
     const std::string conversion = mayNotHold(context_.module, type, *n.operand)
                                        ? context_.polyfills.truncated(type)
@@ -340,6 +343,8 @@ class GlslExpr {
     if (argument.isDouble()) {
       return {doubleIntrinsic(context_.polyfills, n.intrinsic, typesOf(n.args), texts(n.args))};
     }
+    if (n.intrinsic == Intrinsic::Abs && argument.scalar == Scalar::Int)
+      return {context_.polyfills.magnitude(argument) + list(n.args)};
     if (const auto defined = definedIntrinsic(n)) {
       const Scope scope(isStored_, !context_.marks || !function_);
       return definedCall(*defined, n.args, chooses(n.intrinsic));

@@ -137,10 +137,22 @@ TEST_CASE("choices by component") {
         "(true ? f : 2.0) + 1.0");
 }
 
+TEST_CASE("the magnitude of an int is no abs, of which drivers believe that it cannot be negative") {
+  Fixture t;
+  CHECK(t.text(intrinsic(Intrinsic::Abs, exprs(t.ref(t.i)))) == "sk_abs(i)");
+  CHECK(t.text(intrinsic(Intrinsic::Abs, exprs(t.ref(t.w)))) == "sk_abs(w)");
+  CHECK(t.text(intrinsic(Intrinsic::Abs, exprs(t.ref(t.f)))) == "abs(f)");
+  CHECK(t.polyfills.functions() ==
+        std::vector<std::string>{"int sk_abs(int x) { return max(x, -x); }\n",
+                                 "ivec3 sk_abs(ivec3 x) { return max(x, -x); }\n"});
+}
+
 TEST_CASE("conversions, constructors, swizzles, elements") {
   Fixture t;
   CHECK(t.text(convert(Scalar::Float, t.ref(t.w))) == "vec3(w)");
-  CHECK(t.text(convert(Scalar::Bool, t.ref(t.f))) == "bool(f)");
+  CHECK(t.text(convert(Scalar::Bool, t.ref(t.f))) == "f != 0.0");
+  CHECK(t.text(unary(UnaryOp::LogicalNot, convert(Scalar::Bool, t.ref(t.f)))) == "!(f != 0.0)");
+  CHECK(t.text(convert(Scalar::Bool, t.ref(t.i))) == "bool(i)");
   CHECK(t.text(construct(Type::of(Scalar::Float, 3), exprs(t.ref(t.v), literal(1.0F)))) == "vec3(v, 1.0)");
   CHECK(t.text(swizzle(binary(Add, t.ref(t.v), t.ref(t.v)), "yx")) == "(v + v).yx");
   CHECK(t.text(index(t.module, t.ref(t.v), t.ref(t.i))) == "sk_component(v, i)");

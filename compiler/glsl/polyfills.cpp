@@ -129,6 +129,11 @@ std::string Polyfills::quotient(BinaryOp op, Type lhs, Type rhs) {
   return name;
 }
 
+std::string Polyfills::magnitude(Type type) {
+  add(fmt::format("{0} sk_abs({0} x) {{ return max(x, -x); }}\n", glslSpelling(type.scalar, type.width)));
+  return "sk_abs";
+}
+
 std::string Polyfills::truncated(Type to) {
   const bool isInt = arithmeticScalar(to.scalar) == Scalar::Int;
   const std::string name = isInt ? "sk_int" : "sk_uint";

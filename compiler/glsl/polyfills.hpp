@@ -26,6 +26,9 @@ class Polyfills {
   /// / or % of integers, defined for all operands; returns the function's name. GLSL's are undefined if the
   /// divisor is 0, the quotient is out of range, or, for %, an operand is negative.
   std::string quotient(ir::BinaryOp op, ir::Type lhs, ir::Type rhs);
+  /// The magnitude of ints, as C++ has it, that of the lowest int being the lowest int; returns the function's name. NVIDIA
+  /// (580) takes `abs(x) < 0` for false.
+  std::string magnitude(ir::Type type);
   /// Converts reals to int or uint: truncated, clamped, NaN to 0; returns the function's name.
   std::string truncated(ir::Type to);
   /// An intrinsic that the assembler defines, for arguments of this width; returns the function's name.

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "glsl/loop_steps.hpp"
 #include "glsl/simple.hpp"
 #include "ir/print.hpp"
 #include "support/overloaded.hpp"
@@ -214,14 +215,15 @@ class FunctionWriter {
         return writer_.append(" while (" + cond + ");");
       case LoopKind::For: break;
     }
-    const std::optional<std::string> head = forHead(context_, id_, n);
+    const std::optional<std::string> head =
+        stepShowsAfterJump(context_.module, n) ? std::nullopt : forHead(context_, id_, n);
     if (!head) return longFor(n, depth, loc, next);
     begin(depth, loc, *head);
     bodyOf(n.body, depth, loc, next);
   }
 
-  /// A loop whose init or step does not fit in a GLSL head. The step comes first in every iteration but the
-  /// first, so that `continue` still runs it.
+  /// A loop whose init or step does not fit in a GLSL head, or whose step must not be one. The step comes first in every
+  /// iteration but the first, so that `continue` still runs it, and a jump out of the loop does not.
   void longFor(const Loop& n, int depth, Loc loc, std::uint32_t next) {
     begin(depth, loc, "{");
     const std::uint32_t openedAt = writer_.row();

@@ -183,6 +183,34 @@ TEST_CASE("a head that GLSL has no form for moves into the loop, and continue st
 )");
 }
 
+TEST_CASE("a step that shows after a jump moves into the loop") {
+  const auto loop = [](bool isLasting, Stmt jump) {
+    return body([&](KernelBuilder& k) {
+      Block init = block(declare(i, literal(0), atLine(2)));
+      Block step = block(assign(k.ref(i), Add, literal(1)));
+      if (isLasting) step.push_back(assign(k.ref(2), Add, literal(2.0F)));
+      return block(set(k, 1, 1),
+                   forLoop(std::move(init), binary(Less, k.ref(i), literal(3)), std::move(step),
+                           block(ifStmt(positive(k), block(std::move(jump)), {}, atLine(3))), atLine(2)));
+    });
+  };
+  const std::string moved = "for (bool sk_again = false; ; sk_again = true)";
+  CHECK(loop(true, returnStmt()).find(moved) != std::string::npos);
+  CHECK(loop(true, breakStmt()).find(moved) != std::string::npos);
+  CHECK(loop(true, whileLoop(nullptr, block(returnStmt()))).find(moved) != std::string::npos);
+  CHECK(loop(true, continueStmt()).find(moved) == std::string::npos);
+  CHECK(loop(true, whileLoop(nullptr, block(breakStmt()))).find(moved) == std::string::npos);
+  CHECK(loop(false, returnStmt()).find(moved) == std::string::npos);
+  CHECK(loop(false, breakStmt()).find(moved) == std::string::npos);
+  CHECK(body([](KernelBuilder& k) {
+          return block(
+              assign(k.ref(i), literal(0), atLine(2)),
+              forLoop({}, binary(Less, k.ref(i), literal(3)), block(assign(k.ref(i), Add, literal(1))),
+                      block(ifStmt(positive(k), block(breakStmt()), {}, atLine(3))), atLine(3)),
+              set(k, 1, 5));
+        }).find("for (; i < 3; ++i)") != std::string::npos);
+}
+
 TEST_CASE("switches fall through, and the last label has a statement") {
   CHECK(body([](KernelBuilder& k) {
           std::vector<Case> cases;

@@ -19,12 +19,22 @@ ExprPtr* baseOf(Expr& place) {
   return nullptr;
 }
 
-bool isComputedRow(const Expr& place) {
+bool isKnown(const Index& n) { return std::holds_alternative<Literal>(n.index->node); }
+
+/// True for an element of an array at a computed index, and for parts of one.
+bool isInComputedElement(Expr& place) {
   const auto* n = std::get_if<Index>(&place.node);
-  return n != nullptr && n->base->type.isMatrix() && !std::holds_alternative<Literal>(n->index->node);
+  if (n != nullptr && n->base->type.kind == Type::Kind::Array && !isKnown(*n)) return true;
+  ExprPtr* base = baseOf(place);
+  return base != nullptr && isInComputedElement(**base);
 }
 
-/// The slot of the row at a computed index that contains the lvalue; null if there is none.
+bool isComputedRow(const Expr& place) {
+  const auto* n = std::get_if<Index>(&place.node);
+  return n != nullptr && n->base->type.isMatrix() && (!isKnown(*n) || isInComputedElement(*n->base));
+}
+
+/// The slot of the row at a computed place that contains the lvalue; null if there is none.
 ExprPtr* rowOf(Expr& place) {
   ExprPtr* base = baseOf(place);
   if (base == nullptr) return nullptr;
@@ -63,9 +73,11 @@ class RowWriter {
     if (row == nullptr) return;
     Index& n = std::get<Index>((*row)->node);
     const std::string matrix = function_.variables[rootOf(**row)].name;
-    const VarId number = addVariable(function_, matrix + "_index", n.index->type);
-    before.push_back(declare(number, std::move(n.index), loc));
-    n.index = varRef(function_, number, loc);
+    if (!isKnown(n)) {
+      const VarId number = addVariable(function_, matrix + "_index", n.index->type);
+      before.push_back(declare(number, std::move(n.index), loc));
+      n.index = varRef(function_, number, loc);
+    }
     const VarId copy = addVariable(function_, matrix + "_row", (*row)->type);
     before.push_back(declare(copy, clone(*row), loc));
     after.push_back(assign(std::move(*row), varRef(function_, copy, loc), loc));

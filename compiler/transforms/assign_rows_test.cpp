@@ -74,6 +74,21 @@ TEST_CASE("a component that a function changes is written back") {
   CHECK_FALSE(has(text, "].y"));
 }
 
+TEST_CASE("a component of a known row of a matrix at a computed index is written with the row") {
+  Sample s;
+  const VarId many = s.builder.local("many", arrayOf(s.module, matrix, 3));
+  const auto at = [&](ExprPtr number) {
+    return swizzle(index(s.module, index(s.module, s.builder.ref(many), std::move(number)), literal(1)), "x");
+  };
+  const std::string text = s.rewritten(scope(block(
+      declare(many), assign(at(s.builder.ref(s.i)), literal(1.0F)), assign(at(literal(2)), literal(1.0F)))));
+  INFO(text);
+  CHECK(has(text, "many_row.x = 1.0"));
+  CHECK(has(text, "many[i][1] = many_row"));
+  CHECK(has(text, "many[2][1].x = 1.0"));
+  CHECK_FALSE(has(text, "many_index"));
+}
+
 TEST_CASE("whole rows and rows that are known stay") {
   Sample whole;
   ExprPtr value = construct(row, exprs(literal(1.0F)));

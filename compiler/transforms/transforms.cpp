@@ -14,6 +14,7 @@
 #include "transforms/assign_rows.hpp"
 #include "transforms/bound_pushes.hpp"
 #include "transforms/compensate_sums.hpp"
+#include "transforms/copy_parts.hpp"
 #include "transforms/derive_combine.hpp"
 #include "transforms/expand_selects.hpp"
 #include "transforms/find_neighbors.hpp"
@@ -80,7 +81,7 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // * compensate-sums, sum-exactly and sum-in-doubles need derive-combine's identities and combining reduces, the last
 //   also split-folds' parts.
 // * assign-rows precedes split-kernels, which tracks variables.
-// * forward-continues follows bound-pushes and derive-combine, which analyse the code as written.
+// * forward-continues and copy-parts follow bound-pushes and derive-combine, which analyse the code as written.
 // * expand-selects follows all transforms that copy code or synthesize it, so that nothing adds a `?:` after it. It precedes
 //   split-kernels, which sees a branch as such.
 // * remove-unused follows these, because all of them leave unused entries, and precedes split-kernels, so
@@ -105,6 +106,7 @@ constexpr Transform transforms[] = {
     {"sum-in-doubles", plain<sumInDoubles>},
     {"assign-rows", plain<assignRows>},
     {"forward-continues", plain<forwardContinues>},
+    {"copy-parts", plain<copyParts>},
     {"expand-selects",
      [](ir::Module& module, Diagnostics&, const TransformOptions& options) {
        if (options.expandsSelects) expandSelects(module);
