@@ -19,6 +19,7 @@
 #include "ir/evaluate.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"
+#include "ir/walk.hpp"
 #include "sk/arithmetic_marks.hpp"
 #include "support/overloaded.hpp"
 #include "support/text.hpp"
@@ -100,6 +101,26 @@ Parts literalText(Type type, std::uint32_t bits) {
 bool isNonNegative(const Expr& expr) {
   const auto* n = std::get_if<Literal>(&expr.node);
   return n != nullptr && static_cast<std::int32_t>(n->bits) >= 0;
+}
+
+bool isLiteralZero(const Expr& expr) {
+  const auto* n = std::get_if<Literal>(&expr.node);
+  return n != nullptr && std::bit_cast<float>(n->bits) == 0;
+}
+
+/// True for `floor(x) == 0`, `ceil(x) + y != 0` and the like, which Polyfills::nonzero() must decide.
+bool comparesWholeWithZero(BinaryOp op, const Expr& lhs, const Expr& rhs) {
+  const bool isEquality = op == BinaryOp::Equal || op == BinaryOp::NotEqual;
+  if (!isEquality || !lhs.type.isScalar() || !isFloats(lhs.type) ||
+      !(isLiteralZero(lhs) || isLiteralZero(rhs)))
+    return false;
+  bool isWhole = false;
+  walkExprs(isLiteralZero(lhs) ? rhs : lhs, [&](const Expr& expr) {
+    const auto* n = std::get_if<IntrinsicCall>(&expr.node);
+    isWhole =
+        isWhole || (n != nullptr && (n->intrinsic == Intrinsic::Floor || n->intrinsic == Intrinsic::Ceil));
+  });
+  return isWhole;
 }
 
 /// The component of a vector that an index selects, if the index is constant; the nearest one to an index outside.
@@ -295,9 +316,8 @@ class GlslExpr {
     }
     const bool keepsArithmetic = arithmeticScalar(n.operand->type.scalar) == arithmeticScalar(type.scalar);
     if (keepsArithmetic && !type.isNarrow()) return parts(*n.operand);
-    // NVIDIA (580) takes bool(floor(x)) and bool(ceil(x)) for false in conditions
     if (type.isScalar() && type.scalar == Scalar::Bool && isFloats(n.operand->type))
-      return {passedText(*n.operand, Precedence::Relational) + " != 0.0", Precedence::Equality};
+      return {context_.polyfills.nonzero() + "(" + passedText(*n.operand) + ")"};
     const std::string value = passedText(*n.operand);
     const std::string conversion = mayNotHold(context_.module, type, *n.operand)
                                        ? context_.polyfills.truncated(type)
@@ -411,6 +431,11 @@ class GlslExpr {
   }
 
   Parts comparison(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
+    if (comparesWholeWithZero(op, lhs, rhs)) {
+      const std::string test =
+          context_.polyfills.nonzero() + "(" + passedText(isLiteralZero(lhs) ? rhs : lhs) + ")";
+      return op == BinaryOp::NotEqual ? Parts{test} : Parts{"!" + test, Precedence::Unary};
+    }
     if (const std::optional<Intrinsic> function = row(op).vectors; lhs.type.isVector() && function)
       return {fmt::format("{}({}, {})", row(*function).glsl, comparedText(lhs), comparedText(rhs))};
     const Precedence precedence = row(op).precedence;

@@ -147,11 +147,20 @@ TEST_CASE("the magnitude of an int is no abs, of which drivers believe that it c
                                  "ivec3 sk_abs(ivec3 x) { return max(x, -x); }\n"});
 }
 
+TEST_CASE("whether a whole number is 0 is no comparison of floats, which drivers turn into another one") {
+  Fixture t;
+  const auto floor = [&] { return intrinsic(Intrinsic::Floor, exprs(t.ref(t.f))); };
+  CHECK(t.text(binary(NotEqual, floor(), literal(0.0F))) == "sk_nonzero(floor(f))");
+  CHECK(t.text(binary(Equal, literal(-0.0F), binary(Add, floor(), t.ref(t.x)))) ==
+        "!sk_nonzero(floor(f) + x)");
+  CHECK(t.text(binary(Equal, floor(), t.ref(t.f))) == "floor(f) == f");
+  CHECK(t.text(binary(NotEqual, t.ref(t.f), literal(0.0F))) == "f != 0.0");
+}
+
 TEST_CASE("conversions, constructors, swizzles, elements") {
   Fixture t;
   CHECK(t.text(convert(Scalar::Float, t.ref(t.w))) == "vec3(w)");
-  CHECK(t.text(convert(Scalar::Bool, t.ref(t.f))) == "f != 0.0");
-  CHECK(t.text(unary(UnaryOp::LogicalNot, convert(Scalar::Bool, t.ref(t.f)))) == "!(f != 0.0)");
+  CHECK(t.text(convert(Scalar::Bool, t.ref(t.f))) == "sk_nonzero(f)");
   CHECK(t.text(convert(Scalar::Bool, t.ref(t.i))) == "bool(i)");
   CHECK(t.text(construct(Type::of(Scalar::Float, 3), exprs(t.ref(t.v), literal(1.0F)))) == "vec3(v, 1.0)");
   CHECK(t.text(swizzle(binary(Add, t.ref(t.v), t.ref(t.v)), "yx")) == "(v + v).yx");

@@ -134,6 +134,11 @@ std::string Polyfills::magnitude(Type type) {
   return "sk_abs";
 }
 
+std::string Polyfills::nonzero() {
+  add("bool sk_nonzero(float x) { return (floatBitsToUint(x) & 0x7fffffffu) != 0u; }\n");
+  return "sk_nonzero";
+}
+
 std::string Polyfills::truncated(Type to) {
   const bool isInt = arithmeticScalar(to.scalar) == Scalar::Int;
   const std::string name = isInt ? "sk_int" : "sk_uint";

@@ -29,6 +29,9 @@ class Polyfills {
   /// The magnitude of ints, as C++ has it, that of the lowest int being the lowest int; returns the function's name. NVIDIA
   /// (580) takes `abs(x) < 0` for false.
   std::string magnitude(ir::Type type);
+  /// Whether a float is neither 0 nor -0; returns the function's name. NVIDIA (580) takes `bool(floor(x))` for false, and
+  /// `floor(x) != 0.0`, too, where an `else` belongs to it; likewise with ceil.
+  std::string nonzero();
   /// Converts reals to int or uint: truncated, clamped, NaN to 0; returns the function's name.
   std::string truncated(ir::Type to);
   /// An intrinsic that the assembler defines, for arguments of this width; returns the function's name.

@@ -21,9 +21,7 @@ using namespace ir;
 using enum BinaryOp;
 
 /// A body as it is where drivers may compute floats as they like.
-std::string plain(std::string_view body) {
-  return sk::assemble::unmarked(body);
-}
+std::string plain(std::string_view body) { return sk::assemble::unmarked(body); }
 
 TEST_CASE("a kernel with a helper, a constant and a loop") {
   const Module module = sampleModule();
@@ -188,7 +186,7 @@ TEST_CASE("a step that shows after a jump moves into the loop") {
     return body([&](KernelBuilder& k) {
       Block init = block(declare(i, literal(0), atLine(2)));
       Block step = block(assign(k.ref(i), Add, literal(1)));
-      if (isLasting) step.push_back(assign(k.ref(2), Add, literal(2.0F)));
+      if (isLasting) step.push_back(assign(k.ref(r), Add, literal(2.0F)));
       return block(set(k, 1, 1),
                    forLoop(std::move(init), binary(Less, k.ref(i), literal(3)), std::move(step),
                            block(ifStmt(positive(k), block(std::move(jump)), {}, atLine(3))), atLine(2)));
@@ -204,7 +202,7 @@ TEST_CASE("a step that shows after a jump moves into the loop") {
   CHECK(loop(false, breakStmt()).find(moved) == std::string::npos);
   CHECK(body([](KernelBuilder& k) {
           return block(
-              assign(k.ref(i), literal(0), atLine(2)),
+              declare(i, literal(0), atLine(2)),
               forLoop({}, binary(Less, k.ref(i), literal(3)), block(assign(k.ref(i), Add, literal(1))),
                       block(ifStmt(positive(k), block(breakStmt()), {}, atLine(3))), atLine(3)),
               set(k, 1, 5));

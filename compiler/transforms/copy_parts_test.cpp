@@ -27,7 +27,10 @@ struct PartsKernel {
 
   PartsKernel() {
     const Type items = arrayOf(module, intType, 2);
-    module.structs.push_back({.name = "Pair", .fields = {{"items", items}, {"count", intType}}});
+    Struct record;
+    record.name = "Pair";
+    record.fields = {{"items", items}, {"count", intType}};
+    module.structs.push_back(std::move(record));
     pair = Type::structType(static_cast<std::uint32_t>(module.structs.size() - 1));
     Function function;
     function.name = "write";
