@@ -237,6 +237,16 @@ int Lattice::streams() const {
   return static_cast<int>(count(now_) + count(next_)) + static_cast<int>(warmed_.has_value());
 }
 
+int Lattice::streamsOf(const Model& model) {
+  return static_cast<int>(fieldsOf(model).size()) + (model.latentHeat ? 1 : 0);
+}
+
+double Lattice::bytesOf(sk::Precision precision) {
+  return precision == sk::Precision::Half                                             ? 2.0
+         : precision == sk::Precision::Extended || precision == sk::Precision::Double ? 8.0
+                                                                                      : 4.0;
+}
+
 double fastestOf(Lattice& lattice) {
   const Observation x = lattice.observe(Field::VelocityX), y = lattice.observe(Field::VelocityY);
   return std::max({-x.least, x.most, -y.least, y.most});

@@ -58,6 +58,10 @@ class Lattice {
 
   /// Streams that are there.
   int streams() const;
+  /// Streams of a model's lattice before the first advanceAndMeasure().
+  static int streamsOf(const Model& model);
+  /// Bytes that an element of a stream has.
+  static double bytesOf(sk::Precision precision);
 
  private:
   using Fields = std::array<std::optional<GridStream<float>>, 6>;

@@ -87,12 +87,14 @@ TEST_CASE("each operator alone needs no streams but its own") {
   m.latentHeat.reset();
   stepAndCompare(device, m);
   CHECK(Lattice(device, m).streams() == 1);
+  CHECK(Lattice::streamsOf(m) == 1);
   m.diffusion.reset();
   stepAndCompare(device, m);
   m.buoyancy.reset();
   m.latentHeat = all.latentHeat;
   stepAndCompare(device, m);
   CHECK(Lattice(device, m).streams() == 2);
+  CHECK(Lattice::streamsOf(m) == 2);
   m = all;
   m.diffusion.reset();
   m.buoyancy.reset();
@@ -100,6 +102,7 @@ TEST_CASE("each operator alone needs no streams but its own") {
   m.flow.reset();
   stepAndCompare(device, m);
   CHECK(Lattice(device, m).streams() == 2);
+  CHECK(Lattice::streamsOf(m) == 2);
   CHECK_THROWS_WITH(Lattice(device, m).stream(Field::Pressure), Catch::Contains("no field 'pressure'"));
 }
 

@@ -21,6 +21,7 @@
 #include "study.hpp"
 #include "support/application.hpp"
 #include "support/extents.hpp"
+#include "support/host_memory.hpp"
 #include "support/join_ranks.hpp"
 #include "support/record.hpp"
 
@@ -77,6 +78,9 @@ void simulate(examples::Application& app, const examples::Scene& scene, const Se
                                    examples::Ends::Joined);
   const examples::Space& space = owned.get();
   sk::Device& device = space.device();
+  const bool hasAccount = s.account && ranks.count() == 1;  // the account is of one device
+  examples::requireMemoryForGrid(device, sizeText(scene.model.grid), scene.model.grid.cells(),
+                                 examples::memoryFor(scene, hasAccount), ranks.count());
   examples::Lattice lattice(space, scene.model);
   examples::writeInitial(scene.model, scene.initial, lattice);
   const examples::Outcome outcome = examples::runScene(scene, lattice);
@@ -105,7 +109,7 @@ void simulate(examples::Application& app, const examples::Scene& scene, const Se
   examples::printWritten(scene.record, outcome.frames);
   if (space.isFirst())
     app.verified(examples::checkStep(scene.model, outcome.beforeLast, outcome.last, tableError));
-  if (!s.account || ranks.count() > 1) return;  // the account is of one device
+  if (!hasAccount) return;
   const examples::Account account = examples::accountFor(device, scene, outcome.beforeLast);
   fmt::print("\n{}\n", account.text());
   app.verified(account.agreement);

@@ -80,6 +80,15 @@ void requireFinite(Lattice& lattice, std::int64_t step) {
   }
 }
 
+BytesPerCell memoryFor(const Scene& scene, bool hasAccount) {
+  const auto fields = static_cast<double>(fieldsOf(scene.model).size());
+  // Measuring a change keeps both states; the account makes a lattice of the model and one of all operators.
+  double streams = Lattice::streamsOf(scene.model) + (scene.settling ? fields : 0.0);
+  if (hasAccount) streams += Lattice::streamsOf(scene.model) + Lattice::streamsOf(fullModel(scene.model));
+  // The last two states, the exact one, and what a field is read through.
+  return {.device = streams * Lattice::bytesOf(scene.model.precision), .host = (3.0 * fields + 1.0) * 8.0};
+}
+
 Outcome runScene(const Scene& scene, Lattice& lattice) {
   sk::Device& device = lattice.space().device();
   Outcome outcome;

@@ -11,6 +11,7 @@
 #include "lattice.hpp"
 #include "reference.hpp"
 #include "scene.hpp"
+#include "support/host_memory.hpp"
 
 namespace examples {
 
@@ -23,6 +24,9 @@ struct Outcome {
   int frames = 0;
   State beforeLast, last;  ///< the fields one step before the end, and at the end
 };
+
+/// What runScene() takes, and the account of costs if there is one.
+BytesPerCell memoryFor(const Scene& scene, bool hasAccount);
 
 /// Runs the scene. If the lattice is divided over ranks, the first one writes the files, and has the states. Throws std::runtime_error, naming step, field and cell, where a number is not finite; pictures that
 /// were made before stay.

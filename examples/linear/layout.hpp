@@ -25,7 +25,7 @@ struct LayoutKind {
   bool (*suits)(const SparseMatrix& a);
   /// Bytes that the layout takes of a device, with entries of `entryBytes`: without copying anything. Not negative, also if the layout cannot hold the matrix.
   std::int64_t (*bytes)(const SparseMatrix& a, std::int64_t entryBytes);
-  /// What a byte costs, natively and on other devices: measured beside those of "rows".
+  /// What a byte costs, natively and on other devices, beside one of "rows": solve --study layouts measures it (docs/linear.md).
   double native, others;
 };
 
@@ -37,7 +37,7 @@ struct LayoutCost {
   double bytes = 0.0;
 };
 
-/// The time of one product, the best of three.
+/// The time of one product, the best of many: the processor's own on devices that run there.
 double secondsOf(sk::Device& device, Matrix& matrix, const Arithmetic& arithmetic);
 
 /// The layouts that suit a matrix, with their costs, the cheapest first. A model, not a trial: the choice depends on the matrix, its storage and the kind of device, and on nothing that else runs

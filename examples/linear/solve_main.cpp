@@ -194,6 +194,11 @@ std::string adviceFor(const linear::MethodKind& method, const linear::Preconditi
                       const linear::Arithmetic& arithmetic, const linear::Solution& solution) {
   const bool isWide =
       arithmetic.precision == sk::Precision::Double && arithmetic.vectors == sk::Storage::Double;
+  // Incomplete factors solve most of what division by a diagonal leaves, as on olm1000.
+  constexpr std::array<std::string_view, 3> diagonals = {"none", "jacobi", "spai0"};
+  const bool isWeak = std::ranges::find(diagonals, preconditioner.name) != diagonals.end();
+  const std::string_view factors = method.needsSymmetry ? "--preconditioner ic0" : "--preconditioner ilu0";
+  const std::string_view stronger = isWeak ? factors : "another preconditioner";
   switch (solution.outcome) {
     case linear::Outcome::NotPositiveDefinite:
       if (method.name == "minres")
@@ -206,13 +211,16 @@ std::string adviceFor(const linear::MethodKind& method, const linear::Preconditi
                          method.name);
     case linear::Outcome::Breakdown: return "take --solver gmres, which has no such breakdown";
     case linear::Outcome::Stagnated:
-      return isWide ? "another preconditioner may help"
-                    : "take --precision double --storage double, or another preconditioner";
-    case linear::Outcome::NotFinite: return isWide ? "" : "take --precision double --storage double";
+    case linear::Outcome::NotFinite:
+      return isWide ? fmt::format("take {}", stronger)
+                    : fmt::format("take --precision double --storage double, or {}", stronger);
+    case linear::Outcome::MostIterations:
+      return isWide
+                 ? fmt::format("take a larger --most, or {}", stronger)
+                 : fmt::format("take a larger --most, --precision double --storage double, or {}", stronger);
     case linear::Outcome::Converged:
     case linear::Outcome::SingularAndCompatible:
-    case linear::Outcome::SingularAndIncompatible:
-    case linear::Outcome::MostIterations: break;
+    case linear::Outcome::SingularAndIncompatible: break;
   }
   return "";
 }

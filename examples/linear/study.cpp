@@ -148,20 +148,33 @@ std::string preconditionerTable(sk::Device& device) {
 
 std::string layoutsOfGrids(sk::Device& device) {
   const System system("poisson:128x128", {});
-  examples::Table table(
-      {"layout", "entries in", "bytes for an unknown", "ms for a product", "iterations", "residual", "ms"});
-  for (const std::string_view layout : {"stencil", "diagonals", "slices", "rows", "buckets", "points"})
+  examples::Table table({"layout", "entries in", "bytes for an unknown", "ms for a product",
+                         "a byte's cost beside rows", "in the model", "iterations", "residual", "ms"});
+  // What a product takes for a byte that the model counts: of the layout and, for each entry, of x.
+  const double ofX = 4.0 * static_cast<double>(system.entries()) / static_cast<double>(system.matrix().size);
+  const auto costOf = [&](const Reached& r) { return r.productSeconds / (r.bytes + ofX); };
+  double costOfRows = 0.0;
+  for (const std::string_view layout : {"rows", "slices", "diagonals", "buckets", "points", "stencil"})
     for (const sk::Storage entries : {sk::Storage::Single, sk::Storage::Half}) {
       if (layout == "stencil" && entries == sk::Storage::Half) continue;
       Arithmetic arithmetic;
       arithmetic.matrix = entries;
       const Reached r = reached(
           device, system, {.layout = layout, .arithmetic = arithmetic, .settings = {.tolerance = 1e-6}});
+      if (costOfRows == 0.0) costOfRows = costOf(r);
+      std::string measured, model;
+      if (layout != "stencil") {
+        const LayoutKind& kind = rowNamed(layoutKinds(), layout, "layout");
+        measured = fmt::format("{:.2f}", costOf(r) / costOfRows);
+        model = kind.suits(sparseOf(system.matrix()))
+                    ? fmt::format("{:g}", device.profile() == "native" ? kind.native : kind.others)
+                    : "not chosen";
+      }
       table.add({std::string(layout),
                  layout == "stencil"            ? ""
                  : entries == sk::Storage::Half ? "half"
                                                 : "single",
-                 fmt::format("{:.3g}", r.bytes), milliseconds(r.productSeconds),
+                 fmt::format("{:.3g}", r.bytes), milliseconds(r.productSeconds), measured, model,
                  std::to_string(r.solution.iterations), number(r.solution.residualTrue),
                  milliseconds(r.solution.seconds)});
     }

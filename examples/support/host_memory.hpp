@@ -7,6 +7,8 @@
 #include <optional>
 #include <string_view>
 
+#include <sk/sk.hpp>
+
 namespace examples {
 
 /// Bytes that the process can still take: limits of control groups and SK_MEMORY_LIMIT count. nullopt where nobody tells.
@@ -14,5 +16,15 @@ std::optional<std::int64_t> availableMemory();
 
 /// Throws std::runtime_error, "WHAT takes about N bytes of memory, and M are available", if it is known to be more than there is.
 void requireMemory(std::string_view what, double bytes);
+
+/// What a run on a grid takes for each cell, in bytes: on the device, and on the host beside it.
+struct BytesPerCell {
+  double device = 0.0, host = 0.0;
+};
+
+/// Throws std::runtime_error, "SIZE cells take about N GB of memory, and M GB are available; take at most K cells, with --size", if the run is known to take more than the
+/// device or the host has. Devices that compute on the host have its memory. The cells on the device are divided over `ranks`.
+void requireMemoryForGrid(const sk::Device& device, std::string_view size, std::int64_t cells,
+                          const BytesPerCell& need, int ranks = 1);
 
 }  // namespace examples

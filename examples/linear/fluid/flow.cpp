@@ -167,6 +167,15 @@ int Flow::streams() const {
          (grid_->bounds == Anywhere ? 2 : 0);  // cells and their faces
 }
 
+int Flow::streamsOf(const Model& m) {
+  const bool isCentral = m.scheme == Scheme::Central;
+  const bool corrects = m.scheme != Scheme::SemiLagrangian && (!isCentral || m.hasSmoke || m.hasHeat);
+  const int scalars = (m.hasSmoke ? 1 : 0) + (m.hasHeat ? 1 : 0);
+  return m.rank() * (isCentral ? 3 : 2) + (isCentral ? 2 : 1) + 1 + scalars +
+         (m.sources.empty() ? 0 : 1 + scalars) + (corrects ? 2 : 0) +
+         (m.viscosity && m.viscosity->isImplicit ? 1 : 0) + (m.bounds() == Anywhere ? 2 : 0);
+}
+
 // ---- a step ------------------------------------------------------------------------------------------------
 
 double Flow::surveyOne(const linear::Vector& stream, const char* name) {

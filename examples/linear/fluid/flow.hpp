@@ -84,6 +84,8 @@ class Flow {
   const linear::Space& space() const { return grid_->space; }
 
   int streams() const;
+  /// Those of a model.
+  static int streamsOf(const Model& model);
 
  private:
   static std::size_t at(int axis) { return static_cast<std::size_t>(axis); }

@@ -279,6 +279,14 @@ TEST_CASE("what a scene does without has no streams") {
   CHECK(operatorsOf(model) == "projection, convection by semi-Lagrangian");
   model.scheme = Scheme::MacCormack;
   CHECK(Flow(device, model).streams() == 8);
+  // What is expected before a flow is made, for the memory that it takes.
+  for (const bool isSpace : {false, true})
+    for (const Scheme scheme : {Scheme::SemiLagrangian, Scheme::Bfecc, Scheme::Central}) {
+      Model all = everything(isSpace);
+      all.scheme = scheme;
+      all.viscosity->isImplicit = scheme == Scheme::Bfecc;
+      for (const Model& m : {model, all}) CHECK(Flow::streamsOf(m) == Flow(device, m).streams());
+    }
 }
 
 TEST_CASE("walls without friction do not brake a stream along them") {

@@ -17,6 +17,7 @@
 #include "study.hpp"
 #include "support/application.hpp"
 #include "support/extents.hpp"
+#include "support/host_memory.hpp"
 #include "support/join_ranks.hpp"
 #include "support/record.hpp"
 
@@ -77,6 +78,8 @@ std::string leftOut(const fluid::Model& m) {
 void simulate(examples::Application& app, const fluid::Scene& scene) {
   const fluid::Model& m = scene.model;
   const examples::OwnedSpace space(app.ranks(), app.device(), m.shape(), examples::Ends::Joined);
+  examples::requireMemoryForGrid(space.get().device(), fluid::sizeText(m), m.shape().size(),
+                                 fluid::memoryFor(m), app.ranks().count());
   const fluid::Outcome o = fluid::run(space.get(), scene);
   app.report(fmt::format("{}, {}, {} steps", scene.name, fluid::sizeText(m), o.steps),
              examples::placeOf(app.ranks(), space.get().device().name()), o.milliseconds);

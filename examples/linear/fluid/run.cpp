@@ -132,6 +132,18 @@ Flow begin(const linear::Space& space, const Scene& scene) {
   return flow;
 }
 
+examples::BytesPerCell memoryFor(const Model& m) {
+  // Conjugate gradients and their preconditioner, for the pressure and for each component that diffuses.
+  const bool isMultigrid = m.projector == Projector::Multigrid,
+             diffuses = m.viscosity && m.viscosity->isImplicit;
+  const double vectors =
+      Flow::streamsOf(m) + 5.0 + (isMultigrid ? 6.0 : 3.0) + (diffuses ? 4.0 * m.rank() : 0.0);
+  const double fields = m.rank() + (m.hasSmoke ? 1.0 : 0.0) + (m.hasHeat ? 1.0 : 0.0);
+  const double bytes = m.precision == sk::Precision::Double ? 8.0 : 4.0;
+  // The check makes another two flows, one of them in doubles on the host, and reads three states.
+  return {.device = 2.0 * vectors * bytes, .host = (vectors + 3.0 * fields + 1.0) * 8.0};
+}
+
 Outcome run(const linear::Space& space, const Scene& scene) {
   sk::Device& device = space.device();
   const bool isFirst = space.isFirst();

@@ -9,6 +9,7 @@
 
 #include "flow.hpp"
 #include "scene.hpp"
+#include "support/host_memory.hpp"
 #include "support/verification.hpp"
 
 namespace fluid {
@@ -27,6 +28,9 @@ struct Outcome {
 
 /// The start of a scene: noise, if it has any, and no divergence.
 Flow begin(const linear::Space& space, const Scene& scene);
+
+/// What run() takes for each cell, those of the layer included, with its check of the last step against double precision.
+examples::BytesPerCell memoryFor(const Model& model);
 
 /// In a space of the model's shape. If it is divided over ranks, the first one verifies, and writes pictures and numbers. Throws std::runtime_error, "step N: ...", if a field is not finite; pictures that were made before are kept.
 Outcome run(const linear::Space& space, const Scene& scene);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "support/colormap.hpp"
+#include "support/host_memory.hpp"
 #include "support/scene_file.hpp"
 
 namespace fluid {
@@ -62,6 +63,17 @@ void readGrid(const SceneTable& table, const Overrides& overrides, Model& model)
   // The layer included; in three factors, none of which overflows.
   if ((model.cells[0] + 2) * (model.cells[1] + 2) * (model.cells[2] + 2) > mostCells)
     table.refuse("size", "makes more than 2^26 cells; take fewer");
+  // What they are is kept in some bytes each, before there is a device.
+  constexpr double unasked = 1 << 24;
+  const double bytes =
+      16.0 * static_cast<double>((model.cells[0] + 2) * (model.cells[1] + 2) * (model.cells[2] + 2));
+  const std::optional<std::int64_t> available = examples::availableMemory();
+  if (bytes > unasked && available && bytes > static_cast<double>(*available))
+    table.refuse(
+        "size",
+        fmt::format(
+            "makes cells that take more than {:.3g} GB of memory, and {:.3g} GB are available; take fewer",
+            bytes * 1e-9, static_cast<double>(*available) * 1e-9));
 }
 
 void readSide(const SceneTable& table, std::size_t side, Model& model) {

@@ -17,6 +17,7 @@
 #include "study.hpp"
 #include "support/application.hpp"
 #include "support/extents.hpp"
+#include "support/host_memory.hpp"
 #include "support/join_ranks.hpp"
 #include "support/record.hpp"
 
@@ -61,6 +62,8 @@ waves::Scene sceneOf(const Settings& s, const examples::RecordOptions& record) {
 void simulate(examples::Application& app, const waves::Scene& scene) {
   const waves::Model& m = scene.model;
   const examples::OwnedSpace space(app.ranks(), app.device(), {m.height, m.width}, examples::Ends::Open);
+  examples::requireMemoryForGrid(space.get().device(), fmt::format("{} x {}", m.width, m.height),
+                                 m.width * m.height, waves::memoryFor(m), app.ranks().count());
   const waves::Outcome o = waves::run(space.get(), scene);
   app.report(fmt::format("{}, {} x {}, {} steps", scene.name, m.width, m.height, o.steps),
              examples::placeOf(app.ranks(), space.get().device().name()), o.milliseconds);

@@ -81,6 +81,13 @@ examples::Verification checkStep(sk::Device& device, const Model& model, const s
 
 }  // namespace
 
+examples::BytesPerCell memoryFor(const Model& model) {
+  // Vectors of a surface and of its conjugate gradients; the check makes another two surfaces, one of them in doubles on the host. Heights and velocities are read to the host.
+  constexpr double vectors = 8 + 4, hostVectors = 6;
+  const double bytes = model.precision == sk::Precision::Double ? 8.0 : 4.0;
+  return {.device = 2.0 * vectors * bytes, .host = (vectors + hostVectors) * 8.0};
+}
+
 Outcome run(const linear::Space& space, const Scene& scene) {
   const Model& m = scene.model;
   sk::Device& device = space.device();

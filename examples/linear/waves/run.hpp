@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene.hpp"
+#include "support/host_memory.hpp"
 #include "support/verification.hpp"
 #include "surface.hpp"
 
@@ -24,6 +25,9 @@ struct Outcome {
   int pictures = 0;
   std::vector<examples::Verification> verifications;
 };
+
+/// What run() takes, its check of the last step against double precision included.
+examples::BytesPerCell memoryFor(const Model& model);
 
 /// In a space of the scene's shape, {height, width}. If it is divided over ranks, the first one verifies, and writes pictures and numbers. Throws std::runtime_error, "step N: ...", if the surface is not finite; pictures that were made before are kept.
 Outcome run(const linear::Space& space, const Scene& scene);

@@ -235,7 +235,7 @@ void addAccuracy(CLI::App& app) {
       ->transform(CLI::CheckedTransformer(dataByName()).description(""));
   command
       ->add_option("--tolerance", options->tolerance,
-                   "Tell the cheapest mode with a relative error of this or less")
+                   "Name the cheapest mode with a relative error of this or less")
       ->type_name("T")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--json", options->jsonFile, "Also write JSON, one record a program, mode and data")

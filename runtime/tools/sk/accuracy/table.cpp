@@ -20,8 +20,22 @@ std::string timeOf(const Ratios& time) {
 /// The width of a metric's column.
 std::size_t widthOf(const Metric& metric) { return std::max<std::size_t>(11, metric.name.size() + 2); }
 
-std::string lineOf(const Row& row, bool hasBounds) {
-  std::string line = fmt::format("  {:<17}{:<20}", row.mode, timeOf(row.time));
+/// Widths of the first columns, which hold the longest names and times of an experiment.
+struct Widths {
+  std::size_t mode = 17, time = 20;
+};
+
+Widths widthsOf(const Experiment& experiment) {
+  Widths widths;
+  for (const Row& row : experiment.rows) {
+    widths.mode = std::max(widths.mode, row.mode.size() + 1);
+    if (!row.isRefused()) widths.time = std::max(widths.time, timeOf(row.time).size() + 1);
+  }
+  return widths;
+}
+
+std::string lineOf(const Row& row, const Widths& widths, bool hasBounds) {
+  std::string line = fmt::format("  {:<{}}{:<{}}", row.mode, widths.mode, timeOf(row.time), widths.time);
   for (const Metric& metric : row.grade.metrics)
     line += fmt::format("{:>{}}", boundText(metric.value), widthOf(metric));
   if (hasBounds) {
@@ -34,7 +48,8 @@ std::string lineOf(const Row& row, bool hasBounds) {
 }
 
 std::string headsOf(const Experiment& experiment) {
-  std::string line = fmt::format("  {:<17}{:<20}", "mode", " time [quartiles]");
+  const Widths widths = widthsOf(experiment);
+  std::string line = fmt::format("  {:<{}}{:<{}}", "mode", widths.mode, " time [quartiles]", widths.time);
   for (const Metric& metric : experiment.rows.front().grade.metrics)
     line += fmt::format("{:>{}}", metric.name, widthOf(metric));
   if (!experiment.bounded.empty()) line += fmt::format("{:>11}  ok", "bound");
@@ -135,9 +150,10 @@ std::string verdictOf(const Experiment& experiment, double tolerance) {
 std::string tableOf(const Experiment& experiment, bool hasHeads, std::optional<double> tolerance) {
   std::string text = fmt::format("{}, {}: {}\n", experiment.program, experiment.data, experiment.about);
   if (hasHeads) text += headsOf(experiment);
+  const Widths widths = widthsOf(experiment);
   for (const Row& row : experiment.rows) {
-    text += row.isRefused() ? fmt::format("  {:<17}refused: {}", row.mode, row.refused)
-                            : lineOf(row, !experiment.bounded.empty());
+    text += row.isRefused() ? fmt::format("  {:<{}}refused: {}", row.mode, widths.mode, row.refused)
+                            : lineOf(row, widths, !experiment.bounded.empty());
     text += '\n';
   }
   text += outputsOf(experiment) + worstOf(experiment) + extremesOf(experiment);

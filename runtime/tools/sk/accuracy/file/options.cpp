@@ -11,9 +11,9 @@ void FileOptions::addTo(CLI::App& command) {
   };
   add("--kernel", kernel, "Only this kernel or reduce", "NAME");
   add("--range", ranges,
-      "Draw a parameter, or a member of it, from here: half of the numbers evenly, half as many between 1 "
-      "and 2 as "
-      "between 100 and 200. (default: reals from [-1, 1] and, of either sign, 1e-4 to 1e4; int -8 to 8, uint "
+      "Draw a parameter, or a member of it, from here: half of the numbers evenly, the other half with as "
+      "many between 1 and 2 as between 100 and 200 (default: reals from [-1, 1] and, of either sign, 1e-4 to "
+      "1e4; int -8 to 8, uint "
       "0 to 8)",
       "PARAM=LO:HI")
       ->allow_extra_args(false);
