@@ -103,26 +103,6 @@ bool isNonNegative(const Expr& expr) {
   return n != nullptr && static_cast<std::int32_t>(n->bits) >= 0;
 }
 
-bool isLiteralZero(const Expr& expr) {
-  const auto* n = std::get_if<Literal>(&expr.node);
-  return n != nullptr && std::bit_cast<float>(n->bits) == 0;
-}
-
-/// True for `floor(x) == 0`, `ceil(x) + y != 0` and the like, which Polyfills::nonzero() must decide.
-bool comparesWholeWithZero(BinaryOp op, const Expr& lhs, const Expr& rhs) {
-  const bool isEquality = op == BinaryOp::Equal || op == BinaryOp::NotEqual;
-  if (!isEquality || !lhs.type.isScalar() || !isFloats(lhs.type) ||
-      !(isLiteralZero(lhs) || isLiteralZero(rhs)))
-    return false;
-  bool isWhole = false;
-  walkExprs(isLiteralZero(lhs) ? rhs : lhs, [&](const Expr& expr) {
-    const auto* n = std::get_if<IntrinsicCall>(&expr.node);
-    isWhole =
-        isWhole || (n != nullptr && (n->intrinsic == Intrinsic::Floor || n->intrinsic == Intrinsic::Ceil));
-  });
-  return isWhole;
-}
-
 /// The component of a vector that an index selects, if the index is constant; the nearest one to an index outside.
 std::optional<std::uint32_t> knownComponent(const Index& n) {
   const auto* literal = std::get_if<Literal>(&n.index->node);

@@ -60,4 +60,23 @@ bool isUnknown(const Expr& expr) {
   return is;
 }
 
+bool isLiteralZero(const Expr& expr) {
+  const auto* n = std::get_if<Literal>(&expr.node);
+  return n != nullptr && std::bit_cast<float>(n->bits) == 0;
+}
+
+bool comparesWholeWithZero(BinaryOp op, const Expr& lhs, const Expr& rhs) {
+  const bool isEquality = op == BinaryOp::Equal || op == BinaryOp::NotEqual;
+  if (!isEquality || !lhs.type.isScalar() || !isFloatOrVector(lhs.type) ||
+      !(isLiteralZero(lhs) || isLiteralZero(rhs)))
+    return false;
+  bool isWhole = false;
+  walkExprs(isLiteralZero(lhs) ? rhs : lhs, [&](const Expr& expr) {
+    const auto* n = std::get_if<IntrinsicCall>(&expr.node);
+    isWhole =
+        isWhole || (n != nullptr && (n->intrinsic == Intrinsic::Floor || n->intrinsic == Intrinsic::Ceil));
+  });
+  return isWhole;
+}
+
 }  // namespace skc::emit

@@ -21,4 +21,11 @@ bool mayBeKnownZero(const ir::Module& module, const ir::Expr& expr);
 /// True if no compiler can know the value, since the expression reads what only the running program has.
 bool isUnknown(const ir::Expr& expr);
 
+/// True for a literal that is 0 or -0 as a float.
+bool isLiteralZero(const ir::Expr& expr);
+
+/// True for `floor(x) == 0`, `ceil(x) + y != 0` and the like, which Polyfills::nonzero() must decide: some drivers take the
+/// value for known.
+bool comparesWholeWithZero(ir::BinaryOp op, const ir::Expr& lhs, const ir::Expr& rhs);
+
 }  // namespace skc::emit

@@ -49,6 +49,7 @@ tests/bench           sk epoxy
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 tests/faults          sk epoxy
+tests/mpi             sk support device/stream_state.hpp
 tests/fuzz            sk ir program driver analysis transforms native/native.hpp device/configuration.hpp support/cache_folder.hpp support/function_oracle.hpp support/oracle.hpp support/picture.hpp
 '
 # What all rooms of the assembler share.
