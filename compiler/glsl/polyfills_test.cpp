@@ -68,6 +68,11 @@ int main() {
   std::uniform_real_distribution<float> number(-100000, 100000);
   for (int i = 0; i < 100000; ++i) checkSum(number(random), number(random));
   for (int i = 0; i < 100000; ++i) checkProduct(number(random), number(random));
+  for (int i = 0; i < 1000000; ++i) {   // factors of all sizes, whose product is one of floats
+    const auto mantissa = [&] { return uintBitsToFloat((random() & 0x807fffffu) | 0x3f800000u); };
+    const int a = int(random() % 254) - 126, sum = int(random() % 227) - 100, b = sum - a;
+    if (b >= -126 && b <= 127) checkProduct(std::ldexp(mantissa(), a), std::ldexp(mantissa(), b));
+  }
   for (float x : {0.0f, 3e38f, INFINITY, -INFINITY, NAN}) checkSum(x, 3e38f);
   for (int i = 0; i < 2000000; ++i) check(uintBitsToFloat(random()), int(random() % 700) - 350);
   const float special[] = {0.0f, -0.0f, INFINITY, -INFINITY, NAN, 1.0f, -1.0f, 0.5f, 1e-45f, 1.17549421e-38f, 3.4028235e38f};

@@ -2,12 +2,13 @@
 //
 // Promises: Accumulate::Exact adds the unrounded products of floats and rounds once; Accumulate::Compensated is within
 // u + 400 u^2 cond of the sum of products (Dot2 of Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26, 2005, over a tree) if no
-// product is below 2^-100.
+// rounding error of a product is below 2^-126.
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -210,6 +211,53 @@ TEST_CASE("compensated products at the ends of the range") {
           0x1.fffffep127F);  // splitting it with the factor 4097 would overflow
     CHECK(dot({0x1p-70F, 1}, {0x1p-70F, 1}) == 1.0F);
     CHECK(std::fabs(dot({0x1.234568p-60F}, {0x1.fedcbap-60F})) <= 0x1p-118F);
+  });
+}
+
+TEST_CASE("what products of numbers of any size are rounded by") {
+  std::mt19937 random(7);
+  const auto number = [&](int power) {
+    const float sign = random() % 2 == 0 ? 1.0F : -1.0F;
+    return sign * std::ldexp(1 + static_cast<float>(random() % (1U << 23U)) * 0x1p-23F, power);
+  };
+  struct Product {
+    float x, y, rounded, error;
+  };
+  std::vector<Product> products{{-0x1.07654p+127F, 0x1.8a9f2p-118F, 0, 0},
+                                {0x1.69ce0cp-114F, 0x1.000002p28F, 0, 0}};
+  for (int power = -126; power <= 127; ++power) {
+    for (int sum = -76; sum < 126; sum += 11) {
+      if (sum - power >= -126 && sum - power <= 127)
+        products.push_back({number(power), number(sum - power), 0, 0});
+    }
+  }
+  for (Product& one : products) {
+    const double product = static_cast<double>(one.x) * one.y;
+    one.rounded = static_cast<float>(product);
+    one.error = static_cast<float>(product - one.rounded);
+  }
+  // Each product, and what it is rounded to taken away, in a row of its own.
+  std::vector<float> x, y;
+  std::vector<std::int32_t> starts{0};
+  for (const Product& one : products) {
+    x.insert(x.end(), {one.x, -one.rounded});
+    y.insert(y.end(), {one.y, 1});
+    starts.push_back(static_cast<std::int32_t>(x.size()));
+  }
+  onEveryTarget([&](sk::Device& device) {
+    const sk::Rows rows(streamOf(device, starts));
+    const auto left = streamOf(device, x), right = streamOf(device, y);
+    for (const sk::CallOptions& options :
+         {compensated, sk::CallOptions{.accumulate = sk::Accumulate::Extended},
+          sk::CallOptions{.precision = sk::Precision::Extended}}) {
+      auto sums = device.stream<float>({static_cast<std::int64_t>(products.size())});
+      dots::dot.with(options)(rows(left), rows(right), sums);
+      const std::vector<float> got = sums.read();
+      for (std::size_t i = 0; i < products.size(); ++i) {
+        INFO(std::hexfloat << products[i].x << " times " << products[i].y);
+        CHECK(got[i] == products[i].error);
+      }
+    }
   });
 }
 

@@ -212,6 +212,12 @@ TEST_CASE("zeros, and no element") {
     CHECK(bits(exactSum(device, {1.0F, -1.0F})) == 0);
     CHECK(bits(exactSum(device, {})) == 0);
     CHECK(sums::sumFrom.with(exact)(streamOf<float>(device, {})) == 0.0F);
+    const sk::Rows rows(streamOf<std::int32_t>(device, {0, 0, 1, 3, 3, 4}));
+    auto inRows = device.stream<float>({5});
+    sums::sum.with(exact)(rows(streamOf<float>(device, {-0.0F, -0.0F, -0.0F, 0.0F})), inRows);
+    std::vector<std::uint32_t> got;
+    for (const float x : inRows.read()) got.push_back(bits(x));
+    CHECK(got == std::vector<std::uint32_t>{0, bits(-0.0F), bits(-0.0F), 0, 0});
   });
 }
 

@@ -63,9 +63,6 @@ class SumJudge {
   numerics::TrueSum sum_;
   double terms_ = 0;
   double flushed_ = 0;  ///< what is lost if denormal numbers are 0
-  double tiny_ =
-      0;  ///< magnitude of the terms with a factor below 2^-78, of which pairs of floats have fewer bits
-  double below_ = 0;  ///< magnitude of the products below 2^-100
   bool isUnknown_ = false, hasNan_ = false, hasPositive_ = false, hasNegative_ = false,
        hasOnlyNegativeZeros_ = true, mayBeNan_ = false;
 };

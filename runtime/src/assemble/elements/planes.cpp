@@ -227,6 +227,8 @@ std::string fetchedValue(ProgramText& program, const Parameter& parameter, const
     return field.width == 1 ? value + " != 0u" : fmt::format("notEqual({}, uvec{}(0u))", value, field.width);
   }
   if (isWidened(parameter, field)) return widened(program, field, value);
+  if (isNarrowed(parameter, field) && program.keepsDenormals())
+    return fmt::format("sk_nearest_float({})", value);
   value = converted(spelling(field).load, std::move(value), valueType(field));
   return isNarrowed(parameter, field) ? narrowed(program, field, value) : value;
 }

@@ -53,6 +53,8 @@ sk_double sk_div(sk_double a, sk_double b) { sk_written double r = sk_value(a) /
 bool sk_less(sk_double a, sk_double b) { return sk_value(a) < sk_value(b); }
 bool sk_less_equal(sk_double a, sk_double b) { return sk_value(a) <= sk_value(b); }
 bool sk_equal(sk_double a, sk_double b) { return sk_value(a) == sk_value(b); }
+// The order of minima and maxima, in which -0 is below 0.
+bool sk_precedes(sk_double a, sk_double b) { return sk_less(a, b) || (sk_equal(a, b) && sk_is_negative(a)); }
 sk_double sk_abs(sk_double a) { return sk_double(a.bits & uvec2(0xffffffffu, 0x7fffffffu)); }
 // From 2^52 on, all are whole. Of infinity, Mesa's functions are NaN.
 bool sk_is_whole(sk_double a) { return (a.bits.y & 0x7fffffffu) >= 0x43300000u; }
@@ -115,17 +117,23 @@ sk_double sk_two_sum(float a, float b) {
   return sk_double(s, e);
 }
 
+// The product of two floats, and what it lacks. The power of 2 in a goes to b before they are split, so that only a small product
+// has small parts, however far apart the factors are: those of a are 2^-23 at least, those of b and their products as large
+// as the product of the mantissas' units, which is normal for products from 2^-78 on. Below, up to 2^-123 is lost. What is
+// lost is anything where the product is not finite.
 sk_double sk_two_product(float a, float b) {
   sk_precise float p = sk_keep(a * b);
-  float ah = uintBitsToFloat(floatBitsToUint(a) & 0xfffff000u);
-  float bh = uintBitsToFloat(floatBitsToUint(b) & 0xfffff000u);
-  sk_precise float al = sk_keep(a - ah);
-  sk_precise float bl = sk_keep(b - bh);
+  float m = uintBitsToFloat((floatBitsToUint(a) & 0x807fffffu) | 0x3f800000u);
+  float n = b * uintBitsToFloat(floatBitsToUint(a) & 0x7f800000u);
+  float ah = uintBitsToFloat(floatBitsToUint(m) & 0xfffff000u);
+  float bh = uintBitsToFloat(floatBitsToUint(n) & 0xfffff000u);
+  sk_precise float al = sk_keep(m - ah);
+  sk_precise float bl = sk_keep(n - bh);
   sk_precise float d = sk_keep(ah * bh - p);   // products of halves are exact, contracted or not
   sk_precise float e = sk_keep(d + ah * bl);
   sk_precise float f = sk_keep(e + al * bh);
   sk_precise float g = sk_keep(f + al * bl);
-  return sk_double(p, sk_is_finite(p) ? g : 0.0);
+  return sk_double(p, g);
 }
 
 sk_double sk_neg(sk_double a) { return sk_double(-a.hi, -a.lo); }
@@ -165,6 +173,9 @@ sk_double sk_div(sk_double a, sk_double b) {
 }
 
 sk_double sk_sqrt(sk_double a) {
+  bool isSmall = (floatBitsToUint(a.hi) & 0x7fffffffu) < 0x20000000u;   // what is left may be denormal: of 2^64 a then
+  float scale = isSmall ? 18446744073709551616.0 : 1.0, back = isSmall ? 2.3283064365386963e-10 : 1.0;
+  a = sk_double(a.hi * scale, a.lo * scale);
   sk_precise float s = sk_keep(sqrt(a.hi));
   sk_double left = sk_sub(a, sk_two_product(s, s));
   sk_precise float t = sk_keep(0.5 * left.hi / s);
@@ -173,7 +184,7 @@ sk_double sk_sqrt(sk_double a) {
   sk_precise float u = sk_keep(0.5 * left.hi / s);
   root = sk_add(root, sk_double(u, 0.0));
   bool isHead = s == 0.0 || !sk_is_finite(s);
-  return sk_double(isHead ? s : root.hi, isHead ? 0.0 : root.lo);
+  return sk_double((isHead ? s : root.hi) * back, isHead ? 0.0 : root.lo * back);
 }
 
 bool sk_less(sk_double a, sk_double b) { return a.hi < b.hi || (a.hi == b.hi && a.lo < b.lo); }
@@ -182,6 +193,16 @@ bool sk_equal(sk_double a, sk_double b) { return a.hi == b.hi && a.lo == b.lo; }
 
 bool sk_isnan(sk_double a) { return (floatBitsToUint(a.hi) & 0x7fffffffu) > 0x7f800000u; }
 bool sk_isinf(sk_double a) { return (floatBitsToUint(a.hi) & 0x7fffffffu) == 0x7f800000u; }
+
+// The order of minima and maxima, in which -0 is below 0. By the bits, since a device may take denormal numbers as 0.
+int sk_rank(float x) {
+  int bits = floatBitsToInt(x);
+  return bits ^ ((bits >> 31) & 0x7fffffff);
+}
+bool sk_precedes(sk_double a, sk_double b) {
+  int x = sk_rank(a.hi), y = sk_rank(b.hi);
+  return (x < y || (x == y && sk_rank(a.lo) < sk_rank(b.lo))) && !sk_isnan(a) && !sk_isnan(b);
+}
 
 sk_double sk_abs(sk_double a) { return sk_choose(floatBitsToUint(a.hi) >> 31 != 0u, sk_neg(a), a); }
 
@@ -293,13 +314,26 @@ int sk_square_exponent(sk_double a) {
 }
 
 //// common
-// The order of minima and maxima, in which -0 is below 0.
-bool sk_precedes(sk_double a, sk_double b) { return sk_less(a, b) || (sk_equal(a, b) && sk_is_negative(a)); }
 // A zero with the sign of a; any other number itself.
 sk_double sk_zero_like(sk_double r, sk_double a) {
   sk_double zero = sk_to_double(0.0);
   return sk_choose(sk_equal(r, zero), sk_choose(sk_is_negative(a), sk_neg(zero), zero), r);
 }
+
+// The float nearest to a double of these bits, of two the even one: also a denormal one, which a device may take as 0.
+float sk_nearest_float(uvec2 b) {
+  uint sign = b.y & 0x80000000u;
+  int e = int((b.y >> 20) & 0x7ffu) - 1023;
+  bool isNan = e == 1024 && ((b.y & 0xfffffu) | b.x) != 0u;
+  if (e > 127) return uintBitsToFloat(sign | (isNan ? 0x7fc00000u : 0x7f800000u));
+  if (e < -150) return uintBitsToFloat(sign);
+  uint m = (((b.y & 0xfffffu) | 0x100000u) << 8) | (b.x >> 24);   // 29 bits; the other 24 only break ties
+  int places = 5 + max(-126 - e, 0);
+  uint bits = (uint(max(e + 126, 0)) << 23) + (m >> places), half_ = 1u << (places - 1), rest = m & (half_ + half_ - 1u);
+  bool isUp = rest > half_ || (rest == half_ && ((bits & 1u) | (b.x & 0xffffffu)) != 0u);
+  return uintBitsToFloat(sign | (isUp ? bits + 1u : bits));
+}
+vec2 sk_nearest_float(uvec4 b) { return vec2(sk_nearest_float(b.xy), sk_nearest_float(b.zw)); }
 
 // A float that rounds to the half that is nearest to the double: the nearest float if that is exact or odd, else its odd neighbour
 // on the other side of the double.

@@ -66,9 +66,12 @@ float sk_atan2(float y, float x) {
   uint a = floatBitsToUint(x) & 0x7fffffffu;
   uint b = floatBitsToUint(y) & 0x7fffffffu;
   if (a > 0x7f800000u || b > 0x7f800000u) return uintBitsToFloat(0x7fc00000u);
-  float larger = uintBitsToFloat(max(a, b));
+  uint most = max(a, b), least = min(a, b);
+  bool areDenormal = most < 0x00800000u;   // multiples of 2^-149
+  float larger = areDenormal ? float(most) : uintBitsToFloat(most);
+  float smaller = areDenormal ? float(least) : uintBitsToFloat(least);
   float scale = larger > 1e30 ? 9.094947e-13 : 1.0;   // 2^-40: some devices divide by way of the reciprocal
-  float t = (uintBitsToFloat(min(a, b)) * scale) / (larger * scale);
+  float t = (smaller * scale) / (larger * scale);
   t = a == b ? (a == 0u ? 0.0 : 1.0) : t;
   float angle = sk_atan_part(t);
   angle = b > a ? 1.57079637 - (angle + 4.371139e-8) : angle;

@@ -148,6 +148,9 @@ class ProgramText {
   bool takeShared(std::size_t bytes);
   /// Adds text of skc after the kernel's own.
   void foreign(std::string_view text);
+  /// What is stored as doubles and read as floats may be denormal floats, whatever the device makes of these.
+  void keepDenormals() { keepsDenormals_ = true; }
+  bool keepsDenormals() const { return keepsDenormals_; }
 
   /// The whole program. `comment` is its first line, without the slashes.
   std::string finish(const Profile& profile, std::string_view comment, const program::Kernel& kernel) const;
@@ -170,6 +173,7 @@ class ProgramText {
   bool samples_ = false;
   std::string place_;  ///< of storeAt()
   std::string mainOfGroups_;  ///< of runFrom()
+  bool keepsDenormals_ = false;
   std::vector<std::string> beforeTiles_, afterTiles_;  ///< of foldTiles()
   std::pair<int, int> groupOfTiles_{};  ///< likewise; 0: it does not fold
   bool isArray_ = false;

@@ -40,6 +40,10 @@ FoldText::FoldText(const Profile& profile, const program::Reduction& reduction, 
     if (parameter.role == Role::Input) inputs_.push_back(&parameter);
     if (parameter.role == Role::Accumulator) accumulators_.push_back(&parameter);
   }
+  // Digits of exact sums are those of any float.
+  if (kernel_.body.find("sk_exact_flags(") != std::string_view::npos ||
+      kernel_.body.find("sk_exact_product_flags(") != std::string_view::npos)
+    program_.keepDenormals();
 }
 
 std::string FoldText::held(std::string_view name, const Parameter& accumulator) const {
