@@ -119,8 +119,8 @@ sk_double sk_two_sum(float a, float b) {
 
 // The product of two floats, and what it lacks. The power of 2 in a goes to b before they are split, so that only a small product
 // has small parts, however far apart the factors are: those of a are 2^-23 at least, those of b and their products as large
-// as the product of the mantissas' units, which is normal for products from 2^-78 on. Below, up to 2^-123 is lost. What is
-// lost is anything where the product is not finite.
+// as the product of the mantissas' units, which is normal for products from 2^-78 on. Below, up to 2^-123 is lost; from 2^-99 on down,
+// that is more than the rounded product lacks, which then stands alone. What is lost is anything where the product is not finite.
 sk_double sk_two_product(float a, float b) {
   sk_precise float p = sk_keep(a * b);
   float m = uintBitsToFloat((floatBitsToUint(a) & 0x807fffffu) | 0x3f800000u);
@@ -133,7 +133,7 @@ sk_double sk_two_product(float a, float b) {
   sk_precise float e = sk_keep(d + ah * bl);
   sk_precise float f = sk_keep(e + al * bh);
   sk_precise float g = sk_keep(f + al * bl);
-  return sk_double(p, g);
+  return sk_double(p, abs(p) < 1.5777218104420236e-30 ? 0.0 : g);
 }
 
 sk_double sk_neg(sk_double a) { return sk_double(-a.hi, -a.lo); }
