@@ -113,6 +113,12 @@ TEST_CASE("literals and formulas of literals have the precision of the variant")
     CHECK(std::fabs(a[3] + 3 * double{0.1F}) <= bound);
     CHECK(std::fabs(b[0] - (3 + 1e-4 * 16777214.0)) <= 4096 * bound);
     CHECK(std::fabs(b[1] - (precision == Precision::Single ? 3 : 4)) <= bound);
+    auto h = device.stream<sk::half>({1});
+    precision::negativeLiterals.with({.precision = precision})(x, r, h);
+    const std::vector<double> d = r.readReals();
+    for (const std::size_t i : {0, 1, 2}) CHECK(std::fabs(d[i] + 3 * 0.1) <= bound);
+    CHECK(std::fabs(d[3] - 3 * 0.1) <= bound);
+    CHECK(float{h.read()[0]} == -1.0009765625F);
   };
   onEveryTarget([&](sk::Device& device) {
     for (const Precision precision : widePrecisions(device)) check(device, precision, 0x1p-42);

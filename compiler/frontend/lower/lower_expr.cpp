@@ -344,9 +344,10 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
         if (operand->type.isDouble()) {
           return make(operand->type, where, ir::Literal{constant->bits, constant->high ^ 0x80000000u});
         }
-        const std::uint32_t bits =
-            operand->type.arithmeticType().isFloat() ? constant->bits ^ 0x80000000u : 0u - constant->bits;
-        return literal(operand->type, bits, where);
+        // what the text of a float has beyond the float belongs to its magnitude
+        if (operand->type.arithmeticType().isFloat())
+          return make(operand->type, where, ir::Literal{constant->bits ^ 0x80000000u, constant->high});
+        return literal(operand->type, 0u - constant->bits, where);
       }
       const ir::Type type = operand->type;
       if (type.isBool()) module_.fail(Diag::Statement, where, {"arithmetic of bool vectors"});
