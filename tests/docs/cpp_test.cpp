@@ -136,12 +136,12 @@ TEST_CASE("every C++ block compiles", "[cpp]") {
   std::string text;
   int number = 0;
   for (const docs::Document& document : docs::documents()) {
-    text +=
-        fmt::format("#define fragment fragment{}\n", number++);  // lines are the same in several documents
+    // lines are the same in several documents
+    text += fmt::format("#define fragment fragment{0}\n#define main main{0}\n", number++);
     for (const Block& block : document.blocks) {
       if (block.language == "c++" && isCompiled(block)) text += wrapped(document, block, includes);
     }
-    text += "#undef fragment\n";
+    text += "#undef fragment\n#undef main\n";
   }
   docs::writeFile(folder / "blocks.cpp", includeLines(includes) + rowsOfTables + text);
   const docs::Outcome outcome =
