@@ -85,9 +85,12 @@ void reduceToStreams(const ResolvedReduction& call) {
     restoreLostResults(call);
   } else {
     call.device.reduce(call);
+    writes.begin();
   }
-  writes.begin();
-  for (std::size_t k = 0; k < sums.size(); ++k) finish(sums[k], reduction.exact[k], call.arguments);
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    finish(sums[k], reduction.exact[k], call.arguments);
+    writes.begin();
+  }
   writes.commit();
 }
 
