@@ -35,25 +35,16 @@ ExprPtr literal(bool value, Loc loc) {
   return makeExpr(Type::of(Scalar::Bool), Literal{value ? 1U : 0U}, loc);
 }
 
-// A float literal's `high` is the distance of the text's magnitude from the float's, in units of 2^-30 of the float's last place. It
-// is at most 2^29 units, and whole, because a double has 29 bits more, and 30 where the float was rounded up to a power of 2.
-constexpr int wideUnit = 23 + 30;
-
 ExprPtr literal(float value, double text, Loc loc) {
+  assert(std::isnan(text) || std::signbit(value) == std::signbit(text));
   ExprPtr result = literal(value, loc);
-  if (!std::isnormal(value) || std::signbit(value) != std::signbit(text)) return result;
-  const double distance =
-      std::ldexp(std::fabs(text) - std::fabs(double{value}), wideUnit - std::ilogb(value));
-  if (std::fabs(distance) <= 0x1p30)
-    std::get<Literal>(result->node).high = static_cast<std::uint32_t>(static_cast<std::int32_t>(distance));
+  std::get<Literal>(result->node).text = std::fabs(text);
   return result;
 }
 
 double wideValue(const Literal& literal) {
   const auto value = std::bit_cast<float>(literal.bits);
-  if (literal.high == 0) return value;
-  const auto distance = static_cast<std::int32_t>(literal.high);
-  return std::copysign(std::fabs(double{value}) + std::ldexp(distance, std::ilogb(value) - wideUnit), value);
+  return literal.text == 0 ? double{value} : std::copysign(literal.text, value);
 }
 
 ExprPtr literalOf(Type type, int value, Loc loc) {

@@ -72,8 +72,9 @@ struct Expr;
 using ExprPtr = std::unique_ptr<Expr>;
 
 /// A scalar; vectors of literals are Constructs. `bits` holds bool 0/1, int32, uint32 or float32 bits, for a narrow scalar the
-/// bits of its arithmetic type, for a double the lower half. `high`: a double's upper half; wideValue() reads that of a float.
-struct Literal { std::uint32_t bits; std::uint32_t high = 0; };
+/// bits of its arithmetic type, for a double the lower half. `high`: a double's upper half. `text`: the magnitude of the double nearest
+/// to a float's text, 0 where the float itself is meant; wideValue() reads it.
+struct Literal { std::uint32_t bits; std::uint32_t high = 0; double text = 0; };
 struct VarRef { VarId var; };
 struct ConstantRef { ConstantId constant; };
 

@@ -43,8 +43,8 @@ class UniqueNames {
 class Namer {
  public:
   using IsReserved = bool (*)(std::string_view name);
-  /// `isReserved` says which names the target does not allow in this scope.
-  explicit Namer(IsReserved isReserved = [](std::string_view) { return false; }) : isReserved_(isReserved) {}
+  /// Asks `isTaken` which names the target does not allow in this scope.
+  explicit Namer(IsReserved isTaken = [](std::string_view) { return false; }) : isReserved_(isTaken) {}
 
   /// Marks a name that other text declares in the scope.
   void reserve(std::string name) { reserved_.insert(std::move(name)); }

@@ -50,7 +50,7 @@ bool isSame(const Expr& a, const Expr& b) {
   if (a.type != b.type || a.node.index() != b.node.index()) return false;
   if (const auto* n = std::get_if<Literal>(&a.node)) {
     const auto& other = std::get<Literal>(b.node);
-    return n->bits == other.bits && n->high == other.high;
+    return n->bits == other.bits && n->high == other.high && n->text == other.text;
   }
   if (const auto* n = std::get_if<VarRef>(&a.node)) return n->var == std::get<VarRef>(b.node).var;
   if (const auto* n = std::get_if<Convert>(&a.node)) {

@@ -71,7 +71,7 @@ class ConstantFolder {
   static void negate(ExprPtr& slot, const Unary& n) {
     const auto* literal = std::get_if<Literal>(&n.operand->node);
     if (n.op != UnaryOp::Negate || literal == nullptr || !slot->type.isFloat()) return;
-    slot = makeExpr(slot->type, Literal{literal->bits ^ 0x80000000U, literal->high}, slot->loc);
+    slot = makeExpr(slot->type, Literal{literal->bits ^ 0x80000000U, 0, literal->text}, slot->loc);
   }
 
   /// Rewrites `v[1]` of a vector to `v.y`, which later transforms recognise.

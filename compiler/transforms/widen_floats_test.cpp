@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "transforms/widen_floats.hpp"
 
+#include <limits>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -49,6 +50,27 @@ TEST_CASE("a wide form computes in doubles and holds floats") {
   const std::string text = entryOf(module, *module.kernels[id].variants.wide);
   INFO(text);
   CHECK(text.find("t_wide") != std::string::npos);
+}
+
+TEST_CASE("a wide form has the literals of the text, also where a float is infinity or 0") {
+  Module module = testModule();
+  KernelBuilder builder(module, "scaled");
+  const VarId a = builder.input("a", floatType);
+  const VarId r = builder.output("r", floatType);
+  const auto times = [](ExprPtr from, float value, double text) {
+    return binary(BinaryOp::Mul, std::move(from), literal(value, text));
+  };
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  ExprPtr scaled = times(times(times(builder.ref(a), infinity, 1e300), 0.0F, 1e-300), -0.1F, -0.1);
+  const KernelId id = builder.finish(block(assign(builder.ref(r), std::move(scaled))));
+  DiagnosticLog log;
+  widenFloats(module, log);
+  REQUIRE(module.kernels[id].variants.wide);
+  const std::string text = entryOf(module, *module.kernels[id].variants.wide);
+  INFO(text);
+  CHECK(text.find("1e+300d") != std::string::npos);
+  CHECK(text.find("1e-300d") != std::string::npos);
+  CHECK(text.find("-0.1d") != std::string::npos);
 }
 
 TEST_CASE("what doubles cannot do has no wide form, and says why") {

@@ -237,6 +237,10 @@ TEST_CASE("every mode has the signs of zero, the infinities and the NaN of IEEE 
         auto one = device.stream<float>({1});
         sums::sum.with(mode)(in, one);
         CHECK(isSame(one.read()[0], sum));
+        auto copy = device.stream<float>({static_cast<std::int64_t>(x.size())});
+        auto total = device.scalar<float>();
+        sums::copyAndSum.with(mode)(in, copy, total);
+        CHECK(isSame(total.read(), from0));
         const sk::Rows rows(streamOf<int>(device, {0, static_cast<int>(x.size())}));
         sums::sum.with(mode)(rows(in), one);
         CHECK(isSame(one.read()[0], sum));

@@ -346,7 +346,7 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
         }
         // what the text of a float has beyond the float belongs to its magnitude
         if (operand->type.arithmeticType().isFloat())
-          return make(operand->type, where, ir::Literal{constant->bits ^ 0x80000000u, constant->high});
+          return make(operand->type, where, ir::Literal{constant->bits ^ 0x80000000u, 0, constant->text});
         return literal(operand->type, 0u - constant->bits, where);
       }
       const ir::Type type = operand->type;

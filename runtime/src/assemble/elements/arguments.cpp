@@ -45,7 +45,7 @@ void defineExtent(ProgramText& program, const Parameter& parameter, std::string_
 
 void defineInputIndex(ProgramText& program, const Parameter& input, const StreamAccess& access,
                       const std::string& index, std::string_view kind) {
-  const auto uniform = [&](std::string_view kind) { return parameterUniform(program, "ivec4", kind, input); };
+  const auto uniform = [&](std::string_view what) { return parameterUniform(program, "ivec4", what, input); };
   std::string own = index;
   if (access.fitted) {
     const std::string ratio = uniform("ratio");
