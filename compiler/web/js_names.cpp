@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "ir/print.hpp"
 #include "program/used_structs.hpp"
 #include "support/namer.hpp"
 #include "support/text.hpp"

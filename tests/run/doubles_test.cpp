@@ -180,6 +180,29 @@ TEST_CASE("arithmetic of doubles keeps its bound") {
   });
 }
 
+TEST_CASE("quotients of small dividends and roots of large numbers keep the bound") {
+  std::vector<double> x = randomDoubles(2000, 13), y = randomDoubles(2000, 14);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const int power = 60 + static_cast<int>(i % 65);
+    const auto head = static_cast<double>(static_cast<float>(std::ldexp(x[i], -std::ilogb(x[i]) - power)));
+    x[i] = head;
+    y[i] = std::ldexp(y[i], -std::ilogb(y[i]) - std::clamp(power - 30 + static_cast<int>(i % 50), 0, 70));
+  }
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
+    const auto n = static_cast<std::int64_t>(x.size());
+    std::array<sk::Stream<double>, 4> r = {device.stream<double>({n}), device.stream<double>({n}),
+                                           device.stream<double>({n}), device.stream<double>({n})};
+    arithmetic(streamOf<double>(device, x), streamOf<double>(device, y), r[0], r[1], r[2], r[3]);
+    const auto quotient = [&](std::size_t i) { return static_cast<long double>(x[i]) / y[i]; };
+    CHECK(farFrom(r[3].read(), quotient, precisionOf(config)) == "");
+    const std::vector<double> large = {0x1.fffffep127, 0x1.fffffcp127, 0x1p127, 0x1.fffffep126, 0x1p126};
+    auto a = device.stream<double>({5}), b = device.stream<double>({5});
+    roots(streamOf<double>(device, large), a, b);
+    const auto root = [&](std::size_t i) { return std::sqrt(static_cast<long double>(large[i])); };
+    CHECK(farFrom(a.read(), root, precisionOf(config)) == "");
+  });
+}
+
 TEST_CASE("infinities, NaN and zeros go through arithmetic") {
   const std::vector<double> x = {infinity, infinity, 1, -1, 0, 3e38, infinity, -0.0, 1};
   const std::vector<double> y = {1, -infinity, 0, 0, 0, 3e38, infinity, -0.0, infinity};

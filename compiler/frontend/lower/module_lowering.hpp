@@ -14,6 +14,7 @@
 #include <clang/AST/Type.h>
 #include <clang/Basic/SourceLocation.h>
 
+#include "frontend/lower/aliases.hpp"
 #include "frontend/tokens/syntax.hpp"
 #include "ir/ir.hpp"
 #include "support/diagnostics.hpp"
@@ -29,8 +30,6 @@ class SourceManager;
 }  // namespace clang
 
 namespace skc::frontend {
-
-struct Aliases;
 
 /// Thrown after an error was reported: abandons the enclosing statement or declaration; lowering continues
 /// with the next one. It never leaves lowerModule.

@@ -11,8 +11,13 @@
 namespace fuzz::numbers {
 
 /// How a device computes, as far as promises depend on it.
-using Arithmetic = sk::SummingDevice;
+struct Arithmetic : sk::SummingDevice {
+  bool roundsQuotients =
+      true;  ///< to the nearest float; else they are within 2.5 units in the last place, as GL says
+};
 using sk::SumFacts;
+/// What a quotient within a function adds to its bound where quotients are not rounded correctly.
+inline constexpr double unroundedQuotient = 1;
 
 /// The largest error of a function, in the units of sk::ErrorBound: what runtime/include/sk/error_bounds.def has, or, of what it leaves out,
 /// docs/accuracy.md.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "numbers/devices.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <random>
 #include <variant>
 
 #include <fmt/format.h>
@@ -145,10 +147,36 @@ std::vector<std::vector<std::int64_t>> outputShapes(const Case& one) {
 
 Arithmetic arithmeticOf(const std::string& target, const Case& one) {
   const bool isNative = target == "native";
-  return {.isNative = isNative,
-          .flushesDenormals = !isNative,
-          .hasPairs = !isNative && (one.isPairs || target == "essl300" || target == "webgl2"),
-          .isDispatched = target == "glsl430"};
+  return {{.isNative = isNative,
+           .flushesDenormals = !isNative,
+           .hasPairs = !isNative && (one.isPairs || target == "essl300" || target == "webgl2"),
+           .isDispatched = target == "glsl430"}};
+}
+
+Arithmetic Devices::arithmetic(const std::string& target, const Case& one) {
+  Arithmetic result = arithmeticOf(target, one);
+  if (!result.isNative) result.roundsQuotients = roundsQuotients(target);
+  return result;
+}
+
+bool Devices::roundsQuotients(const std::string& target) {
+  const auto found = roundsQuotients_.find(target);
+  if (found != roundsQuotients_.end()) return found->second;
+  constexpr std::int64_t count = 4096;
+  std::mt19937 random(1);
+  const auto number = [&] { return std::ldexp(static_cast<double>(random() >> 9U | 1U << 23U), -23); };
+  Case trial;
+  trial.operation = "operators";
+  trial.shape = {count};
+  trial.inputs.assign(2, Values(count));
+  for (Values& values : trial.inputs) std::ranges::generate(values, number);
+  const Values quotients = run(target, trial)[3];
+  bool isEach = true;
+  for (std::size_t i = 0; i < quotients.size(); ++i) {
+    const auto a = static_cast<float>(trial.inputs[0][i]), b = static_cast<float>(trial.inputs[1][i]);
+    isEach = isEach && quotients[i] == static_cast<double>(a / b);
+  }
+  return roundsQuotients_[target] = isEach;
 }
 
 sk::Device& Devices::device(const std::string& target, const Case& one) {

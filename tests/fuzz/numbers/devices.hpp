@@ -30,11 +30,15 @@ class Devices {
  public:
   /// The results of a case: a list for each output. Throws sk::Error.
   std::vector<Values> run(const std::string& target, const Case& one);
+  /// How a target computes a case. Whether it rounds quotients is tried once.
+  Arithmetic arithmetic(const std::string& target, const Case& one);
 
  private:
+  bool roundsQuotients(const std::string& target);
   sk::Device& device(const std::string& target, const Case& one);
 
   std::map<std::string, sk::Device> devices_;
+  std::map<std::string, bool> roundsQuotients_;
 };
 
 }  // namespace fuzz::numbers

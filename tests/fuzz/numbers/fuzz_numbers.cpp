@@ -44,7 +44,7 @@ Case caseOf(const Options& options, std::uint64_t number) {
 
 std::string mistakeOn(Devices& devices, const std::string& target, const Case& one) {
   try {
-    return mistakeOf(one, devices.run(target, one), arithmeticOf(target, one));
+    return mistakeOf(one, devices.run(target, one), devices.arithmetic(target, one));
   } catch (const sk::Error& error) {
     return std::string("throws ") + error.what();
   }

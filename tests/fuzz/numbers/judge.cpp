@@ -60,6 +60,7 @@ double toPair(double x) {
 }
 
 bool isDenormal(double x) { return x != 0 && std::fabs(x) < 0x1p-126; }
+bool mayBeFlushed(double x) { return x != 0 && std::fabs(x) <= 0x1p-126; }
 
 bool isSame(double a, double b) {
   return std::isnan(a) ? std::isnan(b) : std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -68,6 +69,17 @@ bool isSame(double a, double b) {
 bool MapJudge::equals(float wanted, double got) const {
   if (isSame(wanted, got)) return true;
   return arithmetic.flushesDenormals && isDenormal(wanted) && isSame(got, std::copysign(0.0, wanted));
+}
+
+bool MapJudge::isAnyQuotient(double divisor) const {
+  return !arithmetic.roundsQuotients && std::fabs(divisor) > 0x1p126;
+}
+
+bool MapJudge::isQuotient(float wanted, double divisor, double got) const {
+  if (equals(wanted, got) || isAnyQuotient(divisor)) return true;
+  if (arithmetic.roundsQuotients || wanted == 0 || !std::isfinite(wanted)) return false;
+  const double unit = std::ldexp(1.0, std::max(std::ilogb(wanted), -126) - 23);
+  return std::fabs(got - static_cast<double>(wanted)) <= 2.5 * unit;
 }
 
 bool MapJudge::equalsDouble(double wanted, double got) const {
@@ -102,7 +114,8 @@ bool MapJudge::isRounded(double wanted, double got, double scale) const {
 bool MapJudge::accepts(const char* name, double error, double nearest, double got) const {
   const bool isWide =
       options.precision == sk::Precision::Double || options.precision == sk::Precision::Extended;
-  if (error <= (isWide ? 0.51 : boundOf(name, sk::BoundedType::Float, arithmetic.isNative))) return true;
+  const double bound = isWide ? 0.51 : boundOf(name, sk::BoundedType::Float, arithmetic.isNative);
+  if (error <= bound + (arithmetic.roundsQuotients ? 0 : unroundedQuotient)) return true;
   if (!arithmetic.flushesDenormals) return false;
   if (options.precision == sk::Precision::Extended && std::fabs(nearest) < 0x1p-78 &&
       std::fabs(got - nearest) <= 0x1p-124)
@@ -150,7 +163,7 @@ void SumJudge::add(double a, double b) {
   ++terms_;
   const double product = a * b;  // never overflows or vanishes: both are floats, or doubles of middling size
   hasOnlyNegativeZeros_ = hasOnlyNegativeZeros_ && product == 0 && std::signbit(product);
-  if (isDenormal(a) || isDenormal(b) || isDenormal(product)) {
+  if (mayBeFlushed(a) || mayBeFlushed(b) || mayBeFlushed(product)) {
     flushed_ += std::isfinite(product) ? std::fabs(product) : 0;
     mayBeNan_ = mayBeNan_ || !std::isfinite(product);
   }

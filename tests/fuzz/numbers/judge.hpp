@@ -19,6 +19,8 @@ double toHalf(double x);
 double toPair(double x);
 
 bool isDenormal(double x);  ///< of a float
+/// Whether devices that take denormal numbers as 0 may do so with this: a double a little below 2^-126 is rounded to that, or is 0 before.
+bool mayBeFlushed(double x);
 
 /// Whether two numbers are one: the same bits, but for those of NaN.
 bool isSame(double a, double b);
@@ -32,6 +34,10 @@ class MapJudge {
   bool equals(float wanted, double got) const;
   /// `got` is this double, or the pair of floats nearest to it.
   bool equalsDouble(double wanted, double got) const;
+  /// `got` is a quotient of floats, whose nearest float is `wanted`.
+  bool isQuotient(float wanted, double divisor, double got) const;
+  /// Whether the device may compute anything at all as a quotient: GL promises nothing for divisors beyond 2^126.
+  bool isAnyQuotient(double divisor) const;
   /// `got` is the result of an operation on floats, whose exact result is `wanted` (or rounded to 53 bits) in the precision of the
   /// call. `scale` is the size of what was rounded on the way, if that is larger.
   bool isRounded(double wanted, double got, double scale = 0) const;

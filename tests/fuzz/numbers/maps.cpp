@@ -87,11 +87,12 @@ bool acceptsOperators(const Judge& judge, Arguments x, std::size_t output, doubl
   if (judge.options.precision == sk::Precision::Default || judge.options.precision == sk::Precision::Single) {
     const auto a = static_cast<float>(x[0]), b = static_cast<float>(x[1]);
     const std::array<float, 4> wanted{a + b, a - b, a * b, a / b};
-    return judge.equals(wanted[output], got);
+    return output == 3 ? judge.isQuotient(wanted[output], x[1], got) : judge.equals(wanted[output], got);
   }
-  return judge.isRounded(operationsOf(judge, x)[output], got);
+  return judge.isRounded(operationsOf(judge, x)[output], got) || (output == 3 && judge.isAnyQuotient(x[1]));
 }
 bool acceptsWideOperators(const Judge& judge, Arguments x, std::size_t output, double got) {
+  if (output == 3 && judge.arithmetic.hasPairs && judge.isAnyQuotient(x[1])) return true;
   return judge.equalsDouble(std::array{x[0] + x[1], x[0] - x[1], x[0] * x[1], x[0] / x[1]}[output], got);
 }
 
@@ -138,7 +139,9 @@ bool acceptsLiterals(const Judge& judge, Arguments x, std::size_t output, double
       if (std::isinf(got)) return std::fabs(x[0]) > 0x1p120;
       const double scale = output == 2 ? std::max(std::fabs(x[0]), 1.25) : std::fabs(x[0]);
       const double wanted = output == 3 ? 0 : literalsOf(x[0], [](double v) { return v; })[output];
-      return std::fabs(got - wanted) <= 0x1p-44 * scale + 0x1.02p-24 * std::fabs(wanted) + 0x1p-124;
+      const double lost =
+          output == 1 ? 0x1.4p-123 : 0x1p-124;  // x * 0.1 may be 0, of which 10 times as much is missing
+      return std::fabs(got - wanted) <= 0x1p-44 * scale + 0x1.02p-24 * std::fabs(wanted) + lost;
     }
     default: break;
   }
@@ -202,7 +205,11 @@ bool acceptsWideOrder(const Judge& judge, Arguments x, std::size_t output, doubl
 bool acceptsMixes(const Judge& judge, Arguments x, std::size_t output, double got) {
   if (!std::isfinite(x[0]) || !std::isfinite(x[1])) return true;
   const double wanted = output == 0 ? x[0] : output == 1 ? x[1] : x[1] < x[0] ? x[0] : x[1];
-  return judge.equals(static_cast<float>(wanted), got);
+  if (judge.equals(static_cast<float>(wanted), got)) return true;
+  // A comparison takes denormal numbers as 0, and a sum does not.
+  const auto isTiny = [](double v) { return std::fabs(v) < 0x1p-126; };
+  return judge.arithmetic.flushesDenormals && output == 2 && isTiny(x[0]) && isTiny(x[1]) &&
+         judge.equals(static_cast<float>(x[1] < x[0] ? x[1] : x[0]), got);
 }
 
 template <class Int>
@@ -240,12 +247,12 @@ bool acceptsWideConversions(const Judge& judge, Arguments x, std::size_t output,
 }
 
 /// The float nearest to k / n, where k is the integer nearest to x * n, or to the float nearest to that.
-bool isNormalized(double x, double least, double n, double got) {
+bool isNormalized(const MapJudge& judge, double x, double least, double n, double got) {
   if (std::isnan(x)) return true;
   const double product = std::clamp(x, least, 1.0) * n;
   for (const double one : {product, static_cast<double>(static_cast<float>(product))}) {
     const auto nearest = static_cast<float>(std::nearbyint(one) / n);
-    if (got == static_cast<double>(nearest) ||
+    if (judge.isQuotient(nearest, n, got) ||
         std::fabs(got - static_cast<double>(nearest)) <= 0x1p-24 * std::fabs(static_cast<double>(nearest)))
       return true;
   }
@@ -254,9 +261,9 @@ bool isNormalized(double x, double least, double n, double got) {
 bool acceptsNarrow(const Judge& judge, Arguments x, std::size_t output, double got) {
   switch (output) {
     case 0: return judge.equals(static_cast<float>(toHalf(x[0])), got);
-    case 1: return isNormalized(x[0], 0, 255, got);
-    case 2: return isNormalized(x[0], 0, 65535, got);
-    default: return isNormalized(x[0], -1, 127, got);
+    case 1: return isNormalized(judge, x[0], 0, 255, got);
+    case 2: return isNormalized(judge, x[0], 0, 65535, got);
+    default: return isNormalized(judge, x[0], -1, 127, got);
   }
 }
 

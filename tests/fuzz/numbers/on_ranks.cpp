@@ -156,7 +156,7 @@ int runAll(const Options& options, int rank, int ranks) {
       std::string wrong;
       try {
         const std::vector<Values> results = runOnRanks(one, split);
-        if (rank == 0) wrong = mistakeOf(one, results, {.isNative = true, .ranks = ranks});
+        if (rank == 0) wrong = mistakeOf(one, results, {{.isNative = true, .ranks = ranks}});
       } catch (const sk::Error& error) {
         wrong = std::string("throws ") + error.what();
       }

@@ -123,7 +123,7 @@ class Verdict {
     for (unsigned choice = 1; choice < (1U << x.size()); ++choice) {
       bool isAnother = false;
       for (std::size_t k = 0; k < x.size(); ++k) {
-        const bool isFlushed = (choice >> k & 1U) != 0 && isDenormal(x[k]);
+        const bool isFlushed = (choice >> k & 1U) != 0 && mayBeFlushed(x[k]);
         flushed[k] = isFlushed ? std::copysign(0.0, x[k]) : x[k];
         isAnother = isAnother || isFlushed;
       }

@@ -160,6 +160,9 @@ sk_double sk_mul(sk_double a, sk_double b) {
 }
 
 sk_double sk_div(sk_double a, sk_double b) {
+  bool isSmall = (floatBitsToUint(a.hi) & 0x7fffffffu) < 0x20000000u;   // what is left may be denormal: of 2^64 a then
+  float scale = isSmall ? 18446744073709551616.0 : 1.0, back = isSmall ? 5.421010862427522e-20 : 1.0;
+  a = sk_double(a.hi * scale, a.lo * scale);
   sk_precise float q = sk_keep(a.hi / b.hi);
   sk_double left = sk_sub(a, sk_mul(b, sk_double(q, 0.0)));
   sk_precise float r = sk_keep(left.hi / b.hi);
@@ -169,12 +172,16 @@ sk_double sk_div(sk_double a, sk_double b) {
   sk_precise float t = sk_keep(sum.lo + s);
   sum = sk_join(sum.hi, t);
   bool isHead = q == 0.0 || !sk_is_finite(q) || !sk_is_finite(b.hi);
-  return sk_double(isHead ? q : sum.hi, isHead ? 0.0 : sum.lo);
+  return sk_double((isHead ? q : sum.hi) * back, isHead ? 0.0 : sum.lo * back);
 }
 
 sk_double sk_sqrt(sk_double a) {
   bool isSmall = (floatBitsToUint(a.hi) & 0x7fffffffu) < 0x20000000u;   // what is left may be denormal: of 2^64 a then
   float scale = isSmall ? 18446744073709551616.0 : 1.0, back = isSmall ? 2.3283064365386963e-10 : 1.0;
+  if (a.hi > 8.5070591730234616e37 && sk_is_finite(a.hi)) {   // the square of a root that is rounded up may overflow: of a / 4 then
+    scale = 0.25;
+    back = 2.0;
+  }
   a = sk_double(a.hi * scale, a.lo * scale);
   sk_precise float s = sk_keep(sqrt(a.hi));
   sk_double left = sk_sub(a, sk_two_product(s, s));
