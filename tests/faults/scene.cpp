@@ -77,10 +77,9 @@ Scene::Scene(sk::Device& on, std::int64_t rows)
 }
 
 void Scene::reset() {
-  x.write(numbers(x, 0));
+  resetInputs();
   r.write(numbers(r, 10));
   s.write(numbers(s, 20));
-  box.write(numbers(box, 30));
   part.write(numbers(part, 40));
   pushed = device.stream<float>({3});
   pushed.write(numbers(pushed, 50));
@@ -88,6 +87,11 @@ void Scene::reset() {
   bins.write(numbers(bins, 60));
   for (auto& stream : halves) stream.write(numbers(stream, 65));
   for (auto& stream : wide) stream.write(numbers(stream, 70));
+}
+
+void Scene::resetInputs() {
+  x.write(numbers(x, 0));
+  box.write(numbers(box, 30));
 }
 
 Scene::Elements Scene::elements() const {

@@ -23,6 +23,8 @@ class Scene {
   Elements elements() const;
   /// Writes the initial elements to all streams.
   void reset();
+  /// Writes the initial elements to `x` and `box`, of which calls expect results.
+  void resetInputs();
 
   sk::Device& device;
   const std::int64_t size;
