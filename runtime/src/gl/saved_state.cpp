@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Tables of the state that passes set, and functions that save and restore each kind.
+// Functions that save and restore each kind of the state that passes set (pass_state.def).
 #include "gl/saved_state.hpp"
 
 #include <algorithm>
@@ -28,20 +28,14 @@ struct Toggle {
   Needs needs;
 };
 
-// Passes disable all of them.
-constexpr std::array<Toggle, SavedState::toggleCount> toggles{{
-    {GL_DEPTH_TEST, Needs::Nothing},         {GL_STENCIL_TEST, Needs::Nothing},
-    {GL_CULL_FACE, Needs::Nothing},          {GL_DITHER, Needs::Nothing},
-    {GL_RASTERIZER_DISCARD, Needs::Nothing}, {GL_SAMPLE_ALPHA_TO_COVERAGE, Needs::Nothing},
-    {GL_SAMPLE_COVERAGE, Needs::Nothing},    {GL_SAMPLE_MASK, Needs::Gl32OrEs31},
-    {GL_COLOR_LOGIC_OP, Needs::Gl},          {GL_POLYGON_SMOOTH, Needs::Gl},
-    {GL_CLIP_DISTANCE0, Needs::Gl},          {GL_CLIP_DISTANCE1, Needs::Gl},
-    {GL_CLIP_DISTANCE2, Needs::Gl},          {GL_CLIP_DISTANCE3, Needs::Gl},
-    {GL_CLIP_DISTANCE4, Needs::Gl},          {GL_CLIP_DISTANCE5, Needs::Gl},
-    {GL_CLIP_DISTANCE6, Needs::Gl},          {GL_CLIP_DISTANCE7, Needs::Gl},
-    {GL_PROGRAM_POINT_SIZE, Needs::Gl},      {GL_POINT_SMOOTH, Needs::Compatibility},
-    {GL_ALPHA_TEST, Needs::Compatibility},   {GL_POLYGON_STIPPLE, Needs::Compatibility},
-}};
+constexpr auto toggles = std::to_array<Toggle>({
+#define SK_TOGGLE(name, needs) {name, Needs::needs},
+#define SK_PIXEL_STORE(name, value, needs)
+#include "gl/pass_state.def"
+#undef SK_TOGGLE
+#undef SK_PIXEL_STORE
+});
+static_assert(toggles.size() == SavedState::toggleCount);
 
 struct PixelParameter {
   GLenum name;
@@ -49,24 +43,14 @@ struct PixelParameter {
   Needs needs;
 };
 
-constexpr std::array<PixelParameter, SavedState::pixelStoreCount> pixelParameters{{
-    {GL_UNPACK_ALIGNMENT, 1, Needs::Nothing},
-    {GL_UNPACK_ROW_LENGTH, 0, Needs::Nothing},
-    {GL_UNPACK_SKIP_ROWS, 0, Needs::Nothing},
-    {GL_UNPACK_SKIP_PIXELS, 0, Needs::Nothing},
-    {GL_UNPACK_IMAGE_HEIGHT, 0, Needs::Nothing},
-    {GL_UNPACK_SKIP_IMAGES, 0, Needs::Nothing},
-    {GL_UNPACK_SWAP_BYTES, 0, Needs::Gl},
-    {GL_UNPACK_LSB_FIRST, 0, Needs::Gl},
-    {GL_PACK_ALIGNMENT, 1, Needs::Nothing},
-    {GL_PACK_ROW_LENGTH, 0, Needs::Nothing},
-    {GL_PACK_SKIP_ROWS, 0, Needs::Nothing},
-    {GL_PACK_SKIP_PIXELS, 0, Needs::Nothing},
-    {GL_PACK_IMAGE_HEIGHT, 0, Needs::Gl},
-    {GL_PACK_SKIP_IMAGES, 0, Needs::Gl},
-    {GL_PACK_SWAP_BYTES, 0, Needs::Gl},
-    {GL_PACK_LSB_FIRST, 0, Needs::Gl},
-}};
+constexpr auto pixelParameters = std::to_array<PixelParameter>({
+#define SK_TOGGLE(name, needs)
+#define SK_PIXEL_STORE(name, value, needs) {name, value, Needs::needs},
+#include "gl/pass_state.def"
+#undef SK_TOGGLE
+#undef SK_PIXEL_STORE
+});
+static_assert(pixelParameters.size() == SavedState::pixelStoreCount);
 
 struct PixelTransfer {
   GLenum name;

@@ -304,18 +304,35 @@ export class Device {
     if (idle !== undefined) return idle;
     const { format, width, height } = shelf;
     const gl = this.context;
+    if (!this.ownsContext) this.takeErrors(); // the application's
     const texture = gl.createTexture();
-    if (texture === null) {
-      if (gl.isContextLost()) throw this.lostError(); // the event is yet to come
-      throw new SkError(`there is no memory for ${typeof what === 'string' ? what : what()}`, 'memory');
-    }
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, texture);
     this.boundTextures[0] = texture;
     gl.texStorage2D(gl.TEXTURE_2D, 1, format.internal, width, height);
+    const isFull = this.takeErrors();
+    if (gl.isContextLost()) throw this.lostError(); // the event is yet to come
+    if (texture === null || isFull) {
+      gl.deleteTexture(texture);
+      this.boundTextures[0] = null;
+      throw new SkError(`there is no memory for ${typeof what === 'string' ? what : what()}`, 'memory');
+    }
     for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
     for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
     return { texture, format, width, height, shelf, generation: this.generation, holds: 0, isLeft: false, framebuffer: null, joints: [] };
+  }
+
+  /** Reads and clears the context's error flags. Returns whether memory was exhausted. @internal */
+  takeErrors(): boolean {
+    const gl = this.context;
+    let isFull = false;
+    const mostFlags = 8; // a context that is lost may report errors forever
+    for (let flag = 0; flag < mostFlags; ++flag) {
+      const error = gl.getError();
+      if (error === gl.NO_ERROR) break;
+      isFull ||= error === gl.OUT_OF_MEMORY;
+    }
+    return isFull;
   }
 
   /** @internal */
@@ -378,7 +395,7 @@ export class Device {
     this.resetState();
   }
 
-  /** @internal */
+  /** Sets the state of runtime/src/gl/pass_state.def that browsers have, and more. @internal */
   resetState(): void {
     const gl = this.context;
     this.forgetState();
@@ -396,6 +413,8 @@ export class Device {
       gl.PACK_SKIP_PIXELS, gl.PACK_SKIP_ROWS,
     ];
     for (const name of pixelParameters) gl.pixelStorei(name, 0);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    gl.pixelStorei(gl.PACK_ALIGNMENT, 1);
     gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
     gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
     for (let unit = 0; unit < this.limits.textureUnits; ++unit) gl.bindSampler(unit, null);

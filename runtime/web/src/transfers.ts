@@ -2,7 +2,7 @@
 //
 // Transfers to the host, which never block: each has a buffer of the device and a fence that is looked at now and then.
 import type { Device } from './device.js';
-import type { SkError } from './error.js';
+import { SkError } from './error.js';
 import { wideOf, type Format, type HostArray } from './format.js';
 import type { Rect } from './layout.js';
 
@@ -12,7 +12,23 @@ interface Readback {
   readonly sync: WebGLSync;
   /** Takes the bytes out of the buffer, which is bound. */
   readonly finish: () => void;
-  readonly fail: (error: SkError) => void;
+  readonly fail: (error: unknown) => void;
+}
+
+/** Bytes of a buffer for which it is worth asking whether the device has the memory: the answer takes as long as a small read. */
+const largeBuffer = 2 ** 20;
+
+function noMemory(): SkError {
+  return new SkError('there is no memory for the elements that are read; read fewer at a time, as by a view', 'memory');
+}
+
+/** What `make` returns. Arrays that are too large for the page are errors of SkError's kind 'memory'. */
+function orNoMemory<T>(make: () => T): T {
+  try {
+    return make();
+  } catch (error) {
+    throw error instanceof RangeError ? noMemory() : error;
+  }
 }
 
 export class Transfers {
@@ -33,10 +49,17 @@ export class Transfers {
     const from = isTight ? { format: tight.format, type: tight.type, array: tight.channel, channels: tight.channels } : { ...wide, channels: 4 };
     const texels = texelsIn(rects);
     const asked = performance.now();
-    const read = new from.array(texels * from.channels);
+    const read = orNoMemory(() => new from.array(texels * from.channels));
+    const isLarge = read.byteLength >= largeBuffer;
+    if (isLarge) this.device.takeErrors(); // of earlier commands
     const buffer = gl.createBuffer()!;
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
     gl.bufferData(gl.PIXEL_PACK_BUFFER, read.byteLength, gl.STREAM_READ);
+    if (isLarge && this.device.takeErrors()) {
+      gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+      gl.deleteBuffer(buffer);
+      throw noMemory();
+    }
     gl.pixelStorei(gl.PACK_ALIGNMENT, 1);
     let at = 0;
     for (const { x, y, width, height } of rects) {
@@ -51,7 +74,7 @@ export class Transfers {
       const finish = () => {
         gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, read);
         this.device.tracer?.measure('transfers', `read ${read.byteLength} bytes`, asked);
-        resolve(isTight ? read : narrowed(read, tight, texels));
+        resolve(isTight ? read : orNoMemory(() => narrowed(read, tight, texels)));
       };
       this.readbacks.push({ buffer, sync, finish, fail: reject });
       this.poll();
@@ -95,15 +118,15 @@ export class Transfers {
         const status = gl.clientWaitSync(first.sync, 0, 0);
         if (status === gl.TIMEOUT_EXPIRED) return again();
         this.readbacks.shift();
-        if (status === gl.WAIT_FAILED) {
-          first.fail(this.device.lostError());
+        if (status === gl.WAIT_FAILED || gl.isContextLost()) {
+          first.fail(this.device.lostError()); // what is in the buffer is gone, whatever its fence has said
           continue;
         }
         gl.bindBuffer(gl.PIXEL_PACK_BUFFER, first.buffer);
         try {
           first.finish();
         } catch (error) {
-          first.fail(error as SkError); // this read alone: its elements are more than the page has memory for
+          first.fail(error); // this read alone
         }
         gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
         gl.deleteBuffer(first.buffer);
