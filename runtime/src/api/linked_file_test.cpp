@@ -2,8 +2,12 @@
 #include "sk/linked_file.hpp"
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -35,4 +39,29 @@ TEST_CASE("a program knows the names of each of its files") {
     CHECK(LinkedFile::namesOfAll().tables == std::vector<std::string>{"heat::response"});
   }
   CHECK(LinkedFile::namesOfAll().kernels.empty());
+}
+
+TEST_CASE("what is kept for a descriptor ends with its library") {
+  static const int descriptor = 0, inSameObject[1] = {};
+  static std::optional<LinkedFile> file;  // in the object that has the descriptor
+  const auto onHeap = std::make_unique<int>();
+  CHECK(LinkedFile::objectOf(&descriptor) == 0);
+  CHECK(LinkedFile::isLoaded(0));
+
+  file.emplace(LinkedFile::Code{.glsl = true, .native = true});
+  const std::uint64_t first = LinkedFile::objectOf(&descriptor);
+  CHECK(first != 0);
+  CHECK(LinkedFile::objectOf(inSameObject) == first);
+  CHECK(LinkedFile::objectOf(onHeap.get()) == 0);
+  CHECK(LinkedFile::isLoaded(first));
+
+  const std::uint64_t unloads = LinkedFile::unloads();
+  file.reset();
+  CHECK(LinkedFile::unloads() == unloads + 1);
+  CHECK_FALSE(LinkedFile::isLoaded(first));
+  file.emplace(LinkedFile::Code{.glsl = true, .native = true});
+  CHECK(LinkedFile::objectOf(&descriptor) > first);
+  CHECK_FALSE(LinkedFile::isLoaded(first));
+  file.reset();
+  CHECK(LinkedFile::objectOf(&descriptor) == 0);
 }

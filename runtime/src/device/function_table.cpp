@@ -182,15 +182,30 @@ FunctionTable buildTable(const Table& table, const TableRange& range) {
 }
 
 const FunctionTable& FunctionTables::of(const Table& table, const Configuration& configuration) {
-  std::unique_ptr<FunctionTable>& kept = tables_[&table];
-  if (!kept) kept = std::make_unique<FunctionTable>(buildTable(table, configuration.rangeOf(table)));
-  return *kept;
+  if (unloads_.hasChanged()) {
+    std::erase_if(tables_,
+                  [](const auto& entry) { return !program::LinkedFile::isLoaded(entry.second.object); });
+  }
+  Kept& kept = tables_[&table];
+  if (!kept.table) {
+    auto built = std::make_unique<FunctionTable>(buildTable(table, configuration.rangeOf(table)));
+    built->number = ++built_;
+    kept = {std::move(built), program::LinkedFile::objectOf(&table)};
+  }
+  return *kept.table;
+}
+
+bool FunctionTables::has(std::uint64_t number) const {
+  return std::ranges::any_of(tables_, [&](const auto& entry) {
+    const Kept& kept = entry.second;
+    return kept.table && kept.table->number == number;
+  });
 }
 
 std::vector<TableReport> FunctionTables::reports() const {
   std::vector<TableReport> reports;
-  for (const auto& [table, built] : tables_) {
-    if (built) reports.push_back(built->report);
+  for (const auto& [table, kept] : tables_) {
+    if (kept.table) reports.push_back(kept.table->report);
   }
   std::ranges::sort(reports, {}, &TableReport::function);
   return reports;

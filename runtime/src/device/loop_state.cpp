@@ -66,6 +66,11 @@ void LoopState::use(StreamState* stream) {
   used_.push_back({stream, stream->shape});
 }
 
+void LoopState::use(const program::Kernel& kernel) {
+  const std::uint64_t object = program::LinkedFile::objectOf(&kernel);
+  if (object != 0 && std::ranges::find(objects_, object) == objects_.end()) objects_.push_back(object);
+}
+
 bool LoopState::keep(StreamState* stream) noexcept {
   if (uses(stream)) {
     kept_.push_back(stream);
@@ -150,6 +155,14 @@ void LoopState::failIfLost() const {
 void LoopState::checkBeforeRun() const {
   failIfLost();
   refuseInRecording(*device_, "a loop");
+  if (program::LinkedFile::unloads() != unloads_ &&
+      !std::ranges::all_of(objects_, program::LinkedFile::isLoaded)) {
+    throw Error(
+        "a loop: a library with kernels that it runs has been unloaded; keep the library loaded for as long "
+        "as "
+        "the loop is used, or record the calls again",
+        Error::Kind::Lost);
+  }
   for (const Used& used : used_) {
     used.stream->settle();
     if (used.stream->shape != used.shape) {
@@ -206,7 +219,7 @@ void refuseInRecording(const DeviceState& device, std::string_view what) {
 }
 
 OwnedArguments::OwnedArguments(const program::Kernel& kernel, std::span<const Argument> arguments)
-    : arguments_(arguments.begin(), arguments.end()) {
+    : kernel_(&kernel), arguments_(arguments.begin(), arguments.end()) {
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     if (arguments_[i].value == nullptr) continue;
     const program::Parameter& parameter = kernel.parameters[i];

@@ -15,6 +15,7 @@
 #include "device/recorded_call.hpp"
 #include "device/stream_state.hpp"
 #include "sk/call.hpp"
+#include "sk/linked_file.hpp"
 #include "sk/stream.hpp"
 
 namespace sk {
@@ -30,6 +31,8 @@ class LoopState {
   void add(std::unique_ptr<RecordedCall> call) { calls_.push_back(std::move(call)); }
   /// Notes a stream that the recorded call uses; null is ignored.
   void use(StreamState* stream);
+  /// Notes a kernel that it runs, so that the loop knows when its library has been unloaded.
+  void use(const program::Kernel& kernel);
 
   /// Ends the recording. Streams that have been swapped return to the handles that held them before. Throws
   /// sk::Error if streams have changed places that cannot exchange their elements.
@@ -82,6 +85,8 @@ class LoopState {
   std::vector<Held> held_;  ///< all streams of the device, while it records
   std::vector<std::unique_ptr<RecordedCall>> calls_;
   std::vector<Used> used_;
+  std::vector<std::uint64_t> objects_;  ///< that have the kernels (LinkedFile::objectOf())
+  const std::uint64_t unloads_ = program::LinkedFile::unloads();
   std::vector<std::pair<StreamState*, StreamState*>> exchanges_;  ///< carried out in order
   std::vector<StreamState*> kept_;  ///< streams that it owns
   std::unique_ptr<LoopRunner> runner_;  ///< null: calls run one after the other
@@ -96,10 +101,12 @@ class OwnedArguments {
   OwnedArguments(const program::Kernel& kernel, std::span<const Argument> arguments);
   std::span<const Argument> get() const { return arguments_; }
   void noteUses(LoopState& loop) const {
+    loop.use(*kernel_);
     for (const Argument& argument : arguments_) loop.use(argument.region.stream);
   }
 
  private:
+  const program::Kernel* kernel_;
   std::vector<Argument> arguments_;
   std::vector<std::unique_ptr<std::byte[]>> values_;
 };

@@ -256,7 +256,10 @@ void GlDevice::selectPrograms(const CallOptions& options, assemble::Stage stage)
 }
 
 GLuint GlDevice::textureOf(const FunctionTable& table) {
-  gl::Texture& texture = tableTextures_[&table];
+  if (unloads_.hasChanged()) {
+    std::erase_if(tableTextures_, [&](const auto& entry) { return !tables.has(entry.first); });
+  }
+  gl::Texture& texture = tableTextures_[table.number];
   if (texture.name() == 0) {
     const int width = assemble::coefficientsOf(table.report.interpolation);
     const std::int32_t rows =

@@ -16,6 +16,7 @@
 #include "assemble/assemble.hpp"
 #include "assemble/condition.hpp"
 #include "device/device_state.hpp"
+#include "device/unload_watch.hpp"
 #include "gl/bound_state.hpp"
 #include "gl/fold_buffer.hpp"
 #include "gl/labels.hpp"
@@ -29,6 +30,7 @@
 #include "gl_device/append/append_programs.hpp"
 #include "gl_device/memory/framebuffer_cache.hpp"
 #include "gl_device/memory/render_target.hpp"
+#include "gl_device/program/made_kernels.hpp"
 #include "gl_device/program/program_binaries.hpp"
 #include "gl_device/program/program_cache.hpp"
 #include "gl_device/program/variant.hpp"
@@ -143,9 +145,13 @@ class GlDevice final : public DeviceState {
   assemble::Stage stageOf(const program::Kernel& kernel, KernelClass kernels, const CallOptions& options,
                           std::int64_t elements = std::numeric_limits<std::int64_t>::max());
   ProgramCache& programs() { return *programs_; }
+  /// Deletes all programs of a kernel that is about to end.
+  void forget(const program::Kernel& kernel) noexcept {
+    for (auto& [key, programs] : caches_) programs.forget(kernel);
+  }
   /// Selects fragment programs for a call that compute programs cannot run. Throws sk::Error if the kernel has none.
   void selectDrawnPrograms(const program::Kernel& kernel, const CallOptions& options);
-  /// The texture of a table, created on first use. Binds a texture.
+  /// The texture of one of the device's tables, created on first use. Binds a texture.
   GLuint textureOf(const FunctionTable& table);
 
   /// Throws sk::Error if the driver has reported an error since the last call. The streams that were written
@@ -191,6 +197,8 @@ class GlDevice final : public DeviceState {
   AppendPrograms appendPrograms;
   SortPrograms sortPrograms;
   StagingPrograms stagingPrograms;
+  MadeKernels scalarKernels{*this};
+  MadeKernels mergeKernels{*this};
   gl::Samplers samplers{bound.deletions};
   gl::ValueBuffer values;
   gl::FoldBuffer folded;  ///< of dispatches that fold beside outputs
@@ -222,7 +230,8 @@ class GlDevice final : public DeviceState {
   const bool sharesContext_;
   const bool sortsByDispatches_;
   std::map<ProgramCacheKey, ProgramCache> caches_;
-  std::map<const FunctionTable*, gl::Texture> tableTextures_;
+  std::map<std::uint64_t, gl::Texture> tableTextures_;  ///< by FunctionTable::number
+  UnloadWatch unloads_;
   ProgramCache* programs_ = nullptr;  ///< the selected cache
   ProgramCacheKey cacheKey_;  ///< the key of the selected cache
   std::optional<Arithmetic> arithmetic_;

@@ -38,10 +38,20 @@ IntegerProgram& AppendPrograms::pyramid(const assemble::PyramidTextures& texture
   return *cached;
 }
 
+void AppendPrograms::forgetUnloaded() {
+  if (!unloads_.hasChanged()) return;
+  const auto isUnloaded = [](const auto& entry) {
+    return !program::LinkedFile::isLoaded(entry.second.object);
+  };
+  std::erase_if(points_, isUnloaded);
+  std::erase_if(records_, isUnloaded);
+}
+
 IntegerProgram& AppendPrograms::points(const program::Parameter& appendOutput, PointStep step,
                                        const assemble::PointTextures& textures) {
-  std::unique_ptr<IntegerProgram>& cached = points_[{&appendOutput, step, textures}];
-  if (!cached) {
+  forgetUnloaded();
+  Kept& cached = points_[{&appendOutput, step, textures}];
+  if (!cached.program) {
     const std::string vertexSource = assemble::hasPoints(step)
                                          ? assemble::pointVertexProgram(device_.profile, textures)
                                          : assemble::vertexProgram(device_.profile);
@@ -61,21 +71,22 @@ IntegerProgram& AppendPrograms::points(const program::Parameter& appendOutput, P
     for (const char* name : {"sk_upper", "sk_lower"}) {
       program.setSampler(name, unit++);
     }
-    cached = std::move(appendProgram);
+    cached = {std::move(appendProgram), program::LinkedFile::objectOf(&appendOutput)};
   }
-  return *cached;
+  return *cached.program;
 }
 
 IntegerProgram& AppendPrograms::records(const program::Parameter& scatter, bool isCounted) {
-  std::unique_ptr<IntegerProgram>& cached = records_[{&scatter, isCounted}];
-  if (!cached) {
+  forgetUnloaded();
+  Kept& cached = records_[{&scatter, isCounted}];
+  if (!cached.program) {
     auto program =
         build({}, assemble::recordProgram(device_.computeProfile, scatter, isCounted), scatter.name);
     int unit = 0;
     for (const char* name : {"sk_keys", "sk_count", "sk_values"}) program->program().setSampler(name, unit++);
-    cached = std::move(program);
+    cached = {std::move(program), program::LinkedFile::objectOf(&scatter)};
   }
-  return *cached;
+  return *cached.program;
 }
 
 }  // namespace sk

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // The programs for append outputs that do not contain a kernel's body: those that draw pyramids and those
-// that scatter points. They are compiled on first use and kept as long as the device.
+// that scatter points. They are compiled on first use and kept as long as the device, or as the library with the kernel is loaded.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/append/point_program.hpp"
+#include "device/unload_watch.hpp"
 #include "gl_device/program/integer_program.hpp"
 #include "sk/program.hpp"
 
@@ -40,13 +42,21 @@ class AppendPrograms {
  private:
   using PointKey = std::tuple<const program::Parameter*, assemble::PointStep, assemble::PointTextures>;
 
+  /// A program, and which loaded object has its parameter (LinkedFile::objectOf()).
+  struct Kept {
+    std::unique_ptr<IntegerProgram> program;
+    std::uint64_t object = 0;
+  };
+
+  void forgetUnloaded();
   std::unique_ptr<IntegerProgram> build(const std::string& vertexSource, const std::string& fragmentSource,
                                         std::string_view what);
 
   GlDevice& device_;
   std::map<assemble::PyramidTextures, std::unique_ptr<IntegerProgram>> pyramids_;
-  std::map<PointKey, std::unique_ptr<IntegerProgram>> points_;
-  std::map<std::pair<const program::Parameter*, bool>, std::unique_ptr<IntegerProgram>> records_;
+  std::map<PointKey, Kept> points_;
+  std::map<std::pair<const program::Parameter*, bool>, Kept> records_;
+  UnloadWatch unloads_;
 };
 
 }  // namespace sk

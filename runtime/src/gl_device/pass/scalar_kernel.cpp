@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "gl_device/pass/scalar_kernel.hpp"
-
-#include <deque>
-#include <map>
+//
+// Kernels for operations with scalars, written when a sequence of operations is first carried out. Parameters are a Uniform for
+// each read and number of the pass, then an Output for each of its outputs, in order.
 #include <memory>
-#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,6 +13,7 @@
 #include "device/device_state.hpp"
 #include "device/stream_state.hpp"
 #include "gl_device/gl_device.hpp"
+#include "gl_device/program/made_kernels.hpp"
 
 namespace sk {
 
@@ -100,19 +100,11 @@ std::string_view patternOf(ScalarOp op, program::Scalar type) {
   return {};
 }
 
-/// A kernel and what it refers to.
-struct KeptKernel {
-  std::string body;
-  std::deque<std::string> names;
-  std::vector<Parameter> parameters;
-  program::Kernel kernel;
-};
-
 class KernelText {
  public:
   explicit KernelText(const ScalarPass& pass) : pass_(pass) {}
 
-  std::unique_ptr<KeptKernel> make() && {
+  std::shared_ptr<const MadeKernel> make() && {
     for (std::size_t i = 0; i < pass_.reads.size(); ++i)
       add("r", i, Role::Uniform, *pass_.reads[i].stream->element);
     for (std::size_t i = 0; i < pass_.numbers.size(); ++i)
@@ -136,8 +128,9 @@ class KernelText {
   static constexpr program::IntrinsicUse intrinsics[] = {{Intrinsic::Max, 1}, {Intrinsic::Min, 1}};
 
   void add(std::string_view prefix, std::size_t number, Role role, const program::Element& element) {
-    const std::string& name = made_->names.emplace_back(fmt::format("{}{}", prefix, number));
-    made_->parameters.push_back({.name = name, .symbol = name, .role = role, .element = &element});
+    const std::string_view name = made_->own(fmt::format("{}{}", prefix, number));
+    made_->parameters.push_back(
+        {.name = name, .symbol = name, .role = role, .element = &made_->own(element)});
     usesDoubles_ = usesDoubles_ || element.fields.front().scalar == program::Scalar::Double;
   }
 
@@ -172,7 +165,7 @@ class KernelText {
   }
 
   const ScalarPass& pass_;
-  std::unique_ptr<KeptKernel> made_ = std::make_unique<KeptKernel>();
+  std::shared_ptr<MadeKernel> made_ = std::make_shared<MadeKernel>();
   bool usesDoubles_ = false;
 };
 
@@ -180,7 +173,10 @@ class KernelText {
 class PreparedScalars final : public RecordedCall {
  public:
   PreparedScalars(GlDevice& device, ScalarPass pass)
-      : device_(device), pass_(std::move(pass)), kernel_(scalarKernel(pass_)) {
+      : device_(device),
+        pass_(std::move(pass)),
+        kernel_(device.scalarKernels.keep(KernelText(pass_).make())) {
+    device.checkProgram(kernel_->kernel);
     for (const StreamRegion& read : pass_.reads) arguments_.push_back({.region = read});
     for (const ScalarPass::Number& number : pass_.numbers)
       arguments_.push_back({.value = number.value.data()});
@@ -190,24 +186,16 @@ class PreparedScalars final : public RecordedCall {
     }
   }
 
-  void run() override { device_.runUnchecked(resolveCall(kernel_, arguments_, device_.limits)); }
+  void run() override { device_.runUnchecked(resolveCall(kernel_->kernel, arguments_, device_.limits)); }
 
  private:
   GlDevice& device_;
   const ScalarPass pass_;
-  const program::Kernel& kernel_;
+  const std::shared_ptr<const MadeKernel> kernel_;
   std::vector<Argument> arguments_;
 };
 
 }  // namespace
-
-const program::Kernel& scalarKernel(const ScalarPass& pass) {
-  static std::mutex mutex;
-  static std::map<std::string, std::unique_ptr<KeptKernel>> kernels;  // by their text, which has all types
-  std::unique_ptr<KeptKernel> made = KernelText(pass).make();
-  const std::lock_guard lock(mutex);
-  return kernels.try_emplace(made->body, std::move(made)).first->second->kernel;
-}
 
 std::unique_ptr<RecordedCall> GlDevice::prepareScalars(ScalarPass pass) {
   return std::make_unique<PreparedScalars>(*this, std::move(pass));

@@ -66,9 +66,26 @@ void ProgramCache::makeRoom(Programs& programs, IsOfKernel&& isOfKernel) {
   if (count >= mostVariants) programs.erase(oldest);
 }
 
+void ProgramCache::forgetUnloadedNow() {
+  const auto isUnloaded = [](const auto& entry) {
+    return !program::LinkedFile::isLoaded(entry.second.object);
+  };
+  std::erase_if(kernels_, isUnloaded);
+  std::erase_if(reductions_, isUnloaded);
+  startedKernels_.clear();  // whatever their kernels: nothing is lost but a head start
+  startedReductions_.clear();
+}
+
+void ProgramCache::forget(const program::Kernel& kernel) noexcept {
+  const auto isOfKernel = [&](const auto& entry) { return entry.first.kernel == &kernel; };
+  std::erase_if(kernels_, isOfKernel);
+  std::erase_if(startedKernels_, isOfKernel);
+}
+
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const program::Reduction* reduction,
                                            std::span<const Operand> operands,
                                            const assemble::RegionLayout& domain, const assemble::Task& task) {
+  forgetUnloaded();
   const ProgramKey key = variantKey(kernel, operands, domain, task, device_.capabilities.filtersFloats);
   const auto found = kernels_.find(key);
   if (found == kernels_.end()) {
@@ -79,8 +96,8 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const 
     auto result = makeKernelProgram(
         kernel, variant, started.empty() ? begin(kernel, variant, reduction) : std::move(started.mapped()));
     makeRoom(kernels_, [&](const ProgramKey& other) { return other.kernel == &kernel; });
-    return *kernels_.insert_or_assign(key, Kept<KernelProgram>{std::move(result), ++clock_})
-                .first->second.program;
+    Kept<KernelProgram> kept{std::move(result), ++clock_, program::LinkedFile::objectOf(&kernel)};
+    return *kernels_.insert_or_assign(key, std::move(kept)).first->second.program;
   }
   found->second.used = ++clock_;
   return *found->second.program;
@@ -88,6 +105,7 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const 
 
 bool ProgramCache::startKernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                       const assemble::RegionLayout& domain) {
+  forgetUnloaded();
   const ProgramKey key = variantKey(kernel, operands, domain, {}, device_.capabilities.filtersFloats);
   if (kernels_.contains(key)) {
     return false;
@@ -291,6 +309,7 @@ void ProgramCache::finish(KernelProgram& result, const program::Kernel& kernel, 
 
 bool ProgramCache::startReduceProgram(const program::Reduction& reduction,
                                       const assemble::ReduceVariant& variant) {
+  forgetUnloaded();
   const ReduceKey key{&reduction, variant};
   if (reductions_.contains(key)) {
     return false;
@@ -303,6 +322,7 @@ bool ProgramCache::startReduceProgram(const program::Reduction& reduction,
 
 ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
                                            const assemble::ReduceVariant& variant) {
+  forgetUnloaded();
   const ReduceKey key{&reduction, variant};
   const auto found = reductions_.find(key);
   if (found == reductions_.end()) {
@@ -324,8 +344,8 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
                      variant.specs, variant.access);
     }
     makeRoom(reductions_, [&](const ReduceKey& other) { return other.first == &reduction; });
-    return *reductions_.insert_or_assign(key, Kept<ReduceProgram>{std::move(result), ++clock_})
-                .first->second.program;
+    Kept<ReduceProgram> kept{std::move(result), ++clock_, program::LinkedFile::objectOf(&reduction)};
+    return *reductions_.insert_or_assign(key, std::move(kept)).first->second.program;
   }
   found->second.used = ++clock_;
   return *found->second.program;

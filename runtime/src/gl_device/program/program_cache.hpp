@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The programs of a device: assembled and compiled when a variant is first used, and kept as long as the
-// device, unless a kernel has too many variants. Descriptors are identified by their addresses and must
-// outlive the device.
+// device, unless a kernel has too many variants, or its library is unloaded. Descriptors are identified by their addresses:
+// those in other memory must outlive the device, or be forgotten before they end.
 #pragma once
 
 #include <array>
@@ -18,6 +18,7 @@
 
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
+#include "device/unload_watch.hpp"
 #include "gl/program.hpp"
 #include "gl/uniform.hpp"
 #include "gl_device/program/layout_uniforms.hpp"
@@ -125,6 +126,9 @@ class ProgramCache {
                           const assemble::RegionLayout& domain);
   bool startReduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
 
+  /// Deletes the programs of a kernel that is about to end.
+  void forget(const program::Kernel& kernel) noexcept;
+
   assemble::Stage stage() const { return profile_.stage; }
 
  private:
@@ -151,12 +155,18 @@ class ProgramCache {
   void finish(KernelProgram& result, const program::Kernel& kernel, ProgramBuild&& begun);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);
 
-  /// A program, and the time of its last use.
+  /// A program, the time of its last use, and which loaded object has its descriptor (LinkedFile::objectOf()).
   template <class Program>
   struct Kept {
     std::unique_ptr<Program> program;
     std::int64_t used = 0;
+    std::uint64_t object = 0;
   };
+  /// Deletes the programs of libraries that have been unloaded since the last call.
+  void forgetUnloaded() {
+    if (unloads_.hasChanged()) forgetUnloadedNow();
+  }
+  void forgetUnloadedNow();
   /// Makes room for one more program of a kernel: if it has mostVariants, deletes the least recently used
   /// one.
   template <class Programs, class IsOfKernel>
@@ -171,6 +181,7 @@ class ProgramCache {
   std::unordered_map<ProgramKey, Kept<KernelProgram>, ProgramKeyHash> kernels_;
   std::map<ReduceKey, Kept<ReduceProgram>> reductions_;
   std::int64_t clock_ = 0;
+  UnloadWatch unloads_;
   std::unordered_map<ProgramKey, ProgramBuild, ProgramKeyHash> startedKernels_;
   std::map<ReduceKey, ProgramBuild> startedReductions_;
 };

@@ -34,7 +34,7 @@ struct Operand {
   Storage storage = Storage::Single;
 };
 
-/// A program's identity: the address of its descriptor and the packed choices of its variant.
+/// A program's identity among those of loaded kernels: the address of its descriptor and the packed choices of its variant.
 struct ProgramKey {
   const program::Kernel* kernel = nullptr;
   std::array<std::uint64_t, 8> words{};

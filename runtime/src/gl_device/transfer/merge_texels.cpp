@@ -2,19 +2,17 @@
 #include "gl_device/transfer/merge_texels.hpp"
 
 #include <algorithm>
-#include <array>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "assemble/elements/planes.hpp"
 #include "gl/color_mask.hpp"
 #include "gl_device/pass/pass.hpp"
+#include "gl_device/program/made_kernels.hpp"
 #include "gl_device/transfer/copy_kernel.hpp"
 
 namespace sk {
@@ -46,13 +44,6 @@ struct Columns {
   std::int32_t last;  ///< the region's last texel of a row
 };
 
-/// A kernel and what it refers to.
-struct MergeKernel {
-  std::string body;
-  std::array<Parameter, 2> parameters;
-  Kernel kernel;
-};
-
 /// Whether the elements of each texel lie in one texel of the source.
 bool readsTexels(const RegionLayout& source, const Columns& columns) {
   return source.packed && !source.strided && assemble::isWholeTexels(source) &&
@@ -74,10 +65,8 @@ std::string valuesOf(const Columns& columns, bool fromTexel) {
   return text;
 }
 
-const Kernel& mergeKernel(const program::Element& element, const Columns& columns, std::int32_t rows,
-                          bool fromTexel) {
-  static std::mutex mutex;
-  static std::map<std::string, std::unique_ptr<MergeKernel>> kernels;  // by their bodies
+std::shared_ptr<const MadeKernel> mergeKernel(GlDevice& device, const program::Element& element,
+                                              const Columns& columns, std::int32_t rows, bool fromTexel) {
   // the texels' bits, not the values that they stand for
   const program::Element& one = *copyKernel(element.fields.front()).parameters[0].element;
   const program::Element& four = assemble::fourOf(one.fields.front().scalar);
@@ -92,24 +81,21 @@ const Kernel& mergeKernel(const program::Element& element, const Columns& column
       fmt::format("  int k = t.x * {} + {};\n  r = {}(0);\n", columns.perTexel, columns.before, four.glsl);
   if (fromTexel) body += fmt::format("  {} v = sk_at_x(ivec2(k >> 2, y));\n", four.glsl);
   body += valuesOf(columns, fromTexel) + "}\n";
-  const std::lock_guard lock(mutex);
-  std::unique_ptr<MergeKernel>& known = kernels[body];
-  if (known) return known->kernel;
-  known = std::make_unique<MergeKernel>();
-  known->body = body;
-  known->parameters = {{{.name = "x",
-                         .symbol = "x",
-                         .role = Role::Gather,
-                         .element = fromTexel ? &four : &one,
-                         .rank = 2,
-                         .usesAt = true},
-                        {.name = "r", .symbol = "r", .role = Role::Output, .element = &four}}};
-  known->kernel.name = "merge";
-  known->kernel.entry = "sk_merge";
-  known->kernel.body = known->body;
-  known->kernel.parameters = known->parameters;
-  known->kernel.usesIndex = true;
-  return known->kernel;
+  auto made = std::make_shared<MadeKernel>();
+  made->body = std::move(body);
+  made->parameters = {{.name = "x",
+                       .symbol = "x",
+                       .role = Role::Gather,
+                       .element = fromTexel ? &four : &one,
+                       .rank = 2,
+                       .usesAt = true},
+                      {.name = "r", .symbol = "r", .role = Role::Output, .element = &four}};
+  made->kernel.name = "merge";
+  made->kernel.entry = "sk_merge";
+  made->kernel.body = made->body;
+  made->kernel.parameters = made->parameters;
+  made->kernel.usesIndex = true;
+  return device.mergeKernels.keep(std::move(made));
 }
 
 /// The texels from the region's first to its last one, with those of the rows between.
@@ -122,15 +108,18 @@ RegionLayout texelsAround(const RegionLayout& target, const Columns& columns) {
 }
 
 struct Merge {
-  Merge(const program::Element& element, const RegionLayout& source, const RegionLayout& target)
+  Merge(GlDevice& device, const program::Element& element, const RegionLayout& source,
+        const RegionLayout& target)
       : columns(target),
         fromTexel(readsTexels(source, columns)),
-        kernel(mergeKernel(element, columns, target.stride[1], fromTexel)),
+        made(mergeKernel(device, element, columns, target.stride[1], fromTexel)),
+        kernel(made->kernel),
         read(fromTexel ? assemble::texelsOf(source) : source),
         domain(texelsAround(target, columns)) {}
 
   Columns columns;
   bool fromTexel;
+  std::shared_ptr<const MadeKernel> made;
   const Kernel& kernel;
   RegionLayout read, domain;
 };
@@ -158,14 +147,14 @@ bool mayMerge(GlDevice& device, const RegionLayout& source, const RegionLayout& 
 
 void prepareMerge(GlDevice& device, const program::Element& element, const RegionLayout& source,
                   const RegionLayout& target) {
-  const Merge merge(element, source, target);
+  const Merge merge(device, element, source, target);
   const Operand operands[] = {{nullptr, merge.read, {}}, {}};
   device.programs().kernelProgram(merge.kernel, operands, merge.domain);
 }
 
 void mergeTexels(GlDevice& device, const program::Element& element, std::span<RenderTarget> from,
                  const RegionLayout& source, RenderTarget& to, const RegionLayout& target) {
-  const Merge merge(element, source, target);
+  const Merge merge(device, element, source, target);
   const Operand operands[] = {{nullptr, merge.read, from}, {}};
   RenderTarget* const targets[] = {&to};
   const std::int32_t height = merge.domain.extent[1];

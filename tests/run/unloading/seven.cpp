@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+#include "unloading/seven.sk.hpp"
+
+#include "library.hpp"

@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+#include "unloading/three.sk.hpp"
+
+#include "library.hpp"
