@@ -201,6 +201,31 @@ TEST_CASE("reductions, pushes and functions of functions look up, too") {
   });
 }
 
+TEST_CASE("tables and pyramids count among the texture units of a kernel that pushes") {
+  sk::Device device(sk::DeviceOptions{.device = "software", .profile = "glsl330"});
+  REQUIRE(device.limits().textureUnits == 32);  // as in every Mesa since 10
+  const auto pushed = [&](const auto& kernel, auto element, sk::Tables tables) {
+    auto x = device.stream<decltype(element)>({2});
+    element.x0 = 1;
+    x.fill(element);
+    auto r = device.stream<float>({5});
+    kernel.with({.tables = tables})(x, r);
+    return r.read();
+  };
+  const table::Crowd29 fits{};
+  const table::Crowd30 more{};
+  const auto isRight = [](const std::vector<float>& got) {
+    return got.size() == 2 && got[0] == got[1] && std::abs(got[0] - bell(1)) < 1e-4;
+  };
+  CHECK(isRight(pushed(table::pushed29, fits, sk::Tables::On)));
+  CHECK(isRight(pushed(table::pushed30, more, sk::Tables::Off)));
+  const std::string error = errorOf([&] { pushed(table::pushed30, more, sk::Tables::On); });
+  CHECK(error ==
+        "table::pushed30: its streams and the tables of its functions take 33 texture units, but this device "
+        "has "
+        "32; call it with Tables::Off");
+}
+
 TEST_CASE("the reference computes every function") {
   sk::Device device = sk::Device::reference();
   const std::vector<float> x = ramp(-4, 4, 100);

@@ -59,9 +59,14 @@ const CompensatedReduction* compensatedVariant(const ResolvedReduction& call) {
     }
     return nullptr;
   }
-  const std::size_t taken = call.rows == nullptr ? 0 : rowTables;
-  const std::size_t room = static_cast<std::size_t>(call.device.limits.textureUnits) - taken;
-  const bool fits = planesRead(second->reduction.combine, specsOf(reduction.fold, call.arguments)) <= room;
+  const assemble::SpecValues specs = specsOf(reduction.fold, call.arguments);
+  const std::size_t uniforms = uniformPlanes(reduction.fold, call.arguments);
+  const auto unitsOf = [&](const Kernel& kernel) {
+    return assemble::textureUnits(kernel, specs,
+                                  otherUnits(kernel, uniforms, call.scan.has_value(), call.rows != nullptr));
+  };
+  const auto room = static_cast<std::size_t>(call.device.limits.textureUnits);
+  const bool fits = unitsOf(second->reduction.fold) <= room && unitsOf(second->reduction.combine) <= room;
   return fits || requested == Accumulate::Compensated ? second : nullptr;
 }
 

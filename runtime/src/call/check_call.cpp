@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "assemble/append/append_passes.hpp"
+#include "assemble/program/texture_units.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_rows.hpp"
 #include "call/placed.hpp"
@@ -90,21 +91,30 @@ void checkPlanes(const Kernel& kernel, const DeviceState& device, std::size_t wr
   }
 }
 
+/// The values of a pass's Spec parameters.
+assemble::SpecValues specsOf(const program::Pass& pass, const ResolvedCall& call) {
+  assemble::SpecValues specs{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pass.operands.size(); ++i) {
+    const Parameter& parameter = pass.kernel.parameters[i];
+    if (parameter.role != Role::Spec) continue;
+    specs[count++] = specBits(parameter, call.arguments[pass.operands[i].index].value);
+  }
+  return specs;
+}
+
 /// Checks that the passes of a plan have room for streams that stand for uniforms: plans count on values.
 void checkPlan(const ResolvedCall& call, const DeviceState& device) {
   for (const program::Pass& pass : call.plan->passes) {
-    std::size_t units = call.plan->bundles.size();
+    std::size_t uniforms = 0;
     for (std::size_t i = 0; i < pass.operands.size(); ++i) {
       const Parameter& parameter = pass.kernel.parameters[i];
       const bool isHeld = parameter.role == Role::Uniform && !pass.operands[i].isTemporary &&
                           call.arguments[pass.operands[i].index].value == nullptr;
-      if (isHeld || parameter.role == Role::Input || parameter.role == Role::Gather) {
-        units +=
-            parameter.layers.empty()
-                ? parameter.element->fields.size()
-                : static_cast<std::size_t>(std::ranges::count(parameter.layers, -1, &program::Layer::bundle));
-      }
+      if (isHeld) uniforms += parameter.element->fields.size();
     }
+    const std::size_t units =
+        assemble::textureUnits(pass.kernel, specsOf(pass, call), {.uniforms = uniforms});
     if (units > static_cast<std::size_t>(device.limits.textureUnits)) {
       fail(Error::Kind::Device, call.kernel,
            "a pass reads {} planes, with those of streams that stand for uniforms, but this device reads {}; "
@@ -125,7 +135,7 @@ struct AppendPlanes {
   void add(const Parameter& appendOutput) {
     const bool isCounted = assemble::isCounted(appendOutput);
     counts += isCounted ? 1 : 0;
-    pyramid = isCounted ? 2 : pyramid;
+    if (isCounted) pyramid = assemble::pyramidUnits;
     const std::size_t texels = appendOutput.role == Role::Scatter ? 1 : 0;
     list = std::max(list, appendOutput.element->fields.size() + texels);
   }
@@ -167,7 +177,6 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
   }
   checkElements(kernel, device, domain, hasPlaced(arguments));
   std::size_t written = 0;
-  std::size_t read = 0;
   AppendPlanes appendOutputs;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& parameter = parameters[i];
@@ -184,7 +193,7 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
     checkSameDevice(kernel, parameters[first], firstStream, parameter, stream);
     switch (parameter.role) {
       case Role::Output:
-        written += parameter.element->fields.size();
+        written += heldBy(parameter).fields.size();
         checkOutputShape(kernel, parameters[first], domain, parameter, seenShape(region));
         checkDisjoint(kernel, arguments, specs, i);
         break;
@@ -199,16 +208,9 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
         }
         checkDisjoint(kernel, arguments, specs, i);
         break;
-      case Role::Gather:
-        read += parameter.element->fields.size();
-        checkGatherShape(kernel, parameter, seenShape(region), domain);
-        break;
-      case Role::Input:
-        read += parameter.element->fields.size();
-        checkInputShape(kernel, parameter, arguments[i], parameters[first], domain);
-        break;
+      case Role::Gather: checkGatherShape(kernel, parameter, seenShape(region), domain); break;
+      case Role::Input: checkInputShape(kernel, parameter, arguments[i], parameters[first], domain); break;
       case Role::Uniform:
-        read += parameter.element->fields.size();
         if (isPlaced(region)) refusePlaced(kernel, parameter);
         checkUniformShape(kernel, parameter, region.shape);
         break;
@@ -220,8 +222,10 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
   device.checkProgram(kernel);
   if (call.plan == nullptr) {
     checkUniforms(kernel, device);
-    checkPlanes(kernel, device, std::max(written + appendOutputs.counts, appendOutputs.list),
-                read + appendOutputs.pyramid);
+    checkPlanes(
+        kernel, device, std::max(written + appendOutputs.counts, appendOutputs.list),
+        assemble::textureUnits(
+            kernel, specs, {.uniforms = uniformPlanes(kernel, arguments), .pyramid = appendOutputs.pyramid}));
   } else if (uniformPlanes(kernel, arguments) > 0) {
     checkPlan(call, device);
   }

@@ -116,33 +116,26 @@ class Arguments {
     }
   }
 
-  /// A scan also reads the results of earlier runs, and rows are read from tables.
   void checkUnits(const DeviceState& device, bool isScan, bool hasRows) const {
-    const std::size_t carries =
-        (isScan ? accumulatorPlanes() : 0) + (hasRows ? rowTables : 0) + uniformPlanes(fold_, arguments_);
+    const std::size_t uniforms = uniformPlanes(fold_, arguments_);
+    const auto unitsOf = [&](const Kernel& kernel) {
+      return assemble::textureUnits(kernel, specs_, otherUnits(kernel, uniforms, isScan, hasRows));
+    };
     const auto most = static_cast<std::size_t>(device.limits.textureUnits);
-    if (const std::size_t planes = planesRead(fold_, specs_) + carries; planes > most) {
+    if (const std::size_t planes = unitsOf(fold_); planes > most) {
       fail(Error::Kind::Device, fold_,
            "the inputs and gathers{} have {} planes (one a scalar, vector, or member of a struct), but this "
            "device reads {} in one pass; put scalars together in vectors, or divide the {}",
            isScan ? ", and the accumulators of earlier elements," : "", planes, most,
            isScan ? "scan" : "reduce");
     }
-    if (const std::size_t planes = planesRead(reduction_.combine, specs_) + carries; planes > most) {
+    if (const std::size_t planes = unitsOf(reduction_.combine); planes > most) {
       fail(Error::Kind::Device, fold_,
            "to combine partial results, {} planes are read (one a scalar, vector, or member of a struct of "
            "the accumulators), but this device reads {} in one pass; put scalars together in vectors, or "
            "divide the {}",
            planes, most, isScan ? "scan" : "reduce");
     }
-  }
-
-  std::size_t accumulatorPlanes() const {
-    std::size_t planes = 0;
-    for (const Parameter& parameter : fold_.parameters) {
-      if (parameter.role == Role::Accumulator) planes += parameter.element->fields.size();
-    }
-    return planes;
   }
 
   /// Returns the grid of blocks.
@@ -265,14 +258,10 @@ class Arguments {
 
 }  // namespace
 
-std::size_t planesRead(const Kernel& kernel, const assemble::SpecValues& specs) {
-  std::size_t planes = 0;
-  for (const Parameter& parameter : kernel.parameters) {
-    if (parameter.role == Role::Input || parameter.role == Role::Gather) {
-      planes += assemble::isNeeded(parameter, specs) ? parameter.element->fields.size() : 0;
-    }
-  }
-  return planes;
+assemble::OtherUnits otherUnits(const Kernel& kernel, std::size_t uniforms, bool isScan, bool hasRows) {
+  return {.uniforms = uniforms,
+          .carried = isScan ? assemble::accumulatorPlanes(kernel) : 0,
+          .rows = hasRows ? rowTables : 0};
 }
 
 ResolvedReduction checkReduction(const Reduction& reduction, std::span<const Argument> arguments,

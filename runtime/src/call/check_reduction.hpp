@@ -7,15 +7,16 @@
 #include <optional>
 #include <span>
 
-#include "assemble/condition.hpp"
+#include "assemble/program/texture_units.hpp"
 #include "call/resolved_reduction.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
 
 namespace sk {
 
-/// The planes that a kernel of a reduction reads. An input of `combine` has the planes of an accumulator.
-std::size_t planesRead(const program::Kernel& kernel, const assemble::SpecValues& specs);
+/// What the passes of a reduction read besides the inputs and gathers of `kernel`, its fold or the kernel that combines its
+/// partial results, in a call whose streams that stand for uniforms have `uniforms` planes.
+assemble::OtherUnits otherUnits(const program::Kernel& kernel, std::size_t uniforms, bool isScan, bool hasRows);
 
 /// Checks the arguments of a reduction: streams, devices, element types, shapes, planes; that identities
 /// exist if the domain is empty; and, without `values`, that the shape of the results divides the inputs'

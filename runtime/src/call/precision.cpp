@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "assemble/program/texture_units.hpp"
 #include "call/check_argument.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
@@ -32,10 +33,7 @@ const WideReduction* wideVariant(const Reduction& reduction) {
 }
 
 void checkPlanes(const Reduction& plain, const Reduction& wide, const DeviceLimits& limits) {
-  std::size_t planes = 0;
-  for (const Parameter& parameter : wide.fold.parameters) {
-    if (parameter.role == Role::Accumulator) planes += parameter.element->fields.size();
-  }
+  const std::size_t planes = assemble::accumulatorPlanes(wide.fold);
   if (planes > static_cast<std::size_t>(limits.textureUnits)) {
     fail(Error::Kind::Device, plain.fold,
          "its accumulators take {} textures as doubles, but the device has units for {}; call it in "

@@ -42,7 +42,7 @@ Placement placeOf(const ResolvedReduction& call) { return {call.placed.box.begin
 /// The planes that one dispatch of a fold writes, with those of its accumulators.
 std::size_t planesWritten(const Reduction& reduction, std::span<const Argument> arguments,
                           const assemble::SpecValues& specs) {
-  std::size_t planes = accumulatorPlanes(reduction.fold);
+  std::size_t planes = assemble::accumulatorPlanes(reduction.fold);
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const Parameter& parameter = reduction.fold.parameters[i];
     if (parameter.role == Role::Output && assemble::isNeeded(parameter, specs) &&
@@ -89,7 +89,7 @@ std::vector<Operand> operandsOfResults(const ResolvedReduction& call) {
 }
 
 void bindList(GlDevice& device, const Kernel& fold, std::int32_t groups) {
-  const std::size_t entry = accumulatorPlanes(fold) * assemble::foldPlaneBytes;
+  const std::size_t entry = assemble::accumulatorPlanes(fold) * assemble::foldPlaneBytes;
   if (device.folded.bind(device.bound, assemble::foldListStart + static_cast<std::size_t>(groups) * entry))
     return;
   device.throwIfLost();
@@ -113,7 +113,8 @@ bool fits(const GlDevice& device, const Reduction& reduction, const ResolvedRedu
   const Kernel& fold = reduction.fold;
   const assemble::SpecValues specs = specsOf(fold, call.arguments);
   const std::size_t written = planesWritten(reduction, call.arguments, specs);
-  const std::size_t read = planesRead(fold, specs) + uniformPlanes(fold, call.arguments);
+  const std::size_t read =
+      assemble::textureUnits(fold, specs, {.uniforms = uniformPlanes(fold, call.arguments)});
   if (written > static_cast<std::size_t>(device.limits.drawBuffers) ||
       read > static_cast<std::size_t>(device.limits.textureUnits))
     return false;

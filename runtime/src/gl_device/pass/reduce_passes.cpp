@@ -49,14 +49,6 @@ std::string_view stepOf(Walk walk) {
 
 }  // namespace
 
-std::size_t accumulatorPlanes(const Kernel& fold) {
-  std::size_t planes = 0;
-  for (const Parameter& parameter : fold.parameters) {
-    if (parameter.role == Role::Accumulator) planes += parameter.element->fields.size();
-  }
-  return planes;
-}
-
 void takeAccumulators(const Kernel& fold, const assemble::TextureShape& shape, std::string_view whatFor,
                       PlanesLease& lease) {
   for (const Parameter& parameter : fold.parameters) {
@@ -211,7 +203,7 @@ std::int32_t ReducePasses::longRunOfGroups() const {
 
 bool ReducePasses::mayGroup() const {
   constexpr std::size_t planeBytes = 4 * sizeof(float);  // the most: four components, or two doubles
-  const std::size_t planes = accumulatorPlanes(reduction_.fold);
+  const std::size_t planes = assemble::accumulatorPlanes(reduction_.fold);
   return device_.programs().stage() == assemble::Stage::Compute &&
          planes * planeBytes * assemble::groupSize <= assemble::groupBytes &&
          planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
@@ -395,7 +387,7 @@ void ReducePasses::bindValues() {
 void ReducePasses::bindChain(const ReducePass& pass) {
   const auto groups =
       static_cast<std::size_t>(pass.groups.width) * static_cast<std::size_t>(pass.groups.height);
-  const std::size_t bytes = sizeof(std::uint32_t) * (1 + 2 * accumulatorPlanes(reduction_.fold) * groups);
+  const std::size_t bytes = sizeof(std::uint32_t) * (1 + 2 * assemble::accumulatorPlanes(reduction_.fold) * groups);
   if (!device_.tileResults.bind(device_.bound, bytes)) {
     device_.throwIfLost();
     fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for the results of tiles", device_.name());
@@ -421,7 +413,7 @@ void ReducePasses::forEachPart(const ReducePass& pass, std::span<const Operand> 
     addAccess(variant, assemble::isOfPartials(variant.walk) ? reduction_.combine : reduction_.fold, operands);
   }
   const auto most = static_cast<std::size_t>(device_.limits.drawBuffers);
-  const std::size_t planes = accumulatorPlanes(reduction_.fold);
+  const std::size_t planes = assemble::accumulatorPlanes(reduction_.fold);
   for (std::size_t first = 0; first < planes; first += most) {
     const std::size_t count = std::min(most, planes - first);
     if (planes > most) {

@@ -12,15 +12,13 @@
 
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/region_layout.hpp"
+#include "assemble/program/texture_units.hpp"
 #include "call/resolved_reduction.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/program/variant.hpp"
 #include "sk/program.hpp"
 
 namespace sk {
-
-/// The number of planes of all accumulators.
-std::size_t accumulatorPlanes(const program::Kernel& fold);
 
 /// Adds new planes for all accumulators, in order, to `lease`.
 void takeAccumulators(const program::Kernel& fold, const assemble::TextureShape& shape,

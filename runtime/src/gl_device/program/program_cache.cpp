@@ -8,6 +8,7 @@
 #include "assemble/append/append_passes.hpp"
 #include "assemble/elements/storage.hpp"
 #include "assemble/glsl/tables.hpp"
+#include "assemble/program/texture_units.hpp"
 #include "assemble/reduce/row_program.hpp"
 #include "assemble/reduce/scan_program.hpp"
 #include "gl_device/gl_device.hpp"
@@ -17,21 +18,6 @@
 namespace sk {
 
 namespace {
-
-/// The bundles that a pass reads, in order.
-std::vector<std::size_t> bundlesOf(const program::Kernel& kernel) {
-  std::vector<std::size_t> bundles;
-  for (const program::Parameter& parameter : kernel.parameters) {
-    for (const program::Layer& layer : parameter.layers) {
-      if (layer.bundle >= 0) {
-        bundles.push_back(static_cast<std::size_t>(layer.bundle));
-      }
-    }
-  }
-  std::sort(bundles.begin(), bundles.end());
-  bundles.erase(std::unique(bundles.begin(), bundles.end()), bundles.end());
-  return bundles;
-}
 
 /// The fields of an element, one span for each scalar, vector or matrix.
 std::vector<std::span<const program::Field>> valuesOf(const program::Element& element) {
@@ -47,6 +33,17 @@ KernelProgram::Read readOf(const gl::Program& program, std::size_t i, const prog
   return {i,
           LayoutUniforms(program, fmt::format("sk_*_{}", parameter.symbol)),
           {program.location(fmt::format("sk_ratio_{}", parameter.symbol)), true}};
+}
+
+/// Calls `use` with the kernel that has a parameter for everything that a pass of a reduction reads, if it reads any.
+template <class Use>
+void withReadKernel(const program::Kernel& kernel, const assemble::ReduceVariant& variant, Use&& use) {
+  if (variant.walk == assemble::Walk::Nothing) return;
+  const assemble::HeldKernel held(kernel, variant.access);
+  const assemble::ContinuedKernel continued(held.kernel());
+  const program::Kernel& read = variant.carried ? continued.kernel() : held.kernel();
+  const bool isInRows = variant.rows != assemble::RowPass::None;
+  use(isInRows ? assemble::RowKernel(read, variant.rows).kernel() : read);
 }
 
 }  // namespace
@@ -82,6 +79,28 @@ void ProgramCache::forget(const program::Kernel& kernel) noexcept {
   std::erase_if(startedKernels_, isOfKernel);
 }
 
+void ProgramCache::checkUnits(const program::Kernel& kernel, const assemble::SpecValues& specs,
+                              std::span<const assemble::StreamAccess> access,
+                              const assemble::Task& task) const {
+  assemble::OtherUnits others;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const program::Parameter& parameter = kernel.parameters[i];
+    if (parameter.role == program::Role::Uniform && access[i].view)
+      others.uniforms += heldBy(parameter).fields.size();
+  }
+  if (task.work == assemble::Work::List && assemble::isCounted(kernel.parameters[task.appendOutput])) {
+    others.pyramid = assemble::pyramidUnits;
+  }
+  if (profile_.tables) others.tables = kernel.tables.size();
+  const std::size_t units = assemble::textureUnits(kernel, specs, others);
+  if (units <= static_cast<std::size_t>(device_.limits.textureUnits)) return;
+  throw Error(fmt::format("{}: its streams{} take {} texture units, but this device has {}; {}", kernel.name,
+                          others.tables > 0 ? " and the tables of its functions" : "", units,
+                          device_.limits.textureUnits,
+                          others.tables > 0 ? "call it with Tables::Off" : "divide the kernel"),
+              Error::Kind::Device);
+}
+
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const program::Reduction* reduction,
                                            std::span<const Operand> operands,
                                            const assemble::RegionLayout& domain, const assemble::Task& task) {
@@ -92,6 +111,7 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const 
     const TraceScope traced(device_.trace.get(), "program", kernel.name);
     const assemble::Variant variant =
         chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats);
+    checkUnits(assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs, variant.access, task);
     auto started = startedKernels_.extract(key);
     auto result = makeKernelProgram(
         kernel, variant, started.empty() ? begin(kernel, variant, reduction) : std::move(started.mapped()));
@@ -168,7 +188,7 @@ void ProgramCache::findParameters(KernelProgram& result, const program::Kernel& 
       bindSamplers(result.program, parameter, unit);
     }
   }
-  result.bundles = bundlesOf(kernel);
+  result.bundles = assemble::bundlesOf(kernel);
   for (const std::size_t bundle : result.bundles) {
     result.program.setSampler(assemble::bundleName(bundle), unit++);
   }
@@ -180,15 +200,6 @@ void ProgramCache::findParameters(KernelProgram& result, const program::Kernel& 
 
 void ProgramCache::findTables(KernelProgram& result, const program::Kernel& kernel, int& unit) {
   static constexpr program::Field range{"", program::Scalar::Float, 3, 0};
-  const int units = unit + static_cast<int>(kernel.tables.size());
-  if (!kernel.tables.empty() && units > device_.limits.textureUnits) {
-    throw Error(
-        fmt::format("{}: its streams and the tables of its functions take {} texture units, but this device "
-                    "has {}; call it "
-                    "with Tables::Off",
-                    kernel.name, units, device_.limits.textureUnits),
-        Error::Kind::Device);
-  }
   for (const program::TableUse& use : kernel.tables) {
     const FunctionTable& table = device_.tables.of(*use.table, device_.configuration);
     result.tables.push_back(
@@ -330,19 +341,16 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     auto result = std::make_unique<ReduceProgram>();
     const bool isPartial = assemble::isOfPartials(variant.walk);
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
+    withReadKernel(kernel, variant,
+                   [&](const program::Kernel& read) { checkUnits(read, variant.specs, variant.access, {}); });
     auto started = startedReductions_.extract(key);
     finish(result->kernel, kernel, started.empty() ? begin(reduction, variant) : std::move(started.mapped()));
     result->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials ||
                                variant.unit != assemble::ScanUnit::Item ||
                                variant.rows == assemble::RowPass::Groups;
-    if (variant.walk != assemble::Walk::Nothing) {
-      const assemble::HeldKernel held(kernel, variant.access);
-      const assemble::ContinuedKernel continued(held.kernel());
-      const program::Kernel& read = variant.carried ? continued.kernel() : held.kernel();
-      const bool isInRows = variant.rows != assemble::RowPass::None;
-      findParameters(result->kernel, isInRows ? assemble::RowKernel(read, variant.rows).kernel() : read,
-                     variant.specs, variant.access);
-    }
+    withReadKernel(kernel, variant, [&](const program::Kernel& read) {
+      findParameters(result->kernel, read, variant.specs, variant.access);
+    });
     makeRoom(reductions_, [&](const ReduceKey& other) { return other.first == &reduction; });
     Kept<ReduceProgram> kept{std::move(result), ++clock_, program::LinkedFile::objectOf(&reduction)};
     return *reductions_.insert_or_assign(key, std::move(kept)).first->second.program;

@@ -139,6 +139,9 @@ class ProgramCache {
                                const assemble::Task& task);
   std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
                                                    const assemble::Variant& variant, ProgramBuild&& begun);
+  /// Throws sk::Error if a program of the kernel takes more texture units than the device has.
+  void checkUnits(const program::Kernel& kernel, const assemble::SpecValues& specs,
+                  std::span<const assemble::StreamAccess> access, const assemble::Task& task) const;
   void findParameters(KernelProgram& result, const program::Kernel& kernel, const assemble::SpecValues& specs,
                       std::span<const assemble::StreamAccess> access);
   void findTables(KernelProgram& result, const program::Kernel& kernel, int& unit);
