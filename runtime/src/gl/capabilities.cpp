@@ -29,14 +29,6 @@ int integerOf(GLenum name) {
   return value;
 }
 
-bool isSoftwareRenderer(std::string renderer) {
-  std::transform(renderer.begin(), renderer.end(), renderer.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::string_view names[] = {"llvmpipe", "softpipe", "swrast", "software", "swiftshader", "swr"};
-  return std::any_of(std::begin(names), std::end(names),
-                     [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
-}
-
 int largestTexture() {
   GLint viewport[2] = {0, 0};
   glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
@@ -79,6 +71,15 @@ bool canDrawTo(const Format& format, BoundState& bound) {
 }
 
 }  // namespace
+
+bool isSoftwareRenderer(std::string renderer) {
+  std::transform(renderer.begin(), renderer.end(), renderer.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::string_view names[] = {
+      "llvmpipe", "softpipe", "swrast", "software", "swiftshader", "swr", "microsoft basic render driver"};
+  return std::any_of(std::begin(names), std::end(names),
+                     [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
+}
 
 Capabilities readCapabilities() {
   Capabilities found;

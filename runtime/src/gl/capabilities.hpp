@@ -47,6 +47,9 @@ inline constexpr int maxDrawBuffers = 16;
 /// Queries the current context.
 Capabilities readCapabilities();
 
+/// Whether a renderer of this name (GL_RENDERER) runs on the CPU.
+bool isSoftwareRenderer(std::string renderer);
+
 /// Why the current context is not sufficient, as text to follow "because"; empty if it is sufficient. Tests
 /// drawing to each format, after which framebuffer 0 and unit 0 must be restored.
 std::string whyUnfit(const Capabilities& capabilities, BoundState& bound);

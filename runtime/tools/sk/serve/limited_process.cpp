@@ -107,10 +107,14 @@ ProcessResult runLimited(const std::vector<std::string>& words, const ProcessLim
   result.end = readAll(output, messages, limits, result);
   // A program that has closed its streams may still run, and may have started others.
   if (result.end != ProcessResult::End::Exit) ::kill(-child, SIGKILL);
+  // Until it is reaped, no other process group gets its number.
+  siginfo_t ended;
+  while (::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
+  }
+  ::kill(-child, SIGKILL);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  ::kill(-child, SIGKILL);
   if (result.end != ProcessResult::End::Exit) return result;
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status);
   if (WIFEXITED(status)) return result;

@@ -3,9 +3,12 @@
 // Programs of the shell that go past each limit.
 #include "serve/limited_process.hpp"
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <string>
+#include <thread>
 
 #include <catch2/catch.hpp>
 
@@ -46,6 +49,23 @@ TEST_CASE("A busy program ends after its CPU time") {
 TEST_CASE("A program that sleeps, and those that it has started, end after the wall time") {
   const ProcessResult result = shell("sleep 100 & sleep 100", {.wallTime = std::chrono::seconds(1)});
   CHECK(result.end == End::Time);
+}
+
+TEST_CASE("What a program has started ends with it") {
+  // the other process has closed the streams, and tells its number first
+  const ProcessResult result = shell("sleep 100 <&- >&- 2>&- & echo $!");
+  CHECK(result.end == End::Exit);
+  CHECK(result.status == 0);
+  const pid_t started = std::stoi(result.output);
+  // it is gone, or a zombie until init asks for it
+  const auto isAlive = [&] {
+    std::ifstream state("/proc/" + std::to_string(started) + "/stat");
+    std::string number, name, letter;
+    return state >> number >> name >> letter && letter != "Z";
+  };
+  for (int tries = 0; isAlive() && tries < 200; ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  CHECK_FALSE(isAlive());
 }
 
 TEST_CASE("A program that writes without end is stopped") {

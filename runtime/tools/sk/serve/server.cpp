@@ -5,6 +5,7 @@
 // Origin header, where there is one, too; and programs have a media type for which browsers ask first, and get no leave.
 #include "serve/server.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <exception>
@@ -17,6 +18,8 @@
 
 #include <httplib.h>
 #include <sys/socket.h>
+
+#include "serve/own_host.hpp"
 
 namespace sk_tool {
 namespace {
@@ -34,13 +37,6 @@ void refuse(httplib::Response& response, int status, const std::string& why) {
   response.set_header("Connection", "close");  // a body that nobody has read may follow
 }
 
-/// "127.0.0.1:8000" or "localhost:8000"; browsers leave port 80 out.
-bool isOwnHost(const std::string& given, int port) {
-  constexpr int portOfHttp = 80;
-  if (port == portOfHttp && (given == host || given == "localhost")) return true;
-  return given == fmt::format("{}:{}", host, port) || given == fmt::format("localhost:{}", port);
-}
-
 /// Whether the request comes from a page of this server, or from no page. Else it is answered.
 bool isAllowed(const httplib::Request& request, httplib::Response& response, int port) {
   if (request.get_header_value_count("Host") != 1 || !isOwnHost(request.get_header_value("Host"), port)) {
@@ -48,8 +44,7 @@ bool isAllowed(const httplib::Request& request, httplib::Response& response, int
     return false;
   }
   if (!request.has_header("Origin")) return true;
-  const std::string origin = request.get_header_value("Origin");
-  if (origin.starts_with("http://") && isOwnHost(origin.substr(7), port)) return true;
+  if (isOwnOrigin(request.get_header_value("Origin"), port)) return true;
   refuse(response, 403, "this server answers to its own pages only");
   return false;
 }
@@ -78,11 +73,20 @@ class Server {
   explicit Server(const Service& service) : service_(service) {}
 
   void run() {
+    blockSignals();
     setUp();
     listen();
   }
 
  private:
+  /// Before anything else, so that a signal which comes early also waits for the thread that takes it.
+  void blockSignals() {
+    ::sigemptyset(&signals_);
+    for (const int signal : {SIGINT, SIGTERM}) ::sigaddset(&signals_, signal);
+    ::pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);  // browsers that have gone
+  }
+
   void setUp() {
     server_.new_task_queue = [] { return new httplib::ThreadPool(8); };
     server_.set_payload_max_length(largestBody);
@@ -162,19 +166,18 @@ class Server {
                       "for one that is free",
                       service_.port, host));
     }
+    std::atomic<bool> hasEnded = false;
     // Another thread takes the signals that end the server.
-    sigset_t signals;
-    ::sigemptyset(&signals);
-    for (const int signal : {SIGINT, SIGTERM}) ::sigaddset(&signals, signal);
-    ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-    std::signal(SIGPIPE, SIG_IGN);  // browsers that have gone
     std::thread stopper([&] {
       int signal = 0;
-      ::sigwait(&signals, &signal);
+      ::sigwait(&signals_, &signal);
+      // a server that does not run yet would not stop
+      while (!hasEnded && !server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       server_.stop();
     });
     service_.started(fmt::format("http://{}:{}/", host, port_));
     server_.listen_after_bind();
+    hasEnded = true;
     ::pthread_kill(stopper.native_handle(), SIGTERM);  // where the server has ended by itself
     stopper.join();
   }
@@ -183,6 +186,7 @@ class Server {
   httplib::Server server_;
   std::counting_semaphore<> mayCompile_{compilationsAtOnce};
   int port_ = 0;
+  sigset_t signals_{};  ///< that end the server
 };
 
 }  // namespace
