@@ -97,14 +97,41 @@ std::string nameOf(std::string_view name, std::string_view key) {
   return fmt::format("{}-{:016x}", name, hashOf(key));
 }
 
-/// Whether the name is one that the cache uses: no other files are ever deleted. Drafts have a suffix after a
-/// dot.
-bool isOurs(std::string_view name) {
+bool areAll(std::string_view characters, std::string_view text) {
+  return !text.empty() && text.find_first_not_of(characters) == std::string_view::npos;
+}
+
+constexpr std::string_view decimals = "0123456789", hexadecimals = "0123456789abcdef";
+
+/// Whether the name is one that the cache may have given.
+bool mayBeOurs(std::string_view name) {
   constexpr std::size_t digits = 16;
   const std::string_view stem = name.substr(0, name.find('.'));
   const std::size_t dash = stem.rfind('-');
   return dash != std::string_view::npos && stem.size() - dash - 1 == digits &&
-         stem.substr(dash + 1).find_first_not_of("0123456789abcdef") == std::string_view::npos;
+         areAll(hexadecimals, stem.substr(dash + 1));
+}
+
+/// Whether the name is that of a draft (draftOf()), which may be torn.
+bool isDraft(std::string_view name) {
+  std::size_t parts = 0;
+  std::size_t dot = name.find('.');
+  for (; dot != std::string_view::npos; ++parts) {
+    const std::size_t next = name.find('.', dot + 1);
+    const bool isLast = next == std::string_view::npos;
+    const std::string_view part = name.substr(dot + 1, isLast ? next : next - dot - 1);
+    if (!areAll(isLast ? hexadecimals : decimals, part)) return false;
+    dot = next;
+  }
+  return parts == 4;
+}
+
+/// Whether a file has a header that fits the rest of it.
+bool hasHeader(std::string_view whole) {
+  const std::size_t first = whole.find('\n');
+  const std::size_t second = first == std::string_view::npos ? first : whole.find('\n', first + 1);
+  if (second == std::string_view::npos) return false;
+  return whole.starts_with(headOf(whole.substr(0, first), whole.substr(second + 1)));
 }
 
 bool writeAll(int file, std::string_view text) {
@@ -173,7 +200,7 @@ std::vector<File> filesIn(Descriptor folder) {
   const int number = folder.release();  // the list closes it
   while (const dirent* entry = ::readdir(list.get())) {
     struct stat status{};
-    if (!isOurs(entry->d_name) || ::fstatat(number, entry->d_name, &status, AT_SYMLINK_NOFOLLOW) != 0)
+    if (!mayBeOurs(entry->d_name) || ::fstatat(number, entry->d_name, &status, AT_SYMLINK_NOFOLLOW) != 0)
       continue;
     if (S_ISDIR(status.st_mode)) continue;
     files.push_back({entry->d_name, status.st_mtim, static_cast<std::uintmax_t>(status.st_size)});
@@ -182,7 +209,8 @@ std::vector<File> filesIn(Descriptor folder) {
 }
 
 /// If the files take more than `bytes`, deletes the least recently used ones until the rest take at most
-/// three quarters of it. Other processes may delete the same files.
+/// three quarters of it. Other processes may delete the same files. The folder may be shared with other programs, whose files are
+/// never deleted, whatever their names.
 void bound(const fs::path& path, std::uintmax_t bytes) {
   const Descriptor folder = openFolder(path);
   std::vector<File> files = filesIn(openFolder(path));
@@ -194,8 +222,12 @@ void bound(const fs::path& path, std::uintmax_t bytes) {
   });
   for (const File& file : files) {
     if (total <= bytes / 4 * 3) return;
-    ::unlinkat(folder.get(), file.name.c_str(), 0);
     total -= file.bytes;
+    const auto isCached = [&] {
+      const std::optional<std::string> whole = contentsOf(folder.get(), file.name, bytes);
+      return whole && hasHeader(*whole);
+    };
+    if (isDraft(file.name) || isCached()) ::unlinkat(folder.get(), file.name.c_str(), 0);
   }
 }
 

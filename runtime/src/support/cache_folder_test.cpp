@@ -208,8 +208,8 @@ TEST_CASE("files are deleted when they are too many, the longest unused first") 
     }
   }
   std::ofstream(folder.path / "notes.txt") << std::string(5000, 'x');  // the user's own file
-  std::ofstream(folder.path / "program-0123456789abcdef.1.2.3") << "a draft of a process that has ended";
-  fs::last_write_time(folder.path / "program-0123456789abcdef.1.2.3", now - std::chrono::hours(999));
+  std::ofstream(folder.path / "program-0123456789abcdef.1.2.3.4f") << "a draft of a process that has ended";
+  fs::last_write_time(folder.path / "program-0123456789abcdef.1.2.3.4f", now - std::chrono::hours(999));
   CHECK(roomy.read("program", "3").has_value());  // which counts as use
   CHECK(filesIn(folder.path) == 12);
   const CacheFolder tight(folder.path, 10'000);
@@ -226,6 +226,23 @@ TEST_CASE("files are deleted when they are too many, the longest unused first") 
   CHECK(filesIn(folder.path) < 14);
   tight.write("program", "huge", std::string(20'000, 'z'));
   CHECK_FALSE(tight.read("program", "huge").has_value());
+}
+
+TEST_CASE("files that the cache has not written are never deleted, whatever their names") {
+  const Folder folder;
+  fs::create_directory(folder.path);
+  fs::permissions(folder.path, fs::perms::owner_all);
+  const std::string names[] = {"photo-0123456789abcdef", "photo-0123456789abcdef.jpg",
+                               "notes-0123456789abcdef.2.3", "program-0123456789abcdef"};
+  for (const std::string& name : names) {
+    std::ofstream(folder.path / name) << "StreamKernel\n0123456789abcdef 4000\n" << std::string(4000, 'x');
+    fs::last_write_time(folder.path / name, fs::file_time_type::clock::now() - std::chrono::hours(999));
+  }
+  const CacheFolder tight(folder.path, 10'000);
+  for (int i = 0; i < 30; ++i) tight.write("program", std::to_string(i), std::string(1000, 'y'));
+  for (const std::string& name : names) CHECK(fs::exists(folder.path / name));
+  CHECK(filesIn(folder.path) < 4 + 14);
+  CHECK(tight.read("program", "29").has_value());
 }
 
 TEST_CASE("where nothing can be kept, nothing fails") {
