@@ -2,6 +2,7 @@
 //
 // Devices on the application's own context: results are right whatever state the application set, and that state is
 // restored.
+#include <cstdlib>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -457,4 +458,60 @@ TEST_CASE("a device of our own puts the application's context back") {
     CHECK(eglGetCurrentContext() == mine);
   }
   CHECK(eglGetCurrentContext() == mine);
+}
+
+TEST_CASE("the environment chooses for an adopted context what its options leave open") {
+  class Variable {
+   public:
+    Variable(const char* name, const char* value) : name_(name) { ::setenv(name, value, 1); }
+    ~Variable() { ::unsetenv(name_); }
+
+   private:
+    const char* const name_;
+  };
+  const Application application(Application::Kind::Core);
+  const int most = Device::adopt().limits().textureUnits;
+  REQUIRE(most > 16);
+  {
+    const Variable limits("SK_LIMITS", "guaranteed"), barrier("SK_BARRIER", "xor");
+    CHECK(Device::adopt().limits().textureUnits == 16);
+    CHECK(Device::adopt().arithmetic().barrier == Barrier::Xor);
+    CHECK(Device::adopt({.limits = "device"}).limits().textureUnits == most);
+  }
+  for (const char* name : {"SK_LIMITS", "SK_DOUBLES", "SK_BARRIER", "SK_PROFILE"}) {
+    const Variable wrong(name, "no such choice");
+    CAPTURE(name);
+    CHECK(errorOf([] { static_cast<void>(Device::adopt()); }).find(name) != std::string::npos);
+  }
+  const Variable profile("SK_PROFILE", "essl300");
+  CHECK(errorOf([] { static_cast<void>(Device::adopt()); }).find("which profile essl300 does not run on") !=
+        std::string::npos);
+}
+
+TEST_CASE("errors of the application lose no stream of an adopted context") {
+  for (const Application::Kind kind : {Application::Kind::Core, Application::Kind::Es}) {
+    Application application(kind);
+    GLuint buffer = 0;
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    const auto exhaustMemory = [] {
+      glBufferData(GL_ARRAY_BUFFER, GLsizeiptr{1} << 50, nullptr, GL_STATIC_DRAW);
+    };
+    exhaustMemory();
+    REQUIRE(glGetError() == GL_OUT_OF_MEMORY);
+    exhaustMemory();
+    Device device = Device::adopt();
+    auto x = device.stream<float>({3}), r = device.stream<float>({3});
+    x.write(std::vector<float>{1, 2, 3});
+    exhaustMemory();
+    twice()(x, r);
+    exhaustMemory();
+    glEnable(GL_INVALID_ENUM);
+    CHECK(r.read() == std::vector<float>{2, 4, 6});
+    exhaustMemory();
+    CHECK_NOTHROW(device.finish());
+    CHECK(sumOfFloats().value<float>(r) == 12);
+    CHECK(glGetError() == GL_NO_ERROR);
+    glDeleteBuffers(1, &buffer);
+  }
 }

@@ -152,6 +152,18 @@ TEST_CASE("operations with doubles and integers") {
   CHECK(sk::View<float>(third.region()).readReals()[0] == 1.0 / 3);
 }
 
+TEST_CASE(
+    "doubles as pairs of floats are refused in operations, too, where the compiler simplifies their errors") {
+  sk::Device device({.device = "software", .profile = "glsl330", .doubles = "pairs", .barrier = "none"});
+  auto third = device.scalar<double>(1.0 / 3);
+  const auto half = device.scalar<float>(0.5F);
+  CHECK((half + 1.0F).read() == 1.5F);
+  CHECK_THAT(errorOf([&] { static_cast<void>((third * 3).read()); }),
+             Contains("scalars: it computes with pairs of floats, and the compiler of"));
+  CHECK((half + 1.0F).read() == 1.5F);
+  CHECK(third.read() == Approx(1.0 / 3));
+}
+
 TEST_CASE("an operation uses the values of its time") {
   onEveryTarget([](sk::Device& device) {
     auto a = device.scalar<float>(3), b = device.scalar<float>(4);

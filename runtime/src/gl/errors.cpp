@@ -8,14 +8,15 @@ namespace sk::gl {
 // Terminates even on a lost context, which reports errors forever.
 GLenum Errors::takeNew() {
   const GLenum first = glGetError();
-  bool isLost = first == GL_CONTEXT_LOST;
+  bool isLost = first == GL_CONTEXT_LOST, isFull = first == GL_OUT_OF_MEMORY;
   GLenum next = first;
   for (int flag = 0; flag < 16 && next != GL_NO_ERROR; ++flag) {
     next = glGetError();
     isLost = isLost || next == GL_CONTEXT_LOST;
+    isFull = isFull || next == GL_OUT_OF_MEMORY;
   }
   isLost_ = isLost_ || isLost;
-  return isLost ? GL_CONTEXT_LOST : first;
+  return isLost ? GL_CONTEXT_LOST : isFull ? GL_OUT_OF_MEMORY : first;
 }
 
 const char* errorName(GLenum error) {

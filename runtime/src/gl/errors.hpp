@@ -15,11 +15,14 @@ class Errors {
   /// Saves the pending error for take(), so that takeNew() returns only later errors.
   void setAside() {
     const GLenum error = takeNew();
-    if (earlier_ == GL_NO_ERROR) earlier_ = error;
+    if (earlier_ == GL_NO_ERROR || error == GL_OUT_OF_MEMORY) earlier_ = error;
   }
-  /// Returns the first error since setAside(), and clears all of them.
+  /// Must be called when a call begins in the application's context: the pending errors are the application's, and neither take()
+  /// nor takeNew() returns them. GL has no way to put them back.
+  void skipApplications() { static_cast<void>(takeNew()); }
+  /// Returns the first error since setAside(), or that memory is exhausted if it is among them, and clears all of them.
   GLenum takeNew();
-  /// Returns the first error that has not been taken yet.
+  /// Likewise, of all errors that have not been taken yet.
   GLenum take() {
     setAside();
     return std::exchange(earlier_, GL_NO_ERROR);

@@ -464,8 +464,8 @@ void GlDevice::throwIfLost() {
   if (bound.errors.isLost() || (capabilities.reportsResets && bound.errors.askIfLost())) failAsLost();
 }
 
-// In a shared context, errors other than exhausted memory and a lost context may be the application's own and
-// are not reported.
+// In a shared context, other errors than exhausted memory and a lost context may come of restoring what the application has
+// deleted, and are not reported.
 void GlDevice::throwPendingError() {
   if (passes) passes->collect();
   const GLenum error = bound.errors.take();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <map>
@@ -216,6 +217,7 @@ class GlDevice final : public DeviceState {
   std::vector<Operand> operands;  ///< operands of the current call (pass/run_kernel.cpp)
   /// Something was drawn or copied since the last dispatch: the next one may overwrite what that still reads.
   bool hasDrawn = false;
+  bool isInScope = false;  ///< a DeviceScope is open
 
  private:
   bool computesInPairs(const CallOptions& options) const;
@@ -238,10 +240,15 @@ class GlDevice final : public DeviceState {
   std::array<std::optional<assemble::Stage>, kernelClasses> faster_;
 };
 
-/// Makes a device's context current and ready for passes as long as this object lives.
+/// Makes a device's context current and ready for passes as long as this object lives. There is one scope at a time: another one
+/// would take the runtime's state for the application's.
 class DeviceScope {
  public:
-  explicit DeviceScope(GlDevice& device) : current_(device.livingContext()) {
+  explicit DeviceScope(GlDevice& device) : turn_(device.isInScope), current_(device.livingContext()) {
+    if (device.isGuest()) {
+      device.bound.errors.skipApplications();
+      ended_.errors = &device.bound.errors;
+    }
     device.bound.deleteQueued();
     if (device.isGuest()) {
       saved_.emplace(device.capabilities, device.bound);
@@ -255,7 +262,32 @@ class DeviceScope {
   }
 
  private:
+  struct Turn {
+    explicit Turn(bool& isInScope) : isTaken(isInScope) {
+      assert(!isTaken);
+      isTaken = true;
+    }
+    ~Turn() { isTaken = false; }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+    bool& isTaken;
+  };
+  /// Keeps the device's errors from the application.
+  struct Ended {
+    Ended() = default;
+    ~Ended() {
+      if (errors != nullptr) errors->setAside();
+    }
+    Ended(const Ended&) = delete;
+    Ended& operator=(const Ended&) = delete;
+
+    gl::Errors* errors = nullptr;
+  };
+
+  const Turn turn_;
   gl::CurrentScope current_;
+  Ended ended_;
   std::optional<gl::SavedState> saved_;
 };
 
