@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <cstdarg>
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
@@ -19,6 +20,10 @@
 #include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace faults {
 
@@ -77,6 +82,7 @@ struct Tracked {
   GLenum error = GL_NO_ERROR;  ///< left by a fault, for glGetError
 };
 std::atomic<long> countedBlocks = 0;
+std::atomic<long> countedThreads = 0;
 Tracked& tracked() {
   static Tracked all;
   return all;
@@ -325,9 +331,9 @@ struct PlainEgl<place, R (*)(A...)> {
 }  // namespace
 
 std::string nameOf(Kind kind) {
-  constexpr std::array<std::string_view, 9> names = {"allocation", "program",     "mapping",
-                                                     "fence",      "framebuffer", "command",
-                                                     "context",    "host",        "host, threads"};
+  constexpr std::array<std::string_view, 11> names = {"allocation",    "program", "mapping", "fence",
+                                                      "framebuffer",   "command", "context", "host",
+                                                      "host, threads", "file",    "thread"};
   return std::string(names[static_cast<std::size_t>(kind)]);
 }
 
@@ -359,6 +365,7 @@ LiveObjects liveObjects() {
 }
 
 long hostBlocks() { return countedBlocks; }
+long startedThreads() { return countedThreads; }
 
 void install() {
 #define HOOK(function) Hook<&epoxy_##function>::install(Plain<&epoxy_##function>::call);
@@ -436,6 +443,19 @@ void* allocateOrNull(std::size_t size) noexcept {
   return header + 1;
 }
 
+/// Whether a call of the system by the runtime, on the test's thread, fails.
+bool failsForSystem(Kind kind) noexcept { return armed.is && inDriver == 0 && mayFail && fails(kind); }
+
+/// The function that a replacement stands for.
+template <class Function>
+Function systems(const char* name) {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+void countThread() noexcept {
+  if (armed.is && inDriver == 0 && mayFail) ++countedThreads;
+}
+
 void* allocate(std::size_t size) {
   if (failsForHost()) throw std::bad_alloc();
   if (void* memory = allocateOrNull(size)) return memory;
@@ -472,3 +492,67 @@ extern "C" int posix_memalign(void** memory, std::size_t alignment, std::size_t 
   static const auto next = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "posix_memalign"));
   return faults::failsForHost() ? ENOMEM : next(memory, alignment, size);
 }
+
+// ---- files and threads ------------------------------------------------------------------------------
+
+extern "C" {
+
+int openat(int folder, const char* name, int flags, ...) {
+  static const auto next = faults::systems<int (*)(int, const char*, int, mode_t)>("openat");
+  va_list rest;
+  va_start(rest, flags);
+  const auto mode = (flags & O_CREAT) != 0 ? static_cast<mode_t>(va_arg(rest, unsigned)) : mode_t{0};
+  va_end(rest);
+  if (!faults::failsForSystem(faults::Kind::File)) return next(folder, name, flags, mode);
+  errno = EIO;
+  return -1;
+}
+int open(const char* name, int flags, ...) {
+  static const auto next = faults::systems<int (*)(const char*, int, mode_t)>("open");
+  va_list rest;
+  va_start(rest, flags);
+  const auto mode = (flags & O_CREAT) != 0 ? static_cast<mode_t>(va_arg(rest, unsigned)) : mode_t{0};
+  va_end(rest);
+  if (!faults::failsForSystem(faults::Kind::File)) return next(name, flags, mode);
+  errno = EIO;
+  return -1;
+}
+int mkdir(const char* name, mode_t mode) noexcept {
+  static const auto next = faults::systems<int (*)(const char*, mode_t)>("mkdir");
+  if (!faults::failsForSystem(faults::Kind::File)) return next(name, mode);
+  errno = EIO;
+  return -1;
+}
+int renameat(int from, const char* name, int to, const char* newName) noexcept {
+  static const auto next = faults::systems<int (*)(int, const char*, int, const char*)>("renameat");
+  if (!faults::failsForSystem(faults::Kind::File)) return next(from, name, to, newName);
+  errno = EIO;
+  return -1;
+}
+ssize_t read(int file, void* bytes, std::size_t count) {
+  static const auto next = faults::systems<ssize_t (*)(int, void*, std::size_t)>("read");
+  if (!faults::failsForSystem(faults::Kind::File)) return next(file, bytes, count);
+  errno = EIO;
+  return -1;
+}
+/// Writes a half before it fails, as a disk that becomes full.
+ssize_t write(int file, const void* bytes, std::size_t count) {
+  static const auto next = faults::systems<ssize_t (*)(int, const void*, std::size_t)>("write");
+  if (!faults::failsForSystem(faults::Kind::File)) return next(file, bytes, count);
+  static_cast<void>(next(file, bytes, count / 2));
+  errno = ENOSPC;
+  return -1;
+}
+
+#if !defined(__SANITIZE_THREAD__)  // which replaces it, too
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
+                   void* argument) noexcept {
+  using Function = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+  static const auto next = faults::systems<Function>("pthread_create");
+  if (faults::failsForSystem(faults::Kind::Thread)) return EAGAIN;
+  faults::countThread();
+  return next(thread, attributes, start, argument);
+}
+#endif
+
+}  // extern "C"

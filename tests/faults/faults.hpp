@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Injects faults by number: the n-th opportunity of a kind fails, so that a loop over n tries them all. libepoxy calls the
-// driver through function pointers; they are replaced by functions that count, fail and track GL objects. operator new and
-// posix_memalign are replaced for the whole program. Nothing fails without an armed fault, nor inside the driver.
+// driver through function pointers; they are replaced by functions that count, fail and track GL objects. operator new,
+// posix_memalign, pthread_create and the system's functions for files are replaced for the whole program. Nothing fails without an armed fault, nor inside the driver.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,8 @@ enum class Kind : std::uint8_t {
   Context,  ///< the context is lost: this call and all later ones do nothing
   Host,  ///< an allocation of host memory by the runtime
   HostOfAnyThread,  ///< like Host, also on threads that the runtime starts; not for drivers that have threads
+  File,  ///< a file or folder is not opened, made, renamed, read or written, as on a disk that fails
+  Thread,  ///< a thread is not started
 };
 std::string nameOf(Kind kind);
 
@@ -50,6 +52,9 @@ struct LiveObjects {
   bool operator==(const LiveObjects&) const = default;
 };
 LiveObjects liveObjects();
+
+/// The number of threads that were started on a test's thread while a fault was armed.
+long startedThreads();
 
 /// The number of blocks of host memory that operator new gave to the runtime on a test's thread while a fault was armed and that
 /// have not been freed.

@@ -45,6 +45,8 @@ bool mayThrow(Kind fault, ErrorKind thrown) {
     case Kind::Command:
     case Kind::Host:
     case Kind::HostOfAnyThread: break;
+    case Kind::File:
+    case Kind::Thread: return false;  // the runtime goes on without a cache, and with fewer threads
   }
   return thrown == ErrorKind::Memory;
 }

@@ -17,6 +17,7 @@
 #include <catch2/catch.hpp>
 
 #include "faults.hpp"
+#include "faults.sk.hpp"
 #include "scene.hpp"
 #include "sk/sk.hpp"
 
@@ -152,6 +153,43 @@ TEST_CASE("a trace that cannot begin is an error of the device", "[disk]") {
     }
     CHECK(hasThrown);
   }
+  CHECK(liveObjects() == before);
+}
+
+TEST_CASE("a trace of the device's own times ends where its context is lost", "[disk][lost]") {
+  const Folder folder;
+  const std::string file = folder.file("trace.json");
+  const Variable trace("SK_TRACE", file), clock("SK_TRACE_CLOCK", "timer");
+  const LiveObjects before = liveObjects();
+  bool hasFired = true;
+  int queries = 0;
+  for (long number = 1; hasFired; number += number < 20 ? 1 : 6) {
+    INFO("call " << number);
+    {
+      sk::Device device(
+          {.device = "gl", .profile = "glsl330", .textureLimit = 64});  // so that no copies are timed
+      Scene scene(device, 8);
+      device.finish();
+      const Fault fault(Kind::Context, number);
+      bool hasThrown = false;
+      try {
+        for (int i = 0; i < 2; ++i) {
+          faulty::scale(2.0F, scene.x, scene.r);
+          faulty::scale(2.0F, scene.r, scene.s);
+        }
+        device.finish();
+      } catch (const sk::Error& error) {
+        CHECK(error.kind() == sk::Error::Kind::Lost);
+        hasThrown = true;
+      }
+      hasFired = fault.hasFired();
+      CHECK(hasThrown == hasFired);
+    }
+    const std::string text = textOf(file);
+    CHECK(text.ends_with("}\n]}\n"));
+    queries += text.find("GL timer query") != std::string::npos ? 1 : 0;
+  }
+  CHECK(queries > 0);
   CHECK(liveObjects() == before);
 }
 

@@ -64,13 +64,16 @@ bool sumsEverything(const Reduction& reduction) {
   return scalars == reduction.exact.size();
 }
 
-/// Gives elements to results that have lost theirs: sums are stored one scalar at a time, beside the others.
-void restoreLostResults(const ResolvedReduction& call) {
+/// Gives elements to results that have lost theirs: sums are stored one scalar at a time, beside the others. Until `restored` is
+/// committed, the results are lost if an exception comes.
+void restoreLostResults(const ResolvedReduction& call, WriteScope& restored) {
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     const Parameter& parameter = call.reduction.fold.parameters[i];
     const StreamRegion& region = call.arguments[i].region;
     if (parameter.role != Role::Accumulator || !region.stream->isLost()) continue;
     const std::vector<std::byte> zeros(parameter.element->size);
+    restored.add(region.stream);
+    restored.begin();
     region.stream->fill(region, zeros.data());
   }
 }
@@ -79,10 +82,10 @@ void reduceToStreams(const ResolvedReduction& call) {
   const Reduction& reduction = call.reduction;
   std::vector<Sum> sums;  // compute all sums before storing any: a result may be an input
   for (const ExactSum& sum : reduction.exact) sums.push_back(fold(sum, call));
-  WriteScope writes;
+  WriteScope writes, restored;
   addResults(writes, call);
   if (sumsEverything(reduction)) {
-    restoreLostResults(call);
+    restoreLostResults(call, restored);
   } else {
     call.device.reduce(call);
     writes.begin();
@@ -91,6 +94,7 @@ void reduceToStreams(const ResolvedReduction& call) {
     finish(sums[k], reduction.exact[k], call.arguments);
     writes.begin();
   }
+  restored.commit();
   writes.commit();
 }
 
