@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,25 +24,51 @@ namespace sk {
 
 namespace {
 
-constexpr std::size_t pairCount = 1024;
+constexpr std::int64_t rowLength = 32;
+constexpr std::size_t pairCount = 32 * rowLength;
+constexpr std::int32_t foldCount = 8;
 
-/// The kernel calls the functions that implement pairs of floats (assemble/glsl/doubles.cpp).
+/// The kernel calls the functions that implement pairs of floats (assemble/glsl/doubles.cpp). Like the programs that count on
+/// the barrier, it does so in straight code, in a loop that compilers unroll, and in one that they cannot.
 const program::Kernel& exactSums() {
   using program::Role;
-  static constexpr std::array<program::Parameter, 2> parameters{
+  static constexpr std::array<program::Parameter, 5> parameters{
       {{.name = "x", .symbol = "x", .role = Role::Input, .element = &ElementTraits<float2>::element()},
-       {.name = "r", .symbol = "r", .role = Role::Output, .element = &ElementTraits<float4>::element()}}};
+       {.name = "row",
+        .symbol = "row",
+        .role = Role::Gather,
+        .element = &ElementTraits<float2>::element(),
+        .rank = 2,
+        .usesAt = true},
+       {.name = "count",
+        .symbol = "count",
+        .role = Role::Uniform,
+        .element = &ElementTraits<std::int32_t>::element()},
+       {.name = "r", .symbol = "r", .role = Role::Output, .element = &ElementTraits<float4>::element()},
+       {.name = "s", .symbol = "s", .role = Role::Output, .element = &ElementTraits<float4>::element()}}};
+  static_assert(foldCount == 8 && rowLength == 32);
   static constexpr program::Kernel kernel{
       .name = "exact sums",
       .entry = "sk_exact_sums",
       .declarations = {},
       .body =
-          "void sk_exact_sums(vec2 x, out vec4 r) {\n"
-          "  sk_double s = sk_two_sum(x.x, x.y), p = sk_two_product(x.x, x.y);\n"
-          "  r = vec4(s.hi, s.lo, p.hi, p.lo);\n"
+          "vec2 sk_fold_next(vec2 sum, int k) {\n"
+          "  ivec2 at = sk_index().xy;\n"
+          "  sk_double s = sk_two_sum(sum.x, sk_at_row(ivec2((at.x + k) & 31, at.y)).x);\n"
+          "  return vec2(s.hi, sum.y + s.lo);\n"
+          "}\n"
+          "void sk_exact_sums(vec2 x, int count, out vec4 r, out vec4 s) {\n"
+          "  sk_double a = sk_two_sum(x.x, x.y), p = sk_two_product(x.x, x.y);\n"
+          "  r = vec4(a.hi, a.lo, p.hi, p.lo);\n"
+          "  vec2 unrolled = vec2(x.x, 0.0), looped = unrolled;\n"
+          "  for (int k = 1; k < 8; ++k) unrolled = sk_fold_next(unrolled, k);\n"
+          "  for (int k = 1; k < count; ++k) looped = sk_fold_next(looped, k);\n"
+          "  s = vec4(unrolled, looped);\n"
           "}\n",
       .parameters = parameters,
       .sources = {},
+      .usesIndex = true,
+      .usesLoops = true,
       .usesDoubles = true};
   return kernel;
 }
@@ -96,27 +123,60 @@ float4 exactSumAndProduct(const float2& x) {
 
 namespace {
 
-bool holds(GlDevice& device, Barrier barrier) {
+/// Whether the folds of the row from an element on are right: the sum to the bit, and its rounding errors but for their own.
+bool areFolds(std::span<const float2> given, std::size_t element, const float4& found) {
+  const std::size_t first = element / rowLength * rowLength;
+  float sum = given[element].x, errors = 0, magnitude = 0;
+  for (std::size_t k = 1; k < foldCount; ++k) {
+    const float4 next = exactSumAndProduct({sum, given[first + (element + k) % rowLength].x});
+    sum = next.x;
+    errors += next.y;
+    magnitude += std::abs(next.y);
+  }
+  // Beyond that range, errors are no numbers, or denormal ones, which devices may flush.
+  if (!(std::abs(sum) < 0x1p100F) || !(magnitude > 0x1p-90F)) return true;
+  const float most = magnitude * 0x1p-10F;
+  return found.x == sum && found.z == sum && std::abs(found.y - errors) <= most &&
+         std::abs(found.w - errors) <= most;
+}
+
+/// Whether programs of a target keep the rounding errors.
+bool holds(GlDevice& device, Barrier barrier, Target target) {
   device.barrier = barrier;
   const std::vector<float2> given = trialPairs(pairCount);
-  const Shape shape{32, static_cast<std::int64_t>(given.size()) / 32};
+  const Shape shape{static_cast<std::int64_t>(given.size()) / rowLength, rowLength};
   const auto x = device.createStream(ElementTraits<float2>::element(), shape, Storage::Single);
   const auto r = device.createStream(ElementTraits<float4>::element(), shape, Storage::Single);
-  const std::array<Argument, 2> arguments{
-      {{.region = detail::wholeRegion(x.get())}, {.region = detail::wholeRegion(r.get())}}};
-  std::vector<float4> found(given.size());
+  const auto s = device.createStream(ElementTraits<float4>::element(), shape, Storage::Single);
+  const auto regionOf = [](const auto& stream) {
+    return Argument{.region = detail::wholeRegion(stream.get())};
+  };
+  const std::array<Argument, 5> arguments{
+      regionOf(x), regionOf(x), {.value = &foldCount}, regionOf(r), regionOf(s)};
+  std::vector<float4> found(given.size()), folds(given.size());
   detail::write(arguments[0].region, given.data(), given.size());
   try {
-    device.runUnchecked(exactSums(), arguments, {.precision = Precision::Extended});
+    device.runUnchecked(exactSums(), arguments, {.precision = Precision::Extended, .target = target});
   } catch (const Error& error) {
     if (barrier != Barrier::Precise || error.kind() != Error::Kind::Compile) throw;
     return false;  // the compiler claims to support `precise`, but rejects it
   }
-  detail::read(arguments[1].region, found.data(), found.size());
+  detail::read(arguments[3].region, found.data(), found.size());
+  detail::read(arguments[4].region, folds.data(), folds.size());
   for (std::size_t i = 0; i < given.size(); ++i) {
-    if (found[i] != exactSumAndProduct(given[i])) return false;
+    if (found[i] != exactSumAndProduct(given[i]) || !areFolds(given, i, folds[i])) return false;
   }
   return true;
+}
+
+/// Whether the device also runs compute programs, which drivers compile by other rules.
+bool mayDispatch(const GlDevice& device) {
+  return device.capabilities.hasCompute && device.target != Target::Fragment;
+}
+
+bool holds(GlDevice& device, Barrier barrier) {
+  return holds(device, barrier, Target::Fragment) &&
+         (!mayDispatch(device) || holds(device, barrier, Target::Compute));
 }
 
 std::optional<Barrier> firstThatHolds(GlDevice& device) {
@@ -134,7 +194,7 @@ std::string_view nameOf(Barrier barrier) {
 
 /// The result of an earlier process; nullopt if there is none.
 std::optional<Barrier> kept(const GlDevice& device, std::string_view key) {
-  const std::optional<std::string> text = device.cache.read("barrier", key);
+  const std::optional<std::string> text = device.cache.read("barriers", key);
   if (text == "precise\n" && device.capabilities.hasPrecise) return Barrier::Precise;
   return text == "xor\n" ? std::optional(Barrier::Xor) : std::nullopt;
 }
@@ -142,7 +202,8 @@ std::optional<Barrier> kept(const GlDevice& device, std::string_view key) {
 }  // namespace
 
 Arithmetic probeArithmetic(GlDevice& device) {
-  const std::string key = driverKey(device.name(), device.driver(), device.profileName());
+  const std::string driver = driverKey(device.name(), device.driver(), device.profileName());
+  const std::string key = driver + (mayDispatch(device) ? ", drawn and dispatched" : ", drawn");
   const Barrier strongest = device.barrier;
   std::optional<Barrier> found = kept(device, key);
   if (!found) {
@@ -153,12 +214,12 @@ Arithmetic probeArithmetic(GlDevice& device) {
       throw;
     }
     // failures are not cached, because they may be due to exhausted memory
-    if (found) device.cache.write("barrier", key, std::string(nameOf(*found)) + '\n');
+    if (found) device.cache.write("barriers", key, std::string(nameOf(*found)) + '\n');
   }
   device.barrier = found.value_or(strongest);
   return {.exactSums = found.has_value(),
           .barrier = found.value_or(Barrier::None),
-          .asWritten = device.barrier == Barrier::Xor && computesAsWritten(device, key)};
+          .asWritten = device.barrier == Barrier::Xor && computesAsWritten(device, driver)};
 }
 
 }  // namespace sk
