@@ -28,7 +28,9 @@ struct Streams {
   }
   sk::View<float> columns() { return sk::stride(wide, {1, 2}); }
   sk::View<float> quarter(int row, int column) { return sk::stride(wide, {2, 2}, {row, column}); }
-  sk::View<float> plane() { return volume.domain({1, 0, 0}, {2, viewSide / 2, viewSide}).reshape({viewSide, viewSide / 2}); }
+  sk::View<float> plane() {
+    return volume.domain({1, 0, 0}, {2, viewSide / 2, viewSide}).reshape({viewSide, viewSide / 2});
+  }
 
   sk::Stream<float> x, y, small, wide, volume;
 };

@@ -279,6 +279,7 @@ struct PlainEgl<place, R (*)(A...)> {
   static R call(A... arguments) { return Hook<place>::real(arguments...); }
 };
 
+// clang-format off: one function a line
 #define PLAIN_FUNCTIONS                                                                                     \
   HOOK(glActiveTexture)                                                                                     \
   HOOK(glAttachShader)                                                                                      \
@@ -327,6 +328,7 @@ struct PlainEgl<place, R (*)(A...)> {
   HOOK(eglGetDisplay)                                                                                  \
   HOOK(eglGetError) HOOK(eglGetProcAddress) HOOK(eglInitialize) HOOK(eglMakeCurrent) HOOK(eglQueryAPI) \
       HOOK(eglQueryString)
+// clang-format on
 
 }  // namespace
 

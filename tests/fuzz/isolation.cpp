@@ -79,7 +79,8 @@ void limitMemory(std::uint64_t megabytes) {
     limitTime(0);
     if (!verdict.finding.empty()) reporter.tell('f', number, verdict.finding);
     reporter.tell('t', number, verdict.tally);
-    if (verdict.endsProcess) std::quick_exit(0);  // without a search for leaks, which sanitizers make in _exit, too
+    if (verdict.endsProcess)
+      std::quick_exit(0);  // without a search for leaks, which sanitizers make in _exit, too
   }
   std::exit(0);  // runs the sanitizer's leak check, unlike _exit
 }

@@ -219,7 +219,8 @@ TEST_CASE("operations are computed as they are written, with the bits of native 
 }
 
 bool isSame(float a, float b) {
-  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (std::isnan(a) && std::isnan(b));
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) ||
+         (std::isnan(a) && std::isnan(b));
 }
 
 /// What the kernels of known values compute.

@@ -387,7 +387,8 @@ void ReducePasses::bindValues() {
 void ReducePasses::bindChain(const ReducePass& pass) {
   const auto groups =
       static_cast<std::size_t>(pass.groups.width) * static_cast<std::size_t>(pass.groups.height);
-  const std::size_t bytes = sizeof(std::uint32_t) * (1 + 2 * assemble::accumulatorPlanes(reduction_.fold) * groups);
+  const std::size_t bytes =
+      sizeof(std::uint32_t) * (1 + 2 * assemble::accumulatorPlanes(reduction_.fold) * groups);
   if (!device_.tileResults.bind(device_.bound, bytes)) {
     device_.throwIfLost();
     fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for the results of tiles", device_.name());
