@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,44 +18,67 @@ namespace sk::mpi {
 
 class CallPlan {
  public:
-  /// Collective at the first call of a kernel. Throws sk::Error, on all ranks, if the kernel cannot run on parts.
+  /// Changes nothing. Throws sk::Error if the kernel cannot run on parts: on
+  /// all ranks, if all give the same arguments.
   CallPlan(DomainState& domain, const program::Kernel& kernel, std::span<const Argument> arguments,
            const CallOptions& options);
 
+  /// Whether halos are exchanged.
+  bool hasMessages() const { return !requests_.empty() || !otherRequests_.empty(); }
+  /// What is exchanged, to compare it.
+  std::uint64_t hash() const;
+  /// Makes ready on this rank what may fail: the arrays and buffers of the
+  /// exchanges, and of the call, if it computes. Throws sk::Error.
+  void prepareExchanges();
+  void prepare();
+
   /// Computes the box of the options with these arguments.
   using Compute = std::function<void(std::span<const Argument> arguments, const CallOptions& options)>;
-  void run(const CallOptions& options, const Compute& compute);
-  /// Exchanges the halos that the call needs, and computes nothing.
-  void exchangeHalos() const;
+  /// After prepare(), on all ranks. The account is that of a call that has
+  /// succeeded, even if this one throws.
+  void run(const Compute& compute);
+  /// Exchanges the halos that the call needs, after prepareExchanges(), and
+  /// computes nothing.
+  void exchangeHalos();
 
  private:
   void takeOthers();
   void checkInputs() const;
-  void exchangeOthers() const;
-  void makeRoom(const domain::Depth& further);
+  void startExchanges();
+  void finishOthers();
+  void makeRoom();
   static void addRequest(std::vector<HaloRequest>& requests, DomainStreamState* stream,
                          const domain::Depth& depth);
   domain::Depth depthAfter(const DomainStreamState& stream) const;
+  bool isOneBox() const;
   void replaceArguments();
   bool isAlikeEverywhere() const;
   std::vector<domain::Piece> piecesOf(const Box& box) const;
 
   DomainState& domain_;
   const program::Kernel& kernel_;
+  CallOptions options_;
   std::vector<Argument> arguments_;
   std::vector<SpreadArgument> spread_;
   std::vector<SpreadArgument> others_;  ///< gathers of other domains
   std::vector<HaloRequest> requests_;
   std::vector<HaloRequest> otherRequests_;
+  domain::Depth further_;  ///< deeper than what is read, for later calls
   domain::Depth beyond_;  ///< elements of the halo that are computed, too
   domain::Depth reach_;  ///< how far the call reads around an element
   std::int64_t unit_ = 1;  ///< boxes should begin at multiples of this many elements of the arrays
   Box box_;
   std::vector<DomainStreamState*> swapped_;
+  std::vector<std::unique_ptr<Exchange>> otherExchanges_;
+  std::optional<Exchange> exchange_;
 };
 
-/// For comparing the calls of all ranks.
-std::uint64_t hashOf(const program::Kernel& kernel, const CallOptions& options);
+/// Begins a call: counts it, and says whether the ranks have to compare it.
+Call beginCall(DomainState& domain, const program::Kernel& kernel, const CallOptions& options);
+/// Adds to the hash what SK_CHECK=collectives compares beside the kernel:
+/// values, the box, and which arguments are streams of a domain.
+void addArguments(Call& call, const program::Kernel& kernel, std::span<const Argument> arguments,
+                  const Box& box);
 
 /// The arguments, with this rank's placed streams for those of the domain.
 std::vector<Argument> ownArguments(std::span<const Argument> arguments);

@@ -14,9 +14,8 @@ namespace sk::mpi {
 
 namespace {
 
-std::byte* roomIn(std::vector<std::byte>& buffer, std::size_t bytes) {
+void makeRoom(std::vector<std::byte>& buffer, std::size_t bytes) {
   if (buffer.size() < bytes) buffer.resize(bytes);
-  return buffer.data();
 }
 
 /// The memory of several boxes.
@@ -38,35 +37,50 @@ void addBytes(std::span<Strips> strips, SizeOf&& sizeOf) {
   }
 }
 
+/// Makes room for what all neighbors send and get.
+void makeRoom(DomainState& domain, std::span<const Strips> strips) {
+  for (const Strips& neighbor : strips) {
+    makeRoom(domain.sendBuffers[neighbor.direction], neighbor.sentBytes);
+    makeRoom(domain.receiveBuffers[neighbor.direction], neighbor.receivedBytes);
+  }
+}
+
 /// Native devices send and receive in the streams' own memory where all that a neighbor gets is in one piece.
 class MemoryCarrier final : public Carrier {
  public:
-  MemoryCarrier(DomainState& domain, std::span<Strips> strips) : Carrier(domain, strips) {
+  MemoryCarrier(DomainState& domain, std::span<Strips> strips)
+      : Carrier(domain, strips), sources_(domain.directions.size()), targets_(domain.directions.size()) {
     addBytes(strips, bytesOf);
+    for (const Strips& neighbor : strips) {
+      const std::size_t k = neighbor.direction;
+      sources_[k] = memoryOf(neighbor.sent);
+      targets_[k] = memoryOf(neighbor.received);
+      if (sources_[k].size() > 1) makeRoom(domain.sendBuffers[k], neighbor.sentBytes);
+      if (targets_[k].size() > 1) makeRoom(domain.receiveBuffers[k], neighbor.receivedBytes);
+    }
   }
 
   bool isAtHost() const override { return true; }
   void begin() override {}
-  std::byte* target(const Strips& neighbor) override {
-    std::vector<Span>& spans = targets_[neighbor.direction] = memoryOf(neighbor.received);
-    if (spans.size() == 1) return spans.front().bytes;
-    return roomIn(domain_.receiveBuffers[neighbor.direction], neighbor.receivedBytes);
+  std::byte* target(const Strips& neighbor) noexcept override {
+    const std::vector<Span>& spans = targets_[neighbor.direction];
+    return spans.size() == 1 ? spans.front().bytes : domain_.receiveBuffers[neighbor.direction].data();
   }
   const std::byte* source(const Strips& neighbor) override {
-    const std::vector<Span> spans = memoryOf(neighbor.sent);
+    const std::vector<Span>& spans = sources_[neighbor.direction];
     if (spans.size() == 1) return spans.front().bytes;
-    std::byte* const to = roomIn(domain_.sendBuffers[neighbor.direction], neighbor.sentBytes);
+    std::byte* const to = domain_.sendBuffers[neighbor.direction].data();
     pack(spans, to);
     return to;
   }
   void store() override {
-    for (const auto& [direction, spans] : targets_) {
-      if (spans.size() > 1) unpack(domain_.receiveBuffers[direction].data(), spans);
+    for (std::size_t k = 0; k < targets_.size(); ++k) {
+      if (targets_[k].size() > 1) unpack(domain_.receiveBuffers[k].data(), targets_[k]);
     }
   }
 
  private:
-  std::map<std::size_t, std::vector<Span>> targets_;  ///< by direction
+  std::vector<std::vector<Span>> sources_, targets_;  ///< by direction
 };
 
 /// Programs of the device pack and unpack. Messages have memory of their own: the kernel of an operating system, and network cards,
@@ -75,6 +89,7 @@ class StagedCarrier final : public Carrier {
  public:
   StagedCarrier(DomainState& domain, std::span<Strips> strips) : Carrier(domain, strips) {
     addBytes(strips, [&](const StreamRegion& box) { return toHost().bytesOf(box); });
+    makeRoom(domain, strips);
   }
 
   bool isAtHost() const override { return false; }
@@ -86,12 +101,12 @@ class StagedCarrier final : public Carrier {
     for (const Strips& neighbor : strips_) at = copyAll(toHost(), neighbor.sent, at);
     toHost().flush();
   }
-  std::byte* target(const Strips& neighbor) override {
-    return roomIn(domain_.receiveBuffers[neighbor.direction], neighbor.receivedBytes);
+  std::byte* target(const Strips& neighbor) noexcept override {
+    return domain_.receiveBuffers[neighbor.direction].data();
   }
   const std::byte* source(const Strips& neighbor) override {
     toHost().wait();
-    std::byte* const to = roomIn(domain_.sendBuffers[neighbor.direction], neighbor.sentBytes);
+    std::byte* const to = domain_.sendBuffers[neighbor.direction].data();
     std::memcpy(to, packed_, neighbor.sentBytes);
     packed_ += neighbor.sentBytes;
     return to;
@@ -130,6 +145,7 @@ class ElementCarrier final : public Carrier {
  public:
   ElementCarrier(DomainState& domain, std::span<Strips> strips) : Carrier(domain, strips) {
     addBytes(strips, bytesOf);
+    makeRoom(domain, strips);
   }
 
   bool isAtHost() const override { return false; }
@@ -140,11 +156,11 @@ class ElementCarrier final : public Carrier {
                                                              : detail::readAsync(box));
     }
   }
-  std::byte* target(const Strips& neighbor) override {
-    return roomIn(domain_.receiveBuffers[neighbor.direction], neighbor.receivedBytes);
+  std::byte* target(const Strips& neighbor) noexcept override {
+    return domain_.receiveBuffers[neighbor.direction].data();
   }
   const std::byte* source(const Strips& neighbor) override {
-    std::byte* const all = roomIn(domain_.sendBuffers[neighbor.direction], neighbor.sentBytes);
+    std::byte* const all = domain_.sendBuffers[neighbor.direction].data();
     std::byte* to = all;
     for (std::size_t i = 0; i < neighbor.sent.size(); ++i) {
       take(neighbor.sent[i], std::move(reads_[neighbor.direction][i]), to);
@@ -171,26 +187,16 @@ class ElementCarrier final : public Carrier {
   std::map<std::size_t, std::vector<detail::TransferOwner>> reads_;  ///< by direction
 };
 
-/// Devices of one host may differ: halos are staged where all of them can.
-void chooseStaging(DomainState& domain, DeviceState& device) {
-  HaloStaging& staging = domain.staging;
-  if (std::exchange(staging.isChosen, true)) return;
-  staging.toHost = device.makeStaging(Staging::Way::ToHost);
-  staging.toDevice = device.makeStaging(Staging::Way::ToDevice);
-  const int own = staging.toHost ? 1 : 0;
-  int all = 0;
-  check(MPI_Allreduce(&own, &all, 1, MPI_INT, MPI_MIN, domain.communicator), "an exchange of halos");
-  if (all == 0) staging.toHost = nullptr;
-}
-
 }  // namespace
 
 std::unique_ptr<Carrier> Carrier::of(DomainState& domain, std::span<Strips> strips) {
   const StreamRegion any = domain.streams.front()->placed();
   if (isInMemory(any)) return std::make_unique<MemoryCarrier>(domain, strips);
-  chooseStaging(domain, *any.stream->device);
-  if (domain.staging.toHost) return std::make_unique<StagedCarrier>(domain, strips);
-  return std::make_unique<ElementCarrier>(domain, strips);
+  if (!domain.rankDevice->stagesHalos) return std::make_unique<ElementCarrier>(domain, strips);
+  HaloStaging& staging = domain.staging;
+  if (!staging.toHost) staging.toHost = any.stream->device->makeStaging(Staging::Way::ToHost);
+  if (!staging.toDevice) staging.toDevice = any.stream->device->makeStaging(Staging::Way::ToDevice);
+  return std::make_unique<StagedCarrier>(domain, strips);
 }
 
 }  // namespace sk::mpi

@@ -16,14 +16,16 @@ namespace sk::mpi {
 /// What goes to, and comes from, one neighbor.
 struct Strips {
   std::size_t direction;  ///< in DomainState::directions
-  std::vector<StreamRegion> sent, received;  ///< boxes of streams, in the order of their bytes
+  std::vector<StreamRegion> sent,
+      received;  ///< boxes of streams, in the order of their bytes
   std::size_t sentBytes = 0, receivedBytes = 0;
 };
 
 /// The halos of one exchange. `strips` must outlive it.
 class Carrier {
  public:
-  /// Makes the carrier that suits the devices of all ranks. Collective at the first exchange of a domain.
+  /// Makes the carrier that suits the devices of all ranks, with all host
+  /// memory that it needs.
   static std::unique_ptr<Carrier> of(DomainState& domain, std::span<Strips> strips);
 
   virtual ~Carrier() = default;
@@ -33,10 +35,11 @@ class Carrier {
   /// Whether what is sent is in host memory from the beginning, so that it need not wait for a device.
   virtual bool isAtHost() const = 0;
   /// Where what comes from a neighbor is received.
-  virtual std::byte* target(const Strips& neighbor) = 0;
+  virtual std::byte* target(const Strips& neighbor) noexcept = 0;
   /// Begins to pack what is sent.
   virtual void begin() = 0;
   /// What is sent to a neighbor, of each in turn; waits until it is packed.
+  /// Throws sk::Error if the device cannot pack it.
   virtual const std::byte* source(const Strips& neighbor) = 0;
   /// Stores what has been received, all of it.
   virtual void store() = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "collect.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -29,55 +30,69 @@ void forEachRowOf(const DomainState& domain, int rank, std::size_t size, Visit&&
   }
 }
 
-std::vector<std::byte> bytesOf(const DomainState& domain, int rank, std::size_t size) {
-  const Shape shape = domain::shapeOf(domain.parts.boxOf(rank));
-  return detail::hostVector<std::byte>(static_cast<std::size_t>(shape.size()) * size);
+std::size_t bytesOf(const DomainState& domain, int rank, std::size_t size) {
+  return static_cast<std::size_t>(domain::shapeOf(domain.parts.boxOf(rank)).size()) * size;
 }
 
 }  // namespace
 
-void collect(const DomainState& domain, int root, std::size_t size, std::vector<std::byte> own, void* all) {
-  Messages messages(domain.communicator);
-  if (domain.rank != root) {
-    messages.send(own.data(), own.size(), root, collectTag);
-    return messages.wait();
+Collection::Collection(const DomainState& domain, int root, std::size_t size)
+    : domain_(domain),
+      root_(root),
+      size_(size),
+      own_(detail::hostVector<std::byte>(bytesOf(domain, domain.rank, size))),
+      messages_(domain.communicator, domain.agreement.waitLimit()) {
+  std::size_t largest = own_.size();
+  if (domain.rank == root) {
+    for (int rank = 0; rank < domain.parts.ranks(); ++rank)
+      largest = std::max(largest, bytesOf(domain, rank, size));
+    part_ = detail::hostVector<std::byte>(largest);
   }
-  for (int rank = 0; rank < domain.parts.ranks(); ++rank) {
-    std::vector<std::byte> bytes;
-    if (rank == root) {
-      bytes = std::move(own);
-    } else {
-      bytes = bytesOf(domain, rank, size);
-      messages.receive(bytes.data(), bytes.size(), rank, collectTag);
-      messages.wait();
-    }
-    forEachRowOf(domain, rank, size, [&](std::size_t whole, std::size_t part, std::size_t count) {
-      std::memcpy(static_cast<std::byte*>(all) + whole, bytes.data() + part, count);
-    });
-  }
+  messages_.reserve(largest);
 }
 
-std::vector<std::byte> distribute(const DomainState& domain, int root, std::size_t size, const void* all) {
-  Messages messages(domain.communicator);
-  std::vector<std::byte> own = bytesOf(domain, domain.rank, size);
-  if (domain.rank != root) {
-    messages.receive(own.data(), own.size(), root, collectTag);
-    messages.wait();
-    return own;
+void Collection::collect(std::vector<std::byte> own, void* all) {
+  if (domain_.rank != root_) {
+    messages_.send(own.data(), own.size(), root_, collectTag);
+    return messages_.wait();
   }
-  for (int rank = 0; rank < domain.parts.ranks(); ++rank) {
-    std::vector<std::byte> bytes = bytesOf(domain, rank, size);
-    forEachRowOf(domain, rank, size, [&](std::size_t whole, std::size_t part, std::size_t count) {
-      std::memcpy(bytes.data() + part, static_cast<const std::byte*>(all) + whole, count);
+  Refusal failure;  // of one message: those of the others are received, too
+  for (int rank = 0; rank < domain_.parts.ranks(); ++rank) {
+    const Refusal lost = caught("gather", [&] {
+      if (rank == root_) return;
+      messages_.receive(part_.data(), bytesOf(domain_, rank, size_), rank, collectTag);
+      messages_.wait();
     });
-    if (rank == root) {
-      own = std::move(bytes);
-    } else {
-      messages.send(bytes.data(), bytes.size(), rank, collectTag);
-      messages.wait();
-    }
+    if (lost && !failure) failure = lost;
+    const std::vector<std::byte>& from = rank == root_ ? own : part_;
+    forEachRowOf(domain_, rank, size_, [&](std::size_t whole, std::size_t part, std::size_t count) {
+      std::memcpy(static_cast<std::byte*>(all) + whole, from.data() + part, count);
+    });
   }
-  return own;
+  if (failure) throw Error(*failure);
+}
+
+std::vector<std::byte> Collection::distribute(const void* all) {
+  if (domain_.rank != root_) {
+    messages_.receive(own_.data(), own_.size(), root_, collectTag);
+    messages_.wait();
+    return std::move(own_);
+  }
+  Refusal failure;
+  for (int rank = 0; rank < domain_.parts.ranks(); ++rank) {
+    std::vector<std::byte>& to = rank == root_ ? own_ : part_;
+    forEachRowOf(domain_, rank, size_, [&](std::size_t whole, std::size_t part, std::size_t count) {
+      std::memcpy(to.data() + part, static_cast<const std::byte*>(all) + whole, count);
+    });
+    if (rank == root_) continue;
+    const Refusal lost = caught("scatter", [&] {
+      messages_.send(to.data(), bytesOf(domain_, rank, size_), rank, collectTag);
+      messages_.wait();
+    });
+    if (lost && !failure) failure = lost;
+  }
+  if (failure) throw Error(*failure);
+  return std::move(own_);
 }
 
 }  // namespace sk::mpi

@@ -20,14 +20,14 @@ void detail::DomainDeleter::operator()(DomainState* state) const noexcept { dele
 void detail::DomainDeleter::operator()(DomainStreamState* state) const noexcept { delete state; }
 
 Domain::Domain(MPI_Comm communicator, const DomainOptions& options)
-    : state_(new DomainState(communicator, options)) {}
+    : state_(DomainState::create(communicator, options)) {}
 
 Domain::Domain(const Domain& beside, const DomainOptions& options)
-    : state_(new DomainState(live(beside.state_), options)) {}
+    : state_(DomainState::createBeside(live(beside.state_), options)) {}
 
 detail::DomainStreamOwner Domain::createStream(const program::Element& element, Storage storage,
                                                std::string_view name) {
-  return detail::DomainStreamOwner(new DomainStreamState(live(state_), element, storage, name));
+  return live(state_).createStream(element, storage, name);
 }
 
 const Shape& Domain::shape() const { return live(state_).parts.whole(); }

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "device/stream_state.hpp"
 #include "hash.hpp"
 #include "open_device.hpp"
 #include "sk/error.hpp"
@@ -25,16 +27,17 @@ void checkLauncher(int ranks) {
        {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS", "SLURM_STEP_NUM_TASKS"}) {
     const char* const told = std::getenv(variable);
     if (told == nullptr || std::atoi(told) <= 1) continue;
-    throw Error(
-        fmt::format(
-            "sk::Domain: the launcher has started {} processes ({}), but MPI sees 1 rank: this program was "
-            "built with another MPI; start it with the mpirun of that MPI, or with srun --mpi=pmix",
-            told, variable),
-        Error::Kind::Misuse);
+    throw Error(fmt::format("sk::Domain: the launcher has started {} processes "
+                            "({}), but MPI sees 1 rank: this program was "
+                            "built with another MPI; start it with the mpirun "
+                            "of that MPI, or with srun --mpi=pmix",
+                            told, variable),
+                Error::Kind::Misuse);
   }
 }
 
-MPI_Comm duplicated(MPI_Comm communicator) {
+/// What can only be checked before ranks can be compared.
+void checkMpi(MPI_Comm communicator) {
   int isThere = 0;
   MPI_Initialized(&isThere);
   if (isThere == 0)
@@ -48,21 +51,9 @@ MPI_Comm duplicated(MPI_Comm communicator) {
   int world = 0;
   MPI_Comm_size(MPI_COMM_WORLD, &world);
   checkLauncher(world);
-  MPI_Comm copy = MPI_COMM_NULL;
-  mpi::check(MPI_Comm_dup(communicator, &copy), "sk::Domain");
-  MPI_Comm_set_errhandler(copy, MPI_ERRORS_RETURN);
-  return copy;
 }
 
-int rankIn(MPI_Comm communicator) {
-  int rank = 0;
-  mpi::check(MPI_Comm_rank(communicator, &rank), "sk::Domain");
-  return rank;
-}
-
-domain::Decomposition decompose(const DomainOptions& options, MPI_Comm communicator) {
-  int ranks = 0;
-  mpi::check(MPI_Comm_size(communicator, &ranks), "sk::Domain");
+domain::Decomposition decompose(const DomainOptions& options, int ranks) {
   const Shape& shape = options.shape;
   const auto refuse = [&](const std::string& why) {
     throw Error(fmt::format("sk::Domain: {}", why), Error::Kind::Shape);
@@ -71,49 +62,59 @@ domain::Decomposition decompose(const DomainOptions& options, MPI_Comm communica
     refuse(fmt::format("the shape {} has no element; give extents of at least 1", toString(shape)));
   for (int d = 0; d < shape.rank(); ++d) {
     if (shape[d] > mostExtent)
-      refuse(fmt::format("the shape {} has an extent above {}, where indices end; give it more dimensions",
-                         toString(shape), mostExtent));
+      refuse(
+          fmt::format("the shape {} has an extent above {}, where indices "
+                      "end; give it more dimensions",
+                      toString(shape), mostExtent));
   }
   if (options.exchangeEvery < 1)
     refuse(fmt::format("exchangeEvery is {}; it counts calls, from 1 on", options.exchangeEvery));
   if (options.split.rank() == 0) {
     const std::optional<Index> split = domain::balancedSplit(shape, ranks);
     if (!split)
-      refuse(fmt::format(
-          "a domain of shape {} cannot be divided over {} ranks so that each has an element; start fewer",
-          toString(shape), ranks));
+      refuse(
+          fmt::format("a domain of shape {} cannot be divided over {} ranks "
+                      "so that each has an element; start fewer",
+                      toString(shape), ranks));
     return {shape, *split, options.periodic};
   }
   const Index& split = options.split;
   if (split.rank() != shape.rank())
-    refuse(fmt::format(
-        "the split {} has {} dimensions, but the shape {} has {}; give one number of parts for each",
-        toString(split), split.rank(), toString(shape), shape.rank()));
+    refuse(
+        fmt::format("the split {} has {} dimensions, but the shape {} has "
+                    "{}; give one number of parts for each",
+                    toString(split), split.rank(), toString(shape), shape.rank()));
   std::int64_t product = 1;
   for (int d = 0; d < split.rank(); ++d) {
     if (split[d] < 1 || split[d] > shape[d])
-      refuse(fmt::format(
-          "the split {} has {} parts in dimension {}, where the shape {} has {} elements; give 1 to {}",
-          toString(split), split[d], d, toString(shape), shape[d], shape[d]));
+      refuse(
+          fmt::format("the split {} has {} parts in dimension {}, where the "
+                      "shape {} has {} elements; give 1 to {}",
+                      toString(split), split[d], d, toString(shape), shape[d], shape[d]));
     product *= split[d];
     if (product > ranks) break;
   }
   if (product != ranks)
-    refuse(fmt::format(
-        "the split {} has not as many parts as there are ranks, {}; start another number of ranks, or leave "
-        "the split out",
-        toString(split), ranks));
+    refuse(
+        fmt::format("the split {} has not as many parts as there are ranks, "
+                    "{}; start another number of ranks, or leave "
+                    "the split out",
+                    toString(split), ranks));
   return {shape, split, options.periodic};
 }
 
-std::uint64_t hashOf(const DomainOptions& options, const domain::Decomposition& parts, const Device& device) {
+std::uint64_t hashOf(const DomainOptions& options) {
   mpi::Hash hash;
   hash.add(toString(options.shape));
-  hash.add(toString(parts.split()));
+  hash.add(toString(options.split));
   for (const bool periodic : options.periodic) hash.add(periodic ? 1 : 0);
   hash.add(options.exchangeEvery);
-  hash.add(device.profile() == "native" ? device.name() : std::string_view("GL"));
   return hash.value();
+}
+
+std::string nameOf(const DomainOptions& options) {
+  return fmt::format("a domain of shape {}, split {}, exchangeEvery {}", toString(options.shape),
+                     toString(options.split), options.exchangeEvery);
 }
 
 /// The options of a domain beside another one: parts are those of the other one, if the options do not say how to divide.
@@ -131,54 +132,101 @@ DomainOptions optionsBeside(const DomainState& other, DomainOptions options) {
 
 }  // namespace
 
-DomainState::DomainState(MPI_Comm given, const DomainOptions& chosen) : DomainState(given, chosen, nullptr) {}
+/// What all ranks have agreed on before a domain is made.
+struct DomainState::Start {
+  std::shared_ptr<mpi::Agreement> agreement;
+  DomainOptions options;
+  std::optional<domain::Decomposition> parts;
+  std::shared_ptr<RankDevice> rankDevice;
+  mpi::Communicator communicator{MPI_COMM_NULL};
+};
 
-DomainState::DomainState(const DomainState& beside, const DomainOptions& chosen)
-    : DomainState(beside.communicator, optionsBeside(beside, chosen), beside.rankDevice) {}
+detail::DomainOwner DomainState::create(MPI_Comm given, const DomainOptions& chosen) {
+  checkMpi(given);
+  Start start;
+  std::string name;
+  const mpi::Refusal refusal = mpi::caught("sk::Domain", [&] {
+    start.agreement = std::make_shared<mpi::Agreement>();
+    start.agreement->reserve();
+    start.options = chosen;
+    name = nameOf(chosen);
+  });
+  mpi::Agreement without;
+  mpi::Agreement& agreement = start.agreement ? *start.agreement : without;
+  agreement.open(given, refusal);
+  agreement.count();
+  agreement.together({name, hashOf(chosen)}, [&] {
+    agreement.readEnvironment();
+    start.parts = decompose(chosen, agreement.ranks());
+  });
+  mpi::openDevice(start.rankDevice, agreement, chosen.device);
+  return finish(start, given);
+}
 
-DomainState::DomainState(MPI_Comm given, const DomainOptions& chosen, std::shared_ptr<RankDevice> shared)
-    : communicator(duplicated(given)),
-      rank(rankIn(communicator)),
-      options(chosen),
-      parts(decompose(chosen, communicator)),
+detail::DomainOwner DomainState::createBeside(const DomainState& beside, const DomainOptions& chosen) {
+  Start start;
+  start.agreement = beside.sharedAgreement;
+  start.rankDevice = beside.rankDevice;
+  mpi::Agreement& agreement = *start.agreement;
+  agreement.count();
+  agreement.together({"a domain beside another", hashOf(chosen)}, [&] {
+    start.options = optionsBeside(beside, chosen);
+    start.parts = decompose(start.options, agreement.ranks());
+  });
+  return finish(start, beside.communicator);
+}
+
+detail::DomainOwner DomainState::finish(Start& start, MPI_Comm communicator) {
+  const int status =
+      start.communicator.become([&](MPI_Comm* copy) { return MPI_Comm_dup(communicator, copy); });
+  const std::shared_ptr<mpi::Agreement> agreement = start.agreement;  // a domain that fails destroys its own
+  return agreement->together({"a domain"}, [&] {
+    mpi::check(status, "sk::Domain");
+    MPI_Comm_set_errhandler(start.communicator, MPI_ERRORS_RETURN);
+    return detail::DomainOwner(new DomainState(start));
+  });
+}
+
+DomainState::DomainState(Start& start)
+    : sharedAgreement(std::move(start.agreement)),
+      agreement(*sharedAgreement),
+      communicator(std::move(start.communicator)),
+      rank(agreement.rank()),
+      options(start.options),
+      parts(*start.parts),
       own(parts.boxOf(rank)),
       directions(domain::directionsOf(parts)),
-      rankDevice(shared ? std::move(shared)
-                        : std::make_shared<RankDevice>(
-                              RankDevice{{}, mpi::openDevice(communicator, chosen.device)})),
+      rankDevice(std::move(start.rankDevice)),
       device(rankDevice->device),
       sendBuffers(directions.size()),
       receiveBuffers(directions.size()) {
-  agree(nullptr, hashOf(options, parts, device),
-        fmt::format("a domain of shape {}, split {}, on '{}'", toString(options.shape),
-                    toString(parts.split()), device.name()));
+  agreement.join(*this);
 }
 
 DomainState::~DomainState() {
+  agreement.leave(*this);
   for (DomainStreamState* stream : streams) stream->domain = nullptr;
 }
 
-void DomainState::agree(const void* key, std::uint64_t hash, std::string_view what) {
-  if (!agreed_.insert(key).second) return;
-  const std::uint64_t both[2] = {hash, ~hash};
-  std::uint64_t most[2] = {};
-  mpi::check(MPI_Allreduce(both, most, 2, MPI_UINT64_T, MPI_MAX, communicator), "a domain");
-  if (most[0] == ~most[1]) return;
-  agreed_.erase(key);
-  constexpr std::size_t length = 128;
-  std::string text(what.substr(0, length));
-  text.resize(length);
-  std::vector<std::uint64_t> hashes(static_cast<std::size_t>(parts.ranks()));
-  std::string texts(hashes.size() * length, '\0');
-  mpi::check(MPI_Allgather(&hash, 1, MPI_UINT64_T, hashes.data(), 1, MPI_UINT64_T, communicator), "a domain");
-  mpi::check(MPI_Allgather(text.data(), length, MPI_CHAR, texts.data(), length, MPI_CHAR, communicator),
-             "a domain");
-  const auto other = static_cast<std::size_t>(
-      std::ranges::find_if(hashes, [&](std::uint64_t one) { return one != hashes[0]; }) - hashes.begin());
-  throw Error(fmt::format(
-      "the ranks do not make the same call: rank 0 has {}, rank {} has {}; let all ranks run one program, "
-      "with the same arguments in the same order",
-      texts.c_str(), other, texts.c_str() + other * length));
+void DomainState::forget() noexcept {
+  for (DomainStreamState* stream : streams) stream->valid = {};
+}
+
+detail::DomainStreamOwner DomainState::createStream(const program::Element& element, Storage storage,
+                                                    std::string_view name) {
+  const auto create = [&] {
+    return detail::DomainStreamOwner(new DomainStreamState(*this, element, storage, name));
+  };
+  agreement.count();
+  if (agreement.isAlways()) {
+    mpi::Hash hash;
+    hash.add(element.name);
+    hash.add(static_cast<std::int64_t>(storage));
+    return agreement.together({"a stream of a domain", hash.value()}, create);
+  }
+  detail::DomainStreamOwner stream;
+  agreement.act("a stream of a domain", [&] { stream = create(); });
+  return stream;
 }
 
 const mpi::Communicator& DomainState::lineOf(int dimension) {
@@ -189,17 +237,23 @@ const mpi::Communicator& DomainState::lineOf(int dimension) {
   for (int d = 0; d < place.rank(); ++d) {
     if (d != dimension) color = color * static_cast<int>(parts.split()[d]) + static_cast<int>(place[d]);
   }
-  MPI_Comm line = MPI_COMM_NULL;
-  mpi::check(MPI_Comm_split(communicator, color, static_cast<int>(place[dimension]), &line), "a domain");
-  MPI_Comm_set_errhandler(line, MPI_ERRORS_RETURN);
-  return lines_.try_emplace(dimension, line).first->second;
+  MPI_Comm made = MPI_COMM_NULL;
+  const int status = MPI_Comm_split(communicator, color, static_cast<int>(place[dimension]), &made);
+  mpi::Communicator line(made);
+  agreement.together({"the ranks along a dimension"}, [&] {
+    mpi::check(status, "the ranks along a dimension");
+    MPI_Comm_set_errhandler(line, MPI_ERRORS_RETURN);
+    lines_.try_emplace(dimension, std::move(line));
+  });
+  return lines_.at(dimension);
 }
 
 DomainStreamState* domainStream(const StreamRegion& region) {
   auto* const stream = static_cast<DomainStreamState*>(region.distributed);
   if (stream != nullptr && stream->domain == nullptr) {
     throw Error(
-        "the sk::Domain of a stream has been destroyed; keep the domain for as long as its streams are used",
+        "the sk::Domain of a stream has been destroyed; keep the "
+        "domain for as long as its streams are used",
         Error::Kind::Lost);
   }
   return stream;
@@ -207,7 +261,8 @@ DomainStreamState* domainStream(const StreamRegion& region) {
 
 DomainStreamState& liveStream(DomainStreamState* stream, std::string_view what) {
   if (stream == nullptr) {
-    throw Error(fmt::format("{}: there is no stream: it was default-constructed or moved from; make one by "
+    throw Error(fmt::format("{}: there is no stream: it was "
+                            "default-constructed or moved from; make one by "
                             "domain.stream<T>()",
                             what),
                 Error::Kind::Lost);
@@ -260,7 +315,8 @@ StreamRegion DomainStreamState::part(StreamState* state, const Box& box) const {
 void DomainStreamState::deepen(const Depth& depth) {
   if (allocated.covers(depth)) return;
   const Depth before = allocated;
-  const StreamRegion from = part(domain->own);
+  const Box kept = domain::grown(domain->own, domain->parts.haloOf(domain->rank, valid));
+  const StreamRegion from = part(kept);
   allocated = allocated.with(depth);
   detail::StreamOwner deeper;
   try {
@@ -268,7 +324,7 @@ void DomainStreamState::deepen(const Depth& depth) {
     if (from.stream->isLost()) {
       deeper->markLost();
     } else {
-      detail::copy(from, part(deeper.get(), domain->own));
+      detail::copy(from, part(deeper.get(), kept));
     }
   } catch (...) {
     allocated = before;
@@ -276,11 +332,11 @@ void DomainStreamState::deepen(const Depth& depth) {
   }
   local_ = std::move(deeper);
   spare_ = {};
-  valid = {};
 }
 
 StreamRegion DomainStreamState::spare() {
   if (!spare_) spare_ = create();
+  spare_->setWritten();  // a call that has failed may have left it lost, but nothing of it is read
   return placed(spare_.get());
 }
 

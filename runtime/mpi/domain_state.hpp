@@ -6,19 +6,25 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "agreement.hpp"
 #include "combination.hpp"
 #include "device/staging.hpp"
+#include "device/write_scope.hpp"
 #include "domain/decomposition.hpp"
 #include "messages.hpp"
 #include "sk/mpi.hpp"
 
 namespace sk {
 
-/// A stream's elements of this rank, with a halo around them. All ranks keep the same depths.
+namespace mpi {
+class RankReduction;
+}
+
+/// A stream's elements of this rank, with a halo around them. All ranks keep
+/// the same account of what is valid.
 class DomainStreamState final : public detail::DistributedStream {
  public:
   DomainStreamState(DomainState& domain, const program::Element& element, Storage storage,
@@ -34,15 +40,19 @@ class DomainStreamState final : public detail::DistributedStream {
   /// The elements of a box of the whole, all of which are held.
   StreamRegion part(const Box& box) const;
   StreamRegion part(StreamState* state, const Box& box) const;
-  /// Makes room for a halo; the elements of the rank stay, the halo is invalid afterwards.
+  /// Makes room for a halo. The elements stay, and so does what is valid.
   void deepen(const domain::Depth& depth);
+  /// Calls write(region), which writes all elements of this rank: a lost stream
+  /// is whole again. Ends the halo.
+  template <class Write>
+  void writeOwn(Write&& write);
   /// An array like the one of the elements, to be written while that is read; exchange() then takes it.
   StreamRegion spare();
   void exchange();
 
   DomainState* domain;  ///< null after the domain has ended
   const program::Element& element;
-  domain::Depth allocated;  ///< the depth of the halo where there is a neighbor
+  domain::Depth allocated;  ///< the depth of the halo where there is a neighbor; ranks may differ
   domain::Depth valid;  ///< the depth in which the halo has the elements of the neighbors
 
  private:
@@ -56,22 +66,22 @@ class DomainStreamState final : public detail::DistributedStream {
 
 /// The memory through which halos reach a GL device's streams.
 struct HaloStaging {
-  bool isChosen = false;  ///< whether the ranks have found out if all of them have it
-  std::unique_ptr<Staging> toHost;  ///< null: at least one has not
-  std::unique_ptr<Staging> toDevice;
+  std::unique_ptr<Staging> toHost,
+      toDevice;  ///< null before the first exchange, and if not all ranks have it
 };
 
 /// The device of a rank, which domains beside each other share.
 struct RankDevice {
   std::map<const void*, std::unique_ptr<mpi::Combination>> combinations;  ///< outlive the device
   Device device;
+  bool stagesHalos;  ///< whether the devices of all ranks do; devices of one host may differ
 };
 
-class DomainState final : public detail::Distribution {
+class DomainState final : public detail::Distribution, private mpi::Agreement::Member {
  public:
-  DomainState(MPI_Comm communicator, const DomainOptions& options);
-  /// On the ranks and the device of another domain.
-  DomainState(const DomainState& beside, const DomainOptions& options);
+  /// Collective, as the constructors of sk::Domain.
+  static detail::DomainOwner create(MPI_Comm communicator, const DomainOptions& options);
+  static detail::DomainOwner createBeside(const DomainState& beside, const DomainOptions& options);
   ~DomainState();
   DomainState(const DomainState&) = delete;
   DomainState& operator=(const DomainState&) = delete;
@@ -85,12 +95,15 @@ class DomainState final : public detail::Distribution {
   void scan(const program::Reduction& reduction, std::span<const Argument> arguments,
             const CallOptions& options) override;
 
-  /// Collective where `key` is new: throws sk::Error on all ranks unless all give the same hash. `what` names the call.
-  void agree(const void* key, std::uint64_t hash, std::string_view what);
+  /// Collective where SK_CHECK=collectives asks for it: creates a stream.
+  detail::DomainStreamOwner createStream(const program::Element& element, Storage storage,
+                                         std::string_view name);
 
   /// The ranks along a dimension that have this rank's place in all others, in their order. Collective when it is first asked for.
   const mpi::Communicator& lineOf(int dimension);
 
+  std::shared_ptr<mpi::Agreement> sharedAgreement;  ///< by domains beside each other
+  mpi::Agreement& agreement;
   mpi::Communicator communicator;
   int rank = 0;
   DomainOptions options;
@@ -104,16 +117,34 @@ class DomainState final : public detail::Distribution {
   detail::TransferOwner* later =
       nullptr;  ///< where the next reduction to a value is kept instead of awaited; or null
   HaloStaging staging;  ///< ends before the device
-  std::vector<std::vector<std::byte>> sendBuffers, receiveBuffers;  ///< one for each direction, kept
+  std::vector<std::vector<std::byte>> sendBuffers,
+      receiveBuffers;  ///< one for each direction, kept
 
  private:
-  DomainState(MPI_Comm communicator, const DomainOptions& options, std::shared_ptr<RankDevice> shared);
-  void reduceLater(const program::Reduction& reduction, std::span<const Argument> arguments,
-                   std::span<void* const> results, const CallOptions& options);
+  struct Start;
+  static detail::DomainOwner finish(Start& start, MPI_Comm communicator);
+  explicit DomainState(Start& start);
+  void forget() noexcept override;
+  void checkLater(const program::Reduction& reduction, std::span<void* const> results) const;
+  void keepLater(const program::Reduction& reduction, std::span<void* const> results,
+                 std::unique_ptr<mpi::RankReduction> part);
 
-  std::set<const void*> agreed_;
   std::map<int, mpi::Communicator> lines_;
 };
+
+template <class Write>
+void DomainStreamState::writeOwn(Write&& write) {
+  valid = {};
+  const StreamRegion own = part(domain->own);
+  WriteScope repair;
+  if (own.stream->isLost()) {
+    repair.add(own.stream);
+    repair.begin();
+    own.stream->setWritten();  // its halo is not read
+  }
+  write(own);
+  repair.commit();
+}
 
 /// The stream of an argument, or null if it is no stream of a domain. Throws sk::Error if its domain has ended.
 DomainStreamState* domainStream(const StreamRegion& region);

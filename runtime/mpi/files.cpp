@@ -7,13 +7,16 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <limits>
+#include <optional>
 #include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "device/stream_state.hpp"
 #include "domain_state.hpp"
+#include "hash.hpp"
 #include "npy.hpp"
 #include "sk/error.hpp"
 
@@ -33,21 +36,29 @@ std::string textOf(int status) {
   return text;
 }
 
-/// Collective: throws on all ranks what the first rank that has an error says.
-void agree(const DomainState& domain, const std::string& error) {
-  int mine = error.empty() ? std::numeric_limits<int>::max() : domain.rank, first = 0;
-  mpi::check(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, domain.communicator), "a file");
-  if (first == std::numeric_limits<int>::max()) return;
-  char text[1024] = {};
-  error.copy(text, sizeof text - 1);
-  mpi::broadcast(domain.communicator, first, text, sizeof text);
-  throw Error(domain.parts.ranks() == 1 ? text : fmt::format("{} (rank {})", text, first), Error::Kind::File);
+/// A step of saving or loading.
+mpi::Call stepOf(std::string_view what) {
+  mpi::Hash hash;
+  hash.add(what);
+  return {what, hash.value()};
 }
+
+[[noreturn]] void failForFile(const std::string& text) { throw Error(text, Error::Kind::File); }
 
 /// The place of this rank's elements among all of a file.
 class FileView {
  public:
-  FileView(const DomainState& domain, std::size_t bytes) {
+  FileView(const DomainState& domain, std::size_t bytes)
+      : element_(
+            "a file",
+            [&](MPI_Datatype* type) { return MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, type); }),
+        part_("a file", [&](MPI_Datatype* type) { return makePart(domain, type); }) {}
+
+  MPI_Datatype element() const { return element_; }
+  MPI_Datatype part() const { return part_; }
+
+ private:
+  int makePart(const DomainState& domain, MPI_Datatype* type) const {
     const Shape& whole = domain.parts.whole();
     int extents[maxRank], own[maxRank], begin[maxRank];
     for (int d = 0; d < whole.rank(); ++d) {
@@ -55,46 +66,63 @@ class FileView {
       own[d] = static_cast<int>(domain.own.end[d] - domain.own.begin[d]);
       begin[d] = static_cast<int>(domain.own.begin[d]);
     }
-    MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &element_);
-    MPI_Type_commit(&element_);
-    MPI_Type_create_subarray(whole.rank(), extents, own, begin, MPI_ORDER_C, element_, &part_);
-    MPI_Type_commit(&part_);
+    return MPI_Type_create_subarray(whole.rank(), extents, own, begin, MPI_ORDER_C, element_, type);
   }
-  ~FileView() {
-    MPI_Type_free(&part_);
-    MPI_Type_free(&element_);
-  }
-  FileView(const FileView&) = delete;
-  FileView& operator=(const FileView&) = delete;
 
-  MPI_Datatype element() const { return element_; }
-  MPI_Datatype part() const { return part_; }
+  mpi::Datatype element_, part_;
+};
+
+/// A file of MPI that is closed, which is collective.
+class FileHandle {
+ public:
+  FileHandle() = default;
+  ~FileHandle() {
+    if (file_ != MPI_FILE_NULL) MPI_File_close(&file_);
+  }
+  FileHandle(const FileHandle&) = delete;
+  FileHandle& operator=(const FileHandle&) = delete;
+  operator MPI_File() const { return file_; }
+
+  int open(MPI_Comm communicator, const std::string& name, int mode) {
+    return MPI_File_open(communicator, name.c_str(), mode, MPI_INFO_NULL, &file_);
+  }
+  int close() {
+    const int status = MPI_File_close(&file_);
+    file_ = MPI_FILE_NULL;
+    return status;
+  }
+  bool isOpen() const { return file_ != MPI_FILE_NULL; }
+  /// Some ranks have not opened the file: the others would wait for them in
+  /// MPI_File_close.
+  void leaveOpen() { file_ = MPI_FILE_NULL; }
 
  private:
-  MPI_Datatype element_ = MPI_DATATYPE_NULL, part_ = MPI_DATATYPE_NULL;
+  MPI_File file_ = MPI_FILE_NULL;
 };
 
 /// A file that all ranks have opened.
 class SharedFile {
  public:
-  SharedFile(const DomainState& domain, const std::string& name, int mode, const char* what)
-      : domain_(domain), name_(name), what_(what) {
-    const int status = MPI_File_open(domain.communicator, name.c_str(), mode, MPI_INFO_NULL, &file_);
+  enum class Use : bool { Write, Read };
+
+  /// Collective, as all functions.
+  SharedFile(const DomainState& domain, const std::string& name, Use use)
+      : domain_(domain), name_(name), what_(use == Use::Write ? "write" : "read") {
+    domain_.agreement.together(stepOf("opening a file"), [&] { tryAlone(use); });
+    const int mode = use == Use::Write ? MPI_MODE_CREATE | MPI_MODE_WRONLY : MPI_MODE_RDONLY;
+    const int status = handle_.open(domain.communicator, name, mode);
+    if (domain.agreement.most(handle_.isOpen() ? 0 : 1) != 0) handle_.leaveOpen();
     check(status);
   }
-  ~SharedFile() {
-    if (file_ != MPI_FILE_NULL) MPI_File_close(&file_);
-  }
-  SharedFile(const SharedFile&) = delete;
-  SharedFile& operator=(const SharedFile&) = delete;
 
-  /// Collective.
+  /// Of an older attempt, nothing is kept.
   void writeHeader(const std::string& header) {
-    check(MPI_File_set_size(file_, 0));  // of an older attempt
+    check(MPI_File_set_size(handle_, 0));
     MPI_Status status;
     int error = MPI_SUCCESS;
     if (domain_.rank == 0) {
-      error = MPI_File_write_at(file_, 0, header.data(), static_cast<int>(header.size()), MPI_BYTE, &status);
+      error =
+          MPI_File_write_at(handle_, 0, header.data(), static_cast<int>(header.size()), MPI_BYTE, &status);
     }
     check(error);
   }
@@ -103,53 +131,64 @@ class SharedFile {
   template <class Transfer>
   void each(std::size_t offset, std::size_t elementBytes, std::byte* bytes, std::size_t count,
             Transfer transfer) {
-    const FileView view(domain_, elementBytes);
-    check(MPI_File_set_view(file_, static_cast<MPI_Offset>(offset), view.element(), view.part(), "native",
+    std::optional<FileView> view;
+    domain_.agreement.together(stepOf("a view of a file"), [&] { view.emplace(domain_, elementBytes); });
+    check(MPI_File_set_view(handle_, static_cast<MPI_Offset>(offset), view->element(), view->part(), "native",
                             MPI_INFO_NULL));
     const std::size_t most = std::max<std::size_t>(pieceBytes / elementBytes, 1);
-    unsigned long long pieces = (count + most - 1) / most, all = 0;
-    mpi::check(MPI_Allreduce(&pieces, &all, 1, MPI_UNSIGNED_LONG_LONG, MPI_MAX, domain_.communicator),
-               "a file");
-    std::string error;
+    const std::uint64_t all = domain_.agreement.most((count + most - 1) / most);
+    mpi::Refusal refusal;  // of one piece: those after it are transferred with the other ranks
     for (std::size_t piece = 0; piece < all; ++piece) {
       const std::size_t begin = std::min(piece * most, count);
       const int wanted = static_cast<int>(std::min(most, count - begin));
       MPI_Status status;
-      const int result = transfer(file_, bytes + begin * elementBytes, wanted, view.element(), &status);
+      const int result = transfer(handle_, bytes + begin * elementBytes, wanted, view->element(), &status);
       int done = 0;
-      if (result == MPI_SUCCESS) MPI_Get_count(&status, view.element(), &done);
-      if (!error.empty()) continue;
-      if (result != MPI_SUCCESS) {
-        error = message(result);
-      } else if (done != wanted) {
-        error =
-            fmt::format("cannot {} '{}': only a part of the elements went through; {}", what_, name_, hint());
-      }
+      if (result == MPI_SUCCESS) MPI_Get_count(&status, view->element(), &done);
+      if (refusal) continue;
+      refusal = mpi::caught("a file", [&] {
+        if (result != MPI_SUCCESS) failForFile(message(result));
+        if (done != wanted) {
+          failForFile(fmt::format("cannot {} '{}': only a part of the elements went through; {}", what_,
+                                  name_, hint()));
+        }
+      });
     }
-    agree(domain_, error);
+    domain_.agreement.agree(stepOf(what_), refusal);
   }
 
-  /// Collective. Throws if what was written cannot be stored.
+  /// Throws if what was written cannot be stored.
   void close(bool wasWritten) {
-    const int stored = wasWritten ? MPI_File_sync(file_) : MPI_SUCCESS;
-    const int closed = MPI_File_close(&file_);
-    file_ = MPI_FILE_NULL;
+    const int stored = wasWritten ? MPI_File_sync(handle_) : MPI_SUCCESS;
+    const int closed = handle_.close();
     check(stored != MPI_SUCCESS ? stored : closed);
   }
 
  private:
+  /// Opens the file on this rank alone: MPI may wait for ever where only some
+  /// ranks can.
+  void tryAlone(Use use) const {
+    const int file = use == Use::Write ? ::open(name_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666)
+                                       : ::open(name_.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) failForFile(fmt::format("cannot {} '{}': {}", what_, name_, std::strerror(errno)));
+    ::close(file);
+  }
   std::string hint() const {
     return std::strcmp(what_, "write") == 0 ? "is the disk full?" : "is the file being written?";
   }
   std::string message(int status) const {
     return fmt::format("cannot {} '{}': {}", what_, name_, textOf(status));
   }
-  void check(int status) { agree(domain_, status == MPI_SUCCESS ? "" : message(status)); }
+  void check(int status) {
+    domain_.agreement.together(stepOf(what_), [&] {
+      if (status != MPI_SUCCESS) failForFile(message(status));
+    });
+  }
 
   const DomainState& domain_;
-  const std::string name_;
+  const std::string& name_;
   const char* what_;
-  MPI_File file_ = MPI_FILE_NULL;
+  FileHandle handle_;
 };
 
 /// Whether a file has doubles for floats, because the stream has.
@@ -169,17 +208,17 @@ std::vector<std::byte> bytesOfOwn(const StreamRegion& own, std::size_t elementBy
 
 std::size_t sizeOf(const Shape& whole) { return static_cast<std::size_t>(whole.size()); }
 
-/// Gives a file that has been written its name, if it has as many bytes as it should. Returns "" or what went wrong.
-std::string finish(const std::string& partial, const std::string& file, std::size_t bytes) {
+/// Gives a file that has been written its name, if it has as many bytes as it
+/// should.
+void finish(const std::string& partial, const std::string& file, std::size_t bytes) {
   std::error_code error;
   const auto held = fs::file_size(partial, error);
-  if (error) return fmt::format("cannot write '{}': {}", file, error.message());
-  if (held != bytes) {
-    return fmt::format("cannot write '{}': {} of its {} bytes are there; is the disk full?", file, held,
-                       bytes);
+  if (!error && held != bytes) {
+    failForFile(
+        fmt::format("cannot write '{}': {} of its {} bytes are there; is the disk full?", file, held, bytes));
   }
-  fs::rename(partial, file, error);
-  return error ? fmt::format("cannot write '{}': {}", file, error.message()) : std::string();
+  if (!error) fs::rename(partial, file, error);
+  if (error) failForFile(fmt::format("cannot write '{}': {}", file, error.message()));
 }
 
 /// Why the elements of a file cannot be those of the stream; empty if they can.
@@ -220,22 +259,29 @@ std::string mismatch(const std::string& file, const mpi::NpyArray& wanted, std::
 
 void detail::save(DomainStreamState* stream, const std::string& file) {
   const DomainState& domain = *liveStream(stream, "save").domain;
+  mpi::Agreement& agreement = domain.agreement;
   const StreamRegion own = stream->part(domain.own);
-  const std::size_t size = mpi::elementBytes(stream->element, hasDoubles(own));
-  const std::string header =
-      mpi::npyHeader(mpi::npyArray(stream->element, domain.parts.whole(), hasDoubles(own)));
-  std::vector<std::byte> bytes = bytesOfOwn(own, size);
-  const std::string partial = file + ".partial";
+  std::size_t size = 0;
+  std::string header, partial;
+  std::vector<std::byte> bytes;
+  agreement.count();
+  agreement.together(stepOf("save"), [&] {
+    size = mpi::elementBytes(stream->element, hasDoubles(own));
+    header = mpi::npyHeader(mpi::npyArray(stream->element, domain.parts.whole(), hasDoubles(own)));
+    bytes = bytesOfOwn(own, size);
+    partial = file + ".partial";
+  });
   try {
-    SharedFile shared(domain, partial, MPI_MODE_CREATE | MPI_MODE_WRONLY, "write");
+    SharedFile shared(domain, partial, SharedFile::Use::Write);
     shared.writeHeader(header);
     shared.each(header.size(), size, bytes.data(), static_cast<std::size_t>(own.shape.size()),
                 [](MPI_File to, void* from, int count, MPI_Datatype type, MPI_Status* status) {
                   return MPI_File_write_all(to, from, count, type, status);
                 });
     shared.close(true);
-    agree(domain,
-          domain.rank == 0 ? finish(partial, file, header.size() + sizeOf(domain.parts.whole()) * size) : "");
+    agreement.together(stepOf("save"), [&] {
+      if (domain.rank == 0) finish(partial, file, header.size() + sizeOf(domain.parts.whole()) * size);
+    });
   } catch (...) {
     std::error_code ignored;
     if (domain.rank == 0) fs::remove(partial, ignored);
@@ -245,27 +291,38 @@ void detail::save(DomainStreamState* stream, const std::string& file) {
 
 void detail::load(DomainStreamState* stream, const std::string& file) {
   const DomainState& domain = *liveStream(stream, "load").domain;
+  mpi::Agreement& agreement = domain.agreement;
   const StreamRegion own = stream->part(domain.own);
-  const std::size_t size = mpi::elementBytes(stream->element, hasDoubles(own));
-  const mpi::NpyArray wanted = mpi::npyArray(stream->element, domain.parts.whole(), hasDoubles(own));
-  std::size_t offset = 0;
-  agree(domain, domain.rank == 0 ? mismatch(file, wanted, sizeOf(domain.parts.whole()) * size, offset) : "");
-  mpi::broadcast(domain.communicator, 0, &offset, sizeof offset);
   const auto count = static_cast<std::size_t>(own.shape.size());
-  auto bytes = hostVector<std::byte>(count * size);
+  std::size_t offset = 0, size = 0;
+  std::vector<std::byte> bytes;
+  std::vector<double> values;
+  agreement.count();
+  agreement.together(stepOf("load"), [&] {
+    size = mpi::elementBytes(stream->element, hasDoubles(own));
+    const mpi::NpyArray wanted = mpi::npyArray(stream->element, domain.parts.whole(), hasDoubles(own));
+    if (domain.rank == 0) {
+      const std::string wrong = mismatch(file, wanted, sizeOf(domain.parts.whole()) * size, offset);
+      if (!wrong.empty()) failForFile(wrong);
+    }
+    bytes = hostVector<std::byte>(count * size);
+    if (hasDoubles(own)) values = hostVector<double>(bytes.size() / sizeof(double));
+  });
+  agreement.act("load", [&] { mpi::broadcast(domain.communicator, 0, &offset, sizeof offset); });
   {
-    SharedFile shared(domain, file, MPI_MODE_RDONLY, "read");
+    SharedFile shared(domain, file, SharedFile::Use::Read);
     shared.each(offset, size, bytes.data(), count,
                 [](MPI_File from, void* to, int wantedCount, MPI_Datatype type, MPI_Status* status) {
                   return MPI_File_read_all(from, to, wantedCount, type, status);
                 });
     shared.close(false);
   }
-  const StreamRegion target = ownRegion(stream, true);
-  if (!hasDoubles(target)) return detail::write(target, bytes.data(), count);
-  std::vector<double> values(bytes.size() / sizeof(double));
-  std::memcpy(values.data(), bytes.data(), bytes.size());
-  detail::writeReals(target, values);
+  agreement.together(stepOf("load"), [&] {
+    if (hasDoubles(own)) std::memcpy(values.data(), bytes.data(), bytes.size());
+    stream->writeOwn([&](const StreamRegion& target) {
+      hasDoubles(own) ? writeReals(target, values) : write(target, bytes.data(), count);
+    });
+  });
 }
 
 }  // namespace sk

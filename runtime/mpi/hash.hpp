@@ -11,11 +11,14 @@ namespace sk::mpi {
 class Hash {
  public:
   void add(std::string_view text) {
-    for (const char c : text) addByte(static_cast<unsigned char>(c));
+    addBytes(text);
     addByte(0);
   }
   void add(std::int64_t number) {
     for (int k = 0; k < 8; ++k) addByte(static_cast<unsigned char>(number >> (8 * k)));
+  }
+  void addBytes(std::string_view bytes) {
+    for (const char c : bytes) addByte(static_cast<unsigned char>(c));
   }
   std::uint64_t value() const { return value_; }
 

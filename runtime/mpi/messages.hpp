@@ -6,48 +6,107 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <mpi.h>
+
+#include "wait_limit.hpp"
 
 namespace sk::mpi {
 
 /// Throws sk::Error unless an MPI function has succeeded.
 void check(int status, std::string_view what);
 
+/// Begins an operation of MPI by begin(&request). What MPI refuses, for lack of
+/// memory, say, is tried a second time. Returns an error of that.
+template <class Begin>
+int begun(MPI_Request& request, Begin&& begin) {
+  request = MPI_REQUEST_NULL;
+  if (begin(&request) == MPI_SUCCESS) return MPI_SUCCESS;
+  request = MPI_REQUEST_NULL;
+  return begin(&request);
+}
+
 /// A communicator that is freed, unless MPI has ended.
 class Communicator {
  public:
   explicit Communicator(MPI_Comm communicator) : communicator_(communicator) {}
   ~Communicator();
+  Communicator(Communicator&& other) noexcept
+      : communicator_(std::exchange(other.communicator_, MPI_COMM_NULL)) {}
   Communicator(const Communicator&) = delete;
   Communicator& operator=(const Communicator&) = delete;
   operator MPI_Comm() const { return communicator_; }
+  /// Calls make(&communicator), a function of MPI, for one that is null.
+  /// Returns its status.
+  template <class Make>
+  int become(Make&& make) {
+    return make(&communicator_);
+  }
 
  private:
   MPI_Comm communicator_;
 };
 
+/// A datatype that is freed.
+class Datatype {
+ public:
+  /// `make` is a function of MPI that makes one. Throws sk::Error if it fails.
+  template <class Make>
+  Datatype(std::string_view what, Make&& make) {
+    check(make(&type_), what);
+    if (const int status = MPI_Type_commit(&type_); status != MPI_SUCCESS) {
+      MPI_Type_free(&type_);
+      check(status, what);
+    }
+  }
+  ~Datatype() { MPI_Type_free(&type_); }
+  Datatype(const Datatype&) = delete;
+  Datatype& operator=(const Datatype&) = delete;
+  operator MPI_Datatype() const { return type_; }
+
+ private:
+  MPI_Datatype type_ = MPI_DATATYPE_NULL;
+};
+
 /// The bytes of one piece of a message.
 inline constexpr std::size_t mostBytes = std::size_t{1} << 30;
 
-/// Messages that are under way together.
+/// Messages that are under way together. Each of them is completed, whatever
+/// happens: a later call would take it for its own.
 class Messages {
  public:
-  explicit Messages(MPI_Comm communicator) : communicator_(communicator) {}
+  /// The limit must outlive the messages.
+  Messages(MPI_Comm communicator, const WaitLimit& limit) : communicator_(communicator), limit_(limit) {}
   ~Messages();
   Messages(const Messages&) = delete;
   Messages& operator=(const Messages&) = delete;
 
-  /// Posts a message; the bytes must stay as they are until wait().
+  /// Allocates what a message of so many bytes needs beside them, so that
+  /// posting it allocates nothing.
+  void reserve(std::size_t count);
+  /// Posts a message; the bytes must stay as they are until wait(). What MPI
+  /// refuses is posted a second time. Throws sk::Error if it refuses that, too.
   void send(const void* bytes, std::size_t count, int to, int tag);
   void receive(void* bytes, std::size_t count, int from, int tag);
-  /// Waits for all that have been posted.
+  /// Posts in the place of a message of so many bytes that there is nothing to
+  /// send.
+  void sendNothing(std::size_t count, int to, int tag);
+  /// Waits for all that have been posted. Throws sk::Error if MPI has failed,
+  /// or if a rank had nothing to send.
   void wait();
 
  private:
+  int complete();
+  template <class Post>
+  void post(int expected, Post&& post);
+
   MPI_Comm communicator_;
+  const WaitLimit& limit_;
   std::vector<MPI_Request> requests_;
+  std::vector<MPI_Status> statuses_;
+  std::vector<int> expected_;  ///< bytes of each; of messages that are sent -1
 };
 
 /// Copies bytes from `root` to all ranks.

@@ -7,24 +7,33 @@
 #include <string>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "device/device_state.hpp"
+#include "device/stream_state.hpp"
 #include "gl/displays.hpp"
-#include "sk/error.hpp"
+#include "hash.hpp"
 
 namespace sk::mpi {
 
 namespace {
 
-/// The number of this rank among those on its host.
-int localRank(MPI_Comm communicator) {
-  MPI_Comm host = MPI_COMM_NULL;
-  check(MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host), "sk::Domain");
-  int rank = 0;
-  check(MPI_Comm_rank(host, &rank), "sk::Domain");
-  MPI_Comm_free(&host);
-  return rank;
-}
+/// The ranks on one host.
+struct Host {
+  /// Collective.
+  explicit Host(MPI_Comm all)
+      : ranks(MPI_COMM_NULL), status(ranks.become([&](MPI_Comm* made) {
+          return MPI_Comm_split_type(all, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, made);
+        })) {}
+  /// The number of this rank among them.
+  int rank() const {
+    check(status, "the device of a sk::Domain");
+    int number = 0;
+    check(MPI_Comm_rank(ranks, &number), "the device of a sk::Domain");
+    return number;
+  }
+
+  Communicator ranks;
+  int status;
+};
 
 int gpuCount() {
   if (!gl::whyNoEglLibrary().empty()) return 0;
@@ -34,37 +43,32 @@ int gpuCount() {
       }));
 }
 
-/// Throws on all ranks if a rank has no device, so that none waits for it.
-void checkAll(MPI_Comm communicator, const std::optional<Error>& error) {
-  int rank = 0, failed = 0;
-  check(MPI_Comm_rank(communicator, &rank), "sk::Domain");
-  const int own = error ? rank + 1 : 0;
-  check(MPI_Allreduce(&own, &failed, 1, MPI_INT, MPI_MAX, communicator), "sk::Domain");
-  if (failed == 0) return;
-  if (error)
-    throw Error(fmt::format("sk::Domain: rank {} has no device: {}", rank, error->what()), error->kind());
-  throw Error(fmt::format("sk::Domain: rank {} has no device; its own message says why", failed - 1),
-              Error::Kind::Device);
+/// Whether the device's own programs reach host memory.
+bool canStage(Device& device) {
+  const detail::StreamOwner any = device.createStream(ElementTraits<float>::element(), {1});
+  return any->device->makeStaging(Staging::Way::ToHost) != nullptr;
 }
 
 }  // namespace
 
-Device openDevice(MPI_Comm communicator, const DeviceOptions& options) {
-  const int number = localRank(communicator);
-  const char* const named = std::getenv("SK_DEVICE");
-  const bool isNamed = !options.device.empty() || (named != nullptr && *named != '\0');
-  const int gpus = isNamed ? 0 : gpuCount();
-  DeviceOptions own = options;
-  if (gpus > 1) own.device = "gpu:" + std::to_string(number % gpus);
-  std::optional<Device> device;
-  std::optional<Error> error;
-  try {
-    device.emplace(own);
-  } catch (const Error& thrown) {
-    error = thrown;
-  }
-  checkAll(communicator, error);
-  return std::move(*device);
+void openDevice(std::shared_ptr<RankDevice>& device, Agreement& agreement, const DeviceOptions& options) {
+  const Host host(agreement.communicator());
+  std::string name;
+  agreement.together({"the device of a sk::Domain"}, [&] {
+    const char* const named = std::getenv("SK_DEVICE");
+    const bool isNamed = !options.device.empty() || (named != nullptr && *named != '\0');
+    const int number = host.rank(), gpus = isNamed ? 0 : gpuCount();
+    DeviceOptions own = options;
+    if (gpus > 1) own.device = "gpu:" + std::to_string(number % gpus);
+    Device opened(own);
+    const bool canItStage = canStage(opened);
+    name = opened.profile() == "native" ? opened.name() : "OpenGL";
+    device = std::make_shared<RankDevice>(RankDevice{{}, std::move(opened), canItStage});
+  });
+  Hash hash;
+  hash.add(name);
+  agreement.agree({name, hash.value()}, std::nullopt);
+  device->stagesHalos = agreement.most(device->stagesHalos ? 0 : 1) == 0;
 }
 
 }  // namespace sk::mpi

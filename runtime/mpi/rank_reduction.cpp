@@ -91,8 +91,8 @@ RankReduction::~RankReduction() {
   int isOver = 0;
   MPI_Finalized(&isOver);
   if (isOver != 0) return;
-  MPI_Wait(&wordsRequest_, MPI_STATUS_IGNORE);
-  MPI_Wait(&stepsRequest_, MPI_STATUS_IGNORE);
+  domain_.agreement.abandon(agreed_);
+  complete();
 }
 
 /// Whether parts of ranks are not one after the other in the order of the elements.
@@ -141,7 +141,7 @@ std::byte* RankReduction::valueOf(std::size_t accumulator) {
   return values_[number].data();
 }
 
-void RankReduction::start() {
+void RankReduction::fold() {
   Variant variant = variantOf(call_);  // checks the options, too
   const bool exact = !needsPrecisionVariant(call_.options) && isExact(call_);
   if (exact) {
@@ -149,13 +149,13 @@ void RankReduction::start() {
     variant.options.accumulate = Accumulate::Tree;
   }
   if (!exact || !sumsEverything()) startStep(variant, nullptr, call_.arguments);
-  if (exact) startExactly();
-  if (!steps_.empty()) postSteps();
+  if (exact) foldExactly();
+  if (!steps_.empty()) layOutSteps();
 }
 
-void RankReduction::startExactly() {
-  std::vector<std::int64_t> words = exactWords();
-  if (!words.empty()) return startWords(std::move(words));
+void RankReduction::foldExactly() {
+  words_ = exactWords();
+  if (!words_.empty()) return;
   for (const ExactSum& sum : call_.reduction.exact) {
     std::vector<Argument> inputs;
     for (std::size_t i = 0; i < call_.arguments.size(); ++i) {
@@ -192,8 +192,9 @@ void RankReduction::startStep(const Variant& variant, const ExactSum* digits,
   steps_.push_back(std::move(step));
 }
 
-/// Sends the parts of all steps in one message: those of a rank lie together, step after step.
-void RankReduction::postSteps() {
+/// The parts of all steps travel in one message: those of a rank lie together,
+/// step after step.
+void RankReduction::layOutSteps() {
   std::size_t elementBytes = 0, total = 0;
   for (const std::unique_ptr<Step>& step : steps_) {
     elementBytes += step->elementBytes;
@@ -203,7 +204,8 @@ void RankReduction::postSteps() {
     const std::size_t bytes = static_cast<std::size_t>(partsOf(rank).size()) * elementBytes;
     if (total + bytes > mostBytes)
       fail(Error::Kind::Memory, call_.reduction.fold,
-           "its operation is not known to commute, and with this split there are {} lines of elements to "
+           "its operation is not known to commute, and with this split there "
+           "are {} lines of elements to "
            "combine; divide "
            "the first dimension alone",
            countOfParts());
@@ -212,10 +214,44 @@ void RankReduction::postSteps() {
     total += bytes;
   }
   all_.resize(total);
-  check(MPI_Iallgatherv(own_.data(), static_cast<int>(own_.size()), MPI_BYTE, all_.data(), counts_.data(),
-                        offsets_.data(), MPI_BYTE, domain_.communicator, &stepsRequest_),
-        call_.reduction.fold.name);
-  ++domain_.statistics.reductions;
+}
+
+void RankReduction::post(const Call& call) {
+  Agreement& agreement = domain_.agreement;
+  const std::size_t wordBytes = words_.size() * sizeof(std::int64_t);
+  const bool isTogether = all_.size() <= Agreement::Posted::most && wordBytes <= Agreement::Posted::most;
+  if (isTogether) {
+    agreement.start(agreed_, call, std::nullopt, {.words = words_.size(), .bytes = all_.size()});
+  } else {
+    agreement.agree(call, std::nullopt);
+  }
+  MPI_Comm communicator = agreement.communicator();
+  const auto begin = [&](MPI_Request& request, auto&& operation) {
+    const int status = begun(request, operation);
+    ++domain_.statistics.reductions;
+    if (status == MPI_SUCCESS) return;
+    const Refusal error = caught("", [&] { check(status, call_.reduction.fold.name); });
+    agreement.giveUp(*error);
+    throw Error(*error);
+  };
+  if (!words_.empty()) {
+    begin(wordsRequest_, [&](MPI_Request* request) {
+      return MPI_Iallreduce(MPI_IN_PLACE, words_.data(), static_cast<int>(words_.size()), MPI_INT64_T,
+                            MPI_SUM, communicator, request);
+    });
+  }
+  if (steps_.empty()) return;
+  if (!isTogether) {
+    return begin(stepsRequest_, [&](MPI_Request* request) {
+      return MPI_Iallgatherv(own_.data(), static_cast<int>(own_.size()), MPI_BYTE, all_.data(),
+                             counts_.data(), offsets_.data(), MPI_BYTE, communicator, request);
+    });
+  }
+  std::ranges::copy(own_, all_.begin() + offsets_[static_cast<std::size_t>(domain_.rank)]);
+  begin(stepsRequest_, [&](MPI_Request* request) {
+    return MPI_Iallreduce(MPI_IN_PLACE, all_.data(), static_cast<int>(all_.size()), MPI_BYTE, MPI_BOR,
+                          communicator, request);
+  });
 }
 
 /// The words of all exact sums, or nothing if the device folds them to digits.
@@ -223,7 +259,10 @@ std::vector<std::int64_t> RankReduction::exactWords() {
   std::vector<std::int64_t> all;
   for (const ExactSum& sum : call_.reduction.exact) {
     std::vector<std::int64_t> words = call_.device.exactWords(call_, sum, isFirst());
-    if (words.empty()) return {};
+    if (words.empty()) {
+      wordCounts_.clear();  // digits for all
+      return {};
+    }
     if (!hasElements_) std::ranges::fill(words, 0);
     wordCounts_.push_back(words.size());
     all.insert(all.end(), words.begin(), words.end());
@@ -231,28 +270,39 @@ std::vector<std::int64_t> RankReduction::exactWords() {
   return all;
 }
 
-void RankReduction::startWords(std::vector<std::int64_t>&& words) {
-  words_ = std::move(words);
-  check(MPI_Iallreduce(MPI_IN_PLACE, words_.data(), static_cast<int>(words_.size()), MPI_INT64_T, MPI_SUM,
-                       domain_.communicator, &wordsRequest_),
-        call_.reduction.fold.name);
-  ++domain_.statistics.reductions;
-}
-
 bool RankReduction::isReady() {
-  int isDone = 0;
-  check(MPI_Test(&wordsRequest_, &isDone, MPI_STATUS_IGNORE), call_.reduction.fold.name);
+  int isDone = domain_.agreement.isReady(agreed_) ? 1 : 0;
+  if (isDone != 0) check(MPI_Test(&wordsRequest_, &isDone, MPI_STATUS_IGNORE), call_.reduction.fold.name);
   if (isDone != 0) check(MPI_Test(&stepsRequest_, &isDone, MPI_STATUS_IGNORE), call_.reduction.fold.name);
   return isDone != 0;
 }
 
+/// Ranks that refuse the call take part in these messages, too. Returns an
+/// error of MPI.
+int RankReduction::complete() {
+  const WaitLimit& limit = domain_.agreement.waitLimit();
+  const int words = limit.wait({&wordsRequest_, 1}), steps = limit.wait({&stepsRequest_, 1});
+  return words != MPI_SUCCESS ? words : steps;
+}
+
 void RankReduction::wait() {
-  check(MPI_Wait(&wordsRequest_, MPI_STATUS_IGNORE), call_.reduction.fold.name);
-  check(MPI_Wait(&stepsRequest_, MPI_STATUS_IGNORE), call_.reduction.fold.name);
+  domain_.agreement.wait(agreed_);
+  const int status = complete();
+  if (status == MPI_SUCCESS) return;
+  domain_.agreement.act(call_.reduction.fold.name, [&] { check(status, call_.reduction.fold.name); });
+}
+
+void RankReduction::receive() {
+  wait();
+  domain_.agreement.finish(agreed_);
+}
+
+void RankReduction::take(std::span<void* const> results) {
+  receive();
+  domain_.agreement.act(call_.reduction.fold.name, [&] { finish(results); });
 }
 
 void RankReduction::finish() {
-  wait();
   for (std::size_t k = 0; k < steps_.size(); ++k) finishStep(k);
   finishWords();
 }

@@ -37,13 +37,22 @@ class RankReduction {
   RankReduction(const RankReduction&) = delete;
   RankReduction& operator=(const RankReduction&) = delete;
 
-  /// Folds this rank's elements, and posts what is collective.
-  void start();
+  /// Folds this rank's elements. Throws sk::Error if it cannot.
+  void fold();
+  /// Posts what is collective, on all ranks on which fold() has succeeded; the
+  /// others refuse the call.
+  void post(const Call& call);
   bool isReady();
   void wait();
-  /// Waits, and combines the parts of all ranks, which may read the arguments of the call.
+  /// Waits. Throws sk::Error on all ranks if one of them has refused the call.
+  void receive();
+  /// Combines the parts of all ranks, after receive(). May read the arguments
+  /// of the call.
   void finish();
-  /// The same, and stores the results: one value for each accumulator.
+  /// receive() and finish() of a call that others do not wait for, which stores
+  /// one value for each accumulator.
+  void take(std::span<void* const> results);
+  /// finish(), and stores the results: one value for each accumulator.
   void finish(std::span<void* const> results);
   /// Stores the results to streams of one element, one for each accumulator, after finish(): what was folded in doubles is not rounded to floats before.
   void store(std::span<const StreamRegion> results);
@@ -67,9 +76,9 @@ class RankReduction {
   ResolvedReduction partOf(const Step& step) const;
   void startStep(const Variant& variant, const program::ExactSum* digits,
                  std::span<const Argument> arguments);
-  void postSteps();
-  void startExactly();
-  void startWords(std::vector<std::int64_t>&& words);
+  void layOutSteps();
+  void foldExactly();
+  int complete();
   std::vector<std::int64_t> exactWords();
   Bytes allOf(std::size_t step) const;
   Bytes inOrder(const Bytes& parts, std::size_t elementBytes) const;
@@ -88,6 +97,7 @@ class RankReduction {
   DenseArguments dense_;
   std::vector<std::unique_ptr<Step>> steps_;
   Bytes own_, all_;  ///< the parts of all steps: of this rank, and of all
+  Agreement::Started agreed_;
   std::vector<int> counts_, offsets_;
   MPI_Request stepsRequest_ = MPI_REQUEST_NULL;
   std::vector<std::int64_t> words_;  ///< of all exact sums, if the device keeps them as integers

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -37,7 +38,8 @@ class StreamResults {
       const StreamRegion& region = arguments[i].region;
       if (region.distributed != nullptr || region.shape.size() != 1) {
         fail(Error::Kind::Shape, reduction.fold,
-             "over the ranks of a domain it folds to one value, but '{}' has shape {}; give an ordinary "
+             "over the ranks of a domain it folds to one value, but '{}' has "
+             "shape {}; give an ordinary "
              "stream of one "
              "element, or take the value that the call returns",
              parameter.name, toString(region.shape));
@@ -55,9 +57,9 @@ class StreamResults {
   std::vector<Bytes> bytes_;
 };
 
-/// Starts a reduction to values over the ranks.
-std::unique_ptr<RankReduction> started(DomainState& domain, const Reduction& reduction,
-                                       std::span<const Argument> arguments, const CallOptions& options) {
+/// This rank's part of a reduction to values over the ranks.
+std::unique_ptr<RankReduction> partOf(DomainState& domain, const Reduction& reduction,
+                                      std::span<const Argument> arguments, const CallOptions& options) {
   const Box box = boxOrAll(options.box, domain.parts.whole());
   checkBox(reduction.fold, box, domain.parts.whole());
   const Box own = domain::intersection(domain.own, box);
@@ -65,9 +67,7 @@ std::unique_ptr<RankReduction> started(DomainState& domain, const Reduction& red
   others.box = {};
   const Box folded = domain::isEmpty(own) ? domain.own : own;
   const BoxedArguments local = argumentsIn(reduction.fold, mpi::ownArguments(arguments), folded);
-  auto reductionOfAll = std::make_unique<RankReduction>(domain, reduction, local, others, box);
-  reductionOfAll->start();
-  return reductionOfAll;
+  return std::make_unique<RankReduction>(domain, reduction, local, others, box);
 }
 
 /// Stores this rank's part of the outputs of a kernel with folded outputs.
@@ -93,58 +93,132 @@ class PendingReduction final : public TransferState {
   void wait() override { reduction_->wait(); }
   void take(std::byte* value) override {
     void* const values[] = {value};
-    reduction_->finish(values);
+    reduction_->take(values);
   }
 
  private:
   std::unique_ptr<RankReduction> reduction_;
 };
 
-/// What every call does first: compares what the ranks call, and exchanges the halos of gathers.
-void begin(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments,
-           const CallOptions& options) {
-  mpi::refuseRecording(domain, reduction.fold);
-  domain.agree(&reduction, mpi::hashOf(reduction.fold, options), reduction.fold.name);
-  const std::vector<mpi::SpreadArgument> spread = mpi::spreadArguments(domain, reduction.fold, arguments);
-  if (domain.parts.ranks() > 1 && std::ranges::any_of(spread, &mpi::SpreadArgument::isGather))
-    mpi::CallPlan(domain, reduction.fold, arguments, options).exchangeHalos();
-}
+/// A call of a reduction or of a kernel with folded outputs.
+class Fold {
+ public:
+  Fold(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments,
+       const CallOptions& options)
+      : domain_(domain),
+        reduction_(reduction),
+        arguments_(arguments),
+        options_(options),
+        call_(mpi::beginCall(domain, reduction.fold, options)) {
+    if (domain.agreement.isAlways()) mpi::addArguments(call_, reduction.fold, arguments, options.box);
+  }
+
+  /// Checks what this rank can, and exchanges the halos of gathers. The first
+  /// call that fails is kept for start().
+  template <class Check>
+  void prepare(Check&& check) {
+    std::optional<mpi::CallPlan> plan;
+    refusal_ = mpi::caught(name(), [&] {
+      mpi::refuseRecording(domain_, reduction_.fold);
+      const std::vector<mpi::SpreadArgument> spread =
+          mpi::spreadArguments(domain_, reduction_.fold, arguments_);
+      check();
+      if (domain_.parts.ranks() == 1 || std::ranges::none_of(spread, &mpi::SpreadArgument::isGather)) return;
+      plan.emplace(domain_, reduction_.fold, arguments_, options_);
+      plan->prepareExchanges();
+    });
+    if (!plan || !plan->hasMessages()) return;
+    mpi::Call call = call_;
+    call.detail ^= plan->hash();
+    domain_.agreement.agree(call, std::exchange(refusal_, std::nullopt));
+    refusal_ = mpi::caught(name(), [&] { plan->exchangeHalos(); });
+  }
+
+  /// Folds this rank's elements, and posts what is collective. Throws sk::Error
+  /// on all ranks, here or when they wait, if one of them cannot.
+  std::unique_ptr<RankReduction> start(std::span<const Argument> arguments) {
+    std::unique_ptr<RankReduction> part;
+    if (!refusal_) {
+      refusal_ = mpi::caught(name(), [&] {
+        part = partOf(domain_, reduction_, arguments, options_);
+        part->fold();
+      });
+    }
+    if (refusal_) {
+      domain_.agreement.agree(call_, refusal_);
+    } else {
+      part->post(call_);
+    }
+    return part;
+  }
+
+  /// What needs no other rank.
+  template <class Act>
+  void act(Act&& act) {
+    if (refusal_) domain_.agreement.failAlone(*refusal_);
+    domain_.agreement.act(name(), act);
+  }
+
+ private:
+  std::string_view name() const { return reduction_.fold.name; }
+
+  DomainState& domain_;
+  const Reduction& reduction_;
+  const std::span<const Argument> arguments_;
+  const CallOptions& options_;
+  mpi::Call call_;
+  mpi::Refusal refusal_;
+};
 
 }  // namespace
 
 void DomainState::reduce(const Reduction& reduction, std::span<const Argument> arguments,
                          std::span<void* const> results, const CallOptions& chosen) {
-  begin(*this, reduction, arguments, chosen);
-  if (results.empty()) {
-    const StreamResults targets(reduction, arguments);
-    if (later != nullptr) return reduceLater(reduction, arguments, targets.values, chosen);
-    if (parts.ranks() == 1) {
-      std::vector<Argument> own = mpi::ownArguments(arguments);
-      for (std::size_t i = 0; i < own.size(); ++i) {
-        if (reduction.fold.parameters[i].role == Role::Accumulator)  // one element in any rank
-          own[i].region = detail::reshaped(own[i].region, Shape{1});
-      }
-      return sk::reduce(reduction, own, chosen);
-    }
-    const std::unique_ptr<RankReduction> all = started(*this, reduction, arguments, chosen);
-    all->finish();
-    return all->store(targets.regions);
+  Fold call(*this, reduction, arguments, chosen);
+  std::optional<StreamResults> targets;
+  call.prepare([&] {
+    if (results.empty()) targets.emplace(reduction, arguments);
+    if (later != nullptr) checkLater(reduction, results.empty() ? targets->values : results);
+  });
+  if (later != nullptr) {
+    std::unique_ptr<RankReduction> part = call.start(arguments);
+    return call.act(
+        [&] { keepLater(reduction, results.empty() ? targets->values : results, std::move(part)); });
   }
-  if (later != nullptr) return reduceLater(reduction, arguments, results, chosen);
-  if (parts.ranks() == 1) return sk::reduce(reduction, mpi::ownArguments(arguments), results, chosen);
-  started(*this, reduction, arguments, chosen)->finish(results);
+  if (parts.ranks() == 1) {
+    return call.act([&] {
+      std::vector<Argument> mine = mpi::ownArguments(arguments);
+      if (!results.empty()) return sk::reduce(reduction, mine, results, chosen);
+      for (std::size_t i = 0; i < mine.size(); ++i) {
+        if (reduction.fold.parameters[i].role == Role::Accumulator)  // one element in any rank
+          mine[i].region = detail::reshaped(mine[i].region, Shape{1});
+      }
+      sk::reduce(reduction, mine, chosen);
+    });
+  }
+  const std::unique_ptr<RankReduction> all = call.start(arguments);
+  all->receive();
+  call.act([&] {
+    if (!results.empty()) return all->finish(results);
+    all->finish();
+    all->store(targets->regions);
+  });
+}
+
+/// The stub that has called gets zeros.
+void DomainState::checkLater(const Reduction& reduction, std::span<void* const> results) const {
+  if (results.size() == 1 && !*later) return;
+  fail(reduction.fold,
+       "later() starts one reduction that has one result; call "
+       "it for each, or call the reduction itself");
 }
 
 /// Keeps the reduction for the future of detail::later(); the stub that has called gets zeros.
-void DomainState::reduceLater(const Reduction& reduction, std::span<const Argument> arguments,
-                              std::span<void* const> results, const CallOptions& chosen) {
-  if (results.size() != 1 || *later) {
-    fail(reduction.fold,
-         "later() starts one reduction that has one result; call it for each, or call the reduction itself");
-  }
+void DomainState::keepLater(const Reduction& reduction, std::span<void* const> results,
+                            std::unique_ptr<RankReduction> part) {
   const auto accumulator = std::ranges::find(reduction.fold.parameters, Role::Accumulator, &Parameter::role);
   std::memset(results[0], 0, accumulator->element->size);
-  *later = detail::TransferOwner(new PendingReduction(started(*this, reduction, arguments, chosen)));
+  *later = detail::TransferOwner(new PendingReduction(std::move(part)));
 }
 
 detail::TransferOwner detail::later(DomainState* domain, void (*call)(void*), void* context) {
@@ -161,38 +235,46 @@ detail::TransferOwner detail::later(DomainState* domain, void (*call)(void*), vo
   domain->later = nullptr;
   if (!started)
     throw Error(
-        "Domain::later: no reduction of a stream of this domain was called; give one, and its arguments");
+        "Domain::later: no reduction of a stream of this domain was "
+        "called; give one, and its arguments");
   return started;
 }
 
 void DomainState::fold(const Reduction& reduction, std::span<const Argument> arguments,
                        const CallOptions& chosen) {
-  begin(*this, reduction, arguments, chosen);
-  const StreamResults targets(reduction, arguments);
-  if (parts.ranks() == 1) {
-    sk::fold(reduction, mpi::ownArguments(arguments), chosen);
-  } else {
-    const bool isTogether = device.profile() == "native" && chosen.accumulate != Accumulate::Exact &&
-                            !needsPrecisionVariant(chosen);
-    if (isTogether) {  // native code stores elements while it folds
-      const std::unique_ptr<RankReduction> all = started(*this, reduction, arguments, chosen);
-      all->finish();
-      all->store(targets.regions);
-    } else {  // values are not stored yet, so that the kernel may overwrite what is folded
-      std::vector<Argument> inputs(arguments.begin(), arguments.end());
-      for (std::size_t i = 0; i < inputs.size(); ++i) {
-        if (reduction.fold.parameters[i].role == Role::Output) inputs[i].region.distributed = nullptr;
-      }
-      const std::unique_ptr<RankReduction> all = started(*this, reduction, inputs, chosen);
-      all->finish();
-      storeOwnOutputs(*this, reduction, arguments, chosen);
-      all->store(targets.regions);
+  Fold call(*this, reduction, arguments, chosen);
+  std::optional<StreamResults> targets;
+  // Native code stores elements while it folds. Otherwise, values are not stored yet, so that the kernel may overwrite what is folded.
+  const bool isTogether = device.profile() == "native" && chosen.accumulate != Accumulate::Exact &&
+                          !needsPrecisionVariant(chosen);
+  std::vector<Argument> inputs;
+  call.prepare([&] {
+    targets.emplace(reduction, arguments);
+    inputs.assign(arguments.begin(), arguments.end());
+    for (std::size_t i = 0; i < inputs.size() && !isTogether; ++i) {
+      if (reduction.fold.parameters[i].role == Role::Output) inputs[i].region.distributed = nullptr;
     }
+  });
+  const auto forgetHalos = [&] {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      if (reduction.fold.parameters[i].role != Role::Output) continue;
+      if (DomainStreamState* const stream = domainStream(arguments[i].region)) stream->valid = {};
+    }
+  };
+  if (parts.ranks() == 1) {
+    return call.act([&] {
+      forgetHalos();
+      sk::fold(reduction, mpi::ownArguments(arguments), chosen);
+    });
   }
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (reduction.fold.parameters[i].role != Role::Output) continue;
-    if (DomainStreamState* const stream = domainStream(arguments[i].region)) stream->valid = {};
-  }
+  const std::unique_ptr<RankReduction> all = call.start(inputs);
+  all->receive();
+  call.act([&] {
+    forgetHalos();
+    all->finish();
+    if (!isTogether) storeOwnOutputs(*this, reduction, arguments, chosen);
+    all->store(targets->regions);
+  });
 }
 
 }  // namespace sk

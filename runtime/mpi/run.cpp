@@ -5,6 +5,7 @@
 #include "call_plan.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -100,7 +101,8 @@ void checkThickness(const DomainState& domain, const Kernel& kernel, const progr
                        least = domain.parts.leastExtent(d);
     if (deepest <= least) continue;
     fail(Error::Kind::Shape, kernel,
-         "'{}' needs a halo of {} element(s) along {}{}, but rank {} has {} of the {} there; start fewer "
+         "'{}' needs a halo of {} element(s) along {}{}, but rank {} has {} of "
+         "the {} there; start fewer "
          "ranks, or divide "
          "another dimension",
          parameter.name, deepest, "xyzw"[domain.parts.whole().rank() - 1 - d],
@@ -113,6 +115,24 @@ void checkThickness(const DomainState& domain, const Kernel& kernel, const progr
 
 namespace mpi {
 
+namespace {
+
+/// Which kernel and which options they are, in this process: as cheap as an
+/// address, but not that of a library that was unloaded.
+std::uint64_t idOf(const Kernel& kernel, const CallOptions& options) {
+  std::uint64_t id = reinterpret_cast<std::uintptr_t>(&kernel);
+  const auto mix = [&](std::uint64_t number) {
+    id = (id ^ number) * 0x9e3779b97f4a7c15;
+    id ^= id >> 32;
+  };
+  mix(reinterpret_cast<std::uintptr_t>(kernel.body.data()));
+  mix(kernel.body.size() << 32 | kernel.declarations.size() << 8 | kernel.parameters.size());
+  mix(static_cast<std::uint64_t>(options.precision) << 32 |
+      static_cast<std::uint64_t>(options.accumulate) << 16 | static_cast<std::uint64_t>(options.scan) << 8 |
+      static_cast<std::uint64_t>(options.along.value_or(-1) + 1));
+  return id | 1;
+}
+
 std::uint64_t hashOf(const Kernel& kernel, const CallOptions& options) {
   Hash hash;
   hash.add(kernel.name);
@@ -124,6 +144,40 @@ std::uint64_t hashOf(const Kernel& kernel, const CallOptions& options) {
   hash.add(static_cast<std::int64_t>(options.scan));
   hash.add(options.along.value_or(-1));
   return hash.value();
+}
+
+void add(Hash& hash, const Index& index) {
+  hash.add(index.rank());
+  for (int d = 0; d < index.rank(); ++d) hash.add(index[d]);
+}
+
+/// Whether calls of the kernel may exchange halos at all.
+bool readsNeighbors(const Kernel& kernel) {
+  return std::ranges::any_of(kernel.parameters, [](const program::Parameter& parameter) {
+    return parameter.role == Role::Gather && !parameter.halo.empty();
+  });
+}
+
+}  // namespace
+
+Call beginCall(DomainState& domain, const Kernel& kernel, const CallOptions& options) {
+  return domain.agreement.begin(kernel.name, idOf(kernel, options), [&] { return hashOf(kernel, options); });
+}
+
+void addArguments(Call& call, const Kernel& kernel, std::span<const Argument> arguments, const Box& box) {
+  Hash hash;
+  hash.add(static_cast<std::int64_t>(call.detail));
+  add(hash, box.begin);
+  add(hash, box.end);
+  for (std::size_t i = 0; i < arguments.size() && i < kernel.parameters.size(); ++i) {
+    hash.add(arguments[i].region.distributed != nullptr ? 1 : 0);
+    hash.add(toString(arguments[i].region.shape));
+    if (arguments[i].value == nullptr) continue;
+    const program::Parameter& parameter = kernel.parameters[i];
+    const std::size_t ends = parameter.role == Role::Iterator ? 2 : 1;
+    hash.addBytes({static_cast<const char*>(arguments[i].value), ends * parameter.element->size});
+  }
+  call.detail = hash.value();
 }
 
 std::vector<Argument> ownArguments(std::span<const Argument> arguments) {
@@ -139,7 +193,8 @@ void refuseRecording(DomainState& domain, const Kernel& kernel) {
   for (const DomainStreamState* stream : domain.streams) {
     if (stream->placed().stream->device->recording == nullptr) return;
     fail(kernel,
-         "a call on a stream of a sk::Domain cannot be recorded, because the ranks exchange elements in it; "
+         "a call on a stream of a sk::Domain cannot be recorded, "
+         "because the ranks exchange elements in it; "
          "call it "
          "outside of Device::record");
   }
@@ -147,22 +202,22 @@ void refuseRecording(DomainState& domain, const Kernel& kernel) {
 
 CallPlan::CallPlan(DomainState& domain, const Kernel& kernel, std::span<const Argument> arguments,
                    const CallOptions& options)
-    : domain_(domain), kernel_(kernel), arguments_(arguments.begin(), arguments.end()) {
+    : domain_(domain), kernel_(kernel), options_(options), arguments_(arguments.begin(), arguments.end()) {
   refuseRecording(domain, kernel);
-  domain.agree(&kernel, hashOf(kernel, options), kernel.name);
   spread_ = spreadArguments(domain, kernel, arguments);
   takeOthers();
   for (const SpreadArgument& one : spread_) reach_ = reach_.with(one.depth);
   const int every = others_.empty() ? domain.options.exchangeEvery : 1;
-  const Depth further = times(reach_, every - 1);
-  makeRoom(further);
+  further_ = times(reach_, every - 1);
   bool needsExchange = false;
-  for (const SpreadArgument& one : spread_)
+  for (const SpreadArgument& one : spread_) {
     needsExchange = needsExchange || (!one.isWritten && !one.stream->valid.covers(one.depth));
+    if (!isInMemory(one.stream->placed())) unit_ = group;
+  }
   bool isFirst = true;
   for (const SpreadArgument& one : spread_) {
     if (one.isWritten) continue;
-    const Depth depth = sum(further, one.depth);
+    const Depth depth = sum(further_, one.depth);
     if (needsExchange && !one.stream->valid.covers(depth)) {
       checkThickness(domain, kernel, kernel.parameters[one.index], depth);
       addRequest(requests_, one.stream, depth);
@@ -171,10 +226,6 @@ CallPlan::CallPlan(DomainState& domain, const Kernel& kernel, std::span<const Ar
     beyond_ = std::exchange(isFirst, false) ? beyond : least(beyond_, beyond);
   }
   if (every == 1 || !options.box.isWhole()) beyond_ = {};
-  for (const HaloRequest& request : requests_) request.stream->deepen(request.depth);
-  for (const SpreadArgument& one : spread_) {
-    if (one.isWritten) one.stream->deepen(beyond_);
-  }
   box_ = options.box.isWhole() ? domain::grown(domain.own, domain.parts.haloOf(domain.rank, beyond_))
                                : domain::intersection(domain.own, options.box);
 }
@@ -191,38 +242,82 @@ void CallPlan::takeOthers() {
     checkThickness(*one.stream->domain, kernel_, kernel_.parameters[one.index], one.depth);
     addRequest(otherRequests_, one.stream, one.depth);
   }
+}
+
+std::uint64_t CallPlan::hash() const {
+  Hash hash;
+  for (const std::vector<HaloRequest>& requests : {std::cref(requests_), std::cref(otherRequests_)}) {
+    hash.add(static_cast<std::int64_t>(requests.size()));
+    for (const HaloRequest& request : requests) {
+      hash.add(request.stream->element.name);
+      for (const std::int64_t depth : request.depth.below) hash.add(depth);
+      for (const std::int64_t depth : request.depth.above) hash.add(depth);
+    }
+  }
+  return hash.value();
+}
+
+/// Makes room for the halos that this call and the ones like it need.
+void CallPlan::makeRoom() {
   for (const auto& [stream, depth] : otherRequests_) {
     const std::int64_t unit = isInMemory(stream->placed()) ? 1 : group;
     const Depth needed = depth.with(stream->allocated);
     stream->deepen(roomFor(stream->domain->parts, needed, roundedUp(needed, unit)));
   }
+  if (domain_.parts.ranks() > 1) {
+    Depth common;
+    for (const SpreadArgument& one : spread_) {
+      common = common.with(one.stream->allocated);
+      if (!one.isWritten) common = common.with(sum(further_, one.depth));
+    }
+    common = roundedUp(common, unit_);
+    for (const SpreadArgument& one : spread_)
+      one.stream->deepen(roomFor(domain_.parts, one.stream->allocated, common));
+  }
+  for (const HaloRequest& request : requests_) request.stream->deepen(request.depth);
+  for (const SpreadArgument& one : spread_) {
+    if (one.isWritten) one.stream->deepen(beyond_);
+  }
 }
 
 /// One message to each neighbor for all streams of a domain.
-void CallPlan::exchangeOthers() const {
+void CallPlan::prepareExchanges() {
+  checkInputs();
+  makeRoom();
   std::vector<HaloRequest> rest = otherRequests_;
   while (!rest.empty()) {
     DomainState& domain = *rest.front().stream->domain;
     const auto end = std::stable_partition(rest.begin(), rest.end(), [&](const HaloRequest& request) {
       return request.stream->domain == &domain;
     });
-    Exchange(domain, {rest.begin(), end}).finish();
+    otherExchanges_.push_back(
+        std::make_unique<Exchange>(domain, std::vector<HaloRequest>(rest.begin(), end)));
     rest.erase(rest.begin(), end);
+  }
+  if (!requests_.empty()) exchange_.emplace(domain_, requests_);
+}
+
+bool CallPlan::isOneBox() const { return !options_.box.isWhole() || domain_.parts.ranks() == 1; }
+
+void CallPlan::prepare() {
+  prepareExchanges();
+  if (isOneBox()) {
+    arguments_ = ownArguments(arguments_);
+  } else {
+    replaceArguments();
   }
 }
 
-/// Makes room for the halos that this call and the ones like it need. What deepens a stream ends its halo.
-void CallPlan::makeRoom(const Depth& further) {
-  if (domain_.parts.ranks() == 1) return;
-  Depth common;
-  for (const SpreadArgument& one : spread_) {
-    common = common.with(one.stream->allocated);
-    if (!one.isWritten) common = common.with(sum(further, one.depth));
-    if (!isInMemory(one.stream->placed())) unit_ = group;
+void CallPlan::startExchanges() {
+  for (const std::unique_ptr<Exchange>& exchange : otherExchanges_) exchange->start();
+  if (exchange_) exchange_->start();
+  for (const std::vector<HaloRequest>& requests : {std::cref(requests_), std::cref(otherRequests_)}) {
+    for (const HaloRequest& request : requests) request.stream->valid = request.depth;
   }
-  common = roundedUp(common, unit_);
-  for (const SpreadArgument& one : spread_)
-    one.stream->deepen(roomFor(domain_.parts, one.stream->allocated, common));
+}
+
+void CallPlan::finishOthers() {
+  for (const std::unique_ptr<Exchange>& exchange : otherExchanges_) exchange->finish();
 }
 
 void CallPlan::addRequest(std::vector<HaloRequest>& requests, DomainStreamState* stream, const Depth& depth) {
@@ -285,32 +380,29 @@ void CallPlan::checkInputs() const {
   }
 }
 
-void CallPlan::exchangeHalos() const {
-  checkInputs();
-  exchangeOthers();
-  if (!requests_.empty()) Exchange(domain_, requests_).finish();
+void CallPlan::exchangeHalos() {
+  startExchanges();
+  finishOthers();
+  if (exchange_) exchange_->finish();
 }
 
-void CallPlan::run(const CallOptions& options, const Compute& compute) {
-  checkInputs();
-  exchangeOthers();
-  const bool isOneBox = !options.box.isWhole() || domain_.parts.ranks() == 1;
-  if (isOneBox) {
-    arguments_ = ownArguments(arguments_);
-  } else {
-    replaceArguments();
+void CallPlan::run(const Compute& compute) {
+  startExchanges();
+  for (const SpreadArgument& one : spread_) {
+    if (one.isWritten) one.stream->valid = beyond_;
   }
+  finishOthers();
   WriteScope writes, repairs;
   for (const SpreadArgument& one : spread_) {
     if (!one.isWritten || std::ranges::find(swapped_, one.stream) != swapped_.end()) continue;
     StreamState* const written = one.stream->placed().stream;
     writes.add(written);
-    if (!written->isLost() || !options.box.isWhole()) continue;
+    if (!written->isLost() || !options_.box.isWhole()) continue;
     repairs.add(written);  // all of its elements come, if not in one box
     repairs.begin();
     written->setWritten();
   }
-  CallOptions part = options;
+  CallOptions part = options_;
   const auto computeBox = [&](const Box& box) {
     for (const domain::Piece& piece : piecesOf(box)) {
       std::vector<Argument> moved = arguments_;
@@ -323,32 +415,41 @@ void CallPlan::run(const CallOptions& options, const Compute& compute) {
       writes.begin();  // until the other boxes are there, too
     }
   };
-  if (requests_.empty()) {
+  if (!exchange_) {
     computeBox(box_);
   } else {
-    Exchange exchange(domain_, requests_);
     const Box inner =
         domain::shrunk(domain_.own, domain_.parts.haloOf(domain_.rank, roundedUp(reach_, unit_)));
-    const bool overlaps = domain_.options.overlap && !isOneBox && !domain::isEmpty(inner);
+    const bool overlaps = domain_.options.overlap && !isOneBox() && !domain::isEmpty(inner);
     if (overlaps) computeBox(inner);
-    exchange.finish();
+    exchange_->finish();
     for (const Box& box : overlaps ? domain::difference(box_, inner) : std::vector{box_}) computeBox(box);
   }
   writes.commit();
   repairs.commit();
   for (DomainStreamState* stream : swapped_) stream->exchange();
-  for (const SpreadArgument& one : spread_) {
-    if (one.isWritten) one.stream->valid = beyond_;
-  }
 }
 
 }  // namespace mpi
 
 void DomainState::run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& chosen) {
-  if (!chosen.box.isWhole()) checkBox(kernel, chosen.box, parts.whole());
-  mpi::CallPlan(*this, kernel, arguments, chosen)
-      .run(chosen,
-           [&](std::span<const Argument> mine, const CallOptions& part) { sk::run(kernel, mine, part); });
+  mpi::Call call = mpi::beginCall(*this, kernel, chosen);
+  std::optional<mpi::CallPlan> plan;
+  const mpi::Refusal refusal = mpi::caught(kernel.name, [&] {
+    if (!chosen.box.isWhole()) checkBox(kernel, chosen.box, parts.whole());
+    plan.emplace(*this, kernel, arguments, chosen);
+    plan->prepare();
+  });
+  if (call.isFirst || agreement.isAlways() || (plan ? plan->hasMessages() : mpi::readsNeighbors(kernel))) {
+    if (plan) call.detail = plan->hash();
+    if (agreement.isAlways()) mpi::addArguments(call, kernel, arguments, chosen.box);
+    agreement.agree(call, refusal);
+  } else if (refusal) {
+    agreement.failAlone(*refusal);
+  }
+  agreement.act(kernel.name, [&] {
+    plan->run([&](std::span<const Argument> mine, const CallOptions& part) { sk::run(kernel, mine, part); });
+  });
 }
 
 }  // namespace sk

@@ -37,27 +37,46 @@ class RankScan {
     }
   }
 
-  void run() {
-    if (domain_.parts.split()[dimension_] == 1) return sk::scan(reduction_, local_, options_);
+  int dimension() const { return dimension_; }
+  bool hasMessages() const { return domain_.parts.split()[dimension_] > 1; }
+
+  /// Scans this rank's elements, and makes ready what may fail. Changes no
+  /// stream of the domain.
+  void prepare() {
     if (isExact()) {
       fail(reduction_.fold,
-           "exact scans of floats are not possible along dimension {}, which is divided over {} ranks; call "
+           "exact scans of floats are not possible along dimension {}, which "
+           "is divided over {} ranks; call "
            "it "
            "without Accumulate::Exact, or do not divide that dimension",
            dimension_, domain_.parts.split()[dimension_]);
     }
     const Shape own = domain::shapeOf(domain_.own);
-    Accumulators results = accumulators(own.size());
-    sk::scan(reduction_, withResults(results, own), options_);
-    const std::optional<Accumulators> before = totalsBefore();
-    if (before) {
+    results_.emplace(accumulators(own.size()));
+    sk::scan(reduction_, withResults(*results_, own), options_);
+    foldTotals();
+  }
+
+  /// Collective, after prepare(), on the ranks along the dimension.
+  void exchangeTotals(const mpi::Communicator& line) {
+    const auto count = static_cast<int>(own_.size());
+    mpi::check(MPI_Allgather(own_.data(), count, MPI_BYTE, all_.data(), count, MPI_BYTE, line),
+               reduction_.fold.name);
+    ++domain_.statistics.reductions;
+  }
+
+  /// Combines the totals before this rank with its results, and stores these.
+  void store() {
+    if (!hasMessages()) return sk::scan(reduction_, local_, options_);
+    const Shape own = domain::shapeOf(domain_.own);
+    if (const std::optional<Accumulators> before = totalsBefore()) {
       const ResolvedReduction call{
-          *results.regions.front().stream->device, reduction_, local_, own, own, {}, options_};
-      mpi::combineEach(domain_, call, *before, results, lines());
+          *results_->regions.front().stream->device, reduction_, local_, own, own, {}, options_};
+      mpi::combineEach(domain_, call, *before, *results_, lines());
     }
     std::size_t next = 0;
     for (std::size_t i = 0; i < local_.size(); ++i) {
-      if (isResult(i)) detail::copy(detail::reshaped(results.regions[next++], own), local_[i].region);
+      if (isResult(i)) detail::copy(detail::reshaped(results_->regions[next++], own), local_[i].region);
     }
   }
 
@@ -70,8 +89,9 @@ class RankScan {
     if (options_.along) {
       if (*options_.along < 0 || *options_.along >= whole.rank()) {
         fail(Error::Kind::Shape, reduction_.fold,
-             "the domain has shape {}, which has no dimension {}; along is 0 to {}", toString(whole),
-             *options_.along, whole.rank() - 1);
+             "the domain has shape {}, which has no dimension {}; along is 0 "
+             "to {}",
+             toString(whole), *options_.along, whole.rank() - 1);
       }
       return *options_.along;
     }
@@ -79,11 +99,12 @@ class RankScan {
     while (slowest + 1 < whole.rank() && whole[slowest] == 1) ++slowest;
     for (int d = slowest + 1; d < whole.rank(); ++d) {
       if (domain_.parts.split()[d] == 1) continue;
-      fail(
-          reduction_.fold,
-          "a scan over all elements goes on from row to row, but the rows are divided over ranks (split {}); "
-          "divide the first dimension alone, .split = {{{}}}, or scan each line: .with({{.along = ...}})",
-          toString(domain_.parts.split()), splitOfFirst(slowest));
+      fail(reduction_.fold,
+           "a scan over all elements goes on from row to row, but the rows are "
+           "divided over ranks (split {}); "
+           "divide the first dimension alone, .split = {{{}}}, or scan each "
+           "line: .with({{.along = ...}})",
+           toString(domain_.parts.split()), splitOfFirst(slowest));
     }
     return slowest;
   }
@@ -136,46 +157,53 @@ class RankScan {
     return lines;
   }
 
-  /// The totals of all ranks before this one along the dimension, combined; nullopt on the first rank.
-  std::optional<Accumulators> totalsBefore() {
+  /// One total for each line of this rank.
+  Shape shapeOfTotals() const {
     const Shape own = domain::shapeOf(domain_.own);
-    Shape shape = own.with(dimension_, 1);  // one for each line
+    Shape shape = own.with(dimension_, 1);
     for (int d = 0; !options_.along && d < own.rank(); ++d) shape = shape.with(d, 1);
-    const mpi::Communicator& line = domain_.lineOf(dimension_);
-    int rank = 0, ranks = 1;
-    mpi::check(MPI_Comm_rank(line, &rank), reduction_.fold.name);
-    mpi::check(MPI_Comm_size(line, &ranks), reduction_.fold.name);
+    return shape;
+  }
+  /// The place of this rank among those along the dimension, which lineOf()
+  /// numbers.
+  int place() const { return static_cast<int>(domain_.parts.placeOf(domain_.rank)[dimension_]); }
+  int ranks() const { return static_cast<int>(domain_.parts.split()[dimension_]); }
+
+  void foldTotals() {
+    const Shape shape = shapeOfTotals();
     Accumulators totals = accumulators(shape.size());
-    const std::size_t bytes = totals.elements() * totals.elementBytes();
-    Bytes mine(bytes);
-    if (rank + 1 < ranks) {
+    own_.resize(totals.elements() * totals.elementBytes());
+    if (own_.size() > mpi::mostBytes / static_cast<std::size_t>(ranks())) {
+      fail(Error::Kind::Memory, reduction_.fold,
+           "it has {} lines on a rank, whose totals do not fit in one message "
+           "of {} ranks; divide another "
+           "dimension",
+           shape.size(), ranks());
+    }
+    if (place() + 1 < ranks()) {
       CallOptions fold = options_;
       fold.along = {};
       fold.scan = Scan::Default;
       sk::reduce(reduction_, withResults(totals, shape), fold);
-      mine = totals.read();
+      own_ = totals.read();
     }
-    if (bytes > mpi::mostBytes / static_cast<std::size_t>(ranks)) {
-      fail(Error::Kind::Memory, reduction_.fold,
-           "it has {} lines on a rank, whose totals do not fit in one message of {} ranks; divide another "
-           "dimension",
-           shape.size(), ranks);
-    }
-    Bytes all(bytes * static_cast<std::size_t>(ranks));
-    const auto count = static_cast<int>(bytes);
-    mpi::check(MPI_Allgather(mine.data(), count, MPI_BYTE, all.data(), count, MPI_BYTE, line),
-               reduction_.fold.name);
-    ++domain_.statistics.reductions;
-    if (rank == 0) return std::nullopt;
+    all_.resize(own_.size() * static_cast<std::size_t>(ranks()));
+  }
+
+  /// The totals of all ranks before this one along the dimension, combined; nullopt on the first rank.
+  std::optional<Accumulators> totalsBefore() const {
+    if (place() == 0) return std::nullopt;
+    const Shape shape = shapeOfTotals();
     const auto totalsOf = [&](int of) {
-      const auto from = all.begin() + static_cast<std::ptrdiff_t>(bytes) * of;
-      return Bytes(from, from + static_cast<std::ptrdiff_t>(bytes));
+      const auto from = all_.begin() + static_cast<std::ptrdiff_t>(own_.size()) * of;
+      return Bytes(from, from + static_cast<std::ptrdiff_t>(own_.size()));
     };
     std::optional<Accumulators> before;
     before.emplace(accumulators(shape.size())).write(totalsOf(0));
+    Accumulators totals = accumulators(shape.size());
     const ResolvedReduction call{
         *before->regions.front().stream->device, reduction_, local_, shape, shape, {}, options_};
-    for (int other = 1; other < rank; ++other) {
+    for (int other = 1; other < place(); ++other) {
       totals.write(totalsOf(other));
       mpi::combineEach(domain_, call, *before, totals, {1, shape.size()});
       std::swap(*before, totals);
@@ -188,6 +216,8 @@ class RankScan {
   CallOptions options_;
   int dimension_;
   std::vector<Argument> local_;
+  std::optional<Accumulators> results_;
+  Bytes own_, all_;  ///< totals: of this rank, and of all along the dimension
 };
 
 /// Throws sk::Error unless results are streams of the domain, and nothing but elements is spread.
@@ -199,7 +229,8 @@ void checkArguments(DomainState& domain, const Reduction& reduction, std::span<c
     const DomainStreamState* const result = domainStream(arguments[i].region);
     if (result == nullptr || result->domain != &domain) {
       fail(reduction.fold,
-           "'{}' is no stream of the domain whose elements it scans; create it by domain.stream, with a "
+           "'{}' is no stream of the domain whose elements it scans; create it "
+           "by domain.stream, with a "
            "result "
            "for each element",
            parameter.name);
@@ -208,11 +239,11 @@ void checkArguments(DomainState& domain, const Reduction& reduction, std::span<c
   }
   for (const mpi::SpreadArgument& one : mpi::spreadArguments(domain, reduction.fold, others)) {
     if (!one.isGather) continue;
-    fail(
-        reduction.fold,
-        "'{}' is gathered from a stream of the domain, which a scan over ranks cannot do; let a kernel store "
-        "what is to be scanned",
-        reduction.fold.parameters[one.index].name);
+    fail(reduction.fold,
+         "'{}' is gathered from a stream of the domain, which a scan over "
+         "ranks cannot do; let a kernel store "
+         "what is to be scanned",
+         reduction.fold.parameters[one.index].name);
   }
 }
 
@@ -220,21 +251,36 @@ void checkArguments(DomainState& domain, const Reduction& reduction, std::span<c
 
 void DomainState::scan(const Reduction& reduction, std::span<const Argument> arguments,
                        const CallOptions& chosen) {
-  mpi::refuseRecording(*this, reduction.fold);
-  agree(&reduction, mpi::hashOf(reduction.fold, chosen), reduction.fold.name);
-  checkArguments(*this, reduction, arguments);
-  if (!chosen.box.isWhole())
-    fail(reduction.fold, "a scan takes no box; scan all elements, or let a kernel store 0 outside of it");
-  if (parts.ranks() > 1 && asksPlace(reduction.fold)) {
-    fail(reduction.fold,
-         "it asks where an element is (indexof, extentof, neighbor or an iterator), which a scan over ranks "
-         "cannot "
-         "say; let a kernel store what is to be scanned");
-  }
-  RankScan(*this, reduction, arguments, chosen).run();
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (reduction.fold.parameters[i].role == Role::Accumulator) domainStream(arguments[i].region)->valid = {};
-  }
+  mpi::Call call = mpi::beginCall(*this, reduction.fold, chosen);
+  if (agreement.isAlways()) mpi::addArguments(call, reduction.fold, arguments, chosen.box);
+  std::optional<RankScan> scan;
+  const mpi::Refusal refusal = mpi::caught(reduction.fold.name, [&] {
+    mpi::refuseRecording(*this, reduction.fold);
+    checkArguments(*this, reduction, arguments);
+    if (!chosen.box.isWhole())
+      fail(reduction.fold,
+           "a scan takes no box; scan all elements, or let a "
+           "kernel store 0 outside of it");
+    if (parts.ranks() > 1 && asksPlace(reduction.fold)) {
+      fail(reduction.fold,
+           "it asks where an element is (indexof, extentof, "
+           "neighbor or an iterator), which a scan over ranks "
+           "cannot "
+           "say; let a kernel store what is to be scanned");
+    }
+    scan.emplace(*this, reduction, arguments, chosen);
+    if (scan->hasMessages()) scan->prepare();
+  });
+  if (refusal || call.isFirst || agreement.isAlways() || scan->hasMessages()) agreement.agree(call, refusal);
+  const mpi::Communicator* const line = scan->hasMessages() ? &lineOf(scan->dimension()) : nullptr;
+  agreement.act(reduction.fold.name, [&] {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      if (reduction.fold.parameters[i].role == Role::Accumulator)
+        domainStream(arguments[i].region)->valid = {};
+    }
+    if (line != nullptr) scan->exchangeTotals(*line);
+    scan->store();
+  });
 }
 
 }  // namespace sk

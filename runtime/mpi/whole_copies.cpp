@@ -3,6 +3,7 @@
 // Copies between a domain's stream, of which each rank holds a part, and ordinary streams that hold the whole on each rank.
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "device/stream_state.hpp"
 #include "device/write_scope.hpp"
 #include "domain_state.hpp"
+#include "hash.hpp"
 #include "sk/error.hpp"
 #include "strips.hpp"
 
@@ -27,92 +29,126 @@ void checkWhole(DomainStreamState* given, const StreamRegion& whole, std::string
   const Shape& shape = stream.domain->parts.whole();
   if (state.device != own.device) {
     throw Error(
-        fmt::format("{}: the ordinary stream is on another device than the domain's stream; create it by "
+        fmt::format("{}: the ordinary stream is on another device than "
+                    "the domain's stream; create it by "
                     "domain.device().stream",
                     what));
   }
   if (whole.shape != shape) {
-    throw Error(fmt::format("{}: the ordinary stream has shape {}, but the domain has {}; give it that shape",
+    throw Error(fmt::format("{}: the ordinary stream has shape {}, but the "
+                            "domain has {}; give it that shape",
                             what, toString(whole.shape), toString(shape)),
                 Error::Kind::Shape);
   }
   if (state.storage != own.storage) {
-    throw Error(
-        fmt::format("{}: the ordinary stream has another sk::Storage than the domain's stream; create both "
-                    "with one storage",
-                    what),
-        Error::Kind::Type);
+    throw Error(fmt::format("{}: the ordinary stream has another sk::Storage "
+                            "than the domain's stream; create both "
+                            "with one storage",
+                            what),
+                Error::Kind::Type);
   }
   refuseInRecording(*own.device, what);
 }
 
 /// The bytes of all ranks' elements, one rank after the other.
-std::vector<std::byte> bytesOfAll(const DomainState& domain, const StreamRegion& own) {
-  if (domain.parts.whole().size() > std::numeric_limits<int>::max()) {
-    throw Error(
-        fmt::format("copyTo: the domain of shape {} has more than 2^31 - 1 elements; gather its elements",
-                    toString(domain.parts.whole())),
-        Error::Kind::Shape);
+class AllBytes {
+ public:
+  /// Reads this rank's elements, and allocates what is needed for all.
+  AllBytes(const DomainState& domain, const StreamRegion& own)
+      : domain_(domain), element_("copyTo", [&](MPI_Datatype* type) {
+          const std::size_t size = mpi::bytesOf(own) / static_cast<std::size_t>(own.shape.size());
+          return MPI_Type_contiguous(static_cast<int>(size), MPI_BYTE, type);
+        }) {
+    if (domain.parts.whole().size() > std::numeric_limits<int>::max()) {
+      throw Error(fmt::format("copyTo: the domain of shape {} has more than "
+                              "2^31 - 1 elements; gather its elements",
+                              toString(domain.parts.whole())),
+                  Error::Kind::Shape);
+    }
+    const std::size_t size = mpi::bytesOf(own) / static_cast<std::size_t>(own.shape.size());
+    mine_ = detail::hostVector<std::byte>(mpi::bytesOf(own));
+    mpi::readBytes(own, mine_.data());
+    int end = 0;
+    for (int rank = 0; rank < domain.parts.ranks(); ++rank) {
+      counts_.push_back(static_cast<int>(domain::shapeOf(domain.parts.boxOf(rank)).size()));
+      offsets_.push_back(end);
+      end += counts_.back();
+    }
+    all_ = detail::hostVector<std::byte>(static_cast<std::size_t>(end) * size);
   }
-  const std::size_t size = mpi::bytesOf(own) / static_cast<std::size_t>(own.shape.size());
-  auto mine = detail::hostVector<std::byte>(mpi::bytesOf(own));
-  mpi::readBytes(own, mine.data());
-  std::vector<int> counts, offsets;
-  int end = 0;
-  for (int rank = 0; rank < domain.parts.ranks(); ++rank) {
-    counts.push_back(static_cast<int>(domain::shapeOf(domain.parts.boxOf(rank)).size()));
-    offsets.push_back(end);
-    end += counts.back();
+
+  /// Collective.
+  const std::byte* receive() {
+    mpi::check(MPI_Allgatherv(mine_.data(), counts_[static_cast<std::size_t>(domain_.rank)], element_,
+                              all_.data(), counts_.data(), offsets_.data(), element_, domain_.communicator),
+               "copyTo");
+    return all_.data();
   }
-  auto all = detail::hostVector<std::byte>(static_cast<std::size_t>(end) * size);
-  MPI_Datatype element = MPI_DATATYPE_NULL;
-  MPI_Type_contiguous(static_cast<int>(size), MPI_BYTE, &element);
-  MPI_Type_commit(&element);
-  const int status = MPI_Allgatherv(mine.data(), counts[static_cast<std::size_t>(domain.rank)], element,
-                                    all.data(), counts.data(), offsets.data(), element, domain.communicator);
-  MPI_Type_free(&element);
-  mpi::check(status, "copyTo");
-  return all;
-}
+
+ private:
+  const DomainState& domain_;
+  mpi::Datatype element_;
+  std::vector<std::byte> mine_, all_;
+  std::vector<int> counts_, offsets_;
+};
 
 }  // namespace
 
-void detail::copyOwn(DomainStreamState* from, DomainStreamState* to) {
+void detail::copyOwn(DomainStreamState* from, DomainStreamState* given) {
   const DomainStreamState& source = liveStream(from, "copyTo");
-  DomainStreamState& target = liveStream(to, "copyTo");
-  if (source.domain != target.domain) {
-    throw Error(
-        "copyTo: the two streams are of different domains; create both by one sk::Domain, or copy through an "
-        "ordinary stream");
-  }
-  target.valid = {};
-  copy(source.part(source.domain->own), target.part(target.domain->own));
+  DomainStreamState& target = liveStream(given, "copyTo");
+  mpi::Agreement& agreement = target.domain->agreement;
+  agreement.count();
+  agreement.act("copyTo", [&] {
+    if (source.domain != target.domain) {
+      throw Error(
+          "copyTo: the two streams are of different domains; create "
+          "both by one sk::Domain, or copy through an "
+          "ordinary stream");
+    }
+    target.writeOwn([&](const StreamRegion& to) { copy(source.part(source.domain->own), to); });
+  });
 }
 
 void detail::copyToWhole(DomainStreamState* stream, const StreamRegion& whole) {
-  checkWhole(stream, whole, "copyTo");
-  const DomainState& domain = *stream->domain;
-  const StreamRegion own = stream->part(domain.own);
-  if (domain.parts.ranks() == 1) return copy(own, whole);
-  const std::vector<std::byte> all = bytesOfAll(domain, own);
-  WriteScope writes;
-  writes.add(whole.stream);
-  writes.begin();
-  whole.stream->setWritten();  // its elements come in parts, all of them
-  const std::byte* from = all.data();
-  for (int rank = 0; rank < domain.parts.ranks(); ++rank) {
-    const Box box = domain.parts.boxOf(rank);
-    const StreamRegion part = partOf(whole, box.begin, box.end);
-    mpi::writeBytes(part, from);
-    from += mpi::bytesOf(part);
+  const DomainState& domain = *liveStream(stream, "copyTo").domain;
+  if (domain.parts.ranks() == 1) {
+    checkWhole(stream, whole, "copyTo");
+    return copy(stream->part(domain.own), whole);
   }
-  writes.commit();
+  std::optional<AllBytes> bytes;
+  mpi::Hash hash;
+  hash.add(stream->element.name);
+  domain.agreement.count();
+  domain.agreement.together({"copyTo", hash.value()}, [&] {
+    checkWhole(stream, whole, "copyTo");
+    checkElementsOf(stream->part(domain.own), false, "copyTo");
+    bytes.emplace(domain, stream->part(domain.own));
+  });
+  domain.agreement.act("copyTo", [&] {
+    const std::byte* from = bytes->receive();
+    WriteScope writes;
+    writes.add(whole.stream);
+    writes.begin();
+    whole.stream->setWritten();  // its elements come in parts, all of them
+    for (int rank = 0; rank < domain.parts.ranks(); ++rank) {
+      const Box box = domain.parts.boxOf(rank);
+      const StreamRegion part = partOf(whole, box.begin, box.end);
+      mpi::writeBytes(part, from);
+      from += mpi::bytesOf(part);
+    }
+    writes.commit();
+  });
 }
 
 void detail::copyFromWhole(DomainStreamState* stream, const StreamRegion& whole) {
-  checkWhole(stream, whole, "copyFrom");
-  const Box& own = stream->domain->own;
-  copy(partOf(whole, own.begin, own.end), ownRegion(stream, true));
+  mpi::Agreement& agreement = liveStream(stream, "copyFrom").domain->agreement;
+  agreement.count();
+  agreement.act("copyFrom", [&] {
+    checkWhole(stream, whole, "copyFrom");
+    const Box& own = stream->domain->own;
+    stream->writeOwn([&](const StreamRegion& to) { copy(partOf(whole, own.begin, own.end), to); });
+  });
 }
 
 }  // namespace sk

@@ -58,6 +58,13 @@ int MPI_Waitall(int count, MPI_Request* all, MPI_Status* statuses) {
   requests -= pending;
   return status;
 }
+int MPI_Testall(int count, MPI_Request* all, int* areDone, MPI_Status* statuses) {
+  int pending = 0;
+  for (int i = 0; i < count; ++i) pending += all[i] != MPI_REQUEST_NULL ? 1 : 0;
+  const int status = PMPI_Testall(count, all, areDone, statuses);
+  if (*areDone != 0) requests -= pending;
+  return status;
+}
 int MPI_Comm_dup(MPI_Comm from, MPI_Comm* copy) { return created(communicators, PMPI_Comm_dup(from, copy)); }
 int MPI_Comm_split(MPI_Comm from, int color, int key, MPI_Comm* part) {
   const int status = PMPI_Comm_split(from, color, key, part);

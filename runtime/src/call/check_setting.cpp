@@ -13,7 +13,7 @@ namespace sk {
 
 namespace {
 
-enum class Check : std::uint8_t { None, Folds, Halos, Written };
+enum class Check : std::uint8_t { None, Folds, Halos, Written, Collectives };
 
 Check chosenCheck() {
   static const Check chosen = [] {
@@ -22,8 +22,9 @@ Check chosenCheck() {
     if (std::string_view(value) == "folds") return Check::Folds;
     if (std::string_view(value) == "halos") return Check::Halos;
     if (std::string_view(value) == "written") return Check::Written;
-    throw Error(
-        fmt::format("there is no check '{}'; choose folds, halos or written, or unset SK_CHECK", value));
+    if (std::string_view(value) == "collectives") return Check::Collectives;
+    throw Error(fmt::format(
+        "there is no check '{}'; choose folds, halos, written or collectives, or unset SK_CHECK", value));
   }();
   return chosen;
 }
@@ -33,5 +34,6 @@ Check chosenCheck() {
 bool checksFolds() { return chosenCheck() == Check::Folds; }
 bool checksHalos() { return chosenCheck() == Check::Halos; }
 bool checksWritten() { return chosenCheck() == Check::Written; }
+bool checksCollectives() { return chosenCheck() == Check::Collectives; }
 
 }  // namespace sk

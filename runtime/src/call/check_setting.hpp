@@ -13,5 +13,7 @@ bool checksFolds();
 bool checksHalos();
 /// Whether SK_CHECK is `written`: reads of streams that nothing has written are refused (call/check_written.hpp).
 bool checksWritten();
+/// Whether SK_CHECK is `collectives`: the ranks of a domain compare every call (mpi/agreement.hpp).
+bool checksCollectives();
 
 }  // namespace sk

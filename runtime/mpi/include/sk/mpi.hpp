@@ -80,10 +80,15 @@ using DomainStreamOwner = Owner<DomainStreamState, DomainDeleter>;
 
 StreamRegion regionOf(DomainStreamState* stream);
 const Box& ownBox(const DomainStreamState* stream);
-StreamRegion ownRegion(DomainStreamState* stream, bool isWritten);
-void gather(DomainStreamState* stream, int root, void* elements);
+/// Calls visit(context, region) for the elements of this rank on its device.
+/// writeOwn: which it writes, all of them.
+using OwnVisit = void (*)(void* context, const StreamRegion& region);
+void readOwn(DomainStreamState* stream, OwnVisit visit, void* context);
+void writeOwn(DomainStreamState* stream, OwnVisit visit, void* context);
+/// On the root, room(context, count) allocates all elements and returns where
+/// they are.
+void gather(DomainStreamState* stream, int root, void* (*room)(void*, std::size_t), void* context);
 void scatter(DomainStreamState* stream, int root, const void* elements, std::size_t count);
-int rankOf(const DomainStreamState* stream);
 std::vector<double> gatherReals(DomainStreamState* stream, int root);
 void scatterReals(DomainStreamState* stream, int root, std::span<const double> components);
 void copyOwn(DomainStreamState* from, DomainStreamState* to);
@@ -114,21 +119,38 @@ class DomainStream {
   Box own() const { return detail::ownBox(state_.get()); }
 
   /// Sets every element to a value, or to start(index), where the index is that of the whole, rows first.
-  void fill(const T& value) { writable().fill(value); }
+  void fill(const T& value) {
+    write([&](const View<T>& own) { own.fill(value); });
+  }
   template <std::invocable<const Index&> Start>
     requires std::convertible_to<std::invoke_result_t<Start, const Index&>, T>
   void fill(Start&& start);
 
   /// The elements of this rank, row-major. Not collective.
-  std::vector<HostElement<T>> read() const { return readable().read(); }
+  std::vector<HostElement<T>> read() const {
+    std::vector<HostElement<T>> elements;
+    detail::readOwn(
+        state_.get(),
+        [](void* to, const StreamRegion& own) {
+          *static_cast<std::vector<HostElement<T>>*>(to) = View<const T>(own).read();
+        },
+        &elements);
+    return elements;
+  }
   /// Writes the elements of this rank: exactly own()'s, row-major. Every rank must write its own.
-  void write(std::span<const HostElement<T>> elements) { writable().write(elements); }
+  void write(std::span<const HostElement<T>> elements) {
+    write([&](const View<T>& own) { own.write(elements); });
+  }
 
   /// All elements, row-major, on rank `root`; nothing on the others.
   std::vector<HostElement<T>> gather(int root = 0) const {
-    const bool isRoot = detail::rankOf(state_.get()) == root;
-    auto elements = detail::hostVector<HostElement<T>>(isRoot ? static_cast<std::size_t>(size()) : 0);
-    detail::gather(state_.get(), root, elements.data());
+    std::vector<HostElement<T>> elements;
+    const auto room = [](void* to, std::size_t number) -> void* {
+      auto& whole = *static_cast<std::vector<HostElement<T>>*>(to);
+      whole = detail::hostVector<HostElement<T>>(number);
+      return whole.data();
+    };
+    detail::gather(state_.get(), root, room, &elements);
     return elements;
   }
   /// Distributes the elements that rank `root` gives, all of them, row-major; the other ranks' are ignored.
@@ -170,9 +192,15 @@ class DomainStream {
   friend class Domain;
   explicit DomainStream(detail::DomainStreamOwner state) : state_(std::move(state)) {}
 
-  /// The elements of this rank on its device, until the next call.
-  View<const T> readable() const { return View<const T>(detail::ownRegion(state_.get(), false)); }
-  View<T> writable() { return View<T>(detail::ownRegion(state_.get(), true)); }
+  template <std::invocable<const View<T>&> Write>
+  void write(Write&& visit) {
+    detail::writeOwn(
+        state_.get(),
+        [](void* call, const StreamRegion& own) {
+          (*static_cast<std::remove_reference_t<Write>*>(call))(View<T>(own));
+        },
+        const_cast<void*>(static_cast<const void*>(&visit)));
+  }
 
   detail::DomainStreamOwner state_;
 };
@@ -245,20 +273,21 @@ template <ElementType T>
 template <std::invocable<const Index&> Start>
   requires std::convertible_to<std::invoke_result_t<Start, const Index&>, T>
 void DomainStream<T>::fill(Start&& start) {
-  const View<T> elements = writable();
-  const Box box = own();
-  const int rank = box.begin.rank();
-  const std::int64_t row = box.end[rank - 1] - box.begin[rank - 1];
-  auto values = detail::hostVector<HostElement<T>>(static_cast<std::size_t>(elements.size()));
-  Index index = box.begin;
-  for (std::size_t at = 0; at < values.size();) {
-    for (std::int64_t x = 0; x < row; ++x, ++at) {
-      index[rank - 1] = box.begin[rank - 1] + x;
-      values[at] = static_cast<HostElement<T>>(start(std::as_const(index)));
+  write([&](const View<T>& own) {
+    const Box box = this->own();
+    const int rank = box.begin.rank();
+    const std::int64_t row = box.end[rank - 1] - box.begin[rank - 1];
+    auto values = detail::hostVector<HostElement<T>>(static_cast<std::size_t>(own.size()));
+    Index index = box.begin;
+    for (std::size_t at = 0; at < values.size();) {
+      for (std::int64_t x = 0; x < row; ++x, ++at) {
+        index[rank - 1] = box.begin[rank - 1] + x;
+        values[at] = static_cast<HostElement<T>>(start(std::as_const(index)));
+      }
+      for (int d = rank - 2; d >= 0 && ++index[d] == box.end[d]; --d) index[d] = box.begin[d];
     }
-    for (int d = rank - 2; d >= 0 && ++index[d] == box.end[d]; --d) index[d] = box.begin[d];
-  }
-  elements.write(std::span<const HostElement<T>>(values));
+    own.write(std::span<const HostElement<T>>(values));
+  });
 }
 
 }  // namespace sk

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+//
+// How ranks act together or not at all. Before a collective step, each rank
+// checks what it can check alone: arguments, files, memory, whether streams are
+// lost. Then one small all-reduce compares what the ranks call, and says
+// whether a rank refuses. If so, all of them throw the error of the lowest rank
+// that does; none waits for messages that do not come.
+//
+//   const std::vector<std::byte> own = agreement.together({"gather"}, [&] {
+//   return bytesOf(stream); });
+//   ...                             // messages: every rank is here
+//
+// What goes wrong between these steps, or in a call that needs no message, is
+// thrown on one rank alone. That rank remembers it (act(), failAlone()) and
+// announces it at its next collective step, in which the others throw it.
+//
+// The domains beside each other have one agreement, so that their calls have
+// one order. Without other ranks it costs nothing.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "messages.hpp"
+#include "refusal.hpp"
+#include "wait_limit.hpp"
+
+namespace sk::mpi {
+
+/// What is called. All ranks must give the same hash.
+struct Call {
+  std::string_view what;  ///< for messages
+  std::uint64_t hash = 0;
+  std::uint64_t id = 0;  ///< on this rank, of calls that are compared only once; or 0
+  bool isFirst = true;      ///< whether it has not been compared
+  std::uint64_t detail = 0;  ///< of this one call
+};
+
+class Agreement {
+ public:
+  /// Someone who keeps an account that must be the same on all ranks.
+  class Member {
+   public:
+    /// The ranks may have different accounts: begins a new one.
+    virtual void forget() noexcept = 0;
+
+   protected:
+    ~Member() = default;
+  };
+
+  /// The messages that a rank posts together with a comparison that it does not
+  /// wait for: an all-reduce of words, which adds, and one of bytes, which
+  /// combines bits. Ranks that refuse take part in them with zeros.
+  struct Posted {
+    std::uint64_t words = 0, bytes = 0;
+    /// The most bytes of each of the two. More than this waits for the
+    /// comparison.
+    static constexpr std::size_t most = std::size_t{1} << 16;
+  };
+
+  /// A comparison under way.
+  class Started {
+   public:
+    Started() = default;
+    Started(const Started&) = delete;
+    Started& operator=(const Started&) = delete;
+
+   private:
+    friend class Agreement;
+    static constexpr std::size_t numbers = 8;
+    std::array<std::uint64_t, numbers> own_{}, all_{};
+    Call call_;
+    std::uint64_t calls_ = 0;
+    MPI_Request request_ = MPI_REQUEST_NULL;
+    Refusal error_;
+  };
+
+  /// Allocates nothing, so that a rank without memory can refuse to open() it.
+  Agreement() = default;
+  /// Allocates what calls need, before open().
+  void reserve() {
+    zeros_.resize(Posted::most);
+    started_.reserve(16);
+  }
+  /// Collective: begins to compare the ranks of a communicator, on a duplicate of it, unless one of them refuses already.
+  void open(MPI_Comm communicator, const Refusal& refusal);
+  Agreement(const Agreement&) = delete;
+  Agreement& operator=(const Agreement&) = delete;
+
+  int rank() const { return rank_; }
+  int ranks() const { return ranks_; }
+  MPI_Comm communicator() const { return used_; }
+  const WaitLimit& waitLimit() const { return waitLimit_; }
+
+  /// Reads SK_CHECK and SK_MPI_TIMEOUT. Throws sk::Error if they have other
+  /// values than those that are documented.
+  void readEnvironment();
+  /// Whether every call is compared (SK_CHECK=collectives), also those that
+  /// need no message.
+  bool isAlways() const { return isAlways_; }
+
+  void join(Member& member) { members_.push_back(&member); }
+  void leave(Member& member) noexcept { std::erase(members_, &member); }
+
+  /// Counts a call of a domain. Each begins with this, or with begin().
+  void count() noexcept { ++calls_; }
+  /// Counts a call that is compared when it is first made, whether or not it
+  /// has messages. `id` says on this rank which one it is, and hash() is alike
+  /// on all ranks.
+  template <class Hash>
+  Call begin(std::string_view what, std::uint64_t id, Hash&& hash) {
+    ++calls_;
+    if (ranks_ == 1) return {.what = what, .id = id, .isFirst = false};
+    const auto [known, isNew] = known_.try_emplace(id, 0);
+    if (isNew) known->second = hash();
+    return {what, known->second, id, isNew};
+  }
+
+  /// Collective: throws on all ranks unless all make the same call and none
+  /// refuses it.
+  void agree(const Call& call, const Refusal& refusal);
+  /// Collective: runs what this rank can do alone, and returns its result.
+  /// Throws on all ranks if one of them throws.
+  template <class Check>
+  std::invoke_result_t<Check> together(const Call& call, Check&& check) {
+    if (ranks_ == 1) return check();
+    if constexpr (std::is_void_v<std::invoke_result_t<Check>>) {
+      agree(call, caught(call.what, check));
+    } else {
+      std::optional<std::invoke_result_t<Check>> result;
+      agree(call, caught(call.what, [&] { result.emplace(check()); }));
+      return *std::move(result);
+    }
+  }
+
+  /// Collective, between two steps: the largest of a number of each rank.
+  std::uint64_t most(std::uint64_t own);
+
+  /// Begins to compare, without waiting. If this rank does not refuse, it then
+  /// posts `posted` on communicator(), words before bytes.
+  void start(Started& started, const Call& call, const Refusal& refusal, const Posted& posted);
+  /// Whether all ranks have started.
+  bool isReady(Started& started);
+  /// Waits until all ranks have started. Throws only if MPI fails.
+  void wait(Started& started);
+  /// Waits, and throws as agree() does, each time.
+  void finish(Started& started);
+  /// Waits, and forgets it. Does nothing if it has not been started.
+  void abandon(Started& started) noexcept;
+
+  /// Runs a part of a call in which no rank waits for another. What it throws
+  /// is remembered for the others.
+  template <class Act>
+  void act(std::string_view what, Act&& act) {
+    if (ranks_ == 1) return act();
+    if (const Refusal refusal = caught(what, act)) failAlone(*refusal);
+  }
+  /// Remembers the error for the others, and throws it.
+  [[noreturn]] void failAlone(const Error& error);
+  /// MPI has failed so that messages are missing: every further call throws.
+  /// Only the end of the run helps the others.
+  void giveUp(const Error& error) noexcept { broken_ = error; }
+
+ private:
+  using Numbers = std::array<std::uint64_t, Started::numbers>;
+
+  Numbers numbersOf(const Call& call, bool isRefused, const Posted& posted) const;
+  void announce(const Call& call);
+  Numbers compare(const Call& call, const Numbers& own);
+  void conclude(Started& started);
+  void settle();
+  Refusal verdict(const Numbers& all, const Call& call, std::uint64_t calls, const Refusal& own);
+  Refusal refused(const Numbers& all, const Refusal& own);
+  Refusal different(const Numbers& all, std::string_view what, std::uint64_t calls);
+  void takePart(const Numbers& own, const Numbers& all);
+  void send(const Error& error);
+  Error receive(int from);
+  void forget() noexcept;
+  void check(int status);
+
+  Communicator communicator_{MPI_COMM_NULL};
+  MPI_Comm used_ = MPI_COMM_NULL;
+  int rank_ = 0, ranks_ = 1;
+  WaitLimit waitLimit_;
+  bool isAlways_ = false;
+  std::uint64_t calls_ = 0;  ///< since the ranks have begun to compare
+  std::unordered_map<std::uint64_t, std::uint64_t>
+      known_;  ///< hashes of calls that have been compared, by id
+  Refusal announced_;  ///< what this rank has thrown, and the others have not
+      ///< heard of
+  Refusal broken_;  ///< why no more can be compared
+  std::vector<Started*> started_;  ///< in their order
+  std::vector<Member*> members_;
+  std::vector<std::byte> zeros_;  ///< for takePart()
+};
+
+}  // namespace sk::mpi

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+//
+// mpi_rank_faults [PROGRAM]: small programs over ranks, in each of which one rank's n-th allocation or function of MPI fails, for
+// n = 1, 2, 3 ... Promises: no rank hangs or crashes; if one rank throws, all do, at the latest at their next collective call; the
+// same program then runs on all ranks, in the same domain, with the right results; and nothing is left over.
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include "faults_of_mpi.hpp"
+#include "rank_faults.sk.hpp"
+#include "sk/mpi.hpp"
+
+namespace {
+
+constexpr std::array<bool, sk::maxRank> around = {true, true, true, true};
+int rank = 0, ranks = 1;
+
+/// What the watchdog says.
+std::array<char, 200> now{};
+void giveUp(int) {
+  (void)!write(2, now.data(), std::strlen(now.data()));
+  _exit(3);
+}
+
+[[noreturn]] void fail(const std::string& what) {
+  std::fprintf(stderr, "rank %d: %s: %s\n", rank, now.data(), what.c_str());
+  std::fflush(stderr);
+  MPI_Abort(MPI_COMM_WORLD, 1);
+  std::abort();
+}
+
+/// Sums of all ranks, past the functions that fail.
+int countOf(bool isSo) {
+  int own = isSo ? 1 : 0, all = 0;
+  PMPI_Allreduce(&own, &all, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  return all;
+}
+
+template <class Call>
+std::string errorOf(Call&& call) {
+  try {
+    call();
+  } catch (const sk::Error& error) {
+    return *error.what() == '\0' ? "an error without a text" : error.what();
+  } catch (const std::exception& error) {
+    fail(std::string("an exception that is no sk::Error: ") + error.what());
+  }
+  return {};
+}
+
+float start(const sk::Index& i) { return static_cast<float>((7 * i[0] + 3 * i[1]) % 11); }
+
+/// Where the programs run.
+struct Place {
+  explicit Place(const std::string& folder)
+      : domain(MPI_COMM_WORLD, {.shape = {16, 6}, .periodic = around, .split = {ranks, 1}}),
+        coarse(domain, {.shape = {8, 3}, .periodic = around}),
+        u(domain.stream<float>()),
+        v(domain.stream<float>()),
+        healthy(domain.stream<float>()),
+        c(coarse.stream<float>()),
+        whole(domain.device().stream<float>({16, 6})),
+        total(domain.device().stream<float>({1})),
+        file(folder + "/u.npy") {
+    healthy.fill(1);
+  }
+  void reset() {
+    u.fill(start);
+    v.fill(0);
+    c.fill(0);
+    whole.fill(0);
+    total.fill(0);
+    values = {};
+  }
+
+  sk::Domain domain, coarse;
+  sk::DomainStream<float> u, v, healthy, c;
+  sk::Stream<float> whole, total;
+  std::string file;
+  std::array<float, 3> values{};
+};
+
+using Result = std::vector<float>;
+struct Program {
+  const char* name;
+  void (*run)(Place& place);
+  sk::DomainStream<float> Place::* result = nullptr;  ///< beside Place::values
+};
+
+/// What the program has computed, on this rank.
+Result resultOf(const Place& place, const Program& program) {
+  Result result = program.result == nullptr ? Result{} : (place.*program.result).read();
+  const std::vector<float> total = place.total.read();
+  result.insert(result.end(), {place.values[0], place.values[1], place.values[2], total.front()});
+  return result;
+}
+
+const std::vector<Program>& programs() {
+  static const std::vector<Program> all = {
+      {"halo map",
+       [](Place& place) {
+         diffuse(0.2F, place.u, place.v);
+         diffuse(0.2F, place.v, place.u);
+       },
+       &Place::u},
+      {"map without messages",
+       [](Place& place) {
+         scaled(2.0F, place.u, place.v);
+         scaled(2.0F, place.v, place.v);
+       },
+       &Place::v},
+      {"fold", [](Place& place) { product(place.u, place.u, place.v, place.total); }, &Place::v},
+      {"reduce",
+       [](Place& place) {
+         place.values = {sum(place.u), sum.with({.accumulate = sk::Accumulate::Exact})(place.u),
+                         slope(place.u, place.u)};
+       }},
+      {"reduce later",
+       [](Place& place) {
+         sk::Future<float> total = place.domain.later(sum, place.u);
+         diffuse(0.2F, place.u, place.v);
+         place.values[0] = total.get().front();
+       },
+       &Place::v},
+      {"scan", [](Place& place) { running.with({.along = 0})(place.u, place.v); }, &Place::v},
+      {"save and load",
+       [](Place& place) {
+         place.u.save(place.file);
+         place.v.load(place.file);
+       },
+       &Place::v},
+      {"gather and scatter",
+       [](Place& place) {
+         const std::vector<float> gathered = place.u.gather(1);
+         place.v.scatter(gathered, 1);
+       },
+       &Place::v},
+      {"whole copies",
+       [](Place& place) {
+         place.u.copyTo(place.whole);
+         place.v.copyFrom(place.whole);
+         place.v.copyTo(place.u);
+       },
+       &Place::u},
+      {"two grids",
+       [](Place& place) {
+         restricted(place.u, place.c);
+         diffuse(0.2F, place.c, place.c);
+       },
+       &Place::c},
+      {"a deeper halo",
+       [](Place& place) {
+         sk::DomainStream<float> w = place.domain.stream<float>();
+         w.fill(2.0F);
+         diffuse(0.2F, w, place.v);
+         place.values[0] = slope(w, place.v);
+       },
+       &Place::v},
+      {"a domain",
+       [](Place& place) {
+         sk::Domain other(MPI_COMM_WORLD, {.shape = {16, 6}});
+         place.values[0] = static_cast<float>(other.shape()[0]);
+       }},
+      {"a domain beside",
+       [](Place& place) {
+         sk::Domain fine(place.domain, {.shape = {32, 12}, .periodic = around});
+         auto w = fine.stream<float>();
+         w.fill(2.0F);
+         restricted(w, place.v);
+       },
+       &Place::v},
+  };
+  return all;
+}
+
+struct Counts {
+  long faults = 0, harmless = 0, together = 0, atNext = 0;
+};
+
+/// Runs the program with one fault on a rank. Returns whether it has happened.
+bool runWithFault(Place& place, const Program& program, faults::Kind kind, int victim, long number,
+                  const Result& expected, Counts& counts) {
+  std::snprintf(now.data(), now.size(), "%s, %s %ld of rank %d", program.name,
+                kind == faults::Kind::Mpi ? "function of MPI" : "allocation", number, victim);
+  place.reset();
+  const faults::Handles before = faults::handles();
+  std::string error, later;
+  {
+    const faults::Fault fault(kind, rank == victim ? number : -1);
+    error = errorOf([&] { program.run(place); });
+  }
+  // What a program calls next, be it in a handler: whoever has not thrown hears of another rank's error now.
+  const auto next = [&] { return errorOf([&] { (void)sum(place.healthy); }); };
+  if (error.empty()) later = next();
+  if (!error.empty() || !later.empty()) {
+    const std::string twice = next();
+    if (!twice.empty()) fail("after '" + error + later + "' the next call fails, too: " + twice);
+  }
+  const bool hasFired = countOf(faults::Fault::hasFired()) > 0;
+  const int thrown = countOf(!error.empty()), heard = countOf(!later.empty());
+  if (thrown + heard > 0 && !hasFired) fail("an error without a fault: " + error + later);
+  if (hasFired) ++counts.faults;
+  if (thrown + heard == 0) {
+    if (resultOf(place, program) != expected) fail("a wrong result without an error");
+    if (hasFired) ++counts.harmless;
+  } else if (countOf(error.find("there is no host memory for 1 element") == 0) > 0) {
+    ++counts
+          .harmless;  // sk::Future::get() makes room for its elements before it asks the ranks, and can be called again
+  } else if (thrown + heard != ranks) {
+    fail("not all ranks hear of an error: " + error);
+  } else if (heard == 0) {
+    ++counts.together;
+  } else {
+    ++counts.atNext;
+  }
+  const auto again = errorOf([&] {
+    place.reset();
+    program.run(place);
+  });
+  if (!again.empty()) fail("after '" + error + "' it does not run again: " + again);
+  if (resultOf(place, program) != expected) fail("after '" + error + "' the result is wrong");
+  faults::Handles after = faults::handles();
+  after.communicators = before.communicators;  // those of lines of ranks are kept
+  if (after != before)
+    fail("requests, files or datatypes are left: " + std::to_string(after.requests) + ", " +
+         std::to_string(after.files) + ", " + std::to_string(after.types));
+  return hasFired;
+}
+
+void tryAll(Place& place, const Program& program) {
+  std::snprintf(now.data(), now.size(), "%s", program.name);
+  place.reset();
+  program.run(place);
+  const Result expected = resultOf(place, program);
+  const auto handles = faults::handles();
+  for (const faults::Kind kind : {faults::Kind::Mpi, faults::Kind::Allocation}) {
+    Counts counts;
+    for (const int victim : {0, ranks - 1}) {
+      for (long number = 1; runWithFault(place, program, kind, victim, number, expected, counts);) {
+        number += kind == faults::Kind::Allocation && number > 15 ? 6 : 1;  // what follows is much alike
+      }
+    }
+    if (faults::handles().communicators != handles.communicators) fail("communicators are left");
+    if (rank == 0) {
+      std::printf(
+          "%-20s %-10s %4ld faults: %ld harmless, %ld thrown by all ranks in the program, %ld heard of after "
+          "it\n",
+          program.name, kind == faults::Kind::Mpi ? "MPI" : "allocation", counts.faults, counts.harmless,
+          counts.together, counts.atNext);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  MPI_Init(&argc, &argv);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  std::signal(SIGALRM, giveUp);
+  alarm(280);
+  long number = ::getpid();
+  MPI_Bcast(&number, 1, MPI_LONG, 0, MPI_COMM_WORLD);
+  const auto folder = std::filesystem::temp_directory_path() / ("sk_rank_faults_" + std::to_string(number));
+  if (rank == 0) std::filesystem::create_directories(folder);
+  MPI_Barrier(MPI_COMM_WORLD);
+  {
+    Place place(folder.string());
+    for (const Program& program : programs()) {
+      if (argc > 1 && std::strstr(program.name, argv[1]) == nullptr) continue;
+      tryAll(place, program);
+    }
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (rank == 0) std::filesystem::remove_all(folder);
+  if (faults::handles() != faults::Handles{}) fail("handles are left at the end");
+  MPI_Finalize();
+  return 0;
+}
