@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "device/loop_runner.hpp"
 #include "device/loop_state.hpp"
 #include "device/write_scope.hpp"
@@ -21,6 +23,7 @@
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/program/variant.hpp"
+#include "sk/error.hpp"
 
 namespace sk {
 
