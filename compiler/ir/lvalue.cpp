@@ -158,6 +158,11 @@ bool isLValue(const Expr& expr) {
   return false;
 }
 
+bool isAssignable(const Variable& variable) {
+  const bool isCopy = variable.role == VarRole::Local || variable.role == VarRole::In;
+  return variable.role == VarRole::InOut || (isCopy && !variable.isConst);
+}
+
 bool areDisjoint(const Module& module, const Expr& a, const Expr& b) {
   return rootOf(a) != rootOf(b) || areDisjoint(stepsOf(module, a), stepsOf(module, b));
 }

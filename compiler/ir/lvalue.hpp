@@ -13,6 +13,9 @@ namespace skc::ir {
 /// True for a VarRef, and for a Member, Index or Swizzle of an lvalue.
 bool isLValue(const Expr& expr);
 
+/// True unless statements may only read the variable: an input, a uniform, or what is declared const.
+bool isAssignable(const Variable& variable);
+
 /// True if the two lvalues certainly share no number. An index that is not a literal may name any element.
 bool areDisjoint(const Module& module, const Expr& a, const Expr& b);
 

@@ -353,9 +353,7 @@ VarId checkLValue(const ExprContext& context, const Expr& expr) {
   const auto* ref = std::get_if<VarRef>(&expr.node);
   require(ref != nullptr, "a value that is no place is assigned to");
   const Variable& var = context.function->variables[ref->var];
-  const bool isCopy = var.role == VarRole::Local || var.role == VarRole::In;
-  const bool isMutable = var.role == VarRole::InOut || (isCopy && !var.isConst);
-  require(isMutable, fmt::format("constant '{}' is assigned to", var.name));
+  require(isAssignable(var), fmt::format("constant '{}' is assigned to", var.name));
   return ref->var;
 }
 

@@ -223,6 +223,10 @@ ExprPtr FunctionLowering::place(const clang::Expr* e) {
     module_.fail(Diag::GatherAssigned, e->getBeginLoc(), {gather + "[...]", gather});
   }
   if (!isWritable(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
+  for (const ir::VarId root : rootsOf(*result)) {  // by a cast, which takes const away
+    const ir::Variable& variable = function_.variables[root];
+    if (!ir::isAssignable(variable)) module_.fail(Diag::ConstantAssigned, e->getBeginLoc(), {variable.name});
+  }
   return result;
 }
 

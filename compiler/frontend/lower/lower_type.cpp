@@ -171,6 +171,7 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
   for (const clang::FieldDecl* field : record->fields()) {
     if (field->isBitField() || field->getName().empty())
       fail(Diag::StructNotPlain, field->getLocation(), {name});
+    if (field->isMutable()) fail(Diag::MutableMember, field->getLocation(), {field->getNameAsString()});
     entry.fields.push_back({field->getNameAsString(), type(field->getType(), field->getLocation())});
   }
   const auto index = static_cast<std::uint32_t>(module_.structs.size());
