@@ -48,7 +48,7 @@ double timeOf(const Options& options, const std::string& program) {
 
 /// A program with 8 times as many of something may take 2.5 times 8 times as long: n log n stays below that, n^1.5 does not.
 void checkGrowth(const Program& program, std::array<int, 3> sizes, const Options& options) {
-  constexpr double most = 2.5, slack = 0.25;
+  constexpr double most = 2.5, slack = 0.5;  // long runs are timed once, on machines that have more to do
   std::array<double, 3> times = {};
   for (std::size_t i = 0; i < sizes.size(); ++i) times[i] = timeOf(options, program(sizes[i]));
   const double larger = static_cast<double>(sizes[2] - sizes[0]) / (sizes[1] - sizes[0]);
