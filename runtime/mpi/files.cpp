@@ -115,7 +115,7 @@ class SharedFile {
     check(status);
   }
 
-  /// Of an older attempt, nothing is kept.
+  /// Empties the file first: an earlier attempt may have left a part.
   void writeHeader(const std::string& header) {
     check(MPI_File_set_size(handle_, 0));
     MPI_Status status;

@@ -83,15 +83,13 @@ class Messages {
   Messages(const Messages&) = delete;
   Messages& operator=(const Messages&) = delete;
 
-  /// Allocates what a message of so many bytes needs beside them, so that
-  /// posting it allocates nothing.
+  /// Makes room for the requests of a message of `count` bytes, so that posting it allocates nothing.
   void reserve(std::size_t count);
   /// Posts a message; the bytes must stay as they are until wait(). What MPI
   /// refuses is posted a second time. Throws sk::Error if it refuses that, too.
   void send(const void* bytes, std::size_t count, int to, int tag);
   void receive(void* bytes, std::size_t count, int from, int tag);
-  /// Posts in the place of a message of so many bytes that there is nothing to
-  /// send.
+  /// Posts an empty message instead of one of `count` bytes: the receiver's wait() then throws.
   void sendNothing(std::size_t count, int to, int tag);
   /// Waits for all that have been posted. Throws sk::Error if MPI has failed,
   /// or if a rank had nothing to send.

@@ -140,7 +140,7 @@ int MPI_Waitall(int count, MPI_Request* all, MPI_Status* statuses) {
   int pending = 0;
   for (int i = 0; i < count; ++i) pending += all[i] != MPI_REQUEST_NULL ? 1 : 0;
   const auto wait = [&] { return PMPI_Waitall(count, all, statuses); };
-  // Of one request: the runtime compares the ranks, which must not fail.
+  // The runtime waits for a single request when it compares the ranks; that must not fail.
   const int result = count > 1 ? together("MPI_Waitall", wait) : inside(wait);
   for (int i = 0; i < count; ++i) pending -= all[i] != MPI_REQUEST_NULL ? 1 : 0;
   living.requests -= pending;

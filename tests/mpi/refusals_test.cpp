@@ -96,7 +96,7 @@ TEST_CASE("a lost stream is whole again once all ranks write it") {
   CHECK(v.read() == own);
 }
 
-TEST_CASE("an argument that is wrong on one rank is told to the others, in the call or in the next one") {
+TEST_CASE("all ranks throw for a wrong argument of one rank, in that call or in their next one") {
   if (ranksOfWorld() == 1) return;
   sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
   auto u = domain.stream<float>(), v = domain.stream<float>();
@@ -114,7 +114,7 @@ TEST_CASE("an argument that is wrong on one rank is told to the others, in the c
   CHECK((alone == "no error") == !isLast());
   if (!isLast()) CHECK_THAT(errorOf([&] { (void)sum(u); }), Contains(last() + "scaled: 'x'"));
   checkThatItWorks(u, v);
-  // All ranks make the same mistake, and none is told of another's.
+  // All ranks make the same mistake: each throws its own error, without a rank's number.
   CHECK_THAT(errorOf([&] { scaled(0.1F, table, u, v); }), Contains("scaled: 'x'") && !Contains("rank 0"));
   checkThatItWorks(u, v);
 }
