@@ -243,6 +243,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   if (!frontend.diagnostics().hasErrors() && wantsPerformanceWarnings(options.warnings)) {
     warnOfPerformance(*module, frontend.diagnostics());
   }
+  if (!frontend.diagnostics().hasErrors()) emit::reportOverloads(*module, frontend.diagnostics());
   if (options.emit == Emit::Stubs) emit::reportCppNames(*module, frontend.diagnostics());
   if (options.emit == Emit::Js) web::reportJsNames(*module, frontend.diagnostics());
   if (frontend.diagnostics().hasErrors()) return std::nullopt;

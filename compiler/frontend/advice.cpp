@@ -65,6 +65,14 @@ Advice adviceOn(const clang::Diagnostic& diagnostic, const DeclarationSyntax* sy
   switch (diagnostic.getID()) {
     case clang::diag::err_exceptions_disabled: return {format(Diag::Exceptions, {})};
     case clang::diag::err_main_returns_nonint: return {format(Diag::MainFunction, {})};
+    case clang::diag::err_implied_comparison_category_type_not_found:
+      return {format(Diag::ForeignName, {"<=>", "compare with < and =="})};
+    case clang::diag::err_need_header_before_typeid:
+      return {format(Diag::ForeignName, {"typeid", "overload a function for each type"})};
+    case clang::diag::err_implied_std_initializer_list_not_found:
+      return {format(Diag::ForeignName, {"std::initializer_list", "write the type before the braces"})};
+    case clang::diag::err_implied_coroutine_type_not_found:
+      return {format(Diag::ForeignName, {"coroutines", "write a loop"})};
     case clang::diag::err_for_range_invalid: return {format(Diag::RangeFor, {})};
     case clang::diag::err_typecheck_assign_const: return adviceOnConstant(diagnostic);
     case clang::diag::err_constexpr_var_requires_const_init: return adviceOnConstexpr(diagnostic);

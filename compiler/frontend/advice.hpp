@@ -19,6 +19,7 @@ struct Advice {
   std::string text = {};  ///< "" keeps Clang's own
   std::vector<clang::FixItHint> fixIts = {};
   bool explainsLine = false;  ///< what Clang reports later on the same line follows from this
+  bool isOfMainFile = false;  ///< shown at the inclusion in the main file that leads there
 };
 
 /// `syntax` is null until the file's declarations are known.

@@ -122,6 +122,7 @@ Advice adviceOnNames(const clang::Diagnostic& diagnostic) {
     case clang::diag::err_unknown_typename_suggest:
     case clang::diag::err_no_template:
     case clang::diag::err_no_template_suggest: return adviceOnForeignName(diagnostic);
+    case clang::diag::err_pp_include_too_deep: return {format(Diag::IncludeTooDeep, {}), {}, false, true};
     case clang::diag::err_pp_file_not_found: return adviceOnHeader(diagnostic);
     case clang::diag::err_pp_invalid_directive: return adviceOnDirective(diagnostic);
     default: return {};

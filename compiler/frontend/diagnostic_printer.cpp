@@ -69,8 +69,16 @@ void DiagnosticPrinter::print(DiagnosticsEngine::Level level, const clang::Diagn
                               const Advice& advice) {
   DiagnosticConsumer::HandleDiagnostic(level, diagnostic);  // counts errors and warnings
   clang::TextDiagnostic printer(out_, language_, options_.get());
-  printer.emitDiagnostic(clang::FullSourceLoc(diagnostic.getLocation(), diagnostic.getSourceManager()), level,
-                         advice.text, diagnostic.getRanges(), advice.fixIts);
+  const clang::SourceManager& sources = diagnostic.getSourceManager();
+  clang::SourceLocation place = diagnostic.getLocation();
+  if (advice.isOfMainFile) {
+    while (sources.getIncludeLoc(sources.getFileID(place)).isValid())
+      place = sources.getIncludeLoc(sources.getFileID(place));
+  }
+  printer.emitDiagnostic(
+      clang::FullSourceLoc(place, sources), level, advice.text,
+      place == diagnostic.getLocation() ? diagnostic.getRanges() : llvm::ArrayRef<clang::CharSourceRange>(),
+      advice.fixIts);
   out_.flush();
 }
 

@@ -59,6 +59,7 @@ std::vector<std::string> compilerArguments(const Options& options, const std::st
       narrowingArgument,
       "-Wno-literal-range",   // lowering warns, because it knows which literals are doubles
       "-Wtautological-unsigned-zero-compare",   // a loop that counts down past 0 never ends
+      "-Wfor-loop-analysis",   // a loop whose step is missing never ends
       "-Wuninitialized",   // a value of any kind, and another one on each device
       "-Wno-vla-cxx-extension",   // lowering refuses them
       // a bad -W or a long cascade must not bury the first message

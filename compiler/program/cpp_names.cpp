@@ -6,8 +6,11 @@
 #include <map>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "ir/print.hpp"
 #include "program/shared_headers.hpp"
+#include "program/stub_parts.hpp"
 #include "program/used_structs.hpp"
 #include "support/namer.hpp"
 
@@ -154,6 +157,33 @@ void reportName(Diagnostics& diagnostics, Loc loc, std::string_view kind, const 
                       helps ? "in a namespace it would keep its name" : "another name would stay"});
 }
 
+/// The kernels that C++ programs call.
+std::vector<const Kernel*> unitsOf(const Module& module) {
+  std::vector<const Kernel*> units;
+  for (const Kernel& kernel : module.kernels) {
+    if (isUnit(kernel)) units.push_back(&kernel);
+  }
+  return units;
+}
+
+void reportAlike(const Module& module, const std::vector<const Kernel*>& overloads,
+                 Diagnostics& diagnostics) {
+  std::map<std::string, const Kernel*> taken;
+  for (const Kernel* kernel : overloads) {
+    for (const Form form : formsOf(*kernel)) {
+      for (const Uniforms uniforms : uniformsOf(*kernel)) {
+        const std::string types = parameterTypes(module, *kernel, form, uniforms);
+        const auto [entry, isNew] = taken.emplace(types, kernel);
+        if (isNew || entry->second == kernel) continue;
+        const Loc& other = entry->second->loc;
+        return diagnostics.report(
+            Diag::OverloadsAlike, kernel->loc,
+            {kernel->name, fmt::format("{}:{}", module.sources[other.file], other.line), types});
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void reportCppNames(const Module& module, Diagnostics& diagnostics) {
@@ -167,14 +197,20 @@ void reportCppNames(const Module& module, Diagnostics& diagnostics) {
     for (const StructField& field : type.fields) reportMacro(field.name, "member", type.loc);
   }
   for (const DeclaredStream& stream : module.streams) reportMacro(stream.name, "stream", stream.loc);
-  std::vector<const Kernel*> units;
-  for (const Kernel& kernel : module.kernels) {
-    if (isUnit(kernel)) units.push_back(&kernel);
-  }
+  const std::vector<const Kernel*> units = unitsOf(module);
   for (const Callable& callable : callables(module)) {
     const Kernel& kernel = *units[callable.units.front()];
     for (const std::string& scope : kernel.scope) reportMacro(scope, "namespace", kernel.loc);
     reportName(diagnostics, kernel.loc, wordOf(kernel), kernel.name, callable.object, kernel.scope.empty());
+  }
+}
+
+void reportOverloads(const Module& module, Diagnostics& diagnostics) {
+  const std::vector<const Kernel*> units = unitsOf(module);
+  for (const Callable& callable : callables(module)) {
+    std::vector<const Kernel*> overloads;
+    for (const std::size_t unit : callable.units) overloads.push_back(units[unit]);
+    reportAlike(module, overloads, diagnostics);
   }
 }
 

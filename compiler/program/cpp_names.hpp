@@ -42,6 +42,9 @@ std::string cppName(const ir::Kernel& kernel, const ir::KernelParam& param);
 /// Reports which kernels and structs have another name in C++, and which names C++ programs cannot write.
 void reportCppNames(const ir::Module& module, Diagnostics& diagnostics);
 
+/// Reports overloads that C++ cannot tell apart, such as of an enumeration and of its integers.
+void reportOverloads(const ir::Module& module, Diagnostics& diagnostics);
+
 /// True for functions, variables and types that the headers of the C library declare in the global namespace.
 bool isGlobalCName(std::string_view name);
 /// True for structs of the C library, whose names kernels may have.

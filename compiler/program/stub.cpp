@@ -17,35 +17,36 @@ bool mayBeStream(const KernelParam& param) {
   return param.role == ParamRole::Uniform && param.type.kind != Type::Kind::Array;
 }
 
-std::string parameter(const Module& module, const Kernel& kernel, const KernelParam& param, Uniforms uniforms,
-                      const std::vector<std::string>& scope) {
-  const std::string name = cppName(kernel, param);
+/// The type as C++ declares it: "const sk::In<float>&".
+std::string parameterType(const Module& module, const KernelParam& param, Uniforms uniforms,
+                          const std::vector<std::string>& scope) {
   if (param.type.kind == Type::Kind::Array) {
     const Array& array = module.arrays[param.type.index];
-    return fmt::format("std::span<const {}, {}> {}", cppType(module, array.element, scope), array.length,
-                       name);
+    return fmt::format("std::span<const {}, {}>", cppType(module, array.element, scope), array.length);
   }
   const std::string type = cppType(module, param.type, scope);
   const auto stream = [&](std::string_view direction) {
     const std::string taken = fmt::format("sk::{}<{}>", direction, type);
-    return param.neededIf ? fmt::format("const sk::Optional<{}>& {}", taken, name)
-                          : fmt::format("const {}& {}", taken, name);
+    return param.neededIf ? fmt::format("const sk::Optional<{}>&", taken) : fmt::format("const {}&", taken);
   };
   switch (param.role) {
-    case ParamRole::Spec: return fmt::format("{} {}", type, name);
-    case ParamRole::Iterator: return fmt::format("const sk::Iter<{}>& {}", type, name);
+    case ParamRole::Spec: return type;
+    case ParamRole::Iterator: return fmt::format("const sk::Iter<{}>&", type);
     case ParamRole::Uniform:
-      if (uniforms == Uniforms::Streams) return fmt::format("const sk::Uniform<{}>& {}", type, name);
-      return param.type.isArithmetic() ? fmt::format("{} {}", type, name)
-                                       : fmt::format("const {}& {}", type, name);
+      if (uniforms == Uniforms::Streams) return fmt::format("const sk::Uniform<{}>&", type);
+      return param.type.isArithmetic() ? type : fmt::format("const {}&", type);
     case ParamRole::Input: return stream("ElementIn");
     case ParamRole::Gather: return stream("In");
-    case ParamRole::VariableOutput: return fmt::format("const sk::VariableOut<{}>& {}", type, name);
+    case ParamRole::VariableOutput: return fmt::format("const sk::VariableOut<{}>&", type);
     case ParamRole::Output:
     case ParamRole::Scatter:
     case ParamRole::Accumulator: break;
   }
   return stream("Out");
+}
+
+bool isReturned(const KernelParam& param, Form form) {
+  return param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
 }
 
 }  // namespace
@@ -76,10 +77,18 @@ std::string parameterList(const Module& module, const Kernel& kernel, Form form,
                           const std::vector<std::string>& scope) {
   std::vector<std::string> list;
   for (const KernelParam& param : kernel.params) {
-    const bool isReturned = param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
-    if (!isReturned) list.push_back(parameter(module, kernel, param, uniforms, scope));
+    if (isReturned(param, form)) continue;
+    list.push_back(parameterType(module, param, uniforms, scope) + ' ' + cppName(kernel, param));
   }
   return join(list, ", ") + ") const";
+}
+
+std::string parameterTypes(const Module& module, const Kernel& kernel, Form form, Uniforms uniforms) {
+  std::vector<std::string> list;
+  for (const KernelParam& param : kernel.params) {
+    if (!isReturned(param, form)) list.push_back(parameterType(module, param, uniforms, {}));
+  }
+  return join(list, ", ");
 }
 
 Stub emitStub(const Module& module, const Program& program, std::string_view fileName,

@@ -52,5 +52,7 @@ std::string resultType(const ir::Module& module, const ir::Kernel& kernel, Form 
 /// The text after "(": "float k, const sk::In<float>& u, const sk::Out<float>& v) const".
 std::string parameterList(const ir::Module& module, const ir::Kernel& kernel, Form form, Uniforms uniforms,
                           const std::vector<std::string>& scope);
+/// The same without names, by which C++ tells overloads apart: "float, const sk::In<float>&, const sk::Out<float>&".
+std::string parameterTypes(const ir::Module& module, const ir::Kernel& kernel, Form form, Uniforms uniforms);
 
 }  // namespace skc::emit

@@ -98,7 +98,12 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void doStatement(const clang::DoStmt* statement);
   void switchStatement(const clang::SwitchStmt* statement);
   void returnStatement(const clang::ReturnStmt* statement);
-  void loop(ir::LoopKind kind, ir::Block init, const clang::Expr* cond, const clang::Expr* step,
+  /// A loop's condition, and the variable that it declares, or null: `while (int left = n - i)`.
+  struct LoopTest {
+    const clang::VarDecl* variable;
+    const clang::Expr* value;
+  };
+  void loop(ir::LoopKind kind, ir::Block init, LoopTest test, const clang::Expr* step,
             const clang::Stmt* body, clang::SourceLocation where);
   void testInBody(ir::Loop& loop, ir::Block effects, Loc loc);
 

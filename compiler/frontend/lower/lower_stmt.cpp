@@ -60,8 +60,7 @@ ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration, 
   function_.loc = module_.loc(declaration->getLocation());
   returnsThis_ = returnsThis(declaration);
   if (declaration->getReturnType()->isReferenceType() && !returnsThis_) {
-    module_.fail(Diag::ReferenceType, declaration->getLocation(),
-                 {declaration->getReturnType().getAsString()});
+    module_.fail(Diag::ReturnedReference, declaration->getLocation());
   }
   function_.result = returnsThis_ ? ir::Type::voidType()
                                   : module_.type(declaration->getReturnType(), declaration->getLocation());
@@ -122,7 +121,7 @@ void FunctionLowering::parameters(const clang::FunctionDecl* declaration) {
       variable.type = module_.type(value, where);
       const ParamSyntax* syntax = module_.syntax().param(where);
       const bool mutableReference = type->isLValueReferenceType() && !value.isConstQualified();
-      if (type->isRValueReferenceType()) module_.fail(Diag::ReferenceType, where, {type.getAsString()});
+      if (type->isRValueReferenceType()) module_.fail(Diag::RvalueReference, where, {type.getAsString()});
       variable.isConst = !mutableReference && value.isConstQualified();
       variable.role = mutableReference ? ir::VarRole::InOut : ir::VarRole::In;
       if (syntax && syntax->role == ir::ParamRole::Input) variable.role = ir::VarRole::Element;
@@ -296,21 +295,19 @@ void FunctionLowering::ifStatement(const clang::IfStmt* s) {
 }
 
 void FunctionLowering::forStatement(const clang::ForStmt* s) {
-  if (s->getConditionVariable())
-    module_.fail(Diag::Statement, s->getBeginLoc(), {"a declaration as a condition"});
   ir::Block init;
   if (s->getInit()) body(s->getInit(), init);
-  loop(ir::LoopKind::For, std::move(init), s->getCond(), s->getInc(), s->getBody(), s->getBeginLoc());
+  loop(ir::LoopKind::For, std::move(init), {s->getConditionVariable(), s->getCond()}, s->getInc(),
+       s->getBody(), s->getBeginLoc());
 }
 
 void FunctionLowering::whileStatement(const clang::WhileStmt* s) {
-  if (s->getConditionVariable())
-    module_.fail(Diag::Statement, s->getBeginLoc(), {"a declaration as a condition"});
-  loop(ir::LoopKind::While, {}, s->getCond(), nullptr, s->getBody(), s->getBeginLoc());
+  loop(ir::LoopKind::While, {}, {s->getConditionVariable(), s->getCond()}, nullptr, s->getBody(),
+       s->getBeginLoc());
 }
 
 void FunctionLowering::doStatement(const clang::DoStmt* s) {
-  loop(ir::LoopKind::DoWhile, {}, s->getCond(), nullptr, s->getBody(), s->getBeginLoc());
+  loop(ir::LoopKind::DoWhile, {}, {nullptr, s->getCond()}, nullptr, s->getBody(), s->getBeginLoc());
 }
 
 namespace {
@@ -331,16 +328,21 @@ bool fitsLoopInit(const ir::Block& block, const ir::Function& function) {
 
 }  // namespace
 
-void FunctionLowering::loop(ir::LoopKind kind, ir::Block init, const clang::Expr* cond,
-                            const clang::Expr* step, const clang::Stmt* inner, SourceLocation where) {
+void FunctionLowering::loop(ir::LoopKind kind, ir::Block init, LoopTest test, const clang::Expr* step,
+                            const clang::Stmt* inner, SourceLocation where) {
   const Loc loc = module_.loc(where);
   ir::Loop result;
   result.kind = kind;
   ir::Block condEffects;
-  if (cond) {
+  if (test.value) {
     ir::Block* outer = std::exchange(out_, &condEffects);
-    result.cond = condition(cond);
+    if (test.variable) variable(test.variable);
+    result.cond = condition(test.value);
     out_ = outer;
+    if (test.variable && step) {  // sees the variable, too
+      function_.variables[variables_.at(test.variable)].isConst = false;
+      hoistDeclarations(condEffects);
+    }
   }
   if (step) {
     ir::Block* outer = std::exchange(out_, &result.step);
@@ -388,9 +390,24 @@ void FunctionLowering::testInBody(ir::Loop& loop, ir::Block effects, Loc loc) {
   loop.cond = nullptr;
 }
 
+namespace {
+
+/// `[[likely]] case 1:` is a label with an attribute.
+const clang::Stmt* withoutAttributes(const clang::Stmt* s) {
+  while (const auto* attributed = llvm::dyn_cast<clang::AttributedStmt>(s)) s = attributed->getSubStmt();
+  return s;
+}
+
+}  // namespace
+
 void FunctionLowering::switchStatement(const clang::SwitchStmt* s) {
-  if (s->getConditionVariable() || s->getInit()) {
-    module_.fail(Diag::Statement, s->getBeginLoc(), {"a declaration in a switch"});
+  ir::Block scope;
+  ir::Block* outside = out_;
+  const bool needsScope = s->getInit() || s->getConditionVariable();
+  if (needsScope) {
+    out_ = &scope;
+    if (s->getInit()) statement(s->getInit());
+    if (s->getConditionVariable()) variable(s->getConditionVariable());
   }
   ir::Switch result;
   result.value = value(s->getCond());
@@ -400,14 +417,16 @@ void FunctionLowering::switchStatement(const clang::SwitchStmt* s) {
   if (!compound) module_.fail(Diag::CaseInsideStatement, s->getBody()->getBeginLoc());
   for (const clang::Stmt* inner : compound->body()) {
     bool opened = false;
-    while (const auto* label = llvm::dyn_cast<clang::SwitchCase>(inner)) {
+    while (const auto* label = llvm::dyn_cast<clang::SwitchCase>(withoutAttributes(inner))) {
       if (!opened) {
         result.cases.emplace_back();
         result.cases.back().loc = module_.loc(label->getBeginLoc());
         opened = true;
       }
       if (const auto* one = llvm::dyn_cast<clang::CaseStmt>(label)) {
-        if (one->getRHS()) module_.fail(Diag::Statement, one->getBeginLoc(), {"a range of case values"});
+        if (one->getRHS())
+          module_.fail(Diag::Statement, one->getBeginLoc(),
+                       {"a range of case values; write a 'case' for each"});
         result.cases.back().values.push_back(
             one->getLHS()->EvaluateKnownConstInt(module_.context()).getExtValue());
       } else {
@@ -421,6 +440,9 @@ void FunctionLowering::switchStatement(const clang::SwitchStmt* s) {
     out_ = outer;
   }
   emit(module_.loc(s->getBeginLoc()), std::move(result));
+  if (!needsScope) return;
+  out_ = outside;
+  emit(module_.loc(s->getBeginLoc()), ir::Scope{std::move(scope)});
 }
 
 namespace {

@@ -62,6 +62,8 @@ ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
   }
   if (const auto* builtin = canonical->getAs<clang::BuiltinType>()) {
     if (const auto scalar = scalarOf(builtin)) return ir::Type::of(*scalar);
+    if (builtin->isInteger() && context().getIntWidth(canonical) > 32)
+      fail(Diag::WideInteger, use, {qualified.getUnqualifiedType().getAsString()});
     fail(Diag::ScalarType, use, {qualified.getUnqualifiedType().getAsString()});
   }
   if (const auto* vector = canonical->getAs<clang::ExtVectorType>()) {
@@ -148,6 +150,28 @@ void ModuleLowering::addAlias(const clang::TypedefNameDecl* alias) {
   known.aliases.push_back(alias->getNameAsString());
 }
 
+/// Reports what keeps a struct from being copied member by member, and initialised by a list.
+void ModuleLowering::checkPlain(const clang::CXXRecordDecl* record) {
+  const std::string name = structName(record);
+  const auto refuse = [&](SourceLocation where, std::string_view what) {
+    fail(Diag::StructNotPlain, where, {name, what});
+  };
+  if (record->getNumBases() != 0) refuse(record->bases_begin()->getBeginLoc(), "it has a base");
+  for (const clang::CXXConstructorDecl* constructor : record->ctors()) {
+    if (!constructor->isImplicit()) refuse(constructor->getLocation(), "it has a constructor");
+  }
+  for (const clang::Decl* member : record->decls()) {  // constructors of any type
+    const auto* pattern = llvm::dyn_cast<clang::FunctionTemplateDecl>(member);
+    if (pattern && llvm::isa<clang::CXXConstructorDecl>(pattern->getTemplatedDecl()))
+      refuse(pattern->getLocation(), "it has a constructor");
+  }
+  const clang::CXXDestructorDecl* destructor = record->getDestructor();
+  if (destructor && record->hasNonTrivialDestructor())
+    refuse(destructor->getLocation(), "it has a destructor");
+  if (!record->hasTrivialCopyConstructor())
+    refuse(record->getLocation(), "its members are not copied bit by bit");
+}
+
 ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, SourceLocation use) {
   const clang::CXXRecordDecl* record = declaration->getDefinition();
   if (!record) fail(Diag::IncompleteType, use, {declaration->getNameAsString()});
@@ -155,13 +179,11 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
   if (found != structs_.end()) return ir::Type::structType(found->second);
   if (record->isLambda()) fail(Diag::Lambda, use);
   if (isPrelude(record)) fail(Diag::GatherAsValue, use);
-  const std::string name = record->getNameAsString();
+  const std::string name = structName(record);
   if (record->isUnion()) fail(Diag::Union, use, {name});
   if (record->isPolymorphic()) fail(Diag::VirtualFunction, use, {name});
-  if (record->getNumBases() != 0 || !record->hasTrivialCopyConstructor() ||
-      record->hasUserDeclaredConstructor() || record->hasNonTrivialDestructor()) {
-    fail(Diag::StructNotPlain, use, {name});
-  }
+  if (!refusedStructs_.insert(record).second) throw Abandoned{};  // already reported; removed on success
+  checkPlain(record);
   if (record->field_empty()) fail(Diag::StructEmpty, use, {name});
   ir::Struct entry;
   const bool isInstance = llvm::isa<clang::ClassTemplateSpecializationDecl>(record);
@@ -169,14 +191,18 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
   entry.scope = scopeOf(record);
   entry.loc = loc(record->getLocation());
   for (const clang::FieldDecl* field : record->fields()) {
-    if (field->isBitField() || field->getName().empty())
-      fail(Diag::StructNotPlain, field->getLocation(), {name});
+    if (field->isBitField())
+      fail(Diag::StructNotPlain, field->getLocation(),
+           {name, fmt::format("'{}' is a bit-field", field->getNameAsString())});
+    if (field->getName().empty())
+      fail(Diag::StructNotPlain, field->getLocation(), {name, "this member has no name"});
     if (field->isMutable()) fail(Diag::MutableMember, field->getLocation(), {field->getNameAsString()});
     entry.fields.push_back({field->getNameAsString(), type(field->getType(), field->getLocation())});
   }
   const auto index = static_cast<std::uint32_t>(module_.structs.size());
   module_.structs.push_back(std::move(entry));
   structs_[record] = index;
+  refusedStructs_.erase(record);
   checkSize(ir::Type::structType(index), record->getLocation());
   return ir::Type::structType(index);
 }

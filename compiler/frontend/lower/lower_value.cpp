@@ -7,6 +7,7 @@
 #include <clang/AST/ASTContext.h>
 #include <clang/AST/DeclCXX.h>
 #include <clang/AST/ExprCXX.h>
+#include <fmt/format.h>
 
 #include "frontend/clang_loc.hpp"
 #include "frontend/lower/function_lowering.hpp"
@@ -59,6 +60,7 @@ ExprPtr FunctionLowering::VisitCXXDefaultInitExpr(const clang::CXXDefaultInitExp
 // ---- leaves ---------------------------------------------------------------------------------------
 
 ExprPtr FunctionLowering::VisitIntegerLiteral(const clang::IntegerLiteral* e) {
+  if (!e->getValue().isIntN(32)) module_.fail(Diag::WideLiteral, e->getLocation(), {module_.textOf(e)});
   const ir::Type type = module_.type(e->getType(), e->getLocation());
   return literal(type, static_cast<std::uint32_t>(e->getValue().getZExtValue()), e->getLocation());
 }
@@ -581,12 +583,15 @@ ExprPtr FunctionLowering::VisitExpr(const clang::Expr* e) {
     case clang::Stmt::CXXNewExprClass:
     case clang::Stmt::CXXDeleteExprClass: module_.fail(Diag::DynamicAllocation, where);
     case clang::Stmt::StringLiteralClass: module_.fail(Diag::Expression, where, {"a string"});
+    case clang::Stmt::BinaryConditionalOperatorClass:
+      module_.fail(Diag::Expression, where, {"'?:' without a value between the signs"});
+    case clang::Stmt::StmtExprClass: module_.fail(Diag::Expression, where, {"statements in parentheses"});
     default: break;
   }
   if (e->getType()->isIntegralOrEnumerationType()) {
     if (ExprPtr constant = integerConstant(e, module_.type(e->getType(), where))) return constant;
   }
-  module_.fail(Diag::Expression, where, {"this kind of expression"});
+  module_.fail(Diag::Expression, where, {fmt::format("'{}'", module_.textOf(e))});
 }
 
 ExprPtr FunctionLowering::VisitStmt(const clang::Stmt* s) {

@@ -10,6 +10,7 @@
 #include <clang/AST/DeclCXX.h>
 #include <clang/AST/DeclTemplate.h>
 #include <clang/Basic/SourceManager.h>
+#include <clang/Lex/Lexer.h>
 #include <clang/Sema/Sema.h>
 #include <llvm/ADT/SmallBitVector.h>
 #include <llvm/ADT/StringExtras.h>
@@ -87,8 +88,11 @@ void ModuleLowering::declarations(const clang::DeclContext* scope) {
       } else if (const auto* pattern = llvm::dyn_cast<clang::FunctionTemplateDecl>(declaration)) {
         kernelTemplate(pattern);
       } else if (const auto* function = llvm::dyn_cast<clang::FunctionDecl>(declaration)) {
+        const KernelSyntax* kernelSyntax = syntax_.kernel(function->getLocation());
+        if (kernelSyntax && !function->getDefinition() && isOwn(function->getLocation()))
+          fail(Diag::KernelBody, function->getLocation(), {function->getNameAsString()});
         if (!function->isThisDeclarationADefinition() || function->isDependentContext()) continue;
-        if (const KernelSyntax* kernelSyntax = syntax_.kernel(function->getLocation())) {
+        if (kernelSyntax) {
           kernel(function, *kernelSyntax);
         } else {
           this->function(function, function->getLocation());
@@ -471,6 +475,8 @@ ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, 
   }
   functions_[key] = {0, Progress::Lowering};
   try {
+    if (definition->isVariadic())
+      fail(Diag::Variadic, definition->getLocation(), {definition->getNameAsString()});
     FunctionLowering lowering(*this);
     ir::Function lowered = lowering.function(definition, aliases);
     if (const TableSyntax* declared = syntax_.table(definition->getLocation())) {
@@ -488,6 +494,14 @@ ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, 
 }
 
 // ---- source locations ---------------------------------------------------------------------------
+
+std::string ModuleLowering::textOf(const clang::Expr* e) const {
+  constexpr std::size_t longest = 60;
+  const auto range = clang::CharSourceRange::getTokenRange(e->getSourceRange());
+  std::string text = clang::Lexer::getSourceText(range, sources(), context().getLangOpts()).str();
+  std::ranges::replace(text, '\n', ' ');
+  return text.size() > longest ? text.substr(0, longest) + "..." : text;
+}
 
 clang::ASTContext& ModuleLowering::context() const { return sema_.getASTContext(); }
 clang::SourceManager& ModuleLowering::sources() const { return sema_.getSourceManager(); }

@@ -13,6 +13,7 @@
 #include <clang/AST/Decl.h>
 #include <clang/AST/Type.h>
 #include <clang/Basic/SourceLocation.h>
+#include <llvm/ADT/SmallPtrSet.h>
 
 #include "frontend/lower/aliases.hpp"
 #include "frontend/tokens/syntax.hpp"
@@ -70,6 +71,8 @@ class ModuleLowering {
   static std::string nameOf(const clang::VarDecl* declaration);
   /// The name of a type as the user writes it, for messages.
   std::string spelling(ir::Type type) const;
+  /// The expression as the user wrote it, on one line, and cut if it is long.
+  std::string textOf(const clang::Expr* e) const;
 
   const DeclarationSyntax& syntax() const { return syntax_; }
   clang::ASTContext& context() const;
@@ -113,6 +116,7 @@ class ModuleLowering {
   void addAlias(const clang::TypedefNameDecl* alias);
   void addAliases(const clang::DeclContext* scope);
   ir::Type structType(const clang::CXXRecordDecl* declaration, clang::SourceLocation use);
+  void checkPlain(const clang::CXXRecordDecl* record);
   void checkSize(ir::Type type, clang::SourceLocation use);
   bool isInCppHeader(const clang::Decl* declaration) const;
   std::vector<std::string> scopeOf(const clang::Decl* declaration) const;
@@ -122,6 +126,7 @@ class ModuleLowering {
   Diagnostics& diagnostics_;
   ir::Module module_;
   std::unordered_map<const clang::Decl*, std::uint32_t> structs_;
+  llvm::SmallPtrSet<const clang::CXXRecordDecl*, 4> refusedStructs_;  ///< reported, or in progress
   std::unordered_map<const clang::Decl*, ir::ConstantId> constants_;
   std::map<std::pair<const clang::Decl*, std::string>, FunctionEntry> functions_;  ///< by Aliases::key, too
   std::unordered_map<std::string, std::uint32_t> sourceIndex_;

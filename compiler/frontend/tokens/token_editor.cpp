@@ -70,7 +70,37 @@ class Editor {
     if (cursor_.at(tok::kw_namespace)) return copyUntilBodyOrEnd();
     if (cursor_.at(tok::kw_template)) return editTemplate();
     if (const std::size_t name = brookStream(); name != 0) return refuseStream(name);
+    if (const std::size_t kernel = kernelBehindSpecifiers(); kernel != 0) return refuseSpecifiers(kernel);
     copyDeclaration();
+  }
+
+  /// The index of `kernel` in `static inline kernel void f` and `extern "C" kernel void f`; 0 in other declarations.
+  std::size_t kernelBehindSpecifiers() const {
+    std::size_t at = 0;
+    while (cursor_.peek(at).isOneOf(tok::kw_static, tok::kw_inline, tok::kw_extern, tok::kw_constexpr,
+                                    tok::string_literal)) {
+      ++at;
+    }
+    return isKernelAt(at) ? at : 0;
+  }
+
+  bool isKernelAt(std::size_t at) const {
+    const Token& word = cursor_.peek(at);
+    return (isWord(word, "kernel") || isWord(word, "reduce") || isWord(word, "scan")) &&
+           cursor_.peek(at + 1).is(tok::kw_void);
+  }
+
+  void refuseSpecifiers(std::size_t kernel) {
+    const Token first = cursor_.peek();
+    std::string specifiers;
+    Token last = first;
+    for (std::size_t i = 0; i < kernel; ++i) {
+      last = cursor_.take();
+      specifiers += (i == 0 ? "" : " ") + preprocessor_.getSpelling(last);
+    }
+    diagnostics_.report(Diag::KernelSpecifier, locOf(first), {specifiers, nameOf(cursor_.peek())},
+                        {FixIt::replace(locOf(first), locOf(last), "")});
+    editKernel();
   }
 
   /// `namespace a {` opens a scope whose declarations are edited like any others; its `}` is copied as an
@@ -379,8 +409,10 @@ class Editor {
     } while (depth > 0 && !cursor_.at(tok::eof));
   }
 
-  /// Reports `stream float a<n>` and Brook's `indexof a` in a body or a struct.
+  /// Reports `stream float a<n>` and Brook's `indexof a` in a body or a struct, and kernels there, which it skips.
   void checkInner() {
+    while (refuseInnerKernel()) {
+    }
     checkCast();
     checkOperator("indexof");
     checkOperator("extentof");
@@ -389,6 +421,23 @@ class Editor {
     if (starts && names && atDeclarationWord("stream")) {
       diagnostics_.report(Diag::StreamInside, locOf(cursor_.peek()), {nameOf(cursor_.peek(2))});
     }
+  }
+
+  /// Reports `kernel void f(...) { ... }` within braces; returns true if it was there.
+  bool refuseInnerKernel() {
+    const bool starts = out_.back().isOneOf(tok::l_brace, tok::r_brace, tok::semi);
+    const bool isDeclared =
+        isKernelAt(0) && cursor_.peek(2).is(tok::identifier) && cursor_.at(3, tok::l_paren);
+    if (!starts || !isDeclared) return false;
+    diagnostics_.report(Diag::KernelInside, locOf(cursor_.peek()), {nameOf(cursor_.peek(2))});
+    int depth = 0;
+    while (!cursor_.at(tok::eof)) {
+      const Token token = cursor_.take();
+      if (token.is(tok::l_brace)) ++depth;
+      if (token.is(tok::r_brace)) --depth;
+      if (depth <= 0 && token.isOneOf(tok::r_brace, tok::semi)) break;
+    }
+    return true;
   }
 
   /// Reports OpenCL's `(float4)(1, 2, 3, 4)`, which C++ takes for a cast of the last number.

@@ -9,13 +9,14 @@
 namespace fuzz::cpp {
 
 const std::vector<std::string> constructs = {
-    "aliasing",       "arrays",      "auto",           "bindings",    "braces",        "comma",
-    "constants",      "constrefs",   "defaults",       "designators", "doubles",       "enums",
-    "floats",         "inits",       "intrinsics",     "jumps",       "loops",         "lvalue_choices",
-    "masks",          "matrices",    "methods",        "namespaces",  "narrow",        "narrow_enums",
-    "narrow_vectors", "nested",      "objects",        "operators",   "order",         "overloads",
-    "parts",          "references",  "static_members", "structs",     "switch",        "templates",
-    "temporaries",    "vector_bits", "vector_choices", "vectors",     "whole_objects", "wide_enums"};
+    "aliasing",      "arrays",         "auto",           "bindings",    "braces",         "comma",
+    "conditions",    "constants",      "constrefs",      "defaults",    "designators",    "doubles",
+    "enums",         "floats",         "inits",          "intrinsics",  "jumps",          "likely",
+    "loops",         "lvalue_choices", "masks",          "matrices",    "methods",        "namespaces",
+    "narrow",        "narrow_enums",   "narrow_vectors", "nested",      "objects",        "operators",
+    "order",         "overloads",      "parts",          "references",  "static_members", "structs",
+    "switch",        "templates",      "temporaries",    "vector_bits", "vector_choices", "vectors",
+    "whole_objects", "wide_enums"};
 
 namespace {
 

@@ -223,7 +223,25 @@ NodePtr Body::loop() {
   ++breakables_;
   std::string text;
   std::vector<NodePtr> parts;
-  switch (random_.below(5)) {
+  switch (unit_.with("conditions", 1, 4) ? 5 + random_.below(2) : random_.below(5)) {
+    case 5: {  // the body sees the variable, and so may the step
+      const std::string left = unit_.newName("left");
+      counter.below = trips;
+      variables_.push_back(counter);
+      variables_.push_back({.name = left, .type = counter.type, .bit = bits_++ % 64, .below = trips + 1});
+      const std::string step = random_.chance(1, 2) ? "++" + name : name + " += " + left + " > 0 ? 1 : 2";
+      text = "for (int " + name + " = 0; " + (random_.chance(1, 2) ? "const int " : "int ") + left + " = " +
+             count + " - " + name + "; " + step + ") {\n$}";
+      break;
+    }
+    case 6: {
+      const std::string left = unit_.newName("left");
+      counter.below = trips + 1;
+      variables_.push_back(counter);
+      variables_.push_back({.name = left, .type = counter.type, .bit = bits_++ % 64, .below = trips + 1});
+      text = "{\nint " + name + " = 0;\nwhile (int " + left + " = " + count + " - " + name + "++) {\n$}\n}";
+      break;
+    }
     case 0:
     case 1:
       counter.below = trips;
@@ -309,7 +327,7 @@ NodePtr Body::selection() {
   bool hasDefault = false;
   const std::size_t count = random_.below(5) + 1;
   for (std::size_t i = 0; i < count; ++i) {
-    std::string text;
+    std::string text = unit_.with("likely", 1, 6) ? "[[likely]] " : "";
     const std::size_t labelCount = random_.chance(1, 4) ? 2 : 1;
     for (std::size_t l = 0; l < labelCount; ++l) {
       if (!hasDefault && random_.chance(1, 5)) {
@@ -321,11 +339,17 @@ NodePtr Body::selection() {
         labels.erase(labels.begin() + static_cast<std::ptrdiff_t>(taken));
       }
     }
-    if (text.empty()) break;
+    if (!text.ends_with('\n')) break;
     text += random_.chance(1, 2) ? "{\n$}" : "{\n$}\nbreak;";
     cases->children.push_back(makeStatement(text, block(pickCount())));
   }
   --breakables_;
+  if (unit_.with("conditions", 1, 4)) {
+    const std::string name = unit_.newName("chosen");
+    const std::string head =
+        random_.chance(1, 2) ? "auto " + name + " = $" : "auto " + name + " = $; " + name;
+    return makeStatement("switch (" + head + ") {\n$}", std::move(chosen.node), std::move(cases));
+  }
   return makeStatement("switch ($) {\n$}", std::move(chosen.node), std::move(cases));
 }
 
