@@ -280,9 +280,10 @@ class Frontend::Unit {
       parser.Initialize();
       clang::Parser::DeclGroupPtrTy group;
       clang::Sema::ModuleImportState imports;
-      for (bool atEnd = parser.ParseFirstTopLevelDecl(group, imports); !atEnd;
-           atEnd = parser.ParseTopLevelDecl(group, imports)) {
-      }
+      bool atEnd = parser.ParseFirstTopLevelDecl(group, imports);
+      // nobody sees what comes after the last message
+      while (!atEnd && !compiler_.getDiagnostics().hasFatalErrorOccurred())
+        atEnd = parser.ParseTopLevelDecl(group, imports);
     });
     preprocessor.setTokenWatcher(nullptr);
     if (isParsed) return;

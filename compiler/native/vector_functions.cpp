@@ -21,17 +21,18 @@ Part largest(const Formula& f, const Parts& a) {
   return most;
 }
 
-/// Powers of 2: vectors whose largest component is below `small`, or at least `large`, are multiplied by `up` or `down`.
-/// Then no square overflows, and none that counts underflows.
+/// Powers of 2: vectors whose largest component is below `small`, or at least `large` or `huge`, are multiplied by `up`,
+/// `down` or `farDown`. Then no square overflows, none that counts underflows, and no component becomes denormal whose part
+/// of the length is not: the largest is at least 1 where it was multiplied by less.
 struct LengthScales {
-  const char *small, *large, *up, *down;
+  const char *small, *up, *large, *down, *huge, *farDown;
 };
 
 LengthScales lengthScales(const Part& part) {
   const llvm::Type* const type = part.value->getType()->getScalarType();
-  if (type->isFloatTy()) return {"0x1p-40", "0x1p62", "0x1p86", "0x1p-66"};
-  if (type->isDoubleTy()) return {"0x1p-400", "0x1p500", "0x1p600", "0x1p-600"};
-  return {"0x1p-8000", "0x1p8000", "0x1p8500", "0x1p-8500"};
+  if (type->isFloatTy()) return {"0x1p-40", "0x1p86", "0x1p62", "0x1p-34", "0x1p95", "0x1p-66"};
+  if (type->isDoubleTy()) return {"0x1p-400", "0x1p600", "0x1p500", "0x1p-300", "0x1p750", "0x1p-600"};
+  return {"0x1p-8000", "0x1p8500", "0x1p8000", "0x1p-5000", "0x1p12000", "0x1p-9000"};
 }
 
 /// The power of 2 by which to multiply a vector with this largest component.
@@ -39,9 +40,12 @@ Part lengthScale(const Formula& f, const Part& most) {
   const LengthScales scales = lengthScales(most);
   const Part small =
       f.select(f.less(most, f.decimal(most, scales.small)), f.decimal(most, scales.up), f.number(most, 1));
-  const Part isLarge =
-      binary(f.l, BinaryOp::GreaterEqual, Scalar::Float, most, f.decimal(most, scales.large));
-  return f.select(isLarge, f.decimal(most, scales.down), small);
+  const auto isAtLeast = [&](const char* number) {
+    return binary(f.l, BinaryOp::GreaterEqual, Scalar::Float, most, f.decimal(most, number));
+  };
+  const Part down =
+      f.select(isAtLeast(scales.huge), f.decimal(most, scales.farDown), f.decimal(most, scales.down));
+  return f.select(isAtLeast(scales.large), down, small);
 }
 
 /// An n by n matrix in row-major order, without one row and one column.

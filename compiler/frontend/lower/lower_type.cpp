@@ -97,12 +97,19 @@ const clang::ClassTemplateSpecializationDecl* instanceOf(clang::QualType qualifi
 
 }  // namespace
 
+/// The type of a gather's or scatter's elements, of which Clang instantiates templates even for `void`.
+ir::Type ModuleLowering::elementType(clang::QualType qualified, SourceLocation use) {
+  const ir::Type element = type(qualified, use);
+  if (element.isVoid()) fail(Diag::ScalarType, use, {qualified.getAsString()});
+  return element;
+}
+
 int ModuleLowering::gatherRank(clang::QualType qualified, SourceLocation use, ir::Type& element) {
   const auto* instance = instanceOf(qualified);
   if (!instance || !isPrelude(instance)) return 0;
   for (int rank = 1; rank <= 4; ++rank) {
     if (instance->getName() != gatherTemplateName(rank)) continue;
-    element = type(instance->getTemplateArgs()[0].getAsType(), use);
+    element = elementType(instance->getTemplateArgs()[0].getAsType(), use);
     return rank;
   }
   return 0;
@@ -114,7 +121,7 @@ std::optional<int> ModuleLowering::appendRank(clang::QualType qualified, SourceL
   if (!instance || !isPrelude(instance)) return std::nullopt;
   for (int rank = 0; rank <= 4; ++rank) {
     if (instance->getName() != appendTemplateName(rank)) continue;
-    element = type(instance->getTemplateArgs()[0].getAsType(), use);
+    element = elementType(instance->getTemplateArgs()[0].getAsType(), use);
     return rank;
   }
   return std::nullopt;

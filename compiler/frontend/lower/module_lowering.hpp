@@ -115,6 +115,7 @@ class ModuleLowering {
   std::string cppName(const clang::CXXRecordDecl* record) const;
   void addAlias(const clang::TypedefNameDecl* alias);
   void addAliases(const clang::DeclContext* scope);
+  ir::Type elementType(clang::QualType type, clang::SourceLocation use);
   ir::Type structType(const clang::CXXRecordDecl* declaration, clang::SourceLocation use);
   void checkPlain(const clang::CXXRecordDecl* record);
   void checkSize(ir::Type type, clang::SourceLocation use);

@@ -168,6 +168,10 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
     diagnostics_.report(Diag::KernelPointer, locOf(parts.type.back()), {nameOf(parts.name)});
     return;
   }
+  if (parts.type.size() == 1 && parts.type.back().is(tok::kw_void)) {
+    diagnostics_.report(Diag::ScalarType, locOf(parts.type.back()), {"void"});
+    return;
+  }
   if (!resolveRole(parts, kind)) return;
   print(parts, kind, out);
 }

@@ -36,6 +36,10 @@ class MapJudge {
   bool equalsDouble(double wanted, double got) const;
   /// `got` is a quotient of floats, whose nearest float is `wanted`.
   bool isQuotient(float wanted, double divisor, double got) const;
+  /// The argument as the device may read it: 0 for a denormal one.
+  double flushed(double x) const {
+    return arithmetic.flushesDenormals && isDenormal(x) ? std::copysign(0.0, x) : x;
+  }
   /// Whether the device may compute anything at all as a quotient: GL promises nothing for divisors beyond 2^126.
   bool isAnyQuotient(double divisor) const;
   /// `got` is the result of an operation on floats, whose exact result is `wanted` (or rounded to 53 bits) in the precision of the

@@ -89,7 +89,13 @@ bool acceptsOperators(const Judge& judge, Arguments x, std::size_t output, doubl
     const std::array<float, 4> wanted{a + b, a - b, a * b, a / b};
     return output == 3 ? judge.isQuotient(wanted[output], x[1], got) : judge.equals(wanted[output], got);
   }
-  return judge.isRounded(operationsOf(judge, x)[output], got) || (output == 3 && judge.isAnyQuotient(x[1]));
+  if (judge.isRounded(operationsOf(judge, x)[output], got)) return true;
+  if (output == 3 && judge.isAnyQuotient(x[1])) return true;
+  // a denormal argument may be 0, and its product 0 of either sign
+  const std::array<double, 2> flushed{judge.flushed(x[0]), judge.flushed(x[1])};
+  if (flushed == std::array{x[0], x[1]}) return false;
+  const double wanted = operationsOf(judge, flushed)[output];
+  return judge.isRounded(wanted, got) || (wanted == 0 && got == 0);
 }
 bool acceptsWideOperators(const Judge& judge, Arguments x, std::size_t output, double got) {
   if (output == 3 && judge.arithmetic.hasPairs && judge.isAnyQuotient(x[1])) return true;

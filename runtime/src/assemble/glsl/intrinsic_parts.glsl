@@ -317,7 +317,9 @@ float sk_fmod(float x, float y) {
 
 //// lengthScale
 // The power of 2 by which vectors are multiplied, of whose components the largest has these bits, so that no square overflows or
-// vanishes.
+// vanishes, and no component becomes denormal whose part of the length is not: from 2^95 on 2^-66, from 2^62 on 2^-34, below
+// 2^-40 2^86.
 float sk_length_scale(uint bits) {
-  return uintBitsToFloat(bits >= 0x5e800000u ? 0x1e800000u : bits < 0x2b800000u ? 0x6a800000u : 0x3f800000u);
+  uint down = bits >= 0x6f000000u ? 0x1e800000u : 0x2e800000u;
+  return uintBitsToFloat(bits >= 0x5e800000u ? down : bits < 0x2b800000u ? 0x6a800000u : 0x3f800000u);
 }
