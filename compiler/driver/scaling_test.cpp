@@ -33,11 +33,11 @@ double seconds() {
 }
 
 /// The least time of several runs, if they are short.
-double timeOf(const Options& options, const std::string& program) {
+double timeOf(const Options& options, const std::string& program, int status) {
   double least = 0;
   for (int run = 0; run < 3; ++run) {
     const double start = seconds();
-    REQUIRE(withBigStack([&] { return compileText(options, "many.sk", program).status; }) == 0);
+    REQUIRE(withBigStack([&] { return compileText(options, "many.sk", program).status; }) == status);
     const double took = seconds() - start;
     least = run == 0 ? took : std::min(least, took);
     constexpr double shortRun = 0.1;
@@ -47,10 +47,10 @@ double timeOf(const Options& options, const std::string& program) {
 }
 
 /// A program with 8 times as many of something may take 2.5 times 8 times as long: n log n stays below that, n^1.5 does not.
-void checkGrowth(const Program& program, std::array<int, 3> sizes, const Options& options) {
+void checkGrowth(const Program& program, std::array<int, 3> sizes, const Options& options, int status = 0) {
   constexpr double most = 2.5, slack = 0.5;  // long runs are timed once, on machines that have more to do
   std::array<double, 3> times = {};
-  for (std::size_t i = 0; i < sizes.size(); ++i) times[i] = timeOf(options, program(sizes[i]));
+  for (std::size_t i = 0; i < sizes.size(); ++i) times[i] = timeOf(options, program(sizes[i]), status);
   const double larger = static_cast<double>(sizes[2] - sizes[0]) / (sizes[1] - sizes[0]);
   INFO(fmt::format("{}, {} and {} take {:.3f}, {:.3f} and {:.3f} s", sizes[0], sizes[1], sizes[2], times[0],
                    times[1], times[2]));
@@ -156,6 +156,12 @@ std::string outputs(int count) {
          repeated(count, [](int i) { return fmt::format("  a = a * 1.5f + x; r{} = a;\n", i); }) + "}\n";
 }
 
+/// Statements outside functions, each an error.
+std::string mistakes(int count) {
+  return "kernel void k(float x<>, out float r<>) { r = x; }\n" +
+         repeated(count, [](int) { return "r = x;\n"; });
+}
+
 std::string reduces(int count) {
   return repeated(count, [](int i) {
     return fmt::format("reduce void k{0}(float x<>, reduce float t<>) {{ t += x * {0}.5f; }}\n", i);
@@ -192,6 +198,10 @@ TEST_CASE("time grows hardly faster than the number of statements") {
     INFO(name);
     checkGrowth(program, {10, 80, 640}, emitting(Emit::Json));
   }
+}
+
+TEST_CASE("time grows hardly faster than the number of mistakes") {
+  checkGrowth(mistakes, {400, 3200, 25600}, emitting(Emit::Stubs), 1);
 }
 
 TEST_CASE("time grows hardly faster than what a kernel may have few of") {
