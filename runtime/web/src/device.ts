@@ -55,13 +55,24 @@ export interface DeviceInfo {
   readonly arithmetic: Arithmetic | null;
 }
 
-/** Planes of one format and size that nothing uses. */
+/** Planes of one format and size, of which nothing uses the idle ones. */
 export interface Shelf {
+  readonly key: number;
   readonly format: Format;
   readonly width: number;
   readonly height: number;
+  /** What a plane takes. */
+  readonly bytes: number;
   readonly idle: Plane[];
+  /** How many there are, idle or not. */
+  planes: number;
+  /** When one was last taken or given back, on Device.clock. */
+  used: number;
 }
+
+/** Idle planes may take this much before the first are deleted, and a plane counts as this much at least, in bytes. */
+const fewIdleBytes = 2 ** 26;
+const leastBytes = 2 ** 16;
 
 /** A framebuffer that draws to several planes. */
 interface Joint {
@@ -77,6 +88,8 @@ export interface Plane {
   readonly height: number;
   /** Where it goes when nothing uses it any more. */
   readonly shelf: Shelf;
+  /** Its place in Device.made. */
+  ref: WeakRef<Plane> | null;
   /** Device.generation when it was made. */
   readonly generation: number;
   /** Calls that are yet to read it. */
@@ -111,6 +124,15 @@ export class Device {
   private readonly layouts = new Map<string, WeakRef<Layout>>();
   private mostLayouts = 1024;
   private readonly shelves = new Map<number, Shelf>();
+  /** All planes. Those of streams that are dropped without dispose() go with them, and their textures, too. */
+  private readonly made = new Set<WeakRef<Plane>>();
+  private readonly collected = new FinalizationRegistry<{ ref: WeakRef<Plane>; shelf: Shelf }>(({ ref, shelf }) => {
+    if (this.made.delete(ref)) this.forget(shelf);
+  });
+  private madeBytes = 0;
+  private idleBytes = 0;
+  private clock = 0;
+  private readonly listening = new AbortController();
   private readonly joints = new Set<Joint>();
   private boundProgram: Program | null = null;
   private boundFramebuffer: WebGLFramebuffer | null | undefined = undefined;
@@ -138,11 +160,13 @@ export class Device {
     this.abilities = abilitiesOf(this.context, options);
     this.transfers = new Transfers(this);
     this.trace = options.trace ?? false;
-    canvas.addEventListener('webglcontextlost', (event) => {
-      if (this.ownsContext && !this.isDisposed) event.preventDefault(); // which asks the browser to restore it
+    const { signal } = this.listening;
+    const onLost = (event: Event) => {
+      if (this.ownsContext) event.preventDefault(); // which asks the browser to restore it
       this.lose();
-    });
-    canvas.addEventListener('webglcontextrestored', () => this.restore());
+    };
+    canvas.addEventListener('webglcontextlost', onLost, { signal });
+    canvas.addEventListener('webglcontextrestored', () => this.restore(), { signal });
   }
 
   /** Whether calls, passes, compilations and transfers make entries for the browser's performance panel. */
@@ -187,7 +211,9 @@ export class Device {
     }
     ++this.generation;
     this.arithmetic = null;
-    for (const { idle } of this.shelves.values()) idle.length = 0;
+    for (const shelf of this.shelves.values()) shelf.idle.length = shelf.planes = 0;
+    this.made.clear();
+    this.madeBytes = this.idleBytes = 0;
     this.joints.clear();
     this.filters.clear();
     this.transfers = new Transfers(this);
@@ -244,11 +270,21 @@ export class Device {
     await compileAll(this, callables as readonly Compilable[], progress);
   }
 
-  /** Frees everything. The context goes, too, if the device has made it. */
+  /** Frees everything that the device has made. The context goes, too, if that is the device's own. */
   dispose(): void {
     if (this.isDisposed) return;
     this.isDisposed = true;
     this.lose();
+    this.listening.abort();
+    const gl = this.context;
+    this.deletePlanes([...this.made].flatMap((ref) => ref.deref() ?? []));
+    this.shelves.clear();
+    for (const sampler of this.filters.values()) gl.deleteSampler(sampler);
+    for (const programs of this.programs.values()) {
+      for (const program of programs.values()) program.end();
+    }
+    this.programs.clear();
+    this.tracer = null;
     if (this.ownsContext) this.context.getExtension('WEBGL_lose_context')?.loseContext();
   }
 
@@ -289,7 +325,10 @@ export class Device {
   shelfOf(format: Format, width: number, height: number): Shelf {
     const key = (format.internal * 2 ** 16 + width) * 2 ** 16 + height;
     let shelf = this.shelves.get(key);
-    if (shelf === undefined) this.shelves.set(key, (shelf = { format, width, height, idle: [] }));
+    if (shelf === undefined) {
+      const bytes = Math.max(leastBytes, width * height * format.channels * format.channel.BYTES_PER_ELEMENT);
+      this.shelves.set(key, (shelf = { key, format, width, height, bytes, idle: [], planes: 0, used: 0 }));
+    }
     return shelf;
   }
 
@@ -301,7 +340,11 @@ export class Device {
   /** A plane of any content; `what` it is for, if there is no memory. @internal */
   take(shelf: Shelf, what: string | (() => string)): Plane {
     const idle = shelf.idle.pop();
-    if (idle !== undefined) return idle;
+    shelf.used = ++this.clock;
+    if (idle !== undefined) {
+      this.idleBytes -= shelf.bytes;
+      return idle;
+    }
     const { format, width, height } = shelf;
     const gl = this.context;
     if (!this.ownsContext) this.takeErrors(); // the application's
@@ -319,7 +362,19 @@ export class Device {
     }
     for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
     for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
-    return { texture, format, width, height, shelf, generation: this.generation, holds: 0, isLeft: false, framebuffer: null, joints: [] };
+    const plane: Plane = { texture, format, width, height, shelf, ref: null, generation: this.generation, holds: 0, isLeft: false, framebuffer: null, joints: [] };
+    const ref = (plane.ref = new WeakRef(plane));
+    this.made.add(ref);
+    this.collected.register(plane, { ref, shelf }, plane);
+    ++shelf.planes;
+    this.madeBytes += shelf.bytes;
+    return plane;
+  }
+
+  /** A plane of this shelf is no more. */
+  private forget(shelf: Shelf): void {
+    this.madeBytes -= shelf.bytes;
+    if (--shelf.planes === 0) this.shelves.delete(shelf.key);
   }
 
   /** Reads and clears the context's error flags. Returns whether memory was exhausted. @internal */
@@ -338,13 +393,34 @@ export class Device {
   /** @internal */
   release(planes: readonly Plane[]): void {
     for (const plane of planes) {
-      if (plane.generation !== this.generation) continue; // it went with the context
+      if (plane.generation !== this.generation || this.isDisposed) continue; // it went with the context
       if (plane.holds > 0) {
         plane.isLeft = true;
         continue;
       }
       plane.shelf.idle.push(plane);
+      plane.shelf.used = ++this.clock;
+      this.idleBytes += plane.shelf.bytes;
     }
+    if (this.idleBytes > this.mostIdleBytes()) this.forgetIdle();
+  }
+
+  private mostIdleBytes(): number {
+    return Math.max(fewIdleBytes, 2 * (this.madeBytes - this.idleBytes));
+  }
+
+  /** Deletes the idle planes that have waited longest, until half as many may come again. */
+  private forgetIdle(): void {
+    const most = this.mostIdleBytes() / 2;
+    const shelves = [...this.shelves.values()].filter(({ idle }) => idle.length > 0).sort((a, b) => a.used - b.used);
+    const unused: Plane[] = [];
+    for (const { idle, bytes } of shelves) {
+      if (this.idleBytes <= most) break;
+      const count = Math.min(idle.length, Math.ceil((this.idleBytes - most) / bytes));
+      unused.push(...idle.splice(0, count));
+      this.idleBytes -= count * bytes;
+    }
+    this.deletePlanes(unused);
   }
 
   /** Keeps planes as they are until letGo(): whoever writes their streams meanwhile draws to others. @internal */
@@ -364,20 +440,33 @@ export class Device {
 
   /** Deletes textures that no stream uses. */
   trim(): void {
+    const unused = [...this.shelves.values()].flatMap(({ idle }) => idle.splice(0));
+    this.idleBytes = 0;
+    this.deletePlanes(unused);
+  }
+
+  /** Deletes planes that nothing uses, with all framebuffers that draw to them. */
+  private deletePlanes(planes: readonly Plane[]): void {
     const gl = this.context;
-    const unused = new Set([...this.shelves.values()].flatMap(({ idle }) => idle.splice(0)));
+    const unused = new Set(planes);
+    const framebuffers = planes.map(({ framebuffer }) => framebuffer);
     for (const joint of this.joints) {
-      const { planes, framebuffer } = joint;
-      if (!planes.some((plane) => unused.has(plane))) continue;
-      gl.deleteFramebuffer(framebuffer);
+      if (!joint.planes.some((plane) => unused.has(plane))) continue;
+      framebuffers.push(joint.framebuffer);
       this.joints.delete(joint);
-      planes[0]!.joints = planes[0]!.joints.filter((other) => other !== joint);
+      const first = joint.planes[0]!;
+      first.joints = first.joints.filter((other) => other !== joint);
     }
-    for (const { framebuffer, texture } of unused) {
-      gl.deleteFramebuffer(framebuffer);
-      gl.deleteTexture(texture);
+    for (const framebuffer of framebuffers) gl.deleteFramebuffer(framebuffer);
+    if (framebuffers.includes(this.boundFramebuffer ?? null)) this.boundFramebuffer = undefined;
+    const textures = new Set<WebGLTexture | null>(planes.map(({ texture }) => texture));
+    for (const texture of textures) gl.deleteTexture(texture);
+    this.boundTextures = this.boundTextures.map((texture) => (textures.has(texture) ? null : texture));
+    for (const plane of unused) {
+      this.made.delete(plane.ref!);
+      this.collected.unregister(plane);
+      this.forget(plane.shelf);
     }
-    this.forgetState();
   }
 
   private forgetState(): void {

@@ -9,7 +9,7 @@ export type Scalar =
 
 export type HostArray =
   | Int8Array | Uint8Array | Int16Array | Uint16Array | Int32Array | Uint32Array | Float32Array | Float64Array;
-type HostArrayType = { new (length: number): HostArray; new (buffer: ArrayBufferLike, offset?: number, length?: number): HostArray };
+type HostArrayType = { readonly BYTES_PER_ELEMENT: number; new (length: number): HostArray; new (buffer: ArrayBufferLike, offset?: number, length?: number): HostArray };
 
 export type SamplerKind = 'float' | 'int' | 'uint';
 

@@ -194,6 +194,12 @@ export class Program {
     return new SkError(`${this.name}: the browser has taken the context away; wait for device.onrestored, or make a new device`, 'lost');
   }
 
+  /** Deletes it. */
+  end(): void {
+    for (const shader of this.shaders) this.gl.deleteShader(shader);
+    this.gl.deleteProgram(this.handle);
+  }
+
   /** Whether use() would not wait, if the driver can say so. */
   isLinked(parallel: { COMPLETION_STATUS_KHR: number } | null): boolean {
     return this.isReady || parallel === null || Boolean(this.gl.getProgramParameter(this.handle, parallel.COMPLETION_STATUS_KHR));

@@ -83,7 +83,11 @@ export class Transfers {
 
   /** Rejects all transfers that are under way. */
   end(error: SkError): void {
-    for (const readback of this.readbacks.splice(0)) readback.fail(error);
+    for (const { buffer, sync, fail } of this.readbacks.splice(0)) {
+      this.gl.deleteBuffer(buffer);
+      this.gl.deleteSync(sync);
+      fail(error);
+    }
   }
 
   /** Whether the driver reads such textures as they are; else it reads four channels of 32 bits. */

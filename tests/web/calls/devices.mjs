@@ -22,6 +22,47 @@ function contextWith(changes) {
 const without = (...names) => ({ getExtension: (get) => (name) => (names.includes(name) ? null : get(name)) });
 
 export const deviceCases = ({ same, refused, filled, random, floats, integers, expect }) => ({
+  // A device in a context of the page's keeps few textures that nothing uses, and leaves nothing behind.
+  async ends() {
+    const living = { Texture: new Set(), Framebuffer: new Set(), Program: new Set(), Shader: new Set(), Buffer: new Set(), Sampler: new Set() };
+    const made = (objects) => (make) => (...given) => {
+      const object = make(...given);
+      objects.add(object);
+      return object;
+    };
+    const freed = (objects) => (free) => (object) => {
+      objects.delete(object);
+      free(object);
+    };
+    const changes = Object.entries(living).flatMap(([kind, objects]) => [[`create${kind}`, made(objects)], [`delete${kind}`, freed(objects)]]);
+    const context = contextWith(Object.fromEntries(changes));
+    const device = await Device.create({ context });
+    device.info();
+    const kept = random(device, [24, 40], 33);
+    const before = await kept.read();
+    for (let i = 0; i < 1500; ++i) {
+      const passing = device.stream('float', [1 + (i % 50), 1 + Math.floor(i / 50)]);
+      k.saxpy(1, passing, passing, passing);
+      passing.dispose();
+    }
+    expect('idle textures have a limit', living.Texture.size > 256 && living.Texture.size < 1200, `${living.Texture.size}`);
+    const copy = device.stream('float', [24, 40]);
+    k.saxpy(0, kept, kept, copy);
+    copy.dispose();
+    expect('streams keep their elements', String(await kept.read()) === String(before));
+    device.trim();
+    expect('trim() deletes what is idle', living.Texture.size < 8, `${living.Texture.size}`);
+    const passing = random(device, [30, 40], 34);
+    k.zoom_clamp(0.5, passing, passing);
+    const pending = passing.read();
+    device.dispose();
+    await refused('lost', 'has been disposed of', () => pending);
+    await refused('lost', 'has been disposed of', () => passing.read());
+    passing.dispose();
+    for (const [kind, objects] of Object.entries(living)) expect(`no ${kind} is left`, objects.size === 0, `${objects.size}`);
+    expect('the context has no error', context.getError() === 0);
+  },
+
   async losses() {
     const device = await Device.create();
     const told = [];
