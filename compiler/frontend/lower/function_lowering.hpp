@@ -92,6 +92,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   bool checkedStatement(const clang::Stmt* statement);  ///< false after an error
   void declaration(const clang::DeclStmt* statement);
   void variable(const clang::VarDecl* declaration);
+  bool head(const clang::Stmt* init, const clang::VarDecl* declared, ir::Block& scope);
   void ifStatement(const clang::IfStmt* statement);
   void forStatement(const clang::ForStmt* statement);
   void whileStatement(const clang::WhileStmt* statement);

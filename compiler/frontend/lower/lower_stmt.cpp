@@ -268,6 +268,15 @@ void FunctionLowering::variable(const clang::VarDecl* declaration) {
   emit(module_.loc(where), ir::Declare{id, std::move(init)});
 }
 
+/// Lowers what the head of an `if` or a `switch` declares to `scope`, where the statement goes, too; false if it declares nothing.
+bool FunctionLowering::head(const clang::Stmt* init, const clang::VarDecl* declared, ir::Block& scope) {
+  if (init == nullptr && declared == nullptr) return false;
+  out_ = &scope;
+  if (init) statement(init);
+  if (declared) variable(declared);
+  return true;
+}
+
 void FunctionLowering::ifStatement(const clang::IfStmt* s) {
   if (const auto kept = s->getNondiscardedCase(module_.context())) {   // `if constexpr`
     if (*kept) statement(*kept);
@@ -276,12 +285,7 @@ void FunctionLowering::ifStatement(const clang::IfStmt* s) {
   const Loc loc = module_.loc(s->getBeginLoc());
   ir::Block scope;
   ir::Block* outer = out_;
-  const bool needsScope = s->getInit() || s->getConditionVariable();
-  if (needsScope) {
-    out_ = &scope;
-    if (s->getInit()) statement(s->getInit());
-    if (s->getConditionVariable()) variable(s->getConditionVariable());
-  }
+  const bool needsScope = head(s->getInit(), s->getConditionVariable(), scope);
   if (s->isConsteval()) module_.fail(Diag::Statement, s->getBeginLoc(), {"if consteval"});
   ir::If result;
   result.cond = condition(s->getCond());
@@ -403,12 +407,7 @@ const clang::Stmt* withoutAttributes(const clang::Stmt* s) {
 void FunctionLowering::switchStatement(const clang::SwitchStmt* s) {
   ir::Block scope;
   ir::Block* outside = out_;
-  const bool needsScope = s->getInit() || s->getConditionVariable();
-  if (needsScope) {
-    out_ = &scope;
-    if (s->getInit()) statement(s->getInit());
-    if (s->getConditionVariable()) variable(s->getConditionVariable());
-  }
+  const bool needsScope = head(s->getInit(), s->getConditionVariable(), scope);
   ir::Switch result;
   result.value = value(s->getCond());
   if (!result.value->type.isInteger() || result.value->type.isNarrow())  // a bool, or a narrow enumeration

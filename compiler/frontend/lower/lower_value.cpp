@@ -225,10 +225,6 @@ ExprPtr* maskedBool(ir::Expr& e) {
                                                                                : nullptr;
 }
 
-}  // namespace
-
-namespace {
-
 /// A 32-bit literal as a double, which represents it exactly.
 ExprPtr widened(ir::Scalar from, std::uint32_t bits, Loc loc) {
   if (from == ir::Scalar::Float) return ir::literal(double{std::bit_cast<float>(bits)}, loc);
