@@ -131,6 +131,8 @@ export class Device {
   });
   private madeBytes = 0;
   private idleBytes = 0;
+  /** The most that were in use at once, of which a part is forgotten with each plane that is taken. */
+  private peakBytes = 0;
   private clock = 0;
   private readonly listening = new AbortController();
   private readonly joints = new Set<Joint>();
@@ -213,7 +215,7 @@ export class Device {
     this.arithmetic = null;
     for (const shelf of this.shelves.values()) shelf.idle.length = shelf.planes = 0;
     this.made.clear();
-    this.madeBytes = this.idleBytes = 0;
+    this.madeBytes = this.idleBytes = this.peakBytes = 0;
     this.joints.clear();
     this.filters.clear();
     this.transfers = new Transfers(this);
@@ -343,6 +345,7 @@ export class Device {
     shelf.used = ++this.clock;
     if (idle !== undefined) {
       this.idleBytes -= shelf.bytes;
+      this.notePeak();
       return idle;
     }
     const { format, width, height } = shelf;
@@ -368,7 +371,12 @@ export class Device {
     this.collected.register(plane, { ref, shelf }, plane);
     ++shelf.planes;
     this.madeBytes += shelf.bytes;
+    this.notePeak();
     return plane;
+  }
+
+  private notePeak(): void {
+    this.peakBytes = Math.max(0.999 * this.peakBytes, this.madeBytes - this.idleBytes);
   }
 
   /** A plane of this shelf is no more. */
@@ -406,7 +414,7 @@ export class Device {
   }
 
   private mostIdleBytes(): number {
-    return Math.max(fewIdleBytes, 2 * (this.madeBytes - this.idleBytes));
+    return Math.max(fewIdleBytes, 2 * this.peakBytes);
   }
 
   /** Deletes the idle planes that have waited longest, until half as many may come again. */
