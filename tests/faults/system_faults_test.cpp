@@ -49,10 +49,11 @@ class Folder {
 
   /// Files here that this process has open. The driver's own cache has others, which its threads write when they like.
   std::ptrdiff_t openFiles() const {
+    const std::string here = fs::canonical(path).string();
     std::ptrdiff_t count = 0;
     for (const auto& entry : fs::directory_iterator("/proc/self/fd")) {
       std::error_code closed;
-      count += fs::read_symlink(entry.path(), closed).string().starts_with(path.string()) ? 1 : 0;
+      count += fs::read_symlink(entry.path(), closed).string().starts_with(here) ? 1 : 0;
     }
     return count;
   }
