@@ -50,8 +50,9 @@ class Editor {
 
   /// `kernel` is a keyword only where a declaration starts with it: `kernel void f`.
   bool atDeclarationWord(llvm::StringRef word) const { return atWord(word) && startsType(cursor_.peek(1)); }
-  bool atKernel() const {
-    return atDeclarationWord("kernel") || atDeclarationWord("reduce") || atDeclarationWord("scan");
+  bool atKernel() const { return isKernelWord(cursor_.peek()) && startsType(cursor_.peek(1)); }
+  static bool isKernelWord(const Token& token) {
+    return isWord(token, "kernel") || isWord(token, "reduce") || isWord(token, "scan");
   }
   static FunctionKind kindOf(const Token& word) {
     return isWord(word, "reduce") ? FunctionKind::Reduce
@@ -85,9 +86,7 @@ class Editor {
   }
 
   bool isKernelAt(std::size_t at) const {
-    const Token& word = cursor_.peek(at);
-    return (isWord(word, "kernel") || isWord(word, "reduce") || isWord(word, "scan")) &&
-           cursor_.peek(at + 1).is(tok::kw_void);
+    return isKernelWord(cursor_.peek(at)) && cursor_.peek(at + 1).is(tok::kw_void);
   }
 
   void refuseSpecifiers(std::size_t kernel) {
@@ -257,8 +256,7 @@ class Editor {
   /// `[[precision(extended)]] kernel void f...`; attributes of other declarations are C++'s.
   void editChoices(std::size_t behind) {
     if (namesTable(cursor_)) return editTable(behind);
-    const Token& declared = cursor_.peek(behind);
-    if (isWord(declared, "kernel") || isWord(declared, "reduce") || isWord(declared, "scan")) {
+    if (isKernelWord(cursor_.peek(behind))) {
       const ir::Choices choices = takeChoices(cursor_, behind, diagnostics_);
       return atKernel() ? editKernel(choices) : copyDeclaration();
     }
