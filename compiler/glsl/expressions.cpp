@@ -98,11 +98,6 @@ Parts literalText(Type type, std::uint32_t bits) {
   return signedText(shortestFloat(value));
 }
 
-bool isNonNegative(const Expr& expr) {
-  const auto* n = std::get_if<Literal>(&expr.node);
-  return n != nullptr && static_cast<std::int32_t>(n->bits) >= 0;
-}
-
 /// The component of a vector that an index selects, if the index is constant; the nearest one to an index outside.
 std::optional<std::uint32_t> knownComponent(const Index& n) {
   const auto* literal = std::get_if<Literal>(&n.index->node);
@@ -141,13 +136,13 @@ class GlslExpr {
   GlslExpr(const GlslContext& context, std::optional<FunctionId> function, bool isStored = false)
       : context_(context), function_(function), isStored_(isStored || !context.marks || !function) {}
 
-  std::string text(const Expr& expr, Precedence around = Precedence::Lowest) const {
+  std::string text(const Expr& expr, Precedence around = Precedence::Lowest, bool isDivisor = false) const {
     if (!isStored_ && isComputed(expr)) {
       const Scope scope(isStored_, true);
       return fmt::format("{}{}{}{}", mark::value, digitOf(expr.type), text(expr, around), mark::valueEnd);
     }
     const Parts whole = parts(expr);
-    const bool isMarked = needsBarrier(expr) && whole.isOperation;
+    const bool isMarked = needsBarrier(expr) && (whole.isOperation || (isDivisor && isKnownDivisor(expr)));
     if (needsBarrier(expr) && (whole.isKnown || mayBeKnownZero(context_.module, expr)))
       return fmt::format("{}{}{}", mark::known, whole.text, mark::knownEnd);
     if (whole.precedence < around) {
@@ -186,8 +181,8 @@ class GlslExpr {
       }
       if (context_.marks && isFloats(lvalue.type) && !lvalue.type.isMatrix() && !isRoundingError(value)) {
         return fmt::format("{}{}{}{}{}{}{}", mark::compound, targetText(lvalue), mark::compoundNext,
-                           spelling(op), mark::compoundNext, text(value, Precedence::LogicalOr),
-                           mark::compoundEnd);
+                           spelling(op), mark::compoundNext,
+                           text(value, Precedence::LogicalOr, op == BinaryOp::Div), mark::compoundEnd);
       }
       return fmt::format("{} {}= {}", targetText(lvalue), spelling(op), text(value));
     }
@@ -231,6 +226,10 @@ class GlslExpr {
   /// False where nothing is computed when the program runs, and for values that are only copied.
   bool needsBarrier(const Expr& expr) const {
     return context_.marks && function_ && (context_.copied == nullptr || context_.copied->count(&expr) == 0);
+  }
+
+  bool isKnownDivisor(const Expr& expr) const {
+    return mayBeKnownDivisor(context_.module, context_.kernel, *function_, expr);
   }
 
   /// True if this node adds, multiplies or divides floats when the program runs.
@@ -400,8 +399,9 @@ class GlslExpr {
     const Expr& right = isMatrixProduct ? lhs : rhs;
     const Precedence precedence = row(op).precedence;
     const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
-    const std::string second =
-        mayShiftTooFar(context_.module, op, rhs) ? "(" + shiftCount(rhs) + ")" : operand(op, right, tighter);
+    const std::string second = mayShiftTooFar(context_.module, op, rhs)
+                                   ? "(" + shiftCount(rhs) + ")"
+                                   : operand(op, right, tighter, op == BinaryOp::Div);
     const bool isOperation = isFloats(type) && !type.isMatrix() && precedence >= Precedence::Additive;
     std::string first = operand(op, left, precedence);
     // a difference with itself is not 0, nor a quotient 1, if it is infinite or NaN
@@ -500,11 +500,11 @@ class GlslExpr {
     return n.index->type.scalar == Scalar::Int ? indexText(n) : "int(" + indexText(n) + ")";
   }
 
-  std::string operand(BinaryOp outer, const Expr& expr, Precedence around) const {
+  std::string operand(BinaryOp outer, const Expr& expr, Precedence around, bool isDivisor = false) const {
     const auto* inner = std::get_if<Binary>(&expr.node);
     const bool clearer =
         inner != nullptr && !inner->lhs->type.isVector() && bracketsForClarity(outer, inner->op);
-    return text(expr, clearer ? Precedence::Unary : around);
+    return text(expr, clearer ? Precedence::Unary : around, isDivisor);
   }
 
   std::string comparedOperand(BinaryOp outer, const Expr& expr, Precedence around) const {

@@ -64,6 +64,15 @@ TEST_CASE("marks say where floats are computed") {
   CHECK(marked(binary(Less, t.ref(t.f), literal(0.0F)), true) == "f < 0.0");
   CHECK(marked(binary(Sub, t.ref(t.x), t.ref(t.x)), true) == "$($<x$> - x$)");
   CHECK(marked(binary(Mul, convert(Scalar::Float, t.ref(t.i)), t.ref(t.x)), true) == "$($<float(i)$> * x$)");
+  const auto divided = [&](ExprPtr divisor) {
+    return marked(binary(Div, t.ref(t.f), std::move(divisor)), true);
+  };
+  CHECK(divided(literal(3.0F)) == "$(f / $(3.0$)$)");
+  CHECK(divided(literal(-0.1F)) == "$(f / $(-0.1$)$)");
+  CHECK(divided(literal(-4.0F)) == "$(f / -4.0$)");
+  CHECK(divided(sum()) == "$(f / $[f + x$]$)");
+  CHECK(divided(t.ref(t.x)) == "$(f / x$)");
+  CHECK(divided(t.ref(t.r)) == "$(f / $(r$)$)");
 }
 
 TEST_CASE("values that are only copied to outputs have no marks of operations") {
@@ -83,7 +92,8 @@ TEST_CASE("values that are only copied to outputs have no marks of operations") 
   const auto isCopied = [&](std::size_t statement) {
     const Stmt& stmt = module.functions[0].body[statement];
     const auto* declared = std::get_if<Declare>(&stmt.node);
-    return copied.count((declared != nullptr ? declared->init : std::get<Assign>(stmt.node).value).get()) == 1;
+    return copied.count((declared != nullptr ? declared->init : std::get<Assign>(stmt.node).value).get()) ==
+           1;
   };
   CHECK_FALSE(isCopied(0));
   CHECK(isCopied(1));

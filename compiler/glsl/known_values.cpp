@@ -23,6 +23,19 @@ bool mayHoldZero(const Expr& value) {
   return n == nullptr || std::ranges::any_of(n->args, [](const ExprPtr& arg) { return mayHoldZero(*arg); });
 }
 
+/// True if 1 / x is a float that is not denormal, for the float with these bits.
+bool hasExactReciprocal(std::uint32_t bits) {
+  const std::uint32_t exponent = bits >> 23U & 0xffU;
+  return (bits & 0x7fffffU) == 0 && exponent > 0 && exponent < 0xfeU;
+}
+
+/// True for a parameter of the kernel, whose value only the running program has.
+bool isGiven(const Module& module, const Kernel& kernel, FunctionId function, VarId var) {
+  if (function != kernel.entry || var >= module.functions[function].parameterCount) return false;
+  const ParamRole role = kernel.params[var].role;
+  return role == ParamRole::Input || role == ParamRole::Uniform;
+}
+
 }  // namespace
 
 bool isZero(std::uint32_t bits) { return std::bit_cast<float>(bits) == 0; }
@@ -50,6 +63,27 @@ bool mayBeKnownZero(const Module& module, const Expr& expr) {
   return false;  // the whole has been hidden
 }
 
+bool mayBeKnownDivisor(const Module& module, const Kernel& kernel, FunctionId function, const Expr& expr) {
+  if (!isFloatOrVector(expr.type)) return false;
+  const auto any = [&](const std::vector<ExprPtr>& parts) {
+    return std::ranges::any_of(
+        parts, [&](const ExprPtr& part) { return mayBeKnownDivisor(module, kernel, function, *part); });
+  };
+  if (const auto* n = std::get_if<Literal>(&expr.node)) return !hasExactReciprocal(n->bits);
+  if (const auto* n = std::get_if<VarRef>(&expr.node)) return !isGiven(module, kernel, function, n->var);
+  if (const auto* n = std::get_if<Construct>(&expr.node)) return any(n->args);
+  if (const auto* n = std::get_if<IntrinsicCall>(&expr.node)) return any(n->args);
+  if (const auto* n = std::get_if<Unary>(&expr.node))
+    return mayBeKnownDivisor(module, kernel, function, *n->operand);
+  if (const auto* n = std::get_if<Swizzle>(&expr.node))
+    return mayBeKnownDivisor(module, kernel, function, *n->base);
+  if (const auto* n = std::get_if<Select>(&expr.node))
+    return mayBeKnownDivisor(module, kernel, function, *n->yes) ||
+           mayBeKnownDivisor(module, kernel, function, *n->no);
+  return std::holds_alternative<ConstantRef>(expr.node) || std::holds_alternative<Call>(expr.node) ||
+         std::holds_alternative<Member>(expr.node) || std::holds_alternative<Index>(expr.node);
+}
+
 bool isUnknown(const Expr& expr) {
   bool is = false;
   walkExprs(expr, [&](const Expr& inner) {
@@ -58,6 +92,11 @@ bool isUnknown(const Expr& expr) {
          isFloatOrVector(inner.type);
   });
   return is;
+}
+
+bool isNonNegative(const Expr& expr) {
+  const auto* n = std::get_if<Literal>(&expr.node);
+  return n != nullptr && static_cast<std::int32_t>(n->bits) >= 0;
 }
 
 bool isLiteralZero(const Expr& expr) {

@@ -18,8 +18,17 @@ bool isLiteral(const ir::Expr& expr);
 /// True for a constant that is a float or a vector, or the part of a constant that is the first to be one, if it may hold 0.
 bool mayBeKnownZero(const ir::Module& module, const ir::Expr& expr);
 
+/// True for a float or a vector whose value a compiler may know, so that it might multiply by its rounded reciprocal, where it
+/// divides an expression of this function. Powers of two, whose reciprocals are exact, do not matter, nor do operations, which
+/// hide their values.
+bool mayBeKnownDivisor(const ir::Module& module, const ir::Kernel& kernel, ir::FunctionId function,
+                       const ir::Expr& expr);
+
 /// True if no compiler can know the value, since the expression reads what only the running program has.
 bool isUnknown(const ir::Expr& expr);
+
+/// True for a literal that is no negative int.
+bool isNonNegative(const ir::Expr& expr);
 
 /// True for a literal that is 0 or -0 as a float.
 bool isLiteralZero(const ir::Expr& expr);

@@ -11,12 +11,14 @@
 #include "glsl/type_names.hpp"
 #include "ir/print.hpp"
 #include "ir/quantize.hpp"
+#include "sk/arithmetic_marks.hpp"
 #include "support/text.hpp"
 
 namespace skc::emit {
 namespace {
 
 using namespace ir;
+namespace mark = sk::program::mark;
 
 /// "a.x && b.x, a.y && b.y" from a pattern with `@` for the component.
 std::string byComponent(std::string_view pattern, int width) {
@@ -51,15 +53,15 @@ std::string quantizing(Scalar narrow) {
     case Scalar::Unorm16:
       return fmt::format(
           "float sk_{0}(float x) {{\n"
-          "  return x > 0.0 ? roundEven(min(x, 1.0) * {1:.1f}) / {1:.1f} : 0.0;\n}}\n",
-          spelling(narrow), normalizedScale(narrow));
+          "  return x > 0.0 ? roundEven(min(x, 1.0) * {1:.1f}) / {2}{1:.1f}{3} : 0.0;\n}}\n",
+          spelling(narrow), normalizedScale(narrow), mark::operation, mark::operationEnd);
     case Scalar::Snorm8:
     case Scalar::Snorm16:
       return fmt::format(
           "float sk_{0}(float x) {{\n"
           "  float y = x > -1.0 ? min(x, 1.0) : x <= -1.0 ? -1.0 : 0.0;\n"
-          "  return roundEven(y * {1:.1f}) / {1:.1f};\n}}\n",
-          spelling(narrow), normalizedScale(narrow));
+          "  return roundEven(y * {1:.1f}) / {2}{1:.1f}{3};\n}}\n",
+          spelling(narrow), normalizedScale(narrow), mark::operation, mark::operationEnd);
     case Scalar::Bool:
     case Scalar::Int:
     case Scalar::Uint:

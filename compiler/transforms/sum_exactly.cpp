@@ -67,13 +67,24 @@ void settle(Block& block, Function& function, const Digits& digits) {
   }
 }
 
+/// Something that may be written several times: the expression itself, or a variable that the block gets for it.
+ExprPtr computedOnce(Block& block, Function& function, const char* name, const Expr& value) {
+  if (std::holds_alternative<VarRef>(value.node) || std::holds_alternative<Literal>(value.node)) {
+    return clone(value);
+  }
+  const VarId var = addVariable(function, fmt::format("{}_{}", name, function.variables.size()), value.type);
+  block.push_back(declare(var, clone(value)));
+  return varRef(function, var);
+}
+
 /// Statements that add a term.
-void add(Block& block, const Function& function, const Digits& digits, const Format& format,
-         const Expr& value, const Expr* factor) {
+void add(Block& block, Function& function, const Digits& digits, const Format& format, const Expr& value,
+         const Expr* factor) {
   const bool areProducts = format.groups == ofProducts.groups;
+  const ExprPtr term = computedOnce(block, function, "term", value);
+  const ExprPtr other = factor != nullptr ? computedOnce(block, function, "factor", *factor) : literal(1.0F);
   const auto operands = [&] {
-    if (!areProducts) return exprs(clone(value));
-    return exprs(clone(value), factor != nullptr ? clone(*factor) : literal(1.0F));
+    return areProducts ? exprs(clone(*term), clone(*other)) : exprs(clone(*term));
   };
   for (std::uint32_t i = 0; i < format.groups; ++i) {
     std::vector<ExprPtr> args = operands();

@@ -415,7 +415,7 @@ class ScriptWriter {
     if (body != std::string::npos) share(text, text.substr(0, body + 1));
     for (const Kernel* kernel : kernels) {
       share(text, escaped(sk::assemble::bodyText(profileOf(false), kernel->body)));
-      share(text, escaped(std::string(kernel->declarations)));
+      share(text, escaped(sk::assemble::bodyText(profileOf(false), kernel->declarations)));
     }
     const auto [entry, isNew] = programIndices_.emplace(text, programs_.size());
     if (isNew) programs_.push_back(text);

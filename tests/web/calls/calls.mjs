@@ -98,6 +98,9 @@ const cases = {
     same('written p', await p.read());
     same('written q', await q.read());
     same('written r', await s.read());
+    k.divided(x, p, q);
+    same('divided p', await p.read());
+    same('divided q', await q.read());
     k.loose(x, r);
     same('loose', await r.read(), 2, 1);
   },

@@ -52,6 +52,9 @@ struct Calls : Streams {
     print("written p", p.read());
     print("written q", q.read());
     print("written r", s.read());
+    divided(x, p, q);
+    print("divided p", p.read());
+    print("divided q", q.read());
     loose(x, r);
     print("loose", r.read());
   }

@@ -216,12 +216,13 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   const bool hasPreciseDoubles = kernel.usesDoubles && profile.doubles == Doubles::Native &&
                                  barrierOfBodies(profile) == Barrier::Precise;
   const auto textOf = [&](std::string_view text) { return bodyText(profile, text); };
-  const std::string body = textOf(kernel.body), more = textOf(foreign_), ours = textOf(ownText()),
+  const std::string body = textOf(kernel.body), declarations = textOf(kernel.declarations);
+  const std::string more = textOf(foreign_), ours = textOf(ownText()),
                     main = textOf(mainOf(prologue_ + main_));
   const auto guards = [&](std::string_view text) { return guardsOperations(profile, text); };
-  const bool hasExactFloats = hasPreciseDoubles || guards(body) || guards(more) || guards(main) ||
-                              guards(ours) || kernel.usesExactSums || intrinsics.useExactFloats ||
-                              callDoubleIntrinsics(kernel.intrinsics) ||
+  const bool hasExactFloats = hasPreciseDoubles || guards(body) || guards(declarations) || guards(more) ||
+                              guards(main) || guards(ours) || kernel.usesExactSums ||
+                              intrinsics.useExactFloats || callDoubleIntrinsics(kernel.intrinsics) ||
                               (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
   if (hasExactFloats) program += exactExtensions(profile);
@@ -230,7 +231,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles, barrierOfBodies(profile));
   program += doubleIntrinsicDefinitions(kernel.intrinsics, profile.doubles, profile.barrier);
   program += intrinsics.definitions;
-  addForeign(program, kernel.declarations);
+  addForeign(program, declarations);
   program += '\n';
   program += ours;
   program += tableDefinitions(kernel.tables, profile.tables);
