@@ -63,7 +63,8 @@ TEST_CASE("A solve needs the bytes of its matrix and its vectors") {
 
 TEST_CASE("A device with too little memory is told what is needed, what there is, and what needs less") {
   const System system("poisson:32x32", {});
-  const MemoryChoices choices = choicesOf("cg", "none", "points", {});
+  const Arithmetic single;
+  const MemoryChoices choices = choicesOf("cg", "none", "points", single);
   for (const bool isNative : {true, false}) {
     const std::string name = isNative ? "native" : "software";
     const std::int64_t need = memoryNeed(system, choices, true).total();  // llvmpipe has doubles, too

@@ -3,6 +3,7 @@
 // What the current context supports, and whether this is sufficient.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 

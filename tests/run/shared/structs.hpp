@@ -516,7 +516,7 @@ inline int narrowEnumerations(int x, int y) {
     case Long::Negative: r += 31; break;
     case Long::Positive: r += 37;
   }
-  r += (l < Long::Positive ? 41 : 43) + (m > Longer::Zero ? 47 : 53) + int(l) + int(unsigned(m));
+  r += (l < Long::Positive ? 41 : 43) + (m > Longer::Zero ? 47 : 53) + int(l) / 2 + int(unsigned(m));
   return r * p + (p << 3);
 }
 
