@@ -142,9 +142,15 @@ class GlslExpr {
       return fmt::format("{}{}{}{}", mark::value, digitOf(expr.type), text(expr, around), mark::valueEnd);
     }
     const Parts whole = parts(expr);
-    const bool isMarked = needsBarrier(expr) && (whole.isOperation || (isDivisor && isKnownDivisor(expr)));
+    const bool isMarked = needsBarrier(expr) && whole.isOperation;
     if (needsBarrier(expr) && (whole.isKnown || mayBeKnownZero(context_.module, expr)))
       return fmt::format("{}{}{}", mark::known, whole.text, mark::knownEnd);
+    if (isDivisor && !isMarked && needsBarrier(expr) &&
+        mayBeKnownDivisor(context_.module, context_.kernel, *function_, expr)) {
+      const bool isBare = whole.precedence >= around;
+      return fmt::format("{}{}{}{}{}", mark::divisor, isBare ? "" : "(", whole.text, isBare ? "" : ")",
+                         mark::divisorEnd);
+    }
     if (whole.precedence < around) {
       return isMarked ? fmt::format("{}{}{}", mark::bracketed, whole.text, mark::bracketedEnd)
                       : "(" + whole.text + ")";
@@ -226,10 +232,6 @@ class GlslExpr {
   /// False where nothing is computed when the program runs, and for values that are only copied.
   bool needsBarrier(const Expr& expr) const {
     return context_.marks && function_ && (context_.copied == nullptr || context_.copied->count(&expr) == 0);
-  }
-
-  bool isKnownDivisor(const Expr& expr) const {
-    return mayBeKnownDivisor(context_.module, context_.kernel, *function_, expr);
   }
 
   /// True if this node adds, multiplies or divides floats when the program runs.
@@ -357,7 +359,9 @@ class GlslExpr {
     const bool usesVectorColumn = argument.isVector() && !entry.glslVector.empty();
     const std::string_view pattern = usesVectorColumn ? entry.glslVector : entry.glsl;
     if (pattern.find('$') == std::string_view::npos) {
-      return {std::string(pattern) + (chooses(n.intrinsic) ? comparedList(n.args) : list(n.args))};
+      return {std::string(pattern) + (chooses(n.intrinsic) ? comparedList(n.args) : list(n.args)),
+              Precedence::Primary,
+              /*isOperation=*/mayCancel(n.intrinsic)};
     }
     if (pattern == "$0") return parts(*n.args[0]);
     return fromPattern(withTypes(pattern, argument), n.args);

@@ -84,6 +84,8 @@ bool mayBeKnownDivisor(const Module& module, const Kernel& kernel, FunctionId fu
          std::holds_alternative<Member>(expr.node) || std::holds_alternative<Index>(expr.node);
 }
 
+bool mayCancel(Intrinsic intrinsic) { return intrinsic == Intrinsic::Sqrt || intrinsic == Intrinsic::Ldexp; }
+
 bool isUnknown(const Expr& expr) {
   bool is = false;
   walkExprs(expr, [&](const Expr& inner) {

@@ -24,6 +24,9 @@ bool mayBeKnownZero(const ir::Module& module, const ir::Expr& expr);
 bool mayBeKnownDivisor(const ir::Module& module, const ir::Kernel& kernel, ir::FunctionId function,
                        const ir::Expr& expr);
 
+/// True for functions of which compilers know what they undo: sqrt(x) * sqrt(x) is x to them.
+bool mayCancel(ir::Intrinsic intrinsic);
+
 /// True if no compiler can know the value, since the expression reads what only the running program has.
 bool isUnknown(const ir::Expr& expr);
 

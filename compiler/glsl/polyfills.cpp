@@ -54,14 +54,14 @@ std::string quantizing(Scalar narrow) {
       return fmt::format(
           "float sk_{0}(float x) {{\n"
           "  return x > 0.0 ? roundEven(min(x, 1.0) * {1:.1f}) / {2}{1:.1f}{3} : 0.0;\n}}\n",
-          spelling(narrow), normalizedScale(narrow), mark::operation, mark::operationEnd);
+          spelling(narrow), normalizedScale(narrow), mark::divisor, mark::divisorEnd);
     case Scalar::Snorm8:
     case Scalar::Snorm16:
       return fmt::format(
           "float sk_{0}(float x) {{\n"
           "  float y = x > -1.0 ? min(x, 1.0) : x <= -1.0 ? -1.0 : 0.0;\n"
           "  return roundEven(y * {1:.1f}) / {2}{1:.1f}{3};\n}}\n",
-          spelling(narrow), normalizedScale(narrow), mark::operation, mark::operationEnd);
+          spelling(narrow), normalizedScale(narrow), mark::divisor, mark::divisorEnd);
     case Scalar::Bool:
     case Scalar::Int:
     case Scalar::Uint:

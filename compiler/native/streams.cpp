@@ -177,7 +177,28 @@ Parts Streams::extent(const StreamRef& stream) {
   return parts;
 }
 
-/// begin + (end - begin) * k / n, computed in double; for integers, begin + (end - begin) / n * k.
+/// As GLSL's sk_ramp() (runtime/src/assemble/glsl/functions.glsl), with the same bits. `way` is the double from begin to end.
+llvm::Value* Streams::ramp(llvm::Value* begin, llvm::Value* way, llvm::Value* steps, llvm::Value* k) {
+  constexpr double longest = 3e38;
+  llvm::Type* const floats = l.vector(l.type(Scalar::Float));
+  llvm::Value* const length = l.b.CreateFDiv(way, l.b.CreateSIToFP(steps, way->getType()));
+  llvm::Value* const isOne = l.b.CreateICmpEQ(steps, l.integer(l.int64(), 1));
+  llvm::Value* const taken = l.b.CreateSelect(isOne, llvm::ConstantFP::get(way->getType(), 0), length);
+  llvm::Value* const step = l.broadcast(l.b.CreateFPTrunc(taken, l.type(Scalar::Float)));
+  llvm::Value* const start = l.broadcast(begin);
+  const auto times = [&](llvm::Value* count) {
+    return l.b.CreateFMul(l.b.CreateSIToFP(count, floats), step);
+  };
+  llvm::Value* const whole = times(k);
+  llvm::Value* const half = l.b.CreateAShr(k, 1);
+  llvm::Value* const inParts =
+      l.b.CreateFAdd(l.b.CreateFAdd(start, times(half)), times(l.b.CreateSub(k, half)));
+  llvm::Value* const distance = l.b.CreateUnaryIntrinsic(llvm::Intrinsic::fabs, whole);
+  llvm::Value* const isShort = l.b.CreateFCmpOLT(distance, llvm::ConstantFP::get(floats, longest));
+  return l.b.CreateSelect(isShort, l.b.CreateFAdd(start, whole), inParts);
+}
+
+/// Floats by ramp(); doubles are begin + (end - begin) * k / n, and integers begin + (end - begin) / n * k.
 Parts Streams::iterator(std::uint32_t param) {
   const std::size_t width = scalars(param).size();
   llvm::Value* const counts = argumentField(param, offsetof(Argument, countsElements), l.int64());
@@ -226,6 +247,10 @@ Parts Streams::iterator(std::uint32_t param) {
     const auto widened = [&](llvm::Value* value) { return l.b.CreateFPCast(value, wide); };
     llvm::Value* const a = widened(begin.value);
     llvm::Value* const way = l.b.CreateFSub(widened(last.value), a);
+    if (scalar == Scalar::Float) {
+      parts.push_back({ramp(begin.value, way, steps, k)});
+      continue;
+    }
     llvm::Value* const offset =
         l.b.CreateFDiv(l.b.CreateFMul(l.broadcast(way), l.b.CreateSIToFP(k, l.vector(wide))),
                        l.broadcast(l.b.CreateSIToFP(steps, wide)));

@@ -43,6 +43,7 @@ class Streams {
   Parts uniform(std::uint32_t param);
   Parts input(std::uint32_t param);
   Parts iterator(std::uint32_t param);
+  llvm::Value* ramp(llvm::Value* begin, llvm::Value* way, llvm::Value* steps, llvm::Value* k);
   void storeOutput(std::uint32_t param, const Parts& value);
 
   Parts index(const ir::StreamRef& stream);

@@ -109,6 +109,11 @@ void check(sk::Device& device, const Kernel& kernel) {
             floats.begin[c] +
             length * static_cast<double>(stepsAt(shape, Width, c, static_cast<std::int64_t>(i))) /
                 static_cast<double>(stepCount(shape, Width, c));
+        const auto steps = static_cast<double>(stepCount(shape, Width, c));
+        const float step = steps == 1 ? 0.0F : static_cast<float>(length / steps);
+        const auto k = static_cast<float>(stepsAt(shape, Width, c, static_cast<std::int64_t>(i)));
+        const float distance = k * step;
+        REQUIRE(got[c] == floats.begin[c] + distance);
         // The step and the product are rounded once each, relative to the length, and then the sum is rounded.
         const double ulp = std::ldexp(1.0, -24);
         REQUIRE(std::abs(got[c] - wanted) <= 2 * ulp * std::abs(length) + ulp * std::abs(wanted));

@@ -61,6 +61,22 @@ TEST_CASE("operations with floats") {
   });
 }
 
+TEST_CASE("operations with floats are carried out as they are written") {
+  onEveryTarget([](sk::Device& device) {
+    const float x = 4097.1F, y = -7.3F;
+    const auto a = device.scalar<float>(x), b = device.scalar<float>(y), c = device.scalar<float>(infinity);
+    CHECK(((a + b) - a).read() == (x + y) - x);
+    CHECK((a * 0.1F * 10.0F - a).read() == x * 0.1F * 10.0F - x);
+    CHECK((1.0F / (a - a)).read() == infinity);
+    CHECK(std::isnan((c - c).read()));
+    CHECK(std::isnan((c / c).read()));
+    if (device.isSoftware() || device.name() == "native") {  // GPUs round quotients and roots otherwise
+      CHECK((1.0F / (1.0F / b)).read() == 1.0F / (1.0F / y));
+      CHECK((sqrt(a) * sqrt(a)).read() == std::sqrt(x) * std::sqrt(x));
+    }
+  });
+}
+
 TEST_CASE("comparisons and roots at the extremes") {
   onEveryTarget([](sk::Device& device) {
     const auto one = device.scalar<float>(1), none = device.scalar<float>(nan);

@@ -112,7 +112,9 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr value(const clang::Expr* e);
   void discarded(const clang::Expr* e);
   ir::ExprPtr valueInto(const clang::Expr* e, ir::Block& block, bool asDouble = false);
-  Exprs valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions, bool asDoubles = false);
+  static constexpr unsigned allArguments = ~0U;
+  /// Those whose bit of `asDoubles` is set are doubles where they are numbers of another type.
+  Exprs valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions, unsigned asDoubles = 0);
   void spill(ir::ExprPtr& e);
   using Variables = std::vector<ir::VarId>;  ///< in ascending order
   void keepValue(ir::ExprPtr& e, const Variables& changed);

@@ -98,7 +98,8 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
   if (name == "sincos" || name == "modf" || name == "frexp") return outParameterIntrinsic(e, name);
   if (name == "select") {
     const ir::Type type = module_.type(e->getType(), e->getBeginLoc());
-    Exprs args = valuesInOrder({e->getArg(0), e->getArg(1), e->getArg(2)}, type.isDouble());
+    Exprs args =
+        valuesInOrder({e->getArg(0), e->getArg(1), e->getArg(2)}, type.isDouble() ? allArguments : 0);
     ExprPtr cond = toBool(std::move(args[0]));
     for (std::size_t i = 1; i < 3; ++i) {
       const ir::Type given = args[i]->type;
@@ -120,7 +121,8 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
 /// float4(v.xy, 0, 1): components that add up to the width, or one scalar for all.
 ExprPtr FunctionLowering::vectorConstructor(const clang::CallExpr* e, ir::Type type) {
   const SourceLocation where = e->getBeginLoc();
-  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), type.isDouble());
+  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()),
+                             type.isDouble() ? allArguments : 0);
   if (type.isMatrix()) return matrix(type, std::move(args), where);
   int width = 0;
   for (std::size_t i = 0; i < args.size(); ++i) {
@@ -205,7 +207,9 @@ bool isOfDoubles(const clang::Expr* e) {
 
 ExprPtr FunctionLowering::tableIntrinsic(const clang::CallExpr* e, llvm::StringRef name) {
   const bool areDoubles = std::any_of(e->arg_begin(), e->arg_end(), isOfDoubles);
-  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), areDoubles);
+  const unsigned doubles = name == "ldexp" ? 1U : allArguments;  // its exponent is an integer
+  Exprs args =
+      valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), areDoubles ? doubles : 0);
   if ((name == "mod" || name == "fmod") &&
       llvm::all_of(args, [](const ExprPtr& arg) { return arg->type.arithmeticType().isInteger(); })) {
     module_.fail(Diag::IntegerRemainder, e->getBeginLoc(), {std::string_view(name)});

@@ -153,11 +153,11 @@ ExprPtr FunctionLowering::valueInto(const clang::Expr* e, ir::Block& block, bool
 
 /// `asDoubles`: literals are doubles, because another operand is one.
 FunctionLowering::Exprs FunctionLowering::valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions,
-                                                        bool asDoubles) {
+                                                        unsigned asDoubles) {
   Exprs values;
-  for (const clang::Expr* e : expressions) {
+  for (const auto& [i, e] : llvm::enumerate(expressions)) {
     ir::Block effects;
-    ExprPtr result = valueInto(e, effects, asDoubles);
+    ExprPtr result = valueInto(e, effects, (asDoubles >> i & 1U) != 0);
     if (!effects.empty()) {
       const Variables changed = ir::assignedIn(effects);
       for (ExprPtr& earlier : values) keepValue(earlier, changed);

@@ -14,6 +14,10 @@ float sk_keep(float x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
 vec2 sk_keep(vec2 x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
 vec3 sk_keep(vec3 x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
 vec4 sk_keep(vec4 x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
+float sk_known(float x) { return uintBitsToFloat(floatBitsToUint(x) + sk_zero); }
+vec2 sk_known(vec2 x) { return uintBitsToFloat(floatBitsToUint(x) + sk_zero); }
+vec3 sk_known(vec3 x) { return uintBitsToFloat(floatBitsToUint(x) + sk_zero); }
+vec4 sk_known(vec4 x) { return uintBitsToFloat(floatBitsToUint(x) + sk_zero); }
 
 //// preciseBarrier
 #define sk_precise precise

@@ -125,9 +125,13 @@ float sk_to_half(float sk_x) {
 // Element k of a ramp from a in steps of s. Where k steps exceed the largest float, though the ramp's ends do not, it takes them in
 // two parts.
 float sk_ramp(float sk_a, int sk_k, float sk_s) {
-  float sk_d = float(sk_k) * sk_s;
   int sk_h = sk_k / 2;
-  return abs(sk_d) < 3e38 ? sk_a + sk_d : (sk_a + float(sk_h) * sk_s) + float(sk_k - sk_h) * sk_s;
+  $pfloat sk_d = $(float(sk_k) * sk_s$);
+  $pfloat sk_e = $(float(sk_h) * sk_s$);
+  $pfloat sk_f = $(float(sk_k - sk_h) * sk_s$);
+  $pfloat sk_r = $(sk_a + sk_d$);
+  $pfloat sk_t = $($[sk_a + sk_e$] + sk_f$);
+  return abs(sk_d) < 3e38 ? sk_r : sk_t;
 }
 vec2 sk_ramp(vec2 sk_a, ivec2 sk_k, vec2 sk_s) {
   return vec2(sk_ramp(sk_a.x, sk_k.x, sk_s.x), sk_ramp(sk_a.y, sk_k.y, sk_s.y));

@@ -70,9 +70,11 @@ class Resolver {
         if (isXor) result_ += ")";
         places_.pop_back();
         break;
-      case '<': result_ += isXor ? "sk_keep(" : isPrecise ? "sk_known(" : ""; break;
+      case '/': result_ += isXor ? "sk_known(" : ""; break;
+      case '|': result_ += isXor ? ")" : ""; break;
+      case '<': result_ += isXor || isPrecise ? "sk_known(" : ""; break;
       case '>': result_ += isXor || isPrecise ? ")" : ""; break;
-      case '0': result_ += isXor ? "sk_keep(0.0)" : isPrecise ? "sk_known(0.0)" : "0.0"; break;
+      case '0': result_ += isXor || isPrecise ? "sk_known(0.0)" : "0.0"; break;
       case 'f': result_ += isXor || isPrecise ? "sk_exact_" : ""; break;
       default: assert(false && "no such mark");
     }

@@ -6,6 +6,9 @@
 //   float s = a * (b + c);                           as the driver likes
 //   precise float s = a * (b + c);                   with GLSL's `precise`
 //   float s = sk_keep(a * sk_keep(b + c));           with a uniform that is 0
+//
+// sk_keep() hides what an operation gives by x ^ 0, sk_known() what goes into one by x + 0, of the bits: the second ^ around a
+// value would take the first one back.
 #pragma once
 
 #include <string>

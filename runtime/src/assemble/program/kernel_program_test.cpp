@@ -421,7 +421,7 @@ TEST_CASE("a kernel's own operations are guarded as the profile and the call say
         "  float p = sk_keep(a * sk_keep(x + y));\n"
         "  if (sk_keep(p - x) < sk_keep(x + y)) r = g(sk_exact_dot(sk_keep(x * y), p));\n"
         "  r = sk_keep(r + sk_keep(p * x));\n"
-        "  r = sk_keep(sk_keep(float(1)) * -sk_keep(0.0));\n"
+        "  r = sk_keep(sk_known(float(1)) * -sk_known(0.0));\n"
         "}\n");
 }
 

@@ -14,6 +14,7 @@
 #include "device/stream_state.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/program/made_kernels.hpp"
+#include "sk/arithmetic_marks.hpp"
 
 namespace sk {
 
@@ -23,6 +24,7 @@ using detail::ScalarOp;
 using program::Intrinsic;
 using program::Parameter;
 using program::Role;
+namespace mark = program::mark;
 
 /// What kernels' text has for divisions (compiler/glsl), too. Floats are compared as integers: some compilers make
 /// a >= b of !(a < b), which is false for NaN.
@@ -87,7 +89,7 @@ std::string_view patternOf(ScalarOp op, program::Scalar type) {
     case ScalarOp::Add: return "{0} + {1}";
     case ScalarOp::Subtract: return "{0} - {1}";
     case ScalarOp::Multiply: return "{0} * {1}";
-    case ScalarOp::Divide: return isFloat ? "{0} / {1}" : "sk_div({0}, {1})";
+    case ScalarOp::Divide: return isFloat ? "{0} / $/{1}$|" : "sk_div({0}, {1})";
     case ScalarOp::Minimum: return isFloat ? "sk_min({0}, {1})" : "min({0}, {1})";
     case ScalarOp::Maximum: return isFloat ? "sk_max({0}, {1})" : "max({0}, {1})";
     case ScalarOp::Less: return "{0} < {1}";
@@ -98,6 +100,20 @@ std::string_view patternOf(ScalarOp op, program::Scalar type) {
     case ScalarOp::Select: return "{0} ? {1} : {2}";
   }
   return {};
+}
+
+/// Whether it computes in floats, as kernels do: it is marked (sk/arithmetic_marks.hpp), so that compilers neither reorder it nor
+/// take what another one undoes for its operand.
+bool computesFloats(const ScalarStep& step) {
+  if (step.type != program::Scalar::Float) return false;
+  switch (step.op) {
+    case ScalarOp::Add:
+    case ScalarOp::Subtract:
+    case ScalarOp::Multiply:
+    case ScalarOp::Divide:
+    case ScalarOp::SquareRoot: return true;
+    default: return false;
+  }
 }
 
 class KernelText {
@@ -145,9 +161,15 @@ class KernelText {
     body += fmt::format("void scalars({}) {{\n", list);
     for (std::size_t i = 0; i < pass_.steps.size(); ++i) {
       const ScalarStep& step = pass_.steps[i];
-      body += fmt::format("  {} s{} = {};\n", step.result->glsl, i,
-                          fmt::format(fmt::runtime(patternOf(step.op, step.type)), nameOf(step.operands[0]),
-                                      nameOf(step.operands[1]), nameOf(step.operands[2])));
+      const bool isMarked = computesFloats(step);
+      std::string first = nameOf(step.operands[0]);
+      const std::string second = nameOf(step.operands[1]);
+      if (isMarked && first == second) first = fmt::format("{}{}{}", mark::known, first, mark::knownEnd);
+      const std::string value =
+          fmt::format(fmt::runtime(patternOf(step.op, step.type)), first, second, nameOf(step.operands[2]));
+      body += isMarked ? fmt::format("  {}float s{} = {}{}{};\n", mark::declared, i, mark::operation, value,
+                                     mark::operationEnd)
+                       : fmt::format("  {} s{} = {};\n", step.result->glsl, i, value);
     }
     for (std::size_t i = 0; i < pass_.outputs.size(); ++i) {
       body += fmt::format("  o{} = s{};\n", i, pass_.outputs[i].step);
