@@ -160,8 +160,12 @@ sk_double sk_mul(sk_double a, sk_double b) {
 }
 
 sk_double sk_div(sk_double a, sk_double b) {
-  bool isSmall = (floatBitsToUint(a.hi) & 0x7fffffffu) < 0x20000000u;   // what is left may be denormal: of 2^64 a then
-  float scale = isSmall ? 18446744073709551616.0 : 1.0, back = isSmall ? 5.421010862427522e-20 : 1.0;
+  uint size = floatBitsToUint(a.hi) & 0x7fffffffu;
+  bool isSmall = size < 0x20000000u;    // what is left may be denormal: of 2^64 a then
+  bool isLarge = size >= 0x7e000000u;   // a quotient that is not rounded to the nearest times b may overflow: of a / 4 then
+  float scale = isLarge ? 0.25 : 1.0, back = isLarge ? 4.0 : 1.0;
+  scale = isSmall ? 18446744073709551616.0 : scale;
+  back = isSmall ? 5.421010862427522e-20 : back;
   a = sk_double(a.hi * scale, a.lo * scale);
   sk_precise float q = sk_keep(a.hi / b.hi);
   sk_double left = sk_sub(a, sk_mul(b, sk_double(q, 0.0)));
@@ -172,7 +176,8 @@ sk_double sk_div(sk_double a, sk_double b) {
   sk_precise float t = sk_keep(sum.lo + s);
   sum = sk_join(sum.hi, t);
   bool isHead = q == 0.0 || !sk_is_finite(q) || !sk_is_finite(b.hi);
-  return sk_double((isHead ? q : sum.hi) * back, isHead ? 0.0 : sum.lo * back);
+  float hi = (isHead ? q : sum.hi) * back;
+  return sk_double(hi, isHead || !sk_is_finite(hi) ? 0.0 : sum.lo * back);
 }
 
 sk_double sk_sqrt(sk_double a) {
