@@ -24,13 +24,13 @@ inline constexpr std::string_view compound = "$=", compoundNext = "$,", compound
 /// function that hides it, or nothing. Compilers take `x + 0.0` for x, which is not so for -0, and `x * 0.0` and `x - x` for 0, which
 /// is not so for infinities, some of them (Mesa's) even where `precise` forbids it.
 inline constexpr std::string_view known = "$<", knownEnd = "$>";
-/// Around a divisor that a compiler may know, so that it might multiply by its rounded reciprocal: a function that hides it where
-/// GLSL has no `precise`, or nothing.
-inline constexpr std::string_view divisor = "$/", divisorEnd = "$|";
 /// The literal 0, hidden likewise, or `0.0`.
 inline constexpr std::string_view zero = "$0";
 /// In front of the name of GLSL's dot, cross, reflect, refract or faceforward: `sk_exact_`, which makes it the name of ours, or
 /// nothing.
 inline constexpr std::string_view function = "$f";
+/// Around a divisor that a compiler may know, so that it might multiply by its rounded reciprocal: a function that hides it where
+/// GLSL has no `precise`, or nothing.
+inline constexpr std::string_view divisor = "$/", divisorEnd = "$|";
 
 }  // namespace sk::program::mark
