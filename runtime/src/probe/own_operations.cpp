@@ -76,6 +76,24 @@ const program::Kernel& mappedZeros() {
   return kernel;
 }
 
+/// What compilers know to undo each other, and a divisor that they know beside one that they do not. Roots and quotients need not be
+/// rounded correctly, so that results are not known in advance.
+const program::Kernel& mappedBack() {
+  static const std::array<program::Parameter, 2> parameters{parameter("x", Role::Input),
+                                                            parameter("p", Role::Output)};
+  static const program::Kernel kernel{.name = "roots and quotients as they are written",
+                                      .entry = "sk_own_back",
+                                      .declarations = {},
+                                      .body =
+                                          "void sk_own_back(vec4 x, out vec4 p) {\n"
+                                          "  float root = sqrt(x.x), inverse = 1.0 / x.y;\n"
+                                          "  p = vec4(root * root, 1.0 / inverse, x.z / 3.0, x.z / x.w);\n"
+                                          "}\n",
+                                      .parameters = parameters,
+                                      .sources = {}};
+  return kernel;
+}
+
 /// The same in a loop of a known length, which compilers unroll: what it begins with is a literal.
 const program::Kernel& foldedInLoop() {
   static const auto parameters = [] {
@@ -221,6 +239,21 @@ bool hasResults(GlDevice& device, const program::Kernel& kernel, Target target, 
   return true;
 }
 
+/// True unless a compiler took the square of each root and the inverse of each inverse for the number itself, which they are for
+/// some numbers only, or divided otherwise by a number that it knew.
+bool keepsRootsAndQuotients(GlDevice& device, Target target) {
+  Values given = ordinary();
+  for (float4& x : given) x.w = 3;
+  const Values found = results(device, mappedBack(), target, given).front();
+  bool areRootsUndone = true, areInversesUndone = true;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    areRootsUndone = areRootsUndone && isSame(found[i].x, given[i].x);
+    areInversesUndone = areInversesUndone && isSame(found[i].y, given[i].y);
+    if (!isSame(found[i].z, found[i].w)) return false;
+  }
+  return !areRootsUndone && !areInversesUndone;
+}
+
 bool passes(GlDevice& device, Target target) {
   const Values numbers = ordinary(), zeros = withZeros(), runs = forLoops();
   return hasResults(device, mapped(), target, numbers,
@@ -228,14 +261,15 @@ bool passes(GlDevice& device, Target target) {
          hasResults(device, mappedZeros(), target, zeros,
                     [&](std::size_t i) { return zerosAsWritten(zeros[i]); }) &&
          hasResults(device, foldedInLoop(), target, runs,
-                    [&](std::size_t i) { return foldedAsWritten(runs, i); });
+                    [&](std::size_t i) { return foldedAsWritten(runs, i); }) &&
+         keepsRootsAndQuotients(device, target);
 }
 
 }  // namespace
 }  // namespace own_operations
 
 bool computesAsWritten(GlDevice& device, std::string_view key) {
-  constexpr std::string_view kind = "own-operations";
+  constexpr std::string_view kind = "own-operations-2";  // the second set of them
   if (const std::optional<std::string> text = device.cache.read(kind, key)) return *text == "kept\n";
   const bool isKept = own_operations::passes(device, Target::Fragment) &&
                       (!device.capabilities.hasCompute || own_operations::passes(device, Target::Compute));
