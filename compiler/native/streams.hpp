@@ -43,7 +43,6 @@ class Streams {
   Parts uniform(std::uint32_t param);
   Parts input(std::uint32_t param);
   Parts iterator(std::uint32_t param);
-  llvm::Value* ramp(llvm::Value* begin, llvm::Value* way, llvm::Value* steps, llvm::Value* k);
   void storeOutput(std::uint32_t param, const Parts& value);
 
   Parts index(const ir::StreamRef& stream);
@@ -83,6 +82,7 @@ class Streams {
  private:
   llvm::Value* inPrologue(const std::function<llvm::Value*()>& emit) { return emitIn(prologue_, emit); }
   llvm::Value* emitIn(llvm::BasicBlock* prologue, const std::function<llvm::Value*()>& emit);
+  llvm::Value* ramp(llvm::Value* begin, llvm::Value* way, llvm::Value* steps, llvm::Value* k);
   llvm::Value* load(llvm::Value* base, std::size_t offset, llvm::Type* type);
   llvm::Value* argumentField(std::uint32_t param, std::size_t offset, llvm::Type* type);
   llvm::Value* argumentExtent(std::uint32_t param, std::size_t dimension, std::size_t field);

@@ -113,7 +113,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void discarded(const clang::Expr* e);
   ir::ExprPtr valueInto(const clang::Expr* e, ir::Block& block, bool asDouble = false);
   static constexpr unsigned allArguments = ~0U;
-  /// Those whose bit of `asDoubles` is set are doubles where they are numbers of another type.
+  /// `asDoubles`: a bit for each expression whose literals are doubles, because another one is a double.
   Exprs valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions, unsigned asDoubles = 0);
   void spill(ir::ExprPtr& e);
   using Variables = std::vector<ir::VarId>;  ///< in ascending order

@@ -151,7 +151,6 @@ ExprPtr FunctionLowering::valueInto(const clang::Expr* e, ir::Block& block, bool
   return result;
 }
 
-/// `asDoubles`: literals are doubles, because another operand is one.
 FunctionLowering::Exprs FunctionLowering::valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions,
                                                         unsigned asDoubles) {
   Exprs values;

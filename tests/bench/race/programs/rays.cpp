@@ -12,17 +12,17 @@
 #include <utility>
 #include <vector>
 
-#include "rays/bench_scenes.hpp"
-#include "rays/bvh.hpp"
 #include "bvh.sk.hpp"
-#include "rays/bvh_engine.hpp"
-#include "rays/device_scene.hpp"
 #include "our_task.hpp"
 #include "programs/all.hpp"
+#include "rays/bench_scenes.hpp"
+#include "rays/bvh.hpp"
+#include "rays/bvh_engine.hpp"
 #include "rays/camera.hpp"
-#include "rays_layout.hpp"
+#include "rays/device_scene.hpp"
 #include "rays/reference.hpp"
 #include "rays/wide_bvh.hpp"
+#include "rays_layout.hpp"
 
 namespace race {
 namespace {
