@@ -11,9 +11,9 @@
 #include <string>
 
 #include "gl/bound_state.hpp"
+#include "gl/buffer.hpp"
 #include "gl/fence.hpp"
 #include "gl/object_name.hpp"
-#include "gl/pixel_buffer.hpp"
 #include "gl/program.hpp"
 #include "gl/uniform.hpp"
 

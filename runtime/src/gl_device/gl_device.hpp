@@ -19,15 +19,13 @@
 #include "device/device_state.hpp"
 #include "device/unload_watch.hpp"
 #include "gl/bound_state.hpp"
-#include "gl/fold_buffer.hpp"
+#include "gl/buffer.hpp"
 #include "gl/labels.hpp"
 #include "gl/memory_info.hpp"
 #include "gl/open_context.hpp"
 #include "gl/samplers.hpp"
 #include "gl/saved_state.hpp"
-#include "gl/value_buffer.hpp"
 #include "gl/vertex_array.hpp"
-#include "gl/work_buffer.hpp"
 #include "gl_device/append/append_programs.hpp"
 #include "gl_device/memory/framebuffer_cache.hpp"
 #include "gl_device/memory/render_target.hpp"
@@ -201,11 +199,13 @@ class GlDevice final : public DeviceState {
   MadeKernels scalarKernels{*this};
   MadeKernels mergeKernels{*this};
   gl::Samplers samplers{bound.deletions};
-  gl::ValueBuffer values;
-  gl::FoldBuffer folded;  ///< of dispatches that fold beside outputs
-  gl::WorkBuffer groupStates;  ///< of dispatched append outputs
-  gl::WorkBuffer tileResults;  ///< of scans in one pass
-  gl::WorkBuffer sortedWords;  ///< of sorts, between two digits
+  gl::StorageBuffer values{gl::StorageBuffer::Use::Values};  ///< of dispatched reductions to values
+  /// Of dispatches that fold beside outputs: work groups leave in it what they have folded (assemble/reduce/group_fold.hpp). Its
+  /// first word is 0 between dispatches, which set it back themselves, so that a loop may repeat them.
+  gl::StorageBuffer folded{gl::StorageBuffer::Use::Persistent};
+  gl::StorageBuffer groupStates{gl::StorageBuffer::Use::Scratch};  ///< of dispatched append outputs
+  gl::StorageBuffer tileResults{gl::StorageBuffer::Use::Scratch};  ///< of scans in one pass
+  gl::StorageBuffer sortedWords{gl::StorageBuffer::Use::Scratch};  ///< of sorts, between two digits
   gl::VertexArray vertexArray;
   const std::shared_ptr<PendingReads> pendingReads = std::make_shared<PendingReads>();
   TransferBuffers transferBuffers{bound.deletions};

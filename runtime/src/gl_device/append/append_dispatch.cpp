@@ -259,7 +259,7 @@ class AppendDispatch {
 
   void bindStates() {
     if (device_.groupStates.bind(device_.bound, bytesOfStates())) {
-      gl::WorkBuffer::clear(bytesOfStates());
+      gl::StorageBuffer::clear(bytesOfStates());
       return;
     }
     device_.throwIfLost();

@@ -71,12 +71,12 @@ void readValues(GlDevice& device, const Kernel& fold, std::span<RenderTarget> va
   device.throwPendingError();
 }
 
-/// Reads values from the device's value buffer, in which each plane takes ValueBuffer::planeBytes, to
+/// Reads values from the device's value buffer, in which each plane takes valuePlaneBytes, to
 /// `results`.
 void takeValues(GlDevice& device, const Kernel& fold, std::span<void* const> results) {
-  std::array<std::byte, gl::ValueBuffer::bytes> texels;
-  device.values.read(
-      device.bound, std::span(texels).first(assemble::accumulatorPlanes(fold) * gl::ValueBuffer::planeBytes));
+  std::array<std::byte, valueBytes> texels;
+  device.values.read(device.bound,
+                     std::span(texels).first(assemble::accumulatorPlanes(fold) * valuePlaneBytes));
   device.throwPendingError();
   const std::byte* texel = texels.data();
   auto result = results.begin();
@@ -85,7 +85,7 @@ void takeValues(GlDevice& device, const Kernel& fold, std::span<void* const> res
     auto* const value = static_cast<std::byte*>(*result++);
     for (const program::Field& field : parameter.element->fields) {
       unpackTexels(*parameter.element, field, texel, 1, value);
-      texel += gl::ValueBuffer::planeBytes;
+      texel += valuePlaneBytes;
     }
   }
 }

@@ -349,7 +349,7 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
         ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
         const bool isInBuffer = variant.toBuffer;
         const auto planes = isInBuffer ? targets : targets.subspan(first, count);
-        const std::size_t bytes = isInBuffer ? count * gl::ValueBuffer::planeBytes : texelBytesOf(planes);
+        const std::size_t bytes = isInBuffer ? count * valuePlaneBytes : texelBytesOf(planes);
         const PassScope traced(device_, nameOf(reduction_.fold.name, stepOf(variant.walk), program.kernel),
                                program.kernel, operands, pass.draws, bytes);
         device_.bound.program(program.kernel.program.name());
@@ -379,7 +379,7 @@ void ReducePasses::prepare(const ReducePass& pass, std::span<RenderTarget* const
 }
 
 void ReducePasses::bindValues() {
-  if (device_.values.bind(device_.bound)) return;
+  if (device_.values.bind(device_.bound, valueBytes)) return;
   device_.throwIfLost();
   fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for its value", device_.name());
 }
@@ -393,7 +393,7 @@ void ReducePasses::bindChain(const ReducePass& pass) {
     device_.throwIfLost();
     fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for the results of tiles", device_.name());
   }
-  gl::WorkBuffer::clear(bytes);
+  gl::StorageBuffer::clear(bytes);
 }
 
 bool ReducePasses::start(const ReducePass& pass) {

@@ -20,6 +20,9 @@
 
 namespace sk {
 
+/// The bytes of a plane in GlDevice::values, four components of 32 bits, and of the buffer.
+inline constexpr std::size_t valuePlaneBytes = 16, valueBytes = valuePlaneBytes * gl::maxImageUnits;
+
 /// Adds new planes for all accumulators, in order, to `lease`.
 void takeAccumulators(const program::Kernel& fold, const assemble::TextureShape& shape,
                       std::string_view whatFor, PlanesLease& lease);

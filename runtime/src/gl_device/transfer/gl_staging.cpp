@@ -52,8 +52,7 @@ std::int64_t stagedTexels(const RegionLayout& box) {
 GlStaging::GlStaging(GlDevice& device, Way way)
     : device_(device),
       way_(way),
-      buffer_(way == Way::ToHost ? gl::MappedBuffer::Access::HostReads
-                                 : gl::MappedBuffer::Access::HostWrites) {}
+      buffer_(way == Way::ToHost ? gl::StorageBuffer::Use::HostReads : gl::StorageBuffer::Use::HostWrites) {}
 
 bool GlStaging::isPossible(const GlDevice& device) {
   return device.capabilities.hasCompute && device.capabilities.mapsStorage &&

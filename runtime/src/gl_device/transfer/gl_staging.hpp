@@ -11,9 +11,9 @@
 
 #include "assemble/region_layout.hpp"
 #include "device/staging.hpp"
+#include "gl/buffer.hpp"
 #include "gl/fence.hpp"
 #include "gl/format.hpp"
-#include "gl/mapped_buffer.hpp"
 #include "gl_device/program/integer_program.hpp"
 
 namespace sk {
@@ -61,7 +61,7 @@ class GlStaging final : public Staging {
 
   GlDevice& device_;
   const Way way_;
-  gl::MappedBuffer buffer_;
+  gl::StorageBuffer buffer_;
   std::vector<PlaneBox> boxes_;  ///< to be copied by flush()
   gl::Fence fence_;
 };

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "gl/buffer.hpp"
 #include "gl/fence.hpp"
-#include "gl/pixel_buffer.hpp"
 
 namespace sk {
 
