@@ -25,7 +25,7 @@ compiler/driver       support ir analysis split transforms native/native.hpp nat
 runtime/include/sk    sk
 runtime/src/support   sk support
 runtime/src/trace     sk trace
-runtime/src/device    sk toml trace device call/resolved_call.hpp call/row_pieces.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp assemble/nearest_word.hpp
+runtime/src/device    sk toml trace device gl/known_devices.hpp call/resolved_call.hpp call/row_pieces.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp assemble/nearest_word.hpp
 runtime/src/call      sk support device call assemble
 runtime/src/domain    sk domain
 runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp

@@ -87,6 +87,13 @@ struct DeviceLimits {
   std::optional<std::int64_t> memory = {};
 };
 
+/// What the runtime assumes of a device and does not measure (docs/runtime.md, "What is known of devices").
+struct DeviceTrait {
+  std::string_view name;
+  double value;  ///< 1 for true, 0 for false
+  std::string_view meaning, reason;
+};
+
 /// The result of a trial with one class of kernels (docs/runtime.md, Targets).
 struct TargetTrial {
   /// "elements", "neighbours", "gathers", "loops", "reduces", "pushes", "scatters" or "ordered-scatters"
@@ -196,6 +203,10 @@ class Device {
   std::optional<std::int64_t> availableMemory() const;
   /// Whether the renderer runs on the CPU.
   bool isSoftware() const;
+  /// "native", or what the renderer's name says: "software renderer", "virtual GPU", "integrated GPU" or "discrete GPU".
+  std::string_view kind() const;
+  /// What the runtime assumes of the device. Tables [devices] of the configuration file change it. Empty without GL.
+  std::vector<DeviceTrait> traits() const;
   /// What the device's float arithmetic guarantees. The first call runs a program on a thousand pairs of
   /// floats, which takes some ms; the result is cached on disk for the driver (docs/runtime.md).
   const Arithmetic& arithmetic();

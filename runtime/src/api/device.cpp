@@ -105,11 +105,15 @@ std::optional<Barrier> barrierOf(const std::string& name) {
       fmt::format("there is no barrier '{}'; choose precise, xor or none (option or SK_BARRIER)", name));
 }
 
-DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles,
-                        const std::string& barrier, const std::string& profile, bool sharesContext) {
-  const bool guaranteedLimits = usesGuaranteedLimits(limits);
-  return {textureLimitOf(textureLimit), guaranteedLimits,  usesPairs(doubles, guaranteedLimits),
-          barrierOf(barrier),           targetOf(profile), sharesContext};
+DeviceChoices choicesOf(const DeviceOptions& options, bool sharesContext, const gl::TraitChoices& traits) {
+  const bool guaranteedLimits = usesGuaranteedLimits(options.limits);
+  return {textureLimitOf(options.textureLimit),
+          guaranteedLimits,
+          usesPairs(options.doubles, guaranteedLimits),
+          barrierOf(options.barrier),
+          targetOf(options.profile),
+          sharesContext,
+          traits};
 }
 
 /// The option if it is set, else the environment variable.
@@ -132,15 +136,21 @@ std::optional<std::int64_t> limited(std::optional<std::int64_t> bytes, std::int6
   return limit == 0 ? bytes : std::min(bytes.value_or(limit), limit);
 }
 
-/// Gives a device the memory limit, the configuration file and the trace that are named, if any.
-detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const DeviceOptions& options) {
+/// The file that is named, if any.
+Configuration configurationOf(const DeviceOptions& options) {
+  const std::string name = chosen(options.configuration, "SK_CONFIG");
+  if (name.empty()) return {};
+  Configuration configuration(name);
+  configuration.checkNames(program::LinkedFile::namesOfAll());
+  return configuration;
+}
+
+/// Gives a device its configuration, and the memory limit and the trace that are named, if any.
+detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const DeviceOptions& options,
+                               Configuration configuration) {
   state->memoryLimit = memoryLimitOf(options.memoryLimit);
   state->limits.memory = limited(state->limits.memory, state->memoryLimit);
-  const std::string name = chosen(options.configuration, "SK_CONFIG");
-  if (!name.empty()) {
-    state->configuration = Configuration(name);
-    state->configuration.checkNames(program::LinkedFile::namesOfAll());
-  }
+  state->configuration = std::move(configuration);
   const std::string trace = chosen({}, "SK_TRACE");
   if (!trace.empty()) state->startTrace(trace);
   return detail::DeviceOwner(state.release());
@@ -167,28 +177,32 @@ bool mayBeAny(const DeviceOptions& options) {
          !options.sharesContext;
 }
 
-std::unique_ptr<DeviceState> openGl(const DeviceOptions& options, gl::OpenedContext context) {
-  const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles,
-                                          options.barrier, options.profile, options.sharesContext);
-  return std::make_unique<GlDevice>(std::move(context), choices);
+std::unique_ptr<DeviceState> openGl(const DeviceOptions& options, bool sharesContext,
+                                    const Configuration& configuration, gl::OpenedContext context) {
+  const gl::TraitChoices traits = configuration.traitsOf(context.capabilities.renderer);
+  return std::make_unique<GlDevice>(std::move(context), choicesOf(options, sharesContext, traits));
 }
 
 /// Opens the fastest device that has code of every .sk file: a GPU, else native code, else a software
 /// renderer.
-std::unique_ptr<DeviceState> openBest(const DeviceOptions& options) {
+std::unique_ptr<DeviceState> openBest(const DeviceOptions& options, const Configuration& configuration) {
   const program::LinkedFile::Code code = program::LinkedFile::ofAll();
-  if (!code.native) return openGl(options, gl::openContext({}));
-  std::optional<gl::OpenedContext> gpu = code.glsl ? gl::findGpu() : std::nullopt;
-  if (gpu) return openGl(options, std::move(*gpu));
+  const auto with = [&](gl::OpenedContext context) {
+    return openGl(options, options.sharesContext, configuration, std::move(context));
+  };
+  if (!code.native) return with(gl::openContext({}));
+  if (std::optional<gl::OpenedContext> gpu = code.glsl ? gl::findGpu() : std::nullopt)
+    return with(std::move(*gpu));
   return std::make_unique<NativeDevice>(RealType::Float);
 }
 
-std::unique_ptr<DeviceState> openState(const DeviceOptions& options) {
+std::unique_ptr<DeviceState> openState(const DeviceOptions& options, const Configuration& configuration) {
   for (const auto& [name, real] : nativeDevices) {
     if (options.device == name) return std::make_unique<NativeDevice>(real);
   }
-  if (mayBeAny(options)) return openBest(options);
-  return openGl(options, gl::openContext({options.device, apiOf(options.profile)}));
+  if (mayBeAny(options)) return openBest(options, configuration);
+  return openGl(options, options.sharesContext, configuration,
+                gl::openContext({options.device, apiOf(options.profile)}));
 }
 
 constexpr std::string_view aDevice = "a new device";
@@ -198,12 +212,15 @@ template <class Options>
 detail::DeviceOwner open(Options&& options) {
   return withHostMemory(aDevice, [&] {
     const DeviceOptions requested = withEnvironment(options());
-    return configured(openState(requested), requested);
+    Configuration configuration = configurationOf(requested);
+    std::unique_ptr<DeviceState> state = openState(requested, configuration);
+    return configured(std::move(state), requested, std::move(configuration));
   });
 }
 
 detail::DeviceOwner openNative(RealType real) {
-  return withHostMemory(aDevice, [&] { return configured(std::make_unique<NativeDevice>(real), {}); });
+  return withHostMemory(
+      aDevice, [&] { return configured(std::make_unique<NativeDevice>(real), {}, configurationOf({})); });
 }
 
 }  // namespace
@@ -222,10 +239,10 @@ Device& Device::operator=(Device&& other) noexcept = default;
 Device Device::adopt(const DeviceOptions& given) {
   return withHostMemory(aDevice, [&] {
     const DeviceOptions options = withEnvironment(given);
-    const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles,
-                                            options.barrier, options.profile, true);
-    return Device(
-        configured(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices), options));
+    Configuration configuration = configurationOf(options);
+    std::unique_ptr<DeviceState> state =
+        openGl(options, true, configuration, gl::adoptContext(apiOf(options.profile)));
+    return Device(configured(std::move(state), options, std::move(configuration)));
   });
 }
 
@@ -273,6 +290,10 @@ std::optional<std::int64_t> Device::availableMemory() const {
 bool Device::isSoftware() const { return state().isSoftware(); }
 const Arithmetic& Device::arithmetic() {
   return withHostMemory("arithmetic", [&]() -> const Arithmetic& { return state().arithmetic(); });
+}
+std::string_view Device::kind() const { return state().kind(); }
+std::vector<DeviceTrait> Device::traits() const {
+  return withHostMemory("traits", [&] { return state().traitValues(); });
 }
 std::vector<TargetTrial> Device::trialTargets() {
   return withHostMemory("trialTargets", [&] { return state().trialTargets(); });

@@ -82,7 +82,7 @@ struct TextureLimits {
   std::int32_t size;  ///< width and height
   std::int32_t layers;  ///< of an array texture
   /// Whether linearised textures are narrow. GPUs keep neighbouring texels of two rows in one sector of memory, and work groups that write whole
-  /// rows fill sectors (Function::Paired). Renderers in software take a fifth to a half longer to draw them.
+  /// rows fill sectors (Function::Paired).
   bool isNarrow = false;
 };
 

@@ -126,6 +126,38 @@ Storage storageOf(const std::string& file, const toml::key& name, const toml::ta
   return storage;
 }
 
+/// The value of a constant of a device. Throws unless the row's range has it.
+double traitOf(const std::string& file, const gl::DeviceTraitRow& row, const toml::node& node) {
+  const std::optional<bool> yes = node.value_exact<bool>();
+  const std::optional<double> number = row.isWhole ? std::nullopt : node.value<double>();
+  const std::optional<std::int64_t> whole = node.value_exact<std::int64_t>();
+  std::optional<double> value = number;
+  if (whole) value = static_cast<double>(*whole);
+  if (row.isBool) value = yes ? std::optional<double>(*yes ? 1 : 0) : std::nullopt;
+  if (value && *value >= 0 && *value <= row.most) return *value;
+  throw Error(fmt::format("{}:{}: {} ({}) is {}", file, node.source().begin.line, row.name, row.meaning,
+                          row.isBool ? "true or false"
+                                     : fmt::format("a {} from 0 to {}",
+                                                   row.isWhole ? "whole number" : "number", row.most)),
+              Error::Kind::File);
+}
+
+gl::TraitChoices traitsOf(const std::string& file, const toml::table& table) {
+  gl::TraitChoices choices;
+  for (const auto& [key, node] : table) {
+    const auto row = std::ranges::find(gl::deviceTraitRows(), key.str(), &gl::DeviceTraitRow::name);
+    if (row == gl::deviceTraitRows().end()) {
+      std::vector<std::string> names;
+      for (const gl::DeviceTraitRow& known : gl::deviceTraitRows()) names.emplace_back(known.name);
+      throw Error(fmt::format("{}:{}: a device has no '{}'; it has {}", file, key.source().begin.line,
+                              key.str(), fmt::join(names, ", ")),
+                  Error::Kind::File);
+    }
+    row->choose(choices, traitOf(file, *row, node));
+  }
+  return choices;
+}
+
 toml::table parsed(const std::string& file) {
   try {
     return readToml(file);
@@ -175,10 +207,10 @@ std::string_view linkedNameLike(std::string_view unknown, std::span<const std::s
 Configuration::Configuration(const std::string& file) {
   for (const auto& [key, node] : parsed(file)) {
     const toml::table* named = node.as_table();
-    const bool isKnown = key == "kernels" || key == "tables" || key == "streams";
+    const bool isKnown = key == "kernels" || key == "tables" || key == "streams" || key == "devices";
     if (!isKnown || named == nullptr) {
       throw Error(fmt::format("{}:{}: expected tables like [kernels.\"heat::diffuse\"], [kernels.\"*\"], "
-                              "[tables.\"heat::response\"] or [streams.\"heat::u\"]",
+                              "[tables.\"heat::response\"], [streams.\"heat::u\"] or [devices.\"llvmpipe\"]",
                               file, key.source().begin.line),
                   Error::Kind::File);
     }
@@ -192,6 +224,8 @@ Configuration::Configuration(const std::string& file) {
         kernels_[std::string(name.str())] = {optionsOf(file, *choices.as_table()), placeOf(file, name)};
       } else if (key == "streams") {
         streams_[std::string(name.str())] = sk::storageOf(file, name, *choices.as_table());
+      } else if (key == "devices") {
+        devices_[gl::lowerCase(name.str())] = sk::traitsOf(file, *choices.as_table());
       } else {
         tables_[std::string(name.str())] = sk::rangeOf(file, name, *choices.as_table());
       }
@@ -219,6 +253,16 @@ Storage Configuration::storageOf(std::string_view stream) const {
     if (const auto found = streams_.find(name); found != streams_.end()) return found->second;
   }
   return Storage::Single;
+}
+
+gl::TraitChoices Configuration::traitsOf(std::string_view renderer) const {
+  const std::string name = gl::lowerCase(renderer);
+  gl::TraitChoices choices;
+  for (const auto& [part, chosen] : devices_) {
+    if (part != "*" && name.find(part) != std::string::npos) choices = choices.over(chosen);
+  }
+  const auto all = devices_.find("*");
+  return all == devices_.end() ? choices : choices.over(all->second);
 }
 
 TableRange Configuration::rangeOf(const program::Table& table) const {

@@ -18,6 +18,9 @@
 //
 //   [streams."heat::u"]
 //   storage = "half"
+//
+//   [devices."llvmpipe"]
+//   dispatchBelow = 0.5
 #pragma once
 
 #include <cstdint>
@@ -26,6 +29,7 @@
 #include <string>
 #include <string_view>
 
+#include "gl/known_devices.hpp"
 #include "sk/linked_file.hpp"
 #include "sk/options.hpp"
 #include "sk/program.hpp"
@@ -52,6 +56,10 @@ class Configuration {
   /// valid range.
   TableRange rangeOf(const program::Table& table) const;
 
+  /// The constants of the device whose renderer has this name: the file's for parts of the name, in the order of the parts, else
+  /// for "*".
+  gl::TraitChoices traitsOf(std::string_view renderer) const;
+
   struct RangeChoice {
     std::optional<float> low = {}, high = {};
     std::optional<std::int32_t> intervals = {};
@@ -67,6 +75,7 @@ class Configuration {
   std::map<std::string, KernelChoice, std::less<>> kernels_;
   std::map<std::string, RangeChoice, std::less<>> tables_;
   std::map<std::string, Storage, std::less<>> streams_;
+  std::map<std::string, gl::TraitChoices, std::less<>> devices_;
 };
 
 }  // namespace sk

@@ -60,6 +60,8 @@ class DeviceState {
   /// Tests the device's arithmetic on first use.
   virtual const Arithmetic& arithmetic() = 0;
   /// The trials of all classes of kernels; empty if the device has only one kind of program.
+  virtual std::string_view kind() const { return "native"; }
+  virtual std::vector<DeviceTrait> traitValues() const { return {}; }
   virtual std::vector<TargetTrial> trialTargets() { return {}; }
   /// Whether scatter outputs may combine a new value with the stored one.
   virtual bool combinesScattered() const = 0;

@@ -3,9 +3,6 @@
 // Queries a context's limits and tests the formats.
 #include "gl/capabilities.hpp"
 
-#include <algorithm>
-#include <cctype>
-#include <string_view>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -72,15 +69,6 @@ bool canDrawTo(const Format& format, BoundState& bound) {
 
 }  // namespace
 
-bool isSoftwareRenderer(std::string renderer) {
-  std::transform(renderer.begin(), renderer.end(), renderer.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::string_view names[] = {
-      "llvmpipe", "softpipe", "swrast", "software", "swiftshader", "swr", "microsoft basic render driver"};
-  return std::any_of(std::begin(names), std::end(names),
-                     [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
-}
-
 Capabilities readCapabilities() {
   Capabilities found;
   found.api = epoxy_is_desktop_gl() ? Api::Gl : Api::Es;
@@ -88,7 +76,8 @@ Capabilities readCapabilities() {
   found.renderer = stringOf(GL_RENDERER);
   found.driver = stringOf(GL_VERSION);
   found.shadingLanguage = stringOf(GL_SHADING_LANGUAGE_VERSION);
-  found.isSoftware = isSoftwareRenderer(found.renderer);
+  found.kind = kindOf(found.renderer);
+  found.isSoftware = found.kind == RendererKind::Software;
   if (found.version < 30) {
     return found;
   }

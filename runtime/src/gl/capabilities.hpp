@@ -10,6 +10,7 @@
 #include <epoxy/gl.h>
 
 #include "gl/context.hpp"
+#include "gl/known_devices.hpp"
 
 namespace sk::gl {
 
@@ -19,7 +20,8 @@ struct Capabilities {
   Api api = Api::Gl;
   int version = 0;               ///< 10 * major + minor
   bool isCompatibility = false;  ///< GL with the fixed-function pipeline
-  bool isSoftware = false;
+  RendererKind kind = RendererKind::Integrated;
+  bool isSoftware = false;  ///< kind is Software
   bool blendsFloats = false;  ///< can blend 32-bit floats
   bool hasDoubles = false;       ///< GLSL has double (GL_ARB_gpu_shader_fp64)
   bool hasPrecise = false;       ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
@@ -47,9 +49,6 @@ inline constexpr int maxDrawBuffers = 16;
 
 /// Queries the current context.
 Capabilities readCapabilities();
-
-/// Whether a renderer of this name (GL_RENDERER) runs on the CPU.
-bool isSoftwareRenderer(std::string renderer);
 
 /// Why the current context is not sufficient, as text to follow "because"; empty if it is sufficient. Tests
 /// drawing to each format, after which framebuffer 0 and unit 0 must be restored.

@@ -3,7 +3,9 @@
 // Searches for a usable context. Collects every failure for the report and prints nothing.
 #include "gl/open_context.hpp"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -30,19 +32,25 @@ class Search {
       failed("EGL", why);
       return std::nullopt;
     }
-    for (const DisplayCandidate& candidate : displayCandidates()) {
+    const std::vector<DisplayCandidate> candidates = displayCandidates();
+    const auto gpus = std::ranges::count_if(candidates, [](const DisplayCandidate& candidate) {
+      return candidate.kind == DisplayCandidate::Kind::Device && !candidate.isSoftware;
+    });
+    const RendererKind enough = gpus > 1 ? RendererKind::Discrete : RendererKind::Virtual;
+    for (const DisplayCandidate& candidate : candidates) {
       std::optional<OpenedContext> opened = isWorthTrying(candidate) ? tryCandidate(candidate) : std::nullopt;
       if (!opened) {
         continue;
       }
-      if (wanted_.kind != WantedDevice::Kind::Best || !opened->capabilities.isSoftware) {
+      if (!wanted_.mayChoose() || opened->capabilities.kind >= enough) {
         return opened;
       }
-      if (!software_) {
-        software_.emplace(std::move(*opened));
+      if (!best_ || best_->capabilities.kind < opened->capabilities.kind) {
+        best_.reset();
+        best_.emplace(std::move(*opened));
       }
     }
-    return std::move(software_);
+    return std::move(best_);
   }
 
   /// Throws sk::Error, which lists all attempts.
@@ -63,11 +71,11 @@ class Search {
   }
 
  private:
-  /// A software renderer is used only if no GPU is found. The default display is not searched for GPUs,
-  /// because it may be somebody's screen.
+  /// A software renderer is used only if no GPU is found, and an integrated or virtual GPU only if there is no discrete one.
+  /// The default display is not searched for GPUs, because it may be somebody's screen.
   bool isWorthTrying(const DisplayCandidate& candidate) {
     using Kind = DisplayCandidate::Kind;
-    if (software_ && (candidate.isSoftware || candidate.kind == Kind::Default)) {
+    if (best_ && (candidate.isSoftware || candidate.kind == Kind::Default)) {
       return false;
     }
     if (candidate.isSoftware && !wanted_.mayBeSoftware()) {
@@ -139,7 +147,7 @@ class Search {
   const OpenRequest& request_;
   WantedDevice wanted_;
   std::string attempts_;
-  std::optional<OpenedContext> software_;
+  std::optional<OpenedContext> best_;  ///< the best one so far
   int gpus_ = 0;
 };
 

@@ -21,7 +21,8 @@ struct OpenedContext {
   Capabilities capabilities;
 };
 
-/// Throws sk::Error, which lists every attempt, its failure, and possible remedies.
+/// The requested context. Of several, a discrete GPU comes before an integrated one, this before a virtual one, and this before a
+/// software renderer (known_devices.def). Throws sk::Error, which lists every attempt, its failure, and possible remedies.
 OpenedContext openContext(const OpenRequest& request);
 
 /// The best context without a window, if it belongs to a GPU.

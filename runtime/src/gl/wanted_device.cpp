@@ -3,8 +3,6 @@
 // Parses the name of a device.
 #include "gl/wanted_device.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -14,12 +12,6 @@
 namespace sk::gl {
 
 namespace {
-
-std::string lowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 int parseNumber(const std::string& text) {
   constexpr std::size_t prefix = 4;  // "gpu:"

@@ -19,6 +19,8 @@ struct WantedDevice {
   /// sk::Error if N is not a number.
   static WantedDevice parse(const std::string& text);
 
+  /// Whether any device of some kind will do, so that the best one is chosen.
+  bool mayChoose() const { return kind == Kind::Best || kind == Kind::Gpu; }
   bool mayBeSoftware() const { return kind != Kind::Gpu && kind != Kind::NumberedGpu; }
   /// Why a usable context is not the requested one; empty if it is.
   std::string whyNot(const Capabilities& capabilities) const;

@@ -30,10 +30,6 @@ namespace sk {
 
 namespace {
 
-/// The largest ratio of dispatching time to drawing time at which dispatching is chosen. It is below 1
-/// because trials are inaccurate, especially in software, and fragment programs run on more devices.
-constexpr double mostTimeRatio = 0.9, mostTimeRatioInSoftware = 0.7;
-
 /// Leaves the passes of trials out of the user's count.
 class UncountedPasses {
  public:
@@ -48,14 +44,14 @@ class UncountedPasses {
 };
 
 assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capabilities,
-                            const DeviceChoices& choices) {
+                            const gl::DeviceTraits& traits, bool usesPairs) {
   assemble::Profile profile = *assemble::findProfile(name);
-  if (!capabilities.hasDoubles || choices.pairs) {
+  if (!capabilities.hasDoubles || usesPairs) {
     profile.doubles = assemble::Doubles::Pairs;
   }
-  profile.sharesTexels = choices.sharesTexels.value_or(!capabilities.isSoftware);
-  profile.samples = capabilities.isSoftware;
-  profile.relaysUniforms = capabilities.isSoftware && profile.stage == assemble::Stage::Fragment;
+  profile.sharesTexels = traits.sharesTexels;
+  profile.samples = traits.samplesTexels;
+  profile.relaysUniforms = traits.relaysUniforms && profile.stage == assemble::Stage::Fragment;
   return profile;
 }
 
@@ -75,11 +71,11 @@ Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& cho
 GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     : context(std::move(opened.context)),
       capabilities(std::move(opened.capabilities)),
-      profile(profileOf(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", capabilities, choices)),
-      computeProfile(profileOf("glsl430", capabilities, choices)),
+      traits(gl::traitsOf(capabilities.kind, choices.traits)),
+      profile(profileOf(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", capabilities, traits,
+                        choices.pairs)),
+      computeProfile(profileOf("glsl430", capabilities, traits, choices.pairs)),
       target(choices.target),
-      tilesScans(choices.tilesScans.value_or(!capabilities.isSoftware)),
-      chainsScans(choices.chainsScans.value_or(!capabilities.isSoftware)),
       scanPatience(choices.scanPatience),
       barrier(barrierOf(capabilities, choices)),
       framebuffers(bound),
@@ -88,9 +84,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       sortPrograms(*this),
       stagingPrograms(*this),
       binaries(cache, capabilities, driverKey(name(), driver(), profileName())),
-      sharesContext_(choices.sharesContext),
-      sortsByDispatches_(choices.target != Target::Fragment && capabilities.hasCompute &&
-                         choices.sortsByDispatches.value_or(!capabilities.isSoftware)) {
+      sharesContext_(choices.sharesContext) {
   if (target == Target::Compute && !capabilities.hasCompute) {
     throw Error(
         fmt::format("'{}' runs no compute programs, which take OpenGL 4.3; leave profile glsl430 (option or "
@@ -179,9 +173,6 @@ bool GlDevice::mayDispatch(const program::Kernel& kernel) const {
   return capabilities.hasCompute && kernel.dispatched;
 }
 
-// The dozen dispatches of a sort take an H100 150 us for few records, as long as it draws 2^16 of them.
-constexpr std::int64_t fewestSorted = std::int64_t{1} << 16;
-
 assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, KernelClass kernels,
                                   const CallOptions& options, std::int64_t elements) {
   using assemble::Stage;
@@ -189,7 +180,8 @@ assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, KernelClass ker
   if (!mayDispatch(kernel)) return Stage::Fragment;
   if (!kernel.drawn || wanted == Target::Compute) return Stage::Compute;
   if (wanted == Target::Fragment) return Stage::Fragment;
-  if (kernels == KernelClass::OrderedScatters && elements < fewestSorted) return Stage::Fragment;
+  if (kernels == KernelClass::OrderedScatters && elements < traits.sortedByDispatchesFrom)
+    return Stage::Fragment;
   return fasterFor(kernels);
 }
 
@@ -199,10 +191,16 @@ assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
   if (!known) {
     const UncountedPasses uncounted(*this);
     const std::optional<double> ratio = computeOverFragment(*this, kernels);
-    const double worth = capabilities.isSoftware ? mostTimeRatioInSoftware : mostTimeRatio;
-    known = ratio.value_or(1) < worth ? assemble::Stage::Compute : assemble::Stage::Fragment;
+    known = ratio.value_or(1) < traits.dispatchBelow ? assemble::Stage::Compute : assemble::Stage::Fragment;
   }
   return *known;
+}
+
+std::vector<DeviceTrait> GlDevice::traitValues() const {
+  std::vector<DeviceTrait> values;
+  for (const gl::DeviceTraitRow& row : gl::deviceTraitRows())
+    values.push_back({row.name, row.get(traits), row.meaning, row.reason});
+  return values;
 }
 
 std::vector<TargetTrial> GlDevice::trialTargets() {

@@ -52,12 +52,8 @@ struct DeviceChoices {
   std::optional<Barrier> barrier = {};  ///< nullopt: chosen by testing the device's arithmetic
   Target target = Target::Default;  ///< Fragment or Compute; Default: whichever is faster
   bool sharesContext = false;  ///< the application draws in the device's own context
-  std::optional<bool> sharesTexels = {};  ///< assemble::Profile::sharesTexels; nullopt: only on GPUs
-  std::optional<bool> tilesScans = {};  ///< work groups scan tiles; nullopt: only on GPUs
-  std::optional<bool> chainsScans =
-      {};  ///< dispatched scans of integers take one pass; nullopt: only on GPUs
-  std::optional<std::int32_t> scanPatience = {};  ///< ScanAccess::patience of such scans
-  std::optional<bool> sortsByDispatches = {};  ///< if there are compute programs; nullopt: only on GPUs
+  gl::TraitChoices traits = {};
+  std::optional<std::int32_t> scanPatience = {};  ///< ScanAccess::patience of scans in one pass
 };
 
 /// The options of a call that affect all of its programs: a program cache's key.
@@ -84,6 +80,8 @@ class GlDevice final : public DeviceState {
   }
   bool isSoftware() const override { return capabilities.isSoftware; }
   const Arithmetic& arithmetic() override;
+  std::string_view kind() const override { return gl::nameOf(capabilities.kind); }
+  std::vector<DeviceTrait> traitValues() const override;
   std::vector<TargetTrial> trialTargets() override;
   bool hasQueue() const override { return true; }
   bool placesDomains() const override { return true; }
@@ -123,7 +121,7 @@ class GlDevice final : public DeviceState {
   bool isGuest() const { return context.isAdopted() || sharesContext_; }
 
   assemble::TextureLimits textureLimits() const {
-    return {limits.textureSize, limits.textureLayers, capabilities.hasCompute && !capabilities.isSoftware};
+    return {limits.textureSize, limits.textureLayers, capabilities.hasCompute && traits.narrowTextures};
   }
 
   /// Throws sk::Error if the device cannot run the kernel with these options. No DeviceScope may be open.
@@ -170,11 +168,10 @@ class GlDevice final : public DeviceState {
 
   gl::Context context;
   const gl::Capabilities capabilities;
+  const gl::DeviceTraits traits;
   const assemble::Profile profile;  ///< of fragment programs: the table's row, adapted to the device
   const assemble::Profile computeProfile;  ///< of compute programs; unused if the device has none
   const Target target;  ///< Fragment or Compute; Default: whichever is faster
-  const bool tilesScans;  ///< DeviceChoices::tilesScans: in software, groups that wait take longer
-  const bool chainsScans;  ///< DeviceChoices::chainsScans
   const std::optional<std::int32_t> scanPatience;
   Barrier barrier;  ///< of programs; arithmetic() tests whether it is effective
   gl::BoundState bound;
@@ -230,7 +227,6 @@ class GlDevice final : public DeviceState {
 
   std::int64_t period_ = 1;
   const bool sharesContext_;
-  const bool sortsByDispatches_;
   std::map<ProgramCacheKey, ProgramCache> caches_;
   std::map<std::uint64_t, gl::Texture> tableTextures_;  ///< by FunctionTable::number
   UnloadWatch unloads_;

@@ -126,13 +126,11 @@ GlStream::TransferRegion GlStream::transferRegion(const StreamRegion& region) {
 }
 
 /// Whether writing to a region is faster through a pixel buffer. On a GPU it is for parts of a stream: from
-/// host memory, a driver may transfer the whole texture to change a part of it. Writing one row of a stream
-/// of 1 GiB took 69 ms on an H200, but 38 us through a buffer on an H100. Whole streams, and all streams of a
-/// software renderer, are written faster without a buffer.
+/// host memory, a driver may transfer the whole texture to change a part of it. Whole streams, and all streams
+/// of a software renderer, are written faster without a buffer.
 bool GlStream::writesThroughBuffer(const StreamRegion& region) const {
-  constexpr std::int64_t mostBytes = std::int64_t{64} << 20;
   const std::int64_t bytes = region.shape.size() * static_cast<std::int64_t>(held().size);
-  return !owner().isSoftware() && region.shape != shape && bytes <= mostBytes;
+  return region.shape != shape && bytes <= owner().traits.bufferedWriteBytes;
 }
 
 void GlStream::uploadHeld(const StreamRegion& region, const std::byte* elements, bool isBuffered) {

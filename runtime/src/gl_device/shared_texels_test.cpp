@@ -231,7 +231,7 @@ struct BoundaryAndReach {
 }  // namespace
 
 TEST_CASE("stencils that share texels in work groups") {
-  const DeviceChoices choices{.target = Target::Compute, .sharesTexels = true};
+  const DeviceChoices choices{.target = Target::Compute, .traits = {.sharesTexels = true}};
   GlDevice device(gl::openContext({"software", gl::Api::Gl}), choices);
   // Where an index beyond the ends leads does not depend on the reach: each boundary has a reach, and each reach a boundary.
   std::deque<Weigh> kernels;
@@ -248,7 +248,7 @@ TEST_CASE("stencils that share texels in work groups") {
 }
 
 TEST_CASE("stencils over parts of a whole that share texels in work groups") {
-  const DeviceChoices choices{.target = Target::Compute, .sharesTexels = true};
+  const DeviceChoices choices{.target = Target::Compute, .traits = {.sharesTexels = true}};
   GlDevice device(gl::openContext({"software", gl::Api::Gl}), choices);
   std::deque<Weigh> kernels;
   for (const auto& [boundary, reach] : {BoundaryAndReach{Boundary::Clamp, 2},
@@ -269,7 +269,7 @@ TEST_CASE("stencils over parts of a whole that share texels in work groups") {
 TEST_CASE("stencils that fold what they store") {
   std::deque<WeighAndFold> folds;
   for (const bool shares : {true, false}) {
-    const DeviceChoices choices{.target = Target::Compute, .sharesTexels = shares};
+    const DeviceChoices choices{.target = Target::Compute, .traits = {.sharesTexels = shares}};
     GlDevice device(gl::openContext({"software", gl::Api::Gl}), choices);
     const WeighAndFold& fold = folds.emplace_back(Boundary::Wrap, 1);
     // packed, and in a column of groups; not packed; several tiles for each group

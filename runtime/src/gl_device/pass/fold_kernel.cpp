@@ -205,9 +205,7 @@ void foldInGroups(GlDevice& device, const ResolvedReduction& call, std::span<Ren
 }
 
 bool gathersInGroups(GlDevice& device, const ResolvedReduction& call) {
-  // A value comes from a texture, which takes an H100 some 20 us longer than from the buffer of other reductions.
-  constexpr std::int64_t fewestToValue = std::int64_t{1} << 18;
-  const std::int64_t fewest = call.isToValues() ? fewestToValue : 1;
+  const std::int64_t fewest = call.isToValues() ? device.traits.foldedInGroupsFrom : 1;
   const Kernel& fold = call.reduction.fold;
   const bool isGathered = assemble::readsElementIndex(fold) ||
                           std::ranges::any_of(fold.parameters, [](const Parameter& parameter) {

@@ -54,7 +54,7 @@ void forEachAccumulator(const Kernel& fold, std::span<Plane> planes, Fn&& fn) {
 void readValues(GlDevice& device, const Kernel& fold, std::span<RenderTarget> values,
                 const RegionLayout& regionLayout, std::span<void* const> results) {
   auto result = results.begin();
-  if (values.size() == 1 || device.capabilities.isSoftware) {
+  if (values.size() == 1 || !device.traits.readsValuesTogether) {
     forEachAccumulator(fold, values, [&](const program::Element& element, std::span<RenderTarget> planes) {
       download(device, element, planes, regionLayout, static_cast<std::byte*>(*result++));
     });

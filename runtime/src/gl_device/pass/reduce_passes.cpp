@@ -138,8 +138,8 @@ void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* cons
   const assemble::Lines lines = assemble::linesOf(elements_.extent, blocks_);
   assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
   access.ofDigits = ofDigits_;
-  if (isDispatched && device_.tilesScans)
-    assemble::addTiles(access, reduction_, device_.chainsScans && !device_.bound.isLogged());
+  if (isDispatched && device_.traits.tilesScans)
+    assemble::addTiles(access, reduction_, device_.traits.chainsScans && !device_.bound.isLogged());
   access.patience = device_.scanPatience.value_or(access.patience);
   const assemble::ScanPlan plan = assemble::planScan(elements_, result, limits, lines, access, isExclusive);
   startAll(plan.folds);
@@ -190,15 +190,15 @@ assemble::ReduceLimits ReducePasses::limitsOfPasses() const {
   assemble::ReduceLimits limits{.texture = device_.textureLimits(), .grouped = mayGroup()};
   if (device_.programs().stage() == assemble::Stage::Compute) {
     limits.longRun = longRunOfGroups();
-  } else if (device_.capabilities.isSoftware) {
-    limits.longRun = 64;
+  } else {
+    limits.longRun = static_cast<std::int32_t>(device_.traits.drawnRun);
   }
   return limits;
 }
 
 std::int32_t ReducePasses::longRunOfGroups() const {
   const std::int64_t texels = assemble::elements(elements_.extent) / (byTexel_ ? assemble::lanes : 1);
-  return texels >= 1 << 26 ? 32 : texels >= 1 << 24 ? 16 : 0;
+  return texels >= device_.traits.runOf32From ? 32 : texels >= device_.traits.runOf16From ? 16 : 0;
 }
 
 bool ReducePasses::mayGroup() const {

@@ -70,8 +70,7 @@ class ReducePasses {
     std::span<const Operand> tables = {};  ///< of passes over rows
   };
   void findOperands(std::span<const Argument> arguments, const Shape& domain);
-  /// The limits for planReduction(). In software, runs are long: a pass costs as much as some thousand
-  /// texels, and few invocations are enough for the threads.
+  /// The limits for planReduction().
   assemble::ReduceLimits limitsOfPasses() const;
   /// ReduceLimits::longRun for dispatches. If there are enough texels to occupy a large GPU, long runs leave
   /// fewer partial results to later passes.

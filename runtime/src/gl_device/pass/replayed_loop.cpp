@@ -39,7 +39,7 @@ class ReplayedLoop final : public LoopRunner {
   explicit ReplayedLoop(GlDevice& device)
       : device_(device),
         hasGate_(device.capabilities.hasCompute &&
-                 (!device.isSoftware() || device.target == Target::Compute)) {}
+                 (device.traits.endsLoops || device.target == Target::Compute)) {}
   ~ReplayedLoop() override { drop(); }
 
   void run(LoopState& loop, std::int64_t times) override {

@@ -149,10 +149,10 @@ std::unique_ptr<GlDevice> open(const DeviceChoices& choices) {
 }
 
 TEST_CASE("tiles have the same results as loops") {
-  const auto tiles = open({.target = Target::Compute, .tilesScans = true, .chainsScans = false});
-  const auto chained = open({.target = Target::Compute, .tilesScans = true, .chainsScans = true});
-  const auto hasty =
-      open({.target = Target::Compute, .tilesScans = true, .chainsScans = true, .scanPatience = -1});
+  const auto tiles = open({.target = Target::Compute, .traits = {.tilesScans = true, .chainsScans = false}});
+  const auto chained = open({.target = Target::Compute, .traits = {.tilesScans = true, .chainsScans = true}});
+  const auto hasty = open(
+      {.target = Target::Compute, .traits = {.tilesScans = true, .chainsScans = true}, .scanPatience = -1});
   const Problem problems[] = {{{5}},
                               {{4097}, -1, true},
                               {{70001}},
@@ -176,7 +176,7 @@ TEST_CASE("tiles have the same results as loops") {
 }
 
 TEST_CASE("a scan of integers takes one pass") {
-  const auto chained = open({.target = Target::Compute, .tilesScans = true, .chainsScans = true});
+  const auto chained = open({.target = Target::Compute, .traits = {.tilesScans = true, .chainsScans = true}});
   chained->passCount.emplace();
   scanned(*chained, maps, {{98304}});
   CHECK(chained->passCount->passes == 1);

@@ -233,7 +233,9 @@ std::int64_t sortByDispatches(GlDevice& device, const Reordering& reordering) {
 }
 
 std::optional<std::int64_t> GlDevice::reorder(const Reordering& reordering) {
-  if (!sortsByDispatches_ || !maySortByDispatches(*this, reordering)) return std::nullopt;
+  if (target == Target::Fragment || !capabilities.hasCompute || !traits.sortsByDispatches ||
+      !maySortByDispatches(*this, reordering))
+    return std::nullopt;
   const DeviceScope scope(*this);
   const gl::LabelGroup group(labels, "sort");
   selectPrograms({}, assemble::Stage::Compute);

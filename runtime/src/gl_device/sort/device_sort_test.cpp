@@ -25,7 +25,7 @@ namespace {
 
 std::unique_ptr<GlDevice> open(bool sorts, int textureLimit = 0) {
   const DeviceChoices choices{
-      .textureLimit = textureLimit, .target = Target::Compute, .sortsByDispatches = sorts};
+      .textureLimit = textureLimit, .target = Target::Compute, .traits = {.sortsByDispatches = sorts}};
   return std::make_unique<GlDevice>(gl::openContext({"software", gl::Api::Gl}), choices);
 }
 

@@ -36,10 +36,11 @@ std::size_t BufferedRead::add(const Element& element, std::span<RenderTarget> pl
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const gl::Format& format = planes[i].texture.format();
     const gl::Transfer transfer = readTransferOf(device_, planes[i]);
-    forEachCopyRegion(region, readsByRows(region, format.texelBytes()), [&](const CopyRegion& place) {
-      blocks_.push_back({i, &planes[i], &format, transfer, place, bytes_});
-      bytes_ += aligned(place.texels() * transfer.texelBytes());
-    });
+    forEachCopyRegion(region, readsByRows(device_, region, format.texelBytes()),
+                      [&](const CopyRegion& place) {
+                        blocks_.push_back({i, &planes[i], &format, transfer, place, bytes_});
+                        bytes_ += aligned(place.texels() * transfer.texelBytes());
+                      });
   }
   return parts_.size() - 1;
 }

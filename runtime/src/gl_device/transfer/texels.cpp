@@ -11,13 +11,8 @@ namespace {
 using assemble::Rect;
 using assemble::RegionLayout;
 
-/// The fixed cost of one transfer, in bytes that could be transferred in the same time (measured on llvmpipe:
-/// 1 us for an upload and 15 us for a readback, at about 4 GB/s).
-constexpr std::int64_t uploadCost = 4 << 10;
-constexpr std::int64_t readCost = 64 << 10;
-
 /// Whether transferring the rows that contain a region `times` times is cheaper than transferring each run.
-/// `cost`: the fixed cost of one transfer.
+/// `cost`: the fixed cost of one transfer, in bytes.
 bool goesByRows(const RegionLayout& region, std::size_t texelBytes, std::int64_t cost, std::int64_t times) {
   if (!region.linear) return false;
   const ElementRuns runs(region);
@@ -95,12 +90,12 @@ void PlaneOfElements::unpack(const CopyRegion& part, const std::byte* texels, st
   });
 }
 
-bool readsByRows(const RegionLayout& region, std::size_t texelBytes) {
-  return goesByRows(region, texelBytes, readCost, 1);
+bool readsByRows(const GlDevice& device, const RegionLayout& region, std::size_t texelBytes) {
+  return goesByRows(region, texelBytes, device.traits.readBytes, 1);
 }
 
-bool writesByRows(const RegionLayout& region, std::size_t texelBytes) {
-  return goesByRows(region, texelBytes, uploadCost, 2);
+bool writesByRows(const GlDevice& device, const RegionLayout& region, std::size_t texelBytes) {
+  return goesByRows(region, texelBytes, device.traits.uploadBytes, 2);
 }
 
 }  // namespace sk

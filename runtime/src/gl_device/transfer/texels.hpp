@@ -43,8 +43,8 @@ struct PlaneOfElements {
 };
 
 /// Whether it is faster to read the rows that contain a region than each run of its elements.
-bool readsByRows(const assemble::RegionLayout& region, std::size_t texelBytes);
+bool readsByRows(const GlDevice& device, const assemble::RegionLayout& region, std::size_t texelBytes);
 /// Whether it is faster to read these rows, change and write them than to write each run.
-bool writesByRows(const assemble::RegionLayout& region, std::size_t texelBytes);
+bool writesByRows(const GlDevice& device, const assemble::RegionLayout& region, std::size_t texelBytes);
 
 }  // namespace sk

@@ -63,7 +63,7 @@ void upload(GlDevice& device, const Element& element, std::span<RenderTarget> pl
       writes.begin();
       writeTexels(device, planes[i], part.rect, texels);
     };
-    forEachCopyRegion(region, writesByRows(region, texelBytes), [&](const CopyRegion& part) {
+    forEachCopyRegion(region, writesByRows(device, region, texelBytes), [&](const CopyRegion& part) {
       if (part.first == CopyRegion::wholeRows) {
         std::vector<std::byte> rows(part.texels() * texelBytes);
         readTight(device, planes[i], part, rows.data());
@@ -93,7 +93,7 @@ void download(GlDevice& device, const Element& element, std::span<RenderTarget> 
       readTight(device, planes[i], part, texels.data());
       plane.unpack(part, texels.data(), elements);
     };
-    forEachCopyRegion(region, readsByRows(region, texelBytes), [&](const CopyRegion& part) {
+    forEachCopyRegion(region, readsByRows(device, region, texelBytes), [&](const CopyRegion& part) {
       if (part.first == CopyRegion::wholeRows) {
         readPart(part);
       } else if (areTexels(element)) {

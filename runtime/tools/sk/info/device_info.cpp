@@ -37,6 +37,15 @@ Json describe(const sk::Device& device) {
   return info;
 }
 
+void addTraits(const sk::Device& device, Json& info) {
+  info["kind"] = device.kind();
+  info["traits"] = Json::array();
+  for (const sk::DeviceTrait& trait : device.traits()) {
+    info["traits"].push_back(
+        {{"name", trait.name}, {"value", trait.value}, {"meaning", trait.meaning}, {"reason", trait.reason}});
+  }
+}
+
 void measure(sk::Device& device, Json& info) {
   const auto start = std::chrono::steady_clock::now();
   const bool hasGl = !isNative(device);

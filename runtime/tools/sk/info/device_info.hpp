@@ -15,6 +15,9 @@ using Json = nlohmann::ordered_json;
 /// The properties that a device reports: "name", "driver" ..., and its "limits". Measures nothing.
 Json describe(const sk::Device& device);
 
+/// Adds the kind of the device and what the runtime assumes of it, which the configuration file may change.
+void addTraits(const sk::Device& device, Json& info);
+
 /// Adds what must be measured, which takes some seconds.
 void measure(sk::Device& device, Json& info);
 

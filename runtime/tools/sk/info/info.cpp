@@ -47,6 +47,7 @@ Json infoOf(sk::Device& device, bool refresh) {
     measure(device, info);
     sk::CacheFolder().write("info", key, info.dump(2) + '\n');
   }
+  addTraits(device, info);
   return info;
 }
 

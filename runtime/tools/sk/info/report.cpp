@@ -32,6 +32,7 @@ class Report {
     indices();
     doubles();
     costs(hasGl);
+    traits();
     line("measured", "in {} s, by StreamKernel {}; sk info --refresh measures again",
          number(info_, "measured_in_seconds"), textOf(info_.at("streamkernel")));
     return text_;
@@ -153,6 +154,17 @@ class Report {
     const Json& filter = info_.at("filter");
     line("filter", "{} bits of weight{}, off by {:.3g} at most", textOf(filter.at("weight_bits")),
          filter.at("weight_bits") == 16 ? " or more" : "", number(filter, "max_absolute"));
+  }
+
+  void traits() {
+    if (info_.contains("kind")) line("known as", "{}", textOf(info_.at("kind")));
+    const Json traits = info_.value("traits", Json::array());
+    if (!traits.empty())
+      line("assumed", "{:<24}{:>10}   [devices] of a configuration file changes it", "", "value");
+    for (const Json& trait : traits) {
+      add("  {:<16}{:<24}{:>10}   {} ({})\n", "", textOf(trait.at("name")), textOf(trait.at("value")),
+          textOf(trait.at("meaning")), textOf(trait.at("reason")));
+    }
   }
 
   void indices() {
