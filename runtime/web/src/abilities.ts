@@ -3,13 +3,62 @@
 // What a browser and a context can do, found out by trial where extensions promise too much.
 import { SkError } from './error.js';
 import { formatOf, type Format } from './format.js';
-import type { DeviceInfo, DeviceOptions } from './device.js';
 
 /** An HTMLCanvasElement or an OffscreenCanvas. */
 export interface Canvas extends EventTarget {
   width: number;
   height: number;
   getContext(kind: string, options?: unknown): unknown;
+}
+
+/** What a device's 32-bit floats can do. */
+export interface Arithmetic {
+  /**
+   * Whether the rounding errors of sums and products can be computed exactly, which compensated, exact and extended sums need
+   * (TwoSum: Knuth, TAOCP 2, 4.2.2; TwoProd: Dekker, Numerische Mathematik 18, 1971).
+   */
+  readonly exactSums: boolean;
+  /** Whether numbers below 2^-126 stay what they are; on many devices they become 0. */
+  readonly keepsSubnormals: boolean;
+}
+
+export interface DeviceOptions {
+  /** A WebGL2 context of the application, or a canvas without a context; by default, the device has a canvas of its own. */
+  readonly context?: WebGL2RenderingContext;
+  readonly canvas?: Canvas;
+  readonly powerPreference?: WebGLPowerPreference;
+  /** Streams keep what is written to them on the host, too, so that a context that the browser takes away can be restored with it. */
+  readonly keepCopies?: boolean;
+  /** Device.trace, from the beginning. */
+  readonly trace?: boolean;
+  /** Refuse a device that stores floats as halves (DeviceInfo.floats). */
+  readonly requireFloats?: boolean;
+  /** Refuse a device that computes on the processor, as browsers without a graphics driver do. */
+  readonly refuseSoftware?: boolean;
+}
+
+/** What a device is and can do. */
+export interface DeviceInfo {
+  readonly vendor: string;
+  readonly renderer: string;
+  /** Whether programs run on the processor. */
+  readonly isSoftware: boolean;
+  /** How float streams are stored: with 24 bits, or with the 11 bits of halves where the device draws to no others. */
+  readonly floats: 'float' | 'half';
+  readonly limits: {
+    readonly textureSize: number;
+    /** Planes that a kernel writes and reads in one pass. */
+    readonly drawBuffers: number;
+    readonly textureUnits: number;
+  };
+  /** Whether the device's own filter interpolates 32-bit floats, for gathers with [[filter]]. */
+  readonly filtersFloats: boolean;
+  /** Whether scatter outputs combine values: `r[i] += v`, min and max. */
+  readonly combinesScattered: boolean;
+  /** Whether programs compile while the page goes on. */
+  readonly compilesInParallel: boolean;
+  /** What its floats do, which the first info() tests; null where the context is lost before that. */
+  readonly arithmetic: Arithmetic | null;
 }
 
 export interface Abilities extends Omit<DeviceInfo, 'compilesInParallel' | 'arithmetic'> {

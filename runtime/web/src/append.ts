@@ -5,11 +5,12 @@
 // long a list is must be read back, without blocking: until then, the call holds the planes that it reads, so that later
 // calls which write those streams draw to others.
 import { deviceOf, fail, isRead, isSameShape, stepsOf, withoutViews, type Checked } from './arguments.js';
-import type { Device, Plane } from './device.js';
+import type { Device } from './device.js';
 import type { Features, LoadedFile, ListCaller } from './features.js';
 import { isNeeded, type CallableKernel, type List, type PointStep } from './generated.js';
-import { bindOperands, isAlsoRead, liesOf, ProgramSource, targetOf } from './kernel.js';
+import { bindOperands, isAlsoRead, liesOf, ProgramSource, targetOf } from './pass.js';
 import { shapeText, sizeOf, stridesOf, type Layout } from './layout.js';
+import type { Plane } from './memory.js';
 import type { Program } from './program.js';
 import { mostPushes, Pyramid } from './pyramid.js';
 import { Scatterer } from './scatter.js';

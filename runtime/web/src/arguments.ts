@@ -6,8 +6,7 @@ import { isSameElement, numbersOf, withArticle } from './elements.js';
 import { SkError, type ErrorKind } from './error.js';
 import { isNeeded, specBits, type Element, type Field, type KernelData, type Parameter } from './generated.js';
 import { decodedRank, shapeText, xFirst } from './layout.js';
-import { Stream } from './stream.js';
-import { Fitted, View } from './view.js';
+import { Fitted, Stream, View } from './stream.js';
 
 export type AnyStream = Stream<any, number>;
 

@@ -1,19 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Tests a device's arithmetic on floats, as runtime/src/probe does: what compensated, exact and extended sums rest on.
-import type { Device } from './device.js';
+import type { Arithmetic } from './abilities.js';
+import type { Context } from './context.js';
 import { formatOf } from './format.js';
-
-/** What a device's 32-bit floats can do. */
-export interface Arithmetic {
-  /**
-   * Whether the rounding errors of sums and products can be computed exactly, which compensated, exact and extended sums need
-   * (TwoSum: Knuth, TAOCP 2, 4.2.2; TwoProd: Dekker, Numerische Mathematik 18, 1971).
-   */
-  readonly exactSums: boolean;
-  /** Whether numbers below 2^-126 stay what they are; on many devices they become 0. */
-  readonly keepsSubnormals: boolean;
-}
 
 const pairs: readonly (readonly [number, number])[] = [
   [1, 2 ** -24], [1, -(2 ** -25)], [2 ** 24, 3], [2 ** 25, 3], [0, 1234.5], [1234.5, -1234.5], [2 - 2 ** -23, 2 ** -24], [2 ** 63, -(2 ** 62)],
@@ -48,7 +38,7 @@ function isExact([x, y]: readonly [number, number], [sum, lostOfSum, product, lo
 }
 
 /** Waits for the device. Streams of halves hold no rounding errors. */
-export function arithmeticOf(device: Device): Arithmetic {
+export function arithmeticOf(device: Context): Arithmetic {
   if (device.abilities.floats === 'half') return { exactSums: false, keepsSubnormals: false };
   device.begin();
   const gl = device.context;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
 // Compiles programs ahead of the calls that need them, while the page goes on.
-import type { Device } from './device.js';
+import type { Context } from './context.js';
 import { SkError } from './error.js';
 import type { Program } from './program.js';
 
 /** What knows all its programs: kernels and reduces of FILE.sk.js. */
 export interface Compilable {
   /** @internal */
-  startPrograms(device: Device): Program[];
+  startPrograms(device: Context): Program[];
 }
 
-export async function compileAll(device: Device, callables: readonly Compilable[], progress?: (done: number) => void): Promise<void> {
+export async function compileAll(device: Context, callables: readonly Compilable[], progress?: (done: number) => void): Promise<void> {
   if (!callables.every((callable) => typeof callable?.startPrograms === 'function')) {
     throw new SkError('only kernels and reduces of .sk.js files are compiled', 'type');
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Copies elements from one stream to another on the device, at regular distances in both.
-import type { Device, Plane } from './device.js';
+import type { Context } from './context.js';
+import type { Plane } from './memory.js';
 import { consecutiveTexels, type Index4, type Rect } from './layout.js';
 import type { Program } from './program.js';
 
@@ -26,7 +27,7 @@ export function drawsOf(extent: Index4, { first, strides, width, linear }: Regio
 const copyKey = {};
 
 /** Copies as many elements as `extent`, x first, says. The regions are of different streams of one type of elements. */
-export function copyRegion(device: Device, extent: Index4, from: Region, to: Region): void {
+export function copyRegion(device: Context, extent: Index4, from: Region, to: Region): void {
   device.begin();
   const strides = ({ strides }: Region) => strides.map((stride, d) => (extent[d]! > 1 ? stride : 0x7fffffff)); // no number reaches it
   const draws = drawsOf(extent, to);
@@ -45,7 +46,7 @@ export function copyRegion(device: Device, extent: Index4, from: Region, to: Reg
 }
 
 /** Takes the longest stride as often as possible, then the next: nothing is left of an element's number. */
-function copyProgram(device: Device, sampler: string): Program {
+function copyProgram(device: Context, sampler: string): Program {
   const prefix = sampler === 'float' ? '' : sampler[0]!;
   const text = () => `#version 300 es
 precision highp float;

@@ -3,7 +3,7 @@
 // Shows a stream in a canvas: one fragment program, and a transfer of the picture between canvases, which stays on the device.
 import { colourMaps, type ColourMap } from './colour_maps.js';
 import type { Canvas } from './abilities.js';
-import type { Device } from './device.js';
+import type { Context } from './context.js';
 import { SkError } from './error.js';
 import { formatOf } from './format.js';
 import { lanes, shapeText } from './layout.js';
@@ -25,7 +25,7 @@ export interface DrawOptions {
 const drawKey = {};
 
 /** Elements are found by their number: row by row from the top, as in a picture. */
-function drawProgram(device: Device, kind: 'float' | 'int' | 'uint', map: ColourMap): Program {
+function drawProgram(device: Context, kind: 'float' | 'int' | 'uint', map: ColourMap): Program {
   const prefix = kind === 'float' ? '' : kind[0]!;
   const colours = colourMaps[map];
   const text = () => `#version 300 es
@@ -65,7 +65,7 @@ function glslColour(hex: string): string {
   return `vec3(${part(0)}, ${part(2)}, ${part(4)})`;
 }
 
-export function drawStream(device: Device, stream: Stream<any, number>, canvas: Canvas, options: DrawOptions): void {
+export function drawStream(device: Context, stream: Stream<any, number>, canvas: Canvas, options: DrawOptions): void {
   const { map = 'viridis', range = [0, 1], vectors = 'length' } = options;
   if (!(stream instanceof Stream)) throw new SkError('what is drawn is no stream; make one by device.stream()', 'type');
   if (typeof canvas?.getContext !== 'function') throw new SkError('the picture needs a canvas, an HTMLCanvasElement or an OffscreenCanvas', 'type');
@@ -111,7 +111,7 @@ function resize(canvas: Canvas, width: number, height: number): void {
 }
 
 /** Hands the picture on to another canvas. The device's canvas may be larger: its lower left corner holds the picture. */
-function transfer(device: Device, canvas: Canvas): void {
+function transfer(device: Context, canvas: Canvas): void {
   const own = device.canvas;
   const { width, height } = canvas;
   const drawing = canvas.getContext('2d') as CanvasRenderingContext2D | null;

@@ -3,9 +3,10 @@
 // What only some kernels need. FILE.sk.js imports what its kernels need, and hands it over (fileOf in index.ts), so that
 // bundlers leave out the rest: nothing else of this package may import these modules.
 import type { Checked } from './arguments.js';
-import type { Device, Plane } from './device.js';
+import type { Device } from './device.js';
 import type { CallableKernel, CallableReduction, GeneratedFile, KernelData, Plan } from './generated.js';
 import type { Layout } from './layout.js';
+import type { Plane } from './memory.js';
 import type { Program } from './program.js';
 import type { planScan } from './scan_plan.js';
 import type { ScanOptions } from './types.js';

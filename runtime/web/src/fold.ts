@@ -2,12 +2,13 @@
 //
 // Draws the passes of a reduction or a scan: runtime/src/gl_device/pass/reduce_passes.cpp.
 import { iterationOf, type Checked } from './arguments.js';
-import type { Device, Plane } from './device.js';
+import type { Device } from './device.js';
 import type { Format } from './format.js';
 import type { LoadedFile } from './features.js';
 import type { KernelData, Parameter, Reduction } from './generated.js';
 import { sizeOf, xFirst, type Layout } from './layout.js';
-import { bindOperands, ProgramSource } from './kernel.js';
+import { bindOperands, ProgramSource } from './pass.js';
+import type { Plane } from './memory.js';
 import type { Program } from './program.js';
 import { isOfPartials, leastKnownRuns, planIdentities, planReduction, valueLayout, type ReducePass } from './reduce_plan.js';
 import type { ScanPlan } from './scan_plan.js';

@@ -2,7 +2,7 @@
 //
 // The package streamkernel: devices and streams, and what FILE.sk.js needs.
 import { fail } from './arguments.js';
-import { structOf, type Device } from './device.js';
+import type { Device } from './device.js';
 import type { Features, FoldCaller, LoadedFile } from './features.js';
 import { Forms } from './forms.js';
 import { checkSchema, type Callable, type GeneratedFile } from './generated.js';
@@ -11,14 +11,11 @@ import type { Program } from './program.js';
 import type { KernelOptions, ScanOptions, Struct } from './types.js';
 
 export { Device } from './device.js';
-export type { Canvas } from './abilities.js';
-export type { Arithmetic } from './arithmetic.js';
-export type { DeviceInfo, DeviceOptions } from './device.js';
+export type { Arithmetic, Canvas, DeviceInfo, DeviceOptions } from './abilities.js';
 export type { DrawOptions } from './draw.js';
 export { SkError } from './error.js';
 export type { ErrorKind } from './error.js';
-export { Stream } from './stream.js';
-export { stretch, stride, type Fitted, type View } from './view.js';
+export { Stream, stretch, stride, type Fitted, type View } from './stream.js';
 export type {
   ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Held, Input, Iterate, Kernel, KernelOptions, NotOffered, Output, Pushed, Reduce, Scan, ScanOptions,
   Scattered, ShapeOf, Struct, Value, ValueOf,
@@ -118,7 +115,7 @@ export function fileOf(data: GeneratedFile, texts: readonly string[], features: 
   const structs = new Map(data.structs.map((struct) => [struct.name, struct]));
   const file: LoadedFile = { ...data, texts, features, elements: data.elements.map((element) => structs.get(element.name) ?? element) };
   return {
-    struct: (name: string): Struct<string, unknown, unknown> => structOf(file, name),
+    struct: (name: string) => file.structs.find((struct) => struct.name === name) as unknown as Struct<string, unknown, unknown>,
     callable: (...units: number[]): Exported => {
       const callables = units.map((unit) => file.callables[unit]!);
       return overloaded(callables.map((callable) => functionOf(callable, file)));

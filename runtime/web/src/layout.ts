@@ -31,7 +31,7 @@ export interface Layout {
   readonly height: number;
   /** What a pass over all elements draws: no texel beyond the last element. */
   readonly draws: readonly Rect[];
-  /** Of views: the first element, as programs for views take it (view.ts). */
+  /** Of views: the first element, as programs for views take it (stream.ts). */
   readonly origin?: Index4;
   /** Of inputs in such programs: how many elements of the domain an element serves; negative: of how many one is read. */
   readonly ratio?: Index4;

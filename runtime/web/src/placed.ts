@@ -4,14 +4,15 @@
 // all, which [[variants(views)]] asks for. It addresses every stream as a view, without packing.
 import { fail, isRead, iterationOf, type AnyStream, type Checked } from './arguments.js';
 import { copyRegion, drawsOf, type Region } from './copy.js';
-import type { Device, Plane } from './device.js';
+import type { Device } from './device.js';
 import type { Placed } from './features.js';
 import type { Element, KernelData } from './generated.js';
 import { stridesOf, xFirst, type Layout } from './layout.js';
-import { heldLie } from './kernel.js';
+import { heldLie } from './pass.js';
+import type { Plane } from './memory.js';
 import { ratioOf, viewAt } from './shapes.js';
 import type { Lie } from './variant.js';
-import { regionOf, strided } from './view.js';
+import { regionOf, strided } from './stream.js';
 
 /** Unpacks all streams. `mayBePart`: the domain may be a part of its textures, if the outputs are the same box of theirs. */
 export function placed(device: Device, kernel: KernelData, call: Checked, outputs: readonly number[], shape: readonly number[], elements: readonly Element[], mayBePart: boolean): Placed {

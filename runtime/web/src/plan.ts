@@ -2,12 +2,13 @@
 //
 // Kernels of several passes: runtime/src/gl_device/pass/multipass_plan.cpp. Streams are not packed.
 import { isRead, type Checked } from './arguments.js';
-import type { Device, Plane } from './device.js';
+import type { Device } from './device.js';
 import { SkError } from './error.js';
 import type { Format } from './format.js';
 import type { Features, LoadedFile, PassRunner, Placed } from './features.js';
 import type { KernelData, Pass, Plan } from './generated.js';
-import { bindOperands, isAlsoRead, liesOf, ProgramSource, smallGather, targetOf } from './kernel.js';
+import { bindOperands, isAlsoRead, liesOf, ProgramSource, smallGather, targetOf } from './pass.js';
+import type { Plane } from './memory.js';
 import type { Program } from './program.js';
 import { kernelKey, viewsKey, type Lie } from './variant.js';
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // One linked program: where its uniforms are, and what was last given to them.
-import type { Device } from './device.js';
 import type { Layout } from './layout.js';
+import type { Trace } from './trace.js';
 import type { Element, Field, Parameter } from './generated.js';
 import { SkError } from './error.js';
 
@@ -129,6 +129,13 @@ export interface Bound {
   readonly units?: readonly number[];
 }
 
+/** Whose program it is. */
+interface Owner {
+  readonly context: WebGL2RenderingContext;
+  readonly generation: number;
+  readonly tracer: Trace | null;
+}
+
 /** A program that is being compiled, or has been. */
 export class Program {
   private shaders: WebGLShader[] = [];
@@ -151,7 +158,7 @@ export class Program {
   private readonly gl: WebGL2RenderingContext;
 
   constructor(
-    private readonly device: Device,
+    private readonly device: Owner,
     readonly name: string,
     private readonly text: string,
     private readonly parameters: readonly Parameter[],

@@ -3,7 +3,8 @@
 // A histogram pyramid, with which an entry of a list finds the element that pushed it: the decisions of
 // runtime/src/assemble/append/histo_pyramid.cpp, and runtime/src/gl_device/append/histo_pyramid.cpp. (Ziegler, Tevs, Theobalt, Seidel 2006,
 // "On-the-fly Point Clouds through Histogram Pyramids".)
-import type { Device, Plane } from './device.js';
+import type { Context } from './context.js';
+import type { Plane } from './memory.js';
 import { SkError } from './error.js';
 import { consecutiveTexels, linearTexture, sizeOf, type Layout, type Rect } from './layout.js';
 import type { Program } from './program.js';
@@ -57,7 +58,7 @@ export class Pyramid {
   readonly planes: readonly [Plane, Plane];
 
   /** Draws all levels over the counts of the elements. `ofCounts` draws the first one, `ofNodes` the others. */
-  constructor(private readonly device: Device, counts: Plane, domain: Layout, ofCounts: Program, ofNodes: Program) {
+  constructor(private readonly device: Context, counts: Plane, domain: Layout, ofCounts: Program, ofNodes: Program) {
     this.plan = planPyramid(sizeOf(domain.extent), device.limits.textureSize);
     const { width, oddRows, evenRows, levels } = this.plan;
     const format = device.formatOf('int', 4);

@@ -4,20 +4,21 @@
 // runtime/src/api/reduce.cpp. All results are drawn to new planes, so that a call may write what it reads.
 import { checkArguments, deviceOf, fail, isSameShape, type Checked } from './arguments.js';
 import { blockGrids } from './block_grid.js';
-import type { Device, Plane } from './device.js';
+import type { Device } from './device.js';
 import { newArrays, planeArray, takeChannels, valueOf } from './elements.js';
 import { Fold, type Goal } from './fold.js';
 import type { Format } from './format.js';
 import type { Features, FoldCaller, LoadedFile } from './features.js';
 import { isNeeded, type CallableReduction, type Parameter, type SumVariant } from './generated.js';
-import { alignedProgram, drawAligned, KernelCaller, ProgramSource } from './kernel.js';
+import { KernelCaller } from './kernel.js';
+import { alignedProgram, drawAligned, ProgramSource } from './pass.js';
 import { shapeText } from './layout.js';
+import type { Plane } from './memory.js';
 import type { Program } from './program.js';
 import { valueLayout } from './reduce_plan.js';
 import { checkDisjoint } from './shapes.js';
-import { Stream } from './stream.js';
+import { Fitted, Stream, View, viewOf } from './stream.js';
 import type { ScanOptions } from './types.js';
-import { Fitted, View, viewOf } from './view.js';
 
 const valueRects = [{ x: 0, y: 0, width: 1, height: 1 }];
 const accumulations = ['tree', 'compensated', 'extended', 'exact'];

@@ -4,14 +4,14 @@
 // the same values. What was found out then holds again: types and shapes need no check, and program, domain and textures no
 // search. It allocates next to nothing. What is not alike, and every mistake, goes the long way (kernel.ts).
 import { isRead, isWritten, iteratorOf, specOf, stepsOf, uniformOf, type AnyStream, type Checked } from './arguments.js';
-import type { Device, Plane } from './device.js';
+import type { Device } from './device.js';
 import type { Element, KernelData, Parameter } from './generated.js';
-import { drawDomain, targetOf } from './kernel.js';
+import { drawDomain, targetOf } from './pass.js';
 import type { Layout } from './layout.js';
+import type { Plane } from './memory.js';
 import type { Program } from './program.js';
-import { Stream } from './stream.js';
+import { Stream, View } from './stream.js';
 import type { Lie } from './variant.js';
-import { View } from './view.js';
 
 /** What an argument must be. Layouts are shared, so that streams with one layout have one shape. */
 interface Slot {

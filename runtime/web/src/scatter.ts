@@ -3,9 +3,10 @@
 // Stores the list of a scatter output to its stream, entry by entry, as points: the steps of
 // runtime/src/gl_device/append/scatter_points.cpp. Devices blend floats only; integers are taken apart into floats that
 // stay exact.
-import type { Device, Plane } from './device.js';
+import type { Device } from './device.js';
 import type { List, PointStep } from './generated.js';
 import type { Layout } from './layout.js';
+import type { Plane } from './memory.js';
 import type { Program } from './program.js';
 import type { AnyStream } from './arguments.js';
 

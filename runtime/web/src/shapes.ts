@@ -4,7 +4,7 @@
 import { fail, shapeAt, type Checked } from './arguments.js';
 import type { KernelData, Parameter } from './generated.js';
 import { shapeText } from './layout.js';
-import { viewOf, type Fitted, type View } from './view.js';
+import { type Fitted, type View, viewOf } from './stream.js';
 
 /** How an input of this shape is read over a domain, in each dimension (Layout.ratio); 0 where it does not fit. */
 export function ratioOf(shape: readonly number[], domain: readonly number[], fit: Fitted<any> | null): number[] {

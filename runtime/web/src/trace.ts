@@ -2,7 +2,6 @@
 //
 // Entries for the browser's performance panel: calls, compilations, transfers and passes, each in a track of its own.
 // Chrome shows them under "StreamKernel" (detail.devtools); others list them as user timings.
-import type { Device } from './device.js';
 
 type Track = 'calls' | 'results' | 'passes' | 'compilations' | 'transfers';
 
@@ -19,6 +18,12 @@ interface Timed {
   readonly query: WebGLQuery;
 }
 
+/** What is traced. */
+interface Traced {
+  readonly context: WebGL2RenderingContext;
+  readonly lost: boolean;
+}
+
 export class Trace {
   private readonly gl: WebGL2RenderingContext;
   private readonly timer: Timer | null;
@@ -27,7 +32,7 @@ export class Trace {
   private end = 0;
   private isPolling = false;
 
-  constructor(private readonly device: Device) {
+  constructor(private readonly device: Traced) {
     this.gl = device.context;
     this.timer = this.gl.getExtension('EXT_disjoint_timer_query_webgl2') as Timer | null;
   }

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
 // Transfers to the host, which never block: each has a buffer of the device and a fence that is looked at now and then.
-import type { Device } from './device.js';
 import { SkError } from './error.js';
 import { wideOf, type Format, type HostArray } from './format.js';
 import type { Rect } from './layout.js';
+import type { Trace } from './trace.js';
+
+/** What transfers are of. */
+interface Source {
+  readonly context: WebGL2RenderingContext;
+  readonly tracer: Trace | null;
+  takeErrors(): boolean;
+  lostError(): SkError;
+}
 
 /** A transfer to the host that has been asked for. */
 interface Readback {
@@ -37,7 +45,7 @@ export class Transfers {
   private readonly readbacks: Readback[] = [];
   private isPolling = false;
 
-  constructor(private readonly device: Device) {
+  constructor(private readonly device: Source) {
     this.gl = device.context;
   }
 

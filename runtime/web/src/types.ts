@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The types of what .sk files declare, as FILE.sk.d.ts uses them.
-import type { Stream } from './stream.js';
-import type { Fitted, View } from './view.js';
+import type { Fitted, Stream, View } from './stream.js';
 
 type Width = '' | '2' | '3' | '4';
 /** Scalars and vectors whose arrays have one type. */
