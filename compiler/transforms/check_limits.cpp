@@ -14,7 +14,7 @@ using namespace ir;
 
 constexpr std::size_t mostParameters = 250;   // descriptors number them with 8 bits
 constexpr std::size_t mostPlanes = 250;       // and the planes of bundles
-constexpr std::size_t mostReads = 120;        // a program's key has 4 bits per stream that is read
+constexpr std::size_t mostReads = 120;        // far more than a pass reads on any device
 constexpr std::size_t promisedVectors = 200;  // of ES 3.0's 224; the programs' own uniforms take some
 
 /// The vectors of four that a uniform takes without packing.

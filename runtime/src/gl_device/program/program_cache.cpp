@@ -101,16 +101,22 @@ void ProgramCache::checkUnits(const program::Kernel& kernel, const assemble::Spe
               Error::Kind::Device);
 }
 
+const ProgramKey& ProgramCache::look(const program::Kernel& kernel, std::span<const Operand> operands,
+                                     const assemble::RegionLayout& domain, const assemble::Task& task) {
+  looked_.kernel = &kernel;
+  chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats, looked_.variant);
+  return looked_;
+}
+
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const program::Reduction* reduction,
                                            std::span<const Operand> operands,
                                            const assemble::RegionLayout& domain, const assemble::Task& task) {
   forgetUnloaded();
-  const ProgramKey key = variantKey(kernel, operands, domain, task, device_.capabilities.filtersFloats);
-  const auto found = kernels_.find(key);
+  const auto found = kernels_.find(look(kernel, operands, domain, task));
   if (found == kernels_.end()) {
     const TraceScope traced(device_.trace.get(), "program", kernel.name);
-    const assemble::Variant variant =
-        chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats);
+    const ProgramKey key = looked_;
+    const assemble::Variant& variant = key.variant;
     checkUnits(assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs, variant.access, task);
     auto started = startedKernels_.extract(key);
     auto result = makeKernelProgram(
@@ -126,14 +132,12 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, const 
 bool ProgramCache::startKernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                       const assemble::RegionLayout& domain) {
   forgetUnloaded();
-  const ProgramKey key = variantKey(kernel, operands, domain, {}, device_.capabilities.filtersFloats);
+  const ProgramKey& key = look(kernel, operands, domain, {});
   if (kernels_.contains(key)) {
     return false;
   }
   if (!startedKernels_.contains(key)) {
-    const assemble::Variant variant =
-        chooseVariant(kernel, operands, domain, {}, device_.capabilities.filtersFloats);
-    startedKernels_.emplace(key, begin(kernel, variant));
+    startedKernels_.emplace(key, begin(kernel, key.variant));
   }
   return true;
 }

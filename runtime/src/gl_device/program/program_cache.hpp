@@ -134,6 +134,9 @@ class ProgramCache {
  private:
   using ReduceKey = std::pair<const program::Reduction*, assemble::ReduceVariant>;
 
+  /// The key of a kernel's program for these operands. It is good until the next look().
+  const ProgramKey& look(const program::Kernel& kernel, std::span<const Operand> operands,
+                         const assemble::RegionLayout& domain, const assemble::Task& task);
   KernelProgram& kernelProgram(const program::Kernel& kernel, const program::Reduction* reduction,
                                std::span<const Operand> operands, const assemble::RegionLayout& domain,
                                const assemble::Task& task);
@@ -185,6 +188,7 @@ class ProgramCache {
   std::map<ReduceKey, Kept<ReduceProgram>> reductions_;
   std::int64_t clock_ = 0;
   UnloadWatch unloads_;
+  ProgramKey looked_;  ///< of look(), which so needs no memory
   std::unordered_map<ProgramKey, ProgramBuild, ProgramKeyHash> startedKernels_;
   std::map<ReduceKey, ProgramBuild> startedReductions_;
 };

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// Chooses variants and packs the same choices into keys.
+// Chooses variants.
 #include "gl_device/program/variant.hpp"
 
 #include <algorithm>
 #include <cstring>
-#include <utility>
+#include <iterator>
+#include <type_traits>
 
 #include "call/iterator.hpp"
 #include "call/resolved_call.hpp"
@@ -118,72 +119,40 @@ bool isDomainView(const RegionLayout& domain) {
   return !domain.linear && domain.origin != assemble::Index4{};
 }
 
-/// Strided domains have ranks of their own in a key, and their rank in place of the kind of domain.
-bool isStrided(const RegionLayout& domain, const Task& task) {
-  return domain.strided && task.work != Work::List;
-}
-std::uint64_t rankBits(const RegionLayout& domain, const Task& task) {
-  if (!isStrided(domain, task)) return assemble::decodedRank(domain);
-  return domain.linear ? 5 : domain.numbered ? 6 : 7;
-}
-std::uint64_t domainBits(const RegionLayout& domain, const Task& task) {
-  const std::uint64_t kind = isStrided(domain, task) ? assemble::decodedRank(domain) - 1u
-                                                     : static_cast<std::uint64_t>(domainOf(domain, task));
-  return kind | std::uint64_t{domain.layered} << 2 | std::uint64_t{isDomainView(domain)} << 3;
-}
-
-/// Two bits for `fit`, `view` and `nearby`: fitted inputs are always views, and inputs are never nearby.
-std::uint64_t choiceBits(const StreamAccess& access) {
-  if (access.fitted) return 2;
-  return std::uint64_t{access.view} | std::uint64_t{access.nearby} << 1;
-}
-
-/// How a gather belongs to a whole.
-std::uint64_t placeBits(const RegionLayout& gather) {
-  const bool isShifted = gather.local && gather.place.low != assemble::Index4{};
-  return std::uint64_t{gather.placed} | std::uint64_t{gather.local} << 1 | std::uint64_t{isShifted} << 2;
-}
-
 /// Variant::domainEven, which matters only for kernels with loops. The passes of a list draw the list's
 /// texels, not the domain's.
 bool isEven(const program::Kernel& kernel, const RegionLayout& domain, const Task& task) {
   return kernel.usesLoops && task.work != Work::List && assemble::drawsWholeQuads(domain);
 }
 
-/// Packs small numbers into a key's words.
-class KeyBits {
- public:
-  explicit KeyBits(ProgramKey& key) : key_(key) {}
-
-  void add(std::uint64_t value, unsigned bits) {
-    word(used_ / 64) |= value << used_ % 64;
-    used_ += bits;
-  }
-
- private:
-  std::uint64_t& word(std::size_t number) {
-    if (number < key_.words.size()) return key_.words[number];
-    number -= key_.words.size();
-    if (number == key_.more.size()) key_.more.push_back(0);
-    return key_.more[number];
-  }
-
-  ProgramKey& key_;
-  std::size_t used_ = 0;
-};
-
 }  // namespace
 
 std::size_t ProgramKeyHash::operator()(const ProgramKey& key) const {
+  const assemble::Variant& variant = key.variant;
+  static_assert(std::has_unique_object_representations_v<StreamAccess> &&
+                std::has_unique_object_representations_v<Task>);
   std::uint64_t hash = reinterpret_cast<std::uintptr_t>(key.kernel);
-  const auto add = [&](std::uint64_t word, std::size_t place) {
-    if (word == 0) return;  // most words are 0
-    hash = (hash ^ (word + place)) * 0x9E3779B97F4A7C15u;
-    hash ^= hash >> 29;
+  const auto add = [&](const auto* values, std::size_t count) {
+    const auto* const bytes = reinterpret_cast<const char*>(values);
+    const std::size_t size = count * sizeof *values;
+    std::uint64_t word = 0;
+    for (std::size_t i = 0; i < size; i += sizeof word) {
+      std::memcpy(&word, bytes + i, std::min(sizeof word, size - i));
+      hash = (hash ^ (word + i)) * 0x9E3779B97F4A7C15u;
+      hash ^= hash >> 29;
+    }
   };
-  for (std::size_t i = 0; i < key.words.size(); ++i) add(key.words[i], i);
-  for (std::size_t i = 0; i < key.more.size(); ++i) add(key.more[i], key.words.size() + i);
-  for (std::size_t i = 0; i < key.specs.size(); ++i) add(key.specs[i], i);
+  add(&variant.task, 1);
+  const std::uint8_t domain[] = {static_cast<std::uint8_t>(variant.domain),
+                                 variant.domainView,
+                                 variant.domainPacked,
+                                 variant.domainEven,
+                                 variant.domainLayered,
+                                 variant.domainRank,
+                                 variant.domainPlaced};
+  add(domain, std::size(domain));
+  add(variant.access.data(), variant.access.size());
+  add(variant.specs.data(), variant.specs.size());
   return hash * 0x9E3779B97F4A7C15u >> 32;
 }
 
@@ -240,6 +209,13 @@ Operand iteration(const Parameter& iterator, const void* ends, const Shape& doma
 assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
                                 const RegionLayout& domain, const Task& task, bool filtersFloats) {
   assemble::Variant variant;
+  chooseVariant(kernel, operands, domain, task, filtersFloats, variant);
+  return variant;
+}
+
+void chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
+                   const RegionLayout& domain, const Task& task, bool filtersFloats,
+                   assemble::Variant& variant) {
   variant.task = task;
   variant.domain = domainOf(domain, task);
   variant.domainView = isDomainView(domain);
@@ -249,6 +225,7 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
   variant.domainPlaced = domain.placed;
   variant.domainRank = assemble::decodedRank(domain);
   variant.specs = specsOf(kernel, operands);
+  variant.access.clear();
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
     StreamAccess access;
@@ -266,70 +243,6 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
     }
     variant.access.push_back(access);
   }
-  return variant;
-}
-
-// Every entry has 4 bits, so that none straddles two words.
-ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
-                      const RegionLayout& domain, const Task& task, bool filtersFloats) {
-  ProgramKey key{&kernel, {}, {}, specsOf(kernel, operands)};
-  KeyBits bits(key);
-  bits.add(domainBits(domain, task), 4);
-  bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{domain.packed} << 3, 4);
-  bits.add(std::uint64_t{task.pyramidLayered} | std::uint64_t{task.scattersInAnyOrder} << 1 |
-               std::uint64_t{task.pushesInAnyOrder} << 2,
-           4);
-  bits.add(task.appendOutput & 15u, 4);
-  bits.add(task.appendOutput >> 4, 4);
-  bool hasStorages = false;
-  for (std::size_t i = 0; i < operands.size(); ++i) {
-    hasStorages = hasStorages || operands[i].storage != Storage::Single || operands[i].regionLayout.packed ||
-                  operands[i].regionLayout.strided || isHeld(kernel.parameters[i], operands[i]);
-  }
-  bits.add(rankBits(domain, task) | std::uint64_t{hasStorages} << 3, 4);
-  if (kernel.usesLoops) {
-    bits.add(isEven(kernel, domain, task), 4);
-  }
-  bool hasIterator = false;
-  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
-    const Parameter& parameter = kernel.parameters[i];
-    if (parameter.role == Role::Iterator && !std::exchange(hasIterator, true)) {
-      // the properties of the domain on which chooseIteration() depends, once for all iterators
-      bits.add(std::uint64_t{operands[i].rank == 1} | std::uint64_t{isFlat(domain)} << 1, 4);
-    }
-    if (hasAccess(kernel, i, task) && isNeeded(parameter, key.specs)) {
-      const StreamAccess access = chooseAccess(parameter, operands[i], domain, task, filtersFloats);
-      // Aligned, which no gather is, stands for a filtered one: those are planes and not views. With strides, it stands
-      // for Rows, which is no other access.
-      const bool isOther = access.filtered || access.addressing == Addressing::Rows;
-      const Addressing addressing = isOther ? Addressing::Aligned : access.addressing;
-      bits.add(static_cast<std::uint64_t>(addressing) | choiceBits(access) << 2, 4);
-    }
-    if (hasStorages && parameter.role == Role::Uniform) {
-      // no operand has Storage::Default, which stands for a value
-      const bool isStream = isHeld(parameter, operands[i]);
-      bits.add(isStream ? static_cast<std::uint64_t>(operands[i].storage) |
-                              std::uint64_t{operands[i].regionLayout.packed} << 3
-                        : 0,
-               4);
-      if (isStream) bits.add(std::uint64_t{operands[i].regionLayout.layered}, 4);
-    } else if (hasStorages && parameter.role != Role::Spec) {
-      static_assert(static_cast<int>(Storage::Double) <= 4);  // and none is Default, 0
-      bits.add((static_cast<std::uint64_t>(operands[i].storage) & 3) |
-                   std::uint64_t{operands[i].regionLayout.packed} << 2 |
-                   std::uint64_t{operands[i].regionLayout.strided} << 3,
-               4);
-    }
-  }
-  const bool isPlaced = domain.placed || std::ranges::any_of(operands, [](const Operand& operand) {
-                          return operand.regionLayout.placed;
-                        });
-  if (!isPlaced) return key;
-  bits.add(1 | std::uint64_t{domain.placed} << 1, 4);
-  for (std::size_t i = 0; i < operands.size(); ++i) {
-    if (kernel.parameters[i].role == Role::Gather) bits.add(placeBits(operands[i].regionLayout), 4);
-  }
-  return key;
 }
 
 }  // namespace sk

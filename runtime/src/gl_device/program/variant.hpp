@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Determines the variant of a kernel that a call needs from its streams' layouts: the assembler's choices,
-// and a key for fast lookup.
+// Determines the variant of a kernel that a call needs from its streams' layouts: the assembler's choices.
 #pragma once
 
 #include <array>
@@ -34,12 +33,10 @@ struct Operand {
   Storage storage = Storage::Single;
 };
 
-/// A program's identity among those of loaded kernels: the address of its descriptor and the packed choices of its variant.
+/// A program's identity among those of loaded kernels: the address of its descriptor, and its variant.
 struct ProgramKey {
   const program::Kernel* kernel = nullptr;
-  std::array<std::uint64_t, 8> words{};
-  std::vector<std::uint64_t> more{};  ///< if `words` are too few: kernels may have any number of streams
-  assemble::SpecValues specs{};
+  assemble::Variant variant = {};
 
   bool operator==(const ProgramKey&) const = default;
 };
@@ -64,13 +61,14 @@ Operand uniformOperand(const Argument& argument);
 /// The operand for an iterator with these ends over a domain of this shape.
 Operand iteration(const program::Parameter& iterator, const void* ends, const Shape& domain);
 
-/// The variant of `kernel` for these operands, one per parameter, and this domain. variantKey() returns a key
-/// that holds the same choices. `filtersFloats`: the device can filter 32-bit floats.
+/// The variant of `kernel` for these operands, one per parameter, and this domain. `filtersFloats`: the device can filter
+/// 32-bit floats.
 assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
                                 const assemble::RegionLayout& domain, const assemble::Task& task = {},
                                 bool filtersFloats = false);
-ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
-                      const assemble::RegionLayout& domain, const assemble::Task& task = {},
-                      bool filtersFloats = false);
+/// The same, to a variant whose memory is used again.
+void chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
+                   const assemble::RegionLayout& domain, const assemble::Task& task, bool filtersFloats,
+                   assemble::Variant& variant);
 
 }  // namespace sk
