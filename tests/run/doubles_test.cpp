@@ -168,8 +168,11 @@ TEST_CASE("arithmetic of doubles keeps its bound") {
     std::vector<double> magnitudes = x;
     for (double& v : magnitudes) v = std::fabs(v);
     roots(streamOf<double>(device, magnitudes), r[0], r[1]);
-    CHECK(farFrom(r[0].read(), [&](std::size_t i) { return std::sqrt(std::fabs(a(i))); }, u) == "");
-    CHECK(farFrom(r[1].read(), [&](std::size_t i) { return 1 / std::sqrt(std::fabs(a(i))); }, 2 * u) == "");
+    // a GPU's own roots of doubles are within a unit in the last place (docs/accuracy.md)
+    const bool isRounded = device.isSoftware() || !config.isNative();
+    const long double root = isRounded ? u : 2 * u;
+    CHECK(farFrom(r[0].read(), [&](std::size_t i) { return std::sqrt(std::fabs(a(i))); }, root) == "");
+    CHECK(farFrom(r[1].read(), [&](std::size_t i) { return 1 / std::sqrt(std::fabs(a(i))); }, u + root) == "");
     assigned(streamOf<double>(device, x), r[0]);
     const std::vector<double> s = r[0].read();
     for (std::size_t i = 0; i < s.size(); ++i) {

@@ -46,6 +46,8 @@ uint sk_to_uint(sk_double a) {
 }
 sk_double sk_neg(sk_double a) { return sk_double(a.bits ^ uvec2(0u, 0x80000000u)); }
 bool sk_is_negative(sk_double a) { return int(a.bits.y) < 0; }
+// A zero with the sign of a. Of bits: NVIDIA's compiler for ES takes -0 and 0 for one constant.
+sk_double sk_zero_of(sk_double a) { return sk_double(uvec2(0u, a.bits.y & 0x80000000u)); }
 sk_double sk_add(sk_double a, sk_double b) { sk_written double r = sk_value(a) + sk_value(b); return sk_of(r); }
 sk_double sk_sub(sk_double a, sk_double b) { sk_written double r = sk_value(a) - sk_value(b); return sk_of(r); }
 sk_double sk_mul(sk_double a, sk_double b) { sk_written double r = sk_value(a) * sk_value(b); return sk_of(r); }
@@ -138,6 +140,10 @@ sk_double sk_two_product(float a, float b) {
 
 sk_double sk_neg(sk_double a) { return sk_double(-a.hi, -a.lo); }
 bool sk_is_negative(sk_double a) { return floatBitsToInt(a.hi) < 0; }
+sk_double sk_zero_of(sk_double a) {
+  float zero = uintBitsToFloat(floatBitsToUint(a.hi) & 0x80000000u);
+  return sk_double(zero, zero);
+}
 
 sk_double sk_add(sk_double a, sk_double b) {
   sk_double s = sk_two_sum(a.hi, b.hi);
@@ -328,8 +334,7 @@ int sk_square_exponent(sk_double a) {
 //// common
 // A zero with the sign of a; any other number itself.
 sk_double sk_zero_like(sk_double r, sk_double a) {
-  sk_double zero = sk_to_double(0.0);
-  return sk_choose(sk_equal(r, zero), sk_choose(sk_is_negative(a), sk_neg(zero), zero), r);
+  return sk_choose(sk_equal(r, sk_to_double(0.0)), sk_zero_of(a), r);
 }
 
 // The float nearest to a double of these bits, of two the even one: also a denormal one, which a device may take as 0.
