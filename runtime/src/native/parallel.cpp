@@ -44,8 +44,7 @@ void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(v
   }
   const std::optional<std::int64_t> total = checkedProduct(count, cost);
   const std::int64_t pieces = piecesOf(count, total, threads, deal);
-  const std::int64_t shares =
-      deal == Deal::Evenly ? std::min<std::int64_t>({threads, pieces, SharedLoop::mostShares}) : 1;
+  const std::int64_t shares = std::min<std::int64_t>({threads, pieces, SharedLoop::mostShares});
   SharedLoop loop(count, pieces, static_cast<int>(shares), work, context);
   runShared(loop, static_cast<int>(threads), !total || *total >= worthWaking);
 }

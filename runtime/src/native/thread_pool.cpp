@@ -222,7 +222,7 @@ class Helpers {
       if (hasTurn) {
         wakeBelow(number, place);
         place.loop->workFrom(number);
-        open_.fetch_and(~bit);  // all pieces have been taken
+        if ((open_.load() & bit) != 0) open_.fetch_and(~bit);  // all pieces have been taken
       }
       if (isOpen) working_.fetch_sub(1);
       if (place.helpers.fetch_sub(1) == 1) place.helpers.notify_one();
@@ -255,10 +255,11 @@ class Helpers {
 
   static constexpr int mostHelpers = 4095;
   std::array<Place, 64> places_;
-  std::atomic<std::uint64_t> taken_ = 0;  ///< places of loops
-  std::atomic<std::uint64_t> open_ = 0;  ///< those among them with pieces that may be left
-  std::atomic<int> working_ = 0;  ///< threads that work on loops
+  // What helpers watch, and what changes while they work, are on different lines of a cache.
+  alignas(64) std::atomic<std::uint64_t> open_ = 0;  ///< places of loops with pieces that may be left
   std::atomic<bool> isStopped_ = false;
+  alignas(64) std::atomic<int> working_ = 0;  ///< threads that work on loops
+  alignas(64) std::atomic<std::uint64_t> taken_ = 0;  ///< places of loops
   std::atomic<int> started_ = 0;
   std::atomic<Clock::rep> nextTry_ = 0;  ///< to start helpers, after one that failed
   std::mutex mutex_;  ///< protects helpers_ where it grows
