@@ -32,7 +32,7 @@ std::string textOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// The files, sorted, so that their order does not depend on the file system.
+/// The files, sorted by their names, so that their order does not depend on the file system or on the folders' places.
 std::vector<fs::path> filesOf(const std::vector<std::string>& corpus) {
   std::vector<fs::path> files;
   for (const fs::path place : corpus) {
@@ -45,7 +45,7 @@ std::vector<fs::path> filesOf(const std::vector<std::string>& corpus) {
     }
   }
   if (files.empty()) throw std::runtime_error("no file to start from");
-  std::ranges::sort(files);
+  std::ranges::sort(files, {}, [](const fs::path& file) { return file.filename(); });
   return files;
 }
 
