@@ -14,6 +14,7 @@
 #include <catch2/catch.hpp>
 
 #include "sk/sk.hpp"
+#include "skip.hpp"
 #include "test_kernel.hpp"
 
 namespace {
@@ -210,7 +211,10 @@ TEST_CASE("a renderer in software takes arguments as uniforms of the vertex prog
   Device device(DeviceOptions{.profile = "glsl330"});
   Streams of(device);
   const std::string_view renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  if (!renderer.starts_with("llvmpipe") || epoxy_gl_version() < 43) return;
+  if (!renderer.starts_with("llvmpipe") || epoxy_gl_version() < 43) {
+    skip("only llvmpipe with OpenGL 4.3 tells which stage reads a uniform");
+    return;
+  }
   GLint program = 0;
   glGetIntegerv(GL_CURRENT_PROGRAM, &program);
   const GLuint argument = glGetProgramResourceIndex(static_cast<GLuint>(program), GL_UNIFORM, "sk_arg_a");
@@ -220,4 +224,24 @@ TEST_CASE("a renderer in software takes arguments as uniforms of the vertex prog
   glGetProgramResourceiv(static_cast<GLuint>(program), GL_UNIFORM, argument, 1, &asked, 1, nullptr,
                          &isFragments);
   CHECK(isFragments == GL_FALSE);
+}
+
+TEST_CASE("streams take the textures of streams of their shape that are gone") {
+  Device device(DeviceOptions{.profile = "glsl330"});
+  const auto useTwo = [&](int width) {
+    auto a = device.stream<float4>({512, 512 + width % 3}), b = device.stream<float4>({512, 512 + width % 3});
+    const std::vector<float4> values(static_cast<std::size_t>(a.size()), float4{1, 2, 3, float(width)});
+    a.write(values);
+    b.fill(float4{0, 0, 0, 4});
+    CHECK(a.read() == values);
+  };
+  const auto texturesMadeFor = [&](int first, int last) {
+    SPY(glGenTextures);
+    called.clear();
+    for (int i = first; i < last; ++i) useTwo(i);
+    return called.size();
+  };
+  useTwo(0);
+  CHECK(texturesMadeFor(1, 3) == 4);
+  CHECK(texturesMadeFor(3, 30) == 0);
 }

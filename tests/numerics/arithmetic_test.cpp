@@ -110,7 +110,7 @@ TEST_CASE("NaN and infinity times a literal zero are NaN, or 0 where the driver 
       const float p = product.read()[i], d = difference.read()[i];
       CHECK((std::isnan(p) || (p == 0 && !isNative(device))));
       CHECK((std::isnan(d) || (d == 0 && !isNative(device))));
-      CHECK((test.read()[i] == 1 || !isNative(device)));
+      CHECK((test.read()[i] == 1 || (test.read()[i] == 0 && !isNative(device))));
     }
   });
 }
@@ -209,13 +209,13 @@ TEST_CASE("lengths neither overflow nor vanish") {
   });
 }
 
-// Dot products are not scaled: the result is 0 if the device's products do not overflow, else inf - inf.
-TEST_CASE("dot products of 1e30 are 0 or NaN") {
+// Dot products are not scaled: the result is inf - inf, or 0 on a device whose products do not overflow.
+TEST_CASE("dot products of 1e30 are NaN, or 0 on GL") {
   onEveryTarget([&](sk::Device& device) {
     auto r = output<float>(device, 2);
     dots(streamOf<sk::float2>(device, {{1e30F, 1e30F}, {3, 4}}),
          streamOf<sk::float2>(device, {{1e30F, -1e30F}, {3, 4}}), r);
-    CHECK((r.read()[0] == 0 || std::isnan(r.read()[0])));
+    CHECK((std::isnan(r.read()[0]) || (r.read()[0] == 0 && !isNative(device))));
     CHECK(r.read()[1] == 25);
   });
 }
@@ -318,17 +318,14 @@ TEST_CASE("an index outside a gather is the nearest element or the border, and N
   });
 }
 
-// A sample multiplies both neighbours by their weights, even by a weight of 0.
-TEST_CASE("a gather reads beside NaN exactly; a sample there may be NaN") {
+TEST_CASE("a gather reads beside NaN exactly, and so does a sample without weight there") {
   onEveryTarget([&](sk::Device& device) {
     const auto a = streamOf<float>(device, {1, nan, 3, 4});
     auto r = output<float>(device, 3);
     fetch(a, streamOf<std::int32_t>(device, {0, 2, 3}), r);
     CHECK(r.read() == Floats{1, 3, 4});
     lerped(a, streamOf<float>(device, {0, 3, 2.5F}), r);
-    CHECK((r.read()[0] == 1 || std::isnan(r.read()[0])));
-    CHECK(r.read()[1] == 4);
-    CHECK(r.read()[2] == 3.5F);
+    CHECK(r.read() == Floats{1, 4, 3.5F});
   });
 }
 

@@ -16,6 +16,7 @@
 #include "contraction.sk.hpp"
 #include "sk/native/code.hpp"
 #include "sk/sk.hpp"
+#include "skip.hpp"
 #include "support/configuration_file.hpp"
 #include "support/devices.hpp"
 
@@ -81,7 +82,7 @@ TEST_CASE("every operation is rounded by default") {
 
 TEST_CASE("products and sums are fused where a call, the source or a file asks for it") {
   if (!codeFuses()) {
-    WARN("this CPU has no fused multiply-add, or the kernels are not optimised");
+    skip("this CPU has no fused multiply-add, or the kernels are not optimised");
     return;
   }
   const Squares in;
@@ -122,7 +123,7 @@ TEST_CASE("sums are contracted in a plain tree alone") {
     CHECK(dotOf(accumulate, Contraction::Fast) == dotOf(accumulate, Contraction::Exact));
   }
   if (!codeFuses()) {
-    WARN("this CPU has no fused multiply-add, or the kernels are not optimised");
+    skip("this CPU has no fused multiply-add, or the kernels are not optimised");
     return;
   }
   CHECK(dotOf(sk::Accumulate::Tree, Contraction::Fast) != dotOf(sk::Accumulate::Tree, Contraction::Exact));
@@ -130,7 +131,7 @@ TEST_CASE("sums are contracted in a plain tree alone") {
 
 TEST_CASE("fma is fused where its product has another use") {
   if (!codeFuses()) {
-    WARN("this CPU has no fused multiply-add, or the kernels are not optimised");
+    skip("this CPU has no fused multiply-add, or the kernels are not optimised");
     return;
   }
   sk::Device device = sk::Device::native();

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "skip.hpp"
 #include "support/devices.hpp"
 
 using namespace run_tests;
@@ -306,8 +307,8 @@ TEST_CASE("a packed stream gives a texture of its elements") {
   for (const std::string profile : {"glsl330", "glsl430", "essl300"}) {
     sk::Device& one = device(profile);
     if (one.profile() == "native") {
-      WARN("SK_DEVICE chooses native code, whose streams are no textures");
-      return;
+      skip("SK_DEVICE chooses native code, whose streams are no textures");
+      continue;
     }
     auto u = filled<float>(one, {6, 8});
     const sk::StreamTexture texture = u.texture();
