@@ -117,9 +117,8 @@ Document readDocument(const fs::path& root, const std::string& name) {
 const std::vector<Document>& documents() {
   static const std::vector<Document> all = [] {
     const fs::path root = SK_DOCS_SOURCE;
-    std::vector<std::string> names = {"README.md", "tests/bench/README.md", "tests/docs/README.md",
-                                      "tests/fuzz/README.md"};
-    for (const char* folder : {"docs", "examples"}) {
+    std::vector<std::string> names = {"README.md"};
+    for (const char* folder : {"docs", "examples", "tests"}) {
       for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
         if (entry.path().extension() == ".md") names.push_back(fs::relative(entry.path(), root).string());
       }
