@@ -16,6 +16,7 @@
 #include "raster_file.hpp"
 #include "render.hpp"
 #include "scene.hpp"
+#include "skip.hpp"
 #include "state_file.hpp"
 #include "support/written_file.hpp"
 
@@ -249,6 +250,7 @@ TEST_CASE("OpenEXR files hold the picture, or a build without the library says s
     needExr(file.path());
   } catch (const std::runtime_error& error) {
     CHECK_THAT(error.what(), Catch::Contains("install libopenexr-dev"));
+    skip("this build has no OpenEXR");
     return;
   }
   saveExr(file.path(), 3, 2, pixels, layers);

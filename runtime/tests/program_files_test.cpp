@@ -135,7 +135,10 @@ TEST_CASE("a program that one device has compiled is another's without compiling
   for (const std::string& profile : profileNames) {
     const Folder folder;
     CHECK(folder.hits(profile) == 0);
-    if (!folder.hasBinaries) continue;
+    if (!folder.hasBinaries) {
+      skip("the driver gives no binaries of programs of " + profile);
+      continue;
+    }
     CHECK(folder.programs().size() == 1);
     CHECK(folder.hits(profile) == 1);
     CHECK(folder.programs().size() == 1);
