@@ -4,8 +4,6 @@
 // parts.
 #include <bit>
 #include <cstring>
-#include <numeric>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -138,49 +136,6 @@ TEST_CASE("structs keep their members") {
   CHECK(stream.read() == particles);
   for (int plane = 0; plane < 5; ++plane) {
     CHECK(stream.texture(plane).name != 0);
-  }
-}
-
-TEST_CASE("a view writes and reads its box and nothing else") {
-  const auto profile = GENERATE(from_range(profileNames));
-  const auto limit = GENERATE(0, 64);
-  Device device = makeDevice(profile, limit);
-  const auto shape =
-      GENERATE(Shape(100), Shape(40, 30), Shape(3, 200), Shape(6, 7, 8), Shape(50, 40, 2), Shape(3, 4, 5, 6));
-  std::vector<std::int32_t> expected(static_cast<std::size_t>(shape.size()));
-  std::iota(expected.begin(), expected.end(), 0);
-  auto stream = device.stream<std::int32_t>(shape);
-  stream.write(expected);
-  std::mt19937 random(12345);
-  for (int round = 0; round < 12; ++round) {
-    Index begin = Index::origin(shape.rank());
-    Index end = begin;
-    for (int d = 0; d < shape.rank(); ++d) {
-      begin[d] = std::uniform_int_distribution<std::int64_t>(0, shape[d])(random);
-      end[d] = std::uniform_int_distribution<std::int64_t>(begin[d], shape[d])(random);
-    }
-    const auto view = stream.domain(begin, end);
-    std::vector<std::size_t> inside;
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      bool isInside = true;
-      auto rest = static_cast<std::int64_t>(i);
-      for (int d = shape.rank() - 1; d >= 0; --d) {
-        isInside = isInside && rest % shape[d] >= begin[d] && rest % shape[d] < end[d];
-        rest /= shape[d];
-      }
-      if (isInside) {
-        inside.push_back(i);
-      }
-    }
-    INFO("shape " << toString(shape) << " from " << toString(begin) << " to " << toString(end));
-    REQUIRE(view.size() == static_cast<std::int64_t>(inside.size()));
-    std::vector<std::int32_t> part = view.read();
-    for (std::size_t i = 0; i < inside.size(); ++i) {
-      REQUIRE(part[i] == expected[inside[i]]);
-      part[i] = expected[inside[i]] = -round * 100000 - static_cast<std::int32_t>(i);
-    }
-    view.write(part);
-    REQUIRE(stream.read() == expected);
   }
 }
 
