@@ -4,6 +4,7 @@
 // that no order of operations rounds: all results are exact.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "reduces.sk.hpp"
 #include "support/devices.hpp"
@@ -26,8 +27,6 @@ std::vector<sk::Shape> manyShapes(const sk::Device& device) {
   if (!isSmall) shapes.insert(shapes.end(), {{65537}, {257, 263}, {16411, 2}});
   return shapes;
 }
-
-/// Integers in [-8, 8), so that sums of 65537 floats are exact.
 
 /// Checks that kernel(stream) is the fold of the elements make(i).
 template <class T, class A, class Make, class Kernel, class Fold>
@@ -79,6 +78,24 @@ TEST_CASE("sums, products, minima and maxima of every type") {
         [](std::size_t i) { return int2{-bitsAt<int>(i) % 1000 - 2000, bitsAt<int>(i + 9)}; },
         reduces::greatestInt2, int2{INT32_MIN, INT32_MIN},
         [](int2& r, const int2& x) { r = {std::max(r.x, x.x), std::max(r.y, x.y)}; });
+  });
+}
+
+// Where order does not matter, rows of texels are folded side by side, and a shorter last row with them.
+TEST_CASE("sums of any length, and of a view") {
+  onEveryLayout([](sk::Device& device) {
+    const bool isSmall = device.limits().textureSize <= smallLimits[0];
+    for (const std::int64_t count : {0, 1, 2, 31, 32, 33, 1021, 1024, 4095, isSmall ? 4097 : (1 << 20) + 7}) {
+      INFO("length " << count);
+      const HostArray<int> x({count}, [](std::size_t i) { return static_cast<int>(i % 1000) + 1; });
+      const auto& elements = x.elements();
+      CHECK(reduces::sumInt(x.on(device)) == std::accumulate(elements.begin(), elements.end(), 0));
+    }
+    auto x = HostArray<int>({12, 100}, bitsAt<int>).on(device);
+    const auto part = x.domain({3, 5}, {10, 93}).read();
+    const unsigned sum = std::accumulate(part.begin(), part.end(), 0u);
+    CHECK(reduces::sumInt(x.domain({3, 5}, {10, 93})) == static_cast<int>(sum));
+    CHECK(reduces::sumInt(x.domain({3, 5}, {3, 93})) == 0);
   });
 }
 
