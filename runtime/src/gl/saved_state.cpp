@@ -27,48 +27,59 @@ struct Toggle {
   GLenum name;
   Needs needs;
 };
-
-constexpr auto toggles = std::to_array<Toggle>({
-#define SK_TOGGLE(name, needs) {name, Needs::needs},
-#define SK_PIXEL_STORE(name, value, needs)
+constexpr std::array allToggles = {
+#define SK_TOGGLE(name, needs) Toggle{name, Needs::needs},
 #include "gl/pass_state.def"
-#undef SK_TOGGLE
-#undef SK_PIXEL_STORE
-});
-static_assert(toggles.size() == SavedState::toggleCount);
+};
 
-struct PixelParameter {
+struct PixelStore {
   GLenum name;
   GLint value;  ///< during a pass
   Needs needs;
 };
-
-constexpr auto pixelParameters = std::to_array<PixelParameter>({
-#define SK_TOGGLE(name, needs)
-#define SK_PIXEL_STORE(name, value, needs) {name, value, Needs::needs},
+constexpr std::array allPixelStores = {
+#define SK_PIXEL_STORE(name, value, needs) PixelStore{name, value, Needs::needs},
 #include "gl/pass_state.def"
-#undef SK_TOGGLE
-#undef SK_PIXEL_STORE
-});
-static_assert(pixelParameters.size() == SavedState::pixelStoreCount);
-
-struct PixelTransfer {
-  GLenum name;
-  GLfloat value;  ///< during a pass
 };
 
-/// How the fixed-function pipeline transforms texels in transfers, in compatibility contexts.
-constexpr std::array<PixelTransfer, SavedState::pixelTransferCount> pixelTransfers{{
-    {GL_MAP_COLOR, 0},
-    {GL_RED_SCALE, 1},
-    {GL_GREEN_SCALE, 1},
-    {GL_BLUE_SCALE, 1},
-    {GL_ALPHA_SCALE, 1},
-    {GL_RED_BIAS, 0},
-    {GL_GREEN_BIAS, 0},
-    {GL_BLUE_BIAS, 0},
-    {GL_ALPHA_BIAS, 0},
-}};
+// What sets state that has no function of its own.
+template <GLenum target>
+void clamp(GLfloat value) {
+  glClampColor(target, static_cast<GLenum>(value));
+}
+template <GLenum name>
+void transfer(GLfloat value) {
+  glPixelTransferf(name, value);
+}
+template <GLenum target>
+void bindFramebuffer(GLuint name) {
+  glBindFramebuffer(target, name);
+}
+template <GLenum target>
+void bindBuffer(GLuint name) {
+  glBindBuffer(target, name);
+}
+
+struct State {
+  GLenum name;
+  void (*set)(GLfloat value);
+  GLfloat value;  ///< during a pass
+  Needs needs;
+};
+constexpr std::array allStates = {
+#define SK_STATE(name, set, value, needs) State{name, [](GLfloat v) { set(v); }, value, Needs::needs},
+#include "gl/pass_state.def"
+};
+
+struct Binding {
+  GLenum name;
+  void (*bind)(GLuint name);
+  Needs needs;
+};
+constexpr std::array allBindings = {
+#define SK_BINDING(name, bind, needs) Binding{name, [](GLuint object) { bind(object); }, Needs::needs},
+#include "gl/pass_state.def"
+};
 
 /// Whether each draw buffer has its own blending and colour masks.
 bool hasIndexedDrawBuffers(const Capabilities& c) { return c.api == Api::Gl || c.version >= 32; }
@@ -95,15 +106,14 @@ void set(GLenum name, bool isOn) { isOn ? glEnable(name) : glDisable(name); }
 }  // namespace
 
 void setPassState(const Capabilities& capabilities) {
-  for (const Toggle& toggle : toggles) {
-    if (has(toggle.needs, capabilities)) {
-      glDisable(toggle.name);
-    }
+  for (const Toggle& toggle : allToggles) {
+    if (has(toggle.needs, capabilities)) glDisable(toggle.name);
   }
-  for (const PixelParameter& parameter : pixelParameters) {
-    if (has(parameter.needs, capabilities)) {
-      glPixelStorei(parameter.name, parameter.value);
-    }
+  for (const PixelStore& parameter : allPixelStores) {
+    if (has(parameter.needs, capabilities)) glPixelStorei(parameter.name, parameter.value);
+  }
+  for (const State& state : allStates) {
+    if (has(state.needs, capabilities)) state.set(state.value);
   }
   if (hasIndexedViewports(capabilities)) {
     glDisablei(GL_SCISSOR_TEST, 0);
@@ -113,33 +123,17 @@ void setPassState(const Capabilities& capabilities) {
   if (capabilities.hasClipControl) setClipControl(capabilities, GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   glDisable(GL_BLEND);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-  if (capabilities.api == Api::Gl) {
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    glPointSize(1);
-    glClampColor(GL_CLAMP_READ_COLOR, GL_FALSE);
-  }
-  if (capabilities.isCompatibility) {
-    glClampColor(GL_CLAMP_FRAGMENT_COLOR, GL_FALSE);
-    glClampColor(GL_CLAMP_VERTEX_COLOR, GL_FALSE);
-    for (const PixelTransfer& transfer : pixelTransfers) glPixelTransferf(transfer.name, transfer.value);
-  }
+  bindBuffer<GL_PIXEL_PACK_BUFFER>(0);
+  bindBuffer<GL_PIXEL_UNPACK_BUFFER>(0);
+  if (capabilities.api == Api::Gl) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
 SavedState::SavedState(const Capabilities& capabilities, BoundState& bound)
     : capabilities_(capabilities), bound_(bound) {
-  for (std::size_t i = 0; i < toggles.size(); ++i) {
-    toggles_[i] = has(toggles[i].needs, capabilities) && glIsEnabled(toggles[i].name) == GL_TRUE;
-  }
-  program_ = savedInteger(GL_CURRENT_PROGRAM);
-  vertexArray_ = savedInteger(GL_VERTEX_ARRAY_BINDING);
-  drawFramebuffer_ = savedInteger(GL_DRAW_FRAMEBUFFER_BINDING);
-  readFramebuffer_ = savedInteger(GL_READ_FRAMEBUFFER_BINDING);
   activeUnit_ = savedInteger(GL_ACTIVE_TEXTURE);
+  saveRows();
   saveViewport();
   saveDrawBuffers();
-  saveTransfer();
   pauseFeedback();
   setPassState(capabilities);
   bound.enterApplication(hasIndexedViewports(capabilities));
@@ -147,20 +141,40 @@ SavedState::SavedState(const Capabilities& capabilities, BoundState& bound)
 
 SavedState::~SavedState() {
   bound_.leaveApplication(activeUnit_);
-  glUseProgram(static_cast<GLuint>(program_));
-  glBindVertexArray(static_cast<GLuint>(vertexArray_));
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(drawFramebuffer_));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(readFramebuffer_));
-  restoreTransfer();
+  restoreRows();
   restoreDrawBuffers();
   restoreViewport();
-  for (std::size_t i = 0; i < toggles.size(); ++i) {
-    if (toggles_[i]) {
-      glEnable(toggles[i].name);
-    }
-  }
   if (isFeedbackPaused_) {
     glResumeTransformFeedback();
+  }
+}
+
+void SavedState::saveRows() {
+  for (std::size_t i = 0; i < toggles_.size(); ++i)
+    toggles_[i] = has(allToggles[i].needs, capabilities_) && glIsEnabled(allToggles[i].name) == GL_TRUE;
+  for (std::size_t i = 0; i < pixelStores_.size(); ++i) {
+    if (has(allPixelStores[i].needs, capabilities_)) glGetIntegerv(allPixelStores[i].name, &pixelStores_[i]);
+  }
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (has(allStates[i].needs, capabilities_)) glGetFloatv(allStates[i].name, &states_[i]);
+  }
+  for (std::size_t i = 0; i < bindings_.size(); ++i) {
+    if (has(allBindings[i].needs, capabilities_)) bindings_[i] = savedInteger(allBindings[i].name);
+  }
+}
+
+void SavedState::restoreRows() const {
+  for (std::size_t i = 0; i < bindings_.size(); ++i) {
+    if (has(allBindings[i].needs, capabilities_)) allBindings[i].bind(static_cast<GLuint>(bindings_[i]));
+  }
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (has(allStates[i].needs, capabilities_)) allStates[i].set(states_[i]);
+  }
+  for (std::size_t i = 0; i < pixelStores_.size(); ++i) {
+    if (has(allPixelStores[i].needs, capabilities_)) glPixelStorei(allPixelStores[i].name, pixelStores_[i]);
+  }
+  for (std::size_t i = 0; i < toggles_.size(); ++i) {
+    if (toggles_[i]) glEnable(allToggles[i].name);
   }
 }
 
@@ -176,10 +190,7 @@ void SavedState::saveViewport() {
     clipOrigin_ = savedInteger(GL_CLIP_ORIGIN);
     clipDepth_ = savedInteger(GL_CLIP_DEPTH_MODE);
   }
-  if (capabilities_.api == Api::Gl) {
-    glGetIntegerv(GL_POLYGON_MODE, polygonMode_.data());
-    glGetFloatv(GL_POINT_SIZE, &pointSize_);
-  }
+  if (capabilities_.api == Api::Gl) glGetIntegerv(GL_POLYGON_MODE, polygonMode_.data());
 }
 
 void SavedState::restoreViewport() const {
@@ -192,9 +203,6 @@ void SavedState::restoreViewport() const {
     set(GL_SCISSOR_TEST, isScissored_);
   }
   if (capabilities_.hasClipControl) setClipControl(capabilities_, clipOrigin_, clipDepth_);
-  if (capabilities_.api == Api::Gl) {
-    glPointSize(pointSize_);
-  }
   if (capabilities_.isCompatibility) {
     glPolygonMode(GL_FRONT, static_cast<GLenum>(polygonMode_[0]));
     glPolygonMode(GL_BACK, static_cast<GLenum>(polygonMode_[1]));
@@ -228,46 +236,6 @@ void SavedState::restoreDrawBuffers() const {
     glColorMaski(static_cast<GLuint>(i), mask[0], mask[1], mask[2], mask[3]);
     if (blend_[static_cast<std::size_t>(i)]) {
       glEnablei(GL_BLEND, static_cast<GLuint>(i));
-    }
-  }
-}
-
-void SavedState::saveTransfer() {
-  for (std::size_t i = 0; i < pixelParameters.size(); ++i) {
-    if (has(pixelParameters[i].needs, capabilities_)) {
-      glGetIntegerv(pixelParameters[i].name, &pixelStore_[i]);
-    }
-  }
-  packBuffer_ = savedInteger(GL_PIXEL_PACK_BUFFER_BINDING);
-  unpackBuffer_ = savedInteger(GL_PIXEL_UNPACK_BUFFER_BINDING);
-  if (capabilities_.api == Api::Gl) {
-    clampReadColor_ = savedInteger(GL_CLAMP_READ_COLOR);
-  }
-  if (capabilities_.isCompatibility) {
-    clampFragmentColor_ = savedInteger(GL_CLAMP_FRAGMENT_COLOR);
-    clampVertexColor_ = savedInteger(GL_CLAMP_VERTEX_COLOR);
-    for (std::size_t i = 0; i < pixelTransfers.size(); ++i) {
-      glGetFloatv(pixelTransfers[i].name, &pixelTransfer_[i]);
-    }
-  }
-}
-
-void SavedState::restoreTransfer() const {
-  for (std::size_t i = 0; i < pixelParameters.size(); ++i) {
-    if (has(pixelParameters[i].needs, capabilities_)) {
-      glPixelStorei(pixelParameters[i].name, pixelStore_[i]);
-    }
-  }
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, static_cast<GLuint>(packBuffer_));
-  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, static_cast<GLuint>(unpackBuffer_));
-  if (capabilities_.api == Api::Gl) {
-    glClampColor(GL_CLAMP_READ_COLOR, static_cast<GLenum>(clampReadColor_));
-  }
-  if (capabilities_.isCompatibility) {
-    glClampColor(GL_CLAMP_FRAGMENT_COLOR, static_cast<GLenum>(clampFragmentColor_));
-    glClampColor(GL_CLAMP_VERTEX_COLOR, static_cast<GLenum>(clampVertexColor_));
-    for (std::size_t i = 0; i < pixelTransfers.size(); ++i) {
-      glPixelTransferf(pixelTransfers[i].name, pixelTransfer_[i]);
     }
   }
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include <epoxy/gl.h>
 
@@ -26,33 +27,46 @@ class SavedState {
   SavedState(const SavedState&) = delete;
   SavedState& operator=(const SavedState&) = delete;
 
-  static constexpr std::size_t toggleCount = 22;
-  static constexpr std::size_t pixelStoreCount = 16;
-  static constexpr std::size_t pixelTransferCount = 9;
+  /// The rows of each kind in pass_state.def.
+  static constexpr std::size_t toggles = 0
+#define SK_TOGGLE(name, needs) +1
+#include "gl/pass_state.def"
+      ;
+  static constexpr std::size_t pixelStores = 0
+#define SK_PIXEL_STORE(name, value, needs) +1
+#include "gl/pass_state.def"
+      ;
+  static constexpr std::size_t states = 0
+#define SK_STATE(name, set, value, needs) +1
+#include "gl/pass_state.def"
+      ;
+  static constexpr std::size_t bindings = 0
+#define SK_BINDING(name, bind, needs) +1
+#include "gl/pass_state.def"
+      ;
 
  private:
+  void saveRows();
+  void restoreRows() const;
   void saveViewport();
   void restoreViewport() const;
   void saveDrawBuffers();
   void restoreDrawBuffers() const;
-  void saveTransfer();
-  void restoreTransfer() const;
   void pauseFeedback();
 
   const Capabilities& capabilities_;
   BoundState& bound_;
-  std::array<bool, toggleCount> toggles_{};  ///< in the order of the table of toggles
-  std::array<GLint, pixelStoreCount> pixelStore_{};  ///< in the order of the table of parameters
+  // In the order of the rows.
+  std::array<bool, toggles> toggles_{};
+  std::array<GLint, pixelStores> pixelStores_{};
+  std::array<GLfloat, states> states_{};
+  std::array<GLint, bindings> bindings_{};
   std::array<GLfloat, 4> viewport_{};
   std::array<bool, maxDrawBuffers> blend_{};
   std::array<std::array<GLboolean, 4>, maxDrawBuffers> colorMask_{};
   std::array<GLint, 2> polygonMode_{};
-  GLint program_ = 0, vertexArray_ = 0, drawFramebuffer_ = 0, readFramebuffer_ = 0;
   GLint clipOrigin_ = 0, clipDepth_ = 0;
-  std::array<GLfloat, pixelTransferCount> pixelTransfer_{};  ///< likewise
-  GLint clampFragmentColor_ = 0, clampVertexColor_ = 0;
-  GLint activeUnit_ = 0, packBuffer_ = 0, unpackBuffer_ = 0, clampReadColor_ = 0;
-  GLfloat pointSize_ = 1;
+  GLint activeUnit_ = 0;
   bool isScissored_ = false;
   bool isFeedbackPaused_ = false;
 };

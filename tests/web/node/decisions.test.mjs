@@ -14,7 +14,7 @@ const { blockGrids } = await import(`${folder}/streamkernel/block_grid.js`);
 const { xFirst } = await import(`${folder}/streamkernel/layout.js`);
 const { kernelKey } = await import(`${folder}/streamkernel/variant.js`);
 const { drawsOf } = await import(`${folder}/streamkernel/copy.js`);
-const { regionOf, strided, View } = await import(`${folder}/streamkernel/view.js`);
+const { regionOf, strided, View } = await import(`${folder}/streamkernel/stream.js`);
 const corpus = JSON.parse(readFileSync(`${folder}/decisions.json`));
 
 const rects = (list) => list.map(({ x, y, width, height }) => [x, y, width, height]);
