@@ -65,6 +65,9 @@ export interface Abilities extends Omit<DeviceInfo, 'compilesInParallel' | 'arit
   readonly parallel: { COMPLETION_STATUS_KHR: number } | null;
 }
 
+/** Parts of the names of renderers that run on the processor, as in runtime/src/gl/known_devices.def. @internal */
+export const softwareRenderers = /llvmpipe|softpipe|swrast|software|swiftshader|swr|gdi generic|microsoft basic render driver/i;
+
 /** A canvas that nobody sees. */
 export function ownCanvas(): Canvas {
   const { OffscreenCanvas } = globalThis as { OffscreenCanvas?: new (width: number, height: number) => Canvas };
@@ -93,7 +96,7 @@ export function abilitiesOf(gl: WebGL2RenderingContext, options: DeviceOptions):
   const names = gl.getExtension('WEBGL_debug_renderer_info');
   const text = (name: number) => String(gl.getParameter(name) ?? '');
   const renderer = text(names?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER);
-  const isSoftware = /swiftshader|llvmpipe|softpipe|software|basic render/i.test(renderer);
+  const isSoftware = softwareRenderers.test(renderer);
   if (isSoftware && options.refuseSoftware) {
     throw new SkError(`this browser computes on the processor ('${renderer}'); allow hardware acceleration, or leave out refuseSoftware`, 'device');
   }

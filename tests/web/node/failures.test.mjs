@@ -129,3 +129,11 @@ test("each call in an application's context sets what C++ sets, as far as browse
   }
   for (const name of ['SCISSOR_TEST', 'BLEND']) assert.ok(gl.state.disabled.has(gl[name]), name);
 });
+
+test('renderers that run on the processor are those that C++ knows', async () => {
+  const { softwareRenderers } = await import(`${process.env.SK_WEB}/streamkernel/abilities.js`);
+  const table = readFileSync(`${process.env.SK_SOURCE}/runtime/src/gl/known_devices.def`, 'utf8');
+  const parts = [...table.matchAll(/^SK_RENDERER\(Software, "(.*)"\)/gm)].map(([, part]) => part);
+  assert.ok(parts.length > 5);
+  assert.deepEqual(softwareRenderers.source.split('|').sort(), parts.sort());
+});
