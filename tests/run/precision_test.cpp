@@ -7,10 +7,8 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <random>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -361,66 +359,6 @@ TEST_CASE("mistakes in a file are told with their line") {
   CHECK(errorOf([&] {
           sk::Device({.profile = "glsl330", .configuration = "/nowhere.toml"});
         }).find("/nowhere.toml (option or SK_CONFIG)") == 0);
-}
-
-TEST_CASE("a file changes what is assumed of a device") {
-  const auto traitsWith = [](const std::string& text) {
-    const ConfigurationFile file(text);
-    std::map<std::string_view, double> values;
-    const sk::Device device({.device = "software", .profile = "glsl330", .configuration = file.path});
-    for (const sk::DeviceTrait& trait : device.traits()) values[trait.name] = trait.value;
-    return values;
-  };
-  const auto usual = traitsWith("");
-  CHECK(usual.at("samplesTexels") == 1);
-  CHECK(usual.at("drawnRun") == 64);
-  const auto all =
-      traitsWith("[devices.\"*\"]\nsamplesTexels = false\ndispatchBelow = 0.25\ndrawnRun = 16\n");
-  CHECK(all.at("samplesTexels") == 0);
-  CHECK(all.at("dispatchBelow") == 0.25);
-  CHECK(all.at("drawnRun") == 16);
-  CHECK(all.at("tilesScans") == usual.at("tilesScans"));
-  const auto part = traitsWith(
-      "[devices.\"*\"]\ndrawnRun = 16\nreadBytes = 0\n[devices.LLVMpipe]\ndrawnRun = "
-      "8\n[devices.nvidia]\ndrawnRun = 4\n");
-  CHECK(part.at("drawnRun") == 8);
-  CHECK(part.at("readBytes") == 0);
-  CHECK(sk::Device::native().traits().empty());
-  CHECK(sk::Device::native().kind() == "native");
-
-  const auto errorIn = [&](const std::string& text) { return errorOf([&] { traitsWith(text); }); };
-  CHECK_THAT(errorIn("[devices.\"*\"]\nshareTexels = true\n"),
-             Catch::Contains(":2: a device has no 'shareTexels'; it has samplesTexels, "));
-  CHECK_THAT(errorIn("[devices.\"*\"]\nsharesTexels = 1\n"), Catch::EndsWith(") is true or false"));
-  CHECK_THAT(errorIn("[devices.\"*\"]\ndrawnRun = 65\n"),
-             Catch::EndsWith(") is a whole number from 0 to 64"));
-  CHECK_THAT(errorIn("[devices.\"*\"]\ndrawnRun = 1.5\n"),
-             Catch::EndsWith(") is a whole number from 0 to 64"));
-  CHECK_THAT(errorIn("[devices.\"*\"]\ndispatchBelow = nan\n"),
-             Catch::EndsWith(") is a number from 0 to 1000000"));
-  CHECK_THAT(errorIn("[devices.\"*\"]\ndispatchBelow = -1\n"),
-             Catch::EndsWith(") is a number from 0 to 1000000"));
-}
-
-TEST_CASE("sums have the same bits for all ways to the same program") {
-  // What is assumed of a device changes how results are computed, never which.
-  const ConfigurationFile file(
-      "[devices.\"*\"]\nsamplesTexels = false\nrelaysUniforms = false\nuploadBytes = 0\nreadBytes = "
-      "0\nbufferedWriteBytes = 1000000\n"
-      "readsValuesTogether = true\n");
-  const std::vector<float> values = numbers(5000, 12, -1, 1);
-  const auto results = [&](sk::Device& device) {
-    auto r = device.stream<float>({5000});
-    const auto x = streamOf(device, values);
-    precision::cancel(x, x, r);
-    r.domain({100}, {150}).write(std::vector<float>(50, 0.5F));
-    std::vector<float> all = r.read();
-    all.push_back(precision::sum(x));
-    return all;
-  };
-  sk::Device usual({.device = "software", .profile = "glsl330"});
-  sk::Device other({.device = "software", .profile = "glsl330", .configuration = file.path});
-  CHECK(results(usual) == results(other));
 }
 
 TEST_CASE("nearly right names in a file are mistakes, names of other programs are not") {

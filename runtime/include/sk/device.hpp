@@ -91,6 +91,7 @@ struct DeviceLimits {
 struct DeviceTrait {
   std::string_view name;
   double value;  ///< 1 for true, 0 for false
+  double most;  ///< the largest value; 1 for what is true or false
   std::string_view meaning, reason;
 };
 

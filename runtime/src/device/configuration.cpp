@@ -215,6 +215,11 @@ Configuration::Configuration(const std::string& file) {
                   Error::Kind::File);
     }
     for (const auto& [name, choices] : *named) {
+      if (key == "devices" && name.str().empty()) {
+        throw Error(fmt::format("{}:{}: expected a part of a renderer's name, or \"*\" for all", file,
+                                name.source().begin.line),
+                    Error::Kind::File);
+      }
       if (!choices.is_table()) {
         throw Error(fmt::format("{}:{}: expected a table, [{}.\"{}\"]", file, name.source().begin.line,
                                 key.str(), name.str()),

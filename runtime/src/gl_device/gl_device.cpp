@@ -199,7 +199,7 @@ assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
 std::vector<DeviceTrait> GlDevice::traitValues() const {
   std::vector<DeviceTrait> values;
   for (const gl::DeviceTraitRow& row : gl::deviceTraitRows())
-    values.push_back({row.name, row.get(traits), row.meaning, row.reason});
+    values.push_back({row.name, row.get(traits), row.most, row.meaning, row.reason});
   return values;
 }
 

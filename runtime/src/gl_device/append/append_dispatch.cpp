@@ -249,8 +249,8 @@ class AppendDispatch {
                stream.layout.whole);
   }
 
-  /// Whether a work group may wait for another.
-  bool mayWait() const { return task_.pushesInAnyOrder || device_.traits.orderedGroupsWait; }
+  /// Whether a work group may wait for another. Software renderers end loops that take long.
+  bool mayWait() const { return task_.pushesInAnyOrder || !device_.capabilities.isSoftware; }
 
   std::size_t bytesOfStates() const { return static_cast<std::size_t>(words_) * sizeof(std::uint32_t); }
 
