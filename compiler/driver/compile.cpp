@@ -28,7 +28,6 @@
 #include "support/internal_error.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/check_outputs.hpp"
-#include "transforms/check_sizes.hpp"
 #include "transforms/predicate.hpp"
 #include "transforms/transforms.hpp"
 #include "web/js_module.hpp"

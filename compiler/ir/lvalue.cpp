@@ -2,11 +2,13 @@
 #include "ir/lvalue.hpp"
 
 #include <algorithm>
+#include <variant>
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::ir {
+
 namespace {
 
 /// One step from a variable towards a part of it.
@@ -188,6 +190,32 @@ bool hasIndexOf(const Expr& lvalue, const std::vector<VarId>& variables) {
 bool readsAfterWriting(const Module& module, const Function& function, VarId read, VarId written,
                        bool sameObject) {
   return AliasSearch(module, function, read, written, sameObject).run();
+}
+
+unsigned StaticLValue::mask() const {
+  unsigned mask = 0;
+  for (const std::uint8_t component : components) mask |= 1U << component;
+  return mask;
+}
+
+std::optional<StaticLValue> staticLValue(const Expr& expr) {
+  StaticLValue lvalue{};
+  const Expr* base = &expr;
+  if (const auto* n = std::get_if<Swizzle>(&expr.node)) {
+    lvalue.components = n->components;
+    base = n->base.get();
+  } else {
+    for (std::uint8_t i = 0; i < expr.type.width; ++i) lvalue.components.push_back(i);
+  }
+  lvalue.type = base->type;
+  while (const auto* n = std::get_if<Member>(&base->node)) {
+    lvalue.members.insert(lvalue.members.begin(), n->field);
+    base = n->base.get();
+  }
+  const auto* root = std::get_if<VarRef>(&base->node);
+  if (root == nullptr) return std::nullopt;
+  lvalue.root = root->var;
+  return lvalue;
 }
 
 }  // namespace skc::ir

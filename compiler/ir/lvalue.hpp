@@ -4,6 +4,8 @@
 // lvalue names, and whether two of them can share a number.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "ir/ir.hpp"
@@ -31,5 +33,19 @@ bool hasIndexOf(const Expr& lvalue, const std::vector<VarId>& variables);
 /// one type do; otherwise they may overlap in any way, and any read after any write counts.
 bool readsAfterWriting(const Module& module, const Function& function, VarId read, VarId written,
                        bool sameObject);
+
+/// An lvalue that is known at compile time: members and at most one swizzle of a variable.
+struct StaticLValue {
+  VarId root;
+  std::vector<std::uint32_t> members;  ///< path from the variable
+  Type type;  ///< of the variable or member
+  std::vector<std::uint8_t> components;  ///< selected components, in order; all if there is no swizzle
+
+  /// Bit i is set for component i.
+  unsigned mask() const;
+  bool operator==(const StaticLValue&) const = default;
+};
+
+std::optional<StaticLValue> staticLValue(const Expr& expr);
 
 }  // namespace skc::ir

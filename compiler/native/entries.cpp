@@ -12,7 +12,7 @@
 #include "native/slots.hpp"
 #include "native/split_masks.hpp"
 #include "native/wide_masks.hpp"
-#include "transforms/fold_identity.hpp"
+#include "transforms/fold_pattern.hpp"
 #include "transforms/predicate.hpp"
 
 namespace skc::native {

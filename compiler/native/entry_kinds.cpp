@@ -7,7 +7,7 @@
 
 #include "ir/reach.hpp"
 #include "native/leaves.hpp"
-#include "transforms/fold_identity.hpp"
+#include "transforms/fold_pattern.hpp"
 
 namespace skc::native {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/assign_rows.hpp"
+#include "transforms/passes.hpp"
 
 #include <utility>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: part of a row at a computed index is written with its whole row; everything else stays.
-#include "transforms/assign_rows.hpp"
+#include "transforms/passes.hpp"
 
 #include <catch2/catch.hpp>
 

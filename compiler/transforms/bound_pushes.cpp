@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/bound_pushes.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <map>

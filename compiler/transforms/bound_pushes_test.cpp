@@ -2,7 +2,7 @@
 //
 // Promises: a bound is never below what one element can execute; it is known if every loop around a push has
 // a known trip count; a scatter output has one kind of operation.
-#include "transforms/bound_pushes.hpp"
+#include "transforms/passes.hpp"
 
 #include <catch2/catch.hpp>
 

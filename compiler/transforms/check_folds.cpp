@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "ir/lvalue.hpp"
 #include "ir/print.hpp"
 #include "ir/value_size.hpp"
 #include "ir/walk.hpp"
-#include "transforms/fold_identity.hpp"
-#include "transforms/static_lvalue.hpp"
+#include "transforms/fold_pattern.hpp"
 #include "transforms/try_fold.hpp"
 #include "transforms/try_function.hpp"
 

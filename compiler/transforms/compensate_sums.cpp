@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/compensate_sums.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -14,9 +14,7 @@
 #include "transforms/check_limits.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
-#include "transforms/fold_identity.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/sum_terms.hpp"
 #include "transforms/synthesized_kernel.hpp"
 
 namespace skc {

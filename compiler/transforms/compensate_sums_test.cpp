@@ -2,7 +2,7 @@
 //
 // Promises: sums of floats get a variant that is valid IR, with one more accumulator each; anything that is
 // not such a sum, also in the combining reduce, does not. (tests/run/sums_test.cpp checks values.)
-#include "transforms/compensate_sums.hpp"
+#include "transforms/passes.hpp"
 
 #include <string_view>
 #include <vector>
@@ -12,8 +12,6 @@
 #include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
-#include "transforms/derive_combine.hpp"
-#include "transforms/specialize_gathers.hpp"
 
 namespace skc {
 namespace {

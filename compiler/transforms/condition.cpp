@@ -35,6 +35,19 @@ bool areOpposite(const Expr& a, const Expr& b) {
 
 }  // namespace
 
+bool isSpecOnly(const Expr& expr, const std::vector<bool>& isSpec) {
+  bool only = true;
+  walkExprs(expr, [&](const Expr& inner) {
+    const auto* ref = std::get_if<VarRef>(&inner.node);
+    const bool isPlain =
+        std::holds_alternative<Literal>(inner.node) || std::holds_alternative<Unary>(inner.node) ||
+        std::holds_alternative<Binary>(inner.node) || std::holds_alternative<Convert>(inner.node) ||
+        std::holds_alternative<ConstantRef>(inner.node);
+    only = only && (isPlain || (ref != nullptr && ref->var < isSpec.size() && isSpec[ref->var]));
+  });
+  return only;
+}
+
 bool isTooLong(const Expr& condition) {
   int nodes = 0;
   walkExprs(condition, [&](const Expr&) { ++nodes; });

@@ -10,6 +10,9 @@
 
 namespace skc {
 
+/// True if `expr` consists of literals, constants and variables that `isSpec` marks.
+bool isSpecOnly(const ir::Expr& expr, const std::vector<bool>& isSpec);
+
 /// Whether a condition has more parts than a person would read; such a condition is dropped.
 bool isTooLong(const ir::Expr& condition);
 bool isLiteral(const ir::Expr& condition, bool value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/copy_parts.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: a function that writes a part of a part gets a variable if its call has an expression; everything else stays.
-#include "transforms/copy_parts.hpp"
+#include "transforms/passes.hpp"
 
 #include <catch2/catch.hpp>
 

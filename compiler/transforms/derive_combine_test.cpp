@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: each case of derive_combine.hpp, with its identity and its start.
-#include "transforms/derive_combine.hpp"
+// Promises: each case of derive-combine, with its identity and its start.
+#include "transforms/passes.hpp"
 
 #include <functional>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/expand_selects.hpp"
+#include "transforms/passes.hpp"
 
 #include "transforms/hoist_expressions.hpp"
 

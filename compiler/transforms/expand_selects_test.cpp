@@ -2,7 +2,7 @@
 //
 // Promises: no `?:` chooses between structs or doubles afterwards, each side is evaluated only where it was, and other
 // choices stay.
-#include "transforms/expand_selects.hpp"
+#include "transforms/passes.hpp"
 
 #include <catch2/catch.hpp>
 

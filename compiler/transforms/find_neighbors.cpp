@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/find_neighbors.hpp"
+#include "transforms/passes.hpp"
 
 #include <cstdlib>
 #include <optional>

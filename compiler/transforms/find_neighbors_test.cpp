@@ -2,7 +2,7 @@
 //
 // Promises: a gather at the domain's index plus constants becomes a neighbour, in whatever way the index is
 // computed; at any other index, or the index of another element, it stays a gather.
-#include "transforms/find_neighbors.hpp"
+#include "transforms/passes.hpp"
 
 #include <functional>
 

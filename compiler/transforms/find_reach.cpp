@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/find_reach.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <cstdint>

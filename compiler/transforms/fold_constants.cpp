@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/fold_constants.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -253,7 +253,7 @@ void foldConstants(Module& module, Diagnostics&) {
   for (Function& function : module.functions) state.block(function.body);
 }
 
-void foldWholeNumbers(const Module& module, Function& function) {
+void foldIntegers(const Module& module, Function& function) {
   Propagation(module, function).run();
   ConstantFolder(module, Floats::Leave).block(function.body);
 }

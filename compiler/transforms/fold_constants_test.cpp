@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: values are computed only if every device agrees; constants keep their names; dead branches go.
-#include "transforms/fold_constants.hpp"
+#include "transforms/passes.hpp"
 
 #include <bit>
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/forward_continues.hpp"
+#include "transforms/passes.hpp"
 
 #include <utility>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: no `continue` remains in a switch nested in another switch of its loop; all others stay.
-#include "transforms/forward_continues.hpp"
+#include "transforms/passes.hpp"
 
 #include <catch2/catch.hpp>
 

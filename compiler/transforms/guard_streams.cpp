@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/guard_streams.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -295,19 +295,6 @@ void guardStreams(Module& module, Diagnostics&) {
       if (mayBeOmitted(kernel.params[i])) kernel.params[i].neededIf = uses[i].take();
     }
   }
-}
-
-bool isSpecOnly(const Expr& expr, const std::vector<bool>& isSpec) {
-  bool only = true;
-  walkExprs(expr, [&](const Expr& inner) {
-    const auto* ref = std::get_if<VarRef>(&inner.node);
-    const bool isPlain =
-        std::holds_alternative<Literal>(inner.node) || std::holds_alternative<Unary>(inner.node) ||
-        std::holds_alternative<Binary>(inner.node) || std::holds_alternative<Convert>(inner.node) ||
-        std::holds_alternative<ConstantRef>(inner.node);
-    only = only && (isPlain || (ref != nullptr && ref->var < isSpec.size() && isSpec[ref->var]));
-  });
-  return only;
 }
 
 }  // namespace skc

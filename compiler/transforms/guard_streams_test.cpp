@@ -2,7 +2,7 @@
 //
 // Promises: a stream's condition is the one under which some use of it runs, as far as branches on spec
 // parameters decide that; what cannot be analysed counts as a use.
-#include "transforms/guard_streams.hpp"
+#include "transforms/passes.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/inline_folds.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <map>
@@ -8,9 +8,9 @@
 
 #include "ir/assigned.hpp"
 #include "ir/build.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/walk.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/static_lvalue.hpp"
 
 namespace skc {
 namespace {

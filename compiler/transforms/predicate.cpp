@@ -13,7 +13,7 @@
 #include "ir/walk.hpp"
 #include "support/internal_error.hpp"
 #include "transforms/blend_cost.hpp"
-#include "transforms/hoist_calls.hpp"
+#include "transforms/hoist_expressions.hpp"
 #include "transforms/predicate_function.hpp"
 #include "transforms/split_counters.hpp"
 

@@ -13,7 +13,7 @@
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
 #include "support/overloaded.hpp"
-#include "transforms/hoist_calls.hpp"
+#include "transforms/hoist_expressions.hpp"
 
 namespace skc {
 

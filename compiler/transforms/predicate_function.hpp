@@ -16,7 +16,7 @@ struct PredicateContext {
   const ir::Module& module;
   const analysis::Uniformity& uniformity;
   std::set<ir::FunctionId> masked;  ///< functions that take a mask
-  std::set<ir::FunctionId> isLong;  ///< see hoist_calls.hpp
+  std::set<ir::FunctionId> isLong;  ///< see hoist_expressions.hpp
 };
 
 /// The rewritten function.

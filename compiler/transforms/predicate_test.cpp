@@ -14,8 +14,8 @@
 #include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
-#include "transforms/lane_evaluator.hpp"
-#include "transforms/random_kernel.hpp"
+#include "transforms/testing/lane_evaluator.hpp"
+#include "transforms/testing/random_kernel.hpp"
 
 namespace skc {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/remove_unused.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <cstddef>

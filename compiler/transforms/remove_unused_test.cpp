@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: what no kernel needs is removed, what has an effect stays, and references follow their entries.
-#include "transforms/remove_unused.hpp"
+#include "transforms/passes.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/round_halves.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <bit>

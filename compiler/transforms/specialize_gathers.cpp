@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/specialize_gathers.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,13 +10,46 @@
 #include <vector>
 
 #include "ir/build.hpp"
+#include "ir/ir.hpp"
 #include "ir/walk.hpp"
-#include "transforms/drop_streams.hpp"
 
 namespace skc {
-namespace {
 
 using namespace ir;
+
+namespace {
+
+// After specialize-gathers, only entries have stream parameters, because GLSL functions cannot have any.
+
+/// True for a parameter to be removed.
+bool isDropped(const Variable& var) {
+  return var.role == VarRole::Gather || var.role == VarRole::AppendOutput;
+}
+
+/// Removes stream parameters from a function whose body no longer uses them; elements become values.
+void dropStreams(Function& function) {
+  constexpr VarId dropped = std::numeric_limits<VarId>::max();
+  std::vector<VarId> renumbered;
+  std::vector<Variable> kept;
+  std::uint32_t parameters = 0;
+  for (std::size_t i = 0; i < function.variables.size(); ++i) {
+    Variable& var = function.variables[i];
+    const bool isGone = isDropped(var);
+    if (var.role == VarRole::Element) var.role = VarRole::In;
+    renumbered.push_back(isGone ? dropped : static_cast<VarId>(kept.size()));
+    if (isGone) continue;
+    if (i < function.parameterCount) ++parameters;
+    kept.push_back(std::move(var));
+  }
+  function.variables = std::move(kept);
+  function.parameterCount = parameters;
+  walkExprs(function.body, [&](Expr& expr) {
+    if (auto* n = std::get_if<VarRef>(&expr.node)) n->var = renumbered[n->var];
+  });
+  walkStmts(function.body, [&](Stmt& stmt) {
+    if (auto* n = std::get_if<Declare>(&stmt.node)) n->var = renumbered[n->var];
+  });
+}
 
 constexpr StreamRef domain = {StreamRef::Space::Domain, 0};
 

@@ -2,7 +2,7 @@
 //
 // Promises: the header's before and after; one copy for each choice of streams that matters; the index of an
 // element follows its stream through calls.
-#include "transforms/specialize_gathers.hpp"
+#include "transforms/passes.hpp"
 
 #include <catch2/catch.hpp>
 

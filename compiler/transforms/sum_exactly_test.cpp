@@ -3,16 +3,13 @@
 // Promises: each scalar that is a sum of floats gets an exact variant that is valid IR, with twice as many
 // digits for sums of products; other scalars get none. Its term consists of inputs, or is a kernel with
 // outputs for all terms of an element, unless terms are added in a loop. (tests/numerics checks values.)
-#include "transforms/sum_exactly.hpp"
+#include "transforms/passes.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
-#include "transforms/compensate_sums.hpp"
-#include "transforms/derive_combine.hpp"
-#include "transforms/specialize_gathers.hpp"
 
 namespace skc {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/sum_in_doubles.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +13,6 @@
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/sum_terms.hpp"
 #include "transforms/synthesized_kernel.hpp"
 
 namespace skc {

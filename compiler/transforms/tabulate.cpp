@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/tabulate.hpp"
+#include "transforms/passes.hpp"
 
 #include <map>
 #include <utility>

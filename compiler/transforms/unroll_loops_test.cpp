@@ -3,7 +3,7 @@
 // Promises: short counted loops whose counters are offsets or indices are unrolled, with locals of their own,
 // constant indices and elements, and without jumps that are known; float results do not change; loops that
 // are too long, not counted or left by some elements stay, with a reason.
-#include "transforms/unroll_loops.hpp"
+#include "transforms/passes.hpp"
 
 #include <functional>
 
@@ -13,7 +13,6 @@
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
-#include "transforms/specialize_gathers.hpp"
 
 namespace skc {
 namespace {

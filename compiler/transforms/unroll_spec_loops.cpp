@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/unroll_spec_loops.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -12,7 +12,6 @@
 #include "ir/walk.hpp"
 #include "transforms/copy_functions.hpp"
 #include "transforms/synthesized_kernel.hpp"
-#include "transforms/unroll_loops.hpp"
 
 namespace skc {
 namespace {

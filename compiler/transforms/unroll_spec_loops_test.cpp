@@ -2,7 +2,7 @@
 //
 // Promises: loops that an integer spec parameter bounds have variants without loops for its small values, as many as the
 // limits of unrolled code allow; other loops have none, and the kernel itself keeps its loops.
-#include "transforms/unroll_spec_loops.hpp"
+#include "transforms/passes.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -10,7 +10,6 @@
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
-#include "transforms/specialize_gathers.hpp"
 
 namespace skc {
 namespace {

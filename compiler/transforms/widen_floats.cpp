@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/widen_floats.hpp"
+#include "transforms/passes.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -13,18 +13,96 @@
 
 #include "ir/build.hpp"
 #include "ir/declared_kernels.hpp"
+#include "ir/ir.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "split/cost.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/copy_functions.hpp"
 #include "transforms/synthesized_kernel.hpp"
-#include "transforms/wide_types.hpp"
 
 namespace skc {
-namespace {
 
 using namespace ir;
+
+namespace {
+
+// Types with double instead of float, and conversions between the two.
+
+class WideTypes {
+ public:
+  explicit WideTypes(ir::Module& module) : module_(module) {}
+
+  /// True if the type contains a float or a vector of floats; matrices and half do not count.
+  bool holdsFloat(ir::Type type) const;
+  /// The wide type; the type itself if it contains no float. Structs get a second one, "Hit_wide".
+  ir::Type of(ir::Type type);
+
+  /// Converts a value to its wide type, and back.
+  ir::ExprPtr widened(ir::ExprPtr value);
+  ir::ExprPtr narrowed(ir::ExprPtr value, ir::Type to);
+
+ private:
+  ir::ExprPtr converted(ir::ExprPtr value, ir::Type to);
+
+  ir::Module& module_;
+  std::map<std::uint32_t, std::uint32_t> structs_;   ///< original to synthesized struct
+};
+
+bool WideTypes::holdsFloat(Type type) const {
+  if (type.kind == Type::Kind::Array) return holdsFloat(module_.arrays[type.index].element);
+  if (type.kind != Type::Kind::Struct) return type.isFloat();
+  return std::ranges::any_of(module_.structs[type.index].fields,
+                             [&](const StructField& field) { return holdsFloat(field.type); });
+}
+
+Type WideTypes::of(Type type) {
+  if (!holdsFloat(type)) return type;
+  if (type.kind == Type::Kind::Array) {
+    const Array array = module_.arrays[type.index];
+    return arrayOf(module_, of(array.element), array.length);
+  }
+  if (type.kind != Type::Kind::Struct) return type.withScalar(Scalar::Double);
+  if (const auto known = structs_.find(type.index); known != structs_.end()) {
+    return Type::structType(known->second);
+  }
+  Struct wide = module_.structs[type.index];
+  wide.name += "_wide";
+  wide.isSynthesized = true;
+  for (StructField& field : wide.fields) field.type = of(field.type);
+  module_.structs.push_back(std::move(wide));
+  const auto index = static_cast<std::uint32_t>(module_.structs.size() - 1);
+  structs_[type.index] = index;
+  return Type::structType(index);
+}
+
+ExprPtr WideTypes::widened(ExprPtr value) {
+  const Type to = of(value->type);
+  return converted(std::move(value), to);
+}
+
+ExprPtr WideTypes::narrowed(ExprPtr value, Type to) { return converted(std::move(value), to); }
+
+/// The value is evaluated once per part, since expressions have no side effects.
+ExprPtr WideTypes::converted(ExprPtr value, Type to) {
+  if (value->type == to) return value;
+  const Loc loc = value->loc;
+  if (to.isArithmetic()) return convert(to.scalar, std::move(value), loc);
+  std::vector<ExprPtr> parts;
+  if (to.kind == Type::Kind::Array) {
+    const Array array = module_.arrays[to.index];
+    for (std::uint32_t i = 0; i < array.length; ++i) {
+      parts.push_back(
+          converted(index(module_, clone(value), literal(static_cast<std::int32_t>(i)), loc), array.element));
+    }
+  } else {
+    for (std::uint32_t i = 0; i < module_.structs[to.index].fields.size(); ++i) {
+      parts.push_back(
+          converted(member(module_, clone(value), i, loc), module_.structs[to.index].fields[i].type));
+    }
+  }
+  return construct(to, std::move(parts), loc);
+}
 
 bool isStreamOfValues(ParamRole role) {
   return role == ParamRole::Input || role == ParamRole::Output || role == ParamRole::Gather ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/widen_floats.hpp"
+#include "transforms/passes.hpp"
 
 #include <limits>
 #include <string>
@@ -10,7 +10,6 @@
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
-#include "transforms/round_halves.hpp"
 
 namespace skc {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // How much may be added to the digits of an exact sum before their carries must be propagated. Everything that adds digits
-// takes its limits from here: the compiler (transforms/sum_exactly.hpp), the passes of devices with OpenGL, native code, and
+// takes its limits from here: the compiler (transforms/sum_exactly.cpp), the passes of devices with OpenGL, native code, and
 // the sums of ranks.
 //
 // An exact sum is an integer in digits of 26 bits, lowest first, each of which is kept in a larger integer. Numbers are

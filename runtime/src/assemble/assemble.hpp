@@ -43,7 +43,7 @@ struct Profile {
   int uniformComponents;  ///< likewise; ES counts vectors of four
   Doubles doubles;  ///< the best representation that devices of the profile have
   /// Programs run in browsers, where `?:` does not choose between structs or arrays: bodies have passed expand-selects
-  /// (compiler/transforms/expand_selects.hpp). No sk::Device has such a profile.
+  /// (compiler/transforms/expand_selects.cpp). No sk::Device has such a profile.
   bool webgl = false;
   bool accurate = true;  ///< use our own functions for intrinsics that devices get wrong
   /// What keeps floats from being simplified. Precise needs GL_ARB_gpu_shader5, which most devices with OpenGL have.

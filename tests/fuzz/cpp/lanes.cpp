@@ -8,8 +8,8 @@
 
 #include "analysis/validate_predicated.hpp"
 #include "ir/clone_module.hpp"
-#include "transforms/lane_evaluator.hpp"
 #include "transforms/predicate.hpp"
+#include "transforms/testing/lane_evaluator.hpp"
 
 namespace fuzz::cpp {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/lane_evaluator.hpp"
+#include "transforms/testing/lane_evaluator.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/random_kernel.hpp"
+#include "transforms/testing/random_kernel.hpp"
 
 #include <random>
 #include <string>
