@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "analysis/index_values.hpp"
+#include "analysis/index_range.hpp"
 #include "analysis/reach_records.hpp"
 #include "ir/ir.hpp"
 #include "support/function_ref.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/find_reach.hpp"
-#include "analysis/index_values.hpp"
+#include "analysis/index_range.hpp"
 #include "ir/ir.hpp"
 
 namespace skc::analysis {

@@ -14,12 +14,11 @@
 #include <fmt/format.h>
 
 #include "assemble/assemble.hpp"
-#include "driver/glsl_listing.hpp"
+#include "driver/listings.hpp"
 #include "driver/native_library.hpp"
 #include "driver/performance_warnings.hpp"
-#include "driver/plan_listing.hpp"
 #include "frontend/frontend.hpp"
-#include "ir/clone_module.hpp"
+#include "ir/build.hpp"
 #include "ir/print.hpp"
 #include "program/cpp_names.hpp"
 #include "program/descriptors.hpp"

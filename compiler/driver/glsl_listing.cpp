@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "driver/glsl_listing.hpp"
+#include "driver/listings.hpp"
 
 #include <algorithm>
 #include <bit>

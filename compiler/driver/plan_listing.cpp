@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "driver/plan_listing.hpp"
+#include "driver/listings.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -11,9 +11,8 @@
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/reduce/scan_plan.hpp"
 #include "ir/print.hpp"
-#include "ir/print_reach.hpp"
 #include "split/cost.hpp"
-#include "split/demand.hpp"
+#include "split/slice.hpp"
 #include "support/text.hpp"
 
 namespace skc::driver {

@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "driver/compile.hpp"
-#include "ir/print_reach.hpp"
+#include "ir/print.hpp"
 
 namespace skc::driver {
 namespace {

@@ -6,7 +6,6 @@
 #include <clang/Basic/DiagnosticParse.h>
 #include <clang/Basic/DiagnosticSema.h>
 
-#include "frontend/advice_on_values.hpp"
 #include "frontend/diagnostic_parts.hpp"
 #include "support/diagnostics.hpp"
 

@@ -28,4 +28,11 @@ Advice adviceOn(const clang::Diagnostic& diagnostic, const DeclarationSyntax* sy
 /// Advice on names that kernels do not have, on headers, and on directives.
 Advice adviceOnNames(const clang::Diagnostic& diagnostic);
 
+/// Advice on values: streams where an element is meant, vectors where a number is meant, and operators that kernels do not
+/// have.
+Advice adviceOnValues(const clang::Diagnostic& diagnostic, const DeclarationSyntax* syntax);
+
+/// The first intrinsic that a piece of source text calls; "" if it calls none.
+std::string intrinsicCalledIn(llvm::StringRef text);
+
 }  // namespace skc::frontend

@@ -15,12 +15,31 @@
 
 #include "frontend/advice.hpp"
 #include "frontend/diagnostic_parts.hpp"
-#include "frontend/foreign_names.hpp"
 #include "ir/intrinsics.hpp"
 #include "support/diagnostics.hpp"
 
 namespace skc::frontend {
 namespace {
+
+// ---- names from other languages that kernels do not have (foreign_names.def) -------------------
+
+/// What to use instead of such a name.
+struct Instead {
+  std::string advice;             ///< what to do
+  std::string_view word = {};     ///< a word of ours that means the same; "" if there is none
+};
+
+/// The advice for `name` in foreign_names.def; nullopt if it is not there.
+std::optional<Instead> insteadOf(std::string_view name) {
+#define SKC_FOREIGN_NAME(known, advice) \
+  if (name == known) return Instead{advice};
+#define SKC_FOREIGN_WORD(known, ours) \
+  if (name == known) return Instead{fmt::format("use {}", ours), ours};
+#include "frontend/foreign_names.def"
+  return std::nullopt;
+}
+
+// ---- advice ------------------------------------------------------------------------------------
 
 /// An intrinsic whose name differs in one letter. Clang suggests none if two are equally close.
 std::string_view intrinsicLike(llvm::StringRef name) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frontend/advice_on_values.hpp"
+#include "frontend/advice.hpp"
 
 #include <algorithm>
 #include <array>

@@ -25,7 +25,6 @@
 #include "frontend/clang_diagnostics.hpp"
 #include "frontend/clang_limits.hpp"
 #include "frontend/clang_loc.hpp"
-#include "frontend/diagnostic_printer.hpp"
 #include "frontend/lower/lower_module.hpp"
 #include "frontend/prelude.hpp"
 #include "frontend/quotient_warnings.hpp"

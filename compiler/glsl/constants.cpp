@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "glsl/partial_operations.hpp"
+#include "glsl/known_values.hpp"
 #include "ir/walk.hpp"
 #include "support/text.hpp"
 

@@ -14,7 +14,6 @@
 #include "glsl/doubles.hpp"
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/known_values.hpp"
-#include "glsl/partial_operations.hpp"
 #include "ir/build.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/operators.hpp"

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "ir/operators.hpp"
 #include "support/overloaded.hpp"
@@ -309,6 +310,106 @@ Function clone(const Function& function) {
           .loc = function.loc,
           .table = function.table,
           .isLibrary = function.isLibrary};
+}
+
+namespace {
+
+ExprPtr ofConstruct(const Construct& n, std::uint8_t number) {
+  if (n.args.size() == 1) return componentOf(*n.args.front(), number);
+  std::uint8_t first = 0;
+  for (const ExprPtr& arg : n.args) {
+    if (number < first + arg->type.width) return componentOf(*arg, static_cast<std::uint8_t>(number - first));
+    first = static_cast<std::uint8_t>(first + arg->type.width);
+  }
+  return nullptr;
+}
+
+/// False for products of a matrix and a vector.
+bool isByComponent(const Binary& n) { return n.lhs->type.isArithmetic() && n.rhs->type.isArithmetic(); }
+
+}  // namespace
+
+ExprPtr componentOf(const Expr& expr, std::uint8_t number) {
+  if (!expr.type.isVector()) return clone(expr);
+  if (const auto* n = std::get_if<Construct>(&expr.node)) return ofConstruct(*n, number);
+  if (const auto* n = std::get_if<Swizzle>(&expr.node)) return componentOf(*n->base, n->components[number]);
+  if (const auto* n = std::get_if<Unary>(&expr.node)) {
+    return unary(n->op, componentOf(*n->operand, number), expr.loc);
+  }
+  if (const auto* n = std::get_if<Binary>(&expr.node); n != nullptr && isByComponent(*n)) {
+    return binary(n->op, componentOf(*n->lhs, number), componentOf(*n->rhs, number), expr.loc);
+  }
+  if (const auto* n = std::get_if<Convert>(&expr.node)) {
+    return convert(expr.type.scalar, componentOf(*n->operand, number), expr.loc);
+  }
+  return makeExpr(expr.type.component(), Swizzle{clone(expr), {number}}, expr.loc);
+}
+
+namespace {
+
+Constant clone(const Constant& constant) {
+  return {
+      .name = constant.name, .type = constant.type, .value = ir::clone(constant.value), .loc = constant.loc};
+}
+
+Kernel clone(const Kernel& kernel) {
+  Kernel copy{.name = kernel.name,
+              .scope = kernel.scope,
+              .signature = kernel.signature,
+              .entry = kernel.entry,
+              .params = {},
+              .reduction = kernel.reduction,
+              .isScan = kernel.isScan,
+              .isSynthesized = kernel.isSynthesized,
+              .isNativeOnly = kernel.isNativeOnly,
+              .parts = kernel.parts,
+              .isPart = kernel.isPart,
+              .plans = kernel.plans,
+              .pass = kernel.pass,
+              .variants = kernel.variants,
+              .choices = kernel.choices,
+              .unrolled = kernel.unrolled,
+              .loc = kernel.loc};
+  for (const KernelParam& param : kernel.params) copy.params.push_back(ir::clone(param));
+  return copy;
+}
+
+}  // namespace
+
+Module clone(const Module& module) {
+  Module copy{.file = module.file,
+              .sources = module.sources,
+              .structs = module.structs,
+              .arrays = module.arrays,
+              .constants = {},
+              .functions = {},
+              .tables = module.tables,
+              .kernels = {},
+              .streams = module.streams};
+  for (const Constant& constant : module.constants) copy.constants.push_back(clone(constant));
+  for (const Function& function : module.functions) copy.functions.push_back(ir::clone(function));
+  for (const Kernel& kernel : module.kernels) copy.kernels.push_back(clone(kernel));
+  return copy;
+}
+
+std::uint64_t scalarCount(const Module& module, Type type) {
+  switch (type.kind) {
+    case Type::Kind::Void: return 0;
+    case Type::Kind::Scalar:
+    case Type::Kind::Vector: return type.width;
+    case Type::Kind::Matrix: return std::uint64_t{type.width} * type.width;
+    case Type::Kind::Struct: {
+      std::uint64_t sum = 0;
+      for (const StructField& field : module.structs[type.index].fields)
+        sum += scalarCount(module, field.type);
+      return sum;
+    }
+    case Type::Kind::Array: {
+      const Array& array = module.arrays[type.index];
+      return array.length * scalarCount(module, array.element);
+    }
+  }
+  return 0;
 }
 
 }  // namespace skc::ir

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Terse constructors of IR nodes. They derive types from the operands and check nothing; `validate` checks
+// Terse constructors of IR nodes, and copies of them. Constructors derive types from the operands and check nothing; `validate` checks
 // what they build.
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -64,6 +65,12 @@ std::vector<ExprPtr> exprs(E... items) {
   return list;
 }
 
+/// The scalar expression for component `number` of `expr`, for transforms that want to inspect `int2(dx, dy + 1).y` without
+/// handling vectors. Looks through constructors, swizzles and
+/// componentwise operators, and otherwise swizzles a copy. A scalar is its own component, whatever the
+/// number.
+ExprPtr componentOf(const Expr& expr, std::uint8_t number);
+
 /// The variable at the root of an lvalue.
 VarId rootOf(const Expr& place);
 
@@ -107,8 +114,12 @@ VarId addVariable(Function& function, std::string name, Type type, VarRole role 
                   Loc loc = {});
 /// The array type with this element and length; adds it to the module if it is not there yet.
 Type arrayOf(Module& module, Type element, std::uint32_t length);
+/// The number of scalars that a value of the type holds: nested arrays multiply.
+std::uint64_t scalarCount(const Module& module, Type type);
 
 Function clone(const Function& function);
 KernelParam clone(const KernelParam& param);
+/// A deep copy, for a back end that rewrites the module for itself.
+Module clone(const Module& module);
 
 }  // namespace skc::ir

@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
 #include "ir/evaluate.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/operators.hpp"
 
 namespace skc::ir {

@@ -32,4 +32,8 @@ std::string_view spelling(ScatterOp op);
 /// "a::b::" for {"a", "b"}.
 std::string qualifier(const std::vector<std::string>& scope);
 
+/// The offsets between which a kernel reads a gather in each dimension, as "x -1 to 2, y 0, z whole". A bound that
+/// depends on Spec parameters names them; a promise is mentioned.
+std::string printReach(const Kernel& kernel, const KernelParam& param);
+
 }  // namespace skc::ir

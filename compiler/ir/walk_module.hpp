@@ -6,6 +6,8 @@
 // named there, too.
 #pragma once
 
+#include <cstddef>
+
 #include "ir/ir.hpp"
 #include "support/function_ref.hpp"
 
@@ -19,5 +21,13 @@ void walkTypes(Module& module, FunctionRef<void(Type&)> fn);
 
 /// fn(type) for the types of all members of structs and of all elements of arrays.
 void walkTypesInTypes(Module& module, FunctionRef<void(Type&)> fn);
+
+/// Calls visit(id) for each kernel that the module has now, and for none that `visit` adds. Adding kernels invalidates
+/// references to others.
+template <class Visit>
+void forEachDeclaredKernel(const Module& module, const Visit& visit) {
+  const std::size_t declared = module.kernels.size();
+  for (KernelId id = 0; id < declared; ++id) visit(id);
+}
 
 }  // namespace skc::ir

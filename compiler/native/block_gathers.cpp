@@ -5,9 +5,9 @@
 #include <map>
 #include <optional>
 
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
 #include "ir/counted_loop.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/walk.hpp"
 #include "native/leaves.hpp"
 #include "native/streams.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "native/carried_values.hpp"
+#include "native/llvm_passes.hpp"
 
 #include <llvm/ADT/STLExtras.h>
 #include <llvm/ADT/SmallVector.h>

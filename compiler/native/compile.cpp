@@ -10,7 +10,7 @@
 
 #include "analysis/stream_uses.hpp"
 #include "analysis/uniformity.hpp"
-#include "ir/clone_module.hpp"
+#include "ir/build.hpp"
 #include "native/code_table.hpp"
 #include "native/contraction.hpp"
 #include "native/debug_info.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "native/component_functions.hpp"
+#include "native/intrinsic_functions.hpp"
 
 #include <limits>
 #include <string>

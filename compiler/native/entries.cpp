@@ -9,9 +9,8 @@
 #include "native/debug_info.hpp"
 #include "native/function_code.hpp"
 #include "native/leaves.hpp"
+#include "native/llvm_passes.hpp"
 #include "native/slots.hpp"
-#include "native/split_masks.hpp"
-#include "native/wide_masks.hpp"
 #include "transforms/fold_pattern.hpp"
 #include "transforms/predicate.hpp"
 

@@ -11,7 +11,6 @@
 #include "ir/walk.hpp"
 #include "native/arithmetic.hpp"
 #include "native/function_code.hpp"
-#include "native/halves.hpp"
 #include "sk/native/table.hpp"
 #include "support/overloaded.hpp"
 

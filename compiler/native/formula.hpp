@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Arithmetic of one component in all lanes, in the notation of formulas. The rows of ir/intrinsics.def and
-// the functions that they name (component_functions.hpp, vector_functions.hpp) are written in it.
+// the functions that they name (intrinsic_functions.hpp) are written in it.
 #pragma once
 
 #include <limits>

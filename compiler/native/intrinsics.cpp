@@ -8,8 +8,7 @@
 #include <llvm/ADT/STLFunctionalExtras.h>
 #include <llvm/Support/ErrorHandling.h>
 
-#include "native/component_functions.hpp"
-#include "native/vector_functions.hpp"
+#include "native/intrinsic_functions.hpp"
 
 namespace skc::native {
 

@@ -7,8 +7,8 @@
 
 #include "analysis/stream_uses.hpp"
 #include "analysis/uniformity.hpp"
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "native/leaves.hpp"

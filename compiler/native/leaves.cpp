@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "analysis/shapes.hpp"
-#include "ir/value_size.hpp"
+#include "ir/build.hpp"
 
 namespace skc::native {
 
@@ -97,7 +97,7 @@ std::vector<Scalar> scalarsOf(const Module& module, Type type) {
 }
 
 std::uint32_t componentCount(const Module& module, Type type) {
-  return static_cast<std::uint32_t>(numbersIn(module, type));
+  return static_cast<std::uint32_t>(scalarCount(module, type));
 }
 
 std::uint32_t leavesBefore(const Module& module, Type type, std::uint32_t field) {

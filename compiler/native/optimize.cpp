@@ -6,9 +6,7 @@
 #include <llvm/Passes/PassBuilder.h>
 #include <llvm/Support/Error.h>
 
-#include "native/carried_values.hpp"
-#include "native/split_masks.hpp"
-#include "native/wide_masks.hpp"
+#include "native/llvm_passes.hpp"
 
 namespace skc::native {
 

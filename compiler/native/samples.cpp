@@ -4,7 +4,7 @@
 #include <llvm/IR/Intrinsics.h>
 
 #include "native/arithmetic.hpp"
-#include "native/component_functions.hpp"
+#include "native/intrinsic_functions.hpp"
 #include "native/streams.hpp"
 
 namespace skc::native {

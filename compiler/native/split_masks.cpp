@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "native/split_masks.hpp"
+#include "native/llvm_passes.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -13,7 +13,6 @@
 #include <llvm/IR/Instructions.h>
 #include <llvm/IR/PatternMatch.h>
 
-#include "native/mask_values.hpp"
 
 namespace skc::native {
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "native/vector_functions.hpp"
-
-#include "native/component_functions.hpp"
+#include "native/intrinsic_functions.hpp"
 
 namespace skc::native {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "native/wide_masks.hpp"
+#include "native/llvm_passes.hpp"
 
 #include <llvm/ADT/DenseMap.h>
 #include <llvm/ADT/STLExtras.h>
@@ -10,7 +10,6 @@
 #include <llvm/IR/Instructions.h>
 #include <llvm/IR/PatternMatch.h>
 
-#include "native/mask_values.hpp"
 
 namespace skc::native {
 

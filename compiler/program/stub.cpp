@@ -2,6 +2,7 @@
 #include "program/stub.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -101,6 +102,14 @@ Stub emitStub(const Module& module, const Program& program, std::string_view fil
   stub.source = stubSource(module, program, parts, symbols);
   stub.native = symbols.requests();
   return stub;
+}
+
+NativeSymbols::NativeSymbols(std::string_view header)
+    : prefix_(fmt::format("sk_{:016x}_", textHash(header))) {}
+
+std::string NativeSymbols::add(const std::string& descriptor, native::KernelRequest request) {
+  request.symbol = prefix_ + descriptor;
+  return requests_.emplace_back(std::move(request)).symbol;
 }
 
 }  // namespace skc::emit

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "program/stub_parameters.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,13 +16,38 @@
 #include "program/cpp_names.hpp"
 #include "program/descriptor_names.hpp"
 #include "program/elements.hpp"
-#include "program/options_text.hpp"
 #include "program/stub_parts.hpp"
+#include "sk/program.hpp"
 #include "support/text.hpp"
 
 namespace skc::emit {
 
 using namespace ir;
+
+namespace {
+
+// Prints the options that a kernel's attributes choose as C++.
+
+/// The initializer of a CallOptions in namespace sk::program.
+std::string optionsText(const sk::CallOptions& options) {
+  constexpr std::string_view accumulates[] = {"Default", "Tree", "Compensated", "Extended", "Exact"};
+  constexpr std::string_view precisions[] = {"Default", "Half", "Single", "Extended", "Double"};
+  constexpr std::string_view intrinsics[] = {"Default", "Fast", "Accurate"};
+  constexpr std::string_view tables[] = {"Default", "Off", "On"};
+  constexpr std::string_view contractions[] = {"Default", "Exact", "Fast"};
+  constexpr std::string_view orders[] = {"Default", "Kept", "Any"};
+  return fmt::format(
+      "{{.accumulate = Accumulate::{}, .precision = Precision::{}, .intrinsics = Intrinsics::{}, "
+      ".tables = Tables::{}, .contraction = Contraction::{}, .order = Order::{}}}",
+      accumulates[static_cast<std::size_t>(options.accumulate)],
+      precisions[static_cast<std::size_t>(options.precision)],
+      intrinsics[static_cast<std::size_t>(options.intrinsics)],
+      tables[static_cast<std::size_t>(options.tables)],
+      contractions[static_cast<std::size_t>(options.contraction)],
+      orders[static_cast<std::size_t>(options.order)]);
+}
+
+}  // namespace
 
 std::string conditionName(const std::string& unit, const sk::program::Parameter& param) {
   return ofParameter(unit, Part::Needs, param.symbol);

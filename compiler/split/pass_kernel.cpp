@@ -10,7 +10,7 @@
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "split/cost.hpp"
-#include "split/demand.hpp"
+#include "split/slice.hpp"
 
 namespace skc::split {
 namespace {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "split/split_folds.hpp"
+#include "split/passes.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "ir/declared_kernels.hpp"
 #include "ir/walk.hpp"
+#include "ir/walk_module.hpp"
 #include "split/cost.hpp"
-#include "split/demand.hpp"
 #include "split/pass_kernel.hpp"
 #include "split/plan_passes.hpp"
 #include "split/slice.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "split/split_kernels.hpp"
+#include "split/passes.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "split/demand.hpp"
 #include "split/pass_kernel.hpp"
 #include "split/plan_passes.hpp"
+#include "split/slice.hpp"
 
 namespace skc::split {
 namespace {

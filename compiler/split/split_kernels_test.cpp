@@ -2,13 +2,13 @@
 //
 // Promises: the passes of a plan keep to the limits and write every output once; expensive values needed
 // twice are saved, cheap ones recomputed; planes are bundled if texture units run out.
-#include "split/split_kernels.hpp"
+#include "split/passes.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
-#include "split/demand.hpp"
+#include "split/slice.hpp"
 
 namespace skc::split {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/diagnostics.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 
@@ -33,6 +34,15 @@ std::string format(Diag diag, std::initializer_list<std::string_view> arguments)
     result += arguments.begin()[number];
   }
   return result;
+}
+
+void DiagnosticLog::report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments) {
+  entries_.push_back({diag, loc, format(diag, arguments)});
+}
+
+bool DiagnosticLog::hasErrors() const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [](const Entry& entry) { return row(entry.diag).severity == Severity::Error; });
 }
 
 }  // namespace skc

@@ -67,4 +67,22 @@ class Diagnostics {
 /// The row's text with the arguments substituted.
 std::string format(Diag diag, std::initializer_list<std::string_view> arguments);
 
+/// A Diagnostics that records every report, for tests and for code that wants messages as values.
+class DiagnosticLog : public Diagnostics {
+ public:
+  struct Entry {
+    Diag diag;
+    Loc loc;
+    std::string text;
+  };
+
+  using Diagnostics::report;
+  void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments = {}) override;
+  bool hasErrors() const override;
+  const std::vector<Entry>& entries() const { return entries_; }
+
+ private:
+  std::vector<Entry> entries_;
+};
+
 }  // namespace skc

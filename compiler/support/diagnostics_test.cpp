@@ -8,7 +8,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "support/diagnostic_log.hpp"
 
 namespace skc {
 namespace {

@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "ir/kernel_builder.hpp"
-#include "support/diagnostic_log.hpp"
+#include "support/diagnostics.hpp"
 
 namespace skc {
 namespace {

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "ir/build.hpp"
 #include "ir/lvalue.hpp"
 #include "ir/print.hpp"
-#include "ir/value_size.hpp"
 #include "ir/walk.hpp"
 #include "transforms/fold_pattern.hpp"
 #include "transforms/try_fold.hpp"
@@ -114,7 +114,7 @@ std::size_t offsetOf(const Module& module, Type type, const std::vector<std::uin
   std::uint64_t offset = 0;
   for (const std::uint32_t member : members) {
     const Struct& entry = module.structs[type.index];
-    for (std::uint32_t i = 0; i < member; ++i) offset += numbersIn(module, entry.fields[i].type);
+    for (std::uint32_t i = 0; i < member; ++i) offset += scalarCount(module, entry.fields[i].type);
     type = entry.fields[member].type;
   }
   return static_cast<std::size_t>(offset);

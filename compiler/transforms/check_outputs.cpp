@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "ir/build.hpp"
-#include "ir/value_size.hpp"
 #include "ir/walk.hpp"
 #include "support/overloaded.hpp"
 #include "transforms/condition.hpp"
@@ -222,7 +221,7 @@ class DefiniteAssignment {
     bool isSpec = false;  ///< switch on spec parameters: each path is a different program
   };
 
-  std::size_t width(ir::Type type) const { return static_cast<std::size_t>(ir::numbersIn(module_, type)); }
+  std::size_t width(ir::Type type) const { return static_cast<std::size_t>(ir::scalarCount(module_, type)); }
 
   /// The positions of an lvalue's components within its root variable.
   std::vector<std::size_t> components(const ir::Expr& place) const {

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "ir/build.hpp"
-#include "ir/declared_kernels.hpp"
 #include "ir/ir.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"
 #include "ir/reach.hpp"
+#include "ir/walk_module.hpp"
 #include "transforms/check_folds.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/fold_copy.hpp"

@@ -11,7 +11,7 @@
 #include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
-#include "support/diagnostic_log.hpp"
+#include "support/diagnostics.hpp"
 
 namespace skc {
 namespace {

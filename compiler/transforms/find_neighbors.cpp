@@ -6,10 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
-#include "ir/component.hpp"
 #include "ir/evaluate.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 

@@ -5,10 +5,9 @@
 #include <iterator>
 #include <utility>
 
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
-#include "ir/component.hpp"
 #include "ir/evaluate.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/walk.hpp"
 
 namespace skc {

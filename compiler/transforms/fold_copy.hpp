@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ir/ir.hpp"
-#include "transforms/copy_functions.hpp"
+#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
 #include "ir/lvalue.hpp"
 #include "ir/walk.hpp"

@@ -171,7 +171,7 @@ void inlineFolds(ir::Module& module, Diagnostics& diagnostics);
 /// identity, and a sum of only -0 gives +0.
 void deriveCombine(ir::Module& module, Diagnostics& diagnostics);
 
-// split-folds follows (split/split_folds.hpp).
+// split-folds follows (split/passes.hpp).
 
 /// widen-floats: gives each kernel and reduce of floats a wide variant, which computes in double (the device's
 /// own, or pairs of floats) wherever the kernel says float. Its streams still hold floats.
@@ -338,6 +338,6 @@ void expandSelects(ir::Module& module);
 ///   after    kernel void f(float x<>, out float r<>) { r = x; }
 void removeUnused(ir::Module& module, Diagnostics& diagnostics);
 
-// split-kernels follows (split/split_kernels.hpp).
+// split-kernels follows (split/passes.hpp).
 
 }  // namespace skc

@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "analysis/uniformity.hpp"
-#include "analysis/validate_predicated.hpp"
 #include "ir/reach.hpp"
+#include "ir/validate.hpp"
 #include "ir/walk.hpp"
 #include "support/internal_error.hpp"
 #include "transforms/blend_cost.hpp"
@@ -74,7 +76,7 @@ std::set<FunctionId> maskedFunctions(const Module& module, const Kernel& kernel,
 /// A violation is a bug of skc.
 void validateOrAbort([[maybe_unused]] const Module& module) {
 #ifndef NDEBUG
-  const std::string violation = analysis::validatePredicated(module);
+  const std::string violation = validatePredicated(module);
   if (!violation.empty()) internalError("invalid IR after predicate: " + violation);
 #endif
 }
@@ -105,6 +107,23 @@ void predicate(Module& module) {
 std::optional<VarId> entryMask(const Module& module, const Kernel& kernel) {
   const auto count = static_cast<VarId>(kernel.params.size());
   return module.functions[kernel.entry].parameterCount > count ? std::optional(count) : std::nullopt;
+}
+
+std::string validatePredicated(const Module& module) {
+  std::string violation = validate(module, Stage::Predicated);
+  for (const Kernel& kernel : module.kernels) {
+    if (!violation.empty()) return violation;
+    const analysis::Uniformity uniformity(module, kernel);
+    for (const FunctionId id : functionsOf(module, kernel)) {
+      const Function& function = module.functions[id];
+      walkStmts(function.body, [&](const Stmt& stmt) {
+        if (!violation.empty() || !uniformity.diverges(id, stmt)) return;
+        violation = fmt::format("kernel {}: function @{} '{}': line {}: control flow diverges", kernel.name,
+                                id, function.name, stmt.loc.line);
+      });
+    }
+  }
+  return violation;
 }
 
 }  // namespace skc

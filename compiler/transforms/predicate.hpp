@@ -22,6 +22,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "ir/ir.hpp"
@@ -36,5 +37,9 @@ void predicate(ir::Module& module);
 
 /// The entry's mask, which is true in the lanes that have an element; nullopt if the kernel needs none.
 std::optional<ir::VarId> entryMask(const ir::Module& module, const ir::Kernel& kernel);
+
+/// Checks the postcondition of predicate: the module is valid, and no control flow depends on a varying value. Returns the
+/// first violation, or an empty string.
+std::string validatePredicated(const ir::Module& module);
 
 }  // namespace skc

@@ -9,8 +9,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "analysis/validate_predicated.hpp"
-#include "ir/clone_module.hpp"
+#include "ir/build.hpp"
 #include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
@@ -61,7 +60,7 @@ void checkLanes(const Module& module) {
   Module lanes = clone(module);
   predicate(lanes);
   INFO(print(lanes));
-  REQUIRE(analysis::validatePredicated(lanes) == "");
+  REQUIRE(validatePredicated(lanes) == "");
   const analysis::Uniformity shapes(lanes, lanes.kernels.front());
   const std::vector<std::int32_t> x = {0, 1, -1, 2, 7, 3, 5, -4};
   for (const std::int32_t u : {0, 1, 3}) {
@@ -81,7 +80,7 @@ struct Sample {
   std::string predicated(Block body) {
     const KernelId id = k.finish(std::move(body));
     predicate(module);
-    CHECK(analysis::validatePredicated(module) == "");
+    CHECK(validatePredicated(module) == "");
     const std::string text = print(module, module.functions[module.kernels[id].entry]);
     return text.substr(text.find('{'));
   }

@@ -9,13 +9,12 @@
 #include <vector>
 
 #include "ir/build.hpp"
-#include "ir/declared_kernels.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/quantize.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
+#include "ir/walk_module.hpp"
 #include "support/overloaded.hpp"
-#include "transforms/copy_functions.hpp"
 #include "transforms/synthesized_kernel.hpp"
 
 namespace skc {

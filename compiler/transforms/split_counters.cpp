@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/walk.hpp"
 
 namespace skc {

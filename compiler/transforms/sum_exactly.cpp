@@ -14,9 +14,9 @@
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
-#include "ir/declared_kernels.hpp"
 #include "ir/ir.hpp"
 #include "ir/walk.hpp"
+#include "ir/walk_module.hpp"
 #include "sk/exact_digits.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/float_sums.hpp"

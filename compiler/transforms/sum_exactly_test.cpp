@@ -9,7 +9,7 @@
 
 #include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
-#include "support/diagnostic_log.hpp"
+#include "support/diagnostics.hpp"
 
 namespace skc {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "ir/build.hpp"
-#include "ir/declared_kernels.hpp"
 #include "ir/walk.hpp"
+#include "ir/walk_module.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"

@@ -4,6 +4,7 @@
 // name the kernel that they serve.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -35,5 +36,17 @@ struct SynthesizedKernel {
   /// Adds it to the module as a reduce that combines its own results.
   ir::KernelId finishCombination(ir::Module& module);
 };
+
+// Copies functions for further variants of a kernel: after specialize-gathers each function belongs to one
+// kernel, so each variant needs its own.
+
+/// Maps the functions copied for one variant to their copies.
+using FunctionCopies = std::map<ir::FunctionId, ir::FunctionId>;
+
+/// Copies a function after the functions that it calls.
+ir::FunctionId copyFunction(ir::Module& module, ir::FunctionId id, FunctionCopies& copies);
+
+/// Removes the tables of copied functions, for variants whose precision differs from the tables'.
+void dropTables(ir::Module& module, const FunctionCopies& copies);
 
 }  // namespace skc

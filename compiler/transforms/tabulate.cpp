@@ -6,7 +6,6 @@
 
 #include "ir/build.hpp"
 #include "ir/reach.hpp"
-#include "transforms/copy_functions.hpp"
 #include "transforms/synthesized_kernel.hpp"
 
 namespace skc {

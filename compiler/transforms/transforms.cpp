@@ -8,8 +8,7 @@
 #include <string_view>
 
 #include "ir/validate.hpp"
-#include "split/split_folds.hpp"
-#include "split/split_kernels.hpp"
+#include "split/passes.hpp"
 #include "support/internal_error.hpp"
 #include "transforms/passes.hpp"
 

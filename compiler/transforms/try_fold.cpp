@@ -14,8 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "ir/build.hpp"
 #include "ir/type.hpp"
-#include "ir/value_size.hpp"
 #include "support/function_ref.hpp"
 #include "transforms/try_function.hpp"
 
@@ -141,7 +141,7 @@ void addScalars(const Module& module, Type type, std::vector<Scalar>& all) {
     const Array& array = module.arrays[type.index];
     for (std::uint32_t i = 0; i < array.length; ++i) addScalars(module, array.element, all);
   } else {
-    all.insert(all.end(), static_cast<std::size_t>(numbersIn(module, type)), type.scalar);
+    all.insert(all.end(), static_cast<std::size_t>(scalarCount(module, type)), type.scalar);
   }
 }
 
@@ -153,7 +153,7 @@ class FoldSample {
     streams_.extent = {16, 1, 1, 1};
     int number = 5;
     for (const KernelParam& param : kernel.params) {
-      const bool isWanted = numbersIn(module, param.type) <= mostNumbers;
+      const bool isWanted = scalarCount(module, param.type) <= mostNumbers;
       std::vector<Scalar>& scalars = scalars_.emplace_back();
       if (isWanted) addScalars(module, param.type, scalars);
       isKnown_ = isKnown_ && isWanted;
@@ -281,10 +281,10 @@ class FoldSample {
         case ParamRole::Uniform:
         case ParamRole::Spec: value = uniforms_[own(i)]; break;
         case ParamRole::Output:
-          value.assign(static_cast<std::size_t>(numbersIn(module_, param.type)), 0.0);
+          value.assign(static_cast<std::size_t>(scalarCount(module_, param.type)), 0.0);
           break;
         case ParamRole::Iterator:
-          value.assign(static_cast<std::size_t>(numbersIn(module_, param.type)), 1 + 0.5 * position);
+          value.assign(static_cast<std::size_t>(scalarCount(module_, param.type)), 1 + 0.5 * position);
           break;
         case ParamRole::Gather:
         case ParamRole::VariableOutput:

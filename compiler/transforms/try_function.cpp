@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ir/value_size.hpp"
+#include "ir/build.hpp"
 #include "support/overloaded.hpp"
 
 namespace skc {
@@ -205,7 +205,7 @@ class Interpreter {
   }
 
   std::size_t size(Type type) const {
-    const std::uint64_t count = numbersIn(module_, type);
+    const std::uint64_t count = scalarCount(module_, type);
     if (count > 256) throw CannotEvaluate{};
     return static_cast<std::size_t>(count);
   }

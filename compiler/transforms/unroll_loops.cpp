@@ -11,11 +11,11 @@
 
 #include <fmt/format.h>
 
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/ir.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "transforms/condition.hpp"

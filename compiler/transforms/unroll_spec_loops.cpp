@@ -5,12 +5,11 @@
 #include <optional>
 #include <utility>
 
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
-#include "ir/declared_kernels.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
-#include "transforms/copy_functions.hpp"
+#include "ir/walk_module.hpp"
 #include "transforms/synthesized_kernel.hpp"
 
 namespace skc {

@@ -12,13 +12,12 @@
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
-#include "ir/declared_kernels.hpp"
 #include "ir/ir.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
+#include "ir/walk_module.hpp"
 #include "split/cost.hpp"
 #include "transforms/check_limits.hpp"
-#include "transforms/copy_functions.hpp"
 #include "transforms/synthesized_kernel.hpp"
 
 namespace skc {

@@ -10,8 +10,8 @@
 #include <clang/AST/ExprCXX.h>
 
 #include "frontend/lower/function_lowering.hpp"
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
+#include "ir/lvalue.hpp"
 
 namespace skc::frontend {
 

@@ -11,8 +11,8 @@
 #include "frontend/lower/function_lowering.hpp"
 #include "frontend/lower/locations.hpp"
 #include "frontend/prelude.hpp"
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
+#include "ir/lvalue.hpp"
 
 namespace skc::frontend {
 

@@ -9,7 +9,6 @@
 
 #include "frontend/lower/function_lowering.hpp"
 #include "frontend/lower/locations.hpp"
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
 #include "ir/lvalue.hpp"
 #include "ir/operators.hpp"

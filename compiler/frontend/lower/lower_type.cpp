@@ -13,8 +13,8 @@
 
 #include "frontend/lower/module_lowering.hpp"
 #include "frontend/prelude.hpp"
+#include "ir/build.hpp"
 #include "ir/print.hpp"
-#include "ir/value_size.hpp"
 
 namespace skc::frontend {
 
@@ -229,7 +229,7 @@ ir::Type ModuleLowering::arrayType(ir::Type element, std::uint64_t length, Sourc
 
 void ModuleLowering::checkSize(ir::Type type, SourceLocation use) {
   constexpr std::uint64_t largest = 16384;
-  const std::uint64_t size = ir::numbersIn(module_, type);
+  const std::uint64_t size = ir::scalarCount(module_, type);
   if (size > largest) {
     fail(Diag::ValueTooLarge, use, {ir::print(module_, type), std::to_string(size), std::to_string(largest)});
   }

@@ -12,8 +12,8 @@
 #include "frontend/clang_loc.hpp"
 #include "frontend/lower/function_lowering.hpp"
 #include "frontend/prelude.hpp"
-#include "ir/assigned.hpp"
 #include "ir/build.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/quantize.hpp"
 
 namespace skc::frontend {

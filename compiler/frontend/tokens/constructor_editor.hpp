@@ -13,7 +13,6 @@
 
 #include <clang/Lex/Token.h>
 
-#include "frontend/tokens/token_builder.hpp"
 #include "frontend/tokens/token_cursor.hpp"
 
 namespace skc::frontend {

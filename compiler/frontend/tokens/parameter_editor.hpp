@@ -12,7 +12,7 @@
 
 #include "frontend/tokens/comma_indices.hpp"
 #include "frontend/tokens/syntax.hpp"
-#include "frontend/tokens/token_builder.hpp"
+#include "frontend/tokens/token_cursor.hpp"
 #include "support/diagnostics.hpp"
 
 namespace clang {

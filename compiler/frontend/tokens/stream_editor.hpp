@@ -14,7 +14,6 @@
 #include <clang/Lex/Token.h>
 
 #include "frontend/tokens/syntax.hpp"
-#include "frontend/tokens/token_builder.hpp"
 #include "frontend/tokens/token_cursor.hpp"
 #include "support/diagnostics.hpp"
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "frontend/tokens/syntax.hpp"
-#include "frontend/tokens/token_builder.hpp"
 #include "frontend/tokens/token_cursor.hpp"
 #include "support/diagnostics.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A position in a token sequence that ends with eof, and small queries about tokens.
+// A position in a token sequence that ends with eof, small queries about tokens, and a builder of tokens that the user did
+// not write.
 #pragma once
 
 #include <string>
@@ -11,6 +12,10 @@
 #include <llvm/ADT/SmallPtrSet.h>
 
 #include "support/function_ref.hpp"
+
+namespace clang {
+class Preprocessor;
+}
 
 namespace skc::frontend {
 
@@ -70,6 +75,23 @@ class TokenCursor {
 
   const std::vector<clang::Token>& tokens_;
   std::size_t position_ = 0;
+};
+
+/// Builds tokens at source locations of tokens that the user wrote.
+class TokenBuilder {
+ public:
+  explicit TokenBuilder(clang::Preprocessor& preprocessor) : preprocessor_(preprocessor) {}
+
+  clang::Token make(clang::tok::TokenKind kind, clang::SourceLocation place) const;
+  /// An identifier or keyword with this spelling.
+  clang::Token word(llvm::StringRef name, clang::SourceLocation place) const;
+  /// Appends `static const T NAME __attribute__((unused)) = value;` to `out`.
+  void constant(const std::string& name, const std::vector<clang::Token>& type,
+                const std::vector<clang::Token>& value, clang::SourceLocation place,
+                std::vector<clang::Token>& out) const;
+
+ private:
+  clang::Preprocessor& preprocessor_;
 };
 
 }  // namespace skc::frontend

@@ -9,7 +9,7 @@
 #include "ir/build.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
-#include "transforms/copy_functions.hpp"
+#include "transforms/synthesized_kernel.hpp"
 
 namespace skc::native {
 namespace {

@@ -2,7 +2,7 @@
 //
 // Promises: an imported function brings everything that it names, once each and numbered as in its new
 // module, which stays valid.
-#include "native/library/import_function.hpp"
+#include "native/library/link_library.hpp"
 
 #include <catch2/catch.hpp>
 

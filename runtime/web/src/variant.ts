@@ -70,7 +70,7 @@ export function kernelKey(
   return kind + (domain.packed ? ' packed' : '') + accessKey(parameters, elements, lies, domain, specs, filtersFloats);
 }
 
-/** The key of the program of a list, whose entries find their elements by number (compiler/web/append_programs.cpp). */
+/** The key of the program of a list, whose entries find their elements by number (compiler/web/kernel_programs.cpp). */
 export function listKey(
   parameters: readonly Parameter[], elements: readonly Element[], lies: readonly Lie[], domain: Layout, specs: readonly number[],
   filtersFloats: boolean,

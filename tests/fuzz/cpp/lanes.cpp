@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "analysis/validate_predicated.hpp"
-#include "ir/clone_module.hpp"
+#include "ir/build.hpp"
 #include "transforms/predicate.hpp"
 #include "transforms/testing/lane_evaluator.hpp"
 
@@ -51,7 +50,7 @@ std::string differenceOfLanes(const ir::Module& module, const std::vector<Output
   constexpr std::size_t lanes = 8;
   ir::Module predicated = skc::ir::clone(module);
   skc::predicate(predicated);
-  std::string wrong = skc::analysis::validatePredicated(predicated);
+  std::string wrong = skc::validatePredicated(predicated);
   if (!wrong.empty()) return "lanes: " + wrong;
   for (const Outputs& outputs : wanted) {
     const auto named = [&](const ir::Kernel& kernel) {

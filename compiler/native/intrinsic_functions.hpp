@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// Intrinsics of one component in all lanes that are too long for a row of ir/intrinsics.def.
+// The functions that rows of ir/intrinsics.def name, because what they compute is too long for a row.
 #pragma once
+
+#include <cstddef>
 
 #include "native/formula.hpp"
 
 namespace skc::native {
+
+// ---- of one component in all lanes (component_functions.cpp) ----------------------------------
 
 /// IEEE 754's minNum and maxNum: if one argument is a NaN, the result is the other; -0 is below +0.
 Part minimum(const Formula& f, ir::Scalar scalar, const Part& x, const Part& y);
@@ -41,5 +45,27 @@ Part floorOf(Lanes& lanes, const Part& x);
 /// Converts a whole real number to an index. As on every device, NaN becomes 0, and the largest index is the
 /// largest int that is a float.
 Part wholeIndex(Lanes& lanes, const Part& x);
+
+// ---- of whole vectors and matrices in all lanes (vector_functions.cpp) ------------------------
+// A value is the list of its components; matrices are row-major.
+
+Parts minus(const Formula& f, const Parts& a, const Parts& c);
+Part dot(const Formula& f, const Parts& a, const Parts& c);
+/// Scales `a` first, so that no square overflows or underflows.
+Part length(const Formula& f, const Parts& a);
+/// Returns a zero vector unchanged.
+Parts normalize(const Formula& f, const Parts& a);
+Parts cross(const Formula& f, const Parts& a, const Parts& c);
+Parts faceforward(const Formula& f, const Parts& n, const Parts& i, const Parts& reference);
+Parts reflect(const Formula& f, const Parts& i, const Parts& n);
+Parts refract(const Formula& f, const Parts& i, const Parts& n, const Part& eta);
+
+Parts transpose(const Parts& m, std::size_t n);
+Part determinant(const Formula& f, const Parts& m, std::size_t n);
+/// By cofactors, as GLSL's implementations do. A singular matrix gives infinities and NaN.
+Parts inverse(const Formula& f, const Parts& m, std::size_t n);
+
+Part anyOf(const Formula& f, const Parts& parts);
+Part allOf(const Formula& f, const Parts& parts);
 
 }  // namespace skc::native
