@@ -412,4 +412,11 @@ std::uint64_t scalarCount(const Module& module, Type type) {
   return 0;
 }
 
+std::size_t scalarOffset(const Module& module, Type structType, std::uint32_t field) {
+  std::uint64_t sum = 0;
+  for (std::uint32_t i = 0; i < field; ++i)
+    sum += scalarCount(module, module.structs[structType.index].fields[i].type);
+  return static_cast<std::size_t>(sum);
+}
+
 }  // namespace skc::ir

@@ -4,6 +4,7 @@
 // what they build.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <string>
@@ -116,6 +117,8 @@ VarId addVariable(Function& function, std::string name, Type type, VarRole role 
 Type arrayOf(Module& module, Type element, std::uint32_t length);
 /// The number of scalars that a value of the type holds: nested arrays multiply.
 std::uint64_t scalarCount(const Module& module, Type type);
+/// The number of scalars before a field of a struct.
+std::size_t scalarOffset(const Module& module, Type structType, std::uint32_t field);
 
 Function clone(const Function& function);
 KernelParam clone(const KernelParam& param);

@@ -6,8 +6,9 @@
 #include <limits>
 
 #include "ir/build.hpp"
+#include "ir/operators.hpp"
 #include "ir/quantize.hpp"
-#include "support/overloaded.hpp"
+#include "ir/scalar_operations.hpp"
 
 namespace skc::ir {
 namespace {
@@ -17,19 +18,10 @@ using Bits = std::optional<std::uint32_t>;
 /// What the floats of a kernel's variant are.
 enum class Floats : std::uint8_t { Half, Single, Double };
 
-/// A value: `real` if its arithmetic type is float, else `bits`.
-struct Value {
-  std::uint32_t bits = 0;
-  double real = 0;
-};
-using Known = std::optional<Value>;
-
-Known ofBits(Bits bits) { return bits ? Known(Value{*bits}) : std::nullopt; }
+/// As scalar_operations.hpp represents scalars.
+using Value = std::optional<double>;
 
 std::uint32_t floatBitsOf(double value) { return std::bit_cast<std::uint32_t>(static_cast<float>(value)); }
-
-std::int32_t asInt(std::uint32_t bits) { return static_cast<std::int32_t>(bits); }
-Bits boolBits(bool value) { return value ? 1U : 0U; }
 
 double quantized(Scalar narrow, double value) {
   const float rounded = narrow == Scalar::Half ? roundedToOdd(value) : static_cast<float>(value);
@@ -49,110 +41,42 @@ bool isOrdinary(Floats floats, double value) {
 }
 
 /// The result of an operation.
-Known ordinary(Floats floats, double value) {
+Value ordinary(Floats floats, double value) {
   const double result = rounded(floats, value);
-  return isOrdinary(floats, result) ? Known(Value{0, result}) : std::nullopt;
-}
-
-template <class T>
-Bits compare(BinaryOp op, T a, T b) {
-  switch (op) {
-    case BinaryOp::Less: return boolBits(a < b);
-    case BinaryOp::LessEqual: return boolBits(a <= b);
-    case BinaryOp::Greater: return boolBits(a > b);
-    case BinaryOp::GreaterEqual: return boolBits(a >= b);
-    case BinaryOp::Equal: return boolBits(a == b);
-    case BinaryOp::NotEqual: return boolBits(a != b);
-    case BinaryOp::Add:
-    case BinaryOp::Sub:
-    case BinaryOp::Mul:
-    case BinaryOp::Div:
-    case BinaryOp::Rem:
-    case BinaryOp::BitAnd:
-    case BinaryOp::BitOr:
-    case BinaryOp::BitXor:
-    case BinaryOp::ShiftLeft:
-    case BinaryOp::ShiftRight:
-    case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: break;
-  }
-  return std::nullopt;
+  return isOrdinary(floats, result) ? Value(result) : std::nullopt;
 }
 
 /// Doubles hold sums, products and quotients of floats precisely enough to be rounded once more.
-Known binaryFloat(Floats floats, BinaryOp op, double a, double b) {
-  if (!isOrdinary(floats, a) || !isOrdinary(floats, b)) return std::nullopt;
-  if (op == BinaryOp::Add) return ordinary(floats, a + b);
-  if (op == BinaryOp::Sub) return ordinary(floats, a - b);
-  if (op == BinaryOp::Mul) return ordinary(floats, a * b);
-  if (op == BinaryOp::Div) return b == 0 ? std::nullopt : ordinary(floats, a / b);
-  return ofBits(compare(op, a, b));
+Value binaryFloat(Floats floats, BinaryOp op, double a, double b) {
+  if (!isOrdinary(floats, a) || !isOrdinary(floats, b) || (op == BinaryOp::Div && b == 0))
+    return std::nullopt;
+  const Value exact = computed(op, Scalar::Float, a, b);
+  return exact && !isComparison(op) ? ordinary(floats, *exact) : exact;
 }
 
-/// Division and right shift, which differ between int and uint.
-Bits divideInt(BinaryOp op, std::int32_t a, std::int32_t b) {
-  if (b == 0 || (a == std::numeric_limits<std::int32_t>::min() && b == -1)) return std::nullopt;
-  return static_cast<std::uint32_t>(op == BinaryOp::Div ? a / b : a % b);
-}
-
-Bits divideUint(BinaryOp op, std::uint32_t a, std::uint32_t b) {
-  if (b == 0) return std::nullopt;
-  return op == BinaryOp::Div ? a / b : a % b;
-}
-
-Bits binaryInteger(BinaryOp op, bool isSigned, std::uint32_t a, std::uint32_t b) {
-  switch (op) {
-    case BinaryOp::Add: return a + b;
-    case BinaryOp::Sub: return a - b;
-    case BinaryOp::Mul: return a * b;
-    case BinaryOp::Div:
-    case BinaryOp::Rem: return isSigned ? divideInt(op, asInt(a), asInt(b)) : divideUint(op, a, b);
-    case BinaryOp::BitAnd: return a & b;
-    case BinaryOp::BitOr: return a | b;
-    case BinaryOp::BitXor: return a ^ b;
-    case BinaryOp::ShiftLeft: return b < 32 ? Bits(a << b) : std::nullopt;
-    case BinaryOp::ShiftRight:
-      if (b >= 32) return std::nullopt;
-      return isSigned ? static_cast<std::uint32_t>(asInt(a) >> b) : a >> b;
-    case BinaryOp::Less:
-    case BinaryOp::LessEqual:
-    case BinaryOp::Greater:
-    case BinaryOp::GreaterEqual:
-    case BinaryOp::Equal:
-    case BinaryOp::NotEqual: return isSigned ? compare(op, asInt(a), asInt(b)) : compare(op, a, b);
-    case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: break;
-  }
-  return std::nullopt;
-}
-
-Known toInteger(Scalar to, double value) {
-  const double whole = std::trunc(value);
-  if (to == Scalar::Int && whole >= -0x1p31 && whole < 0x1p31)
-    return Value{static_cast<std::uint32_t>(static_cast<std::int32_t>(whole))};
-  if (to == Scalar::Uint && whole >= 0 && whole < 0x1p32) return Value{static_cast<std::uint32_t>(whole)};
-  return std::nullopt;
+/// False where devices may differ, although the language defines the result.
+bool isPortable(BinaryOp op, double a, double b) {
+  const bool divides = op == BinaryOp::Div || op == BinaryOp::Rem;
+  const bool shifts = op == BinaryOp::ShiftLeft || op == BinaryOp::ShiftRight;
+  if (divides) return b != 0 && !(a == std::numeric_limits<std::int32_t>::min() && b == -1);
+  return !shifts || (b >= 0 && b < 32);
 }
 
 bool isOfFloats(Scalar scalar) { return arithmeticScalar(scalar) == Scalar::Float; }
 
-Known converted(Floats floats, Scalar from, Scalar to, Value value) {
-  if (isNarrow(from)) {
-    return from == to ? Known(value) : converted(floats, arithmeticScalar(from), to, value);
-  }
-  if (isNarrow(to)) {
-    const Known whole =
-        from == arithmeticScalar(to) ? Known(value) : converted(floats, from, arithmeticScalar(to), value);
-    if (!whole) return std::nullopt;
-    return isOfFloats(to) ? Value{0, quantized(to, whole->real)} : Value{quantize(to, whole->bits)};
-  }
+Value convertedTo(Scalar to, Floats floats, Scalar from, double value) {
   if (from == to) return value;
-  if (to == Scalar::Bool)
-    return Value{static_cast<std::uint32_t>(from == Scalar::Float ? value.real != 0 : value.bits != 0)};
-  if (from == Scalar::Float) return isOrdinary(floats, value.real) ? toInteger(to, value.real) : std::nullopt;
-  if (to != Scalar::Float) return value;
-  return ordinary(
-      floats, from == Scalar::Int ? static_cast<double>(asInt(value.bits)) : static_cast<double>(value.bits));
+  if (isNarrow(from)) return convertedTo(to, floats, arithmeticScalar(from), value);
+  if (isNarrow(to)) {
+    const Value whole = convertedTo(arithmeticScalar(to), floats, from, value);
+    if (!whole) return std::nullopt;
+    return isOfFloats(to) ? quantized(to, *whole) : wrapped(to, static_cast<std::int64_t>(*whole));
+  }
+  if (to == Scalar::Float) return ordinary(floats, value);
+  const double result = converted(from, to, value);
+  if (from != Scalar::Float || to == Scalar::Bool) return result;
+  const bool isInRange = result == std::trunc(value);
+  return isOrdinary(floats, value) && isInRange ? Value(result) : std::nullopt;
 }
 
 class Evaluator {
@@ -162,18 +86,18 @@ class Evaluator {
 
   /// The bits of the value; nullopt, too, for a value that no float is.
   Bits bits(const Expr& expr) const {
-    const Known known = value(expr);
+    const Value known = value(expr);
     if (!known) return std::nullopt;
-    if (!isOfFloats(expr.type.scalar)) return known->bits;
-    const std::uint32_t bits = floatBitsOf(known->real);
-    return double{std::bit_cast<float>(bits)} == known->real ? Bits(bits) : std::nullopt;
+    if (!isOfFloats(expr.type.scalar)) return static_cast<std::uint32_t>(static_cast<std::int64_t>(*known));
+    const std::uint32_t bits = floatBitsOf(*known);
+    return double{std::bit_cast<float>(bits)} == *known ? Bits(bits) : std::nullopt;
   }
 
   /// True if the value may depend on what floats are.
   bool hasSeenFloats() const { return hasSeenFloats_; }
 
  private:
-  Known value(const Expr& expr) const {
+  Value value(const Expr& expr) const {
     if (!expr.type.isScalar() || expr.type.scalar == Scalar::Double) return std::nullopt;
     if (const auto* n = std::get_if<Literal>(&expr.node)) return literal(expr.type.scalar, *n);
     if (const auto* n = std::get_if<ConstantRef>(&expr.node)) {
@@ -183,54 +107,49 @@ class Evaluator {
     if (const auto* n = std::get_if<Unary>(&expr.node)) return unary(*n);
     if (const auto* n = std::get_if<Binary>(&expr.node)) return binary(*n);
     if (const auto* n = std::get_if<Convert>(&expr.node)) {
-      const Known operand = value(*n->operand);
+      const Value operand = value(*n->operand);
       hasSeenFloats_ = hasSeenFloats_ || isOfFloats(expr.type.scalar);
-      return operand ? converted(floats_, n->operand->type.scalar, expr.type.scalar, *operand) : std::nullopt;
+      return operand ? convertedTo(expr.type.scalar, floats_, n->operand->type.scalar, *operand)
+                     : std::nullopt;
     }
     if (const auto* n = std::get_if<Select>(&expr.node)) {
-      const Known cond = value(*n->cond);
-      return cond ? value(cond->bits != 0 ? *n->yes : *n->no) : std::nullopt;
+      const Value cond = value(*n->cond);
+      return cond ? value(*cond != 0 ? *n->yes : *n->no) : std::nullopt;
     }
     return std::nullopt;
   }
 
-  Known literal(Scalar scalar, const Literal& n) const {
-    if (!isOfFloats(scalar)) return Value{n.bits};
+  Value literal(Scalar scalar, const Literal& n) const {
+    if (!isOfFloats(scalar)) return valueOf(scalar, n);
     hasSeenFloats_ = true;
-    if (isNarrow(scalar) || floats_ == Floats::Single) return Value{0, std::bit_cast<float>(n.bits)};
-    return Value{0, rounded(floats_, wideValue(n))};
+    return isNarrow(scalar) || floats_ == Floats::Single ? valueOf(scalar, n)
+                                                         : rounded(floats_, wideValue(n));
   }
 
-  Known unary(const Unary& n) const {
-    const Known operand = value(*n.operand);
+  Value unary(const Unary& n) const {
+    const Value operand = value(*n.operand);
     if (!operand) return std::nullopt;
-    switch (n.op) {
-      case UnaryOp::Negate:
-        return n.operand->type.isFloat() ? ordinary(floats_, -operand->real)
-                                         : Known(Value{0U - operand->bits});
-      case UnaryOp::BitNot: return Value{~operand->bits};
-      case UnaryOp::LogicalNot: break;
-    }
-    return Value{operand->bits == 0 ? 1U : 0U};
+    const double result = computed(n.op, n.operand->type.scalar, *operand);
+    return n.operand->type.isFloat() ? ordinary(floats_, result) : Value(result);
   }
 
-  Known binary(const Binary& n) const {
+  Value binary(const Binary& n) const {
     if (!n.lhs->type.isScalar()) return std::nullopt;
-    const Known a = value(*n.lhs);
+    const Value a = value(*n.lhs);
     if (n.op == BinaryOp::LogicalAnd || n.op == BinaryOp::LogicalOr) return logical(n, a);
-    const Known b = a ? value(*n.rhs) : std::nullopt;
+    const Value b = a ? value(*n.rhs) : std::nullopt;
     if (!a || !b) return std::nullopt;
-    if (n.lhs->type.isFloat()) return binaryFloat(floats_, n.op, a->real, b->real);
-    if (n.lhs->type.isBool()) return ofBits(compare(n.op, a->bits, b->bits));
-    return ofBits(binaryInteger(n.op, n.lhs->type.scalar == Scalar::Int, a->bits, b->bits));
+    if (n.lhs->type.isFloat()) return binaryFloat(floats_, n.op, *a, *b);
+    if (n.lhs->type.isBool() && !isComparison(n.op)) return std::nullopt;
+    return isPortable(n.op, *a, *b) ? computed(n.op, n.lhs->type.scalar, *a, *b) : std::nullopt;
   }
 
-  Known logical(const Binary& n, const Known& lhs) const {
-    const std::uint32_t deciding = n.op == BinaryOp::LogicalOr ? 1 : 0;
-    if (lhs && lhs->bits == deciding) return lhs;
-    const Known rhs = value(*n.rhs);
-    if (rhs && rhs->bits == deciding) return rhs;   // an operand without effects may be dropped
-    return lhs && rhs ? Known(Value{1 - deciding}) : std::nullopt;
+  Value logical(const Binary& n, const Value& lhs) const {
+    const double deciding = n.op == BinaryOp::LogicalOr ? 1 : 0;
+    if (lhs == deciding) return lhs;
+    const Value rhs = value(*n.rhs);
+    if (rhs == deciding) return rhs;   // an operand without effects may be dropped
+    return lhs && rhs ? Value(1 - deciding) : std::nullopt;
   }
 
   const Module& module_;

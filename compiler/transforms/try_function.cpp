@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ir/build.hpp"
+#include "ir/scalar_operations.hpp"
 #include "support/overloaded.hpp"
 
 namespace skc {
@@ -20,23 +21,12 @@ using namespace ir;
 /// Thrown if a function cannot be tried; it does not leave this file.
 struct CannotEvaluate {};
 
-double wrapped(Scalar scalar, std::int64_t value) {
-  switch (scalar) {
-    case Scalar::Char: return static_cast<std::int8_t>(value);
-    case Scalar::Uchar: return static_cast<std::uint8_t>(value);
-    case Scalar::Short: return static_cast<std::int16_t>(value);
-    case Scalar::Ushort: return static_cast<std::uint16_t>(value);
-    case Scalar::Uint: return static_cast<std::uint32_t>(value);
-    default: return static_cast<std::int32_t>(value);
-  }
-}
-
-double converted(Scalar from, Scalar to, double value) {
-  if (to == Scalar::Bool) return value != 0 ? 1 : 0;
-  const Scalar arithmetic = arithmeticScalar(to);
-  if (isReal(arithmetic)) return value;
-  if (isReal(arithmeticScalar(from)) && !(std::fabs(value) < 2147483648.0)) throw CannotEvaluate{};
-  return wrapped(to, static_cast<std::int64_t>(value));
+/// A number that is large for an int is no fair try, although the language defines what it becomes.
+double toScalar(Scalar from, Scalar to, double value) {
+  const bool isTruncated =
+      isReal(arithmeticScalar(from)) && !isReal(arithmeticScalar(to)) && to != Scalar::Bool;
+  if (isTruncated && !(std::fabs(value) < 2147483648.0)) throw CannotEvaluate{};
+  return converted(from, to, value);
 }
 
 /// The bits of a float, if the number is one.
@@ -50,62 +40,8 @@ double floatOfBits(double bits) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(static_cast<std::int64_t>(bits)));
 }
 
-double comparison(BinaryOp op, double a, double b) {
-  switch (op) {
-    case BinaryOp::Less: return a < b;
-    case BinaryOp::LessEqual: return a <= b;
-    case BinaryOp::Greater: return a > b;
-    case BinaryOp::GreaterEqual: return a >= b;
-    case BinaryOp::Equal: return a == b;
-    case BinaryOp::NotEqual: return a != b;
-    case BinaryOp::LogicalAnd: return a != 0 && b != 0;
-    case BinaryOp::LogicalOr: return a != 0 || b != 0;
-    case BinaryOp::Add:
-    case BinaryOp::Sub:
-    case BinaryOp::Mul:
-    case BinaryOp::Div:
-    case BinaryOp::Rem:
-    case BinaryOp::BitAnd:
-    case BinaryOp::BitOr:
-    case BinaryOp::BitXor:
-    case BinaryOp::ShiftLeft:
-    case BinaryOp::ShiftRight: break;
-  }
-  throw CannotEvaluate{};
-}
-
-double ofIntegers(BinaryOp op, Scalar scalar, double x, double y) {
-  const auto a = static_cast<std::int64_t>(x), b = static_cast<std::int64_t>(y);
-  const auto bits = [&](std::int64_t value) { return wrapped(scalar, value); };
-  switch (op) {
-    case BinaryOp::Add: return bits(a + b);
-    case BinaryOp::Sub: return bits(a - b);
-    case BinaryOp::Mul:
-      return bits(static_cast<std::int64_t>(static_cast<std::uint64_t>(a) * static_cast<std::uint64_t>(b)));
-    case BinaryOp::Div: return b == 0 ? x : bits(a / b);
-    case BinaryOp::Rem: return b == 0 ? 0 : bits(a % b);
-    case BinaryOp::BitAnd: return bits(a & b);
-    case BinaryOp::BitOr: return bits(a | b);
-    case BinaryOp::BitXor: return bits(a ^ b);
-    case BinaryOp::ShiftLeft:
-      return bits(static_cast<std::int64_t>(static_cast<std::uint64_t>(a) << (b & 31)));
-    case BinaryOp::ShiftRight: return bits(a >> (b & 31));
-    default: return comparison(op, x, y);
-  }
-}
-
-double ofReals(BinaryOp op, double a, double b) {
-  switch (op) {
-    case BinaryOp::Add: return a + b;
-    case BinaryOp::Sub: return a - b;
-    case BinaryOp::Mul: return a * b;
-    case BinaryOp::Div: return a / b;
-    default: return comparison(op, a, b);
-  }
-}
-
-/// Functions of one number.
-std::optional<double> ofOne(Intrinsic intrinsic, double x) {
+/// Intrinsics that devices round, each in its own way: here, to the nearest double.
+std::optional<double> inDouble(Intrinsic intrinsic, double x, double y, double z) {
   switch (intrinsic) {
     case Intrinsic::Sin: return std::sin(x);
     case Intrinsic::Cos: return std::cos(x);
@@ -124,25 +60,11 @@ std::optional<double> ofOne(Intrinsic intrinsic, double x) {
     case Intrinsic::Sqrt: return std::sqrt(x);
     case Intrinsic::InverseSqrt:
     case Intrinsic::Rsqrt: return 1 / std::sqrt(x);
-    case Intrinsic::Abs:
-    case Intrinsic::Fabs: return std::fabs(x);
-    case Intrinsic::Sign: return x > 0 ? 1 : x < 0 ? -1 : 0;
-    case Intrinsic::Floor: return std::floor(x);
-    case Intrinsic::Ceil: return std::ceil(x);
-    case Intrinsic::Trunc: return std::trunc(x);
-    case Intrinsic::Round:
-    case Intrinsic::RoundEven: return std::nearbyint(x);
-    case Intrinsic::Fract:
-    case Intrinsic::Frac: return x - std::floor(x);
-    case Intrinsic::Saturate: return std::fmin(std::fmax(x, 0), 1);
     case Intrinsic::Radians: return x * (std::numbers::pi / 180);
     case Intrinsic::Degrees: return x * (180 / std::numbers::pi);
     case Intrinsic::Asinh: return std::asinh(x);
     case Intrinsic::Acosh: return std::acosh(x);
     case Intrinsic::Atanh: return std::atanh(x);
-    case Intrinsic::Isnan: return std::isnan(x) ? 1 : 0;
-    case Intrinsic::Isinf: return std::isinf(x) ? 1 : 0;
-    case Intrinsic::Isfinite: return std::isfinite(x) ? 1 : 0;
     case Intrinsic::FloatBitsToInt:
     case Intrinsic::AsInt: return static_cast<std::int32_t>(bitsOfFloat(x));
     case Intrinsic::FloatBitsToUint:
@@ -151,22 +73,9 @@ std::optional<double> ofOne(Intrinsic intrinsic, double x) {
     case Intrinsic::UintBitsToFloat:
     case Intrinsic::AsFloatInt:
     case Intrinsic::AsFloatUint: return floatOfBits(x);
-    default: return std::nullopt;
-  }
-}
-
-std::optional<double> ofSeveral(Intrinsic intrinsic, double x, double y, double z) {
-  switch (intrinsic) {
-    case Intrinsic::Min:
-    case Intrinsic::Fmin: return std::fmin(x, y);
-    case Intrinsic::Max:
-    case Intrinsic::Fmax: return std::fmax(x, y);
-    case Intrinsic::Clamp: return std::fmin(std::fmax(x, y), z);
     case Intrinsic::Mix:
     case Intrinsic::Lerp: return x + (y - x) * z;
-    case Intrinsic::MixBool: return z != 0 ? y : x;
     case Intrinsic::Ldexp: return std::ldexp(x, static_cast<int>(y));
-    case Intrinsic::Step: return y < x ? 0 : 1;
     case Intrinsic::Pow: return std::pow(x, y);
     case Intrinsic::AtanYX:
     case Intrinsic::Atan2: return std::atan2(x, y);
@@ -324,7 +233,7 @@ class Interpreter {
     }
     if (const auto* n = std::get_if<Member>(&place.node)) {
       Slots base = slots(frame, *n->base);
-      base.numbers = some(base.numbers, offset(n->base->type, n->field), size(place.type));
+      base.numbers = some(base.numbers, scalarOffset(module_, n->base->type, n->field), size(place.type));
       return base;
     }
     if (const auto* n = std::get_if<Index>(&place.node)) {
@@ -341,12 +250,6 @@ class Interpreter {
       return base;
     }
     throw CannotEvaluate{};
-  }
-
-  std::size_t offset(Type type, std::uint32_t field) const {
-    std::size_t sum = 0;
-    for (std::uint32_t i = 0; i < field; ++i) sum += size(module_.structs[type.index].fields[i].type);
-    return sum;
   }
 
   /// Where the indexed part begins; an index outside is clamped.
@@ -372,7 +275,7 @@ class Interpreter {
   Numbers of(Frame& frame, const Expr& expr) {
     tick();
     return match(
-        expr.node, [&](const Literal& n) { return Numbers{literal(expr.type.scalar, n)}; },
+        expr.node, [&](const Literal& n) { return Numbers{valueOf(expr.type.scalar, n)}; },
         [&](const VarRef& n) { return frame.variables.at(n.var); },
         [&](const ConstantRef& n) { return constant(*module_.constants[n.constant].value); },
         [&](const Unary& n) { return unary(n, of(frame, *n.operand)); },
@@ -380,7 +283,7 @@ class Interpreter {
         [&](const Select& n) { return select(frame, n); },
         [&](const Convert& n) {
           Numbers value = of(frame, *n.operand);
-          for (double& v : value) v = converted(n.operand->type.scalar, expr.type.scalar, v);
+          for (double& v : value) v = toScalar(n.operand->type.scalar, expr.type.scalar, v);
           return value;
         },
         [&](const Construct& n) { return construct(frame, n, expr.type); },
@@ -390,7 +293,9 @@ class Interpreter {
           for (const std::uint8_t component : n.components) value.push_back(base[component]);
           return value;
         },
-        [&](const Member& n) { return part(of(frame, *n.base), offset(n.base->type, n.field), expr.type); },
+        [&](const Member& n) {
+          return part(of(frame, *n.base), scalarOffset(module_, n.base->type, n.field), expr.type);
+        },
         [&](const Index& n) {
           const Numbers base = of(frame, *n.base);
           return part(base, indexed(frame, n, base.size()), expr.type);
@@ -425,28 +330,8 @@ class Interpreter {
     return {begin, begin + static_cast<std::ptrdiff_t>(size(type))};
   }
 
-  static double literal(Scalar scalar, const Literal& n) {
-    switch (arithmeticScalar(scalar)) {
-      case Scalar::Bool: return n.bits != 0;
-      case Scalar::Int: return static_cast<std::int32_t>(n.bits);
-      case Scalar::Uint: return n.bits;
-      case Scalar::Double: return std::bit_cast<double>((std::uint64_t{n.high} << 32U) | n.bits);
-      default: return std::bit_cast<float>(n.bits);
-    }
-  }
-
   static Numbers unary(const Unary& n, Numbers value) {
-    const Scalar scalar = n.operand->type.scalar;
-    const bool isIntegral = !isReal(arithmeticScalar(scalar));
-    for (double& v : value) {
-      if (n.op == UnaryOp::LogicalNot) {
-        v = v == 0;
-      } else if (n.op == UnaryOp::BitNot) {
-        v = wrapped(scalar, ~static_cast<std::int64_t>(v));
-      } else {
-        v = isIntegral ? wrapped(scalar, -static_cast<std::int64_t>(v)) : -v;
-      }
-    }
+    for (double& v : value) v = computed(n.op, n.operand->type.scalar, v);
     return value;
   }
 
@@ -459,11 +344,12 @@ class Interpreter {
 
   static Numbers binary(BinaryOp op, Type left, Type right, const Numbers& a, const Numbers& b) {
     if (op == BinaryOp::Mul && left.isMatrix() && !right.isScalar()) return product(left.width, a, b);
-    const Scalar scalar = left.scalar;
     Numbers value(std::max(a.size(), b.size()));
     for (std::size_t i = 0; i < value.size(); ++i) {
       const double x = a.size() == 1 ? a[0] : a.at(i), y = b.size() == 1 ? b[0] : b.at(i);
-      value[i] = isReal(arithmeticScalar(scalar)) ? ofReals(op, x, y) : ofIntegers(op, scalar, x, y);
+      const std::optional<double> result = computed(op, left.scalar, x, y);
+      if (!result) throw CannotEvaluate{};
+      value[i] = *result;
     }
     return value;
   }
@@ -534,8 +420,9 @@ class Interpreter {
         if (arg >= args.size()) return 0.0;
         return args[arg].size() == 1 ? args[arg][0] : args[arg].at(i);
       };
-      const std::optional<double> v =
-          args.size() == 1 ? ofOne(n.intrinsic, at(0)) : ofSeveral(n.intrinsic, at(0), at(1), at(2));
+      const Scalar scalar = n.args.front()->type.scalar;
+      std::optional<double> v = computed(n.intrinsic, scalar, at(0), at(1), at(2));
+      if (!v) v = inDouble(n.intrinsic, at(0), at(1), at(2));
       if (!v) throw CannotEvaluate{};
       value[i] = *v;
     }

@@ -11,6 +11,7 @@
 #include "analysis/shapes.hpp"
 #include "ir/build.hpp"
 #include "ir/print.hpp"
+#include "ir/scalar_operations.hpp"
 #include "support/overloaded.hpp"
 
 namespace skc {
@@ -19,113 +20,15 @@ using namespace ir;
 
 namespace {
 
-/// The low bits of an integer, as the scalar represents them.
-double wrapped(Scalar scalar, std::int64_t value) {
-  switch (scalar) {
-    case Scalar::Int: return static_cast<std::int32_t>(value);
-    case Scalar::Uint: return static_cast<std::uint32_t>(value);
-    case Scalar::Char: return static_cast<std::int8_t>(value);
-    case Scalar::Uchar: return static_cast<std::uint8_t>(value);
-    case Scalar::Short: return static_cast<std::int16_t>(value);
-    case Scalar::Ushort: return static_cast<std::uint16_t>(value);
-    default: throw std::logic_error("the evaluator has no such integer");
-  }
+double rounded(Scalar scalar, double value) {
+  return scalar == Scalar::Float ? static_cast<float>(value) : value;
 }
 
-double converted(Scalar to, Scalar from, double value) {
-  if (to == Scalar::Bool) return value != 0 ? 1 : 0;
-  if (to == Scalar::Float) return static_cast<float>(value);
-  if (to == Scalar::Double) return value;
-  if (isReal(from) && (to == Scalar::Int || to == Scalar::Uint)) {
-    const double least = to == Scalar::Int ? std::numeric_limits<std::int32_t>::min() : 0;
-    const double most = to == Scalar::Int ? std::numeric_limits<std::int32_t>::max()
-                                          : std::numeric_limits<std::uint32_t>::max();
-    return std::isnan(value) ? 0 : std::clamp(std::trunc(value), least, most);
-  }
-  return wrapped(to, static_cast<std::int64_t>(value));
-}
-
-double computedInteger(BinaryOp op, Scalar scalar, double x, double y) {
-  const auto a = static_cast<std::int64_t>(x), b = static_cast<std::int64_t>(y);
-  const auto count = static_cast<unsigned>(b & 31);
-  switch (op) {
-    case BinaryOp::Add: return wrapped(scalar, a + b);
-    case BinaryOp::Sub: return wrapped(scalar, a - b);
-    case BinaryOp::Mul:
-      return wrapped(
-          scalar, static_cast<std::int64_t>(static_cast<std::uint64_t>(a) * static_cast<std::uint64_t>(b)));
-    case BinaryOp::Div: return b == 0 ? x : wrapped(scalar, a / b);
-    case BinaryOp::Rem: return b == 0 ? 0 : wrapped(scalar, a % b);
-    case BinaryOp::BitAnd: return wrapped(scalar, a & b);
-    case BinaryOp::BitOr: return wrapped(scalar, a | b);
-    case BinaryOp::BitXor: return wrapped(scalar, a ^ b);
-    case BinaryOp::ShiftLeft:
-      return wrapped(scalar, static_cast<std::int64_t>(static_cast<std::uint64_t>(a) << count));
-    case BinaryOp::ShiftRight: return wrapped(scalar, a >> count);
-    default: throw std::logic_error("the evaluator has no such operator of integers");
-  }
-}
-
-double computed(BinaryOp op, Scalar scalar, double a, double b) {
-  switch (op) {
-    case BinaryOp::Less: return a < b;
-    case BinaryOp::LessEqual: return a <= b;
-    case BinaryOp::Greater: return a > b;
-    case BinaryOp::GreaterEqual: return a >= b;
-    case BinaryOp::Equal: return a == b;
-    case BinaryOp::NotEqual: return a != b;
-    case BinaryOp::LogicalAnd: return a != 0 && b != 0;
-    case BinaryOp::LogicalOr: return a != 0 || b != 0;
-    default: break;
-  }
-  if (scalar == Scalar::Bool) return computedInteger(op, Scalar::Int, a, b);
-  if (!isReal(scalar)) return computedInteger(op, scalar, a, b);
-  double result = 0;
-  switch (op) {
-    case BinaryOp::Add: result = a + b; break;
-    case BinaryOp::Sub: result = a - b; break;
-    case BinaryOp::Mul: result = a * b; break;
-    case BinaryOp::Div: result = a / b; break;
-    default: throw std::logic_error("the evaluator has no such operator of floats");
-  }
-  return scalar == Scalar::Float ? static_cast<float>(result) : result;
-}
-
-double computed(UnaryOp op, Scalar scalar, double x) {
-  if (op == UnaryOp::LogicalNot) return x == 0;
-  if (op == UnaryOp::BitNot)
-    return scalar == Scalar::Bool ? double(x == 0) : wrapped(scalar, ~static_cast<std::int64_t>(x));
-  return isReal(scalar) ? -x : wrapped(scalar, -static_cast<std::int64_t>(x));
-}
-
-/// The intrinsics of one component that need no rounding.
-double computed(Intrinsic intrinsic, Scalar scalar, double x, double y, double z) {
-  switch (intrinsic) {
-    case Intrinsic::Abs:
-    case Intrinsic::Fabs:
-      return isReal(scalar) ? std::fabs(x) : wrapped(scalar, static_cast<std::int64_t>(std::fabs(x)));
-    case Intrinsic::Sign: return x > 0 ? 1 : x < 0 ? -1 : 0;
-    case Intrinsic::Floor: return std::floor(x);
-    case Intrinsic::Ceil: return std::ceil(x);
-    case Intrinsic::Trunc: return std::trunc(x);
-    case Intrinsic::Round:
-    case Intrinsic::RoundEven: return std::nearbyint(x);
-    case Intrinsic::Fract:
-    case Intrinsic::Frac: return x - std::floor(x);
-    case Intrinsic::Min:
-    case Intrinsic::Fmin: return std::fmin(x, y);
-    case Intrinsic::Max:
-    case Intrinsic::Fmax: return std::fmax(x, y);
-    case Intrinsic::Clamp: return std::fmin(std::fmax(x, y), z);
-    case Intrinsic::LessThan: return x < y;
-    case Intrinsic::LessThanEqual: return x <= y;
-    case Intrinsic::GreaterThan: return x > y;
-    case Intrinsic::GreaterThanEqual: return x >= y;
-    case Intrinsic::EqualTo: return x == y;
-    case Intrinsic::NotEqualTo: return x != y;
-    case Intrinsic::MixBool: return z != 0 ? y : x;
-    default: throw std::logic_error("the evaluator has no " + std::string(row(intrinsic).name));
-  }
+/// The result of an operator on two values of this type.
+double computedHere(BinaryOp op, Scalar scalar, double a, double b) {
+  const std::optional<double> result = computed(op, scalar, a, b);
+  if (!result) throw std::logic_error("the evaluator has no such operator");
+  return rounded(scalar, *result);
 }
 
 std::size_t nearest(double index, std::size_t length) {
@@ -139,23 +42,7 @@ double component(const LaneEvaluator::Value& value, std::size_t i) {
 }  // namespace
 
 std::size_t LaneEvaluator::size(Type type) const {
-  switch (type.kind) {
-    case Type::Kind::Void: return 0;
-    case Type::Kind::Scalar:
-    case Type::Kind::Vector: return type.width;
-    case Type::Kind::Matrix: return std::size_t{type.width} * type.width;
-    case Type::Kind::Struct:
-      return fieldOffset(type, static_cast<std::uint32_t>(module_.structs[type.index].fields.size()));
-    case Type::Kind::Array: break;
-  }
-  const Array& array = module_.arrays[type.index];
-  return array.length * size(array.element);
-}
-
-std::size_t LaneEvaluator::fieldOffset(Type type, std::uint32_t field) const {
-  std::size_t offset = 0;
-  for (std::uint32_t i = 0; i < field; ++i) offset += size(module_.structs[type.index].fields[i].type);
-  return offset;
+  return static_cast<std::size_t>(scalarCount(module_, type));
 }
 
 /// For each scalar of a value, its leaf in the analysis.
@@ -255,7 +142,7 @@ LaneEvaluator::Flow LaneEvaluator::statement(Frame& frame, const Stmt& stmt) {
           for (std::size_t lane = 0; lane < count_; ++lane) {
             Value sum(old[lane].size());
             for (std::size_t i = 0; i < sum.size(); ++i)
-              sum[i] = computed(*n.op, n.place->type.scalar, old[lane][i], component(value[lane], i));
+              sum[i] = computedHere(*n.op, n.place->type.scalar, old[lane][i], component(value[lane], i));
             value[lane] = std::move(sum);
           }
         }
@@ -342,7 +229,7 @@ std::vector<LaneEvaluator::Offsets> LaneEvaluator::offsets(Frame& frame, const E
     });
   }
   if (const auto* n = std::get_if<Member>(&place.node)) {
-    const std::size_t first = fieldOffset(n->base->type, n->field);
+    const std::size_t first = scalarOffset(module_, n->base->type, n->field);
     return part(offsets(frame, *n->base), [&](std::size_t, std::size_t) { return first; });
   }
   if (const auto* n = std::get_if<Swizzle>(&place.node)) {
@@ -379,7 +266,7 @@ LaneEvaluator::Lanes LaneEvaluator::logical(Frame& frame, const Binary& n, std::
   return each([&](std::size_t lane) {
     Value value(size);
     for (std::size_t i = 0; i < size; ++i)
-      value[i] = computed(n.op, Scalar::Bool, component(lhs[lane], i), component(rhs[lane], i));
+      value[i] = computedHere(n.op, Scalar::Bool, component(lhs[lane], i), component(rhs[lane], i));
     return value;
   });
 }
@@ -406,8 +293,11 @@ LaneEvaluator::Lanes LaneEvaluator::intrinsic(Frame& frame, const IntrinsicCall&
     const auto argument = [&](std::size_t i, std::size_t c) {
       return i < arguments.size() ? component(arguments[i][lane], c) : 0;
     };
-    for (std::size_t i = 0; i < value.size(); ++i)
-      value[i] = computed(n.intrinsic, scalar, argument(0, i), argument(1, i), argument(2, i));
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const auto result = computed(n.intrinsic, scalar, argument(0, i), argument(1, i), argument(2, i));
+      if (!result) throw std::logic_error("the evaluator has no " + std::string(row(n.intrinsic).name));
+      value[i] = *result;
+    }
     return value;
   });
 }
@@ -422,15 +312,7 @@ LaneEvaluator::Lanes LaneEvaluator::of(Frame& frame, const Expr& expr) {
     });
   };
   return match(
-      expr.node,
-      [&](const Literal& n) {
-        const Scalar kind = arithmeticScalar(scalar);
-        double value = n.bits;
-        if (kind == Scalar::Int) value = static_cast<std::int32_t>(n.bits);
-        if (kind == Scalar::Float) value = std::bit_cast<float>(n.bits);
-        if (kind == Scalar::Double) value = std::bit_cast<double>(std::uint64_t{n.high} << 32 | n.bits);
-        return Lanes(count_, {value});
-      },
+      expr.node, [&](const Literal& n) { return Lanes(count_, {valueOf(scalar, n)}); },
       [&](const VarRef& n) { return frame.variables[n.var]; },
       [&](const ConstantRef& n) { return of(frame, *module_.constants[n.constant].value); },
       [&](const Unary& n) {
@@ -449,7 +331,8 @@ LaneEvaluator::Lanes LaneEvaluator::of(Frame& frame, const Expr& expr) {
         return each([&](std::size_t lane) {
           Value value(size(expr.type));
           for (std::size_t i = 0; i < value.size(); ++i)
-            value[i] = computed(n.op, n.lhs->type.scalar, component(lhs[lane], i), component(rhs[lane], i));
+            value[i] =
+                computedHere(n.op, n.lhs->type.scalar, component(lhs[lane], i), component(rhs[lane], i));
           return value;
         });
       },
@@ -471,7 +354,7 @@ LaneEvaluator::Lanes LaneEvaluator::of(Frame& frame, const Expr& expr) {
       [&](const Convert& n) {
         Lanes value = of(frame, *n.operand);
         for (Value& lane : value) {
-          for (double& x : lane) x = converted(scalar, n.operand->type.scalar, x);
+          for (double& x : lane) x = rounded(scalar, converted(n.operand->type.scalar, scalar, x));
         }
         return value;
       },
@@ -496,7 +379,7 @@ LaneEvaluator::Lanes LaneEvaluator::of(Frame& frame, const Expr& expr) {
         });
       },
       [&](const Member& n) {
-        const std::size_t first = fieldOffset(n.base->type, n.field);
+        const std::size_t first = scalarOffset(module_, n.base->type, n.field);
         return part(of(frame, *n.base), [&](std::size_t) { return first; });
       },
       [&](const Index& n) {

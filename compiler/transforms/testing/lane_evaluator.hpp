@@ -61,7 +61,6 @@ class LaneEvaluator {
   Lanes intrinsic(Frame& frame, const ir::IntrinsicCall& n, ir::Type type);
   bool uniform(Frame& frame, const ir::Expr& expr);
   std::size_t size(ir::Type type) const;
-  std::size_t fieldOffset(ir::Type type, std::uint32_t field) const;
   void addLeaves(ir::Type type, std::size_t first, Offsets& leaves) const;
   template <class Fn>
   Lanes each(Fn&& fn) const {
