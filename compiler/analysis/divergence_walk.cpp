@@ -34,12 +34,12 @@ void LastUses::use(const Expr& expr) {
   });
 }
 
-DivergenceWalk::DivergenceWalk(Uniformity& whole, FunctionId id)
-    : whole_(whole),
+DivergenceWalk::DivergenceWalk(Uniformity& uniformity, FunctionId id)
+    : uniformity_(uniformity),
       id_(id),
-      function_(whole.module_.functions[id]),
-      facts_(whole.facts_.at(id)),
-      exprs_(whole.module_, whole.kernel_, whole.shapes_, whole.axis_),
+      function_(uniformity.module_.functions[id]),
+      facts_(uniformity.facts_.at(id)),
+      exprs_(uniformity.module_, uniformity.kernel_, uniformity.shapes_, uniformity.axis_),
       lastUses_(function_),
       declared_(function_.variables.size()) {
   for (VarId i = 0; i < function_.parameterCount; ++i) {
@@ -63,9 +63,9 @@ void DivergenceWalk::insert(std::set<const Stmt*>& where, const Stmt& stmt) {
   if (where.insert(&stmt).second) isNew_ = true;
 }
 
-void DivergenceWalk::add(Leaves& into, const Leaves& from) {
+void DivergenceWalk::add(LeafShapes& into, const LeafShapes& from) {
   for (std::size_t i = 0; i < into.size(); ++i) {
-    const Leaf joined = join(into[i], from[i]);
+    const LeafShape joined = join(into[i], from[i]);
     if (joined == into[i]) continue;
     into[i] = joined;
     isNew_ = true;
@@ -105,19 +105,19 @@ void DivergenceWalk::calls(const Expr& expr) {
   walkExprs(expr, [&](const Expr& inner) {
     const auto* n = std::get_if<Call>(&inner.node);
     if (n == nullptr) return;
-    FunctionShapes& callee = whole_.shapes_.at(n->callee);
+    FunctionShapes& callee = uniformity_.shapes_.at(n->callee);
     for (std::size_t i = 0; i < n->args.size(); ++i) add(callee.variables[i], shapes(*n->args[i]));
     called(n->callee);
   });
 }
 
 void DivergenceWalk::called(FunctionId callee) {
-  if (!frames_.empty()) set(whole_.facts_.at(callee).isCalledDivergently);
+  if (!frames_.empty()) set(uniformity_.facts_.at(callee).isCalledDivergently);
 }
 
 void DivergenceWalk::visit(const Stmt&, const Declare& n) {
   declared_[n.var] = {frames_.size(), loops_.size(), false};
-  if (n.init) add(whole_.shapes_.at(id_).variables[n.var], shapes(*n.init));
+  if (n.init) add(uniformity_.shapes_.at(id_).variables[n.var], shapes(*n.init));
 }
 
 void DivergenceWalk::visit(const Stmt& stmt, const Assign& n) {
@@ -125,8 +125,8 @@ void DivergenceWalk::visit(const Stmt& stmt, const Assign& n) {
 }
 
 void DivergenceWalk::visit(const Stmt& stmt, const CallStmt& n) {
-  FunctionShapes& callee = whole_.shapes_.at(n.callee);
-  const std::vector<Variable>& parameters = whole_.module_.functions[n.callee].variables;
+  FunctionShapes& callee = uniformity_.shapes_.at(n.callee);
+  const std::vector<Variable>& parameters = uniformity_.module_.functions[n.callee].variables;
   for (std::size_t i = 0; i < n.args.size(); ++i) {
     const VarRole role = parameters[i].role;
     if (role != VarRole::Gather && role != VarRole::AppendOutput)
@@ -139,13 +139,13 @@ void DivergenceWalk::visit(const Stmt& stmt, const CallStmt& n) {
   if (n.result) assign(stmt, *n.result, callee.result);
 }
 
-void DivergenceWalk::assign(const Stmt& stmt, const Expr& place, Leaves value) {
+void DivergenceWalk::assign(const Stmt& stmt, const Expr& place, LeafShapes value) {
   const VarId var = rootOf(place);
   if (isVisibleToInactiveLanes(var)) {
     if (facts_.blended.insert({&stmt, var}).second) isNew_ = true;
-    std::ranges::fill(value, Leaf(Shape::Varying));
+    std::ranges::fill(value, LeafShape(Shape::Varying));
   }
-  add(whole_.shapes_.at(id_).variables[var], exprs_.assigned(id_, place, std::move(value)));
+  add(uniformity_.shapes_.at(id_).variables[var], exprs_.assigned(id_, place, std::move(value)));
 }
 
 void DivergenceWalk::visit(const Stmt& stmt, const If& n) {
@@ -207,12 +207,12 @@ void DivergenceWalk::visit(const Stmt& stmt, const Continue&) {
 }
 
 void DivergenceWalk::visit(const Stmt& stmt, const Return& n) {
-  if (n.value) add(whole_.shapes_.at(id_).result, shapes(*n.value));
+  if (n.value) add(uniformity_.shapes_.at(id_).result, shapes(*n.value));
   if (!isDivergentJump(0, Frame::Function)) return;
   insert(facts_.divergent, stmt);
   set(facts_.returnsEarly);
-  Leaves& result = whole_.shapes_.at(id_).result;
-  add(result, Leaves(result.size(), Shape::Varying));
+  LeafShapes& result = uniformity_.shapes_.at(id_).result;
+  add(result, LeafShapes(result.size(), Shape::Varying));
   for (const Enclosing& left : enclosing_) insert(facts_.divergent, *left.stmt);
 }
 

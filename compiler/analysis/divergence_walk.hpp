@@ -37,7 +37,7 @@ class LastUses {
 
 class DivergenceWalk {
  public:
-  DivergenceWalk(Uniformity& whole, ir::FunctionId id);
+  DivergenceWalk(Uniformity& uniformity, ir::FunctionId id);
 
   /// Returns true if the walk added a fact.
   bool run();
@@ -77,17 +77,17 @@ class DivergenceWalk {
 
   void calls(const ir::Expr& expr);
   void called(ir::FunctionId callee);
-  void assign(const ir::Stmt& stmt, const ir::Expr& place, Leaves value);
+  void assign(const ir::Stmt& stmt, const ir::Expr& place, LeafShapes value);
   bool isVisibleToInactiveLanes(ir::VarId var) const;
   bool isVisibleOutside(const Frame& frame, const Declared& declared, ir::VarId var) const;
   bool isDivergentJump(std::size_t frames, Frame::Kind allowed) const;
 
-  Leaves shapes(const ir::Expr& expr) const { return exprs_.of(id_, expr); }
-  void add(Leaves& into, const Leaves& from);
+  LeafShapes shapes(const ir::Expr& expr) const { return exprs_.of(id_, expr); }
+  void add(LeafShapes& into, const LeafShapes& from);
   void set(bool& flag);
   void insert(std::set<const ir::Stmt*>& where, const ir::Stmt& stmt);
 
-  Uniformity& whole_;
+  Uniformity& uniformity_;
   ir::FunctionId id_;
   const ir::Function& function_;
   Uniformity::Facts& facts_;

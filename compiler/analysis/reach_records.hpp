@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "analysis/find_reach.hpp"
+#include "analysis/gather_reach.hpp"
 #include "analysis/index_range.hpp"
 #include "ir/ir.hpp"
 

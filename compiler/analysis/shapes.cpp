@@ -38,34 +38,34 @@ std::optional<std::uint32_t> literalIndex(const Expr& index, std::uint32_t lengt
   return n != nullptr && n->bits < length ? std::optional(n->bits) : std::nullopt;
 }
 
-Leaf join(Leaf a, Leaf b) {
+LeafShape join(LeafShape a, LeafShape b) {
   if (!a || !b) return a ? a : b;
   return a == b ? a : Shape::Varying;
 }
 
-Leaf join(const Leaves& leaves) {
-  Leaf all;
-  for (const Leaf leaf : leaves) all = join(all, leaf);
+LeafShape join(const LeafShapes& leaves) {
+  LeafShape all;
+  for (const LeafShape leaf : leaves) all = join(all, leaf);
   return all;
 }
 
 namespace {
 
 /// The shape of the result of an operation that preserves only uniformity.
-Leaf mixed(Leaf a, Leaf b) {
+LeafShape mixed(LeafShape a, LeafShape b) {
   if (!a || !b) return std::nullopt;
   return isVarying(a) || isVarying(b) ? Shape::Varying : Shape::Uniform;
 }
-Leaf mixed(Leaf a) { return mixed(a, a); }
+LeafShape mixed(LeafShape a) { return mixed(a, a); }
 
-Leaf mixed(const Leaves& leaves) {
-  Leaf all = Shape::Uniform;
-  for (const Leaf leaf : leaves) all = mixed(all, leaf);
+LeafShape mixed(const LeafShapes& leaves) {
+  LeafShape all = Shape::Uniform;
+  for (const LeafShape leaf : leaves) all = mixed(all, leaf);
   return all;
 }
 
 /// Adding or subtracting a uniform int preserves Consecutive.
-Leaf moved(BinaryOp op, Leaf lhs, Leaf rhs) {
+LeafShape moved(BinaryOp op, LeafShape lhs, LeafShape rhs) {
   const bool isAdd = op == BinaryOp::Add;
   if (lhs == Shape::Consecutive && rhs == Shape::Uniform) return lhs;
   if (isAdd && lhs == Shape::Uniform && rhs == Shape::Consecutive) return rhs;
@@ -91,29 +91,29 @@ class ExprRule {
         axis_(shapes.axis_),
         function_(function) {}
 
-  Leaves of(const Expr& expr) const {
+  LeafShapes of(const Expr& expr) const {
     return match(expr.node, [&](const auto& node) { return rule(expr.type, node); });
   }
 
-  Leaves binary(BinaryOp op, Type type, const Expr& left, const Expr& right) const {
-    const Leaves lhs = of(left), rhs = of(right);
+  LeafShapes binary(BinaryOp op, Type type, const Expr& left, const Expr& right) const {
+    const LeafShapes lhs = of(left), rhs = of(right);
     if (left.type.isMatrix() || right.type.isMatrix() || !type.isArithmetic() ||
         !(left.type.isArithmetic() && right.type.isArithmetic()))
       return all(type, mixed(mixed(lhs), mixed(rhs)));
     const bool moves = (op == BinaryOp::Add || op == BinaryOp::Sub) && type.isInteger();
     return componentwise(type, lhs, rhs,
-                         [&](Leaf a, Leaf b) { return moves ? moved(op, a, b) : mixed(a, b); });
+                         [&](LeafShape a, LeafShape b) { return moves ? moved(op, a, b) : mixed(a, b); });
   }
 
   /// Wraps the leaves assigned to `place` in the leaves of the variable at its root.
-  Leaves assigned(const Expr& place, Leaves value) const {
+  LeafShapes assigned(const Expr& place, LeafShapes value) const {
     if (const auto* n = std::get_if<Member>(&place.node)) {
-      Leaves base(leafCount(module_, n->base->type));
+      LeafShapes base(leafCount(module_, n->base->type));
       std::ranges::copy(value, base.begin() + offset(firstLeaf(module_, n->base->type, n->field)));
       return assigned(*n->base, std::move(base));
     }
     if (const auto* n = std::get_if<Swizzle>(&place.node)) {
-      Leaves base(n->base->type.width);
+      LeafShapes base(n->base->type.width);
       for (std::size_t i = 0; i < value.size(); ++i) base[n->components[i]] = value[i];
       return assigned(*n->base, std::move(base));
     }
@@ -123,26 +123,26 @@ class ExprRule {
 
  private:
   static std::ptrdiff_t offset(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
-  Leaves all(Type type, Leaf leaf) const { return Leaves(leafCount(module_, type), leaf); }
-  Leaves uniform(Type type) const { return all(type, Shape::Uniform); }
+  LeafShapes all(Type type, LeafShape leaf) const { return LeafShapes(leafCount(module_, type), leaf); }
+  LeafShapes uniform(Type type) const { return all(type, Shape::Uniform); }
 
   template <class Fn>
-  Leaves componentwise(Type type, const Leaves& lhs, const Leaves& rhs, Fn&& fn) const {
-    Leaves result;
+  LeafShapes componentwise(Type type, const LeafShapes& lhs, const LeafShapes& rhs, Fn&& fn) const {
+    LeafShapes result;
     const std::size_t count = leafCount(module_, type);
     for (std::size_t i = 0; i < count; ++i) result.push_back(fn(component(lhs, i), component(rhs, i)));
     return result;
   }
   /// A scalar is broadcast to all components.
-  static Leaf component(const Leaves& leaves, std::size_t i) {
+  static LeafShape component(const LeafShapes& leaves, std::size_t i) {
     return leaves.size() == 1 ? leaves.front() : leaves[i];
   }
 
   /// The leaves of the whole after an assignment to one of its elements.
-  Leaves indexed(const ir::Index& n, const Leaves& value) const {
-    Leaves base(leafCount(module_, n.base->type));
+  LeafShapes indexed(const ir::Index& n, const LeafShapes& value) const {
+    LeafShapes base(leafCount(module_, n.base->type));
     if (isVarying(join(of(*n.index)))) {
-      std::ranges::fill(base, Leaf(Shape::Varying));
+      std::ranges::fill(base, LeafShape(Shape::Varying));
       return base;
     }
     const std::optional<std::uint32_t> known =
@@ -153,80 +153,80 @@ class ExprRule {
     return base;
   }
 
-  Leaves rule(Type type, const Literal&) const { return uniform(type); }
-  Leaves rule(Type type, const ConstantRef&) const { return uniform(type); }
-  Leaves rule(Type, const VarRef& n) const { return shapes_.at(function_).variables[n.var]; }
-  Leaves rule(Type, const Unary& n) const { return each(of(*n.operand)); }
-  Leaves rule(Type type, const Binary& n) const { return binary(n.op, type, *n.lhs, *n.rhs); }
-  Leaves rule(Type type, const Select& n) const {
-    const Leaves cond = of(*n.cond), yes = of(*n.yes), no = of(*n.no);
-    Leaves result;
+  LeafShapes rule(Type type, const Literal&) const { return uniform(type); }
+  LeafShapes rule(Type type, const ConstantRef&) const { return uniform(type); }
+  LeafShapes rule(Type, const VarRef& n) const { return shapes_.at(function_).variables[n.var]; }
+  LeafShapes rule(Type, const Unary& n) const { return each(of(*n.operand)); }
+  LeafShapes rule(Type type, const Binary& n) const { return binary(n.op, type, *n.lhs, *n.rhs); }
+  LeafShapes rule(Type type, const Select& n) const {
+    const LeafShapes cond = of(*n.cond), yes = of(*n.yes), no = of(*n.no);
+    LeafShapes result;
     for (std::size_t i = 0; i < leafCount(module_, type); ++i) {
-      const Leaf chooses = component(cond, i);
+      const LeafShape chooses = component(cond, i);
       result.push_back(!chooses ? std::nullopt : isVarying(chooses) ? Shape::Varying : join(yes[i], no[i]));
     }
     return result;
   }
-  Leaves rule(Type type, const Convert& n) const {
+  LeafShapes rule(Type type, const Convert& n) const {
     const bool keeps = type.isInteger() && n.operand->type.isInteger();
     return keeps ? of(*n.operand) : each(of(*n.operand));
   }
-  Leaves rule(Type type, const Construct& n) const {
+  LeafShapes rule(Type type, const Construct& n) const {
     if (type.kind == Type::Kind::Array) {
-      Leaves result = of(*n.args.front());
+      LeafShapes result = of(*n.args.front());
       for (const ExprPtr& arg : n.args) merge(result, of(*arg));
       return result;
     }
-    Leaves result;
+    LeafShapes result;
     for (const ExprPtr& arg : n.args) std::ranges::copy(of(*arg), std::back_inserter(result));
     const bool isSplat = type.isVector() && result.size() == 1;
     return isSplat ? all(type, result.front()) : result;
   }
-  Leaves rule(Type, const Swizzle& n) const {
-    const Leaves base = of(*n.base);
-    Leaves result;
+  LeafShapes rule(Type, const Swizzle& n) const {
+    const LeafShapes base = of(*n.base);
+    LeafShapes result;
     for (const std::uint8_t component : n.components) result.push_back(base[component]);
     return result;
   }
-  Leaves rule(Type type, const Member& n) const {
-    const Leaves base = of(*n.base);
+  LeafShapes rule(Type type, const Member& n) const {
+    const LeafShapes base = of(*n.base);
     const auto first = base.begin() + offset(firstLeaf(module_, n.base->type, n.field));
-    return Leaves(first, first + offset(leafCount(module_, type)));
+    return LeafShapes(first, first + offset(leafCount(module_, type)));
   }
-  Leaves rule(Type type, const ir::Index& n) const {
+  LeafShapes rule(Type type, const ir::Index& n) const {
     if (isVarying(join(of(*n.index)))) return all(type, Shape::Varying);
-    const Leaves base = of(*n.base);
+    const LeafShapes base = of(*n.base);
     if (n.base->type.kind == Type::Kind::Array) return base;
     const std::size_t size = leafCount(module_, type);
     if (const auto known = literalIndex(*n.index, n.base->type.width)) {
       const auto first = base.begin() + offset(*known * size);
-      return Leaves(first, first + offset(size));
+      return LeafShapes(first, first + offset(size));
     }
-    Leaves result(size);
+    LeafShapes result(size);
     for (std::size_t i = 0; i < base.size(); ++i) result[i % size] = join(result[i % size], base[i]);
     return result;
   }
-  Leaves rule(Type, const Call& n) const { return shapes_.at(n.callee).result; }
-  Leaves rule(Type type, const IntrinsicCall& n) const {
+  LeafShapes rule(Type, const Call& n) const { return shapes_.at(n.callee).result; }
+  LeafShapes rule(Type type, const IntrinsicCall& n) const {
     if (n.intrinsic == Intrinsic::AnyLane && axis_ == Axis::X) return uniform(type);
-    Leaves result = uniform(type);
+    LeafShapes result = uniform(type);
     for (const ExprPtr& arg : n.args) {
-      const Leaves leaves = of(*arg);
+      const LeafShapes leaves = of(*arg);
       const bool fits = leaves.size() == 1 || leaves.size() == result.size();
-      const Leaf whole = mixed(leaves);
+      const LeafShape whole = mixed(leaves);
       for (std::size_t i = 0; i < result.size(); ++i) {
         result[i] = mixed(result[i], fits && isComponentwise(n.intrinsic) ? component(leaves, i) : whole);
       }
     }
     return result;
   }
-  Leaves rule(Type type, const GatherRead& n) const { return all(type, mixed(of(*n.index))); }
-  Leaves rule(Type type, const NeighborRead&) const { return all(type, Shape::Varying); }
-  Leaves rule(Type type, const Sample& n) const { return all(type, mixed(of(*n.position))); }
+  LeafShapes rule(Type type, const GatherRead& n) const { return all(type, mixed(of(*n.index))); }
+  LeafShapes rule(Type type, const NeighborRead&) const { return all(type, Shape::Varying); }
+  LeafShapes rule(Type type, const Sample& n) const { return all(type, mixed(of(*n.position))); }
   /// Lanes are consecutive elements along x, except in a fold, whose lanes may be farther apart. An input's
   /// index is computed from the domain's by a multiplication and a division.
-  Leaves rule(Type type, const IndexOf& n) const {
-    Leaves result = uniform(type);
+  LeafShapes rule(Type type, const IndexOf& n) const {
+    LeafShapes result = uniform(type);
     if (axis_ == Axis::Y) {
       result[1] = Shape::Varying;
       return result;
@@ -236,13 +236,13 @@ class ExprRule {
     result[0] = isInput || kernel_.reduction ? Shape::Varying : Shape::Consecutive;
     return result;
   }
-  Leaves rule(Type type, const ExtentOf&) const { return uniform(type); }
+  LeafShapes rule(Type type, const ExtentOf&) const { return uniform(type); }
 
-  static Leaves each(Leaves leaves) {
-    for (Leaf& leaf : leaves) leaf = mixed(leaf);
+  static LeafShapes each(LeafShapes leaves) {
+    for (LeafShape& leaf : leaves) leaf = mixed(leaf);
     return leaves;
   }
-  static void merge(Leaves& into, const Leaves& from) {
+  static void merge(LeafShapes& into, const LeafShapes& from) {
     for (std::size_t i = 0; i < into.size(); ++i) into[i] = join(into[i], from[i]);
   }
 
@@ -253,15 +253,16 @@ class ExprRule {
   FunctionId function_;
 };
 
-Leaves ExprShapes::of(FunctionId function, const Expr& expr) const {
+LeafShapes ExprShapes::of(FunctionId function, const Expr& expr) const {
   return ExprRule(*this, function).of(expr);
 }
 
-Leaves ExprShapes::ofCompound(FunctionId function, const Expr& place, BinaryOp op, const Expr& value) const {
+LeafShapes ExprShapes::ofCompound(FunctionId function, const Expr& place, BinaryOp op,
+                                  const Expr& value) const {
   return ExprRule(*this, function).binary(op, place.type, place, value);
 }
 
-Leaves ExprShapes::assigned(FunctionId function, const Expr& place, Leaves value) const {
+LeafShapes ExprShapes::assigned(FunctionId function, const Expr& place, LeafShapes value) const {
   return ExprRule(*this, function).assigned(place, std::move(value));
 }
 

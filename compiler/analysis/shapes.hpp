@@ -25,12 +25,12 @@ enum class Shape : std::uint8_t {
 };
 
 /// nullopt is the bottom of the lattice, Varying its top; Uniform and Consecutive are between them.
-using Leaf = std::optional<Shape>;
-using Leaves = std::vector<Leaf>;
+using LeafShape = std::optional<Shape>;
+using LeafShapes = std::vector<LeafShape>;
 
 struct FunctionShapes {
-  std::vector<Leaves> variables;
-  Leaves result;
+  std::vector<LeafShapes> variables;
+  LeafShapes result;
 };
 using KernelShapes = std::map<ir::FunctionId, FunctionShapes>;
 
@@ -42,21 +42,21 @@ std::size_t firstLeaf(const ir::Module& module, ir::Type type, std::uint32_t fie
 std::optional<std::uint32_t> literalIndex(const ir::Expr& index, std::uint32_t length);
 
 /// The shape of a value that is either of the two.
-Leaf join(Leaf a, Leaf b);
-Leaf join(const Leaves& leaves);
-inline bool isVarying(Leaf leaf) { return leaf && *leaf != Shape::Uniform; }
+LeafShape join(LeafShape a, LeafShape b);
+LeafShape join(const LeafShapes& leaves);
+inline bool isVarying(LeafShape leaf) { return leaf && *leaf != Shape::Uniform; }
 
 class ExprShapes {
  public:
   ExprShapes(const ir::Module& module, const ir::Kernel& kernel, const KernelShapes& shapes, Axis axis)
       : module_(module), kernel_(kernel), shapes_(shapes), axis_(axis) {}
 
-  Leaves of(ir::FunctionId function, const ir::Expr& expr) const;
+  LeafShapes of(ir::FunctionId function, const ir::Expr& expr) const;
   /// The leaves of the value that `place op= value` assigns.
-  Leaves ofCompound(ir::FunctionId function, const ir::Expr& place, ir::BinaryOp op,
-                    const ir::Expr& value) const;
+  LeafShapes ofCompound(ir::FunctionId function, const ir::Expr& place, ir::BinaryOp op,
+                        const ir::Expr& value) const;
   /// The leaves that an assignment to `place` gives to its root variable; nullopt for all others.
-  Leaves assigned(ir::FunctionId function, const ir::Expr& place, Leaves value) const;
+  LeafShapes assigned(ir::FunctionId function, const ir::Expr& place, LeafShapes value) const;
 
  private:
   friend class ExprRule;

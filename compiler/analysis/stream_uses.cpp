@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "ir/call_graph.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/evaluate.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::analysis {

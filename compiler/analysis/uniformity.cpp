@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "analysis/divergence_walk.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 
 namespace skc::analysis {
 
@@ -15,18 +15,18 @@ using namespace ir;
 namespace {
 
 /// Replaces missing shapes: a leaf that nothing is assigned to is uniform.
-std::vector<Shape> known(const Leaves& leaves) {
+std::vector<Shape> known(const LeafShapes& leaves) {
   std::vector<Shape> shapes;
-  for (const Leaf leaf : leaves) shapes.push_back(leaf.value_or(Shape::Uniform));
+  for (const LeafShape leaf : leaves) shapes.push_back(leaf.value_or(Shape::Uniform));
   return shapes;
 }
 
-void makeUniform(Leaves& leaves) {
-  for (Leaf& leaf : leaves) leaf = leaf.value_or(Shape::Uniform);
+void makeUniform(LeafShapes& leaves) {
+  for (LeafShape& leaf : leaves) leaf = leaf.value_or(Shape::Uniform);
 }
 
 /// The shapes of the entry's variables at its start.
-Leaf atEntry(const Kernel& kernel, VarId var, Axis axis) {
+LeafShape atEntry(const Kernel& kernel, VarId var, Axis axis) {
   // predicate's mask: true in the lanes that have an element, the same in all rows
   if (var >= kernel.params.size()) return axis == Axis::X ? Shape::Varying : Shape::Uniform;
   switch (kernel.params[var].role) {
@@ -62,12 +62,12 @@ Uniformity::Uniformity(const Module& module, const Kernel& kernel, Axis axis)
   propagate(functions);
   // Variables that are never assigned still have no shape, nor have values computed from them alone.
   for (auto& [id, own] : shapes_) {
-    for (Leaves& leaves : own.variables) makeUniform(leaves);
+    for (LeafShapes& leaves : own.variables) makeUniform(leaves);
     makeUniform(own.result);
   }
   propagate(functions);
   for (const auto& [id, own] : shapes_) {
-    for (const Leaves& leaves : own.variables) facts_[id].variables.push_back(known(leaves));
+    for (const LeafShapes& leaves : own.variables) facts_[id].variables.push_back(known(leaves));
     facts_[id].result = known(own.result);
   }
 }
@@ -93,7 +93,7 @@ std::vector<Shape> Uniformity::leavesOf(FunctionId function, const Expr& expr) c
 }
 
 Shape Uniformity::of(FunctionId function, const Expr& expr) const {
-  const Leaf all = join(ExprShapes(module_, kernel_, shapes_, axis_).of(function, expr));
+  const LeafShape all = join(ExprShapes(module_, kernel_, shapes_, axis_).of(function, expr));
   const bool isPart = all == Shape::Consecutive && !expr.type.isScalar();
   return isPart ? Shape::Varying : all.value_or(Shape::Uniform);
 }

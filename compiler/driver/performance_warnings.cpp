@@ -10,8 +10,8 @@
 #include "assemble/assemble.hpp"
 #include "assemble/glsl/intrinsics.hpp"
 #include "assemble/glsl/own_arithmetic.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/counted_loop.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "program/descriptors.hpp"
 

@@ -141,10 +141,10 @@ class PlanPrinter {
 
   void printBundle(const Kernel& kernel, const Bundle& bundle) {
     std::vector<std::string> names;
-    for (const ArgumentPlane& place : bundle.layers) {
-      const KernelParam& param = kernel.params[place.argument];
+    for (const ArgumentPlane& plane : bundle.layers) {
+      const KernelParam& param = kernel.params[plane.argument];
       const bool isWhole = param.type.isArithmetic();
-      names.push_back(isWhole ? param.name : fmt::format("{} (plane {})", param.name, place.plane));
+      names.push_back(isWhole ? param.name : fmt::format("{} (plane {})", param.name, plane.plane));
     }
     text_ += wrapLine(fmt::format("  planes of {} that share a texture unit: {}",
                                   ir::print(module_, bundle.type), join(names, ", ")),

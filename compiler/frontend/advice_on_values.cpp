@@ -59,12 +59,14 @@ const ParamSyntax* parameterNamed(const DeclarationSyntax& syntax, llvm::StringR
   const ParamSyntax* found = nullptr;
   clang::SourceLocation last;
   const clang::SourceLocation use = diagnostic.getLocation();
-  syntax.forEachParam([&](clang::SourceLocation place, const ParamSyntax& param) {
-    if (place.isMacroID() || use.isMacroID() || !(place < use) || (last.isValid() && place < last)) return;
-    clang::SmallString<32> buffer;
-    if (clang::Lexer::getSpelling(place, buffer, diagnostic.getSourceManager(), clang::LangOptions()) != name)
+  syntax.forEachParam([&](clang::SourceLocation location, const ParamSyntax& param) {
+    if (location.isMacroID() || use.isMacroID() || !(location < use) || (last.isValid() && location < last))
       return;
-    last = place;
+    clang::SmallString<32> buffer;
+    if (clang::Lexer::getSpelling(location, buffer, diagnostic.getSourceManager(), clang::LangOptions()) !=
+        name)
+      return;
+    last = location;
     found = &param;
   });
   return found;
@@ -371,9 +373,10 @@ Advice adviceOnMatrix(const clang::Diagnostic& diagnostic) {
 /// Advice on `x ** 2`, where the second star dereferences what is not a pointer.
 Advice adviceOnIndirection(const clang::Diagnostic& diagnostic) {
   bool isInvalid = false;
-  const clang::SourceLocation place = diagnostic.getLocation();
-  if (place.isMacroID()) return {};
-  const char* text = diagnostic.getSourceManager().getCharacterData(place.getLocWithOffset(-1), &isInvalid);
+  const clang::SourceLocation location = diagnostic.getLocation();
+  if (location.isMacroID()) return {};
+  const char* text =
+      diagnostic.getSourceManager().getCharacterData(location.getLocWithOffset(-1), &isInvalid);
   return {!isInvalid && *text == '*' ? format(Diag::PowerOperator, {"**"}) : std::string()};
 }
 

@@ -74,9 +74,9 @@ bool isBoolOfVector(const clang::Diagnostic& diagnostic) {
 
 /// True for notes that point into the prelude, which nobody can read.
 bool isOfPrelude(DiagnosticsEngine::Level level, const clang::Diagnostic& diagnostic) {
-  const clang::SourceLocation place = diagnostic.getLocation();
-  return level == DiagnosticsEngine::Note && place.isValid() &&
-         diagnostic.getSourceManager().isInSystemHeader(place);
+  const clang::SourceLocation location = diagnostic.getLocation();
+  return level == DiagnosticsEngine::Note && location.isValid() &&
+         diagnostic.getSourceManager().isInSystemHeader(location);
 }
 
 }  // namespace
@@ -116,15 +116,15 @@ void DiagnosticPrinter::print(DiagnosticsEngine::Level level, const clang::Diagn
   DiagnosticConsumer::HandleDiagnostic(level, diagnostic);  // counts errors and warnings
   clang::TextDiagnostic printer(out_, language_, options_.get());
   const clang::SourceManager& sources = diagnostic.getSourceManager();
-  clang::SourceLocation place = diagnostic.getLocation();
+  clang::SourceLocation location = diagnostic.getLocation();
   if (advice.isOfMainFile) {
-    while (sources.getIncludeLoc(sources.getFileID(place)).isValid())
-      place = sources.getIncludeLoc(sources.getFileID(place));
+    while (sources.getIncludeLoc(sources.getFileID(location)).isValid())
+      location = sources.getIncludeLoc(sources.getFileID(location));
   }
-  printer.emitDiagnostic(
-      clang::FullSourceLoc(place, sources), level, advice.text,
-      place == diagnostic.getLocation() ? diagnostic.getRanges() : llvm::ArrayRef<clang::CharSourceRange>(),
-      advice.fixIts);
+  printer.emitDiagnostic(clang::FullSourceLoc(location, sources), level, advice.text,
+                         location == diagnostic.getLocation() ? diagnostic.getRanges()
+                                                              : llvm::ArrayRef<clang::CharSourceRange>(),
+                         advice.fixIts);
   out_.flush();
 }
 

@@ -49,11 +49,11 @@ class PreprocessingLimits : public clang::PPCallbacks {
     if (tokens_ > mostTokensToExpand) stop(Diag::TooManyExpansions, name.getLocation());
   }
 
-  void InclusionDirective(clang::SourceLocation place, const clang::Token&, llvm::StringRef, bool,
+  void InclusionDirective(clang::SourceLocation location, const clang::Token&, llvm::StringRef, bool,
                           clang::CharSourceRange, clang::OptionalFileEntryRef, llvm::StringRef,
                           llvm::StringRef, const clang::Module*, bool,
                           clang::SrcMgr::CharacteristicKind) override {
-    if (++includes_ == mostIncludes) stop(Diag::TooManyIncludes, place, std::to_string(mostIncludes));
+    if (++includes_ == mostIncludes) stop(Diag::TooManyIncludes, location, std::to_string(mostIncludes));
   }
 
  private:
@@ -81,8 +81,8 @@ class PreprocessingLimits : public clang::PPCallbacks {
     enclosing_.push_back(std::move(entry));
   }
 
-  [[noreturn]] void stop(Diag diag, clang::SourceLocation place, std::string_view argument = {}) {
-    const clang::SourceLocation written = preprocessor_.getSourceManager().getExpansionLoc(place);
+  [[noreturn]] void stop(Diag diag, clang::SourceLocation location, std::string_view argument = {}) {
+    const clang::SourceLocation written = preprocessor_.getSourceManager().getExpansionLoc(location);
     diagnostics_.report(diag, locOf(written), {argument});
     throw ClangStopped();
   }

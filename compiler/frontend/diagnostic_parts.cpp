@@ -41,9 +41,9 @@ llvm::StringRef textOf(const clang::Diagnostic& diagnostic, unsigned range) {
 }
 
 llvm::StringRef textAt(const clang::Diagnostic& diagnostic) {
-  const clang::SourceLocation place = diagnostic.getLocation();
-  if (place.isInvalid() || place.isMacroID()) return {};
-  const auto [file, offset] = diagnostic.getSourceManager().getDecomposedLoc(place);
+  const clang::SourceLocation location = diagnostic.getLocation();
+  if (location.isInvalid() || location.isMacroID()) return {};
+  const auto [file, offset] = diagnostic.getSourceManager().getDecomposedLoc(location);
   bool isInvalid = false;
   const llvm::StringRef text = diagnostic.getSourceManager().getBufferData(file, &isInvalid);
   return isInvalid ? llvm::StringRef() : text.drop_front(offset);

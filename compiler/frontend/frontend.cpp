@@ -249,8 +249,8 @@ class Frontend::Unit {
     int depth = 0;  // of brackets
     int qualifiers = 0;  // in a name such as a::b::c
     const auto stop = [&](Diag diag, std::size_t most) -> std::vector<clang::Token> {
-      const auto place = compiler_.getSourceManager().getExpansionLoc(tokens.back().getLocation());
-      diagnostics_->report(diag, locOf(place), {std::to_string(most)});
+      const auto location = compiler_.getSourceManager().getExpansionLoc(tokens.back().getLocation());
+      diagnostics_->report(diag, locOf(location), {std::to_string(most)});
       return {};
     };
     do {

@@ -11,7 +11,7 @@
 #include "glsl/constants.hpp"
 #include "glsl/line_writer.hpp"
 #include "glsl/statements.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::emit {

@@ -29,7 +29,8 @@ namespace {
 using namespace ir;
 namespace mark = sk::program::mark;
 
-struct Parts {
+/// A printed expression.
+struct Text {
   std::string text;
   Precedence precedence = Precedence::Primary;
   bool isOperation = false;  ///< of floats or vectors of them: it may need a barrier
@@ -60,13 +61,13 @@ bool computes(Intrinsic intrinsic) {
   }
 }
 
-Parts signedText(std::string text) {
+Text signedText(std::string text) {
   const bool isNegative = text.front() == '-';
   return {std::move(text), isNegative ? Precedence::Unary : Precedence::Primary};
 }
 
 /// The mark of the literal 0, with its sign.
-Parts markedZero(std::uint32_t bits) { return signedText((bits == 0 ? "" : "-") + std::string(mark::zero)); }
+Text markedZero(std::uint32_t bits) { return signedText((bits == 0 ? "" : "-") + std::string(mark::zero)); }
 
 /// True if the values of these functions are those of an argument, so that a literal 0 among them loses nothing.
 bool chooses(Intrinsic intrinsic) {
@@ -79,7 +80,7 @@ bool isBitPattern(std::uint32_t bits) {
   return bits > 0xffffU && (low == 0 || low == 0xffffU);
 }
 
-Parts literalText(Type type, std::uint32_t bits) {
+Text literalText(Type type, std::uint32_t bits) {
   const Scalar scalar = arithmeticScalar(type.scalar);
   if (scalar == Scalar::Bool) return {bits != 0 ? "true" : "false"};
   if (scalar == Scalar::Int) {
@@ -140,7 +141,7 @@ class GlslExpr {
       const Scope scope(isStored_, true);
       return fmt::format("{}{}{}{}", mark::value, digitOf(expr.type), text(expr, around), mark::valueEnd);
     }
-    const Parts whole = parts(expr);
+    const Text whole = printed(expr);
     const bool isMarked = needsBarrier(expr) && whole.isOperation;
     if (needsBarrier(expr) && (whole.isKnown || mayBeKnownZero(context_.module, expr)))
       return fmt::format("{}{}{}", mark::known, whole.text, mark::knownEnd);
@@ -211,7 +212,7 @@ class GlslExpr {
   /// An operation whose value goes to a variable.
   std::string storedText(const Expr& lhs, BinaryOp op, const Expr& rhs) const {
     const Scope scope(isStored_, true);
-    const Parts whole = binary(lhs.type, op, lhs, rhs);
+    const Text whole = binary(lhs.type, op, lhs, rhs);
     return whole.isOperation ? fmt::format("{}{}{}", mark::operation, whole.text, mark::operationEnd)
                              : whole.text;
   }
@@ -251,7 +252,7 @@ class GlslExpr {
     return static_cast<char>('0' + (type.isMatrix() ? type.width + 3 : std::max<int>(type.width, 1)));
   }
 
-  Parts parts(const Expr& expr) const {
+  Text printed(const Expr& expr) const {
     std::optional<std::uint32_t> literal = formulaOfLiterals(expr);
     if (const auto* n = std::get_if<Literal>(&expr.node); n != nullptr && !expr.type.isDouble())
       literal = n->bits;
@@ -268,18 +269,18 @@ class GlslExpr {
     return evaluateInFloat(context_.module, expr, Constants::Keep);
   }
 
-  Parts print(Type type, const Literal& n) const {
-    return type.isDouble() ? Parts{doubleLiteral(n)} : literalText(type, n.bits);
+  Text print(Type type, const Literal& n) const {
+    return type.isDouble() ? Text{doubleLiteral(n)} : literalText(type, n.bits);
   }
-  Parts print(Type, const VarRef& n) const { return {context_.names.variable(*function_, n.var)}; }
-  Parts print(Type, const ConstantRef& n) const { return {context_.types.constantUse(n.constant)}; }
-  Parts print(Type type, const Unary& n) const {
+  Text print(Type, const VarRef& n) const { return {context_.names.variable(*function_, n.var)}; }
+  Text print(Type, const ConstantRef& n) const { return {context_.types.constantUse(n.constant)}; }
+  Text print(Type type, const Unary& n) const {
     if (type.isDouble()) return {doubleNegated(context_.polyfills, type, text(*n.operand))};
     if (n.op == UnaryOp::LogicalNot && type.isVector()) return {"not(" + text(*n.operand) + ")"};
     return {std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary), Precedence::Unary};
   }
-  Parts print(Type type, const Binary& n) const { return binary(type, n.op, *n.lhs, *n.rhs); }
-  Parts print(Type type, const Select& n) const {
+  Text print(Type type, const Binary& n) const { return binary(type, n.op, *n.lhs, *n.rhs); }
+  Text print(Type type, const Select& n) const {
     if (n.cond->type.isVector()) {
       if (type.arithmeticType().isFloat())
         return {fmt::format("mix({}, {}, {})", text(*n.no), text(*n.yes), text(*n.cond))};
@@ -290,12 +291,12 @@ class GlslExpr {
                         text(*n.yes, Precedence::LogicalOr), text(*n.no, Precedence::Conditional)),
             Precedence::Conditional};
   }
-  Parts print(Type type, const Convert& n) const {
+  Text print(Type type, const Convert& n) const {
     if (type.isDouble() || n.operand->type.isDouble()) {
       return {doubleConverted(context_.polyfills, n.operand->type, type, passedText(*n.operand))};
     }
     const bool keepsArithmetic = arithmeticScalar(n.operand->type.scalar) == arithmeticScalar(type.scalar);
-    if (keepsArithmetic && !type.isNarrow()) return parts(*n.operand);
+    if (keepsArithmetic && !type.isNarrow()) return printed(*n.operand);
     if (type.isScalar() && type.scalar == Scalar::Bool && isFloats(n.operand->type))
       return {context_.polyfills.nonzero() + "(" + passedText(*n.operand) + ")"};
     const std::string value = passedText(*n.operand);
@@ -309,11 +310,11 @@ class GlslExpr {
                          !keepsArithmetic && !isUnknown(*n.operand);
     return {converted, Precedence::Primary, /*isOperation=*/false, isKnown};
   }
-  Parts print(Type type, const Construct& n) const {
+  Text print(Type type, const Construct& n) const {
     if (type.isDouble()) return {doubleVector(context_.polyfills, type, typesOf(n.args), texts(n.args))};
     return {context_.types.glsl(type) + list(n.args)};
   }
-  Parts print(Type type, const Swizzle& n) const {
+  Text print(Type type, const Swizzle& n) const {
     if (type.isDouble() && type.isVector()) {
       return {doubleSwizzle(context_.polyfills, n.base->type, n.components, text(*n.base))};
     }
@@ -321,10 +322,10 @@ class GlslExpr {
     for (std::uint8_t component : n.components) components += "xyzw"[component];
     return {text(*n.base, Precedence::Primary) + "." + components};
   }
-  Parts print(Type, const Member& n) const {
+  Text print(Type, const Member& n) const {
     return {text(*n.base, Precedence::Primary) + "." + context_.types.fieldName(n.base->type.index, n.field)};
   }
-  Parts print(Type, const Index& n) const {
+  Text print(Type, const Index& n) const {
     if (n.base->type.isDouble()) return doubleIndex(n);
     if (n.base->type.isVector() && !knownComponent(n)) {
       const std::string function = context_.polyfills.component(n.base->type, n.index->type);
@@ -332,12 +333,12 @@ class GlslExpr {
     }
     return {text(*n.base, Precedence::Primary) + "[" + indexText(n) + "]"};
   }
-  Parts print(Type, const Call& n) const {
+  Text print(Type, const Call& n) const {
     const std::string_view prefix = context_.module.functions[n.callee].table ? "sk_table_" : "";
     const Scope scope(isStored_, !context_.marks || !function_);
     return {fmt::format("{}{}{}", prefix, context_.names.function(n.callee), list(n.args))};
   }
-  Parts print(Type, const IntrinsicCall& n) const {
+  Text print(Type, const IntrinsicCall& n) const {
     const IntrinsicRow& entry = row(n.intrinsic);
     const Type argument = n.args[0]->type;
     if (argument.isDouble()) {
@@ -362,26 +363,26 @@ class GlslExpr {
               Precedence::Primary,
               /*isOperation=*/mayCancel(n.intrinsic)};
     }
-    if (pattern == "$0") return parts(*n.args[0]);
+    if (pattern == "$0") return printed(*n.args[0]);
     return fromPattern(withTypes(pattern, argument), n.args);
   }
-  Parts print(Type, const GatherRead& n) const {
+  Text print(Type, const GatherRead& n) const {
     return {call("sk_at", n.stream) + "(" + passedText(*n.index) + ")"};
   }
-  Parts print(Type, const NeighborRead& n) const {
+  Text print(Type, const NeighborRead& n) const {
     return {call("sk_near", n.stream) + "(" + passedText(*n.offset) + ")"};
   }
-  Parts print(Type, const Sample& n) const {
+  Text print(Type, const Sample& n) const {
     return {call("sk_sample", n.stream) + "(" + passedText(*n.position) + ")"};
   }
-  Parts print(Type, const IndexOf& n) const {
+  Text print(Type, const IndexOf& n) const {
     const bool isInput = n.stream.space == StreamRef::Space::KernelParameter &&
                          context_.kernel.params[n.stream.id].role == ParamRole::Input;
     return {(isInput ? call("sk_index", n.stream) : "sk_index") + "()"};
   }
-  Parts print(Type, const ExtentOf& n) const { return {call("sk_extent", n.stream) + "()"}; }
+  Text print(Type, const ExtentOf& n) const { return {call("sk_extent", n.stream) + "()"}; }
 
-  Parts binary(Type type, BinaryOp op, const Expr& lhs, const Expr& rhs) const {
+  Text binary(Type type, BinaryOp op, const Expr& lhs, const Expr& rhs) const {
     if (lhs.type.isDouble()) {
       return {doubleBinary(context_.polyfills, op, lhs.type, rhs.type, text(lhs), text(rhs))};
     }
@@ -413,11 +414,11 @@ class GlslExpr {
     return {fmt::format("{} {} {}", first, spelling(op), second), precedence, isOperation};
   }
 
-  Parts comparison(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
+  Text comparison(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
     if (comparesWholeWithZero(op, lhs, rhs)) {
       const std::string test =
           context_.polyfills.nonzero() + "(" + passedText(isLiteralZero(lhs) ? rhs : lhs) + ")";
-      return op == BinaryOp::NotEqual ? Parts{test} : Parts{"!" + test, Precedence::Unary};
+      return op == BinaryOp::NotEqual ? Text{test} : Text{"!" + test, Precedence::Unary};
     }
     if (const std::optional<Intrinsic> function = row(op).vectors; lhs.type.isVector() && function)
       return {fmt::format("{}({}, {})", row(*function).glsl, comparedText(lhs), comparedText(rhs))};
@@ -429,7 +430,7 @@ class GlslExpr {
   }
 
   /// fma(a, b, c), which GLSL 3.30 lacks.
-  Parts multiplyAdd(const std::vector<ExprPtr>& args) const {
+  Text multiplyAdd(const std::vector<ExprPtr>& args) const {
     const std::string product =
         fmt::format("{} * {}", text(*args[0], Precedence::Multiplicative), text(*args[1], Precedence::Unary));
     const bool isMarked = context_.marks && function_;
@@ -452,7 +453,7 @@ class GlslExpr {
   }
 
   /// Calls a function that the assembler defines, all of whose arguments have one width.
-  Parts definedCall(sk::program::Intrinsic intrinsic, const std::vector<ExprPtr>& args, bool isChoice) const {
+  Text definedCall(sk::program::Intrinsic intrinsic, const std::vector<ExprPtr>& args, bool isChoice) const {
     std::uint8_t width = 1;
     for (const ExprPtr& arg : args) width = std::max(width, arg->type.width);
     std::vector<std::string> list;
@@ -492,7 +493,7 @@ class GlslExpr {
   }
 
   /// A component of a vector of doubles, which GLSL cannot index.
-  Parts doubleIndex(const Index& n) const {
+  Text doubleIndex(const Index& n) const {
     if (const auto component = knownComponent(n)) {
       return {text(*n.base, Precedence::Primary) + "." + "xyzw"[*component]};
     }
@@ -535,7 +536,7 @@ class GlslExpr {
   std::string list(const std::vector<ExprPtr>& items) const { return "(" + join(texts(items), ", ") + ")"; }
 
   /// Substitutes arguments in a pattern such as "($0 * $1 + $2)"; drops outer brackets that are not needed.
-  Parts fromPattern(std::string_view pattern, const std::vector<ExprPtr>& args) const {
+  Text fromPattern(std::string_view pattern, const std::vector<ExprPtr>& args) const {
     const bool isBracketed = pattern.front() == '(' && pattern.back() == ')';
     if (isBracketed) pattern = pattern.substr(1, pattern.size() - 2);
     std::string result;

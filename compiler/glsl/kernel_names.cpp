@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "glsl/words.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::emit {

@@ -14,38 +14,40 @@ namespace skc::emit {
 namespace {
 
 using namespace ir;
-using Text = std::optional<std::string>;
+using MaybeText = std::optional<std::string>;
 
 class SimplePrinter {
  public:
   SimplePrinter(const GlslContext& context, FunctionId function) : context_(context), id_(function) {}
 
-  Text simple(const Stmt& stmt) const {
+  MaybeText simple(const Stmt& stmt) const {
     return match(
         stmt.node,
-        [&](const Declare& n) -> Text {
+        [&](const Declare& n) -> MaybeText {
           return std::string(declarationMark(context_, typeOf(n))) +
                  context_.types.declaration(typeOf(n), name(n)) + init(n);
         },
-        [&](const Assign& n) -> Text { return glslAssignment(context_, id_, *n.place, n.op, *n.value); },
-        [&](const CallStmt& n) -> Text {
+        [&](const Assign& n) -> MaybeText { return glslAssignment(context_, id_, *n.place, n.op, *n.value); },
+        [&](const CallStmt& n) -> MaybeText {
           std::vector<std::string> args;
           for (const ExprPtr& arg : n.args) args.push_back(expr(arg));
           const std::string call = context_.names.function(n.callee) + "(" + join(args, ", ") + ")";
           return n.result ? glslAssignment(context_, id_, *n.result, call) : call;
         },
-        [&](const Push& n) -> Text {
+        [&](const Push& n) -> MaybeText {
           return fmt::format("sk_push_{}({})", context_.names.symbol(n.stream.id), expr(n.value));
         },
-        [&](const Scatter& n) -> Text {
+        [&](const Scatter& n) -> MaybeText {
           return fmt::format("sk_put_{}({}, {})", context_.names.symbol(n.stream.id), expr(n.index),
                              expr(n.value));
         },
-        [](const Break&) -> Text { return "break"; }, [](const Continue&) -> Text { return "continue"; },
-        [&](const Return& n) -> Text { return n.value ? "return " + expr(n.value) : "return"; },
-        [](const If&) -> Text { return std::nullopt; }, [](const Loop&) -> Text { return std::nullopt; },
-        [](const Switch&) -> Text { return std::nullopt; },
-        [](const Scope&) -> Text { return std::nullopt; });
+        [](const Break&) -> MaybeText { return "break"; },
+        [](const Continue&) -> MaybeText { return "continue"; },
+        [&](const Return& n) -> MaybeText { return n.value ? "return " + expr(n.value) : "return"; },
+        [](const If&) -> MaybeText { return std::nullopt; },
+        [](const Loop&) -> MaybeText { return std::nullopt; },
+        [](const Switch&) -> MaybeText { return std::nullopt; },
+        [](const Scope&) -> MaybeText { return std::nullopt; });
   }
 
   std::size_t declarators(const Block& block, std::size_t first) const {
@@ -71,14 +73,14 @@ class SimplePrinter {
   }
 
   /// "int i = 0, n = 9" or "i = 0, n = 9".
-  Text initText(const Block& block) const {
+  MaybeText initText(const Block& block) const {
     if (block.empty() || !std::holds_alternative<Declare>(block[0].node)) return effects(block);
     if (declarators(block, 0) != block.size()) return std::nullopt;
     return declaratorList(block, 0, block.size());
   }
 
   /// "++i, j -= 2".
-  Text effects(const Block& block) const {
+  MaybeText effects(const Block& block) const {
     std::vector<std::string> texts;
     for (const Stmt& stmt : block) {
       const bool isAssign = std::holds_alternative<Assign>(stmt.node);
@@ -132,8 +134,8 @@ std::string declaratorList(const GlslContext& context, FunctionId function, cons
 
 std::optional<std::string> forHead(const GlslContext& context, FunctionId function, const Loop& loop) {
   const SimplePrinter printer(context, function);
-  const Text init = printer.initText(loop.init);
-  const Text step = printer.effects(loop.step);
+  const MaybeText init = printer.initText(loop.init);
+  const MaybeText step = printer.effects(loop.step);
   if (!init || !step) return std::nullopt;
   const std::string cond = loop.cond ? " " + glslExpr(context, function, *loop.cond) : "";
   return fmt::format("for ({};{};{})", *init, cond, step->empty() ? "" : " " + *step);

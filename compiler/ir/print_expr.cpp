@@ -43,64 +43,61 @@ class ExprPrinter {
   ExprPrinter(const Module& module, const Function& function) : module_(module), function_(function) {}
 
   std::string text(const Expr& expr, Precedence context = Precedence::Lowest) const {
-    const auto [inner, precedence] = parts(expr);
+    const auto [inner, precedence] = printed(expr);
     return precedence < context ? "(" + inner + ")" : inner;
   }
 
  private:
-  struct Parts {
+  struct Text {
     std::string text;
     Precedence precedence = Precedence::Primary;
   };
 
-  Parts parts(const Expr& expr) const {
+  Text printed(const Expr& expr) const {
     return match(
         expr.node,
         [&](const Literal& n) {
-          return Parts{expr.type.isDouble() ? doubleText(n) : literalText(expr.type, n.bits)};
+          return Text{expr.type.isDouble() ? doubleText(n) : literalText(expr.type, n.bits)};
         },
-        [&](const VarRef& n) { return Parts{nameOf(function_, n.var)}; },
-        [&](const ConstantRef& n) { return Parts{module_.constants[n.constant].name}; },
+        [&](const VarRef& n) { return Text{nameOf(function_, n.var)}; },
+        [&](const ConstantRef& n) { return Text{module_.constants[n.constant].name}; },
         [&](const Unary& n) {
-          return Parts{std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary),
-                       Precedence::Unary};
+          return Text{std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary), Precedence::Unary};
         },
         [&](const Binary& n) { return binary(n); },
         [&](const Select& n) {
-          return Parts{text(*n.cond, Precedence::LogicalOr) + " ? " + text(*n.yes, Precedence::LogicalOr) +
-                           " : " + text(*n.no, Precedence::Conditional),
-                       Precedence::Conditional};
+          return Text{text(*n.cond, Precedence::LogicalOr) + " ? " + text(*n.yes, Precedence::LogicalOr) +
+                          " : " + text(*n.no, Precedence::Conditional),
+                      Precedence::Conditional};
         },
-        [&](const Convert& n) { return Parts{print(module_, expr.type) + "(" + text(*n.operand) + ")"}; },
-        [&](const Construct& n) { return Parts{print(module_, expr.type) + list(n.args, '{', '}')}; },
+        [&](const Convert& n) { return Text{print(module_, expr.type) + "(" + text(*n.operand) + ")"}; },
+        [&](const Construct& n) { return Text{print(module_, expr.type) + list(n.args, '{', '}')}; },
         [&](const Swizzle& n) {
           std::string components;
           for (std::uint8_t component : n.components) components += "xyzw"[component];
-          return Parts{text(*n.base, Precedence::Primary) + "." + components};
+          return Text{text(*n.base, Precedence::Primary) + "." + components};
         },
         [&](const Member& n) {
           const Struct& type = module_.structs[n.base->type.index];
-          return Parts{text(*n.base, Precedence::Primary) + "." + type.fields[n.field].name};
+          return Text{text(*n.base, Precedence::Primary) + "." + type.fields[n.field].name};
         },
-        [&](const Index& n) {
-          return Parts{text(*n.base, Precedence::Primary) + "[" + text(*n.index) + "]"};
-        },
-        [&](const Call& n) { return Parts{module_.functions[n.callee].name + list(n.args, '(', ')')}; },
+        [&](const Index& n) { return Text{text(*n.base, Precedence::Primary) + "[" + text(*n.index) + "]"}; },
+        [&](const Call& n) { return Text{module_.functions[n.callee].name + list(n.args, '(', ')')}; },
         [&](const IntrinsicCall& n) {
           const IntrinsicRow& entry = row(n.intrinsic);
-          return Parts{std::string(entry.spelling.empty() ? entry.name : entry.spelling) +
-                       list(n.args, '(', ')')};
+          return Text{std::string(entry.spelling.empty() ? entry.name : entry.spelling) +
+                      list(n.args, '(', ')')};
         },
-        [&](const GatherRead& n) { return Parts{stream(n.stream) + "[" + text(*n.index) + "]"}; },
+        [&](const GatherRead& n) { return Text{stream(n.stream) + "[" + text(*n.index) + "]"}; },
         [&](const NeighborRead& n) {
-          return Parts{"neighbor(" + stream(n.stream) + ", " + text(*n.offset) + ")"};
+          return Text{"neighbor(" + stream(n.stream) + ", " + text(*n.offset) + ")"};
         },
-        [&](const Sample& n) { return Parts{"sample(" + stream(n.stream) + ", " + text(*n.position) + ")"}; },
-        [&](const IndexOf& n) { return Parts{"indexof(" + stream(n.stream) + ")"}; },
-        [&](const ExtentOf& n) { return Parts{"extentof(" + stream(n.stream) + ")"}; });
+        [&](const Sample& n) { return Text{"sample(" + stream(n.stream) + ", " + text(*n.position) + ")"}; },
+        [&](const IndexOf& n) { return Text{"indexof(" + stream(n.stream) + ")"}; },
+        [&](const ExtentOf& n) { return Text{"extentof(" + stream(n.stream) + ")"}; });
   }
 
-  Parts binary(const Binary& n) const {
+  Text binary(const Binary& n) const {
     const Precedence precedence = row(n.op).precedence;
     const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
     return {operand(n.op, *n.lhs, precedence) + " " + std::string(spelling(n.op)) + " " +

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/operators.hpp"
-#include "ir/reach.hpp"
 #include "ir/validate_rules.hpp"
 #include "ir/walk.hpp"
 #include "support/overloaded.hpp"

@@ -35,11 +35,11 @@ namespace {
 
 /// The module that code of some real type is compiled from. Code for floats calls the functions of
 /// native/library; other code calls the C library.
-struct Version {
+struct PreparedModule {
   Module plain;
   Module predicated;  ///< for code with several lanes
 
-  explicit Version(Module module) : plain(std::move(module)), predicated(clone(plain)) {
+  explicit PreparedModule(Module module) : plain(std::move(module)), predicated(clone(plain)) {
     predicate(predicated);
   }
 };
@@ -185,7 +185,7 @@ class Compilation {
     const bool isPredicated = codegen.lanes > 1;
     if (codegen.lanes >= 4 && real == Real::Float && options_.optimizes)
       codegen.blockWidth = std::min(level.vectorBits / 32, codegen.lanes);
-    const Version& version = versionFor(real);
+    const PreparedModule& version = versionFor(real);
     const Module& module = isPredicated ? version.predicated : version.plain;
     std::optional<analysis::Uniformity> uniformity;
     if (isPredicated) uniformity.emplace(module, module.kernels[request.kernel]);
@@ -212,7 +212,7 @@ class Compilation {
       internalError("invalid LLVM IR: " + violations.substr(0, violations.find('\n')));
   }
 
-  const Version& versionFor(Real real) {
+  const PreparedModule& versionFor(Real real) {
     if (real == Real::Float) return ofFloats_;
     if (!ofOthers_) ofOthers_.emplace(clone(plain_));
     return *ofOthers_;
@@ -237,8 +237,8 @@ class Compilation {
   const Options& options_;
   Target target_;
   const Module& plain_;
-  Version ofFloats_;
-  std::optional<Version> ofOthers_;
+  PreparedModule ofFloats_;
+  std::optional<PreparedModule> ofOthers_;
   llvm::LLVMContext context_;
   llvm::Module code_;
   std::optional<DebugInfo> debug_;

@@ -13,7 +13,7 @@ using namespace ir;
 
 namespace {
 
-Part extreme(const Formula& f, bool isMin, Scalar scalar, const Part& x, const Part& y) {
+Part extreme(const ScalarBuilder& f, bool isMin, Scalar scalar, const Part& x, const Part& y) {
   const BinaryOp before = isMin ? BinaryOp::Less : BinaryOp::Greater;
   if (scalar == Scalar::Int || scalar == Scalar::Uint) {
     return f.select(binary(f.l, before, scalar, y, x), y, x);
@@ -41,7 +41,7 @@ struct DoubleBits {
   llvm::Value* exponent;  ///< biased
   llvm::Value* isScaled;  ///< by 2^54, if it is subnormal; null if no number can be
 };
-DoubleBits doubleBits(const Formula& f, const Part& x) {
+DoubleBits doubleBits(const ScalarBuilder& f, const Part& x) {
   Lanes& l = f.l;
   const bool isFloat = x.value->getType()->getScalarType()->isFloatTy();
   llvm::Type* const wide = l.sameShape(x.value, l.b.getDoubleTy());
@@ -58,12 +58,12 @@ DoubleBits doubleBits(const Formula& f, const Part& x) {
 }
 
 /// True for zeros, infinities and NaN: frexp returns x itself and the exponent 0.
-Part isWithoutExponent(const Formula& f, const Part& x) {
+Part isWithoutExponent(const ScalarBuilder& f, const Part& x) {
   return f.either(f.equal(x, f.number(x, 0)), unary(f.l, UnaryOp::LogicalNot, Scalar::Bool, f.isFinite(x)));
 }
 
 /// Calls frexpq() or frexpl() lane by lane; returns the mantissa or the exponent.
-Part quadFrexp(const Formula& f, const Part& x, bool isExponent) {
+Part quadFrexp(const ScalarBuilder& f, const Part& x, bool isExponent) {
   Lanes& l = f.l;
   llvm::Function* const around = l.b.GetInsertBlock()->getParent();
   llvm::IRBuilder<> entry(&around->getEntryBlock(), around->getEntryBlock().begin());
@@ -80,33 +80,33 @@ Part quadFrexp(const Formula& f, const Part& x, bool isExponent) {
 
 }  // namespace
 
-Part minimum(const Formula& f, Scalar scalar, const Part& x, const Part& y) {
+Part minimum(const ScalarBuilder& f, Scalar scalar, const Part& x, const Part& y) {
   return extreme(f, true, scalar, x, y);
 }
-Part maximum(const Formula& f, Scalar scalar, const Part& x, const Part& y) {
+Part maximum(const ScalarBuilder& f, Scalar scalar, const Part& x, const Part& y) {
   return extreme(f, false, scalar, x, y);
 }
 
-Part absolute(const Formula& f, Scalar scalar, const Part& x) {
+Part absolute(const ScalarBuilder& f, Scalar scalar, const Part& x) {
   if (scalar != Scalar::Int) return f.abs(x);
   const Part zero = {f.l.integer(f.l.int32(), 0)};
   return f.select(binary(f.l, BinaryOp::Less, scalar, x, zero), unary(f.l, UnaryOp::Negate, scalar, x), x);
 }
 
-Part sign(const Formula& f, Scalar scalar, const Part& x) {
+Part sign(const ScalarBuilder& f, Scalar scalar, const Part& x) {
   const auto constant = [&](int value) { return Part{f.l.constant(scalar, value)}; };
   const Part below = f.select(binary(f.l, BinaryOp::Less, scalar, x, constant(0)), constant(-1), constant(0));
   return f.select(binary(f.l, BinaryOp::Greater, scalar, x, constant(0)), constant(1), below);
 }
 
-Part fraction(const Formula& f, const Part& x) {
+Part fraction(const ScalarBuilder& f, const Part& x) {
   const Part rest = f.sub(x, f.floor(x));
   const Part inside =
       f.select(f.less(rest, f.number(x, 1)), rest, f.select(f.differs(rest, rest), rest, belowOne(x)));
   return f.select(f.isInfinite(x), f.number(x, std::numeric_limits<double>::quiet_NaN()), inside);
 }
 
-Part modulo(const Formula& f, const Part& x, const Part& y) {
+Part modulo(const ScalarBuilder& f, const Part& x, const Part& y) {
   const Part left = f.libm("fmod", {x, y});
   const Part zero = f.number(x, 0);
   Part a = f.less(left, zero), c = f.less(y, zero);
@@ -114,32 +114,32 @@ Part modulo(const Formula& f, const Part& x, const Part& y) {
   return f.select(f.both(f.differs(left, zero), otherSign), f.add(left, y), left);
 }
 
-Part mix(const Formula& f, const Part& x, const Part& y, const Part& t) {
+Part mix(const ScalarBuilder& f, const Part& x, const Part& y, const Part& t) {
   const Part between = f.add(f.mul(x, f.sub(f.number(t, 1), t)), f.mul(y, t));
   return f.select(f.equal(t, f.number(t, 0)), x, f.select(f.equal(t, f.number(t, 1)), y, between));
 }
 
-Part clamp(const Formula& f, Scalar scalar, const Part& x, const Part& low, const Part& high) {
+Part clamp(const ScalarBuilder& f, Scalar scalar, const Part& x, const Part& low, const Part& high) {
   return minimum(f, scalar, maximum(f, scalar, x, low), high);
 }
 
-Part smoothstep(const Formula& f, const Part& low, const Part& high, const Part& x) {
+Part smoothstep(const ScalarBuilder& f, const Part& low, const Part& high, const Part& x) {
   const Part t =
       clamp(f, Scalar::Float, f.div(f.sub(x, low), f.sub(high, low)), f.number(x, 0), f.number(x, 1));
   return f.mul(f.mul(t, t), f.sub(f.number(x, 3), f.mul(f.number(x, 2), t)));
 }
 
-Part bitsOf(const Formula& f, const Part& x) {
+Part bitsOf(const ScalarBuilder& f, const Part& x) {
   const Part narrow = {f.l.b.CreateFPCast(x.value, f.l.sameShape(x.value, f.l.b.getFloatTy()))};
   return {f.l.b.CreateBitCast(narrow.value, f.l.sameShape(x.value, f.l.int32()))};
 }
-Part realOfBits(const Formula& f, const Part& x) {
+Part realOfBits(const ScalarBuilder& f, const Part& x) {
   llvm::Value* const bits = f.l.value(x);
   llvm::Value* const value = f.l.b.CreateBitCast(bits, f.l.sameShape(bits, f.l.b.getFloatTy()));
   return {f.l.b.CreateFPCast(value, f.l.sameShape(bits, f.l.real()))};
 }
 
-Part frexpExponent(const Formula& f, const Part& x) {
+Part frexpExponent(const ScalarBuilder& f, const Part& x) {
   Lanes& l = f.l;
   const Part zero = {l.integer(l.int32(), 0)};
   if (x.value->getType()->getScalarType()->isFP128Ty()) {
@@ -155,7 +155,7 @@ Part frexpExponent(const Formula& f, const Part& x) {
                   {l.b.CreateTrunc(exponent, l.sameShape(x.value, l.int32()))});
 }
 
-Part frexpMantissa(const Formula& f, const Part& x) {
+Part frexpMantissa(const ScalarBuilder& f, const Part& x) {
   Lanes& l = f.l;
   if (x.value->getType()->getScalarType()->isFP128Ty()) {
     return f.select(isWithoutExponent(f, x), x, quadFrexp(f, x, false));
@@ -168,12 +168,12 @@ Part frexpMantissa(const Formula& f, const Part& x) {
   return f.select(isWithoutExponent(f, x), x, {l.b.CreateFPCast(wide, x.value->getType())});
 }
 
-Part modfFraction(const Formula& f, const Part& x) {
+Part modfFraction(const ScalarBuilder& f, const Part& x) {
   const Part rest = f.select(f.isInfinite(x), f.number(x, 0), f.sub(x, f.trunc(x)));
   return f.copySign(rest, x);
 }
 
-Part ldexp(const Formula& f, const Part& number, const Part& exponent) {
+Part ldexp(const ScalarBuilder& f, const Part& number, const Part& exponent) {
   Lanes& l = f.l;
   Part x = number, e = exponent;
   l.unify(x, e);
@@ -192,13 +192,13 @@ Part ldexp(const Formula& f, const Part& number, const Part& exponent) {
   return {l.b.CreateFPTrunc(product, x.value->getType())};
 }
 
-Part sumError(const Formula& f, const Part& a, const Part& c) {
+Part sumError(const ScalarBuilder& f, const Part& a, const Part& c) {
   const Part s = f.add(a, c);
   const Part d = f.sub(s, a);
   return f.add(f.sub(a, f.sub(s, d)), f.sub(c, d));
 }
 
-Part productError(const Formula& f, const Part& x, const Part& y) {
+Part productError(const ScalarBuilder& f, const Part& x, const Part& y) {
   Lanes& l = f.l;
   Part a = x, c = y;
   l.unify(a, c);
@@ -217,11 +217,11 @@ Part productError(const Formula& f, const Part& x, const Part& y) {
   return f.select(f.isFinite(p), error, f.number(p, 0));
 }
 
-Part floorOf(Lanes& lanes, const Part& x) { return Formula(lanes).floor(x); }
+Part floorOf(Lanes& lanes, const Part& x) { return ScalarBuilder(lanes).floor(x); }
 
 Part wholeIndex(Lanes& lanes, const Part& x) {
   constexpr double last = 2147483520;
-  const Formula f(lanes);
+  const ScalarBuilder f(lanes);
   const Part isBeyond = binary(lanes, BinaryOp::Greater, Scalar::Float, x, f.number(x, last));
   const Part index = convert(lanes, Scalar::Float, Scalar::Int, x);
   return f.select(isBeyond, {lanes.integer(lanes.int32(), static_cast<std::int64_t>(last))}, index);

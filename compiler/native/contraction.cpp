@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "native/contraction.hpp"
 
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::native {

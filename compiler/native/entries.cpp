@@ -5,7 +5,7 @@
 
 #include <llvm/IR/Constants.h>
 
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "native/debug_info.hpp"
 #include "native/function_code.hpp"
 #include "native/leaves.hpp"

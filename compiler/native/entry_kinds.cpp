@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "native/leaves.hpp"
 #include "transforms/fold_pattern.hpp"
 

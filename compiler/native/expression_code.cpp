@@ -7,7 +7,7 @@
 #include <llvm/IR/Intrinsics.h>
 
 #include "ir/build.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 #include "native/arithmetic.hpp"
 #include "native/function_code.hpp"

@@ -40,9 +40,9 @@ Parts byComponent(const Lanes& lanes, const Arguments& arguments, ByComponent fu
 }
 
 /// Computes the result from all components of the arguments; `n` is the width of the first argument.
-using OfWholes = llvm::function_ref<Parts(const Parts& a, const Parts& b, const Parts& c, std::size_t n)>;
+using OfVectors = llvm::function_ref<Parts(const Parts& a, const Parts& b, const Parts& c, std::size_t n)>;
 
-Parts ofWholes(const Arguments& arguments, OfWholes function) {
+Parts ofVectors(const Arguments& arguments, OfVectors function) {
   const Parts none;
   const auto parts = [&](std::size_t i) -> const Parts& {
     return i < arguments.size() ? arguments[i].parts : none;
@@ -52,7 +52,7 @@ Parts ofWholes(const Arguments& arguments, OfWholes function) {
 Parts asParts(const Part& part) { return {part}; }
 Parts asParts(Parts parts) { return parts; }
 
-Part libm(const Formula& f, const char* name, const Part& x, const Part& y) {
+Part libm(const ScalarBuilder& f, const char* name, const Part& x, const Part& y) {
   return f.libm(name, y.value == nullptr ? Parts{x} : Parts{x, y});
 }
 
@@ -67,14 +67,14 @@ Part libm(const Formula& f, const char* name, const Part& x, const Part& y) {
 #define SKC_NATIVE_Instruction(name) SKC_BY_COMPONENT(f.instruction(llvm::Intrinsic::name, #name, x))
 #define SKC_NATIVE_Libm(name) SKC_BY_COMPONENT(libm(f, #name, x, y))
 #define SKC_NATIVE_Component(...) SKC_BY_COMPONENT(__VA_ARGS__)
-#define SKC_NATIVE_Whole(...)                                                                           \
-  return ofWholes(arguments,                                                                            \
-                  [&](const Parts& a, [[maybe_unused]] const Parts& b, [[maybe_unused]] const Parts& c, \
-                      [[maybe_unused]] std::size_t n) { return asParts(__VA_ARGS__); })
+#define SKC_NATIVE_Whole(...)                                                                            \
+  return ofVectors(arguments,                                                                            \
+                   [&](const Parts& a, [[maybe_unused]] const Parts& b, [[maybe_unused]] const Parts& c, \
+                       [[maybe_unused]] std::size_t n) { return asParts(__VA_ARGS__); })
 #define SKC_NATIVE_None break
 
 Parts intrinsic(Lanes& lanes, Intrinsic intrinsic, const Arguments& arguments) {
-  const Formula f(lanes);
+  const ScalarBuilder f(lanes);
   switch (intrinsic) {
 #define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) \
   case Intrinsic::Name: SKC_NATIVE_##native;

@@ -8,8 +8,8 @@
 #include "analysis/stream_uses.hpp"
 #include "analysis/uniformity.hpp"
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/lvalue.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "native/leaves.hpp"
 

@@ -16,6 +16,7 @@
 
 namespace skc::native {
 
+/// One scalar component of a value, in all lanes.
 struct Part {
   llvm::Value* value = nullptr;
   bool isConsecutive = false;  ///< `value` is the first lane's; lane i has value + i

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::native {
@@ -14,11 +14,11 @@ using namespace ir;
 namespace {
 
 /// Counts how often a group of lanes may append records for one parameter, up to `many`.
-class Counter {
+class RecordCounter {
  public:
   static constexpr std::uint32_t many = 2;
 
-  Counter(const Module& module, std::uint32_t param) : module_(module), param_(param) {}
+  RecordCounter(const Module& module, std::uint32_t param) : module_(module), param_(param) {}
 
   std::uint32_t function(FunctionId id) {
     const auto known = functions_.find(id);
@@ -68,7 +68,7 @@ bool isReordered(const Module& module, const Kernel& kernel) {
   for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
     const ParamRole role = kernel.params[i].role;
     if (role != ParamRole::VariableOutput && role != ParamRole::Scatter) continue;
-    if (Counter(module, i).function(kernel.entry) >= Counter::many) return true;
+    if (RecordCounter(module, i).function(kernel.entry) >= RecordCounter::many) return true;
   }
   return false;
 }

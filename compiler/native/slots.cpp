@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "ir/call_graph.hpp"
 #include "ir/evaluate.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "native/leaves.hpp"
 

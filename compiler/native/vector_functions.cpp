@@ -7,13 +7,13 @@ using namespace ir;
 
 namespace {
 
-Parts times(const Formula& f, const Parts& a, const Part& factor) {
+Parts times(const ScalarBuilder& f, const Parts& a, const Part& factor) {
   Parts result;
   for (const Part& part : a) result.push_back(f.mul(part, factor));
   return result;
 }
 
-Part largest(const Formula& f, const Parts& a) {
+Part largest(const ScalarBuilder& f, const Parts& a) {
   Part most = f.abs(a[0]);
   for (std::size_t i = 1; i < a.size(); ++i) most = maximum(f, Scalar::Float, most, f.abs(a[i]));
   return most;
@@ -34,7 +34,7 @@ LengthScales lengthScales(const Part& part) {
 }
 
 /// The power of 2 by which to multiply a vector with this largest component.
-Part lengthScale(const Formula& f, const Part& most) {
+Part lengthScale(const ScalarBuilder& f, const Part& most) {
   const LengthScales scales = lengthScales(most);
   const Part small =
       f.select(f.less(most, f.decimal(most, scales.small)), f.decimal(most, scales.up), f.number(most, 1));
@@ -57,7 +57,7 @@ Parts minorOf(const Parts& m, std::size_t n, std::size_t row, std::size_t column
   return part;
 }
 
-Part anyOrAll(const Formula& f, bool isAny, const Parts& parts) {
+Part anyOrAll(const ScalarBuilder& f, bool isAny, const Parts& parts) {
   Part result = parts[0];
   for (std::size_t i = 1; i < parts.size(); ++i) {
     result = isAny ? f.either(result, parts[i]) : f.both(result, parts[i]);
@@ -67,26 +67,26 @@ Part anyOrAll(const Formula& f, bool isAny, const Parts& parts) {
 
 }  // namespace
 
-Parts minus(const Formula& f, const Parts& a, const Parts& c) {
+Parts minus(const ScalarBuilder& f, const Parts& a, const Parts& c) {
   Parts result;
   for (std::size_t i = 0; i < a.size(); ++i) result.push_back(f.sub(a[i], c[i]));
   return result;
 }
 
-Part dot(const Formula& f, const Parts& a, const Parts& c) {
+Part dot(const ScalarBuilder& f, const Parts& a, const Parts& c) {
   Part sum = f.mul(a[0], c[0]);
   for (std::size_t i = 1; i < a.size(); ++i) sum = f.add(sum, f.mul(a[i], c[i]));
   return sum;
 }
 
-Part length(const Formula& f, const Parts& a) {
+Part length(const ScalarBuilder& f, const Parts& a) {
   const Part most = largest(f, a);
   const Part scale = lengthScale(f, most);
   const Parts scaled = times(f, a, scale);
   return f.select(f.isInfinite(most), most, f.div(f.sqrt(dot(f, scaled, scaled)), scale));
 }
 
-Parts normalize(const Formula& f, const Parts& a) {
+Parts normalize(const ScalarBuilder& f, const Parts& a) {
   const Parts scaled = times(f, a, lengthScale(f, largest(f, a)));
   const Part square = dot(f, scaled, scaled);
   const Part isZero = f.equal(square, f.number(square, 0));
@@ -96,14 +96,14 @@ Parts normalize(const Formula& f, const Parts& a) {
   return result;
 }
 
-Parts cross(const Formula& f, const Parts& a, const Parts& c) {
+Parts cross(const ScalarBuilder& f, const Parts& a, const Parts& c) {
   const auto minor = [&](std::size_t i, std::size_t k) {
     return f.sub(f.mul(a[i], c[k]), f.mul(c[i], a[k]));
   };
   return {minor(1, 2), minor(2, 0), minor(0, 1)};
 }
 
-Parts faceforward(const Formula& f, const Parts& n, const Parts& i, const Parts& reference) {
+Parts faceforward(const ScalarBuilder& f, const Parts& n, const Parts& i, const Parts& reference) {
   const Part product = dot(f, reference, i);
   const Part isAgainst = f.less(product, f.number(product, 0));
   Parts result;
@@ -111,12 +111,12 @@ Parts faceforward(const Formula& f, const Parts& n, const Parts& i, const Parts&
   return result;
 }
 
-Parts reflect(const Formula& f, const Parts& i, const Parts& n) {
+Parts reflect(const ScalarBuilder& f, const Parts& i, const Parts& n) {
   const Part product = dot(f, n, i);
   return minus(f, i, times(f, n, f.mul(f.number(product, 2), product)));
 }
 
-Parts refract(const Formula& f, const Parts& i, const Parts& n, const Part& eta) {
+Parts refract(const ScalarBuilder& f, const Parts& i, const Parts& n, const Part& eta) {
   const Part d = dot(f, n, i);
   const Part one = f.number(d, 1);
   const Part k = f.sub(one, f.mul(f.mul(eta, eta), f.sub(one, f.mul(d, d))));
@@ -135,7 +135,7 @@ Parts transpose(const Parts& m, std::size_t n) {
   return result;
 }
 
-Part determinant(const Formula& f, const Parts& m, std::size_t n) {
+Part determinant(const ScalarBuilder& f, const Parts& m, std::size_t n) {
   if (n == 1) return m[0];
   if (n == 2) return f.sub(f.mul(m[0], m[3]), f.mul(m[1], m[2]));
   Part sum = f.number(m[0], 0);
@@ -146,7 +146,7 @@ Part determinant(const Formula& f, const Parts& m, std::size_t n) {
   return sum;
 }
 
-Parts inverse(const Formula& f, const Parts& m, std::size_t n) {
+Parts inverse(const ScalarBuilder& f, const Parts& m, std::size_t n) {
   const Part d = determinant(f, m, n);
   Parts result(m.size());
   for (std::size_t i = 0; i < n; ++i) {
@@ -158,7 +158,7 @@ Parts inverse(const Formula& f, const Parts& m, std::size_t n) {
   return result;
 }
 
-Part anyOf(const Formula& f, const Parts& parts) { return anyOrAll(f, true, parts); }
-Part allOf(const Formula& f, const Parts& parts) { return anyOrAll(f, false, parts); }
+Part anyOf(const ScalarBuilder& f, const Parts& parts) { return anyOrAll(f, true, parts); }
+Part allOf(const ScalarBuilder& f, const Parts& parts) { return anyOrAll(f, false, parts); }
 
 }  // namespace skc::native

@@ -23,9 +23,9 @@ bool isUsedElsewhere(const llvm::Instruction& mask) {
   });
 }
 
-class Widener {
+class MaskWidener {
  public:
-  explicit Widener(llvm::Function& function) : b_(function.getContext()) {
+  explicit MaskWidener(llvm::Function& function) : b_(function.getContext()) {
     unsigned narrowest = 64;
     bool anyLivesOn = false;
     for (llvm::Instruction& instruction : llvm::instructions(function)) {
@@ -204,7 +204,7 @@ class Widener {
 }  // namespace
 
 llvm::PreservedAnalyses WideMasks::run(llvm::Function& function, llvm::FunctionAnalysisManager&) {
-  if (!function.hasFnAttribute(wideMasksAttribute) || !Widener(function).widen())
+  if (!function.hasFnAttribute(wideMasksAttribute) || !MaskWidener(function).widen())
     return llvm::PreservedAnalyses::all();
   llvm::PreservedAnalyses kept;
   kept.preserveSet<llvm::CFGAnalyses>();

@@ -16,9 +16,9 @@
 #include "analysis/stream_uses.hpp"
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "glsl/body.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/ir.hpp"
 #include "ir/print.hpp"
-#include "ir/reach.hpp"
 #include "program/elements.hpp"
 #include "sk/program.hpp"
 
@@ -387,8 +387,8 @@ class Builder {
     std::vector<sk::program::Bundle>& bundles = storage_.bundles.emplace_back();
     for (const Bundle& bundle : plan.bundles) {
       std::vector<sk::program::ArgumentPlane>& layers = storage_.bundleLayers.emplace_back();
-      for (const ArgumentPlane& place : bundle.layers) {
-        layers.push_back({static_cast<std::uint8_t>(place.argument), static_cast<std::uint8_t>(place.plane)});
+      for (const ArgumentPlane& plane : bundle.layers) {
+        layers.push_back({static_cast<std::uint8_t>(plane.argument), static_cast<std::uint8_t>(plane.plane)});
       }
       bundles.push_back({static_cast<sk::program::Scalar>(bundle.type.scalar), bundle.type.width, layers});
     }

@@ -475,8 +475,8 @@ class SourceWriter {
     std::vector<std::string> bundles;
     for (std::size_t i = 0; i < made.bundles.size(); ++i) {
       std::vector<std::string> places;
-      for (const sk::program::ArgumentPlane& place : made.bundles[i].layers) {
-        places.push_back(fmt::format("{{{}, {}}}", place.argument, place.plane));
+      for (const sk::program::ArgumentPlane& plane : made.bundles[i].layers) {
+        places.push_back(fmt::format("{{{}, {}}}", plane.argument, plane.plane));
       }
       const std::string bundle = numbered(name, Part::Bundle, i + 1);
       list("ArgumentPlane", bundle, places);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::emit {

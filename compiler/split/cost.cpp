@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "ir/call_graph.hpp"
 #include "ir/counted_loop.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "support/overloaded.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "ir/build.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 #include "split/cost.hpp"
 #include "split/slice.hpp"

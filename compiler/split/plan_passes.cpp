@@ -35,7 +35,7 @@ struct PassReads {
 Type texelType(Type plane) { return plane.width == 3 ? Type::of(plane.scalar, 4) : plane; }
 
 struct ReadPlane {
-  ArgumentPlane place;
+  ArgumentPlane plane;
   Type type;
 };
 
@@ -63,9 +63,9 @@ class Chooser {
     return planes;
   }
 
-  Bundle* bundleOf(const ArgumentPlane& place) {
+  Bundle* bundleOf(const ArgumentPlane& plane) {
     const auto holds = [&](const Bundle& bundle) {
-      return std::ranges::find(bundle.layers, place) != bundle.layers.end();
+      return std::ranges::find(bundle.layers, plane) != bundle.layers.end();
     };
     const auto found = std::ranges::find_if(bundles_, holds);
     return found == bundles_.end() ? nullptr : &*found;
@@ -75,7 +75,7 @@ class Chooser {
     std::uint32_t units = pass.temporaries;
     std::vector<const Bundle*> counted;
     for (const ReadPlane& plane : planesRead(pass)) {
-      const Bundle* bundle = bundleOf(plane.place);
+      const Bundle* bundle = bundleOf(plane.plane);
       if (bundle != nullptr && std::ranges::find(counted, bundle) != counted.end()) continue;
       if (bundle != nullptr) counted.push_back(bundle);
       ++units;
@@ -87,19 +87,19 @@ class Chooser {
   /// new one in the format that most planes have.
   void bundleOne(const PassReads& pass) {
     std::vector<ReadPlane> free = planesRead(pass);
-    std::erase_if(free, [&](const ReadPlane& plane) { return bundleOf(plane.place) != nullptr; });
+    std::erase_if(free, [&](const ReadPlane& plane) { return bundleOf(plane.plane) != nullptr; });
     assert(!free.empty() && "there are fewer formats than texture units");
     for (const ReadPlane& plane : free) {
       const auto bundle = std::ranges::find(bundles_, plane.type, &Bundle::type);
       if (bundle == bundles_.end()) continue;
-      bundle->layers.push_back(plane.place);
+      bundle->layers.push_back(plane.plane);
       return;
     }
     const auto countOf = [&](const ReadPlane& one) {
       return std::ranges::count(free, one.type, &ReadPlane::type);
     };
     const ReadPlane most = *std::ranges::max_element(free, {}, countOf);
-    bundles_.push_back({most.type, {most.place}});
+    bundles_.push_back({most.type, {most.plane}});
   }
 
   const Module& module_;

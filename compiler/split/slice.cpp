@@ -6,7 +6,7 @@
 #include <ranges>
 
 #include "ir/build.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 #include "split/cost.hpp"
 #include "support/overloaded.hpp"

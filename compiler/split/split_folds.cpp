@@ -18,9 +18,9 @@ namespace {
 
 using namespace ir;
 
-class State {
+class FoldSplitter {
  public:
-  State(Module& module, Diagnostics& diagnostics) : module_(module), diagnostics_(diagnostics) {}
+  FoldSplitter(Module& module, Diagnostics& diagnostics) : module_(module), diagnostics_(diagnostics) {}
 
   void split(KernelId id) {
     const Kernel& kernel = module_.kernels[id];
@@ -164,7 +164,7 @@ class State {
 }  // namespace
 
 void splitFolds(Module& module, Diagnostics& diagnostics) {
-  State state(module, diagnostics);
+  FoldSplitter state(module, diagnostics);
   forEachDeclaredKernel(module, [&](KernelId id) {
     if (foldsBesideOutputs(module.kernels[id])) state.split(id);
   });

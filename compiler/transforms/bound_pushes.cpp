@@ -5,9 +5,9 @@
 #include <map>
 #include <optional>
 
+#include "ir/call_graph.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/print.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "support/overloaded.hpp"
 
@@ -31,9 +31,9 @@ Bound product(Bound a, Bound b) {
 }
 
 /// Counts executions of the statements that write one parameter of a kernel.
-class Counter {
+class PushCounter {
  public:
-  Counter(const Module& module, std::uint32_t param) : module_(module), param_(param) {}
+  PushCounter(const Module& module, std::uint32_t param) : module_(module), param_(param) {}
 
   Bound function(FunctionId id) {
     const auto known = functions_.find(id);
@@ -75,7 +75,7 @@ class Counter {
 };
 
 /// Sets each scatter output's operation from its first statement, and reports statements that differ.
-void settleOperations(const Module& module, Kernel& kernel, Diagnostics& diagnostics) {
+void unifyOperations(const Module& module, Kernel& kernel, Diagnostics& diagnostics) {
   std::vector<bool> isKnown(kernel.params.size(), false);
   for (const FunctionId id : functionsOf(module, kernel)) {
     walkStmts(module.functions[id].body, [&](const Stmt& stmt) {
@@ -96,11 +96,11 @@ void settleOperations(const Module& module, Kernel& kernel, Diagnostics& diagnos
 
 void boundPushes(Module& module, Diagnostics& diagnostics) {
   for (Kernel& kernel : module.kernels) {
-    settleOperations(module, kernel, diagnostics);
+    unifyOperations(module, kernel, diagnostics);
     for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
       KernelParam& param = kernel.params[i];
       if (param.role != ParamRole::VariableOutput && param.role != ParamRole::Scatter) continue;
-      param.pushes = static_cast<std::int32_t>(Counter(module, i).function(kernel.entry).value_or(-1));
+      param.pushes = static_cast<std::int32_t>(PushCounter(module, i).function(kernel.entry).value_or(-1));
     }
   }
 }

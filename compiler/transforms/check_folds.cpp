@@ -12,8 +12,8 @@
 #include "ir/print.hpp"
 #include "ir/walk.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/try_fold.hpp"
-#include "transforms/try_function.hpp"
+#include "transforms/fold_trial.hpp"
+#include "transforms/interpreter.hpp"
 
 namespace skc {
 namespace {
@@ -77,10 +77,10 @@ bool isNonNegative(const Expr& expr) {
 }
 
 /// True if every value that a reduce folds into a part by max is known to be non-negative.
-bool foldsNonNegatives(const Module& module, const Kernel& kernel, const FoldPart& part) {
+bool foldsNonNegatives(const Module& module, const Kernel& kernel, const FoldTarget& part) {
   bool holds = true;
   walkStmts(module.functions[kernel.entry].body, [&](const Stmt& stmt) {
-    const std::optional<FoldPart> found = foldedBy(kernel, stmt);
+    const std::optional<FoldTarget> found = foldedBy(kernel, stmt);
     if (!found || found->accumulator != part.accumulator || found->members != part.members) return;
     const Expr* value = std::get<Assign>(stmt.node).value.get();
     if (const auto* n = std::get_if<Convert>(&value->node)) value = n->operand.get();
@@ -133,9 +133,9 @@ struct IdentityCheck {
   Diagnostics& diagnostics;
 
   /// Reports the first component of a part whose identity is not the operator's.
-  bool check(const FoldPart& part, const Numbers& identity) const {
+  bool check(const FoldTarget& part, const Numbers& identity) const {
     const Scalar scalar = part.type.scalar;
-    const std::optional<Numbers> neutral = tryConstant(module, *neutralOf(part.op, scalar));
+    const std::optional<Numbers> neutral = interpretConstant(module, *neutralOf(part.op, scalar));
     if (!neutral) return true;
     const KernelParam& param = kernel.params[part.accumulator];
     const std::size_t from = offsetOf(module, param.type, part.members);
@@ -151,7 +151,7 @@ struct IdentityCheck {
     return true;
   }
 
-  bool report(const FoldPart& part, const KernelParam& param, const std::string& given,
+  bool report(const FoldTarget& part, const KernelParam& param, const std::string& given,
               const std::string& neutral) const {
     const Diag diag = isIdempotent(part.op) ? Diag::ReduceBound : Diag::ReduceIdentity;
     diagnostics.report(diag, param.loc, {param.name, given, spellingOf(part.op), neutral});
@@ -164,9 +164,9 @@ struct IdentityCheck {
 bool checkIdentities(const Module& module, const Kernel& kernel, const FoldPattern& pattern,
                      Diagnostics& diagnostics) {
   bool isRight = true;
-  for (const FoldPart& part : pattern.parts) {
+  for (const FoldTarget& part : pattern.parts) {
     const ExprPtr& identity = kernel.params[part.accumulator].identity;
-    const std::optional<Numbers> given = identity ? tryConstant(module, *identity) : std::nullopt;
+    const std::optional<Numbers> given = identity ? interpretConstant(module, *identity) : std::nullopt;
     if (given && !IdentityCheck{module, kernel, diagnostics}.check(part, *given)) isRight = false;
   }
   return isRight;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 #include "split/cost.hpp"
 

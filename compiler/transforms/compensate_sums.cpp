@@ -71,7 +71,7 @@ void addRoundingErrors(const Kernel& kernel, Function& entry, Block& block, cons
   Block rewritten;
   for (Stmt& stmt : block) {
     forEachBlock(stmt, [&](Block& inner) { addRoundingErrors(kernel, entry, inner, errors); });
-    const std::optional<FoldPart> part = foldedBy(kernel, stmt);
+    const std::optional<FoldTarget> part = foldedBy(kernel, stmt);
     const auto sum =
         std::ranges::find_if(errors.sums, [&](const FloatSum& one) { return part && one.holds(*part); });
     if (sum == errors.sums.end()) {

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/ir.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk_module.hpp"
 #include "transforms/check_folds.hpp"
 #include "transforms/check_limits.hpp"
@@ -26,7 +26,7 @@ namespace {
 // Builds the statement that combines two partial results for one part of a fold.
 
 /// The part's member or components of a variable.
-ExprPtr access(const Module& module, const Function& function, VarId var, const FoldPart& part) {
+ExprPtr access(const Module& module, const Function& function, VarId var, const FoldTarget& part) {
   ExprPtr expr = varRef(function, var, part.loc);
   for (std::uint32_t field : part.members) expr = member(module, std::move(expr), field, part.loc);
   if (part.isWhole()) return expr;
@@ -39,7 +39,7 @@ ExprPtr access(const Module& module, const Function& function, VarId var, const 
 
 /// `total op= partial` for the part's member or components. Both are variables of `function` with the
 /// accumulator's type.
-Stmt combinePart(const Module& module, const Function& function, const FoldPart& part, VarId partial,
+Stmt combinePart(const Module& module, const Function& function, const FoldTarget& part, VarId partial,
                  VarId total) {
   const auto as = [&](Scalar scalar, ExprPtr value) {
     return value->type.isMatrix() ? std::move(value) : convert(scalar, std::move(value), part.loc);
@@ -81,7 +81,7 @@ struct MemberPath {
 /// The identity of a scalar, vector or matrix member; null if one of its components is not folded.
 ExprPtr leafIdentity(const FoldPattern& pattern, const MemberPath& path, Type type) {
   std::vector<ExprPtr> components(type.width);
-  for (const FoldPart& part : pattern.parts) {
+  for (const FoldTarget& part : pattern.parts) {
     if (part.accumulator != path.accumulator || part.members != path.members) continue;
     const ExprPtr one = neutralOf(part.op, type.scalar);
     if (part.isWhole()) return everywhere(type, *one);
@@ -126,7 +126,7 @@ KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern
           makeParam(param.name + (role == ParamRole::Input ? "_part" : ""), role, param.type, param.loc));
     }
   }
-  for (const FoldPart& part : pattern.parts) {
+  for (const FoldTarget& part : pattern.parts) {
     const auto found = std::find(accumulators.begin(), accumulators.end(), part.accumulator);
     const auto partial = static_cast<VarId>(found - accumulators.begin());
     const auto total = static_cast<VarId>(accumulators.size()) + partial;
@@ -141,9 +141,9 @@ bool isAssociative(FoldOp op) {
   return std::holds_alternative<Intrinsic>(op) || row(std::get<BinaryOp>(op)).isAssociative;
 }
 
-class State {
+class CombineDeriver {
  public:
-  State(Module& module, Diagnostics& diagnostics) : module_(module), diagnostics_(diagnostics) {}
+  CombineDeriver(Module& module, Diagnostics& diagnostics) : module_(module), diagnostics_(diagnostics) {}
 
   void derive(KernelId id) {
     Kernel& kernel = module_.kernels[id];
@@ -259,7 +259,7 @@ class State {
   }
 
   bool checkAssociative(const Kernel& kernel, const FoldPattern& pattern) {
-    for (const FoldPart& part : pattern.parts) {
+    for (const FoldTarget& part : pattern.parts) {
       if (isAssociative(part.op)) continue;
       const BinaryOp op = std::get<BinaryOp>(part.op);
       const std::string& name = kernel.params[part.accumulator].name;
@@ -311,7 +311,7 @@ class State {
 }  // namespace
 
 void deriveCombine(Module& module, Diagnostics& diagnostics) {
-  State state(module, diagnostics);
+  CombineDeriver state(module, diagnostics);
   forEachDeclaredKernel(module, [&](KernelId id) {
     if (module.kernels[id].reduction) state.derive(id);
   });

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/lvalue.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 
 namespace skc {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/find_reach.hpp"
+#include "analysis/gather_reach.hpp"
 
 namespace skc {
 
@@ -53,7 +53,7 @@ void findReach(Module& module, Diagnostics& diagnostics) {
   for (Kernel& kernel : module.kernels) {
     const auto isGather = [](const KernelParam& param) { return param.role == ParamRole::Gather; };
     if (kernel.isSynthesized || std::ranges::none_of(kernel.params, isGather)) continue;
-    std::vector<analysis::GatherReach> found = analysis::findReach(module, kernel);
+    std::vector<analysis::GatherReach> found = analysis::gatherReach(module, kernel);
     for (std::size_t p = 0; p < found.size(); ++p) {
       kernel.params[p].reach = std::move(found[p].reach);
       kernel.params[p].reachShapes = found[p].shapes;

@@ -51,7 +51,7 @@ class Uses {
  private:
   void take(const Block& block, bool isHead) {
     for (const Stmt& stmt : block) {
-      const std::optional<FoldPart> part = isHead ? std::nullopt : foldedBy(kernel_, stmt);
+      const std::optional<FoldTarget> part = isHead ? std::nullopt : foldedBy(kernel_, stmt);
       if (part && part->op == FoldOp(BinaryOp::Add) && part->type.isFloat() &&
           (!ofParts_ || addsItsPart(std::get<Assign>(stmt.node)))) {
         add(*part);
@@ -73,7 +73,7 @@ class Uses {
     }
   }
 
-  void add(const FoldPart& part) {
+  void add(const FoldTarget& part) {
     for (FloatSum& sum : added_) {
       if (sum.accumulator != part.accumulator || sum.members != part.members) continue;
       sum.components |= part.components;
@@ -99,7 +99,7 @@ class Uses {
 
 }  // namespace
 
-bool FloatSum::holds(const FoldPart& part) const {
+bool FloatSum::holds(const FoldTarget& part) const {
   return accumulator == part.accumulator && members == part.members && (components & part.components) != 0;
 }
 
@@ -257,7 +257,7 @@ namespace {
 /// The term, if each element only adds one, to one float.
 std::optional<Term> termOf(const Module& module, const Kernel& reduce) {
   const Block& body = module.functions[reduce.entry].body;
-  const std::optional<FoldPart> part = body.size() == 1 ? foldedBy(reduce, body[0]) : std::nullopt;
+  const std::optional<FoldTarget> part = body.size() == 1 ? foldedBy(reduce, body[0]) : std::nullopt;
   if (!part || part->op != FoldOp(BinaryOp::Add) ||
       reduce.params[part->accumulator].type != Type::of(Scalar::Float) ||
       std::ranges::count(reduce.params, ParamRole::Accumulator, &KernelParam::role) != 1) {
@@ -318,7 +318,7 @@ namespace {
 
 /// The component of the added values that goes to the sum; nullopt if none does.
 std::optional<unsigned> componentIn(const Kernel& reduce, const Stmt& stmt, const ScalarSum& sum) {
-  const std::optional<FoldPart> part = foldedBy(reduce, stmt);
+  const std::optional<FoldTarget> part = foldedBy(reduce, stmt);
   const bool isOfSum = part && sum.whole.holds(*part) && (part->components >> sum.component & 1U) != 0;
   if (!isOfSum) return std::nullopt;
   const auto* swizzled = std::get_if<Swizzle>(&std::get<Assign>(stmt.node).place->node);

@@ -21,7 +21,7 @@ struct FloatSum {
   unsigned components;  ///< bit i: component i is a sum; other components are not folded by +
 
   /// True if a part of a fold consists of components of this sum.
-  bool holds(const FoldPart& part) const;
+  bool holds(const FoldTarget& part) const;
 };
 
 /// The sums of a reduce, in the order of its parameters and their members. Outside of loop heads, the

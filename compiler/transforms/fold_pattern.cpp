@@ -60,9 +60,9 @@ std::optional<FoldOp> selfFold(const Expr& value, const StaticLValue& lvalue) {
 }
 
 /// Adds a part; false if one of its components is folded by another operator already.
-bool add(std::vector<FoldPart>& parts, FoldPart part) {
-  FoldPart* same = nullptr;
-  for (FoldPart& other : parts) {
+bool add(std::vector<FoldTarget>& parts, FoldTarget part) {
+  FoldTarget* same = nullptr;
+  for (FoldTarget& other : parts) {
     if (other.accumulator != part.accumulator || other.members != part.members) continue;
     if (other.op == part.op) {
       same = &other;
@@ -83,7 +83,7 @@ class Recogniser {
   explicit Recogniser(const Kernel& kernel) : kernel_(kernel) {}
 
   /// The part that a statement folds into an accumulator.
-  std::optional<FoldPart> foldOf(const Stmt& stmt) const {
+  std::optional<FoldTarget> foldOf(const Stmt& stmt) const {
     const auto* n = std::get_if<Assign>(&stmt.node);
     if (n == nullptr) return std::nullopt;
     const std::optional<StaticLValue> lvalue = lvalueOf(*n->place);
@@ -93,14 +93,14 @@ class Recogniser {
     if (!op) return std::nullopt;
     if (lvalue->type.isMatrix() && op != FoldOp(BinaryOp::Add)) return std::nullopt;
     if (reads(*n->value) != (n->op ? 0 : 1)) return std::nullopt;
-    return FoldPart{lvalue->root, lvalue->members, lvalue->type, lvalue->mask(), *op, stmt.loc};
+    return FoldTarget{lvalue->root, lvalue->members, lvalue->type, lvalue->mask(), *op, stmt.loc};
   }
 
   std::optional<FoldPattern> run(const Block& body) const {
     FoldPattern pattern{{}, false};
     bool matches = true;
     walkStmts(body, [&](const Stmt& stmt) {
-      std::optional<FoldPart> part = foldOf(stmt);
+      std::optional<FoldTarget> part = foldOf(stmt);
       if (part) {
         matches = matches && add(pattern.parts, std::move(*part));
         return;
@@ -125,15 +125,15 @@ class Recogniser {
   /// Whether plain statements fold into the same component by the same operator. An unrolled loop repeats one statement of
   /// the source.
   Overlap overlapOf(const Block& body) const {
-    std::vector<FoldPart> parts;
+    std::vector<FoldTarget> parts;
     for (const Stmt& stmt : body) {
-      if (std::optional<FoldPart> part = foldOf(stmt)) parts.push_back(std::move(*part));
+      if (std::optional<FoldTarget> part = foldOf(stmt)) parts.push_back(std::move(*part));
     }
     Overlap overlap = Overlap::None;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const FoldPart& a = parts[i];
+      const FoldTarget& a = parts[i];
       for (std::size_t j = 0; j < i; ++j) {
-        const FoldPart& b = parts[j];
+        const FoldTarget& b = parts[j];
         if (a.op != b.op) continue;
         if (a.accumulator != b.accumulator || a.members != b.members || (a.components & b.components) == 0)
           continue;
@@ -197,7 +197,7 @@ void addSummands(const Expr& value, const StaticLValue& lvalue, bool isNegative,
 
 }  // namespace
 
-std::optional<FoldPart> foldedBy(const Kernel& kernel, const Stmt& stmt) {
+std::optional<FoldTarget> foldedBy(const Kernel& kernel, const Stmt& stmt) {
   return Recogniser(kernel).foldOf(stmt);
 }
 

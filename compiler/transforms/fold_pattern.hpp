@@ -20,7 +20,7 @@ namespace skc {
 using FoldOp = std::variant<ir::BinaryOp, ir::Intrinsic>;
 
 /// Components of an accumulator, or of a scalar, vector or matrix member, and the operator that folds them.
-struct FoldPart {
+struct FoldTarget {
   ir::VarId accumulator;
   std::vector<std::uint32_t> members;  ///< path from the accumulator to the member
   ir::Type type;  ///< type of the member
@@ -31,7 +31,7 @@ struct FoldPart {
 };
 
 struct FoldPattern {
-  std::vector<FoldPart> parts;  ///< in statement order; each component is in one part only
+  std::vector<FoldTarget> parts;  ///< in statement order; each component is in one part only
   bool
       isPlain;  ///< the body is only `accumulator op= its element`, whole or by member, each component at most once
 };
@@ -44,7 +44,7 @@ std::optional<FoldPattern> recogniseFold(const ir::Kernel& kernel, const ir::Fun
 bool foldsElementTwice(const ir::Kernel& kernel, const ir::Function& entry);
 
 /// The part that a statement of a reduce folds into, if the statement uses accumulators in no other way.
-std::optional<FoldPart> foldedBy(const ir::Kernel& kernel, const ir::Stmt& stmt);
+std::optional<FoldTarget> foldedBy(const ir::Kernel& kernel, const ir::Stmt& stmt);
 
 /// A value that a statement folding by + adds: f or g of `place += f`, `place = place + f - g`.
 struct Summand {

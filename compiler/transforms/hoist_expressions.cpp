@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/counted_loop.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 
 namespace skc {

@@ -160,7 +160,7 @@ void inlineFolds(ir::Module& module, Diagnostics& diagnostics);
 ///     results, since the language requires the operation to be associative.
 ///   * Otherwise the author has to write that overload.
 /// A combining reduce must not ask where an element is: a partial result has no index. All folds are then tried on
-/// numbers (try_fold.hpp), so that no result depends on how the device divides the elements, but for rounding.
+/// numbers (fold_trial.hpp), so that no result depends on how the device divides the elements, but for rounding.
 ///
 /// Identities and -0. If the author gives an identity, every run of elements starts from it, as written: the
 /// sum of a stream of -0 with `= 0` is 0 + -0 = +0, as in C++, and `max` with `= -inf` drops NaN wherever the

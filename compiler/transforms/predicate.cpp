@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "analysis/uniformity.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/validate.hpp"
 #include "ir/walk.hpp"
 #include "support/internal_error.hpp"

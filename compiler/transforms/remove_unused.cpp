@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ir/build.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 #include "ir/walk_module.hpp"
 

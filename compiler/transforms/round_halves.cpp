@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/quantize.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "ir/walk_module.hpp"
 #include "support/overloaded.hpp"

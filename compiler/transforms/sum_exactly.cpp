@@ -171,8 +171,8 @@ struct Digits {
 
 using Load = sk::program::DigitLoad<std::int32_t>;
 
-/// Statements that settle the digits: they become small, but keep their sum.
-void settle(Block& block, Function& function, const Digits& digits) {
+/// Statements that normalize the digits: they become small, but keep their sum.
+void normalize(Block& block, Function& function, const Digits& digits) {
   ExprPtr carry = literal(0);
   for (std::size_t i = 0; i < digits.groups.size(); ++i) {
     const bool isLast = i + 1 == digits.groups.size();
@@ -303,7 +303,7 @@ class ExactSummation {
       rewrite(entry.body, addsOne ? Load(Load::most - 1) : Load::settled());
       if (addsOne) return;
       Block start;
-      settle(start, entry, digits);
+      normalize(start, entry, digits);
       entry.body.insert(entry.body.begin(), std::make_move_iterator(start.begin()),
                         std::make_move_iterator(start.end()));
     }
@@ -354,7 +354,7 @@ class ExactSummation {
         // this variant does not have the other accumulators
         for (const Term& term : termsOf(kernel, stmt, sum)) {
           if (load.room() == 0) {
-            settle(rewritten, entry, digits);
+            normalize(rewritten, entry, digits);
             load = Load::settled();
           }
           add(rewritten, entry, digits, format, *term.value, term.factor.get());
@@ -381,8 +381,8 @@ class ExactSummation {
           addVariable(synthesized.entry, fmt::format("part_{}", settled.groups.size()), digitsType));
       body.push_back(declare(settled.groups.back(), varRef(synthesized.entry, part)));
     }
-    settle(body, synthesized.entry, settled);
-    settle(body, synthesized.entry, totals);
+    normalize(body, synthesized.entry, settled);
+    normalize(body, synthesized.entry, totals);
     for (std::uint32_t i = 0; i < format.groups; ++i) {
       body.push_back(assign(varRef(synthesized.entry, totals.groups[i]), BinaryOp::Add,
                             varRef(synthesized.entry, settled.groups[i])));
@@ -409,11 +409,11 @@ class ExactSummation {
     }
     total.flags = addVariable(entry, "sum_flags", intType);
     entry.body.push_back(declare(total.flags, varRef(entry, digits.flags)));
-    settle(entry.body, entry, total);
+    normalize(entry.body, entry, total);
     if (!kernel.reduction->seeded) {  // the identity is a summand
       const ExprPtr identity = scalarOf(clone(param.identity), sum);
       add(entry.body, entry, total, format, *identity, nullptr);
-      settle(entry.body, entry, total);
+      normalize(entry.body, entry, total);
     }
     const VarId isNegative = makePositive(entry, total);
     std::vector<ExprPtr> args;
@@ -437,7 +437,7 @@ class ExactSummation {
     for (const VarId group : total.groups) {
       negate.push_back(assign(varRef(entry, group), unary(UnaryOp::Negate, varRef(entry, group))));
     }
-    settle(negate, entry, total);
+    normalize(negate, entry, total);
     entry.body.push_back(ifStmt(varRef(entry, isNegative), std::move(negate)));
     return isNegative;
   }
@@ -454,7 +454,7 @@ class ExactSummation {
 
 /// True if all that floats are added to are sums, so that an exact call adds none of them inexactly.
 bool areAll(const std::vector<ScalarSum>& sums, const FoldPattern& pattern) {
-  return std::ranges::all_of(pattern.parts, [&](const FoldPart& part) {
+  return std::ranges::all_of(pattern.parts, [&](const FoldTarget& part) {
     if (part.op != FoldOp(BinaryOp::Add) || part.type.scalar != Scalar::Float) return true;
     return std::ranges::any_of(sums, [&](const ScalarSum& sum) { return sum.whole.holds(part); });
   });

@@ -66,7 +66,7 @@ class DoubleSummation {
     Block rewritten;
     for (Stmt& stmt : block) {
       forEachBlock(stmt, [&](Block& inner) { addInDoubles(kernel, entry, inner, sums); });
-      const std::optional<FoldPart> part = foldedBy(kernel, stmt);
+      const std::optional<FoldTarget> part = foldedBy(kernel, stmt);
       const auto sum =
           std::ranges::find_if(sums, [&](const FloatSum& one) { return part && one.holds(*part); });
       if (sum == sums.end()) {
@@ -154,7 +154,7 @@ bool isWhole(const Module& module, const Kernel& kernel, const FloatSum& sum) {
   if (!sum.members.empty() || sum.components != (1U << sum.type.width) - 1) return false;
   bool isOnlySummed = true;
   walkStmts(module.functions[kernel.entry].body, [&](const Stmt& stmt) {
-    const std::optional<FoldPart> part = foldedBy(kernel, stmt);
+    const std::optional<FoldTarget> part = foldedBy(kernel, stmt);
     if (part && sum.holds(*part)) return;
     forEachOperand(stmt, [&](const ExprPtr& operand) {
       walkExprs(*operand, [&](const Expr& expr) {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "ir/build.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "transforms/synthesized_kernel.hpp"
 
 namespace skc {

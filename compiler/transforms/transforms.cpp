@@ -22,13 +22,13 @@ struct Transform {
 
 /// Most transforms have no options.
 template <void (*transform)(ir::Module&, Diagnostics&)>
-void plain(ir::Module& module, Diagnostics& diagnostics, const TransformOptions&) {
+void withoutOptions(ir::Module& module, Diagnostics& diagnostics, const TransformOptions&) {
   transform(module, diagnostics);
 }
 
 /// A transform that adds variants for other precisions, if the options ask for them.
 template <void (*transform)(ir::Module&, Diagnostics&)>
-void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options) {
+void ifPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options) {
   if (options.precisions) return transform(module, diagnostics);
   for (ir::Kernel& kernel : module.kernels) {
     if (!kernel.isSynthesized)
@@ -66,31 +66,31 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // * remove-unused follows these, because all of them leave unused entries, and precedes split-kernels, so
 //   that no pass is planned for unused values.
 constexpr Transform transforms[] = {
-    {"specialize-gathers", plain<specializeGathers>},
-    {"tabulate", plain<tabulate>},
-    {"fold-constants", plain<foldConstants>},
-    {"unroll-spec-loops", plain<unrollSpecLoops>},
-    {"unroll-loops", plain<unrollLoops>},
-    {"find-neighbors", plain<findNeighbors>},
-    {"find-reach", plain<findReach>},
-    {"guard-streams", plain<guardStreams>},
-    {"bound-pushes", plain<boundPushes>},
-    {"inline-folds", plain<inlineFolds>},
-    {"derive-combine", plain<deriveCombine>},
-    {"split-folds", plain<split::splitFolds>},
-    {"widen-floats", ofPrecisions<widenFloats>},
-    {"round-halves", ofPrecisions<roundHalves>},
-    {"compensate-sums", plain<compensateSums>},
-    {"sum-exactly", plain<sumExactly>},
-    {"sum-in-doubles", plain<sumInDoubles>},
-    {"assign-rows", plain<assignRows>},
-    {"forward-continues", plain<forwardContinues>},
-    {"copy-parts", plain<copyParts>},
+    {"specialize-gathers", withoutOptions<specializeGathers>},
+    {"tabulate", withoutOptions<tabulate>},
+    {"fold-constants", withoutOptions<foldConstants>},
+    {"unroll-spec-loops", withoutOptions<unrollSpecLoops>},
+    {"unroll-loops", withoutOptions<unrollLoops>},
+    {"find-neighbors", withoutOptions<findNeighbors>},
+    {"find-reach", withoutOptions<findReach>},
+    {"guard-streams", withoutOptions<guardStreams>},
+    {"bound-pushes", withoutOptions<boundPushes>},
+    {"inline-folds", withoutOptions<inlineFolds>},
+    {"derive-combine", withoutOptions<deriveCombine>},
+    {"split-folds", withoutOptions<split::splitFolds>},
+    {"widen-floats", ifPrecisions<widenFloats>},
+    {"round-halves", ifPrecisions<roundHalves>},
+    {"compensate-sums", withoutOptions<compensateSums>},
+    {"sum-exactly", withoutOptions<sumExactly>},
+    {"sum-in-doubles", withoutOptions<sumInDoubles>},
+    {"assign-rows", withoutOptions<assignRows>},
+    {"forward-continues", withoutOptions<forwardContinues>},
+    {"copy-parts", withoutOptions<copyParts>},
     {"expand-selects",
      [](ir::Module& module, Diagnostics&, const TransformOptions& options) {
        if (options.expandsSelects) expandSelects(module);
      }},
-    {"remove-unused", plain<removeUnused>},
+    {"remove-unused", withoutOptions<removeUnused>},
     {"split-kernels", [](ir::Module& module, Diagnostics&,
                          const TransformOptions& options) { split::splitKernels(module, options.limits); }},
 };

@@ -12,11 +12,11 @@
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/ir.hpp"
 #include "ir/lvalue.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "transforms/condition.hpp"
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/lvalue.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "ir/walk_module.hpp"
 #include "transforms/synthesized_kernel.hpp"

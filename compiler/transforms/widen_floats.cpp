@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/ir.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "ir/walk_module.hpp"
 #include "split/cost.hpp"
@@ -190,9 +190,9 @@ class UnsupportedOperations {
 // ---- the variant --------------------------------------------------------------------------------
 
 /// Builds one kernel's wide variant; the kernel must have no obstacle.
-class Widener {
+class FloatWidener {
  public:
-  Widener(Module& module, WideTypes& types, std::map<ConstantId, ConstantId>& constants)
+  FloatWidener(Module& module, WideTypes& types, std::map<ConstantId, ConstantId>& constants)
       : module_(module), types_(types), constants_(constants) {}
 
   /// `holdsFloats`: its inputs and outputs are streams of floats, not partial results of a reduce.
@@ -399,7 +399,7 @@ bool resultsFit(const Module& module, const Kernel& combine) {
 void widenFloats(Module& module, Diagnostics&) {
   WideTypes types(module);
   std::map<ConstantId, ConstantId> constants;
-  Widener widener(module, types, constants);
+  FloatWidener widener(module, types, constants);
   forEachDeclaredKernel(module, [&](KernelId id) {
     const bool readsOutputs = module.kernels[id].isPart && module.kernels[id].reduction;  // those are rounded
     if (module.kernels[id].isSynthesized || readsOutputs ||

@@ -11,7 +11,7 @@ namespace skc::web {
 namespace {
 
 /// A function, or a line outside of functions, which has no name.
-struct Part {
+struct Section {
   std::string_view text;
   std::string_view name;
 };
@@ -53,18 +53,18 @@ std::size_t functionLength(std::string_view text) {
   return 0;
 }
 
-std::vector<Part> partsOf(std::string_view program) {
-  std::vector<Part> parts;
+std::vector<Section> sectionsOf(std::string_view program) {
+  std::vector<Section> sections;
   while (!program.empty()) {
     std::string_view line = lineAt(program);
     if (line.empty()) line = program;
     const std::string_view name = functionName(line);
     const std::size_t length = name.empty() ? 0 : functionLength(program);
     const std::string_view text = program.substr(0, length == 0 ? line.size() : length);
-    if (!line.starts_with("//")) parts.push_back({text, length == 0 ? std::string_view() : name});
+    if (!line.starts_with("//")) sections.push_back({text, length == 0 ? std::string_view() : name});
     program.remove_prefix(text.size());
   }
-  return parts;
+  return sections;
 }
 
 /// Words in the order in which they were found first.
@@ -90,30 +90,30 @@ class Words {
 
 std::string withUsedFunctions(std::string_view program, std::string_view more) {
   if (program.find("#if") != std::string_view::npos) return std::string(program);
-  const std::vector<Part> parts = partsOf(program);
+  const std::vector<Section> sections = sectionsOf(program);
   Words words;
   words.add("main");
   words.add(more);
-  std::multimap<std::string_view, std::size_t> functions;  // parts, by name
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (parts[i].name.empty()) {
-      words.add(parts[i].text);
+  std::multimap<std::string_view, std::size_t> functions;  // sections, by name
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    if (sections[i].name.empty()) {
+      words.add(sections[i].text);
     } else {
-      functions.emplace(parts[i].name, i);
+      functions.emplace(sections[i].name, i);
     }
   }
-  std::vector<bool> isUsed(parts.size());
+  std::vector<bool> isUsed(sections.size());
   for (std::size_t w = 0; w < words.size(); ++w) {  // what a function that is used adds comes later
     const auto [first, last] = functions.equal_range(words[w]);
     for (auto function = first; function != last; ++function) {
       isUsed[function->second] = true;
-      words.add(parts[function->second].text);
+      words.add(sections[function->second].text);
     }
   }
   std::string used;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (parts[i].name.empty() && parts[i].text == "\n" && used.ends_with("\n\n")) continue;
-    if (parts[i].name.empty() || isUsed[i]) used += parts[i].text;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    if (sections[i].name.empty() && sections[i].text == "\n" && used.ends_with("\n\n")) continue;
+    if (sections[i].name.empty() || isUsed[i]) used += sections[i].text;
   }
   return used;
 }

@@ -58,13 +58,13 @@ ir::DeclaredExtent ModuleLowering::streamExtent(const ExtentSyntax& syntax, cons
   if (!constant) return {syntax.name->getName().str(), 0};
   const bool isStream = syntax_.stream(constant->getLocation()) != nullptr;
   if (syntax.name && !isStream &&
-      sources().isBeforeInTranslationUnit(syntax.place, constant->getLocation())) {
-    fail(Diag::StreamExtentLater, syntax.place, {std::string_view(syntax.name->getName())});
+      sources().isBeforeInTranslationUnit(syntax.location, constant->getLocation())) {
+    fail(Diag::StreamExtentLater, syntax.location, {std::string_view(syntax.name->getName())});
   }
   const std::string name = stream->getNameAsString();
   const std::optional<std::int64_t> value = valueOf(constant);
-  if (!value) fail(Diag::StreamExtentKind, syntax.place, {name});
-  if (*value < 1) fail(Diag::StreamExtentRange, syntax.place, {name, std::to_string(*value)});
+  if (!value) fail(Diag::StreamExtentKind, syntax.location, {name});
+  if (*value < 1) fail(Diag::StreamExtentRange, syntax.location, {name, std::to_string(*value)});
   return {{}, *value};
 }
 

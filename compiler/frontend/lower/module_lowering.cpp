@@ -20,8 +20,8 @@
 #include "frontend/lower/lower_module.hpp"
 #include "frontend/prelude.hpp"
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/print.hpp"
-#include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "support/header_files.hpp"
 #include "support/internal_error.hpp"
@@ -178,16 +178,16 @@ void ModuleLowering::nameInstance(const clang::FunctionDecl* instance, ir::Kerne
   const clang::TemplateArgumentList* arguments = instance->getTemplateSpecializationArgs();
   llvm::SmallBitVector deduced;
   sema_.MarkDeducedTemplateParameters(pattern, deduced);
-  std::string said;
+  std::string explicitArgs;
   for (unsigned i = 0; i < arguments->size(); ++i) {
     const std::string argument = spelling(arguments->get(i), where);
-    said +=
+    explicitArgs +=
         fmt::format("{}{} = {}", i == 0 ? "" : ", ", parameters->getParam(i)->getNameAsString(), argument);
     if (deduced[i]) continue;
     kernel.name += '_' + argument;
     std::replace(kernel.name.begin(), kernel.name.end(), '-', 'm');
   }
-  kernel.signature += fmt::format("  [{}]", said);
+  kernel.signature += fmt::format("  [{}]", explicitArgs);
 }
 
 /// "float", "3", "-1", "true".

@@ -20,7 +20,7 @@ using clang::Token;
 namespace tok = clang::tok;
 
 /// The parts of one parameter's declaration.
-struct ParameterEditor::Parts {
+struct ParameterEditor::ParameterParts {
   Token qualifier;                 ///< `out`, `reduce`, `iter` ..., or unset
   bool hasQualifier = false;
   Tokens type;
@@ -139,7 +139,7 @@ std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind ki
 }
 
 void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, Tokens& out) {
-  Parts parts;
+  ParameterParts parts;
   std::size_t at = 0;
   if (kind == FunctionKind::Helper) {
     // An ordinary parameter goes to Clang unchanged, including default arguments and templates.
@@ -177,7 +177,7 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
 }
 
 /// [[clamp]] [[wrap]] [[mirror]] [[border(v)]] [[filter]] [[halo(2)]] [[wrap, filter]]
-bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, Parts& parts) {
+bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
   while (isKind(parameter, at, tok::l_square) && isKind(parameter, at + 1, tok::l_square)) {
     ++at;
     do {
@@ -194,7 +194,7 @@ bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, P
 }
 
 /// Takes one name between the brackets.
-bool ParameterEditor::takeAttribute(const Tokens& parameter, std::size_t& at, Parts& parts) {
+bool ParameterEditor::takeAttribute(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
   if (at >= parameter.size()) {
     diagnostics_.report(Diag::ParameterAttribute, locOf(parameter.back()), {""});
     return false;
@@ -226,7 +226,7 @@ bool ParameterEditor::takeAttribute(const Tokens& parameter, std::size_t& at, Pa
   return parts.syntax.boundary != ir::Boundary::Border || takeBorder(parameter, at, parts);
 }
 
-bool ParameterEditor::takeBorder(const Tokens& parameter, std::size_t& at, Parts& parts) {
+bool ParameterEditor::takeBorder(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
   int depth = 0;
   if (isKind(parameter, at, tok::l_paren)) {
     do {
@@ -243,7 +243,7 @@ bool ParameterEditor::takeBorder(const Tokens& parameter, std::size_t& at, Parts
 }
 
 /// Takes the numbers of [[halo(...)]]: literals, which macros may stand for.
-bool ParameterEditor::takeHalo(const Tokens& parameter, std::size_t& at, Parts& parts) {
+bool ParameterEditor::takeHalo(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
   constexpr long farthest = 1 << 20;
   if (!parts.syntax.halo.empty()) {
     diagnostics_.report(Diag::HaloTwice, locOf(parts.attribute));
@@ -267,7 +267,7 @@ bool ParameterEditor::takeHalo(const Tokens& parameter, std::size_t& at, Parts& 
 }
 
 /// Takes a qualifier, which must precede a type and a name: `out x<>` declares a stream of type `out`.
-void ParameterEditor::takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts) {
+void ParameterEditor::takeQualifier(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
   const auto isWordOrScope = [&](std::size_t i) {
     return i < parameter.size() && (parameter[i].getIdentifierInfo() || parameter[i].is(tok::coloncolon));
   };
@@ -280,7 +280,7 @@ void ParameterEditor::takeQualifier(const Tokens& parameter, std::size_t& at, Pa
 }
 
 /// Takes the type and the name: the last identifier before `<>`, `[`, `=` or the end.
-bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts) {
+bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
   const std::size_t begin = at;
   std::size_t end = parameter.size();
   for (std::size_t i = begin; i < parameter.size(); ++i) {
@@ -309,8 +309,8 @@ bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, P
     return true;
   }
   if (end < begin + 2 || parameter[end - 1].isNot(tok::identifier)) {
-    const Token& place = begin < parameter.size() ? parameter[begin] : parameter.back();
-    diagnostics_.report(Diag::ParameterShape, locOf(place));
+    const Token& location = begin < parameter.size() ? parameter[begin] : parameter.back();
+    diagnostics_.report(Diag::ParameterShape, locOf(location));
     return false;
   }
   parts.type.assign(parameter.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -321,7 +321,7 @@ bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, P
 }
 
 /// True for `out reduce float r<>`, with a fix-it that removes the first qualifier.
-bool ParameterEditor::hasSecondQualifier(const Parts& parts) {
+bool ParameterEditor::hasSecondQualifier(const ParameterParts& parts) {
   if (!parts.hasQualifier || parts.type.size() < 2 || !isQualifier(parts.type.front())) return false;
   diagnostics_.report(Diag::QualifierTwice, locOf(parts.qualifier),
                       {nameOf(parts.qualifier), nameOf(parts.type.front()), nameOf(parts.name)},
@@ -330,7 +330,7 @@ bool ParameterEditor::hasSecondQualifier(const Parts& parts) {
 }
 
 /// True for `float out r<>`, whose author meant `out float r<>`.
-bool ParameterEditor::hasLateQualifier(const Parts& parts) {
+bool ParameterEditor::hasLateQualifier(const ParameterParts& parts) {
   const Token& last = parts.type.back();
   if (parts.hasQualifier || parts.type.size() < 2 || !isQualifier(last)) return false;
   const Token& before = parts.type[parts.type.size() - 2];
@@ -343,15 +343,15 @@ bool ParameterEditor::hasLateQualifier(const Parts& parts) {
   return true;
 }
 
-bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts) {
+bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
   const std::string name = nameOf(parts.name);
   bool equal = false;
   if (isKind(parameter, at, tok::less)) {
     parts.open = parameter[at++];
     if (!isKind(parameter, at, tok::greater) && !isKind(parameter, at, tok::greaterequal)) {
-      const Token& place = at < parameter.size() ? parameter[at] : parameter.back();
+      const Token& location = at < parameter.size() ? parameter[at] : parameter.back();
       const std::vector<FixIt> fixIts = removal(parameter, at, tok::greater);
-      diagnostics_.report(Diag::StreamBrackets, locOf(place), {name}, fixIts);
+      diagnostics_.report(Diag::StreamBrackets, locOf(location), {name}, fixIts);
       return false;
     }
     parts.close = parameter[at];
@@ -401,30 +401,30 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
 }
 
 /// A fix-it that adds `<>` after the name of a parameter without brackets.
-std::vector<FixIt> ParameterEditor::addedBrackets(const Parts& parts) {
+std::vector<FixIt> ParameterEditor::addedBrackets(const ParameterParts& parts) {
   if (parts.rank > 0 || parts.isElement || !parts.length.empty()) return {};
   return {FixIt::insertAfter(locOf(parts.name), "<>")};
 }
 
 /// A fix-it that removes the `<>` of a parameter that has no other brackets.
-std::vector<FixIt> ParameterEditor::removedBrackets(const Parts& parts) {
+std::vector<FixIt> ParameterEditor::removedBrackets(const ParameterParts& parts) {
   if (!parts.isElement || parts.rank > 0) return {};
   return {FixIt::remove(locOf(parts.open), locOf(parts.close))};
 }
 
 /// A fix-it that changes the qualifier to this one of accumulators, for a parameter that is one otherwise.
-std::vector<FixIt> ParameterEditor::asAccumulator(const Parts& parts, std::string_view word) {
+std::vector<FixIt> ParameterEditor::asAccumulator(const ParameterParts& parts, std::string_view word) {
   if (!parts.isElement || parts.rank > 0) return {};
   return {FixIt::replace(locOf(parts.qualifier), std::string(word))};
 }
 
 /// Derives the role from qualifier, `<>` and brackets together, as the language's table of parameters says.
-bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
+bool ParameterEditor::resolveRole(ParameterParts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
-  const Loc place = locOf(parts.name);
+  const Loc location = locOf(parts.name);
   const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments,
                         const std::vector<FixIt>& fixIts = {}) {
-    diagnostics_.report(diag, place, arguments, fixIts);
+    diagnostics_.report(diag, location, arguments, fixIts);
     return false;
   };
   const std::string qualifier = parts.hasQualifier ? nameOf(parts.qualifier) : "";
@@ -494,7 +494,7 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
 }
 
 /// `vout T r<>` and `out T r[]`, in kernels and in the functions to which they pass theirs.
-bool ParameterEditor::resolveAppendOutput(Parts& parts, FunctionKind kind) {
+bool ParameterEditor::resolveAppendOutput(ParameterParts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
   const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments,
                         const std::vector<FixIt>& fixIts = {}) {
@@ -518,28 +518,28 @@ bool ParameterEditor::resolveAppendOutput(Parts& parts, FunctionKind kind) {
   return true;
 }
 
-void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) {
-  const clang::SourceLocation place = parts.name.getLocation();
+void ParameterEditor::print(const ParameterParts& parts, FunctionKind kind, Tokens& out) {
+  const clang::SourceLocation location = parts.name.getLocation();
   ParamSyntax syntax = parts.syntax;
   if (kind == FunctionKind::Helper) {
     syntax.boundary = ir::Boundary::Clamp;   // the mode is that of the kernel's gather
   } else if (!parts.border.empty()) {
-    syntax.border = generateConstant(parts.type, borderValue(parts.border), place);
+    syntax.border = generateConstant(parts.type, borderValue(parts.border), location);
   }
-  if (!parts.value.empty()) syntax.identity = generateConstant(parts.type, parts.value, place);
+  if (!parts.value.empty()) syntax.identity = generateConstant(parts.type, parts.value, location);
   if (syntax.rank > 0) indexed_.push_back({parts.name, syntax.rank});
   const clang::SourceLocation start = parts.type.front().getLocation();
   switch (syntax.role) {
     case ir::ParamRole::Gather:
       // The three tokens need distinct locations: Clang finds a template's name by its location
-      out.push_back(builder_.word(gatherTemplateName(syntax.rank), place));
+      out.push_back(builder_.word(gatherTemplateName(syntax.rank), location));
       out.push_back(builder_.make(tok::less, parts.open.getLocation()));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       out.push_back(builder_.make(tok::greater, parts.close.getLocation()));
       break;
     case ir::ParamRole::VariableOutput:
     case ir::ParamRole::Scatter:
-      out.push_back(builder_.word(appendTemplateName(syntax.rank), place));
+      out.push_back(builder_.word(appendTemplateName(syntax.rank), location));
       out.push_back(builder_.make(tok::less, parts.open.getLocation()));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       out.push_back(builder_.make(tok::greater, parts.close.getLocation()));
@@ -547,7 +547,7 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
     case ir::ParamRole::Output:
     case ir::ParamRole::Accumulator:
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      if (parts.length.empty()) out.push_back(builder_.make(tok::amp, place));
+      if (parts.length.empty()) out.push_back(builder_.make(tok::amp, location));
       break;
     case ir::ParamRole::Input: inputs_.push_back({parts.type.front(), parts.name}); [[fallthrough]];
     case ir::ParamRole::Uniform:
@@ -561,24 +561,24 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
   if (parts.length.empty()) {
     out.push_back(parts.name);
   } else {   // a reference, since C++ cannot pass arrays by value
-    out.push_back(builder_.make(tok::l_paren, place));
-    out.push_back(builder_.make(tok::amp, place));
+    out.push_back(builder_.make(tok::l_paren, location));
+    out.push_back(builder_.make(tok::amp, location));
     out.push_back(parts.name);
-    out.push_back(builder_.make(tok::r_paren, place));
+    out.push_back(builder_.make(tok::r_paren, location));
     out.insert(out.end(), parts.length.begin(), parts.length.end());
   }
   const bool isByIndex = syntax.role == ir::ParamRole::Gather || syntax.role == ir::ParamRole::Scatter ||
                          syntax.role == ir::ParamRole::VariableOutput;
   if (kind != FunctionKind::Helper || isByIndex) {
-    syntax_.add(place, std::move(syntax));
+    syntax_.add(location, std::move(syntax));
   }
 }
 
 /// The constant goes to the start of a kernel's body, or in front of a helper function.
 std::string ParameterEditor::generateConstant(const Tokens& type, const Tokens& value,
-                                              clang::SourceLocation place) {
+                                              clang::SourceLocation location) {
   std::string name = fmt::format("__sk_constant{}", constants_++);
-  builder_.constant(name, type, value, place, before_);
+  builder_.constant(name, type, value, location, before_);
   return name;
 }
 

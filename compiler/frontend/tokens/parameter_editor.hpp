@@ -46,25 +46,25 @@ class ParameterEditor {
 
  private:
   using Tokens = std::vector<clang::Token>;
-  struct Parts;
+  struct ParameterParts;
 
   void editParameter(const Tokens& parameter, FunctionKind kind, Tokens& out);
-  bool takeAttributes(const Tokens& parameter, std::size_t& at, Parts& parts);
-  bool takeAttribute(const Tokens& parameter, std::size_t& at, Parts& parts);
-  bool takeBorder(const Tokens& parameter, std::size_t& at, Parts& parts);
-  bool takeHalo(const Tokens& parameter, std::size_t& at, Parts& parts);
-  void takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts);
-  bool takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts);
-  bool hasSecondQualifier(const Parts& parts);
-  bool hasLateQualifier(const Parts& parts);
-  bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
-  static std::vector<FixIt> addedBrackets(const Parts& parts);
-  static std::vector<FixIt> removedBrackets(const Parts& parts);
-  static std::vector<FixIt> asAccumulator(const Parts& parts, std::string_view word);
-  bool resolveRole(Parts& parts, FunctionKind kind);
-  bool resolveAppendOutput(Parts& parts, FunctionKind kind);
-  std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place);
-  void print(const Parts& parts, FunctionKind kind, Tokens& out);
+  bool takeAttributes(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
+  bool takeAttribute(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
+  bool takeBorder(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
+  bool takeHalo(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
+  void takeQualifier(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
+  bool takeDeclarator(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
+  bool hasSecondQualifier(const ParameterParts& parts);
+  bool hasLateQualifier(const ParameterParts& parts);
+  bool takeSuffix(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
+  static std::vector<FixIt> addedBrackets(const ParameterParts& parts);
+  static std::vector<FixIt> removedBrackets(const ParameterParts& parts);
+  static std::vector<FixIt> asAccumulator(const ParameterParts& parts, std::string_view word);
+  bool resolveRole(ParameterParts& parts, FunctionKind kind);
+  bool resolveAppendOutput(ParameterParts& parts, FunctionKind kind);
+  std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation location);
+  void print(const ParameterParts& parts, FunctionKind kind, Tokens& out);
 
   clang::Preprocessor& preprocessor_;
   TokenBuilder builder_;

@@ -94,17 +94,17 @@ bool StreamEditor::takeExtents(TokenCursor& cursor, std::vector<Tokens>& extents
 }
 
 ExtentSyntax StreamEditor::extent(const Tokens& written, Tokens& out) {
-  const clang::SourceLocation place = written.front().getLocation();
+  const clang::SourceLocation location = written.front().getLocation();
   if (written.size() == 1 && written.front().is(tok::identifier)) {
-    return {place, written.front().getIdentifierInfo(), {}};
+    return {location, written.front().getIdentifierInfo(), {}};
   }
-  ExtentSyntax extent{place, nullptr, fmt::format("__sk_constant{}", constants_++)};
-  builder_.constant(extent.constant, {builder_.word("auto", place)}, written, place, out);
+  ExtentSyntax extent{location, nullptr, fmt::format("__sk_constant{}", constants_++)};
+  builder_.constant(extent.constant, {builder_.word("auto", location)}, written, location, out);
   return extent;
 }
 
-bool StreamEditor::fail(Diag diag, const Token& place, std::initializer_list<std::string_view> arguments) {
-  diagnostics_.report(diag, locOf(place), arguments);
+bool StreamEditor::fail(Diag diag, const Token& location, std::initializer_list<std::string_view> arguments) {
+  diagnostics_.report(diag, locOf(location), arguments);
   return false;
 }
 

@@ -36,7 +36,7 @@ class StreamEditor {
   bool takeDeclarator(TokenCursor& cursor, const Tokens& type, Tokens& out);
   bool takeExtents(TokenCursor& cursor, std::vector<Tokens>& extents);
   ExtentSyntax extent(const Tokens& written, Tokens& out);
-  bool fail(Diag diag, const clang::Token& place, std::initializer_list<std::string_view> arguments = {});
+  bool fail(Diag diag, const clang::Token& location, std::initializer_list<std::string_view> arguments = {});
 
   TokenBuilder builder_;
   Diagnostics& diagnostics_;

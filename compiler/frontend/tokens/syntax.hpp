@@ -59,7 +59,7 @@ struct ParamSyntax {
 
 /// An extent of a `stream` declaration: a name, or the generated constant that holds the extent.
 struct ExtentSyntax {
-  clang::SourceLocation place;
+  clang::SourceLocation location;
   const clang::IdentifierInfo* name = nullptr;
   std::string constant;
 };

@@ -120,36 +120,36 @@ std::size_t TokenCursor::templateParameters(FunctionRef<bool(const clang::Token&
   return 0;
 }
 
-Token TokenBuilder::make(tok::TokenKind kind, clang::SourceLocation place) const {
+Token TokenBuilder::make(tok::TokenKind kind, clang::SourceLocation location) const {
   Token token;
   token.startToken();
   token.setKind(kind);
-  token.setLocation(place);
+  token.setLocation(location);
   token.setLength(0);
   return token;
 }
 
-Token TokenBuilder::word(llvm::StringRef name, clang::SourceLocation place) const {
+Token TokenBuilder::word(llvm::StringRef name, clang::SourceLocation location) const {
   clang::IdentifierInfo* info = preprocessor_.getIdentifierInfo(name);
-  Token token = make(info->getTokenID(), place);
+  Token token = make(info->getTokenID(), location);
   token.setIdentifierInfo(info);
   return token;
 }
 
 void TokenBuilder::constant(const std::string& name, const std::vector<Token>& type,
-                            const std::vector<Token>& value, clang::SourceLocation place,
+                            const std::vector<Token>& value, clang::SourceLocation location,
                             std::vector<Token>& out) const {
-  out.push_back(word("static", place));
-  out.push_back(word("const", place));
+  out.push_back(word("static", location));
+  out.push_back(word("const", location));
   out.insert(out.end(), type.begin(), type.end());
-  out.push_back(word(name, place));
-  out.push_back(word("__attribute__", place));
-  out.push_back(make(tok::l_paren, place));
-  out.push_back(make(tok::l_paren, place));
-  out.push_back(word("unused", place));
-  out.push_back(make(tok::r_paren, place));
-  out.push_back(make(tok::r_paren, place));
-  out.push_back(make(tok::equal, place));
+  out.push_back(word(name, location));
+  out.push_back(word("__attribute__", location));
+  out.push_back(make(tok::l_paren, location));
+  out.push_back(make(tok::l_paren, location));
+  out.push_back(word("unused", location));
+  out.push_back(make(tok::r_paren, location));
+  out.push_back(make(tok::r_paren, location));
+  out.push_back(make(tok::equal, location));
   for (std::size_t i = 0; i < value.size(); ++i) {
     Token token = value[i];
     const bool isCalled = i + 1 < value.size() && value[i + 1].is(tok::l_paren);
@@ -158,7 +158,7 @@ void TokenBuilder::constant(const std::string& name, const std::vector<Token>& t
     }
     out.push_back(token);
   }
-  out.push_back(make(tok::semi, place));
+  out.push_back(make(tok::semi, location));
 }
 
 }  // namespace skc::frontend

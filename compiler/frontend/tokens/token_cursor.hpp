@@ -82,12 +82,12 @@ class TokenBuilder {
  public:
   explicit TokenBuilder(clang::Preprocessor& preprocessor) : preprocessor_(preprocessor) {}
 
-  clang::Token make(clang::tok::TokenKind kind, clang::SourceLocation place) const;
+  clang::Token make(clang::tok::TokenKind kind, clang::SourceLocation location) const;
   /// An identifier or keyword with this spelling.
-  clang::Token word(llvm::StringRef name, clang::SourceLocation place) const;
+  clang::Token word(llvm::StringRef name, clang::SourceLocation location) const;
   /// Appends `static const T NAME __attribute__((unused)) = value;` to `out`.
   void constant(const std::string& name, const std::vector<clang::Token>& type,
-                const std::vector<clang::Token>& value, clang::SourceLocation place,
+                const std::vector<clang::Token>& value, clang::SourceLocation location,
                 std::vector<clang::Token>& out) const;
 
  private:

@@ -274,8 +274,8 @@ class Editor {
     const std::vector<Token> head = takeHead();  // result type and name
     const std::size_t at = nameAtEnd(head);
     if (at == 0 || !cursor_.at(tok::l_paren)) {
-      const Token& place = head.empty() || cursor_.at(tok::l_paren) ? start : cursor_.peek();
-      diagnostics_.report(Diag::KernelHead, locOf(place), {wordOf(kernel.kind)});
+      const Token& location = head.empty() || cursor_.at(tok::l_paren) ? start : cursor_.peek();
+      diagnostics_.report(Diag::KernelHead, locOf(location), {wordOf(kernel.kind)});
       return copyDeclaration();
     }
     std::vector<Token> constants;

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 #include "transforms/synthesized_kernel.hpp"
 

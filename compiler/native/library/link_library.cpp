@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 #include "native/library/sources.hpp"
 

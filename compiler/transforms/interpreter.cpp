@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/try_function.hpp"
+#include "transforms/interpreter.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -19,20 +19,20 @@ namespace {
 using namespace ir;
 
 /// Thrown if a function cannot be tried; it does not leave this file.
-struct CannotEvaluate {};
+struct CannotInterpret {};
 
 /// A number that is large for an int is no fair try, although the language defines what it becomes.
 double toScalar(Scalar from, Scalar to, double value) {
   const bool isTruncated =
       isReal(arithmeticScalar(from)) && !isReal(arithmeticScalar(to)) && to != Scalar::Bool;
-  if (isTruncated && !(std::fabs(value) < 2147483648.0)) throw CannotEvaluate{};
+  if (isTruncated && !(std::fabs(value) < 2147483648.0)) throw CannotInterpret{};
   return converted(from, to, value);
 }
 
 /// The bits of a float, if the number is one.
 std::uint32_t bitsOfFloat(double value) {
   const auto number = static_cast<float>(value);
-  if (double{number} != value) throw CannotEvaluate{};
+  if (double{number} != value) throw CannotInterpret{};
   return std::bit_cast<std::uint32_t>(number);
 }
 
@@ -88,7 +88,7 @@ std::optional<double> inDouble(Intrinsic intrinsic, double x, double y, double z
 
 class Interpreter {
  public:
-  Interpreter(const Module& module, const TriedStreams& streams, int& steps)
+  Interpreter(const Module& module, const InterpretedStreams& streams, int& steps)
       : module_(module), streams_(streams), steps_(steps) {}
 
   std::vector<Numbers> call(FunctionId id, std::vector<Numbers> arguments) {
@@ -110,17 +110,17 @@ class Interpreter {
   };
 
   void tick() {
-    if (steps_-- <= 0) throw CannotEvaluate{};
+    if (steps_-- <= 0) throw CannotInterpret{};
   }
 
   std::size_t size(Type type) const {
     const std::uint64_t count = scalarCount(module_, type);
-    if (count > 256) throw CannotEvaluate{};
+    if (count > 256) throw CannotInterpret{};
     return static_cast<std::size_t>(count);
   }
 
   std::vector<Numbers> call(FunctionId id, std::vector<Numbers> arguments, Numbers& result) {
-    if (++depth_ > 32) throw CannotEvaluate{};
+    if (++depth_ > 32) throw CannotInterpret{};
     Frame frame{&module_.functions[id], std::move(arguments), {}};
     for (std::size_t i = frame.variables.size(); i < frame.function->variables.size(); ++i) {
       frame.variables.emplace_back(size(frame.function->variables[i].type), 0.0);
@@ -165,8 +165,8 @@ class Interpreter {
           return Flow::Return;
         },
         [&](const Scope& n) { return block(frame, n.body); },
-        [](const Push&) -> Flow { throw CannotEvaluate{}; },
-        [](const Scatter&) -> Flow { throw CannotEvaluate{}; });
+        [](const Push&) -> Flow { throw CannotInterpret{}; },
+        [](const Scatter&) -> Flow { throw CannotInterpret{}; });
   }
 
   Flow callStatement(Frame& frame, const CallStmt& n) {
@@ -249,7 +249,7 @@ class Interpreter {
       base.numbers = std::move(chosen);
       return base;
     }
-    throw CannotEvaluate{};
+    throw CannotInterpret{};
   }
 
   /// Where the indexed part begins; an index outside is clamped.
@@ -316,10 +316,10 @@ class Interpreter {
   }
 
   /// The element at an index, from an origin.
-  Numbers read(const StreamRef& stream, const Numbers& at, TriedStreams::Index index) const {
-    if (stream.space != StreamRef::Space::KernelParameter || !streams_.read) throw CannotEvaluate{};
+  Numbers read(const StreamRef& stream, const Numbers& at, InterpretedStreams::Index index) const {
+    if (stream.space != StreamRef::Space::KernelParameter || !streams_.read) throw CannotInterpret{};
     for (std::size_t i = 0; i < at.size(); ++i) {
-      if (!(std::fabs(at[i]) < 2147483648.0)) throw CannotEvaluate{};
+      if (!(std::fabs(at[i]) < 2147483648.0)) throw CannotInterpret{};
       index[i] += static_cast<std::int64_t>(std::floor(at[i]));
     }
     return streams_.read(stream.id, index);
@@ -348,7 +348,7 @@ class Interpreter {
     for (std::size_t i = 0; i < value.size(); ++i) {
       const double x = a.size() == 1 ? a[0] : a.at(i), y = b.size() == 1 ? b[0] : b.at(i);
       const std::optional<double> result = computed(op, left.scalar, x, y);
-      if (!result) throw CannotEvaluate{};
+      if (!result) throw CannotInterpret{};
       value[i] = *result;
     }
     return value;
@@ -383,7 +383,7 @@ class Interpreter {
       value.insert(value.end(), numbers.begin(), numbers.end());
     }
     if (value.size() == 1) value.resize(size(type), value[0]);
-    if (value.size() != size(type)) throw CannotEvaluate{};
+    if (value.size() != size(type)) throw CannotInterpret{};
     return value;
   }
 
@@ -423,37 +423,37 @@ class Interpreter {
       const Scalar scalar = n.args.front()->type.scalar;
       std::optional<double> v = computed(n.intrinsic, scalar, at(0), at(1), at(2));
       if (!v) v = inDouble(n.intrinsic, at(0), at(1), at(2));
-      if (!v) throw CannotEvaluate{};
+      if (!v) throw CannotInterpret{};
       value[i] = *v;
     }
     return value;
   }
 
   const Module& module_;
-  const TriedStreams& streams_;
+  const InterpretedStreams& streams_;
   int& steps_;
   int depth_ = 0;
 };
 
 }  // namespace
 
-std::optional<std::vector<Numbers>> tryFunction(const Module& module, FunctionId id,
-                                                std::vector<Numbers> arguments, const TriedStreams& streams,
-                                                int& steps) {
+std::optional<std::vector<Numbers>> interpret(const Module& module, FunctionId id,
+                                              std::vector<Numbers> arguments,
+                                              const InterpretedStreams& streams, int& steps) {
   try {
     return Interpreter(module, streams, steps).call(id, std::move(arguments));
-  } catch (const CannotEvaluate&) {
+  } catch (const CannotInterpret&) {
     return std::nullopt;
   } catch (const std::out_of_range&) {
     return std::nullopt;
   }
 }
 
-std::optional<Numbers> tryConstant(const Module& module, const Expr& expr) {
+std::optional<Numbers> interpretConstant(const Module& module, const Expr& expr) {
   try {
     int steps = 20'000;
     return Interpreter(module, {}, steps).constant(expr);
-  } catch (const CannotEvaluate&) {
+  } catch (const CannotInterpret&) {
     return std::nullopt;
   } catch (const std::out_of_range&) {
     return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/try_fold.hpp"
+#include "transforms/fold_trial.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@
 #include "ir/build.hpp"
 #include "ir/type.hpp"
 #include "support/function_ref.hpp"
-#include "transforms/try_function.hpp"
+#include "transforms/interpreter.hpp"
 
 namespace skc {
 
@@ -183,7 +183,8 @@ class FoldSample {
     Values values;
     for (const KernelParam& param : kernel_.params) {
       if (param.role != ParamRole::Accumulator) continue;
-      std::optional<Numbers> value = param.identity ? tryConstant(module_, *param.identity) : std::nullopt;
+      std::optional<Numbers> value =
+          param.identity ? interpretConstant(module_, *param.identity) : std::nullopt;
       if (!value) return std::nullopt;
       values.push_back(std::move(*value));
     }
@@ -248,7 +249,7 @@ class FoldSample {
   static constexpr std::uint64_t mostNumbers = 256;
 
   /// An element of an input, or of a gather, which holds other numbers.
-  Numbers read(VarId param, const TriedStreams::Index& index) const {
+  Numbers read(VarId param, const InterpretedStreams::Index& index) const {
     const auto position =
         static_cast<int>((index[0] + 7 * index[1] + 49 * index[2] + 343 * index[3]) % 10'000);
     const bool isInput = kernel_.params[param].role == ParamRole::Input;
@@ -291,12 +292,12 @@ class FoldSample {
         case ParamRole::Scatter: break;
       }
     }
-    TriedStreams streams = streams_;
+    InterpretedStreams streams = streams_;
     streams.index = {position, 0, 0, 0};
-    streams.read = [&](VarId param, const TriedStreams::Index& index) {
+    streams.read = [&](VarId param, const InterpretedStreams::Index& index) {
       return read(static_cast<VarId>(own(param)), index);
     };
-    const auto ends = tryFunction(module_, kernel.entry, std::move(arguments), streams, steps_);
+    const auto ends = interpret(module_, kernel.entry, std::move(arguments), streams, steps_);
     if (!ends) return std::nullopt;
     Values result;
     for (std::size_t i = 0; i < kernel.params.size(); ++i) {
@@ -310,7 +311,7 @@ class FoldSample {
   SampleKind kind_;
   int sample_;
   int& steps_;
-  TriedStreams streams_;
+  InterpretedStreams streams_;
   bool isKnown_ = true;
   int count_ = 0;  ///< the numbers of an element
   std::vector<int> firstNumbers_;  ///< of each input, in the element

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ir/reach.hpp"
+#include "ir/call_graph.hpp"
 
 #include <algorithm>
 #include <unordered_map>

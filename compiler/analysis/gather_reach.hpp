@@ -24,6 +24,6 @@ struct GatherReach {
 
 /// One for each parameter; it is empty for those that are not gathers. The module must have passed
 /// specialize-gathers.
-std::vector<GatherReach> findReach(const ir::Module& module, const ir::Kernel& kernel);
+std::vector<GatherReach> gatherReach(const ir::Module& module, const ir::Kernel& kernel);
 
 }  // namespace skc::analysis

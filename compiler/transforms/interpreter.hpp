@@ -19,7 +19,7 @@ namespace skc {
 using Numbers = std::vector<double>;
 
 /// What a kernel's entry reads besides its arguments.
-struct TriedStreams {
+struct InterpretedStreams {
   using Index = std::array<std::int64_t, 4>;  ///< x first; 0 in dimensions that the stream has not
   /// Element `index`, which may be outside, of the stream that a parameter of the kernel stands for.
   std::function<Numbers(ir::VarId param, const Index& index)> read;
@@ -28,11 +28,11 @@ struct TriedStreams {
 };
 
 /// The final values of the function's parameters. `steps` is what may be spent, and is reduced by what was.
-std::optional<std::vector<Numbers>> tryFunction(const ir::Module& module, ir::FunctionId id,
-                                                std::vector<Numbers> arguments, const TriedStreams& streams,
-                                                int& steps);
+std::optional<std::vector<Numbers>> interpret(const ir::Module& module, ir::FunctionId id,
+                                              std::vector<Numbers> arguments,
+                                              const InterpretedStreams& streams, int& steps);
 
 /// The value of a constant expression.
-std::optional<Numbers> tryConstant(const ir::Module& module, const ir::Expr& expr);
+std::optional<Numbers> interpretConstant(const ir::Module& module, const ir::Expr& expr);
 
 }  // namespace skc

@@ -6,7 +6,7 @@
 //
 // Elements are few and small: integers, and floats of which sums and products are exact. An author may know more
 // about elements than their types say (they are positive, sorted, flags, of length 1), so a fold fails only if it
-// fails for numbers of every kind (see Kind in try_fold.cpp). One that fails for some kinds may fail.
+// fails for numbers of every kind (see Kind in fold_trial.cpp). One that fails for some kinds may fail.
 #pragma once
 
 #include <string>

@@ -14,12 +14,12 @@
 
 namespace skc::native {
 
-class Formula {
+class ScalarBuilder {
  public:
   using BinaryOp = ir::BinaryOp;
   using Scalar = ir::Scalar;
 
-  explicit Formula(Lanes& lanes) : l(lanes) {}
+  explicit ScalarBuilder(Lanes& lanes) : l(lanes) {}
 
   Lanes& l;
 

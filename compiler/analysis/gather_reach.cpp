@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/find_reach.hpp"
+#include "analysis/gather_reach.hpp"
 
 #include <map>
 #include <optional>
@@ -297,7 +297,7 @@ IndexValues initialValues(const Module& module, const Kernel& kernel, std::uint3
 
 }  // namespace
 
-std::vector<GatherReach> findReach(const Module& module, const Kernel& kernel) {
+std::vector<GatherReach> gatherReach(const Module& module, const Kernel& kernel) {
   Analysis analysis{module, kernel, ReachRecords(kernel)};
   std::vector<IndexValues> arguments;
   for (std::uint32_t p = 0; p < kernel.params.size(); ++p)
