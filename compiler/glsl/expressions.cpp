@@ -415,7 +415,7 @@ class GlslExpr {
   }
 
   Text comparison(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
-    if (comparesWholeWithZero(op, lhs, rhs)) {
+    if (comparesRoundedWithZero(op, lhs, rhs)) {
       const std::string test =
           context_.polyfills.nonzero() + "(" + passedText(isLiteralZero(lhs) ? rhs : lhs) + ")";
       return op == BinaryOp::NotEqual ? Text{test} : Text{"!" + test, Precedence::Unary};

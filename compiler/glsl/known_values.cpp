@@ -109,7 +109,7 @@ bool isLiteralZero(const Expr& expr) {
   return n != nullptr && std::bit_cast<float>(n->bits) == 0;
 }
 
-bool comparesWholeWithZero(BinaryOp op, const Expr& lhs, const Expr& rhs) {
+bool comparesRoundedWithZero(BinaryOp op, const Expr& lhs, const Expr& rhs) {
   const bool isEquality = op == BinaryOp::Equal || op == BinaryOp::NotEqual;
   if (!isEquality || !lhs.type.isScalar() || !isFloatOrVector(lhs.type) ||
       !(isLiteralZero(lhs) || isLiteralZero(rhs)))

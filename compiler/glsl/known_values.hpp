@@ -38,7 +38,7 @@ bool isLiteralZero(const ir::Expr& expr);
 
 /// True for `floor(x) == 0`, `ceil(x) + y != 0` and the like, which Polyfills::nonzero() must decide: some drivers take the
 /// value for known.
-bool comparesWholeWithZero(ir::BinaryOp op, const ir::Expr& lhs, const ir::Expr& rhs);
+bool comparesRoundedWithZero(ir::BinaryOp op, const ir::Expr& lhs, const ir::Expr& rhs);
 
 // Operations that GLSL leaves undefined for some operands and the language defines for all. Tells which of
 // them may have such operands, and so need more than GLSL's operator.

@@ -68,9 +68,9 @@ Value convertedTo(Scalar to, Floats floats, Scalar from, double value) {
   if (from == to) return value;
   if (isNarrow(from)) return convertedTo(to, floats, arithmeticScalar(from), value);
   if (isNarrow(to)) {
-    const Value whole = convertedTo(arithmeticScalar(to), floats, from, value);
-    if (!whole) return std::nullopt;
-    return isOfFloats(to) ? quantized(to, *whole) : wrapped(to, static_cast<std::int64_t>(*whole));
+    const Value number = convertedTo(arithmeticScalar(to), floats, from, value);
+    if (!number) return std::nullopt;
+    return isOfFloats(to) ? quantized(to, *number) : wrapped(to, static_cast<std::int64_t>(*number));
   }
   if (to == Scalar::Float) return ordinary(floats, value);
   const double result = converted(from, to, value);

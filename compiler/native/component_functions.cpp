@@ -219,7 +219,7 @@ Part productError(const ScalarBuilder& f, const Part& x, const Part& y) {
 
 Part floorOf(Lanes& lanes, const Part& x) { return ScalarBuilder(lanes).floor(x); }
 
-Part wholeIndex(Lanes& lanes, const Part& x) {
+Part toIndex(Lanes& lanes, const Part& x) {
   constexpr double last = 2147483520;
   const ScalarBuilder f(lanes);
   const Part isBeyond = binary(lanes, BinaryOp::Greater, Scalar::Float, x, f.number(x, last));

@@ -44,7 +44,7 @@ Part productError(const ScalarBuilder& f, const Part& x, const Part& y);
 Part floorOf(Lanes& lanes, const Part& x);
 /// Converts a whole real number to an index. As on every device, NaN becomes 0, and the largest index is the
 /// largest int that is a float.
-Part wholeIndex(Lanes& lanes, const Part& x);
+Part toIndex(Lanes& lanes, const Part& x);
 
 // ---- of whole vectors and matrices in all lanes (vector_functions.cpp) ------------------------
 // A value is the list of its components; matrices are row-major.

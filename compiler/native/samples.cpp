@@ -50,7 +50,7 @@ Parts Streams::sample(std::uint32_t param, const Parts& position) {
     const Part size = {l.b.CreateUnaryIntrinsic(llvm::Intrinsic::fabs, x.value)};
     const Part isWhole =
         binary(l, BinaryOp::GreaterEqual, Scalar::Float, size, {l.number(l.real(), 16777216)});
-    low.push_back(wholeIndex(l, whole));
+    low.push_back(toIndex(l, whole));
     // infinity has no fraction; other numbers of this size have a fraction of 0
     weights.push_back(
         l.select(isWhole, {l.number(l.real(), 0)}, binary(l, BinaryOp::Sub, Scalar::Float, x, whole)));

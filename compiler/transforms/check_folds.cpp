@@ -76,12 +76,12 @@ bool isNonNegative(const Expr& expr) {
   return false;
 }
 
-/// True if every value that a reduce folds into a part by max is known to be non-negative.
-bool foldsNonNegatives(const Module& module, const Kernel& kernel, const FoldTarget& part) {
+/// True if every value that a reduce folds into a target by max is known to be non-negative.
+bool foldsNonNegatives(const Module& module, const Kernel& kernel, const FoldTarget& target) {
   bool holds = true;
   walkStmts(module.functions[kernel.entry].body, [&](const Stmt& stmt) {
     const std::optional<FoldTarget> found = foldedBy(kernel, stmt);
-    if (!found || found->accumulator != part.accumulator || found->members != part.members) return;
+    if (!found || found->accumulator != target.accumulator || found->members != target.members) return;
     const Expr* value = std::get<Assign>(stmt.node).value.get();
     if (const auto* n = std::get_if<Convert>(&value->node)) value = n->operand.get();
     const auto* max = std::get_if<IntrinsicCall>(&value->node);
@@ -132,29 +132,30 @@ struct IdentityCheck {
   const Kernel& kernel;
   Diagnostics& diagnostics;
 
-  /// Reports the first component of a part whose identity is not the operator's.
-  bool check(const FoldTarget& part, const Numbers& identity) const {
-    const Scalar scalar = part.type.scalar;
-    const std::optional<Numbers> neutral = interpretConstant(module, *neutralOf(part.op, scalar));
+  /// Reports the first component of a target whose identity is not the operator's.
+  bool check(const FoldTarget& target, const Numbers& identity) const {
+    const Scalar scalar = target.type.scalar;
+    const std::optional<Numbers> neutral = interpretConstant(module, *neutralOf(target.op, scalar));
     if (!neutral) return true;
-    const KernelParam& param = kernel.params[part.accumulator];
-    const std::size_t from = offsetOf(module, param.type, part.members);
-    const std::size_t count = part.type.isMatrix() ? part.type.width * part.type.width : part.type.width;
+    const KernelParam& param = kernel.params[target.accumulator];
+    const std::size_t from = offsetOf(module, param.type, target.members);
+    const std::size_t count =
+        target.type.isMatrix() ? target.type.width * target.type.width : target.type.width;
     for (std::size_t i = 0; i < count; ++i) {
-      const bool isFolded = part.type.isMatrix() || (part.components >> i & 1U) != 0;
+      const bool isFolded = target.type.isMatrix() || (target.components >> i & 1U) != 0;
       const double given = identity.at(from + i);
-      if (!isFolded || isAsGoodAs(part.op, given, neutral->at(0))) continue;
-      const bool isMax = part.op == FoldOp(Intrinsic::Max);
-      if (isMax && given == 0 && foldsNonNegatives(module, kernel, part)) continue;
-      return report(part, param, number(given, scalar), number(neutral->at(0), scalar));
+      if (!isFolded || isAsGoodAs(target.op, given, neutral->at(0))) continue;
+      const bool isMax = target.op == FoldOp(Intrinsic::Max);
+      if (isMax && given == 0 && foldsNonNegatives(module, kernel, target)) continue;
+      return report(target, param, number(given, scalar), number(neutral->at(0), scalar));
     }
     return true;
   }
 
-  bool report(const FoldTarget& part, const KernelParam& param, const std::string& given,
+  bool report(const FoldTarget& target, const KernelParam& param, const std::string& given,
               const std::string& neutral) const {
-    const Diag diag = isIdempotent(part.op) ? Diag::ReduceBound : Diag::ReduceIdentity;
-    diagnostics.report(diag, param.loc, {param.name, given, spellingOf(part.op), neutral});
+    const Diag diag = isIdempotent(target.op) ? Diag::ReduceBound : Diag::ReduceIdentity;
+    diagnostics.report(diag, param.loc, {param.name, given, spellingOf(target.op), neutral});
     return diag != Diag::ReduceIdentity;
   }
 };
@@ -164,10 +165,10 @@ struct IdentityCheck {
 bool checkIdentities(const Module& module, const Kernel& kernel, const FoldPattern& pattern,
                      Diagnostics& diagnostics) {
   bool isRight = true;
-  for (const FoldTarget& part : pattern.parts) {
-    const ExprPtr& identity = kernel.params[part.accumulator].identity;
+  for (const FoldTarget& target : pattern.targets) {
+    const ExprPtr& identity = kernel.params[target.accumulator].identity;
     const std::optional<Numbers> given = identity ? interpretConstant(module, *identity) : std::nullopt;
-    if (given && !IdentityCheck{module, kernel, diagnostics}.check(part, *given)) isRight = false;
+    if (given && !IdentityCheck{module, kernel, diagnostics}.check(target, *given)) isRight = false;
   }
   return isRight;
 }

@@ -71,9 +71,9 @@ void addRoundingErrors(const Kernel& kernel, Function& entry, Block& block, cons
   Block rewritten;
   for (Stmt& stmt : block) {
     forEachBlock(stmt, [&](Block& inner) { addRoundingErrors(kernel, entry, inner, errors); });
-    const std::optional<FoldTarget> part = foldedBy(kernel, stmt);
+    const std::optional<FoldTarget> target = foldedBy(kernel, stmt);
     const auto sum =
-        std::ranges::find_if(errors.sums, [&](const FloatSum& one) { return part && one.holds(*part); });
+        std::ranges::find_if(errors.sums, [&](const FloatSum& one) { return target && one.holds(*target); });
     if (sum == errors.sums.end()) {
       rewritten.push_back(std::move(stmt));
       continue;

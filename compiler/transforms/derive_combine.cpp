@@ -23,42 +23,42 @@ using namespace ir;
 
 namespace {
 
-// Builds the statement that combines two partial results for one part of a fold.
+// Builds the statement that combines two partial results for one target of a fold.
 
-/// The part's member or components of a variable.
-ExprPtr access(const Module& module, const Function& function, VarId var, const FoldTarget& part) {
-  ExprPtr expr = varRef(function, var, part.loc);
-  for (std::uint32_t field : part.members) expr = member(module, std::move(expr), field, part.loc);
-  if (part.isWhole()) return expr;
+/// The target's member or components of a variable.
+ExprPtr access(const Module& module, const Function& function, VarId var, const FoldTarget& target) {
+  ExprPtr expr = varRef(function, var, target.loc);
+  for (std::uint32_t field : target.members) expr = member(module, std::move(expr), field, target.loc);
+  if (target.isWhole()) return expr;
   std::string components;
-  for (unsigned i = 0; i < part.type.width; ++i) {
-    if ((part.components >> i & 1U) != 0) components += "xyzw"[i];
+  for (unsigned i = 0; i < target.type.width; ++i) {
+    if ((target.components >> i & 1U) != 0) components += "xyzw"[i];
   }
-  return swizzle(std::move(expr), components, part.loc);
+  return swizzle(std::move(expr), components, target.loc);
 }
 
-/// `total op= partial` for the part's member or components. Both are variables of `function` with the
+/// `total op= partial` for the target's member or components. Both are variables of `function` with the
 /// accumulator's type.
-Stmt combinePart(const Module& module, const Function& function, const FoldTarget& part, VarId partial,
-                 VarId total) {
+Stmt combineTarget(const Module& module, const Function& function, const FoldTarget& target, VarId partial,
+                   VarId total) {
   const auto as = [&](Scalar scalar, ExprPtr value) {
-    return value->type.isMatrix() ? std::move(value) : convert(scalar, std::move(value), part.loc);
+    return value->type.isMatrix() ? std::move(value) : convert(scalar, std::move(value), target.loc);
   };
   const auto read = [&](VarId var) {   // operators take arithmetic types only
-    return as(arithmeticScalar(part.type.scalar), access(module, function, var, part));
+    return as(arithmeticScalar(target.type.scalar), access(module, function, var, target));
   };
-  ExprPtr place = access(module, function, total, part);
-  if (const auto* n = std::get_if<Intrinsic>(&part.op)) {
-    ExprPtr value = intrinsic(*n, exprs(read(total), read(partial)), part.loc);
-    return assign(std::move(place), as(part.type.scalar, std::move(value)), part.loc);
+  ExprPtr place = access(module, function, total, target);
+  if (const auto* n = std::get_if<Intrinsic>(&target.op)) {
+    ExprPtr value = intrinsic(*n, exprs(read(total), read(partial)), target.loc);
+    return assign(std::move(place), as(target.type.scalar, std::move(value)), target.loc);
   }
-  const BinaryOp op = std::get<BinaryOp>(part.op);
+  const BinaryOp op = std::get<BinaryOp>(target.op);
   const bool isLogical = op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr;
-  if (!isLogical && !part.type.isNarrow() && !part.type.isMatrix()) {
-    return assign(std::move(place), op, access(module, function, partial, part), part.loc);
+  if (!isLogical && !target.type.isNarrow() && !target.type.isMatrix()) {
+    return assign(std::move(place), op, access(module, function, partial, target), target.loc);
   }
-  ExprPtr value = binary(op, read(total), read(partial), part.loc);
-  return assign(std::move(place), as(part.type.scalar, std::move(value)), part.loc);
+  ExprPtr value = binary(op, read(total), read(partial), target.loc);
+  return assign(std::move(place), as(target.type.scalar, std::move(value)), target.loc);
 }
 
 // ---- identities -------------------------------------------------------------------------------
@@ -81,12 +81,12 @@ struct MemberPath {
 /// The identity of a scalar, vector or matrix member; null if one of its components is not folded.
 ExprPtr leafIdentity(const FoldPattern& pattern, const MemberPath& path, Type type) {
   std::vector<ExprPtr> components(type.width);
-  for (const FoldTarget& part : pattern.parts) {
-    if (part.accumulator != path.accumulator || part.members != path.members) continue;
-    const ExprPtr one = neutralOf(part.op, type.scalar);
-    if (part.isWhole()) return everywhere(type, *one);
+  for (const FoldTarget& target : pattern.targets) {
+    if (target.accumulator != path.accumulator || target.members != path.members) continue;
+    const ExprPtr one = neutralOf(target.op, type.scalar);
+    if (target.isWhole()) return everywhere(type, *one);
     for (unsigned i = 0; i < type.width; ++i) {
-      if ((part.components >> i & 1U) != 0) components[i] = clone(*one);
+      if ((target.components >> i & 1U) != 0) components[i] = clone(*one);
     }
   }
   for (const ExprPtr& component : components) {
@@ -110,7 +110,7 @@ ExprPtr identityOf(const Module& module, const FoldPattern& pattern, MemberPath 
 
 // ---- combining kernels ------------------------------------------------------------------------
 
-/// Builds the reduce that combines the results of a known pattern: `total op= total_part` for each part.
+/// Builds the reduce that combines the results of a known pattern: `total op= total_part` for each target.
 KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern) {
   const Kernel& kernel = module.kernels[id];
   SynthesizedKernel synthesized(kernel, "_combine");
@@ -126,11 +126,11 @@ KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern
           makeParam(param.name + (role == ParamRole::Input ? "_part" : ""), role, param.type, param.loc));
     }
   }
-  for (const FoldTarget& part : pattern.parts) {
-    const auto found = std::find(accumulators.begin(), accumulators.end(), part.accumulator);
+  for (const FoldTarget& target : pattern.targets) {
+    const auto found = std::find(accumulators.begin(), accumulators.end(), target.accumulator);
     const auto partial = static_cast<VarId>(found - accumulators.begin());
     const auto total = static_cast<VarId>(accumulators.size()) + partial;
-    synthesized.entry.body.push_back(combinePart(module, synthesized.entry, part, partial, total));
+    synthesized.entry.body.push_back(combineTarget(module, synthesized.entry, target, partial, total));
   }
   return synthesized.finishCombination(module);
 }
@@ -259,14 +259,14 @@ class CombineDeriver {
   }
 
   bool checkAssociative(const Kernel& kernel, const FoldPattern& pattern) {
-    for (const FoldTarget& part : pattern.parts) {
-      if (isAssociative(part.op)) continue;
-      const BinaryOp op = std::get<BinaryOp>(part.op);
-      const std::string& name = kernel.params[part.accumulator].name;
+    for (const FoldTarget& target : pattern.targets) {
+      if (isAssociative(target.op)) continue;
+      const BinaryOp op = std::get<BinaryOp>(target.op);
+      const std::string& name = kernel.params[target.accumulator].name;
       std::string advice = "fold with '+', '*', '&', '|', '^', min or max";
       if (op == BinaryOp::Sub) advice = "write '" + name + " += ...' and subtract once, from the result";
       if (op == BinaryOp::Div) advice = "write '" + name + " *= ...' and divide once, by the result";
-      diagnostics_.report(Diag::ReduceNotAssociative, part.loc, {spelling(op), name, advice});
+      diagnostics_.report(Diag::ReduceNotAssociative, target.loc, {spelling(op), name, advice});
       return false;
     }
     return true;

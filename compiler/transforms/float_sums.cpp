@@ -51,10 +51,10 @@ class Uses {
  private:
   void take(const Block& block, bool isHead) {
     for (const Stmt& stmt : block) {
-      const std::optional<FoldTarget> part = isHead ? std::nullopt : foldedBy(kernel_, stmt);
-      if (part && part->op == FoldOp(BinaryOp::Add) && part->type.isFloat() &&
+      const std::optional<FoldTarget> target = isHead ? std::nullopt : foldedBy(kernel_, stmt);
+      if (target && target->op == FoldOp(BinaryOp::Add) && target->type.isFloat() &&
           (!ofParts_ || addsItsPart(std::get<Assign>(stmt.node)))) {
-        add(*part);
+        add(*target);
       } else {
         forEachOperand(stmt, [&](const ExprPtr& operand) { take(*operand); });
       }
@@ -73,13 +73,13 @@ class Uses {
     }
   }
 
-  void add(const FoldTarget& part) {
+  void add(const FoldTarget& target) {
     for (FloatSum& sum : added_) {
-      if (sum.accumulator != part.accumulator || sum.members != part.members) continue;
-      sum.components |= part.components;
+      if (sum.accumulator != target.accumulator || sum.members != target.members) continue;
+      sum.components |= target.components;
       return;
     }
-    added_.push_back({part.accumulator, part.members, part.type, part.components});
+    added_.push_back({target.accumulator, target.members, target.type, target.components});
   }
 
   /// True for `place += part`, where `part` is the same member of the corresponding input.
@@ -99,8 +99,9 @@ class Uses {
 
 }  // namespace
 
-bool FloatSum::holds(const FoldTarget& part) const {
-  return accumulator == part.accumulator && members == part.members && (components & part.components) != 0;
+bool FloatSum::holds(const FoldTarget& target) const {
+  return accumulator == target.accumulator && members == target.members &&
+         (components & target.components) != 0;
 }
 
 VarId sameAccumulator(const Kernel& of, VarId accumulator, const Kernel& in) {
@@ -257,9 +258,9 @@ namespace {
 /// The term, if each element only adds one, to one float.
 std::optional<Term> termOf(const Module& module, const Kernel& reduce) {
   const Block& body = module.functions[reduce.entry].body;
-  const std::optional<FoldTarget> part = body.size() == 1 ? foldedBy(reduce, body[0]) : std::nullopt;
-  if (!part || part->op != FoldOp(BinaryOp::Add) ||
-      reduce.params[part->accumulator].type != Type::of(Scalar::Float) ||
+  const std::optional<FoldTarget> target = body.size() == 1 ? foldedBy(reduce, body[0]) : std::nullopt;
+  if (!target || target->op != FoldOp(BinaryOp::Add) ||
+      reduce.params[target->accumulator].type != Type::of(Scalar::Float) ||
       std::ranges::count(reduce.params, ParamRole::Accumulator, &KernelParam::role) != 1) {
     return std::nullopt;
   }
@@ -318,8 +319,8 @@ namespace {
 
 /// The component of the added values that goes to the sum; nullopt if none does.
 std::optional<unsigned> componentIn(const Kernel& reduce, const Stmt& stmt, const ScalarSum& sum) {
-  const std::optional<FoldTarget> part = foldedBy(reduce, stmt);
-  const bool isOfSum = part && sum.whole.holds(*part) && (part->components >> sum.component & 1U) != 0;
+  const std::optional<FoldTarget> target = foldedBy(reduce, stmt);
+  const bool isOfSum = target && sum.whole.holds(*target) && (target->components >> sum.component & 1U) != 0;
   if (!isOfSum) return std::nullopt;
   const auto* swizzled = std::get_if<Swizzle>(&std::get<Assign>(stmt.node).place->node);
   if (swizzled == nullptr) return sum.component;

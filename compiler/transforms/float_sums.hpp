@@ -20,8 +20,8 @@ struct FloatSum {
   ir::Type type;
   unsigned components;  ///< bit i: component i is a sum; other components are not folded by +
 
-  /// True if a part of a fold consists of components of this sum.
-  bool holds(const FoldTarget& part) const;
+  /// True if a target of a fold consists of components of this sum.
+  bool holds(const FoldTarget& target) const;
 };
 
 /// The sums of a reduce, in the order of its parameters and their members. Outside of loop heads, the

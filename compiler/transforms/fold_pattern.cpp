@@ -59,21 +59,21 @@ std::optional<FoldOp> selfFold(const Expr& value, const StaticLValue& lvalue) {
   return std::nullopt;
 }
 
-/// Adds a part; false if one of its components is folded by another operator already.
-bool add(std::vector<FoldTarget>& parts, FoldTarget part) {
+/// Adds a target; false if one of its components is folded by another operator already.
+bool add(std::vector<FoldTarget>& targets, FoldTarget target) {
   FoldTarget* same = nullptr;
-  for (FoldTarget& other : parts) {
-    if (other.accumulator != part.accumulator || other.members != part.members) continue;
-    if (other.op == part.op) {
+  for (FoldTarget& other : targets) {
+    if (other.accumulator != target.accumulator || other.members != target.members) continue;
+    if (other.op == target.op) {
       same = &other;
-    } else if ((other.components & part.components) != 0) {
+    } else if ((other.components & target.components) != 0) {
       return false;
     }
   }
   if (same == nullptr) {
-    parts.push_back(std::move(part));
+    targets.push_back(std::move(target));
   } else {
-    same->components |= part.components;
+    same->components |= target.components;
   }
   return true;
 }
@@ -82,7 +82,7 @@ class Recogniser {
  public:
   explicit Recogniser(const Kernel& kernel) : kernel_(kernel) {}
 
-  /// The part that a statement folds into an accumulator.
+  /// The target that a statement folds into an accumulator.
   std::optional<FoldTarget> foldOf(const Stmt& stmt) const {
     const auto* n = std::get_if<Assign>(&stmt.node);
     if (n == nullptr) return std::nullopt;
@@ -100,14 +100,14 @@ class Recogniser {
     FoldPattern pattern{{}, false};
     bool matches = true;
     walkStmts(body, [&](const Stmt& stmt) {
-      std::optional<FoldTarget> part = foldOf(stmt);
-      if (part) {
-        matches = matches && add(pattern.parts, std::move(*part));
+      std::optional<FoldTarget> target = foldOf(stmt);
+      if (target) {
+        matches = matches && add(pattern.targets, std::move(*target));
         return;
       }
       forEachOperand(stmt, [&](const ExprPtr& operand) { matches = matches && reads(*operand) == 0; });
     });
-    if (!matches || pattern.parts.empty()) return std::nullopt;
+    if (!matches || pattern.targets.empty()) return std::nullopt;
     if (!arePlain(body)) return pattern;
     const Overlap overlap = overlapOf(body);
     if (overlap == Overlap::Repeated) return std::nullopt;
@@ -125,15 +125,15 @@ class Recogniser {
   /// Whether plain statements fold into the same component by the same operator. An unrolled loop repeats one statement of
   /// the source.
   Overlap overlapOf(const Block& body) const {
-    std::vector<FoldTarget> parts;
+    std::vector<FoldTarget> targets;
     for (const Stmt& stmt : body) {
-      if (std::optional<FoldTarget> part = foldOf(stmt)) parts.push_back(std::move(*part));
+      if (std::optional<FoldTarget> target = foldOf(stmt)) targets.push_back(std::move(*target));
     }
     Overlap overlap = Overlap::None;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const FoldTarget& a = parts[i];
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const FoldTarget& a = targets[i];
       for (std::size_t j = 0; j < i; ++j) {
-        const FoldTarget& b = parts[j];
+        const FoldTarget& b = targets[j];
         if (a.op != b.op) continue;
         if (a.accumulator != b.accumulator || a.members != b.members || (a.components & b.components) == 0)
           continue;

@@ -26,12 +26,12 @@ struct FoldTarget {
   ir::Type type;  ///< type of the member
   unsigned components;  ///< bit i: component i
   FoldOp op;
-  Loc loc;  ///< of the first statement that folds into the part
+  Loc loc;  ///< of the first statement that folds into the target
   bool isWhole() const { return components == (1U << type.width) - 1; }
 };
 
 struct FoldPattern {
-  std::vector<FoldTarget> parts;  ///< in statement order; each component is in one part only
+  std::vector<FoldTarget> targets;  ///< in statement order; each component is in one target only
   bool
       isPlain;  ///< the body is only `accumulator op= its element`, whole or by member, each component at most once
 };
@@ -43,7 +43,7 @@ std::optional<FoldPattern> recogniseFold(const ir::Kernel& kernel, const ir::Fun
 /// `t += x; t += x;`.
 bool foldsElementTwice(const ir::Kernel& kernel, const ir::Function& entry);
 
-/// The part that a statement of a reduce folds into, if the statement uses accumulators in no other way.
+/// The target that a statement of a reduce folds into, if the statement uses accumulators in no other way.
 std::optional<FoldTarget> foldedBy(const ir::Kernel& kernel, const ir::Stmt& stmt);
 
 /// A value that a statement folding by + adds: f or g of `place += f`, `place = place + f - g`.

@@ -454,9 +454,9 @@ class ExactSummation {
 
 /// True if all that floats are added to are sums, so that an exact call adds none of them inexactly.
 bool areAll(const std::vector<ScalarSum>& sums, const FoldPattern& pattern) {
-  return std::ranges::all_of(pattern.parts, [&](const FoldTarget& part) {
-    if (part.op != FoldOp(BinaryOp::Add) || part.type.scalar != Scalar::Float) return true;
-    return std::ranges::any_of(sums, [&](const ScalarSum& sum) { return sum.whole.holds(part); });
+  return std::ranges::all_of(pattern.targets, [&](const FoldTarget& target) {
+    if (target.op != FoldOp(BinaryOp::Add) || target.type.scalar != Scalar::Float) return true;
+    return std::ranges::any_of(sums, [&](const ScalarSum& sum) { return sum.whole.holds(target); });
   });
 }
 

@@ -66,9 +66,9 @@ class DoubleSummation {
     Block rewritten;
     for (Stmt& stmt : block) {
       forEachBlock(stmt, [&](Block& inner) { addInDoubles(kernel, entry, inner, sums); });
-      const std::optional<FoldTarget> part = foldedBy(kernel, stmt);
+      const std::optional<FoldTarget> target = foldedBy(kernel, stmt);
       const auto sum =
-          std::ranges::find_if(sums, [&](const FloatSum& one) { return part && one.holds(*part); });
+          std::ranges::find_if(sums, [&](const FloatSum& one) { return target && one.holds(*target); });
       if (sum == sums.end()) {
         rewritten.push_back(std::move(stmt));
         continue;
@@ -154,8 +154,8 @@ bool isWhole(const Module& module, const Kernel& kernel, const FloatSum& sum) {
   if (!sum.members.empty() || sum.components != (1U << sum.type.width) - 1) return false;
   bool isOnlySummed = true;
   walkStmts(module.functions[kernel.entry].body, [&](const Stmt& stmt) {
-    const std::optional<FoldTarget> part = foldedBy(kernel, stmt);
-    if (part && sum.holds(*part)) return;
+    const std::optional<FoldTarget> target = foldedBy(kernel, stmt);
+    if (target && sum.holds(*target)) return;
     forEachOperand(stmt, [&](const ExprPtr& operand) {
       walkExprs(*operand, [&](const Expr& expr) {
         const auto* n = std::get_if<VarRef>(&expr.node);
