@@ -65,9 +65,9 @@ Streams::Inside Streams::inside(std::uint32_t param, std::size_t dimension, llvm
           nullptr};
 }
 
-/// The index itself if its element is held, which CPUs predict; else what `bring` computes, which takes a division.
+/// The index itself if its element is held, which CPUs predict; else what `remap` computes, which takes a division.
 llvm::Value* Streams::unlessHeld(std::uint32_t param, std::size_t dimension, llvm::Value* index,
-                                 const std::function<llvm::Value*()>& bring) {
+                                 const std::function<llvm::Value*()>& remap) {
   llvm::BasicBlock* const before = l.b.GetInsertBlock();
   const auto block = [&](const char* name) {
     return llvm::BasicBlock::Create(l.b.getContext(), name, before->getParent());
@@ -78,13 +78,13 @@ llvm::Value* Streams::unlessHeld(std::uint32_t param, std::size_t dimension, llv
       l.b.CreateICmpULT(l.b.CreateSub(index, low(param, dimension)), heldCount(param, dimension));
   l.b.CreateCondBr(isHeld, end, outside, llvm::MDBuilder(l.b.getContext()).createLikelyBranchWeights());
   l.b.SetInsertPoint(outside);
-  llvm::Value* const brought = clamped(param, dimension, bring());
+  llvm::Value* const remapped = clamped(param, dimension, remap());
   llvm::BasicBlock* const outsideEnd = l.b.GetInsertBlock();
   l.b.CreateBr(end);
   l.b.SetInsertPoint(end);
   llvm::PHINode* const phi = l.b.CreatePHI(l.int64(), 2);
   phi->addIncoming(index, before);
-  phi->addIncoming(brought, outsideEnd);
+  phi->addIncoming(remapped, outsideEnd);
   return phi;
 }
 

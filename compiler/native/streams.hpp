@@ -117,7 +117,7 @@ class Streams {
   llvm::Value* high(std::uint32_t param, std::size_t dimension);
   llvm::Value* heldCount(std::uint32_t param, std::size_t dimension);
   llvm::Value* unlessHeld(std::uint32_t param, std::size_t dimension, llvm::Value* index,
-                          const std::function<llvm::Value*()>& bring);
+                          const std::function<llvm::Value*()>& remap);
   llvm::Value* clamped(std::uint32_t param, std::size_t dimension, llvm::Value* index);
   llvm::Value* areAllHeld(std::uint32_t param, const Parts& index);
   Parts gatherBounded(std::uint32_t param, const Parts& index);

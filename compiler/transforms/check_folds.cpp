@@ -164,13 +164,13 @@ struct IdentityCheck {
 
 bool checkIdentities(const Module& module, const Kernel& kernel, const FoldPattern& pattern,
                      Diagnostics& diagnostics) {
-  bool isRight = true;
+  bool areIdentities = true;
   for (const FoldTarget& target : pattern.targets) {
     const ExprPtr& identity = kernel.params[target.accumulator].identity;
     const std::optional<Numbers> given = identity ? interpretConstant(module, *identity) : std::nullopt;
-    if (given && !IdentityCheck{module, kernel, diagnostics}.check(target, *given)) isRight = false;
+    if (given && !IdentityCheck{module, kernel, diagnostics}.check(target, *given)) areIdentities = false;
   }
-  return isRight;
+  return areIdentities;
 }
 
 bool checkOwnCombination(const Module& module, KernelId id, bool combinesOthers, Diagnostics& diagnostics) {

@@ -160,23 +160,23 @@ void ModuleLowering::addAlias(const clang::TypedefNameDecl* alias) {
 /// Reports what keeps a struct from being copied member by member, and initialised by a list.
 void ModuleLowering::checkPlain(const clang::CXXRecordDecl* record) {
   const std::string name = structName(record);
-  const auto refuse = [&](SourceLocation where, std::string_view what) {
+  const auto reject = [&](SourceLocation where, std::string_view what) {
     fail(Diag::StructNotPlain, where, {name, what});
   };
-  if (record->getNumBases() != 0) refuse(record->bases_begin()->getBeginLoc(), "it has a base");
+  if (record->getNumBases() != 0) reject(record->bases_begin()->getBeginLoc(), "it has a base");
   for (const clang::CXXConstructorDecl* constructor : record->ctors()) {
-    if (!constructor->isImplicit()) refuse(constructor->getLocation(), "it has a constructor");
+    if (!constructor->isImplicit()) reject(constructor->getLocation(), "it has a constructor");
   }
   for (const clang::Decl* member : record->decls()) {  // constructors of any type
     const auto* pattern = llvm::dyn_cast<clang::FunctionTemplateDecl>(member);
     if (pattern && llvm::isa<clang::CXXConstructorDecl>(pattern->getTemplatedDecl()))
-      refuse(pattern->getLocation(), "it has a constructor");
+      reject(pattern->getLocation(), "it has a constructor");
   }
   const clang::CXXDestructorDecl* destructor = record->getDestructor();
   if (destructor && record->hasNonTrivialDestructor())
-    refuse(destructor->getLocation(), "it has a destructor");
+    reject(destructor->getLocation(), "it has a destructor");
   if (!record->hasTrivialCopyConstructor())
-    refuse(record->getLocation(), "its members are not copied bit by bit");
+    reject(record->getLocation(), "its members are not copied bit by bit");
 }
 
 ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, SourceLocation use) {

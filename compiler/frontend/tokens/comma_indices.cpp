@@ -47,7 +47,7 @@ const IndexedParameter* named(const Token& token, const std::vector<IndexedParam
 
 }  // namespace
 
-void refuseCommaIndices(const Tokens& body, const std::vector<IndexedParameter>& parameters,
+void rejectCommaIndices(const Tokens& body, const std::vector<IndexedParameter>& parameters,
                         Diagnostics& diagnostics) {
   for (std::size_t i = 1; i + 1 < body.size(); ++i) {
     const bool isMember = body[i - 1].isOneOf(tok::period, tok::coloncolon);

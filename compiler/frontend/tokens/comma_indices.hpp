@@ -21,7 +21,7 @@ struct IndexedParameter {
 };
 
 /// Reports each subscript of `parameters` in a body that has a comma between indices.
-void refuseCommaIndices(const std::vector<clang::Token>& body,
+void rejectCommaIndices(const std::vector<clang::Token>& body,
                         const std::vector<IndexedParameter>& parameters, Diagnostics& diagnostics);
 
 }  // namespace skc::frontend

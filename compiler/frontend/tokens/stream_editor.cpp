@@ -15,13 +15,13 @@ void StreamEditor::edit(TokenCursor& cursor, Tokens& out) {
   Tokens type;
   takeType(cursor, type);
   Tokens edited;
-  bool isRight = !type.empty() || fail(Diag::StreamDeclaration, cursor.peek());
-  for (bool isLast = false; isRight && !isLast;) {
-    isRight = takeDeclarator(cursor, type, edited);
-    isLast = !isRight || cursor.at(tok::semi);
+  bool isWellFormed = !type.empty() || fail(Diag::StreamDeclaration, cursor.peek());
+  for (bool isLast = false; isWellFormed && !isLast;) {
+    isWellFormed = takeDeclarator(cursor, type, edited);
+    isLast = !isWellFormed || cursor.at(tok::semi);
     if (!isLast) cursor.take();   // the comma
   }
-  if (isRight) out.insert(out.end(), edited.begin(), edited.end());
+  if (isWellFormed) out.insert(out.end(), edited.begin(), edited.end());
   while (!cursor.atEndOfDeclaration()) cursor.take();
   if (cursor.at(tok::semi)) cursor.take();
 }

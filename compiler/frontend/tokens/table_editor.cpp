@@ -37,7 +37,7 @@ bool isInterpolation(const std::vector<Token>& argument) {
 }
 
 /// Checks for low, high, intervals and the interpolation.
-bool areRight(const std::vector<std::vector<Token>>& arguments) {
+bool areWellFormed(const std::vector<std::vector<Token>>& arguments) {
   if (arguments.size() != 4 || !isInterpolation(arguments[3])) return false;
   return !arguments[0].empty() && !arguments[1].empty() && !arguments[2].empty();
 }
@@ -56,7 +56,7 @@ std::optional<TableSyntax> takeTable(TokenCursor& cursor, std::size_t tokens, co
                       attribute[attribute.size() - 3].is(tok::r_paren);
   const std::vector<std::vector<Token>> arguments =
       isCall ? argumentsOf({attribute.begin() + 3, attribute.end() - 2}) : std::vector<std::vector<Token>>();
-  if (!areRight(arguments)) {
+  if (!areWellFormed(arguments)) {
     diagnostics.report(Diag::TableForm, locOf(name));
     return std::nullopt;
   }

@@ -67,11 +67,11 @@ class Editor {
     if (const std::size_t behind = endOfChoices(cursor_); behind != 0) return editChoices(behind);
     if (atKernel()) return editKernel();
     if (atDeclarationWord("stream")) return editStream();
-    if (atWord("iter") && listedName() > 1) return refuseIterator();
+    if (atWord("iter") && listedName() > 1) return rejectIterator();
     if (cursor_.at(tok::kw_namespace)) return copyUntilBodyOrEnd();
     if (cursor_.at(tok::kw_template)) return editTemplate();
-    if (const std::size_t name = brookStream(); name != 0) return refuseStream(name);
-    if (const std::size_t kernel = kernelBehindSpecifiers(); kernel != 0) return refuseSpecifiers(kernel);
+    if (const std::size_t name = brookStream(); name != 0) return rejectStream(name);
+    if (const std::size_t kernel = kernelBehindSpecifiers(); kernel != 0) return rejectSpecifiers(kernel);
     copyDeclaration();
   }
 
@@ -89,7 +89,7 @@ class Editor {
     return isKernelWord(cursor_.peek(at)) && cursor_.peek(at + 1).is(tok::kw_void);
   }
 
-  void refuseSpecifiers(std::size_t kernel) {
+  void rejectSpecifiers(std::size_t kernel) {
     const Token first = cursor_.peek();
     std::string specifiers;
     Token last = first;
@@ -199,7 +199,7 @@ class Editor {
   }
 
   /// Reports Brook's `iter float x<100> = iter(0, 1);`
-  void refuseIterator() {
+  void rejectIterator() {
     diagnostics_.report(Diag::IteratorDeclaration, locOf(cursor_.peek()));
     skipDeclaration();
   }
@@ -227,7 +227,7 @@ class Editor {
     return 0;
   }
 
-  void refuseStream(std::size_t name) {
+  void rejectStream(std::size_t name) {
     diagnostics_.report(Diag::StreamKeyword, locOf(cursor_.peek(name)), {nameOf(cursor_.peek(name))},
                         {FixIt::insertBefore(locOf(cursor_.peek()), "stream ")});
     skipDeclaration();
@@ -292,8 +292,8 @@ class Editor {
     out_.insert(out_.end(), edited.begin(), edited.end());
     if (cursor_.at(tok::kw_requires)) copyConstraint();
     if (cursor_.at(tok::l_brace)) {
-      for (const ParameterEditor::Input& input : parameters.inputs()) refuseIfOnlyAssigned(input);
-      refuseCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
+      for (const ParameterEditor::Input& input : parameters.inputs()) rejectIfOnlyAssigned(input);
+      rejectCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
       return copyBody(constants);
     }
     if (cursor_.at(tok::semi)) return copyToken();
@@ -302,7 +302,7 @@ class Editor {
   }
 
   /// Reports an input that the body only assigns to: an output was meant.
-  void refuseIfOnlyAssigned(const ParameterEditor::Input& input) {
+  void rejectIfOnlyAssigned(const ParameterEditor::Input& input) {
     bool isNamed = false;
     int depth = 0;
     for (std::size_t i = 0; cursor_.peek(i).isNot(tok::eof); ++i) {
@@ -362,7 +362,7 @@ class Editor {
         const std::vector<Token> edited = parameters.edit(declared, FunctionKind::Helper);
         out_.insert(out_.end(), edited.begin(), edited.end());
         if (cursor_.at(tok::l_brace))
-          refuseCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
+          rejectCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
         continue;
       }
       copyToken();
@@ -409,7 +409,7 @@ class Editor {
 
   /// Reports `stream float a<n>` and Brook's `indexof a` in a body or a struct, and kernels there, which it skips.
   void checkInner() {
-    while (refuseInnerKernel()) {
+    while (rejectInnerKernel()) {
     }
     checkCast();
     checkOperator("indexof");
@@ -422,7 +422,7 @@ class Editor {
   }
 
   /// Reports `kernel void f(...) { ... }` within braces; returns true if it was there.
-  bool refuseInnerKernel() {
+  bool rejectInnerKernel() {
     const bool starts = out_.back().isOneOf(tok::l_brace, tok::r_brace, tok::semi);
     const bool isDeclared =
         isKernelAt(0) && cursor_.peek(2).is(tok::identifier) && cursor_.at(3, tok::l_paren);
@@ -490,7 +490,7 @@ class Editor {
 };
 
 /// Reports `a<b<c<d`: Clang tries each `<` as a bracket and as an operator, which doubles the time.
-void refuseDeepAngles(const std::vector<Token>& tokens, Diagnostics& diagnostics) {
+void rejectDeepAngles(const std::vector<Token>& tokens, Diagnostics& diagnostics) {
   constexpr int deepest = 12;
   int depth = 0;
   for (std::size_t i = 1; i < tokens.size(); ++i) {
@@ -506,7 +506,7 @@ void refuseDeepAngles(const std::vector<Token>& tokens, Diagnostics& diagnostics
 
 EditedTokens editTokens(const std::vector<Token>& tokens, clang::Preprocessor& preprocessor,
                         Diagnostics& diagnostics) {
-  refuseDeepAngles(tokens, diagnostics);
+  rejectDeepAngles(tokens, diagnostics);
   return Editor(tokens, preprocessor, diagnostics).run();
 }
 
