@@ -3,7 +3,7 @@
 // What is known of an integer's value: bounds, and bounds of its distance from each component of the index of the
 // element that is computed. A bound is a constant plus multiples of Spec parameters, so that it is the same for all
 // elements. This is interval analysis (P. Cousot and R. Cousot, "Abstract interpretation", 1977) of five differences
-// at once. Integer arithmetic is taken not to overflow.
+// at once. Integer arithmetic is taken not to overflow. The end of the file states what is known of all values at one point.
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Which operands of floats a driver's compiler may know, so that it might take `x + 0.0` for x or `x * 0.0` for 0.
+// What is known of operands, by GLSL's compilers and by us: floats that a driver's compiler may know, so that it might take
+// `x + 0.0` for x or `x * 0.0` for 0; and operands that may be among those for which GLSL leaves an operation undefined.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Lvalues: a variable, or a member, element or component of an lvalue. Answers which part of a variable an
-// lvalue names, and whether two of them can share a number.
+// lvalue names, whether two of them can share a number, and which variables statements change.
 #pragma once
 
 #include <cstdint>

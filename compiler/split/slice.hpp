@@ -9,7 +9,7 @@
 //
 // is `float t = g(x); for (...) { t *= b[i]; } q = t;`. A variable may be loaded instead of
 // computed; statements that only it needed then drop out. The slicer tracks whole variables, not components,
-// and keeps a statement when in doubt.
+// and keeps a statement when in doubt. Demand says which of the kernel's streams a slice needs.
 #pragma once
 
 #include <cstddef>

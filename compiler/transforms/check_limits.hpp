@@ -2,7 +2,7 @@
 //
 // Rejects kernels with more parameters or planes than their descriptors and the runtime's keys can number
 // (sk/program.hpp, runtime/src/gl_device/program/variant.hpp), and warns of uniforms that exceed some
-// devices' space. Kernels that exceed what a device can do in one pass are left to split-kernels.
+// devices' space. Rejects kernels that inlining makes too large. Kernels that exceed what a device can do in one pass are left to split-kernels.
 #pragma once
 
 #include <cstddef>
@@ -30,11 +30,10 @@ void checkLimits(const ir::Module& module, Diagnostics& diagnostics);
 /// after an error.
 bool checkCombinationFits(const ir::Module& module, const ir::Kernel& kernel, Diagnostics& diagnostics);
 
-// Reports kernels that become too large when every call in them is replaced by the function's body, as native code and OpenGL
-// drivers do:
-//
-//   float f1(float x) { return f0(x) + f0(x); }  ...  float f30(float x) { return f29(x) + f29(x); }   // 2^30 times f0
-
+/// Reports kernels that become too large when every call in them is replaced by the function's body, as native code and OpenGL
+/// drivers do:
+///
+///   float f1(float x) { return f0(x) + f0(x); }  ...  float f30(float x) { return f29(x) + f29(x); }   // 2^30 times f0
 void checkSizes(const ir::Module& module, Diagnostics& diagnostics);
 
 }  // namespace skc

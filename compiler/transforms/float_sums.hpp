@@ -2,7 +2,7 @@
 //
 // Finds the float sums of a reduce: accumulators, or members of them, to which elements are added, and to
 // which partial results are added as well, whether the compiler or the author combines them. Other members
-// may be folded in any way.
+// may be folded in any way. Splits what elements add to a sum into terms.
 #pragma once
 
 #include <cstdint>

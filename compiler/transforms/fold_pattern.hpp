@@ -4,7 +4,7 @@
 // statement that uses an accumulator is `place op= f`, `place = place op f` or `place = min(place, f)`, and
 // no f reads one. Whatever its loops and branches, the body is then `accumulator op f(elements)`. A body that only folds
 // the element itself, but more than once, as in `t += x; t += x;`, is not recognised: it could as well start from
-// its first element, with another result.
+// its first element, with another result. States the identities of these operators, too.
 #pragma once
 
 #include <cstdint>

@@ -21,19 +21,14 @@ namespace skc {
 /// expression keeps its form, and only the operators around it become branches.
 void hoistExpressions(ir::Function& function, FunctionRef<bool(const ir::Expr&)> isHoisted);
 
-// Private to predicate: moves calls that may take long, or may not end, out of `&&`, `||` and `?:`, so that
-// these may evaluate all their operands.
-//
-//   r = x > 0 ? rounds(x) : 1;      int chosen;
-//                                   if (x > 0) chosen = rounds(x); else chosen = 1;
-//                                   r = chosen;
-
 /// Functions that contain a data-dependent loop, or call a function that does.
 std::set<ir::FunctionId> longFunctions(const ir::Module& module);
 
 /// True if an expression calls one of these functions.
 bool callsOneOf(const std::set<ir::FunctionId>& functions, const ir::Expr& expr);
 
+/// Hoists the calls of these functions. predicate does so with those that may take long, or may not end: the operators around
+/// them may then evaluate all their operands.
 void hoistCalls(ir::Function& function, const std::set<ir::FunctionId>& functions);
 
 }  // namespace skc

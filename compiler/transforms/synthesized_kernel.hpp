@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Builds synthesized kernels: those that combine or finish a reduce. C++ code never calls them, and messages
-// name the kernel that they serve.
+// name the kernel that they serve. Copies functions for variants of kernels.
 #pragma once
 
 #include <map>
