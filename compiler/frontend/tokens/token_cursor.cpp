@@ -8,6 +8,10 @@
 #include "frontend/prelude.hpp"
 
 namespace skc::frontend {
+
+using clang::Token;
+namespace tok = clang::tok;
+
 namespace {
 
 /// Whether a token can follow the parameters of a template.
