@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include <dlfcn.h>
+#include <sys/wait.h>
 
 #include "temporary_folder.hpp"
 
@@ -67,7 +68,10 @@ Oracle::Oracle(const std::string& text, const std::string& object, const std::ve
     command += " -x none '" + named("native.o") + "'";
   }
   command += " 2>'" + named("messages") + "'";
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("Clang: " + firstError(named("messages")));
+  const int status = std::system(command.c_str());
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+    throw std::runtime_error("there is no clang++-19 to compare with: apt-get install clang-19");
+  if (status != 0) throw std::runtime_error("Clang: " + firstError(named("messages")));
   library_ = dlopen(named("program.so").c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library_ == nullptr)
     throw std::runtime_error(std::string("the program cannot be loaded: ") + dlerror());
