@@ -85,7 +85,7 @@ struct IndexValue {
   bool operator==(const IndexValue&) const = default;
 };
 
-/// One for each scalar leaf of a type, as in shapes.hpp: the elements of an array share the leaves of one.
+/// The values of all scalar leaves of a type (shapes.hpp). All elements of an array share the leaves of one element.
 using IndexValues = std::vector<IndexValue>;
 
 /// What is known at one point of a function.

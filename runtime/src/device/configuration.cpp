@@ -128,12 +128,15 @@ Storage storageOf(const std::string& file, const toml::key& name, const toml::ta
 
 /// The value of a constant of a device. Throws unless the row's range has it.
 double traitOf(const std::string& file, const gl::DeviceTraitRow& row, const toml::node& node) {
-  const std::optional<bool> yes = node.value_exact<bool>();
-  const std::optional<double> number = row.isWhole ? std::nullopt : node.value<double>();
-  const std::optional<std::int64_t> whole = node.value_exact<std::int64_t>();
-  std::optional<double> value = number;
-  if (whole) value = static_cast<double>(*whole);
-  if (row.isBool) value = yes ? std::optional<double>(*yes ? 1 : 0) : std::nullopt;
+  std::optional<double> value;
+  if (row.isBool) {
+    if (const std::optional<bool> isOn = node.value_exact<bool>()) value = *isOn ? 1 : 0;
+  } else if (row.isWhole) {
+    if (const std::optional<std::int64_t> whole = node.value_exact<std::int64_t>())
+      value = static_cast<double>(*whole);
+  } else {
+    value = node.value<double>();
+  }
   if (value && *value >= 0 && *value <= row.most) return *value;
   throw Error(fmt::format("{}:{}: {} ({}) is {}", file, node.source().begin.line, row.name, row.meaning,
                           row.isBool ? "true or false"

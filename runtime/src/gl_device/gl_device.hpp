@@ -197,8 +197,8 @@ class GlDevice final : public DeviceState {
   MadeKernels mergeKernels{*this};
   gl::Samplers samplers{bound.deletions};
   gl::StorageBuffer values{gl::StorageBuffer::Use::Values};  ///< of dispatched reductions to values
-  /// Of dispatches that fold beside outputs: work groups leave in it what they have folded (assemble/reduce/group_fold.hpp). Its
-  /// first word is 0 between dispatches, which set it back themselves, so that a loop may repeat them.
+  /// Partial results of the work groups of dispatches that fold beside outputs (assemble/reduce/group_fold.hpp). Each dispatch
+  /// resets the first word to 0, so that a loop may repeat it.
   gl::StorageBuffer folded{gl::StorageBuffer::Use::Persistent};
   gl::StorageBuffer groupStates{gl::StorageBuffer::Use::Scratch};  ///< of dispatched append outputs
   gl::StorageBuffer tileResults{gl::StorageBuffer::Use::Scratch};  ///< of scans in one pass

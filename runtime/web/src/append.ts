@@ -8,9 +8,9 @@ import { deviceOf, fail, isRead, isSameShape, stepsOf, withoutViews, type Checke
 import type { Device } from './device.js';
 import type { Features, LoadedFile, ListCaller } from './features.js';
 import { isNeeded, type CallableKernel, type List, type PointStep } from './generated.js';
-import { bindOperands, isAlsoRead, liesOf, ProgramSource, targetOf } from './pass.js';
 import { shapeText, sizeOf, stridesOf, type Layout } from './layout.js';
 import type { Plane } from './memory.js';
+import { bindOperands, isAlsoRead, liesOf, ProgramSource, targetOf } from './pass.js';
 import type { Program } from './program.js';
 import { mostPushes, Pyramid } from './pyramid.js';
 import { Scatterer } from './scatter.js';

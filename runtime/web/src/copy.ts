@@ -2,8 +2,8 @@
 //
 // Copies elements from one stream to another on the device, at regular distances in both.
 import type { Context } from './context.js';
-import type { Plane } from './memory.js';
 import { consecutiveTexels, type Index4, type Rect } from './layout.js';
+import type { Plane } from './memory.js';
 import type { Program } from './program.js';
 
 /** Elements of a stream that is not packed: element i has the number first + sum(i * strides) in its textures. */

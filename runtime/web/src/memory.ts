@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // The memory of a context: textures, those that nothing uses for a while among them, and the framebuffers that draw to them.
+import { ContextState } from './context_state.js';
 import { SkError } from './error.js';
 import { formatOf, type Format, type Scalar } from './format.js';
 import type { Rect } from './layout.js';
-import { ContextState } from './context_state.js';
 
 /** Planes of one format and size, of which nothing uses the idle ones. */
 export interface Shelf {

@@ -7,8 +7,8 @@ import { SkError } from './error.js';
 import type { Format } from './format.js';
 import type { Features, LoadedFile, PassRunner, Placed } from './features.js';
 import type { KernelData, Pass, Plan } from './generated.js';
-import { bindOperands, isAlsoRead, liesOf, ProgramSource, smallGather, targetOf } from './pass.js';
 import type { Plane } from './memory.js';
+import { bindOperands, isAlsoRead, liesOf, ProgramSource, smallGather, targetOf } from './pass.js';
 import type { Program } from './program.js';
 import { kernelKey, viewsKey, type Lie } from './variant.js';
 

@@ -4,9 +4,9 @@
 // runtime/src/assemble/append/histo_pyramid.cpp, and runtime/src/gl_device/append/histo_pyramid.cpp. (Ziegler, Tevs, Theobalt, Seidel 2006,
 // "On-the-fly Point Clouds through Histogram Pyramids".)
 import type { Context } from './context.js';
-import type { Plane } from './memory.js';
 import { SkError } from './error.js';
 import { consecutiveTexels, linearTexture, sizeOf, type Layout, type Rect } from './layout.js';
+import type { Plane } from './memory.js';
 import type { Program } from './program.js';
 
 /** Values that one call pushes to one stream at most: the sum of four counts is an int. */

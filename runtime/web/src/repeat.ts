@@ -6,9 +6,9 @@
 import { isRead, isWritten, iteratorOf, specOf, stepsOf, uniformOf, type AnyStream, type Checked } from './arguments.js';
 import type { Device } from './device.js';
 import type { Element, KernelData, Parameter } from './generated.js';
-import { drawDomain, targetOf } from './pass.js';
 import type { Layout } from './layout.js';
 import type { Plane } from './memory.js';
+import { drawDomain, targetOf } from './pass.js';
 import type { Program } from './program.js';
 import { Stream, View } from './stream.js';
 import type { Lie } from './variant.js';

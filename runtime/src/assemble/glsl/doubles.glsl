@@ -46,7 +46,7 @@ uint sk_to_uint(sk_double a) {
 }
 sk_double sk_neg(sk_double a) { return sk_double(a.bits ^ uvec2(0u, 0x80000000u)); }
 bool sk_is_negative(sk_double a) { return int(a.bits.y) < 0; }
-// A zero with the sign of a. Of bits: NVIDIA's compiler for ES takes -0 and 0 for one constant.
+// A zero with the sign of a.
 sk_double sk_zero_of(sk_double a) { return sk_double(uvec2(0u, a.bits.y & 0x80000000u)); }
 sk_double sk_add(sk_double a, sk_double b) { sk_written double r = sk_value(a) + sk_value(b); return sk_of(r); }
 sk_double sk_sub(sk_double a, sk_double b) { sk_written double r = sk_value(a) - sk_value(b); return sk_of(r); }
@@ -140,6 +140,7 @@ sk_double sk_two_product(float a, float b) {
 
 sk_double sk_neg(sk_double a) { return sk_double(-a.hi, -a.lo); }
 bool sk_is_negative(sk_double a) { return floatBitsToInt(a.hi) < 0; }
+// NVIDIA's compiler for ES takes the constants -0.0 and 0.0 of a ?: for one, so the zero is made from bits.
 sk_double sk_zero_of(sk_double a) {
   float zero = uintBitsToFloat(floatBitsToUint(a.hi) & 0x80000000u);
   return sk_double(zero, zero);
