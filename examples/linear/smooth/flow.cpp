@@ -54,8 +54,9 @@ class Flow::Solver {
   Solver(sk::Device& device, const Surface& surface, const Faults& faults, const FlowSettings& settings)
       : device_(device), equations_(surface), settings_(settings) {
     computeValues(surface, faults);
-    make(settings.precision == "auto" ? neededPrecision(device, a_, equations_.leastEigenvalue())
-                                      : std::string_view(settings.precision));
+    make(settings.precision == "auto" ? std::string(neededPrecision(device, a_, equations_.leastEigenvalue()))
+                                      : settings.precision,
+         cheapest);
   }
 
   /// For other positions of the points.
@@ -63,8 +64,9 @@ class Flow::Solver {
     computeValues(surface, faults);
     if (mayNeedMore()) {
       const std::string_view needed = neededPrecision(device_, a_, equations_.leastEigenvalue());
-      if (needed != "single") return make(needed);
+      if (needed != "single") return make(std::string(needed), preconditionedBy_);
     }
+    if (preconditionedBy_ != cheapest) return make(precision_, preconditionedBy_);
     matrix_->update(linear::scaled(balanced_, a_.scale));
     preconditioner_->update(a_);
     residual_->update();
@@ -77,7 +79,11 @@ class Flow::Solver {
     for (std::size_t i = 0; i < b.size(); ++i) b[i] *= -scale_[i];
     linear::Solution change = solve(b);
     if (!isSolved(change) && mayNeedMore()) {
-      make(linear::hasDoubles(device_) ? "double" : "extended");
+      make(linear::hasDoubles(device_) ? "double" : "extended", preconditionedBy_);
+      change = solve(b);
+    }
+    if (!isSolved(change) && preconditionedBy_ != strongest) {
+      make(precision_, strongest);
       change = solve(b);
     }
     for (std::size_t i = 0; i < change.x.size(); ++i) change.x[i] *= scale_[i];
@@ -94,22 +100,31 @@ class Flow::Solver {
   /// x solves equations whose entries differ from these by less than their own rounding errors (J. Rigal and J. Gaches, "On the compatibility of a given solution with
   /// the data of a linear system", 1967). Where a surface has almost shrunk to curves, condition numbers exceed 10^8, and no double x has a residual below the tolerance.
   static bool isAsExactAsDoubles(const linear::Solution& change) {
-    return change.outcome == linear::Outcome::Stagnated && change.backwardError <= mostBackwardError;
+    return (change.outcome == linear::Outcome::Stagnated ||
+            change.outcome == linear::Outcome::MostIterations) &&
+           change.backwardError <= mostBackwardError;
   }
 
   std::string layout() const { return matrix_->layout(); }
   const std::string& precision() const { return precision_; }
+  std::string_view preconditioner() const { return preconditionedBy_; }
 
  private:
-  void make(std::string_view precision) {
-    precision_ = precision;
-    arithmetic_ = arithmeticNamed(precision);
+  /// Preconditioners: one whose steps follow other values of the matrix, and one that is made anew for each step, for
+  /// surfaces that have almost shrunk to curves, whose iterations with the first are as many as their points, and lose
+  /// what they gain to rounding.
+  static constexpr std::string_view cheapest = "jacobi", strongest = "aggregation";
+
+  void make(std::string precision, std::string_view preconditioner) {
+    precision_ = std::move(precision);
+    preconditionedBy_ = preconditioner;
+    arithmetic_ = arithmeticNamed(precision_);
     residual_.reset();  // what refers to others goes first
     method_.reset();
     preconditioner_.reset();
     sk::Device& device = device_;
     matrix_ = linear::makeMatrix(device, linear::scaled(balanced_, a_.scale), settings_.layout, arithmetic_);
-    preconditioner_ = linear::rowNamed(linear::preconditionerKinds(), "jacobi", "preconditioner")
+    preconditioner_ = linear::rowNamed(linear::preconditionerKinds(), preconditioner, "preconditioner")
                           .make(device, *matrix_, a_, arithmetic_);
     method_ = linear::rowNamed(linear::methodKinds(), "cg", "solver")
                   .make(device, *matrix_, preconditioner_.get(), arithmetic_);
@@ -118,10 +133,10 @@ class Flow::Solver {
 
   bool mayNeedMore() const { return settings_.precision == "auto" && precision_ == "single"; }
   linear::Solution solve(std::span<const double> b) {
+    const std::int64_t most = settings_.most > 0 ? settings_.most : 10000 + 10 * a_.size;
     // With eigenvalues this small, the residual may be above that of x = 0 for as many iterations as there are points.
-    return linear::solve(
-        *method_, *residual_, a_, b, arithmetic_,
-        {.tolerance = settings_.tolerance, .most = 10000 + 10 * a_.size, .patience = a_.size});
+    return linear::solve(*method_, *residual_, a_, b, arithmetic_,
+                         {.tolerance = settings_.tolerance, .most = most, .patience = a_.size});
   }
 
   void computeValues(const Surface& surface, const Faults& faults) {
@@ -146,6 +161,7 @@ class Flow::Solver {
   Equations equations_;
   FlowSettings settings_;
   std::string precision_;
+  std::string_view preconditionedBy_ = cheapest;
   linear::Arithmetic arithmetic_;
   linear::SparseMatrix balanced_;  ///< the matrix of the equations, scaled
   std::vector<double> scale_;
@@ -176,6 +192,10 @@ Flow::Flow(sk::Device& device, Surface surface, const FlowSettings& settings)
   if (settings_.keepsVolume && (!faults_.isClosed || !(std::abs(volume_) > 0.0)))
     throw std::runtime_error(
         "the surface is open, or encloses nothing, and has no volume to keep; take keep_volume = false");
+}
+
+std::string_view Flow::preconditioner() const {
+  return solver_ ? solver_->preconditioner() : std::string_view();
 }
 
 StepReport Flow::step() {

@@ -25,6 +25,8 @@ struct FlowSettings {
   std::string layout = "auto";  ///< of the matrix, as solve --layout takes it
   std::string precision = "auto";  ///< "single", "extended", "double", or "auto" for what the matrix needs
   double tolerance = 1e-8;  ///< of a step's true residual
+  std::int64_t most =
+      0;  ///< iterations of a solve before the stronger preconditioner; 0: 10,000 and ten for each point
 };
 
 /// What a step's backward error may be if its residual stays above the tolerance: 512 roundings of doubles, less than the cotangents of thin triangles lose.
@@ -61,6 +63,8 @@ class Flow {
   const std::string& layout() const { return layout_; }
   /// The precision of the latest step's iterations; settings.precision before the first.
   const std::string& precision() const { return precision_; }
+  /// The preconditioner of the latest step's iterations: "jacobi", or "aggregation" from the step on that needs it. Empty before the first.
+  std::string_view preconditioner() const;
 
  private:
   class Solver;  ///< flow.cpp's own

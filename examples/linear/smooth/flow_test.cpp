@@ -172,6 +172,25 @@ TEST_CASE("A step is solved to the tolerance, or as exactly as doubles can") {
   CHECK(usual.step().backwardError == 0.0);
 }
 
+TEST_CASE("Steps that Jacobi's preconditioner does not solve take one that is made for their matrix") {
+  sk::Device device = sk::Device::native();
+  Surface noisy = sphere(3, 1.0);
+  addNoise(noisy, 0.05, 7);
+  Flow usual(device, noisy, {.timeStep = 1.0, .layout = "rows"});
+  Flow hurried(device, noisy, {.timeStep = 1.0, .layout = "rows", .most = 60});
+  CHECK(usual.preconditioner().empty());
+  for (int i = 0; i < 2; ++i) {
+    const StepReport expected = usual.step(), report = hurried.step();
+    CHECK(report.residual <= 1e-8);
+    CHECK(report.area == Approx(expected.area).epsilon(1e-6));
+    CHECK(report.iterations < expected.iterations);
+  }
+  CHECK(usual.preconditioner() == "jacobi");
+  CHECK(hurried.preconditioner() == "aggregation");
+  Flow tooHurried(device, noisy, {.timeStep = 1.0, .layout = "rows", .most = 2});
+  CHECK_THROWS_WITH(tooHurried.step(), Catch::Contains("most iterations"));
+}
+
 /// Steps while they succeed, at most 20; the area shrinks in each. Returns why there is no further step.
 std::string endOf(Flow& flow) {
   double area = areaOf(flow.surface());

@@ -131,10 +131,11 @@ void run(examples::Application& app, const Settings& s) {
     }
   }
   progress.clear();
-  app.report(fmt::format("{}, {} vertices, {} steps of {:.3g}, layout {}, in {} precision", scene.name,
-                         scene.surface.points.size(), scene.steps, scene.flow.timeStep, flow.layout(),
-                         flow.precision()),
-             device.name(), watch.milliseconds());
+  app.report(
+      fmt::format("{}, {} vertices, {} steps of {:.3g}, layout {}, in {} precision, preconditioned by {}",
+                  scene.name, scene.surface.points.size(), scene.steps, scene.flow.timeStep, flow.layout(),
+                  flow.precision(), flow.preconditioner()),
+      device.name(), watch.milliseconds());
   fmt::print("{}", faults);
   if (!s.obj.empty()) smooth::saveObj(s.obj, flow.surface());
   if (!s.picture.empty()) {
