@@ -138,9 +138,13 @@ std::string makeEscaped(const std::string& path) {
 
 std::string fileName(const ir::Module& module) { return fs::path(module.file).filename().string(); }
 
+emit::Targets targetsOf(const Options& options) {
+  return {
+      .fragment = options.fragmentTarget, .compute = options.computeTarget, .native = options.nativeTarget};
+}
+
 emit::Stub stubOf(const Options& options, const ir::Module& module) {
-  return emit::emitStub(module, emit::Program(module, {options.fragmentTarget, options.computeTarget}),
-                        fileName(module),
+  return emit::emitStub(module, emit::Program(module, targetsOf(options)), fileName(module),
                         {.native = options.nativeTarget,
                          .quad = options.quad,
                          .includeDirectories = options.includeDirectories,
@@ -273,8 +277,7 @@ std::string emitText(const Options& options, const ir::Module& module) {
     case Emit::Glsl: return glslListing(module, options.profile, options.precision);
     case Emit::Plan: return planListings(options, module);
     case Emit::Json:
-      return emit::jsonText(module, emit::Program(module, {options.fragmentTarget, options.computeTarget}),
-                            fileName(module));
+      return emit::jsonText(module, emit::Program(module, targetsOf(options)), fileName(module));
     case Emit::Stubs: {
       const emit::Stub stub = stubOf(options, module);
       return stub.header + stub.source;

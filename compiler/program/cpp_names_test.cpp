@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "ir/kernel_builder.hpp"
-#include "program/descriptor_names.hpp"
+#include "program/constant_names.hpp"
 
 namespace skc::emit {
 namespace {
@@ -53,7 +53,7 @@ TEST_CASE("objects and their types") {
   CHECK(list[0].units == std::vector<std::size_t>{0, 3});
   CHECK(list[1].object == "exp_");
   CHECK(list[2].object == "exp");
-  CHECK(descriptorNames(module, Program(module)) ==
+  CHECK(constantNames(module, Program(module)) ==
         std::vector<std::string>{"grayScott", "exp", "exp_2", "grayScott_2"});
 }
 
@@ -85,7 +85,7 @@ TEST_CASE("no two constants have one name, whatever kernels are called") {
   std::set<std::string> names;
   bool isUnique = true;
   const auto add = [&](const std::string& name) { isUnique = names.insert(name).second && isUnique; };
-  for (const std::string& unit : descriptorNames(module, Program(module))) {
+  for (const std::string& unit : constantNames(module, Program(module))) {
     for (const std::string_view word : partWords()) add(unit + std::string(word));
     if (unit != "scale") continue;
     for (const std::string_view first : partWords()) {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <deque>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -80,37 +80,26 @@ std::vector<ConditionStep> conditionSteps(const Kernel& kernel, const Expr& cond
 
 /// Owns what the descriptors' views refer to. Nothing in it moves after it is added.
 struct Program::Storage {
-  std::deque<std::string> strings;
-  std::deque<std::vector<sk::program::Field>> fields;
+  std::vector<std::shared_ptr<const void>> kept;
   std::map<std::tuple<Type::Kind, Scalar, std::uint8_t, std::uint32_t>, sk::program::Element> elements;
-  std::deque<std::vector<sk::program::ConditionStep>> conditions;
-  std::deque<std::vector<sk::program::Reach>> reaches;
-  std::deque<std::vector<sk::program::Parameter>> parameters;
-  std::vector<std::string_view> sources;
-  std::deque<sk::program::Reduction> reductions;
-  std::deque<sk::program::FoldParts> parts;
-  std::deque<sk::program::CompensatedReduction> compensated;
-  std::deque<std::vector<sk::program::CompensatedSum>> compensatedSums;
-  std::deque<sk::program::WideReduction> wide;
-  std::deque<sk::program::Kernel> forms;
-  std::deque<std::vector<sk::program::UnrolledKernel>> unrolled;
-  std::deque<std::vector<sk::program::ExactSum>> exact;
-  std::deque<std::vector<std::uint8_t>> combineOperands;
-  std::deque<std::vector<std::uint8_t>> factors;
-  std::deque<std::vector<sk::program::Layer>> layers;
-  std::deque<std::vector<sk::program::IntrinsicUse>> intrinsics;
-  std::deque<sk::program::Table> tables;
-  std::vector<const sk::program::Table*> tableList;
-  std::deque<std::vector<sk::program::TableUse>> tableUses;
-  std::deque<std::vector<const sk::program::Element*>> temporaries;
-  std::deque<std::vector<sk::program::ArgumentPlane>> bundleLayers;
-  std::deque<std::vector<sk::program::Bundle>> bundles;
-  std::deque<std::vector<sk::program::PassOperand>> operands;
-  std::deque<std::vector<sk::program::Pass>> passes;
-  std::deque<std::vector<sk::program::Plan>> plans;
+  std::map<const sk::program::Element*, Type> types;
+  std::map<KernelId, sk::program::Kernel> kernels;
+  std::map<const char*, KernelId> ids;  ///< by the body's address
+  std::vector<const sk::program::Table*> tables;
   std::vector<Unit> units;
 
-  std::string_view keep(std::string text) { return strings.emplace_back(std::move(text)); }
+  template <class T>
+  const T& keep(T value) {
+    auto made = std::make_shared<const T>(std::move(value));
+    const T& reference = *made;
+    kept.push_back(std::move(made));
+    return reference;
+  }
+  template <class T>
+  std::span<const T> keep(std::vector<T> list) {
+    return keep<std::vector<T>>(std::move(list));
+  }
+  std::string_view keep(std::string text) { return keep<std::string>(std::move(text)); }
 };
 
 namespace {
@@ -133,128 +122,118 @@ static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program
 template <class Storage>
 class Builder {
  public:
-  Builder(const Module& module, GlslTargets targets, const CodeOf& codeOf, Storage& storage)
+  Builder(const Module& module, Targets targets, const CodeOf& codeOf, Storage& storage)
       : module_(module), types_(module), targets_(targets), codeOf_(codeOf), storage_(storage) {}
 
   void run() {
-    for (const std::string& source : module_.sources) storage_.sources.push_back(storage_.keep(source));
-    for (const Table& table : module_.tables) storage_.tableList.push_back(describe(table));
+    std::vector<std::string_view> sources;
+    for (const std::string& source : module_.sources) sources.push_back(storage_.keep(source));
+    sources_ = storage_.keep(std::move(sources));
+    for (const Table& table : module_.tables) storage_.tables.push_back(describe(table));
     for (KernelId id = 0; id < module_.kernels.size(); ++id) add(id);
   }
 
  private:
   void add(KernelId id) {
-    const Kernel& kernel = module_.kernels[id];
-    if (!isUnit(kernel)) return;
-    Unit unit{.id = id, .kernel = whole(kernel)};
-    unit.kernel.options = {.accumulate = static_cast<sk::Accumulate>(kernel.choices.accumulate),
-                           .precision = static_cast<sk::Precision>(kernel.choices.precision),
-                           .intrinsics = static_cast<sk::Intrinsics>(kernel.choices.intrinsics),
-                           .tables = static_cast<sk::Tables>(kernel.choices.tables),
-                           .contraction = static_cast<sk::Contraction>(kernel.choices.contraction),
-                           .order = static_cast<sk::Order>(kernel.choices.order)};
-    unit.kernel.whyNotHalf = storage_.keep(kernel.variants.whyNotHalf);
-    unit.kernel.whyNotWide = storage_.keep(kernel.variants.whyNotWide);
-    if (kernel.reduction) {
-      unit.reduction = &storage_.reductions.emplace_back(reduction(kernel, unit.kernel));
-      unit.isScan = kernel.isScan;
-      addForms(kernel, storage_.reductions.back());
-    } else {
-      addForms(kernel, unit.kernel);
-      addUnrolled(kernel, unit.kernel);
+    const Kernel& declared = module_.kernels[id];
+    if (!isUnit(declared)) return;
+    Unit unit{.id = id, .kernel = kernel(id)};
+    if (declared.reduction) {
+      unit.reduction = &reduction(id, declared.reduction->commutative);
+      unit.isScan = declared.isScan;
     }
     storage_.units.push_back(unit);
   }
 
-  void addUnrolled(const Kernel& kernel, sk::program::Kernel& made) {
-    std::vector<sk::program::UnrolledKernel>& all = storage_.unrolled.emplace_back();
-    for (const UnrolledVariant& variant : kernel.unrolled) {
-      const auto before =
-          std::count_if(kernel.params.begin(), kernel.params.begin() + variant.spec,
-                        [](const KernelParam& param) { return param.role == ParamRole::Spec; });
-      all.push_back({static_cast<std::uint8_t>(before), variant.value, &form(variant.kernel)});
+  /// The descriptor of a whole kernel. All that refer to it have the same.
+  const sk::program::Kernel& kernel(KernelId id) {
+    if (const auto known = storage_.kernels.find(id); known != storage_.kernels.end()) return known->second;
+    const Kernel& declared = module_.kernels[id];
+    sk::program::Kernel made = describe(id);
+    if (!declared.plans.empty()) {
+      std::vector<sk::program::Plan> plans;
+      for (const Plan& plan : declared.plans) plans.push_back(describe(plan));
+      made.planCount = static_cast<std::uint8_t>(plans.size());
+      made.plans = storage_.keep(std::move(plans)).data();
     }
-    made.unrolled = all;
+    if (isUnit(declared)) {
+      made.options = {.accumulate = static_cast<sk::Accumulate>(declared.choices.accumulate),
+                      .precision = static_cast<sk::Precision>(declared.choices.precision),
+                      .intrinsics = static_cast<sk::Intrinsics>(declared.choices.intrinsics),
+                      .tables = static_cast<sk::Tables>(declared.choices.tables),
+                      .contraction = static_cast<sk::Contraction>(declared.choices.contraction),
+                      .order = static_cast<sk::Order>(declared.choices.order)};
+    }
+    if (isUnit(declared) || (declared.isPart && !declared.reduction)) {
+      made.whyNotHalf = storage_.keep(declared.variants.whyNotHalf);
+      made.whyNotWide = storage_.keep(declared.variants.whyNotWide);
+    }
+    if (!declared.reduction) addForms(declared, made);
+    return storage_.kernels.emplace(id, made).first->second;
   }
 
-  void addForms(const Kernel& kernel, sk::program::Kernel& made) {
-    if (kernel.variants.half) made.half = &form(*kernel.variants.half);
-    if (kernel.variants.wide) made.wide = &form(*kernel.variants.wide);
+  void addForms(const Kernel& declared, sk::program::Kernel& made) {
+    if (declared.variants.half) made.half = &kernel(*declared.variants.half);
+    if (declared.variants.wide) made.wide = &kernel(*declared.variants.wide);
+    std::vector<sk::program::UnrolledKernel> unrolled;
+    for (const UnrolledVariant& variant : declared.unrolled) {
+      unrolled.push_back({static_cast<std::uint8_t>(numberOf(declared, variant.spec)), variant.value,
+                          &kernel(variant.kernel)});
+    }
+    made.unrolled = storage_.keep(std::move(unrolled));
   }
 
   const sk::program::Table* describe(const Table& table) {
     if (!table.kernel) return nullptr;
-    return &storage_.tables.emplace_back(sk::program::Table{
+    return &storage_.keep(sk::program::Table{
         .function = storage_.keep(qualifier(table.scope) + table.name),
         .range = {table.low, table.high, static_cast<std::int32_t>(table.intervals)},
         .interpolation = table.isCubic ? sk::Interpolation::Cubic : sk::Interpolation::Linear,
-        .values = &form(*table.kernel)});
+        .values = &kernel(*table.kernel)});
   }
 
-  sk::program::Kernel whole(const Kernel& kernel) {
-    sk::program::Kernel made = describe(kernel);
-    addPlans(kernel, made);
-    return made;
-  }
-
-  const sk::program::Kernel& form(KernelId id) {
-    return storage_.forms.emplace_back(whole(module_.kernels[id]));
-  }
-
-  void addForms(const Kernel& kernel, sk::program::Reduction& made) {
-    if (kernel.variants.half) {
-      const Kernel& half = module_.kernels[*kernel.variants.half];
-      sk::program::Reduction& form = storage_.reductions.emplace_back(reduction(half, describe(half)));
-      form.commutative = made.commutative;
-      made.half = &form;
-    }
-    if (kernel.variants.wide) {
-      const Kernel& wide = module_.kernels[*kernel.variants.wide];
-      sk::program::WideReduction& form = storage_.wide.emplace_back(sk::program::WideReduction{
-          reduction(wide, describe(wide)), whole(module_.kernels[*wide.reduction->finish])});
-      form.reduction.commutative = made.commutative;
-      made.wide = &form;
-    }
-  }
-
-  /// Describes a whole kernel, or the kernel of a plan's pass.
-  sk::program::Kernel describe(const Kernel& kernel, const Plan* plan = nullptr, const Pass* pass = nullptr) {
+  /// Describes a whole kernel without its forms and plans, or the kernel of a plan's pass.
+  sk::program::Kernel describe(KernelId id, const Plan* plan = nullptr, const Pass* pass = nullptr) {
+    const Kernel& kernel = module_.kernels[id];
     const KernelNames names(module_, kernel, types_);
     Polyfills polyfills;
     const GlslContext context{module_, types_, names, kernel, polyfills, /*marks=*/true};
     const analysis::StreamUses uses = analysis::streamUses(module_, kernel);
     GlslBody text = kernel.isNativeOnly ? GlslBody() : glslBody(context);
-    std::vector<sk::program::Parameter>& parameters = storage_.parameters.emplace_back();
+    std::vector<sk::program::Parameter> parameters;
     for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
       parameters.push_back(parameter(context, i, uses.params[i]));
       if (plan != nullptr && !pass->operands[i].isTemporary) {
         parameters.back().layers = layersOf(*plan, pass->operands[i].index, parameters.back());
       }
     }
-    std::vector<sk::program::TableUse>& tables = storage_.tableUses.emplace_back();
-    for (const FunctionId id : tabulatedFunctionsOf(module_, kernel)) {
-      tables.push_back({storage_.tableList[*module_.functions[id].table], storage_.keep(names.function(id))});
+    std::vector<sk::program::TableUse> tables;
+    for (const FunctionId function : tabulatedFunctionsOf(module_, kernel)) {
+      tables.push_back(
+          {storage_.tables[*module_.functions[function].table], storage_.keep(names.function(function))});
     }
     const std::size_t length = sk::assemble::unmarked(text.body).size();
     std::string name = qualifier(kernel.scope) + kernel.name;
     if (kernel.pass) name += fmt::format(" (pass {} of {})", kernel.pass->number, kernel.pass->count);
+    const std::string_view body = storage_.keep(std::move(text.body));
+    storage_.ids.emplace(body.data(), id);
     return {.name = storage_.keep(std::move(name)),
             .entry = storage_.keep(names.function(kernel.entry)),
             .declarations = storage_.keep(std::move(text.declarations)),
-            .body = storage_.keep(std::move(text.body)),
+            .body = body,
             .bodyLength = length,
-            .parameters = parameters,
-            .sources = storage_.sources,
+            .parameters = storage_.keep(std::move(parameters)),
+            .sources = sources_,
             .usesIndex = uses.domainIndex,
             .usesExtent = uses.domainExtent,
             .usesLoops = uses.loops,
             .usesDoubles = usesDoubles(module_, kernel),
             .usesExactSums = usesExactSums(module_, kernel),
-            .intrinsics = storage_.intrinsics.emplace_back(polyfills.intrinsics()),
-            .tables = tables,
+            .intrinsics = storage_.keep(polyfills.intrinsics()),
+            .tables = storage_.keep(std::move(tables)),
             .drawn = targets_.fragment && !kernel.isNativeOnly,
             .dispatched = targets_.compute && !kernel.isNativeOnly,
-            .code = codeOf_ ? codeOf_(static_cast<KernelId>(&kernel - module_.kernels.data())) : nullptr};
+            .code = codeOf_ ? codeOf_(id) : nullptr};
   }
 
   /// The GLSL for Reduction::addition.
@@ -276,45 +255,51 @@ class Builder {
     return storage_.keep(glslAddition(contexts[0], contexts[1]).value_or(""));
   }
 
-  sk::program::Reduction reduction(const Kernel& kernel, const sk::program::Kernel& fold) {
-    const Kernel& combine = module_.kernels[*kernel.reduction->combine];
-    std::vector<std::uint8_t>& operands = storage_.combineOperands.emplace_back();
-    for (std::uint32_t operand : kernel.reduction->operands) {
-      operands.push_back(static_cast<std::uint8_t>(operand));
-    }
-    return {.fold = fold,
-            .combine = &combine == &kernel ? fold : describe(combine),
-            .combineOperands = operands,
-            .addition = addition(kernel, combine),
-            .seeded = kernel.reduction->seeded,
-            .compensated = compensated(*kernel.reduction),
-            .exact = exactSums(kernel),
-            .commutative = kernel.reduction->commutative,
-            .term = sumInDoubles(*kernel.reduction),
-            .parts = parts(kernel)};
+  /// `commutative`: variants are where the reduction is that they stand for.
+  const sk::program::Reduction& reduction(KernelId id, bool commutative) {
+    const Kernel& declared = module_.kernels[id];
+    const Reduction& plain = *declared.reduction;
+    sk::program::Reduction made{.fold = kernel(id),
+                                .combine = kernel(*plain.combine),
+                                .combineOperands = combineOperands(plain),
+                                .addition = addition(declared, module_.kernels[*plain.combine]),
+                                .seeded = plain.seeded,
+                                .compensated = compensated(plain),
+                                .exact = exactSums(declared),
+                                .commutative = commutative,
+                                .term = sumInDoubles(plain),
+                                .parts = parts(declared)};
+    if (declared.variants.half) made.half = &reduction(*declared.variants.half, commutative);
+    if (declared.variants.wide) made.wide = &wide(*declared.variants.wide, commutative);
+    return storage_.keep(made);
+  }
+
+  const sk::program::WideReduction& wide(KernelId id, bool commutative) {
+    return storage_.keep(sk::program::WideReduction{reduction(id, commutative),
+                                                    kernel(*module_.kernels[id].reduction->finish)});
+  }
+
+  /// The value of Reduction::combineOperands; empty if the combining kernel has no operands but what is folded.
+  std::span<const std::uint8_t> combineOperands(const Reduction& plain) {
+    const bool hasOperands =
+        std::ranges::any_of(module_.kernels[*plain.combine].params, [](const KernelParam& param) {
+          return param.role != ParamRole::Input && param.role != ParamRole::Accumulator;
+        });
+    return hasOperands ? parameterNumbers(plain.operands) : std::span<const std::uint8_t>();
   }
 
   /// The value of Reduction::parts.
-  const sk::program::FoldParts* parts(const Kernel& kernel) {
-    if (!kernel.parts) return nullptr;
-    const Kernel& map = module_.kernels[kernel.parts->map];
-    sk::program::FoldParts made{.map = whole(map),
-                                .mapOperands = parameterNumbers(kernel.parts->mapOperands)};
-    addForms(map, made.map);
-    made.map.whyNotHalf = storage_.keep(map.variants.whyNotHalf);
-    made.map.whyNotWide = storage_.keep(map.variants.whyNotWide);
-    if (kernel.parts->after) {
-      const Kernel& after = module_.kernels[*kernel.parts->after];
-      made.after = &storage_.reductions.emplace_back(reduction(after, describe(after)));
-      made.afterOperands = parameterNumbers(kernel.parts->afterOperands);
+  const sk::program::FoldParts* parts(const Kernel& declared) {
+    if (!declared.parts) return nullptr;
+    const FoldParts& plain = *declared.parts;
+    sk::program::FoldParts made{.map = kernel(plain.map), .mapOperands = parameterNumbers(plain.mapOperands)};
+    if (plain.after) {
+      made.after = &reduction(*plain.after, module_.kernels[*plain.after].reduction->commutative);
+      made.afterOperands = parameterNumbers(plain.afterOperands);
     }
-    if (kernel.parts->inDoubles) {
-      const Kernel& fold = module_.kernels[*kernel.parts->inDoubles];
-      made.inDoubles = &storage_.wide.emplace_back(sk::program::WideReduction{
-          reduction(fold, describe(fold)), whole(module_.kernels[*fold.reduction->finish])});
-      storage_.wide.back().reduction.commutative = kernel.reduction->commutative;
-    }
-    return &storage_.parts.emplace_back(std::move(made));
+    if (plain.inDoubles && targets_.native)
+      made.inDoubles = &wide(*plain.inDoubles, declared.reduction->commutative);
+    return &storage_.keep(made);
   }
 
   /// The value of Reduction::term.
@@ -324,19 +309,16 @@ class Builder {
   }
 
   std::span<const sk::program::ExactSum> exactSums(const Kernel& reduce) {
-    if (reduce.reduction->exact.empty()) return {};
     std::vector<sk::program::ExactSum> sums;
     for (const ExactSum& sum : reduce.reduction->exact) {
-      const Kernel& fold = module_.kernels[sum.fold];
-      sums.push_back({.reduction = reduction(fold, describe(fold)),
-                      .finish = whole(module_.kernels[sum.finish]),
+      sums.push_back({.reduction = reduction(sum.fold, true),
+                      .finish = kernel(sum.finish),
                       .accumulator = static_cast<std::uint8_t>(sum.accumulator),
                       .offset = offsetOf(reduce, sum),
                       .ofProducts = sum.ofProducts,
                       .term = term(sum.term)});
-      sums.back().reduction.commutative = true;
     }
-    return storage_.exact.emplace_back(std::move(sums));
+    return storage_.keep(std::move(sums));
   }
 
   std::uint32_t offsetOf(const Kernel& reduce, const ExactSum& sum) const {
@@ -345,66 +327,58 @@ class Builder {
     return whole + sum.component * static_cast<std::uint32_t>(sizeof(float));
   }
 
+  /// Only native code computes terms with a kernel.
   sk::program::SumTerm term(const ExactTerm& made) {
-    if (made.kernel) return {.factors = {}, .kernel = &form(*made.kernel)};
-    return {.factors = parameterNumbers(made.factors)};
+    if (!made.kernel) return {.factors = parameterNumbers(made.factors)};
+    if (!targets_.native) return {};
+    return {.factors = {}, .kernel = &kernel(*made.kernel)};
   }
 
   std::span<const std::uint8_t> parameterNumbers(const std::vector<VarId>& parameters) {
-    return storage_.factors.emplace_back(parameters.begin(), parameters.end());
+    return storage_.keep(std::vector<std::uint8_t>(parameters.begin(), parameters.end()));
   }
 
   /// Returns null if the reduction has no compensated variant.
   const sk::program::CompensatedReduction* compensated(const Reduction& plain) {
     if (!plain.compensated) return nullptr;
     const Kernel& fold = module_.kernels[plain.compensated->fold];
-    std::vector<sk::program::CompensatedSum>& sums = storage_.compensatedSums.emplace_back();
+    std::vector<sk::program::CompensatedSum> sums;
     for (const auto& [accumulator, members] : plain.compensated->sums) {
       sums.push_back({static_cast<std::uint8_t>(accumulator),
                       emit::offsetOf(module_, types_, fold.params[accumulator].type, members)});
     }
-    sk::program::CompensatedReduction& made =
-        storage_.compensated.emplace_back(sk::program::CompensatedReduction{
-            reduction(fold, describe(fold)), whole(module_.kernels[plain.compensated->finish]), sums,
-            plain.compensated->addsDoubles});
-    made.reduction.commutative = plain.commutative;
-    return &made;
+    return &storage_.keep(sk::program::CompensatedReduction{
+        reduction(plain.compensated->fold, plain.commutative), kernel(plain.compensated->finish),
+        storage_.keep(std::move(sums)), plain.compensated->addsDoubles});
   }
 
   // ---- plans ------------------------------------------------------------------------------------
 
-  void addPlans(const Kernel& kernel, sk::program::Kernel& made) {
-    if (kernel.plans.empty()) return;
-    std::vector<sk::program::Plan>& plans = storage_.plans.emplace_back();
-    for (const Plan& plan : kernel.plans) plans.push_back(describe(plan));
-    made.plans = plans.data();
-    made.planCount = static_cast<std::uint8_t>(plans.size());
-  }
-
   sk::program::Plan describe(const Plan& plan) {
-    std::vector<const sk::program::Element*>& temporaries = storage_.temporaries.emplace_back();
+    std::vector<const sk::program::Element*> temporaries;
     for (const Temporary& temporary : plan.temporaries) temporaries.push_back(&element(temporary.type));
-    std::vector<sk::program::Bundle>& bundles = storage_.bundles.emplace_back();
+    std::vector<sk::program::Bundle> bundles;
     for (const Bundle& bundle : plan.bundles) {
-      std::vector<sk::program::ArgumentPlane>& layers = storage_.bundleLayers.emplace_back();
+      std::vector<sk::program::ArgumentPlane> layers;
       for (const ArgumentPlane& plane : bundle.layers) {
         layers.push_back({static_cast<std::uint8_t>(plane.argument), static_cast<std::uint8_t>(plane.plane)});
       }
-      bundles.push_back({static_cast<sk::program::Scalar>(bundle.type.scalar), bundle.type.width, layers});
+      bundles.push_back({static_cast<sk::program::Scalar>(bundle.type.scalar), bundle.type.width,
+                         storage_.keep(std::move(layers))});
     }
-    std::vector<sk::program::Pass>& passes = storage_.passes.emplace_back();
+    std::vector<sk::program::Pass> passes;
     for (const Pass& pass : plan.passes) {
-      std::vector<sk::program::PassOperand>& operands = storage_.operands.emplace_back();
+      std::vector<sk::program::PassOperand> operands;
       for (const PassOperand& operand : pass.operands) {
         operands.push_back({operand.isTemporary, static_cast<std::uint8_t>(operand.index)});
       }
-      passes.push_back({describe(module_.kernels[pass.kernel], &plan, &pass), operands});
+      passes.push_back({describe(pass.kernel, &plan, &pass), storage_.keep(std::move(operands))});
     }
     return {.drawBuffers = static_cast<std::uint8_t>(plan.limits.drawBuffers),
             .textureUnits = static_cast<std::uint8_t>(plan.limits.textureUnits),
-            .temporaries = temporaries,
-            .bundles = bundles,
-            .passes = passes};
+            .temporaries = storage_.keep(std::move(temporaries)),
+            .bundles = storage_.keep(std::move(bundles)),
+            .passes = storage_.keep(std::move(passes))};
   }
 
   /// The layers that hold the bundled planes of an argument; empty if none is bundled. Outputs never are.
@@ -423,7 +397,7 @@ class Builder {
       }
     }
     if (!isBundled) return {};
-    return storage_.layers.emplace_back(std::move(layers));
+    return storage_.keep(std::move(layers));
   }
 
   sk::program::Parameter parameter(const GlslContext& context, std::uint32_t index,
@@ -458,22 +432,21 @@ class Builder {
   }
 
   std::span<const sk::program::Reach> reachOf(const KernelParam& param) {
-    if (param.reach.empty()) return {};
     const auto distance = [](const Distance& from) {
       return sk::program::Distance{from.constant, from.perSpec};
     };
-    std::vector<sk::program::Reach>& made = storage_.reaches.emplace_back();
+    std::vector<sk::program::Reach> made;
     for (const Reach& reach : param.reach) {
       made.push_back({reach.dimension, static_cast<sk::program::Reach::Kind>(reach.kind),
                       distance(reach.below), distance(reach.above), reach.isPromised});
     }
-    return made;
+    return storage_.keep(std::move(made));
   }
 
   sk::program::Condition condition(const GlslContext& context, const KernelParam& param) {
     if (!param.neededIf) return {};
     const Function& entry = module_.functions[context.kernel.entry];
-    return {.steps = storage_.conditions.emplace_back(conditionSteps(context.kernel, *param.neededIf)),
+    return {.steps = storage_.keep(conditionSteps(context.kernel, *param.neededIf)),
             .text = storage_.keep(print(module_, entry, *param.neededIf))};
   }
 
@@ -482,7 +455,7 @@ class Builder {
     if (const auto known = storage_.elements.find(key); known != storage_.elements.end())
       return known->second;
     const ElementLayout layout = elementLayout(module_, types_, type);
-    std::vector<sk::program::Field>& fields = storage_.fields.emplace_back();
+    std::vector<sk::program::Field> fields;
     for (const Plane& plane : layout.planes) {
       fields.push_back({.path = storage_.keep(plane.path),
                         .scalar = static_cast<sk::program::Scalar>(plane.type.scalar),
@@ -493,20 +466,23 @@ class Builder {
     sk::program::Element made{.name = storage_.keep(print(module_, type)),
                               .glsl = storage_.keep(types_.glsl(type)),
                               .size = layout.size,
-                              .fields = fields};
-    return storage_.elements.emplace(key, made).first->second;
+                              .fields = storage_.keep(std::move(fields))};
+    const sk::program::Element& kept = storage_.elements.emplace(key, made).first->second;
+    storage_.types.emplace(&kept, type);
+    return kept;
   }
 
   const Module& module_;
   TypeNames types_;
-  const GlslTargets targets_;
+  const Targets targets_;
   const CodeOf& codeOf_;
   Storage& storage_;
+  std::span<const std::string_view> sources_;
 };
 
 }  // namespace
 
-Program::Program(const Module& module, GlslTargets targets, const CodeOf& codeOf)
+Program::Program(const Module& module, Targets targets, const CodeOf& codeOf)
     : storage_(std::make_unique<Storage>()) {
   Builder<Storage>(module, targets, codeOf, *storage_).run();
 }
@@ -515,6 +491,10 @@ Program& Program::operator=(Program&&) noexcept = default;
 Program::~Program() = default;
 
 std::span<const Unit> Program::units() const { return storage_->units; }
-std::span<const sk::program::Table* const> Program::tables() const { return storage_->tableList; }
+std::span<const sk::program::Table* const> Program::tables() const { return storage_->tables; }
+Type Program::typeOf(const sk::program::Element& element) const { return storage_->types.at(&element); }
+KernelId Program::idOf(const sk::program::Kernel& kernel) const {
+  return storage_->ids.at(kernel.body.data());
+}
 
 }  // namespace skc::emit

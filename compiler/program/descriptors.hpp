@@ -28,10 +28,11 @@ inline bool isUnit(const ir::Kernel& kernel) {
   return !kernel.pass && !kernel.isSynthesized && !kernel.isPart;
 }
 
-/// The kinds of GLSL programs that may be assembled.
-struct GlslTargets {
+/// What will run the kernels: GLSL programs of both kinds, and native code.
+struct Targets {
   bool fragment = true;
   bool compute = true;
+  bool native = true;
 };
 
 /// The native code of a kernel, or null. Only those who run a Program have it: the stub prints symbols instead.
@@ -40,7 +41,7 @@ using CodeOf = std::function<const sk::native::Code*(ir::KernelId)>;
 /// Built from a module that has passed runTransforms. Move-only; views into it stay valid.
 class Program {
  public:
-  explicit Program(const ir::Module& module, GlslTargets targets = {}, const CodeOf& codeOf = {});
+  explicit Program(const ir::Module& module, Targets targets = {}, const CodeOf& codeOf = {});
   Program(Program&&) noexcept;
   Program& operator=(Program&&) noexcept;
   ~Program();
@@ -49,6 +50,10 @@ class Program {
   std::span<const Unit> units() const;
   /// The tables, in the order of the module's; null for those that no kernel uses.
   std::span<const sk::program::Table* const> tables() const;
+  /// The type that an element of this program describes.
+  ir::Type typeOf(const sk::program::Element& element) const;
+  /// The kernel that a descriptor of this program describes.
+  ir::KernelId idOf(const sk::program::Kernel& kernel) const;
 
  private:
   struct Storage;

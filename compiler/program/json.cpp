@@ -15,8 +15,8 @@
 #include <nlohmann/json.hpp>
 
 #include "ir/print.hpp"
-#include "program/descriptor_lists.hpp"
 #include "program/elements.hpp"
+#include "program/schema.hpp"
 #include "program/used_structs.hpp"
 
 namespace skc::emit {
@@ -38,9 +38,6 @@ class Shared {
   Json list_ = Json::array();
   std::map<std::string, std::size_t> indices_;
 };
-
-template <class T>
-concept Described = requires { Members<T>::list; };
 
 class Writer {
  public:
@@ -96,15 +93,17 @@ class Writer {
     return members;
   }
 
-  template <class T, class M>
-  void add(Json& members, const T& descriptor, const Member<T, M>& member) {
+  template <class T>
+  void add(Json& members, const T& descriptor, const auto& member) {
     members[std::string(member.name)] = value(descriptor.*member.pointer);
   }
   template <class T, class M, class N>
-  void add(Json& members, const T& descriptor, const CountedMember<T, M, N>& member) {
+  void add(Json& members, const T& descriptor, const CountedOption<T, M, N>& member) {
     members[std::string(member.name)] =
         value(std::span<const M>(descriptor.*member.first, descriptor.*member.number));
   }
+  template <class T, class M>
+  void add(Json&, const T&, const CppOption<T, M>&) {}
   template <class T, class M>
   void add(Json&, const T&, const OmittedMember<T, M>&) {}
 
@@ -119,7 +118,7 @@ class Writer {
   template <class E>
     requires std::is_enum_v<E>
   Json value(E enumerator) {
-    return enumerators<E>[static_cast<std::size_t>(enumerator)];
+    return nameOf(enumerator);
   }
   template <Described T>
   Json value(const T& descriptor) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "program/constant_names.hpp"
 #include "program/stub_parts.hpp"
 #include "support/text.hpp"
 
@@ -94,22 +95,20 @@ std::string parameterTypes(const Module& module, const Kernel& kernel, Form form
 
 Stub emitStub(const Module& module, const Program& program, std::string_view fileName,
               const StubOptions& options) {
-  StubParts parts{callables(module), {}, fileName, options};
+  StubParts parts{.callables = callables(module),
+                  .streams = {},
+                  .fileName = fileName,
+                  .options = options,
+                  .names = constantNames(module, program),
+                  .requests = {}};
   parts.streams = streamStructs(module, parts.callables, fileName);
   Stub stub;
   stub.header = stubHeader(module, program, parts);
-  NativeSymbols symbols(stub.header);
-  stub.source = stubSource(module, program, parts, symbols);
-  stub.native = symbols.requests();
+  if (options.native)
+    parts.requests = NativeRequests(module, program, parts.names, stub.header, options.quad);
+  stub.source = stubSource(module, program, parts);
+  stub.native = parts.requests.list();
   return stub;
-}
-
-NativeSymbols::NativeSymbols(std::string_view header)
-    : prefix_(fmt::format("sk_{:016x}_", textHash(header))) {}
-
-std::string NativeSymbols::add(const std::string& descriptor, native::KernelRequest request) {
-  request.symbol = prefix_ + descriptor;
-  return requests_.emplace_back(std::move(request)).symbol;
 }
 
 }  // namespace skc::emit

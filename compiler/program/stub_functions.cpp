@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "ir/print.hpp"
-#include "program/descriptor_names.hpp"
+#include "program/constant_names.hpp"
 #include "program/stub_parts.hpp"
 #include "support/namer.hpp"
 #include "support/text.hpp"
@@ -19,7 +19,7 @@ using namespace ir;
 class FunctionWriter {
  public:
   FunctionWriter(const Module& module, const Program& program)
-      : module_(module), program_(program), names_(descriptorNames(module, program)) {}
+      : module_(module), program_(program), names_(constantNames(module, program)) {}
 
   std::string text(const std::vector<Callable>& callables) {
     for (const Callable& callable : callables) {

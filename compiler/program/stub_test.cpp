@@ -20,7 +20,9 @@ using namespace ir;
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
-Stub stubOf(const Module& module) { return emitStub(module, Program(module), "heat.sk", {.native = false}); }
+Stub stubOf(const Module& module) {
+  return emitStub(module, Program(module, {.native = false}), "heat.sk", {.native = false});
+}
 
 TEST_CASE("the header") {
   const std::string header = stubOf(sampleModule()).header;

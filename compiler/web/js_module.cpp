@@ -18,8 +18,8 @@
 #include "assemble/append/point_program.hpp"
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "ir/print.hpp"
-#include "program/descriptor_lists.hpp"
 #include "program/elements.hpp"
+#include "program/schema.hpp"
 #include "program/used_structs.hpp"
 #include "support/text.hpp"
 #include "web/ahead_programs.hpp"
@@ -52,10 +52,7 @@ std::string escaped(std::string text) {
   return text;
 }
 
-template <class E>
-std::string_view nameOf(E enumerator) {
-  return emit::enumerators<E>[static_cast<std::size_t>(enumerator)];
-}
+using emit::nameOf;
 
 class ScriptWriter {
  public:

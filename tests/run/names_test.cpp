@@ -14,7 +14,7 @@ namespace {
 
 enum Part {
 #define SKC_PART(Word) Word,
-#include "../../compiler/program/descriptor_parts.def"
+#include "../../compiler/program/constant_parts.def"
 #undef SKC_PART
 };
 
@@ -40,7 +40,7 @@ TEST_CASE("kernels are named after every part of a descriptor's name") {
   CHECK(isShifted(100 + Word)); \
   parts::fold##Word(x, r);      \
   CHECK(isShifted(200 + Word));
-#include "../../compiler/program/descriptor_parts.def"
+#include "../../compiler/program/constant_parts.def"
 #undef SKC_PART
   parts::blur(x, r);
   CHECK(isShifted(1));

@@ -110,9 +110,8 @@ class Flow::Solver {
   std::string_view preconditioner() const { return preconditionedBy_; }
 
  private:
-  /// Preconditioners: one whose steps follow other values of the matrix, and one that is made anew for each step, for
-  /// surfaces that have almost shrunk to curves, whose iterations with the first are as many as their points, and lose
-  /// what they gain to rounding.
+  /// Preconditioners: one that follows other values of the matrix, and one that is made anew for each step. The second is for surfaces
+  /// that have almost shrunk to curves: with the first, iterations are as many as points, and lose what they gain to rounding.
   static constexpr std::string_view cheapest = "jacobi", strongest = "aggregation";
 
   void make(std::string precision, std::string_view preconditioner) {
@@ -133,7 +132,8 @@ class Flow::Solver {
 
   bool mayNeedMore() const { return settings_.precision == "auto" && precision_ == "single"; }
   linear::Solution solve(std::span<const double> b) {
-    const std::int64_t most = settings_.most > 0 ? settings_.most : 10000 + 10 * a_.size;
+    const std::int64_t most =
+        preconditionedBy_ == cheapest ? settings_.jacobiIterations : 10000 + 10 * a_.size;
     // With eigenvalues this small, the residual may be above that of x = 0 for as many iterations as there are points.
     return linear::solve(*method_, *residual_, a_, b, arithmetic_,
                          {.tolerance = settings_.tolerance, .most = most, .patience = a_.size});

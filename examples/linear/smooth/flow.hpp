@@ -25,8 +25,8 @@ struct FlowSettings {
   std::string layout = "auto";  ///< of the matrix, as solve --layout takes it
   std::string precision = "auto";  ///< "single", "extended", "double", or "auto" for what the matrix needs
   double tolerance = 1e-8;  ///< of a step's true residual
-  std::int64_t most =
-      0;  ///< iterations of a solve before the stronger preconditioner; 0: 10,000 and ten for each point
+  /// Iterations of a solve with Jacobi's preconditioner, after which multigrid takes its place.
+  std::int64_t jacobiIterations = 4000;
 };
 
 /// What a step's backward error may be if its residual stays above the tolerance: 512 roundings of doubles, less than the cotangents of thin triangles lose.

@@ -177,7 +177,7 @@ TEST_CASE("Steps that Jacobi's preconditioner does not solve take one that is ma
   Surface noisy = sphere(3, 1.0);
   addNoise(noisy, 0.05, 7);
   Flow usual(device, noisy, {.timeStep = 1.0, .layout = "rows"});
-  Flow hurried(device, noisy, {.timeStep = 1.0, .layout = "rows", .most = 60});
+  Flow hurried(device, noisy, {.timeStep = 1.0, .layout = "rows", .jacobiIterations = 60});
   CHECK(usual.preconditioner().empty());
   for (int i = 0; i < 2; ++i) {
     const StepReport expected = usual.step(), report = hurried.step();
@@ -187,8 +187,6 @@ TEST_CASE("Steps that Jacobi's preconditioner does not solve take one that is ma
   }
   CHECK(usual.preconditioner() == "jacobi");
   CHECK(hurried.preconditioner() == "aggregation");
-  Flow tooHurried(device, noisy, {.timeStep = 1.0, .layout = "rows", .most = 2});
-  CHECK_THROWS_WITH(tooHurried.step(), Catch::Contains("most iterations"));
 }
 
 /// Steps while they succeed, at most 20; the area shrinks in each. Returns why there is no further step.

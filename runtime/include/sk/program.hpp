@@ -342,7 +342,7 @@ struct Reduction {
   Kernel fold;
   Kernel combine;
   /// For each parameter of `combine`: the parameter of `fold` whose argument it gets. Entries of Inputs and
-  /// Accumulators are ignored.
+  /// Accumulators are ignored; empty if there are no others.
   std::span<const std::uint8_t> combineOperands;
   /// Functions that `fold.body` needs in order to call the entry of `combine`, too; empty if the kernels are
   /// the same, or if no program can contain both.

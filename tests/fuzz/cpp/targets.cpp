@@ -64,7 +64,7 @@ sk::Device& Targets::device(const std::string& target) {
 
 std::string Targets::difference(const skc::ir::Module& module, const skc::emit::CodeOf& codeOf,
                                 const std::vector<Outputs>& wanted) {
-  const skc::emit::Program& program = programs_.emplace_back(module, skc::emit::GlslTargets{}, codeOf);
+  const skc::emit::Program& program = programs_.emplace_back(module, skc::emit::Targets{}, codeOf);
   for (const std::string& target : deviceTargets) {
     if (names_.count(target) == 0) continue;
     for (const Outputs& outputs : wanted) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "program/descriptor_names.hpp"
+#include "program/constant_names.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -15,7 +15,7 @@ using namespace ir;
 
 constexpr std::string_view words[] = {
 #define SKC_PART(Word) #Word,
-#include "program/descriptor_parts.def"
+#include "program/constant_parts.def"
 #undef SKC_PART
 };
 
@@ -65,7 +65,7 @@ bool startsWithPart(std::string_view text) {
   return std::ranges::any_of(words, [&](std::string_view word) { return text.starts_with(word); });
 }
 
-std::vector<std::string> descriptorNames(const Module& module, const Program& program) {
+std::vector<std::string> constantNames(const Module& module, const Program& program) {
   Prefixes prefixes;
   std::vector<std::string> names;
   for (const Unit& unit : program.units())
@@ -81,6 +81,8 @@ std::vector<std::string> tableNames(const Module& module) {
 }
 
 std::string exactCombinationName(const Kernel& combine) { return ownName(combine.name); }
+
+std::string arrayName(std::size_t number) { return ownName("array_" + std::to_string(number)); }
 
 std::string synthesizedStructName(const std::string& glslName) { return ownName(glslName); }
 

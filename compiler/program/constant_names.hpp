@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Names the constants of FILE.sk.cpp and the symbols of native code: a kernel's name followed by words of descriptor_parts.def.
+// Names the constants of FILE.sk.cpp and the symbols of native code: a kernel's name followed by words of constant_parts.def.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace skc::emit {
 
 enum class Part : std::uint8_t {
 #define SKC_PART(Word) Word,
-#include "program/descriptor_parts.def"
+#include "program/constant_parts.def"
 #undef SKC_PART
 };
 
@@ -34,20 +34,18 @@ inline std::string operator+(std::string name, Part part) { return std::move(nam
 inline std::string numbered(const std::string& name, Part part, std::size_t number) {
   return name + part + std::to_string(number);
 }
-/// "diffuseHalo_u", for a parameter.
-inline std::string ofParameter(const std::string& name, Part part, std::string_view symbol) {
-  return (name + part).append("_").append(symbol);
-}
-
 /// A prefix for the names of each unit's constants: "diffuse", "grayScott", "sum_2". Any two prefixes differ, whatever parts
 /// follow: where kernels are named scale and scale_half, scaleHalfKernel belongs to the first and scaleHalf_2Kernel to the second.
-std::vector<std::string> descriptorNames(const ir::Module& module, const Program& program);
+std::vector<std::string> constantNames(const ir::Module& module, const Program& program);
 
 /// A unique prefix for each table of the module: "sk_response".
 std::vector<std::string> tableNames(const ir::Module& module);
 
 /// The prefix for the reduce that combines digits of exact sums. All sums of a kind share it.
 std::string exactCombinationName(const ir::Kernel& combine);
+
+/// The prefix for the type of a uniform array.
+std::string arrayName(std::size_t number);
 
 /// The prefix for a struct that a transform has made.
 std::string synthesizedStructName(const std::string& glslName);
