@@ -69,8 +69,7 @@ Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& cho
 }  // namespace
 
 GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
-    : context(std::move(opened.context)),
-      capabilities(std::move(opened.capabilities)),
+    : capabilities(std::move(opened.capabilities)),
       traits(gl::traitsOf(capabilities.kind, choices.traits)),
       profile(profileOf(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", capabilities, traits,
                         choices.pairs)),
@@ -78,13 +77,13 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       target(choices.target),
       scanPatience(choices.scanPatience),
       barrier(barrierOf(capabilities, choices)),
-      framebuffers(bound),
-      pool(bound, framebuffers),
+      context_(std::move(opened.context), capabilities, choices.sharesContext),
+      framebuffers(bound()),
+      pool(bound(), framebuffers),
       appendPrograms(*this),
       sortPrograms(*this),
       stagingPrograms(*this),
-      binaries(cache, capabilities, driverKey(name(), driver(), profileName())),
-      sharesContext_(choices.sharesContext) {
+      binaries(cache, capabilities, driverKey(name(), driver(), profileName())) {
   if (target == Target::Compute && !capabilities.hasCompute) {
     throw Error(
         fmt::format("'{}' runs no compute programs, which take OpenGL 4.3; leave profile glsl430 (option or "
@@ -111,20 +110,18 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     arithmetic_ = {
         .exactSums = *choices.barrier != Barrier::None, .barrier = *choices.barrier, .asWritten = false};
   }
-  const gl::CurrentScope current(context);
+  const gl::CurrentScope current(context_.any());
   limits.memory = memoryInfo().whole;
-  vertexArray = gl::VertexArray(bound.deletions);
-  if (!isGuest()) {
-    gl::setPassState(capabilities);
-  }
-  if (capabilities.hasLabels && capabilities.isDebugged) labels.turnOn();
+  vertexArray = gl::VertexArray(bound().deletions);
+  if (!context_.isGuest()) gl::setPassState(capabilities);
+  if (capabilities.hasLabels && capabilities.isDebugged) context_.labels().turnOn();
   if (capabilities.isSoftware) keepHeap();
 }
 
 GlDevice::~GlDevice() {
   std::optional<gl::CurrentScope> current;
   try {
-    current.emplace(context);
+    current.emplace(context_.any());
   } catch (const std::exception&) {
     current.reset();  // it is current on another thread, or the application has destroyed it
   }
@@ -142,16 +139,6 @@ GlDevice::~GlDevice() {
     stream.leave();
     stream.planes.clear();
     stream.total_ = {};
-  }
-}
-
-// If the context cannot be made current, its objects are deleted with it.
-GlDevice::LastDeletions::~LastDeletions() {
-  try {
-    const gl::CurrentScope current(device.context);
-    device.bound.deleteQueued();
-  } catch (const std::exception&) {
-    return;
   }
 }
 
@@ -264,14 +251,14 @@ GLuint GlDevice::textureOf(const FunctionTable& table) {
         (table.report.range.intervals + assemble::tableWidth - 1) / assemble::tableWidth;
     std::vector<float> texels = table.coefficients;
     texels.resize(static_cast<std::size_t>(rows) * assemble::tableWidth * static_cast<std::size_t>(width));
-    texture = gl::Texture(bound, gl::formatOf(program::Scalar::Float, width), {assemble::tableWidth, rows});
+    texture = gl::Texture(bound(), gl::formatOf(program::Scalar::Float, width), {assemble::tableWidth, rows});
     if (texture.name() == 0) {
-      throwIfLost();
+      context_.throwIfLost();
       throw Error(fmt::format("'{}' has no memory for the table of '{}': {} KiB", capabilities.renderer,
                               table.report.function, texels.size() * sizeof(float) >> 10),
                   Error::Kind::Memory);
     }
-    texture.write(bound, {0, 0, assemble::tableWidth, rows}, 0, texels.data());
+    texture.write(bound(), {0, 0, assemble::tableWidth, rows}, 0, texels.data());
   }
   return texture.name();
 }
@@ -283,7 +270,7 @@ void GlDevice::startTrace(const std::string& file) {
   trace = std::move(started);
   const DeviceScope scope(*this);
   passes = std::make_unique<PassTrace>(*this, *trace);
-  if (capabilities.hasLabels) labels.turnOn();
+  if (capabilities.hasLabels) context_.labels().turnOn();
 }
 
 void GlDevice::finish() {
@@ -410,14 +397,14 @@ void PlanesLease::add(const program::Element& element, const assemble::TextureSh
     RenderTarget plane = device_.pool.acquire(format, shape);
     if (!plane) device_.failForPlanes(element, format, shape, whatFor);
     planes.push_back(std::move(plane));
-    device_.labels.texture(planes.back().texture.name(), whatFor);
+    device_.context().labels().texture(planes.back().texture.name(), whatFor);
   }
   device_.countBytes();
 }
 
 void GlDevice::failForPlanes(const program::Element& element, const gl::Format& format,
                              const assemble::TextureShape& shape, std::string_view whatFor) {
-  throwIfLost();
+  context_.throwIfLost();
   const std::int64_t texels = std::int64_t{shape.width} * shape.height * std::max(shape.layers, 1);
   throw Error(
       fmt::format("'{}' has no memory for {}: {} texture(s) of {} x {}{} texels, one of them of {} MiB",
@@ -443,34 +430,20 @@ gl::MemoryInfo GlDevice::memoryInfo() const {
 }
 
 std::optional<std::int64_t> GlDevice::availableMemory() {
-  const gl::CurrentScope current(context);
+  const gl::CurrentScope current(context_.any());
   return memoryInfo().available;
 }
 
 void GlDevice::makeCurrent() {
-  if (!context.isCurrent()) context.makeCurrent();
+  if (!context_.any().isCurrent()) context_.any().makeCurrent();
 }
 
-void GlDevice::failAsLost() const {
-  throw Error(fmt::format("the driver has reset '{}', and all of its streams are lost; make a new device",
-                          capabilities.renderer),
-              Error::Kind::Lost);
-}
-
-void GlDevice::throwIfLost() {
-  bound.errors.setAside();
-  if (bound.errors.isLost() || (capabilities.reportsResets && bound.errors.askIfLost())) failAsLost();
-}
-
-// In a shared context, other errors than exhausted memory and a lost context may come of restoring what the application has
-// deleted, and are not reported.
 void GlDevice::throwPendingError() {
   if (passes) passes->collect();
-  const GLenum error = bound.errors.take();
-  const std::int64_t unchecked = period_++;
-  const bool isOurs = !isGuest() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
-  if (error == GL_NO_ERROR || !isOurs) return;
-  throwIfLost();
+  const std::int64_t unchecked = context_.period();
+  const GLenum error = context_.endPeriod();
+  if (error == GL_NO_ERROR) return;
+  context_.throwIfLost();
   for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
     auto& stream = static_cast<GlStream&>(*state);
     if (stream.wasWrittenIn(unchecked)) stream.markLost();

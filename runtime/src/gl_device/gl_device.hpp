@@ -5,7 +5,6 @@
 #pragma once
 
 #include <array>
-#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <map>
@@ -18,16 +17,15 @@
 #include "assemble/condition.hpp"
 #include "device/device_state.hpp"
 #include "device/unload_watch.hpp"
-#include "gl/bound_state.hpp"
 #include "gl/buffer.hpp"
-#include "gl/labels.hpp"
 #include "gl/memory_info.hpp"
 #include "gl/open_context.hpp"
 #include "gl/samplers.hpp"
-#include "gl/saved_state.hpp"
 #include "gl/vertex_array.hpp"
 #include "gl_device/append/append_programs.hpp"
+#include "gl_device/gl_context.hpp"
 #include "gl_device/memory/framebuffer_cache.hpp"
+#include "gl_device/memory/kept_scratch.hpp"
 #include "gl_device/memory/render_target.hpp"
 #include "gl_device/program/made_kernels.hpp"
 #include "gl_device/program/program_binaries.hpp"
@@ -94,7 +92,7 @@ class GlDevice final : public DeviceState {
   void startTrace(const std::string& file) override;
   std::optional<std::int64_t> availableMemory() override;
   void finish() override;
-  void release() override { context.release(); }
+  void release() override { context_.any().release(); }
   void makeCurrent() override;
   void run(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
@@ -117,8 +115,9 @@ class GlDevice final : public DeviceState {
     if (trace) trace->countBytes(pool.bytesUsed(), pool.bytesKept());
   }
 
-  /// Whether the application also draws in the context, so that each call must restore its state.
-  bool isGuest() const { return context.isAdopted() || sharesContext_; }
+  GlContext& context() { return context_; }
+  /// What is bound in the context.
+  gl::BoundState& bound() { return context_.bound(); }
 
   assemble::TextureLimits textureLimits() const {
     return {limits.textureSize, limits.textureLayers, capabilities.hasCompute && traits.narrowTextures};
@@ -154,19 +153,7 @@ class GlDevice final : public DeviceState {
   /// Throws sk::Error if the driver has reported an error since the last call. The streams that were written
   /// since then are marked as broken.
   void throwPendingError();
-  /// Throws sk::Error if the context is lost. Queries the driver: call this after a failure that a lost
-  /// context would explain.
-  void throwIfLost();
-  /// The context. Throws sk::Error if it is known to be lost.
-  const gl::Context& livingContext() const {
-    if (bound.errors.isLost()) failAsLost();
-    return context;
-  }
-  /// The number of the current period. A period ends whenever the driver's errors are queried: an error
-  /// breaks the streams that were written in it.
-  std::int64_t period() const { return period_; }
 
-  gl::Context context;
   const gl::Capabilities capabilities;
   const gl::DeviceTraits traits;
   const assemble::Profile profile;  ///< of fragment programs: the table's row, adapted to the device
@@ -174,18 +161,12 @@ class GlDevice final : public DeviceState {
   const Target target;  ///< Fragment or Compute; Default: whichever is faster
   const std::optional<std::int32_t> scanPatience;
   Barrier barrier;  ///< of programs; arithmetic() tests whether it is effective
-  gl::BoundState bound;
 
  private:
   /// The context is current.
   gl::MemoryInfo memoryInfo() const;
 
-  /// Deletes the GL objects that the members below queue for deletion when they are destroyed.
-  struct LastDeletions {
-    GlDevice& device;
-    ~LastDeletions();
-  };
-  LastDeletions lastDeletions_{*this};
+  GlContext context_;
 
  public:
   FramebufferCache framebuffers;
@@ -195,7 +176,7 @@ class GlDevice final : public DeviceState {
   StagingPrograms stagingPrograms;
   MadeKernels scalarKernels{*this};
   MadeKernels mergeKernels{*this};
-  gl::Samplers samplers{bound.deletions};
+  gl::Samplers samplers{bound().deletions};
   gl::StorageBuffer values{gl::StorageBuffer::Use::Values};  ///< of dispatched reductions to values
   /// Partial results of the work groups of dispatches that fold beside outputs (assemble/reduce/group_fold.hpp). Each dispatch
   /// resets the first word to 0, so that a loop may repeat it.
@@ -205,16 +186,14 @@ class GlDevice final : public DeviceState {
   gl::StorageBuffer sortedWords{gl::StorageBuffer::Use::Scratch};  ///< of sorts, between two digits
   gl::VertexArray vertexArray;
   const std::shared_ptr<PendingReads> pendingReads = std::make_shared<PendingReads>();
-  TransferBuffers transferBuffers{bound.deletions};
-  gl::Labels labels;
+  TransferBuffers transferBuffers{bound().deletions};
   const CacheFolder cache;
   ProgramBinaries binaries;
   std::unique_ptr<PassTrace> passes;  ///< null if there is no trace
-  std::vector<std::byte> staging;  ///< staging buffer of transfer/transfer.cpp, kept between calls
-  std::vector<Operand> operands;  ///< operands of the current call (pass/run_kernel.cpp)
+  KeptScratch<std::byte> staging;  ///< of transfers
+  KeptScratch<Operand> operands;  ///< of kernels
   /// Something was drawn or copied since the last dispatch: the next one may overwrite what that still reads.
   bool hasDrawn = false;
-  bool isInScope = false;  ///< a DeviceScope is open
 
  private:
   bool computesInPairs(const CallOptions& options) const;
@@ -223,10 +202,7 @@ class GlDevice final : public DeviceState {
   /// Throws sk::Error if a kernel cannot run on the target that a call requests.
   void checkTarget(const program::Kernel& kernel, const CallOptions& options) const;
   void needExactSums(const program::Kernel& kernel);
-  [[noreturn]] void failAsLost() const;
 
-  std::int64_t period_ = 1;
-  const bool sharesContext_;
   std::map<ProgramCacheKey, ProgramCache> caches_;
   std::map<std::uint64_t, gl::Texture> tableTextures_;  ///< by FunctionTable::number
   UnloadWatch unloads_;
@@ -236,20 +212,11 @@ class GlDevice final : public DeviceState {
   std::array<std::optional<assemble::Stage>, kernelClasses> faster_;
 };
 
-/// Makes a device's context current and ready for passes as long as this object lives. There is one scope at a time: another one
-/// would take the runtime's state for the application's.
+/// The scope of a call on a device (GlContext::Scope).
 class DeviceScope {
  public:
-  explicit DeviceScope(GlDevice& device) : turn_(device.isInScope), current_(device.livingContext()) {
-    if (device.isGuest()) {
-      device.bound.errors.skipApplications();
-      ended_.errors = &device.bound.errors;
-    }
-    device.bound.deleteQueued();
-    if (device.isGuest()) {
-      saved_.emplace(device.capabilities, device.bound);
-      device.hasDrawn = true;  // by the application
-    }
+  explicit DeviceScope(GlDevice& device) : scope_(device.context()) {
+    if (device.context().isGuest()) device.hasDrawn = true;  // by the application
     device.pool.trim();
     device.tileResults.trim();
     device.sortedWords.trim();
@@ -258,33 +225,7 @@ class DeviceScope {
   }
 
  private:
-  struct Turn {
-    explicit Turn(bool& isInScope) : isTaken(isInScope) {
-      assert(!isTaken);
-      isTaken = true;
-    }
-    ~Turn() { isTaken = false; }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-
-    bool& isTaken;
-  };
-  /// Keeps the device's errors from the application.
-  struct Ended {
-    Ended() = default;
-    ~Ended() {
-      if (errors != nullptr) errors->setAside();
-    }
-    Ended(const Ended&) = delete;
-    Ended& operator=(const Ended&) = delete;
-
-    gl::Errors* errors = nullptr;
-  };
-
-  const Turn turn_;
-  gl::CurrentScope current_;
-  Ended ended_;
-  std::optional<gl::SavedState> saved_;
+  const GlContext::Scope scope_;
 };
 
 /// Holds planes from a device's pool and returns them when it is destroyed.

@@ -63,7 +63,7 @@ void GlStream::unpack() {
   copyRegion(owner(), held(), planes, layout.whole, lease.planes, wanted.whole);
   std::swap(planes, lease.planes);
   layout = std::move(wanted);
-  period_ = owner().period();
+  period_ = owner().context().period();
   labelPlanes();
 }
 
@@ -87,7 +87,7 @@ void GlStream::replaceElements(std::vector<RenderTarget>& elements, Layout&& lis
 
 void GlStream::setWritten() noexcept {
   StreamState::setWritten();
-  period_ = owner().period();
+  period_ = owner().context().period();
 }
 
 void GlStream::settle() {
@@ -152,21 +152,22 @@ void GlStream::downloadHeld(const StreamRegion& region, std::byte* elements) {
 
 void GlStream::setName(std::string_view given) {
   StreamState::setName(given);
-  if (owner().labels.isOn()) {
+  if (owner().context().labels().isOn()) {
     const DeviceScope scope(owner());
     labelPlanes();
   }
 }
 
 void GlStream::labelPlanes() const noexcept {
-  if (name.empty() || !owner().labels.isOn()) {
+  if (name.empty() || !owner().context().labels().isOn()) {
     return;
   }
   try {
     const std::span<const program::Field> fields = held().fields;
     for (std::size_t i = 0; i < planes.size(); ++i) {
-      owner().labels.texture(planes[i].texture.name(),
-                             fields[i].path.empty() ? name : fmt::format("{}.{}", name, fields[i].path));
+      owner().context().labels().texture(
+          planes[i].texture.name(),
+          fields[i].path.empty() ? name : fmt::format("{}.{}", name, fields[i].path));
     }
   } catch (const std::bad_alloc&) {
     return;  // the planes keep their previous labels
@@ -229,7 +230,7 @@ void GlStream::fill(const StreamRegion& region, const std::byte* value) {
   const RegionLayout single{.extent = {1, 1, 1, 1}};
   {
     const UnreservedScope unreserved(owner().pool);  // a loop keeps the texel
-    const gl::UnloggedScope unlogged(owner().bound);
+    const gl::UnloggedScope unlogged(owner().bound());
     one.planes = owner().acquirePlanes(*what.element, {1, 1}, "the value of fill()");
     WriteScope ofNoStream;
     upload(owner(), *what.element, one.planes, single, texel.data(), ofNoStream);
@@ -294,7 +295,7 @@ void GlStream::exchangeElements(StreamState& other) noexcept {
 }
 
 StreamTexture GlStream::texture(int plane) {
-  static_cast<void>(owner().livingContext());
+  static_cast<void>(owner().context().living());
   if (planes.empty()) {
     return {};
   }

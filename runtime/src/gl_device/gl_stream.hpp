@@ -84,7 +84,7 @@ class GlStream final : public StreamState {
   std::vector<RenderTarget> acquirePlanesFor(const Layout& planned);
 
   std::unique_ptr<assemble::HeldElement> held_;  ///< null if the storage is Single
-  std::int64_t period_ = 0;  ///< of the device (GlDevice::period()), in which it was last written
+  std::int64_t period_ = 0;  ///< of the device (GlContext::period()), in which it was last written
   RenderTarget total_;  ///< holds the number of elements until settle() reads it
 };
 

@@ -173,10 +173,10 @@ class AppendCall {
 
   void bindPyramid(const Task& task, const assemble::RegionLayout& domain, HistoPyramid& pyramid) {
     KernelProgram& program = device_.programs().kernelProgram(kernel_, operands_, domain, task);
-    device_.bound.program(program.program.name());
+    device_.bound().program(program.program.name());
     bindPlanes(device_, {&pyramid.odd(), 1}, program.units);
     bindPlanes(device_, {&pyramid.even(), 1}, program.units + 1);
-    program.pyramid.set(device_.bound, pyramid.plan());
+    program.pyramid.set(device_.bound(), pyramid.plan());
   }
 
   void storeList(List& list) noexcept {

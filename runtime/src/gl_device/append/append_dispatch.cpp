@@ -255,14 +255,14 @@ class AppendDispatch {
   std::size_t bytesOfStates() const { return static_cast<std::size_t>(words_) * sizeof(std::uint32_t); }
 
   /// The room for records may have taken the buffer's binding.
-  void bindStatesAgain() { device_.groupStates.bind(device_.bound, bytesOfStates()); }
+  void bindStatesAgain() { device_.groupStates.bind(device_.bound(), bytesOfStates()); }
 
   void bindStates() {
-    if (device_.groupStates.bind(device_.bound, bytesOfStates())) {
+    if (device_.groupStates.bind(device_.bound(), bytesOfStates())) {
       gl::StorageBuffer::clear(bytesOfStates());
       return;
     }
-    device_.throwIfLost();
+    device_.context().throwIfLost();
     fail(Error::Kind::Memory, call_.kernel, "'{}' has no memory for the states of its work groups",
          device_.name());
   }
@@ -303,35 +303,35 @@ class AppendDispatch {
   void dispatch(KernelProgram& program, const Task& task, GroupStep step, OutputTargets* outputs = nullptr) {
     const PassScope traced(device_, nameOf(call_.kernel.name, sk::stepOf(task), program), program, operands_,
                            std::span<const assemble::Rect>(layout_.draws), std::size_t{0});
-    device_.bound.program(program.program.name());
+    device_.bound().program(program.program.name());
     bindOperands(device_, program, call_.kernel, operands_);
-    program.domain.set(device_.bound, layout_.whole);
-    program.rect.set(device_.bound, {texelsInRow(), static_cast<std::int32_t>(texels()), rounds(),
-                                     static_cast<std::int32_t>(step)});
+    program.domain.set(device_.bound(), layout_.whole);
+    program.rect.set(device_.bound(), {texelsInRow(), static_cast<std::int32_t>(texels()), rounds(),
+                                       static_cast<std::int32_t>(step)});
     for (KernelProgram::Append& append : program.appends) setAppend(append);
     if (task.work == Work::Groups) bindImages(outputs);
-    if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(device_.bound);
+    if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(device_.bound());
     constexpr std::int64_t mostGroups = 65535;  // per dimension; guaranteed by GL 4.3
     const std::int64_t groups = step == GroupStep::Scan ? 1 : tiles();
     const std::int64_t inX = std::min(groups, mostGroups);
-    gl::dispatch(device_.bound, static_cast<GLsizei>(inX), static_cast<GLsizei>((groups + inX - 1) / inX));
-    gl::finishStorage(device_.bound);
+    gl::dispatch(device_.bound(), static_cast<GLsizei>(inX), static_cast<GLsizei>((groups + inX - 1) / inX));
+    gl::finishStorage(device_.bound());
   }
 
   void setAppend(KernelProgram::Append& append) {
     for (const auto& list : lists_) {
       if (list->parameter != append.parameter) continue;
-      append.layout.set(device_.bound,
+      append.layout.set(device_.bound(),
                         list->isOfRecords ? operands_[list->parameter].regionLayout : list->layout.whole);
-      append.listShift.set(device_.bound, list->layout.whole.shift);
+      append.listShift.set(device_.bound(), list->layout.whole.shift);
       if (list->isOfRecords)
-        append.owners.set(device_.bound, {0, streamOf(list->parameter).layout.texture.width, 0, 0});
-      append.room.set(device_.bound, static_cast<std::int32_t>(std::max<std::int64_t>(list->length, 0)));
+        append.owners.set(device_.bound(), {0, streamOf(list->parameter).layout.texture.width, 0, 0});
+      append.room.set(device_.bound(), static_cast<std::int32_t>(std::max<std::int64_t>(list->length, 0)));
     }
     for (const auto& target : targets_) {
       if (target->parameter != append.parameter) continue;
-      append.layout.set(device_.bound, operands_[target->parameter].regionLayout);
-      append.owners.set(device_.bound,
+      append.layout.set(device_.bound(), operands_[target->parameter].regionLayout);
+      append.owners.set(device_.bound(),
                         {static_cast<std::int32_t>(std::max<std::int64_t>(target->firstOwner, 0)),
                          streamOf(target->parameter).layout.texture.width, 0, 0});
     }
@@ -367,7 +367,7 @@ class AppendDispatch {
       }
       if (parameter.scatter != program::ScatterOp::Store && !drawn.empty()) {
         const bool isInt = parameter.element->fields.front().scalar == program::Scalar::Int;
-        device_.bound.readWriteImage(unit, drawn.front().texture.name(), isInt ? GL_R32I : GL_R32UI);
+        device_.bound().readWriteImage(unit, drawn.front().texture.name(), isInt ? GL_R32I : GL_R32UI);
         return;
       }
     } else if (parameter.role == Role::VariableOutput) {
@@ -379,7 +379,7 @@ class AppendDispatch {
   }
 
   void bindImage(int unit, const RenderTarget& plane) {
-    device_.bound.image(unit, plane.texture.name(), plane.texture.format().internalFormat);
+    device_.bound().image(unit, plane.texture.name(), plane.texture.format().internalFormat);
   }
 
   void settleTarget(GroupTarget& target) noexcept {

@@ -18,12 +18,12 @@ std::unique_ptr<IntegerProgram> AppendPrograms::build(const std::string& vertexS
   std::string log;
   gl::Program program = ProgramBuild(device_, {vertexSource, fragmentSource}).finish(device_, log);
   if (!program) {
-    device_.throwIfLost();
+    device_.context().throwIfLost();
     throw Error(fmt::format("the driver of '{}' refuses the program of {}:\n{}",
                             device_.capabilities.renderer, what, log),
                 Error::Kind::Compile);
   }
-  device_.bound.program(program.name());
+  device_.bound().program(program.name());
   return std::make_unique<IntegerProgram>(std::move(program));
 }
 

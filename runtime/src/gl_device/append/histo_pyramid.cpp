@@ -45,17 +45,17 @@ void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below
   IntegerProgram& program =
       device_.appendPrograms.pyramid({ofCounts, below.texture.isLayered(), plan_.isLayered()});
   const auto number = static_cast<std::size_t>(&level - plan_.levels.data()) + 1;
-  device_.bound.program(program.program().name());
+  device_.bound().program(program.program().name());
   bindPlanes(device_, {&below, 1}, 0);
-  program.set(device_.bound, "sk_children", level.children);
-  program.set(device_.bound, "sk_tree_shift", plan_.shift);
-  program.set(device_.bound, "sk_row", level.row);
+  program.set(device_.bound(), "sk_children", level.children);
+  program.set(device_.bound(), "sk_tree_shift", plan_.shift);
+  program.set(device_.bound(), "sk_row", level.row);
   if (ofCounts) {
-    program.set(device_.bound, "sk_below_width", shape.width);
-    program.set(device_.bound, "sk_below_shift",
+    program.set(device_.bound(), "sk_below_width", shape.width);
+    program.set(device_.bound(), "sk_below_shift",
                 std::bit_width(static_cast<std::uint32_t>(shape.height)) - 1);
   } else {
-    program.set(device_.bound, "sk_below_row", belowRow);
+    program.set(device_.bound(), "sk_below_row", belowRow);
   }
   RenderTarget& above = ofLevel(number);
   const auto bytesBelow = level.children * static_cast<std::int64_t>(below.texture.format().texelBytes());
@@ -72,21 +72,22 @@ std::int32_t HistoPyramid::total() {
 
 std::vector<RenderTarget> HistoPyramid::totalTexture() {
   std::vector<RenderTarget> total = device_.acquirePlanes(sums(), {1, 1}, whatForSums);
-  gl::Framebuffer& from = ofLevel(plan_.levels.size()).framebufferIn(device_.bound);
-  const GLuint to = total.front().framebufferIn(device_.bound).name();
+  gl::Framebuffer& from = ofLevel(plan_.levels.size()).framebufferIn(device_.bound());
+  const GLuint to = total.front().framebufferIn(device_.bound()).name();
   std::int32_t row = plan_.levels.back().row;
   if (plan_.isLayered()) {
-    from.selectLayer(device_.bound, row >> plan_.shift);
+    from.selectLayer(device_.bound(), row >> plan_.shift);
     row &= (1 << plan_.shift) - 1;
   }
-  gl::blit(device_.bound, from.name(), {0, row}, to, {0, 0}, 1, 1);
+  gl::blit(device_.bound(), from.name(), {0, row}, to, {0, 0}, 1, 1);
   return total;
 }
 
 std::int32_t readTotal(GlDevice& device, RenderTarget& total) {
   const TraceScope traced(device.trace.get(), "transfer", "read number of pushes");
   std::array<std::int32_t, 4> sums{};
-  total.framebufferIn(device.bound).read(device.bound, total.texture.format().tight, 0, 0, 1, 1, sums.data());
+  total.framebufferIn(device.bound())
+      .read(device.bound(), total.texture.format().tight, 0, 0, 1, 1, sums.data());
   device.throwPendingError();
   return sums[3];
 }

@@ -58,20 +58,20 @@ void ListedScatter::combine(GlStream& stream) {
   const assemble::Rect groups{0, 0, std::min(tiles, mostInRow), (tiles - 1) / mostInRow + 1};
   const PassScope traced(device_, {scatter_.name, "combine records", "dispatch"}, std::int64_t{length_} * 8,
                          std::span<const assemble::Rect>(&groups, 1), std::size_t{assemble::recordTile} * 4);
-  device_.bound.program(program.program().name());
+  device_.bound().program(program.program().name());
   bindPlanes(device_, sort_.pairs->planes(), 0);
   if (count_ != nullptr) bindPlanes(device_, {count_, 1}, 1);
   if (!assemble::isPair(scatter_)) bindPlanes(device_, values_.planes, 2);
   const gl::Texture& target = stream.planes.front().texture;
-  device_.bound.readWriteImage(0, target.name(), target.format().internalFormat);
-  program.set(device_.bound, "sk_length", length_);
-  program.set(device_.bound, "sk_tiles", tiles);
-  program.set(device_.bound, "sk_keys_shift", sort_.pairs->shift());
-  program.set(device_.bound, "sk_list_shift", shift_);
-  program.set(device_.bound, "sk_width", texture.width);
-  program.set(device_.bound, "sk_rect", gl::Int4{groups.x, groups.y, groups.width, groups.height});
-  if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(device_.bound);
-  gl::dispatch(device_.bound, groups.width, groups.height);
+  device_.bound().readWriteImage(0, target.name(), target.format().internalFormat);
+  program.set(device_.bound(), "sk_length", length_);
+  program.set(device_.bound(), "sk_tiles", tiles);
+  program.set(device_.bound(), "sk_keys_shift", sort_.pairs->shift());
+  program.set(device_.bound(), "sk_list_shift", shift_);
+  program.set(device_.bound(), "sk_width", texture.width);
+  program.set(device_.bound(), "sk_rect", gl::Int4{groups.x, groups.y, groups.width, groups.height});
+  if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(device_.bound());
+  gl::dispatch(device_.bound(), groups.width, groups.height);
 }
 
 }  // namespace sk

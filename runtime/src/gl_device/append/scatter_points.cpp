@@ -104,8 +104,8 @@ int Scatterer::bindAfterElements(std::span<RenderTarget> planes) { return bindPl
 IntegerProgram& Scatterer::programOf(PointStep step) {
   IntegerProgram& program =
       device_.appendPrograms.points(appendOutput_, step, {listLayout_.layered, regionLayout_.layered});
-  device_.bound.program(program.program().name());
-  program.set(device_.bound, "sk_domain_shift", regionLayout_.shift);
+  device_.bound().program(program.program().name());
+  program.set(device_.bound(), "sk_domain_shift", regionLayout_.shift);
   return program;
 }
 
@@ -125,20 +125,20 @@ void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> 
   bindPlanes(device_, list_, 0);
   const gl::Texture& texture = targets.front().texture;
   const assemble::TextureShape& shape = texture.shape();
-  program.set(device_.bound, "sk_list_shift", listLayout_.shift);
-  program.set(device_.bound, "sk_first", first);
-  program.set(device_.bound, "sk_size", gl::Int4{shape.width, shape.height, 0, 0});
-  device_.bound.vertexArray(device_.vertexArray.name());
+  program.set(device_.bound(), "sk_list_shift", listLayout_.shift);
+  program.set(device_.bound(), "sk_first", first);
+  program.set(device_.bound(), "sk_size", gl::Int4{shape.width, shape.height, 0, 0});
+  device_.bound().vertexArray(device_.vertexArray.name());
   device_.hasDrawn = true;
-  const gl::Blending blending(device_.capabilities, blend, device_.isGuest());
+  const gl::Blending blending(device_.capabilities, blend, device_.context().isGuest());
   const assemble::Rect whole{0, 0, shape.width, texture.rows()};
   const assemble::Rect written{0, 0, count, 1};
   const PassScope traced(device_, {appendOutput_.name, "scatter"}, std::span<const RenderTarget>(list_),
                          std::span(&written, 1), texelBytesOf(targets));
   forEachLayer(whole, drawn.layerRows, [&](const assemble::Rect& part, std::int32_t layer, std::int32_t) {
     selectLayer(device_, drawn, layer, program.row());
-    device_.bound.viewport(0, 0, part.width, part.height);
-    gl::drawPoints(device_.bound, count);
+    device_.bound().viewport(0, 0, part.width, part.height);
+    gl::drawPoints(device_.bound(), count);
   });
 }
 

@@ -90,9 +90,9 @@ std::vector<Operand> operandsOfResults(const ResolvedReduction& call) {
 
 void bindList(GlDevice& device, const Kernel& fold, std::int32_t groups) {
   const std::size_t entry = assemble::accumulatorPlanes(fold) * assemble::foldPlaneBytes;
-  if (device.folded.bind(device.bound, assemble::foldListStart + static_cast<std::size_t>(groups) * entry))
+  if (device.folded.bind(device.bound(), assemble::foldListStart + static_cast<std::size_t>(groups) * entry))
     return;
-  device.throwIfLost();
+  device.context().throwIfLost();
   fail(Error::Kind::Memory, fold, "'{}' has no memory for what its work groups fold", device.name());
 }
 
@@ -101,9 +101,9 @@ void dispatchTiles(GlDevice& device, KernelProgram& program, const FoldedTiles& 
   std::int32_t first = 0;
   for (const Rect& rect : rects) {
     const std::int32_t across = tiles.across(rect), rows = tiles.rowsOfGroups(rect);
-    program.rect.set(device.bound, {rect.x, rect.y, rect.width, rect.height});
-    program.foldGroups.set(device.bound, {tiles.groups(), tiles.tilesOfGroup(), across, first});
-    gl::dispatch(device.bound, across, rows);
+    program.rect.set(device.bound(), {rect.x, rect.y, rect.width, rect.height});
+    program.foldGroups.set(device.bound(), {tiles.groups(), tiles.tilesOfGroup(), across, first});
+    gl::dispatch(device.bound(), across, rows);
     first += across * rows;
   }
 }
@@ -159,11 +159,11 @@ void dispatchFold(GlDevice& device, const ResolvedReduction& call, const KernelO
   begin();
   const PassScope traced(device, nameOf(fold.name, stepOf({.work = assemble::Work::Folds}), program), program,
                          operands.get(), rects.get(), texelBytesOf(outputs));
-  device.bound.program(program.program.name());
+  device.bound().program(program.program.name());
   bindOperands(device, program, fold, operands.get());
-  program.domain.set(device.bound, operands.domain());
+  program.domain.set(device.bound(), operands.domain());
   const RegionLayout texel = texelOf(target.element);
-  program.foldResult.set(device.bound, {texel.origin[0], texel.origin[1], 0, 0});
+  program.foldResult.set(device.bound(), {texel.origin[0], texel.origin[1], 0, 0});
   bindImages(device, planes);
   dispatchTiles(device, program, tiles, rects.get());
 }

@@ -11,6 +11,7 @@
 #include "assemble/condition.hpp"
 #include "assemble/region_layout.hpp"
 #include "gl_device/gl_device.hpp"
+#include "gl_device/memory/kept_scratch.hpp"
 #include "gl_device/memory/layout.hpp"
 #include "gl_device/program/variant.hpp"
 #include "sk/call.hpp"
@@ -44,7 +45,7 @@ class KernelOperands {
   KernelOperands(const KernelOperands&) = delete;
   KernelOperands& operator=(const KernelOperands&) = delete;
 
-  /// One per parameter, valid until the next object of this class. Those of accumulators are empty.
+  /// One per parameter, valid as long as this object. Those of accumulators are empty.
   std::span<const Operand> get() const { return operands_; }
   /// The first output's region, and the layout of its stream, after the call. Without outputs, those that a stream of the
   /// domain's shape would have.
@@ -71,7 +72,8 @@ class KernelOperands {
   std::span<const Argument> arguments_;
   const assemble::SpecValues& specs_;
   const program::Plan* const plan_;  ///< null if one pass is enough
-  std::vector<Operand>& operands_;
+  KeptScratch<Operand>::Lease scratch_;
+  std::vector<Operand>& operands_ = scratch_.values;
   std::size_t first_ =
       0;  ///< the first output, whose region is the domain; the number of arguments if there is none
   Shape shape_;  ///< of the domain

@@ -28,13 +28,13 @@ using program::Role;
 void copyLayers(GlDevice& device, RenderTarget& plane, gl::Texture& to, std::int32_t first,
                 std::int32_t step) {
   const assemble::TextureShape& shape = plane.texture.shape();
-  gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound);
+  gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound());
   device.hasDrawn = true;
   for (std::int32_t layer = 0; layer < std::max(shape.layers, 1); ++layer) {
     if (shape.layers > 0) {
-      framebuffer.selectLayer(device.bound, layer);
+      framebuffer.selectLayer(device.bound(), layer);
     }
-    to.copyLayer(device.bound, framebuffer.name(), first + layer * step, shape.width, shape.height);
+    to.copyLayer(device.bound(), framebuffer.name(), first + layer * step, shape.width, shape.height);
   }
 }
 
@@ -55,9 +55,9 @@ gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const O
     }
   }
   shape.layers *= count;
-  gl::Texture texture(device.bound, gl::formatOf(bundle.scalar, bundle.width), shape);
+  gl::Texture texture(device.bound(), gl::formatOf(bundle.scalar, bundle.width), shape);
   if (texture.name() == 0) {
-    device.throwIfLost();
+    device.context().throwIfLost();
     throw Error(fmt::format("'{}' has no room for inputs that share a texture: {} layers of {} x {} texels",
                             device.capabilities.renderer, shape.layers, shape.width, shape.height),
                 Error::Kind::Memory);

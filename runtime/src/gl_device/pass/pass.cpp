@@ -23,10 +23,10 @@ using assemble::RegionLayout;
 
 void blit(GlDevice& device, RenderTarget& from, const RegionLayout& source, RenderTarget& to,
           const RegionLayout& target) {
-  const GLuint read = from.framebufferIn(device.bound).name();
-  const GLuint draw = to.framebufferIn(device.bound).name();
+  const GLuint read = from.framebufferIn(device.bound()).name();
+  const GLuint draw = to.framebufferIn(device.bound()).name();
   device.hasDrawn = true;
-  gl::blit(device.bound, read, {source.origin[0], source.origin[1]}, draw,
+  gl::blit(device.bound(), read, {source.origin[0], source.origin[1]}, draw,
            {target.origin[0], target.origin[1]}, target.extent[0], target.extent[1]);
 }
 
@@ -42,8 +42,8 @@ void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTar
     const GLint rows = program.isGrouped ? mostGroups : mostGroups * program.workGroup[1];
     for (std::int32_t done = 0; done < rect.height; done += rows) {
       const std::int32_t height = std::min(rows, rect.height - done);
-      program.rect.set(device.bound, {rect.x, rect.y + done, rect.width, height});
-      gl::dispatch(device.bound, groups(rect.width, program.workGroup[0]),
+      program.rect.set(device.bound(), {rect.x, rect.y + done, rect.width, height});
+      gl::dispatch(device.bound(), groups(rect.width, program.workGroup[0]),
                    groups(height, program.workGroup[1]));
     }
   }
@@ -67,15 +67,15 @@ int bindOwnPlanes(GlDevice& device, const program::Parameter& parameter, std::sp
 
 int bindPlanes(GlDevice& device, std::span<RenderTarget> planes, int unit) {
   for (const RenderTarget& plane : planes) {
-    device.bound.texture(unit, plane.texture.name(), plane.texture.isLayered());
-    device.bound.sampler(unit++, device.samplers.nearest());
+    device.bound().texture(unit, plane.texture.name(), plane.texture.isLayered());
+    device.bound().sampler(unit++, device.samplers.nearest());
   }
   return unit;
 }
 
 DrawTarget targetOf(GlDevice& device, RenderTarget& plane) {
   const gl::Texture& texture = plane.texture;
-  return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0};
+  return {&plane.framebufferIn(device.bound()), texture.isLayered() ? texture.shape().height : 0};
 }
 
 DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
@@ -91,7 +91,7 @@ DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
   gl::Framebuffer* const framebuffer =
       device.framebuffers.framebufferOf(std::span(names).first(planes.size()), isLayered);
   if (framebuffer == nullptr) {
-    device.throwIfLost();
+    device.context().throwIfLost();
     throw Error("the driver cannot draw to these textures at once; write fewer outputs in one kernel",
                 Error::Kind::Device);
   }
@@ -100,11 +100,11 @@ DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
 
 void bindImages(GlDevice& device, std::span<RenderTarget* const> planes) {
   if (std::exchange(device.hasDrawn, false)) {
-    gl::finishDraws(device.bound);
+    gl::finishDraws(device.bound());
   }
   int unit = 0;
   for (const RenderTarget* plane : planes) {
-    device.bound.image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
+    device.bound().image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
   }
 }
 
@@ -114,13 +114,13 @@ PreparedPass preparedPass(GlDevice& device, KernelProgram& program, std::span<Re
 }
 
 void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect> rects, gl::IntUniform& row) {
-  device.bound.vertexArray(device.vertexArray.name());
+  device.bound().vertexArray(device.vertexArray.name());
   device.hasDrawn = true;
   for (const Rect& rect : rects) {
     forEachLayer(rect, target.layerRows, [&](const Rect& part, std::int32_t layer, std::int32_t) {
       selectLayer(device, target, layer, row);
-      device.bound.viewport(part.x, part.y, part.width, part.height);
-      gl::drawViewport(device.bound);
+      device.bound().viewport(part.x, part.y, part.width, part.height);
+      gl::drawViewport(device.bound());
     });
   }
 }
@@ -135,12 +135,12 @@ void writeRects(GlDevice& device, const PreparedPass& pass, std::span<RenderTarg
 
 void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row) {
   if (target.layerRows == 0) {
-    device.bound.framebuffer(target.framebuffer->name());
-    row.set(device.bound, 0);
+    device.bound().framebuffer(target.framebuffer->name());
+    row.set(device.bound(), 0);
     return;
   }
-  target.framebuffer->selectLayer(device.bound, layer);
-  row.set(device.bound, layer * target.layerRows);
+  target.framebuffer->selectLayer(device.bound(), layer);
+  row.set(device.bound(), layer * target.layerRows);
 }
 
 void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
@@ -150,29 +150,29 @@ void bindOperands(GlDevice& device, KernelProgram& program, const program::Kerne
     const Operand& operand = operands[read.parameter];
     const int next = bindOwnPlanes(device, kernel.parameters[read.parameter], operand.planes, unit);
     if (read.sampler != 0) {
-      device.bound.sampler(unit, read.sampler);
+      device.bound().sampler(unit, read.sampler);
     }
     unit = next;
-    read.uniforms.set(device.bound, operand.regionLayout);
-    read.ratio.set(device.bound, operand.ratio);
+    read.uniforms.set(device.bound(), operand.regionLayout);
+    read.ratio.set(device.bound(), operand.ratio);
   }
   for (const std::size_t bundle : program.bundles) {
-    device.bound.texture(unit, bundles[bundle].name(), true);
-    device.bound.sampler(unit++, 0);
+    device.bound().texture(unit, bundles[bundle].name(), true);
+    device.bound().sampler(unit++, 0);
   }
   for (KernelProgram::Table& table : program.tables) {
-    device.bound.texture(unit, table.texture, false);
-    device.bound.sampler(unit++, 0);
-    table.range.set(device.bound, table.values.data());
+    device.bound().texture(unit, table.texture, false);
+    device.bound().sampler(unit++, 0);
+    table.range.set(device.bound(), table.values.data());
   }
   for (KernelProgram::Value& value : program.values) {
-    value.uniform.set(device.bound, operands[value.parameter].value);
+    value.uniform.set(device.bound(), operands[value.parameter].value);
   }
   for (KernelProgram::Double& value : program.doubles) {
-    value.uniform.set(device.bound, operands[value.parameter].value);
+    value.uniform.set(device.bound(), operands[value.parameter].value);
   }
   for (KernelProgram::Value& step : program.steps) {
-    step.uniform.set(device.bound, operands[step.parameter].step.data());
+    step.uniform.set(device.bound(), operands[step.parameter].step.data());
   }
 }
 
@@ -192,11 +192,11 @@ void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel
   KernelProgram& program = pass.program;
   const PassScope traced(device, nameOf(kernel.name, stepOf(task), program), program, operands, rects,
                          texelBytesOf(targets));
-  device.bound.program(program.program.name());
+  device.bound().program(program.program.name());
   bindOperands(device, program, kernel, operands, bundles);
-  program.domain.set(device.bound, domain);
+  program.domain.set(device.bound(), domain);
   if (task.work == assemble::Work::List) {
-    program.target.set(device.bound, operands[task.appendOutput].regionLayout);
+    program.target.set(device.bound(), operands[task.appendOutput].regionLayout);
   }
   const Rect elements{0, 0, domain.extent[0], domain.extent[1]};
   const bool runsByElement =
@@ -209,7 +209,7 @@ namespace {
 /// Whether a blit copies a region: source and target are planes with the same elements per texel. A loop repeats no
 /// blits: it could not leave them out on the device. Where programs are dispatched, blits are as slow as draws.
 bool isBlit(GlDevice& device, const RegionLayout& source, const RegionLayout& target) {
-  return !device.bound.isLogged() && device.programs().stage() == assemble::Stage::Fragment &&
+  return !device.bound().isLogged() && device.programs().stage() == assemble::Stage::Fragment &&
          !source.linear && !target.linear && source.packed == target.packed && !source.strided &&
          !target.strided;
 }

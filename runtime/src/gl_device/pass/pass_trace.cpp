@@ -61,7 +61,7 @@ std::int64_t texelsOf(std::span<const Rect> rects) {
 
 PassTrace::PassTrace(GlDevice& device, Trace& trace)
     : trace_(trace),
-      deletions_(device.bound.deletions),
+      deletions_(device.bound().deletions),
       usesTimestamps_(choosesTimestamps(device.capabilities)) {}
 
 gl::Timestamp PassTrace::takeTimestamp() {

@@ -75,7 +75,7 @@ void readValues(GlDevice& device, const Kernel& fold, std::span<RenderTarget> va
 /// `results`.
 void takeValues(GlDevice& device, const Kernel& fold, std::span<void* const> results) {
   std::array<std::byte, valueBytes> texels;
-  device.values.read(device.bound,
+  device.values.read(device.bound(),
                      std::span(texels).first(assemble::accumulatorPlanes(fold) * valuePlaneBytes));
   device.throwPendingError();
   const std::byte* texel = texels.data();
@@ -162,7 +162,7 @@ void GlDevice::reduce(const ResolvedReduction& call) {
   const assemble::Stage stage = stageOf(fold, KernelClass::Reduces, call.options);
   if (call.rows != nullptr) call.rows->makeTables(call.scan.has_value());
   const DeviceScope scope(*this);
-  const gl::LabelGroup group(labels, fold.name);
+  const gl::LabelGroup group(context().labels(), fold.name);
   selectPrograms(call.options, stage);
   if (call.isToValues()) {
     reduceToValues(*this, call);

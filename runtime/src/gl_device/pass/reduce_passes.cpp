@@ -139,7 +139,7 @@ void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* cons
   assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
   access.ofDigits = ofDigits_;
   if (isDispatched && device_.traits.tilesScans)
-    assemble::addTiles(access, reduction_, device_.traits.chainsScans && !device_.bound.isLogged());
+    assemble::addTiles(access, reduction_, device_.traits.chainsScans && !device_.bound().isLogged());
   access.patience = device_.scanPatience.value_or(access.patience);
   const assemble::ScanPlan plan = assemble::planScan(elements_, result, limits, lines, access, isExclusive);
   startAll(plan.folds);
@@ -352,16 +352,16 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
         const std::size_t bytes = isInBuffer ? count * valuePlaneBytes : texelBytesOf(planes);
         const PassScope traced(device_, nameOf(reduction_.fold.name, stepOf(variant.walk), program.kernel),
                                program.kernel, operands, pass.draws, bytes);
-        device_.bound.program(program.kernel.program.name());
+        device_.bound().program(program.kernel.program.name());
         bindOperands(device_, program.kernel, kernel, operands);
         for (const assemble::UniformValue& value : pass.uniforms) {
-          program.uniform(value).set(device_.bound, value.value);
+          program.uniform(value).set(device_.bound(), value.value);
         }
         if (variant.placed) {
           for (const assemble::UniformValue& value :
                {assemble::UniformValue{"sk_item_low", true, elements_.place.low},
                 assemble::UniformValue{"sk_item_whole", true, elements_.place.whole}})
-            program.uniform(value).set(device_.bound, value.value);
+            program.uniform(value).set(device_.bound(), value.value);
         }
         const bool storesItself = pass.groups.width > 0;
         writeRects(device_, preparedPass(device_, program.kernel, planes), planes,
@@ -379,8 +379,8 @@ void ReducePasses::prepare(const ReducePass& pass, std::span<RenderTarget* const
 }
 
 void ReducePasses::bindValues() {
-  if (device_.values.bind(device_.bound, valueBytes)) return;
-  device_.throwIfLost();
+  if (device_.values.bind(device_.bound(), valueBytes)) return;
+  device_.context().throwIfLost();
   fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for its value", device_.name());
 }
 
@@ -389,8 +389,8 @@ void ReducePasses::bindChain(const ReducePass& pass) {
       static_cast<std::size_t>(pass.groups.width) * static_cast<std::size_t>(pass.groups.height);
   const std::size_t bytes =
       sizeof(std::uint32_t) * (1 + 2 * assemble::accumulatorPlanes(reduction_.fold) * groups);
-  if (!device_.tileResults.bind(device_.bound, bytes)) {
-    device_.throwIfLost();
+  if (!device_.tileResults.bind(device_.bound(), bytes)) {
+    device_.context().throwIfLost();
     fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for the results of tiles", device_.name());
   }
   gl::StorageBuffer::clear(bytes);

@@ -96,7 +96,9 @@ class ReplayedLoop final : public LoopRunner {
     return LoopState::isTrue({condition_.get(), Index::origin(1), condition_->shape});
   }
 
-  bool mayReplay() const { return !device_.trace && !device_.labels.isOn() && spoiled_ < mostSpoiled; }
+  bool mayReplay() const {
+    return !device_.trace && !device_.context().labels().isOn() && spoiled_ < mostSpoiled;
+  }
 
   static Places placesOf(const LoopState& loop) {
     Places places;
@@ -127,7 +129,7 @@ class ReplayedLoop final : public LoopRunner {
     if (isClosed_ || isStale() || (!cycle_.empty() && !areAt(loop, last_))) drop();
     if (!std::exchange(hasRun_, true)) return loop.runOnce();
     Iteration& iteration = cycle_.emplace_back();
-    device_.bound.keep(iteration.log);
+    device_.bound().keep(iteration.log);
     try {
       iteration.before = placesOf(loop);
       note(loop, iteration);
@@ -147,12 +149,12 @@ class ReplayedLoop final : public LoopRunner {
   void note(LoopState& loop, Iteration& iteration) {
     const std::optional<PassCount> counted = std::exchange(device_.passCount, PassCount{});
     iteration.hasDrawnBefore = device_.hasDrawn;
-    device_.bound.logTo(&iteration.log);
+    device_.bound().logTo(&iteration.log);
     reserve_.ofEarlier = reserve_.idle.size();
     device_.pool.use(&reserve_);
     const auto end = [&] {
       device_.pool.use(nullptr);
-      device_.bound.logTo(nullptr);
+      device_.bound().logTo(nullptr);
       iteration.passes = *std::exchange(device_.passCount, counted);
       count(iteration.passes);
     };
@@ -186,7 +188,7 @@ class ReplayedLoop final : public LoopRunner {
         cycle_, [&](const Iteration& iteration) { return iteration.before.textures == last_.textures; });
     if (start == cycle_.end()) return;
     for (const Iteration* const first = &*start; &cycle_.front() != first; cycle_.pop_front()) {
-      device_.bound.drop(cycle_.front().log);
+      device_.bound().drop(cycle_.front().log);
     }
     std::vector<gl::CommandLog*> logs;
     for (Iteration& iteration : cycle_) logs.push_back(&iteration.log);
@@ -201,7 +203,7 @@ class ReplayedLoop final : public LoopRunner {
   }
 
   void drop() noexcept {
-    for (Iteration& iteration : cycle_) device_.bound.drop(iteration.log);
+    for (Iteration& iteration : cycle_) device_.bound().drop(iteration.log);
     cycle_.clear();
     isClosed_ = false;
     device_.pool.release(reserve_);
@@ -220,8 +222,8 @@ class ReplayedLoop final : public LoopRunner {
   /// Gives the commands of an iteration by `how`, a member of its log.
   template <class How, class... What>
   void give(const Iteration& iteration, How how, const What&... what) {
-    if (device_.hasDrawn && !iteration.hasDrawnBefore) gl::finishDraws(device_.bound);
-    (iteration.log.*how)(device_.bound, what...);
+    if (device_.hasDrawn && !iteration.hasDrawnBefore) gl::finishDraws(device_.bound());
+    (iteration.log.*how)(device_.bound(), what...);
     device_.hasDrawn = iteration.hasDrawnAfter;
   }
 
@@ -291,7 +293,7 @@ class ReplayedLoop final : public LoopRunner {
     WriteScope writes;
     for (const LoopState::Used& used : loop.used()) writes.add(used.stream);
     std::string log;
-    hasGate_ = gate_.open(device_.bound, groups_, device_.isGuest(), log);
+    hasGate_ = gate_.open(device_.bound(), groups_, device_.context().isGuest(), log);
     if (!hasGate_) return std::nullopt;
     const gl::IndirectCounts counts = gate_.counts();
     gl::LoopGate::State state;
@@ -301,9 +303,9 @@ class ReplayedLoop final : public LoopRunner {
       for (std::int64_t i = 0; i < times; ++i, ++given) {
         const std::size_t at = (*first + static_cast<std::size_t>(given)) % cycle_.size();
         give(cycle_[at], &gl::CommandLog::runIndirect, counts);
-        gate_.pass(device_.bound, (*all)[at], device_.samplers.nearest());
+        gate_.pass(device_.bound(), (*all)[at], device_.samplers.nearest());
       }
-      gate_.ask(device_.bound);
+      gate_.ask(device_.bound());
     };
     writes.begin();
     try {
@@ -311,14 +313,14 @@ class ReplayedLoop final : public LoopRunner {
       giveSome();
       while (given < most && !state.isDone) {
         giveSome();
-        state = gate_.answerBefore(device_.bound);
+        state = gate_.answerBefore(device_.bound());
       }
-      if (given == most || state.isDone) state = gate_.lastAnswer(device_.bound);
+      if (given == most || state.isDone) state = gate_.lastAnswer(device_.bound());
     } catch (...) {
-      gate_.close(device_.bound);
+      gate_.close(device_.bound());
       throw;
     }
-    gate_.close(device_.bound);
+    gate_.close(device_.bound());
     if (!state.isDone && state.ran != given) {  // nobody knows which iterations have run
       hasGate_ = false;
       device_.throwPendingError();

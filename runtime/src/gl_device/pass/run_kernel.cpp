@@ -58,7 +58,7 @@ void GlDevice::runUnchecked(const ResolvedCall& called) {
   const assemble::Stage stage =
       stageOf(call.kernel, classOf(call.kernel, call.options.order), call.options, call.domain.size());
   const DeviceScope scope(*this);
-  const gl::LabelGroup group(labels, called.kernel.name);
+  const gl::LabelGroup group(context().labels(), called.kernel.name);
   selectPrograms(call.options, stage);
   checkStorages(call.kernel, call.arguments, call.specs, call.plan);
   if (!hasAppendOutputs(call.kernel)) {

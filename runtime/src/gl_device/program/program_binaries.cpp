@@ -51,8 +51,8 @@ void ProgramBinaries::store(std::string_view sources, const gl::Program& program
 
 ProgramBuild::ProgramBuild(GlDevice& device, gl::ProgramSources sources)
     : sources_(std::move(sources)), isKept_(device.binaries.areKept()) {
-  if (isKept_) loaded_ = device.binaries.load(device.bound, key());
-  if (!loaded_) pending_ = gl::PendingProgram(device.bound, sources_, isKept_);
+  if (isKept_) loaded_ = device.binaries.load(device.bound(), key());
+  if (!loaded_) pending_ = gl::PendingProgram(device.bound(), sources_, isKept_);
 }
 
 gl::Program ProgramBuild::finish(GlDevice& device, std::string& log) {

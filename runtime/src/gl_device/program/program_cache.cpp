@@ -210,7 +210,7 @@ void ProgramCache::findTables(KernelProgram& result, const program::Kernel& kern
         {device_.textureOf(table),
          gl::FieldUniform(result.program.location(assemble::rangeName(use.name)), {&range, 1}),
          {table.report.range.low, table.perUnit, static_cast<float>(table.report.range.intervals)}});
-    device_.bound.program(result.program.name());
+    device_.bound().program(result.program.name());
     result.program.setSampler(assemble::tableName(use.name), unit++);
   }
 }
@@ -265,7 +265,7 @@ void ProgramCache::findListUniforms(KernelProgram& result, const program::Parame
   for (std::size_t level = 0; level < result.pyramid.rows.size(); ++level) {
     result.pyramid.rows[level] = {result.program.location(fmt::format("sk_rows[{}]", level)), false};
   }
-  device_.bound.program(result.program.name());
+  device_.bound().program(result.program.name());
   result.program.setSampler("sk_odd", result.units);
   result.program.setSampler("sk_even", result.units + 1);
 }
@@ -279,7 +279,7 @@ void KernelProgram::Pyramid::set(gl::BoundState& bound, const assemble::PyramidP
 }
 
 void ProgramCache::bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit) {
-  device_.bound.program(program.name());
+  device_.bound().program(program.name());
   for (std::size_t plane = 0; plane < heldBy(parameter).fields.size(); ++plane) {
     if (!parameter.layers.empty() && parameter.layers[plane].bundle >= 0) {
       continue;
@@ -306,14 +306,15 @@ void ProgramCache::finish(KernelProgram& result, const program::Kernel& kernel, 
   result.program = begun.finish(device_, log);
   if (!result.program) {
     log.clear();
-    device_.throwIfLost();
-    gl::Program::build(device_.bound, {begun.sources().vertex, withEncodedLines(begun.sources().main)}, log);
+    device_.context().throwIfLost();
+    gl::Program::build(device_.bound(), {begun.sources().vertex, withEncodedLines(begun.sources().main)},
+                       log);
     throw Error(
         fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
                     device_.capabilities.renderer, profile_.name, withSourceNames(log, kernel.sources)),
         Error::Kind::Compile);
   }
-  device_.labels.program(result.program.name(), kernel.name);
+  device_.context().labels().program(result.program.name(), kernel.name);
   result.stage = profile_.stage;
   result.domainRow = {result.program.location("sk_domain_row"), false};
   if (result.stage == assemble::Stage::Compute) {

@@ -237,7 +237,7 @@ std::optional<std::int64_t> GlDevice::reorder(const Reordering& reordering) {
       !maySortByDispatches(*this, reordering))
     return std::nullopt;
   const DeviceScope scope(*this);
-  const gl::LabelGroup group(labels, "sort");
+  const gl::LabelGroup group(context().labels(), "sort");
   selectPrograms({}, assemble::Stage::Compute);
   return sortByDispatches(*this, reordering);
 }

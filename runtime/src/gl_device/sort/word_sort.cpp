@@ -74,12 +74,12 @@ void WordSort::sortByAll(bool fromKeys, int bits) {
 bool WordSort::takesBuffer() {
   const std::int64_t bytes = std::int64_t{count_} * 16;
   inBuffer_ =
-      pairs && !device_.bound.isLogged() && bytes <= device_.capabilities.storageBytes && bindBuffer();
+      pairs && !device_.bound().isLogged() && bytes <= device_.capabilities.storageBytes && bindBuffer();
   return inBuffer_;
 }
 
 bool WordSort::bindBuffer() {
-  return device_.sortedWords.bind(device_.bound, static_cast<std::size_t>(count_) * 16);
+  return device_.sortedWords.bind(device_.bound(), static_cast<std::size_t>(count_) * 16);
 }
 
 /// Brings sorted pairs from the buffer to `pairs`.
@@ -126,7 +126,7 @@ void WordSort::run(RadixStep step, std::string_view name, std::initializer_list<
       std::int64_t{tiles} * assemble::radixTile * 4 * static_cast<std::int64_t>(read.size());
   const PassScope traced(device_, {name, "sort", "dispatch"}, bytes, std::span<const Rect>(&groups, 1),
                          std::size_t{assemble::radixTile} * 4);
-  device_.bound.program(program.program().name());
+  device_.bound().program(program.program().name());
   int unit = 0;
   for (WordTexture* words : read) {
     if (words == nullptr) {
@@ -139,21 +139,21 @@ void WordSort::run(RadixStep step, std::string_view name, std::initializer_list<
   for (WordTexture* words : written) {
     if (words == nullptr) break;
     const gl::Texture& texture = words->plane().texture;
-    device_.bound.image(unit++, texture.name(), texture.format().internalFormat);
+    device_.bound().image(unit++, texture.name(), texture.format().internalFormat);
   }
-  for (const Uniform& uniform : uniforms) program.set(device_.bound, uniform.name, uniform.value);
-  program.set(device_.bound, "sk_tiles", tiles);
-  program.set(device_.bound, "sk_rect", gl::Int4{groups.x, groups.y, groups.width, groups.height});
-  if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(device_.bound);
-  gl::dispatch(device_.bound, groups.width, groups.height);
-  if (storage.writes) gl::finishStorage(device_.bound);
+  for (const Uniform& uniform : uniforms) program.set(device_.bound(), uniform.name, uniform.value);
+  program.set(device_.bound(), "sk_tiles", tiles);
+  program.set(device_.bound(), "sk_rect", gl::Int4{groups.x, groups.y, groups.width, groups.height});
+  if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(device_.bound());
+  gl::dispatch(device_.bound(), groups.width, groups.height);
+  if (storage.writes) gl::finishStorage(device_.bound());
 }
 
 std::uint32_t WordSort::read(WordTexture& words, std::int32_t number) {
   std::uint32_t word = 0;
   RenderTarget& plane = words.plane();
-  plane.framebufferIn(device_.bound)
-      .read(device_.bound, plane.texture.format().tight, number & ((1 << words.shift()) - 1),
+  plane.framebufferIn(device_.bound())
+      .read(device_.bound(), plane.texture.format().tight, number & ((1 << words.shift()) - 1),
             number >> words.shift(), 1, 1, &word);
   return word;
 }
@@ -168,14 +168,14 @@ IntegerProgram& SortPrograms::of(RadixStep step, RadixStorage storage) {
       ProgramBuild(device_, {{}, assemble::radixProgram(device_.computeProfile, step, storage)})
           .finish(device_, log);
   if (!program) {
-    device_.throwIfLost();
+    device_.context().throwIfLost();
     throw Error(fmt::format("the driver of '{}' refuses a program of sk::sort:\n{}",
                             device_.capabilities.renderer, log),
                 Error::Kind::Compile);
   }
   known = std::make_unique<IntegerProgram>(std::move(program));
   const gl::Program& linked = known->program();
-  device_.bound.program(linked.name());
+  device_.bound().program(linked.name());
   int unit = 0;
   if (step == RadixStep::Sum) {
     linked.setSampler("sk_counts", unit);

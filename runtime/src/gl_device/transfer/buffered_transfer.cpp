@@ -21,7 +21,7 @@ constexpr std::size_t alignment = 16;
 std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1) / alignment * alignment; }
 
 [[noreturn]] void failForMemory(GlDevice& device, std::size_t bytes) {
-  device.throwIfLost();
+  device.context().throwIfLost();
   throw Error(fmt::format("'{}' has no memory for a transfer of {} KiB", device.name(), bytes >> 10),
               Error::Kind::Memory);
 }
@@ -48,16 +48,16 @@ std::size_t BufferedRead::add(const Element& element, std::span<RenderTarget> pl
 void BufferedRead::begin() {
   {
     const gl::BoundPixels bound(lease_.held.buffer, gl::BoundPixels::Way::Read);
-    if (!bound.allocate(device_.bound.errors, bytes_)) failForMemory(device_, bytes_);
+    if (!bound.allocate(device_.bound().errors, bytes_)) failForMemory(device_, bytes_);
     lease_.held.bytes = bytes_;
     for (const Block& block : blocks_) {
       readTexels(device_, *block.target, block.place.rect, block.transfer, atOffset(block.offset));
     }
   }
-  device_.bound.errors.setAside();
-  lease_.held.fence = gl::Fence::insert(device_.bound.deletions);
+  device_.bound().errors.setAside();
+  lease_.held.fence = gl::Fence::insert(device_.bound().deletions);
   if (!lease_.held.fence) {
-    static_cast<void>(device_.bound.errors.takeNew());
+    static_cast<void>(device_.bound().errors.takeNew());
     failForMemory(device_, bytes_);
   }
 }
@@ -65,10 +65,10 @@ void BufferedRead::begin() {
 void BufferedRead::take(std::size_t part, std::byte* elements) {
   wait();
   const gl::BoundPixels bound(lease_.held.buffer, gl::BoundPixels::Way::Read);
-  device_.bound.errors.setAside();
+  device_.bound().errors.setAside();
   const std::byte* texels = bound.map(bytes_);
   if (texels == nullptr) {
-    static_cast<void>(device_.bound.errors.takeNew());
+    static_cast<void>(device_.bound().errors.takeNew());
     failForMemory(device_, bytes_);
   }
   const std::size_t end = part + 1 < parts_.size() ? parts_[part + 1].firstBlock : blocks_.size();
@@ -102,10 +102,10 @@ void readToBuffer(GlDevice& device, RenderTarget& plane, const RegionLayout& reg
   const std::size_t texelBytes = transfer.texelBytes();
   const std::size_t needed =
       offset + static_cast<std::size_t>(assemble::elements(region.extent)) * texelBytes;
-  if (bound.size(device.bound.errors) < needed) {
+  if (bound.size(device.bound().errors) < needed) {
     throw Error(fmt::format(
         "fillBuffer: the buffer {} has {} bytes, but {} are needed; allocate it by glBufferData first",
-        buffer, bound.size(device.bound.errors), needed));
+        buffer, bound.size(device.bound().errors), needed));
   }
   forEachCopyRegion(region, [&](const CopyRegion& part) {
     readTexels(device, plane, part.rect, transfer,
@@ -120,7 +120,7 @@ void writeBuffered(GlDevice& device, const Element& element, std::span<RenderTar
   for (const RenderTarget& plane : planes) bytes += aligned(count * plane.texture.format().texelBytes());
   TransferBufferLease lease(device.transferBuffers);
   const gl::BoundPixels bound(lease.held.buffer, gl::BoundPixels::Way::Write);
-  gl::Errors& errors = device.bound.errors;
+  gl::Errors& errors = device.bound().errors;
   std::byte* const texels = bound.allocate(errors, bytes) ? bound.map(bytes) : nullptr;
   if (texels == nullptr) {
     static_cast<void>(errors.takeNew());

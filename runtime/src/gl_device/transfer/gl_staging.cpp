@@ -71,8 +71,8 @@ std::byte* GlStaging::room(std::size_t bytes) {
   wait();
   const DeviceScope scope(device_);
   const auto size = static_cast<std::int64_t>(bytes);
-  if (size > device_.capabilities.storageBytes || !buffer_.reserve(device_.bound, bytes)) {
-    device_.throwIfLost();
+  if (size > device_.capabilities.storageBytes || !buffer_.reserve(device_.bound(), bytes)) {
+    device_.context().throwIfLost();
     throw Error(
         fmt::format("'{}' has no memory for {} KiB of halos; divide the domain over more ranks, or exchange "
                     "them more often",
@@ -116,14 +116,14 @@ void GlStaging::flush() {
   writes.commit();
   boxes.clear();
   boxes_ = std::move(boxes);  // its memory
-  gl::finishMapped(device_.bound);
-  fence_ = gl::Fence::insert(device_.bound.deletions);
+  gl::finishMapped(device_.bound());
+  fence_ = gl::Fence::insert(device_.bound().deletions);
   if (!fence_) device_.throwPendingError();
 }
 
 /// Copies boxes of one plane.
 void GlStaging::copyBoxes(std::span<const PlaneBox> boxes) {
-  gl::BoundState& bound = device_.bound;
+  gl::BoundState& bound = device_.bound();
   const PlaneBox& first = boxes.front();
   const gl::Texture& texture = first.stream->planes[first.plane].texture;
   IntegerProgram& program = device_.stagingPrograms.of(way_, texture.format(), texture.isLayered());
@@ -180,13 +180,13 @@ IntegerProgram& StagingPrograms::of(Staging::Way way, const gl::Format& format, 
           {{}, assemble::stagingProgram(device_.computeProfile, writesTexels, format.name, isLayered)})
           .finish(device_, log);
   if (!program) {
-    device_.throwIfLost();
+    device_.context().throwIfLost();
     throw Error(
         fmt::format("the driver of '{}' refuses a program that copies halos:\n{}", device_.name(), log),
         Error::Kind::Compile);
   }
   known = std::make_unique<IntegerProgram>(std::move(program));
-  device_.bound.program(known->program().name());
+  device_.bound().program(known->program().name());
   known->program().setSampler("sk_texels", 0);
   return *known;
 }

@@ -139,7 +139,7 @@ gl::ColorMask maskOf(const RegionLayout& target, const Columns& columns, std::in
 
 bool mayMerge(GlDevice& device, const RegionLayout& source, const RegionLayout& target) {
   const std::int32_t step = target.stride[0];
-  return device.programs().stage() == assemble::Stage::Fragment && !device.bound.isLogged() &&
+  return device.programs().stage() == assemble::Stage::Fragment && !device.bound().isLogged() &&
          target.packed && target.strided && !target.linear && !target.numbered &&
          (step == 1 || step == 2 || step == 4) && !source.layered &&
          std::equal(source.extent.begin(), source.extent.end(), target.extent.begin());
@@ -165,7 +165,7 @@ void mergeTexels(GlDevice& device, const program::Element& element, std::span<Re
     const bool isOnly = x == merge.columns.texel && maskOf(target, merge.columns, merge.columns.last) == mask;
     if (isOnly) end = merge.columns.last + 1;  // no texel lacks any of its elements
     const Rect rect{x, merge.domain.origin[1], end - x, height};
-    const gl::ColorMaskScope masked(device.bound, mask);
+    const gl::ColorMaskScope masked(device.bound(), mask);
     runKernel(device, merge.kernel, operands, merge.domain, std::span(&rect, 1), targets);
   }
 }

@@ -54,17 +54,17 @@ void forEachRun(const RegionLayout& region, const CopyRegion& part, Visit&& visi
 void writeTexels(GlDevice& device, RenderTarget& plane, const Rect& rect, const std::byte* texels) {
   const std::size_t texelBytes = plane.texture.format().texelBytes();
   forEachLayerOf(plane, rect, texelBytes, [&](const Rect& part, std::int32_t layer, std::size_t above) {
-    plane.texture.write(device.bound, part, layer, texels + above);
+    plane.texture.write(device.bound(), part, layer, texels + above);
   });
 }
 
 void readTexels(GlDevice& device, RenderTarget& plane, const Rect& rect, const gl::Transfer& transfer,
                 std::byte* texels) {
-  gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound);
+  gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound());
   forEachLayerOf(
       plane, rect, transfer.texelBytes(), [&](const Rect& part, std::int32_t layer, std::size_t above) {
-        if (plane.texture.isLayered()) framebuffer.selectLayer(device.bound, layer);
-        framebuffer.read(device.bound, transfer, part.x, part.y, part.width, part.height, texels + above);
+        if (plane.texture.isLayered()) framebuffer.selectLayer(device.bound(), layer);
+        framebuffer.read(device.bound(), transfer, part.x, part.y, part.width, part.height, texels + above);
       });
 }
 
@@ -72,7 +72,7 @@ void readTexels(GlDevice& device, RenderTarget& plane, const Rect& rect, const g
 gl::Transfer readTransferOf(GlDevice& device, RenderTarget& plane) {
   const gl::Format& format = plane.texture.format();
   const bool readsTight = device.capabilities.api == gl::Api::Gl || format.tight == format.wide ||
-                          plane.framebufferIn(device.bound).readsOnEs(device.bound, format.tight);
+                          plane.framebufferIn(device.bound()).readsOnEs(device.bound(), format.tight);
   return readsTight ? format.tight : format.wide;
 }
 

@@ -19,10 +19,18 @@ using program::Element;
 
 constexpr std::size_t stagingBytes = std::size_t{4} << 20;
 
-std::byte* staging(GlDevice& device, std::size_t bytes) {
-  if (device.staging.size() < bytes) device.staging.resize(bytes);
-  return device.staging.data();
-}
+/// The staging buffer of one call.
+class StagingBuffer {
+ public:
+  explicit StagingBuffer(GlDevice& device) : scratch_(device.staging) {}
+  std::byte* room(std::size_t bytes) {
+    if (scratch_.values.size() < bytes) scratch_.values.resize(bytes);
+    return scratch_.values.data();
+  }
+
+ private:
+  KeptScratch<std::byte>::Lease scratch_;
+};
 
 /// Calls visit(band) for bands of rows, each of which fits the staging buffer unless it is a single row.
 template <class Visit>
@@ -37,7 +45,8 @@ void forEachBand(const CopyRegion& whole, std::size_t texelBytes, Visit&& visit)
 }
 
 /// Reads a rectangle as Format::tight, whatever the driver reads.
-void readTight(GlDevice& device, RenderTarget& plane, const CopyRegion& part, std::byte* texels) {
+void readTight(GlDevice& device, StagingBuffer& staging, RenderTarget& plane, const CopyRegion& part,
+               std::byte* texels) {
   const gl::Format& format = plane.texture.format();
   const gl::Transfer transfer = readTransferOf(device, plane);
   if (transfer == format.tight) {
@@ -45,7 +54,7 @@ void readTight(GlDevice& device, RenderTarget& plane, const CopyRegion& part, st
     return;
   }
   forEachBand({part.rect, 0}, transfer.texelBytes(), [&](const CopyRegion& band) {
-    std::byte* wide = staging(device, band.texels() * transfer.texelBytes());
+    std::byte* wide = staging.room(band.texels() * transfer.texelBytes());
     readTexels(device, plane, band.rect, transfer, wide);
     narrowTexels(format, wide, band.texels(),
                  texels + static_cast<std::size_t>(band.first) * format.texelBytes());
@@ -56,6 +65,7 @@ void readTight(GlDevice& device, RenderTarget& plane, const CopyRegion& part, st
 
 void upload(GlDevice& device, const Element& element, std::span<RenderTarget> planes,
             const RegionLayout& region, const std::byte* elements, WriteScope& writes) {
+  StagingBuffer staging(device);
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const PlaneOfElements plane{element, element.fields[i], planes[i].texture.format(), region};
     const std::size_t texelBytes = plane.format.texelBytes();
@@ -66,14 +76,14 @@ void upload(GlDevice& device, const Element& element, std::span<RenderTarget> pl
     forEachCopyRegion(region, writesByRows(device, region, texelBytes), [&](const CopyRegion& part) {
       if (part.first == CopyRegion::wholeRows) {
         std::vector<std::byte> rows(part.texels() * texelBytes);
-        readTight(device, planes[i], part, rows.data());
+        readTight(device, staging, planes[i], part, rows.data());
         plane.pack(part, elements, rows.data());
         write(part, rows.data());
       } else if (areTexels(element)) {
         write(part, elements + static_cast<std::size_t>(part.first) * element.size);
       } else {
         forEachBand(part, texelBytes, [&](const CopyRegion& band) {
-          std::byte* texels = staging(device, band.texels() * texelBytes);
+          std::byte* texels = staging.room(band.texels() * texelBytes);
           plane.pack(band, elements, texels);
           write(band, texels);
         });
@@ -84,20 +94,22 @@ void upload(GlDevice& device, const Element& element, std::span<RenderTarget> pl
 
 void download(GlDevice& device, const Element& element, std::span<RenderTarget> planes,
               const RegionLayout& region, std::byte* elements) {
+  StagingBuffer staging(device);
   std::vector<std::byte> texels;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const PlaneOfElements plane{element, element.fields[i], planes[i].texture.format(), region};
     const std::size_t texelBytes = plane.format.texelBytes();
     const auto readPart = [&](const CopyRegion& part) {
       texels.resize(part.texels() * texelBytes);
-      readTight(device, planes[i], part, texels.data());
+      readTight(device, staging, planes[i], part, texels.data());
       plane.unpack(part, texels.data(), elements);
     };
     forEachCopyRegion(region, readsByRows(device, region, texelBytes), [&](const CopyRegion& part) {
       if (part.first == CopyRegion::wholeRows) {
         readPart(part);
       } else if (areTexels(element)) {
-        readTight(device, planes[i], part, elements + static_cast<std::size_t>(part.first) * element.size);
+        readTight(device, staging, planes[i], part,
+                  elements + static_cast<std::size_t>(part.first) * element.size);
       } else {
         forEachBand(part, texelBytes, readPart);
       }

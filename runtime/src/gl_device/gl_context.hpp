@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+//
+// The context of a GL device, with what is known of its state: what is bound, which errors the driver has reported, and which
+// objects wait for their deletion.
+#pragma once
+
+#include <cassert>
+#include <cstdint>
+#include <optional>
+
+#include "gl/bound_state.hpp"
+#include "gl/capabilities.hpp"
+#include "gl/context.hpp"
+#include "gl/labels.hpp"
+#include "gl/saved_state.hpp"
+
+namespace sk {
+
+/// Invariants: GL is called only while a Scope is open, and there is one at a time. While none is open, a context that the
+/// application draws in, too, has the application's state. All owners of GL objects are destroyed before the context.
+class GlContext {
+ public:
+  /// `isShared`: the application draws in the device's own context. The capabilities must outlive this object.
+  GlContext(gl::Context&& context, const gl::Capabilities& capabilities, bool isShared)
+      : context_(std::move(context)), capabilities_(capabilities), isShared_(isShared) {}
+  /// Deletes the objects whose owners have been destroyed. If the context cannot be made current, they are deleted with it.
+  ~GlContext();
+  GlContext(const GlContext&) = delete;
+  GlContext& operator=(const GlContext&) = delete;
+
+  const gl::Capabilities& capabilities() const { return capabilities_; }
+  gl::BoundState& bound() { return bound_; }
+  gl::Labels& labels() { return labels_; }
+
+  /// Whether the application also draws in the context, so that each scope must restore its state.
+  bool isGuest() const { return context_.isAdopted() || isShared_; }
+  /// The context, lost or not.
+  const gl::Context& any() const { return context_; }
+  /// The context. Throws sk::Error if it is known to be lost.
+  const gl::Context& living() const {
+    if (bound_.errors.isLost()) failAsLost();
+    return context_;
+  }
+  /// Throws sk::Error if the context is lost. Queries the driver: call this after a failure that a lost
+  /// context would explain.
+  void throwIfLost();
+
+  /// The number of the current period. A period ends whenever the driver's errors are queried: an error
+  /// breaks the streams that were written in it.
+  std::int64_t period() const { return period_; }
+  /// Ends the period. Returns the driver's error if it concerns the streams that were written in it, else GL_NO_ERROR.
+  GLenum endPeriod();
+
+  class Scope;
+
+ private:
+  [[noreturn]] void failAsLost() const;
+
+  gl::Context context_;
+  const gl::Capabilities& capabilities_;
+  const bool isShared_;
+  gl::BoundState bound_;
+  gl::Labels labels_;
+  std::int64_t period_ = 1;
+  bool isInScope_ = false;
+};
+
+/// Makes the context current and ready for passes as long as this object lives. There is one scope at a time: another one
+/// would take the runtime's state for the application's.
+class GlContext::Scope {
+ public:
+  explicit Scope(GlContext& context) : turn_(context.isInScope_), current_(context.living()) {
+    if (context.isGuest()) {
+      context.bound_.errors.skipApplications();
+      ended_.errors = &context.bound_.errors;
+    }
+    context.bound_.deleteQueued();
+    if (context.isGuest()) saved_.emplace(context.capabilities_, context.bound_);
+  }
+
+ private:
+  struct Turn {
+    explicit Turn(bool& isInScope) : isTaken(isInScope) {
+      assert(!isTaken);
+      isTaken = true;
+    }
+    ~Turn() { isTaken = false; }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+    bool& isTaken;
+  };
+  /// Keeps the device's errors from the application.
+  struct Ended {
+    Ended() = default;
+    ~Ended() {
+      if (errors != nullptr) errors->setAside();
+    }
+    Ended(const Ended&) = delete;
+    Ended& operator=(const Ended&) = delete;
+
+    gl::Errors* errors = nullptr;
+  };
+
+  const Turn turn_;
+  gl::CurrentScope current_;
+  Ended ended_;
+  std::optional<gl::SavedState> saved_;
+};
+
+}  // namespace sk

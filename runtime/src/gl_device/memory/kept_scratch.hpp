@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// Scratch of calls, whose memory is kept for the next call, so that a repeated call allocates none.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+namespace sk {
+
+template <class T>
+class KeptScratch {
+ public:
+  /// The scratch of one call: it owns the memory as long as this object lives, and another lease meanwhile gets memory of its own.
+  class Lease {
+   public:
+    explicit Lease(KeptScratch& kept) : values(std::move(kept.values_)), kept_(kept) {
+      kept_.values_.clear();
+    }
+    ~Lease() {
+      if (values.capacity() > kept_.values_.capacity()) values.swap(kept_.values_);
+    }
+    Lease(const Lease&) = delete;
+    Lease& operator=(const Lease&) = delete;
+
+    std::vector<T> values;  ///< what an earlier call has left there
+
+   private:
+    KeptScratch& kept_;
+  };
+
+ private:
+  std::vector<T> values_;
+};
+
+}  // namespace sk
