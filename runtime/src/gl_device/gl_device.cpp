@@ -24,7 +24,6 @@
 #include "probe/copy_bandwidth.hpp"
 #include "probe/probe.hpp"
 #include "sk/error.hpp"
-#include "support/host_memory.hpp"
 
 namespace sk {
 
@@ -78,8 +77,6 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       scanPatience(choices.scanPatience),
       barrier(barrierOf(capabilities, choices)),
       context_(std::move(opened.context), capabilities, choices.sharesContext),
-      framebuffers(bound()),
-      pool(bound(), framebuffers),
       appendPrograms(*this),
       sortPrograms(*this),
       stagingPrograms(*this),
@@ -111,7 +108,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
         .exactSums = *choices.barrier != Barrier::None, .barrier = *choices.barrier, .asWritten = false};
   }
   const gl::CurrentScope current(context_.any());
-  limits.memory = memoryInfo().whole;
+  limits.memory = memory_.info().whole;
   vertexArray = gl::VertexArray(bound().deletions);
   if (!context_.isGuest()) gl::setPassState(capabilities);
   if (capabilities.hasLabels && capabilities.isDebugged) context_.labels().turnOn();
@@ -126,9 +123,10 @@ GlDevice::~GlDevice() {
     current.reset();  // it is current on another thread, or the application has destroyed it
   }
   {
-    const std::lock_guard lock(pendingReads->mutex);
-    while (!pendingReads->list.empty()) {
-      PendingRead& read = *pendingReads->list.back();
+    PendingReads& pending = *memory_.pendingReads();
+    const std::lock_guard lock(pending.mutex);
+    while (!pending.list.empty()) {
+      PendingRead& read = *pending.list.back();
       current ? read.land() : read.abandon();
     }
   }
@@ -381,57 +379,10 @@ void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argu
   }
 }
 
-std::vector<RenderTarget> GlDevice::acquirePlanes(const program::Element& element,
-                                                  const assemble::TextureShape& shape,
-                                                  std::string_view whatFor) {
-  PlanesLease lease(*this);
-  lease.add(element, shape, whatFor);
-  return std::exchange(lease.planes, {});
-}
-
-void PlanesLease::add(const program::Element& element, const assemble::TextureShape& shape,
-                      std::string_view whatFor) {
-  planes.reserve(planes.size() + element.fields.size());
-  for (const program::Field& field : element.fields) {
-    const gl::Format& format = gl::formatOf(field);
-    RenderTarget plane = device_.pool.acquire(format, shape);
-    if (!plane) device_.failForPlanes(element, format, shape, whatFor);
-    planes.push_back(std::move(plane));
-    device_.context().labels().texture(planes.back().texture.name(), whatFor);
-  }
-  device_.countBytes();
-}
-
-void GlDevice::failForPlanes(const program::Element& element, const gl::Format& format,
-                             const assemble::TextureShape& shape, std::string_view whatFor) {
-  context_.throwIfLost();
-  const std::int64_t texels = std::int64_t{shape.width} * shape.height * std::max(shape.layers, 1);
-  throw Error(
-      fmt::format("'{}' has no memory for {}: {} texture(s) of {} x {}{} texels, one of them of {} MiB",
-                  capabilities.renderer, whatFor, element.fields.size(), shape.width, shape.height,
-                  shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
-                  (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20),
-      Error::Kind::Memory);
-}
-
-void GlDevice::releasePlanes(std::vector<RenderTarget>& planes) noexcept {
-  for (RenderTarget& plane : planes) {
-    pool.release(std::move(plane));
-  }
-  planes.clear();
-  countBytes();
-}
-
 // An adopted context is either current already, or cannot be made current.
-gl::MemoryInfo GlDevice::memoryInfo() const {
-  if (!capabilities.isSoftware) return gl::readMemoryInfo();
-  const HostMemory host = hostMemory();
-  return {host.whole, host.available};
-}
-
 std::optional<std::int64_t> GlDevice::availableMemory() {
   const gl::CurrentScope current(context_.any());
-  return memoryInfo().available;
+  return memory_.info().available;
 }
 
 void GlDevice::makeCurrent() {

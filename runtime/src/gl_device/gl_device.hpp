@@ -18,15 +18,13 @@
 #include "device/device_state.hpp"
 #include "device/unload_watch.hpp"
 #include "gl/buffer.hpp"
-#include "gl/memory_info.hpp"
 #include "gl/open_context.hpp"
 #include "gl/samplers.hpp"
 #include "gl/vertex_array.hpp"
 #include "gl_device/append/append_programs.hpp"
 #include "gl_device/gl_context.hpp"
-#include "gl_device/memory/framebuffer_cache.hpp"
+#include "gl_device/gl_memory.hpp"
 #include "gl_device/memory/kept_scratch.hpp"
-#include "gl_device/memory/render_target.hpp"
 #include "gl_device/program/made_kernels.hpp"
 #include "gl_device/program/program_binaries.hpp"
 #include "gl_device/program/program_cache.hpp"
@@ -34,7 +32,6 @@
 #include "gl_device/sort/device_sort.hpp"
 #include "gl_device/transfer/buffered_transfer.hpp"
 #include "gl_device/transfer/gl_staging.hpp"
-#include "gl_device/transfer/transfer_buffers.hpp"
 #include "probe/target_choice.hpp"
 #include "support/cache_folder.hpp"
 
@@ -104,20 +101,10 @@ class GlDevice final : public DeviceState {
   std::optional<std::int64_t> reorder(const Reordering& reordering) override;
   std::unique_ptr<Staging> makeStaging(Staging::Way way) override;
 
-  /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
-  /// their purpose `whatFor`, if memory is exhausted.
-  std::vector<RenderTarget> acquirePlanes(const program::Element& element,
-                                          const assemble::TextureShape& shape, std::string_view whatFor);
-  void releasePlanes(std::vector<RenderTarget>& planes) noexcept;
-  [[noreturn]] void failForPlanes(const program::Element& element, const gl::Format& format,
-                                  const assemble::TextureShape& shape, std::string_view whatFor);
-  void countBytes() const noexcept {
-    if (trace) trace->countBytes(pool.bytesUsed(), pool.bytesKept());
-  }
-
   GlContext& context() { return context_; }
   /// What is bound in the context.
   gl::BoundState& bound() { return context_.bound(); }
+  GlMemory& memory() { return memory_; }
 
   assemble::TextureLimits textureLimits() const {
     return {limits.textureSize, limits.textureLayers, capabilities.hasCompute && traits.narrowTextures};
@@ -163,14 +150,10 @@ class GlDevice final : public DeviceState {
   Barrier barrier;  ///< of programs; arithmetic() tests whether it is effective
 
  private:
-  /// The context is current.
-  gl::MemoryInfo memoryInfo() const;
-
   GlContext context_;
+  GlMemory memory_{context_, trace};
 
  public:
-  FramebufferCache framebuffers;
-  TexturePool pool;
   AppendPrograms appendPrograms;
   SortPrograms sortPrograms;
   StagingPrograms stagingPrograms;
@@ -185,12 +168,9 @@ class GlDevice final : public DeviceState {
   gl::StorageBuffer tileResults{gl::StorageBuffer::Use::Scratch};  ///< of scans in one pass
   gl::StorageBuffer sortedWords{gl::StorageBuffer::Use::Scratch};  ///< of sorts, between two digits
   gl::VertexArray vertexArray;
-  const std::shared_ptr<PendingReads> pendingReads = std::make_shared<PendingReads>();
-  TransferBuffers transferBuffers{bound().deletions};
   const CacheFolder cache;
   ProgramBinaries binaries;
   std::unique_ptr<PassTrace> passes;  ///< null if there is no trace
-  KeptScratch<std::byte> staging;  ///< of transfers
   KeptScratch<Operand> operands;  ///< of kernels
   /// Something was drawn or copied since the last dispatch: the next one may overwrite what that still reads.
   bool hasDrawn = false;
@@ -217,32 +197,14 @@ class DeviceScope {
  public:
   explicit DeviceScope(GlDevice& device) : scope_(device.context()) {
     if (device.context().isGuest()) device.hasDrawn = true;  // by the application
-    device.pool.trim();
+    device.memory().trim();
     device.tileResults.trim();
     device.sortedWords.trim();
     device.groupStates.trim();
-    device.transferBuffers.trim();
   }
 
  private:
   const GlContext::Scope scope_;
-};
-
-/// Holds planes from a device's pool and returns them when it is destroyed.
-class PlanesLease {
- public:
-  explicit PlanesLease(GlDevice& device) : device_(device) {}
-  ~PlanesLease() { device_.releasePlanes(planes); }
-  PlanesLease(const PlanesLease&) = delete;
-  PlanesLease& operator=(const PlanesLease&) = delete;
-
-  /// Adds planes, like GlDevice::acquirePlanes().
-  void add(const program::Element& element, const assemble::TextureShape& shape, std::string_view whatFor);
-
-  std::vector<RenderTarget> planes;
-
- private:
-  GlDevice& device_;
 };
 
 }  // namespace sk

@@ -38,9 +38,9 @@ GlStream::~GlStream() {
     return;
   }
   if (total_) {
-    owner().pool.release(std::move(total_));
+    owner().memory().pool().release(std::move(total_));
   }
-  owner().releasePlanes(planes);
+  owner().memory().release(planes);
 }
 
 std::vector<RenderTarget> GlStream::acquirePlanesFor(const Layout& planned) {
@@ -49,8 +49,8 @@ std::vector<RenderTarget> GlStream::acquirePlanesFor(const Layout& planned) {
   }
   const program::Element& texel =
       planned.whole.packed ? assemble::fourOf(held().fields.front().scalar) : held();
-  return owner().acquirePlanes(texel, planned.texture,
-                               fmt::format("a stream of {} of shape {}", element->name, toString(shape)));
+  return owner().memory().acquire(texel, planned.texture,
+                                  fmt::format("a stream of {} of shape {}", element->name, toString(shape)));
 }
 
 void GlStream::unpack() {
@@ -58,7 +58,7 @@ void GlStream::unpack() {
     return;
   }
   Layout wanted = layoutOf(shape, owner().textureLimits());
-  PlanesLease lease(owner());
+  PlanesLease lease(owner().memory());
   lease.planes = acquirePlanesFor(wanted);
   copyRegion(owner(), held(), planes, layout.whole, lease.planes, wanted.whole);
   std::swap(planes, lease.planes);
@@ -74,7 +74,7 @@ void GlStream::replaceElements(std::vector<RenderTarget>& elements, Layout&& lis
   std::swap(planes, elements);
   layout = std::move(list);
   if (total_) {
-    owner().pool.release(std::move(total_));
+    owner().memory().pool().release(std::move(total_));
     total_ = {};
   }
   if (total != nullptr) {
@@ -98,7 +98,7 @@ void GlStream::settle() {
   const std::int32_t count = isLost() ? 0 : readTotal(owner(), total_);
   layout = withSize(layout, count);
   shape = Shape(count);
-  owner().pool.release(std::move(total_));
+  owner().memory().pool().release(std::move(total_));
   total_ = {};
 }
 
@@ -226,12 +226,12 @@ void GlStream::fill(const StreamRegion& region, const std::byte* value) {
   for (std::size_t at = held().size; at < what.element->size; at += held().size) {
     std::copy_n(texel.begin(), held().size, texel.begin() + static_cast<std::ptrdiff_t>(at));
   }
-  PlanesLease one(owner());
+  PlanesLease one(owner().memory());
   const RegionLayout single{.extent = {1, 1, 1, 1}};
   {
-    const UnreservedScope unreserved(owner().pool);  // a loop keeps the texel
+    const UnreservedScope unreserved(owner().memory().pool());  // a loop keeps the texel
     const gl::UnloggedScope unlogged(owner().bound());
-    one.planes = owner().acquirePlanes(*what.element, {1, 1}, "the value of fill()");
+    one.add(*what.element, {1, 1}, "the value of fill()");
     WriteScope ofNoStream;
     upload(owner(), *what.element, one.planes, single, texel.data(), ofNoStream);
   }
@@ -244,7 +244,7 @@ void GlStream::fill(const StreamRegion& region, const std::byte* value) {
     RenderTarget* const targets[] = {&planes[plane]};
     runKernel(owner(), copyKernel(what.element->fields[plane]), operands, what.place, rects, targets);
   }
-  owner().pool.keep(one.planes);
+  owner().memory().pool().keep(one.planes);
   writes.commit();
 }
 
@@ -270,7 +270,7 @@ bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   const RegionLayout sourcePlace = regionLayoutOf(from, source.layout);
   isMerged ? prepareMerge(owner(), held(), sourcePlace, place)
            : prepareCopy(owner(), held(), sourcePlace, place);
-  PlanesLease before(owner());
+  PlanesLease before(owner().memory());
   if (&source == this) {  // the regions may overlap: reads from a copy of the stream
     before.planes = acquirePlanesFor(layout);
     copyRegion(owner(), held(), planes, layout.whole, before.planes, layout.whole);

@@ -53,10 +53,10 @@ double measureDevice(GlDevice& device) {
   const Layout layout = layoutOf({rows, columns}, device.textureLimits());
   const assemble::Stage stage = device.stageOf(copyKernel(element.fields[0]), KernelClass::Elements, {});
   const DeviceScope scope(device);
-  PlanesLease from(device), to(device);
+  PlanesLease from(device.memory()), to(device.memory());
   try {
-    from.planes = device.acquirePlanes(element, layout.texture, "measuring how fast the device copies");
-    to.planes = device.acquirePlanes(element, layout.texture, "measuring how fast the device copies");
+    from.add(element, layout.texture, "measuring how fast the device copies");
+    to.add(element, layout.texture, "measuring how fast the device copies");
   } catch (const Error&) {
     return 0;
   }

@@ -36,7 +36,7 @@ using program::Role;
 
 /// The list of one append output.
 struct List {
-  explicit List(GlDevice& device) : planes(device), total(device) {}
+  explicit List(GlDevice& device) : planes(device.memory()), total(device.memory()) {}
 
   std::size_t appendOutput = 0;
   Layout layout;  ///< of `planes`
@@ -53,7 +53,7 @@ class AppendCall {
         arguments_(call.arguments),
         specs_(call.specs),
         layout_(layoutOf(call.domain, device.textureLimits())),
-        counts_(device) {
+        counts_(device.memory()) {
     unpackWritten(call);
     operands_ = appendOperands(call);
   }

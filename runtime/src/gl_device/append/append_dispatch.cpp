@@ -36,7 +36,7 @@ using program::Role;
 
 /// The list of a variable output, or of the records of a scatter output.
 struct GroupList {
-  explicit GroupList(GlDevice& device) : planes(device), total(device) {}
+  explicit GroupList(GlDevice& device) : planes(device.memory()), total(device.memory()) {}
 
   std::size_t parameter = 0;
   bool isOfRecords = false;
@@ -49,7 +49,7 @@ struct GroupList {
 
 /// A scatter output.
 struct GroupTarget {
-  explicit GroupTarget(GlDevice& device) : copy(device) {}
+  explicit GroupTarget(GlDevice& device) : copy(device.memory()) {}
 
   std::size_t parameter = 0;
   std::int64_t firstOwner = -1;  ///< in the buffer of states; -1: there are no owners

@@ -26,11 +26,11 @@ HistoPyramid::HistoPyramid(GlDevice& device, RenderTarget& counts, const Layout&
     : device_(device),
       plan_(assemble::planPyramid(static_cast<std::int32_t>(assemble::elements(layout.whole.extent)),
                                   device.textureLimits())),
-      odd_(device),
-      even_(device) {
-  odd_.planes = device.acquirePlanes(sums(), plan_.odd, whatForSums);
+      odd_(device.memory()),
+      even_(device.memory()) {
+  odd_.add(sums(), plan_.odd, whatForSums);
   if (plan_.even.height > 0) {
-    even_.planes = device.acquirePlanes(sums(), plan_.even, whatForSums);
+    even_.add(sums(), plan_.even, whatForSums);
   }
   draw(plan_.levels.front(), counts, true, 0);
   for (std::size_t level = 2; level <= plan_.levels.size(); ++level) {
@@ -65,13 +65,13 @@ void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below
 }
 
 std::int32_t HistoPyramid::total() {
-  PlanesLease lease(device_);
+  PlanesLease lease(device_.memory());
   lease.planes = totalTexture();
   return readTotal(device_, lease.planes.front());
 }
 
 std::vector<RenderTarget> HistoPyramid::totalTexture() {
-  std::vector<RenderTarget> total = device_.acquirePlanes(sums(), {1, 1}, whatForSums);
+  std::vector<RenderTarget> total = device_.memory().acquire(sums(), {1, 1}, whatForSums);
   gl::Framebuffer& from = ofLevel(plan_.levels.size()).framebufferIn(device_.bound());
   const GLuint to = total.front().framebufferIn(device_.bound()).name();
   std::int32_t row = plan_.levels.back().row;

@@ -23,7 +23,7 @@ ListedScatter::ListedScatter(GlDevice& device, const program::Parameter& scatter
       length_(length),
       count_(count),
       sort_(device, length, assemble::isPair(scatter) ? WordSort::Of::Pairs : WordSort::Of::KeysAndPlaces),
-      values_(device) {
+      values_(device.memory()) {
   const bool isPair = assemble::isPair(scatter);
   if (!isPair) {
     const Layout layout = listLayout(length, device.textureLimits());

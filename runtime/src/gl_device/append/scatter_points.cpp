@@ -44,9 +44,9 @@ Scatterer::Scatterer(GlDevice& device, const program::Parameter& appendOutput, s
       regionLayout_(regionLayout),
       planes_(planes),
       rects_(assemble::drawnTexels(regionLayout)),
-      limbs_(device),
-      upper_(device),
-      lower_(device) {
+      limbs_(device.memory()),
+      upper_(device.memory()),
+      lower_(device.memory()) {
   const std::span<const PointStep> steps = assemble::pointSteps(appendOutput);
   for (const PointStep step : steps) {
     device.appendPrograms.points(appendOutput, step, {listLayout.layered, regionLayout.layered});

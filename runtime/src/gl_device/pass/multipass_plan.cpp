@@ -76,7 +76,8 @@ class PlanExecution {
  public:
   PlanExecution(GlDevice& device, const Plan& plan, const PlannedCall& call) : device_(device), call_(call) {
     for (const program::Element* element : plan.temporaries) {
-      temporaries_.emplace_back(device).add(*element, call.layout.texture, "a value saved between passes");
+      temporaries_.emplace_back(device.memory())
+          .add(*element, call.layout.texture, "a value saved between passes");
     }
     for (const Bundle& bundle : plan.bundles) {
       bundles_.push_back(copyBundle(device, bundle, call.operands));

@@ -74,7 +74,7 @@ class OutputTargets {
   void addNewPlanes(std::size_t output);
   /// The new planes of an output that is not drawn in place.
   struct NewPlanes {
-    explicit NewPlanes(GlDevice& device) : drawn(device) {}
+    explicit NewPlanes(GlDevice& device) : drawn(device.memory()) {}
 
     PlanesLease drawn;
     Layout layout;  ///< of the stream after Placement::Swap

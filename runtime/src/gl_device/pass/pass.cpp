@@ -83,19 +83,8 @@ DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
   if (planes.size() == 1) {
     return targetOf(device, first);
   }
-  std::array<GLuint, gl::maxDrawBuffers> names{};
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    names[i] = planes[i]->texture.name();
-  }
-  const bool isLayered = first.texture.isLayered();
-  gl::Framebuffer* const framebuffer =
-      device.framebuffers.framebufferOf(std::span(names).first(planes.size()), isLayered);
-  if (framebuffer == nullptr) {
-    device.context().throwIfLost();
-    throw Error("the driver cannot draw to these textures at once; write fewer outputs in one kernel",
-                Error::Kind::Device);
-  }
-  return {framebuffer, isLayered ? first.texture.shape().height : 0};
+  return {&device.memory().framebufferOf(planes),
+          first.texture.isLayered() ? first.texture.shape().height : 0};
 }
 
 void bindImages(GlDevice& device, std::span<RenderTarget* const> planes) {

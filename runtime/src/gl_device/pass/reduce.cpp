@@ -94,7 +94,7 @@ void reduceToValues(GlDevice& device, const ResolvedReduction& call) {
   const Kernel& fold = call.reduction.fold;
   const RegionLayout layout = assemble::valueLayout();
   if (gathersInGroups(device, call)) {
-    PlanesLease value(device);
+    PlanesLease value(device.memory());
     takeAccumulators(fold, {1, 1}, "the result of a reduction", value);
     foldInGroups(device, call, value.planes);
     const TraceScope traced(device.trace.get(), "transfer", "read value");
@@ -106,7 +106,7 @@ void reduceToValues(GlDevice& device, const ResolvedReduction& call) {
     const TraceScope traced(device.trace.get(), "transfer", "read value");
     return takeValues(device, fold, call.values);
   }
-  PlanesLease value(device);
+  PlanesLease value(device.memory());
   takeAccumulators(fold, {1, 1}, "the result of a reduction", value);
   passes.run(layout, pointersTo(value.planes), [] {});
   const TraceScope traced(device.trace.get(), "transfer", "read value");

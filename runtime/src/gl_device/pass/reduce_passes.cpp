@@ -98,7 +98,7 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
   if (assemble::elements(elements_.extent) == 0) return writeIdentities(result, targets, begin);
   assemble::ReduceLimits limits = limitsOfPasses();
   limits.toBuffer = targets.empty();
-  PlanesLease partials(device_);
+  PlanesLease partials(device_.memory());
   const assemble::Division division{.blocks = blocks_,
                                     .byIndex = foldsByIndex(),
                                     .byTexel = byTexel_,
@@ -115,7 +115,7 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
       draw(pass, {partials.planes}, targets);
       continue;
     }
-    PlanesLease next(device_);
+    PlanesLease next(device_.memory());
     takeAccumulators(reduction_.fold, pass.texture, "partial results", next);
     draw(pass, {partials.planes}, pointersTo(next.planes));
     std::swap(partials.planes, next.planes);
@@ -148,11 +148,11 @@ void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* cons
   for (const ReducePass& pass : plan.folds) {
     const std::span<RenderTarget> source =
         levels.empty() ? std::span<RenderTarget>() : std::span<RenderTarget>(levels.back().planes);
-    PlanesLease& next = levels.emplace_back(device_);
+    PlanesLease& next = levels.emplace_back(device_.memory());
     takeAccumulators(reduction_.fold, pass.texture, "partial results", next);
     draw(pass, {source}, pointersTo(next.planes));
   }
-  PlanesLease carries(device_);
+  PlanesLease carries(device_.memory());
   for (const ReducePass& pass : plan.scans) {
     if (pass.toResult) {
       prepare(pass, targets);
@@ -161,7 +161,7 @@ void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* cons
       draw(pass, {{}, carries.planes}, targets);
       continue;
     }
-    PlanesLease next(device_);
+    PlanesLease next(device_.memory());
     takeAccumulators(reduction_.fold, pass.texture, "partial results", next);
     draw(pass, {levels.back().planes, carries.planes}, pointersTo(next.planes));
     std::swap(carries.planes, next.planes);

@@ -151,9 +151,9 @@ class ReplayedLoop final : public LoopRunner {
     iteration.hasDrawnBefore = device_.hasDrawn;
     device_.bound().logTo(&iteration.log);
     reserve_.ofEarlier = reserve_.idle.size();
-    device_.pool.use(&reserve_);
+    device_.memory().pool().use(&reserve_);
     const auto end = [&] {
-      device_.pool.use(nullptr);
+      device_.memory().pool().use(nullptr);
       device_.bound().logTo(nullptr);
       iteration.passes = *std::exchange(device_.passCount, counted);
       count(iteration.passes);
@@ -206,7 +206,7 @@ class ReplayedLoop final : public LoopRunner {
     for (Iteration& iteration : cycle_) device_.bound().drop(iteration.log);
     cycle_.clear();
     isClosed_ = false;
-    device_.pool.release(reserve_);
+    device_.memory().pool().release(reserve_);
   }
 
   /// The iteration of the cycle that comes next, if there is one. A DeviceScope must be open, which has made known

@@ -94,7 +94,7 @@ void ReducePasses::foldRows(const RowsState& rows, const RegionLayout& result,
   if (assemble::elements(elements_.extent) == 0) return writeIdentities(result, targets, begin);
   const bool mayGroupRows =
       device_.programs().stage() == assemble::Stage::Compute && assemble::mayGroupRows(reduction_);
-  PlanesLease partials(device_);
+  PlanesLease partials(device_.memory());
   RegionLayout source;
   for (const RowsState::Level& level : rows.levels()) {
     const bool isFirst = &level == &rows.levels().front();
@@ -118,7 +118,7 @@ void ReducePasses::foldRows(const RowsState& rows, const RegionLayout& result,
       draw(pass, {.partials = partials.planes, .tables = tables}, targets);
       continue;
     }
-    PlanesLease next(device_);
+    PlanesLease next(device_.memory());
     takeAccumulators(reduction_.fold, pass.texture, "partial results", next);
     draw(pass, {.partials = partials.planes, .tables = tables}, pointersTo(next.planes));
     std::swap(partials.planes, next.planes);
@@ -138,11 +138,11 @@ void ReducePasses::scanRows(const RowsState& rows, const RegionLayout& result,
     layouts.push_back(writePartials(pass, levels[i].pieces.count(), device_.textureLimits()));
     const std::span<RenderTarget> source =
         partials.empty() ? std::span<RenderTarget>() : std::span<RenderTarget>(partials.back().planes);
-    PlanesLease& next = partials.emplace_back(device_);
+    PlanesLease& next = partials.emplace_back(device_.memory());
     takeAccumulators(reduction_.fold, pass.texture, "partial results", next);
     draw(pass, {.partials = source, .tables = tables}, pointersTo(next.planes));
   }
-  PlanesLease carries(device_);
+  PlanesLease carries(device_.memory());
   for (std::size_t i = levels.size(); i-- > 0;) {
     ReducePass pass = passOverRows(layouts[i], i == 0);
     const std::array<Operand, 1> tables = {tableOperand(levels[i].places)};
@@ -161,7 +161,7 @@ void ReducePasses::scanRows(const RowsState& rows, const RegionLayout& result,
       draw(pass, {.carries = carries.planes, .tables = tables}, targets);
       continue;
     }
-    PlanesLease next(device_);
+    PlanesLease next(device_.memory());
     writePartials(pass, levels[i - 1].pieces.count(), device_.textureLimits());
     takeAccumulators(reduction_.fold, pass.texture, "partial results", next);
     draw(pass, {.partials = partials.back().planes, .carries = carries.planes, .tables = tables},

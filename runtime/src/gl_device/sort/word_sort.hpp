@@ -25,8 +25,8 @@ class WordTexture {
   WordTexture(GlDevice& device, std::int32_t count, const program::Element& element = sortWords())
       : texture_(*assemble::linearTexture(count, device.textureLimits())),
         shift_(assemble::linearLayout(count, texture_).shift),
-        lease_(device) {
-    lease_.planes = device.acquirePlanes(element, texture_, "a sort");
+        lease_(device.memory()) {
+    lease_.add(element, texture_, "a sort");
   }
 
   std::int32_t shift() const { return shift_; }

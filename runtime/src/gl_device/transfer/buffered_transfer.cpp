@@ -28,7 +28,7 @@ std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1) / alignm
 
 }  // namespace
 
-BufferedRead::BufferedRead(GlDevice& device) : device_(device), lease_(device.transferBuffers) {}
+BufferedRead::BufferedRead(GlDevice& device) : device_(device), lease_(device.memory().transferBuffers()) {}
 
 std::size_t BufferedRead::add(const Element& element, std::span<RenderTarget> planes,
                               const RegionLayout& region) {
@@ -118,7 +118,7 @@ void writeBuffered(GlDevice& device, const Element& element, std::span<RenderTar
   const auto count = static_cast<std::size_t>(assemble::elements(region.extent));
   std::size_t bytes = 0;
   for (const RenderTarget& plane : planes) bytes += aligned(count * plane.texture.format().texelBytes());
-  TransferBufferLease lease(device.transferBuffers);
+  TransferBufferLease lease(device.memory().transferBuffers());
   const gl::BoundPixels bound(lease.held.buffer, gl::BoundPixels::Way::Write);
   gl::Errors& errors = device.bound().errors;
   std::byte* const texels = bound.allocate(errors, bytes) ? bound.map(bytes) : nullptr;

@@ -22,7 +22,7 @@ std::unique_ptr<assemble::HeldElement> heldOf(const StreamState& stream) {
 }  // namespace
 
 PendingRead::PendingRead(GlDevice& device, GlStream& stream, const StreamRegion& region)
-    : all_(device.pendingReads),
+    : all_(device.memory().pendingReads()),
       device_(&device),
       element_(*stream.element),
       held_(heldOf(stream)),

@@ -22,7 +22,7 @@ constexpr std::size_t stagingBytes = std::size_t{4} << 20;
 /// The staging buffer of one call.
 class StagingBuffer {
  public:
-  explicit StagingBuffer(GlDevice& device) : scratch_(device.staging) {}
+  explicit StagingBuffer(GlDevice& device) : scratch_(device.memory().staging()) {}
   std::byte* room(std::size_t bytes) {
     if (scratch_.values.size() < bytes) scratch_.values.resize(bytes);
     return scratch_.values.data();
