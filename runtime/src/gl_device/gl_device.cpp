@@ -109,7 +109,6 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
   }
   const gl::CurrentScope current(context_.any());
   limits.memory = memory_.info().whole;
-  vertexArray = gl::VertexArray(bound().deletions);
   if (!context_.isGuest()) gl::setPassState(capabilities);
   if (capabilities.hasLabels && capabilities.isDebugged) context_.labels().turnOn();
   if (capabilities.isSoftware) keepHeap();
@@ -130,7 +129,7 @@ GlDevice::~GlDevice() {
       current ? read.land() : read.abandon();
     }
   }
-  if (passes && current) passes->complete();
+  if (passes_.trace() != nullptr && current) passes_.trace()->complete();
   for (LoopState* loop : loops) loop->leave();
   while (firstStream() != nullptr) {
     auto& stream = static_cast<GlStream&>(*firstStream());
@@ -267,7 +266,7 @@ void GlDevice::startTrace(const std::string& file) {
   started->setBandwidth(copyBandwidth(*this));
   trace = std::move(started);
   const DeviceScope scope(*this);
-  passes = std::make_unique<PassTrace>(*this, *trace);
+  passes_.startTrace(*trace);
   if (capabilities.hasLabels) context_.labels().turnOn();
 }
 
@@ -390,7 +389,7 @@ void GlDevice::makeCurrent() {
 }
 
 void GlDevice::throwPendingError() {
-  if (passes) passes->collect();
+  if (PassTrace* const passes = passes_.trace()) passes->collect();
   const std::int64_t unchecked = context_.period();
   const GLenum error = context_.endPeriod();
   if (error == GL_NO_ERROR) return;

@@ -17,14 +17,11 @@
 #include "assemble/condition.hpp"
 #include "device/device_state.hpp"
 #include "device/unload_watch.hpp"
-#include "gl/buffer.hpp"
 #include "gl/open_context.hpp"
-#include "gl/samplers.hpp"
-#include "gl/vertex_array.hpp"
 #include "gl_device/append/append_programs.hpp"
 #include "gl_device/gl_context.hpp"
 #include "gl_device/gl_memory.hpp"
-#include "gl_device/memory/kept_scratch.hpp"
+#include "gl_device/gl_passes.hpp"
 #include "gl_device/program/made_kernels.hpp"
 #include "gl_device/program/program_binaries.hpp"
 #include "gl_device/program/program_cache.hpp"
@@ -36,8 +33,6 @@
 #include "support/cache_folder.hpp"
 
 namespace sk {
-
-class PassTrace;
 
 /// The user's choices for a device that has been found.
 struct DeviceChoices {
@@ -105,6 +100,7 @@ class GlDevice final : public DeviceState {
   /// What is bound in the context.
   gl::BoundState& bound() { return context_.bound(); }
   GlMemory& memory() { return memory_; }
+  GlPasses& passes() { return passes_; }
 
   assemble::TextureLimits textureLimits() const {
     return {limits.textureSize, limits.textureLayers, capabilities.hasCompute && traits.narrowTextures};
@@ -152,6 +148,7 @@ class GlDevice final : public DeviceState {
  private:
   GlContext context_;
   GlMemory memory_{context_, trace};
+  GlPasses passes_{context_};
 
  public:
   AppendPrograms appendPrograms;
@@ -159,21 +156,8 @@ class GlDevice final : public DeviceState {
   StagingPrograms stagingPrograms;
   MadeKernels scalarKernels{*this};
   MadeKernels mergeKernels{*this};
-  gl::Samplers samplers{bound().deletions};
-  gl::StorageBuffer values{gl::StorageBuffer::Use::Values};  ///< of dispatched reductions to values
-  /// Partial results of the work groups of dispatches that fold beside outputs (assemble/reduce/group_fold.hpp). Each dispatch
-  /// resets the first word to 0, so that a loop may repeat it.
-  gl::StorageBuffer folded{gl::StorageBuffer::Use::Persistent};
-  gl::StorageBuffer groupStates{gl::StorageBuffer::Use::Scratch};  ///< of dispatched append outputs
-  gl::StorageBuffer tileResults{gl::StorageBuffer::Use::Scratch};  ///< of scans in one pass
-  gl::StorageBuffer sortedWords{gl::StorageBuffer::Use::Scratch};  ///< of sorts, between two digits
-  gl::VertexArray vertexArray;
   const CacheFolder cache;
   ProgramBinaries binaries;
-  std::unique_ptr<PassTrace> passes;  ///< null if there is no trace
-  KeptScratch<Operand> operands;  ///< of kernels
-  /// Something was drawn or copied since the last dispatch: the next one may overwrite what that still reads.
-  bool hasDrawn = false;
 
  private:
   bool computesInPairs(const CallOptions& options) const;
@@ -196,11 +180,8 @@ class GlDevice final : public DeviceState {
 class DeviceScope {
  public:
   explicit DeviceScope(GlDevice& device) : scope_(device.context()) {
-    if (device.context().isGuest()) device.hasDrawn = true;  // by the application
     device.memory().trim();
-    device.tileResults.trim();
-    device.sortedWords.trim();
-    device.groupStates.trim();
+    device.passes().beginCall();
   }
 
  private:

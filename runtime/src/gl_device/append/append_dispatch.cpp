@@ -255,16 +255,12 @@ class AppendDispatch {
   std::size_t bytesOfStates() const { return static_cast<std::size_t>(words_) * sizeof(std::uint32_t); }
 
   /// The room for records may have taken the buffer's binding.
-  void bindStatesAgain() { device_.groupStates.bind(device_.bound(), bytesOfStates()); }
+  void bindStatesAgain() { device_.passes().bind(PassBuffer::GroupStates, bytesOfStates()); }
 
   void bindStates() {
-    if (device_.groupStates.bind(device_.bound(), bytesOfStates())) {
-      gl::StorageBuffer::clear(bytesOfStates());
-      return;
-    }
-    device_.context().throwIfLost();
-    fail(Error::Kind::Memory, call_.kernel, "'{}' has no memory for the states of its work groups",
-         device_.name());
+    device_.passes().bind(PassBuffer::GroupStates, bytesOfStates(), call_.kernel,
+                          "the states of its work groups");
+    gl::StorageBuffer::clear(bytesOfStates());
   }
 
   /// Counts the pushes, and waits for their number.
@@ -310,12 +306,11 @@ class AppendDispatch {
                                        static_cast<std::int32_t>(step)});
     for (KernelProgram::Append& append : program.appends) setAppend(append);
     if (task.work == Work::Groups) bindImages(outputs);
-    if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(device_.bound());
     constexpr std::int64_t mostGroups = 65535;  // per dimension; guaranteed by GL 4.3
     const std::int64_t groups = step == GroupStep::Scan ? 1 : tiles();
     const std::int64_t inX = std::min(groups, mostGroups);
-    gl::dispatch(device_.bound(), static_cast<GLsizei>(inX), static_cast<GLsizei>((groups + inX - 1) / inX));
-    gl::finishStorage(device_.bound());
+    device_.passes().dispatch(static_cast<GLsizei>(inX), static_cast<GLsizei>((groups + inX - 1) / inX),
+                              Writes::Storage);
   }
 
   void setAppend(KernelProgram::Append& append) {

@@ -70,8 +70,7 @@ void ListedScatter::combine(GlStream& stream) {
   program.set(device_.bound(), "sk_list_shift", shift_);
   program.set(device_.bound(), "sk_width", texture.width);
   program.set(device_.bound(), "sk_rect", gl::Int4{groups.x, groups.y, groups.width, groups.height});
-  if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(device_.bound());
-  gl::dispatch(device_.bound(), groups.width, groups.height);
+  device_.passes().dispatch(groups.width, groups.height);
 }
 
 }  // namespace sk

@@ -128,8 +128,7 @@ void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> 
   program.set(device_.bound(), "sk_list_shift", listLayout_.shift);
   program.set(device_.bound(), "sk_first", first);
   program.set(device_.bound(), "sk_size", gl::Int4{shape.width, shape.height, 0, 0});
-  device_.bound().vertexArray(device_.vertexArray.name());
-  device_.hasDrawn = true;
+  device_.passes().beginDraw();
   const gl::Blending blending(device_.capabilities, blend, device_.context().isGuest());
   const assemble::Rect whole{0, 0, shape.width, texture.rows()};
   const assemble::Rect written{0, 0, count, 1};

@@ -90,10 +90,8 @@ std::vector<Operand> operandsOfResults(const ResolvedReduction& call) {
 
 void bindList(GlDevice& device, const Kernel& fold, std::int32_t groups) {
   const std::size_t entry = assemble::accumulatorPlanes(fold) * assemble::foldPlaneBytes;
-  if (device.folded.bind(device.bound(), assemble::foldListStart + static_cast<std::size_t>(groups) * entry))
-    return;
-  device.context().throwIfLost();
-  fail(Error::Kind::Memory, fold, "'{}' has no memory for what its work groups fold", device.name());
+  device.passes().bind(PassBuffer::Folded, assemble::foldListStart + static_cast<std::size_t>(groups) * entry,
+                       fold, "what its work groups fold");
 }
 
 void dispatchTiles(GlDevice& device, KernelProgram& program, const FoldedTiles& tiles,
@@ -103,7 +101,7 @@ void dispatchTiles(GlDevice& device, KernelProgram& program, const FoldedTiles& 
     const std::int32_t across = tiles.across(rect), rows = tiles.rowsOfGroups(rect);
     program.rect.set(device.bound(), {rect.x, rect.y, rect.width, rect.height});
     program.foldGroups.set(device.bound(), {tiles.groups(), tiles.tilesOfGroup(), across, first});
-    gl::dispatch(device.bound(), across, rows);
+    device.passes().dispatch(across, rows);
     first += across * rows;
   }
 }

@@ -35,7 +35,7 @@ KernelOperands::KernelOperands(GlDevice& device, const program::Kernel& kernel,
       arguments_(arguments),
       specs_(specs),
       plan_(plan),
-      scratch_(device.operands),
+      scratch_(device.passes().operands()),
       shape_(shape),
       box_(box),
       place_(place) {

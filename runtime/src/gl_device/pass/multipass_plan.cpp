@@ -29,7 +29,7 @@ void copyLayers(GlDevice& device, RenderTarget& plane, gl::Texture& to, std::int
                 std::int32_t step) {
   const assemble::TextureShape& shape = plane.texture.shape();
   gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound());
-  device.hasDrawn = true;
+  device.passes().beginCopy();
   for (std::int32_t layer = 0; layer < std::max(shape.layers, 1); ++layer) {
     if (shape.layers > 0) {
       framebuffer.selectLayer(device.bound(), layer);

@@ -25,7 +25,7 @@ void blit(GlDevice& device, RenderTarget& from, const RegionLayout& source, Rend
           const RegionLayout& target) {
   const GLuint read = from.framebufferIn(device.bound()).name();
   const GLuint draw = to.framebufferIn(device.bound()).name();
-  device.hasDrawn = true;
+  device.passes().beginCopy();
   gl::blit(device.bound(), read, {source.origin[0], source.origin[1]}, draw,
            {target.origin[0], target.origin[1]}, target.extent[0], target.extent[1]);
 }
@@ -43,8 +43,8 @@ void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTar
     for (std::int32_t done = 0; done < rect.height; done += rows) {
       const std::int32_t height = std::min(rows, rect.height - done);
       program.rect.set(device.bound(), {rect.x, rect.y + done, rect.width, height});
-      gl::dispatch(device.bound(), groups(rect.width, program.workGroup[0]),
-                   groups(height, program.workGroup[1]));
+      device.passes().dispatch(groups(rect.width, program.workGroup[0]),
+                               groups(height, program.workGroup[1]));
     }
   }
 }
@@ -68,7 +68,7 @@ int bindOwnPlanes(GlDevice& device, const program::Parameter& parameter, std::sp
 int bindPlanes(GlDevice& device, std::span<RenderTarget> planes, int unit) {
   for (const RenderTarget& plane : planes) {
     device.bound().texture(unit, plane.texture.name(), plane.texture.isLayered());
-    device.bound().sampler(unit++, device.samplers.nearest());
+    device.bound().sampler(unit++, device.passes().samplers().nearest());
   }
   return unit;
 }
@@ -88,9 +88,6 @@ DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
 }
 
 void bindImages(GlDevice& device, std::span<RenderTarget* const> planes) {
-  if (std::exchange(device.hasDrawn, false)) {
-    gl::finishDraws(device.bound());
-  }
   int unit = 0;
   for (const RenderTarget* plane : planes) {
     device.bound().image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
@@ -103,8 +100,7 @@ PreparedPass preparedPass(GlDevice& device, KernelProgram& program, std::span<Re
 }
 
 void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect> rects, gl::IntUniform& row) {
-  device.bound().vertexArray(device.vertexArray.name());
-  device.hasDrawn = true;
+  device.passes().beginDraw();
   for (const Rect& rect : rects) {
     forEachLayer(rect, target.layerRows, [&](const Rect& part, std::int32_t layer, std::int32_t) {
       selectLayer(device, target, layer, row);

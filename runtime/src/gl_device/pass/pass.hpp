@@ -48,7 +48,7 @@ struct PreparedPass {
 };
 PreparedPass preparedPass(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes);
 
-/// Binds the planes that a dispatch writes, and orders it after draws.
+/// Binds the planes that a dispatch writes.
 void bindImages(GlDevice& device, std::span<RenderTarget* const> planes);
 
 /// Draws or dispatches the pass's program, which must be bound, for each rectangle of planes of the same

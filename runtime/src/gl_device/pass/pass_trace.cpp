@@ -59,10 +59,10 @@ std::int64_t texelsOf(std::span<const Rect> rects) {
 
 }  // namespace
 
-PassTrace::PassTrace(GlDevice& device, Trace& trace)
+PassTrace::PassTrace(GlContext& context, Trace& trace)
     : trace_(trace),
-      deletions_(device.bound().deletions),
-      usesTimestamps_(choosesTimestamps(device.capabilities)) {}
+      deletions_(context.bound().deletions),
+      usesTimestamps_(choosesTimestamps(context.capabilities())) {}
 
 gl::Timestamp PassTrace::takeTimestamp() {
   std::optional<gl::Timestamp> stamp;

@@ -23,7 +23,7 @@ namespace sk {
 class PassTrace {
  public:
   /// A DeviceScope must be open whenever this class is used.
-  PassTrace(GlDevice& device, Trace& trace);
+  PassTrace(GlContext& context, Trace& trace);
 
   void begin(PassRecord&& record);
   void end() noexcept;
@@ -88,7 +88,7 @@ std::string_view stepOf(const assemble::Task& task);
 class PassScope {
  public:
   template <class... What>
-  PassScope(GlDevice& device, const PassName& name, const What&... what) : trace_(device.passes.get()) {
+  PassScope(GlDevice& device, const PassName& name, const What&... what) : trace_(device.passes().trace()) {
     if (trace_ == nullptr && !device.passCount) return;
     PassRecord record = recordOf(name, what...);
     if (device.passCount) record.addTo(*device.passCount);

@@ -75,8 +75,8 @@ void readValues(GlDevice& device, const Kernel& fold, std::span<RenderTarget> va
 /// `results`.
 void takeValues(GlDevice& device, const Kernel& fold, std::span<void* const> results) {
   std::array<std::byte, valueBytes> texels;
-  device.values.read(device.bound(),
-                     std::span(texels).first(assemble::accumulatorPlanes(fold) * valuePlaneBytes));
+  device.passes().read(PassBuffer::Values,
+                       std::span(texels).first(assemble::accumulatorPlanes(fold) * valuePlaneBytes));
   device.throwPendingError();
   const std::byte* texel = texels.data();
   auto result = results.begin();

@@ -343,7 +343,8 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
   std::vector<Operand> operands = isPartial ? operandsOfCombine(source.partials) : operands_;
   if (pass.variant.carried) addCarries(operands, source.carries);
   operands.insert(operands.end(), source.tables.begin(), source.tables.end());
-  if (pass.variant.toBuffer) bindValues();
+  if (pass.variant.toBuffer)
+    device_.passes().bind(PassBuffer::Values, valueBytes, reduction_.fold, "its value");
   forEachPart(
       pass, operands, [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
         ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
@@ -378,21 +379,12 @@ void ReducePasses::prepare(const ReducePass& pass, std::span<RenderTarget* const
               });
 }
 
-void ReducePasses::bindValues() {
-  if (device_.values.bind(device_.bound(), valueBytes)) return;
-  device_.context().throwIfLost();
-  fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for its value", device_.name());
-}
-
 void ReducePasses::bindChain(const ReducePass& pass) {
   const auto groups =
       static_cast<std::size_t>(pass.groups.width) * static_cast<std::size_t>(pass.groups.height);
   const std::size_t bytes =
       sizeof(std::uint32_t) * (1 + 2 * assemble::accumulatorPlanes(reduction_.fold) * groups);
-  if (!device_.tileResults.bind(device_.bound(), bytes)) {
-    device_.context().throwIfLost();
-    fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for the results of tiles", device_.name());
-  }
+  device_.passes().bind(PassBuffer::TileResults, bytes, reduction_.fold, "the results of tiles");
   gl::StorageBuffer::clear(bytes);
 }
 

@@ -20,7 +20,7 @@
 
 namespace sk {
 
-/// The bytes of a plane in GlDevice::values, four components of 32 bits, and of the buffer.
+/// The bytes of a plane in PassBuffer::Values, four components of 32 bits, and of the buffer.
 inline constexpr std::size_t valuePlaneBytes = 16, valueBytes = valuePlaneBytes * gl::maxImageUnits;
 
 /// Adds new planes for all accumulators, in order, to `lease`.
@@ -113,8 +113,6 @@ class ReducePasses {
   /// Prepares what draw() needs: programs, and framebuffers over several planes. Throws sk::Error if the
   /// driver rejects one.
   void prepare(const assemble::ReducePass& pass, std::span<RenderTarget* const> targets);
-  /// Binds the value buffer. Throws sk::Error if memory is exhausted.
-  void bindValues();
   /// Binds the buffer of a chained scan. Throws sk::Error if memory is exhausted.
   void bindChain(const assemble::ReducePass& pass);
   /// Makes the driver start compiling the programs of a pass. False if they exist already.

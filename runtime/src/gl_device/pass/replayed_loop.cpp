@@ -78,7 +78,7 @@ class ReplayedLoop final : public LoopRunner {
   struct Iteration {
     Places before;
     gl::CommandLog log;
-    bool hasDrawnBefore = false, hasDrawnAfter = false;  ///< GlDevice::hasDrawn
+    bool hasDrawnBefore = false, hasDrawnAfter = false;  ///< GlPasses::hasDrawn()
     PassCount passes;
   };
 
@@ -148,7 +148,7 @@ class ReplayedLoop final : public LoopRunner {
 
   void note(LoopState& loop, Iteration& iteration) {
     const std::optional<PassCount> counted = std::exchange(device_.passCount, PassCount{});
-    iteration.hasDrawnBefore = device_.hasDrawn;
+    iteration.hasDrawnBefore = device_.passes().hasDrawn();
     device_.bound().logTo(&iteration.log);
     reserve_.ofEarlier = reserve_.idle.size();
     device_.memory().pool().use(&reserve_);
@@ -165,7 +165,7 @@ class ReplayedLoop final : public LoopRunner {
       throw;
     }
     end();
-    iteration.hasDrawnAfter = device_.hasDrawn;
+    iteration.hasDrawnAfter = device_.passes().hasDrawn();
   }
 
   /// Counts the passes of `times` iterations from the `first` of the cycle on.
@@ -222,9 +222,9 @@ class ReplayedLoop final : public LoopRunner {
   /// Gives the commands of an iteration by `how`, a member of its log.
   template <class How, class... What>
   void give(const Iteration& iteration, How how, const What&... what) {
-    if (device_.hasDrawn && !iteration.hasDrawnBefore) gl::finishDraws(device_.bound());
+    if (!iteration.hasDrawnBefore) device_.passes().orderAfterDraws();
     (iteration.log.*how)(device_.bound(), what...);
-    device_.hasDrawn = iteration.hasDrawnAfter;
+    device_.passes().setDrawn(iteration.hasDrawnAfter);
   }
 
   bool replay(LoopState& loop, std::int64_t times) {
@@ -303,7 +303,7 @@ class ReplayedLoop final : public LoopRunner {
       for (std::int64_t i = 0; i < times; ++i, ++given) {
         const std::size_t at = (*first + static_cast<std::size_t>(given)) % cycle_.size();
         give(cycle_[at], &gl::CommandLog::runIndirect, counts);
-        gate_.pass(device_.bound(), (*all)[at], device_.samplers.nearest());
+        gate_.pass(device_.bound(), (*all)[at], device_.passes().samplers().nearest());
       }
       gate_.ask(device_.bound());
     };

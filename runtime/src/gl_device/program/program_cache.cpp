@@ -153,7 +153,8 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
                  variant.access);
   for (KernelProgram::Read& read : result->reads) {
     const bool isFiltered = variant.access[read.parameter].filtered;
-    read.sampler = isFiltered ? device_.samplers.linear(kernel.parameters[read.parameter].boundary) : 0;
+    read.sampler =
+        isFiltered ? device_.passes().samplers().linear(kernel.parameters[read.parameter].boundary) : 0;
   }
   if (variant.task.work == assemble::Work::List) {
     findListUniforms(*result, kernel.parameters[variant.task.appendOutput]);

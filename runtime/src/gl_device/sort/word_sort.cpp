@@ -79,7 +79,7 @@ bool WordSort::takesBuffer() {
 }
 
 bool WordSort::bindBuffer() {
-  return device_.sortedWords.bind(device_.bound(), static_cast<std::size_t>(count_) * 16);
+  return device_.passes().bind(PassBuffer::SortedWords, static_cast<std::size_t>(count_) * 16);
 }
 
 /// Brings sorted pairs from the buffer to `pairs`.
@@ -144,9 +144,7 @@ void WordSort::run(RadixStep step, std::string_view name, std::initializer_list<
   for (const Uniform& uniform : uniforms) program.set(device_.bound(), uniform.name, uniform.value);
   program.set(device_.bound(), "sk_tiles", tiles);
   program.set(device_.bound(), "sk_rect", gl::Int4{groups.x, groups.y, groups.width, groups.height});
-  if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(device_.bound());
-  gl::dispatch(device_.bound(), groups.width, groups.height);
-  if (storage.writes) gl::finishStorage(device_.bound());
+  device_.passes().dispatch(groups.width, groups.height, storage.writes ? Writes::Storage : Writes::Texels);
 }
 
 std::uint32_t WordSort::read(WordTexture& words, std::int32_t number) {

@@ -130,7 +130,7 @@ void GlStaging::copyBoxes(std::span<const PlaneBox> boxes) {
   bound.program(program.program().name());
   if (way_ == Way::ToHost) {
     bound.texture(0, texture.name(), texture.isLayered());
-    bound.sampler(0, device_.samplers.nearest());
+    bound.sampler(0, device_.passes().samplers().nearest());
   } else {
     bound.readWriteImage(0, texture.name(), texture.format().internalFormat);
   }
@@ -146,11 +146,11 @@ void GlStaging::copyBoxes(std::span<const PlaneBox> boxes) {
     program.set(bound, names[i].first, boxes[i].firstWord);
     most = std::max(most, stagedTexels(boxes[i].place));
   }
-  if (std::exchange(device_.hasDrawn, false)) gl::finishDraws(bound);
   constexpr std::int64_t mostGroups =
       4096;  // enough for any device; each takes the texels that are left in turn
   const std::int64_t groups = (most + assemble::stagingGroup - 1) / assemble::stagingGroup;
-  gl::dispatch(bound, static_cast<GLsizei>(std::min(groups, mostGroups)), static_cast<GLsizei>(boxes.size()));
+  device_.passes().dispatch(static_cast<GLsizei>(std::min(groups, mostGroups)),
+                            static_cast<GLsizei>(boxes.size()));
 }
 
 void GlStaging::wait() {
