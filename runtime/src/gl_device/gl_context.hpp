@@ -35,7 +35,7 @@ class GlContext {
   /// Whether the application also draws in the context, so that each scope must restore its state.
   bool isGuest() const { return context_.isAdopted() || isShared_; }
   /// The context, lost or not.
-  const gl::Context& any() const { return context_; }
+  const gl::Context& handle() const { return context_; }
   /// The context. Throws sk::Error if it is known to be lost.
   const gl::Context& living() const {
     if (bound_.errors.isLost()) failAsLost();

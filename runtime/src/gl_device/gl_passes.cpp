@@ -7,7 +7,7 @@
 namespace sk {
 
 GlPasses::GlPasses(GlContext& context) : context_(context) {
-  const gl::CurrentScope current(context.any());
+  const gl::CurrentScope current(context.handle());
   vertexArray_ = gl::VertexArray(context.bound().deletions);
 }
 

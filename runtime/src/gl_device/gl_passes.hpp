@@ -58,6 +58,11 @@ class GlPasses {
   }
   /// Must be called before texels are copied by a command that is no draw.
   void beginCopy() { hasDrawn_ = true; }
+  /// gl::blit(), a copy.
+  void blit(GLuint from, gl::Corner source, GLuint to, gl::Corner target, GLsizei width, GLsizei height) {
+    beginCopy();
+    gl::blit(context_.bound(), from, source, to, target, width, height);
+  }
   /// Runs work groups of the bound program.
   void dispatch(GLsizei groupsInX, GLsizei groupsInY, Writes writes = Writes::Texels) {
     orderAfterDraws();

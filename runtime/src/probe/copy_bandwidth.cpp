@@ -51,7 +51,8 @@ double measure(Copy&& copy) {
 double measureDevice(GlDevice& device) {
   const program::Element& element = ElementTraits<float4>::element();
   const Layout layout = layoutOf({rows, columns}, device.textureLimits());
-  const assemble::Stage stage = device.stageOf(copyKernel(element.fields[0]), KernelClass::Elements, {});
+  const assemble::Stage stage =
+      device.programs().stageOf(copyKernel(element.fields[0]), KernelClass::Elements, {});
   const DeviceScope scope(device);
   PlanesLease from(device.memory()), to(device.memory());
   try {
@@ -60,7 +61,7 @@ double measureDevice(GlDevice& device) {
   } catch (const Error&) {
     return 0;
   }
-  device.selectPrograms({}, stage);
+  device.programs().select({}, stage);
   const auto draw = [&](std::span<RenderTarget> source, std::span<RenderTarget> target) {
     const Operand operands[] = {{nullptr, layout.whole, source}, {}};
     RenderTarget* const targets[] = {&target.front()};

@@ -142,7 +142,7 @@ bool areFolds(std::span<const float2> given, std::size_t element, const float4& 
 
 /// Whether programs of a target keep the rounding errors.
 bool holds(GlDevice& device, Barrier barrier, Target target) {
-  device.barrier = barrier;
+  device.programs().setBarrier(barrier);
   const std::vector<float2> given = trialPairs(pairCount);
   const Shape shape{static_cast<std::int64_t>(given.size()) / rowLength, rowLength};
   const auto x = device.createStream(ElementTraits<float2>::element(), shape, Storage::Single);
@@ -204,22 +204,22 @@ std::optional<Barrier> kept(const GlDevice& device, std::string_view key) {
 Arithmetic probeArithmetic(GlDevice& device) {
   const std::string driver = driverKey(device.name(), device.driver(), device.profileName());
   const std::string key = driver + (mayDispatch(device) ? ", drawn and dispatched" : ", drawn");
-  const Barrier strongest = device.barrier;
+  const Barrier strongest = device.programs().barrier();
   std::optional<Barrier> found = kept(device, key);
   if (!found) {
     try {
       found = firstThatHolds(device);
     } catch (...) {
-      device.barrier = strongest;  // the trial has changed it
+      device.programs().setBarrier(strongest);  // the trial has changed it
       throw;
     }
     // failures are not cached, because they may be due to exhausted memory
     if (found) device.cache.write("barriers", key, std::string(nameOf(*found)) + '\n');
   }
-  device.barrier = found.value_or(strongest);
+  device.programs().setBarrier(found.value_or(strongest));
   return {.exactSums = found.has_value(),
           .barrier = found.value_or(Barrier::None),
-          .asWritten = device.barrier == Barrier::Xor && computesAsWritten(device, driver)};
+          .asWritten = device.programs().barrier() == Barrier::Xor && computesAsWritten(device, driver)};
 }
 
 }  // namespace sk

@@ -112,7 +112,8 @@ class AppendCall {
       return;
     }
     const Task task{Work::Counts};
-    KernelProgram& program = device_.programs().kernelProgram(kernel_, operands_, layout_.whole, task);
+    KernelProgram& program =
+        device_.programs().selected().kernelProgram(kernel_, operands_, layout_.whole, task);
     const PreparedPass pass = preparedPass(device_, program, targets.planes());
     targets.begin();
     runKernel(device_, pass, kernel_, operands_, layout_.whole, layout_.draws, targets.planes(), {}, task);
@@ -172,7 +173,7 @@ class AppendCall {
   }
 
   void bindPyramid(const Task& task, const assemble::RegionLayout& domain, HistoPyramid& pyramid) {
-    KernelProgram& program = device_.programs().kernelProgram(kernel_, operands_, domain, task);
+    KernelProgram& program = device_.programs().selected().kernelProgram(kernel_, operands_, domain, task);
     device_.bound().program(program.program.name());
     bindPlanes(device_, {&pyramid.odd(), 1}, program.units);
     bindPlanes(device_, {&pyramid.even(), 1}, program.units + 1);
@@ -204,9 +205,9 @@ bool hasAppendOutputs(const Kernel& kernel) {
 }
 
 void runWithAppendOutputs(GlDevice& device, const ResolvedCall& call) {
-  if (device.programs().stage() == assemble::Stage::Compute) {
+  if (device.programs().selected().stage() == assemble::Stage::Compute) {
     if (dispatchAppends(device, call)) return;
-    device.selectDrawnPrograms(call.kernel, call.options);
+    device.programs().selectDrawn(call.kernel, call.options);
   }
   AppendCall(device, call).run();
 }

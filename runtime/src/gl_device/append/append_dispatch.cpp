@@ -14,7 +14,6 @@
 #include "assemble/append/append_passes.hpp"
 #include "call/check_argument.hpp"
 #include "device/write_scope.hpp"
-#include "gl/commands.hpp"
 #include "gl_device/append/append_operands.hpp"
 #include "gl_device/append/histo_pyramid.hpp"
 #include "gl_device/append/listed_scatter.hpp"
@@ -99,7 +98,8 @@ class AppendDispatch {
   bool run() {
     for (const auto& list : lists_)
       list->total.add(ElementTraits<int4>::element(), {1, 1}, "the number of pushes");
-    KernelProgram& program = device_.programs().kernelProgram(call_.kernel, operands_, layout_.whole, task_);
+    KernelProgram& program =
+        device_.programs().selected().kernelProgram(call_.kernel, operands_, layout_.whole, task_);
     const bool isCounted = std::ranges::any_of(lists_, [](const auto& list) { return list->length < 0; });
     if (isCounted) countPushes(program);
     for (const auto& list : lists_) {
@@ -291,7 +291,8 @@ class AppendDispatch {
   void findOwners() {
     if (std::ranges::all_of(targets_, [](const auto& target) { return target->firstOwner < 0; })) return;
     const Task task{.work = Work::Owners, .scattersInAnyOrder = task_.scattersInAnyOrder};
-    KernelProgram& program = device_.programs().kernelProgram(call_.kernel, operands_, layout_.whole, task);
+    KernelProgram& program =
+        device_.programs().selected().kernelProgram(call_.kernel, operands_, layout_.whole, task);
     dispatch(program, task, GroupStep::All);
   }
 

@@ -5,33 +5,18 @@
 
 #include "assemble/append/record_program.hpp"
 #include "assemble/assemble.hpp"
-#include "gl_device/gl_device.hpp"
-#include "sk/error.hpp"
+#include "gl_device/gl_programs.hpp"
 
 namespace sk {
 
 using assemble::PointStep;
 
-std::unique_ptr<IntegerProgram> AppendPrograms::build(const std::string& vertexSource,
-                                                      const std::string& fragmentSource,
-                                                      std::string_view what) {
-  std::string log;
-  gl::Program program = ProgramBuild(device_, {vertexSource, fragmentSource}).finish(device_, log);
-  if (!program) {
-    device_.context().throwIfLost();
-    throw Error(fmt::format("the driver of '{}' refuses the program of {}:\n{}",
-                            device_.capabilities.renderer, what, log),
-                Error::Kind::Compile);
-  }
-  device_.bound().program(program.name());
-  return std::make_unique<IntegerProgram>(std::move(program));
-}
-
 IntegerProgram& AppendPrograms::pyramid(const assemble::PyramidTextures& textures) {
   std::unique_ptr<IntegerProgram>& cached = pyramids_[textures];
   if (!cached) {
-    auto appendProgram = build(assemble::vertexProgram(device_.profile),
-                               assemble::pyramidProgram(device_.profile, textures), "sums of counts");
+    auto appendProgram = owner_.build(
+        {assemble::vertexProgram(owner_.profile()), assemble::pyramidProgram(owner_.profile(), textures)},
+        "the program of sums of counts");
     appendProgram->program().setSampler("sk_below", 0);
     cached = std::move(appendProgram);
   }
@@ -53,11 +38,11 @@ IntegerProgram& AppendPrograms::points(const program::Parameter& appendOutput, P
   Kept& cached = points_[{&appendOutput, step, textures}];
   if (!cached.program) {
     const std::string vertexSource = assemble::hasPoints(step)
-                                         ? assemble::pointVertexProgram(device_.profile, textures)
-                                         : assemble::vertexProgram(device_.profile);
+                                         ? assemble::pointVertexProgram(owner_.profile(), textures)
+                                         : assemble::vertexProgram(owner_.profile());
     auto appendProgram =
-        build(vertexSource, assemble::pointProgram(device_.profile, appendOutput, step, textures),
-              appendOutput.name);
+        owner_.build({vertexSource, assemble::pointProgram(owner_.profile(), appendOutput, step, textures)},
+                     fmt::format("the program of {}", appendOutput.name));
     const gl::Program& program = appendProgram->program();
     int unit = 0;
     program.setSampler("sk_targets", unit++);
@@ -80,8 +65,8 @@ IntegerProgram& AppendPrograms::records(const program::Parameter& scatter, bool 
   forgetUnloaded();
   Kept& cached = records_[{&scatter, isCounted}];
   if (!cached.program) {
-    auto program =
-        build({}, assemble::recordProgram(device_.computeProfile, scatter, isCounted), scatter.name);
+    auto program = owner_.build({{}, assemble::recordProgram(owner_.computeProfile(), scatter, isCounted)},
+                                fmt::format("the program of {}", scatter.name));
     int unit = 0;
     for (const char* name : {"sk_keys", "sk_count", "sk_values"}) program->program().setSampler(name, unit++);
     cached = {std::move(program), program::LinkedFile::objectOf(&scatter)};

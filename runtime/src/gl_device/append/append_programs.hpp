@@ -21,11 +21,11 @@
 
 namespace sk {
 
-class GlDevice;
+class GlPrograms;
 
 class AppendPrograms {
  public:
-  explicit AppendPrograms(GlDevice& device) : device_(device) {}
+  explicit AppendPrograms(GlPrograms& owner) : owner_(owner) {}
 
   /// The program of a pyramid's level, which reads from texture unit 0. Throws sk::Error if the driver
   /// rejects it.
@@ -49,10 +49,8 @@ class AppendPrograms {
   };
 
   void forgetUnloaded();
-  std::unique_ptr<IntegerProgram> build(const std::string& vertexSource, const std::string& fragmentSource,
-                                        std::string_view what);
 
-  GlDevice& device_;
+  GlPrograms& owner_;
   std::map<assemble::PyramidTextures, std::unique_ptr<IntegerProgram>> pyramids_;
   std::map<PointKey, Kept> points_;
   std::map<std::pair<const program::Parameter*, bool>, Kept> records_;

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "gl/commands.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "gl_device/pass/pass_trace.hpp"
 #include "sk/error.hpp"
@@ -43,7 +42,7 @@ void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below
                         std::int32_t belowRow) {
   const assemble::TextureShape& shape = below.texture.shape();
   IntegerProgram& program =
-      device_.appendPrograms.pyramid({ofCounts, below.texture.isLayered(), plan_.isLayered()});
+      device_.programs().ofAppends().pyramid({ofCounts, below.texture.isLayered(), plan_.isLayered()});
   const auto number = static_cast<std::size_t>(&level - plan_.levels.data()) + 1;
   device_.bound().program(program.program().name());
   bindPlanes(device_, {&below, 1}, 0);
@@ -61,7 +60,7 @@ void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below
   const auto bytesBelow = level.children * static_cast<std::int64_t>(below.texture.format().texelBytes());
   const PassScope traced(device_, {"sums of counts", "tree"}, bytesBelow,
                          std::span<const assemble::Rect>(level.draws), above.texture.format().texelBytes());
-  drawRects(device_, targetOf(device_, above), level.draws, program.row());
+  drawRects(device_, targetOf(device_.bound(), above), level.draws, program.row());
 }
 
 std::int32_t HistoPyramid::total() {
@@ -79,7 +78,7 @@ std::vector<RenderTarget> HistoPyramid::totalTexture() {
     from.selectLayer(device_.bound(), row >> plan_.shift);
     row &= (1 << plan_.shift) - 1;
   }
-  gl::blit(device_.bound(), from.name(), {0, row}, to, {0, 0}, 1, 1);
+  device_.passes().blit(from.name(), {0, row}, to, {0, 0}, 1, 1);
   return total;
 }
 

@@ -9,7 +9,6 @@
 #include "assemble/append/append_groups.hpp"
 #include "assemble/append/record_program.hpp"
 #include "assemble/reduce/scan_tiles.hpp"
-#include "gl/commands.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "gl_device/pass/pass_trace.hpp"
 #include "gl_device/sort/sort_kernels.hpp"
@@ -30,7 +29,7 @@ ListedScatter::ListedScatter(GlDevice& device, const program::Parameter& scatter
     shift_ = layout.whole.shift;
     values_.add(*scatter.element, layout.texture, "what a kernel scatters");
   }
-  device.appendPrograms.records(scatter, count != nullptr);
+  device.programs().ofAppends().records(scatter, count != nullptr);
   if (count != nullptr) fill(isPair ? *sort_.pairs : *sort_.keys);
 }
 
@@ -52,7 +51,7 @@ void ListedScatter::combine(GlStream& stream) {
   const assemble::TextureShape& texture = stream.layout.texture;
   const auto targets = static_cast<std::uint64_t>(texture.width) * static_cast<std::uint64_t>(texture.height);
   sort_.sort(std::bit_width(targets - 1));
-  IntegerProgram& program = device_.appendPrograms.records(scatter_, count_ != nullptr);
+  IntegerProgram& program = device_.programs().ofAppends().records(scatter_, count_ != nullptr);
   const std::int32_t tiles = (length_ - 1) / assemble::recordTile + 1;
   constexpr std::int32_t mostInRow = std::int32_t{1} << assemble::groupRowShift;
   const assemble::Rect groups{0, 0, std::min(tiles, mostInRow), (tiles - 1) / mostInRow + 1};

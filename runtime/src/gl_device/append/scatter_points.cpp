@@ -49,7 +49,7 @@ Scatterer::Scatterer(GlDevice& device, const program::Parameter& appendOutput, s
       lower_(device.memory()) {
   const std::span<const PointStep> steps = assemble::pointSteps(appendOutput);
   for (const PointStep step : steps) {
-    device.appendPrograms.points(appendOutput, step, {listLayout.layered, regionLayout.layered});
+    device.programs().ofAppends().points(appendOutput, step, {listLayout.layered, regionLayout.layered});
   }
   if (steps.front() == PointStep::SplitLimbs) {
     for (int c = 0; c < width(); ++c) takeFloats(limbs_, 4);
@@ -102,8 +102,8 @@ void Scatterer::takeFloats(PlanesLease& lease, int width) {
 int Scatterer::bindAfterElements(std::span<RenderTarget> planes) { return bindPlanes(device_, planes, 2); }
 
 IntegerProgram& Scatterer::programOf(PointStep step) {
-  IntegerProgram& program =
-      device_.appendPrograms.points(appendOutput_, step, {listLayout_.layered, regionLayout_.layered});
+  IntegerProgram& program = device_.programs().ofAppends().points(
+      appendOutput_, step, {listLayout_.layered, regionLayout_.layered});
   device_.bound().program(program.program().name());
   program.set(device_.bound(), "sk_domain_shift", regionLayout_.shift);
   return program;
@@ -135,7 +135,7 @@ void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> 
   const PassScope traced(device_, {appendOutput_.name, "scatter"}, std::span<const RenderTarget>(list_),
                          std::span(&written, 1), texelBytesOf(targets));
   forEachLayer(whole, drawn.layerRows, [&](const assemble::Rect& part, std::int32_t layer, std::int32_t) {
-    selectLayer(device_, drawn, layer, program.row());
+    selectLayer(device_.bound(), drawn, layer, program.row());
     device_.bound().viewport(0, 0, part.width, part.height);
     gl::drawPoints(device_.bound(), count);
   });

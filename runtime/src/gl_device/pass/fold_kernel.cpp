@@ -8,7 +8,6 @@
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
 #include "call/resolved_call.hpp"
-#include "gl/commands.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/memory/layout.hpp"
 #include "gl_device/pass/kernel_operands.hpp"
@@ -150,7 +149,8 @@ void dispatchFold(GlDevice& device, const ResolvedReduction& call, const KernelO
   const Kernel& fold = call.reduction.fold;
   std::vector<RenderTarget*> planes(outputs.begin(), outputs.end());
   planes.insert(planes.end(), target.planes.begin(), target.planes.end());
-  KernelProgram& program = device.programs().foldProgram(call.reduction, operands.get(), operands.domain());
+  KernelProgram& program =
+      device.programs().selected().foldProgram(call.reduction, operands.get(), operands.domain());
   const DrawnRects rects(operands.domain(), operands.layout());
   const FoldedTiles tiles(program, rects.get());
   bindList(device, fold, tiles.groups());
@@ -209,9 +209,10 @@ bool gathersInGroups(GlDevice& device, const ResolvedReduction& call) {
                           std::ranges::any_of(fold.parameters, [](const Parameter& parameter) {
                             return parameter.role == Role::Gather;
                           });
-  return device.programs().stage() == assemble::Stage::Compute && isGathered && !omitsOutputs(call) &&
-         !call.scan && call.rows == nullptr && call.blocks.size() == 1 && call.domain.size() >= fewest &&
-         assemble::mayFoldInGroups(call.reduction) && fits(device, call.reduction, call);
+  return device.programs().selected().stage() == assemble::Stage::Compute && isGathered &&
+         !omitsOutputs(call) && !call.scan && call.rows == nullptr && call.blocks.size() == 1 &&
+         call.domain.size() >= fewest && assemble::mayFoldInGroups(call.reduction) &&
+         fits(device, call.reduction, call);
 }
 
 bool GlDevice::foldsBesideOutputs(const ResolvedReduction& call) {
@@ -220,7 +221,8 @@ bool GlDevice::foldsBesideOutputs(const ResolvedReduction& call) {
   const bool mayFold = call.blocks.size() == 1 && call.domain.size() > 0 && !call.isToValues() &&
                        assemble::mayFoldInGroups(plain) &&
                        (second == nullptr || assemble::mayFoldInGroups(second->reduction));
-  return mayFold && stageOf(plain.fold, KernelClass::Reduces, call.options) == assemble::Stage::Compute &&
+  return mayFold &&
+         programs_.stageOf(plain.fold, KernelClass::Reduces, call.options) == assemble::Stage::Compute &&
          fits(*this, second == nullptr ? plain : second->reduction, call);
 }
 

@@ -89,14 +89,16 @@ class PlanExecution {
   /// Makes the driver start compiling the program of a pass. False if the program exists already.
   bool start(const Pass& pass) {
     selectOperands(pass);
-    return targets_.empty() || device_.programs().startKernelProgram(pass.kernel, operands_, call_.domain);
+    return targets_.empty() ||
+           device_.programs().selected().startKernelProgram(pass.kernel, operands_, call_.domain);
   }
 
   /// Prepares everything that draw() needs. Throws sk::Error if the driver rejects something.
   void prepare(const Pass& pass) {
     selectOperands(pass);
     if (targets_.empty()) return;
-    preparedPass(device_, device_.programs().kernelProgram(pass.kernel, operands_, call_.domain), targets_);
+    preparedPass(device_, device_.programs().selected().kernelProgram(pass.kernel, operands_, call_.domain),
+                 targets_);
   }
 
   void draw(const Pass& pass) {

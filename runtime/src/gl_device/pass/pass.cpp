@@ -25,9 +25,8 @@ void blit(GlDevice& device, RenderTarget& from, const RegionLayout& source, Rend
           const RegionLayout& target) {
   const GLuint read = from.framebufferIn(device.bound()).name();
   const GLuint draw = to.framebufferIn(device.bound()).name();
-  device.passes().beginCopy();
-  gl::blit(device.bound(), read, {source.origin[0], source.origin[1]}, draw,
-           {target.origin[0], target.origin[1]}, target.extent[0], target.extent[1]);
+  device.passes().blit(read, {source.origin[0], source.origin[1]}, draw, {target.origin[0], target.origin[1]},
+                       target.extent[0], target.extent[1]);
 }
 
 /// An image binds all layers of a texture: the rows of `rects` are numbered across layers.
@@ -73,15 +72,15 @@ int bindPlanes(GlDevice& device, std::span<RenderTarget> planes, int unit) {
   return unit;
 }
 
-DrawTarget targetOf(GlDevice& device, RenderTarget& plane) {
+DrawTarget targetOf(gl::BoundState& bound, RenderTarget& plane) {
   const gl::Texture& texture = plane.texture;
-  return {&plane.framebufferIn(device.bound()), texture.isLayered() ? texture.shape().height : 0};
+  return {&plane.framebufferIn(bound), texture.isLayered() ? texture.shape().height : 0};
 }
 
 DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
   RenderTarget& first = *planes[0];
   if (planes.size() == 1) {
-    return targetOf(device, first);
+    return targetOf(device.bound(), first);
   }
   return {&device.memory().framebufferOf(planes),
           first.texture.isLayered() ? first.texture.shape().height : 0};
@@ -103,7 +102,7 @@ void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect>
   device.passes().beginDraw();
   for (const Rect& rect : rects) {
     forEachLayer(rect, target.layerRows, [&](const Rect& part, std::int32_t layer, std::int32_t) {
-      selectLayer(device, target, layer, row);
+      selectLayer(device.bound(), target, layer, row);
       device.bound().viewport(part.x, part.y, part.width, part.height);
       gl::drawViewport(device.bound());
     });
@@ -118,14 +117,14 @@ void writeRects(GlDevice& device, const PreparedPass& pass, std::span<RenderTarg
   }
 }
 
-void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row) {
+void selectLayer(gl::BoundState& bound, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row) {
   if (target.layerRows == 0) {
-    device.bound().framebuffer(target.framebuffer->name());
-    row.set(device.bound(), 0);
+    bound.framebuffer(target.framebuffer->name());
+    row.set(bound, 0);
     return;
   }
-  target.framebuffer->selectLayer(device.bound(), layer);
-  row.set(device.bound(), layer * target.layerRows);
+  target.framebuffer->selectLayer(bound, layer);
+  row.set(bound, layer * target.layerRows);
 }
 
 void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
@@ -165,7 +164,7 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
                const RegionLayout& domain, std::span<const Rect> rects,
                std::span<RenderTarget* const> targets, std::span<const gl::Texture> bundles,
                const assemble::Task& task) {
-  KernelProgram& program = device.programs().kernelProgram(kernel, operands, domain, task);
+  KernelProgram& program = device.programs().selected().kernelProgram(kernel, operands, domain, task);
   runKernel(device, preparedPass(device, program, targets), kernel, operands, domain, rects, targets, bundles,
             task);
 }
@@ -194,7 +193,7 @@ namespace {
 /// Whether a blit copies a region: source and target are planes with the same elements per texel. A loop repeats no
 /// blits: it could not leave them out on the device. Where programs are dispatched, blits are as slow as draws.
 bool isBlit(GlDevice& device, const RegionLayout& source, const RegionLayout& target) {
-  return !device.bound().isLogged() && device.programs().stage() == assemble::Stage::Fragment &&
+  return !device.bound().isLogged() && device.programs().selected().stage() == assemble::Stage::Fragment &&
          !source.linear && !target.linear && source.packed == target.packed && !source.strided &&
          !target.strided;
 }
@@ -216,7 +215,7 @@ void prepareCopy(GlDevice& device, const program::Element& element, const Region
   if (!byKernel && isBlit(device, source, target)) return;
   for (const program::Field& field : element.fields) {
     const Operand operands[] = {{nullptr, source, {}}, {}};
-    device.programs().kernelProgram(copyKernel(field), operands, target);
+    device.programs().selected().kernelProgram(copyKernel(field), operands, target);
   }
 }
 

@@ -31,11 +31,11 @@ struct DrawTarget {
 /// The target that draws to these planes, 1 to gl::maxDrawBuffers. Valid until the next call. Throws
 /// sk::Error if the driver cannot draw to them together.
 DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes);
-DrawTarget targetOf(GlDevice& device, RenderTarget& plane);
+DrawTarget targetOf(gl::BoundState& bound, RenderTarget& plane);
 
 /// Binds the framebuffer with a layer of its planes attached, and sets `row`, a uniform of the bound program,
 /// to the layer's first row.
-void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row);
+void selectLayer(gl::BoundState& bound, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row);
 
 /// Draws each rectangle of a target with the bound program, whose uniform `sk_domain_row` is `row`.
 void drawRects(GlDevice& device, const DrawTarget& target, std::span<const assemble::Rect> rects,

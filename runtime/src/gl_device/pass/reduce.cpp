@@ -156,14 +156,14 @@ void reduceToStreams(GlDevice& device, const ResolvedReduction& call) {
 
 void GlDevice::reduce(const ResolvedReduction& call) {
   const Kernel& fold = call.reduction.fold;
-  checkOptions(fold, call.options);
+  programs_.checkOptions(fold, call.options);
   refuseFoldCheck(call.reduction);
   checkStorages(fold, call.arguments, specsOf(fold, call.arguments));
-  const assemble::Stage stage = stageOf(fold, KernelClass::Reduces, call.options);
+  const assemble::Stage stage = programs_.stageOf(fold, KernelClass::Reduces, call.options);
   if (call.rows != nullptr) call.rows->makeTables(call.scan.has_value());
   const DeviceScope scope(*this);
   const gl::LabelGroup group(context().labels(), fold.name);
-  selectPrograms(call.options, stage);
+  programs_.select(call.options, stage);
   if (call.isToValues()) {
     reduceToValues(*this, call);
   } else if (storesBeside(call) || gathersInGroups(*this, call)) {

@@ -90,7 +90,8 @@ ReducePasses::ReducePasses(GlDevice& device, const ResolvedReduction& call)
 }
 
 bool ReducePasses::mayEndInBuffer() const {
-  return device_.programs().stage() == assemble::Stage::Compute && assemble::mayEndInBuffer(reduction_);
+  return device_.programs().selected().stage() == assemble::Stage::Compute &&
+         assemble::mayEndInBuffer(reduction_);
 }
 
 void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const> targets,
@@ -132,7 +133,7 @@ void ReducePasses::writeIdentities(const RegionLayout& result, std::span<RenderT
 
 void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* const> targets, bool isExclusive,
                         const std::function<void()>& begin) {
-  const bool isDispatched = device_.programs().stage() == assemble::Stage::Compute;
+  const bool isDispatched = device_.programs().selected().stage() == assemble::Stage::Compute;
   const assemble::ReduceLimits limits{
       .texture = device_.textureLimits(), .fanIn = assemble::scanRun, .grouped = isDispatched};
   const assemble::Lines lines = assemble::linesOf(elements_.extent, blocks_);
@@ -188,7 +189,7 @@ void ReducePasses::findOperands(std::span<const Argument> arguments, const Shape
 
 assemble::ReduceLimits ReducePasses::limitsOfPasses() const {
   assemble::ReduceLimits limits{.texture = device_.textureLimits(), .grouped = mayGroup()};
-  if (device_.programs().stage() == assemble::Stage::Compute) {
+  if (device_.programs().selected().stage() == assemble::Stage::Compute) {
     limits.longRun = longRunOfGroups();
   } else {
     limits.longRun = static_cast<std::int32_t>(device_.traits.drawnRun);
@@ -204,7 +205,7 @@ std::int32_t ReducePasses::longRunOfGroups() const {
 bool ReducePasses::mayGroup() const {
   constexpr std::size_t planeBytes = 4 * sizeof(float);  // the most: four components, or two doubles
   const std::size_t planes = assemble::accumulatorPlanes(reduction_.fold);
-  return device_.programs().stage() == assemble::Stage::Compute &&
+  return device_.programs().selected().stage() == assemble::Stage::Compute &&
          planes * planeBytes * assemble::groupSize <= assemble::groupBytes &&
          planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
 }
@@ -347,7 +348,7 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
     device_.passes().bind(PassBuffer::Values, valueBytes, reduction_.fold, "its value");
   forEachPart(
       pass, operands, [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
-        ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
+        ReduceProgram& program = device_.programs().selected().reduceProgram(reduction_, variant);
         const bool isInBuffer = variant.toBuffer;
         const auto planes = isInBuffer ? targets : targets.subspan(first, count);
         const std::size_t bytes = isInBuffer ? count * valuePlaneBytes : texelBytesOf(planes);
@@ -374,7 +375,7 @@ void ReducePasses::prepare(const ReducePass& pass, std::span<RenderTarget* const
   const bool isPartial = assemble::isOfPartials(pass.variant.walk);
   forEachPart(pass, isPartial ? operandsOfCombine({}) : operands_,
               [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
-                ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
+                ReduceProgram& program = device_.programs().selected().reduceProgram(reduction_, variant);
                 if (!variant.toBuffer) preparedPass(device_, program.kernel, targets.subspan(first, count));
               });
 }
@@ -393,7 +394,7 @@ bool ReducePasses::start(const ReducePass& pass) {
   const bool isPartial = assemble::isOfPartials(pass.variant.walk);
   forEachPart(pass, isPartial ? operandsOfCombine({}) : operands_,
               [&](const assemble::ReduceVariant& variant, std::size_t, std::size_t) {
-                isNew = device_.programs().startReduceProgram(reduction_, variant) || isNew;
+                isNew = device_.programs().selected().startReduceProgram(reduction_, variant) || isNew;
               });
   return isNew;
 }

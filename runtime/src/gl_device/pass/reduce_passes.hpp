@@ -34,7 +34,7 @@ class RowsState;
 class ReducePasses {
  public:
   /// Unpacks the inputs unless the reduction can read all of them by packed texels. A DeviceScope must be
-  /// open, and GlDevice::selectPrograms() must have been called.
+  /// open, and GlPrograms::select() must have been called.
   ReducePasses(GlDevice& device, const ResolvedReduction& call);
 
   /// The operands of the fold, one per parameter.

@@ -93,7 +93,7 @@ void ReducePasses::foldRows(const RowsState& rows, const RegionLayout& result,
                             std::span<RenderTarget* const> targets, const std::function<void()>& begin) {
   if (assemble::elements(elements_.extent) == 0) return writeIdentities(result, targets, begin);
   const bool mayGroupRows =
-      device_.programs().stage() == assemble::Stage::Compute && assemble::mayGroupRows(reduction_);
+      device_.programs().selected().stage() == assemble::Stage::Compute && assemble::mayGroupRows(reduction_);
   PlanesLease partials(device_.memory());
   RegionLayout source;
   for (const RowsState::Level& level : rows.levels()) {

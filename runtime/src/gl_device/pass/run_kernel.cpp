@@ -33,7 +33,8 @@ void runOverOutputs(GlDevice& device, const ResolvedCall& call) {
     runPlan(device, *call.plan, {operands.get(), drawn, operands.domain(), operands.layout(), rects.get()},
             [&] { targets.begin(); });
   } else {
-    KernelProgram& program = device.programs().kernelProgram(kernel, operands.get(), operands.domain());
+    KernelProgram& program =
+        device.programs().selected().kernelProgram(kernel, operands.get(), operands.domain());
     const PreparedPass pass = preparedPass(device, program, targets.planes());
     targets.begin();
     runKernel(device, pass, kernel, operands.get(), operands.domain(), rects.get(), targets.planes());
@@ -44,7 +45,7 @@ void runOverOutputs(GlDevice& device, const ResolvedCall& call) {
 }  // namespace
 
 void GlDevice::run(const ResolvedCall& call) {
-  checkOptions(call.kernel, call.options);
+  programs_.checkOptions(call.kernel, call.options);
   runUnchecked(call);
 }
 
@@ -55,11 +56,11 @@ void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> argu
 
 void GlDevice::runUnchecked(const ResolvedCall& called) {
   const ResolvedCall call = called.of(precisionVariant(called.kernel, called.options), limits);
-  const assemble::Stage stage =
-      stageOf(call.kernel, classOf(call.kernel, call.options.order), call.options, call.domain.size());
+  const assemble::Stage stage = programs_.stageOf(call.kernel, classOf(call.kernel, call.options.order),
+                                                  call.options, call.domain.size());
   const DeviceScope scope(*this);
   const gl::LabelGroup group(context().labels(), called.kernel.name);
-  selectPrograms(call.options, stage);
+  programs_.select(call.options, stage);
   checkStorages(call.kernel, call.arguments, call.specs, call.plan);
   if (!hasAppendOutputs(call.kernel)) {
     runOverOutputs(*this, call);

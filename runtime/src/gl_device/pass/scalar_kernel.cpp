@@ -197,7 +197,7 @@ class PreparedScalars final : public RecordedCall {
   PreparedScalars(GlDevice& device, ScalarPass pass)
       : device_(device),
         pass_(std::move(pass)),
-        kernel_(device.scalarKernels.keep(KernelText(pass_).make())) {
+        kernel_(device.programs().scalarKernels().keep(KernelText(pass_).make())) {
     device.checkProgram(kernel_->kernel);
     for (const StreamRegion& read : pass_.reads) arguments_.push_back({.region = read});
     for (const ScalarPass::Number& number : pass_.numbers)

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "gl_device/gl_device.hpp"
+#include "gl_device/gl_programs.hpp"
 
 namespace sk {
 
@@ -33,7 +33,7 @@ void MadeKernels::makeRoom() {
       if (oldest == kernels_.end() || kept->second.used < oldest->second.used) oldest = kept;
     }
     if (oldest == kernels_.end()) return;
-    device_.forget(oldest->second.kernel->kernel);
+    owner_.forget(oldest->second.kernel->kernel);
     kernels_.erase(oldest);
   }
 }

@@ -18,7 +18,7 @@
 
 namespace sk {
 
-class GlDevice;
+class GlPrograms;
 
 /// A kernel and what it refers to.
 struct MadeKernel {
@@ -38,7 +38,7 @@ struct MadeKernel {
 
 class MadeKernels {
  public:
-  explicit MadeKernels(GlDevice& device) : device_(device) {}
+  explicit MadeKernels(GlPrograms& owner) : owner_(owner) {}
 
   /// Returns the kernel with the body of `made`, which is `made` if there is none yet. It is kept while anybody holds it,
   /// and then until `most` others have been used after it.
@@ -56,7 +56,7 @@ class MadeKernels {
 
   void makeRoom();
 
-  GlDevice& device_;
+  GlPrograms& owner_;
   std::size_t most_ = 256;  // more than the passes of an iteration of a large loop need
   std::map<std::string_view, Kept> kernels_;  ///< by their bodies, which have all types
   std::int64_t clock_ = 0;

@@ -25,7 +25,7 @@ const program::Element& elementOfFloats() { return ElementTraits<float>::element
 class Scalars {
  public:
   Scalars() {
-    device.scalarKernels.setMost(most);
+    device.programs().scalarKernels().setMost(most);
     const float one = 1;
     x_->write(wholeOf(*x_), reinterpret_cast<const std::byte*>(&one));
   }
@@ -80,7 +80,7 @@ TEST_CASE("of kernels for scalars, those that were not used for longest are dele
     CHECK(scalars.result() == 2);
     if (times == Scalars::most) programs = scalars.programs();
   }
-  CHECK(scalars.device.scalarKernels.size() == Scalars::most);
+  CHECK(scalars.device.programs().scalarKernels().size() == Scalars::most);
   CHECK(scalars.programs() == programs);
   scalars.adding(3)->run();  // anew
   CHECK(scalars.result() == 4);
@@ -98,12 +98,12 @@ TEST_CASE("a kernel for scalars stays while a loop holds it") {
   held.clear();
   scalars.adding(20)->run();
   CHECK(scalars.result() == 21);
-  CHECK(scalars.device.scalarKernels.size() == Scalars::most);
+  CHECK(scalars.device.programs().scalarKernels().size() == Scalars::most);
 }
 
 TEST_CASE("of kernels that merge texels, those that were not used for longest are deleted") {
   GlDevice device(gl::openContext({"software", gl::Api::Gl}), {});
-  device.mergeKernels.setMost(3);
+  device.programs().mergeKernels().setMost(3);
   constexpr std::int64_t width = 64;
   const auto from = device.createStream(elementOfFloats(), {2, 8}, Storage::Single);
   const auto to = device.createStream(elementOfFloats(), {8, width}, Storage::Single);
@@ -122,7 +122,7 @@ TEST_CASE("of kernels that merge texels, those that were not used for longest ar
     for (std::int64_t k = 0; k < 16; ++k) {
       expected[static_cast<std::size_t>(first + k / 8 * distance + k % 8)] = static_cast<float>(i);
     }
-    most = std::max(most, device.mergeKernels.size());
+    most = std::max(most, device.programs().mergeKernels().size());
   }
   std::vector<float> all(expected.size());
   to->read(detail::wholeRegion(to.get()), reinterpret_cast<std::byte*>(all.data()));

@@ -50,8 +50,8 @@ void ProgramBinaries::store(std::string_view sources, const gl::Program& program
 }
 
 ProgramBuild::ProgramBuild(GlDevice& device, gl::ProgramSources sources)
-    : sources_(std::move(sources)), isKept_(device.binaries.areKept()) {
-  if (isKept_) loaded_ = device.binaries.load(device.bound(), key());
+    : sources_(std::move(sources)), isKept_(device.programs().binaries().areKept()) {
+  if (isKept_) loaded_ = device.programs().binaries().load(device.bound(), key());
   if (!loaded_) pending_ = gl::PendingProgram(device.bound(), sources_, isKept_);
 }
 
@@ -60,7 +60,7 @@ gl::Program ProgramBuild::finish(GlDevice& device, std::string& log) {
   traced.add("cache", loaded_ ? "hit" : isKept_ ? "miss" : "off");
   if (loaded_) return std::move(loaded_);
   gl::Program program = pending_.finish(log);
-  if (program && isKept_) device.binaries.store(key(), program);
+  if (program && isKept_) device.programs().binaries().store(key(), program);
   return program;
 }
 

@@ -208,7 +208,7 @@ void ProgramCache::findTables(KernelProgram& result, const program::Kernel& kern
   for (const program::TableUse& use : kernel.tables) {
     const FunctionTable& table = device_.tables.of(*use.table, device_.configuration);
     result.tables.push_back(
-        {device_.textureOf(table),
+        {device_.programs().textureOf(table),
          gl::FieldUniform(result.program.location(assemble::rangeName(use.name)), {&range, 1}),
          {table.report.range.low, table.perUnit, static_cast<float>(table.report.range.intervals)}});
     device_.bound().program(result.program.name());

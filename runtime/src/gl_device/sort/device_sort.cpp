@@ -238,7 +238,7 @@ std::optional<std::int64_t> GlDevice::reorder(const Reordering& reordering) {
     return std::nullopt;
   const DeviceScope scope(*this);
   const gl::LabelGroup group(context().labels(), "sort");
-  selectPrograms({}, assemble::Stage::Compute);
+  programs_.select({}, assemble::Stage::Compute);
   return sortByDispatches(*this, reordering);
 }
 

@@ -15,16 +15,17 @@
 namespace sk {
 
 class GlDevice;
+class GlPrograms;
 
 /// The programs of sorts, which are compiled on first use and kept as long as the device.
 class SortPrograms {
  public:
-  explicit SortPrograms(GlDevice& device) : device_(device) {}
+  explicit SortPrograms(GlPrograms& owner) : owner_(owner) {}
   /// Throws sk::Error if the driver rejects it.
   IntegerProgram& of(assemble::RadixStep step, assemble::RadixStorage storage = {});
 
  private:
-  GlDevice& device_;
+  GlPrograms& owner_;
   std::array<std::unique_ptr<IntegerProgram>, 4 * assemble::radixSteps> programs_;  ///< for each RadixStorage
 };
 

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device/sort/word_sort.hpp"
 
-#include <memory>
-#include <string>
-
-#include <fmt/format.h>
-
 #include "assemble/reduce/scan_tiles.hpp"
-#include "gl/commands.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "gl_device/pass/pass_trace.hpp"
 #include "gl_device/sort/device_sort.hpp"
-#include "sk/error.hpp"
 
 namespace sk {
 
@@ -119,7 +112,7 @@ void WordSort::run(RadixStep step, std::string_view name, std::initializer_list<
                    std::initializer_list<WordTexture*> written, std::initializer_list<Uniform> uniforms,
                    std::int32_t tiles) {
   const RadixStorage storage{.reads = *read.begin() == nullptr, .writes = *written.begin() == nullptr};
-  IntegerProgram& program = device_.sortPrograms.of(step, storage);
+  IntegerProgram& program = device_.programs().ofSorts().of(step, storage);
   constexpr std::int32_t mostInRow = std::int32_t{1} << assemble::groupRowShift;
   const Rect groups{0, 0, std::min(tiles, mostInRow), divideUp(tiles, mostInRow)};
   const std::int64_t bytes =
@@ -161,19 +154,9 @@ IntegerProgram& SortPrograms::of(RadixStep step, RadixStorage storage) {
       4 * static_cast<std::size_t>(step) + (storage.reads ? 2 : 0) + (storage.writes ? 1 : 0);
   std::unique_ptr<IntegerProgram>& known = programs_[number];
   if (known) return *known;
-  std::string log;
-  gl::Program program =
-      ProgramBuild(device_, {{}, assemble::radixProgram(device_.computeProfile, step, storage)})
-          .finish(device_, log);
-  if (!program) {
-    device_.context().throwIfLost();
-    throw Error(fmt::format("the driver of '{}' refuses a program of sk::sort:\n{}",
-                            device_.capabilities.renderer, log),
-                Error::Kind::Compile);
-  }
-  known = std::make_unique<IntegerProgram>(std::move(program));
+  known = owner_.build({{}, assemble::radixProgram(owner_.computeProfile(), step, storage)},
+                       "a program of sk::sort");
   const gl::Program& linked = known->program();
-  device_.bound().program(linked.name());
   int unit = 0;
   if (step == RadixStep::Sum) {
     linked.setSampler("sk_counts", unit);

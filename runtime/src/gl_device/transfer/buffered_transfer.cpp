@@ -35,8 +35,8 @@ std::size_t BufferedRead::add(const Element& element, std::span<RenderTarget> pl
   parts_.push_back({&element, region, blocks_.size()});
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const gl::Format& format = planes[i].texture.format();
-    const gl::Transfer transfer = readTransferOf(device_, planes[i]);
-    forEachCopyRegion(region, readsByRows(device_, region, format.texelBytes()),
+    const gl::Transfer transfer = readTransferOf(device_.context(), planes[i]);
+    forEachCopyRegion(region, readsByRows(device_.traits, region, format.texelBytes()),
                       [&](const CopyRegion& place) {
                         blocks_.push_back({i, &planes[i], &format, transfer, place, bytes_});
                         bytes_ += aligned(place.texels() * transfer.texelBytes());
@@ -51,7 +51,7 @@ void BufferedRead::begin() {
     if (!bound.allocate(device_.bound().errors, bytes_)) failForMemory(device_, bytes_);
     lease_.held.bytes = bytes_;
     for (const Block& block : blocks_) {
-      readTexels(device_, *block.target, block.place.rect, block.transfer, atOffset(block.offset));
+      readTexels(device_.bound(), *block.target, block.place.rect, block.transfer, atOffset(block.offset));
     }
   }
   device_.bound().errors.setAside();
@@ -93,7 +93,7 @@ void BufferedRead::unpack(const Part& part, const Block& block, const std::byte*
 void readToBuffer(GlDevice& device, RenderTarget& plane, const RegionLayout& region, GLuint buffer,
                   std::size_t offset) {
   const gl::Transfer transfer = plane.texture.format().tight;
-  if (!(readTransferOf(device, plane) == transfer)) {
+  if (!(readTransferOf(device.context(), plane) == transfer)) {
     throw Error(
         fmt::format("fillBuffer: '{}' does not read texels of {} as they are; use a stream of vectors of 4",
                     device.name(), plane.texture.format().name));
@@ -108,7 +108,7 @@ void readToBuffer(GlDevice& device, RenderTarget& plane, const RegionLayout& reg
         buffer, bound.size(device.bound().errors), needed));
   }
   forEachCopyRegion(region, [&](const CopyRegion& part) {
-    readTexels(device, plane, part.rect, transfer,
+    readTexels(device.bound(), plane, part.rect, transfer,
                atOffset(offset + static_cast<std::size_t>(part.first) * texelBytes));
   });
 }
@@ -138,7 +138,7 @@ void writeBuffered(GlDevice& device, const Element& element, std::span<RenderTar
   for (RenderTarget& plane : planes) {
     const std::size_t texelBytes = plane.texture.format().texelBytes();
     forEachCopyRegion(region, [&](const CopyRegion& part) {
-      writeTexels(device, plane, part.rect,
+      writeTexels(device.bound(), plane, part.rect,
                   atOffset(offset + static_cast<std::size_t>(part.first) * texelBytes));
     });
     offset += aligned(count * texelBytes);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -126,7 +125,7 @@ void GlStaging::copyBoxes(std::span<const PlaneBox> boxes) {
   gl::BoundState& bound = device_.bound();
   const PlaneBox& first = boxes.front();
   const gl::Texture& texture = first.stream->planes[first.plane].texture;
-  IntegerProgram& program = device_.stagingPrograms.of(way_, texture.format(), texture.isLayered());
+  IntegerProgram& program = device_.programs().ofStaging().of(way_, texture.format(), texture.isLayered());
   bound.program(program.program().name());
   if (way_ == Way::ToHost) {
     bound.texture(0, texture.name(), texture.isLayered());
@@ -172,21 +171,10 @@ IntegerProgram& StagingPrograms::of(Staging::Way way, const gl::Format& format, 
   std::unique_ptr<IntegerProgram>& known =
       programs_[static_cast<std::size_t>(way)][std::pair(format.index, isLayered)];
   if (known) return *known;
-  std::string log;
   const bool writesTexels = way == Staging::Way::ToDevice;
-  gl::Program program =
-      ProgramBuild(
-          device_,
-          {{}, assemble::stagingProgram(device_.computeProfile, writesTexels, format.name, isLayered)})
-          .finish(device_, log);
-  if (!program) {
-    device_.context().throwIfLost();
-    throw Error(
-        fmt::format("the driver of '{}' refuses a program that copies halos:\n{}", device_.name(), log),
-        Error::Kind::Compile);
-  }
-  known = std::make_unique<IntegerProgram>(std::move(program));
-  device_.bound().program(known->program().name());
+  known = owner_.build(
+      {{}, assemble::stagingProgram(owner_.computeProfile(), writesTexels, format.name, isLayered)},
+      "a program that copies halos");
   known->program().setSampler("sk_texels", 0);
   return *known;
 }

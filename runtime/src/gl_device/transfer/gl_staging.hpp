@@ -19,17 +19,18 @@
 namespace sk {
 
 class GlDevice;
+class GlPrograms;
 class GlStream;
 
 /// Its programs, which are compiled on first use and kept as long as the device.
 class StagingPrograms {
  public:
-  explicit StagingPrograms(GlDevice& device) : device_(device) {}
+  explicit StagingPrograms(GlPrograms& owner) : owner_(owner) {}
   /// Throws sk::Error if the driver rejects it.
   IntegerProgram& of(Staging::Way way, const gl::Format& format, bool isLayered);
 
  private:
-  GlDevice& device_;
+  GlPrograms& owner_;
   std::map<std::pair<std::size_t, bool>, std::unique_ptr<IntegerProgram>> programs_[2];
 };
 

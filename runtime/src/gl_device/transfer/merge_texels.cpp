@@ -95,7 +95,7 @@ std::shared_ptr<const MadeKernel> mergeKernel(GlDevice& device, const program::E
   made->kernel.body = made->body;
   made->kernel.parameters = made->parameters;
   made->kernel.usesIndex = true;
-  return device.mergeKernels.keep(std::move(made));
+  return device.programs().mergeKernels().keep(std::move(made));
 }
 
 /// The texels from the region's first to its last one, with those of the rows between.
@@ -139,7 +139,7 @@ gl::ColorMask maskOf(const RegionLayout& target, const Columns& columns, std::in
 
 bool mayMerge(GlDevice& device, const RegionLayout& source, const RegionLayout& target) {
   const std::int32_t step = target.stride[0];
-  return device.programs().stage() == assemble::Stage::Fragment && !device.bound().isLogged() &&
+  return device.programs().selected().stage() == assemble::Stage::Fragment && !device.bound().isLogged() &&
          target.packed && target.strided && !target.linear && !target.numbered &&
          (step == 1 || step == 2 || step == 4) && !source.layered &&
          std::equal(source.extent.begin(), source.extent.end(), target.extent.begin());
@@ -149,7 +149,7 @@ void prepareMerge(GlDevice& device, const program::Element& element, const Regio
                   const RegionLayout& target) {
   const Merge merge(device, element, source, target);
   const Operand operands[] = {{nullptr, merge.read, {}}, {}};
-  device.programs().kernelProgram(merge.kernel, operands, merge.domain);
+  device.programs().selected().kernelProgram(merge.kernel, operands, merge.domain);
 }
 
 void mergeTexels(GlDevice& device, const program::Element& element, std::span<RenderTarget> from,

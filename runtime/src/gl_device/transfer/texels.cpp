@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device/transfer/texels.hpp"
 
-#include "gl_device/gl_device.hpp"
 #include "gl_device/memory/element_packing.hpp"
 
 namespace sk {
@@ -51,28 +50,28 @@ void forEachRun(const RegionLayout& region, const CopyRegion& part, Visit&& visi
 
 }  // namespace
 
-void writeTexels(GlDevice& device, RenderTarget& plane, const Rect& rect, const std::byte* texels) {
+void writeTexels(gl::BoundState& bound, RenderTarget& plane, const Rect& rect, const std::byte* texels) {
   const std::size_t texelBytes = plane.texture.format().texelBytes();
   forEachLayerOf(plane, rect, texelBytes, [&](const Rect& part, std::int32_t layer, std::size_t above) {
-    plane.texture.write(device.bound(), part, layer, texels + above);
+    plane.texture.write(bound, part, layer, texels + above);
   });
 }
 
-void readTexels(GlDevice& device, RenderTarget& plane, const Rect& rect, const gl::Transfer& transfer,
+void readTexels(gl::BoundState& bound, RenderTarget& plane, const Rect& rect, const gl::Transfer& transfer,
                 std::byte* texels) {
-  gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound());
-  forEachLayerOf(
-      plane, rect, transfer.texelBytes(), [&](const Rect& part, std::int32_t layer, std::size_t above) {
-        if (plane.texture.isLayered()) framebuffer.selectLayer(device.bound(), layer);
-        framebuffer.read(device.bound(), transfer, part.x, part.y, part.width, part.height, texels + above);
-      });
+  gl::Framebuffer& framebuffer = plane.framebufferIn(bound);
+  forEachLayerOf(plane, rect, transfer.texelBytes(),
+                 [&](const Rect& part, std::int32_t layer, std::size_t above) {
+                   if (plane.texture.isLayered()) framebuffer.selectLayer(bound, layer);
+                   framebuffer.read(bound, transfer, part.x, part.y, part.width, part.height, texels + above);
+                 });
 }
 
 /// GL reads every format as Format::tight. ES guarantees Format::wide and one more, of the driver's choice.
-gl::Transfer readTransferOf(GlDevice& device, RenderTarget& plane) {
+gl::Transfer readTransferOf(GlContext& context, RenderTarget& plane) {
   const gl::Format& format = plane.texture.format();
-  const bool readsTight = device.capabilities.api == gl::Api::Gl || format.tight == format.wide ||
-                          plane.framebufferIn(device.bound()).readsOnEs(device.bound(), format.tight);
+  const bool readsTight = context.capabilities().api == gl::Api::Gl || format.tight == format.wide ||
+                          plane.framebufferIn(context.bound()).readsOnEs(context.bound(), format.tight);
   return readsTight ? format.tight : format.wide;
 }
 
@@ -90,12 +89,12 @@ void PlaneOfElements::unpack(const CopyRegion& part, const std::byte* texels, st
   });
 }
 
-bool readsByRows(const GlDevice& device, const RegionLayout& region, std::size_t texelBytes) {
-  return goesByRows(region, texelBytes, device.traits.readBytes, 1);
+bool readsByRows(const gl::DeviceTraits& traits, const RegionLayout& region, std::size_t texelBytes) {
+  return goesByRows(region, texelBytes, traits.readBytes, 1);
 }
 
-bool writesByRows(const GlDevice& device, const RegionLayout& region, std::size_t texelBytes) {
-  return goesByRows(region, texelBytes, device.traits.uploadBytes, 2);
+bool writesByRows(const gl::DeviceTraits& traits, const RegionLayout& region, std::size_t texelBytes) {
+  return goesByRows(region, texelBytes, traits.uploadBytes, 2);
 }
 
 }  // namespace sk

@@ -8,25 +8,26 @@
 #include <cstddef>
 
 #include "assemble/region_layout.hpp"
+#include "gl/known_devices.hpp"
+#include "gl_device/gl_context.hpp"
 #include "gl_device/memory/render_target.hpp"
 #include "gl_device/transfer/copy_regions.hpp"
 #include "sk/program.hpp"
 
 namespace sk {
 
-class GlDevice;
-
 /// An offset in the bound pixel buffer, as the address that GL functions take.
 inline std::byte* atOffset(std::size_t offset) { return static_cast<std::byte*>(nullptr) + offset; }
 
 /// Writes a rectangle of texels, whose rows are numbered across layers, from texels of Format::tight.
-void writeTexels(GlDevice& device, RenderTarget& plane, const assemble::Rect& rect, const std::byte* texels);
+void writeTexels(gl::BoundState& bound, RenderTarget& plane, const assemble::Rect& rect,
+                 const std::byte* texels);
 /// Reads such a rectangle. `transfer` must be readTransferOf(), or Format::tight if the device reads it.
-void readTexels(GlDevice& device, RenderTarget& plane, const assemble::Rect& rect,
+void readTexels(gl::BoundState& bound, RenderTarget& plane, const assemble::Rect& rect,
                 const gl::Transfer& transfer, std::byte* texels);
 
 /// The layout in which the driver reads the texels of a plane: Format::tight, or Format::wide if it cannot.
-gl::Transfer readTransferOf(GlDevice& device, RenderTarget& plane);
+gl::Transfer readTransferOf(GlContext& context, RenderTarget& plane);
 
 /// One plane of the elements of a region, which are row-major in host memory.
 struct PlaneOfElements {
@@ -43,8 +44,10 @@ struct PlaneOfElements {
 };
 
 /// Whether it is faster to read the rows that contain a region than each run of its elements.
-bool readsByRows(const GlDevice& device, const assemble::RegionLayout& region, std::size_t texelBytes);
+bool readsByRows(const gl::DeviceTraits& traits, const assemble::RegionLayout& region,
+                 std::size_t texelBytes);
 /// Whether it is faster to read these rows, change and write them than to write each run.
-bool writesByRows(const GlDevice& device, const assemble::RegionLayout& region, std::size_t texelBytes);
+bool writesByRows(const gl::DeviceTraits& traits, const assemble::RegionLayout& region,
+                  std::size_t texelBytes);
 
 }  // namespace sk

@@ -48,14 +48,14 @@ void forEachBand(const CopyRegion& whole, std::size_t texelBytes, Visit&& visit)
 void readTight(GlDevice& device, StagingBuffer& staging, RenderTarget& plane, const CopyRegion& part,
                std::byte* texels) {
   const gl::Format& format = plane.texture.format();
-  const gl::Transfer transfer = readTransferOf(device, plane);
+  const gl::Transfer transfer = readTransferOf(device.context(), plane);
   if (transfer == format.tight) {
-    readTexels(device, plane, part.rect, transfer, texels);
+    readTexels(device.bound(), plane, part.rect, transfer, texels);
     return;
   }
   forEachBand({part.rect, 0}, transfer.texelBytes(), [&](const CopyRegion& band) {
     std::byte* wide = staging.room(band.texels() * transfer.texelBytes());
-    readTexels(device, plane, band.rect, transfer, wide);
+    readTexels(device.bound(), plane, band.rect, transfer, wide);
     narrowTexels(format, wide, band.texels(),
                  texels + static_cast<std::size_t>(band.first) * format.texelBytes());
   });
@@ -71,9 +71,9 @@ void upload(GlDevice& device, const Element& element, std::span<RenderTarget> pl
     const std::size_t texelBytes = plane.format.texelBytes();
     const auto write = [&](const CopyRegion& part, const std::byte* texels) {
       writes.begin();
-      writeTexels(device, planes[i], part.rect, texels);
+      writeTexels(device.bound(), planes[i], part.rect, texels);
     };
-    forEachCopyRegion(region, writesByRows(device, region, texelBytes), [&](const CopyRegion& part) {
+    forEachCopyRegion(region, writesByRows(device.traits, region, texelBytes), [&](const CopyRegion& part) {
       if (part.first == CopyRegion::wholeRows) {
         std::vector<std::byte> rows(part.texels() * texelBytes);
         readTight(device, staging, planes[i], part, rows.data());
@@ -104,7 +104,7 @@ void download(GlDevice& device, const Element& element, std::span<RenderTarget> 
       readTight(device, staging, planes[i], part, texels.data());
       plane.unpack(part, texels.data(), elements);
     };
-    forEachCopyRegion(region, readsByRows(device, region, texelBytes), [&](const CopyRegion& part) {
+    forEachCopyRegion(region, readsByRows(device.traits, region, texelBytes), [&](const CopyRegion& part) {
       if (part.first == CopyRegion::wholeRows) {
         readPart(part);
       } else if (areTexels(element)) {
