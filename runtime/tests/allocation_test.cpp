@@ -95,7 +95,7 @@ long pagesSoFar() {
 }
 
 /// Makes calls with a new uniform each, for which llvmpipe allocates from the heap. After a warm-up, fewer than one call in
-/// four may need a new page (gl_device/memory/keep_heap.hpp); without keepHeap(), each call needs about four.
+/// four may need a new page (gl_device/gl_memory.cpp); without keepHeap(), each call needs about four.
 bool checkPages(Device& device) {
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
   static const TestKernel scale("scale", "void scale(float a, float x, out float r) { r = a * x; }\n",

@@ -31,7 +31,7 @@ runtime/src/domain    sk domain
 runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp
 runtime/src/native    sk support trace device call native assemble probe/copy_bandwidth.hpp
 runtime/src/probe     sk support trace device call gl gl_device probe assemble
-runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
+runtime/src/gl        sk gl epoxy EGL GL GLES3
 runtime/src/toml      toml
 runtime/src/gl_device sk support trace device call probe gl gl_device assemble
 runtime/src/gl_device/memory sk gl gl_device/memory device/region.hpp assemble

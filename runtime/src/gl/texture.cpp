@@ -20,24 +20,24 @@ void setNearest(GLenum target) {
   glTexParameteri(target, GL_TEXTURE_MAX_LEVEL, 0);
 }
 
-Texture::Texture(BoundState& bound, const Format& format, const assemble::TextureShape& shape)
-    : name_(bound.deletions, [] { return generated(glGenTextures); }), format_(&format), shape_(shape) {
+Texture::Texture(BoundState& bound, const Format& format, const TextureSize& size)
+    : name_(bound.deletions, [] { return generated(glGenTextures); }), format_(&format), size_(size) {
   bound.textureToChange(name(), isLayered());
   const GLenum target = isLayered() ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
   const auto internalFormat = static_cast<GLint>(format.internalFormat);
   setNearest(target);
   bound.errors.setAside();
   if (isLayered()) {
-    glTexImage3D(target, 0, internalFormat, shape.width, shape.height, shape.layers, 0, format.tight.format,
+    glTexImage3D(target, 0, internalFormat, size.width, size.height, size.layers, 0, format.tight.format,
                  format.tight.type, nullptr);
   } else {
-    glTexImage2D(target, 0, internalFormat, shape.width, shape.height, 0, format.tight.format,
+    glTexImage2D(target, 0, internalFormat, size.width, size.height, 0, format.tight.format,
                  format.tight.type, nullptr);
   }
   if (bound.errors.takeNew() != GL_NO_ERROR) name_ = {};
 }
 
-void Texture::write(BoundState& bound, const assemble::Rect& rect, GLint layer, const void* texels) {
+void Texture::write(BoundState& bound, const Texels& rect, GLint layer, const void* texels) {
   bound.spoil();
   bound.textureToChange(name(), isLayered());
   const Transfer& tight = format_->tight;
@@ -58,7 +58,7 @@ void Texture::copyLayer(BoundState& bound, GLuint framebuffer, GLint layer, GLsi
 }
 
 std::size_t Texture::bytes() const {
-  return static_cast<std::size_t>(shape_.width) * static_cast<std::size_t>(rows()) * format_->texelBytes();
+  return static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(rows()) * format_->texelBytes();
 }
 
 }  // namespace sk::gl

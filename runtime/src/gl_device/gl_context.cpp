@@ -29,6 +29,11 @@ void GlContext::throwIfLost() {
   if (bound_.errors.isLost() || (capabilities_.reportsResets && bound_.errors.askIfLost())) failAsLost();
 }
 
+void GlContext::failForMemory(std::string_view what) {
+  throwIfLost();
+  throw Error(fmt::format("'{}' has no memory for {}", capabilities_.renderer, what), Error::Kind::Memory);
+}
+
 // In a shared context, other errors than exhausted memory and a lost context may come of restoring what the application has
 // deleted.
 GLenum GlContext::endPeriod() {

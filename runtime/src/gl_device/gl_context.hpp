@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cstdint>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "gl/bound_state.hpp"
 #include "gl/capabilities.hpp"
@@ -16,8 +18,8 @@
 
 namespace sk {
 
-/// Invariants: GL is called only while a Scope is open, and there is one at a time. While none is open, a context that the
-/// application draws in, too, has the application's state. All owners of GL objects are destroyed before the context.
+/// Invariants: passes and transfers run only while a Scope is open, and there is one at a time. While none is open, a context that
+/// the application draws in, too, has the application's state. All owners of GL objects are destroyed before the context.
 class GlContext {
  public:
   /// `isShared`: the application draws in the device's own context. The capabilities must outlive this object.
@@ -25,8 +27,6 @@ class GlContext {
       : context_(std::move(context)), capabilities_(capabilities), isShared_(isShared) {}
   /// Deletes the objects whose owners have been destroyed. If the context cannot be made current, they are deleted with it.
   ~GlContext();
-  GlContext(const GlContext&) = delete;
-  GlContext& operator=(const GlContext&) = delete;
 
   const gl::Capabilities& capabilities() const { return capabilities_; }
   gl::BoundState& bound() { return bound_; }
@@ -44,6 +44,8 @@ class GlContext {
   /// Throws sk::Error if the context is lost. Queries the driver: call this after a failure that a lost
   /// context would explain.
   void throwIfLost();
+  /// Throws sk::Error after a failure for want of memory for `what`, unless a lost context explains it.
+  [[noreturn]] void failForMemory(std::string_view what);
 
   /// The number of the current period. A period ends whenever the driver's errors are queried: an error
   /// breaks the streams that were written in it.
@@ -69,42 +71,24 @@ class GlContext {
 /// would take the runtime's state for the application's.
 class GlContext::Scope {
  public:
-  explicit Scope(GlContext& context) : turn_(context.isInScope_), current_(context.living()) {
-    if (context.isGuest()) {
-      context.bound_.errors.skipApplications();
-      ended_.errors = &context.bound_.errors;
-    }
+  explicit Scope(GlContext& context) : context_(context), current_(context.living()) {
+    assert(!context.isInScope_);
+    context.isInScope_ = true;
+    if (context.isGuest()) context.bound_.errors.skipApplications();
     context.bound_.deleteQueued();
     if (context.isGuest()) saved_.emplace(context.capabilities_, context.bound_);
   }
+  ~Scope() {
+    saved_.reset();
+    if (context_.isGuest()) context_.bound_.errors.setAside();  // the application shall not find them
+    context_.isInScope_ = false;
+  }
+  Scope(const Scope&) = delete;
+  Scope& operator=(const Scope&) = delete;
 
  private:
-  struct Turn {
-    explicit Turn(bool& isInScope) : isTaken(isInScope) {
-      assert(!isTaken);
-      isTaken = true;
-    }
-    ~Turn() { isTaken = false; }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-
-    bool& isTaken;
-  };
-  /// Keeps the device's errors from the application.
-  struct Ended {
-    Ended() = default;
-    ~Ended() {
-      if (errors != nullptr) errors->setAside();
-    }
-    Ended(const Ended&) = delete;
-    Ended& operator=(const Ended&) = delete;
-
-    gl::Errors* errors = nullptr;
-  };
-
-  const Turn turn_;
-  gl::CurrentScope current_;
-  Ended ended_;
+  GlContext& context_;
+  const gl::CurrentScope current_;
   std::optional<gl::SavedState> saved_;
 };
 

@@ -3,6 +3,7 @@
 // Construction and destruction of a device, its checks of calls, and how it reports the driver's errors.
 #include "gl_device/gl_device.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <mutex>
 #include <utility>
@@ -12,9 +13,9 @@
 #include "assemble/append/append_passes.hpp"
 #include "call/check_argument.hpp"
 #include "device/loop_state.hpp"
+#include "device/region.hpp"
 #include "gl/commands.hpp"
 #include "gl_device/gl_stream.hpp"
-#include "gl_device/memory/keep_heap.hpp"
 #include "gl_device/pass/pass_trace.hpp"
 #include "gl_device/transfer/pending_read.hpp"
 #include "probe/copy_bandwidth.hpp"
@@ -47,7 +48,6 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
   limits.memory = memory_.info().whole;
   if (!context_.isGuest()) gl::setPassState(capabilities);
   if (capabilities.hasLabels && capabilities.isDebugged) context_.labels().turnOn();
-  if (capabilities.isSoftware) keepHeap();
 }
 
 GlDevice::~GlDevice() {
@@ -142,6 +142,24 @@ void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argu
          "those of vectors with Storage::Single",
          written, read, limits.drawBuffers, limits.textureUnits);
   }
+}
+
+// Kernels read elements at any address, but draw to rectangles, and passes of reductions and of append outputs read these.
+bool GlDevice::needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) {
+  const program::Role role = kernel.parameters[i].role;
+  if (role == program::Role::Uniform) return false;
+  if (role == program::Role::Scatter) return true;  // points are placed by the rank of the stream
+  if (!needsDense(arguments[i].region)) return false;
+  if (isPlaced(arguments[i].region)) return true;
+  const bool readsRectangles =
+      std::ranges::any_of(kernel.parameters, [](const program::Parameter& parameter) {
+        return parameter.role == program::Role::Accumulator || assemble::isAppendOutput(parameter);
+      });
+  return readsRectangles || (role != program::Role::Input && role != program::Role::Gather);
+}
+
+bool GlDevice::needsDense(const StreamRegion& region) {
+  return regionLayoutOf(region, glStream(region).layout).strided;
 }
 
 // An adopted context is either current already, or cannot be made current.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +12,31 @@
 #include "support/host_memory.hpp"
 
 namespace sk {
+
+namespace {
+
+/// Makes glibc keep free memory at the end of the heap instead of returning it to the system. llvmpipe
+/// allocates tens of KiB for each draw whose uniforms have changed, and frees them after drawing. By default,
+/// glibc trims the heap from 128 KiB on, so that every draw faults in new pages, which takes several times as
+/// long as the rest of a call. When a program frees a large block, glibc raises the limit to twice the
+/// block's size (mallopt(3), M_TRIM_THRESHOLD): this function frees one whose pages were never touched. It
+/// has no effect with other C libraries, or if MALLOC_TRIM_THRESHOLD_ or mallopt() sets the limit.
+void keepHeap() noexcept {
+  // the largest block from which glibc adapts its thresholds (M_MMAP_THRESHOLD), less room for its header
+  constexpr std::size_t bytes = (std::size_t{32} << 20) - (std::size_t{64} << 10);
+  void* volatile block = std::malloc(bytes);  // volatile: a compiler may remove an unused allocation
+  std::free(block);
+}
+
+}  // namespace
+
+GlMemory::GlMemory(GlContext& context, const std::unique_ptr<Trace>& trace)
+    : context_(context),
+      trace_(trace),
+      framebuffers_(context.bound()),
+      pool_(context.bound(), framebuffers_) {
+  if (context.capabilities().isSoftware) keepHeap();
+}
 
 std::vector<RenderTarget> GlMemory::acquire(const program::Element& element,
                                             const assemble::TextureShape& shape, std::string_view whatFor) {
@@ -34,14 +60,11 @@ void GlMemory::add(std::vector<RenderTarget>& planes, const program::Element& el
 
 void GlMemory::failForPlanes(const program::Element& element, const gl::Format& format,
                              const assemble::TextureShape& shape, std::string_view whatFor) {
-  context_.throwIfLost();
   const std::int64_t texels = std::int64_t{shape.width} * shape.height * std::max(shape.layers, 1);
-  throw Error(
-      fmt::format("'{}' has no memory for {}: {} texture(s) of {} x {}{} texels, one of them of {} MiB",
-                  context_.capabilities().renderer, whatFor, element.fields.size(), shape.width, shape.height,
-                  shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
-                  (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20),
-      Error::Kind::Memory);
+  context_.failForMemory(fmt::format("{}: {} texture(s) of {} x {}{} texels, one of them of {} MiB", whatFor,
+                                     element.fields.size(), shape.width, shape.height,
+                                     shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
+                                     (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20));
 }
 
 void GlMemory::release(std::vector<RenderTarget>& planes) noexcept {

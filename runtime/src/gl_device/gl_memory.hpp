@@ -12,7 +12,6 @@
 
 #include "gl/memory_info.hpp"
 #include "gl_device/gl_context.hpp"
-#include "gl_device/memory/framebuffer_cache.hpp"
 #include "gl_device/memory/kept_scratch.hpp"
 #include "gl_device/memory/render_target.hpp"
 #include "gl_device/transfer/transfer_buffers.hpp"
@@ -25,11 +24,7 @@ namespace sk {
 class GlMemory {
  public:
   /// `trace` is the device's, which may begin later; it and the context must outlive this object.
-  GlMemory(GlContext& context, const std::unique_ptr<Trace>& trace)
-      : context_(context),
-        trace_(trace),
-        framebuffers_(context.bound()),
-        pool_(context.bound(), framebuffers_) {}
+  GlMemory(GlContext& context, const std::unique_ptr<Trace>& trace);
 
   /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
   /// their purpose `whatFor`, if memory is exhausted.

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -23,6 +24,7 @@
 namespace sk {
 
 class PassTrace;
+class Trace;
 
 /// The buffers that dispatches work on.
 enum class PassBuffer : std::uint8_t {
@@ -36,7 +38,10 @@ enum class PassBuffer : std::uint8_t {
 };
 
 /// What a dispatch writes for later commands.
-enum class Writes : std::uint8_t { Texels, Storage /**< and a buffer */ };
+enum class Writes : std::uint8_t {
+  Texels,
+  Storage,  ///< and a buffer
+};
 
 /// Invariants: a dispatch begins after whatever was drawn or copied before it, since it may overwrite what that still reads; what it
 /// writes is visible to all later commands. Apart from PassBuffer::Folded, a buffer belongs to one call at a time.
@@ -45,8 +50,6 @@ class GlPasses {
   /// The context must outlive this object.
   explicit GlPasses(GlContext& context);
   ~GlPasses();
-  GlPasses(const GlPasses&) = delete;
-  GlPasses& operator=(const GlPasses&) = delete;
 
   /// Must be called when a call begins. Deletes buffers that have been idle for a number of calls.
   void beginCall();
@@ -70,11 +73,11 @@ class GlPasses {
     if (writes == Writes::Storage) gl::finishStorage(context_.bound());
   }
 
-  /// Whether something has been drawn or copied since the last dispatch: for who repeats commands, and then sets it to what it was
-  /// after them.
+  /// Whether something has been drawn or copied since the last dispatch. Code that repeats commands sets it to what it was after
+  /// them.
   bool hasDrawn() const { return hasDrawn_; }
   void setDrawn(bool hasDrawn) { hasDrawn_ = hasDrawn; }
-  /// Has later dispatches begin after whatever has been drawn or copied.
+  /// Makes later dispatches begin after whatever has been drawn or copied.
   void orderAfterDraws() {
     if (std::exchange(hasDrawn_, false)) gl::finishDraws(context_.bound());
   }

@@ -182,11 +182,8 @@ GLuint GlPrograms::textureOf(const FunctionTable& table) {
     texture = gl::Texture(device_.bound(), gl::formatOf(program::Scalar::Float, width),
                           {assemble::tableWidth, rows});
     if (texture.name() == 0) {
-      device_.context().throwIfLost();
-      throw Error(
-          fmt::format("'{}' has no memory for the table of '{}': {} KiB", device_.capabilities.renderer,
-                      table.report.function, texels.size() * sizeof(float) >> 10),
-          Error::Kind::Memory);
+      device_.context().failForMemory(fmt::format("the table of '{}': {} KiB", table.report.function,
+                                                  texels.size() * sizeof(float) >> 10));
     }
     texture.write(device_.bound(), {0, 0, assemble::tableWidth, rows}, 0, texels.data());
   }

@@ -51,8 +51,6 @@ class GlPrograms {
   /// The device's context must exist, and the device must outlive this object. Throws sk::Error if the device lacks the chosen
   /// barrier or target.
   GlPrograms(GlDevice& device, const DeviceChoices& choices);
-  GlPrograms(const GlPrograms&) = delete;
-  GlPrograms& operator=(const GlPrograms&) = delete;
 
   /// The profile of fragment programs: the table's row, adapted to the device.
   const assemble::Profile& profile() const { return profile_; }
@@ -84,6 +82,8 @@ class GlPrograms {
   /// Selects fragment programs for a call that compute programs cannot run. Throws sk::Error if the kernel has none.
   void selectDrawn(const program::Kernel& kernel, const CallOptions& options);
   ProgramCache& selected() { return *selected_; }
+  /// Whether the selected programs are compute programs.
+  bool areDispatched() const { return selected_->stage() == assemble::Stage::Compute; }
 
   /// Builds a program that contains no kernel, and binds it. Throws sk::Error, which says of `what` it is, if the driver rejects it.
   std::unique_ptr<IntegerProgram> build(gl::ProgramSources sources, std::string_view what);

@@ -304,7 +304,7 @@ StreamTexture GlStream::texture(int plane) {
     unpack();
   }
   const gl::Texture& texture = planes[static_cast<std::size_t>(plane)].texture;
-  const assemble::TextureShape& extents = texture.shape();
+  const gl::TextureSize& extents = texture.size();
   return {texture.name(), texture.format().internalFormat, extents.width, extents.height, layout.whole.linear,
           extents.layers};
 }

@@ -205,7 +205,7 @@ bool hasAppendOutputs(const Kernel& kernel) {
 }
 
 void runWithAppendOutputs(GlDevice& device, const ResolvedCall& call) {
-  if (device.programs().selected().stage() == assemble::Stage::Compute) {
+  if (device.programs().areDispatched()) {
     if (dispatchAppends(device, call)) return;
     device.programs().selectDrawn(call.kernel, call.options);
   }

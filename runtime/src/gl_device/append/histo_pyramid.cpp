@@ -40,7 +40,7 @@ HistoPyramid::HistoPyramid(GlDevice& device, RenderTarget& counts, const Layout&
 /// Draws a level over the counts, or over the nodes of the level below, which begins in row `belowRow`.
 void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below, bool ofCounts,
                         std::int32_t belowRow) {
-  const assemble::TextureShape& shape = below.texture.shape();
+  const gl::TextureSize& shape = below.texture.size();
   IntegerProgram& program =
       device_.programs().ofAppends().pyramid({ofCounts, below.texture.isLayered(), plan_.isLayered()});
   const auto number = static_cast<std::size_t>(&level - plan_.levels.data()) + 1;

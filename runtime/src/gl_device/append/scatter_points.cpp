@@ -95,7 +95,7 @@ void Scatterer::extremeIntegers() {
 
 /// Adds a plane of floats, as large as the output's planes.
 void Scatterer::takeFloats(PlanesLease& lease, int width) {
-  lease.add(floatsOf(width), planes_.front().texture.shape(), whatFor);
+  lease.add(floatsOf(width), planes_.front().shape(), whatFor);
 }
 
 /// Binds planes from unit 2 on, behind the two of a list, or of the elements. Returns the next unit.
@@ -124,7 +124,7 @@ void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> 
   const DrawTarget drawn = target(targets);
   bindPlanes(device_, list_, 0);
   const gl::Texture& texture = targets.front().texture;
-  const assemble::TextureShape& shape = texture.shape();
+  const gl::TextureSize& shape = texture.size();
   program.set(device_.bound(), "sk_list_shift", listLayout_.shift);
   program.set(device_.bound(), "sk_first", first);
   program.set(device_.bound(), "sk_size", gl::Int4{shape.width, shape.height, 0, 0});

@@ -3,6 +3,7 @@
 // Scratch of calls, whose memory is kept for the next call, so that a repeated call allocates none.
 #pragma once
 
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,13 @@ class KeptScratch {
     Lease(const Lease&) = delete;
     Lease& operator=(const Lease&) = delete;
 
-    std::vector<T> values;  ///< what an earlier call has left there
+    /// The first `count` values: what an earlier call has left there, or zeros.
+    T* room(std::size_t count) {
+      if (values.size() < count) values.resize(count);
+      return values.data();
+    }
+
+    std::vector<T> values;
 
    private:
     KeptScratch& kept_;

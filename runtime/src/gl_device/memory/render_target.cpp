@@ -14,6 +14,32 @@ gl::Framebuffer& RenderTarget::framebufferIn(gl::BoundState& bound) {
   return framebuffer;
 }
 
+std::size_t FramebufferCache::Hash::operator()(const Key& key) const {
+  std::size_t hash = 0;
+  for (const GLuint name : key) {
+    hash = (hash ^ name) * 0x9E3779B97F4A7C15u;
+  }
+  return hash ^ hash >> 32;
+}
+
+gl::Framebuffer* FramebufferCache::framebufferOf(std::span<const GLuint> textures, bool isLayered) {
+  Key key{};
+  std::copy(textures.begin(), textures.end(), key.begin());
+  if (const auto found = framebuffers_.find(key); found != framebuffers_.end()) {
+    return &found->second;
+  }
+  if (framebuffers_.size() >= capacity) framebuffers_.clear();
+  gl::Framebuffer framebuffer(bound_, textures, isLayered);
+  if (!gl::Framebuffer::isComplete()) return nullptr;
+  return &framebuffers_.emplace(key, std::move(framebuffer)).first->second;
+}
+
+void FramebufferCache::dropTexture(GLuint texture) {
+  std::erase_if(framebuffers_, [&](const auto& entry) {
+    return std::find(entry.first.begin(), entry.first.end(), texture) != entry.first.end();
+  });
+}
+
 std::uint64_t TexturePool::key(const gl::Format& format, const assemble::TextureShape& shape) {
   constexpr unsigned sizeBits = 20;
   constexpr unsigned layerBits = 16;
@@ -29,11 +55,12 @@ RenderTarget TexturePool::acquire(const gl::Format& format, const assemble::Text
     if (RenderTarget reserved = acquireReserved(shapeKey)) return reserved;
   }
   RenderTarget renderTarget = acquireIdle(shapeKey);
-  if (!renderTarget) renderTarget.texture = gl::Texture(bound_, format, shape);
+  const gl::TextureSize size{shape.width, shape.height, shape.layers};
+  if (!renderTarget) renderTarget.texture = gl::Texture(bound_, format, size);
   if (!renderTarget && bytes_ > 0) {
     deleteOlderThan(clock_ + 1);
     bound_.deleteQueued();
-    renderTarget.texture = gl::Texture(bound_, format, shape);
+    renderTarget.texture = gl::Texture(bound_, format, size);
   }
   if (!renderTarget) return renderTarget;
   Bucket& bucket = buckets_[shapeKey];
@@ -46,7 +73,7 @@ RenderTarget TexturePool::acquire(const gl::Format& format, const assemble::Text
 RenderTarget TexturePool::acquireReserved(std::uint64_t shapeKey) {
   std::vector<RenderTarget>& idle = reserve_->idle;
   const auto fits = [&](const RenderTarget& one) {
-    return key(one.texture.format(), one.texture.shape()) == shapeKey;
+    return key(one.texture.format(), one.shape()) == shapeKey;
   };
   const auto last = std::find_if(idle.rbegin(), idle.rend(), fits);
   auto found = last == idle.rend() ? idle.end() : std::prev(last.base());
@@ -97,9 +124,8 @@ void TexturePool::release(RenderTarget&& renderTarget) noexcept {
     }
     reserve_->hasOverflown = true;
   }
-  const gl::Texture& texture = renderTarget.texture;
-  const std::size_t bytes = texture.bytes();
-  Bucket& bucket = buckets_.find(key(texture.format(), texture.shape()))->second;
+  const std::size_t bytes = renderTarget.texture.bytes();
+  Bucket& bucket = buckets_.find(key(renderTarget.texture.format(), renderTarget.shape()))->second;
   bucket.idle.push_back({std::move(renderTarget), clock_});
   --bucket.acquired;
   used_ -= static_cast<std::int64_t>(bytes);

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// A texture with the framebuffer that draws to it and reads from it, and the pool of idle render targets,
-// keyed by size and format. Returning one to the pool does not call GL, so that a stream may be destroyed
+// A texture with the framebuffer that draws to it and reads from it, framebuffers that draw to several, and the pool of idle render
+// targets, keyed by size and format. Returning one to the pool does not call GL, so that a stream may be destroyed
 // while the context is not current.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "assemble/region_layout.hpp"
 #include "gl/bound_state.hpp"
+#include "gl/capabilities.hpp"
 #include "gl/framebuffer.hpp"
 #include "gl/texture.hpp"
-#include "gl_device/memory/framebuffer_cache.hpp"
 
 namespace sk {
 
@@ -23,7 +25,33 @@ struct RenderTarget {
   gl::Framebuffer framebuffer;   ///< created on first use
 
   gl::Framebuffer& framebufferIn(gl::BoundState& bound);
+  assemble::TextureShape shape() const {
+    return {texture.size().width, texture.size().height, texture.size().layers};
+  }
   explicit operator bool() const { return texture.name() != 0; }
+};
+
+/// Framebuffers that draw to several textures, cached by the textures' names.
+class FramebufferCache {
+ public:
+  explicit FramebufferCache(gl::BoundState& bound) : bound_(bound) {}
+
+  /// The framebuffer that draws to `textures`: 1 to gl::maxDrawBuffers, all with layers or none. Null if the
+  /// driver cannot draw to them together. Valid until the next call.
+  gl::Framebuffer* framebufferOf(std::span<const GLuint> textures, bool isLayered);
+
+  /// Deletes the framebuffers of a texture that is about to be deleted.
+  void dropTexture(GLuint texture);
+
+ private:
+  using Key = std::array<GLuint, gl::maxDrawBuffers>;
+  struct Hash {
+    std::size_t operator()(const Key& key) const;
+  };
+  static constexpr std::size_t capacity = 256;
+
+  gl::BoundState& bound_;
+  std::unordered_map<Key, gl::Framebuffer, Hash> framebuffers_;
 };
 
 class TexturePool {

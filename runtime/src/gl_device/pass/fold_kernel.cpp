@@ -162,7 +162,7 @@ void dispatchFold(GlDevice& device, const ResolvedReduction& call, const KernelO
   program.domain.set(device.bound(), operands.domain());
   const RegionLayout texel = texelOf(target.element);
   program.foldResult.set(device.bound(), {texel.origin[0], texel.origin[1], 0, 0});
-  bindImages(device, planes);
+  bindImages(device.bound(), planes);
   dispatchTiles(device, program, tiles, rects.get());
 }
 
@@ -209,10 +209,9 @@ bool gathersInGroups(GlDevice& device, const ResolvedReduction& call) {
                           std::ranges::any_of(fold.parameters, [](const Parameter& parameter) {
                             return parameter.role == Role::Gather;
                           });
-  return device.programs().selected().stage() == assemble::Stage::Compute && isGathered &&
-         !omitsOutputs(call) && !call.scan && call.rows == nullptr && call.blocks.size() == 1 &&
-         call.domain.size() >= fewest && assemble::mayFoldInGroups(call.reduction) &&
-         fits(device, call.reduction, call);
+  return device.programs().areDispatched() && isGathered && !omitsOutputs(call) && !call.scan &&
+         call.rows == nullptr && call.blocks.size() == 1 && call.domain.size() >= fewest &&
+         assemble::mayFoldInGroups(call.reduction) && fits(device, call.reduction, call);
 }
 
 bool GlDevice::foldsBesideOutputs(const ResolvedReduction& call) {

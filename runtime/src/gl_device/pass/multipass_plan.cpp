@@ -27,7 +27,7 @@ using program::Role;
 /// texture.
 void copyLayers(GlDevice& device, RenderTarget& plane, gl::Texture& to, std::int32_t first,
                 std::int32_t step) {
-  const assemble::TextureShape& shape = plane.texture.shape();
+  const gl::TextureSize& shape = plane.texture.size();
   gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound());
   device.passes().beginCopy();
   for (std::int32_t layer = 0; layer < std::max(shape.layers, 1); ++layer) {
@@ -43,12 +43,12 @@ void copyLayers(GlDevice& device, RenderTarget& plane, gl::Texture& to, std::int
 gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const Operand> operands) {
   std::vector<RenderTarget*> planes;   // null if a stream is omitted
   const auto count = static_cast<std::int32_t>(bundle.layers.size());
-  assemble::TextureShape shape{1, 1, 1};
+  gl::TextureSize shape{1, 1, 1};
   for (const program::ArgumentPlane& place : bundle.layers) {
     const std::span<RenderTarget> renderTargets = operands[place.argument].planes;
     planes.push_back(renderTargets.empty() ? nullptr : &renderTargets[place.plane]);
     if (!renderTargets.empty()) {
-      const assemble::TextureShape& plane = renderTargets[place.plane].texture.shape();
+      const gl::TextureSize& plane = renderTargets[place.plane].texture.size();
       shape.width = std::max(shape.width, plane.width);
       shape.height = std::max(shape.height, plane.height);
       shape.layers = std::max(shape.layers, plane.layers);

@@ -32,7 +32,7 @@ void blit(GlDevice& device, RenderTarget& from, const RegionLayout& source, Rend
 /// An image binds all layers of a texture: the rows of `rects` are numbered across layers.
 void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes,
                    std::span<const Rect> rects) {
-  bindImages(device, planes);
+  bindImages(device.bound(), planes);
   const auto groups = [&](GLsizei texels, GLint group) {
     return program.isGrouped ? texels : (texels + group - 1) / group;
   };
@@ -74,7 +74,7 @@ int bindPlanes(GlDevice& device, std::span<RenderTarget> planes, int unit) {
 
 DrawTarget targetOf(gl::BoundState& bound, RenderTarget& plane) {
   const gl::Texture& texture = plane.texture;
-  return {&plane.framebufferIn(bound), texture.isLayered() ? texture.shape().height : 0};
+  return {&plane.framebufferIn(bound), texture.isLayered() ? texture.size().height : 0};
 }
 
 DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
@@ -83,13 +83,13 @@ DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
     return targetOf(device.bound(), first);
   }
   return {&device.memory().framebufferOf(planes),
-          first.texture.isLayered() ? first.texture.shape().height : 0};
+          first.texture.isLayered() ? first.texture.size().height : 0};
 }
 
-void bindImages(GlDevice& device, std::span<RenderTarget* const> planes) {
+void bindImages(gl::BoundState& bound, std::span<RenderTarget* const> planes) {
   int unit = 0;
   for (const RenderTarget* plane : planes) {
-    device.bound().image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
+    bound.image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
   }
 }
 
@@ -193,9 +193,8 @@ namespace {
 /// Whether a blit copies a region: source and target are planes with the same elements per texel. A loop repeats no
 /// blits: it could not leave them out on the device. Where programs are dispatched, blits are as slow as draws.
 bool isBlit(GlDevice& device, const RegionLayout& source, const RegionLayout& target) {
-  return !device.bound().isLogged() && device.programs().selected().stage() == assemble::Stage::Fragment &&
-         !source.linear && !target.linear && source.packed == target.packed && !source.strided &&
-         !target.strided;
+  return !device.bound().isLogged() && !device.programs().areDispatched() && !source.linear &&
+         !target.linear && source.packed == target.packed && !source.strided && !target.strided;
 }
 
 /// Whether whole texels are copied.

@@ -49,7 +49,7 @@ struct PreparedPass {
 PreparedPass preparedPass(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes);
 
 /// Binds the planes that a dispatch writes.
-void bindImages(GlDevice& device, std::span<RenderTarget* const> planes);
+void bindImages(gl::BoundState& bound, std::span<RenderTarget* const> planes);
 
 /// Draws or dispatches the pass's program, which must be bound, for each rectangle of planes of the same
 /// shape.

@@ -32,7 +32,7 @@ bool choosesTimestamps(const gl::Capabilities& capabilities) {
 }
 
 std::int64_t texelsOf(const RenderTarget& plane) {
-  return std::int64_t{plane.texture.shape().width} * plane.texture.rows();
+  return std::int64_t{plane.texture.size().width} * plane.texture.rows();
 }
 
 /// The bytes of all texels that a program may read, each counted once. An operand of partial results has the

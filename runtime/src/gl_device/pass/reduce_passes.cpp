@@ -90,8 +90,7 @@ ReducePasses::ReducePasses(GlDevice& device, const ResolvedReduction& call)
 }
 
 bool ReducePasses::mayEndInBuffer() const {
-  return device_.programs().selected().stage() == assemble::Stage::Compute &&
-         assemble::mayEndInBuffer(reduction_);
+  return device_.programs().areDispatched() && assemble::mayEndInBuffer(reduction_);
 }
 
 void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const> targets,
@@ -133,7 +132,7 @@ void ReducePasses::writeIdentities(const RegionLayout& result, std::span<RenderT
 
 void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* const> targets, bool isExclusive,
                         const std::function<void()>& begin) {
-  const bool isDispatched = device_.programs().selected().stage() == assemble::Stage::Compute;
+  const bool isDispatched = device_.programs().areDispatched();
   const assemble::ReduceLimits limits{
       .texture = device_.textureLimits(), .fanIn = assemble::scanRun, .grouped = isDispatched};
   const assemble::Lines lines = assemble::linesOf(elements_.extent, blocks_);
@@ -189,7 +188,7 @@ void ReducePasses::findOperands(std::span<const Argument> arguments, const Shape
 
 assemble::ReduceLimits ReducePasses::limitsOfPasses() const {
   assemble::ReduceLimits limits{.texture = device_.textureLimits(), .grouped = mayGroup()};
-  if (device_.programs().selected().stage() == assemble::Stage::Compute) {
+  if (device_.programs().areDispatched()) {
     limits.longRun = longRunOfGroups();
   } else {
     limits.longRun = static_cast<std::int32_t>(device_.traits.drawnRun);
@@ -205,7 +204,7 @@ std::int32_t ReducePasses::longRunOfGroups() const {
 bool ReducePasses::mayGroup() const {
   constexpr std::size_t planeBytes = 4 * sizeof(float);  // the most: four components, or two doubles
   const std::size_t planes = assemble::accumulatorPlanes(reduction_.fold);
-  return device_.programs().selected().stage() == assemble::Stage::Compute &&
+  return device_.programs().areDispatched() &&
          planes * planeBytes * assemble::groupSize <= assemble::groupBytes &&
          planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
 }

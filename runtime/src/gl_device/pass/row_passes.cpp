@@ -92,8 +92,7 @@ bool ReducePasses::beginAtOneLane() const {
 void ReducePasses::foldRows(const RowsState& rows, const RegionLayout& result,
                             std::span<RenderTarget* const> targets, const std::function<void()>& begin) {
   if (assemble::elements(elements_.extent) == 0) return writeIdentities(result, targets, begin);
-  const bool mayGroupRows =
-      device_.programs().selected().stage() == assemble::Stage::Compute && assemble::mayGroupRows(reduction_);
+  const bool mayGroupRows = device_.programs().areDispatched() && assemble::mayGroupRows(reduction_);
   PlanesLease partials(device_.memory());
   RegionLayout source;
   for (const RowsState::Level& level : rows.levels()) {

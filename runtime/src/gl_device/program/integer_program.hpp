@@ -3,6 +3,7 @@
 // A program that the runtime wrote for a step of its own, such as one of an append output or of a sort.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <string>
@@ -30,7 +31,13 @@ class IntegerProgram {
   const gl::Program& program() const { return program_; }
 
  private:
-  gl::IntUniform& find(std::string_view name, bool isVector);
+  gl::IntUniform& find(std::string_view name, bool isVector) {
+    const auto found =
+        std::ranges::find_if(uniforms_, [&](const auto& known) { return known.first == name; });
+    if (found != uniforms_.end()) return found->second;
+    const std::string owned(name);
+    return uniforms_.emplace_back(owned, gl::IntUniform(program_.location(owned), isVector)).second;
+  }
 
   gl::Program program_;
   std::deque<std::pair<std::string, gl::IntUniform>> uniforms_;  ///< a loop's commands refer to them

@@ -3,6 +3,7 @@
 // The uniforms that hold the region layout of a parameter or of the domain.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "assemble/region_layout.hpp"
@@ -16,7 +17,21 @@ class LayoutUniforms {
   LayoutUniforms() = default;
   /// `names` is the pattern of the uniforms' names, in which `*` stands for origin, shape, stride, shift, low,
   /// high and whole.
-  LayoutUniforms(const gl::Program& program, std::string_view names);
+  LayoutUniforms(const gl::Program& program, std::string_view names) {
+    const std::size_t star = names.find('*');
+    const auto location = [&](std::string_view part) {
+      std::string name(names);
+      name.replace(star, 1, part);
+      return program.location(name);
+    };
+    origin_ = {location("origin"), true};
+    shape_ = {location("shape"), true};
+    stride_ = {location("stride"), true};
+    shift_ = {location("shift"), false};
+    low_ = {location("low"), true};
+    high_ = {location("high"), true};
+    whole_ = {location("whole"), true};
+  }
 
   /// The program must be bound.
   void set(gl::BoundState& bound, const assemble::RegionLayout& regionLayout) {

@@ -21,9 +21,7 @@ constexpr std::size_t alignment = 16;
 std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1) / alignment * alignment; }
 
 [[noreturn]] void failForMemory(GlDevice& device, std::size_t bytes) {
-  device.context().throwIfLost();
-  throw Error(fmt::format("'{}' has no memory for a transfer of {} KiB", device.name(), bytes >> 10),
-              Error::Kind::Memory);
+  device.context().failForMemory(fmt::format("a transfer of {} KiB", bytes >> 10));
 }
 
 }  // namespace

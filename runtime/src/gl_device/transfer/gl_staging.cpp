@@ -13,7 +13,6 @@
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/pass/pass.hpp"
-#include "sk/error.hpp"
 
 namespace sk {
 
@@ -71,12 +70,8 @@ std::byte* GlStaging::room(std::size_t bytes) {
   const DeviceScope scope(device_);
   const auto size = static_cast<std::int64_t>(bytes);
   if (size > device_.capabilities.storageBytes || !buffer_.reserve(device_.bound(), bytes)) {
-    device_.context().throwIfLost();
-    throw Error(
-        fmt::format("'{}' has no memory for {} KiB of halos; divide the domain over more ranks, or exchange "
-                    "them more often",
-                    device_.name(), bytes >> 10),
-        Error::Kind::Memory);
+    device_.context().failForMemory(fmt::format(
+        "{} KiB of halos; divide the domain over more ranks, or exchange them more often", bytes >> 10));
   }
   return buffer_.bytes();
 }

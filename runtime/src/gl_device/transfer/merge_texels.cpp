@@ -139,10 +139,9 @@ gl::ColorMask maskOf(const RegionLayout& target, const Columns& columns, std::in
 
 bool mayMerge(GlDevice& device, const RegionLayout& source, const RegionLayout& target) {
   const std::int32_t step = target.stride[0];
-  return device.programs().selected().stage() == assemble::Stage::Fragment && !device.bound().isLogged() &&
-         target.packed && target.strided && !target.linear && !target.numbered &&
-         (step == 1 || step == 2 || step == 4) && !source.layered &&
-         std::equal(source.extent.begin(), source.extent.end(), target.extent.begin());
+  return !device.programs().areDispatched() && !device.bound().isLogged() && target.packed &&
+         target.strided && !target.linear && !target.numbered && (step == 1 || step == 2 || step == 4) &&
+         !source.layered && std::equal(source.extent.begin(), source.extent.end(), target.extent.begin());
 }
 
 void prepareMerge(GlDevice& device, const program::Element& element, const RegionLayout& source,

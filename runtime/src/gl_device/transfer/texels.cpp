@@ -27,7 +27,7 @@ bool goesByRows(const RegionLayout& region, std::size_t texelBytes, std::int64_t
 template <class Visit>
 void forEachLayerOf(const RenderTarget& plane, const Rect& rect, std::size_t texelBytes, Visit&& visit) {
   const std::size_t rowBytes = static_cast<std::size_t>(rect.width) * texelBytes;
-  const std::int32_t layerRows = plane.texture.isLayered() ? plane.texture.shape().height : 0;
+  const std::int32_t layerRows = plane.texture.isLayered() ? plane.texture.size().height : 0;
   forEachLayer(rect, layerRows, [&](const Rect& part, std::int32_t layer, std::int32_t row) {
     visit(part, layer, static_cast<std::size_t>(row) * rowBytes);
   });
@@ -53,7 +53,7 @@ void forEachRun(const RegionLayout& region, const CopyRegion& part, Visit&& visi
 void writeTexels(gl::BoundState& bound, RenderTarget& plane, const Rect& rect, const std::byte* texels) {
   const std::size_t texelBytes = plane.texture.format().texelBytes();
   forEachLayerOf(plane, rect, texelBytes, [&](const Rect& part, std::int32_t layer, std::size_t above) {
-    plane.texture.write(bound, part, layer, texels + above);
+    plane.texture.write(bound, {part.x, part.y, part.width, part.height}, layer, texels + above);
   });
 }
 

@@ -19,18 +19,7 @@ using program::Element;
 
 constexpr std::size_t stagingBytes = std::size_t{4} << 20;
 
-/// The staging buffer of one call.
-class StagingBuffer {
- public:
-  explicit StagingBuffer(GlDevice& device) : scratch_(device.memory().staging()) {}
-  std::byte* room(std::size_t bytes) {
-    if (scratch_.values.size() < bytes) scratch_.values.resize(bytes);
-    return scratch_.values.data();
-  }
-
- private:
-  KeptScratch<std::byte>::Lease scratch_;
-};
+using StagingBuffer = KeptScratch<std::byte>::Lease;
 
 /// Calls visit(band) for bands of rows, each of which fits the staging buffer unless it is a single row.
 template <class Visit>
@@ -65,7 +54,7 @@ void readTight(GlDevice& device, StagingBuffer& staging, RenderTarget& plane, co
 
 void upload(GlDevice& device, const Element& element, std::span<RenderTarget> planes,
             const RegionLayout& region, const std::byte* elements, WriteScope& writes) {
-  StagingBuffer staging(device);
+  StagingBuffer staging(device.memory().staging());
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const PlaneOfElements plane{element, element.fields[i], planes[i].texture.format(), region};
     const std::size_t texelBytes = plane.format.texelBytes();
@@ -94,7 +83,7 @@ void upload(GlDevice& device, const Element& element, std::span<RenderTarget> pl
 
 void download(GlDevice& device, const Element& element, std::span<RenderTarget> planes,
               const RegionLayout& region, std::byte* elements) {
-  StagingBuffer staging(device);
+  StagingBuffer staging(device.memory().staging());
   std::vector<std::byte> texels;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const PlaneOfElements plane{element, element.fields[i], planes[i].texture.format(), region};
