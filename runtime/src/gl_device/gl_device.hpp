@@ -32,7 +32,8 @@ struct DeviceChoices {
   std::optional<std::int32_t> scanPatience = {};  ///< ScanAccess::patience of scans in one pass
 };
 
-/// Its parts state their invariants where they are declared. It adds that streams which a failed command may have written are lost.
+/// A device on OpenGL. Its parts state their invariants where they are declared. Its own: once the driver has reported an error, all
+/// streams that were written in the same period are marked as lost.
 class GlDevice final : public DeviceState {
  public:
   GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices);
