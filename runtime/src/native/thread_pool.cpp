@@ -90,9 +90,17 @@ const Limits& limits() {
 /// A place for a loop that helpers can find. Places live as long as the process, so that a helper may look at one whose loop
 /// has ended.
 struct alignas(64) Place {
-  std::atomic<std::uint32_t> helpers = 0;  ///< that look at the loop or work on it
   std::atomic<int> threads = 0;  ///< helpers with numbers below this may help
-  SharedLoop* loop = nullptr;  ///< read by helpers that have found it open after they counted themselves
+  SharedLoop* loop = nullptr;  ///< read by helpers that have said where they are and then found it open
+};
+
+/// A thread that helps. It says where it is on a line of a cache of its own, so that threads that begin and end at the same time do
+/// not wait for each other's writes.
+struct alignas(64) Helper {
+  /// 1 more than the number of the place whose loop it looks at or works on; 0: none.
+  std::atomic<std::uint32_t> at = 0;
+  std::atomic<std::uint32_t> sleeps = 0;
+  std::thread thread;
 };
 
 class Helpers {
@@ -104,18 +112,20 @@ class Helpers {
     Place& place = places_[number];
     const std::uint64_t bit = std::uint64_t{1} << number;
     place.loop = &loop;
-    place.threads.store(std::min(threads, 1 + started_.load()));
-    working_.fetch_add(1);
+    const int most = std::min(threads, 1 + started_.load());
+    place.threads.store(most);
     open_.fetch_or(bit);
     if (mayWake) wakeBelow(0, place);
     loop.workFrom(0);
-    open_.fetch_and(~bit);
-    // Helpers count themselves before they look whether it is open, so that none comes after this.
-    if (!watch(microseconds(20), [&] { return place.helpers.load() == 0; })) {
-      for (std::uint32_t left = place.helpers.load(); left != 0; left = place.helpers.load())
-        place.helpers.wait(left);
+    if ((open_.load() & bit) != 0) open_.fetch_and(~bit);
+    // Helpers say that they are there before they look whether it is open, so that none comes after this.
+    const auto here = static_cast<std::uint32_t>(number + 1);
+    for (int i = 1; i < most; ++i) {
+      Helper& helper = *helpers_[static_cast<std::size_t>(i) - 1];
+      if (helper.at.load() != here || watch(microseconds(20), [&] { return helper.at.load() != here; }))
+        continue;
+      while (helper.at.load() == here) helper.at.wait(here);
     }
-    working_.fetch_sub(1);
     taken_.fetch_and(~bit);
     loop.finish();
   }
@@ -125,10 +135,8 @@ class Helpers {
     for (auto& helper : helpers_) static_cast<void>(helper.release());  // their threads cannot be joined
     helpers_.clear();
     started_ = 0;
-    working_ = 0;
     open_ = 0;
     taken_ = 0;
-    for (Place& place : places_) place.helpers = 0;
   }
   std::mutex& mutex() { return mutex_; }
 
@@ -148,11 +156,6 @@ class Helpers {
   }
 
  private:
-  struct Helper {
-    std::thread thread;
-    std::atomic<std::uint32_t> sleeps = 0;
-  };
-
   /// Starts as many helpers as are missing, if that can be done.
   void start(int helpers) {
     if (started_.load(std::memory_order_relaxed) >= helpers) return;
@@ -211,21 +214,31 @@ class Helpers {
     return found;
   }
 
+  /// Whether fewer threads work than may. While there is one loop, its own limit is enough.
+  bool hasProcessor() const {
+    const int loops = std::popcount(taken_.load());
+    if (loops <= 1) return true;
+    int working = loops;
+    for (int i = 0; i < started_.load(); ++i)
+      working += helpers_[static_cast<std::size_t>(i)]->at.load(std::memory_order_relaxed) != 0;
+    return working < mostThreads();
+  }
+
   /// Works on a loop, if there is one and not all processors have work.
-  bool helpWithLoop(int number) {
+  bool helpWithLoop(Helper& self, int number) {
     for (std::uint64_t open = openTo(number); open != 0; open &= open - 1) {
+      if (!hasProcessor()) return false;
       const std::uint64_t bit = open & -open;
       Place& place = places_[std::countr_zero(open)];
-      place.helpers.fetch_add(1);
-      const bool isOpen = (open_.load() & bit) != 0 && number < place.threads.load();
-      const bool hasTurn = isOpen && working_.fetch_add(1) < mostThreads();
+      self.at.store(static_cast<std::uint32_t>(std::countr_zero(open)) + 1);
+      const bool hasTurn = (open_.load() & bit) != 0 && number < place.threads.load();
       if (hasTurn) {
         wakeBelow(number, place);
         place.loop->workFrom(number);
         if ((open_.load() & bit) != 0) open_.fetch_and(~bit);  // all pieces have been taken
       }
-      if (isOpen) working_.fetch_sub(1);
-      if (place.helpers.fetch_sub(1) == 1) place.helpers.notify_one();
+      self.at.store(0);
+      self.at.notify_one();
       if (hasTurn) return true;
     }
     return false;
@@ -237,8 +250,8 @@ class Helpers {
     constexpr microseconds shortest{2}, longest{100};
     std::chrono::nanoseconds patience = longest / 2;
     while (!isStopped_) {
-      if (helpWithLoop(number)) continue;
-      const auto isThere = [&] { return isStopped_ || (openTo(number) != 0 && working_ < mostThreads()); };
+      if (helpWithLoop(self, number)) continue;
+      const auto isThere = [&] { return isStopped_ || (openTo(number) != 0 && hasProcessor()); };
       if (limits().watches && watch(patience, isThere)) continue;
       const Clock::time_point before = Clock::now();
       self.sleeps = 1;
@@ -258,7 +271,6 @@ class Helpers {
   // What helpers watch, and what changes while they work, are on different lines of a cache.
   alignas(64) std::atomic<std::uint64_t> open_ = 0;  ///< places of loops with pieces that may be left
   std::atomic<bool> isStopped_ = false;
-  alignas(64) std::atomic<int> working_ = 0;  ///< threads that work on loops
   alignas(64) std::atomic<std::uint64_t> taken_ = 0;  ///< places of loops
   std::atomic<int> started_ = 0;
   std::atomic<Clock::rep> nextTry_ = 0;  ///< to start helpers, after one that failed
