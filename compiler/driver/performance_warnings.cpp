@@ -8,8 +8,6 @@
 
 #include "analysis/stream_uses.hpp"
 #include "assemble/assemble.hpp"
-#include "assemble/glsl/intrinsics.hpp"
-#include "assemble/glsl/own_arithmetic.hpp"
 #include "ir/call_graph.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/walk.hpp"
@@ -121,14 +119,10 @@ class Advisor {
     };
     if (std::ranges::none_of(program.parameters, mayPack) || sk::assemble::mayWritePacked(program)) return;
     if (program.usesLoops) return loops();
-    const std::size_t length = program.bodyLength,
-                      calls = sk::assemble::lengthOfCalls(program);
-    if (length > sk::assemble::longestPackedBody) return tooLong(length, sk::assemble::longestPackedBody);
-    if (calls > sk::assemble::longestPackedCalls) tooLong(calls, sk::assemble::longestPackedCalls);
-  }
-
-  void tooLong(std::size_t length, std::size_t longest) {
-    report(Diag::SlowLength, kernel_->loc, {kernel_->name, std::to_string(length), std::to_string(longest)});
+    if (program.weight > sk::assemble::greatestPackedWeight)
+      report(Diag::SlowLength, kernel_->loc,
+             {kernel_->name, std::to_string(program.weight),
+              std::to_string(sk::assemble::greatestPackedWeight)});
   }
 
   void loops() {

@@ -14,13 +14,13 @@
 #include <fmt/format.h>
 
 #include "analysis/stream_uses.hpp"
-#include "assemble/glsl/own_arithmetic.hpp"
 #include "glsl/body.hpp"
 #include "ir/call_graph.hpp"
 #include "ir/ir.hpp"
 #include "ir/print.hpp"
 #include "program/elements.hpp"
 #include "sk/program.hpp"
+#include "split/cost.hpp"
 
 namespace skc::emit {
 
@@ -212,7 +212,6 @@ class Builder {
       tables.push_back(
           {storage_.tables[*module_.functions[function].table], storage_.keep(names.function(function))});
     }
-    const std::size_t length = sk::assemble::unmarked(text.body).size();
     std::string name = qualifier(kernel.scope) + kernel.name;
     if (kernel.pass) name += fmt::format(" (pass {} of {})", kernel.pass->number, kernel.pass->count);
     const std::string_view body = storage_.keep(std::move(text.body));
@@ -221,7 +220,7 @@ class Builder {
             .entry = storage_.keep(names.function(kernel.entry)),
             .declarations = storage_.keep(std::move(text.declarations)),
             .body = body,
-            .bodyLength = length,
+            .weight = kernel.isNativeOnly ? 0 : split::weightOf(module_, kernel),
             .parameters = storage_.keep(std::move(parameters)),
             .sources = sources_,
             .usesIndex = uses.domainIndex,

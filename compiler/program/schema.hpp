@@ -265,7 +265,7 @@ struct Members<p::Kernel> {
       Member{"entry", &p::Kernel::entry},
       Member{"declarations", &p::Kernel::declarations, Part::Declarations},
       Member{"body", &p::Kernel::body, Part::Body},
-      Member{"bodyLength", &p::Kernel::bodyLength},
+      Member{"weight", &p::Kernel::weight},
       Member{"parameters", &p::Kernel::parameters, Part::Parameters},
       CppOption{"sources", &p::Kernel::sources},  // the file's
       Option{"usesIndex", &p::Kernel::usesIndex},

@@ -110,7 +110,7 @@ constexpr Kernel diffuseKernel = {
     .entry = "diffuse",
     .declarations = {},
     .body = diffuseBody,
-    .bodyLength = 364,
+    .weight = 51,
     .parameters = diffuseParameters,
     .sources = sources,
     .usesIndex = true};
@@ -120,7 +120,7 @@ constexpr Kernel diffuseKernel = {
     .entry = "nearest",
     .declarations = nearestDeclarations,
     .body = nearestBody,
-    .bodyLength = 79,
+    .weight = 9,
     .parameters = nearestParameters,
     .sources = sources};
 

@@ -2,6 +2,7 @@
 #include "split/cost.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "ir/call_graph.hpp"
 #include "ir/counted_loop.hpp"
@@ -56,7 +57,58 @@ double nodeCost(const Module& module, const Expr& expr,
       [](const IndexOf&) { return 0.0; }, [](const ExtentOf&) { return 0.0; });
 }
 
+/// A function of floats that the program of a body must define, with its weight for one component. Drivers compile it for each call.
+struct DefinedFunction {
+  Intrinsic intrinsic;
+  std::uint32_t weight;
+};
+
+// clang-format off
+constexpr DefinedFunction definedFunctions[] = {
+    {Intrinsic::Sin, 58},   {Intrinsic::Cos, 53},    {Intrinsic::Tan, 53},     {Intrinsic::Asin, 18},   {Intrinsic::Acos, 10},
+    {Intrinsic::Atan, 13},  {Intrinsic::Atan2, 24},  {Intrinsic::AtanYX, 24},  {Intrinsic::Sinh, 22},   {Intrinsic::Cosh, 14},
+    {Intrinsic::Tanh, 23},  {Intrinsic::Asinh, 34},  {Intrinsic::Acosh, 28},   {Intrinsic::Atanh, 34},  {Intrinsic::Exp, 14},
+    {Intrinsic::Exp2, 10},  {Intrinsic::Log, 21},    {Intrinsic::Log2, 21},    {Intrinsic::Log10, 22},  {Intrinsic::Pow, 56},
+    {Intrinsic::Min, 6},    {Intrinsic::Fmin, 6},    {Intrinsic::Max, 6},      {Intrinsic::Fmax, 6},    {Intrinsic::Clamp, 10},
+    {Intrinsic::Mod, 50},   {Intrinsic::Fmod, 40},   {Intrinsic::Mix, 3},      {Intrinsic::Lerp, 3},    {Intrinsic::Smoothstep, 3},
+    {Intrinsic::Length, 7}, {Intrinsic::Distance, 7}, {Intrinsic::Normalize, 7},
+};
+// clang-format on
+/// The same for an intrinsic of exact sums.
+constexpr std::uint32_t exactSumWeight = 12;
+
+bool isOfExactSums(Intrinsic intrinsic) {
+  return intrinsic >= Intrinsic::ExactDigits && intrinsic <= Intrinsic::ExactRounded;
+}
+
+/// The weight of a node without its operands.
+std::uint32_t weightOf(const Expr& expr) {
+  const bool isOperation =
+      std::holds_alternative<Unary>(expr.node) || std::holds_alternative<Binary>(expr.node) ||
+      std::holds_alternative<Select>(expr.node) || std::holds_alternative<Convert>(expr.node);
+  if (isOperation && expr.type.isDouble()) return static_cast<std::uint32_t>(doubleCost);
+  const auto* call = std::get_if<IntrinsicCall>(&expr.node);
+  if (call == nullptr) return 1;
+  if (call->args[0]->type.isDouble()) return static_cast<std::uint32_t>(doubleCost);
+  if (isOfExactSums(call->intrinsic)) return 1 + exactSumWeight;
+  const auto* row = std::ranges::find(definedFunctions, call->intrinsic, &DefinedFunction::intrinsic);
+  const bool isDefined = row != std::end(definedFunctions) && !call->args[0]->type.isInteger();
+  const ExprPtr& widest =
+      *std::ranges::max_element(call->args, {}, [](const ExprPtr& arg) { return arg->type.width; });
+  return 1 + (isDefined ? row->weight * widest->type.width : 0);
+}
+
 }  // namespace
+
+std::uint32_t weightOf(const Module& module, const Kernel& kernel) {
+  std::uint32_t weight = 0;
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    const Block& body = module.functions[id].body;
+    walkStmts(body, [&](const Stmt&) { ++weight; });
+    walkExprs(body, [&](const Expr& expr) { weight += weightOf(expr); });
+  }
+  return weight;
+}
 
 std::vector<Type> planesOf(const Module& module, Type type) {
   std::vector<Type> planes;

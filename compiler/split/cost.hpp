@@ -4,8 +4,12 @@
 // component. Reading or writing a component in memory costs as much as 32 operations: between the figures of
 // llvmpipe (4 operations a byte) and of a GPU (12). docs/architecture.md, "Kernels in several passes",
 // tabulates the model.
+//
+// The same operations, counted once wherever they are written, are a kernel's weight, which says how long drivers take to
+// compile it.
 #pragma once
 
+#include <cstdint>
 #include <unordered_map>
 #include <vector>
 
@@ -25,6 +29,10 @@ std::vector<ir::Type> planesOf(const ir::Module& module, ir::Type type);
 double planeCost(ir::Type plane);
 /// Cost of reading or writing a whole element.
 double elementCost(const ir::Module& module, ir::Type type);
+
+/// The weight of a kernel's body: the statements and expressions of its functions, each function once, where an operation on
+/// doubles counts as much as it costs, and a call as much as the function, if the program has to define that.
+std::uint32_t weightOf(const ir::Module& module, const ir::Kernel& kernel);
 
 class CostModel {
  public:

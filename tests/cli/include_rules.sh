@@ -18,7 +18,7 @@ compiler/transforms   support ir analysis transforms split sk/exact_digits.hpp
 compiler/native       support ir analysis transforms native llvm sk/native/code.hpp sk/native/table.hpp
 compiler/native/library support ir transforms native
 compiler/glsl         support ir analysis glsl sk/program.hpp sk/arithmetic_marks.hpp
-compiler/program      support ir analysis native/kernel_request.hpp glsl program assemble sk/program.hpp sk/scalar_bytes.hpp
+compiler/program      support ir analysis native/kernel_request.hpp split/cost.hpp glsl program assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/web          support ir glsl program assemble web sk/program.hpp
 compiler/frontend     support ir frontend clang llvm
 compiler/driver       support ir analysis split transforms native/native.hpp native/library/link_library.hpp glsl program web frontend driver assemble sk/program.hpp

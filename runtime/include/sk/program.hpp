@@ -251,7 +251,7 @@ struct Kernel {
   /// Structs, and the constants that Parameter::border and identity use, with #line directives; may be empty.
   std::string_view declarations;
   std::string_view body;  ///< other constants, and functions, with #line directives and marks (sk/arithmetic_marks.hpp)
-  std::size_t bodyLength = 0;  ///< the number of characters in the body without marks
+  std::uint32_t weight = 0;  ///< operations to compile, in the body and in the library functions that it calls
   std::span<const Parameter> parameters;  ///< in order of declaration
   std::span<const std::string_view> sources;  ///< source file of string number i + 1 in #line
   bool usesIndex = false;  ///< the body calls sk_index()

@@ -119,16 +119,17 @@ bool mayFilter(const program::Parameter& gather);
 bool mayPack(const program::Element& held);
 
 /// Whether a kernel may compute the four elements of a packed texel in sequence; other conditions are the
-/// caller's. Not if it has loops, which would run four times in sequence, nor if it is long, because it would
+/// caller's. Not if it has loops, which would run four times in sequence, nor if it is heavy, because it would
 /// take four times as long to compile.
 bool mayWritePacked(const program::Kernel& kernel);
 
 /// Likewise for a kernel with append outputs and Work::Groups, over a domain whose texels hold four elements.
 bool mayGroupPacked(const program::Kernel& kernel);
 
-/// The longest body (program::Kernel::bodyLength) for which this is worthwhile, and the total length of the functions that
-/// it calls, counted per call: software drivers take some 10 s for four times as many.
-constexpr std::size_t longestPackedBody = 4096, longestPackedCalls = 28672;
+/// The greatest program::Kernel::weight for which this is worthwhile: software drivers take some 10 s for four times as much.
+/// Every kernel among our examples is on the same side of it as it was of an earlier limit, 4096 characters of GLSL, except for
+/// a few variants in halves or doubles.
+constexpr std::uint32_t greatestPackedWeight = 660;
 
 /// What a kernel's program computes (append/append_passes.hpp, append/append_groups.hpp).
 enum class Work : std::uint8_t {

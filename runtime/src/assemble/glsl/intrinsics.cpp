@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <vector>
 
 #include <fmt/format.h>
@@ -179,33 +178,9 @@ IntrinsicTexts fastTexts(std::span<const IntrinsicUse> uses) {
   return texts;
 }
 
-std::size_t lengthOf(Parts parts) {
-  std::size_t length = 0;
-  for (unsigned i = 0; i < partCount; ++i) {
-    if (parts >> i & 1u) length += text(static_cast<Part>(i)).size();
-  }
-  return length;
-}
-
 }  // namespace
 
 std::string_view name(Intrinsic intrinsic) { return rowOf(intrinsic).name; }
-
-std::size_t lengthOfCalls(const program::Kernel& kernel) {
-  std::size_t length = 0;
-  for (const IntrinsicUse& use : kernel.intrinsics) {
-    if (use.widths == 0) continue;
-    const Row& row = rowOf(use.intrinsic);
-    std::size_t calls = 0;
-    for (std::size_t at = 0; (at = kernel.body.find(row.name, at)) != std::string_view::npos;) {
-      at += row.name.size();
-      if (at < kernel.body.size() && kernel.body[at] == '(') ++calls;
-    }
-    length += calls * static_cast<std::size_t>(std::bit_width(use.widths)) *
-              (row.text.size() + lengthOf(withNeeded(row.parts)));
-  }
-  return length;
-}
 
 IntrinsicTexts intrinsicTexts(std::span<const IntrinsicUse> uses, bool accurate) {
   if (std::ranges::none_of(uses, &IntrinsicUse::widths)) return {};  // or only of doubles

@@ -4,7 +4,6 @@
 // device, or the device's functions under our names. Only those that a kernel calls are defined.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,9 +23,5 @@ struct IntrinsicTexts {
 /// If accurate: within 3 ulp over the whole range, with the special cases of C99 (annex F) and, for minima
 /// and maxima, of IEEE 754; docs/accuracy.md has the details of each. Otherwise the device's own.
 IntrinsicTexts intrinsicTexts(std::span<const program::IntrinsicUse> uses, bool accurate);
-
-/// The length, in characters, of the accurate functions that a kernel's body calls, with their dependencies,
-/// counted per call: drivers inline each call.
-std::size_t lengthOfCalls(const program::Kernel& kernel);
 
 }  // namespace sk::assemble

@@ -17,7 +17,6 @@
 #include "assemble/elements/gather.hpp"
 #include "assemble/elements/planes.hpp"
 #include "assemble/elements/storage.hpp"
-#include "assemble/glsl/intrinsics.hpp"
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "assemble/glsl/program_text.hpp"
 #include "assemble/reduce/group_fold.hpp"
@@ -351,8 +350,7 @@ bool mayPack(const program::Element& held) {
 namespace {
 
 bool mayRunInSequence(const Kernel& kernel) {
-  return !kernel.usesLoops && kernel.bodyLength <= longestPackedBody &&
-         lengthOfCalls(kernel) <= longestPackedCalls;
+  return !kernel.usesLoops && kernel.weight <= greatestPackedWeight;
 }
 
 }  // namespace

@@ -425,21 +425,14 @@ TEST_CASE("a kernel's own operations are guarded as the profile and the call say
         "}\n");
 }
 
-TEST_CASE("a kernel that calls much library code writes no packed texels") {
-  const auto packs = [](std::string_view called, Intrinsic intrinsic, int calls, std::uint8_t widths = 1) {
-    const IntrinsicUse use{intrinsic, widths};
-    std::string body;
-    for (int i = 0; i < calls; ++i) body += std::string(called) + "(x);\n";
+TEST_CASE("a heavy kernel writes no packed texels") {
+  const auto packs = [](std::uint32_t weight, bool usesLoops = false) {
     Kernel kernel = samples::saxpy;
-    kernel.body = body;
-    kernel.intrinsics = {&use, 1};
+    kernel.weight = weight;
+    kernel.usesLoops = usesLoops;
     return mayWritePacked(kernel);
   };
-  CHECK(packs("sk_sin", Intrinsic::Sin, 7));
-  CHECK(!packs("sk_sin", Intrinsic::Sin, 8));
-  CHECK(!packs("sk_sin", Intrinsic::Sin, 2, 0b1000));  // calls with four components
-  CHECK(packs("sk_sinh", Intrinsic::Sin, 8));  // a different function
-  CHECK(packs("sk_log", Intrinsic::Log, 20));
-  CHECK(!packs("sk_log", Intrinsic::Log, 50));
-  CHECK(packs("sk_saturate", Intrinsic::Saturate, 50));
+  CHECK(packs(greatestPackedWeight));
+  CHECK(!packs(greatestPackedWeight + 1));
+  CHECK(!packs(1, /*usesLoops=*/true));
 }
