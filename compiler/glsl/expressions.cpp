@@ -74,6 +74,14 @@ bool chooses(Intrinsic intrinsic) {
   return intrinsic == Intrinsic::Min || intrinsic == Intrinsic::Max || intrinsic == Intrinsic::Clamp;
 }
 
+/// True if GLSL's clamp of ints is defined: the lower bound is not the greater one.
+bool hasOrderedBounds(const std::vector<ExprPtr>& args) {
+  const auto* low = std::get_if<Literal>(&args[1]->node);
+  const auto* high = std::get_if<Literal>(&args[2]->node);
+  return args[1]->type.scalar == Scalar::Int && low != nullptr && high != nullptr &&
+         static_cast<std::int32_t>(low->bits) <= static_cast<std::int32_t>(high->bits);
+}
+
 /// True for large numbers that read better in hexadecimal: 0x7f800000, 0x00ffffff.
 bool isBitPattern(std::uint32_t bits) {
   const std::uint32_t low = bits & 0xffffU;
@@ -98,12 +106,11 @@ Text literalText(Type type, std::uint32_t bits) {
   return signedText(shortestFloat(value));
 }
 
-/// The component of a vector that an index selects, if the index is constant; the nearest one to an index outside.
+/// The component of a vector that an index selects, if the index is constant.
 std::optional<std::uint32_t> knownComponent(const Index& n) {
   const auto* literal = std::get_if<Literal>(&n.index->node);
   if (literal == nullptr) return std::nullopt;
-  const bool isBelow = n.index->type.scalar == Scalar::Int && static_cast<std::int32_t>(literal->bits) < 0;
-  return isBelow ? 0 : std::min<std::uint32_t>(literal->bits, n.base->type.width - 1U);
+  return literal->bits;
 }
 
 /// True if GLSL can assign to the text of this lvalue. Components of double vectors are members of a struct:
@@ -162,7 +169,7 @@ class GlslExpr {
   std::string targetText(const Expr& lvalue) const {
     const auto* n = std::get_if<Index>(&lvalue.node);
     if (n == nullptr || !n->base->type.isVector() || n->base->type.isDouble()) return text(lvalue);
-    return text(*n->base, Precedence::Primary) + "[" + indexText(*n) + "]";
+    return text(*n->base, Precedence::Primary) + "[" + passedText(*n->index) + "]";
   }
 
   /// If GLSL cannot assign to `lvalue`, assigns to what contains it a copy with that part replaced.
@@ -180,7 +187,7 @@ class GlslExpr {
   /// "place += value", or its expansion if GLSL has no such operator for these operands.
   std::string combined(BinaryOp op, const Expr& lvalue, const Expr& value) const {
     const bool isCall = lvalue.type.isDouble() || takesQuotient(op, lvalue, value);
-    if (!isCall && !mayShiftTooFar(context_.module, op, value)) {
+    if (!isCall) {
       if (!isStored_ && isFloats(lvalue.type)) {
         return fmt::format("{} = {}{}{}{}", targetText(lvalue), mark::value, digitOf(lvalue.type),
                            storedText(lvalue, op, value), mark::valueEnd);
@@ -331,7 +338,7 @@ class GlslExpr {
       const std::string function = context_.polyfills.component(n.base->type, n.index->type);
       return {fmt::format("{}({}, {})", function, passedText(*n.base), passedText(*n.index))};
     }
-    return {text(*n.base, Precedence::Primary) + "[" + indexText(n) + "]"};
+    return {text(*n.base, Precedence::Primary) + "[" + passedText(*n.index) + "]"};
   }
   Text print(Type, const Call& n) const {
     const std::string_view prefix = context_.module.functions[n.callee].table ? "sk_table_" : "";
@@ -356,6 +363,7 @@ class GlslExpr {
     const Scope scope(isStored_, isGlslOwn ? isStored_ : !context_.marks || !function_);
     if (hasFormula(n.intrinsic) && context_.marks && function_)
       return {fmt::format("{}{}{}", mark::function, entry.glsl, list(n.args))};
+    if (n.intrinsic == Intrinsic::Clamp && hasOrderedBounds(n.args)) return {"clamp" + list(n.args)};
     const bool usesVectorColumn = argument.isVector() && !entry.glslVector.empty();
     const std::string_view pattern = usesVectorColumn ? entry.glslVector : entry.glsl;
     if (pattern.find('$') == std::string_view::npos) {
@@ -403,9 +411,7 @@ class GlslExpr {
     const Expr& right = isMatrixProduct ? lhs : rhs;
     const Precedence precedence = row(op).precedence;
     const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
-    const std::string second = mayShiftTooFar(context_.module, op, rhs)
-                                   ? "(" + shiftCount(rhs) + ")"
-                                   : operand(op, right, tighter, op == BinaryOp::Div);
+    const std::string second = operand(op, right, tighter, op == BinaryOp::Div);
     const bool isOperation = isFloats(type) && !type.isMatrix() && precedence >= Precedence::Additive;
     std::string first = operand(op, left, precedence);
     // a difference with itself is not 0, nor a quotient 1, if it is infinite or NaN
@@ -446,12 +452,6 @@ class GlslExpr {
            (isSigned && !(isNonNegative(lhs) && isNonNegative(rhs)));
   }
 
-  /// The shift count modulo 32.
-  std::string shiftCount(const Expr& count) const {
-    const bool isUint = arithmeticScalar(count.type.scalar) == Scalar::Uint;
-    return operand(BinaryOp::BitAnd, count, Precedence::BitAnd) + (isUint ? " & 31u" : " & 31");
-  }
-
   /// Calls a function that the assembler defines, all of whose arguments have one width.
   Text definedCall(sk::program::Intrinsic intrinsic, const std::vector<ExprPtr>& args, bool isChoice) const {
     std::uint8_t width = 1;
@@ -473,25 +473,6 @@ class GlslExpr {
     return fmt::format("{}_{}", function, context_.names.symbol(param));
   }
 
-  /// Clamps an index to its array. The text must do so even if the index cannot be outside: Mesa (22.3,
-  /// llvmpipe) reads an array's index only when it loads or stores, from the register that it gave to a
-  /// loop's variable, and may have incremented that register by then: `a[i] = a[i + 1]` stores to a[i + 1]. A
-  /// computed index has a register of its own.
-  std::string indexText(const Index& n) const {
-    const std::string index = passedText(*n.index);
-    const Type base = n.base->type;
-    const bool isArray = base.kind == Type::Kind::Array;
-    const std::uint32_t last = (isArray ? context_.module.arrays[base.index].length : base.width) - 1;
-    const bool isUint = n.index->type.scalar == Scalar::Uint;
-    if (const auto* literal = std::get_if<Literal>(&n.index->node)) {  // one outside is an error in GLSL
-      if (literal->bits <= last) return index;
-      const bool isBelow = !isUint && static_cast<std::int32_t>(literal->bits) < 0;
-      return fmt::format("{}{}", isBelow ? 0 : last, isUint ? "u" : "");
-    }
-    if (isUint) return fmt::format("min({}, {}u)", index, last);
-    return fmt::format("clamp({}, 0, {})", index, last);
-  }
-
   /// A component of a vector of doubles, which GLSL cannot index.
   Text doubleIndex(const Index& n) const {
     if (const auto component = knownComponent(n)) {
@@ -501,7 +482,8 @@ class GlslExpr {
   }
 
   std::string intIndexText(const Index& n) const {
-    return n.index->type.scalar == Scalar::Int ? indexText(n) : "int(" + indexText(n) + ")";
+    const std::string index = passedText(*n.index);
+    return n.index->type.scalar == Scalar::Int ? index : "int(" + index + ")";
   }
 
   std::string operand(BinaryOp outer, const Expr& expr, Precedence around, bool isDivisor = false) const {

@@ -33,11 +33,11 @@ Names builtinsOf(const Function& function) {
   Names names = {"equal", "greaterThan", "greaterThanEqual", "lessThan",       "lessThanEqual",
                  "mix",   "not",         "notEqual",         "uintBitsToFloat"};
   walkExprs(function.body, [&](const Expr& expr) {
-    if (std::holds_alternative<Index>(expr.node)) names.insert({"clamp", "min"});
     const auto* n = std::get_if<IntrinsicCall>(&expr.node);
     if (n == nullptr) return;
     addIdentifiers(row(n->intrinsic).glsl, names);
     addIdentifiers(row(n->intrinsic).glslVector, names);
+    if (n->intrinsic == Intrinsic::Clamp) names.insert("clamp");
   });
   return names;
 }

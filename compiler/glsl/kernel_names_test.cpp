@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "glsl/legalize.hpp"
 #include "glsl/words.hpp"
 #include "ir/kernel_builder.hpp"
 
@@ -105,6 +106,7 @@ TEST_CASE("a variable does not hide what its function calls") {
             declare(clamp),
             assign(index(s.module, s.k.ref(clamp), swizzle(indexOf({StreamRef::Space::Domain, 0}), "x")),
                    s.k.ref(root))));
+  legalize(s.module, glslCapabilities);
   const KernelNames names = s.names();
   CHECK(names.variable(0, root) == "sqrt_2");
   CHECK(names.variable(0, step) == "step");

@@ -368,9 +368,14 @@ Kernel clone(const Kernel& kernel) {
               .pass = kernel.pass,
               .variants = kernel.variants,
               .choices = kernel.choices,
+              .loops = kernel.loops,
               .unrolled = kernel.unrolled,
               .loc = kernel.loc};
-  for (const KernelParam& param : kernel.params) copy.params.push_back(ir::clone(param));
+  for (const KernelParam& param : kernel.params) {
+    KernelParam& made = copy.params.emplace_back(ir::clone(param));
+    made.reach = param.reach;  // which the parameter of another kernel would not have
+    made.reachShapes = param.reachShapes;
+  }
   return copy;
 }
 

@@ -15,6 +15,8 @@
 
 #include "analysis/stream_uses.hpp"
 #include "glsl/body.hpp"
+#include "glsl/legalize.hpp"
+#include "ir/build.hpp"
 #include "ir/call_graph.hpp"
 #include "ir/ir.hpp"
 #include "ir/print.hpp"
@@ -122,8 +124,14 @@ static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program
 template <class Storage>
 class Builder {
  public:
-  Builder(const Module& module, Targets targets, const CodeOf& codeOf, Storage& storage)
-      : module_(module), types_(module), targets_(targets), codeOf_(codeOf), storage_(storage) {}
+  /// `legal`: `module` after legalize.
+  Builder(const Module& legal, const Module& module, Targets targets, const CodeOf& codeOf, Storage& storage)
+      : module_(legal),
+        given_(module),
+        types_(legal),
+        targets_(targets),
+        codeOf_(codeOf),
+        storage_(storage) {}
 
   void run() {
     std::vector<std::string_view> sources;
@@ -220,7 +228,7 @@ class Builder {
             .entry = storage_.keep(names.function(kernel.entry)),
             .declarations = storage_.keep(std::move(text.declarations)),
             .body = body,
-            .weight = kernel.isNativeOnly ? 0 : split::weightOf(module_, kernel),
+            .weight = kernel.isNativeOnly ? 0 : split::weightOf(given_, given_.kernels[id]),
             .parameters = storage_.keep(std::move(parameters)),
             .sources = sources_,
             .usesIndex = uses.domainIndex,
@@ -472,6 +480,7 @@ class Builder {
   }
 
   const Module& module_;
+  const Module& given_;
   TypeNames types_;
   const Targets targets_;
   const CodeOf& codeOf_;
@@ -483,7 +492,9 @@ class Builder {
 
 Program::Program(const Module& module, Targets targets, const CodeOf& codeOf)
     : storage_(std::make_unique<Storage>()) {
-  Builder<Storage>(module, targets, codeOf, *storage_).run();
+  Module legal = ir::clone(module);
+  legalize(legal, glslCapabilities);
+  Builder<Storage>(legal, module, targets, codeOf, *storage_).run();
 }
 Program::Program(Program&&) noexcept = default;
 Program& Program::operator=(Program&&) noexcept = default;
