@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "sk/error.hpp"
-#include "support/host_memory.hpp"
+#include "support/host_limits.hpp"
 
 namespace sk {
 

@@ -9,7 +9,7 @@
 #include "sk/native/quad_type.hpp"
 #include "sk/scalar_bytes.hpp"
 #include "support/checked_size.hpp"
-#include "support/round_to_odd.hpp"
+#include "support/convert_elements.hpp"
 
 namespace sk {
 

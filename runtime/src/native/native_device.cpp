@@ -7,7 +7,7 @@
 #include "native/entries.hpp"
 #include "native/native_stream.hpp"
 #include "probe/copy_bandwidth.hpp"
-#include "support/host_memory.hpp"
+#include "support/host_limits.hpp"
 
 namespace sk {
 

@@ -15,7 +15,7 @@
 #include <pthread.h>
 #include <signal.h>
 
-#include "support/processors.hpp"
+#include "support/host_limits.hpp"
 
 #if defined(__x86_64__) || defined(__i386__)
 #include <immintrin.h>

@@ -6,7 +6,6 @@
 
 #include "sk/narrow.hpp"
 #include "sk/scalar_bytes.hpp"
-#include "support/round_to_odd.hpp"
 
 namespace sk {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "support/host_memory.hpp"
+#include "support/host_limits.hpp"
 
 #include <catch2/catch.hpp>
 

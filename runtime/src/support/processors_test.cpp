@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "support/processors.hpp"
+#include "support/host_limits.hpp"
 
 #include <catch2/catch.hpp>
 
