@@ -12,8 +12,8 @@
 #include <epoxy/gl.h>
 
 #include "gl/command_log.hpp"
-#include "gl/deletions.hpp"
 #include "gl/errors.hpp"
+#include "gl/object_name.hpp"
 
 namespace sk::gl {
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// What the current context supports, and whether this is sufficient.
+// What the current context supports, whether this is sufficient, and what the driver tells about the GPU's memory. OpenGL
+// itself has no query for the memory; two extensions have.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,5 +55,13 @@ Capabilities readCapabilities();
 /// Why the current context is not sufficient, as text to follow "because"; empty if it is sufficient. Tests
 /// drawing to each format, after which framebuffer 0 and unit 0 must be restored.
 std::string whyUnfit(const Capabilities& capabilities, BoundState& bound);
+
+struct MemoryInfo {
+  std::optional<std::int64_t> whole;  ///< bytes; empty if the driver does not tell
+  std::optional<std::int64_t> available;  ///< bytes that are free now, likewise
+};
+
+/// Queries the current context: GL_NVX_gpu_memory_info has both numbers, GL_ATI_meminfo has those that are free.
+MemoryInfo readMemoryInfo();
 
 }  // namespace sk::gl

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Commands that use the current bindings.
+// Commands that use the current bindings, and the vertex array without attributes, which every draw requires and none reads.
 #pragma once
 
 #include "gl/bound_state.hpp"
+#include "gl/object_name.hpp"
 
 namespace sk::gl {
 
@@ -70,5 +71,19 @@ inline void blit(BoundState& bound, GLuint from, Corner source, GLuint to, Corne
   glBlitFramebuffer(source.x, source.y, source.x + width, source.y + height, target.x, target.y,
                     target.x + width, target.y + height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
+
+inline void deleteVertexArray(BoundState&, GLuint name) { glDeleteVertexArrays(1, &name); }
+
+class VertexArray {
+ public:
+  VertexArray() = default;
+  explicit VertexArray(Deletions& deletions)
+      : name_(deletions, [] { return generated(glGenVertexArrays); }) {}
+
+  GLuint name() const { return name_.get(); }
+
+ private:
+  ObjectName<deleteVertexArray> name_;
+};
 
 }  // namespace sk::gl

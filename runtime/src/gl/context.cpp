@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
-// Lifetime of a context, and which one is current.
+// Creates a context on a display, for which it selects the API, the configuration and the version; its lifetime, and which
+// one is current.
+
 #include "gl/context.hpp"
 
 #include <dlfcn.h>
+#include <cstdio>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include <fmt/format.h>
+
+#include "gl/displays.hpp"
 #include "sk/error.hpp"
 
 namespace sk::gl {
@@ -125,6 +133,106 @@ const char* eglErrorName(EGLint error) {
     case EGL_CONTEXT_LOST: return "EGL_CONTEXT_LOST";
     default: return "an unknown EGL error";
   }
+}
+
+namespace {
+
+using Version = std::pair<EGLint, EGLint>;
+constexpr Version glVersions[] = {{4, 6}, {4, 5}, {4, 4}, {4, 3}, {4, 2}, {4, 1}, {4, 0}, {3, 3}};
+constexpr Version esVersions[] = {{3, 2}, {3, 1}, {3, 0}};
+
+/// Binds an API for creating contexts, and finally restores the application's.
+class ApiScope {
+ public:
+  explicit ApiScope(Api api) : previous_(eglQueryAPI()) {
+    isBound_ = eglBindAPI(api == Api::Gl ? EGL_OPENGL_API : EGL_OPENGL_ES_API) == EGL_TRUE;
+  }
+  ~ApiScope() {
+    if (previous_ != EGL_NONE) {
+      eglBindAPI(previous_);
+    }
+  }
+  ApiScope(const ApiScope&) = delete;
+  ApiScope& operator=(const ApiScope&) = delete;
+  bool isBound() const { return isBound_; }
+
+ private:
+  EGLenum previous_;
+  bool isBound_;
+};
+
+/// Whether contexts of both APIs report resets, without an extension.
+bool isEgl15(EGLDisplay display) {
+  const char* version = eglQueryString(display, EGL_VERSION);
+  int major = 0, minor = 0;
+  return version != nullptr && std::sscanf(version, "%d.%d", &major, &minor) == 2 &&
+         std::pair(major, minor) >= std::pair(1, 5);
+}
+
+EGLConfig chooseConfig(EGLDisplay display, Api api) {
+  for (const EGLint surfaces : {EGL_PBUFFER_BIT, 0}) {
+    const EGLint attributes[] = {EGL_SURFACE_TYPE, surfaces, EGL_RENDERABLE_TYPE,
+                                 api == Api::Gl ? EGL_OPENGL_BIT : EGL_OPENGL_ES3_BIT, EGL_NONE};
+    EGLConfig config = EGL_NO_CONFIG_KHR;
+    EGLint count = 0;
+    if (eglChooseConfig(display, attributes, &config, 1, &count) == EGL_TRUE && count > 0) {
+      return config;
+    }
+  }
+  return EGL_NO_CONFIG_KHR;
+}
+
+/// `reportsResets`: creates a context that a GPU reset makes lost, which the driver reports.
+EGLContext createHighest(EGLDisplay display, EGLConfig config, Api api, bool reportsResets) {
+  const std::span<const Version> versions =
+      api == Api::Gl ? std::span<const Version>(glVersions) : std::span<const Version>(esVersions);
+  for (const auto& [major, minor] : versions) {
+    std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION, minor};
+    if (api == Api::Gl) {
+      attributes.insert(attributes.end(),
+                        {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
+    }
+    if (reportsResets) {
+      attributes.insert(attributes.end(),
+                        {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
+    }
+    attributes.push_back(EGL_NONE);
+    EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+    if (context != EGL_NO_CONTEXT) {
+      return context;
+    }
+  }
+  return EGL_NO_CONTEXT;
+}
+
+}  // namespace
+
+std::optional<Context> createContext(EGLDisplay display, Api api, std::string& why) {
+  const ApiScope apiScope(api);
+  if (!apiScope.isBound()) {
+    why = fmt::format("EGL does not offer it ({})", eglErrorName(eglGetError()));
+    return std::nullopt;
+  }
+  const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
+  const EGLConfig config = chooseConfig(display, api);
+  if (config == EGL_NO_CONFIG_KHR && !hasExtension(extensions, "EGL_KHR_no_config_context")) {
+    why = "it has no configuration without a window";
+    return std::nullopt;
+  }
+  EGLContext context =
+      isEgl15(display) ? createHighest(display, config, api, /*reportsResets=*/true) : EGL_NO_CONTEXT;
+  if (context == EGL_NO_CONTEXT) context = createHighest(display, config, api, /*reportsResets=*/false);
+  if (context == EGL_NO_CONTEXT) {
+    why = fmt::format("it gives no context of version {} or later ({})", api == Api::Gl ? "3.3 core" : "3.0",
+                      eglErrorName(eglGetError()));
+    return std::nullopt;
+  }
+  EGLSurface surface = EGL_NO_SURFACE;
+  if (!hasExtension(extensions, "EGL_KHR_surfaceless_context")) {
+    const EGLint size[] = {EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
+    surface = eglCreatePbufferSurface(display, config, size);
+  }
+  return Context(display, context, surface);
 }
 
 }  // namespace sk::gl

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// A GL or GL ES context: either our own, without a window, or the application's. A CurrentScope makes it
-// current as long as the scope lives. open_context.hpp selects contexts.
+// A GL or GL ES context: either our own, without a window, which is created on an EGL display, or the application's. A
+// CurrentScope makes it current as long as the scope lives. open_context.hpp selects contexts.
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include <epoxy/egl.h>
 
@@ -72,5 +73,9 @@ class CurrentScope {
 
 /// The name of an eglGetError() code: "EGL_BAD_ACCESS".
 const char* eglErrorName(EGLint error);
+
+/// Creates a context of the highest version that an initialised display supports: core GL from 3.3, or ES
+/// from 3.0. If it fails, `why` gives the reason. Does not make the context current.
+std::optional<Context> createContext(EGLDisplay display, Api api, std::string& why);
 
 }  // namespace sk::gl

@@ -12,9 +12,9 @@
 
 #include "gl/bound_state.hpp"
 #include "gl/buffer.hpp"
-#include "gl/fence.hpp"
 #include "gl/object_name.hpp"
 #include "gl/program.hpp"
+#include "gl/queue_points.hpp"
 #include "gl/uniform.hpp"
 
 namespace sk::gl {

@@ -1,17 +1,55 @@
 // SPDX-License-Identifier: MIT
 //
-// Owns the name of a GL object, which is deleted after its owner: the base of this folder's classes for GL
-// objects. The context need not be current when an owner is destroyed (deletions.hpp), but it must outlive
-// its owners.
+// Owners of GL objects, and the queue of objects whose owners have been destroyed. The objects are deleted when their
+// context is current, so that owners may be destroyed anywhere, even while another context or none is current; but the
+// context must outlive its owners. If it is never current again, its objects are deleted with it. The base of this folder's
+// classes for GL objects.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <epoxy/gl.h>
 
-#include "gl/deletions.hpp"
-
 namespace sk::gl {
+
+class BoundState;
+
+class Deletions {
+ public:
+  using Delete = void (*)(BoundState& bound, std::uintptr_t object);
+
+  /// Reserves room for one more object, before it is created, so that add() never allocates. Throws
+  /// std::bad_alloc.
+  void makeRoom() {
+    const std::size_t needed = queued_.size() + living_ + 1;
+    if (queued_.capacity() < needed) queued_.reserve(2 * needed);
+  }
+  /// Registers an object that has an owner from now on; there is room for it.
+  void expect() noexcept { ++living_; }
+  /// Queues an object whose owner is destroyed.
+  void add(Delete how, std::uintptr_t object) noexcept {
+    queued_.push_back({how, object});
+    --living_;
+  }
+
+  /// Deletes the queued objects. Their context must be current.
+  void run(BoundState& bound) noexcept {
+    for (const Queued& one : queued_) one.how(bound, one.object);
+    queued_.clear();
+  }
+
+ private:
+  struct Queued {
+    Delete how;
+    std::uintptr_t object;
+  };
+  std::vector<Queued> queued_;
+  std::size_t living_ = 0;
+};
 
 /// `Delete` must also inform `bound` that the object is no longer bound.
 template <void (*Delete)(BoundState& bound, GLuint name)>

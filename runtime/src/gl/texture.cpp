@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Creates textures and detects exhausted memory.
+
 #include "gl/texture.hpp"
 
 #include "gl/bound_state.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gl/wanted_device.hpp"
+#include "gl/open_context.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gl/memory_info.hpp"
+#include "gl/capabilities.hpp"
 #include "gl_device/gl_context.hpp"
 #include "gl_device/memory/kept_scratch.hpp"
 #include "gl_device/memory/render_target.hpp"

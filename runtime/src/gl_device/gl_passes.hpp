@@ -14,8 +14,7 @@
 
 #include "gl/buffer.hpp"
 #include "gl/commands.hpp"
-#include "gl/samplers.hpp"
-#include "gl/vertex_array.hpp"
+#include "gl/texture.hpp"
 #include "gl_device/gl_context.hpp"
 #include "gl_device/memory/kept_scratch.hpp"
 #include "gl_device/program/variant.hpp"

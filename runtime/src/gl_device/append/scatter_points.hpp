@@ -8,7 +8,7 @@
 
 #include "assemble/append/point_program.hpp"
 #include "assemble/region_layout.hpp"
-#include "gl/points.hpp"
+#include "gl/blending.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/memory/render_target.hpp"
 #include "gl_device/pass/pass.hpp"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "assemble/region_layout.hpp"
-#include "gl/timestamp.hpp"
+#include "gl/queue_points.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "trace/trace.hpp"

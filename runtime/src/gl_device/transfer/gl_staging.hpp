@@ -12,7 +12,7 @@
 #include "assemble/region_layout.hpp"
 #include "device/staging.hpp"
 #include "gl/buffer.hpp"
-#include "gl/fence.hpp"
+#include "gl/queue_points.hpp"
 #include "gl/format.hpp"
 #include "gl_device/program/integer_program.hpp"
 

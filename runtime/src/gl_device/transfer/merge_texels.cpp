@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "assemble/elements/planes.hpp"
-#include "gl/color_mask.hpp"
+#include "gl/blending.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "gl_device/program/made_kernels.hpp"
 #include "gl_device/transfer/copy_kernel.hpp"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "gl/buffer.hpp"
-#include "gl/fence.hpp"
+#include "gl/queue_points.hpp"
 
 namespace sk {
 

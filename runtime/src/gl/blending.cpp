@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Sets up blending and saves the application's settings.
-#include "gl/points.hpp"
+#include "gl/blending.hpp"
+
+#include <epoxy/gl.h>
 
 namespace sk::gl {
 
@@ -64,6 +66,11 @@ Blending::~Blending() {
     glBlendEquationSeparatei(index, value(buffer, 0), value(buffer, 1));
     glBlendFuncSeparatei(index, value(buffer, 2), value(buffer, 3), value(buffer, 4), value(buffer, 5));
   }
+}
+
+void ColorMaskScope::set(const ColorMask& mask) {
+  const auto value = [&](int c) { return static_cast<GLboolean>(mask[static_cast<std::size_t>(c)]); };
+  glColorMask(value(0), value(1), value(2), value(3));
 }
 
 }  // namespace sk::gl

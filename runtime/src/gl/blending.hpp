@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Points of one texel, and how they blend with stored texels. Points are drawn in order.
+// How draws change the texels of their targets: how the values of points blend with stored texels, and which components
+// draws write. Points cover one texel each and are drawn in order.
 #pragma once
 
 #include <array>
@@ -38,5 +39,22 @@ inline void drawPoints(BoundState& bound, GLsizei count) {
   bound.spoil();
   glDrawArrays(GL_POINTS, 0, count);
 }
+
+using ColorMask = std::array<bool, 4>;
+
+/// Draws write these components as long as this object lives, and all components otherwise.
+class ColorMaskScope {
+ public:
+  ColorMaskScope(BoundState& bound, const ColorMask& mask) {
+    bound.spoil();
+    set(mask);
+  }
+  ~ColorMaskScope() { set({true, true, true, true}); }
+  ColorMaskScope(const ColorMaskScope&) = delete;
+  ColorMaskScope& operator=(const ColorMaskScope&) = delete;
+
+ private:
+  static void set(const ColorMask& mask);
+};
 
 }  // namespace sk::gl

@@ -1,16 +1,43 @@
 // SPDX-License-Identifier: MIT
 //
-// Timestamps of the device: a query records the time when all earlier commands are done; the host reads it
-// later.
+// Points in the device's command queue, after all earlier commands: fences, for which the host can wait, and timestamps,
+// which record when the device got there, and which the host reads later.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <utility>
+
+#include <epoxy/gl.h>
 
 #include "gl/capabilities.hpp"
 #include "gl/object_name.hpp"
 
 namespace sk::gl {
+
+/// The host can wait for it.
+class Fence {
+ public:
+  Fence() = default;
+  /// Inserts a fence after all commands queued so far, and flushes them. Empty if the driver returns none.
+  static Fence insert(Deletions& deletions);
+  Fence(Fence&& other) noexcept : deletions_(other.deletions_), sync_(std::exchange(other.sync_, nullptr)) {}
+  Fence& operator=(Fence&& other) noexcept {
+    std::swap(deletions_, other.deletions_);
+    std::swap(sync_, other.sync_);
+    return *this;
+  }
+  ~Fence();
+  explicit operator bool() const { return sync_ != nullptr; }
+
+  /// True also if the driver fails, as on a lost context: the next operation reports the failure.
+  bool isReached() const;
+  void wait() const;
+
+ private:
+  Deletions* deletions_ = nullptr;
+  GLsync sync_ = nullptr;
+};
 
 inline void deleteQuery(BoundState&, GLuint name) { glDeleteQueries(1, &name); }
 
