@@ -15,7 +15,7 @@
 
 #include "assemble/append/append_passes.hpp"
 #include "assemble/append/histo_pyramid.hpp"
-#include "assemble/append/point_program.hpp"
+#include "assemble/append/scatter_programs.hpp"
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "ir/print.hpp"
 #include "program/elements.hpp"

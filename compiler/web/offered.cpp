@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "assemble/append/append_passes.hpp"
-#include "assemble/program/plans.hpp"
+#include "assemble/program/texture_units.hpp"
 #include "program/used_structs.hpp"
 #include "web/ahead_programs.hpp"
 #include "web/sum_variants.hpp"

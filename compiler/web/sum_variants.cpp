@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "assemble/program/plans.hpp"
+#include "assemble/program/texture_units.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
 #include "web/ahead_programs.hpp"
 #include "web/offered.hpp"

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "assemble/program/plans.hpp"
+#include "assemble/program/texture_units.hpp"
 #include "device/region.hpp"
 
 namespace sk {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "assemble/append/append_text.hpp"
+#include "assemble/append/append_passes.hpp"
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/elements/planes.hpp"
 

@@ -20,7 +20,7 @@
 // operations. Of several plain stores to an element the last one wins: an earlier pass (Work::Owners) finds
 // the last element that stores to each. What no atomic operation combines in order, sums of floats and all vectors, is
 // pushed to a list of records, which are then sorted by their targets and combined one after the other
-// (append/record_program.hpp).
+// (append/scatter_programs.hpp).
 #pragma once
 
 #include <cstdint>

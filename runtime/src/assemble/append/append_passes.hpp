@@ -8,16 +8,20 @@
 //   pass 2     list     entry j: determines its element and which push it is, and computes the value
 //
 // The list of a variable output is the stream itself. The list of a scatter output also holds the target
-// texels of its values, and is then drawn as points (point_program.hpp). A scatter output with few pushes per
+// texels of its values, and is then drawn as points (scatter_programs.hpp). A scatter output with few pushes per
 // element is not counted: its list has a slot for every possible push, which takes a single pass.
+//
+// Also the names and expressions that all programs for append outputs share, drawn or dispatched (append_groups.hpp).
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "assemble/assemble.hpp"
 #include "assemble/elements/domain.hpp"
 #include "assemble/glsl/program_text.hpp"
+#include "sk/program.hpp"
 
 namespace sk::assemble {
 
@@ -46,5 +50,18 @@ void findEntry(ProgramText& program, DomainText& domain, const program::Paramete
 /// stores.
 void defineListed(ProgramText& program, const program::Parameter& appendOutput, const StreamAccess& access);
 void storeListed(ProgramText& program, const program::Parameter& appendOutput);
+
+/// The function that the body calls: "void sk_push_r(float sk_v)" or "void sk_put_r(ivec2 sk_i, float sk_v)".
+std::string signatureOf(const program::Parameter& appendOutput);
+
+/// "sk_KIND_r"
+std::string named(std::string_view kind, const program::Parameter& appendOutput);
+
+/// The texel of index `sk_i` of a scatter output. Streams of more than two dimensions are always linearised.
+std::string targetTexel(ProgramText& program, const program::Parameter& appendOutput,
+                        const StreamAccess& access);
+
+/// Whether the index `sk_i` is in bounds. As unsigned integers, negative indices are too large.
+std::string isInside(ProgramText& program, const program::Parameter& appendOutput);
 
 }  // namespace sk::assemble

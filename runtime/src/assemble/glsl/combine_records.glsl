@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Combines records, sorted by their targets, with the elements of a scatter output (append/record_program.hpp). A work group has
+// Combines records, sorted by their targets, with the elements of a scatter output (append/scatter_programs.hpp). A work group has
 // a tile of records. Where a target's first record is, one invocation combines all of them, one after the other. The tile's last
 // target may have records in the tiles behind, which the whole group then fetches for it.
 

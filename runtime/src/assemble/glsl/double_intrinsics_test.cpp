@@ -12,7 +12,6 @@
 
 #include "occurrences.hpp"
 
-#include "assemble/glsl/double_polynomials.hpp"
 #include "assemble/glsl/intrinsics.hpp"
 
 using namespace sk::assemble;

@@ -8,7 +8,7 @@
 //
 // A pair is the sum of two floats, the second at most half a unit in the last place of the first: 48 bits of
 // precision in the range of float. Its arithmetic consists of error-free steps, which compilers must not
-// change (exact_sums.hpp).
+// change (own_arithmetic.hpp).
 //
 //   sum, product    Joldes, Muller, Popescu, ACM TOMS 44 (2017): algorithms 6 and 10
 //   product's error Dekker, Numerische Mathematik 18 (1971), splitting into 12 bits with a mask: no fma,

@@ -22,7 +22,7 @@ namespace sk::assemble {
 
 /// The #extension lines at the beginning of a program that uses doubles; each ends its line.
 std::string_view doubleExtensions(Doubles form);
-/// The definitions, which precede all others except, for pairs, those of exact_sums.hpp. Operations of native doubles are
+/// The definitions, which precede all others except, for pairs, those of own_arithmetic.hpp. Operations of native doubles are
 /// precise with that barrier (barrierOfBodies()), which needs exactExtensions().
 std::string doubleDefinitions(Doubles form, Barrier own);
 

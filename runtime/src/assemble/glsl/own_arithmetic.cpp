@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+//
+// Replaces marks, and selects the definitions for a barrier (exact_sums.glsl).
+
 #include "assemble/glsl/own_arithmetic.hpp"
 
 #include <algorithm>
@@ -208,6 +211,21 @@ std::string bodyDefinitions(const Profile& profile, std::string_view text) {
   }
   if (text.find("sk_exact_") != std::string_view::npos) definitions += geometryDefinitions(text);
   return definitions;
+}
+
+std::string_view exactExtensions(const Profile& profile) {
+  const bool hasPrecise = profile.stage == Stage::Compute;  // GLSL 4.30
+  return profile.barrier == Barrier::Precise && !hasPrecise ? "#extension GL_ARB_gpu_shader5 : require\n"
+                                                            : "";
+}
+
+std::string_view exactDefinitions(Barrier barrier) {
+  switch (barrier) {
+    case Barrier::None: return library::withoutBarrier;
+    case Barrier::Xor: return library::xorBarrier;
+    case Barrier::Precise: return library::preciseBarrier;
+  }
+  return {};
 }
 
 }  // namespace sk::assemble

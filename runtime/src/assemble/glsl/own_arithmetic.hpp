@@ -9,6 +9,11 @@
 //
 // sk_keep() hides what an operation gives by x ^ 0, sk_known() what goes into one by x + 0, of the bits: the second ^ around a
 // value would take the first one back.
+//
+// Floats that must be computed exactly as written have the same barrier. GLSL compilers reorder and remove float operations, and
+// regard an addition's rounding error as 0. A barrier stops them: a variable declared `sk_precise`, whose
+// value went through sk_keep(), is computed with GLSL's `precise` if available, else its bits change by a
+// uniform that is 0, which compilers cannot know.
 #pragma once
 
 #include <string>
@@ -27,11 +32,16 @@ std::string bodyText(const Profile& profile, std::string_view body);
 /// The body without marks.
 std::string unmarked(std::string_view body);
 
-/// True if `text`, a result of bodyText(), has operations with a barrier, for which the program must define what exact_sums.hpp
-/// does.
+/// True if `text`, a result of bodyText(), has operations with a barrier, for which the program must define what
+/// exactDefinitions() does.
 bool guardsOperations(const Profile& profile, std::string_view text);
 
 /// Declares the variables and functions that `text`, a result of bodyText(), uses and exactDefinitions() does not define.
 std::string bodyDefinitions(const Profile& profile, std::string_view text);
+
+/// The #extension line at the beginning of a program that has such floats; ends its line.
+std::string_view exactExtensions(const Profile& profile);
+/// Defines sk_precise, and sk_keep() for float, vec2, vec3 and vec4.
+std::string_view exactDefinitions(Barrier barrier);
 
 }  // namespace sk::assemble

@@ -10,7 +10,6 @@
 
 #include "assemble/glsl/double_intrinsics.hpp"
 #include "assemble/glsl/doubles.hpp"
-#include "assemble/glsl/exact_sums.hpp"
 #include "assemble/glsl/intrinsics.hpp"
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "assemble/glsl/tables.hpp"

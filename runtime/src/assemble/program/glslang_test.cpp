@@ -14,7 +14,7 @@
 #include <catch2/catch.hpp>
 
 #include "assemble/append/histo_pyramid.hpp"
-#include "assemble/append/point_program.hpp"
+#include "assemble/append/scatter_programs.hpp"
 #include "assemble/program/sample_kernels.hpp"
 #include "assemble/reduce/group_fold.hpp"
 #include "assemble/reduce/reduce_program.hpp"

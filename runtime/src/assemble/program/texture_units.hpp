@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Counts the texture units of programs. Checks of calls, the choice of plans, and the programs themselves ask here, so that none of
-// them allows what another one cannot bind.
+// Counts the texture units of programs, and selects a kernel's plan for the number of planes that a pass may write and read.
+// Checks of calls, the choice of plans, and the programs themselves ask here, so that none of them allows what another one
+// cannot bind.
 #pragma once
 
 #include <cstddef>
@@ -36,5 +37,17 @@ std::vector<std::size_t> bundlesOf(const program::Kernel& kernel);
 
 /// The planes of a kernel's accumulators.
 std::size_t accumulatorPlanes(const program::Kernel& kernel);
+
+/// The planes that one pass may write and read.
+struct PassLimits {
+  int drawBuffers;
+  int textureUnits;
+};
+
+/// Whether one pass has room for all streams that the kernel needs with these values of its Spec parameters.
+bool fitsOnePass(const program::Kernel& kernel, const PassLimits& limits, const SpecValues& specs);
+
+/// The first plan within the limits; null if there is none.
+const program::Plan* planWithin(const program::Kernel& kernel, const PassLimits& limits);
 
 }  // namespace sk::assemble

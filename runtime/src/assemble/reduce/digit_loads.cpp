@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "assemble/reduce/scan_tiles.hpp"
+#include "assemble/reduce/scan_plan.hpp"
 #include "sk/exact_digits.hpp"
 
 namespace sk::assemble {

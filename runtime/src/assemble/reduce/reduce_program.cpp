@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Assembles the program of one pass of a reduction: main() finds its run in a block and folds it in one loop.
+
 #include "assemble/reduce/reduce_program.hpp"
 
 #include <algorithm>
@@ -14,7 +15,6 @@
 #include "assemble/glsl/program_text.hpp"
 #include "assemble/reduce/block_program.hpp"
 #include "assemble/reduce/fold_text.hpp"
-#include "assemble/reduce/reduce_names.hpp"
 #include "assemble/reduce/row_program.hpp"
 #include "assemble/reduce/scan_program.hpp"
 
@@ -370,6 +370,30 @@ std::string reduceProgram(const Profile& profile, const Reduction& reduction, co
   if (variant.rows != RowPass::None) return rowProgram(profile, reduction, variant);
   if (variant.scan != ScanPass::None) return scanProgram(profile, reduction, variant);
   return ReductionText(profile, reduction, variant).write();
+}
+
+std::string_view nameOf(Walk walk) {
+  switch (walk) {
+    case Walk::Line: return "elements of a line";
+    case Walk::Plane: return "elements of a plane";
+    case Walk::Box: return "elements of a box";
+    case Walk::Index: return "elements by index";
+    case Walk::Rows: return "elements of rows";
+    case Walk::Partials: return "partial results";
+    case Walk::PartialRows: return "partial results in rows";
+    case Walk::GroupedPartials: return "partial results of groups";
+    case Walk::Nothing: return "no elements";
+  }
+  return {};
+}
+
+std::string_view nameOf(Runs runs) {
+  switch (runs) {
+    case Runs::OneBlock: return "one block";
+    case Runs::WholeBlocks: return "a run for each block";
+    case Runs::Split: return "several runs for each block";
+  }
+  return {};
 }
 
 }  // namespace sk::assemble

@@ -3,10 +3,13 @@
 // The program of one pass of a reduction: each fragment folds a run of elements, or of the previous pass's
 // partial results, in row-major order, starting from the first one or from the identity. reduce_plan.hpp
 // plans passes and computes the values of their uniforms.
+//
+// Names of walks and runs, for the first comment of a reduction's program.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "assemble/assemble.hpp"
@@ -125,5 +128,8 @@ struct ReduceVariant {
 /// name; a parameter's own uniforms are those of a kernel's program (assemble.hpp).
 std::string reduceProgram(const Profile& profile, const program::Reduction& reduction,
                           const ReduceVariant& variant);
+
+std::string_view nameOf(Walk walk);
+std::string_view nameOf(Runs runs);
 
 }  // namespace sk::assemble

@@ -12,6 +12,8 @@
 // Result r of the runs of line l has number r * lines + l in a linearised texture. Where passes are dispatches, a work
 // group folds a tile, which takes the place of the run, and an invocation stores all results of its run
 // (ScanUnit): elements are read twice and results written once.
+//
+// Also how dispatched scans are divided into tiles, and which reductions can be (scan_tile_program.hpp).
 #pragma once
 
 #include <cstdint>
@@ -19,6 +21,7 @@
 
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/region_layout.hpp"
+#include "sk/program.hpp"
 
 namespace sk::assemble {
 
@@ -47,7 +50,7 @@ struct ScanAccess {
   bool byIndex = true;  ///< Walk::Index; only the extent of the elements' region layout matters then
   bool byTexel = false;  ///< elements and results are packed, and lines consist of whole texels
   /// The most items of a run in a tile of elements, and of results of runs; 0: they are not folded in tiles, which only
-  /// dispatches can (scan_tiles.hpp).
+  /// dispatches can.
   std::int32_t elementRun = 0, partialRun = 0;
   bool chained = false;  ///< one pass scans all tiles of the elements, if they are one line
   bool ofDigits = false;  ///< folds the terms of an exact sum (sk/exact_digits.hpp)
@@ -64,5 +67,21 @@ bool isConsecutive(const RegionLayout& elements);
 /// are dispatches.
 ScanPlan planScan(const RegionLayout& elements, const RegionLayout& result, const ReduceLimits& limits,
                   const Lines& lines, const ScanAccess& access, bool isExclusive);
+
+/// The invocations of the work groups. Each computes a run, of consecutive runs.
+inline constexpr std::int32_t tileGroup = 256;
+/// Groups are dispatched in rows of this many: group g is at (g % groupsPerRow, g / groupsPerRow).
+inline constexpr int groupRowShift = 15;
+
+/// The most items of a run in a tile of this reduction, a power of two; 0 if shared memory cannot hold its accumulators.
+/// `packed`: an item is a texel of four elements.
+std::int32_t longestRunInTile(const program::Reduction& reduction, bool packed);
+
+/// Whether a program that folds elements can also combine its results.
+bool combinesInFold(const program::Reduction& reduction);
+
+/// Whether one pass may scan a line (ReduceVariant::chained): tiles find the result of those before in an order that
+/// depends on time, so that accumulators must be integers, whose results do not depend on it.
+bool mayChain(const program::Reduction& reduction);
 
 }  // namespace sk::assemble

@@ -6,7 +6,6 @@
 
 #include "assemble/reduce/digit_loads.hpp"
 #include "assemble/reduce/scan_plan.hpp"
-#include "assemble/reduce/scan_tiles.hpp"
 
 using namespace sk::assemble;
 

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "assemble/elements/arguments.hpp"
-#include "assemble/reduce/scan_text.hpp"
-#include "assemble/reduce/scan_tiles.hpp"
+#include "assemble/reduce/scan_plan.hpp"
+#include "assemble/reduce/scan_program.hpp"
 
 namespace sk::assemble {
 

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "assemble/glsl/group_sums.hpp"
 #include "assemble/glsl/program_text.hpp"
+#include "glsl_text/group_sums.hpp"
 #include "glsl_text/radix_sort.hpp"
 
 namespace sk::assemble {
@@ -53,5 +53,7 @@ std::string radixProgram(const Profile& profile, RadixStep step, RadixStorage st
   return fmt::format("{}\n{}{}{}{}{}", profile.version, definitionsOf(step, storage), library::radixHead,
                      text(Function::Paired), groupSums(), bodyOf(step));
 }
+
+std::string_view groupSums() { return library::groupSums; }
 
 }  // namespace sk::assemble

@@ -2,11 +2,14 @@
 //
 // The compute programs that sort words by a digit of 8 bits, stably (D. Merrill and A. Grimshaw, "High performance and
 // scalable radix sorting", 2011). Sorting by each digit in turn, lowest first, sorts by all of them.
+//
+// A GLSL function that sums unsigned numbers over a work group, for compute programs.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "assemble/assemble.hpp"
 
@@ -36,5 +39,9 @@ struct RadixStorage {
 /// sk_rect, sk_length, sk_tiles, sk_keys_shift, sk_counts_shift, sk_totals_shift, sk_digit, sk_from and sk_to; its samplers
 /// are sk_keys, of keys or pairs, sk_counts, sk_sums and sk_totals. All textures are linearised.
 std::string radixProgram(const Profile& profile, RadixStep step, RadixStorage storage = {});
+
+/// Defines `uint sk_sums_before(uint value, out uint sum)`: the sum over the invocations before this one, and over all.
+/// All invocations of the group, 256 in x, must call it.
+std::string_view groupSums();
 
 }  // namespace sk::assemble

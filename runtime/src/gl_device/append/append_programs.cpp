@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "assemble/append/record_program.hpp"
+#include "assemble/append/scatter_programs.hpp"
 #include "assemble/assemble.hpp"
 #include "gl_device/gl_programs.hpp"
 

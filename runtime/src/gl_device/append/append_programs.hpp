@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "assemble/append/histo_pyramid.hpp"
-#include "assemble/append/point_program.hpp"
+#include "assemble/append/scatter_programs.hpp"
 #include "device/unload_watch.hpp"
 #include "gl_device/program/integer_program.hpp"
 #include "sk/program.hpp"

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "assemble/append/append_groups.hpp"
-#include "assemble/append/record_program.hpp"
-#include "assemble/reduce/scan_tiles.hpp"
+#include "assemble/append/scatter_programs.hpp"
+#include "assemble/reduce/scan_plan.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "gl_device/pass/pass_trace.hpp"
 #include "gl_device/sort/sort_kernels.hpp"

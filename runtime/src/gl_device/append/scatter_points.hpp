@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "assemble/append/point_program.hpp"
+#include "assemble/append/scatter_programs.hpp"
 #include "assemble/region_layout.hpp"
 #include "gl/blending.hpp"
 #include "gl_device/gl_device.hpp"

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "assemble/elements/planes.hpp"
-#include "assemble/reduce/scan_tiles.hpp"
+#include "assemble/reduce/scan_plan.hpp"
 #include "gl/commands.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device/sort/word_sort.hpp"
 
-#include "assemble/reduce/scan_tiles.hpp"
+#include "assemble/reduce/scan_plan.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "gl_device/pass/pass_trace.hpp"
 #include "gl_device/sort/device_sort.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The programs that scatter a list: each entry is a point that covers its target texel, and the device draws
+// The programs that carry out the list of a scatter output.
+// Drawn programs: each entry of the list is a point that covers its target texel, and the device draws
 // points in order. For a plain store, the last point wins. Sums, minima and maxima of floats use the device's
 // blending (Krueger and Westermann 2003). Devices do not blend integers, so integers are represented exactly
 // in floats:
@@ -9,6 +10,10 @@
 //           Split the stored elements into limbs, draw points, join the limbs; repeat for the next points.
 //   min max first the upper 16 bits of each component, then the lower 16 bits of those whose upper bits are
 //           the result. A minimum is a maximum with all bits inverted, so that one order serves both.
+//
+// A compute program combines, in order, what atomic operations cannot combine so: sums of floats, and vectors. Its records
+// are the targets and values that a kernel has pushed (append/append_groups.hpp). A stable sort by targets has brought
+// those of each target together, in the order of the elements.
 #pragma once
 
 #include <cstdint>
@@ -61,5 +66,14 @@ std::string pointVertexProgram(const Profile& profile, const PointTextures& text
 /// drawn layer, and `sk_domain_shift` is log2 of the layer's rows.
 std::string pointProgram(const Profile& profile, const program::Parameter& appendOutput, PointStep step,
                          const PointTextures& textures);
+
+/// The records of a work group.
+inline constexpr std::int32_t recordTile = 1024;
+
+/// The program for a scatter output that isListed(). It is dispatched in rows of 2^15 groups, one for each tile, and has the
+/// uniforms sk_rect, sk_length, sk_tiles, sk_keys_shift, sk_list_shift and sk_width. Its samplers are sk_keys, of sorted pairs;
+/// sk_count, of the number of records, if it `isCounted` on the device; and sk_values, of the list, unless a pair holds the value.
+/// Image 0 is the target.
+std::string recordProgram(const Profile& profile, const program::Parameter& scatter, bool isCounted);
 
 }  // namespace sk::assemble
