@@ -11,7 +11,7 @@
 
 #include "agreement.hpp"
 #include "combination.hpp"
-#include "device/staging.hpp"
+#include "device/device_state.hpp"
 #include "device/write_scope.hpp"
 #include "domain/decomposition.hpp"
 #include "messages.hpp"

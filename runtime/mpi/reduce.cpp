@@ -14,7 +14,7 @@
 #include "call/placed.hpp"
 #include "call/precision.hpp"
 #include "call_plan.hpp"
-#include "device/transfer_state.hpp"
+#include "device/stream_state.hpp"
 #include "rank_reduction.hpp"
 
 namespace sk {

@@ -19,7 +19,6 @@
 #include "call/dense_regions.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
-#include "device/reordering.hpp"
 #include "device/stream_state.hpp"
 #include "device/write_scope.hpp"
 #include "sk/error.hpp"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The interface of every kind of device, GL (gl_device/gl_device.hpp) or native (native/native_device.hpp):
-// it creates streams and runs kernels on them. All arguments have been checked before.
+// The interface of every kind of device, GL (gl_device/gl_device.hpp) or native (native/native_device.hpp): it creates
+// streams and runs kernels on them, brings elements into a new order, and may have host memory that its own programs reach.
+// All arguments have been checked before.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +17,59 @@
 #include "device/configuration.hpp"
 #include "device/function_table.hpp"
 #include "device/loop_runner.hpp"
-#include "device/recorded_call.hpp"
 #include "device/scalar_pass.hpp"
-#include "device/staging.hpp"
 #include "device/stream_state.hpp"
 #include "sk/call.hpp"
 #include "sk/device.hpp"
 #include "sk/program.hpp"
+#include "sk/stream.hpp"
 #include "trace/trace.hpp"
 
 namespace sk {
+
+/// A stable new order of a stream's elements, which a device may carry out itself (DeviceState::reorder).
+struct Reordering {
+  enum class By : std::uint8_t {
+    Keys,  ///< sorted by keys
+    DescendingKeys,
+    Changes,  ///< keys that differ from the one before come first (sk::unique)
+    Flags,  ///< elements whose flag is true, or not 0, come first
+  };
+
+  By by;
+  StreamRegion keys;  ///< or flags; at least one
+  std::span<const StreamRegion> moved = {};  ///< of the same shape, in different streams; may include `keys`
+  const StreamRegion* places = nullptr;  ///< gets the number that each element had, of type int; or null
+
+  bool choosesFirst() const { return by == By::Changes || by == By::Flags; }
+};
+
+/// Host memory that a device's own programs reach: they copy boxes of streams there and back, without the driver between
+/// them. In memory, a box has a word of 32 bits for each component as it is stored, in the order of
+/// assemble/transfer/staging_program.hpp.
+class Staging {
+ public:
+  /// Who writes the memory, and who reads it.
+  enum class Way : bool { ToHost, ToDevice };
+
+  virtual ~Staging() = default;
+  Staging() = default;
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+
+  /// The bytes of a box.
+  virtual std::size_t bytesOf(const StreamRegion& box) const = 0;
+  /// Makes room for `bytes` undefined bytes, once the device has finished with those before. Throws sk::Error if memory is
+  /// exhausted. Pointers into the memory are valid until the next call.
+  virtual std::byte* room(std::size_t bytes) = 0;
+  /// Adds the copy of a box, which is not empty, to the memory or from it, at a multiple of 4 bytes. Streams must stay until
+  /// flush().
+  virtual void copy(const StreamRegion& box, std::size_t offset) = 0;
+  /// Begins to carry out all copies, those of one stream together.
+  virtual void flush() = 0;
+  /// Waits until the copies have been carried out. Throws sk::Error if the device is lost or has failed.
+  virtual void wait() = 0;
+};
 
 class LoopState;
 struct ResolvedCall;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How a device runs the iterations of a loop (device/loop_state.hpp).
+// What loops on a device consist of (device/loop_state.hpp): calls that repeat, and the device's way to run their iterations.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +24,17 @@ class LoopRunner {
   /// Runs until the condition, one element that is checked, is true after an iteration. Returns the number of
   /// iterations.
   virtual std::int64_t runUntil(LoopState& loop, const StreamRegion& done, const LoopEnd& end) = 0;
+};
+
+/// A call whose arguments have been checked, with copies of all that it refers to except streams.
+class RecordedCall {
+ public:
+  RecordedCall() = default;
+  virtual ~RecordedCall() = default;
+  RecordedCall(const RecordedCall&) = delete;
+  RecordedCall& operator=(const RecordedCall&) = delete;
+
+  virtual void run() = 0;
 };
 
 }  // namespace sk

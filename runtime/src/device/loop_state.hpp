@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "device/loop_runner.hpp"
-#include "device/recorded_call.hpp"
 #include "device/stream_state.hpp"
 #include "sk/call.hpp"
 #include "sk/linked_file.hpp"

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "assemble/sort/radix_program.hpp"
-#include "device/reordering.hpp"
+#include "device/device_state.hpp"
 #include "gl_device/program/integer_program.hpp"
 
 namespace sk {

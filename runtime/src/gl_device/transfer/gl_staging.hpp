@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "assemble/region_layout.hpp"
-#include "device/staging.hpp"
+#include "device/device_state.hpp"
 #include "gl/buffer.hpp"
 #include "gl/queue_points.hpp"
 #include "gl/format.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "assemble/elements/storage.hpp"
-#include "device/transfer_state.hpp"
+#include "device/stream_state.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/transfer/buffered_transfer.hpp"
 
