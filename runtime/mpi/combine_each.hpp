@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "accumulators.hpp"
-#include "call/resolved_reduction.hpp"
+#include "call/resolved_call.hpp"
 #include "domain_state.hpp"
 
 namespace sk::mpi {

@@ -4,7 +4,7 @@
 // without rounding; the plain reduction folds all others. Must not depend on the kind of device.
 #pragma once
 
-#include "call/resolved_reduction.hpp"
+#include "call/resolved_call.hpp"
 
 namespace sk {
 

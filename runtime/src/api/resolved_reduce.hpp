@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "call/resolved_reduction.hpp"
+#include "call/resolved_call.hpp"
 #include "sk/options.hpp"
 
 namespace sk {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "call/resolved_reduction.hpp"
+#include "call/resolved_call.hpp"
 #include "sk/call.hpp"
 #include "sk/options.hpp"
 #include "sk/program.hpp"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: MIT
+//
+// In calls with placed streams, an index beyond what a gather holds reads the nearest element that it holds, so that one
+// layer of elements around the permitted ones catches every read that is too far.
+
 #include "call/check_halos.hpp"
 
 #include <algorithm>
@@ -6,6 +10,7 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "assemble/append/append_passes.hpp"
@@ -13,7 +18,9 @@
 #include "call/box.hpp"
 #include "call/check_argument.hpp"
 #include "call/halo_limits.hpp"
+#include "call/placed.hpp"
 #include "device/device_state.hpp"
+#include "device/region.hpp"
 #include "device/stream_state.hpp"
 #include "sk/scalar_bytes.hpp"
 
@@ -169,6 +176,218 @@ void checkHalos(DeviceState& device, const ResolvedCall& call,
   std::optional<HaloCheck> check;
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     if (!isTested(call, i)) continue;
+    if (!check) check.emplace(device, call, run);
+    check->check(i);
+  }
+}
+
+using program::Boundary;
+
+namespace {
+
+/// The most lines that are tested along a dimension.
+constexpr std::int64_t mostPlacedLines = 64;
+
+/// Calls visit(number, index) for the elements of a box, row-major.
+template <class Visit>
+void forEachIn(const Box& box, const Visit& visit) {
+  const int rank = box.begin.rank();
+  Index index = box.begin;
+  for (std::int64_t number = 0;; ++number) {
+    visit(number, index);
+    int d = rank - 1;
+    while (d >= 0 && ++index[d] == box.end[d]) {
+      index[d] = box.begin[d];
+      --d;
+    }
+    if (d < 0) return;
+  }
+}
+
+std::size_t numberIn(const Box& box, const Index& index) {
+  std::int64_t number = 0;
+  for (int d = 0; d < index.rank(); ++d)
+    number = number * (box.end[d] - box.begin[d]) + index[d] - box.begin[d];
+  return static_cast<std::size_t>(number);
+}
+
+class PlacedCheck {
+ public:
+  PlacedCheck(DeviceState& device, const ResolvedCall& call,
+              const std::function<void(const ResolvedCall&)>& run)
+      : device_(device), call_(call), run_(run), arguments_(call.arguments.begin(), call.arguments.end()) {
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      if (call.kernel.parameters[i].role != Role::Output || arguments_[i].region.stream == nullptr) continue;
+      outputs_.push_back(i);
+      const StreamRegion& given = call.arguments[i].region;
+      streams_.push_back(make(given, given.shape, given.placement));
+      arguments_[i].region = streams_.back().region;
+    }
+  }
+
+  void check(std::size_t gather) {
+    const Box& box = call_.options.box;
+    const Shape seen = seenShape(call_.arguments[gather].region);
+    for (int d = 0; d < seen.rank(); ++d) {
+      const std::optional<HaloLimits> limits = limitsOf(gather, d);
+      const int k = gatherDimension(seen, d, call_.domain).domainDimension;
+      if (!limits) continue;
+      if (k < 0) {
+        checkLine(gather, d, *limits, box);
+        continue;
+      }
+      const std::int64_t count = box.end[k] - box.begin[k], lines = std::min(count, mostPlacedLines);
+      for (std::int64_t number = 0; number < lines; ++number) {
+        Box line = box;
+        line.begin[k] += lines == 1 ? 0 : number * (count - 1) / (lines - 1);
+        line.end[k] = line.begin[k] + 1;
+        checkLine(gather, d, *limits, line);
+      }
+    }
+  }
+
+ private:
+  std::optional<HaloLimits> limitsOf(std::size_t gather, int d) const {
+    return haloLimits(call_.kernel, call_.arguments, gather, d, call_.specs, call_.domain);
+  }
+
+  struct Made {
+    std::unique_ptr<StreamState> stream;
+    StreamRegion region;
+  };
+  Made make(const StreamRegion& like, const Shape& shape, const Placement& placement) {
+    const StreamState& stream = *like.stream;
+    Made made{device_.createStream(*stream.element, shape, stream.storage), {}};
+    made.region = {made.stream.get(), Index::origin(shape.rank()), shape};
+    made.region.placement = placement;
+    return made;
+  }
+
+  /// Changes what lies before the elements that the line may read, and then what lies behind them: no result may change.
+  void checkLine(std::size_t gather, int d, const HaloLimits& limits, const Box& line) {
+    const StreamRegion& given = call_.arguments[gather].region;
+    const program::Element& element = *call_.kernel.parameters[gather].element;
+    Box allowed = heldBox(given), around = allowed;
+    limit(gather, d, readBy(line, limits, gatherDimension(seenShape(given), d, call_.domain)), allowed,
+          around);
+    if (around == allowed) return;
+    const std::vector<std::byte> elements = elementsAround(given, allowed, around, element.size);
+    Shape shape = given.shape;
+    for (int k = 0; k < shape.rank(); ++k) shape = shape.with(k, around.end[k] - around.begin[k]);
+    const Made made = make(given, shape, {around.begin, seenShape(given)});
+    made.stream->write(made.region, elements.data());
+    const std::vector<std::vector<std::byte>> expected = results(gather, made.region, line);
+    for (const bool isAfter : {false, true}) {
+      const std::int64_t at = isAfter ? allowed.end[d] : around.begin[d];
+      if (at == (isAfter ? around.end[d] : allowed.begin[d])) continue;
+      std::vector<std::byte> other = elements;
+      forEachIn(around, [&](std::int64_t number, const Index& index) {
+        if (index[d] == at)
+          changeBits(element, other.data() + static_cast<std::size_t>(number) * element.size);
+      });
+      made.stream->write(made.region, other.data());
+      compare(gather, d, isAfter, line, expected, results(gather, made.region, line));
+    }
+  }
+
+  /// Sets the indices that may be read in dimension d, and those with an element where farther ones exist.
+  void limit(std::size_t gather, int d, const IndexRange& read, Box& allowed, Box& around) const {
+    const Boundary boundary = call_.kernel.parameters[gather].boundary;
+    const StreamRegion& region = call_.arguments[gather].region;
+    const std::int64_t n = seenShape(region)[d];
+    const auto [below, above] = read;
+    if (boundary == Boundary::Wrap) {
+      if (above - below >= n) return;
+      const std::int64_t low = heldBox(region).begin[d];
+      allowed.begin[d] = low + ((below - low) % n + n) % n;
+      allowed.end[d] = allowed.begin[d] + above - below;
+      around.begin[d] = allowed.begin[d] - 1;
+      around.end[d] = allowed.end[d] + 1;
+      return;
+    }
+    if (boundary == Boundary::Mirror && (below < 0 || above > n)) return;  // reads come back from there
+    allowed.begin[d] = std::clamp<std::int64_t>(below, 0, n - 1);
+    allowed.end[d] = std::clamp<std::int64_t>(above, 1, n);
+    around.begin[d] = std::max<std::int64_t>(allowed.begin[d] - 1, 0);
+    around.end[d] = std::min(allowed.end[d] + 1, n);
+  }
+
+  static std::vector<std::byte> elementsAround(const StreamRegion& given, const Box& allowed,
+                                               const Box& around, std::size_t size) {
+    std::vector<std::byte> held(static_cast<std::size_t>(given.shape.size()) * size);
+    given.stream->read(given, held.data());
+    const Box box = heldBox(given);
+    std::int64_t count = 1;
+    for (int d = 0; d < around.begin.rank(); ++d) count *= around.end[d] - around.begin[d];
+    std::vector<std::byte> elements(static_cast<std::size_t>(count) * size);
+    forEachIn(allowed, [&](std::int64_t, const Index& index) {
+      std::copy_n(held.data() + numberIn(box, index) * size, size,
+                  elements.data() + numberIn(around, index) * size);
+    });
+    return elements;
+  }
+
+  /// The bytes of each output in the box.
+  std::vector<std::vector<std::byte>> results(std::size_t gather, const StreamRegion& region,
+                                              const Box& box) {
+    arguments_[gather].region = region;
+    ResolvedCall call = call_;
+    call.arguments = arguments_;
+    call.options.box = box;
+    run_(call);
+    arguments_[gather].region = call_.arguments[gather].region;
+    std::vector<std::vector<std::byte>> all;
+    for (const std::size_t output : outputs_) {
+      const Parameter& parameter = call_.kernel.parameters[output];
+      const StreamRegion part = partOfWhole(call_.kernel, parameter, arguments_[output].region, box);
+      std::vector<std::byte>& bytes =
+          all.emplace_back(static_cast<std::size_t>(part.shape.size()) * parameter.element->size);
+      part.stream->read(part, bytes.data());
+    }
+    return all;
+  }
+
+  void compare(std::size_t gather, int d, bool isAfter, const Box& line,
+               const std::vector<std::vector<std::byte>>& expected,
+               const std::vector<std::vector<std::byte>>& got) const {
+    for (std::size_t k = 0; k < outputs_.size(); ++k) {
+      const auto first = std::ranges::mismatch(expected[k], got[k]).in1;
+      if (first == expected[k].end()) continue;
+      const auto number = static_cast<std::int64_t>(static_cast<std::size_t>(first - expected[k].begin()) /
+                                                    call_.kernel.parameters[outputs_[k]].element->size);
+      const Parameter& parameter = call_.kernel.parameters[gather];
+      const int rank = call_.arguments[gather].region.shape.rank();
+      const HaloLimits limits = *limitsOf(gather, d);
+      Index at = line.begin;
+      forEachIn(line, [&](std::int64_t n, const Index& index) {
+        if (n == number) at = index;
+      });
+      fail(call_.kernel,
+           "'{}' is read more than {} {} the element along {}, by the element with index {}; correct its "
+           "[[halo]]",
+           parameter.name, isAfter ? limits.above : limits.below, isAfter ? "after" : "before",
+           "xyzw"[rank - 1 - d], toString(at));
+    }
+  }
+
+  DeviceState& device_;
+  const ResolvedCall& call_;
+  const std::function<void(const ResolvedCall&)>& run_;
+  std::vector<Argument> arguments_;  ///< with streams of our own for the outputs
+  std::vector<std::size_t> outputs_;
+  std::vector<Made> streams_;
+};
+
+}  // namespace
+
+void checkPlacedHalos(DeviceState& device, const ResolvedCall& call,
+                      const std::function<void(const ResolvedCall&)>& run) {
+  std::optional<PlacedCheck> check;
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const Parameter& parameter = call.kernel.parameters[i];
+    if (parameter.role != Role::Gather || !assemble::isNeeded(parameter, call.specs) ||
+        !isPlaced(call.arguments[i].region) || parameter.halo.empty())
+      continue;
     if (!check) check.emplace(device, call, run);
     check->check(i);
   }

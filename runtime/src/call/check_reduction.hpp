@@ -8,7 +8,7 @@
 #include <span>
 
 #include "assemble/program/texture_units.hpp"
-#include "call/resolved_reduction.hpp"
+#include "call/resolved_call.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
 

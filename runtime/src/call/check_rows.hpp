@@ -9,7 +9,7 @@
 #include <span>
 
 #include "assemble/condition.hpp"
-#include "call/resolved_reduction.hpp"
+#include "call/resolved_call.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
 

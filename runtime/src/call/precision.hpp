@@ -7,7 +7,7 @@
 
 #include <span>
 
-#include "call/resolved_reduction.hpp"
+#include "call/resolved_call.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
 

@@ -17,7 +17,6 @@
 #include <catch2/catch.hpp>
 
 #include "call/resolved_call.hpp"
-#include "call/resolved_reduction.hpp"
 #include "device/stream_state.hpp"
 #include "gl/open_context.hpp"
 #include "gl_device/gl_device.hpp"

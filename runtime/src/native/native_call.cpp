@@ -11,7 +11,6 @@
 #include "call/iterator.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
-#include "call/resolved_reduction.hpp"
 #include "device/region.hpp"
 #include "device/rows_state.hpp"
 #include "native/coalesce.hpp"

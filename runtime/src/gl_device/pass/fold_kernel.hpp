@@ -7,7 +7,7 @@
 
 #include <span>
 
-#include "call/resolved_reduction.hpp"
+#include "call/resolved_call.hpp"
 #include "gl_device/gl_device.hpp"
 
 namespace sk {

@@ -13,7 +13,7 @@
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/region_layout.hpp"
 #include "assemble/program/texture_units.hpp"
-#include "call/resolved_reduction.hpp"
+#include "call/resolved_call.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/program/variant.hpp"
 #include "sk/program.hpp"

@@ -13,7 +13,7 @@
 #include <catch2/catch.hpp>
 
 #include "call/check_reduction.hpp"
-#include "call/resolved_reduction.hpp"
+#include "call/resolved_call.hpp"
 #include "gl/open_context.hpp"
 #include "gl_device/gl_device.hpp"
 #include "sk/types.hpp"
