@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "call/check_argument.hpp"
-#include "native/leaf_folder.hpp"
+#include "native/piece_folder.hpp"
 
 namespace sk {
 

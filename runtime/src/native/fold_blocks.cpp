@@ -8,10 +8,9 @@
 #include <cstring>
 #include <vector>
 
-#include "native/call_memory.hpp"
 #include "native/fold_pieces.hpp"
 #include "native/fold_program.hpp"
-#include "native/leaf_folder.hpp"
+#include "native/memory.hpp"
 #include "native/piece_folder.hpp"
 #include "sk/native/parallel.hpp"
 

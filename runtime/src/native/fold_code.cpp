@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "call/check_setting.hpp"
-#include "native/call_memory.hpp"
 #include "native/check_fold.hpp"
 #include "native/code_frame.hpp"
 #include "native/fold_program.hpp"
 #include "native/fold_rows.hpp"
+#include "native/memory.hpp"
 #include "native/scan_blocks.hpp"
 #include "native/sum_floats.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "call/row_pieces.hpp"
 #include "native/fold_program.hpp"
-#include "native/row_scanner.hpp"
+#include "native/scan_blocks.hpp"
 #include "sk/native/code.hpp"
 
 namespace sk {

@@ -18,8 +18,8 @@
 #include "call/resolved_call.hpp"
 #include "device/region.hpp"
 #include "device/write_scope.hpp"
+#include "native/call.hpp"
 #include "native/coalesce.hpp"
-#include "native/extents.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
 

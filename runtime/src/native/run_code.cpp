@@ -7,16 +7,15 @@
 #include <utility>
 #include <vector>
 
-#include "native/call_memory.hpp"
 #include "native/chunk_runner.hpp"
 #include "native/code_frame.hpp"
 #include "native/domain_pieces.hpp"
+#include "native/memory.hpp"
 #include "native/padded_rows.hpp"
-#include "native/push_parts.hpp"
-#include "native/push_rooms.hpp"
 #include "native/record_buffer.hpp"
 #include "native/scatters.hpp"
 #include "native/slot_arrays.hpp"
+#include "native/variable_outputs.hpp"
 #include "sk/native/parallel.hpp"
 
 namespace sk {

@@ -2,7 +2,7 @@
 //
 // Promises: scans of floats in doubles have the same bits on every CPU and however they are divided into multiples of
 // eight elements, and the error of a few additions in double.
-#include "native/scan_floats.hpp"
+#include "native/sum_floats.hpp"
 
 #include <algorithm>
 #include <cmath>

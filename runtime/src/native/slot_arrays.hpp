@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "native/call.hpp"
-#include "native/call_memory.hpp"
 #include "native/code_frame.hpp"
 #include "native/entries.hpp"
+#include "native/memory.hpp"
 #include "native/scalars.hpp"
 #include "sk/native/code.hpp"
 #include "sk/native/parallel.hpp"

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Variable outputs whose number of elements has a small bound, because each element of the domain pushes only a few times. They
-// get arrays with room for that many, and no list grows. A single thread appends to the arrays themselves. Several threads
-// append the pushes of a slice of the domain to buffers of their own, which stay in a cache, and copy them to their
-// place, which is known as soon as all slices before have been computed: slices are dealt out in order.
+// What object code pushes to variable outputs. The results are in the order of elements, whatever the number of threads. Rooms
+// hold outputs whose number of elements has a small bound; the parts of others are joined at the end.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -18,6 +17,10 @@
 
 namespace sk {
 
+/// Variable outputs whose number of elements has a small bound, because each element of the domain pushes only a few times. They
+/// get arrays with room for that many, and no list grows. A single thread appends to the arrays themselves. Several threads
+/// append the pushes of a slice of the domain to buffers of their own, which stay in a cache, and copy them to their
+/// place, which is known as soon as all slices before have been computed: slices are dealt out in order.
 class PushRooms {
  public:
   /// Whether all variable outputs of a kernel over so many elements can have such arrays.
@@ -52,6 +55,25 @@ class PushRooms {
   std::atomic<std::int64_t> next_ = 0;
   std::atomic<bool> hasFailed_ = false;
   std::vector<Output> outputs_;
+};
+
+/// Joins what threads push to variable outputs without such a bound.
+class PushParts {
+ public:
+  /// Adds what a run of elements has pushed; parts are joined in ascending `order`. Thread-safe.
+  void add(std::int64_t order, std::span<RecordFrame::Output> pushed);
+  /// Joins all parts and gives them to the operands of variable outputs.
+  void store(std::span<const native::Operand> operands);
+
+ private:
+  struct Part {
+    std::int64_t order;
+    std::vector<std::unique_ptr<RecordBuffer>> outputs;
+  };
+  native::Pushed joined(std::size_t output) const;
+
+  std::mutex mutex_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace sk
