@@ -17,7 +17,7 @@
 #include "gl/commands.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/pass/pass_trace.hpp"
-#include "gl_device/transfer/pending_read.hpp"
+#include "gl_device/transfer/buffered_transfer.hpp"
 #include "probe/copy_bandwidth.hpp"
 #include "sk/error.hpp"
 

@@ -15,7 +15,6 @@
 #include "gl_device/transfer/buffered_transfer.hpp"
 #include "gl_device/transfer/copy_kernel.hpp"
 #include "gl_device/transfer/merge_texels.hpp"
-#include "gl_device/transfer/pending_read.hpp"
 #include "gl_device/transfer/transfer.hpp"
 #include "sk/error.hpp"
 #include "support/convert_elements.hpp"

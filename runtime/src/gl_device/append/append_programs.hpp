@@ -35,7 +35,7 @@ class AppendPrograms {
   /// sk::Error if the driver rejects it.
   IntegerProgram& points(const program::Parameter& appendOutput, assemble::PointStep step,
                          const assemble::PointTextures& textures);
-  /// The program that combines the records of a scatter output (assemble/append/record_program.hpp). Its texture units: 0 sk_keys, 1
+  /// The program that combines the records of a scatter output (assemble/append/scatter_programs.hpp). Its texture units: 0 sk_keys, 1
   /// sk_count, 2 sk_values. Throws sk::Error if the driver rejects it.
   IntegerProgram& records(const program::Parameter& scatter, bool isCounted);
 

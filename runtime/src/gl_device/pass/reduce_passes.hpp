@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "assemble/program/texture_units.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/region_layout.hpp"
-#include "assemble/program/texture_units.hpp"
 #include "call/resolved_call.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/program/variant.hpp"

@@ -12,8 +12,8 @@
 #include "assemble/region_layout.hpp"
 #include "device/device_state.hpp"
 #include "gl/buffer.hpp"
-#include "gl/queue_points.hpp"
 #include "gl/format.hpp"
+#include "gl/queue_points.hpp"
 #include "gl_device/program/integer_program.hpp"
 
 namespace sk {
