@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "api/exact_reduction.hpp"
+#include "api/resolved_reduce.hpp"
 
 #include <cstddef>
 #include <memory>

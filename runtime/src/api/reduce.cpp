@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // sk::reduce and sk::scan: choose a variant of a reduction, and carry out compensated ones, which add a sum and its
-// rounding error (api/exact_reduction.hpp has the exact ones). Must not depend on the kind of device.
+// rounding error (api/exact_reduction.cpp has the exact ones). Must not depend on the kind of device.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <vector>
 
-#include "api/exact_reduction.hpp"
 #include "api/resolved_reduce.hpp"
 #include "call/box.hpp"
 #include "call/check_argument.hpp"

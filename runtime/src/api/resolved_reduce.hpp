@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Reductions whose arguments have been checked, for calls that consist of more than one. Must not depend on the kind of
-// device.
+// Reductions whose arguments have been checked, for calls that consist of more than one, and reductions with
+// Accumulate::Exact: a variant of the reduction folds each scalar that is a sum of floats without rounding; the plain
+// reduction folds all others. Must not depend on the kind of device.
 #pragma once
 
 #include <functional>
@@ -40,5 +41,8 @@ void storeOutputs(const ResolvedReduction& call);
 
 /// Reduces to temporary streams of floats, calls between(), and copies the results. The call has streams for results.
 void reduceByTemporaries(const ResolvedReduction& call, const std::function<void()>& between);
+
+/// Requires a nonempty domain and a reduction that sums floats.
+void reduceExactly(const ResolvedReduction& call);
 
 }  // namespace sk
