@@ -16,6 +16,10 @@
 //
 // The domains beside each other have one agreement, so that their calls have
 // one order. Without other ranks it costs nothing.
+//
+// Also what an agreement is about: the hash by which ranks compare calls, and
+// errors that have been caught, because the other ranks have to hear of them
+// before they are thrown.
 #pragma once
 
 #include <array>
@@ -30,10 +34,48 @@
 #include <vector>
 
 #include "messages.hpp"
-#include "refusal.hpp"
-#include "wait_limit.hpp"
+#include "sk/error.hpp"
 
 namespace sk::mpi {
+
+/// Why this rank does not take part in a call; empty if it does.
+using Refusal = std::optional<Error>;
+
+/// The exception that is being handled, as an error. `what` names the call, for
+/// an exception that does not. Allocates nothing if there is no memory.
+Error currentError(std::string_view what) noexcept;
+
+/// Calls fn(). Returns what it has thrown.
+template <class Fn>
+Refusal caught(std::string_view what, Fn&& fn) noexcept {
+  try {
+    std::forward<Fn>(fn)();
+    return std::nullopt;
+  } catch (...) {
+    return currentError(what);
+  }
+}
+
+/// A hash that is the same in every process (FNV-1a: Fowler, Noll and Vo).
+class Hash {
+ public:
+  void add(std::string_view text) {
+    addBytes(text);
+    addByte(0);
+  }
+  void add(std::int64_t number) {
+    for (int k = 0; k < 8; ++k) addByte(static_cast<unsigned char>(number >> (8 * k)));
+  }
+  void addBytes(std::string_view bytes) {
+    for (const char c : bytes) addByte(static_cast<unsigned char>(c));
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  void addByte(unsigned char byte) { value_ = (value_ ^ byte) * 0x100000001b3; }
+
+  std::uint64_t value_ = 0xcbf29ce484222325;
+};
 
 /// What is called. All ranks must give the same hash.
 struct Call {

@@ -1,21 +1,42 @@
 // SPDX-License-Identifier: MIT
 //
-// A domain and its streams: what this rank holds, how much of it is valid, and the device that computes it.
+// A domain and its streams: what this rank holds, how much of it is valid, and the device that computes it,
+// with the reductions that combine the results of ranks.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "agreement.hpp"
-#include "combination.hpp"
 #include "device/device_state.hpp"
 #include "device/write_scope.hpp"
 #include "domain/decomposition.hpp"
 #include "messages.hpp"
 #include "sk/mpi.hpp"
+#include "sk/program.hpp"
+
+namespace sk::mpi {
+
+/// The reduction that folds partial results of another, in order: its `combine` alone.
+struct Combination {
+  explicit Combination(const program::Reduction& of)
+      : operands(of.combine.parameters.size()),
+        reduction{.fold = of.combine, .combine = of.combine, .combineOperands = operands, .seeded = true} {
+    std::iota(operands.begin(), operands.end(), std::uint8_t{0});
+    reduction.commutative = of.commutative;
+  }
+  Combination(const Combination&) = delete;
+  Combination& operator=(const Combination&) = delete;
+
+  std::vector<std::uint8_t> operands;
+  program::Reduction reduction;
+};
+
+}  // namespace sk::mpi
 
 namespace sk {
 

@@ -14,9 +14,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "agreement.hpp"
 #include "device/stream_state.hpp"
 #include "domain_state.hpp"
-#include "hash.hpp"
 #include "npy.hpp"
 #include "sk/error.hpp"
 

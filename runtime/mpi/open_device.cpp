@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "agreement.hpp"
 #include "device/device_state.hpp"
 #include "device/stream_state.hpp"
 #include "gl/displays.hpp"
-#include "hash.hpp"
 
 namespace sk::mpi {
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cstring>
 
+#include "accumulators.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
-#include "combine_each.hpp"
 #include "native/exact_accumulator.hpp"
 #include "support/convert_elements.hpp"
 

@@ -9,13 +9,13 @@
 #include <optional>
 #include <utility>
 
+#include "agreement.hpp"
 #include "call/box.hpp"
 #include "call/check_argument.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/stream_state.hpp"
 #include "exchange.hpp"
-#include "hash.hpp"
 #include "strips.hpp"
 
 namespace sk {

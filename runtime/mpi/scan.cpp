@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "accumulators.hpp"
 #include "call/box.hpp"
 #include "call/check_argument.hpp"
 #include "call_plan.hpp"
-#include "combine_each.hpp"
 #include "domain_state.hpp"
 
 namespace sk {

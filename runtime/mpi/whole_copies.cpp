@@ -8,12 +8,12 @@
 
 #include <fmt/format.h>
 
+#include "agreement.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/stream_state.hpp"
 #include "device/write_scope.hpp"
 #include "domain_state.hpp"
-#include "hash.hpp"
 #include "sk/error.hpp"
 #include "strips.hpp"
 

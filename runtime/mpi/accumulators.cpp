@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "combine_each.hpp"
+#include "accumulators.hpp"
 
 #include <algorithm>
 #include <cstring>
