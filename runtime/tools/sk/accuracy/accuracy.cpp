@@ -19,9 +19,9 @@
 #include <CLI/CLI.hpp>
 
 #include "accuracy/chart.hpp"
-#include "accuracy/file/options.hpp"
+#include "accuracy/child_process.hpp"
+#include "accuracy/file/measure.hpp"
 #include "accuracy/functions/functions.hpp"
-#include "accuracy/gnuplot.hpp"
 #include "accuracy/programs.hpp"
 #include "accuracy/progress.hpp"
 #include "accuracy/table.hpp"

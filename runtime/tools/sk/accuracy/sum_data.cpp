@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "accuracy/exact_sum.hpp"
 #include "info/numbers.hpp"
 
 namespace sk_tool {

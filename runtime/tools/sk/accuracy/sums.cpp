@@ -12,8 +12,8 @@
 
 #include "accuracy/accuracy.sk.hpp"
 #include "accuracy/compare_modes.hpp"
-#include "accuracy/exact_sum.hpp"
 #include "accuracy/programs.hpp"
+#include "accuracy/sum_data.hpp"
 #include "info/numbers.hpp"
 #include "sk/sum_bounds.hpp"
 

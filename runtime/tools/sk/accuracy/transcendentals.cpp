@@ -10,10 +10,10 @@
 #include "accuracy/compare_modes.hpp"
 #include "accuracy/element_errors.hpp"
 #include "accuracy/programs.hpp"
+#include "info/device_info.hpp"
 #include "info/function_numbers.hpp"
 #include "info/functions.sk.hpp"
 #include "info/numbers.hpp"
-#include "info/probes.hpp"
 #include "sk/error_bounds.hpp"
 
 namespace sk_tool {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "info/probes.hpp"
+#include "info/device_info.hpp"
 #include "sk/error.hpp"
 
 namespace sk_tool {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "info/costs.sk.hpp"
+#include "info/device_info.hpp"
 #include "info/error_statistics.hpp"
-#include "info/probes.hpp"
 #include "quantile.hpp"
 
 namespace sk_tool {

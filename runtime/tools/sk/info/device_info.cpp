@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// Lists the entries in the order of the report.
+// Lists the entries in the order of the report, and describes the processor that runs native code.
+
 #include "info/device_info.hpp"
 
 #include <chrono>
 #include <cmath>
+#include <fstream>
+#include <string>
+#include <thread>
 
-#include "info/probes.hpp"
 #include "support/cache_folder.hpp"
 
 namespace sk_tool {
@@ -76,6 +79,39 @@ std::string keyOf(const sk::Device& device) {
   if (device.isSoftware()) driver += probeProcessor().dump();
   driver += std::to_string(device.limits().textureSize);
   return sk::driverKey(device.name(), driver, device.profile());
+}
+
+namespace {
+
+/// Linux's name of the processor; empty on other systems.
+std::string processorName() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return {};
+}
+
+/// The processor's widest SIMD instructions for floats.
+std::string simd() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f")) return "AVX-512";
+  if (__builtin_cpu_supports("avx2")) return "AVX2";
+  if (__builtin_cpu_supports("avx")) return "AVX";
+  return "SSE2";
+#elif defined(__aarch64__)
+  return "NEON";
+#else
+  return "unknown";
+#endif
+}
+
+}  // namespace
+
+Json probeProcessor() {
+  return {{"name", processorName()}, {"threads", std::thread::hardware_concurrency()}, {"simd", simd()}};
 }
 
 }  // namespace sk_tool

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "info/device_info.hpp"
 #include "info/error_statistics.hpp"
 #include "info/numbers.hpp"
-#include "info/probes.hpp"
 #include "info/raw_kernel.hpp"
 #include "probe/probe.hpp"
 #include "sk/error.hpp"

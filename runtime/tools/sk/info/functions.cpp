@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
+#include "info/device_info.hpp"
 #include "info/error_statistics.hpp"
 #include "info/function_numbers.hpp"
 #include "info/functions.sk.hpp"
 #include "info/numbers.hpp"
-#include "info/probes.hpp"
 
 namespace sk_tool {
 

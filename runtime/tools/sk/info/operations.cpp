@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "info/device_info.hpp"
 #include "info/error_statistics.hpp"
 #include "info/numbers.hpp"
 #include "info/operations.sk.hpp"
-#include "info/probes.hpp"
 #include "info/raw_kernel.hpp"
 #include "sk/error.hpp"
 

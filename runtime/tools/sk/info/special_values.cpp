@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 
+#include "info/device_info.hpp"
 #include "info/numbers.hpp"
 #include "info/operations.sk.hpp"
-#include "info/probes.hpp"
 
 namespace sk_tool {
 

@@ -6,8 +6,8 @@
 #include <set>
 #include <vector>
 
+#include "info/device_info.hpp"
 #include "info/numbers.hpp"
-#include "info/probes.hpp"
 #include "info/raw_kernel.hpp"
 #include "info/texels.sk.hpp"
 

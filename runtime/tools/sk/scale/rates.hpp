@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "accuracy/file/kernel_library.hpp"
 #include "accuracy/file/ranges.hpp"
-#include "accuracy/file/subject.hpp"
 #include "scale/model.hpp"
 #include "sk/device.hpp"
 

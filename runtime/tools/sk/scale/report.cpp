@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "accuracy/gnuplot.hpp"
+#include "accuracy/child_process.hpp"
 
 namespace sk_tool {
 

@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "accuracy/child_process.hpp"
 #include "accuracy/file/kernel_library.hpp"
-#include "accuracy/gnuplot.hpp"
 #include "scale/model.hpp"
 #include "scale/quantities.hpp"
 #include "scale/rates.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "accuracy/file/kernel_library.hpp"
 #include "accuracy/file/ranges.hpp"
-#include "accuracy/file/subject.hpp"
 #include "scale/model.hpp"
 #include "sk/library.hpp"
 

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "accuracy/temporary_folder.hpp"
+#include "accuracy/child_process.hpp"
 
 namespace sk_tool {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "accuracy/file/kernel_library.hpp"
 
+#include <dlfcn.h>
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -9,12 +10,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <dlfcn.h>
-
 #include <fmt/format.h>
 
 #include "accuracy/child_process.hpp"
-#include "accuracy/temporary_folder.hpp"
 #include "support/cache_folder.hpp"
 
 namespace sk_tool {

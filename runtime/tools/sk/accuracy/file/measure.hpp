@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// `sk accuracy FILE.sk`: measures each kernel and reduction of a file in every mode, with drawn inputs,
-// against the reference.
+// `sk accuracy FILE.sk`: measures each kernel and reduction of a file in every mode, with drawn inputs, against the
+// reference, and has the options that do not apply to built-in programs.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "accuracy/experiment.hpp"
+#include "accuracy/file/kernel_library.hpp"
 #include "accuracy/file/ranges.hpp"
 #include "sk/device.hpp"
 #include "sk/library.hpp"
@@ -35,5 +37,26 @@ struct FileResults {
 FileResults measureFile(sk::Device& device, const sk::program::Library& library,
                         const sk::program::Library* precise, const FileMeasurement& measurement,
                         const std::function<void(const Experiment&)>& report);
+
+}  // namespace sk_tool
+
+namespace CLI {
+class App;
+}
+
+namespace sk_tool {
+
+struct FileOptions {
+  std::string kernel = {};
+  std::vector<std::string> ranges = {}, values = {};
+  bool hasNoExtremes = false;
+  BuildOptions build = {};
+
+  void addTo(CLI::App& command);
+  /// Throws std::runtime_error if a range or a value is invalid.
+  FileMeasurement measurement(const std::vector<std::int64_t>& extents, int rounds) const;
+  /// The name of an option that was used; empty if there is none.
+  std::string_view used() const;
+};
 
 }  // namespace sk_tool

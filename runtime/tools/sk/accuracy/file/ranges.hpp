@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "accuracy/file/kernel_library.hpp"
 #include "accuracy/file/scalars.hpp"
-#include "accuracy/file/subject.hpp"
 
 namespace sk_tool {
 

@@ -18,7 +18,7 @@
 #include "accuracy/functions/sweep.hpp"
 #include "accuracy/functions/truth.hpp"
 #include "accuracy/progress.hpp"
-#include "info/probes.hpp"
+#include "info/device_info.hpp"
 #include "sk/error_bounds.hpp"
 
 namespace sk_tool {
