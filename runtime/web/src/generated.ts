@@ -71,7 +71,7 @@ export interface KernelData {
 /** Index of a program in the file, by the key of a variant. */
 export type ProgramIndices = Readonly<Record<string, number>>;
 
-/** The passes that apply the list of a scatter output (runtime/src/assemble/append/point_program.hpp). */
+/** The passes that apply the list of a scatter output (runtime/src/assemble/append/scatter_programs.hpp). */
 export type PointStep =
   | 'store' | 'splitLimbs' | 'addLimbs' | 'joinLimbs' | 'splitUpper' | 'upper' | 'splitLower' | 'lower' | 'joinHalves';
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Stores the list of a scatter output to its stream, entry by entry, as points: the steps of
-// runtime/src/gl_device/append/scatter_points.cpp. Devices blend floats only; integers are taken apart into floats that
+// runtime/src/gl_device/append/scatter_lists.cpp. Devices blend floats only; integers are taken apart into floats that
 // stay exact.
 import type { Device } from './device.js';
 import type { List, PointStep } from './generated.js';
