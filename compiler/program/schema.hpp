@@ -373,7 +373,7 @@ struct Members<p::FoldParts> {
       Member{"map", &p::FoldParts::map, Part::Map},
       Member{"mapOperands", &p::FoldParts::mapOperands, Part::Operands},
       Option{"after", &p::FoldParts::after, Part::After},
-      Option{"afterOperands", &p::FoldParts::afterOperands, Part::AfterOperands},
+      Option{"afterOperands", &p::FoldParts::afterOperands, Part::From},
   };
 };
 

@@ -89,10 +89,13 @@ TEST_CASE("what is known of a gather's reach stands beside it") {
   u.reach = {{0, ir::Reach::Kind::Near, {1}, spec, true}};
   u.reachShapes = 4;
   const std::string source = stubOf(module).source;
-  CHECK(contains(source,
-                 R"(constexpr Reach diffuseHalo_u[] = {{0, Reach::Kind::Near, {1}, {2, {0, -1}}, true}};)"));
-  CHECK(contains(source, ".halo = diffuseHalo_u"));
-  CHECK(contains(source, ".haloShapes = 4u"));
+  CHECK(contains(source, R"(
+constexpr Reach diffuseParameters2Halo[] = {
+    {.dimension = 0, .kind = Reach::Kind::Near, .below = {.constant = 1},
+     .above = {.constant = 2, .perSpec = {0, -1}}, .isPromised = true},
+};
+)"));
+  CHECK(contains(source, ".halo = diffuseParameters2Halo, .haloShapes = 4}"));
 }
 
 TEST_CASE("the source") {
@@ -233,6 +236,7 @@ TEST_CASE("a list of all descriptors, where it is asked for") {
   CHECK(contains(listed.source, "#include \"heat.sk.hpp\"\n\n#include <sk/library.hpp>\n"));
   CHECK(contains(listed.source, R"(
 constexpr const Kernel* allKernels[] = {&diffuseKernel};
+
 constexpr const Reduction* allReductions[] = {)"));
   CHECK(contains(listed.source, R"(
 }  // namespace
