@@ -2,6 +2,7 @@
 #include "equations.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace smooth {
 
@@ -77,6 +78,10 @@ void Equations::update(const Surface& s, const Faults& faults, double timeStep, 
   leastEigenvalue_ = 1.0;
   largestMass_ = 0.0;
   std::ranges::fill(laplacian_.value, 0.0);
+  // A triangle of length l and height h adds up to dt l / h to entries, whose roundings take u dt l / h from an eigenvalue, and l h / 6
+  // to masses, which give it that. With the least height sqrt(1.5 u dt), and more with four times as much, the sum is positive.
+  const double leastHeight = 4.0 * std::sqrt(0x1p-53 * timeStep);
+  constexpr double flattest = 0x1p-12;  // heights that may be changed, over the length
   auto degenerate = faults.degenerate.begin();
   for (std::size_t f = 0; f < s.faces.size(); ++f) {
     if (degenerate != faults.degenerate.end() && *degenerate == static_cast<std::int64_t>(f)) {
@@ -85,7 +90,10 @@ void Equations::update(const Surface& s, const Faults& faults, double timeStep, 
     }
     const Triangle& face = s.faces[f];
     const auto point = [&](std::size_t k) { return s.points[static_cast<std::size_t>(face[k % 3])]; };
-    const double twiceArea = length(cross(point(1) - point(0), point(2) - point(0)));
+    const double longest =
+        std::max({length(point(1) - point(0)), length(point(2) - point(1)), length(point(0) - point(2))});
+    const double twiceArea = std::max(length(cross(point(1) - point(0), point(2) - point(0))),
+                                      longest * std::min(leastHeight, flattest * longest));
     for (std::size_t k = 0; k < 3; ++k) {
       const auto i = static_cast<std::size_t>(face[(k + 1) % 3]),
                  j = static_cast<std::size_t>(face[(k + 2) % 3]);

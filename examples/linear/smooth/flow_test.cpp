@@ -217,7 +217,7 @@ TEST_CASE("Surfaces flow until they are curves or points, and the message says s
 }
 
 TEST_CASE("The bound of the least eigenvalue holds") {
-  for (const double thin : {1.0, 1e-2, 1e-4}) {
+  for (const double thin : {1.0, 1e-2, 1e-4, 1e-9, 1e-12}) {
     const Surface s = spoiled(thin);
     Equations equations(s);
     equations.update(s, inspect(s), 0.01, false);
