@@ -130,7 +130,7 @@ class ConstantWriter {
 
   std::string constantOf(const p::Table& table, const std::string&) {
     const std::string& name = tables_.at(&table);
-    if (isPrinted_.emplace(&table, name).second) return constantOf<p::Table>(table, name);
+    if (printed_.emplace(&table, name).second) return constantOf<p::Table>(table, name);
     return constantName<p::Table>(name);
   }
 
@@ -140,7 +140,7 @@ class ConstantWriter {
     const ir::Type type = program_.typeOf(element);
     const bool isStruct = type.kind == ir::Type::Kind::Struct;
     if (type.kind == ir::Type::Kind::Array || (isStruct && module_.structs[type.index].isSynthesized)) {
-      const auto [known, isNew] = isPrinted_.try_emplace(&element);
+      const auto [known, isNew] = printed_.try_emplace(&element);
       if (isNew) {
         const std::string name =
             isStruct ? synthesizedStructName(types_.structName(type.index)) : arrayName(arrays_++);
@@ -259,13 +259,10 @@ class ConstantWriter {
     const std::string list = with(name, part);
     std::vector<std::string> items;
     std::size_t number = 0;
-    for (const T& value : values) items.push_back(itemOf(value, list + std::to_string(++number)));
+    for (const T& value : values)
+      items.push_back(textOf(value, list + std::to_string(++number), std::nullopt));
     text_ += constantList(typeName<std::remove_const_t<T>>(), list, items);
     return list;
-  }
-  template <class T>
-  std::string itemOf(const T& value, const std::string& name) {
-    return textOf(value, name, std::nullopt);
   }
 
   const ir::Module& module_;
@@ -275,7 +272,7 @@ class ConstantWriter {
   std::map<ir::KernelId, std::string> prefixes_;  ///< of the units
   std::map<const p::Table*, std::string> tables_;  ///< their prefixes
   std::map<ir::KernelId, std::string> kernels_;  ///< constants printed
-  std::map<const void*, std::string> isPrinted_;  ///< constants of elements and tables
+  std::map<const void*, std::string> printed_;  ///< constants of elements and tables
   std::size_t arrays_ = 0;  ///< elements of arrays printed
   std::string text_;
 };
