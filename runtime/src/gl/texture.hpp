@@ -59,7 +59,7 @@ class Texture {
 
 inline void deleteSampler(BoundState&, GLuint name) { glDeleteSamplers(1, &name); }
 
-/// One for each way to read.
+/// The samplers of a device: one for each filter and boundary mode.
 class Samplers {
  public:
   explicit Samplers(Deletions& deletions) : deletions_(deletions) {}

@@ -54,7 +54,7 @@ class GlPrograms {
 
   /// The profile of fragment programs: the table's row, adapted to the device.
   const assemble::Profile& profile() const { return profile_; }
-  /// That of compute programs, unused if the device has none.
+  /// The profile of compute programs. Nothing uses it if the device has none.
   const assemble::Profile& computeProfile() const { return computeProfile_; }
 
   /// The profile that the user sees.

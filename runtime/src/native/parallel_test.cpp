@@ -100,6 +100,24 @@ TEST_CASE("the child of a fork computes, and starts helpers of its own") {
   CHECK(WEXITSTATUS(status) == 0);
 }
 
+TEST_CASE("the child of a fork within a loop ends that loop") {
+  const std::thread::id caller = std::this_thread::get_id();
+  pid_t child = -1;
+  bool hasForked = false;
+  inParallel(64, costly, Deal::Evenly, [&](Range) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // so that all threads get pieces
+    if (std::this_thread::get_id() != caller || hasForked) return;
+    hasForked = true;
+    child = fork();
+    if (child == 0) alarm(30);  // if it hangs
+  });
+  REQUIRE(child >= 0);
+  if (child == 0) _exit(0);
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(status == 0);
+}
+
 /// The number of threads that some loops have run on.
 std::size_t threadsSeen() {
   std::mutex mutex;
@@ -116,7 +134,8 @@ std::size_t threadsSeen() {
 
 TEST_CASE("the environment, masks of processors and missing threads bound the threads of a loop") {
   // Limits are read once, so that each case is a process of its own.
-  const char* const cases[] = {"one thread", "three threads", "one processor", "no threads"};
+  const char* const cases[] = {"one thread", "three threads", "one processor", "no threads",
+                               "an end within a loop"};
   for (const char* name : cases) {
     CAPTURE(name);
     const pid_t child = fork();
@@ -134,6 +153,16 @@ TEST_CASE("the environment, masks of processors and missing threads bound the th
   }
 }
 
+/// Another thread's loop goes on while the process ends, and ends itself after the helpers have.
+TEST_CASE("an end within a loop", "[.]") {
+  std::atexit([] { std::this_thread::sleep_for(std::chrono::milliseconds(200)); });
+  std::thread([] {
+    inParallel(64, costly, Deal::Evenly, [](Range range) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(range.begin == 0 ? 100 : 1));
+    });
+  }).detach();
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
 TEST_CASE("one thread", "[.]") { CHECK(threadsSeen() == 1); }
 TEST_CASE("three threads", "[.]") { CHECK(threadsSeen() <= 3); }
 TEST_CASE("one processor", "[.]") {

@@ -125,7 +125,7 @@ class Helpers {
     if ((open_.load() & bit) != 0) open_.fetch_and(~bit);
     // Helpers say that they are there before they look whether it is open, so that none comes after this.
     const auto here = static_cast<std::uint32_t>(number + 1);
-    for (int i = 1; i < most; ++i) {
+    for (int i = 1; i < most && i <= started_.load(); ++i) {
       Helper& helper = *helpers_[static_cast<std::size_t>(i) - 1];
       if (helper.at.load() != here || watch(microseconds(20), [&] { return helper.at.load() != here; }))
         continue;
@@ -156,8 +156,7 @@ class Helpers {
         helper->thread.join();
       }
     }
-    started_ = 0;
-    helpers_.clear();
+    started_ = 0;  // they stay in memory for loops that have not ended
   }
 
  private:
