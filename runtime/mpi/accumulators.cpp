@@ -96,9 +96,7 @@ detail::StreamOwner stacked(const StreamRegion& earlier, const StreamRegion& lat
 
 void combineAsReduction(DomainState& domain, const ResolvedReduction& call,
                         std::span<const StreamRegion> parts, std::span<const StreamRegion> results) {
-  std::unique_ptr<Combination>& made = domain.rankDevice->combinations[&call.reduction];
-  if (made == nullptr) made = std::make_unique<Combination>(call.reduction);
-  const program::Reduction& combination = made->reduction;
+  const program::Reduction& combination = domain.rankDevice->combinations.of(call.reduction, call.device);
   std::vector<Argument> arguments;
   std::size_t nextInput = 0, nextResult = 0;
   for (std::size_t i = 0; i < combination.fold.parameters.size(); ++i) {

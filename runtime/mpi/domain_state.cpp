@@ -16,10 +16,25 @@
 #include "open_device.hpp"
 #include "sk/error.hpp"
 #include "sk/limits.hpp"
+#include "sk/linked_file.hpp"
 
 namespace sk {
 
 using domain::Depth;
+
+const program::Reduction& Combinations::of(const program::Reduction& reduction, DeviceState& device) {
+  if (unloads_.hasChanged()) {
+    std::erase_if(made_, [&](const auto& entry) {
+      if (program::LinkedFile::isLoaded(entry.second.object)) return false;
+      device.forget(entry.second.combination->reduction);
+      return true;
+    });
+  }
+  Made& made = made_[&reduction];
+  if (made.combination == nullptr)
+    made = {std::make_unique<mpi::Combination>(reduction), program::LinkedFile::objectOf(&reduction)};
+  return made.combination->reduction;
+}
 
 namespace {
 

@@ -13,6 +13,7 @@
 
 #include "agreement.hpp"
 #include "device/device_state.hpp"
+#include "device/unload_watch.hpp"
 #include "device/write_scope.hpp"
 #include "domain/decomposition.hpp"
 #include "messages.hpp"
@@ -91,9 +92,23 @@ struct HaloStaging {
       toDevice;  ///< null before the first exchange, and if not all ranks have it
 };
 
+/// The combinations of reductions, each of which is made at its first use, and ends when the reduction's file is unloaded.
+class Combinations {
+ public:
+  const program::Reduction& of(const program::Reduction& reduction, DeviceState& device);
+
+ private:
+  struct Made {
+    std::unique_ptr<mpi::Combination> combination;
+    std::uint64_t object;  ///< program::LinkedFile::objectOf()
+  };
+  std::map<const program::Reduction*, Made> made_;
+  UnloadWatch unloads_;
+};
+
 /// The device of a rank, which domains beside each other share.
 struct RankDevice {
-  std::map<const void*, std::unique_ptr<mpi::Combination>> combinations;  ///< outlive the device
+  Combinations combinations;  ///< outlive the device
   Device device;
   bool stagesHalos;  ///< whether the devices of all ranks do; devices of one host may differ
 };

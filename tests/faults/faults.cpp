@@ -51,14 +51,6 @@ bool fails(Kind kind) {
   return isNow;
 }
 
-class InDriver {
- public:
-  InDriver() { ++inDriver; }
-  ~InDriver() { --inDriver; }
-  InDriver(const InDriver&) = delete;
-  InDriver& operator=(const InDriver&) = delete;
-};
-
 // ---- living objects ---------------------------------------------------------------------------------
 
 enum Object : std::uint8_t {
@@ -338,6 +330,9 @@ std::string nameOf(Kind kind) {
                                                       "host, threads", "file",    "thread"};
   return std::string(names[static_cast<std::size_t>(kind)]);
 }
+
+InDriver::InDriver() { ++inDriver; }
+InDriver::~InDriver() { --inDriver; }
 
 Fault::Fault(Kind kind, long number, bool isLasting) {
   armed.isLasting = isLasting;

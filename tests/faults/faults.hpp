@@ -25,6 +25,15 @@ enum class Kind : std::uint8_t {
 };
 std::string nameOf(Kind kind);
 
+/// While it lives, this thread runs code of others, such as a driver's: its allocations and its functions of the system do not fail.
+class InDriver {
+ public:
+  InDriver();
+  ~InDriver();
+  InDriver(const InDriver&) = delete;
+  InDriver& operator=(const InDriver&) = delete;
+};
+
 /// Arms a fault while it lives.
 class Fault {
  public:

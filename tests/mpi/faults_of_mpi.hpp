@@ -1,29 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
-// Faults of one rank, for tests: allocations of the host that fail, and functions of MPI that do, by its profiling interface. Also
-// counts what is left of requests, communicators, files and datatypes.
+// Faults of one rank, for tests: functions of MPI that fail, by its profiling interface. Also counts what is left of requests,
+// communicators, files and datatypes. ../faults/faults.hpp makes memory and drivers fail, but not within MPI.
 #pragma once
-
-#include <string>
 
 namespace faults {
 
-enum class Kind : unsigned char {
-  Allocation,  ///< operator new
-  Mpi,  ///< a function that this rank can try again, or whose failure it can tell: messages, files, data
-};
-
-/// While it lives, opportunity number `number` (from 1 on) on this thread fails.
-class Fault {
+/// While it lives, function number `number` (from 1 on) on this thread fails, of those that this rank can try again, or whose failure
+/// it can tell: messages, files, data.
+class MpiFault {
  public:
-  Fault(Kind kind, long number);
-  ~Fault();
-  Fault(const Fault&) = delete;
-  Fault& operator=(const Fault&) = delete;
+  explicit MpiFault(long number);
+  ~MpiFault();
+  MpiFault(const MpiFault&) = delete;
+  MpiFault& operator=(const MpiFault&) = delete;
 
   static bool hasFired();
-  /// The function of MPI that has failed.
-  static const char* where();
 };
 
 struct Handles {

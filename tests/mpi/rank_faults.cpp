@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// mpi_rank_faults [PROGRAM]: small programs over ranks, in each of which one rank's n-th allocation or function of MPI fails, for
-// n = 1, 2, 3 ... Promises: no rank hangs or crashes; if one rank throws, all do, at the latest at their next collective call; the
-// same program then runs on all ranks, in the same domain, with the right results; and nothing is left over.
+// mpi_rank_faults [PROGRAM...]: small programs over ranks, in each of which the n-th opportunity of one rank fails, for n = 1, 2, 3 ...:
+// allocations, functions of MPI and, where the ranks have GL devices, what drivers do. Promises: no rank hangs or crashes; if one rank
+// throws, all do, at the latest at their next collective call; the same program then runs on all ranks, in the same domain, with the
+// right results; and nothing is left over.
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -10,11 +11,15 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <unistd.h>
 
+#include "faults.hpp"
 #include "faults_of_mpi.hpp"
 #include "rank_faults.sk.hpp"
 #include "sk/mpi.hpp"
@@ -186,26 +191,62 @@ struct Counts {
   long faults = 0, harmless = 0, together = 0, atNext = 0;
 };
 
+/// What fails on one rank.
+struct Fails {
+  std::optional<faults::Kind> kind;  ///< empty: functions of MPI
+  long step = 1;  ///< between the opportunities from the 16th on, which are much alike
+
+  std::string name() const { return kind ? faults::nameOf(*kind) : "MPI"; }
+};
+
+std::vector<Fails> failing(bool isNative) {
+  using faults::Kind;
+  if (isNative) return {{std::nullopt}, {Kind::Host, 6}};
+  return {{Kind::Host, 40}, {Kind::Allocation, 6}, {Kind::Program, 2}, {Kind::Framebuffer, 6},
+          {Kind::Mapping},  {Kind::Fence},         {Kind::Command, 4}};
+}
+
+/// Programs and what else a device keeps are made again for each of these faults.
+bool needsNewDevice(const Fails& fails) { return fails.kind == faults::Kind::Program; }
+
+/// Calls run() with a fault. If it has happened, calls next(), which finds errors that the driver still has to report. Returns whether
+/// it has happened.
+template <class Run, class Next>
+bool withFault(const Fails& fails, long number, Run&& run, Next&& next) {
+  if (!fails.kind) {
+    const faults::MpiFault fault(number);
+    run();
+    return faults::MpiFault::hasFired();
+  }
+  const faults::Fault fault(*fails.kind, number);
+  run();
+  if (fault.hasFired()) next();
+  return fault.hasFired();
+}
+
 /// Runs the program with one fault on a rank. Returns whether it has happened.
-bool runWithFault(Place& place, const Program& program, faults::Kind kind, int victim, long number,
+bool runWithFault(Place& place, const Program& program, const Fails& fails, int victim, long number,
                   const Result& expected, Counts& counts) {
-  std::snprintf(now.data(), now.size(), "%s, %s %ld of rank %d", program.name,
-                kind == faults::Kind::Mpi ? "function of MPI" : "allocation", number, victim);
+  std::snprintf(now.data(), now.size(), "%s, %s %ld of rank %d", program.name, fails.name().c_str(), number,
+                victim);
   place.reset();
   const faults::Handles before = faults::handles();
   std::string error, later;
-  {
-    const faults::Fault fault(kind, rank == victim ? number : -1);
-    error = errorOf([&] { program.run(place); });
-  }
-  // What a program calls next, be it in a handler: whoever has not thrown hears of another rank's error now.
+  // What a program calls next, be it in a handler: whoever has not thrown hears of another rank's error now, or its own driver's.
   const auto next = [&] { return errorOf([&] { (void)sum(place.healthy); }); };
-  if (error.empty()) later = next();
+  bool hasCalledNext = false;
+  const auto callNext = [&] {
+    if (error.empty() && !std::exchange(hasCalledNext, true)) later = next();
+  };
+  const auto run = [&] { error = errorOf([&] { program.run(place); }); };
+  const bool hasFiredHere = rank == victim && withFault(fails, number, run, callNext);
+  if (rank != victim) run();
+  callNext();
   if (!error.empty() || !later.empty()) {
     const std::string twice = next();
     if (!twice.empty()) fail("after '" + error + later + "' the next call fails, too: " + twice);
   }
-  const bool hasFired = countOf(faults::Fault::hasFired()) > 0;
+  const bool hasFired = countOf(hasFiredHere) > 0;
   const int thrown = countOf(!error.empty()), heard = countOf(!later.empty());
   if (thrown + heard > 0 && !hasFired) fail("an error without a fault: " + error + later);
   if (hasFired) ++counts.faults;
@@ -236,17 +277,22 @@ bool runWithFault(Place& place, const Program& program, faults::Kind kind, int v
   return hasFired;
 }
 
-void tryAll(Place& place, const Program& program) {
+void tryAll(const std::string& folder, const Program& program) {
   std::snprintf(now.data(), now.size(), "%s", program.name);
-  place.reset();
-  program.run(place);
-  const Result expected = resultOf(place, program);
+  std::optional<Place> place(folder);
+  place->reset();
+  program.run(*place);
+  const Result expected = resultOf(*place, program);
   const auto handles = faults::handles();
-  for (const faults::Kind kind : {faults::Kind::Mpi, faults::Kind::Allocation}) {
+  for (const Fails& fails : failing(place->domain.device().kind() == "native")) {
     Counts counts;
     for (const int victim : {0, ranks - 1}) {
-      for (long number = 1; runWithFault(place, program, kind, victim, number, expected, counts);) {
-        number += kind == faults::Kind::Allocation && number > 15 ? 6 : 1;  // what follows is much alike
+      for (long number = 1;; number += number > 15 ? fails.step : 1) {
+        if (needsNewDevice(fails)) {
+          place.reset();
+          place.emplace(folder);
+        }
+        if (!runWithFault(*place, program, fails, victim, number, expected, counts)) break;
       }
     }
     if (faults::handles().communicators != handles.communicators) fail("communicators are left");
@@ -254,8 +300,8 @@ void tryAll(Place& place, const Program& program) {
       std::printf(
           "%-20s %-10s %4ld faults: %ld harmless, %ld thrown by all ranks in the program, %ld heard of after "
           "it\n",
-          program.name, kind == faults::Kind::Mpi ? "MPI" : "allocation", counts.faults, counts.harmless,
-          counts.together, counts.atNext);
+          program.name, fails.name().c_str(), counts.faults, counts.harmless, counts.together, counts.atNext);
+      std::fflush(stdout);
     }
   }
 }
@@ -273,16 +319,17 @@ int main(int argc, char** argv) {
   const auto folder = std::filesystem::temp_directory_path() / ("sk_rank_faults_" + std::to_string(number));
   if (rank == 0) std::filesystem::create_directories(folder);
   MPI_Barrier(MPI_COMM_WORLD);
-  {
-    Place place(folder.string());
-    for (const Program& program : programs()) {
-      if (argc > 1 && std::strstr(program.name, argv[1]) == nullptr) continue;
-      tryAll(place, program);
-    }
+  faults::install();
+  for (const Program& program : programs()) {
+    const auto isNamed = [&](const char* part) { return std::strstr(program.name, part) != nullptr; };
+    if (argc > 1 && std::none_of(argv + 1, argv + argc, isNamed)) continue;
+    tryAll(folder.string(), program);
   }
   MPI_Barrier(MPI_COMM_WORLD);
   if (rank == 0) std::filesystem::remove_all(folder);
   if (faults::handles() != faults::Handles{}) fail("handles are left at the end");
+  const faults::LiveObjects objects = faults::liveObjects();
+  if (objects != faults::LiveObjects{}) fail("GL objects are left at the end: " + objects.kinds);
   MPI_Finalize();
   return 0;
 }

@@ -150,6 +150,8 @@ class DeviceState {
   virtual bool needsDense(const StreamRegion& region) = 0;
   /// There is at least one block. For an empty domain, the results are the identities, which then exist.
   virtual void reduce(const ResolvedReduction& call) = 0;
+  /// Deletes what is kept of a reduction that is about to end. Those of files that are unloaded need no call (UnloadWatch).
+  virtual void forget(const program::Reduction&) {}
   /// Combines the results of consecutive parts of a domain: element k of `parts`, which have one region for each accumulator,
   /// belongs to part k. Stores them to the one element of `results`. The streams hold floats in the precision of the call.
   /// Returns false, without any effect, if the parts must be folded as a reduction of their own.

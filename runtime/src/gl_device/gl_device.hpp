@@ -70,6 +70,10 @@ class GlDevice final : public DeviceState {
   bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments, std::size_t i) override;
   bool needsDense(const StreamRegion& region) override;
   void reduce(const ResolvedReduction& call) override;
+  void forget(const program::Reduction& reduction) override {
+    const GlContext::Scope scope(context_);
+    programs_.forget(reduction);
+  }
   bool foldsBesideOutputs(const ResolvedReduction& call) override;
   std::optional<std::int64_t> reorder(const Reordering& reordering) override;
   std::unique_ptr<Staging> makeStaging(Staging::Way way) override;

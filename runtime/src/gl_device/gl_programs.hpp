@@ -93,9 +93,12 @@ class GlPrograms {
 
   MadeKernels& scalarKernels() { return scalarKernels_; }
   MadeKernels& mergeKernels() { return mergeKernels_; }
-  /// Deletes all programs of a kernel that is about to end.
+  /// Delete all programs of a kernel or reduction that is about to end.
   void forget(const program::Kernel& kernel) noexcept {
     for (auto& [key, cache] : caches_) cache.forget(kernel);
+  }
+  void forget(const program::Reduction& reduction) noexcept {
+    for (auto& [key, cache] : caches_) cache.forget(reduction);
   }
 
   const ProgramBinaries& binaries() const { return binaries_; }

@@ -79,6 +79,13 @@ void ProgramCache::forget(const program::Kernel& kernel) noexcept {
   std::erase_if(startedKernels_, isOfKernel);
 }
 
+void ProgramCache::forget(const program::Reduction& reduction) noexcept {
+  const auto isOfReduction = [&](const auto& entry) { return entry.first.first == &reduction; };
+  std::erase_if(reductions_, isOfReduction);
+  std::erase_if(startedReductions_, isOfReduction);
+  forget(reduction.fold);
+}
+
 void ProgramCache::checkUnits(const program::Kernel& kernel, const assemble::SpecValues& specs,
                               std::span<const assemble::StreamAccess> access,
                               const assemble::Task& task) const {

@@ -164,8 +164,9 @@ class ProgramCache {
                           const assemble::RegionLayout& domain);
   bool startReduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
 
-  /// Deletes the programs of a kernel that is about to end.
+  /// Delete the programs of a kernel or reduction that is about to end.
   void forget(const program::Kernel& kernel) noexcept;
+  void forget(const program::Reduction& reduction) noexcept;
 
   assemble::Stage stage() const { return profile_.stage; }
 
