@@ -202,7 +202,7 @@ struct Fails {
 std::vector<Fails> failing(bool isNative) {
   using faults::Kind;
   if (isNative) return {{std::nullopt}, {Kind::Host, 6}};
-  return {{Kind::Host, 40}, {Kind::Allocation, 6}, {Kind::Program, 2}, {Kind::Framebuffer, 6},
+  return {{Kind::Host, 40}, {Kind::Allocation, 6}, {Kind::Program, 20}, {Kind::Framebuffer, 6},
           {Kind::Mapping},  {Kind::Fence},         {Kind::Command, 4}};
 }
 
