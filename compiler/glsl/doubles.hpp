@@ -2,7 +2,7 @@
 //
 // Prints expressions of doubles as GLSL that works both for native doubles and for pairs of floats, because
 // all operations are calls: `sk_add(a, b)`, never `a + b`. The assembler defines the calls for one component
-// (runtime/src/assemble/glsl/doubles.hpp); this code defines them for vectors, and the functions derived from
+// (runtime/src/assemble/glsl/double_intrinsics.hpp); this code defines them for vectors, and the functions derived from
 // them, as polyfills of the body. In both representations, single components are members: `v.x`.
 #pragma once
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "call/check_setting.hpp"
+#include "call/check_written.hpp"
 #include "support/checked_size.hpp"
 
 namespace sk::mpi {

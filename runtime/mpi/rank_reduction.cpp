@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "accumulators.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "call/box.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
 #include "call/placed.hpp"
 #include "call/precision.hpp"

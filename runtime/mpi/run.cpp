@@ -11,7 +11,7 @@
 
 #include "agreement.hpp"
 #include "call/box.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/stream_state.hpp"

@@ -10,7 +10,7 @@
 
 #include "accumulators.hpp"
 #include "call/box.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call_plan.hpp"
 #include "domain_state.hpp"
 

@@ -25,7 +25,7 @@
 //
 // Doubles have the types sk_double, sk_double2, sk_double3 and sk_double4, with members x, y, z and w. A body
 // computes with them through functions of one sk_double each, which the assembler defines for native doubles
-// or for pairs of floats: see assemble/glsl/doubles.hpp.
+// or for pairs of floats: see assemble/glsl/double_intrinsics.hpp.
 //
 // Every name that the assembler declares begins with `sk_`; users' names never do.
 #pragma once

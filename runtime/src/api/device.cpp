@@ -14,7 +14,7 @@
 
 #include "assemble/assemble.hpp"
 #include "assemble/elements/storage.hpp"
-#include "call/check_setting.hpp"
+#include "call/check_written.hpp"
 #include "device/stream_state.hpp"
 #include "gl_device/gl_device.hpp"
 #include "native/native_device.hpp"

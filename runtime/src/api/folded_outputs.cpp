@@ -10,7 +10,6 @@
 
 #include "api/resolved_reduce.hpp"
 #include "call/box.hpp"
-#include "call/check_argument.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_written.hpp"

@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "call/box.hpp"
-#include "call/check_argument.hpp"
 #include "call/check_call.hpp"
 #include "call/check_halos.hpp"
-#include "call/check_setting.hpp"
 #include "call/check_written.hpp"
 #include "call/dense_regions.hpp"
 #include "call/distribution.hpp"

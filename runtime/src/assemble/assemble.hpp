@@ -20,7 +20,7 @@
 
 namespace sk::assemble {
 
-/// The representation of doubles in a program (doubles.hpp).
+/// The representation of doubles in a program (glsl/double_intrinsics.hpp).
 enum class Doubles : std::uint8_t {
   Native,  ///< GLSL's double, from GL_ARB_gpu_shader_fp64
   Pairs,   ///< pairs of floats

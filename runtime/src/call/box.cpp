@@ -6,7 +6,7 @@
 
 #include "assemble/append/append_passes.hpp"
 #include "assemble/condition.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/placed.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"

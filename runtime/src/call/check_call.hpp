@@ -2,16 +2,78 @@
 //
 // Finds all errors in the arguments of a call before any of it runs. Each check throws sk::Error, which names
 // the kernel, the parameters and the shapes.
+//
+// Checks of one argument, shared by kernels and reductions. Each throws sk::Error, which names the kernel and
+// the parameter.
 #pragma once
 
 #include <optional>
 #include <span>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "call/resolved_call.hpp"
 #include "sk/call.hpp"
+#include "sk/error.hpp"
 #include "sk/program.hpp"
+#include "sk/shape.hpp"
 
 namespace sk {
+
+class DeviceState;
+
+template <class... Values>
+[[noreturn]] void fail(Error::Kind kind, const program::Kernel& kernel, fmt::format_string<Values...> format,
+                       Values&&... values) {
+  throw Error(fmt::format("{}: {}", kernel.name, fmt::format(format, std::forward<Values>(values)...)), kind);
+}
+template <class... Values>
+[[noreturn]] void fail(const program::Kernel& kernel, fmt::format_string<Values...> format,
+                       Values&&... values) {
+  fail(Error::Kind::Misuse, kernel, format, std::forward<Values>(values)...);
+}
+
+/// Returns the argument's stream after checking that it is live and has the parameter's element type.
+StreamState& checkStream(const program::Kernel& kernel, const program::Parameter& parameter,
+                         const StreamRegion& region);
+
+void checkSameDevice(const program::Kernel& kernel, const program::Parameter& a, const StreamState& first,
+                     const program::Parameter& b, const StreamState& second);
+
+/// `first` is the parameter that defines the domain: an output, or an input if there are no outputs.
+void checkInputShape(const program::Kernel& kernel, const program::Parameter& input, const Argument& argument,
+                     const program::Parameter& first, const Shape& domain);
+
+void checkGatherShape(const program::Kernel& kernel, const program::Parameter& gather, const Shape& shape,
+                      const Shape& domain);
+
+/// Whether the argument is a value instead of a stream; streams of one element may stand for uniforms.
+bool isValue(const program::Parameter& parameter, const Argument& argument);
+
+/// Checks that a stream which stands for a uniform has one element.
+void checkUniformShape(const program::Kernel& kernel, const program::Parameter& uniform, const Shape& shape);
+
+/// The planes of streams that stand for uniforms.
+std::size_t uniformPlanes(const program::Kernel& kernel, std::span<const Argument> arguments);
+
+/// Checks arguments that are not streams: values must exist, and iterators must fit the domain.
+void checkValue(const program::Kernel& kernel, const program::Parameter& parameter, const Argument& argument,
+                const Shape& domain);
+
+/// Checks that a stream which the kernel needs is not sk::none.
+void checkGiven(const program::Kernel& kernel, const program::Parameter& parameter, const Argument& argument);
+
+/// Throws sk::Error: a parameter that is not an element or a gather takes no placed stream (sk/placed.hpp).
+[[noreturn]] void refusePlaced(const program::Kernel& kernel, const program::Parameter& parameter);
+
+/// Checks that the device can number the elements of a domain (sk/limits.hpp), which may exceed any stream.
+void checkElements(const program::Kernel& kernel, const DeviceState& device, const Shape& domain,
+                   bool isPlaced = false);
+
+/// Checks that the device has room for the kernel's uniforms. A driver may need more than the components
+/// counted here; it then reports an error of its own.
+void checkUniforms(const program::Kernel& kernel, const DeviceState& device);
 
 class DeviceState;
 

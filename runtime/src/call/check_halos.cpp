@@ -16,7 +16,7 @@
 #include "assemble/append/append_passes.hpp"
 #include "assemble/condition.hpp"
 #include "call/box.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/halo_limits.hpp"
 #include "call/placed.hpp"
 #include "device/device_state.hpp"

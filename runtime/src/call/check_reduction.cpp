@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "call/block_grid.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/check_rows.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"

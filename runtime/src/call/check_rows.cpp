@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "device/device_state.hpp"
 #include "device/rows_state.hpp"
 

@@ -2,11 +2,14 @@
 #include "call/check_written.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "assemble/condition.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/resolved_call.hpp"
 #include "device/stream_state.hpp"
 #include "sk/error.hpp"
@@ -69,5 +72,30 @@ void noteWritten(const program::Kernel& kernel, std::span<const Argument> argume
     if (assemble::isNeeded(kernel.parameters[i], specs)) stream->isUnwritten = false;
   }
 }
+
+namespace {
+
+enum class Check : std::uint8_t { None, Folds, Halos, Written, Collectives };
+
+Check chosenCheck() {
+  static const Check chosen = [] {
+    const char* const value = std::getenv("SK_CHECK");
+    if (value == nullptr || *value == '\0') return Check::None;
+    if (std::string_view(value) == "folds") return Check::Folds;
+    if (std::string_view(value) == "halos") return Check::Halos;
+    if (std::string_view(value) == "written") return Check::Written;
+    if (std::string_view(value) == "collectives") return Check::Collectives;
+    throw Error(fmt::format(
+        "there is no check '{}'; choose folds, halos, written or collectives, or unset SK_CHECK", value));
+  }();
+  return chosen;
+}
+
+}  // namespace
+
+bool checksFolds() { return chosenCheck() == Check::Folds; }
+bool checksHalos() { return chosenCheck() == Check::Halos; }
+bool checksWritten() { return chosenCheck() == Check::Written; }
+bool checksCollectives() { return chosenCheck() == Check::Collectives; }
 
 }  // namespace sk

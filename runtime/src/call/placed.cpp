@@ -7,7 +7,7 @@
 
 #include "assemble/append/append_passes.hpp"
 #include "call/box.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/halo_limits.hpp"
 #include "call/iterator.hpp"
 #include "device/region.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "assemble/program/texture_units.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "support/convert_elements.hpp"

@@ -2,7 +2,7 @@
 //
 // Promises: the predicted error of a table is a bound, for smooth functions, peaks, kinks and jumps, whatever the range; it is not much
 // larger than errors that occur; a function that samples do not resolve is reported.
-#include "device/interpolation_error.hpp"
+#include "device/function_table.hpp"
 
 #include <algorithm>
 #include <cmath>

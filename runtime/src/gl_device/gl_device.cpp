@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "assemble/append/append_passes.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "device/loop_state.hpp"
 #include "device/region.hpp"
 #include "gl/commands.hpp"

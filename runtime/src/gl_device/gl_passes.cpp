@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device/gl_passes.hpp"
 
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "gl_device/pass/pass_trace.hpp"
 
 namespace sk {

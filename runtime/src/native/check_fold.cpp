@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "native/piece_folder.hpp"
 
 namespace sk {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "sk/error.hpp"
 
 namespace sk {

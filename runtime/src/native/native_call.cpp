@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <functional>
 #include <list>
+#include <new>
 #include <numeric>
+#include <span>
 
 #include "assemble/condition.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/iterator.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
+#include "device/device_state.hpp"
 #include "device/region.hpp"
 #include "device/rows_state.hpp"
 #include "native/call.hpp"
@@ -19,15 +22,76 @@
 #include "native/fold_code.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
-#include "native/native_trace.hpp"
 #include "native/operands.hpp"
 #include "native/run_code.hpp"
 #include "native/sum_exactly.hpp"
+#include "sk/call.hpp"
 #include "sk/native/quad_type.hpp"
+#include "trace/trace.hpp"
 
 namespace sk {
 
 namespace {
+
+// Records the loops of native code in a trace. They run on the calling thread and on threads that it starts,
+// so that the host's clock times them.
+
+/// Traces and counts one loop nest for as long as this object lives; does nothing if the device does neither.
+class NativePass {
+ public:
+  NativePass(DeviceState& device, const program::Kernel& kernel, std::string_view step,
+             std::span<const Argument> arguments, const Shape& domain)
+      : trace_(device.trace.get()) {
+    if (trace_ != nullptr || device.passCount) begin(device, kernel, step, arguments, domain);
+  }
+  ~NativePass() {
+    if (trace_ != nullptr) end();
+  }
+  NativePass(const NativePass&) = delete;
+  NativePass& operator=(const NativePass&) = delete;
+
+ private:
+  void begin(DeviceState& device, const program::Kernel& kernel, std::string_view step,
+             std::span<const Argument> arguments, const Shape& domain);
+  void end() noexcept;
+
+  Trace* trace_;
+  PassRecord record_;
+  Trace::Time begin_ = 0;
+};
+
+/// The bytes of a region in the arrays that hold it.
+std::int64_t bytesOf(const StreamRegion& region) {
+  const auto& stream = static_cast<const NativeStream&>(*region.stream);
+  std::int64_t bytes = 0;
+  for (const ComponentType& component : stream.components.types()) {
+    bytes += region.shape.size() * static_cast<std::int64_t>(component.storedBytes);
+  }
+  return bytes;
+}
+
+void NativePass::begin(DeviceState& device, const program::Kernel& kernel, std::string_view step,
+                       std::span<const Argument> arguments, const Shape& domain) {
+  record_ = {std::string(kernel.name), std::string(step), "native", toString(domain), 0, 0};
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i].region.stream == nullptr) continue;
+    const program::Role role = kernel.parameters[i].role;
+    const bool isRead = role == program::Role::Input || role == program::Role::Gather;
+    (isRead ? record_.bytesRead : record_.bytesWritten) += bytesOf(arguments[i].region);
+  }
+  if (device.passCount) record_.addTo(*device.passCount);
+  begin_ = Trace::now();
+}
+
+void NativePass::end() noexcept {
+  const Trace::Time end = Trace::now();
+  try {
+    trace_->hostPass(record_, begin_, end);
+    trace_->devicePass(record_, begin_, end, "wall clock");
+  } catch (const std::bad_alloc&) {
+    return;  // the trace lacks this pass
+  }
+}
 
 using native::Extents;
 using native::Operand;

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "native/entries.hpp"
 #include "native/native_stream.hpp"
 #include "probe/copy_bandwidth.hpp"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "assemble/condition.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/iterator.hpp"
 #include "call/resolved_call.hpp"
 #include "device/region.hpp"

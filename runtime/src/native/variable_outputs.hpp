@@ -2,6 +2,11 @@
 //
 // What object code pushes to variable outputs. The results are in the order of elements, whatever the number of threads. Rooms
 // hold outputs whose number of elements has a small bound; the parts of others are joined at the end.
+//
+// Carries out the records of scatter outputs (sk/native/code.hpp) as if elements ran one after another. A
+// single thread does so after each chunk. Several threads log what their elements store in buckets, each for
+// a range of the target's elements. A bucket then belongs to one thread, which carries out its logs in the
+// order of elements.
 #pragma once
 
 #include <atomic>
@@ -12,6 +17,8 @@
 #include <vector>
 
 #include "native/call.hpp"
+#include "native/code_frame.hpp"
+#include "native/entries.hpp"
 #include "native/record_buffer.hpp"
 #include "sk/program.hpp"
 
@@ -74,6 +81,54 @@ class PushParts {
 
   std::mutex mutex_;
   std::vector<Part> parts_;
+};
+
+/// The scatter outputs of one call that are not omitted.
+class Scatters {
+ public:
+  /// The kernel and the frame must outlive this.
+  Scatters(const program::Kernel& kernel, const CodeFrame& frame, const CodeChoice& choice);
+
+  /// Carries out the records of a frame and clears them; for a single thread.
+  void apply(RecordFrame& records) const;
+
+  /// The destination of a record: its bucket, and its position among the records that go there from one
+  /// chunk.
+  struct Place {
+    std::uint32_t bucket, position;
+  };
+  /// The records of neighbouring elements: for each output, its buckets.
+  struct Log {
+    std::int64_t order = 0;
+    std::vector<std::vector<std::unique_ptr<RecordBuffer>>> buckets;
+    std::vector<Place> places;
+  };
+  /// Returns an empty log. Thread-safe.
+  std::unique_ptr<Log> newLog();
+  /// Moves the records of a frame to a log.
+  void move(RecordFrame& records, Log& log) const;
+  /// Adds a log; logs are carried out in ascending `order`. Thread-safe.
+  void add(std::int64_t order, std::unique_ptr<Log> log);
+  /// Carries out all logs, in order, on all threads.
+  void applyLogs();
+
+ private:
+  struct Target {
+    std::size_t parameter;
+    RecordShape shape;
+    std::int64_t first;  ///< number of the target's first element
+    int shift;  ///< a bucket has 2^shift elements
+    std::size_t buckets;
+  };
+  static void distribute(const RecordBuffer& records, const Target& target, Log& log,
+                         std::span<const std::unique_ptr<RecordBuffer>> buckets);
+  void applyBucket(std::size_t target, std::size_t bucket) const;
+
+  const CodeFrame& frame_;
+  native::ApplyFunction* function_ = nullptr;
+  std::vector<Target> targets_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Log>> logs_, unused_;
 };
 
 }  // namespace sk

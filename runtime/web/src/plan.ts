@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Kernels of several passes: runtime/src/gl_device/pass/multipass_plan.cpp. Streams are not packed.
+// Kernels of several passes: runtime/src/gl_device/pass/run_kernel.cpp. Streams are not packed.
 import { isRead, type Checked } from './arguments.js';
 import type { Device } from './device.js';
 import { SkError } from './error.js';

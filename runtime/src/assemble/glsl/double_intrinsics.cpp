@@ -5,7 +5,7 @@
 // compare it differently. Coefficients are of minimax polynomials for the error of the final function (Remez' exchange in
 // 60 digits, then rounded to double), which is at most 2^-57. Range reductions must subtract exactly as written: sk_sum()
 // is sk_add() with a barrier.
-
+// Selects the definitions of doubles for a representation (doubles.glsl).
 #include "assemble/glsl/double_intrinsics.hpp"
 
 #include <algorithm>
@@ -20,6 +20,7 @@
 
 #include "glsl_text/double_intrinsics.hpp"
 #include "glsl_text/double_pieces.hpp"
+#include "glsl_text/doubles.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -221,6 +222,17 @@ std::string doubleIntrinsicDefinitions(std::span<const IntrinsicUse> uses, Doubl
     if (use.ofDouble) text += withConstants(form, rows[static_cast<std::size_t>(use.intrinsic)].text);
   }
   return text;
+}
+
+std::string_view doubleExtensions(Doubles form) {
+  return form == Doubles::Native ? "#extension GL_ARB_gpu_shader_fp64 : require\n" : "";
+}
+
+std::string doubleDefinitions(Doubles form, Barrier own) {
+  if (form == Doubles::Pairs) return std::string(library::pair).append(library::common);
+  const std::string_view definition =
+      own == Barrier::Precise ? "#define sk_written precise\n" : "#define sk_written\n";
+  return std::string(definition).append(library::native).append(library::common);
 }
 
 }  // namespace sk::assemble

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "assemble/glsl/double_intrinsics.hpp"
-#include "assemble/glsl/doubles.hpp"
 #include "assemble/glsl/intrinsics.hpp"
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "assemble/glsl/tables.hpp"

@@ -76,7 +76,7 @@ struct Division {
   bool byTexel = false;  ///< the elements are packed, and blocks consist of whole texels
   bool inAnyOrder = false;  ///< Reduction::commutative
   bool inGroups = false;  ///< foldsInGroups()
-  /// Work groups fold the blocks (block_program.hpp). With byTexel, all inputs are packed, and their texels have the same
+  /// Work groups fold the blocks (reduce_program.cpp). With byTexel, all inputs are packed, and their texels have the same
   /// x.
   bool byGroups = false;
   bool ofDigits = false;  ///< folds the terms of an exact sum (sk/exact_digits.hpp)

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "assemble/append/append_passes.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "device/write_scope.hpp"
 #include "gl_device/append/append_dispatch.hpp"
 #include "gl_device/append/histo_pyramid.hpp"

@@ -12,7 +12,7 @@
 
 #include "assemble/append/append_groups.hpp"
 #include "assemble/append/append_passes.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "device/write_scope.hpp"
 #include "gl_device/append/append_call.hpp"
 #include "gl_device/append/histo_pyramid.hpp"

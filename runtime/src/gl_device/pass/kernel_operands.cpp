@@ -2,7 +2,7 @@
 #include "gl_device/pass/kernel_operands.hpp"
 
 #include "assemble/assemble.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/placed.hpp"
 #include "device/region.hpp"
 #include "gl_device/gl_stream.hpp"

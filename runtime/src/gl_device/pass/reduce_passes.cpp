@@ -10,7 +10,7 @@
 #include "assemble/reduce/row_program.hpp"
 #include "assemble/reduce/scan_plan.hpp"
 #include "assemble/reduce/scan_program.hpp"
-#include "call/check_argument.hpp"
+#include "call/check_call.hpp"
 #include "call/resolved_call.hpp"
 #include "device/region.hpp"
 #include "gl_device/gl_stream.hpp"

@@ -3,8 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "scale/quantities.hpp"
 
 namespace sk_tool {
 
@@ -244,6 +251,169 @@ BestOf bestOf(const ScaledStep& step, const Cluster& cluster, std::int64_t devic
   }
   result.fits = result.best && fits(*result.best, cluster);
   return result;
+}
+
+Network Network::parse(const std::string& text) {
+  const std::vector<std::string> words = wordsOf(text, ',');
+  if (words.size() < 2 || words.size() > 4) {
+    throw std::runtime_error(
+        fmt::format("'{}' is no network; give BANDWIDTH,LATENCY[,OVERHEAD[,GAP]] as in 25GB/s,2us", text));
+  }
+  const double latency = parseTime(words[1]);
+  Network network{.gapPerByte = 1 / parseBandwidth(words[0])};
+  network.overhead = words.size() > 2 ? parseTime(words[2]) : latency / 4;
+  network.gap = words.size() > 3 ? parseTime(words[3]) : network.overhead;
+  network.latency = latency - 2 * network.overhead;
+  if (network.latency < 0) {
+    throw std::runtime_error(fmt::format(
+        "the overhead in '{}' is more than half of the latency, which is from one program to the other",
+        text));
+  }
+  return network;
+}
+
+double exchangeTime(const Network& network, std::int64_t messages, double bytes) {
+  if (messages == 0) return 0;
+  const auto count = static_cast<double>(messages);
+  return network.overhead + (count - 1) * std::max(network.gap, network.overhead) +
+         std::max(bytes - count, 0.0) * network.gapPerByte + network.latency + network.overhead;
+}
+
+double allReduceTime(const Network& network, std::int64_t ranks, double bytes) {
+  const int rounds = std::bit_width(static_cast<std::uint64_t>(ranks - 1));
+  return rounds * exchangeTime(network, 1, bytes);
+}
+
+double Staging::time(double bytes) const {
+  if (!isNeeded() || bytes == 0) return 0;
+  return readTime + bytes / readBandwidth + writeTime + bytes / writeBandwidth;
+}
+
+Staging Staging::parse(const std::string& text) {
+  if (text == "none") return {};
+  const std::vector<std::string> words = wordsOf(text, ',');
+  if (words.size() != 4) {
+    throw std::runtime_error(
+        fmt::format("'{}' says nothing of copies to host memory; give "
+                    "READ_BANDWIDTH,READ_TIME,WRITE_BANDWIDTH,WRITE_TIME as in "
+                    "12GB/s,26us,5.6GB/s,22us, or none",
+                    text));
+  }
+  return {.readTime = parseTime(words[1]),
+          .readBandwidth = parseBandwidth(words[0]),
+          .writeTime = parseTime(words[3]),
+          .writeBandwidth = parseBandwidth(words[2])};
+}
+
+Boxes Boxes::parse(const std::string& text) {
+  const std::vector<std::string> words = wordsOf(text, ',');
+  std::size_t read = 0;
+  double factor = 0;
+  try {
+    factor = std::stod(words[0], &read);
+  } catch (const std::logic_error&) {  // not a number
+  }
+  if (words.size() != 2 || read != words[0].size() || !(factor >= 1) || factor > 100) {
+    throw std::runtime_error(fmt::format(
+        "'{}' says nothing of boxes; give how many times as long an element takes, 1 to 100, and the time of "
+        "a call for a border, as in 1.3,6us",
+        text));
+  }
+  return {.factor = factor, .borderTime = parseTime(words[1])};
+}
+
+namespace {
+
+void addGrids(std::int64_t count, std::size_t rank, Extents& parts, std::vector<Extents>& grids) {
+  if (parts.size() + 1 == rank) {
+    parts.push_back(count);
+    grids.push_back(parts);
+    parts.pop_back();
+    return;
+  }
+  for (std::int64_t part = 1; part <= count; ++part) {
+    if (count % part != 0) continue;
+    parts.push_back(part);
+    addGrids(count / part, rank, parts, grids);
+    parts.pop_back();
+  }
+}
+
+/// The offsets of all neighbours: -1, 0 or 1 in each dimension that is split, not all of them 0.
+std::vector<Extents> directionsOf(const Extents& parts) {
+  std::vector<Extents> directions = {Extents(parts.size(), 0)};
+  for (std::size_t d = 0; d < parts.size(); ++d) {
+    if (parts[d] == 1) continue;
+    const std::size_t count = directions.size();
+    for (const std::int64_t step : {-1, 1}) {
+      for (std::size_t i = 0; i < count; ++i) {
+        directions.push_back(directions[i]);
+        directions.back()[d] = step;
+      }
+    }
+  }
+  directions.erase(directions.begin());
+  return directions;
+}
+
+bool hasNeighbor(const Split& split, const Extents& place, const Extents& direction) {
+  for (std::size_t d = 0; d < place.size(); ++d) {
+    const std::int64_t there = place[d] + direction[d];
+    if ((there < 0 || there >= split.parts[d]) && !split.periodic[d]) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Extents> processGrids(std::int64_t count, std::size_t rank) {
+  std::vector<Extents> grids;
+  Extents parts;
+  addGrids(count, rank, parts, grids);
+  return grids;
+}
+
+int splitDimensions(const Extents& parts) {
+  return static_cast<int>(std::ranges::count_if(parts, [](std::int64_t part) { return part > 1; }));
+}
+
+std::int64_t partExtent(std::int64_t extent, std::int64_t parts, std::int64_t index) {
+  return extent / parts + (index < extent % parts ? 1 : 0);
+}
+
+std::int64_t volumeOf(const Extents& block) {
+  std::int64_t volume = 1;
+  for (const std::int64_t extent : block) volume *= extent;
+  return volume;
+}
+
+Halo Split::halo(std::size_t dimension, const Halo& read) const {
+  if (parts[dimension] == 1) return {};
+  if (parts[dimension] > 2 || !periodic[dimension]) return read;
+  const std::int64_t deeper = std::max(read.below, read.above);
+  return {deeper, deeper};
+}
+
+Sent sentBy(const Split& split, const Extents& block, const Extents& place,
+            std::span<const ExchangedStream> streams) {
+  Sent sent;
+  for (const Extents& direction : directionsOf(split.parts)) {
+    if (!hasNeighbor(split, place, direction)) continue;
+    double bytes = 0;
+    for (const ExchangedStream& stream : streams) {
+      double elements = 1;
+      for (std::size_t d = 0; d < block.size(); ++d) {
+        const Halo halo = split.halo(d, stream.halo[d]);
+        // A neighbour after the block reads what lies before its own elements.
+        const std::int64_t depth = direction[d] > 0 ? halo.below : halo.above;
+        elements *= static_cast<double>(direction[d] == 0 ? block[d] : depth);
+      }
+      bytes += elements * static_cast<double>(stream.bytes);
+    }
+    if (bytes > 0) ++sent.messages;
+    sent.bytes += bytes;
+  }
+  return sent;
 }
 
 }  // namespace sk_tool

@@ -5,7 +5,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "scale/network.hpp"
 #include "scale/quantities.hpp"
 
 namespace {

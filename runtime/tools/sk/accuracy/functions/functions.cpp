@@ -14,7 +14,6 @@
 #include <CLI/CLI.hpp>
 
 #include "accuracy/file/scalars.hpp"
-#include "accuracy/functions/samples.hpp"
 #include "accuracy/functions/sweep.hpp"
 #include "accuracy/functions/truth.hpp"
 #include "accuracy/progress.hpp"
