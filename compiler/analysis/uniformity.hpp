@@ -7,8 +7,17 @@
 //
 // Shapes hold for active lanes only: in a loop that lanes leave at different times, a counter is uniform as
 // long as no lane that has left can read it.
+//
+// Private to Uniformity: one walk over a function, which adds facts about varying values and divergent
+// control flow. Uniformity repeats the walk until it adds nothing.
+//
+// The walk keeps a stack of frames, the reasons why some lanes are inactive: they took another branch, or
+// have left the loop, the iteration or the function. A lane in another branch can read what is assigned
+// meanwhile to a variable declared outside the branch. A lane that has left a loop cannot, if the variable
+// lives only in that loop.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <set>
 #include <span>
@@ -66,6 +75,88 @@ class Uniformity {
   Axis axis_;
   KernelShapes shapes_;
   std::map<ir::FunctionId, Facts> facts_;
+};
+
+/// Finds the last use of each variable of a function and the end of each loop, in source order.
+class LastUses {
+ public:
+  explicit LastUses(const ir::Function& function);
+
+  /// True if the variable is used after the end of the loop.
+  bool isUsedAfter(ir::VarId var, const ir::Stmt& loop) const { return lastUse_[var] > ends_.at(&loop); }
+
+ private:
+  void visit(const ir::Block& block);
+  void use(const ir::Expr& expr);
+
+  std::vector<std::size_t> lastUse_;
+  std::map<const ir::Stmt*, std::size_t> ends_;
+  std::size_t now_ = 0;  ///< number of statements visited
+};
+
+class DivergenceWalk {
+ public:
+  DivergenceWalk(Uniformity& uniformity, ir::FunctionId id);
+
+  /// Returns true if the walk added a fact.
+  bool run();
+
+ private:
+  /// Why some lanes are inactive.
+  struct Frame {
+    enum Kind : std::uint8_t { Branch, Loop, Iteration, Function } kind;
+    std::size_t loop = 0;  ///< Loop and Iteration: the number of loops around it
+  };
+  /// A statement that a jump can leave.
+  struct Enclosing {
+    const ir::Stmt* stmt;
+    std::size_t frames;  ///< number of frames around it
+    bool isLoop;
+  };
+  struct Declared {
+    std::size_t frames, loops;  ///< numbers of frames and loops around the declaration
+    bool isReadByCaller;  ///< the caller reads it after the function returns
+  };
+
+  void block(const ir::Block& statements, Frame::Kind leaves = Frame::Branch);
+  bool jumps(const ir::Stmt& stmt, Frame::Kind left) const;
+
+  void visit(const ir::Stmt& stmt, const ir::Declare& n);
+  void visit(const ir::Stmt& stmt, const ir::Assign& n);
+  void visit(const ir::Stmt& stmt, const ir::CallStmt& n);
+  void visit(const ir::Stmt& stmt, const ir::If& n);
+  void visit(const ir::Stmt& stmt, const ir::Loop& n);
+  void visit(const ir::Stmt& stmt, const ir::Switch& n);
+  void visit(const ir::Stmt& stmt, const ir::Break& n);
+  void visit(const ir::Stmt& stmt, const ir::Continue& n);
+  void visit(const ir::Stmt& stmt, const ir::Return& n);
+  void visit(const ir::Stmt& stmt, const ir::Scope& n);
+  void visit(const ir::Stmt&, const ir::Push&) {}
+  void visit(const ir::Stmt&, const ir::Scatter&) {}
+
+  void calls(const ir::Expr& expr);
+  void called(ir::FunctionId callee);
+  void assign(const ir::Stmt& stmt, const ir::Expr& place, LeafShapes value);
+  bool isVisibleToInactiveLanes(ir::VarId var) const;
+  bool isVisibleOutside(const Frame& frame, const Declared& declared, ir::VarId var) const;
+  bool isDivergentJump(std::size_t frames, Frame::Kind allowed) const;
+
+  LeafShapes shapes(const ir::Expr& expr) const { return exprs_.of(id_, expr); }
+  void add(LeafShapes& into, const LeafShapes& from);
+  void set(bool& flag);
+  void insert(std::set<const ir::Stmt*>& where, const ir::Stmt& stmt);
+
+  Uniformity& uniformity_;
+  ir::FunctionId id_;
+  const ir::Function& function_;
+  Uniformity::Facts& facts_;
+  ExprShapes exprs_;
+  LastUses lastUses_;
+  std::vector<Declared> declared_;
+  std::vector<Frame> frames_;
+  std::vector<Enclosing> enclosing_;
+  std::vector<const ir::Stmt*> loops_;
+  bool isNew_ = false;
 };
 
 }  // namespace skc::analysis

@@ -1,24 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include <llvm/Analysis/CGSCCPassManager.h>
+#include <llvm/Analysis/LoopAnalysisManager.h>
 #include <llvm/IR/LLVMContext.h>
 #include <llvm/IR/LegacyPassManager.h>
 #include <llvm/IR/Module.h>
 #include <llvm/IR/Verifier.h>
+#include <llvm/Passes/PassBuilder.h>
+#include <llvm/Support/Error.h>
 #include <llvm/Support/ErrorHandling.h>
 #include <llvm/Support/raw_ostream.h>
+#include <llvm/Target/TargetMachine.h>
 
 #include "analysis/stream_uses.hpp"
 #include "analysis/uniformity.hpp"
 #include "ir/build.hpp"
+#include "ir/call_graph.hpp"
+#include "ir/ir.hpp"
+#include "ir/walk.hpp"
 #include "native/code_table.hpp"
-#include "native/contraction.hpp"
 #include "native/debug_info.hpp"
 #include "native/entries.hpp"
 #include "native/lane_count.hpp"
-#include "native/library/call_library.hpp"
+#include "native/library/link_library.hpp"
+#include "native/llvm_passes.hpp"
 #include "native/native.hpp"
-#include "native/optimize.hpp"
 #include "native/records.hpp"
 #include "native/row_plan.hpp"
 #include "native/target.hpp"
@@ -26,6 +33,107 @@
 #include "transforms/predicate.hpp"
 
 namespace skc::native {
+
+namespace {
+
+// Runs LLVM's passes on a module of kernels. Their code consists of vectors already: no pass looks for loops
+// to vectorise.
+
+/// The pipeline of clang -O2 takes three times as long for the same code. Calls are inlined and vectors
+/// formed as code is emitted, and loops are unrolled in our own IR.
+constexpr char pipeline[] =
+    "function("
+    "sroa<modify-cfg>,early-cse<memssa>,simplifycfg,instcombine<no-verify-fixpoint>,"  // variables become registers
+    "loop-mssa(loop-rotate,licm),"
+    "gvn,carried-values,instcombine<no-verify-fixpoint>,simplifycfg,adce,wide-masks,split-masks)";
+
+void optimize(llvm::Module& module, llvm::TargetMachine& machine) {
+  llvm::LoopAnalysisManager loops;
+  llvm::FunctionAnalysisManager functions;
+  llvm::CGSCCAnalysisManager components;
+  llvm::ModuleAnalysisManager modules;
+  llvm::PassBuilder builder(&machine);
+  builder.registerModuleAnalyses(modules);
+  builder.registerCGSCCAnalyses(components);
+  builder.registerFunctionAnalyses(functions);
+  builder.registerLoopAnalyses(loops);
+  builder.crossRegisterProxies(loops, functions, components, modules);
+  builder.registerPipelineParsingCallback([](llvm::StringRef name, llvm::FunctionPassManager& list,
+                                             llvm::ArrayRef<llvm::PassBuilder::PipelineElement>) {
+    if (name == "carried-values") return list.addPass(CarriedValues()), true;
+    if (name == "wide-masks") return list.addPass(WideMasks()), true;
+    if (name == "split-masks") return list.addPass(SplitMasks()), true;
+    return false;
+  });
+  llvm::ModulePassManager passes;
+  llvm::cantFail(builder.parsePassPipeline(passes, pipeline));
+  passes.run(module, modules);
+}
+
+// Contraction fuses a product and the sum that it feeds into one multiply-add, which rounds once. A kernel
+// may be called with or without contraction, which takes two entries; this file decides for which kernels the
+// second entry is worth compiling.
+
+using namespace ir;
+
+bool isSum(BinaryOp op) { return op == BinaryOp::Add || op == BinaryOp::Sub; }
+
+bool isProduct(const Expr& expr) {
+  const auto* n = std::get_if<Binary>(&expr.node);
+  return n != nullptr && n->op == BinaryOp::Mul && isReal(expr.type.scalar);
+}
+
+/// Counts the operations of a kernel that contraction may fuse.
+class Operations {
+ public:
+  bool hasPair() const { return !isExact_ && sums_ > 0 && products_ > 0; }
+
+  void add(const Block& body) {
+    walkStmts(body, [&](const Stmt& stmt) {
+      const auto* n = std::get_if<Assign>(&stmt.node);
+      if (n == nullptr || !n->op || !isReal(n->place->type.scalar)) return;
+      if (isSum(*n->op)) ++sums_;
+      if (*n->op == BinaryOp::Mul) ++products_;
+    });
+    walkExprs(body, [&](const Expr& expr) { add(expr); });
+  }
+
+ private:
+  void add(const Expr& expr) {
+    if (const auto* n = std::get_if<IntrinsicCall>(&expr.node)) return add(n->intrinsic, expr.type);
+    if (const auto* n = std::get_if<Convert>(&expr.node)) {
+      // a product that is rounded to half, as are all in half precision, feeds no sum
+      if (expr.type.scalar == Scalar::Half && isProduct(*n->operand)) --products_;
+    }
+    if (isProduct(expr)) ++products_;
+    const auto* n = std::get_if<Binary>(&expr.node);
+    if (n == nullptr || !isReal(expr.type.scalar)) return;
+    if (isSum(n->op)) ++sums_;
+    if (isProduct(expr) && n->lhs->type.isMatrix() && !n->rhs->type.isScalar()) ++sums_;
+  }
+
+  void add(Intrinsic intrinsic, const Type& type) {
+    const bool isExactSum = intrinsic >= Intrinsic::RoundedSum && intrinsic <= Intrinsic::ExactRounded;
+    isExact_ = isExact_ || isExactSum;
+    if (!isReal(type.scalar) || (intrinsic != Intrinsic::Fma && intrinsic != Intrinsic::Dot)) return;
+    ++products_;
+    ++sums_;
+  }
+
+  int products_ = 0, sums_ = 0;
+  bool isExact_ = false;
+};
+
+/// True if contraction may change what the kernel computes: it has products and sums of real numbers. False
+/// for kernels that compute rounding errors or exact sums, where each rounding counts. The module must not
+/// have library functions yet.
+bool canContract(const Module& module, const Kernel& kernel) {
+  Operations operations;
+  for (const FunctionId id : functionsOf(module, kernel)) operations.add(module.functions[id].body);
+  return operations.hasPair();
+}
+
+}  // namespace
 
 using namespace ir;
 using sk::native::EntryKind;

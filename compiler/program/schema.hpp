@@ -2,6 +2,9 @@
 //
 // The schema of descriptors: all members of each struct of sk/program.hpp, and all enumerators, by name. What prints descriptors,
 // as C++ constants (constants.cpp) or as JSON (json.cpp), follows it. A descriptor with a member that is missing here does not compile.
+//
+// Counts the members of a descriptor at compile time, so that what prints descriptors can assert that it knows all of
+// them. All that C++20 tells of the members of an aggregate is their number.
 #pragma once
 
 #include <array>
@@ -9,12 +12,33 @@
 #include <optional>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "program/constant_names.hpp"
-#include "program/member_count.hpp"
 #include "sk/program.hpp"
 
 namespace skc::emit {
+
+/// Stands for any member; only its type is used.
+struct AnyMember {
+  template <class T>
+  operator T() const;
+};
+
+template <class T, std::size_t... I>
+constexpr bool takes(std::index_sequence<I...>) {
+  return requires { T{(static_cast<void>(I), AnyMember{})...}; };
+}
+
+/// The number of members of an aggregate without arrays and base classes.
+template <class T, std::size_t Count = 0>
+constexpr std::size_t memberCount() {
+  if constexpr (takes<T>(std::make_index_sequence<Count + 1>{})) {
+    return memberCount<T, Count + 1>();
+  } else {
+    return Count;
+  }
+}
 
 /// A member, in order of declaration. `part` names the constants that it refers to.
 template <class T, class M>

@@ -10,10 +10,8 @@
 #include "frontend/clang_loc.hpp"
 #include "frontend/prelude.hpp"
 #include "frontend/tokens/comma_indices.hpp"
-#include "frontend/tokens/constructor_editor.hpp"
 #include "frontend/tokens/parameter_editor.hpp"
-#include "frontend/tokens/stream_editor.hpp"
-#include "frontend/tokens/table_editor.hpp"
+#include "frontend/tokens/declaration_editors.hpp"
 #include "frontend/tokens/token_cursor.hpp"
 
 namespace skc::frontend {

@@ -10,6 +10,12 @@
 // constants that this needs. callLibrary() then replaces the kernel's IntrinsicCall by a call. Code that
 // computes a kernel's floats in another precision must call the C library instead, because library functions
 // are accurate only in their own types. exact_sums.sk does the same for the intrinsics of exact sums.
+//
+// Replaces intrinsics by calls of the library's functions:
+//
+//   before   kernel void wave(float2 x<>, out float2 r<>) { r = sin(x); }
+//   after    float2 sin_2(float2 a) { return float2(sin(a.x), sin(a.y)); }
+//            kernel void wave(float2 x<>, out float2 r<>) { r = sin_2(x); }
 #pragma once
 
 #include <functional>
@@ -65,5 +71,8 @@ class FunctionImporter {
   std::map<ir::ConstantId, ir::ConstantId> constants_;
   std::map<std::uint32_t, std::uint32_t> structs_;
 };
+
+/// Each kernel gets its own copies of the functions, as after specialize-gathers.
+void callLibrary(ir::Module& module, const LinkedFunctions& linked);
 
 }  // namespace skc::native

@@ -3,7 +3,6 @@
 
 #include <span>
 
-#include "driver/native_library.hpp"
 #include "native/native.hpp"
 #include "sk/call.hpp"
 

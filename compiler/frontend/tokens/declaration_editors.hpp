@@ -1,21 +1,60 @@
 // SPDX-License-Identifier: MIT
 //
+// Edits a declaration of streams. From
+//
+//   stream float u<height, 2 * n>, v<n>;
+//
+// Clang gets the type of each stream, and the values of extents that are more than a name, to check them:
+//
+//   static const auto __sk_constant3 __attribute__((unused)) = 2 * n; extern float u; extern float v;
+//
 // Copies tokens, and turns vector constructors, which Clang's vectors do not have, into calls:
 //
 //   float4(v.xy, 0, 1)        __sk_make_float4(v.xy, 0, 1)
 //   float2 a(3, 4), b(1);     float2 a = __sk_make_float2(3, 4), b = __sk_make_float2(1);
 //   using Color = float4;     using Color = float4;
 //   Color(1, 0, 0, 1)         __sk_make_float4(1, 0, 0, 1)        in the scope of the alias, or as ns::Color
+//
+// Edits the attribute [[table(lo, hi, n, linear)]] in front of a helper function. Its arguments may be any
+// constant expressions; they become constants in front of the function.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <clang/Lex/Token.h>
 
+#include "frontend/tokens/syntax.hpp"
 #include "frontend/tokens/token_cursor.hpp"
+#include "support/diagnostics.hpp"
 
 namespace skc::frontend {
+
+class StreamEditor {
+ public:
+  /// `constants` numbers the generated constants.
+  StreamEditor(TokenBuilder builder, Diagnostics& diagnostics, DeclarationSyntax& syntax, int& constants)
+      : builder_(builder), diagnostics_(diagnostics), syntax_(syntax), constants_(constants) {}
+
+  /// Takes the declaration, from `stream` to its `;`, and appends its replacement. Reports a wrong
+  /// declaration, and appends nothing for it.
+  void edit(TokenCursor& cursor, std::vector<clang::Token>& out);
+
+ private:
+  using Tokens = std::vector<clang::Token>;
+
+  static void takeType(TokenCursor& cursor, Tokens& type);
+  bool takeDeclarator(TokenCursor& cursor, const Tokens& type, Tokens& out);
+  bool takeExtents(TokenCursor& cursor, std::vector<Tokens>& extents);
+  ExtentSyntax extent(const Tokens& written, Tokens& out);
+  bool fail(Diag diag, const clang::Token& location, std::initializer_list<std::string_view> arguments = {});
+
+  TokenBuilder builder_;
+  Diagnostics& diagnostics_;
+  DeclarationSyntax& syntax_;
+  int& constants_;
+};
 
 class ConstructorEditor {
  public:
@@ -62,5 +101,14 @@ class ConstructorEditor {
   std::string declared_;          ///< vector type of the variables being declared, or empty
   int depth_ = 0;                 ///< of parentheses and brackets, in this declaration
 };
+
+/// True if the attributes that follow begin with a table.
+bool namesTable(const TokenCursor& cursor);
+
+/// Consumes `tokens` attribute tokens and appends the constants to `out`; returns nullopt after reporting an
+/// error. `constants` numbers the file's generated constants.
+std::optional<TableSyntax> takeTable(TokenCursor& cursor, std::size_t tokens, const TokenBuilder& builder,
+                                     Diagnostics& diagnostics, int& constants,
+                                     std::vector<clang::Token>& out);
 
 }  // namespace skc::frontend
