@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "call/check_reduction.hpp"
-#include "native/code_frame.hpp"
+#include "native/components.hpp"
 #include "native/entries.hpp"
 #include "native/fold_state.hpp"
 #include "native/native_stream.hpp"

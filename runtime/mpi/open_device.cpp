@@ -10,7 +10,7 @@
 #include "agreement.hpp"
 #include "device/device_state.hpp"
 #include "device/stream_state.hpp"
-#include "gl/displays.hpp"
+#include "gl/open_context.hpp"
 
 namespace sk::mpi {
 

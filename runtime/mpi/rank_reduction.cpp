@@ -7,7 +7,6 @@
 #include "accumulators.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
-#include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "native/exact_accumulator.hpp"
 #include "support/convert_elements.hpp"

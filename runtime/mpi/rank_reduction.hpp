@@ -13,7 +13,7 @@
 #include "accumulators.hpp"
 #include "api/resolved_reduce.hpp"
 #include "call/box.hpp"
-#include "call/dense_regions.hpp"
+#include "call/placed.hpp"
 #include "device/loop_state.hpp"
 #include "domain_state.hpp"
 

@@ -12,7 +12,7 @@
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
 #include "call/placed.hpp"
-#include "call/precision.hpp"
+#include "call/resolved_call.hpp"
 #include "call_plan.hpp"
 #include "device/stream_state.hpp"
 #include "rank_reduction.hpp"

@@ -16,7 +16,7 @@
 
 #include "elements.hpp"
 #include "error_of.hpp"
-#include "gl/displays.hpp"
+#include "gl/open_context.hpp"
 #include "sk/sk.hpp"
 #include "test_kernel.hpp"
 

@@ -10,7 +10,6 @@
 #include <catch2/catch.hpp>
 
 #include "gl/format.hpp"
-#include "gl/framebuffer.hpp"
 #include "gl/texture.hpp"
 #include "sk/sk.hpp"
 

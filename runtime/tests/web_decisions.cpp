@@ -15,7 +15,7 @@
 #include "assemble/assemble.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/reduce/scan_plan.hpp"
-#include "call/block_grid.hpp"
+#include "call/box.hpp"
 #include "gl_device/memory/layout.hpp"
 #include "gl_device/program/variant.hpp"
 #include "sk/error.hpp"

@@ -3,33 +3,140 @@
 // What sk/algorithm.hpp declares. A device may do it itself (DeviceState::reorder). Otherwise the order is computed on the
 // host's cores, from keys that the device hands over; the streams then bring their elements into it
 // (StreamState::permute).
-#include "sk/algorithm.hpp"
-
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "call/dense_regions.hpp"
+#include "call/placed.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/stream_state.hpp"
 #include "device/write_scope.hpp"
+#include "sk/algorithm.hpp"
 #include "sk/error.hpp"
 #include "sk/host_vector.hpp"
 #include "sk/limits.hpp"
+#include "sk/native/parallel.hpp"
 #include "support/checked_size.hpp"
-#include "support/radix_order.hpp"
 
 namespace sk {
 
 namespace {
+
+// The stable order of unsigned keys: a radix sort from the least significant digit, on threads.
+
+/// The numbers of the keys, in the order of the keys; equal keys keep their order. Consumes the keys. There are at
+/// most 2^31 - 1. The result does not depend on the number of threads.
+std::vector<std::int32_t> radixOrder(std::vector<std::uint32_t>&& keys);
+std::vector<std::int32_t> radixOrder(std::vector<std::uint64_t>&& keys);
+
+constexpr int radixBits = 8;
+constexpr std::size_t buckets = std::size_t{1} << radixBits;
+using Counts = std::array<std::int64_t, buckets>;
+
+template <class Bits>
+struct Item {
+  Bits key;
+  std::int32_t number;
+};
+
+template <class Bits>
+std::size_t digitOf(Bits key, int shift) {
+  return static_cast<std::size_t>(key >> shift) % buckets;
+}
+
+/// Sorts items by one digit at a time. Each part of the items has its own place in every bucket, so that threads
+/// need no order among themselves.
+template <class Bits>
+class RadixSort {
+ public:
+  explicit RadixSort(std::vector<Bits>&& keys)
+      : count_(static_cast<std::int64_t>(keys.size())),
+        counts_(static_cast<std::size_t>(native::threadsFor(count_, 1))),
+        items_(detail::hostVector<Item<Bits>>(keys.size())),
+        sorted_(detail::hostVector<Item<Bits>>(keys.size())) {
+    native::inParallel(count_, 1, native::Deal::Evenly, [&](native::Range range) {
+      for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end); ++i) {
+        items_[i] = {keys[i], static_cast<std::int32_t>(i)};
+      }
+    });
+  }
+
+  std::vector<std::int32_t> order() {
+    for (int shift = 0; shift < static_cast<int>(8 * sizeof(Bits)); shift += radixBits) sortBy(shift);
+    auto numbers = detail::hostVector<std::int32_t>(items_.size());
+    native::inParallel(count_, 1, native::Deal::Evenly, [&](native::Range range) {
+      for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end); ++i) {
+        numbers[i] = items_[i].number;
+      }
+    });
+    return numbers;
+  }
+
+ private:
+  void sortBy(int shift) {
+    forEachPart([&](std::size_t part, std::size_t begin, std::size_t end) {
+      Counts counts{};
+      for (std::size_t i = begin; i < end; ++i) ++counts[digitOf(items_[i].key, shift)];
+      counts_[part] = counts;
+    });
+    if (!makeStarts()) return;
+    forEachPart([&](std::size_t part, std::size_t begin, std::size_t end) {
+      Counts next = counts_[part];
+      for (std::size_t i = begin; i < end; ++i) {
+        const Item<Bits> item = items_[i];
+        sorted_[static_cast<std::size_t>(next[digitOf(item.key, shift)]++)] = item;
+      }
+    });
+    std::swap(items_, sorted_);
+  }
+
+  /// Replaces counts by where each part begins in each bucket. Returns false if all keys have the same digit.
+  bool makeStarts() {
+    std::int64_t start = 0;
+    for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
+      const std::int64_t before = start;
+      for (Counts& counts : counts_) start += std::exchange(counts[bucket], start);
+      if (start - before == count_) return false;
+    }
+    return true;
+  }
+
+  template <class Visit>
+  void forEachPart(Visit&& visit) {
+    const auto parts = static_cast<std::int64_t>(counts_.size());
+    native::inParallel(parts, count_, native::Deal::Evenly, [&](native::Range range) {
+      for (std::int64_t part = range.begin; part < range.end; ++part) {
+        visit(static_cast<std::size_t>(part), static_cast<std::size_t>(count_ * part / parts),
+              static_cast<std::size_t>(count_ * (part + 1) / parts));
+      }
+    });
+  }
+
+  std::int64_t count_;
+  std::vector<Counts> counts_;  ///< one per part
+  std::vector<Item<Bits>> items_;
+  std::vector<Item<Bits>> sorted_;
+};
+
+std::vector<std::int32_t> radixOrder(std::vector<std::uint32_t>&& keys) {
+  return RadixSort<std::uint32_t>(std::move(keys)).order();
+}
+
+std::vector<std::int32_t> radixOrder(std::vector<std::uint64_t>&& keys) {
+  return RadixSort<std::uint64_t>(std::move(keys)).order();
+}
 
 using Permutation = std::vector<std::int32_t>;
 

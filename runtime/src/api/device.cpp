@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "assemble/assemble.hpp"
-#include "assemble/elements/storage.hpp"
+#include "assemble/elements/planes.hpp"
 #include "call/check_written.hpp"
 #include "device/stream_state.hpp"
 #include "gl_device/gl_device.hpp"

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "call/check_written.hpp"
-#include "call/dense_regions.hpp"
+#include "call/placed.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/region.hpp"

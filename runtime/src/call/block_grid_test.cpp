@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Tests which shapes can be folded to which.
-#include "call/block_grid.hpp"
+#include "call/box.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -3,6 +3,8 @@
 // Calls for the elements of a box of the domain (CallOptions::box). A kernel runs with its whole domain, and devices write
 // the box alone. A reduction folds views of its inputs instead. If it asks where an element is, these are placed in the
 // whole.
+//
+// Computes how the shape of a reduction's result divides its domain. Pure arithmetic.
 #pragma once
 
 #include <span>
@@ -13,6 +15,7 @@
 #include "sk/call.hpp"
 #include "sk/options.hpp"
 #include "sk/program.hpp"
+#include "sk/shape.hpp"
 
 namespace sk {
 
@@ -47,5 +50,13 @@ struct BoxedArguments {
 /// The arguments for folding the box alone, or all elements. Throws sk::Error if the box is not inside the inputs' common
 /// shape, or if placed arguments do not hold what is folded and gathered.
 BoxedArguments argumentsIn(const program::Kernel& fold, std::span<const Argument> arguments, const Box& box);
+
+/// Returns the grids of blocks, in each dimension of `domain`, for a result of shape `result`: inserts
+/// extents of 1 into `result` in every possible way, up to the rank of `domain`, such that its extents divide
+/// those of `domain` (0 divides 0). Empty if `result` does not fit; several grids if it is ambiguous.
+std::vector<Shape> blockGrids(const Shape& domain, const Shape& result);
+
+/// The grid of a single block that covers the domain.
+Shape oneBlock(Shape domain);
 
 }  // namespace sk

@@ -8,7 +8,7 @@
 
 #include "assemble/append/append_passes.hpp"
 #include "assemble/program/texture_units.hpp"
-#include "call/check_rows.hpp"
+#include "call/check_reduction.hpp"
 #include "call/check_written.hpp"
 #include "call/iterator.hpp"
 #include "call/placed.hpp"

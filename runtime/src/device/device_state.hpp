@@ -143,7 +143,7 @@ class DeviceState {
   /// Null if loops need no more than their calls one after the other.
   virtual std::unique_ptr<LoopRunner> makeLoopRunner() { return nullptr; }
   /// Whether argument `i` of a checked call, a region with strides, needs a temporary stream in its place
-  /// (call/dense_regions.hpp).
+  /// (call/placed.hpp).
   virtual bool needsDense(const program::Kernel& kernel, std::span<const Argument> arguments,
                           std::size_t i) = 0;
   /// Likewise for transfers between a region and host memory.

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "gl/bound_state.hpp"
-#include "gl/framebuffer.hpp"
 #include "gl/texture.hpp"
 
 namespace sk::gl {

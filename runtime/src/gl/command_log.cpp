@@ -8,7 +8,7 @@
 
 #include "gl/bound_state.hpp"
 #include "gl/commands.hpp"
-#include "gl/uniform.hpp"
+#include "gl/program.hpp"
 
 namespace sk::gl {
 

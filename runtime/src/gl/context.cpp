@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-#include "gl/displays.hpp"
+#include "gl/open_context.hpp"
 #include "sk/error.hpp"
 
 namespace sk::gl {

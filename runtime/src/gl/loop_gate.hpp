@@ -15,7 +15,6 @@
 #include "gl/object_name.hpp"
 #include "gl/program.hpp"
 #include "gl/queue_points.hpp"
-#include "gl/uniform.hpp"
 
 namespace sk::gl {
 

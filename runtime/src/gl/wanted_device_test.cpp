@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "gl/displays.hpp"
 #include "gl/format.hpp"
 
 using sk::gl::Capabilities;

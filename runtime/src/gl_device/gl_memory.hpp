@@ -14,7 +14,7 @@
 #include "gl_device/gl_context.hpp"
 #include "gl_device/memory/kept_scratch.hpp"
 #include "gl_device/memory/render_target.hpp"
-#include "gl_device/transfer/transfer_buffers.hpp"
+#include "gl_device/transfer/buffered_transfer.hpp"
 #include "trace/trace.hpp"
 
 namespace sk {

@@ -8,7 +8,7 @@
 #include "assemble/append/append_passes.hpp"
 #include "assemble/glsl/tables.hpp"
 #include "call/check_call.hpp"
-#include "call/precision.hpp"
+#include "call/resolved_call.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/pass/pass_trace.hpp"
 #include "probe/probe.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "assemble/assemble.hpp"
-#include "assemble/elements/storage.hpp"
+#include "assemble/elements/planes.hpp"
 #include "device/stream_state.hpp"
 #include "gl_device/memory/layout.hpp"
 #include "gl_device/memory/render_target.hpp"

@@ -12,7 +12,7 @@
 #include "call/check_written.hpp"
 #include "call/row_pieces.hpp"
 #include "native/check_fold.hpp"
-#include "native/code_frame.hpp"
+#include "native/components.hpp"
 #include "native/fold_program.hpp"
 #include "native/memory.hpp"
 #include "native/piece_folder.hpp"

@@ -11,7 +11,6 @@
 #include "assemble/condition.hpp"
 #include "call/check_call.hpp"
 #include "call/iterator.hpp"
-#include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "device/region.hpp"

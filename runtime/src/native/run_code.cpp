@@ -10,10 +10,9 @@
 
 #include "native/call.hpp"
 #include "native/chunk_runner.hpp"
-#include "native/code_frame.hpp"
+#include "native/components.hpp"
 #include "native/domain_pieces.hpp"
 #include "native/memory.hpp"
-#include "native/record_buffer.hpp"
 #include "native/scalars.hpp"
 #include "native/slot_arrays.hpp"
 #include "native/variable_outputs.hpp"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "native/call.hpp"
-#include "native/code_frame.hpp"
+#include "native/components.hpp"
 #include "native/entries.hpp"
 #include "native/memory.hpp"
 #include "native/scalars.hpp"

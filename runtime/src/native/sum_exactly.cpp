@@ -5,13 +5,12 @@
 #include <utility>
 
 #include "native/chunk_runner.hpp"
-#include "native/code_frame.hpp"
+#include "native/components.hpp"
 #include "native/exact_accumulator.hpp"
 #include "native/fold_pieces.hpp"
 #include "native/fold_state.hpp"
 #include "native/slot_arrays.hpp"
 #include "native/sum_floats.hpp"
-#include "native/wide_accumulator.hpp"
 #include "sk/native/parallel.hpp"
 
 namespace sk {

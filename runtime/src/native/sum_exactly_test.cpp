@@ -10,7 +10,6 @@
 
 #include "native/exact_accumulator.hpp"
 #include "native/object_code_test.hpp"
-#include "native/wide_accumulator.hpp"
 
 namespace sk::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "native/code_frame.hpp"
+#include "native/components.hpp"
 #include "native/float_vectors.hpp"
 #include "native/fold_program.hpp"
 #include "native/scan_blocks.hpp"

@@ -16,7 +16,7 @@
 
 #include "assemble/append/append_groups.hpp"
 #include "assemble/append/append_passes.hpp"
-#include "call/block_grid.hpp"
+#include "call/box.hpp"
 #include "call/resolved_call.hpp"
 #include "device/stream_state.hpp"
 #include "gl_device/gl_device.hpp"

@@ -20,7 +20,7 @@ foreach(options IN ITEMS "" "-ffast-math" "-Ofast")
 endforeach()
 
 # Every source that adds exactly says so.
-foreach(name IN ITEMS native/exact_accumulator native/sum_floats native/wide_accumulator)
+foreach(name IN ITEMS native/exact_accumulator native/sum_floats)
   file(STRINGS "${SOURCE}/${name}.cpp" lines REGEX "support/rounds_as_written.hpp")
   if(NOT lines)
     message(FATAL_ERROR "${name}.cpp does not include support/rounds_as_written.hpp")

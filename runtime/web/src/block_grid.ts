@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Into which blocks a reduction divides its elements: runtime/src/call/block_grid.cpp.
+// Into which blocks a reduction divides its elements: runtime/src/call/box.cpp.
 
 /** The grids of blocks, rows first, that are compatible with the result's shape. */
 export function blockGrids(domain: readonly number[], result: readonly number[]): number[][] {

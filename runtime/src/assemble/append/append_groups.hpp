@@ -28,7 +28,7 @@
 #include <string_view>
 #include <vector>
 
-#include "assemble/append/group_plan.hpp"
+#include "assemble/append/append_passes.hpp"
 #include "assemble/assemble.hpp"
 #include "assemble/elements/domain.hpp"
 #include "assemble/glsl/program_text.hpp"

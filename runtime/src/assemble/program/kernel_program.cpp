@@ -16,7 +16,6 @@
 #include "assemble/elements/domain.hpp"
 #include "assemble/elements/gather.hpp"
 #include "assemble/elements/planes.hpp"
-#include "assemble/elements/storage.hpp"
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "assemble/glsl/program_text.hpp"
 #include "assemble/reduce/group_fold.hpp"

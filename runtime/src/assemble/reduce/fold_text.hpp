@@ -13,7 +13,6 @@
 #include "assemble/assemble.hpp"
 #include "assemble/elements/domain.hpp"
 #include "assemble/elements/planes.hpp"
-#include "assemble/elements/storage.hpp"
 #include "assemble/glsl/program_text.hpp"
 #include "assemble/reduce/reduce_program.hpp"
 #include "sk/program.hpp"

@@ -16,7 +16,7 @@
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/append/scatter_programs.hpp"
 #include "device/unload_watch.hpp"
-#include "gl_device/program/integer_program.hpp"
+#include "gl_device/program/program_binaries.hpp"
 #include "sk/program.hpp"
 
 namespace sk {

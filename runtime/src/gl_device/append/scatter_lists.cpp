@@ -12,7 +12,7 @@
 #include "assemble/reduce/scan_plan.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "gl_device/pass/pass_trace.hpp"
-#include "gl_device/sort/sort_kernels.hpp"
+#include "gl_device/sort/device_sort.hpp"
 #include "gl_device/transfer/copy_regions.hpp"
 #include "sk/types.hpp"
 

@@ -15,7 +15,6 @@
 #include "assemble/region_layout.hpp"
 #include "gl/bound_state.hpp"
 #include "gl/capabilities.hpp"
-#include "gl/framebuffer.hpp"
 #include "gl/texture.hpp"
 
 namespace sk {

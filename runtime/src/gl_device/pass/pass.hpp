@@ -7,9 +7,8 @@
 #include <span>
 
 #include "assemble/region_layout.hpp"
-#include "gl/framebuffer.hpp"
 #include "gl/texture.hpp"
-#include "gl/uniform.hpp"
+#include "gl/program.hpp"
 #include "gl_device/memory/render_target.hpp"
 #include "gl_device/program/variant.hpp"
 #include "sk/program.hpp"

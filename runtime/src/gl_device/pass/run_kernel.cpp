@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "assemble/region_layout.hpp"
-#include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "gl/texture.hpp"
 #include "gl_device/append/append_call.hpp"

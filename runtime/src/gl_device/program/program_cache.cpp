@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "assemble/append/append_passes.hpp"
-#include "assemble/elements/storage.hpp"
+#include "assemble/elements/planes.hpp"
 #include "assemble/glsl/tables.hpp"
 #include "assemble/program/texture_units.hpp"
 #include "assemble/reduce/row_program.hpp"

@@ -21,7 +21,6 @@
 #include "assemble/region_layout.hpp"
 #include "device/unload_watch.hpp"
 #include "gl/program.hpp"
-#include "gl/uniform.hpp"
 #include "gl_device/program/program_binaries.hpp"
 #include "gl_device/program/variant.hpp"
 #include "sk/program.hpp"

@@ -2,6 +2,8 @@
 //
 // Sorts streams by dispatches (assemble/sort/radix_program.hpp): keys become words, which are sorted with the places
 // that they come from; then each plane of a stream is brought into this order.
+//
+// Kernels around a sort of words: from elements to words that compare as the elements do, and back to elements.
 #pragma once
 
 #include <array>
@@ -10,7 +12,8 @@
 
 #include "assemble/sort/radix_program.hpp"
 #include "device/device_state.hpp"
-#include "gl_device/program/integer_program.hpp"
+#include "gl_device/program/program_binaries.hpp"
+#include "sk/program.hpp"
 
 namespace sk {
 
@@ -37,5 +40,32 @@ bool maySortByDispatches(const GlDevice& device, const Reordering& reordering);
 /// exhausted or the driver rejects a program; nothing has moved then. A DeviceScope must be open, and compute programs
 /// selected.
 std::int64_t sortByDispatches(GlDevice& device, const Reordering& reordering);
+
+/// The element of what is sorted: a word, or the pair of a word and the place where it came from.
+const program::Element& sortWords();
+const program::Element& sortWordPairs();
+
+/// Whether keys of this type have two words, a lower and an upper one.
+inline bool hasTwoWords(program::Scalar keys) { return keys == program::Scalar::Double; }
+
+/// (key) -> word, or (key) -> lower word, upper word. Words compare as unsigned numbers. All NaNs have the largest word,
+/// also in descending order, and both zeros the same.
+const program::Kernel& wordKernel(program::Scalar keys, bool isDescending);
+/// (word, words[]), or the same for lower words and then for upper words -> 1 if the element of one dimension is equal to
+/// the one before, else 0. A NaN is equal to nothing.
+const program::Kernel& repeatKernel(program::Scalar keys);
+/// (flag) -> 0 if it is true, or not 0, else 1.
+const program::Kernel& flagKernel(program::Scalar flags);
+/// ((word, place), elements[]) -> the texel of a plane at this place; the elements have one dimension or, by rank 4, any.
+const program::Kernel& moveKernel(const program::Field& field, int rank);
+/// ((word, place), upper words[]) -> the upper word at this place, and the place.
+const program::Kernel& upperWordKernel();
+/// (word) or ((word, place)) -> the int or uint key of a word; ((word, place), keys[]) -> the float key, which is taken from
+/// its place if it is a NaN or a zero, whose words do not say which. The keys have one dimension or, by rank 4, any.
+const program::Kernel& restoreKernel(program::Scalar keys, bool isDescending, bool fromPairs, int rank);
+/// () -> the largest word, or a pair of it, of the element sortWords() or sortWordPairs().
+const program::Kernel& lastWordKernel(const program::Element& words);
+/// ((word, place)) -> the place as an int.
+const program::Kernel& placeKernel();
 
 }  // namespace sk

@@ -15,7 +15,7 @@
 #include "assemble/sort/radix_program.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/memory/layout.hpp"
-#include "gl_device/sort/sort_kernels.hpp"
+#include "gl_device/sort/device_sort.hpp"
 
 namespace sk {
 

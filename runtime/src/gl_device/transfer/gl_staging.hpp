@@ -14,7 +14,7 @@
 #include "gl/buffer.hpp"
 #include "gl/format.hpp"
 #include "gl/queue_points.hpp"
-#include "gl_device/program/integer_program.hpp"
+#include "gl_device/program/program_binaries.hpp"
 
 namespace sk {
 

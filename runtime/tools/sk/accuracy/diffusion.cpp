@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "accuracy/accuracy.sk.hpp"
-#include "accuracy/compare_modes.hpp"
+#include "accuracy/experiment.hpp"
 #include "accuracy/programs.hpp"
 #include "info/numbers.hpp"
 

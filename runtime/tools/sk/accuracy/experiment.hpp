@@ -2,14 +2,22 @@
 //
 // The results of running one program on one set of data in several modes: for each mode, its relative time
 // and its errors. This file only stores results and measures nothing.
+//
+// Runs the modes of a program alternately, A B C A B C ..., so that a busy machine affects all modes equally.
+// Times are wall-clock times around Device::finish(), because GL's own timers are wrong on llvmpipe.
+//
+// Errors of kernels that compute each element independently.
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "sk/device.hpp"
 
 namespace sk_tool {
 
@@ -84,5 +92,33 @@ const Row* cheapestWithin(const Experiment& experiment, double tolerance);
 
 /// Appends one record per row.
 void addRecords(Json& records, const Experiment& experiment);
+
+/// A mode that is ready to run.
+struct Trial {
+  std::function<void()> run;  ///< the timed part
+  std::function<Grade()> grade;  ///< of the results of the first run
+};
+
+struct Mode {
+  std::string name;
+  std::function<Trial()> prepare;  ///< throws sk::Error if the device rejects the mode, as `run` may
+};
+
+/// Returns one row per mode. The first mode is the baseline, which every device supports: its sk::Error is
+/// not caught.
+std::vector<Row> compareModes(sk::Device& device, const std::vector<Mode>& modes, int rounds);
+
+/// A named input stream, for reporting the element with the largest error.
+struct NamedInput {
+  std::string name;
+  const std::vector<float>* values;
+};
+
+/// Computes the largest relative error, the largest and the mean error in ulp, and how many results are
+/// infinite or NaN where the reference is not, or vice versa ("wrong class": these make the relative error
+/// infinite and are in no other figure); also the inputs of the largest error, with their bits. References
+/// below the smallest normal float count as that number in relative errors.
+Grade gradeElements(const std::vector<float>& results, const std::vector<double>& reference,
+                    const std::vector<NamedInput>& inputs);
 
 }  // namespace sk_tool

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "accuracy/compare_modes.hpp"
+#include "accuracy/experiment.hpp"
 #include "accuracy/lookup_tables.sk.hpp"
 #include "accuracy/programs.hpp"
 #include "info/numbers.hpp"

@@ -9,8 +9,7 @@
 #include <fmt/format.h>
 
 #include "accuracy/accuracy.sk.hpp"
-#include "accuracy/compare_modes.hpp"
-#include "accuracy/element_errors.hpp"
+#include "accuracy/experiment.hpp"
 #include "accuracy/programs.hpp"
 #include "info/error_statistics.hpp"
 #include "info/numbers.hpp"

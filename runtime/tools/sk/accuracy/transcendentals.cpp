@@ -7,11 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "accuracy/compare_modes.hpp"
-#include "accuracy/element_errors.hpp"
+#include "accuracy/experiment.hpp"
 #include "accuracy/programs.hpp"
 #include "info/device_info.hpp"
-#include "info/function_numbers.hpp"
 #include "info/functions.sk.hpp"
 #include "info/numbers.hpp"
 #include "sk/error_bounds.hpp"

@@ -10,7 +10,6 @@
 
 #include "info/device_info.hpp"
 #include "info/error_statistics.hpp"
-#include "info/function_numbers.hpp"
 #include "info/functions.sk.hpp"
 #include "info/numbers.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Inputs of probes, which are the same in every process, and streams of them.
+//
+// The functions of functions.def, numbered as in functions.sk.
 #pragma once
 
 #include <cmath>
@@ -46,5 +48,13 @@ sk::Stream<T> streamOf(sk::Device& device, std::vector<T> values) {
   stream.write(values);
   return stream;
 }
+
+enum Function : unsigned {
+#define SK_FUNCTION(name) f_##name,
+#define SK_RANGE(name, spread, low, high)
+#define SK_FUNCTION2(name) f_##name,
+#define SK_RANGE2(name, spread, low, high, spread2, low2, high2)
+#include "info/functions.def"
+};
 
 }  // namespace sk_tool

@@ -17,7 +17,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "accuracy/compare_modes.hpp"
+#include "accuracy/experiment.hpp"
 #include "accuracy/file/call.hpp"
 #include "accuracy/file/errors.hpp"
 #include "accuracy/progress.hpp"

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "info/function_numbers.hpp"
+#include "info/numbers.hpp"
 
 namespace sk_tool {
 
