@@ -22,6 +22,13 @@ namespace sk {
 
 using domain::Depth;
 
+std::uint64_t ObjectNumbers::of(const void* descriptor) {
+  if (unloads_.hasChanged()) numbers_.clear();
+  const auto [known, isNew] = numbers_.try_emplace(descriptor, 0);
+  if (isNew) known->second = program::LinkedFile::objectOf(descriptor);
+  return known->second;
+}
+
 const program::Reduction& Combinations::of(const program::Reduction& reduction, DeviceState& device) {
   if (unloads_.hasChanged()) {
     std::erase_if(made_, [&](const auto& entry) {

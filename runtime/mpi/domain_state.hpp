@@ -9,6 +9,7 @@
 #include <memory>
 #include <numeric>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "agreement.hpp"
@@ -106,9 +107,21 @@ class Combinations {
   UnloadWatch unloads_;
 };
 
+/// The numbers of the objects that have descriptors (program::LinkedFile::objectOf()): with its address, a number tells a descriptor
+/// from one of another file that was loaded in the place of the first.
+class ObjectNumbers {
+ public:
+  std::uint64_t of(const void* descriptor);
+
+ private:
+  std::unordered_map<const void*, std::uint64_t> numbers_;
+  UnloadWatch unloads_;
+};
+
 /// The device of a rank, which domains beside each other share.
 struct RankDevice {
-  Combinations combinations;  ///< outlive the device
+  ObjectNumbers objects = {};
+  Combinations combinations = {};  ///< outlive the device
   Device device;
   bool stagesHalos;  ///< whether the devices of all ranks do; devices of one host may differ
 };

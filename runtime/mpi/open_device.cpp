@@ -63,7 +63,7 @@ void openDevice(std::shared_ptr<RankDevice>& device, Agreement& agreement, const
     Device opened(own);
     const bool canItStage = canStage(opened);
     name = opened.profile() == "native" ? opened.name() : "OpenGL";
-    device = std::make_shared<RankDevice>(RankDevice{{}, std::move(opened), canItStage});
+    device = std::make_shared<RankDevice>(RankDevice{.device = std::move(opened), .stagesHalos = canItStage});
   });
   Hash hash;
   hash.add(name);

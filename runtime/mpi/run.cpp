@@ -117,16 +117,14 @@ namespace mpi {
 
 namespace {
 
-/// Which kernel and which options they are, in this process: as cheap as an
-/// address, but not that of a library that was unloaded.
-std::uint64_t idOf(const Kernel& kernel, const CallOptions& options) {
+/// Which kernel of which loaded file, and which options they are, in this process.
+std::uint64_t idOf(const Kernel& kernel, std::uint64_t object, const CallOptions& options) {
   std::uint64_t id = reinterpret_cast<std::uintptr_t>(&kernel);
   const auto mix = [&](std::uint64_t number) {
     id = (id ^ number) * 0x9e3779b97f4a7c15;
     id ^= id >> 32;
   };
-  mix(reinterpret_cast<std::uintptr_t>(kernel.body.data()));
-  mix(kernel.body.size() << 32 | kernel.declarations.size() << 8 | kernel.parameters.size());
+  mix(object);
   mix(static_cast<std::uint64_t>(options.precision) << 32 |
       static_cast<std::uint64_t>(options.accumulate) << 16 | static_cast<std::uint64_t>(options.scan) << 8 |
       static_cast<std::uint64_t>(options.along.value_or(-1) + 1));
@@ -161,7 +159,9 @@ bool readsNeighbors(const Kernel& kernel) {
 }  // namespace
 
 Call beginCall(DomainState& domain, const Kernel& kernel, const CallOptions& options) {
-  return domain.agreement.begin(kernel.name, idOf(kernel, options), [&] { return hashOf(kernel, options); });
+  const std::uint64_t object = domain.rankDevice->objects.of(&kernel);
+  return domain.agreement.begin(kernel.name, idOf(kernel, object, options),
+                                [&] { return hashOf(kernel, options); });
 }
 
 void addArguments(Call& call, const Kernel& kernel, std::span<const Argument> arguments, const Box& box) {

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "driver/native_library.hpp"
 #include "native/native.hpp"
 #include "sk/call.hpp"
 

@@ -8,6 +8,7 @@
 
 #include <dlfcn.h>
 
+#include "driver/native_library.hpp"
 #include "native/native.hpp"
 #include "program/stub.hpp"
 #include "sk/native/code.hpp"
