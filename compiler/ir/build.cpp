@@ -102,19 +102,27 @@ ExprPtr construct(Type type, std::vector<ExprPtr> args, Loc loc) {
 
 ExprPtr swizzle(ExprPtr base, std::string_view components, Loc loc) {
   constexpr std::string_view names = "xyzwrgbastpq";
-  Swizzle node;
+  std::vector<std::uint8_t> numbers;
   for (char name : components) {
     assert(names.find(name) != std::string_view::npos);
-    node.components.push_back(static_cast<std::uint8_t>(names.find(name) % 4));
+    numbers.push_back(static_cast<std::uint8_t>(names.find(name) % 4));
   }
-  const Type type = Type::of(base->type.scalar, static_cast<int>(node.components.size()));
-  node.base = std::move(base);
-  return makeExpr(type, std::move(node), loc);
+  return swizzle(std::move(base), std::move(numbers), loc);
+}
+
+ExprPtr swizzle(ExprPtr base, std::vector<std::uint8_t> components, Loc loc) {
+  const Type type = Type::of(base->type.scalar, static_cast<int>(components.size()));
+  return makeExpr(type, Swizzle{std::move(base), std::move(components)}, loc);
 }
 
 ExprPtr member(const Module& module, ExprPtr base, std::uint32_t field, Loc loc) {
   const Type type = module.structs[base->type.index].fields[field].type;
   return makeExpr(type, Member{std::move(base), field}, loc);
+}
+
+ExprPtr member(const Module& module, ExprPtr base, const std::vector<std::uint32_t>& path, Loc loc) {
+  for (const std::uint32_t field : path) base = member(module, std::move(base), field, loc);
+  return base;
 }
 
 ExprPtr index(const Module& module, ExprPtr base, ExprPtr index, Loc loc) {

@@ -44,7 +44,11 @@ ExprPtr convert(Scalar scalar, ExprPtr operand, Loc loc = {});
 ExprPtr construct(Type type, std::vector<ExprPtr> args, Loc loc = {});
 /// Components by name: "x", "xyz", "bgr".
 ExprPtr swizzle(ExprPtr base, std::string_view components, Loc loc = {});
+/// These components, in this order.
+ExprPtr swizzle(ExprPtr base, std::vector<std::uint8_t> components, Loc loc = {});
 ExprPtr member(const Module& module, ExprPtr base, std::uint32_t field, Loc loc = {});
+/// The member at the end of a path; the base itself if the path is empty.
+ExprPtr member(const Module& module, ExprPtr base, const std::vector<std::uint32_t>& path, Loc loc = {});
 ExprPtr index(const Module& module, ExprPtr base, ExprPtr index, Loc loc = {});
 ExprPtr call(const Module& module, FunctionId callee, std::vector<ExprPtr> args, Loc loc = {});
 /// The arguments must match one of the row's signatures.

@@ -278,10 +278,33 @@ struct KernelParam {
 /// The type of the elements that the parameter's stream holds.
 inline Type heldType(const KernelParam& param) { return param.held.value_or(param.type); }
 
-/// A sum of floats that a reduce folds: an accumulator, or a member of one.
-struct CompensatedSum {
+/// Components of an accumulator, or of a scalar, vector or matrix member of one.
+struct AccumulatorPart {
   VarId accumulator;
-  std::vector<std::uint32_t> members;  ///< path from the accumulator
+  std::vector<std::uint32_t> members;  ///< path from the accumulator to the member
+  Type type;  ///< of the member
+  unsigned components;  ///< bit i: component i
+
+  bool isWhole() const { return components == (1U << type.width) - 1; }
+  bool isOfMember(const AccumulatorPart& other) const {
+    return accumulator == other.accumulator && members == other.members;
+  }
+  bool overlaps(const AccumulatorPart& other) const {
+    return isOfMember(other) && (components & other.components) != 0;
+  }
+};
+
+/// An operator that folds: that of a compound assignment, && or ||; or Min or Max.
+using FoldOp = std::variant<BinaryOp, Intrinsic>;
+struct FoldTarget : AccumulatorPart {
+  FoldOp op;
+  Loc loc;  ///< of the first statement that folds into the target
+};
+/// How a reduce folds whose body only folds into accumulators by known operators (transforms/fold_pattern.hpp).
+struct FoldPattern {
+  std::vector<FoldTarget> targets;  ///< in statement order; each component is in one target only
+  /// The body is only `accumulator op= its element`, whole or by member, each component at most once.
+  bool isPlain;
 };
 
 /// A variant of a reduce that compensates sums of floats, set by compensate-sums. The reduce `fold` has one
@@ -290,7 +313,7 @@ struct CompensatedSum {
 /// error of each sum, and returns these accumulators with the errors added.
 struct Compensated {
   KernelId fold, finish;
-  std::vector<CompensatedSum> sums;
+  std::vector<AccumulatorPart> sums;
   /// The inputs, if each element only adds one input or the product of two.
   std::vector<VarId> term = {};
   /// Each element only adds an input, an element of a gather, or the product of two such floats: doubles represent it.
@@ -331,6 +354,7 @@ struct Reduction {
   std::optional<KernelId> finish = {};
   /// True if elements may be folded in any order, because a known operator folds every accumulator.
   bool commutative = false;
+  std::optional<FoldPattern> pattern = {};  ///< set by derive-combine, for reduces of the program
 };
 
 /// Kernels that do a part of what a kernel with outputs and accumulators does, for targets that cannot do both in

@@ -256,6 +256,13 @@ void checkReduction(const Module& module, const Kernel& kernel) {
     require(param.role != ParamRole::VariableOutput && param.role != ParamRole::Scatter,
             "a reduce has an append output");
   }
+  if (kernel.reduction->pattern) {
+    for (const FoldTarget& target : kernel.reduction->pattern->targets) {
+      require(target.accumulator < kernel.params.size() &&
+                  kernel.params[target.accumulator].role == ParamRole::Accumulator,
+              "a fold's target is no accumulator");
+    }
+  }
   if (!kernel.reduction->combine) return;
   require(*kernel.reduction->combine < module.kernels.size(), "the combining kernel is not in the table");
   const Kernel& combine = module.kernels[*kernel.reduction->combine];

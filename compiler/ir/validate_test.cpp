@@ -219,6 +219,8 @@ TEST_CASE("kernels and their entries agree") {
   CHECK(contains(change([](Module& m) { m.kernels[0].params[1].identity = literal(0); }), "another type"));
   CHECK(contains(change([](Module& m) { m.kernels[0].reduction.reset(); }), "go together"));
   CHECK(contains(change([](Module& m) { m.kernels[0].entry = 9; }), "not in the table"));
+  const FoldPattern ofElement{{{{0, {}, floatType, 1}, BinaryOp::Add, {}}}, true};
+  CHECK(contains(change([&](Module& m) { m.kernels[0].reduction->pattern = ofElement; }), "no accumulator"));
 }
 
 TEST_CASE("after specialize-gathers, streams are parameters and functions have one owner") {

@@ -350,9 +350,9 @@ class Builder {
     if (!plain.compensated) return nullptr;
     const Kernel& fold = module_.kernels[plain.compensated->fold];
     std::vector<sk::program::CompensatedSum> sums;
-    for (const auto& [accumulator, members] : plain.compensated->sums) {
-      sums.push_back({static_cast<std::uint8_t>(accumulator),
-                      emit::offsetOf(module_, types_, fold.params[accumulator].type, members)});
+    for (const AccumulatorPart& sum : plain.compensated->sums) {
+      sums.push_back({static_cast<std::uint8_t>(sum.accumulator),
+                      emit::offsetOf(module_, types_, fold.params[sum.accumulator].type, sum.members)});
     }
     return &storage_.keep(sk::program::CompensatedReduction{
         reduction(plain.compensated->fold, plain.commutative), kernel(plain.compensated->finish),

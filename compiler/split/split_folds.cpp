@@ -153,6 +153,11 @@ class FoldSplitter {
     std::vector<std::uint32_t> none(module_.kernels[*reduction.combine].params.size());
     Reduction own{reduction.combine, std::move(none), false};
     own.commutative = reduction.commutative;
+    own.pattern = reduction.pattern;
+    for (std::size_t i = 0; own.pattern && i < own.pattern->targets.size(); ++i) {
+      VarId& accumulator = own.pattern->targets[i].accumulator;
+      accumulator = static_cast<VarId>(std::ranges::find(operands, accumulator) - operands.begin());
+    }
     module_.kernels[id].reduction = std::move(own);
     return id;
   }

@@ -81,7 +81,7 @@ bool foldsNonNegatives(const Module& module, const Kernel& kernel, const FoldTar
   bool holds = true;
   walkStmts(module.functions[kernel.entry].body, [&](const Stmt& stmt) {
     const std::optional<FoldTarget> found = foldedBy(kernel, stmt);
-    if (!found || found->accumulator != target.accumulator || found->members != target.members) return;
+    if (!found || !found->isOfMember(target)) return;
     const Expr* value = std::get<Assign>(stmt.node).value.get();
     if (const auto* n = std::get_if<Convert>(&value->node)) value = n->operand.get();
     const auto* max = std::get_if<IntrinsicCall>(&value->node);
@@ -162,10 +162,9 @@ struct IdentityCheck {
 
 }  // namespace
 
-bool checkIdentities(const Module& module, const Kernel& kernel, const FoldPattern& pattern,
-                     Diagnostics& diagnostics) {
+bool checkIdentities(const Module& module, const Kernel& kernel, Diagnostics& diagnostics) {
   bool areIdentities = true;
-  for (const FoldTarget& target : pattern.targets) {
+  for (const FoldTarget& target : kernel.reduction->pattern->targets) {
     const ExprPtr& identity = kernel.params[target.accumulator].identity;
     const std::optional<Numbers> given = identity ? interpretConstant(module, *identity) : std::nullopt;
     if (given && !IdentityCheck{module, kernel, diagnostics}.check(target, *given)) areIdentities = false;

@@ -6,13 +6,11 @@
 
 #include "ir/ir.hpp"
 #include "support/diagnostics.hpp"
-#include "transforms/fold_pattern.hpp"
 
 namespace skc {
 
-/// Checks the identities that the author gives for known operators; returns false after an error.
-bool checkIdentities(const ir::Module& module, const ir::Kernel& kernel, const FoldPattern& pattern,
-                     Diagnostics& diagnostics);
+/// Checks the identities that the author gives for the operators of the reduce's pattern; returns false after an error.
+bool checkIdentities(const ir::Module& module, const ir::Kernel& kernel, Diagnostics& diagnostics);
 
 /// Tries a fold without a known operator that combines its own results on numbers; false after an error. Of one that
 /// combines the results of others (`combinesOthers`), only the identity is tried: its elements are no arbitrary values.

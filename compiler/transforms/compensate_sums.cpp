@@ -31,9 +31,7 @@ ExprPtr inVariable(const Function& function, const Expr& place, VarId var) {
   ExprPtr whole = varRef(function, var);
   const auto* n = std::get_if<Swizzle>(&place.node);
   if (n == nullptr) return whole;
-  std::string components;
-  for (const std::uint8_t component : n->components) components += "xyzw"[component];
-  return swizzle(std::move(whole), components);
+  return swizzle(std::move(whole), n->components);
 }
 
 /// place_lost += sumError(place, value) + productError(value, factor); place = roundedSum(place, value * factor)
@@ -72,8 +70,8 @@ void addRoundingErrors(const Kernel& kernel, Function& entry, Block& block, cons
   for (Stmt& stmt : block) {
     forEachBlock(stmt, [&](Block& inner) { addRoundingErrors(kernel, entry, inner, errors); });
     const std::optional<FoldTarget> target = foldedBy(kernel, stmt);
-    const auto sum =
-        std::ranges::find_if(errors.sums, [&](const FloatSum& one) { return target && one.holds(*target); });
+    const auto sum = std::ranges::find_if(
+        errors.sums, [&](const FloatSum& one) { return target && one.overlaps(*target); });
     if (sum == errors.sums.end()) {
       rewritten.push_back(std::move(stmt));
       continue;
@@ -94,7 +92,7 @@ void addRoundingErrors(const Kernel& kernel, Function& entry, Block& block, cons
 void startFromNegativeZero(ExprPtr& identity, const FloatSum& sum) {
   ExprPtr* slot = &identity;
   for (const std::uint32_t field : sum.members) slot = &std::get<Construct>((*slot)->node).args[field];
-  if (sum.components == (1U << sum.type.width) - 1) {
+  if (sum.isWhole()) {
     *slot = everywhere(sum.type, -0.0F);
     return;
   }
@@ -116,7 +114,7 @@ class CompensatedVariantBuilder {
       compensated.term = onlyTerm(module_, kernel());
       compensated.addsDoubles = addsDoubles(module_, kernel());
     }
-    for (const FloatSum& sum : sums_) compensated.sums.push_back({sum.accumulator, sum.members});
+    compensated.sums = sums_;
     module_.kernels[fold].reduction->commutative = module_.kernels[id_].reduction->commutative;
     module_.kernels[id_].reduction->compensated = std::move(compensated);
   }
@@ -191,17 +189,11 @@ class CompensatedVariantBuilder {
     for (std::size_t k = 0; k < sums_.size(); ++k) {
       const auto i = static_cast<std::size_t>(std::ranges::find(accumulators, sums_[k].accumulator) -
                                               accumulators.begin());
-      body.push_back(assign(
-          partOf(varRef(synthesized.entry, results[i]), sums_[k]),
-          finished(partOf(varRef(synthesized.entry, inputs[i]), sums_[k]), synthesized.entry, errors[k])));
+      body.push_back(assign(member(module_, varRef(synthesized.entry, results[i]), sums_[k].members),
+                            finished(member(module_, varRef(synthesized.entry, inputs[i]), sums_[k].members),
+                                     synthesized.entry, errors[k])));
     }
     return synthesized.finish(module_);
-  }
-
-  ExprPtr partOf(ExprPtr accumulator, const FloatSum& sum) const {
-    for (const std::uint32_t field : sum.members)
-      accumulator = member(module_, std::move(accumulator), field);
-    return accumulator;
   }
 
   /// Adds a sum's error. Keeps the sum if it is not finite, as its error is NaN; keeps -0 if the error is 0.

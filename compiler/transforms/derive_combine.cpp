@@ -27,14 +27,13 @@ namespace {
 
 /// The target's member or components of a variable.
 ExprPtr access(const Module& module, const Function& function, VarId var, const FoldTarget& target) {
-  ExprPtr expr = varRef(function, var, target.loc);
-  for (std::uint32_t field : target.members) expr = member(module, std::move(expr), field, target.loc);
+  ExprPtr expr = member(module, varRef(function, var, target.loc), target.members, target.loc);
   if (target.isWhole()) return expr;
-  std::string components;
-  for (unsigned i = 0; i < target.type.width; ++i) {
-    if ((target.components >> i & 1U) != 0) components += "xyzw"[i];
+  std::vector<std::uint8_t> components;
+  for (std::uint8_t i = 0; i < target.type.width; ++i) {
+    if ((target.components >> i & 1U) != 0) components.push_back(i);
   }
-  return swizzle(std::move(expr), components, target.loc);
+  return swizzle(std::move(expr), std::move(components), target.loc);
 }
 
 /// `total op= partial` for the target's member or components. Both are variables of `function` with the
@@ -72,17 +71,12 @@ ExprPtr everywhere(Type type, const Expr& component) {
   return construct(type, std::move(rows));
 }
 
-/// The path to a member of an accumulator.
-struct MemberPath {
-  VarId accumulator;
-  std::vector<std::uint32_t> members;
-};
-
 /// The identity of a scalar, vector or matrix member; null if one of its components is not folded.
-ExprPtr leafIdentity(const FoldPattern& pattern, const MemberPath& path, Type type) {
+ExprPtr leafIdentity(const FoldPattern& pattern, const AccumulatorPart& leaf) {
+  const Type type = leaf.type;
   std::vector<ExprPtr> components(type.width);
   for (const FoldTarget& target : pattern.targets) {
-    if (target.accumulator != path.accumulator || target.members != path.members) continue;
+    if (!target.isOfMember(leaf)) continue;
     const ExprPtr one = neutralOf(target.op, type.scalar);
     if (target.isWhole()) return everywhere(type, *one);
     for (unsigned i = 0; i < type.width; ++i) {
@@ -95,15 +89,17 @@ ExprPtr leafIdentity(const FoldPattern& pattern, const MemberPath& path, Type ty
   return construct(type, std::move(components));
 }
 
-ExprPtr identityOf(const Module& module, const FoldPattern& pattern, MemberPath path, Type type) {
-  if (type.isArithmetic() || type.isMatrix()) return leafIdentity(pattern, path, type);
+ExprPtr identityOf(const Module& module, const FoldPattern& pattern, AccumulatorPart part) {
+  const Type type = part.type;
+  if (type.isArithmetic() || type.isMatrix()) return leafIdentity(pattern, part);
   if (type.kind != Type::Kind::Struct) return nullptr;
   std::vector<ExprPtr> fields;
-  path.members.push_back(0);
+  part.members.push_back(0);
   for (const StructField& field : module.structs[type.index].fields) {
-    fields.push_back(identityOf(module, pattern, path, field.type));
+    part.type = field.type;
+    fields.push_back(identityOf(module, pattern, part));
     if (!fields.back()) return nullptr;
-    ++path.members.back();
+    ++part.members.back();
   }
   return construct(type, std::move(fields));
 }
@@ -148,12 +144,12 @@ class CombineDeriver {
   void derive(KernelId id) {
     Kernel& kernel = module_.kernels[id];
     const std::optional<FoldPattern> pattern = recogniseFold(kernel, module_.functions[kernel.entry]);
-    if (pattern && !kernel.reduction->combine && !checkAssociative(kernel, *pattern)) return;
-    const bool isGiven = anyAccumulator(kernel, [](const KernelParam& param) { return !!param.identity; });
-    if (pattern && !kernel.reduction->combine && !checkIdentities(module_, kernel, *pattern, diagnostics_))
-      return;
-    if (pattern) addIdentities(kernel, *pattern);
+    kernel.reduction->pattern = pattern;
     const bool isDerived = pattern && !kernel.reduction->combine;
+    if (isDerived && !checkAssociative(kernel, *pattern)) return;
+    const bool isGiven = anyAccumulator(kernel, [](const KernelParam& param) { return !!param.identity; });
+    if (isDerived && !checkIdentities(module_, kernel, diagnostics_)) return;
+    if (pattern) addIdentities(kernel, *pattern);
     if (kernel.reduction->combine) {
       if (!checkOverload(kernel)) return;
       needInputs(module_.kernels[*kernel.reduction->combine]);
@@ -165,8 +161,9 @@ class CombineDeriver {
       if (!pattern) unknown_.push_back(id);
     } else if (pattern) {
       const KernelId combine = makeCombination(module_, id, *pattern);
-      std::vector<std::uint32_t> operands(module_.kernels[combine].params.size());
-      module_.kernels[id].reduction = Reduction{combine, std::move(operands), false};
+      Reduction& reduction = *module_.kernels[id].reduction;
+      reduction.combine = combine;
+      reduction.operands.assign(module_.kernels[combine].params.size(), 0);
     } else {
       return needCombine(kernel);
     }
@@ -206,7 +203,7 @@ class CombineDeriver {
     for (VarId i = 0; i < kernel.params.size(); ++i) {
       KernelParam& param = kernel.params[i];
       if (param.role != ParamRole::Accumulator || param.identity) continue;
-      param.identity = identityOf(module_, pattern, {i, {}}, param.type);
+      param.identity = identityOf(module_, pattern, {i, {}, param.type, 0});
     }
   }
 

@@ -84,6 +84,27 @@ TEST_CASE("x itself: the entry combines, and without an identity the fold starts
   CHECK_FALSE(given.seeded);
 }
 
+TEST_CASE("a reduce keeps its pattern, and none if it folds in another way") {
+  const auto patternOf = [](ExprPtr (*value)(KernelBuilder&)) {
+    const Module module = derived([&](Module& m) {
+      KernelBuilder k(m, "f");
+      k.input("x", floatType);
+      k.accumulator("total", floatType);
+      k.finish(block(assign(k.ref(total), value(k))));
+    });
+    return module.kernels[0].reduction->pattern;
+  };
+  const auto product = patternOf([](KernelBuilder& k) { return binary(Mul, k.ref(x), k.ref(total)); });
+  REQUIRE(product);
+  CHECK(product->isPlain);
+  REQUIRE(product->targets.size() == 1);
+  CHECK(product->targets[0].op == FoldOp(Mul));
+  CHECK(product->targets[0].isWhole());
+  CHECK_FALSE(patternOf([](KernelBuilder& k) {
+    return select(binary(BinaryOp::Less, k.ref(x), k.ref(total)), k.ref(x), k.ref(total));
+  }));
+}
+
 TEST_CASE("the other ways to write it") {
   const Body bodies[] = {[](Module&, KernelBuilder& k) {
                            return block(assign(k.ref(total), binary(Mul, k.ref(total), k.ref(x))));

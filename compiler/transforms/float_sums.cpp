@@ -75,11 +75,11 @@ class Uses {
 
   void add(const FoldTarget& target) {
     for (FloatSum& sum : added_) {
-      if (sum.accumulator != target.accumulator || sum.members != target.members) continue;
+      if (!sum.isOfMember(target)) continue;
       sum.components |= target.components;
       return;
     }
-    added_.push_back({target.accumulator, target.members, target.type, target.components});
+    added_.push_back(target);
   }
 
   /// True for `place += part`, where `part` is the same member of the corresponding input.
@@ -98,11 +98,6 @@ class Uses {
 };
 
 }  // namespace
-
-bool FloatSum::holds(const FoldTarget& target) const {
-  return accumulator == target.accumulator && members == target.members &&
-         (components & target.components) != 0;
-}
 
 VarId sameAccumulator(const Kernel& of, VarId accumulator, const Kernel& in) {
   auto before = std::ranges::count(of.params.begin(), of.params.begin() + accumulator, ParamRole::Accumulator,
@@ -320,7 +315,8 @@ namespace {
 /// The component of the added values that goes to the sum; nullopt if none does.
 std::optional<unsigned> componentIn(const Kernel& reduce, const Stmt& stmt, const ScalarSum& sum) {
   const std::optional<FoldTarget> target = foldedBy(reduce, stmt);
-  const bool isOfSum = target && sum.whole.holds(*target) && (target->components >> sum.component & 1U) != 0;
+  const bool isOfSum =
+      target && sum.whole.overlaps(*target) && (target->components >> sum.component & 1U) != 0;
   if (!isOfSum) return std::nullopt;
   const auto* swizzled = std::get_if<Swizzle>(&std::get<Assign>(stmt.node).place->node);
   if (swizzled == nullptr) return sum.component;

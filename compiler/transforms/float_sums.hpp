@@ -13,16 +13,8 @@
 
 namespace skc {
 
-/// A float or a vector of floats.
-struct FloatSum {
-  ir::VarId accumulator;
-  std::vector<std::uint32_t> members;  ///< path from the accumulator
-  ir::Type type;
-  unsigned components;  ///< bit i: component i is a sum; other components are not folded by +
-
-  /// True if a target of a fold consists of components of this sum.
-  bool holds(const FoldTarget& target) const;
-};
+/// A float or a vector of floats, of which these components are sums; no other is folded by +.
+using FloatSum = ir::AccumulatorPart;
 
 /// The sums of a reduce, in the order of its parameters and their members. Outside of loop heads, the
 /// reduce's statements only add values to them that depend on no accumulator, and the combining reduce only

@@ -63,7 +63,7 @@ std::optional<FoldOp> selfFold(const Expr& value, const StaticLValue& lvalue) {
 bool add(std::vector<FoldTarget>& targets, FoldTarget target) {
   FoldTarget* same = nullptr;
   for (FoldTarget& other : targets) {
-    if (other.accumulator != target.accumulator || other.members != target.members) continue;
+    if (!other.isOfMember(target)) continue;
     if (other.op == target.op) {
       same = &other;
     } else if ((other.components & target.components) != 0) {
@@ -93,7 +93,7 @@ class Recogniser {
     if (!op) return std::nullopt;
     if (lvalue->type.isMatrix() && op != FoldOp(BinaryOp::Add)) return std::nullopt;
     if (reads(*n->value) != (n->op ? 0 : 1)) return std::nullopt;
-    return FoldTarget{lvalue->root, lvalue->members, lvalue->type, lvalue->mask(), *op, stmt.loc};
+    return FoldTarget{{lvalue->root, lvalue->members, lvalue->type, lvalue->mask()}, *op, stmt.loc};
   }
 
   std::optional<FoldPattern> run(const Block& body) const {
@@ -134,9 +134,7 @@ class Recogniser {
       const FoldTarget& a = targets[i];
       for (std::size_t j = 0; j < i; ++j) {
         const FoldTarget& b = targets[j];
-        if (a.op != b.op) continue;
-        if (a.accumulator != b.accumulator || a.members != b.members || (a.components & b.components) == 0)
-          continue;
+        if (a.op != b.op || !a.overlaps(b)) continue;
         if (a.loc.token != b.loc.token || a.loc.line != b.loc.line) return Overlap::Repeated;
         overlap = Overlap::InLoop;
       }

@@ -9,42 +9,21 @@
 
 #include <cstdint>
 #include <optional>
-#include <variant>
 #include <vector>
 
 #include "ir/ir.hpp"
 
 namespace skc {
 
-/// An operator of a compound assignment, && or ||; or Min or Max.
-using FoldOp = std::variant<ir::BinaryOp, ir::Intrinsic>;
-
-/// Components of an accumulator, or of a scalar, vector or matrix member, and the operator that folds them.
-struct FoldTarget {
-  ir::VarId accumulator;
-  std::vector<std::uint32_t> members;  ///< path from the accumulator to the member
-  ir::Type type;  ///< type of the member
-  unsigned components;  ///< bit i: component i
-  FoldOp op;
-  Loc loc;  ///< of the first statement that folds into the target
-  bool isWhole() const { return components == (1U << type.width) - 1; }
-};
-
-struct FoldPattern {
-  std::vector<FoldTarget> targets;  ///< in statement order; each component is in one target only
-  bool
-      isPlain;  ///< the body is only `accumulator op= its element`, whole or by member, each component at most once
-};
-
-/// The pattern of a reduce with this entry function.
-std::optional<FoldPattern> recogniseFold(const ir::Kernel& kernel, const ir::Function& entry);
+/// The pattern of a reduce with this entry function. Once derive-combine has run, Reduction::pattern holds it.
+std::optional<ir::FoldPattern> recogniseFold(const ir::Kernel& kernel, const ir::Function& entry);
 
 /// True if the body only folds the element itself, but into some component more than once by one operator, as in
 /// `t += x; t += x;`.
 bool foldsElementTwice(const ir::Kernel& kernel, const ir::Function& entry);
 
 /// The target that a statement of a reduce folds into, if the statement uses accumulators in no other way.
-std::optional<FoldTarget> foldedBy(const ir::Kernel& kernel, const ir::Stmt& stmt);
+std::optional<ir::FoldTarget> foldedBy(const ir::Kernel& kernel, const ir::Stmt& stmt);
 
 /// A value that a statement folding by + adds: f or g of `place += f`, `place = place + f - g`.
 struct Summand {
@@ -62,11 +41,11 @@ ir::VarId elementOf(const ir::Kernel& kernel, ir::VarId accumulator);
 // The identities of the operators that reduces fold by.
 
 /// The identity of an associative operator of a FoldPattern, for a component type.
-ir::ExprPtr neutralOf(FoldOp op, ir::Scalar scalar);
+ir::ExprPtr neutralOf(ir::FoldOp op, ir::Scalar scalar);
 
 /// True if folding a value twice equals folding it once, as for min: a given initial value then bounds the
 /// result, but the result is always the same.
-bool isIdempotent(FoldOp op);
+bool isIdempotent(ir::FoldOp op);
 
 /// True if every accumulator of a reduce has an identity.
 bool hasIdentities(const ir::Kernel& kernel);

@@ -444,8 +444,7 @@ class ExactSummation {
 
   /// The scalar's component of an accumulator's value.
   ExprPtr scalarOf(ExprPtr value, const ScalarSum& sum) const {
-    for (const std::uint32_t field : sum.whole.members) value = member(module_, std::move(value), field);
-    return componentOf(*value, sum.component);
+    return componentOf(*member(module_, std::move(value), sum.whole.members), sum.component);
   }
 
   Module& module_;
@@ -456,7 +455,7 @@ class ExactSummation {
 bool areAll(const std::vector<ScalarSum>& sums, const FoldPattern& pattern) {
   return std::ranges::all_of(pattern.targets, [&](const FoldTarget& target) {
     if (target.op != FoldOp(BinaryOp::Add) || target.type.scalar != Scalar::Float) return true;
-    return std::ranges::any_of(sums, [&](const ScalarSum& sum) { return sum.whole.holds(target); });
+    return std::ranges::any_of(sums, [&](const ScalarSum& sum) { return sum.whole.overlaps(target); });
   });
 }
 
@@ -479,14 +478,12 @@ void sumExactly(Module& module, Diagnostics&) {
   ExactSummation state(module);
   forEachDeclaredKernel(module, [&](KernelId id) {
     const Kernel& kernel = module.kernels[id];
-    if (!kernel.reduction || kernel.isSynthesized) return;
-    // otherwise other statements use the accumulators, which the variant with digits does not have
-    const std::optional<FoldPattern> pattern = recogniseFold(kernel, module.functions[kernel.entry]);
-    if (!pattern) return;
+    // without a pattern, other statements use the accumulators, which the variant with digits does not have
+    if (!kernel.reduction || !kernel.reduction->pattern || kernel.isSynthesized) return;
     const std::vector<ScalarSum> sums = scalarSums(module, id);
     const bool haveRoom =
         std::ranges::all_of(sums, [&](const ScalarSum& sum) { return state.hasRoom(id, sum); });
-    if (!haveRoom || !areAll(sums, *pattern)) return;
+    if (!haveRoom || !areAll(sums, *kernel.reduction->pattern)) return;
     for (const ScalarSum& sum : sums) state.sum(id, sum);
   });
 }

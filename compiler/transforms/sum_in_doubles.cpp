@@ -68,7 +68,7 @@ class DoubleSummation {
       forEachBlock(stmt, [&](Block& inner) { addInDoubles(kernel, entry, inner, sums); });
       const std::optional<FoldTarget> target = foldedBy(kernel, stmt);
       const auto sum =
-          std::ranges::find_if(sums, [&](const FloatSum& one) { return target && one.holds(*target); });
+          std::ranges::find_if(sums, [&](const FloatSum& one) { return target && one.overlaps(*target); });
       if (sum == sums.end()) {
         rewritten.push_back(std::move(stmt));
         continue;
@@ -92,9 +92,7 @@ class DoubleSummation {
     ExprPtr whole = varRef(entry, rootOf(place), place.loc);
     const auto* n = std::get_if<Swizzle>(&place.node);
     if (n == nullptr) return whole;
-    std::string components;
-    for (const std::uint8_t component : n->components) components += "xyzw"[component];
-    return swizzle(std::move(whole), components, place.loc);
+    return swizzle(std::move(whole), n->components, place.loc);
   }
 
   /// The combining reduce adds partial results, which are doubles, too.
@@ -151,11 +149,11 @@ class DoubleSummation {
 
 /// True if a variable is an accumulator as a whole, all of whose components are sums, and nothing else uses it.
 bool isWhole(const Module& module, const Kernel& kernel, const FloatSum& sum) {
-  if (!sum.members.empty() || sum.components != (1U << sum.type.width) - 1) return false;
+  if (!sum.members.empty() || !sum.isWhole()) return false;
   bool isOnlySummed = true;
   walkStmts(module.functions[kernel.entry].body, [&](const Stmt& stmt) {
     const std::optional<FoldTarget> target = foldedBy(kernel, stmt);
-    if (target && sum.holds(*target)) return;
+    if (target && sum.overlaps(*target)) return;
     forEachOperand(stmt, [&](const ExprPtr& operand) {
       walkExprs(*operand, [&](const Expr& expr) {
         const auto* n = std::get_if<VarRef>(&expr.node);
@@ -172,7 +170,7 @@ void sumInDoubles(Module& module, Diagnostics&) {
   forEachDeclaredKernel(module, [&](KernelId id) {
     const Kernel& kernel = module.kernels[id];
     if (!kernel.parts || !kernel.reduction->compensated || kernel.isSynthesized) return;
-    std::vector<FloatSum> sums = floatSums(module, id);
+    std::vector<FloatSum> sums = kernel.reduction->compensated->sums;
     const Kernel& combine = module.kernels[*kernel.reduction->combine];
     const bool areWhole = std::ranges::all_of(sums, [&](const FloatSum& sum) {
       FloatSum combined = sum;
