@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "ir/operators.hpp"
@@ -259,6 +260,11 @@ Stmt scatter(StreamRef stream, ScatterOp op, ExprPtr index, ExprPtr value, Loc l
   return {loc, Scatter{stream, op, std::move(index), std::move(value)}};
 }
 
+void prepend(Block& block, Block statements) {
+  std::ranges::move(block, std::back_inserter(statements));
+  block = std::move(statements);
+}
+
 Stmt clone(const Stmt& stmt) { return {stmt.loc, cloneNode(stmt.node)}; }
 
 Block clone(const Block& block) {
@@ -403,6 +409,13 @@ Module clone(const Module& module) {
   for (const Function& function : module.functions) copy.functions.push_back(ir::clone(function));
   for (const Kernel& kernel : module.kernels) copy.kernels.push_back(clone(kernel));
   return copy;
+}
+
+bool holds(const Module& module, Type type, Scalar scalar) {
+  if (type.kind == Type::Kind::Array) return holds(module, module.arrays[type.index].element, scalar);
+  if (type.kind != Type::Kind::Struct) return type.isArithmetic() && type.scalar == scalar;
+  return std::ranges::any_of(module.structs[type.index].fields,
+                             [&](const StructField& field) { return holds(module, field.type, scalar); });
 }
 
 std::uint64_t scalarCount(const Module& module, Type type) {

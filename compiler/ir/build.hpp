@@ -109,6 +109,9 @@ Block block(S... items) {
   return list;
 }
 
+/// Inserts statements at the beginning of a block.
+void prepend(Block& block, Block statements);
+
 Stmt clone(const Stmt& stmt);
 Block clone(const Block& block);
 
@@ -119,6 +122,8 @@ VarId addVariable(Function& function, std::string name, Type type, VarRole role 
                   Loc loc = {});
 /// The array type with this element and length; adds it to the module if it is not there yet.
 Type arrayOf(Module& module, Type element, std::uint32_t length);
+/// True if the type is or contains such a scalar, or a vector of them. Matrices do not count.
+bool holds(const Module& module, Type type, Scalar scalar);
 /// The number of scalars that a value of the type holds: nested arrays multiply.
 std::uint64_t scalarCount(const Module& module, Type type);
 /// The number of scalars before a field of a struct.

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "ir/build.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::ir {
@@ -86,13 +87,7 @@ std::vector<FunctionId> tabulatedFunctionsOf(const Module& module, const Kernel&
   return found;
 }
 
-bool holdsDouble(const Module& module, Type type) {
-  if (type.kind == Type::Kind::Array) return holdsDouble(module, module.arrays[type.index].element);
-  if (type.kind != Type::Kind::Struct) return type.isDouble();
-  const std::vector<StructField>& fields = module.structs[type.index].fields;
-  return std::ranges::any_of(fields,
-                             [&](const StructField& field) { return holdsDouble(module, field.type); });
-}
+bool holdsDouble(const Module& module, Type type) { return holds(module, type, Scalar::Double); }
 
 bool usesDoubles(const Module& module, const Kernel& kernel) {
   for (const FunctionId id : functionsOf(module, kernel)) {

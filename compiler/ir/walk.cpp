@@ -66,6 +66,29 @@ void forEachBlock(S& stmt, Visit<S, Block> fn) {
       [](const Push&) {}, [](const Scatter&) {});
 }
 
+namespace {
+
+template <MaybeConst<Expr> E>
+Like<E, StreamRef>* streamIn(E& expr) {
+  if (auto* n = std::get_if<GatherRead>(&expr.node)) return &n->stream;
+  if (auto* n = std::get_if<NeighborRead>(&expr.node)) return &n->stream;
+  if (auto* n = std::get_if<Sample>(&expr.node)) return &n->stream;
+  if (auto* n = std::get_if<IndexOf>(&expr.node)) return &n->stream;
+  if (auto* n = std::get_if<ExtentOf>(&expr.node)) return &n->stream;
+  return nullptr;
+}
+
+}  // namespace
+
+StreamRef* streamOf(Expr& expr) { return streamIn(expr); }
+const StreamRef* streamOf(const Expr& expr) { return streamIn(expr); }
+
+StreamRef* streamOf(Stmt& stmt) {
+  if (auto* n = std::get_if<Push>(&stmt.node)) return &n->stream;
+  if (auto* n = std::get_if<Scatter>(&stmt.node)) return &n->stream;
+  return nullptr;
+}
+
 // clang-format on
 
 template <MaybeConst<Block> B>

@@ -23,6 +23,11 @@ using Visit = std::type_identity_t<FunctionRef<void(Like<Root, Node>&)>>;
 template <class Root, class T>
 concept MaybeConst = std::is_same_v<std::remove_const_t<Root>, T>;
 
+/// The stream that an expression reads or queries, or that a statement writes; null if there is none.
+StreamRef* streamOf(Expr& expr);
+const StreamRef* streamOf(const Expr& expr);
+StreamRef* streamOf(Stmt& stmt);
+
 /// fn(slot) for every direct operand of an expression, in order; a slot is an ExprPtr.
 template <MaybeConst<Expr> E>
 void forEachOperand(E& expr, Visit<E, ExprPtr> fn);

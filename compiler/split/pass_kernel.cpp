@@ -163,20 +163,14 @@ class PassKernelBuilder {
   /// Redirects the streams of a block to the pass's parameters, and its calls to copies of the functions.
   void bind(Block& block) {
     walkExprs(block, [&](Expr& expr) {
-      if (auto* n = std::get_if<GatherRead>(&expr.node)) bind(n->stream);
-      if (auto* n = std::get_if<NeighborRead>(&expr.node)) bind(n->stream);
-      if (auto* n = std::get_if<Sample>(&expr.node)) bind(n->stream);
-      if (auto* n = std::get_if<IndexOf>(&expr.node)) bind(n->stream);
-      if (auto* n = std::get_if<ExtentOf>(&expr.node)) bind(n->stream);
+      StreamRef* stream = streamOf(expr);
+      if (stream != nullptr && stream->space == StreamRef::Space::KernelParameter)
+        stream->id = newParams_[stream->id];
       if (auto* n = std::get_if<Call>(&expr.node)) n->callee = copyOf(n->callee);
     });
     walkStmts(block, [&](Stmt& stmt) {
       if (auto* n = std::get_if<CallStmt>(&stmt.node)) n->callee = copyOf(n->callee);
     });
-  }
-
-  void bind(StreamRef& stream) const {
-    if (stream.space == StreamRef::Space::KernelParameter) stream.id = newParams_[stream.id];
   }
 
   FunctionId copyOf(FunctionId id) {

@@ -215,18 +215,6 @@ Block Slicer::copy(const Slice& slice) const { return copyKept(function_.body, s
 
 namespace {
 
-/// The kernel parameter whose stream an expression reads or queries.
-std::optional<std::uint32_t> streamOf(const Expr& expr) {
-  std::optional<StreamRef> stream;
-  if (const auto* n = std::get_if<GatherRead>(&expr.node)) stream = n->stream;
-  if (const auto* n = std::get_if<NeighborRead>(&expr.node)) stream = n->stream;
-  if (const auto* n = std::get_if<Sample>(&expr.node)) stream = n->stream;
-  if (const auto* n = std::get_if<IndexOf>(&expr.node)) stream = n->stream;
-  if (const auto* n = std::get_if<ExtentOf>(&expr.node)) stream = n->stream;
-  if (!stream || stream->space != StreamRef::Space::KernelParameter) return std::nullopt;
-  return stream->id;
-}
-
 void unite(VarSet& set, const VarSet& other) {
   for (std::size_t i = 0; i < set.size(); ++i) set[i] = set[i] || other[i];
 }
@@ -258,7 +246,8 @@ void Demand::collect(const Stmt& stmt, VarSet& params) const {
 void Demand::collect(const Expr& expr, VarSet& params) const {
   walkExprs(expr, [&](const Expr& inner) {
     if (const auto* n = std::get_if<Call>(&inner.node)) unite(params, functions_.at(n->callee));
-    if (const std::optional<std::uint32_t> param = streamOf(inner)) params[*param] = true;
+    const StreamRef* stream = streamOf(inner);
+    if (stream != nullptr && stream->space == StreamRef::Space::KernelParameter) params[stream->id] = true;
   });
 }
 

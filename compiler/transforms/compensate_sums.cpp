@@ -2,14 +2,11 @@
 #include "transforms/passes.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "ir/build.hpp"
-#include "ir/walk.hpp"
 #include "ir/walk_module.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/float_sums.hpp"
@@ -24,14 +21,6 @@ using namespace ir;
 
 ExprPtr everywhere(Type type, float value) {
   return type.isScalar() ? literal(value) : construct(type, exprs(literal(value)));
-}
-
-/// The components that `place` selects, taken from `var`.
-ExprPtr inVariable(const Function& function, const Expr& place, VarId var) {
-  ExprPtr whole = varRef(function, var);
-  const auto* n = std::get_if<Swizzle>(&place.node);
-  if (n == nullptr) return whole;
-  return swizzle(std::move(whole), n->components);
 }
 
 /// place_lost += sumError(place, value) + productError(value, factor); place = roundedSum(place, value * factor)
@@ -52,40 +41,9 @@ void addTerm(Block& body, Function& function, const Expr& place, VarId errorTota
   }
   ExprPtr sumError = intrinsic(Intrinsic::SumError, exprs(clone(place), clone(value)));
   if (error) sumError = binary(BinaryOp::Add, std::move(sumError), std::move(error));
-  body.push_back(assign(inVariable(function, place, errorTotal), BinaryOp::Add, std::move(sumError)));
+  body.push_back(assign(sameComponents(function, place, errorTotal), BinaryOp::Add, std::move(sumError)));
   body.push_back(
       assign(clone(place), intrinsic(Intrinsic::RoundedSum, exprs(clone(place), std::move(value)))));
-}
-
-/// The accumulators that hold the rounding errors of a reduce's sums, one per sum; a combining reduce also
-/// has inputs with the errors of its parts.
-struct RoundingErrors {
-  std::vector<FloatSum> sums;
-  std::vector<VarId> totals, parts;
-};
-
-/// Adds statements that sum the rounding errors of additions.
-void addRoundingErrors(const Kernel& kernel, Function& entry, Block& block, const RoundingErrors& errors) {
-  Block rewritten;
-  for (Stmt& stmt : block) {
-    forEachBlock(stmt, [&](Block& inner) { addRoundingErrors(kernel, entry, inner, errors); });
-    const std::optional<FoldTarget> target = foldedBy(kernel, stmt);
-    const auto sum = std::ranges::find_if(
-        errors.sums, [&](const FloatSum& one) { return target && one.overlaps(*target); });
-    if (sum == errors.sums.end()) {
-      rewritten.push_back(std::move(stmt));
-      continue;
-    }
-    const auto& fold = std::get<Assign>(stmt.node);
-    const auto k = static_cast<std::size_t>(sum - errors.sums.begin());
-    if (!errors.parts.empty()) {
-      rewritten.push_back(assign(inVariable(entry, *fold.place, errors.totals[k]), BinaryOp::Add,
-                                 inVariable(entry, *fold.place, errors.parts[k])));
-    }
-    for (Term& term : termsOf(fold))
-      addTerm(rewritten, entry, *fold.place, errors.totals[k], std::move(term));
-  }
-  block = std::move(rewritten);
 }
 
 /// Replaces a sum's components of a synthesized identity, which constructs structs member by member, by -0.
@@ -101,21 +59,20 @@ void startFromNegativeZero(ExprPtr& identity, const FloatSum& sum) {
   }
 }
 
-class CompensatedVariantBuilder {
+/// Holds a sum in its own accumulator and one for the rounding errors.
+class CompensatedVariant : SumRepresentation {
  public:
-  CompensatedVariantBuilder(Module& module, KernelId id, std::vector<FloatSum> sums)
-      : module_(module), id_(id), sums_(std::move(sums)) {}
+  CompensatedVariant(Module& module, KernelId id, std::vector<FloatSum> sums)
+      : module_(module), id_(id), sums_(std::move(sums)), totals_(sums_.size()), parts_(sums_.size()) {}
 
   void make() {
-    const KernelId fold = makeFold(makeCombination());
+    const KernelId fold = makeSumVariant(module_, id_, sums_, "_compensated", *this);
     const KernelId finish = makeFinish();
-    Compensated compensated{fold, finish, {}, {}};
+    Compensated compensated{fold, finish, sums_};
     if (kernel().reduction->commutative && !foldsBesideOutputs(kernel())) {
       compensated.term = onlyTerm(module_, kernel());
       compensated.addsDoubles = addsDoubles(module_, kernel());
     }
-    compensated.sums = sums_;
-    module_.kernels[fold].reduction->commutative = module_.kernels[id_].reduction->commutative;
     module_.kernels[id_].reduction->compensated = std::move(compensated);
   }
 
@@ -135,63 +92,48 @@ class CompensatedVariantBuilder {
     return name + "_lost";
   }
 
-  KernelId makeFold(KernelId combine) {
-    FoldCopy copy(module_, id_, "_compensated");
-    RoundingErrors errors{sums_, {}, {}};
-    for (const FloatSum& sum : sums_) {
-      // if the plain variant starts with its first element, this one starts with -0 + element
-      if (kernel().reduction->seeded) startFromNegativeZero(copy.param(sum.accumulator).identity, sum);
-      errors.totals.push_back(copy.addAccumulator(errorName(sum), sum.type, everywhere(sum.type, 0.0F)));
-    }
-    addRoundingErrors(kernel(), copy.entry(), copy.entry().body, errors);
-    return copy.finish(combine);
+  void hold(FoldCopy& copy, const FloatSum& sum, std::size_t k, bool ofParts) override {
+    const std::string name = errorName(sums_[k]);
+    if (ofParts) parts_[k] = copy.add(name + "_part", ParamRole::Input, sum.type);
+    // if the plain variant starts with its first element, this one starts with -0 + element
+    if (!ofParts && kernel().reduction->seeded)
+      startFromNegativeZero(copy.param(sum.accumulator).identity, sum);
+    totals_[k] = copy.add(name, ParamRole::Accumulator, sum.type, everywhere(sum.type, 0.0F));
   }
 
-  /// Extends the plain variant's combining reduce, which adds the errors of its parts as well.
-  KernelId makeCombination() {
-    const KernelId plain = *kernel().reduction->combine;
-    FoldCopy copy(module_, plain, plain == id_ ? "_combine" : "_compensated");
-    RoundingErrors errors;
-    for (const FloatSum& sum : sums_) {
-      errors.sums.push_back(sum);
-      errors.sums.back().accumulator = sameAccumulator(kernel(), sum.accumulator, module_.kernels[plain]);
-      errors.parts.push_back(copy.addInput(errorName(sum) + "_part", sum.type));
-      errors.totals.push_back(copy.addAccumulator(errorName(sum), sum.type));
+  void add(Function& entry, const Stmt& fold, std::size_t k, bool ofParts, Block& to) override {
+    const auto& n = std::get<Assign>(fold.node);
+    if (ofParts) {
+      to.push_back(assign(sameComponents(entry, *n.place, totals_[k]), BinaryOp::Add,
+                          sameComponents(entry, *n.place, parts_[k])));
     }
-    addRoundingErrors(module_.kernels[plain], copy.entry(), copy.entry().body, errors);
-    return copy.finishCombination();
+    for (Term& term : termsOf(n)) addTerm(to, entry, *n.place, totals_[k], std::move(term));
   }
 
   KernelId makeFinish() {
     SynthesizedKernel synthesized(kernel(), "_finish");
-    std::vector<VarId> accumulators;  // of the plain variant, each once
+    Function& entry = synthesized.entry;
+    std::vector<VarId> accumulators;  // each once
     for (const FloatSum& sum : sums_) {
-      if (accumulators.empty() || accumulators.back() != sum.accumulator) {
+      if (accumulators.empty() || accumulators.back() != sum.accumulator)
         accumulators.push_back(sum.accumulator);
-      }
     }
-    const auto add = [&](VarId accumulator, std::string_view prefix, ParamRole role) {
-      const KernelParam& param = kernel().params[accumulator];
-      return synthesized.add(makeParam(std::string(prefix) + param.name, role, param.type, param.loc));
-    };
-    std::vector<VarId> inputs, errors, results;
-    for (const VarId i : accumulators) inputs.push_back(add(i, "", ParamRole::Input));
-    for (const FloatSum& sum : sums_) {
+    const std::vector<VarId> inputs = synthesized.addEach(kernel(), accumulators, ParamRole::Input, "", "");
+    std::vector<VarId> errors;
+    for (const FloatSum& sum : sums_)
       errors.push_back(synthesized.add(makeParam(errorName(sum), ParamRole::Input, sum.type, kernel().loc)));
-    }
-    for (const VarId i : accumulators) results.push_back(add(i, "r_", ParamRole::Output));
-    Block& body = synthesized.entry.body;
+    const std::vector<VarId> results =
+        synthesized.addEach(kernel(), accumulators, ParamRole::Output, "r_", "");
     for (std::size_t i = 0; i < accumulators.size(); ++i) {
-      const bool hasMembers = synthesized.kernel.params[inputs[i]].type.kind == Type::Kind::Struct;
-      if (hasMembers)
-        body.push_back(assign(varRef(synthesized.entry, results[i]), varRef(synthesized.entry, inputs[i])));
+      if (kernel().params[accumulators[i]].type.kind == Type::Kind::Struct)
+        entry.body.push_back(assign(varRef(entry, results[i]), varRef(entry, inputs[i])));
     }
     for (std::size_t k = 0; k < sums_.size(); ++k) {
-      const auto i = static_cast<std::size_t>(std::ranges::find(accumulators, sums_[k].accumulator) -
-                                              accumulators.begin());
-      body.push_back(assign(member(module_, varRef(synthesized.entry, results[i]), sums_[k].members),
-                            finished(member(module_, varRef(synthesized.entry, inputs[i]), sums_[k].members),
-                                     synthesized.entry, errors[k])));
+      const auto sumIn = [&](const std::vector<VarId>& variables) {
+        const auto i = std::ranges::find(accumulators, sums_[k].accumulator) - accumulators.begin();
+        return member(module_, varRef(entry, variables[i]), sums_[k].members);
+      };
+      entry.body.push_back(assign(sumIn(results), finished(sumIn(inputs), entry, errors[k])));
     }
     return synthesized.finish(module_);
   }
@@ -208,11 +150,8 @@ class CompensatedVariantBuilder {
   Module& module_;
   KernelId id_;
   std::vector<FloatSum> sums_;
+  std::vector<VarId> totals_, parts_;  ///< of the rounding errors of each sum, in the copy being built
 };
-
-}  // namespace
-
-namespace {
 
 /// True if the kernels of the variant can be described: each sum adds an accumulator to the fold, and two parameters to
 /// the kernel that combines results.
@@ -241,7 +180,7 @@ void compensateSums(Module& module, Diagnostics& diagnostics) {
       diagnostics.report(Diag::SumsNotCompensated, kernel.loc, {kernel.name, std::to_string(sums.size())});
       return;
     }
-    CompensatedVariantBuilder(module, id, std::move(sums)).make();
+    CompensatedVariant(module, id, std::move(sums)).make();
   });
 }
 

@@ -111,22 +111,12 @@ KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern
   const Kernel& kernel = module.kernels[id];
   SynthesizedKernel synthesized(kernel, "_combine");
   synthesized.kernel.name = synthesized.entry.name;
-  std::vector<VarId> accumulators;
-  for (VarId i = 0; i < kernel.params.size(); ++i) {
-    if (kernel.params[i].role == ParamRole::Accumulator) accumulators.push_back(i);
-  }
-  for (const ParamRole role : {ParamRole::Input, ParamRole::Accumulator}) {
-    for (const VarId i : accumulators) {
-      const KernelParam& param = kernel.params[i];
-      synthesized.add(
-          makeParam(param.name + (role == ParamRole::Input ? "_part" : ""), role, param.type, param.loc));
-    }
-  }
+  const std::vector<VarId> accumulators = paramsOf(kernel, ParamRole::Accumulator);
+  const std::vector<VarId> parts = synthesized.addEach(kernel, accumulators, ParamRole::Input, "", "_part");
+  const std::vector<VarId> totals = synthesized.addEach(kernel, accumulators, ParamRole::Accumulator, "", "");
   for (const FoldTarget& target : pattern.targets) {
-    const auto found = std::find(accumulators.begin(), accumulators.end(), target.accumulator);
-    const auto partial = static_cast<VarId>(found - accumulators.begin());
-    const auto total = static_cast<VarId>(accumulators.size()) + partial;
-    synthesized.entry.body.push_back(combineTarget(module, synthesized.entry, target, partial, total));
+    const auto i = std::ranges::find(accumulators, target.accumulator) - accumulators.begin();
+    synthesized.entry.body.push_back(combineTarget(module, synthesized.entry, target, parts[i], totals[i]));
   }
   return synthesized.finishCombination(module);
 }
@@ -219,7 +209,7 @@ class CombineDeriver {
   bool combineByFoldAlone(KernelId id, bool seeded) {
     if (!checkIndex(module_.kernels[id], id)) return false;
     FoldCopy copy(module_, id, "_combine");
-    copy.dropOutputs();
+    copy.drop({ParamRole::Output});
     const KernelId alone = copy.finishFold(seeded);
     if (!checkOwnCombination(module_, alone, false, diagnostics_)) return false;
     Kernel& kernel = module_.kernels[id];

@@ -18,10 +18,6 @@ using namespace ir;
 
 namespace {
 
-bool isAccumulator(const Kernel& kernel, VarId var) {
-  return var < kernel.params.size() && kernel.params[var].role == ParamRole::Accumulator;
-}
-
 /// True if a sum and an lvalue share components, such as a struct and its member.
 bool overlap(const FloatSum& sum, const StaticLValue& lvalue) {
   if (sum.accumulator != lvalue.root) return false;
@@ -53,7 +49,7 @@ class Uses {
     for (const Stmt& stmt : block) {
       const std::optional<FoldTarget> target = isHead ? std::nullopt : foldedBy(kernel_, stmt);
       if (target && target->op == FoldOp(BinaryOp::Add) && target->type.isFloat() &&
-          (!ofParts_ || addsItsPart(std::get<Assign>(stmt.node)))) {
+          (!ofParts_ || foldsItsElement(kernel_, stmt))) {
         add(*target);
       } else {
         forEachOperand(stmt, [&](const ExprPtr& operand) { take(*operand); });
@@ -82,15 +78,6 @@ class Uses {
     added_.push_back(target);
   }
 
-  /// True for `place += part`, where `part` is the same member of the corresponding input.
-  bool addsItsPart(const Assign& fold) const {
-    const std::vector<Summand> summands = summandsOf(fold);
-    if (summands.size() != 1 || summands[0].isNegative) return false;
-    StaticLValue part = *staticLValue(*fold.place);
-    part.root = elementOf(kernel_, part.root);
-    return staticLValue(*summands[0].value) == part;
-  }
-
   const Kernel& kernel_;
   const bool ofParts_;
   std::vector<FloatSum> added_;
@@ -99,21 +86,13 @@ class Uses {
 
 }  // namespace
 
-VarId sameAccumulator(const Kernel& of, VarId accumulator, const Kernel& in) {
-  auto before = std::ranges::count(of.params.begin(), of.params.begin() + accumulator, ParamRole::Accumulator,
-                                   &KernelParam::role);
-  VarId same = 0;
-  while (in.params[same].role != ParamRole::Accumulator || before-- > 0) ++same;
-  return same;
-}
-
 std::vector<FloatSum> floatSums(const Module& module, KernelId id) {
   const Kernel& kernel = module.kernels[id];
   const Kernel& combine = module.kernels[*kernel.reduction->combine];
   std::vector<FloatSum> sums = Uses(kernel, module.functions[kernel.entry], false).sums();
   const std::vector<FloatSum> combined = Uses(combine, module.functions[combine.entry], true).sums();
   std::erase_if(sums, [&](const FloatSum& sum) {
-    const VarId accumulator = sameAccumulator(kernel, sum.accumulator, combine);
+    const VarId accumulator = counterpartOf(kernel, sum.accumulator, combine, ParamRole::Accumulator);
     return std::ranges::none_of(combined, [&](const FloatSum& other) {
       return other.accumulator == accumulator && other.members == sum.members &&
              (other.components & sum.components) == sum.components;
@@ -181,20 +160,17 @@ std::optional<Term> product(const Expr& value) {
   return std::nullopt;
 }
 
-const IntrinsicCall* dotProduct(const Expr& value) {
+/// A call of the intrinsic on floats, or null.
+const IntrinsicCall* callOf(Intrinsic intrinsic, const Expr& value) {
   const auto* n = std::get_if<IntrinsicCall>(&value.node);
-  return n != nullptr && n->intrinsic == Intrinsic::Dot && n->args[0]->type.isFloat() ? n : nullptr;
-}
-
-const IntrinsicCall* fusedProduct(const Expr& value) {
-  const auto* n = std::get_if<IntrinsicCall>(&value.node);
-  return n != nullptr && n->intrinsic == Intrinsic::Fma && n->args[0]->type.isFloat() ? n : nullptr;
+  return n != nullptr && n->intrinsic == intrinsic && n->args[0]->type.isFloat() ? n : nullptr;
 }
 
 bool hasProduct(const Expr& value) {
   if (const Binary* n = sumOrDifference(value)) return hasProduct(*n->lhs) || hasProduct(*n->rhs);
   if (const Unary* n = negation(value)) return hasProduct(*n->operand);
-  return product(value) || dotProduct(value) != nullptr || fusedProduct(value) != nullptr;
+  return product(value) || callOf(Intrinsic::Dot, value) != nullptr ||
+         callOf(Intrinsic::Fma, value) != nullptr;
 }
 
 void addTerms(const Expr& value, bool isNegative, std::vector<Term>& terms) {
@@ -209,10 +185,10 @@ void addTerms(const Expr& value, bool isNegative, std::vector<Term>& terms) {
     addTerms(*negated->operand, !isNegative, terms);
   } else if (std::optional<Term> factors = product(value)) {
     add(std::move(factors->value), std::move(factors->factor));
-  } else if (const IntrinsicCall* fused = fusedProduct(value)) {
+  } else if (const IntrinsicCall* fused = callOf(Intrinsic::Fma, value)) {
     add(clone(fused->args[0]), clone(fused->args[1]));
     addTerms(*fused->args[2], isNegative, terms);
-  } else if (const IntrinsicCall* dot = dotProduct(value)) {
+  } else if (const IntrinsicCall* dot = callOf(Intrinsic::Dot, value)) {
     for (unsigned i = 0; i < dot->args[0]->type.width; ++i) {
       add(componentOf(*dot->args[0], i), componentOf(*dot->args[1], i));
     }
@@ -298,6 +274,11 @@ bool addsDoubles(const Module& module, const Kernel& reduce) {
 
 ExprPtr ofType(Type type, ExprPtr value) {
   return value->type == type ? std::move(value) : construct(type, exprs(std::move(value)));
+}
+
+ExprPtr sameComponents(const Function& function, const Expr& place, VarId var, Loc loc) {
+  const auto* n = std::get_if<Swizzle>(&place.node);
+  return n == nullptr ? varRef(function, var, loc) : swizzle(varRef(function, var, loc), n->components, loc);
 }
 
 ExprPtr componentOf(const Expr& value, unsigned component) {

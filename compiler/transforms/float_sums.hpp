@@ -21,9 +21,6 @@ using FloatSum = ir::AccumulatorPart;
 /// adds the corresponding inputs.
 std::vector<FloatSum> floatSums(const ir::Module& module, ir::KernelId id);
 
-/// Maps an accumulator of one reduce to the accumulator of another with the same number.
-ir::VarId sameAccumulator(const ir::Kernel& of, ir::VarId accumulator, const ir::Kernel& in);
-
 // Splits what a float sum adds into terms: `total += a * b - c` adds the product of a and b, and -c.
 // Compensated and exact sums need this, since they also keep the rounding errors of the products.
 
@@ -49,6 +46,9 @@ bool addsDoubles(const ir::Module& module, const ir::Kernel& reduce);
 
 /// The value itself, or a scalar as a vector of this type, as when a scalar is added to a vector.
 ir::ExprPtr ofType(ir::Type type, ir::ExprPtr value);
+
+/// What a place, which is a sum or components of one, selects of a variable of the sum's type.
+ir::ExprPtr sameComponents(const ir::Function& function, const ir::Expr& place, ir::VarId var, Loc loc = {});
 
 /// Component `component` of a vector; a scalar itself.
 ir::ExprPtr componentOf(const ir::Expr& value, unsigned component);

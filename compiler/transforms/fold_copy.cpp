@@ -2,12 +2,12 @@
 #include "transforms/fold_copy.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
+#include "transforms/fold_pattern.hpp"
 #include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
@@ -18,27 +18,6 @@ namespace {
 
 constexpr std::uint32_t gone = std::numeric_limits<std::uint32_t>::max();
 
-KernelParam copyOf(const KernelParam& param) {
-  KernelParam copy = makeParam(param.name, param.role, param.type, param.loc);
-  copy.rank = param.rank;
-  copy.boundary = param.boundary;
-  copy.border = clone(param.border);
-  copy.filter = param.filter;
-  copy.identity = clone(param.identity);
-  copy.neededIf = clone(param.neededIf);
-  return copy;
-}
-
-/// The stream that an expression reads or queries, or null.
-StreamRef* streamOf(Expr& expr) {
-  if (auto* n = std::get_if<GatherRead>(&expr.node)) return &n->stream;
-  if (auto* n = std::get_if<NeighborRead>(&expr.node)) return &n->stream;
-  if (auto* n = std::get_if<Sample>(&expr.node)) return &n->stream;
-  if (auto* n = std::get_if<IndexOf>(&expr.node)) return &n->stream;
-  if (auto* n = std::get_if<ExtentOf>(&expr.node)) return &n->stream;
-  return nullptr;
-}
-
 }  // namespace
 
 FoldCopy::FoldCopy(Module& module, KernelId of, std::string_view suffix)
@@ -46,41 +25,24 @@ FoldCopy::FoldCopy(Module& module, KernelId of, std::string_view suffix)
   const Kernel& original = module.kernels[of];
   kernel_ = synthesizedFor(original);
   operands_ = original.reduction->operands;
-  for (const KernelParam& param : original.params) kernel_.params.push_back(copyOf(param));
+  for (const KernelParam& param : original.params) kernel_.params.push_back(clone(param));
   kernel_.entry = copyFunction(module, original.entry, copies_);
   entry_ = std::move(module.functions[kernel_.entry]);
   entry_.name += suffix;
   module.functions[kernel_.entry].body.clear();
 }
 
-VarId FoldCopy::add(KernelParam param) {
+VarId FoldCopy::add(std::string name, ParamRole role, Type type, ExprPtr identity) {
+  KernelParam param = makeParam(std::move(name), role, type, kernel_.loc);
+  param.identity = std::move(identity);
   added_.push_back(addVariable(entry_, param.name, param.type));
   kernel_.params.push_back(std::move(param));
   return added_.back();
 }
 
-VarId FoldCopy::addInput(std::string name, Type type) {
-  return add(makeParam(std::move(name), ParamRole::Input, type, kernel_.loc));
-}
-
-VarId FoldCopy::addOutput(std::string name, Type type) {
-  return add(makeParam(std::move(name), ParamRole::Output, type, kernel_.loc));
-}
-
-VarId FoldCopy::addAccumulator(std::string name, Type type, ExprPtr identity) {
-  KernelParam param = makeParam(std::move(name), ParamRole::Accumulator, type, kernel_.loc);
-  param.identity = std::move(identity);
-  return add(std::move(param));
-}
-
-void FoldCopy::dropAccumulators() { isDropped_ = true; }
-
-void FoldCopy::dropOutputs() { dropsOutputs_ = true; }
-
 /// Whether an original parameter stays one.
 bool FoldCopy::keeps(VarId param) const {
-  const ParamRole role = kernel_.params[param].role;
-  return !(isDropped_ && role == ParamRole::Accumulator) && !(dropsOutputs_ && role == ParamRole::Output);
+  return std::ranges::find(dropped_, kernel_.params[param].role) == dropped_.end();
 }
 
 /// Moves parameters to the front of the variables, and renumbers the streams by parameter.
@@ -93,13 +55,12 @@ void FoldCopy::renumber() {
   const std::size_t parameters = order.size();
   Block declared;
   for (VarId i = 0; i < before_; ++i) {
-    if (!dropsOutputs_ || kernel_.params[i].role != ParamRole::Output) continue;
+    if (keeps(i) || kernel_.params[i].role != ParamRole::Output) continue;
     order.push_back(i);
     entry_.variables[i].role = VarRole::Local;
     declared.push_back(declare(i));
   }
-  entry_.body.insert(entry_.body.begin(), std::make_move_iterator(declared.begin()),
-                     std::make_move_iterator(declared.end()));
+  prepend(entry_.body, std::move(declared));
   for (VarId i = static_cast<VarId>(before_); i < entry_.variables.size(); ++i) {
     if (std::ranges::find(added_, i) == added_.end()) order.push_back(i);
   }
@@ -173,6 +134,44 @@ KernelId FoldCopy::finishFold(bool seeded) {
 KernelId FoldCopy::finishNativeKernel() {
   kernel_.isNativeOnly = true;
   return addToModule();
+}
+
+void rewriteFolds(const Kernel& kernel, Block& block, RewriteFold rewrite) {
+  Block rewritten;
+  for (Stmt& stmt : block) {
+    forEachBlock(stmt, [&](Block& inner) { rewriteFolds(kernel, inner, rewrite); });
+    const std::optional<FoldTarget> target = foldedBy(kernel, stmt);
+    if (!target || !rewrite(stmt, *target, rewritten)) rewritten.push_back(std::move(stmt));
+  }
+  block = std::move(rewritten);
+}
+
+KernelId makeSumVariant(Module& module, KernelId of, const std::vector<FloatSum>& sums,
+                        std::string_view suffix, SumRepresentation& representation) {
+  const auto copyOf = [&](KernelId plain, std::string_view name, bool ofParts) {
+    FoldCopy copy(module, plain, name);
+    std::vector<FloatSum> held = sums;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      held[k].accumulator = counterpartOf(module.kernels[of], held[k].accumulator, module.kernels[plain],
+                                          ParamRole::Accumulator);
+      representation.hold(copy, held[k], k, ofParts);
+    }
+    rewriteFolds(module.kernels[plain], copy.entry().body,
+                 [&](const Stmt& fold, const FoldTarget& target, Block& to) {
+                   const auto sum =
+                       std::ranges::find_if(held, [&](const FloatSum& one) { return one.overlaps(target); });
+                   if (sum == held.end()) return false;
+                   const auto k = static_cast<std::size_t>(sum - held.begin());
+                   representation.add(copy.entry(), fold, k, ofParts, to);
+                   return true;
+                 });
+    return copy;
+  };
+  const KernelId plain = *module.kernels[of].reduction->combine;
+  const KernelId combine = copyOf(plain, plain == of ? "_combine" : suffix, true).finishCombination();
+  const KernelId fold = copyOf(of, suffix, false).finish(combine);
+  module.kernels[fold].reduction->commutative = module.kernels[of].reduction->commutative;
+  return fold;
 }
 
 }  // namespace skc

@@ -120,6 +120,23 @@ class Recogniser {
            std::ranges::all_of(body, [&](const Stmt& stmt) { return isPlain(stmt); });
   }
 
+  bool isPlain(const Stmt& stmt) const {
+    const auto* n = std::get_if<Assign>(&stmt.node);
+    if (n == nullptr) return false;
+    const std::optional<StaticLValue> lvalue = lvalueOf(*n->place);
+    if (!lvalue) return false;
+    StaticLValue element = *lvalue;
+    element.root = counterpartOf(kernel_, lvalue->root, kernel_, ParamRole::Input);
+    if (n->op) return isSame(*n->value, element);
+    const auto areBoth = [&](const Expr& a, const Expr& b) {
+      return (isSame(a, *lvalue) && isSame(b, element)) || (isSame(a, element) && isSame(b, *lvalue));
+    };
+    const Expr& value = withoutArithmeticConversion(*n->value);
+    if (const auto* b = std::get_if<Binary>(&value.node)) return areBoth(*b->lhs, *b->rhs);
+    const auto* c = std::get_if<IntrinsicCall>(&value.node);
+    return c != nullptr && areBoth(*c->args[0], *c->args[1]);
+  }
+
   enum class Overlap : std::uint8_t { None, InLoop, Repeated };
 
   /// Whether plain statements fold into the same component by the same operator. An unrolled loop repeats one statement of
@@ -143,16 +160,12 @@ class Recogniser {
   }
 
  private:
-  bool isAccumulator(VarId var) const {
-    return var < kernel_.params.size() && kernel_.params[var].role == ParamRole::Accumulator;
-  }
-
   /// The number of times that an expression uses an accumulator.
   int reads(const Expr& expr) const {
     int count = 0;
     walkExprs(expr, [&](const Expr& inner) {
       const auto* n = std::get_if<VarRef>(&inner.node);
-      if (n != nullptr && isAccumulator(n->var)) ++count;
+      if (n != nullptr && isAccumulator(kernel_, n->var)) ++count;
     });
     return count;
   }
@@ -160,25 +173,7 @@ class Recogniser {
   /// The lvalue if it is part of an accumulator; nullopt for other expressions.
   std::optional<StaticLValue> lvalueOf(const Expr& expr) const {
     std::optional<StaticLValue> lvalue = staticLValue(expr);
-    return lvalue && isAccumulator(lvalue->root) ? lvalue : std::nullopt;
-  }
-
-  /// True for `place op= its element`, in any form, with the same member of the element.
-  bool isPlain(const Stmt& stmt) const {
-    const auto* n = std::get_if<Assign>(&stmt.node);
-    if (n == nullptr) return false;
-    const std::optional<StaticLValue> lvalue = lvalueOf(*n->place);
-    if (!lvalue) return false;
-    StaticLValue element = *lvalue;
-    element.root = elementOf(kernel_, lvalue->root);
-    if (n->op) return isSame(*n->value, element);
-    const auto areBoth = [&](const Expr& a, const Expr& b) {
-      return (isSame(a, *lvalue) && isSame(b, element)) || (isSame(a, element) && isSame(b, *lvalue));
-    };
-    const Expr& value = withoutArithmeticConversion(*n->value);
-    if (const auto* b = std::get_if<Binary>(&value.node)) return areBoth(*b->lhs, *b->rhs);
-    const auto* c = std::get_if<IntrinsicCall>(&value.node);
-    return c != nullptr && areBoth(*c->args[0], *c->args[1]);
+    return lvalue && isAccumulator(kernel_, lvalue->root) ? lvalue : std::nullopt;
   }
 
   const Kernel& kernel_;
@@ -199,6 +194,8 @@ std::optional<FoldTarget> foldedBy(const Kernel& kernel, const Stmt& stmt) {
   return Recogniser(kernel).foldOf(stmt);
 }
 
+bool foldsItsElement(const Kernel& kernel, const Stmt& stmt) { return Recogniser(kernel).isPlain(stmt); }
+
 std::vector<Summand> summandsOf(const Assign& fold) {
   std::vector<Summand> all;
   if (fold.op) {
@@ -209,12 +206,16 @@ std::vector<Summand> summandsOf(const Assign& fold) {
   return all;
 }
 
-VarId elementOf(const Kernel& kernel, VarId accumulator) {
-  auto before = std::ranges::count(kernel.params.begin(), kernel.params.begin() + accumulator,
-                                   ParamRole::Accumulator, &KernelParam::role);
-  VarId element = 0;
-  while (kernel.params[element].role != ParamRole::Input || before-- > 0) ++element;
-  return element;
+bool isAccumulator(const Kernel& kernel, VarId var) {
+  return var < kernel.params.size() && kernel.params[var].role == ParamRole::Accumulator;
+}
+
+VarId counterpartOf(const Kernel& of, VarId accumulator, const Kernel& in, ParamRole role) {
+  auto before = std::ranges::count(of.params.begin(), of.params.begin() + accumulator, ParamRole::Accumulator,
+                                   &KernelParam::role);
+  VarId same = 0;
+  while (in.params[same].role != role || before-- > 0) ++same;
+  return same;
 }
 
 bool foldsAccumulators(const Kernel& kernel) {

@@ -25,6 +25,9 @@ bool foldsElementTwice(const ir::Kernel& kernel, const ir::Function& entry);
 /// The target that a statement of a reduce folds into, if the statement uses accumulators in no other way.
 std::optional<ir::FoldTarget> foldedBy(const ir::Kernel& kernel, const ir::Stmt& stmt);
 
+/// True for `place op= its element`, in any form, with the same member of the element.
+bool foldsItsElement(const ir::Kernel& kernel, const ir::Stmt& stmt);
+
 /// A value that a statement folding by + adds: f or g of `place += f`, `place = place + f - g`.
 struct Summand {
   const ir::Expr* value;
@@ -32,11 +35,16 @@ struct Summand {
 };
 std::vector<Summand> summandsOf(const ir::Assign& fold);
 
+/// True if a variable of the kernel's entry is an accumulator.
+bool isAccumulator(const ir::Kernel& kernel, ir::VarId var);
+
 /// True if inputs and accumulators have the same types in order, so that each accumulator has an element.
 bool foldsAccumulators(const ir::Kernel& kernel);
 
-/// The input of such a reduce that corresponds to an accumulator.
-ir::VarId elementOf(const ir::Kernel& kernel, ir::VarId accumulator);
+/// The parameter of `in` of this role with the number that the accumulator has among the accumulators of `of`: of a reduce that
+/// combines results, the partial result that corresponds to an accumulator, say.
+ir::VarId counterpartOf(const ir::Kernel& of, ir::VarId accumulator, const ir::Kernel& in,
+                        ir::ParamRole role);
 
 // The identities of the operators that reduces fold by.
 

@@ -69,14 +69,11 @@ class Inliner {
   }
 
  private:
-  bool isAccumulator(VarId var) const {
-    return var < kernel_.params.size() && kernel_.params[var].role == ParamRole::Accumulator;
-  }
   bool namesAccumulator(const Expr& expr) const {
     bool names = false;
     walkExprs(expr, [&](const Expr& inner) {
       const auto* n = std::get_if<VarRef>(&inner.node);
-      names = names || (n != nullptr && isAccumulator(n->var));
+      names = names || (n != nullptr && isAccumulator(kernel_, n->var));
     });
     return names;
   }
@@ -127,7 +124,7 @@ class Inliner {
     const auto* result = end != nullptr && end->value ? std::get_if<VarRef>(&end->value->node) : nullptr;
     if (result == nullptr || result->var >= callee.parameterCount) return std::nullopt;
     const std::optional<StaticLValue> lvalue = staticLValue(*assign.place);
-    if (!lvalue || !isAccumulator(lvalue->root) || staticLValue(*call.args[result->var]) != lvalue)
+    if (!lvalue || !isAccumulator(kernel_, lvalue->root) || staticLValue(*call.args[result->var]) != lvalue)
       return std::nullopt;
     return body(call.callee, call.args, result->var, nullptr, loc);
   }
@@ -197,7 +194,7 @@ class Inliner {
   /// `e = e + f(x, e)` and similar, where f is a single expression.
   std::optional<Block> valueOfCall(const Stmt& stmt, const Assign& assignment) {
     const std::optional<StaticLValue> lvalue = staticLValue(*assignment.place);
-    if (!lvalue || !isAccumulator(lvalue->root)) return std::nullopt;
+    if (!lvalue || !isAccumulator(kernel_, lvalue->root)) return std::nullopt;
     Block before;
     bool isDone = false;
     ExprPtr value = clone(*assignment.value);

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "transforms/passes.hpp"
 
-#include <algorithm>
 #include <bit>
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -43,21 +41,11 @@ bool isReadOfStream(const Expr& expr) {
          std::holds_alternative<Sample>(expr.node);
 }
 
-bool holdsFloat(const Module& module, Type type) {
-  if (type.kind == Type::Kind::Array) return holdsFloat(module, module.arrays[type.index].element);
-  if (type.kind != Type::Kind::Struct) return type.isFloat();
-  return std::ranges::any_of(module.structs[type.index].fields,
-                             [&](const StructField& field) { return holdsFloat(module, field.type); });
-}
-
-/// From constants to those with the same value, computed in halves.
-using HalfConstants = std::map<ConstantId, ConstantId>;
-
 /// Rewrites one function of a half variant.
 class Rounder {
  public:
   /// `kernel`: the kernel if this is its entry, whose arguments are rounded when read; else null.
-  Rounder(Module& module, const Kernel* kernel, HalfConstants& constants)
+  Rounder(Module& module, const Kernel* kernel, ConstantCopies& constants)
       : module_(module), kernel_(kernel), constants_(constants) {}
 
   void run(FunctionId id) {
@@ -66,47 +54,28 @@ class Rounder {
 
  private:
   void statement(Stmt& stmt) {
-    match(
-        stmt.node,
-        [&](Declare& n) {
-          if (n.init) value(n.init);
-        },
-        [&](Assign& n) {
-          place(*n.place);
-          value(n.value);
-          if (n.op && n.place->type.isFloat()) {
-            n.value = rounded(binary(*n.op, clone(n.place), std::move(n.value), stmt.loc));
-            n.op.reset();
-          }
-        },
-        [&](CallStmt& n) {
-          const Function& callee = module_.functions[n.callee];
-          for (std::size_t i = 0; i < n.args.size(); ++i) {
-            callee.variables[i].role == VarRole::InOut ? place(*n.args[i]) : value(n.args[i]);
-          }
-          if (n.result) place(*n.result);
-        },
-        [&](If& n) { value(n.cond); },
-        [&](Loop& n) {
-          if (n.cond) value(n.cond);
-        },
-        [&](Switch& n) { value(n.value); }, [](Break&) {}, [](Continue&) {},
-        [&](Return& n) {
-          if (n.value) value(n.value);
-        },
-        [](Scope&) {}, [&](Push& n) { value(n.value); }, [&](Scatter& n) { value(n.index), value(n.value); });
+    forEachOperand(stmt, [&](ExprPtr& slot) { isPlace(stmt, slot) ? place(*slot) : value(slot); });
+    auto* n = std::get_if<Assign>(&stmt.node);
+    if (n == nullptr || !n->op || !n->place->type.isFloat()) return;
+    n->value = rounded(binary(*n->op, clone(n->place), std::move(n->value), stmt.loc));
+    n->op.reset();
+  }
+
+  /// True if an operand of the statement is an lvalue that it writes.
+  bool isPlace(const Stmt& stmt, const ExprPtr& operand) const {
+    if (const auto* n = std::get_if<Assign>(&stmt.node)) return &operand == &n->place;
+    const auto* n = std::get_if<CallStmt>(&stmt.node);
+    if (n == nullptr || &operand == &n->result) return n != nullptr;
+    const Function& callee = module_.functions[n->callee];
+    return callee.variables[&operand - n->args.data()].role == VarRole::InOut;
   }
 
   /// An lvalue itself is not rounded; its indices are expressions.
   void place(Expr& expr) {
-    if (auto* n = std::get_if<Index>(&expr.node)) {
-      value(n->index);
-      place(*n->base);
-    } else if (auto* m = std::get_if<Member>(&expr.node)) {
-      place(*m->base);
-    } else if (auto* s = std::get_if<Swizzle>(&expr.node)) {
-      place(*s->base);
-    }
+    const auto* index = std::get_if<Index>(&expr.node);
+    forEachOperand(expr, [&](ExprPtr& operand) {
+      index != nullptr && &operand == &index->index ? value(operand) : place(*operand);
+    });
   }
 
   void value(ExprPtr& slot) {
@@ -125,19 +94,14 @@ class Rounder {
   }
 
   ConstantId halfOf(ConstantId id) {
-    if (!holdsFloat(module_, module_.constants[id].type)) return id;
-    if (const auto known = constants_.find(id); known != constants_.end()) return known->second;
-    ExprPtr rounded = clone(module_.constants[id].value);
-    Rounder(module_, nullptr, constants_).value(rounded);
-    rewriteExprs(rounded, [&](ExprPtr& slot) {  // drivers want constants of literals
-      const auto bits =
-          slot->type.isFloat() ? evaluateInFloat(module_, *slot, Constants::Keep) : std::nullopt;
-      if (bits) slot = makeExpr(slot->type, Literal{*bits}, slot->loc);
+    return copyConstant(module_, id, constants_, "_half", [&](Constant& half) {
+      Rounder(module_, nullptr, constants_).value(half.value);
+      rewriteExprs(half.value, [&](ExprPtr& slot) {  // drivers want constants of literals
+        const auto bits =
+            slot->type.isFloat() ? evaluateInFloat(module_, *slot, Constants::Keep) : std::nullopt;
+        if (bits) slot = makeExpr(slot->type, Literal{*bits}, slot->loc);
+      });
     });
-    const Constant& plain = module_.constants[id];
-    Constant half{plain.name + "_half", plain.type, std::move(rounded), plain.loc};
-    module_.constants.push_back(std::move(half));
-    return constants_[id] = static_cast<ConstantId>(module_.constants.size() - 1);
   }
 
   /// Rounds the part taken of a read, not the read itself, which may be a struct; indices are expressions.
@@ -181,23 +145,16 @@ class Rounder {
 
   Module& module_;
   const Kernel* kernel_;
-  HalfConstants& constants_;
+  ConstantCopies& constants_;
 };
 
-KernelId roundKernel(Module& module, KernelId id, HalfConstants& constants) {
+KernelId roundKernel(Module& module, KernelId id, ConstantCopies& constants) {
   FunctionCopies copies;
-  const FunctionId entry = copyFunction(module, module.kernels[id].entry, copies);
+  Kernel variant = variantOf(module, id, copies);
   dropTables(module, copies);
-  const Kernel& kernel = module.kernels[id];
-  Kernel variant = synthesizedFor(kernel);
-  variant.signature = kernel.signature;
-  variant.entry = entry;
-  for (const KernelParam& param : kernel.params) variant.params.push_back(clone(param));
-  if (kernel.reduction) {
-    variant.reduction = Reduction{{}, kernel.reduction->operands, kernel.reduction->seeded};
-    variant.reduction->commutative = kernel.reduction->commutative;
-  }
-  for (const auto& [from, to] : copies) Rounder(module, to == entry ? &variant : nullptr, constants).run(to);
+  if (variant.reduction) variant.reduction->commutative = module.kernels[id].reduction->commutative;
+  for (const auto& [from, to] : copies)
+    Rounder(module, to == variant.entry ? &variant : nullptr, constants).run(to);
   module.kernels.push_back(std::move(variant));
   return static_cast<KernelId>(module.kernels.size() - 1);
 }
@@ -214,7 +171,7 @@ bool computesFloats(const Module& module, const Kernel& kernel) {
 }  // namespace
 
 void roundHalves(Module& module, Diagnostics&) {
-  HalfConstants constants;
+  ConstantCopies constants;
   forEachDeclaredKernel(module, [&](KernelId id) {
     const bool readsOutputs = module.kernels[id].isPart && module.kernels[id].reduction;
     if (module.kernels[id].isSynthesized || readsOutputs || !computesFloats(module, module.kernels[id]))

@@ -57,23 +57,6 @@ bool isStream(const Variable& var) {
   return var.role == VarRole::Gather || var.role == VarRole::Element || var.role == VarRole::AppendOutput;
 }
 
-/// fn(StreamRef&) if the expression uses a stream.
-template <class Fn>
-void withStream(Expr& expr, Fn&& fn) {
-  if (auto* n = std::get_if<GatherRead>(&expr.node)) fn(n->stream);
-  if (auto* n = std::get_if<NeighborRead>(&expr.node)) fn(n->stream);
-  if (auto* n = std::get_if<Sample>(&expr.node)) fn(n->stream);
-  if (auto* n = std::get_if<IndexOf>(&expr.node)) fn(n->stream);
-  if (auto* n = std::get_if<ExtentOf>(&expr.node)) fn(n->stream);
-}
-
-/// fn(StreamRef&) if the statement writes a stream.
-template <class Fn>
-void withStream(Stmt& stmt, Fn&& fn) {
-  if (auto* n = std::get_if<Push>(&stmt.node)) fn(n->stream);
-  if (auto* n = std::get_if<Scatter>(&stmt.node)) fn(n->stream);
-}
-
 /// fn(callee, arguments) for every call in a block.
 template <class Fn>
 void forEachCall(Block& block, Fn&& fn) {
@@ -137,15 +120,15 @@ class GatherSpecializer {
   FunctionId make(FunctionId source, const Binding& binding, bool isEntry) {
     Function function = clone(module_.functions[source]);
     walkExprs(function.body, [&](Expr& expr) {
-      withStream(expr, [&](StreamRef& stream) {
-        if (stream.space != StreamRef::Space::Variable) return;
-        const bool isGather = function.variables[stream.id].role == VarRole::Gather;
-        // a gather has no index of its own: neighbours are relative to the domain's
-        stream = isGather && std::holds_alternative<IndexOf>(expr.node) ? domain : binding[stream.id];
-      });
+      StreamRef* stream = streamOf(expr);
+      if (stream == nullptr || stream->space != StreamRef::Space::Variable) return;
+      const bool isGather = function.variables[stream->id].role == VarRole::Gather;
+      // a gather has no index of its own: neighbours are relative to the domain's
+      *stream = isGather && std::holds_alternative<IndexOf>(expr.node) ? domain : binding[stream->id];
     });
-    walkStmts(function.body,
-              [&](Stmt& stmt) { withStream(stmt, [&](StreamRef& stream) { stream = binding[stream.id]; }); });
+    walkStmts(function.body, [&](Stmt& stmt) {
+      if (StreamRef* stream = streamOf(stmt)) *stream = binding[stream->id];
+    });
     forEachCall(function.body, [&](FunctionId& callee, std::vector<ExprPtr>& args) {
       callee = bindCall(function, binding, callee, args);
     });
@@ -177,12 +160,12 @@ class GatherSpecializer {
     Function& function = module_.functions[id];
     std::vector<bool> uses(function.variables.size(), false);
     walkExprs(function.body, [&](Expr& expr) {
-      withStream(expr, [&](StreamRef& stream) {
-        if (stream.space == StreamRef::Space::Variable) uses[stream.id] = true;
-      });
+      const StreamRef* stream = streamOf(expr);
+      if (stream != nullptr && stream->space == StreamRef::Space::Variable) uses[stream->id] = true;
     });
-    walkStmts(function.body,
-              [&](Stmt& stmt) { withStream(stmt, [&](StreamRef& stream) { uses[stream.id] = true; }); });
+    walkStmts(function.body, [&](Stmt& stmt) {
+      if (const StreamRef* stream = streamOf(stmt)) uses[stream->id] = true;
+    });
     forEachCall(function.body, [&](FunctionId callee, std::vector<ExprPtr>& args) {
       const std::vector<bool>& inner = usesOf(callee);
       for (std::size_t i = 0; i < args.size(); ++i) {

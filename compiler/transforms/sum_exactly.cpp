@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -45,20 +45,23 @@ constexpr std::size_t mostNumberedParameters = std::numeric_limits<std::uint8_t>
 
 /// The number of terms that an element adds.
 struct TermCount {
-  std::size_t terms = 0;
+  std::size_t all = 0;
+  std::size_t onPath = 0;  ///< outside of loops, the most on a path
   bool isInLoop = false;  ///< adds further terms in a loop
 };
 
 TermCount countTerms(const Kernel& reduce, const Block& block, const ScalarSum& sum) {
   TermCount count;
   for (const Stmt& stmt : block) {
-    count.terms += termsOf(reduce, stmt, sum).size();
-    forEachBlock(stmt, [&](const Block& inner) {
-      const TermCount nested = countTerms(reduce, inner, sum);
-      const bool isLoop = std::holds_alternative<Loop>(stmt.node);
-      count.isInLoop = count.isInLoop || nested.isInLoop || (isLoop && nested.terms > 0);
-      count.terms += nested.terms;
+    const std::size_t own = termsOf(reduce, stmt, sum).size();
+    TermCount inner;
+    forEachBlock(stmt, [&](const Block& nested) {
+      const TermCount one = countTerms(reduce, nested, sum);
+      inner = {inner.all + one.all, std::max(inner.onPath, one.onPath), inner.isInLoop || one.isInLoop};
     });
+    if (std::holds_alternative<Loop>(stmt.node)) inner = {inner.all, 0, inner.all > 0};
+    count = {count.all + own + inner.all, count.onPath + own + inner.onPath,
+             count.isInLoop || inner.isInLoop};
   }
   return count;
 }
@@ -82,59 +85,32 @@ std::vector<VarId> factorsOf(const Kernel& reduce, const Block& body, const Scal
   return {};
 }
 
-/// Builds the kernel: a copy of the reduce that writes terms instead of adding them.
-class TermKernel {
- public:
-  TermKernel(Module& module, KernelId id, const ScalarSum& sum, bool areProducts)
-      : reduce_(module.kernels[id]), sum_(sum), areProducts_(areProducts), copy_(module, id, "_terms") {}
-
-  KernelId make() {
-    Block& body = copy_.entry().body;
-    rewrite(body);
-    body.insert(body.begin(), std::make_move_iterator(start_.begin()), std::make_move_iterator(start_.end()));
-    copy_.dropAccumulators();
-    copy_.dropOutputs();
-    return copy_.finishNativeKernel();
-  }
-
- private:
-  void rewrite(Block& block) {
-    Block rewritten;
-    for (Stmt& stmt : block) {
-      forEachBlock(stmt, [&](Block& inner) { rewrite(inner); });
-      if (!foldedBy(reduce_, stmt)) {
-        rewritten.push_back(std::move(stmt));
-        continue;
-      }
-      for (Term& term : termsOf(reduce_, stmt, sum_)) write(std::move(term), stmt.loc, rewritten);
+/// A copy of the reduce that writes terms instead of adding them.
+KernelId makeTermKernel(Module& module, KernelId id, const ScalarSum& sum, bool areProducts) {
+  const Kernel& reduce = module.kernels[id];  // no kernel is added before this one
+  FoldCopy copy(module, id, "_terms");
+  Function& entry = copy.entry();
+  Block start;
+  std::size_t terms = 0;
+  // an output keeps its initial value if the element does not add the term
+  const auto write = [&](const char* name, float initial, ExprPtr value, Loc loc, Block& to) {
+    const VarId output =
+        copy.add(fmt::format("{}_{}", name, terms), ParamRole::Output, Type::of(Scalar::Float));
+    start.push_back(assign(varRef(entry, output), literal(initial)));
+    if (value) to.push_back(assign(varRef(entry, output), std::move(value), loc));
+  };
+  rewriteFolds(reduce, entry.body, [&](const Stmt& fold, const FoldTarget&, Block& to) {
+    for (Term& term : termsOf(reduce, fold, sum)) {
+      write("term", -0.0F, std::move(term.value), fold.loc, to);
+      if (areProducts) write("factor", 1.0F, std::move(term.factor), fold.loc, to);
+      ++terms;
     }
-    block = std::move(rewritten);
-  }
-
-  void write(Term term, Loc loc, Block& block) {
-    const VarId value = addOutput("term", -0.0F);
-    block.push_back(assign(varRef(copy_.entry(), value), std::move(term.value), loc));
-    if (areProducts_) {
-      const VarId factor = addOutput("factor", 1.0F);
-      if (term.factor) block.push_back(assign(varRef(copy_.entry(), factor), std::move(term.factor), loc));
-    }
-    ++terms_;
-  }
-
-  /// The output keeps its initial value if the element does not add the term.
-  VarId addOutput(const char* name, float beginning) {
-    const VarId output = copy_.addOutput(fmt::format("{}_{}", name, terms_), Type::of(Scalar::Float));
-    start_.push_back(assign(varRef(copy_.entry(), output), literal(beginning)));
-    return output;
-  }
-
-  const Kernel& reduce_;  ///< in the module, to which no kernel is added before make() ends
-  const ScalarSum& sum_;
-  const bool areProducts_;
-  FoldCopy copy_;
-  Block start_;
-  std::size_t terms_ = 0;
-};
+    return true;
+  });
+  prepend(entry.body, std::move(start));
+  copy.drop({ParamRole::Accumulator, ParamRole::Output});
+  return copy.finishNativeKernel();
+}
 
 /// The term of a sum of reduce `id`; empty if an element adds terms in a loop, or more terms than a kernel
 /// can output. May add a kernel to the module. `areProducts`: other terms get the factor 1.
@@ -142,13 +118,13 @@ ExactTerm exactTerm(Module& module, KernelId id, const ScalarSum& sum, bool areP
   const Kernel& reduce = module.kernels[id];
   const Block& body = module.functions[reduce.entry].body;
   const TermCount count = countTerms(reduce, body, sum);
-  const std::size_t outputs = count.terms * (areProducts ? 2 : 1);
+  const std::size_t outputs = count.all * (areProducts ? 2 : 1);
   if (count.isInLoop || reduce.params.size() + outputs > mostNumberedParameters) return {};
-  if (count.terms == 1) {
+  if (count.all == 1) {
     std::vector<VarId> factors = factorsOf(reduce, body, sum);
     if (!factors.empty()) return {.factors = std::move(factors)};
   }
-  return {.kernel = TermKernel(module, id, sum, areProducts).make()};
+  return {.kernel = makeTermKernel(module, id, sum, areProducts)};
 }
 
 constexpr Type digitsType = Type::of(Scalar::Int, 4);
@@ -219,18 +195,31 @@ void add(Block& block, Function& function, const Digits& digits, const Format& f
   block.push_back(assign(varRef(function, digits.flags), BinaryOp::BitOr, intrinsic(which, operands())));
 }
 
-/// Adds parameters that hold digits.
-Digits addDigits(SynthesizedKernel& synthesized, const Format& format, ParamRole role,
-                 const std::string& suffix = {}) {
-  const auto add = [&](const std::string& name, Type type) {
-    return synthesized.add(makeParam(name + suffix, role, type, synthesized.kernel.loc));
-  };
+/// Adds parameters that hold digits, each by `add`.
+template <class Add>
+Digits addDigits(const Format& format, Add&& add) {
   Digits digits;
-  for (std::uint32_t i = 0; i < format.groups; ++i) {
+  for (std::uint32_t i = 0; i < format.groups; ++i)
     digits.groups.push_back(add(fmt::format("digits_{}", i), digitsType));
-  }
   digits.flags = add("flags", intType);
   return digits;
+}
+
+Digits addDigits(SynthesizedKernel& synthesized, const Format& format, ParamRole role,
+                 const std::string& suffix = {}) {
+  return addDigits(format, [&](const std::string& name, Type type) {
+    return synthesized.add(makeParam(name + suffix, role, type, synthesized.kernel.loc));
+  });
+}
+
+/// Copies the groups of digits, which are inputs, to variables that may change.
+Digits copied(Function& entry, const Digits& digits, std::string_view name) {
+  Digits copy;
+  for (const VarId group : digits.groups) {
+    copy.groups.push_back(addVariable(entry, fmt::format("{}_{}", name, copy.groups.size()), digitsType));
+    entry.body.push_back(declare(copy.groups.back(), varRef(entry, group)));
+  }
+  return copy;
 }
 
 class ExactSummation {
@@ -272,16 +261,12 @@ class ExactSummation {
   KernelId makeFold(KernelId id, const ScalarSum& sum, const Format& format) {
     const KernelId combine = combination(format);
     FoldCopy copy(module_, id, "_exact");
-    Digits digits;
-    for (std::uint32_t i = 0; i < format.groups; ++i) {
-      digits.groups.push_back(copy.addAccumulator(fmt::format("digits_{}", i), digitsType,
-                                                  construct(digitsType, exprs(literal(0)))));
-    }
-    digits.flags = copy.addAccumulator("flags", intType, literal(0));
+    const Digits digits = addDigits(format, [&](const std::string& name, Type type) {
+      return copy.add(name, ParamRole::Accumulator, type, literalOf(type, 0));
+    });
     const Rewriting rewriting{module_.kernels[id], sum, format, digits, copy.entry()};
     rewriting.rewriteElement();
-    copy.dropAccumulators();
-    copy.dropOutputs();
+    copy.drop({ParamRole::Accumulator, ParamRole::Output});
     return copy.finish(combine);
   }
 
@@ -298,41 +283,20 @@ class ExactSummation {
     Function& entry;
 
     void rewriteElement() const {
-      const TermCount terms = countTerms(entry.body);
-      const bool addsOne = terms.outsideLoops + (terms.isInLoop ? 1 : 0) <= 1;
+      const TermCount terms = countTerms(kernel, entry.body, sum);
+      const bool addsOne = terms.onPath + (terms.isInLoop ? 1 : 0) <= 1;
       rewrite(entry.body, addsOne ? Load(Load::most - 1) : Load::settled());
       if (addsOne) return;
       Block start;
       normalize(start, entry, digits);
-      entry.body.insert(entry.body.begin(), std::make_move_iterator(start.begin()),
-                        std::make_move_iterator(start.end()));
+      prepend(entry.body, std::move(start));
     }
 
    private:
-    struct TermCount {
-      std::int64_t outsideLoops = 0;  ///< the most on a path
-      bool isInLoop = false;
-    };
     struct Loads {
       Load end;  ///< the most at the end of a block
       Load peak;  ///< the most after a term
     };
-
-    TermCount countTerms(const Block& block) const {
-      TermCount count;
-      for (const Stmt& stmt : block) {
-        if (foldedBy(kernel, stmt)) count.outsideLoops += std::ssize(termsOf(kernel, stmt, sum));
-        TermCount inner;
-        forEachBlock(stmt, [&](const Block& nested) {
-          const TermCount one = countTerms(nested);
-          inner = {std::max(inner.outsideLoops, one.outsideLoops), inner.isInLoop || one.isInLoop};
-        });
-        if (std::holds_alternative<Loop>(stmt.node)) inner = {0, inner.isInLoop || inner.outsideLoops > 0};
-        count.outsideLoops += inner.outsideLoops;
-        count.isInLoop = count.isInLoop || inner.isInLoop;
-      }
-      return count;
-    }
 
     /// Rewrites a block before which the digits have at most this load.
     Loads rewrite(Block& block, Load load) const {
@@ -375,12 +339,7 @@ class ExactSummation {
     const Digits parts = addDigits(synthesized, format, ParamRole::Input, "_part");
     const Digits totals = addDigits(synthesized, format, ParamRole::Accumulator);
     Block& body = synthesized.entry.body;
-    Digits settled;  // inputs must not change
-    for (const VarId part : parts.groups) {
-      settled.groups.push_back(
-          addVariable(synthesized.entry, fmt::format("part_{}", settled.groups.size()), digitsType));
-      body.push_back(declare(settled.groups.back(), varRef(synthesized.entry, part)));
-    }
+    const Digits settled = copied(synthesized.entry, parts, "part");
     normalize(body, synthesized.entry, settled);
     normalize(body, synthesized.entry, totals);
     for (std::uint32_t i = 0; i < format.groups; ++i) {
@@ -402,11 +361,7 @@ class ExactSummation {
     const VarId result =
         synthesized.add(makeParam("r_" + param.name, ParamRole::Output, param.type, kernel.loc));
     Function& entry = synthesized.entry;
-    Digits total;
-    for (const VarId group : digits.groups) {
-      total.groups.push_back(addVariable(entry, fmt::format("sum_{}", total.groups.size()), digitsType));
-      entry.body.push_back(declare(total.groups.back(), varRef(entry, group)));
-    }
+    Digits total = copied(entry, digits, "sum");
     total.flags = addVariable(entry, "sum_flags", intType);
     entry.body.push_back(declare(total.flags, varRef(entry, digits.flags)));
     normalize(entry.body, entry, total);

@@ -20,6 +20,14 @@ KernelParam makeParam(std::string name, ParamRole role, Type type, Loc loc) {
   return param;
 }
 
+std::vector<VarId> paramsOf(const Kernel& kernel, ParamRole role) {
+  std::vector<VarId> params;
+  for (VarId i = 0; i < kernel.params.size(); ++i) {
+    if (kernel.params[i].role == role) params.push_back(i);
+  }
+  return params;
+}
+
 Kernel synthesizedFor(const Kernel& of) {
   Kernel kernel;
   kernel.name = of.name;
@@ -45,6 +53,19 @@ VarId SynthesizedKernel::add(KernelParam param) {
   const VarId var = addVariable(entry, param.name, param.type, role, param.loc);
   kernel.params.push_back(std::move(param));
   return var;
+}
+
+std::vector<VarId> SynthesizedKernel::addEach(const Kernel& of, const std::vector<VarId>& params,
+                                              ParamRole role, std::string_view prefix,
+                                              std::string_view suffix,
+                                              const std::function<Type(VarId)>& typeOf) {
+  std::vector<VarId> added;
+  for (const VarId i : params) {
+    const KernelParam& param = of.params[i];
+    added.push_back(add(makeParam(std::string(prefix) + param.name + std::string(suffix), role,
+                                  typeOf ? typeOf(i) : param.type, param.loc)));
+  }
+  return added;
 }
 
 KernelId SynthesizedKernel::finish(Module& module) {
@@ -75,6 +96,28 @@ FunctionId copyFunction(Module& module, FunctionId id, FunctionCopies& copies) {
 
 void dropTables(Module& module, const FunctionCopies& copies) {
   for (const auto& [from, to] : copies) module.functions[to].table.reset();
+}
+
+Kernel variantOf(Module& module, KernelId of, FunctionCopies& copies) {
+  const FunctionId entry = copyFunction(module, module.kernels[of].entry, copies);
+  const Kernel& plain = module.kernels[of];
+  Kernel variant = synthesizedFor(plain);
+  variant.signature = plain.signature;
+  variant.entry = entry;
+  for (const KernelParam& param : plain.params) variant.params.push_back(clone(param));
+  if (plain.reduction) variant.reduction = Reduction{{}, plain.reduction->operands, plain.reduction->seeded};
+  return variant;
+}
+
+ConstantId copyConstant(Module& module, ConstantId id, ConstantCopies& copies, std::string_view suffix,
+                        FunctionRef<void(Constant&)> convert) {
+  const Constant& plain = module.constants[id];
+  if (!holds(module, plain.type, Scalar::Float)) return id;
+  if (const auto known = copies.find(id); known != copies.end()) return known->second;
+  Constant copy{plain.name + std::string(suffix), plain.type, clone(plain.value), plain.loc};
+  convert(copy);  // may copy constants in its value
+  module.constants.push_back(std::move(copy));
+  return copies[id] = static_cast<ConstantId>(module.constants.size() - 1);
 }
 
 }  // namespace skc

@@ -62,10 +62,7 @@ std::optional<std::int64_t> expressionsWithoutLoops(const Module& module, const 
 /// Adds the variant for one value of a parameter to the module.
 KernelId addVariant(Module& module, KernelId id, VarId spec, std::uint32_t value) {
   FunctionCopies copies;
-  Kernel variant = synthesizedFor(module.kernels[id]);
-  variant.signature = module.kernels[id].signature;
-  variant.entry = copyFunction(module, module.kernels[id].entry, copies);
-  for (const KernelParam& param : module.kernels[id].params) variant.params.push_back(clone(param));
+  Kernel variant = variantOf(module, id, copies);
   Function& entry = module.functions[variant.entry];
   const Type type = entry.variables[spec].type;
   rewriteExprs(entry.body, [&](ExprPtr& slot) {

@@ -2,7 +2,6 @@
 #include "transforms/passes.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,83 +24,6 @@ namespace skc {
 using namespace ir;
 
 namespace {
-
-// Types with double instead of float, and conversions between the two.
-
-class WideTypes {
- public:
-  explicit WideTypes(ir::Module& module) : module_(module) {}
-
-  /// True if the type contains a float or a vector of floats; matrices and half do not count.
-  bool holdsFloat(ir::Type type) const;
-  /// The wide type; the type itself if it contains no float. Structs get a second one, "Hit_wide".
-  ir::Type of(ir::Type type);
-
-  /// Converts a value to its wide type, and back.
-  ir::ExprPtr widened(ir::ExprPtr value);
-  ir::ExprPtr narrowed(ir::ExprPtr value, ir::Type to);
-
- private:
-  ir::ExprPtr converted(ir::ExprPtr value, ir::Type to);
-
-  ir::Module& module_;
-  std::map<std::uint32_t, std::uint32_t> structs_;   ///< original to synthesized struct
-};
-
-bool WideTypes::holdsFloat(Type type) const {
-  if (type.kind == Type::Kind::Array) return holdsFloat(module_.arrays[type.index].element);
-  if (type.kind != Type::Kind::Struct) return type.isFloat();
-  return std::ranges::any_of(module_.structs[type.index].fields,
-                             [&](const StructField& field) { return holdsFloat(field.type); });
-}
-
-Type WideTypes::of(Type type) {
-  if (!holdsFloat(type)) return type;
-  if (type.kind == Type::Kind::Array) {
-    const Array array = module_.arrays[type.index];
-    return arrayOf(module_, of(array.element), array.length);
-  }
-  if (type.kind != Type::Kind::Struct) return type.withScalar(Scalar::Double);
-  if (const auto known = structs_.find(type.index); known != structs_.end()) {
-    return Type::structType(known->second);
-  }
-  Struct wide = module_.structs[type.index];
-  wide.name += "_wide";
-  wide.isSynthesized = true;
-  for (StructField& field : wide.fields) field.type = of(field.type);
-  module_.structs.push_back(std::move(wide));
-  const auto index = static_cast<std::uint32_t>(module_.structs.size() - 1);
-  structs_[type.index] = index;
-  return Type::structType(index);
-}
-
-ExprPtr WideTypes::widened(ExprPtr value) {
-  const Type to = of(value->type);
-  return converted(std::move(value), to);
-}
-
-ExprPtr WideTypes::narrowed(ExprPtr value, Type to) { return converted(std::move(value), to); }
-
-/// The value is evaluated once per part, since expressions have no side effects.
-ExprPtr WideTypes::converted(ExprPtr value, Type to) {
-  if (value->type == to) return value;
-  const Loc loc = value->loc;
-  if (to.isArithmetic()) return convert(to.scalar, std::move(value), loc);
-  std::vector<ExprPtr> parts;
-  if (to.kind == Type::Kind::Array) {
-    const Array array = module_.arrays[to.index];
-    for (std::uint32_t i = 0; i < array.length; ++i) {
-      parts.push_back(
-          converted(index(module_, clone(value), literal(static_cast<std::int32_t>(i)), loc), array.element));
-    }
-  } else {
-    for (std::uint32_t i = 0; i < module_.structs[to.index].fields.size(); ++i) {
-      parts.push_back(
-          converted(member(module_, clone(value), i, loc), module_.structs[to.index].fields[i].type));
-    }
-  }
-  return construct(to, std::move(parts), loc);
-}
 
 bool isStreamOfValues(ParamRole role) {
   return role == ParamRole::Input || role == ParamRole::Output || role == ParamRole::Gather ||
@@ -128,43 +50,40 @@ bool isOfBits(Intrinsic intrinsic) {
   }
 }
 
+Type widened(Type type) { return type.withScalar(Scalar::Double); }
+
 // ---- what has no wide variant -------------------------------------------------------------------
 
 /// Looks for operations that doubles do not support.
 class UnsupportedOperations {
  public:
-  UnsupportedOperations(const Module& module, WideTypes& types) : module_(module), types_(types) {}
+  explicit UnsupportedOperations(const Module& module) : module_(module) {}
 
   /// Returns the first obstacle, or "".
   std::string of(const Kernel& kernel) {
     found_.clear();
     for (const FunctionId id : functionsOf(module_, kernel)) {
       const Function& function = module_.functions[id];
-      function_ = &function;
-      kernel_ = &kernel;
       for (const Variable& variable : function.variables) check(variable.type, variable.loc);
-      walkExprs(function.body, [&](const Expr& expr) { check(expr); });
+      walkExprs(function.body, [&](const Expr& expr) { check(kernel, expr); });
     }
     return found_;
   }
 
  private:
-  void check(const Expr& expr) {
+  void check(const Kernel& kernel, const Expr& expr) {
     check(expr.type, expr.loc);
-    if (const auto* n = std::get_if<Sample>(&expr.node); n != nullptr && gatherType(n->stream).isNarrow())
+    const auto* sample = std::get_if<Sample>(&expr.node);
+    if (sample != nullptr && kernel.params[sample->stream.id].type.isNarrow())
       note("sample() of a type with fewer bits interpolates in floats", expr.loc);
     const auto* call = std::get_if<IntrinsicCall>(&expr.node);
     if (call == nullptr || isOfBits(call->intrinsic)) return;
     std::vector<Type> arguments;
-    for (const ExprPtr& argument : call->args) arguments.push_back(types_.of(argument->type));
+    for (const ExprPtr& argument : call->args)
+      arguments.push_back(argument->type.isFloat() ? widened(argument->type) : argument->type);
     if (!resultType(call->intrinsic, arguments)) {
       note(fmt::format("{}() is one of floats alone", ir::row(call->intrinsic).spelling), expr.loc);
     }
-  }
-
-  Type gatherType(StreamRef stream) const {
-    return stream.space == StreamRef::Space::Variable ? function_->variables[stream.id].type
-                                                      : kernel_->params[stream.id].type;
   }
 
   void check(Type type, Loc loc) {
@@ -181,121 +100,123 @@ class UnsupportedOperations {
   }
 
   const Module& module_;
-  WideTypes& types_;
-  const Kernel* kernel_ = nullptr;
-  const Function* function_ = nullptr;  ///< the function being examined
   std::string found_;
 };
 
 // ---- the variant --------------------------------------------------------------------------------
 
-/// Builds one kernel's wide variant; the kernel must have no obstacle.
+/// Builds wide variants of kernels that have no obstacle.
 class FloatWidener {
  public:
-  FloatWidener(Module& module, WideTypes& types, std::map<ConstantId, ConstantId>& constants)
-      : module_(module), types_(types), constants_(constants) {}
+  explicit FloatWidener(Module& module) : module_(module) {}
 
   /// `holdsFloats`: its inputs and outputs are streams of floats, not partial results of a reduce.
   KernelId widen(KernelId id, bool holdsFloats) {
     FunctionCopies copies;
-    const FunctionId entry = copyFunction(module_, module_.kernels[id].entry, copies);
-    Kernel variant = synthesizedFor(module_.kernels[id]);
-    variant.signature = module_.kernels[id].signature;
-    variant.entry = entry;
-    if (const std::optional<Reduction>& plain = module_.kernels[id].reduction) {
-      variant.reduction = Reduction{{}, plain->operands, plain->seeded};
-    }
-    for (std::size_t i = 0; i < module_.kernels[id].params.size(); ++i) {
-      variant.params.push_back(param(module_.kernels[id].params[i], holdsFloats));
-    }
+    Kernel variant = variantOf(module_, id, copies);
+    for (KernelParam& param : variant.params) widen(param, holdsFloats);
     dropTables(module_, copies);
-    for (const auto& [from, to] : copies) function(to, variant);
+    for (const auto& [from, to] : copies) widen(to, variant);
     module_.kernels.push_back(std::move(variant));
     return static_cast<KernelId>(module_.kernels.size() - 1);
   }
 
   /// A kernel that converts a reduce's accumulators, in order, from doubles to floats.
   KernelId finish(KernelId id) {
-    SynthesizedKernel synthesized(module_.kernels[id], "_finish");
-    std::vector<VarId> inputs;
-    for (const bool isResult : {false, true}) {
-      for (const KernelParam& accumulator : module_.kernels[id].params) {
-        if (accumulator.role != ParamRole::Accumulator) continue;
-        KernelParam param = makeParam(isResult ? "r_" + accumulator.name : accumulator.name,
-                                      isResult ? ParamRole::Output : ParamRole::Input,
-                                      types_.of(accumulator.type), accumulator.loc);
-        if (isResult && param.type != accumulator.type) param.held = accumulator.type;
-        const VarId var = synthesized.add(std::move(param));
-        if (isResult) {
-          synthesized.entry.body.push_back(
-              assign(varRef(synthesized.entry, var), varRef(synthesized.entry, inputs[var - inputs.size()])));
-        } else {
-          inputs.push_back(var);
-        }
-      }
+    const Kernel& plain = module_.kernels[id];
+    SynthesizedKernel synthesized(plain, "_finish");
+    const std::vector<VarId> accumulators = paramsOf(plain, ParamRole::Accumulator);
+    const auto wide = [&](VarId i) { return typeOf(plain.params[i].type); };
+    const auto inputs = synthesized.addEach(plain, accumulators, ParamRole::Input, "", "", wide);
+    const auto results = synthesized.addEach(plain, accumulators, ParamRole::Output, "r_", "", wide);
+    Function& entry = synthesized.entry;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      KernelParam& result = synthesized.kernel.params[results[i]];
+      const Type held = plain.params[accumulators[i]].type;
+      if (result.type != held) result.held = held;
+      entry.body.push_back(assign(varRef(entry, results[i]), varRef(entry, inputs[i])));
     }
     return synthesized.finish(module_);
   }
 
  private:
-  KernelParam param(const KernelParam& plain, bool holdsFloats) {
-    KernelParam wide = clone(plain);
-    wide.type = isStreamOfValues(plain.role) ? types_.of(plain.type) : plain.type;
-    const bool isPartial = plain.role == ParamRole::Accumulator || !holdsFloats;
-    if (wide.type != plain.type && (!isPartial || plain.role == ParamRole::Gather)) wide.held = plain.type;
-    wide.filter = false;
-    wide.border = wideConstant(plain.border);
-    wide.identity = wideConstant(plain.identity);
-    return wide;
+  void widen(KernelParam& param, bool holdsFloats) {
+    const Type plain = param.type;
+    if (isStreamOfValues(param.role)) param.type = typeOf(plain);
+    const bool isPartial = param.role == ParamRole::Accumulator || !holdsFloats;
+    if (param.type != plain && (!isPartial || param.role == ParamRole::Gather)) param.held = plain;
+    param.filter = false;
+    if (param.border) rewrite(param.border, {});
+    if (param.identity) rewrite(param.identity, {});
   }
 
-  ExprPtr wideConstant(const ExprPtr& plain) {
-    ExprPtr wide = clone(plain);
-    if (wide) rewrite(wide, {});
-    return wide;
+  /// The type with double instead of float. Structs get a second one, "Hit_wide".
+  Type typeOf(Type type) {
+    if (!holds(module_, type, Scalar::Float)) return type;
+    if (type.kind == Type::Kind::Array) {
+      const Array array = module_.arrays[type.index];
+      return arrayOf(module_, typeOf(array.element), array.length);
+    }
+    if (type.kind != Type::Kind::Struct) return widened(type);
+    if (const auto known = structs_.find(type.index); known != structs_.end()) return known->second;
+    Struct wide = module_.structs[type.index];
+    wide.name += "_wide";
+    wide.isSynthesized = true;
+    for (StructField& field : wide.fields) field.type = typeOf(field.type);
+    module_.structs.push_back(std::move(wide));
+    return structs_[type.index] = Type::structType(static_cast<std::uint32_t>(module_.structs.size() - 1));
   }
 
-  /// Rewrites a function of `kernel`. The entry converts its non-stream values at its start.
-  void function(FunctionId id, const Kernel& kernel) {
+  /// Converts a value to or from its wide type. It is evaluated once per part, since expressions have no side effects.
+  ExprPtr converted(ExprPtr value, Type to) const {
+    if (value->type == to) return value;
+    const Loc loc = value->loc;
+    if (to.isArithmetic()) return convert(to.scalar, std::move(value), loc);
+    std::vector<ExprPtr> parts;
+    if (to.kind == Type::Kind::Array) {
+      const Array& array = module_.arrays[to.index];
+      for (std::uint32_t i = 0; i < array.length; ++i) {
+        ExprPtr element = index(module_, clone(value), literal(static_cast<std::int32_t>(i)), loc);
+        parts.push_back(converted(std::move(element), array.element));
+      }
+    } else {
+      const std::vector<StructField>& fields = module_.structs[to.index].fields;
+      for (std::uint32_t i = 0; i < fields.size(); ++i)
+        parts.push_back(converted(member(module_, clone(value), i, loc), fields[i].type));
+    }
+    return construct(to, std::move(parts), loc);
+  }
+
+  /// Rewrites a function of `kernel`. The entry converts its non-stream values at its start. Values of append outputs keep
+  /// their types.
+  void widen(FunctionId id, const Kernel& kernel) {
+    Function function = std::move(module_.functions[id]);
     std::map<VarId, VarId> wideOf;
     Block start;
-    std::vector<VarId> kept;
-    for (VarId i = 0; id == kernel.entry && i < kernel.params.size(); ++i) {
-      if (isStreamOfValues(kernel.params[i].role)) continue;
-      kept.push_back(i);
-      Function& entry = module_.functions[id];
-      const Variable plain = entry.variables[i];
-      if (isAppendOutput(kernel.params[i].role) || !types_.holdsFloat(plain.type)) continue;
-      const Type wide = types_.of(plain.type);
-      const VarId local = addVariable(entry, plain.name + "_wide", wide, VarRole::Local, plain.loc);
-      kept.push_back(local);
-      wideOf[i] = local;
-      start.push_back(declare(local, types_.widened(varRef(entry, i)), plain.loc));
+    const std::size_t count = function.variables.size();
+    for (VarId i = 0; i < count; ++i) {
+      const Variable plain = function.variables[i];
+      const bool isParam = id == kernel.entry && i < kernel.params.size();
+      if (isParam && isAppendOutput(kernel.params[i].role)) continue;
+      const Type wide = typeOf(plain.type);
+      if (!isParam || isStreamOfValues(kernel.params[i].role)) {
+        function.variables[i].type = wide;
+      } else if (wide != plain.type) {
+        wideOf[i] = addVariable(function, plain.name + "_wide", wide, VarRole::Local, plain.loc);
+        start.push_back(declare(wideOf[i], converted(varRef(function, i), wide), plain.loc));
+      }
     }
-    for (VarId i = 0; i < module_.functions[id].variables.size(); ++i) {
-      if (std::ranges::find(kept, i) != kept.end()) continue;
-      const Type wide = types_.of(module_.functions[id].variables[i].type);
-      module_.functions[id].variables[i].type = wide;
-    }
-    module_.functions[id].result = types_.of(module_.functions[id].result);
-    Block body = std::move(module_.functions[id].body);
-    const Function& function = module_.functions[id];
-    walkStmts(body, [&](Stmt& stmt) {
+    function.result = typeOf(function.result);
+    walkStmts(function.body, [&](Stmt& stmt) {
       forEachOperand(stmt, [&](ExprPtr& slot) { rewrite(slot, {&function, &wideOf}); });
-      // append outputs keep their element types
-      if (auto* n = std::get_if<Push>(&stmt.node))
-        n->value = toAppendOutput(function, n->stream, std::move(n->value), kernel);
-      if (auto* n = std::get_if<Scatter>(&stmt.node))
-        n->value = toAppendOutput(function, n->stream, std::move(n->value), kernel);
+      const auto narrow = [&](StreamRef stream, ExprPtr& value) {
+        value = converted(std::move(value), kernel.params[stream.id].type);
+      };
+      if (auto* n = std::get_if<Push>(&stmt.node)) narrow(n->stream, n->value);
+      if (auto* n = std::get_if<Scatter>(&stmt.node)) narrow(n->stream, n->value);
     });
-    body.insert(body.begin(), std::make_move_iterator(start.begin()), std::make_move_iterator(start.end()));
-    module_.functions[id].body = std::move(body);
-  }
-
-  ExprPtr toAppendOutput(const Function& function, StreamRef stream, ExprPtr value, const Kernel& kernel) {
-    const Type type = stream.space == StreamRef::Space::Variable ? function.variables[stream.id].type
-                                                                 : kernel.params[stream.id].type;
-    return types_.narrowed(std::move(value), type);
+    prepend(function.body, std::move(start));
+    module_.functions[id] = std::move(function);
   }
 
   struct Within {
@@ -314,14 +235,14 @@ class FloatWidener {
       slot = literal(wideValue(std::get<Literal>(expr.node)), expr.loc);
     } else if (auto* constant = std::get_if<ConstantRef>(&expr.node)) {
       constant->constant = wideOf(constant->constant);
-      expr.type = types_.of(expr.type);
+      expr.type = typeOf(expr.type);
     } else if (std::holds_alternative<Convert>(expr.node)) {
       conversion(slot);
     } else if (auto* call = std::get_if<IntrinsicCall>(&expr.node);
                call != nullptr && isOfBits(call->intrinsic)) {
       ofBits(slot);
     } else {
-      expr.type = types_.of(expr.type);
+      expr.type = typeOf(expr.type);
     }
   }
 
@@ -329,7 +250,7 @@ class FloatWidener {
   /// rounds once.
   static void conversion(ExprPtr& slot) {
     ExprPtr& operand = std::get<Convert>(slot->node).operand;
-    const Type to = slot->type.isFloat() ? slot->type.withScalar(Scalar::Double) : slot->type;
+    const Type to = slot->type.isFloat() ? widened(slot->type) : slot->type;
     if (operand->type.isNarrow() && to.isDouble()) {
       const Scalar arithmetic = operand->type.arithmeticType().scalar;
       operand = convert(arithmetic, std::move(operand), slot->loc);
@@ -353,30 +274,25 @@ class FloatWidener {
   }
 
   ConstantId wideOf(ConstantId plain) {
-    if (!types_.holdsFloat(module_.constants[plain].type)) return plain;
-    if (const auto known = constants_.find(plain); known != constants_.end()) return known->second;
-    Constant wide;
-    wide.name = module_.constants[plain].name + "_wide";
-    wide.type = types_.of(module_.constants[plain].type);
-    wide.loc = module_.constants[plain].loc;
-    wide.value = wideConstant(module_.constants[plain].value);
-    module_.constants.push_back(std::move(wide));
-    return constants_[plain] = static_cast<ConstantId>(module_.constants.size() - 1);
+    return copyConstant(module_, plain, constants_, "_wide", [&](Constant& wide) {
+      wide.type = typeOf(wide.type);
+      rewrite(wide.value, {});
+    });
   }
 
   Module& module_;
-  WideTypes& types_;
-  std::map<ConstantId, ConstantId>& constants_;  ///< original to synthesized constant
+  std::map<std::uint32_t, Type> structs_;  ///< the wide type of each
+  ConstantCopies constants_;
 };
 
-/// True if a kernel computes any float.
-bool computesFloats(const Module& module, const WideTypes& types, const Kernel& kernel) {
+/// True if a kernel computes or stores any float.
+bool usesFloats(const Module& module, const Kernel& kernel) {
   for (const FunctionId id : functionsOf(module, kernel)) {
     bool found = std::ranges::any_of(module.functions[id].variables, [&](const Variable& variable) {
-      return types.holdsFloat(variable.type);
+      return holds(module, variable.type, Scalar::Float);
     });
     walkExprs(module.functions[id].body,
-              [&](const Expr& expr) { found = found || types.holdsFloat(expr.type); });
+              [&](const Expr& expr) { found = found || holds(module, expr.type, Scalar::Float); });
     if (found) return true;
   }
   return false;
@@ -397,15 +313,11 @@ bool resultsFit(const Module& module, const Kernel& combine) {
 }  // namespace
 
 void widenFloats(Module& module, Diagnostics&) {
-  WideTypes types(module);
-  std::map<ConstantId, ConstantId> constants;
-  FloatWidener widener(module, types, constants);
+  FloatWidener widener(module);
   forEachDeclaredKernel(module, [&](KernelId id) {
     const bool readsOutputs = module.kernels[id].isPart && module.kernels[id].reduction;  // those are rounded
-    if (module.kernels[id].isSynthesized || readsOutputs ||
-        !computesFloats(module, types, module.kernels[id]))
-      return;
-    UnsupportedOperations obstacles(module, types);
+    if (module.kernels[id].isSynthesized || readsOutputs || !usesFloats(module, module.kernels[id])) return;
+    UnsupportedOperations obstacles(module);
     std::string obstacle = obstacles.of(module.kernels[id]);
     const std::optional<KernelId> combine =
         module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
