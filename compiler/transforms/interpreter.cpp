@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -86,10 +87,12 @@ std::optional<double> inDouble(Intrinsic intrinsic, double x, double y, double z
   }
 }
 
+/// Values have the numbers of all lanes, one lane after the other.
 class Interpreter {
  public:
-  Interpreter(const Module& module, const InterpretedStreams& streams, int& steps)
-      : module_(module), streams_(streams), steps_(steps) {}
+  Interpreter(const Module& module, const InterpretedStreams& streams, const InterpretedLanes& lanes,
+              int& steps)
+      : module_(module), streams_(streams), lanes_(lanes), steps_(steps) {}
 
   std::vector<Numbers> call(FunctionId id, std::vector<Numbers> arguments) {
     Numbers result;
@@ -97,13 +100,14 @@ class Interpreter {
   }
 
   Numbers constant(const Expr& expr) {
-    Frame frame{nullptr, {}, {}};
+    Frame frame{{}, nullptr, {}, {}};
     return of(frame, expr);
   }
 
  private:
   enum class Flow : std::uint8_t { Next, Break, Continue, Return };
   struct Frame {
+    FunctionId id;
     const Function* function;
     std::vector<Numbers> variables;
     Numbers result;
@@ -113,18 +117,29 @@ class Interpreter {
     if (steps_-- <= 0) throw CannotInterpret{};
   }
 
+  /// Of one lane.
   std::size_t size(Type type) const {
     const std::uint64_t count = scalarCount(module_, type);
     if (count > 256) throw CannotInterpret{};
     return static_cast<std::size_t>(count);
   }
 
+  /// The value of a variable before its first assignment.
+  Numbers unassigned(const Frame& frame, VarId var) const {
+    if (lanes_.unassigned) return lanes_.unassigned(frame.id, var);
+    return Numbers(lanes_.count * size(frame.function->variables[var].type), 0.0);
+  }
+
+  void noteValue(const Frame& frame, VarId var) const {
+    if (lanes_.assigned) lanes_.assigned(frame.id, var, frame.variables[var]);
+  }
+
   std::vector<Numbers> call(FunctionId id, std::vector<Numbers> arguments, Numbers& result) {
     if (++depth_ > 32) throw CannotInterpret{};
-    Frame frame{&module_.functions[id], std::move(arguments), {}};
-    for (std::size_t i = frame.variables.size(); i < frame.function->variables.size(); ++i) {
-      frame.variables.emplace_back(size(frame.function->variables[i].type), 0.0);
-    }
+    Frame frame{id, &module_.functions[id], std::move(arguments), {}};
+    for (VarId i = 0; i < frame.variables.size(); ++i) noteValue(frame, i);
+    for (auto i = static_cast<VarId>(frame.variables.size()); i < frame.function->variables.size(); ++i)
+      frame.variables.push_back(unassigned(frame, i));
     block(frame, frame.function->body);
     --depth_;
     result = std::move(frame.result);
@@ -146,26 +161,25 @@ class Interpreter {
     return match(
         stmt.node,
         [&](const Declare& n) {
-          const std::size_t count = size(frame.function->variables[n.var].type);
-          frame.variables[n.var] = n.init ? of(frame, *n.init) : Numbers(count, 0.0);
+          frame.variables[n.var] = n.init ? of(frame, *n.init) : unassigned(frame, n.var);
+          if (n.init) noteValue(frame, n.var);
           return Flow::Next;
         },
         [&](const Assign& n) {
           Numbers value = of(frame, *n.value);
           if (n.op) value = binary(*n.op, n.place->type, n.value->type, of(frame, *n.place), value);
-          store(frame, *n.place, value);
+          store(frame, slots(frame, *n.place), value);
           return Flow::Next;
         },
         [&](const CallStmt& n) { return callStatement(frame, n); },
-        [&](const If& n) { return block(frame, of(frame, *n.cond)[0] != 0 ? n.then : n.otherwise); },
+        [&](const If& n) { return block(frame, decides(frame, *n.cond) ? n.then : n.otherwise); },
         [&](const Loop& n) { return loop(frame, n); }, [&](const Switch& n) { return choice(frame, n); },
         [](const Break&) { return Flow::Break; }, [](const Continue&) { return Flow::Continue; },
         [&](const Return& n) {
           if (n.value) frame.result = of(frame, *n.value);
           return Flow::Return;
         },
-        [&](const Scope& n) { return block(frame, n.body); },
-        [](const Push&) -> Flow { throw CannotInterpret{}; },
+        [&](const Scope& n) { return block(frame, n.body); }, [&](const Push& n) { return push(frame, n); },
         [](const Scatter&) -> Flow { throw CannotInterpret{}; });
   }
 
@@ -180,17 +194,35 @@ class Interpreter {
     Numbers result;
     const std::vector<Numbers> ends = call(n.callee, std::move(arguments), result);
     for (const auto& [i, place] : places) store(frame, place, ends[i]);
-    if (n.result) store(frame, *n.result, result);
+    if (n.result) store(frame, slots(frame, *n.result), result);
     return Flow::Next;
   }
 
+  Flow push(Frame& frame, const Push& n) {
+    if (!lanes_.pushed) throw CannotInterpret{};
+    const Numbers value = of(frame, *n.value);
+    const Numbers mask = n.mask ? of(frame, *n.mask) : Numbers(lanes_.count, 1.0);
+    for (std::size_t lane = 0; lane < lanes_.count; ++lane) {
+      if (mask.at(lane) != 0) lanes_.pushed(lane, value.at(lane * (value.size() / lanes_.count)));
+    }
+    return Flow::Next;
+  }
+
+  /// The number on which control flow depends: the same in all lanes.
+  double uniform(Frame& frame, const Expr& expr) {
+    const Numbers value = of(frame, expr);
+    if (std::ranges::find_if(value, [&](double v) { return v != value[0]; }) != value.end())
+      throw CannotInterpret{};
+    return value.at(0);
+  }
+  bool decides(Frame& frame, const Expr& cond) { return uniform(frame, cond) != 0; }
+
   Flow loop(Frame& frame, const Loop& n) {
     block(frame, n.init);
-    const auto holds = [&] { return !n.cond || of(frame, *n.cond)[0] != 0; };
     for (bool isFirst = true;; isFirst = false) {
       tick();
-      const bool asks = n.kind != LoopKind::DoWhile || !isFirst;
-      if (asks && !holds()) return Flow::Next;
+      const bool asks = n.cond && (n.kind != LoopKind::DoWhile || !isFirst);
+      if (asks && !decides(frame, *n.cond)) return Flow::Next;
       const Flow flow = block(frame, n.body);
       if (flow == Flow::Break) return Flow::Next;
       if (flow == Flow::Return) return flow;
@@ -199,7 +231,7 @@ class Interpreter {
   }
 
   Flow choice(Frame& frame, const Switch& n) {
-    const auto value = static_cast<std::int64_t>(of(frame, *n.value)[0]);
+    const auto value = static_cast<std::int64_t>(uniform(frame, *n.value));
     auto at = std::ranges::find_if(
         n.cases, [&](const Case& c) { return std::ranges::find(c.values, value) != c.values.end(); });
     if (at == n.cases.end()) at = std::ranges::find_if(n.cases, &Case::isDefault);
@@ -211,7 +243,40 @@ class Interpreter {
     return Flow::Next;
   }
 
-  // ---- lvalues ------------------------------------------------------------------------------------
+  // ---- parts and lvalues --------------------------------------------------------------------------
+
+  /// What a Member, Index or Swizzle names of its base, of which `all` has something for each number. An index outside is
+  /// clamped.
+  template <class T>
+  std::vector<T> part(Frame& frame, const Expr& expr, const std::vector<T>& all) {
+    const std::size_t count = size(expr.type), total = all.size() / lanes_.count;
+    const auto chosen = [&](auto&& numberOf) {
+      std::vector<T> part;
+      for (std::size_t lane = 0; lane < lanes_.count; ++lane) {
+        for (std::size_t i = 0; i < count; ++i) part.push_back(all.at(lane * total + numberOf(lane, i)));
+      }
+      return part;
+    };
+    if (const auto* n = std::get_if<Member>(&expr.node)) {
+      const std::size_t first = scalarOffset(module_, n->base->type, n->field);
+      return chosen([&](std::size_t, std::size_t i) { return first + i; });
+    }
+    if (const auto* n = std::get_if<Swizzle>(&expr.node))
+      return chosen([&](std::size_t, std::size_t i) { return n->components[i]; });
+    const Numbers index = of(frame, *std::get<Index>(expr.node).index);
+    const auto last = static_cast<double>(total / count) - 1;
+    return chosen([&](std::size_t lane, std::size_t i) {
+      return static_cast<std::size_t>(std::clamp(index.at(lane), 0.0, last)) * count + i;
+    });
+  }
+
+  /// What an expression is a part of, or null.
+  static const Expr* baseOf(const Expr& expr) {
+    if (const auto* n = std::get_if<Member>(&expr.node)) return n->base.get();
+    if (const auto* n = std::get_if<Index>(&expr.node)) return n->base.get();
+    const auto* n = std::get_if<Swizzle>(&expr.node);
+    return n != nullptr ? n->base.get() : nullptr;
+  }
 
   /// A variable, and the positions of an lvalue's numbers in it.
   struct Slots {
@@ -219,87 +284,67 @@ class Interpreter {
     std::vector<std::size_t> numbers;
   };
 
-  static std::vector<std::size_t> some(const std::vector<std::size_t>& all, std::size_t from,
-                                       std::size_t count) {
-    return {all.begin() + static_cast<std::ptrdiff_t>(from),
-            all.begin() + static_cast<std::ptrdiff_t>(from + count)};
-  }
-
   Slots slots(Frame& frame, const Expr& place) {
-    if (const auto* n = std::get_if<VarRef>(&place.node)) {
-      Slots all{n->var, {}};
-      for (std::size_t i = 0; i < frame.variables[n->var].size(); ++i) all.numbers.push_back(i);
-      return all;
+    if (const Expr* base = baseOf(place)) {
+      Slots whole = slots(frame, *base);
+      return {whole.var, part(frame, place, whole.numbers)};
     }
-    if (const auto* n = std::get_if<Member>(&place.node)) {
-      Slots base = slots(frame, *n->base);
-      base.numbers = some(base.numbers, scalarOffset(module_, n->base->type, n->field), size(place.type));
-      return base;
-    }
-    if (const auto* n = std::get_if<Index>(&place.node)) {
-      Slots base = slots(frame, *n->base);
-      const std::size_t count = size(place.type);
-      base.numbers = some(base.numbers, indexed(frame, *n, base.numbers.size()), count);
-      return base;
-    }
-    if (const auto* n = std::get_if<Swizzle>(&place.node)) {
-      Slots base = slots(frame, *n->base);
-      std::vector<std::size_t> chosen;
-      for (const std::uint8_t component : n->components) chosen.push_back(base.numbers[component]);
-      base.numbers = std::move(chosen);
-      return base;
-    }
-    throw CannotInterpret{};
+    const auto* n = std::get_if<VarRef>(&place.node);
+    if (n == nullptr) throw CannotInterpret{};
+    Slots all{n->var, std::vector<std::size_t>(frame.variables[n->var].size())};
+    std::iota(all.numbers.begin(), all.numbers.end(), std::size_t{0});
+    return all;
   }
 
-  /// Where the indexed part begins; an index outside is clamped.
-  std::size_t indexed(Frame& frame, const Index& n, std::size_t total) {
-    const std::size_t count =
-        size(n.base->type.kind == Type::Kind::Array ? module_.arrays[n.base->type.index].element
-                                                    : n.base->type.indexed());
-    const auto last = static_cast<double>(total / count) - 1;
-    return static_cast<std::size_t>(std::clamp(of(frame, *n.index)[0], 0.0, last)) * count;
-  }
-
-  void store(Frame& frame, const Expr& place, const Numbers& value) {
-    store(frame, slots(frame, place), value);
-  }
-  static void store(Frame& frame, const Slots& at, const Numbers& value) {
-    for (std::size_t i = 0; i < at.numbers.size(); ++i) {
-      frame.variables[at.var][at.numbers[i]] = value.size() == 1 ? value[0] : value.at(i);
-    }
+  void store(Frame& frame, const Slots& at, const Numbers& value) const {
+    const std::size_t count = at.numbers.size() / lanes_.count;
+    for (std::size_t i = 0; i < at.numbers.size(); ++i)
+      frame.variables[at.var][at.numbers[i]] = component(value, i / count, i % count);
+    noteValue(frame, at.var);
   }
 
   // ---- expressions --------------------------------------------------------------------------------
 
+  /// A number of a value, or its only one.
+  double component(const Numbers& value, std::size_t lane, std::size_t i) const {
+    const std::size_t count = value.size() / lanes_.count;
+    return value.at(count == 1 ? lane : lane * count + i);
+  }
+
+  /// A value of `count` numbers in each lane.
+  template <class NumberOf>
+  Numbers each(std::size_t count, NumberOf&& numberOf) const {
+    Numbers value;
+    value.reserve(lanes_.count * count);
+    for (std::size_t lane = 0; lane < lanes_.count; ++lane) {
+      for (std::size_t i = 0; i < count; ++i) value.push_back(numberOf(lane, i));
+    }
+    return value;
+  }
+
   Numbers of(Frame& frame, const Expr& expr) {
     tick();
+    if (const Expr* base = baseOf(expr)) return part(frame, expr, of(frame, *base));
     return match(
-        expr.node, [&](const Literal& n) { return Numbers{valueOf(expr.type.scalar, n)}; },
+        expr.node, [&](const Literal& n) { return Numbers(lanes_.count, valueOf(expr.type.scalar, n)); },
         [&](const VarRef& n) { return frame.variables.at(n.var); },
         [&](const ConstantRef& n) { return constant(*module_.constants[n.constant].value); },
-        [&](const Unary& n) { return unary(n, of(frame, *n.operand)); },
+        [&](const Unary& n) {
+          Numbers value = of(frame, *n.operand);
+          for (double& v : value) v = computed(n.op, n.operand->type.scalar, v);
+          return value;
+        },
         [&](const Binary& n) { return binaryOf(frame, n); },
-        [&](const Select& n) { return select(frame, n); },
+        [&](const Select& n) { return select(frame, n, size(expr.type)); },
         [&](const Convert& n) {
           Numbers value = of(frame, *n.operand);
           for (double& v : value) v = toScalar(n.operand->type.scalar, expr.type.scalar, v);
           return value;
         },
-        [&](const Construct& n) { return construct(frame, n, expr.type); },
-        [&](const Swizzle& n) {
-          const Numbers base = of(frame, *n.base);
-          Numbers value;
-          for (const std::uint8_t component : n.components) value.push_back(base[component]);
-          return value;
-        },
-        [&](const Member& n) {
-          return part(of(frame, *n.base), scalarOffset(module_, n.base->type, n.field), expr.type);
-        },
-        [&](const Index& n) {
-          const Numbers base = of(frame, *n.base);
-          return part(base, indexed(frame, n, base.size()), expr.type);
-        },
+        [&](const Construct& n) { return construct(frame, n, size(expr.type)); },
+        [](const Swizzle&) -> Numbers { throw CannotInterpret{}; },  // parts
+        [](const Member&) -> Numbers { throw CannotInterpret{}; },
+        [](const Index&) -> Numbers { throw CannotInterpret{}; },
         [&](const Call& n) {
           std::vector<Numbers> arguments;
           for (const ExprPtr& arg : n.args) arguments.push_back(of(frame, *arg));
@@ -308,140 +353,181 @@ class Interpreter {
           return result;
         },
         [&](const IntrinsicCall& n) { return intrinsic(frame, n, expr.type); },
-        [&](const GatherRead& n) { return read(n.stream, of(frame, *n.index), {}); },
-        [&](const NeighborRead& n) { return read(n.stream, of(frame, *n.offset), streams_.index); },
-        [&](const Sample& n) { return read(n.stream, of(frame, *n.position), {}); },  // any value does
-        [&](const IndexOf&) { return Numbers(streams_.index.begin(), streams_.index.end()); },
-        [&](const ExtentOf&) { return Numbers(streams_.extent.begin(), streams_.extent.end()); });
+        [&](const GatherRead& n) { return read(n.stream, of(frame, *n.index), false); },
+        [&](const NeighborRead& n) { return read(n.stream, of(frame, *n.offset), true); },
+        [&](const Sample& n) { return read(n.stream, of(frame, *n.position), false); },  // any value does
+        [&](const IndexOf&) {
+          return each(4, [&](std::size_t lane, std::size_t i) { return double(indexOf(lane)[i]); });
+        },
+        [&](const ExtentOf&) {
+          return each(4, [&](std::size_t, std::size_t i) { return double(streams_.extent[i]); });
+        });
   }
 
-  /// The element at an index, from an origin.
-  Numbers read(const StreamRef& stream, const Numbers& at, InterpretedStreams::Index index) const {
+  InterpretedStreams::Index indexOf(std::size_t lane) const {
+    InterpretedStreams::Index index = streams_.index;
+    index[0] += static_cast<std::int64_t>(lane);
+    return index;
+  }
+
+  /// The elements at an index, or at an offset from the lane's own.
+  Numbers read(const StreamRef& stream, const Numbers& at, bool isOffset) const {
     if (stream.space != StreamRef::Space::KernelParameter || !streams_.read) throw CannotInterpret{};
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      if (!(std::fabs(at[i]) < 2147483648.0)) throw CannotInterpret{};
-      index[i] += static_cast<std::int64_t>(std::floor(at[i]));
+    Numbers all;
+    const std::size_t rank = at.size() / lanes_.count;
+    for (std::size_t lane = 0; lane < lanes_.count; ++lane) {
+      InterpretedStreams::Index index = isOffset ? indexOf(lane) : InterpretedStreams::Index{};
+      for (std::size_t i = 0; i < rank; ++i) {
+        const double number = at[lane * rank + i];
+        if (!(std::fabs(number) < 2147483648.0)) throw CannotInterpret{};
+        index[i] += static_cast<std::int64_t>(std::floor(number));
+      }
+      const Numbers element = streams_.read(stream.id, index);
+      all.insert(all.end(), element.begin(), element.end());
     }
-    return streams_.read(stream.id, index);
-  }
-
-  Numbers part(const Numbers& all, std::size_t from, Type type) const {
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(from);
-    return {begin, begin + static_cast<std::ptrdiff_t>(size(type))};
-  }
-
-  static Numbers unary(const Unary& n, Numbers value) {
-    for (double& v : value) v = computed(n.op, n.operand->type.scalar, v);
-    return value;
+    return all;
   }
 
   Numbers binaryOf(Frame& frame, const Binary& n) {
     Numbers a = of(frame, *n.lhs);
-    if (n.op == BinaryOp::LogicalAnd && a.size() == 1 && a[0] == 0) return {0};
-    if (n.op == BinaryOp::LogicalOr && a.size() == 1 && a[0] != 0) return {1};
+    const bool mayDecide = !lanes_.inFull && a.size() == 1;
+    if (mayDecide && n.op == BinaryOp::LogicalAnd && a[0] == 0) return {0};
+    if (mayDecide && n.op == BinaryOp::LogicalOr && a[0] != 0) return {1};
     return binary(n.op, n.lhs->type, n.rhs->type, a, of(frame, *n.rhs));
   }
 
-  static Numbers binary(BinaryOp op, Type left, Type right, const Numbers& a, const Numbers& b) {
+  Numbers binary(BinaryOp op, Type left, Type right, const Numbers& a, const Numbers& b) const {
     if (op == BinaryOp::Mul && left.isMatrix() && !right.isScalar()) return product(left.width, a, b);
-    Numbers value(std::max(a.size(), b.size()));
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      const double x = a.size() == 1 ? a[0] : a.at(i), y = b.size() == 1 ? b[0] : b.at(i);
-      const std::optional<double> result = computed(op, left.scalar, x, y);
+    return each(std::max(a.size(), b.size()) / lanes_.count, [&](std::size_t lane, std::size_t i) {
+      const std::optional<double> result =
+          computed(op, left.scalar, component(a, lane, i), component(b, lane, i));
       if (!result) throw CannotInterpret{};
-      value[i] = *result;
-    }
-    return value;
+      return *result;
+    });
   }
 
   /// Multiplies a matrix, stored by rows, by a matrix or a column vector.
-  static Numbers product(std::size_t width, const Numbers& a, const Numbers& b) {
-    const std::size_t columns = b.size() / width;
-    Numbers value(width * columns, 0.0);
-    for (std::size_t row = 0; row < width; ++row) {
-      for (std::size_t column = 0; column < columns; ++column) {
-        for (std::size_t k = 0; k < width; ++k)
-          value[row * columns + column] += a[row * width + k] * b[k * columns + column];
+  Numbers product(std::size_t width, const Numbers& a, const Numbers& b) const {
+    const std::size_t columns = b.size() / lanes_.count / width;
+    return each(width * columns, [&](std::size_t lane, std::size_t i) {
+      double sum = 0;
+      for (std::size_t k = 0; k < width; ++k)
+        sum += component(a, lane, i / columns * width + k) * component(b, lane, k * columns + i % columns);
+      return sum;
+    });
+  }
+
+  Numbers select(Frame& frame, const Select& n, std::size_t count) {
+    const Numbers cond = of(frame, *n.cond);
+    if (!lanes_.inFull && cond.size() == 1) return of(frame, cond[0] != 0 ? *n.yes : *n.no);
+    const Numbers yes = of(frame, *n.yes), no = of(frame, *n.no);
+    return each(count, [&](std::size_t lane, std::size_t i) {
+      return component(component(cond, lane, i) != 0 ? yes : no, lane, i);
+    });
+  }
+
+  Numbers construct(Frame& frame, const Construct& n, std::size_t count) {
+    std::vector<Numbers> args;
+    std::size_t given = 0;
+    for (const ExprPtr& arg : n.args) given += args.emplace_back(of(frame, *arg)).size() / lanes_.count;
+    if (given == 1)
+      return each(count, [&](std::size_t lane, std::size_t) { return component(args[0], lane, 0); });
+    if (given != count) throw CannotInterpret{};
+    Numbers value;
+    for (std::size_t lane = 0; lane < lanes_.count; ++lane) {
+      for (const Numbers& arg : args) {
+        const auto size = static_cast<std::ptrdiff_t>(arg.size() / lanes_.count);
+        const auto first = arg.begin() + static_cast<std::ptrdiff_t>(lane) * size;
+        value.insert(value.end(), first, first + size);
       }
     }
     return value;
   }
 
-  Numbers select(Frame& frame, const Select& n) {
-    const Numbers cond = of(frame, *n.cond);
-    if (cond.size() == 1) return of(frame, cond[0] != 0 ? *n.yes : *n.no);
-    const Numbers yes = of(frame, *n.yes);
-    Numbers value = of(frame, *n.no);
-    for (std::size_t i = 0; i < value.size(); ++i) value[i] = cond.at(i) != 0 ? yes.at(i) : value[i];
-    return value;
+  Numbers dot(const Numbers& a, const Numbers& b) const {
+    return each(1, [&](std::size_t lane, std::size_t) {
+      double sum = 0;
+      for (std::size_t i = 0; i < a.size() / lanes_.count; ++i)
+        sum += component(a, lane, i) * component(b, lane, i);
+      return sum;
+    });
+  }
+  Numbers length(const Numbers& a) const {
+    Numbers squares = dot(a, a);
+    for (double& v : squares) v = std::sqrt(v);
+    return squares;
   }
 
-  Numbers construct(Frame& frame, const Construct& n, Type type) {
-    Numbers value;
-    for (const ExprPtr& arg : n.args) {
-      const Numbers numbers = of(frame, *arg);
-      value.insert(value.end(), numbers.begin(), numbers.end());
+  /// An intrinsic that does not compute each component by itself.
+  std::optional<Numbers> combined(Intrinsic intrinsic, const std::vector<Numbers>& args) const {
+    const Numbers &a = args.front(), &b = args.back();
+    const std::size_t width = a.size() / lanes_.count;
+    const auto isSet = [](double v) { return v != 0; };
+    const auto componentsSet = [&](std::size_t lane) {
+      const auto first = a.begin() + static_cast<std::ptrdiff_t>(lane * width);
+      return static_cast<std::size_t>(
+          std::count_if(first, first + static_cast<std::ptrdiff_t>(width), isSet));
+    };
+    switch (intrinsic) {
+      case Intrinsic::AnyLane: return Numbers(lanes_.count, double(std::ranges::any_of(a, isSet)));
+      case Intrinsic::Any:
+        return each(1, [&](std::size_t lane, std::size_t) { return double(componentsSet(lane) > 0); });
+      case Intrinsic::All:
+        return each(1, [&](std::size_t lane, std::size_t) { return double(componentsSet(lane) == width); });
+      case Intrinsic::Dot: return dot(a, b);
+      case Intrinsic::Length: return length(a);
+      case Intrinsic::Distance:
+        return length(each(width, [&](std::size_t lane, std::size_t i) {
+          return component(a, lane, i) - component(b, lane, i);
+        }));
+      case Intrinsic::Normalize: {
+        const Numbers lengths = length(a);
+        return each(width, [&](std::size_t lane, std::size_t i) {
+          return lengths[lane] == 0 ? 0 : component(a, lane, i) / lengths[lane];
+        });
+      }
+      case Intrinsic::Cross:
+        return each(3, [&](std::size_t lane, std::size_t i) {
+          const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+          return component(a, lane, j) * component(b, lane, k) -
+                 component(a, lane, k) * component(b, lane, j);
+        });
+      default: return std::nullopt;
     }
-    if (value.size() == 1) value.resize(size(type), value[0]);
-    if (value.size() != size(type)) throw CannotInterpret{};
-    return value;
   }
 
   Numbers intrinsic(Frame& frame, const IntrinsicCall& n, Type type) {
     std::vector<Numbers> args;
     for (const ExprPtr& arg : n.args) args.push_back(of(frame, *arg));
-    const auto dot = [](const Numbers& a, const Numbers& b) {
-      double sum = 0;
-      for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-      return sum;
-    };
-    if (n.intrinsic == Intrinsic::Dot) return {dot(args[0], args[1])};
-    if (n.intrinsic == Intrinsic::Length) return {std::sqrt(dot(args[0], args[0]))};
-    if (n.intrinsic == Intrinsic::Distance) {
-      for (std::size_t i = 0; i < args[0].size(); ++i) args[0][i] -= args[1].at(i);
-      return {std::sqrt(dot(args[0], args[0]))};
-    }
-    if (n.intrinsic == Intrinsic::Normalize) {
-      const double length = std::sqrt(dot(args[0], args[0]));
-      for (double& v : args[0]) v = length == 0 ? 0 : v / length;
-      return args[0];
-    }
-    if (n.intrinsic == Intrinsic::Cross) {
-      const Numbers &a = args[0], &b = args[1];
-      return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    }
-    if (n.intrinsic == Intrinsic::Any)
-      return {std::ranges::any_of(args[0], [](double v) { return v != 0; }) ? 1.0 : 0.0};
-    if (n.intrinsic == Intrinsic::All)
-      return {std::ranges::all_of(args[0], [](double v) { return v != 0; }) ? 1.0 : 0.0};
-    Numbers value(size(type));
-    for (std::size_t i = 0; i < value.size(); ++i) {
+    if (std::optional<Numbers> value = combined(n.intrinsic, args)) return std::move(*value);
+    const Scalar scalar = n.args.front()->type.scalar;
+    return each(size(type), [&](std::size_t lane, std::size_t i) {
       const auto at = [&](std::size_t arg) {
-        if (arg >= args.size()) return 0.0;
-        return args[arg].size() == 1 ? args[arg][0] : args[arg].at(i);
+        return arg < args.size() ? component(args[arg], lane, i) : 0.0;
       };
-      const Scalar scalar = n.args.front()->type.scalar;
       std::optional<double> v = computed(n.intrinsic, scalar, at(0), at(1), at(2));
       if (!v) v = inDouble(n.intrinsic, at(0), at(1), at(2));
       if (!v) throw CannotInterpret{};
-      value[i] = *v;
-    }
-    return value;
+      return *v;
+    });
   }
 
   const Module& module_;
   const InterpretedStreams& streams_;
+  const InterpretedLanes& lanes_;
   int& steps_;
   int depth_ = 0;
 };
 
 }  // namespace
 
-std::optional<std::vector<Numbers>> interpret(const Module& module, FunctionId id,
-                                              std::vector<Numbers> arguments,
-                                              const InterpretedStreams& streams, int& steps) {
+namespace {
+
+/// What `run` returns; nullopt if something has no value here.
+template <class Run>
+auto unlessImpossible(Run&& run) -> std::optional<decltype(run())> {
   try {
-    return Interpreter(module, streams, steps).call(id, std::move(arguments));
+    return run();
   } catch (const CannotInterpret&) {
     return std::nullopt;
   } catch (const std::out_of_range&) {
@@ -449,15 +535,19 @@ std::optional<std::vector<Numbers>> interpret(const Module& module, FunctionId i
   }
 }
 
+}  // namespace
+
+std::optional<std::vector<Numbers>> interpret(const Module& module, FunctionId id,
+                                              std::vector<Numbers> arguments,
+                                              const InterpretedStreams& streams, int& steps,
+                                              const InterpretedLanes& lanes) {
+  return unlessImpossible(
+      [&] { return Interpreter(module, streams, lanes, steps).call(id, std::move(arguments)); });
+}
+
 std::optional<Numbers> interpretConstant(const Module& module, const Expr& expr) {
-  try {
-    int steps = 20'000;
-    return Interpreter(module, {}, steps).constant(expr);
-  } catch (const CannotInterpret&) {
-    return std::nullopt;
-  } catch (const std::out_of_range&) {
-    return std::nullopt;
-  }
+  int steps = 20'000;
+  return unlessImpossible([&] { return Interpreter(module, {}, {}, steps).constant(expr); });
 }
 
 }  // namespace skc

@@ -9,39 +9,36 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/uniformity.hpp"
 #include "ir/build.hpp"
 #include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
-#include "transforms/testing/lane_evaluator.hpp"
+#include "transforms/testing/interpret_lanes.hpp"
 #include "transforms/testing/random_kernel.hpp"
 
 namespace skc {
 namespace {
 
 using namespace ir;
-using Lanes = LaneEvaluator::Lanes;
-
 struct Outcome {
-  LaneEvaluator::Value r;
-  std::vector<LaneEvaluator::Value> pushed;
+  Numbers r;
+  std::vector<Numbers> pushed;  ///< one list per lane
   bool operator==(const Outcome&) const = default;
 };
 
 /// Runs a kernel of u, x, r and an append output, with its mask if any, for elements from `first` on.
 Outcome run(const Module& module, std::int32_t u, const std::vector<std::int32_t>& x, std::size_t first,
             std::size_t count, bool inFull, const analysis::Uniformity* shapes) {
-  LaneEvaluator evaluator(module, count, inFull, shapes);
-  evaluator.firstIndex = static_cast<std::int32_t>(first);
-  std::vector<Lanes> arguments(4, Lanes(count, {0}));
-  arguments[0] = Lanes(count, {static_cast<double>(u)});
-  for (std::size_t i = 0; i < count; ++i) arguments[1][i] = {static_cast<double>(x[first + i])};
+  std::vector<Numbers> arguments(4, Numbers(count, 0));
+  arguments[0] = Numbers(count, u);
+  for (std::size_t i = 0; i < count; ++i) arguments[1][i] = x[first + i];
   const Kernel& kernel = module.kernels.front();
-  if (entryMask(module, kernel)) arguments.emplace_back(count, LaneEvaluator::Value{1});
-  const std::vector<Lanes> after = evaluator.run(kernel.entry, std::move(arguments));
-  Outcome outcome{{}, std::move(evaluator.pushed)};
-  for (const LaneEvaluator::Value& value : after[2]) outcome.r.push_back(value.front());
-  return outcome;
+  if (entryMask(module, kernel)) arguments.emplace_back(count, 1);
+  LanesResult result =
+      interpretLanes(module, kernel.entry, std::move(arguments),
+                     {.count = count, .inFull = inFull, .firstIndex = first, .shapes = shapes});
+  return {std::move(result.parameters[2]), std::move(result.pushed)};
 }
 
 Outcome oneByOne(const Module& module, std::int32_t u, const std::vector<std::int32_t>& x, bool inFull) {

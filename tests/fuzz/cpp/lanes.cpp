@@ -8,12 +8,12 @@
 
 #include "ir/build.hpp"
 #include "transforms/predicate.hpp"
-#include "transforms/testing/lane_evaluator.hpp"
+#include "transforms/testing/interpret_lanes.hpp"
 
 namespace fuzz::cpp {
 namespace {
 
-using skc::LaneEvaluator;
+using skc::Numbers;
 namespace ir = skc::ir;
 
 /// What the kernel gives for all elements, `lanes` at once. In the last group, some lanes have no element.
@@ -23,22 +23,22 @@ Outputs outputsOf(const ir::Module& module, const ir::Kernel& kernel, std::size_
   const Inputs& in = inputs();
   const bool hasMask = skc::entryMask(module, kernel).has_value();
   for (std::size_t first = 0; first < sampleCount; first += lanes) {
-    LaneEvaluator evaluator(module, lanes, lanes > 1, shapes);
-    evaluator.firstIndex = static_cast<std::int32_t>(first);
-    std::vector<LaneEvaluator::Lanes> arguments(6, LaneEvaluator::Lanes(lanes, {0.0}));
-    if (hasMask) arguments.emplace_back(lanes, LaneEvaluator::Value{0});
+    std::vector<Numbers> arguments(hasMask ? 7 : 6, Numbers(lanes, 0.0));
     const std::size_t count = std::min<std::size_t>(lanes, sampleCount - first);
     for (std::size_t lane = 0; lane < count; ++lane) {
-      arguments[0][lane] = {static_cast<double>(in.a[first + lane])};
-      arguments[1][lane] = {static_cast<double>(in.b[first + lane])};
-      arguments[2][lane] = {static_cast<double>(in.c[first + lane])};
-      if (hasMask) arguments[6][lane] = {1.0};
+      arguments[0][lane] = in.a[first + lane];
+      arguments[1][lane] = in.b[first + lane];
+      arguments[2][lane] = in.c[first + lane];
+      if (hasMask) arguments[6][lane] = 1;
     }
-    const std::vector<LaneEvaluator::Lanes> after = evaluator.run(kernel.entry, std::move(arguments));
+    const std::vector<Numbers> after =
+        skc::interpretLanes(module, kernel.entry, std::move(arguments),
+                            {.count = lanes, .inFull = lanes > 1, .firstIndex = first, .shapes = shapes})
+            .parameters;
     for (std::size_t lane = 0; lane < count; ++lane) {
-      outputs.r0[first + lane] = static_cast<std::int32_t>(after[3][lane].front());
-      outputs.r1[first + lane] = static_cast<std::uint32_t>(after[4][lane].front());
-      outputs.r2[first + lane] = static_cast<float>(after[5][lane].front());
+      outputs.r0[first + lane] = static_cast<std::int32_t>(after[3][lane]);
+      outputs.r1[first + lane] = static_cast<std::uint32_t>(after[4][lane]);
+      outputs.r2[first + lane] = static_cast<float>(after[5][lane]);
     }
   }
   return outputs;
