@@ -8,6 +8,7 @@
 #include "ir/build.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/lvalue.hpp"
+#include "ir/op_weight.hpp"
 #include "ir/walk.hpp"
 #include "native/leaves.hpp"
 #include "native/streams.hpp"
@@ -21,30 +22,8 @@ using analysis::Uniformity;
 namespace {
 
 /// The largest body that is emitted twice.
-constexpr std::size_t mostExpressions = 100;
+constexpr std::uint32_t mostExpressions = 100;
 constexpr std::size_t mostComponents = 4;
-
-/// The number of expressions in a block and its callees; nullopt if they contain a loop or exceed
-/// mostExpressions.
-std::optional<std::size_t> sizeOf(const Module& module, const Block& body) {
-  std::size_t count = 0;
-  bool isTooLarge = false;
-  const auto addCalled = [&](FunctionId callee) {
-    const auto inner = sizeOf(module, module.functions[callee].body);
-    isTooLarge = isTooLarge || !inner;
-    count += inner.value_or(0);
-  };
-  walkStmts(body, [&](const Stmt& stmt) {
-    isTooLarge = isTooLarge || std::holds_alternative<Loop>(stmt.node);
-    if (const auto* n = std::get_if<CallStmt>(&stmt.node)) addCalled(n->callee);
-  });
-  walkExprs(body, [&](const Expr& expr) {
-    ++count;
-    if (const auto* n = std::get_if<Call>(&expr.node)) addCalled(n->callee);
-  });
-  if (isTooLarge || count > mostExpressions) return std::nullopt;
-  return count;
-}
 
 class LoopGathers {
  public:
@@ -166,7 +145,8 @@ std::vector<BlockGather> blockGathers(const Module& module, const Kernel& kernel
   const std::optional<std::int64_t> iterations = tripCount(module, loop);
   if (iterations && *iterations < Streams::blockLength) return {};
   std::vector<BlockGather> found = LoopGathers(module, kernel, uniformity, function, loop).find();
-  if (!found.empty() && !sizeOf(module, loop.body)) found.clear();
+  // a body with a loop weighs as much as the limit
+  if (weigh(module, loop.body, {.node = 1}, mostExpressions + 1) > mostExpressions) found.clear();
   return found;
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "ir/call_graph.hpp"
+#include "ir/op_weight.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::native {
@@ -50,18 +50,6 @@ class RecordCounter {
   std::map<FunctionId, std::uint32_t> functions_;
 };
 
-/// The operations of an expression itself, without operands, relative to an addition.
-std::uint32_t costOf(const Expr& expr) {
-  constexpr std::uint32_t intrinsic = 8, gather = 4, sample = 16;
-  if (std::holds_alternative<IntrinsicCall>(expr.node)) return intrinsic * expr.type.width;
-  if (std::holds_alternative<GatherRead>(expr.node)) return gather;
-  if (std::holds_alternative<Sample>(expr.node)) return sample;
-  const bool isOperation =
-      std::holds_alternative<Unary>(expr.node) || std::holds_alternative<Binary>(expr.node) ||
-      std::holds_alternative<Select>(expr.node) || std::holds_alternative<Convert>(expr.node);
-  return isOperation ? expr.type.width : 0;
-}
-
 }  // namespace
 
 bool isReordered(const Module& module, const Kernel& kernel) {
@@ -76,13 +64,9 @@ bool isReordered(const Module& module, const Kernel& kernel) {
 bool isLight(const Module& module, const Kernel& kernel) {
   // large, because elements are computed several at a time, and records are moved one by one
   constexpr std::uint32_t limit = 192;
-  std::uint32_t cost = 0;
-  for (const FunctionId id : functionsOf(module, kernel)) {
-    const Block& body = module.functions[id].body;
-    walkStmts(body, [&](const Stmt& stmt) { cost += std::holds_alternative<Loop>(stmt.node) ? limit : 0; });
-    walkExprs(body, [&](const Expr& expr) { cost += costOf(expr); });
-  }
-  return cost < limit;
+  constexpr OpWeights weights = {
+      .operation = 1, .intrinsic = 8, .gather = 4, .sample = 16, .countsCalls = false};
+  return weigh(module, module.functions[kernel.entry].body, weights, limit) < limit;
 }
 
 }  // namespace skc::native

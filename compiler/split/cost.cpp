@@ -6,6 +6,7 @@
 
 #include "ir/call_graph.hpp"
 #include "ir/counted_loop.hpp"
+#include "ir/op_weight.hpp"
 #include "ir/walk.hpp"
 #include "support/overloaded.hpp"
 
@@ -83,10 +84,7 @@ bool isOfExactSums(Intrinsic intrinsic) {
 
 /// The weight of a node without its operands.
 std::uint32_t weightOf(const Expr& expr) {
-  const bool isOperation =
-      std::holds_alternative<Unary>(expr.node) || std::holds_alternative<Binary>(expr.node) ||
-      std::holds_alternative<Select>(expr.node) || std::holds_alternative<Convert>(expr.node);
-  if (isOperation && expr.type.isDouble()) return static_cast<std::uint32_t>(doubleCost);
+  if (isOperation(expr) && expr.type.isDouble()) return static_cast<std::uint32_t>(doubleCost);
   const auto* call = std::get_if<IntrinsicCall>(&expr.node);
   if (call == nullptr) return 1;
   if (call->args[0]->type.isDouble()) return static_cast<std::uint32_t>(doubleCost);

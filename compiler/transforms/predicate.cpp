@@ -14,7 +14,6 @@
 #include "ir/validate.hpp"
 #include "ir/walk.hpp"
 #include "support/internal_error.hpp"
-#include "transforms/blend_cost.hpp"
 #include "transforms/hoist_expressions.hpp"
 #include "transforms/predicate_function.hpp"
 #include "transforms/split_counters.hpp"
@@ -32,10 +31,10 @@ bool needsMask(const analysis::Uniformity& uniformity, FunctionId id, const Stmt
 }
 
 /// True if a mask lets a function skip a long branch that no active lane takes.
-bool profitsFromMask(const analysis::Uniformity& uniformity, BlendCost& cost, FunctionId id,
+bool profitsFromMask(const Module& module, const analysis::Uniformity& uniformity, FunctionId id,
                      const Stmt& stmt) {
   const bool isBranch = std::holds_alternative<If>(stmt.node) || std::holds_alternative<Switch>(stmt.node);
-  return isBranch && uniformity.diverges(id, stmt) && !cost.isShort({&stmt, 1});
+  return isBranch && uniformity.diverges(id, stmt) && !isShort(module, {&stmt, 1});
 }
 
 template <class Fn>
@@ -47,7 +46,7 @@ bool anyStmt(const Block& block, Fn&& fn) {
 
 /// The functions that take a mask. `functions` lists callees before their callers.
 std::set<FunctionId> maskedFunctions(const Module& module, const Kernel& kernel,
-                                     const analysis::Uniformity& uniformity, BlendCost& cost,
+                                     const analysis::Uniformity& uniformity,
                                      const std::vector<FunctionId>& functions) {
   std::set<FunctionId> needing, masked;
   bool entryNeedsMask = false;
@@ -56,8 +55,8 @@ std::set<FunctionId> maskedFunctions(const Module& module, const Kernel& kernel,
     const bool must =
         anyStmt(function.body, [&](const Stmt& stmt) { return needsMask(uniformity, id, stmt); });
     entryNeedsMask = entryNeedsMask || must;
-    const bool profits =
-        anyStmt(function.body, [&](const Stmt& stmt) { return profitsFromMask(uniformity, cost, id, stmt); });
+    const bool profits = anyStmt(
+        function.body, [&](const Stmt& stmt) { return profitsFromMask(module, uniformity, id, stmt); });
     const bool callsNeeding =
         std::ranges::any_of(callees(function), [&](FunctionId callee) { return needing.contains(callee); });
     if (must || profits || callsNeeding) needing.insert(id);
@@ -94,11 +93,10 @@ void predicate(Module& module) {
       isSplit = splitCounters(module.functions[id], id, *known) || isSplit;
     if (isSplit) known.emplace(module, kernel);
     const analysis::Uniformity& uniformity = *known;
-    BlendCost cost(module);
-    const PredicateContext context{module, uniformity,
-                                   maskedFunctions(module, kernel, uniformity, cost, functions), isLong};
+    const PredicateContext context{module, uniformity, maskedFunctions(module, kernel, uniformity, functions),
+                                   isLong};
     std::vector<Function> results;   // replaced at the end: the analysis identifies statements by address
-    for (const FunctionId id : functions) results.push_back(predicated(context, cost, id));
+    for (const FunctionId id : functions) results.push_back(predicated(context, id));
     for (std::size_t i = 0; i < functions.size(); ++i) module.functions[functions[i]] = std::move(results[i]);
   }
   validateOrAbort(module);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ir/build.hpp"
+#include "ir/op_weight.hpp"
 #include "ir/walk.hpp"
 #include "support/overloaded.hpp"
 #include "transforms/hoist_expressions.hpp"
@@ -78,9 +79,8 @@ void conjuncts(const Expr& expr, std::vector<const Expr*>& list) {
 
 class Predicator {
  public:
-  Predicator(const PredicateContext& context, BlendCost& cost, FunctionId id)
+  Predicator(const PredicateContext& context, FunctionId id)
       : context_(context),
-        cost_(cost),
         id_(id),
         source_(context.module.functions[id]),
         returnsEarly_(context.uniformity.returnsEarly(id)) {
@@ -172,7 +172,7 @@ class Predicator {
 
   /// Writes statements under the innermost mask.
   void guarded(std::span<const Stmt> list, Loc loc, Block& out) {
-    if (cost_.isShort(list)) return statements(list, out);
+    if (isShort(context_.module, list)) return statements(list, out);
     out.push_back(ifStmt(anyLane(mask(loc), loc), statements(list), {}, loc));
   }
 
@@ -458,7 +458,6 @@ class Predicator {
   }
 
   const PredicateContext& context_;
-  BlendCost& cost_;
   FunctionId id_;
   const Function& source_;
   Function function_;
@@ -470,8 +469,14 @@ class Predicator {
 
 }  // namespace
 
-Function predicated(const PredicateContext& context, BlendCost& cost, FunctionId id) {
-  return Predicator(context, cost, id).run();
+bool isShort(const Module& module, std::span<const Stmt> statements) {
+  constexpr std::uint32_t limit = 12;  // roughly the operations that a mispredicted branch costs
+  // most intrinsics are a few operations; a gather is one per lane
+  constexpr OpWeights weights = {
+      .operation = 1, .intrinsic = 4, .gather = limit, .sample = limit, .append = limit};
+  return weigh(module, statements, weights, limit) < limit;
 }
+
+Function predicated(const PredicateContext& context, FunctionId id) { return Predicator(context, id).run(); }
 
 }  // namespace skc

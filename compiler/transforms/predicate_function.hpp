@@ -4,10 +4,10 @@
 #pragma once
 
 #include <set>
+#include <span>
 
 #include "analysis/uniformity.hpp"
 #include "ir/ir.hpp"
-#include "transforms/blend_cost.hpp"
 
 namespace skc {
 
@@ -19,7 +19,10 @@ struct PredicateContext {
   std::set<ir::FunctionId> isLong;  ///< see hoist_expressions.hpp
 };
 
+/// True if executing the statements under an empty mask costs less than testing whether any lane is active.
+bool isShort(const ir::Module& module, std::span<const ir::Stmt> statements);
+
 /// The rewritten function.
-ir::Function predicated(const PredicateContext& context, BlendCost& cost, ir::FunctionId id);
+ir::Function predicated(const PredicateContext& context, ir::FunctionId id);
 
 }  // namespace skc

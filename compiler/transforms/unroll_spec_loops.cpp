@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "ir/build.hpp"
-#include "ir/call_graph.hpp"
 #include "ir/lvalue.hpp"
+#include "ir/op_weight.hpp"
 #include "ir/walk.hpp"
 #include "ir/walk_module.hpp"
 #include "transforms/synthesized_kernel.hpp"
@@ -46,19 +46,6 @@ std::optional<VarId> boundOfLoops(const Module& module, const Kernel& kernel) {
   return std::nullopt;
 }
 
-/// The expressions of a kernel without loops; nullopt if it has one.
-std::optional<std::int64_t> expressionsWithoutLoops(const Module& module, const Kernel& kernel) {
-  std::int64_t count = 0;
-  bool hasLoops = false;
-  for (const FunctionId id : functionsOf(module, kernel)) {
-    const Block& body = module.functions[id].body;
-    walkStmts(body,
-              [&](const Stmt& stmt) { hasLoops = hasLoops || std::holds_alternative<Loop>(stmt.node); });
-    walkExprs(body, [&](const Expr&) { ++count; });
-  }
-  return hasLoops ? std::nullopt : std::optional(count);
-}
-
 /// Adds the variant for one value of a parameter to the module.
 KernelId addVariant(Module& module, KernelId id, VarId spec, std::uint32_t value) {
   FunctionCopies copies;
@@ -76,13 +63,14 @@ KernelId addVariant(Module& module, KernelId id, VarId spec, std::uint32_t value
 }
 
 void addVariants(Module& module, KernelId id, VarId spec) {
-  std::int64_t expressions = 0;
+  std::uint32_t expressions = 0;
   for (std::uint32_t value = 1; value <= mostUnrolledValue; ++value) {
     const std::size_t functions = module.functions.size();
     const KernelId variant = addVariant(module, id, spec, value);
-    const auto added = expressionsWithoutLoops(module, module.kernels[variant]);
-    expressions += added.value_or(0);
-    if (!added || expressions > mostUnrolledExpressions) {
+    // a variant with a loop weighs as much as the limit
+    expressions += weigh(module, module.functions[module.kernels[variant].entry].body,
+                         {.node = 1, .countsCalls = false}, mostUnrolledExpressions + 1);
+    if (expressions > mostUnrolledExpressions) {
       module.kernels.pop_back();
       module.functions.resize(functions);
       return;
