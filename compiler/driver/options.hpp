@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The command line of skc.
+//
+// Reads devices as measured by `sk info --json`, as far as the compiler needs them.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +10,18 @@
 #include <string>
 #include <vector>
 
-#include "driver/device_file.hpp"
+#include "ir/ir.hpp"
 #include "native/native.hpp"
 
 namespace skc::driver {
+
+struct MeasuredDevice {
+  std::string name;
+  ir::Limits limits;
+};
+
+/// The devices of a file that draw; native ones have no limits. Throws std::runtime_error for a bad file.
+std::vector<MeasuredDevice> readDevices(const std::string& file);
 
 enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Plan, Ast, Llvm, Assembly, Json, Js };
 

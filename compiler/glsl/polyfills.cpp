@@ -10,7 +10,7 @@
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/type_names.hpp"
 #include "ir/print.hpp"
-#include "ir/quantize.hpp"
+#include "ir/scalar_operations.hpp"
 #include "sk/arithmetic_marks.hpp"
 #include "support/text.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "ir/build.hpp"
 #include "ir/operators.hpp"
-#include "ir/quantize.hpp"
 #include "ir/scalar_operations.hpp"
 
 namespace skc::ir {

@@ -13,7 +13,7 @@
 //     Comparisons of vectors are componentwise and give a bool vector.
 //   * Narrow scalars (half, char ... snorm16) and their vectors are storage types: no operator
 //     takes them but Convert, Select, Construct, Swizzle and Index. A Convert to one quantises, as
-//     quantize.hpp says; a Convert to its arithmetic type (arithmeticScalar) changes no value.
+//     scalar_operations.hpp says; a Convert to its arithmetic type (arithmeticScalar) changes no value.
 //   * Matrices are lists of rows: an Index gives a row, Construct takes all of them. They support
 //     + - * == !=, * and / with a scalar, and * with a vector on the right, which is a column.
 //   * A place (an lvalue: left side, or argument of an InOut parameter) is a VarRef of a mutable

@@ -6,7 +6,7 @@
 #include <llvm/IR/Module.h>
 #include <llvm/TargetParser/Triple.h>
 
-#include "ir/quantize.hpp"
+#include "ir/scalar_operations.hpp"
 
 namespace skc::native {
 

@@ -9,7 +9,7 @@
 
 namespace skc::native {
 
-// ---- of one component in all lanes (component_functions.cpp) ----------------------------------
+// ---- of one component in all lanes (intrinsic_functions.cpp) ----------------------------------
 
 /// IEEE 754's minNum and maxNum: if one argument is a NaN, the result is the other; -0 is below +0.
 Part minimum(const ScalarBuilder& f, ir::Scalar scalar, const Part& x, const Part& y);
@@ -46,7 +46,7 @@ Part floorOf(Lanes& lanes, const Part& x);
 /// largest int that is a float.
 Part toIndex(Lanes& lanes, const Part& x);
 
-// ---- of whole vectors and matrices in all lanes (vector_functions.cpp) ------------------------
+// ---- of whole vectors and matrices in all lanes (intrinsic_functions.cpp) ------------------------
 // A value is the list of its components; matrices are row-major.
 
 Parts minus(const ScalarBuilder& f, const Parts& a, const Parts& c);

@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "ir/kernel_builder.hpp"
-#include "program/constant_names.hpp"
+#include "program/constants.hpp"
 
 namespace skc::emit {
 namespace {

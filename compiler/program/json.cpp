@@ -17,7 +17,7 @@
 #include "ir/print.hpp"
 #include "program/elements.hpp"
 #include "program/schema.hpp"
-#include "program/used_structs.hpp"
+#include "program/stream_structs.hpp"
 
 namespace skc::emit {
 namespace {

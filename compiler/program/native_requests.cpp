@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "program/constant_names.hpp"
+#include "program/constants.hpp"
 #include "support/text.hpp"
 
 namespace skc::emit {

@@ -14,7 +14,7 @@
 #include <tuple>
 #include <utility>
 
-#include "program/constant_names.hpp"
+#include "program/constants.hpp"
 #include "sk/program.hpp"
 
 namespace skc::emit {

@@ -8,7 +8,7 @@
 
 #include "program/cpp_names.hpp"
 #include "program/elements.hpp"
-#include "program/used_structs.hpp"
+#include "program/stream_structs.hpp"
 #include "support/header_files.hpp"
 #include "support/text.hpp"
 

@@ -10,6 +10,7 @@
 //                                                 ...
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,5 +35,12 @@ std::vector<StreamStruct> streamStructs(const ir::Module& module, const std::vec
 std::string declaration(const ir::Module& module, const StreamStruct& streams);
 /// The constructor's definition, outside any namespace.
 std::string constructor(const ir::Module& module, const StreamStruct& streams);
+
+/// The structs that kernels and streams use, as indices into Module::structs, each after the structs that it contains.
+std::vector<std::uint32_t> usedStructs(const ir::Module& module);
+
+/// How deep the types that a kernel computes with nest structs, where GLSL has no doubles of its own: 1 for a struct of
+/// numbers and for a double, 2 for a vector of doubles; 0 if there are none.
+int structLevels(const ir::Module& module, const ir::Kernel& kernel);
 
 }  // namespace skc::emit

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "ir/print.hpp"
-#include "program/constant_names.hpp"
+#include "program/constants.hpp"
 #include "program/stub_parts.hpp"
 #include "support/namer.hpp"
 #include "support/text.hpp"

@@ -10,7 +10,7 @@
 #include "program/elements.hpp"
 #include "program/shared_headers.hpp"
 #include "program/stub_parts.hpp"
-#include "program/used_structs.hpp"
+#include "program/stream_structs.hpp"
 #include "support/text.hpp"
 
 namespace skc::emit {

@@ -8,6 +8,9 @@
 // by value between saving and recomputing, combined with merging outputs into passes by their cost (Foley,
 // Houston, Hanrahan, Graphics Hardware 2004; Riffel et al., ibid.). Those work on trees and graphs without
 // control flow; this works on slices, which have it.
+//
+// Builds the kernel of one planned pass: the slice becomes its entry, loaded values its inputs, saved values
+// its outputs, and the functions that it calls are copied.
 #pragma once
 
 #include <cstdint>
@@ -43,5 +46,9 @@ struct PlannedSplit {
 
 /// The kernel must have passed specialize-gathers, and be neither a reduce nor a pass.
 PlannedSplit planPasses(const ir::Module& module, const ir::Kernel& kernel, const ir::Limits& limits);
+
+/// Adds the kernel and its functions to the module. Temporaries are numbered as in `plan.saved`.
+ir::Pass makePassKernel(ir::Module& module, ir::KernelId whole, const PlannedSplit& plan,
+                        const PlannedPass& pass);
 
 }  // namespace skc::split

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "ir/walk.hpp"
-#include "ir/walk_module.hpp"
 #include "split/cost.hpp"
-#include "split/pass_kernel.hpp"
 #include "split/plan_passes.hpp"
 #include "split/slice.hpp"
 

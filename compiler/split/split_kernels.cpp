@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "split/pass_kernel.hpp"
 #include "split/plan_passes.hpp"
 #include "split/slice.hpp"
 

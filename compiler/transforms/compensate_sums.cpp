@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "ir/build.hpp"
-#include "ir/walk_module.hpp"
+#include "ir/walk.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 namespace {

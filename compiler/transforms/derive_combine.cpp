@@ -10,12 +10,11 @@
 #include "ir/ir.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"
-#include "ir/walk_module.hpp"
+#include "ir/walk.hpp"
 #include "transforms/check_folds.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 

@@ -10,7 +10,6 @@
 #include "ir/build.hpp"
 #include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
-#include "ir/walk_module.hpp"
 
 namespace skc {
 namespace {

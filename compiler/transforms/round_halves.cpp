@@ -9,11 +9,10 @@
 #include "ir/build.hpp"
 #include "ir/call_graph.hpp"
 #include "ir/evaluate.hpp"
-#include "ir/quantize.hpp"
+#include "ir/scalar_operations.hpp"
 #include "ir/walk.hpp"
-#include "ir/walk_module.hpp"
 #include "support/overloaded.hpp"
-#include "transforms/synthesized_kernel.hpp"
+#include "transforms/fold_copy.hpp"
 
 namespace skc {
 namespace {

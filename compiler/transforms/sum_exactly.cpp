@@ -16,13 +16,11 @@
 #include "ir/build.hpp"
 #include "ir/ir.hpp"
 #include "ir/walk.hpp"
-#include "ir/walk_module.hpp"
 #include "sk/exact_digits.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 

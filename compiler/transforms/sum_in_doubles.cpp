@@ -9,11 +9,9 @@
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
-#include "ir/walk_module.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "ir/build.hpp"
 #include "ir/call_graph.hpp"
-#include "transforms/synthesized_kernel.hpp"
+#include "transforms/fold_copy.hpp"
 
 namespace skc {
 namespace {

@@ -14,10 +14,9 @@
 #include "ir/call_graph.hpp"
 #include "ir/ir.hpp"
 #include "ir/walk.hpp"
-#include "ir/walk_module.hpp"
 #include "split/cost.hpp"
 #include "transforms/check_limits.hpp"
-#include "transforms/synthesized_kernel.hpp"
+#include "transforms/fold_copy.hpp"
 
 namespace skc {
 

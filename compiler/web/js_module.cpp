@@ -20,7 +20,7 @@
 #include "ir/print.hpp"
 #include "program/elements.hpp"
 #include "program/schema.hpp"
-#include "program/used_structs.hpp"
+#include "program/stream_structs.hpp"
 #include "support/text.hpp"
 #include "web/ahead_programs.hpp"
 #include "web/js_names.hpp"

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "ir/print.hpp"
-#include "program/used_structs.hpp"
+#include "program/stream_structs.hpp"
 #include "support/namer.hpp"
 #include "support/text.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "assemble/append/append_passes.hpp"
 #include "assemble/program/texture_units.hpp"
-#include "program/used_structs.hpp"
+#include "program/stream_structs.hpp"
 #include "web/ahead_programs.hpp"
 #include "web/sum_variants.hpp"
 

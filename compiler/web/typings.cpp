@@ -7,7 +7,7 @@
 
 #include "assemble/append/append_passes.hpp"
 #include "ir/print.hpp"
-#include "program/used_structs.hpp"
+#include "program/stream_structs.hpp"
 #include "support/text.hpp"
 #include "web/offered.hpp"
 

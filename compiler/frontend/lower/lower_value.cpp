@@ -14,7 +14,7 @@
 #include "frontend/prelude.hpp"
 #include "ir/build.hpp"
 #include "ir/lvalue.hpp"
-#include "ir/quantize.hpp"
+#include "ir/scalar_operations.hpp"
 
 namespace skc::frontend {
 

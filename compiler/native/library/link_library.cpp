@@ -16,7 +16,7 @@
 #include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 #include "native/library/sources.hpp"
-#include "transforms/synthesized_kernel.hpp"
+#include "transforms/fold_copy.hpp"
 
 namespace skc::native {
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "driver/device_file.hpp"
+#include "driver/options.hpp"
 #include "parsers/entry.hpp"
 #include "parsers/memory_file.hpp"
 

@@ -117,7 +117,7 @@ std::string sumOf(int width) {
   return text;
 }
 
-/// What GLSL's functions of vectors compute, in the order in which native code does (compiler/native/vector_functions.cpp). `$T` is
+/// What GLSL's functions of vectors compute, in the order in which native code does (compiler/native/intrinsic_functions.cpp). `$T` is
 /// the type, `$S` the sum of the products.
 struct Geometry {
   std::string_view name, text;
