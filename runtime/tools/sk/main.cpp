@@ -12,11 +12,8 @@
 
 #include <fmt/format.h>
 
-#include "accuracy/accuracy.hpp"
 #include "assemble/nearest_word.hpp"
-#include "info/info.hpp"
-#include "scale/scale.hpp"
-#include "serve/serve.hpp"
+#include "commands.hpp"
 
 namespace {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Joins the sections of a program.
+// The GLSL functions that assembled programs share (functions.glsl).
 #include "assemble/glsl/program_text.hpp"
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "assemble/glsl/intrinsics.hpp"
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "assemble/glsl/tables.hpp"
+#include "glsl_text/functions.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -342,6 +344,29 @@ std::string call(std::string_view name, const std::vector<std::string>& argument
   std::string line = fmt::format("{}({})", name, fmt::join(arguments, ", "));
   if (line.size() <= lineLength) return line;
   return fmt::format("{}(\n{}{})", name, indent, fmt::join(arguments, fmt::format(",\n{}", indent)));
+}
+
+std::string_view text(Function function) {
+  switch (function) {
+    case Function::Unravel2: return library::unravel2;
+    case Function::Unravel3: return library::unravel3;
+    case Function::Unravel4: return library::unravel4;
+    case Function::Ravel: return library::ravel;
+    case Function::Texel: return library::texel;
+    case Function::Paired: return library::paired;
+    case Function::Divide: return library::divide;
+    case Function::Row: return library::row;
+    case Function::Layered: return library::layered;
+    case Function::Wrap: return library::wrap;
+    case Function::WrapOnce: return library::wrapOnce;
+    case Function::Mirror: return library::mirror;
+    case Function::MirrorOnce: return library::mirrorOnce;
+    case Function::ToHalf: return library::toHalf;
+    case Function::Ramp: return library::ramp;
+    case Function::Local: return library::local;
+    case Function::Sampled: return library::sampled;
+  }
+  return {};
 }
 
 }  // namespace sk::assemble

@@ -13,7 +13,7 @@
 #include <catch2/catch.hpp>
 
 #include "assemble/program/sample_kernels.hpp"
-#include "assemble/reduce/digit_loads.hpp"
+#include "assemble/reduce/scan_plan.hpp"
 
 using namespace sk::assemble;
 

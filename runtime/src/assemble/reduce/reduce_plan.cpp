@@ -9,7 +9,7 @@
 #include <cassert>
 #include <utility>
 
-#include "assemble/reduce/digit_loads.hpp"
+#include "assemble/reduce/scan_plan.hpp"
 #include "sk/scalar_bytes.hpp"
 
 namespace sk::assemble {

@@ -14,9 +14,13 @@
 // (ScanUnit): elements are read twice and results written once.
 //
 // Also how dispatched scans are divided into tiles, and which reductions can be (scan_tile_program.hpp).
+//
+// Checks planned passes that fold the terms of exact sums: no invocation may add more to digits than these have room for
+// (sk/exact_digits.hpp). The planners assert it.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "assemble/reduce/reduce_plan.hpp"
@@ -83,5 +87,10 @@ bool combinesInFold(const program::Reduction& reduction);
 /// Whether one pass may scan a line (ReduceVariant::chained): tiles find the result of those before in an order that
 /// depends on time, so that accumulators must be integers, whose results do not depend on it.
 bool mayChain(const program::Reduction& reduction);
+
+/// Whether the digits have room for what the passes of a reduction fold, if each element adds one term.
+bool keepsRoom(std::span<const ReducePass> passes);
+/// The same for a scan.
+bool keepsRoom(const ScanPlan& plan);
 
 }  // namespace sk::assemble

@@ -4,7 +4,6 @@
 // items; lines that are one element apart are walked side by side. Digits of exact sums have room for what runs add.
 #include <catch2/catch.hpp>
 
-#include "assemble/reduce/digit_loads.hpp"
 #include "assemble/reduce/scan_plan.hpp"
 
 using namespace sk::assemble;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Parses the options of `sk accuracy`, runs the programs and writes their results.
-#include "accuracy/accuracy.hpp"
+#include "commands.hpp"
 
 #include <algorithm>
 #include <charconv>

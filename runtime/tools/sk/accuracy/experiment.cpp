@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "info/error_statistics.hpp"
+#include "info/numbers.hpp"
 #include "quantile.hpp"
 #include "sk/error.hpp"
 

@@ -11,7 +11,6 @@
 #include "accuracy/accuracy.sk.hpp"
 #include "accuracy/experiment.hpp"
 #include "accuracy/programs.hpp"
-#include "info/error_statistics.hpp"
 #include "info/numbers.hpp"
 
 namespace sk_tool {

@@ -9,7 +9,7 @@
 
 #include "info/costs.sk.hpp"
 #include "info/device_info.hpp"
-#include "info/error_statistics.hpp"
+#include "info/numbers.hpp"
 #include "quantile.hpp"
 
 namespace sk_tool {

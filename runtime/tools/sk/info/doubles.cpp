@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "info/device_info.hpp"
-#include "info/error_statistics.hpp"
 #include "info/numbers.hpp"
 #include "info/operations.sk.hpp"
 

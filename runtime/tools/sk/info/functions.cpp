@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "info/device_info.hpp"
-#include "info/error_statistics.hpp"
 #include "info/functions.sk.hpp"
 #include "info/numbers.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Parses the options of `sk info`, selects devices and caches their reports.
-#include "info/info.hpp"
+#include "commands.hpp"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Parses the options of `sk scale`, measures what they do not give, and writes the predictions.
-#include "scale/scale.hpp"
+#include "commands.hpp"
 
 #include <algorithm>
 #include <cmath>

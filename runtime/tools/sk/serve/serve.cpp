@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "serve/serve.hpp"
+#include "commands.hpp"
 
 #include <cstdio>
 #include <cstdlib>

@@ -2,12 +2,19 @@
 #include "accuracy/file/ranges.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <iterator>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
+
+#include "sk/narrow.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace sk_tool {
 
@@ -133,6 +140,141 @@ std::string Ranges::text() const {
       text += fmt::format("{}{:g}", &value == &ranges.front() ? "" : ", ", value.low);
   }
   return text;
+}
+
+namespace {
+
+using sk::program::Scalar;
+
+/// Calls visit(T()) with the C++ type of a scalar; a bool is a byte.
+template <class Visit>
+auto withType(Scalar scalar, Visit&& visit) {
+  switch (scalar) {
+    case Scalar::Bool: return visit(std::uint8_t());
+    case Scalar::Int: return visit(std::int32_t());
+    case Scalar::Uint: return visit(std::uint32_t());
+    case Scalar::Double: return visit(double());
+    case Scalar::Half: return visit(sk::half(0.0F));
+    case Scalar::Char: return visit(std::int8_t());
+    case Scalar::Uchar: return visit(std::uint8_t());
+    case Scalar::Short: return visit(std::int16_t());
+    case Scalar::Ushort: return visit(std::uint16_t());
+    case Scalar::Unorm8: return visit(sk::unorm8(0.0F));
+    case Scalar::Snorm8: return visit(sk::snorm8(0.0F));
+    case Scalar::Unorm16: return visit(sk::unorm16(0.0F));
+    case Scalar::Snorm16: return visit(sk::snorm16(0.0F));
+    case Scalar::Float: break;
+  }
+  return visit(float());
+}
+
+template <class T>
+T nearest(double value) {
+  if constexpr (std::is_integral_v<T>) {
+    using Limits = std::numeric_limits<T>;
+    return static_cast<T>(std::clamp(std::round(value), double{Limits::min()}, double{Limits::max()}));
+  } else if constexpr (std::is_same_v<T, double>) {
+    return value;
+  } else {
+    return T(static_cast<float>(value));
+  }
+}
+
+struct FloatFormat {
+  int digits;  ///< bits of the significand
+  int smallest;  ///< exponent of the smallest normal number
+};
+
+FloatFormat formatOf(Scalar scalar) {
+  if (scalar == Scalar::Double) return {53, -1022};
+  if (scalar == Scalar::Half) return {11, -14};
+  return {24, -126};
+}
+
+/// The distance between values of a fixed-point type from -1 or 0 to 1; 0 for floating-point types.
+double stepOf(Scalar scalar) {
+  if (scalar == Scalar::Unorm8) return 1.0 / 255;
+  if (scalar == Scalar::Snorm8) return 1.0 / 127;
+  if (scalar == Scalar::Unorm16) return 1.0 / 65535;
+  return scalar == Scalar::Snorm16 ? 1.0 / 32767 : 0;
+}
+
+}  // namespace
+
+std::vector<ScalarPlace> scalarsOf(const sk::program::Element& element) {
+  std::vector<ScalarPlace> places;
+  for (const sk::program::Field& field : element.fields) {
+    const bool isVectorPart = field.part >= 0 && field.scalar == Scalar::Double;
+    const bool isRow = field.part >= 0 && !isVectorPart;
+    const std::string member = field.path.empty() || field.path.front() == '['
+                                   ? std::string(field.path)
+                                   : fmt::format(".{}", field.path);
+    for (std::size_t c = 0; c < field.width; ++c) {
+      const std::size_t letter = c + (isVectorPart ? 2U * static_cast<std::size_t>(field.part) : 0);
+      std::string component = isRow ? fmt::format("[{}]", field.part) : "";
+      if (field.width > 1 || isVectorPart) component += fmt::format(".{}", "xyzw"[letter]);
+      places.push_back(
+          {member, component, field.scalar, field.offset + c * sk::program::hostBytes(field.scalar)});
+    }
+  }
+  return places;
+}
+
+bool isReal(Scalar scalar) {
+  return scalar == Scalar::Float || scalar == Scalar::Double || scalar == Scalar::Half || stepOf(scalar) > 0;
+}
+
+double load(Scalar scalar, const std::byte* from) {
+  return withType(scalar, [from](auto value) {
+    std::memcpy(&value, from, sizeof value);
+    if constexpr (std::is_arithmetic_v<decltype(value)>) {
+      return static_cast<double>(value);
+    } else {
+      return static_cast<double>(static_cast<float>(value));
+    }
+  });
+}
+
+void store(Scalar scalar, double value, std::byte* to) {
+  if (scalar == Scalar::Bool) value = value != 0 ? 1 : 0;
+  withType(scalar, [value, to](auto kind) {
+    const auto stored = nearest<decltype(kind)>(value);
+    std::memcpy(to, &stored, sizeof stored);
+  });
+}
+
+double roundedTo(Scalar scalar, double value) {
+  std::byte memory[sizeof(double)];
+  store(scalar, value, memory);
+  return load(scalar, memory);
+}
+
+double ulpOf(Scalar scalar, double value) {
+  if (const double step = stepOf(scalar); step > 0) return step;
+  const FloatFormat format = formatOf(scalar);
+  int exponent = 0;
+  std::frexp(value, &exponent);
+  exponent = value == 0 ? format.smallest : std::max(exponent - 1, format.smallest);
+  return std::ldexp(1.0, exponent - format.digits + 1);
+}
+
+double smallestOf(Scalar scalar) {
+  const double step = stepOf(scalar);
+  return step > 0 ? step : std::ldexp(1.0, formatOf(scalar).smallest);
+}
+
+std::string hexOf(Scalar scalar, double value) {
+  if (scalar == Scalar::Bool) return value != 0 ? "true" : "false";
+  if (std::isnan(value)) return "nan";
+  return isReal(scalar) ? fmt::format("{:a}", value) : fmt::format("{}", value);
+}
+
+Json jsonOf(Scalar scalar, double value) {
+  Json json = {{"value", std::isfinite(value) ? Json(value) : Json(nullptr)}, {"hex", hexOf(scalar, value)}};
+  if (scalar == Scalar::Float) {
+    json["bits"] = fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+  }
+  return json;
 }
 
 }  // namespace sk_tool

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "accuracy/file/scalars.hpp"
+#include "accuracy/file/ranges.hpp"
 #include "accuracy/functions/sweep.hpp"
 #include "accuracy/functions/truth.hpp"
 #include "accuracy/progress.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "info/error_statistics.hpp"
+#include "info/numbers.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+//
+// The commands of sk, each in a folder of its own.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace sk_tool {
+
+/// `sk info`: the devices of this machine, their capacity, arithmetic and speed, as a table for people or as JSON for programs. Measured
+/// once per driver.
+void addInfo(CLI::App& app);
+
+/// `sk accuracy`: measures time and error of each choice of precision, storage, accumulation and functions on a device, in one run, and
+/// writes a table, JSON and a chart.
+void addAccuracy(CLI::App& app);
+
+/// `sk scale`: predicts how the kernels of a file scale over many devices.
+void addScale(CLI::App& app);
+
+/// `sk serve`: a page with an editor for .sk files, their messages, their GLSL and their picture, for the browsers of this machine
+/// alone.
+void addServe(CLI::App& app);
+
+}  // namespace sk_tool
