@@ -9,9 +9,9 @@
 
 #include "analysis/copied_values.hpp"
 #include "glsl/constants.hpp"
+#include "glsl/float_intrinsics.hpp"
 #include "glsl/line_writer.hpp"
 #include "glsl/statements.hpp"
-#include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::emit {
@@ -19,27 +19,45 @@ namespace {
 
 using namespace ir;
 
-/// The structs and constants that functions and expressions use.
+/// What a kernel uses beside its functions.
 class Used {
  public:
-  explicit Used(const Module& module)
-      : module_(module), structs_(module.structs.size(), false), constants_(module.constants.size(), false) {}
+  /// Begins with what borders and identities use.
+  explicit Used(const GlslContext& context)
+      : module_(context.module),
+        polyfills_(context.polyfills),
+        structs_(module_.structs.size(), false),
+        constants_(module_.constants.size(), false) {
+    for (const KernelParam& param : context.kernel.params) {
+      if (param.border) mark(*param.border);
+      if (param.identity) mark(*param.identity);
+    }
+  }
 
   void mark(const Function& function) {
     mark(function.result);
     for (const Variable& var : function.variables) mark(var.type);
-    walkExprs(function.body, [&](const Expr& expr) { markOne(expr); });
-  }
-  void mark(const ExprPtr& expr) {
-    if (expr) walkExprs(*expr, [&](const Expr& inner) { markOne(inner); });
+    walkStmts(function.body, [&](const Stmt& stmt) {
+      forEachOperand(stmt, [&](const ExprPtr& operand) { mark(*operand); });
+    });
   }
 
-  /// True if this includes everything that `other` uses.
+  /// True if this includes everything that `other` uses, but for polyfills.
   bool includes(const Used& other) const {
-    return isWithin(other.structs_, structs_) && isWithin(other.constants_, constants_);
+    return isWithin(other.structs_, structs_) && isWithin(other.constants_, constants_) &&
+           std::ranges::all_of(other.intrinsics_, [&](const sk::program::IntrinsicUse& wanted) {
+             return std::ranges::any_of(intrinsics_, [&](const sk::program::IntrinsicUse& use) {
+               return use.intrinsic == wanted.intrinsic && use.ofDouble == wanted.ofDouble &&
+                      (use.widths & wanted.widths) == wanted.widths;
+             });
+           });
   }
   bool hasStruct(std::size_t index) const { return structs_[index]; }
   bool hasConstant(std::size_t index) const { return constants_[index]; }
+  bool hasPolyfill(const std::string& text) const { return std::ranges::count(polyfillTexts_, text) > 0; }
+  /// Their definitions, callees before callers.
+  const std::vector<std::string>& polyfillTexts() const { return polyfillTexts_; }
+  const std::vector<sk::program::IntrinsicUse>& intrinsics() const { return intrinsics_; }
 
  private:
   static bool isWithin(const std::vector<bool>& few, const std::vector<bool>& many) {
@@ -49,12 +67,22 @@ class Used {
     return true;
   }
 
-  void markOne(const Expr& expr) {
+  void mark(const Expr& expr) {
+    forEachOperand(expr, [&](const ExprPtr& operand) { mark(*operand); });
     mark(expr.type);
-    const auto* n = std::get_if<ConstantRef>(&expr.node);
-    if (n == nullptr || constants_[n->constant]) return;
-    constants_[n->constant] = true;
-    mark(module_.constants[n->constant].value);
+    if (const auto* n = std::get_if<ConstantRef>(&expr.node)) {
+      if (!constants_[n->constant]) mark(*module_.constants[n->constant].value);
+      constants_[n->constant] = true;
+    } else if (const auto* call = std::get_if<Call>(&expr.node)) {
+      if (module_.functions[call->callee].isLibrary) markPolyfill(call->callee);
+    } else if (const auto* intrinsic = std::get_if<IntrinsicCall>(&expr.node)) {
+      if (const auto defined = definedIntrinsic(*intrinsic)) {
+        std::uint8_t& widths = use(*defined).widths;
+        widths = static_cast<std::uint8_t>(widths | 1U << (widestOf(intrinsic->args) - 1U));
+      }
+      const std::string_view polyfill = row(intrinsic->intrinsic).polyfill;
+      if (!polyfill.empty()) add(withTypes(polyfill, intrinsic->args[0]->type) + "\n");
+    }
   }
 
   void mark(Type type) {
@@ -64,9 +92,28 @@ class Used {
     for (const StructField& field : module_.structs[type.index].fields) mark(field.type);
   }
 
+  void markPolyfill(FunctionId id) {
+    const Polyfill& polyfill = polyfills_[id];
+    for (const FunctionId callee : polyfill.callees) markPolyfill(callee);
+    if (polyfill.ofDouble) use(*polyfill.ofDouble).ofDouble = true;
+    add(polyfill.text);
+  }
+
+  void add(std::string text) {
+    if (!text.empty() && !hasPolyfill(text)) polyfillTexts_.push_back(std::move(text));
+  }
+
+  sk::program::IntrinsicUse& use(sk::program::Intrinsic intrinsic) {
+    const auto found = std::ranges::find(intrinsics_, intrinsic, &sk::program::IntrinsicUse::intrinsic);
+    return found != intrinsics_.end() ? *found : intrinsics_.emplace_back(intrinsic, std::uint8_t{0});
+  }
+
   const Module& module_;
+  const Polyfills& polyfills_;
   std::vector<bool> structs_;
   std::vector<bool> constants_;
+  std::vector<std::string> polyfillTexts_;
+  std::vector<sk::program::IntrinsicUse> intrinsics_;
 };
 
 std::string structText(const GlslContext& context, std::uint32_t index) {
@@ -101,24 +148,10 @@ std::string structsText(const GlslContext& context, const Used& used) {
 
 /// Everything that a kernel uses.
 Used usedBy(const GlslContext& context) {
-  Used used(context.module);
-  for (const KernelParam& param : context.kernel.params) {
-    used.mark(param.border);
-    used.mark(param.identity);
-  }
-  for (const FunctionId id : functionsOf(context.module, context.kernel))
+  Used used(context);
+  for (const FunctionId id : ownFunctionsOf(context.module, context.kernel))
     used.mark(context.module.functions[id]);
   return used;
-}
-
-/// True if `program` has all intrinsics that `others` needs from the assembler.
-bool hasIntrinsics(const Polyfills& program, const Polyfills& others) {
-  return std::ranges::all_of(others.intrinsics(), [&](const sk::program::IntrinsicUse& wanted) {
-    return std::ranges::any_of(program.intrinsics(), [&](const sk::program::IntrinsicUse& use) {
-      return use.intrinsic == wanted.intrinsic && use.ofDouble == wanted.ofDouble &&
-             (use.widths & wanted.widths) == wanted.widths;
-    });
-  });
 }
 
 template <class Predicate>
@@ -136,53 +169,36 @@ GlslBody glslBody(const GlslContext& given) {
   const analysis::CopiedValues copied = analysis::copiedValues(given.module, given.kernel);
   GlslContext context = given;
   context.copied = &copied;
-  Used byParams(context.module);
-  for (const KernelParam& param : context.kernel.params) {
-    for (const ExprPtr* expr : {&param.border, &param.identity}) {
-      byParams.mark(*expr);
-      if (*expr) glslExpr(context, std::nullopt, **expr);   // collects the polyfills that it needs
-    }
-  }
-  const std::string paramConstants =
-      constantsText(context, [&](ConstantId id) { return byParams.hasConstant(id); });
-  const std::size_t paramPolyfills = context.polyfills.functions().size();
-
-  const std::vector<FunctionId> functions = functionsOf(context.module, context.kernel);
-  Used used = byParams;
+  const Used byParams(context), used = usedBy(context);
+  GlslBody text{structsText(context, used), "", used.intrinsics()};
+  for (const std::string& polyfill : used.polyfillTexts())
+    (byParams.hasPolyfill(polyfill) ? text.declarations : text.body) += polyfill + "\n";
+  text.declarations += constantsText(context, [&](ConstantId id) { return byParams.hasConstant(id); });
+  text.body += constantsText(
+      context, [&](ConstantId id) { return used.hasConstant(id) && !byParams.hasConstant(id); });
   LineWriter writer;
-  for (FunctionId id : functions) {
-    used.mark(context.module.functions[id]);
+  const std::vector<FunctionId> functions = ownFunctionsOf(context.module, context.kernel);
+  for (const FunctionId id : functions) {
     if (id != functions.front()) writer.raw("\n");
     writeFunction(context, id, writer);
   }
-  const std::string constants = constantsText(
-      context, [&](ConstantId id) { return used.hasConstant(id) && !byParams.hasConstant(id); });
-
-  // assembled last, because only printing finds out which polyfills are needed
-  GlslBody text{structsText(context, used), ""};
-  const std::vector<std::string>& polyfills = context.polyfills.functions();
-  for (std::size_t i = 0; i < polyfills.size(); ++i) {
-    (i < paramPolyfills ? text.declarations : text.body) += polyfills[i] + "\n";
-  }
-  text.declarations += paramConstants;
-  text.body += constants + writer.take();
+  text.body += writer.take();
   return text;
 }
 
 std::optional<std::string> glslAddition(const GlslContext& first, const GlslContext& second) {
-  if (!usedBy(first).includes(usedBy(second)) || !hasIntrinsics(first.polyfills, second.polyfills))
-    return std::nullopt;
+  const Used program = usedBy(first), more = usedBy(second);
+  if (!program.includes(more)) return std::nullopt;
   std::string text;
-  for (const std::string& polyfill : second.polyfills.functions()) {
-    const bool isThere = std::ranges::count(first.polyfills.functions(), polyfill) > 0;
-    if (!isThere) text += polyfill + "\n";
+  for (const std::string& polyfill : more.polyfillTexts()) {
+    if (!program.hasPolyfill(polyfill)) text += polyfill + "\n";
   }
-  const std::vector<FunctionId> functions = functionsOf(first.module, first.kernel);
+  const std::vector<FunctionId> functions = ownFunctionsOf(first.module, first.kernel);
   const std::set<FunctionId> there(functions.begin(), functions.end());
   std::set<std::string> taken;
   for (const FunctionId id : functions) taken.insert(first.names.function(id));
   LineWriter writer;
-  for (const FunctionId id : functionsOf(second.module, second.kernel)) {
+  for (const FunctionId id : ownFunctionsOf(second.module, second.kernel)) {
     const std::string& name = second.names.function(id);
     if (there.contains(id)) {
       if (first.names.function(id) != name) return std::nullopt;

@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "glsl/expressions.hpp"
 
@@ -15,12 +16,12 @@ namespace skc::emit {
 struct GlslBody {
   std::string declarations;   ///< structs, and constants that borders and identities use
   std::string body;
+  std::vector<sk::program::IntrinsicUse> intrinsics;  ///< those that the assembler must define
 };
 
 GlslBody glslBody(const GlslContext& context);
 
-/// What a program that contains the body of `first` must add in order to run `second`; both bodies come from
-/// glslBody(). Returns nullopt if that takes more than functions, or if two functions would share a name.
+/// What a program that contains the body of `first` must add in order to run `second`. Returns nullopt if that takes more than functions, or if two functions would share a name.
 std::optional<std::string> glslAddition(const GlslContext& first, const GlslContext& second);
 
 }  // namespace skc::emit

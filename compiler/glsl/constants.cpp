@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "glsl/known_values.hpp"
 #include "ir/walk.hpp"
 #include "support/text.hpp"
 
@@ -16,24 +15,16 @@ namespace {
 using namespace ir;
 
 /// True if the node itself prints as a function call.
-bool isCall(const Module& module, const Expr& expr, const std::vector<bool>& isFunction) {
+bool isCall(const Expr& expr, const std::vector<bool>& isFunction) {
   if (expr.type.isDouble()) return true;
-  if (const auto* n = std::get_if<Literal>(&expr.node)) {
+  if (const auto* n = std::get_if<Literal>(&expr.node))
     return expr.type.arithmeticType().isFloat() && !std::isfinite(std::bit_cast<float>(n->bits));
-  }
   if (const auto* n = std::get_if<ConstantRef>(&expr.node)) return isFunction[n->constant];
-  if (const auto* n = std::get_if<Binary>(&expr.node)) {
-    const bool isSignedRemainder = n->op == BinaryOp::Rem && n->lhs->type.scalar == Scalar::Int;
-    return isSignedRemainder || mayDivideBadly(module, n->op, *n->lhs, *n->rhs) ||
-           (n->lhs->type.isVector() && expr.type.isBool());
-  }
-  if (const auto* n = std::get_if<Convert>(&expr.node)) {
-    return expr.type.isNarrow() || mayNotHold(module, expr.type, *n->operand);
-  }
+  if (const auto* n = std::get_if<Binary>(&expr.node)) return n->lhs->type.isVector() && expr.type.isBool();
   if (const auto* n = std::get_if<Unary>(&expr.node))
     return n->op == UnaryOp::LogicalNot && expr.type.isVector();
   if (const auto* n = std::get_if<Select>(&expr.node)) return n->cond->type.isVector();
-  return std::holds_alternative<IntrinsicCall>(expr.node);
+  return std::holds_alternative<Call>(expr.node) || std::holds_alternative<IntrinsicCall>(expr.node);
 }
 
 }  // namespace
@@ -42,7 +33,7 @@ std::vector<bool> functionConstants(const Module& module) {
   std::vector<bool> isFunction(module.constants.size(), false);
   for (ConstantId id = 0; id < isFunction.size(); ++id) {   // a constant refers only to earlier ones
     walkExprs(static_cast<const Expr&>(*module.constants[id].value), [&](const Expr& expr) {
-      if (isCall(module, expr, isFunction)) isFunction[id] = true;
+      if (isCall(expr, isFunction)) isFunction[id] = true;
     });
   }
   return isFunction;

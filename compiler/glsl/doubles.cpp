@@ -6,11 +6,13 @@
 #include <cassert>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/type_names.hpp"
+#include "ir/build.hpp"
 #include "ir/operators.hpp"
 #include "support/text.hpp"
 
@@ -19,52 +21,26 @@ namespace {
 
 using namespace ir;
 using Texts = std::vector<std::string>;
+using Args = std::vector<ExprPtr>;
 
 constexpr std::string_view letters = "xyzw";
+constexpr Type doubleType = Type::of(Scalar::Double);
 
 std::string nameOf(Type type) { return glslSpelling(type.scalar, type.width); }
-std::string doubleName(std::size_t width) { return glslSpelling(Scalar::Double, static_cast<int>(width)); }
 
-std::string call(std::string_view function, const Texts& arguments) {
+std::vector<Type> typesOf(const Args& args) {
+  std::vector<Type> types;
+  for (const ExprPtr& arg : args) types.push_back(arg->type);
+  return types;
+}
+
+std::string callText(std::string_view function, const Texts& arguments) {
   return fmt::format("{}({})", function, join(arguments, ", "));
 }
 
-/// "sk_double3 a, sk_double b".
-std::string parameterList(const std::vector<Type>& types) {
-  Texts list;
-  for (std::size_t i = 0; i < types.size(); ++i)
-    list.push_back(fmt::format("{} {}", nameOf(types[i]), "abc"[i]));
-  return join(list, ", ");
-}
-
-/// Defines `function` for vectors by calls for each component.
-void defineByComponent(Polyfills& polyfills, std::string_view function, Type result,
-                       const std::vector<Type>& types) {
-  const auto widest = std::ranges::max_element(types, {}, [](Type type) { return type.width; });
-  if (widest->width == 1) return;
-  Texts components;
-  for (std::size_t c = 0; c < widest->width; ++c) {
-    Texts arguments;
-    for (std::size_t i = 0; i < types.size(); ++i) {
-      arguments.push_back(types[i].isVector() ? fmt::format("{}.{}", "abc"[i], letters[c])
-                                              : std::string(1, "abc"[i]));
-    }
-    components.push_back(call(function, arguments));
-  }
-  polyfills.add(wrapLine(fmt::format("{} {}({}) {{ return {}; }}", nameOf(result), function,
-                                     parameterList(types), call(nameOf(result), components))) +
-                "\n");
-}
-
-/// Defines a row's function for the component types of these arguments.
-void defineScalar(Polyfills& polyfills, std::string_view function, std::string_view body, Type result,
-                  const std::vector<Type>& types) {
-  if (body.empty()) return;
-  std::vector<Type> components;
-  for (const Type type : types) components.push_back(type.component());
-  polyfills.add(wrapLine(fmt::format("{} {}({}) {{ {} }}", nameOf(result.component()), function,
-                                     parameterList(components), body)) +
-                "\n");
+/// "sk_double3 sk_cross(sk_double3 a, sk_double3 b)".
+std::string head(Type result, std::string_view function, const std::vector<Type>& types) {
+  return fmt::format("{} {}({})", nameOf(result), function, parameterList(types));
 }
 
 struct Row {
@@ -78,149 +54,150 @@ constexpr Row rows[] = {
 #undef SKC_DOUBLE_FUNCTION
 };
 
-/// Calls an intrinsic of double_functions.def.
-std::string byComponent(Polyfills& polyfills, Intrinsic intrinsic, const std::vector<Type>& types,
-                        const Texts& texts) {
-  const auto found = std::ranges::find(rows, intrinsic, &Row::intrinsic);
-  assert(found != std::end(rows) && "every intrinsic that takes doubles has a row or a case");
-  std::vector<Type> components;
-  for (const Type type : types) components.push_back(type.component());
-  const bool isVector = std::ranges::any_of(types, [](Type type) { return type.isVector(); });
-  // comparisons of scalars are no overload of the intrinsics; their result is bool
-  const Type result = resultType(intrinsic, types).value_or(Type::of(Scalar::Bool));
-  defineScalar(polyfills, found->function, found->body, result, types);
-  if (isVector) defineByComponent(polyfills, found->function, result, types);
-  return call(found->function, texts);
-}
+/// Adds the functions of vectors.
+class DoubleFunctions {
+ public:
+  /// `type`: of the first argument.
+  DoubleFunctions(Polyfills& polyfills, Type type) : polyfills_(polyfills), type_(type) {}
 
-/// The dot product.
-std::string dot(Polyfills& polyfills, Type type) {
-  std::string sum = "sk_mul(a.x, b.x)";
-  for (std::size_t c = 1; c < type.width; ++c)
-    sum = fmt::format("sk_add({0}, sk_mul(a.{1}, b.{1}))", sum, letters[c]);
-  if (type.isScalar()) sum = "sk_mul(a, b)";
-  polyfills.add(
-      wrapLine(fmt::format("sk_double sk_dot({}) {{ return {}; }}", parameterList({type, type}), sum)) +
-      "\n");
-  return "sk_dot";
-}
-
-/// Defines what lengths and directions of vectors share: the magnitude of the largest component, the largest of finite
-/// numbers and infinity; and division of a vector by a power of 2.
-void defineForLengths(Polyfills& polyfills, Type type) {
-  dot(polyfills, type);
-  defineByComponent(polyfills, "sk_ldexp", type, {type, Type::of(Scalar::Int)});
-  std::string text =
-      fmt::format("sk_double sk_largest({} a) {{\n  sk_double m = sk_abs(a.x), n;\n", nameOf(type));
-  for (std::size_t c = 1; c < type.width; ++c) {
-    text += fmt::format("  n = sk_abs(a.{});\n  m = sk_choose(sk_less(m, n) || sk_isnan(m), n, m);\n",
-                        letters[c]);
+  /// A function whose components the assembler defines.
+  FunctionId byComponent(std::string_view function, Type result, const std::vector<Type>& types) {
+    return polyfills_.addByComponent(function, result, types, {});
   }
-  polyfills.add(text + "  return m;\n}\n");
-}
 
-std::string length(Polyfills& polyfills, Type type) {
-  if (type.isScalar()) {
-    polyfills.add("sk_double sk_length(sk_double a) { return sk_abs(a); }\n");
-    return "sk_length";
+  FunctionId intrinsic(Intrinsic intrinsic, const std::vector<Type>& types) {
+    switch (intrinsic) {
+      case Intrinsic::Dot: return dot();
+      case Intrinsic::Length: return length();
+      case Intrinsic::Distance: return distance();
+      case Intrinsic::Normalize: return normalize();
+      case Intrinsic::Cross: return cross();
+      case Intrinsic::Faceforward: return faceforward();
+      case Intrinsic::Reflect: return reflect();
+      case Intrinsic::Refract: return refract();
+      default: break;
+    }
+    if (const auto assembled = definedOfDoubles(intrinsic))
+      return polyfills_.addByComponent(functionName(*assembled), type_, types,
+                                       {.text = {}, .ofDouble = assembled});
+    const auto found = std::ranges::find(rows, intrinsic, &Row::intrinsic);
+    assert(found != std::end(rows) && "every intrinsic that takes doubles has a row or a case");
+    // comparisons of scalars are no overload of the intrinsics; their result is bool
+    const Type result = resultType(intrinsic, types).value_or(Type::of(Scalar::Bool));
+    std::vector<Type> components;
+    for (const Type type : types) components.push_back(type.component());
+    std::string text;
+    if (!found->body.empty())
+      text = wrapLine(fmt::format("{} {{ {} }}", head(result.component(), found->function, components),
+                                  found->body)) +
+             "\n";
+    return polyfills_.addByComponent(found->function, result, types, {std::move(text)});
   }
-  defineForLengths(polyfills, type);
-  polyfills.add(
-      fmt::format("sk_double sk_length({0} a) {{\n"
-                  "  sk_double m = sk_largest(a);\n"
-                  "  if (sk_isinf(m)) return m;\n"
-                  "  int e = sk_square_exponent(m);\n"
-                  "  {0} b = sk_ldexp(a, -e);\n"
-                  "  return sk_ldexp(sk_sqrt(sk_dot(b, b)), e);\n}}\n",
-                  nameOf(type)));
-  return "sk_length";
-}
 
-std::string distance(Polyfills& polyfills, Type type) {
-  defineByComponent(polyfills, "sk_sub", type, {type, type});
-  length(polyfills, type);
-  polyfills.add(fmt::format("sk_double sk_distance({}) {{ return sk_length(sk_sub(a, b)); }}\n",
-                            parameterList({type, type})));
-  return "sk_distance";
-}
-
-/// A zero vector keeps its zeros.
-std::string normalize(Polyfills& polyfills, Type type) {
-  if (type.isScalar()) {
-    polyfills.add(
-        "sk_double sk_normalize(sk_double a) {\n"
-        "  return sk_choose(sk_equal(a, sk_to_double(0.0)), a, sk_div(a, sk_abs(a)));\n}\n");
-    return "sk_normalize";
+ private:
+  FunctionId add(std::string_view function, Type result, const std::vector<Type>& types,
+                 std::string_view body, std::vector<FunctionId> callees) {
+    const bool isLine = body.front() == ' ';
+    const std::string text = fmt::format("{} {{{}}}", head(result, function, types), body);
+    return polyfills_.add(function, result, types,
+                          {.text = (isLine ? wrapLine(text) : text) + "\n", .callees = std::move(callees)});
   }
-  defineForLengths(polyfills, type);
-  defineByComponent(polyfills, "sk_div", type, {type, type.component()});
-  polyfills.add(
-      fmt::format("{0} sk_normalize({0} a) {{\n"
-                  "  {0} b = sk_ldexp(a, -sk_square_exponent(sk_largest(a)));\n"
-                  "  sk_double square = sk_dot(b, b);\n"
-                  "  if (sk_equal(square, sk_to_double(0.0))) return a;\n"
-                  "  return sk_div(b, sk_sqrt(square));\n}}\n",
-                  nameOf(type)));
-  return "sk_normalize";
-}
 
-std::string cross(Polyfills& polyfills) {
-  const auto minor = [](char i, char j) {
-    return fmt::format("sk_sub(sk_mul(a.{0}, b.{1}), sk_mul(a.{1}, b.{0}))", i, j);
-  };
-  polyfills.add(
-      fmt::format("sk_double3 sk_cross(sk_double3 a, sk_double3 b) {{\n"
-                  "  return sk_double3({},\n    {},\n    {});\n}}\n",
-                  minor('y', 'z'), minor('z', 'x'), minor('x', 'y')));
-  return "sk_cross";
-}
+  FunctionId dot() {
+    std::string sum = type_.isScalar() ? "sk_mul(a, b)" : "sk_mul(a.x, b.x)";
+    for (std::size_t c = 1; c < type_.width; ++c)
+      sum = fmt::format("sk_add({0}, sk_mul(a.{1}, b.{1}))", sum, letters[c]);
+    return add("sk_dot", doubleType, {type_, type_}, fmt::format(" return {}; ", sum), {});
+  }
 
-std::string faceforward(Polyfills& polyfills, Type type) {
-  dot(polyfills, type);
-  defineByComponent(polyfills, "sk_neg", type, {type});
-  polyfills.add(
-      fmt::format("{} sk_faceforward({}) {{\n"
-                  "  if (sk_less(sk_dot(c, b), sk_to_double(0.0))) return a;\n  return sk_neg(a);\n}}\n",
-                  nameOf(type), parameterList({type, type, type})));
-  return "sk_faceforward";
-}
+  FunctionId scaled() { return byComponent("sk_ldexp", type_, {type_, Type::of(Scalar::Int)}); }
+  FunctionId difference() { return byComponent("sk_sub", type_, {type_, type_}); }
+  FunctionId product() { return byComponent("sk_mul", type_, {type_, doubleType}); }
+  FunctionId quotient() { return byComponent("sk_div", type_, {type_, doubleType}); }
+  FunctionId negated() { return byComponent("sk_neg", type_, {type_}); }
 
-/// Defines the functions that reflect and refract share.
-void defineForRays(Polyfills& polyfills, Type type) {
-  dot(polyfills, type);
-  defineByComponent(polyfills, "sk_sub", type, {type, type});
-  defineByComponent(polyfills, "sk_mul", type, {type, type.component()});
-}
+  /// The magnitude of the largest component, the largest of finite numbers and infinity.
+  FunctionId largest() {
+    std::string body = "\n  sk_double m = sk_abs(a.x), n;\n";
+    for (std::size_t c = 1; c < type_.width; ++c) {
+      body += fmt::format("  n = sk_abs(a.{});\n  m = sk_choose(sk_less(m, n) || sk_isnan(m), n, m);\n",
+                          letters[c]);
+    }
+    return add("sk_largest", doubleType, {type_}, body + "  return m;\n", {});
+  }
 
-std::string reflect(Polyfills& polyfills, Type type) {
-  defineForRays(polyfills, type);
-  polyfills.add(
-      fmt::format("{} sk_reflect({}) {{\n"
-                  "  sk_double d = sk_dot(b, a);\n"
-                  "  return sk_sub(a, sk_mul(b, sk_add(d, d)));\n}}\n",
-                  nameOf(type), parameterList({type, type})));
-  return "sk_reflect";
-}
+  FunctionId length() {
+    if (type_.isScalar()) return add("sk_length", doubleType, {type_}, " return sk_abs(a); ", {});
+    return add("sk_length", doubleType, {type_},
+               fmt::format("\n  sk_double m = sk_largest(a);\n"
+                           "  if (sk_isinf(m)) return m;\n"
+                           "  int e = sk_square_exponent(m);\n"
+                           "  {} b = sk_ldexp(a, -e);\n"
+                           "  return sk_ldexp(sk_sqrt(sk_dot(b, b)), e);\n",
+                           nameOf(type_)),
+               {dot(), scaled(), largest()});
+  }
 
-std::string refract(Polyfills& polyfills, Type type) {
-  defineForRays(polyfills, type);
-  const std::string zero = doubleVector(polyfills, type, {type.component()}, {"sk_to_double(0.0)"});
-  polyfills.add(
-      fmt::format("{} sk_refract({}) {{\n"
-                  "  sk_double d = sk_dot(b, a), one = sk_to_double(1.0);\n"
-                  "  sk_double k = sk_sub(one, sk_mul(sk_mul(c, c), sk_sub(one, sk_mul(d, d))));\n"
-                  "  if (sk_less(k, sk_to_double(0.0))) return {};\n"
-                  "  return sk_sub(sk_mul(a, c), sk_mul(b, sk_add(sk_mul(c, d), sk_sqrt(k))));\n}}\n",
-                  nameOf(type), parameterList({type, type, type.component()}), zero));
-  return "sk_refract";
-}
+  FunctionId distance() {
+    return add("sk_distance", doubleType, {type_, type_}, " return sk_length(sk_sub(a, b)); ",
+               {difference(), length()});
+  }
 
-/// Calls a function that the assembler defines for one double.
-std::string defined(Polyfills& polyfills, sk::program::Intrinsic intrinsic, const std::vector<Type>& types,
-                    const Texts& texts) {
-  const std::string function = polyfills.definedOfDouble(intrinsic);
-  defineByComponent(polyfills, function, types[0], types);
-  return call(function, texts);
+  /// A zero vector keeps its zeros.
+  FunctionId normalize() {
+    if (type_.isScalar()) {
+      return add("sk_normalize", type_, {type_},
+                 "\n  return sk_choose(sk_equal(a, sk_to_double(0.0)), a, sk_div(a, sk_abs(a)));\n", {});
+    }
+    return add("sk_normalize", type_, {type_},
+               fmt::format("\n  {} b = sk_ldexp(a, -sk_square_exponent(sk_largest(a)));\n"
+                           "  sk_double square = sk_dot(b, b);\n"
+                           "  if (sk_equal(square, sk_to_double(0.0))) return a;\n"
+                           "  return sk_div(b, sk_sqrt(square));\n",
+                           nameOf(type_)),
+               {dot(), scaled(), largest(), quotient()});
+  }
+
+  FunctionId cross() {
+    const auto minor = [](char i, char j) {
+      return fmt::format("sk_sub(sk_mul(a.{0}, b.{1}), sk_mul(a.{1}, b.{0}))", i, j);
+    };
+    return add("sk_cross", type_, {type_, type_},
+               fmt::format("\n  return sk_double3({},\n    {},\n    {});\n", minor('y', 'z'), minor('z', 'x'),
+                           minor('x', 'y')),
+               {});
+  }
+
+  FunctionId faceforward() {
+    return add("sk_faceforward", type_, {type_, type_, type_},
+               "\n  if (sk_less(sk_dot(c, b), sk_to_double(0.0))) return a;\n  return sk_neg(a);\n",
+               {dot(), negated()});
+  }
+
+  FunctionId reflect() {
+    return add("sk_reflect", type_, {type_, type_},
+               "\n  sk_double d = sk_dot(b, a);\n  return sk_sub(a, sk_mul(b, sk_add(d, d)));\n",
+               {dot(), difference(), product()});
+  }
+
+  FunctionId refract() {
+    const std::string zero = "sk_to_double(0.0)";
+    return add("sk_refract", type_, {type_, type_, doubleType},
+               fmt::format("\n  sk_double d = sk_dot(b, a), one = sk_to_double(1.0);\n"
+                           "  sk_double k = sk_sub(one, sk_mul(sk_mul(c, c), sk_sub(one, sk_mul(d, d))));\n"
+                           "  if (sk_less(k, sk_to_double(0.0))) return {};\n"
+                           "  return sk_sub(sk_mul(a, c), sk_mul(b, sk_add(sk_mul(c, d), sk_sqrt(k))));\n",
+                           type_.isScalar() ? zero : callText(nameOf(type_), Texts(type_.width, zero))),
+               {dot(), difference(), product()});
+  }
+
+  Polyfills& polyfills_;
+  Type type_;
+};
+
+FunctionId byComponent(Polyfills& polyfills, std::string_view function, Type result,
+                       const std::vector<Type>& types) {
+  return DoubleFunctions(polyfills, types[0]).byComponent(function, result, types);
 }
 
 std::string namesOf(const std::vector<std::uint8_t>& components) {
@@ -228,6 +205,8 @@ std::string namesOf(const std::vector<std::uint8_t>& components) {
   for (const std::uint8_t component : components) names += letters[component];
   return names;
 }
+
+Type doubles(std::size_t width) { return Type::of(Scalar::Double, static_cast<int>(width)); }
 
 }  // namespace
 
@@ -241,113 +220,104 @@ std::string doubleLiteral(const Literal& literal) {
                      literal.high);
 }
 
-std::string doubleNegated(Polyfills& polyfills, Type type, const std::string& operand) {
-  defineByComponent(polyfills, "sk_neg", type, {type});
-  return call("sk_neg", {operand});
+ExprPtr doubleNegated(Polyfills& polyfills, ExprPtr operand) {
+  const FunctionId function = byComponent(polyfills, "sk_neg", operand->type, {operand->type});
+  return polyfills.call(function, exprs(std::move(operand)));
 }
 
-std::string doubleBinary(Polyfills& polyfills, BinaryOp op, Type lhs, Type rhs, const std::string& a,
-                         const std::string& b) {
-  const std::string_view function = row(op).doubles;
-  if (function.empty()) return byComponent(polyfills, row(op).vectors.value(), {lhs, rhs}, {a, b});
-  defineByComponent(polyfills, function, lhs.isVector() ? lhs : rhs, {lhs, rhs});
-  return call(function, {a, b});
+ExprPtr doubleBinary(Polyfills& polyfills, BinaryOp op, ExprPtr a, ExprPtr b) {
+  const OperatorRow& entry = row(op);
+  if (entry.doubles.empty())
+    return doubleIntrinsic(polyfills, entry.vectors.value(), exprs(std::move(a), std::move(b)));
+  const Type lhs = a->type, rhs = b->type;
+  const FunctionId function = byComponent(polyfills, entry.doubles, lhs.isVector() ? lhs : rhs, {lhs, rhs});
+  return polyfills.call(function, exprs(std::move(a), std::move(b)));
 }
 
-std::string doubleConverted(Polyfills& polyfills, Type from, Type to, const std::string& operand) {
-  if (to.isBool()) {
-    const std::string zero = doubleVector(polyfills, from, {from.component()}, {"sk_to_double(0.0)"});
-    return byComponent(polyfills, Intrinsic::NotEqualTo, {from, from}, {operand, zero});
-  }
-  if (from.isBool()) {
-    return doubleConverted(polyfills, from.withScalar(Scalar::Int), to,
-                           call(glslSpelling(Scalar::Int, from.width), {operand}));
-  }
+ExprPtr doubleConverted(Polyfills& polyfills, Type to, ExprPtr operand) {
+  const Type from = operand->type;
+  if (to.isBool())
+    return doubleIntrinsic(polyfills, Intrinsic::NotEqualTo, exprs(std::move(operand), literalOf(from, 0)));
+  if (from.isBool()) return doubleConverted(polyfills, to, convert(Scalar::Int, std::move(operand)));
   if (to.scalar == Scalar::Half) {
-    defineByComponent(polyfills, "sk_to_odd", to, {from});
-    return call(polyfills.quantize(to), {call("sk_to_odd", {operand})});
+    const FunctionId toOdd = byComponent(polyfills, "sk_to_odd", to.arithmeticType(), {from});
+    return polyfills.call(polyfills.quantize(to), exprs(polyfills.call(toOdd, exprs(std::move(operand)))));
   }
   const std::string function = "sk_to_" + glslSpelling(to.scalar, 1).substr(to.isDouble() ? 3 : 0);
-  defineByComponent(polyfills, function, to, {from});
-  return call(function, {operand});
+  return polyfills.call(byComponent(polyfills, function, to, {from}), exprs(std::move(operand)));
 }
 
-std::string doubleVector(Polyfills& polyfills, Type type, const std::vector<Type>& parts,
-                         const Texts& texts) {
-  if (parts.size() == 1 && parts[0] == type) return texts[0];
-  const bool areScalars = std::ranges::all_of(parts, [](Type part) { return part.isScalar(); });
-  if (areScalars && parts.size() == type.width) return call(nameOf(type), texts);
+ExprPtr doubleVector(Polyfills& polyfills, Type type, Args parts) {
+  if (parts.size() == 1 && parts[0]->type == type) return std::move(parts[0]);
+  const bool areScalars =
+      std::ranges::all_of(parts, [](const ExprPtr& part) { return part->type.isScalar(); });
+  if (areScalars && parts.size() == type.width) return construct(type, std::move(parts));
   const std::string function = "sk_make_" + nameOf(type).substr(3);
   Texts parameters, components;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    parameters.push_back(fmt::format("{} {}", nameOf(parts[i]), "abcd"[i]));
-    for (std::size_t c = 0; c < parts[i].width; ++c) {
-      components.push_back(parts[i].isScalar() ? std::string(1, "abcd"[i])
-                                               : fmt::format("{}.{}", "abcd"[i], letters[c]));
+    parameters.push_back(fmt::format("{} {}", nameOf(parts[i]->type), "abcd"[i]));
+    for (std::size_t c = 0; c < parts[i]->type.width; ++c) {
+      components.push_back(parts[i]->type.isScalar() ? std::string(1, "abcd"[i])
+                                                     : fmt::format("{}.{}", "abcd"[i], letters[c]));
     }
   }
   components.resize(type.width, components.front());  // broadcast a scalar
-  polyfills.add(fmt::format("{} {}({}) {{ return {}; }}\n", nameOf(type), function, join(parameters, ", "),
-                            call(nameOf(type), components)));
-  return call(function, texts);
+  const FunctionId id =
+      polyfills.add(function, type, typesOf(parts),
+                    {fmt::format("{} {}({}) {{ return {}; }}\n", nameOf(type), function,
+                                 join(parameters, ", "), callText(nameOf(type), components))});
+  return polyfills.call(id, std::move(parts));
 }
 
-std::string doubleIntrinsic(Polyfills& polyfills, Intrinsic intrinsic, const std::vector<Type>& types,
-                            const Texts& texts) {
-  if (intrinsic == Intrinsic::Dot) return call(dot(polyfills, types[0]), texts);
-  if (intrinsic == Intrinsic::Length) return call(length(polyfills, types[0]), texts);
-  if (intrinsic == Intrinsic::Distance) return call(distance(polyfills, types[0]), texts);
-  if (intrinsic == Intrinsic::Normalize) return call(normalize(polyfills, types[0]), texts);
-  if (intrinsic == Intrinsic::Cross) return call(cross(polyfills), texts);
-  if (intrinsic == Intrinsic::Faceforward) return call(faceforward(polyfills, types[0]), texts);
-  if (intrinsic == Intrinsic::Reflect) return call(reflect(polyfills, types[0]), texts);
-  if (intrinsic == Intrinsic::Refract) return call(refract(polyfills, types[0]), texts);
-  if (const auto ours = definedOfDoubles(intrinsic)) return defined(polyfills, *ours, types, texts);
-  return byComponent(polyfills, intrinsic, types, texts);
+ExprPtr doubleIntrinsic(Polyfills& polyfills, Intrinsic intrinsic, Args args) {
+  const std::vector<Type> types = typesOf(args);
+  return polyfills.call(DoubleFunctions(polyfills, types[0]).intrinsic(intrinsic, types), std::move(args));
 }
 
 // ---- components -----------------------------------------------------------------------------------
 
-std::string doubleSwizzle(Polyfills& polyfills, Type base, const std::vector<std::uint8_t>& components,
-                          const std::string& vector) {
-  const std::string names = namesOf(components), function = "sk_" + names;
-  const std::string result = doubleName(components.size());
+ExprPtr doubleSwizzle(Polyfills& polyfills, const std::vector<std::uint8_t>& components, ExprPtr vector) {
+  const std::string function = "sk_" + namesOf(components);
+  const Type base = vector->type, result = doubles(components.size());
   Texts items;
-  for (const char name : names) items.push_back(fmt::format("v.{}", name));
-  polyfills.add(
-      fmt::format("{} {}({} v) {{ return {}; }}\n", result, function, nameOf(base), call(result, items)));
-  return call(function, {vector});
+  for (const std::uint8_t component : components) items.push_back(fmt::format("v.{}", letters[component]));
+  const FunctionId id = polyfills.add(function, result, {base},
+                                      {fmt::format("{} {}({} v) {{ return {}; }}\n", nameOf(result), function,
+                                                   nameOf(base), callText(nameOf(result), items))});
+  return polyfills.call(id, exprs(std::move(vector)));
 }
 
-std::string doubleComponent(Polyfills& polyfills, Type base, const std::string& vector,
-                            const std::string& index) {
+ExprPtr doubleComponent(Polyfills& polyfills, ExprPtr vector, ExprPtr index) {
+  const Type base = vector->type;
   std::string choice = fmt::format("v.{}", letters[base.width - 1U]);
   for (int c = base.width - 2; c >= 0; --c)
     choice = fmt::format("sk_choose(i == {}, v.{}, {})", c, letters[static_cast<std::size_t>(c)], choice);
-  polyfills.add(fmt::format("sk_double sk_component({} v, int i) {{ return {}; }}\n", nameOf(base), choice));
-  return call("sk_component", {vector, index});
+  const FunctionId id = polyfills.add(
+      "sk_component", doubleType, {base, Type::of(Scalar::Int)},
+      {fmt::format("sk_double sk_component({} v, int i) {{ return {}; }}\n", nameOf(base), choice)});
+  return polyfills.call(id, exprs(std::move(vector), std::move(index)));
 }
 
-std::string doubleWith(Polyfills& polyfills, Type base, const std::vector<std::uint8_t>& components,
-                       const std::string& vector, const std::string& value) {
+ExprPtr doubleWith(Polyfills& polyfills, const std::vector<std::uint8_t>& components, ExprPtr vector,
+                   ExprPtr value) {
   const std::string names = namesOf(components), function = "sk_with_" + names;
-  std::string text =
-      fmt::format("{0} {1}({0} v, {2} s) {{\n ", nameOf(base), function, doubleName(names.size()));
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  const Type base = vector->type, part = doubles(names.size());
+  std::string text = fmt::format("{0} {1}({0} v, {2} s) {{\n ", nameOf(base), function, nameOf(part));
+  for (std::size_t i = 0; i < names.size(); ++i)
     text += names.size() == 1 ? fmt::format(" v.{} = s;", names[i])
                               : fmt::format(" v.{} = s.{};", names[i], letters[i]);
-  }
-  polyfills.add(text + "\n  return v;\n}\n");
-  return call(function, {vector, value});
+  const FunctionId id = polyfills.add(function, base, {base, part}, {text + "\n  return v;\n}\n"});
+  return polyfills.call(id, exprs(std::move(vector), std::move(value)));
 }
 
-std::string doubleWithComponent(Polyfills& polyfills, Type base, const std::string& vector,
-                                const std::string& index, const std::string& value) {
+ExprPtr doubleWithComponent(Polyfills& polyfills, ExprPtr vector, ExprPtr index, ExprPtr value) {
+  const Type base = vector->type;
   std::string text = fmt::format("{0} sk_with({0} v, int i, sk_double s) {{\n", nameOf(base));
   for (int c = 0; c < base.width; ++c)
     text += fmt::format("  if (i == {}) v.{} = s;\n", c, letters[static_cast<std::size_t>(c)]);
-  polyfills.add(text + "  return v;\n}\n");
-  return call("sk_with", {vector, index, value});
+  const FunctionId id =
+      polyfills.add("sk_with", base, {base, Type::of(Scalar::Int), doubleType}, {text + "  return v;\n}\n"});
+  return polyfills.call(id, exprs(std::move(vector), std::move(index), std::move(value)));
 }
 
 }  // namespace skc::emit

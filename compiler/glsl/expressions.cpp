@@ -15,7 +15,6 @@
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/known_values.hpp"
 #include "ir/build.hpp"
-#include "ir/evaluate.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"
 #include "ir/walk.hpp"
@@ -106,26 +105,6 @@ Text literalText(Type type, std::uint32_t bits) {
   return signedText(shortestFloat(value));
 }
 
-/// The component of a vector that an index selects, if the index is constant.
-std::optional<std::uint32_t> knownComponent(const Index& n) {
-  const auto* literal = std::get_if<Literal>(&n.index->node);
-  if (literal == nullptr) return std::nullopt;
-  return literal->bits;
-}
-
-/// True if GLSL can assign to the text of this lvalue. Components of double vectors are members of a struct:
-/// one known component is an lvalue, several or a computed one are not.
-bool isGlslLValue(const Expr& lvalue) {
-  if (const auto* n = std::get_if<Swizzle>(&lvalue.node)) {
-    return (!lvalue.type.isDouble() || lvalue.type.isScalar()) && isGlslLValue(*n->base);
-  }
-  if (const auto* n = std::get_if<Index>(&lvalue.node)) {
-    return (!n->base->type.isDouble() || knownComponent(*n)) && isGlslLValue(*n->base);
-  }
-  if (const auto* n = std::get_if<Member>(&lvalue.node)) return isGlslLValue(*n->base);
-  return true;
-}
-
 /// True for what a sum or product loses. What it is added to loses so little that any order will do.
 bool isRoundingError(const Expr& expr) {
   const auto* n = std::get_if<IntrinsicCall>(&expr.node);
@@ -165,41 +144,18 @@ class GlslExpr {
     return isMarked ? fmt::format("{}{}{}", mark::operation, whole.text, mark::operationEnd) : whole.text;
   }
 
-  /// The text of an lvalue that GLSL can assign to.
-  std::string targetText(const Expr& lvalue) const {
-    const auto* n = std::get_if<Index>(&lvalue.node);
-    if (n == nullptr || !n->base->type.isVector() || n->base->type.isDouble()) return text(lvalue);
-    return text(*n->base, Precedence::Primary) + "[" + passedText(*n->index) + "]";
-  }
-
-  /// If GLSL cannot assign to `lvalue`, assigns to what contains it a copy with that part replaced.
-  std::string assigned(const Expr& lvalue, const std::string& value) const {
-    if (isGlslLValue(lvalue)) return targetText(lvalue) + " = " + value;
-    if (const auto* n = std::get_if<Swizzle>(&lvalue.node)) {
-      return assigned(*n->base,
-                      doubleWith(context_.polyfills, n->base->type, n->components, text(*n->base), value));
-    }
-    const auto& n = std::get<Index>(lvalue.node);
-    return assigned(*n.base, doubleWithComponent(context_.polyfills, n.base->type, text(*n.base),
-                                                 intIndexText(n), value));
-  }
-
-  /// "place += value", or its expansion if GLSL has no such operator for these operands.
+  /// "place += value".
   std::string combined(BinaryOp op, const Expr& lvalue, const Expr& value) const {
-    const bool isCall = lvalue.type.isDouble() || takesQuotient(op, lvalue, value);
-    if (!isCall) {
-      if (!isStored_ && isFloats(lvalue.type)) {
-        return fmt::format("{} = {}{}{}{}", targetText(lvalue), mark::value, digitOf(lvalue.type),
-                           storedText(lvalue, op, value), mark::valueEnd);
-      }
-      if (context_.marks && isFloats(lvalue.type) && !lvalue.type.isMatrix() && !isRoundingError(value)) {
-        return fmt::format("{}{}{}{}{}{}{}", mark::compound, targetText(lvalue), mark::compoundNext,
-                           spelling(op), mark::compoundNext,
-                           text(value, Precedence::LogicalOr, op == BinaryOp::Div), mark::compoundEnd);
-      }
-      return fmt::format("{} {}= {}", targetText(lvalue), spelling(op), text(value));
+    if (!isStored_ && isFloats(lvalue.type)) {
+      return fmt::format("{} = {}{}{}{}", text(lvalue), mark::value, digitOf(lvalue.type),
+                         storedText(lvalue, op, value), mark::valueEnd);
     }
-    return assigned(lvalue, binary(lvalue.type, op, lvalue, value).text);
+    if (context_.marks && isFloats(lvalue.type) && !lvalue.type.isMatrix() && !isRoundingError(value)) {
+      return fmt::format("{}{}{}{}{}{}{}", mark::compound, text(lvalue), mark::compoundNext, spelling(op),
+                         mark::compoundNext, text(value, Precedence::LogicalOr, op == BinaryOp::Div),
+                         mark::compoundEnd);
+    }
+    return fmt::format("{} {}= {}", text(lvalue), spelling(op), text(value));
   }
 
  private:
@@ -245,7 +201,7 @@ class GlslExpr {
   bool isComputed(const Expr& expr) const {
     if (!isFloats(expr.type)) return false;
     if (const auto* n = std::get_if<Binary>(&expr.node)) {
-      return row(n->op).precedence >= Precedence::Additive && !formulaOfLiterals(expr);
+      return row(n->op).precedence >= Precedence::Additive;
     }
     if (const auto* n = std::get_if<Convert>(&expr.node)) {  // to the same floats
       return isFloats(n->operand->type) && !expr.type.isNarrow() && isComputed(*n->operand);
@@ -260,105 +216,64 @@ class GlslExpr {
   }
 
   Text printed(const Expr& expr) const {
-    std::optional<std::uint32_t> literal = formulaOfLiterals(expr);
-    if (const auto* n = std::get_if<Literal>(&expr.node); n != nullptr && !expr.type.isDouble())
-      literal = n->bits;
-    if (!literal) return match(expr.node, [&](const auto& node) { return print(expr.type, node); });
-    const bool isMarkedZero = isFloats(expr.type) && isZero(*literal) && !isCompared_ && needsBarrier(expr);
-    return isMarkedZero ? markedZero(*literal) : literalText(expr.type, *literal);
+    return match(expr.node, [&](const auto& node) { return print(expr, node); });
   }
-
-  /// The value of a formula of float literals. Devices might divide less precisely when they compile.
-  std::optional<std::uint32_t> formulaOfLiterals(const Expr& expr) const {
-    const bool isFormula =
-        std::holds_alternative<Binary>(expr.node) || std::holds_alternative<Convert>(expr.node);
-    if (!isFormula || !expr.type.isScalar() || !expr.type.isFloat()) return std::nullopt;
-    return evaluateInFloat(context_.module, expr, Constants::Keep);
+  Text print(const Expr& expr, const Literal& n) const {
+    if (expr.type.isDouble()) return {doubleLiteral(n)};
+    const bool isMarkedZero = isFloats(expr.type) && isZero(n.bits) && !isCompared_ && needsBarrier(expr);
+    return isMarkedZero ? markedZero(n.bits) : literalText(expr.type, n.bits);
   }
-
-  Text print(Type type, const Literal& n) const {
-    return type.isDouble() ? Text{doubleLiteral(n)} : literalText(type, n.bits);
-  }
-  Text print(Type, const VarRef& n) const { return {context_.names.variable(*function_, n.var)}; }
-  Text print(Type, const ConstantRef& n) const { return {context_.types.constantUse(n.constant)}; }
-  Text print(Type type, const Unary& n) const {
-    if (type.isDouble()) return {doubleNegated(context_.polyfills, type, text(*n.operand))};
-    if (n.op == UnaryOp::LogicalNot && type.isVector()) return {"not(" + text(*n.operand) + ")"};
+  Text print(const Expr&, const VarRef& n) const { return {context_.names.variable(*function_, n.var)}; }
+  Text print(const Expr&, const ConstantRef& n) const { return {context_.types.constantUse(n.constant)}; }
+  Text print(const Expr& expr, const Unary& n) const {
+    if (n.op == UnaryOp::LogicalNot && expr.type.isVector()) return {"not(" + text(*n.operand) + ")"};
     return {std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary), Precedence::Unary};
   }
-  Text print(Type type, const Binary& n) const { return binary(type, n.op, *n.lhs, *n.rhs); }
-  Text print(Type type, const Select& n) const {
-    if (n.cond->type.isVector()) {
-      if (type.arithmeticType().isFloat())
-        return {fmt::format("mix({}, {}, {})", text(*n.no), text(*n.yes), text(*n.cond))};
-      return {fmt::format("{}({}, {}, {})", context_.polyfills.select(type), text(*n.cond), text(*n.yes),
-                          text(*n.no))};
-    }
+  Text print(const Expr& expr, const Binary& n) const { return binary(expr.type, n.op, *n.lhs, *n.rhs); }
+  Text print(const Expr&, const Select& n) const {
+    if (n.cond->type.isVector())
+      return {fmt::format("mix({}, {}, {})", text(*n.no), text(*n.yes), text(*n.cond))};
     return {fmt::format("{} ? {} : {}", passedText(*n.cond, Precedence::LogicalOr),
                         text(*n.yes, Precedence::LogicalOr), text(*n.no, Precedence::Conditional)),
             Precedence::Conditional};
   }
-  Text print(Type type, const Convert& n) const {
-    if (type.isDouble() || n.operand->type.isDouble()) {
-      return {doubleConverted(context_.polyfills, n.operand->type, type, passedText(*n.operand))};
-    }
-    const bool keepsArithmetic = arithmeticScalar(n.operand->type.scalar) == arithmeticScalar(type.scalar);
-    if (keepsArithmetic && !type.isNarrow()) return printed(*n.operand);
-    if (type.isScalar() && type.scalar == Scalar::Bool && isFloats(n.operand->type))
-      return {context_.polyfills.nonzero() + "(" + passedText(*n.operand) + ")"};
-    const std::string value = passedText(*n.operand);
-    const std::string conversion = mayNotHold(context_.module, type, *n.operand)
-                                       ? context_.polyfills.truncated(type)
-                                       : context_.types.glsl(type);
-    const std::string converted = keepsArithmetic ? value : conversion + "(" + value + ")";
-    if (type.isNarrow()) return {context_.polyfills.quantize(type) + "(" + converted + ")"};
+  Text print(const Expr& expr, const Convert& n) const {
+    const bool keepsArithmetic = arithmeticScalar(n.operand->type.scalar) == expr.type.scalar;
+    if (keepsArithmetic) return printed(*n.operand);
     // an int may be a loop's, which compilers know where they unroll it
-    const bool isKnown = type.isFloat() && arithmeticScalar(n.operand->type.scalar) != Scalar::Bool &&
-                         !keepsArithmetic && !isUnknown(*n.operand);
-    return {converted, Precedence::Primary, /*isOperation=*/false, isKnown};
+    const bool isKnown = expr.type.isFloat() && !n.operand->type.isBool() && !isUnknown(*n.operand);
+    return {context_.types.glsl(expr.type) + "(" + passedText(*n.operand) + ")", Precedence::Primary,
+            /*isOperation=*/false, isKnown};
   }
-  Text print(Type type, const Construct& n) const {
-    if (type.isDouble()) return {doubleVector(context_.polyfills, type, typesOf(n.args), texts(n.args))};
-    return {context_.types.glsl(type) + list(n.args)};
+  Text print(const Expr& expr, const Construct& n) const {
+    return {context_.types.glsl(expr.type) + list(n.args)};
   }
-  Text print(Type type, const Swizzle& n) const {
-    if (type.isDouble() && type.isVector()) {
-      return {doubleSwizzle(context_.polyfills, n.base->type, n.components, text(*n.base))};
-    }
+  Text print(const Expr&, const Swizzle& n) const {
     std::string components;
     for (std::uint8_t component : n.components) components += "xyzw"[component];
     return {text(*n.base, Precedence::Primary) + "." + components};
   }
-  Text print(Type, const Member& n) const {
+  Text print(const Expr&, const Member& n) const {
     return {text(*n.base, Precedence::Primary) + "." + context_.types.fieldName(n.base->type.index, n.field)};
   }
-  Text print(Type, const Index& n) const {
-    if (n.base->type.isDouble()) return doubleIndex(n);
-    if (n.base->type.isVector() && !knownComponent(n)) {
-      const std::string function = context_.polyfills.component(n.base->type, n.index->type);
-      return {fmt::format("{}({}, {})", function, passedText(*n.base), passedText(*n.index))};
-    }
+  Text print(const Expr&, const Index& n) const {
     return {text(*n.base, Precedence::Primary) + "[" + passedText(*n.index) + "]"};
   }
-  Text print(Type, const Call& n) const {
-    const std::string_view prefix = context_.module.functions[n.callee].table ? "sk_table_" : "";
+  Text print(const Expr&, const Call& n) const {
+    const Function& callee = context_.module.functions[n.callee];
+    const std::string_view prefix = callee.table ? "sk_table_" : "";
     const Scope scope(isStored_, !context_.marks || !function_);
-    return {fmt::format("{}{}{}", prefix, context_.names.function(n.callee), list(n.args))};
+    return {fmt::format("{}{}{}", prefix, callee.isLibrary ? callee.name : context_.names.function(n.callee),
+                        list(n.args))};
   }
-  Text print(Type, const IntrinsicCall& n) const {
+  Text print(const Expr&, const IntrinsicCall& n) const {
     const IntrinsicRow& entry = row(n.intrinsic);
     const Type argument = n.args[0]->type;
-    if (argument.isDouble()) {
-      return {doubleIntrinsic(context_.polyfills, n.intrinsic, typesOf(n.args), texts(n.args))};
-    }
-    if (n.intrinsic == Intrinsic::Abs && argument.scalar == Scalar::Int)
-      return {context_.polyfills.magnitude(argument) + list(n.args)};
     if (const auto defined = definedIntrinsic(n)) {
       const Scope scope(isStored_, !context_.marks || !function_);
       return definedCall(*defined, n.args, chooses(n.intrinsic));
     }
     if (n.intrinsic == Intrinsic::Fma) return multiplyAdd(n.args);
-    context_.polyfills.intrinsic(n.intrinsic, argument);
     const bool isGlslOwn = entry.polyfill.empty();
     const Scope scope(isStored_, isGlslOwn ? isStored_ : !context_.marks || !function_);
     if (hasFormula(n.intrinsic) && context_.marks && function_)
@@ -374,46 +289,29 @@ class GlslExpr {
     if (pattern == "$0") return printed(*n.args[0]);
     return fromPattern(withTypes(pattern, argument), n.args);
   }
-  Text print(Type, const GatherRead& n) const {
+  Text print(const Expr&, const GatherRead& n) const {
     return {call("sk_at", n.stream) + "(" + passedText(*n.index) + ")"};
   }
-  Text print(Type, const NeighborRead& n) const {
+  Text print(const Expr&, const NeighborRead& n) const {
     return {call("sk_near", n.stream) + "(" + passedText(*n.offset) + ")"};
   }
-  Text print(Type, const Sample& n) const {
+  Text print(const Expr&, const Sample& n) const {
     return {call("sk_sample", n.stream) + "(" + passedText(*n.position) + ")"};
   }
-  Text print(Type, const IndexOf& n) const {
+  Text print(const Expr&, const IndexOf& n) const {
     const bool isInput = n.stream.space == StreamRef::Space::KernelParameter &&
                          context_.kernel.params[n.stream.id].role == ParamRole::Input;
     return {(isInput ? call("sk_index", n.stream) : "sk_index") + "()"};
   }
-  Text print(Type, const ExtentOf& n) const { return {call("sk_extent", n.stream) + "()"}; }
+  Text print(const Expr&, const ExtentOf& n) const { return {call("sk_extent", n.stream) + "()"}; }
 
   Text binary(Type type, BinaryOp op, const Expr& lhs, const Expr& rhs) const {
-    if (lhs.type.isDouble()) {
-      return {doubleBinary(context_.polyfills, op, lhs.type, rhs.type, text(lhs), text(rhs))};
-    }
-    const bool isVector = lhs.type.isVector();
     if (isComparison(op)) return comparison(op, lhs, rhs);
-    if (const std::optional<Intrinsic> function = row(op).vectors; isVector && function) {
-      return {fmt::format("{}{}", row(*function).glsl, pair(lhs, rhs))};
-    }
-    if (isVector && (op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr)) {
-      return {context_.polyfills.logical(op, type.width) + pair(lhs, rhs)};
-    }
-    if (takesQuotient(op, lhs, rhs)) {
-      return {context_.polyfills.quotient(op, lhs.type, rhs.type) + pair(lhs, rhs)};
-    }
-    const bool isMatrixProduct = op == BinaryOp::Mul && lhs.type.isMatrix() && !rhs.type.isScalar();
-    // GLSL's matrices have our rows as columns: they are transposed, so factors change order
-    const Expr& left = isMatrixProduct ? rhs : lhs;
-    const Expr& right = isMatrixProduct ? lhs : rhs;
     const Precedence precedence = row(op).precedence;
     const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
-    const std::string second = operand(op, right, tighter, op == BinaryOp::Div);
+    const std::string second = operand(op, rhs, tighter, op == BinaryOp::Div);
     const bool isOperation = isFloats(type) && !type.isMatrix() && precedence >= Precedence::Additive;
-    std::string first = operand(op, left, precedence);
+    std::string first = operand(op, lhs, precedence);
     // a difference with itself is not 0, nor a quotient 1, if it is infinite or NaN
     if (isOperation && first == second && (op == BinaryOp::Sub || op == BinaryOp::Div) && context_.marks)
       first = fmt::format("{}{}{}", mark::known, first, mark::knownEnd);
@@ -421,11 +319,6 @@ class GlslExpr {
   }
 
   Text comparison(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
-    if (comparesRoundedWithZero(op, lhs, rhs)) {
-      const std::string test =
-          context_.polyfills.nonzero() + "(" + passedText(isLiteralZero(lhs) ? rhs : lhs) + ")";
-      return op == BinaryOp::NotEqual ? Text{test} : Text{"!" + test, Precedence::Unary};
-    }
     if (const std::optional<Intrinsic> function = row(op).vectors; lhs.type.isVector() && function)
       return {fmt::format("{}({}, {})", row(*function).glsl, comparedText(lhs), comparedText(rhs))};
     const Precedence precedence = row(op).precedence;
@@ -445,24 +338,16 @@ class GlslExpr {
             Precedence::Additive, true};
   }
 
-  /// True if a quotient or remainder must be a call. C++'s % differs from GLSL's for negative ints.
-  bool takesQuotient(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
-    const bool isSigned = op == BinaryOp::Rem && lhs.type.scalar == Scalar::Int;
-    return mayDivideBadly(context_.module, op, lhs, rhs) ||
-           (isSigned && !(isNonNegative(lhs) && isNonNegative(rhs)));
-  }
-
   /// Calls a function that the assembler defines, all of whose arguments have one width.
   Text definedCall(sk::program::Intrinsic intrinsic, const std::vector<ExprPtr>& args, bool isChoice) const {
-    std::uint8_t width = 1;
-    for (const ExprPtr& arg : args) width = std::max(width, arg->type.width);
+    const std::uint8_t width = widestOf(args);
     std::vector<std::string> list;
     for (const ExprPtr& arg : args) {
       const bool isNarrower = arg->type.width < width;
       const std::string value = isChoice ? comparedText(*arg) : text(*arg);
       list.push_back(isNarrower ? fmt::format("vec{}({})", width, value) : value);
     }
-    return {fmt::format("{}({})", context_.polyfills.defined(intrinsic, width), join(list, ", "))};
+    return {fmt::format("{}({})", functionName(intrinsic), join(list, ", "))};
   }
 
   /// "sk_at_u"; the domain has the shape of the first output, if there is one.
@@ -471,19 +356,6 @@ class GlslExpr {
     const std::uint32_t param = isDomain ? analysis::domainParam(context_.kernel) : stream.id;
     if (param == context_.kernel.params.size()) return std::string(function);
     return fmt::format("{}_{}", function, context_.names.symbol(param));
-  }
-
-  /// A component of a vector of doubles, which GLSL cannot index.
-  Text doubleIndex(const Index& n) const {
-    if (const auto component = knownComponent(n)) {
-      return {text(*n.base, Precedence::Primary) + "." + "xyzw"[*component]};
-    }
-    return {doubleComponent(context_.polyfills, n.base->type, text(*n.base), intIndexText(n))};
-  }
-
-  std::string intIndexText(const Index& n) const {
-    const std::string index = passedText(*n.index);
-    return n.index->type.scalar == Scalar::Int ? index : "int(" + index + ")";
   }
 
   std::string operand(BinaryOp outer, const Expr& expr, Precedence around, bool isDivisor = false) const {
@@ -498,17 +370,10 @@ class GlslExpr {
     return operand(outer, expr, around);
   }
 
-  std::string pair(const Expr& a, const Expr& b) const { return "(" + text(a) + ", " + text(b) + ")"; }
-
   std::vector<std::string> texts(const std::vector<ExprPtr>& items) const {
     std::vector<std::string> list;
     for (const ExprPtr& item : items) list.push_back(text(*item));
     return list;
-  }
-  static std::vector<Type> typesOf(const std::vector<ExprPtr>& items) {
-    std::vector<Type> types;
-    for (const ExprPtr& item : items) types.push_back(item->type);
-    return types;
   }
   std::string comparedList(const std::vector<ExprPtr>& items) const {
     std::vector<std::string> texts;
@@ -571,12 +436,7 @@ std::string glslAssignment(const GlslContext& context, FunctionId function, cons
   const bool isStored = holdsFloats(context.module, place.type) &&
                         isDeclaredPrecise(context.module.functions[function], rootOf(place));
   const GlslExpr printer(context, function, isStored);
-  return op ? printer.combined(*op, place, value) : printer.assigned(place, printer.text(value));
-}
-
-std::string glslAssignment(const GlslContext& context, FunctionId function, const Expr& place,
-                           const std::string& value) {
-  return GlslExpr(context, function).assigned(place, value);
+  return op ? printer.combined(*op, place, value) : printer.text(place) + " = " + printer.text(value);
 }
 
 }  // namespace skc::emit

@@ -16,13 +16,13 @@
 
 namespace skc::emit {
 
-/// The inputs for printing an expression, and the polyfills that it turns out to need.
+/// The inputs for printing: a module after legalize.
 struct GlslContext {
   const ir::Module& module;
   const TypeNames& types;
   const KernelNames& names;
   const ir::Kernel& kernel;
-  Polyfills& polyfills;
+  const Polyfills& polyfills;
   /// Write the marks of sk/arithmetic_marks.hpp where floats are computed.
   bool marks = false;
   /// Expressions that need no marks of operations, because their values are only copied; null: none.
@@ -44,8 +44,5 @@ std::string glslExpr(const GlslContext& context, std::optional<ir::FunctionId> f
 /// "place = value", "place += value".
 std::string glslAssignment(const GlslContext& context, ir::FunctionId function, const ir::Expr& place,
                            std::optional<ir::BinaryOp> op, const ir::Expr& value);
-/// The same for a value that is text already.
-std::string glslAssignment(const GlslContext& context, ir::FunctionId function, const ir::Expr& place,
-                           const std::string& value);
 
 }  // namespace skc::emit

@@ -3,11 +3,11 @@
 // Promise: each kind of expression is spelled right in GLSL's common subset.
 #include "glsl/expressions.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include <catch2/catch.hpp>
 
+#include "glsl/body.hpp"
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/legalize.hpp"
 #include "ir/intrinsics.hpp"
@@ -30,27 +30,34 @@ struct Fixture {
   VarId f = k.uniform("f", floatType), i = k.uniform("i", intType), v = k.uniform("v", float2),
         w = k.uniform("w", int3), b = k.uniform("b", bool2), x = k.input("x", floatType),
         u = k.gather("u", floatType, 2), r = k.output("r", floatType);
-  Polyfills polyfills;
+  Polyfills polyfills{module};
 
   Fixture() { k.finish({}); }
   ExprPtr ref(VarId var) const { return varRef(module.functions[0], var); }
-  std::string text(ExprPtr expr) {
+  std::string text(ExprPtr expr, bool isMarked = false, bool isStored = false) {
     const TypeNames types(module);
     const KernelNames names(module, module.kernels[0], types);
-    const GlslContext context{module, types, names, module.kernels[0], polyfills};
-    legalize(module, glslCapabilities, expr);
-    return glslExpr(context, 0, *expr);
+    const GlslContext context{module, types, names, module.kernels[0], polyfills, isMarked};
+    legalize(module, glslCapabilities, polyfills, expr);
+    return glslExpr(context, 0, *expr, Precedence::Lowest, isStored);
+  }
+  /// What a kernel whose body is this assignment prints before its function.
+  GlslBody body(ExprPtr expr) {
+    Function& entry = module.functions[0];
+    const VarId result = addVariable(entry, "t", expr->type);
+    entry.body = block(declare(result, std::move(expr)));
+    polyfills = legalize(module, glslCapabilities);
+    const TypeNames types(module);
+    const KernelNames names(module, module.kernels[0], types);
+    GlslBody whole = glslBody({module, types, names, module.kernels[0], polyfills});
+    whole.body.erase(whole.body.find("#line"));
+    return whole;
   }
 };
 
 TEST_CASE("marks say where floats are computed") {
   Fixture t;
-  const auto marked = [&](ExprPtr expr, bool isStored) {
-    const TypeNames types(t.module);
-    const KernelNames names(t.module, t.module.kernels[0], types);
-    const GlslContext context{t.module, types, names, t.module.kernels[0], t.polyfills, /*marks=*/true};
-    return glslExpr(context, 0, *expr, Precedence::Lowest, isStored);
-  };
+  const auto marked = [&](ExprPtr expr, bool isStored) { return t.text(std::move(expr), true, isStored); };
   const auto sum = [&] { return binary(Add, t.ref(t.f), t.ref(t.x)); };
   CHECK(marked(binary(Mul, sum(), literal(0.1F)), true) == "$($[f + x$] * 0.1$)");
   CHECK(marked(binary(Mul, sum(), literal(0.1F)), false) == "$v1$($[f + x$] * 0.1$)$;");
@@ -133,9 +140,8 @@ TEST_CASE("comparisons and truth of vectors are functions") {
   CHECK(t.text(unary(UnaryOp::LogicalNot, t.ref(t.b))) == "not(b)");
   CHECK(t.text(unary(UnaryOp::Negate, t.ref(t.v))) == "-v");
   CHECK(t.text(binary(LogicalAnd, t.ref(t.b), t.ref(t.b))) == "sk_and(b, b)");
-  CHECK(
-      t.polyfills.functions() ==
-      std::vector<std::string>{"bvec2 sk_and(bvec2 a, bvec2 b) { return bvec2(a.x && b.x, a.y && b.y); }\n"});
+  CHECK(t.body(binary(LogicalAnd, t.ref(t.b), t.ref(t.b))).body ==
+        "bvec2 sk_and(bvec2 a, bvec2 b) { return bvec2(a.x && b.x, a.y && b.y); }\n\n");
   CHECK(t.text(binary(LogicalOr, binary(Less, t.ref(t.f), t.ref(t.f)), literal(true))) == "f < f || true");
 }
 
@@ -144,7 +150,6 @@ TEST_CASE("choices by component") {
   CHECK(t.text(select(t.ref(t.b), t.ref(t.v), literalOf(float2, 0))) == "mix(vec2(0.0), v, b)");
   CHECK(t.text(select(t.ref(t.b), swizzle(t.ref(t.w), "xy"), swizzle(t.ref(t.w), "yz"))) ==
         "sk_select(b, w.xy, w.yz)");
-  CHECK(t.polyfills.functions().size() == 1);
   CHECK(t.text(binary(Add, select(literal(true), t.ref(t.f), literal(2.0F)), literal(1.0F))) ==
         "(true ? f : 2.0) + 1.0");
 }
@@ -154,9 +159,8 @@ TEST_CASE("the magnitude of an int is no abs, of which drivers believe that it c
   CHECK(t.text(intrinsic(Intrinsic::Abs, exprs(t.ref(t.i)))) == "sk_abs(i)");
   CHECK(t.text(intrinsic(Intrinsic::Abs, exprs(t.ref(t.w)))) == "sk_abs(w)");
   CHECK(t.text(intrinsic(Intrinsic::Abs, exprs(t.ref(t.f)))) == "abs(f)");
-  CHECK(t.polyfills.functions() ==
-        std::vector<std::string>{"int sk_abs(int x) { return max(x, -x); }\n",
-                                 "ivec3 sk_abs(ivec3 x) { return max(x, -x); }\n"});
+  CHECK(t.body(intrinsic(Intrinsic::Abs, exprs(t.ref(t.w)))).body ==
+        "ivec3 sk_abs(ivec3 x) { return max(x, -x); }\n\n");
 }
 
 TEST_CASE("whether a whole number is 0 is no comparison of floats, which drivers turn into another one") {
@@ -218,10 +222,9 @@ TEST_CASE("intrinsics: names, patterns with no more brackets than needed, polyfi
   const auto scalars = [&] { return binary(Less, f(), literal(1.0F)); };
   CHECK(t.text(binary(Equal, intrinsic(Intrinsic::Any, exprs(scalars())), literal(true))) ==
         "f < 1.0 == true");
-  CHECK(t.polyfills.functions().empty());
-  CHECK(t.text(intrinsic(Intrinsic::FrexpExponent, exprs(t.ref(t.v)))) == "sk_frexp_exponent(v)");
-  REQUIRE(t.polyfills.functions().size() == 1);
-  CHECK(t.polyfills.functions()[0].find("ivec2 sk_frexp_exponent(vec2 x)") == 0);
+  const auto exponent = [&] { return intrinsic(Intrinsic::FrexpExponent, exprs(t.ref(t.v))); };
+  CHECK(t.text(exponent()) == "sk_frexp_exponent(v)");
+  CHECK(t.body(exponent()).body.starts_with("ivec2 sk_frexp_exponent(vec2 x)"));
 }
 
 TEST_CASE("intrinsics that the assembler defines take arguments of one width, and are told of") {
@@ -232,28 +235,31 @@ TEST_CASE("intrinsics that the assembler defines take arguments of one width, an
   CHECK(t.text(intrinsic(Intrinsic::Fmax, exprs(t.ref(t.v), literal(0.0F)))) == "sk_max(v, vec2(0.0))");
   CHECK(t.text(intrinsic(Intrinsic::Max, exprs(t.ref(t.i), literal(0)))) == "max(i, 0)");
   CHECK(t.text(intrinsic(Intrinsic::Clamp, exprs(t.ref(t.i), literal(0), literal(1)))) == "clamp(i, 0, 1)");
-  REQUIRE(t.polyfills.intrinsics().size() == 2);
-  CHECK(t.polyfills.intrinsics()[0].intrinsic == Defined::Sin);
-  CHECK(t.polyfills.intrinsics()[0].widths == 0b11);
-  CHECK(t.polyfills.intrinsics()[1].intrinsic == Defined::Max);
-  CHECK(t.polyfills.intrinsics()[1].widths == 0b10);
+  const GlslBody body =
+      t.body(construct(Type::of(Scalar::Float, 3),
+                       exprs(intrinsic(Intrinsic::Fmax, exprs(intrinsic(Intrinsic::Sin, exprs(t.ref(t.v))),
+                                                              intrinsic(Intrinsic::Sin, exprs(t.ref(t.f))))),
+                             literal(0.0F))));
+  CHECK(body.body.empty());
+  REQUIRE(body.intrinsics.size() == 2);
+  CHECK(body.intrinsics[0].intrinsic == Defined::Sin);
+  CHECK(body.intrinsics[0].widths == 0b11);
+  CHECK(body.intrinsics[1].intrinsic == Defined::Max);
+  CHECK(body.intrinsics[1].widths == 0b10);
 }
 
 TEST_CASE("intrinsics of doubles: the assembler defines them of one, the body of vectors") {
   Fixture t;
   const auto wide = [&](VarId var) { return convert(Scalar::Double, t.ref(var)); };
   CHECK(t.text(intrinsic(Intrinsic::Exp, exprs(wide(t.f)))) == "sk_exp(sk_to_double(f))");
-  CHECK(t.polyfills.functions().empty());
-  CHECK(t.text(intrinsic(Intrinsic::AtanYX, exprs(wide(t.v), wide(t.v)))) ==
-        "sk_atan2(sk_to_double(v), sk_to_double(v))");
-  CHECK(std::ranges::any_of(t.polyfills.functions(), [](const std::string& function) {
-    return function.starts_with("sk_double2 sk_atan2(");
-  }));
-  REQUIRE(t.polyfills.intrinsics().size() == 2);
-  for (const sk::program::IntrinsicUse& use : t.polyfills.intrinsics()) {
-    CHECK(use.ofDouble);
-    CHECK(use.widths == 0);
-  }
+  CHECK(t.body(intrinsic(Intrinsic::Exp, exprs(wide(t.f)))).body.empty());
+  const auto angle = [&] { return intrinsic(Intrinsic::AtanYX, exprs(wide(t.v), wide(t.v))); };
+  CHECK(t.text(angle()) == "sk_atan2(sk_to_double(v), sk_to_double(v))");
+  const GlslBody body = t.body(angle());
+  CHECK(body.body.find("sk_double2 sk_atan2(") != std::string::npos);
+  REQUIRE(body.intrinsics.size() == 1);
+  CHECK(body.intrinsics[0].ofDouble);
+  CHECK(body.intrinsics[0].widths == 0);
 }
 
 TEST_CASE("an intrinsic without GLSL of its own is defined by the assembler") {
@@ -292,21 +298,6 @@ TEST_CASE("operations that GLSL leaves undefined for some operands") {
   CHECK(t.text(convert(Scalar::Uint, t.ref(t.v))) == "sk_uint(v)");
   CHECK(t.text(convert(Scalar::Int, literal(2.5F))) == "int(2.5)");
   CHECK(t.text(convert(Scalar::Uint, literal(-1.0F))) == "sk_uint(-1.0)");
-}
-
-TEST_CASE("compound assignments of such operations") {
-  Fixture t;
-  const TypeNames types(t.module);
-  const KernelNames names(t.module, t.module.kernels[0], types);
-  const GlslContext context{t.module, types, names, t.module.kernels[0], t.polyfills};
-  const auto assigned = [&](BinaryOp op, ExprPtr value) {
-    return glslAssignment(context, 0, *t.ref(t.i), op, *value);
-  };
-  CHECK(assigned(Add, t.ref(t.i)) == "i += i");
-  CHECK(assigned(Div, literal(2)) == "i /= 2");
-  CHECK(assigned(Div, t.ref(t.i)) == "i = sk_div(i, i)");
-  CHECK(assigned(Rem, literal(2)) == "i = sk_rem(i, 2)");
-  CHECK(assigned(ShiftLeft, literal(2)) == "i <<= 2");
 }
 
 }  // namespace

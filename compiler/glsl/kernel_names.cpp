@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "glsl/polyfills.hpp"
 #include "glsl/words.hpp"
 #include "ir/call_graph.hpp"
 #include "ir/walk.hpp"
@@ -146,7 +147,7 @@ class FunctionNamer {
 KernelNames::KernelNames(const Module& module, const Kernel& kernel, const TypeNames& types)
     : entry_(kernel.entry) {
   FunctionNamer namer(types);
-  const std::vector<FunctionId> functions = functionsOf(module, kernel);
+  const std::vector<FunctionId> functions = ownFunctionsOf(module, kernel);
   functions_[entry_].name = namer.name(module.functions[entry_]);  // first: it keeps its name
   for (FunctionId id : functions) {
     if (id != entry_) functions_[id].name = namer.name(module.functions[id]);
@@ -154,7 +155,9 @@ KernelNames::KernelNames(const Module& module, const Kernel& kernel, const TypeN
   for (FunctionId id : functions) {
     const Function& function = module.functions[id];
     Names avoid = builtinsOf(function);
-    for (FunctionId callee : callees(function)) avoid.insert(functions_[callee].name);
+    for (FunctionId callee : callees(function)) {
+      if (!module.functions[callee].isLibrary) avoid.insert(functions_[callee].name);
+    }
     walkExprs(function.body, [&](const Expr& expr) {
       if (const auto* n = std::get_if<ConstantRef>(&expr.node)) avoid.insert(types.constantName(n->constant));
     });

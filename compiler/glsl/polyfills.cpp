@@ -7,8 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "glsl/float_intrinsics.hpp"
 #include "glsl/type_names.hpp"
+#include "ir/build.hpp"
+#include "ir/call_graph.hpp"
+#include "ir/operators.hpp"
 #include "ir/print.hpp"
 #include "ir/scalar_operations.hpp"
 #include "sk/arithmetic_marks.hpp"
@@ -89,119 +91,128 @@ std::string withTypes(std::string_view pattern, Type argument) {
   return text;
 }
 
-void Polyfills::add(std::string function) {
-  if (std::find(functions_.begin(), functions_.end(), function) == functions_.end()) {
-    functions_.push_back(std::move(function));
+std::vector<FunctionId> ownFunctionsOf(const Module& module, const Kernel& kernel) {
+  std::vector<FunctionId> functions = functionsOf(module, kernel);
+  std::erase_if(functions, [&](FunctionId id) { return module.functions[id].isLibrary; });
+  return functions;
+}
+
+std::string parameterList(const std::vector<Type>& types, char first) {
+  std::vector<std::string> list;
+  for (const Type type : types)
+    list.push_back(fmt::format("{} {}", glslSpelling(type.scalar, type.width), first++));
+  return join(list, ", ");
+}
+
+FunctionId Polyfills::add(std::string_view name, Type result, const std::vector<Type>& parameters,
+                          Polyfill polyfill) {
+  const auto [entry, isNew] = ids_.emplace(fmt::format("{}({})", name, parameterList(parameters)),
+                                           static_cast<FunctionId>(module_->functions.size()));
+  if (!isNew) return entry->second;
+  Function function;
+  function.name = name;
+  function.result = result;
+  function.isLibrary = true;
+  for (const Type type : parameters) addVariable(function, {}, type, VarRole::In);
+  module_->functions.push_back(std::move(function));
+  polyfills_.emplace(entry->second, std::move(polyfill));
+  return entry->second;
+}
+
+FunctionId Polyfills::addByComponent(std::string_view name, Type result, const std::vector<Type>& parameters,
+                                     Polyfill scalar) {
+  std::vector<Type> components;
+  int width = 1;
+  for (const Type type : parameters) {
+    components.push_back(type.component());
+    width = std::max<int>(width, type.width);
   }
+  const FunctionId one = add(name, result.component(), components, std::move(scalar));
+  if (width == 1) return one;
+  const bool isConversion = parameters.size() == 1 && !parameters[0].isDouble() && !result.isDouble();
+  char first = isConversion ? 'x' : 'a';
+  const std::string list = parameterList(parameters, first);
+  std::vector<std::string> args;
+  for (const Type parameter : parameters)
+    args.push_back(fmt::format("{}{}", first++, parameter.isVector() ? ".@" : ""));
+  const std::string type = glslSpelling(result.scalar, width);
+  const std::string text = fmt::format("{0} {1}({2}) {{ return {0}({3}); }}", type, name, list,
+                                       byComponent(fmt::format("{}({})", name, join(args, ", ")), width));
+  return add(name, result, parameters, {.text = wrapLine(text) + "\n", .callees = {one}});
 }
 
-void Polyfills::intrinsic(Intrinsic intrinsic, Type argument) {
-  const std::string_view polyfill = row(intrinsic).polyfill;
-  if (!polyfill.empty()) add(withTypes(polyfill, argument) + "\n");
+ExprPtr Polyfills::call(FunctionId function, std::vector<ExprPtr> args) const {
+  return ir::call(*module_, function, std::move(args));
 }
 
-std::string Polyfills::logical(BinaryOp op, int width) {
-  const bool isAnd = op == BinaryOp::LogicalAnd;
-  const std::string name = isAnd ? "sk_and" : "sk_or";
-  add(fmt::format("bvec{0} {1}(bvec{0} a, bvec{0} b) {{ return bvec{0}({2}); }}\n", width, name,
-                  byComponent(isAnd ? "a.@ && b.@" : "a.@ || b.@", width)));
-  return name;
+FunctionId Polyfills::logical(BinaryOp op, Type type) {
+  const std::string name = op == BinaryOp::LogicalAnd ? "sk_and" : "sk_or";
+  return add(name, type, {type, type},
+             {fmt::format("bvec{0} {1}(bvec{0} a, bvec{0} b) {{ return bvec{0}({2}); }}\n", type.width, name,
+                          byComponent(fmt::format("a.@ {} b.@", spelling(op)), type.width))});
 }
 
-std::string Polyfills::quotient(BinaryOp op, Type lhs, Type rhs) {
+FunctionId Polyfills::quotient(BinaryOp op, Type lhs, Type rhs) {
   const bool isRemainder = op == BinaryOp::Rem;
   const std::string name = isRemainder ? "sk_rem" : "sk_div";
-  if (lhs.scalar == Scalar::Int) {
-    add(
-        fmt::format("int {}(int a, int b) {{\n"
-                    "  int d = b == 0 || (b == -1 && a == -2147483647 - 1) ? 1 : b;\n"
-                    "  return {};\n}}\n",
-                    name, isRemainder ? "a - a / d * d" : "a / d"));
-  } else {
-    add(fmt::format("uint {}(uint a, uint b) {{ return a {} (b == 0u ? 1u : b); }}\n", name,
-                    isRemainder ? "%" : "/"));
-  }
-  const int width = std::max(lhs.width, rhs.width);
-  if (width == 1) return name;
-  add(fmt::format(
-      "{0} {1}({2} a, {3} b) {{ return {0}({4}); }}\n", glslSpelling(lhs.scalar, width), name,
-      glslSpelling(lhs.scalar, lhs.width), glslSpelling(rhs.scalar, rhs.width),
-      byComponent(fmt::format("{}({}, {})", name, lhs.isVector() ? "a.@" : "a", rhs.isVector() ? "b.@" : "b"),
-                  width)));
-  return name;
+  const std::string text =
+      lhs.scalar == Scalar::Int
+          ? fmt::format(
+                "int {}(int a, int b) {{\n"
+                "  int d = b == 0 || (b == -1 && a == -2147483647 - 1) ? 1 : b;\n"
+                "  return {};\n}}\n",
+                name, isRemainder ? "a - a / d * d" : "a / d")
+          : fmt::format("uint {}(uint a, uint b) {{ return a {} (b == 0u ? 1u : b); }}\n", name,
+                        spelling(op));
+  return addByComponent(name, lhs.isVector() ? lhs : rhs, {lhs, rhs}, {text});
 }
 
-std::string Polyfills::magnitude(Type type) {
-  add(fmt::format("{0} sk_abs({0} x) {{ return max(x, -x); }}\n", glslSpelling(type.scalar, type.width)));
-  return "sk_abs";
+FunctionId Polyfills::magnitude(Type type) {
+  return add(
+      "sk_abs", type, {type},
+      {fmt::format("{0} sk_abs({0} x) {{ return max(x, -x); }}\n", glslSpelling(type.scalar, type.width))});
 }
 
-std::string Polyfills::nonzero() {
-  add("bool sk_nonzero(float x) { return (floatBitsToUint(x) & 0x7fffffffu) != 0u; }\n");
-  return "sk_nonzero";
+FunctionId Polyfills::nonzero() {
+  return add("sk_nonzero", Type::of(Scalar::Bool), {Type::of(Scalar::Float)},
+             {"bool sk_nonzero(float x) { return (floatBitsToUint(x) & 0x7fffffffu) != 0u; }\n"});
 }
 
-std::string Polyfills::truncated(Type to) {
+FunctionId Polyfills::truncated(Type to) {
   const bool isInt = arithmeticScalar(to.scalar) == Scalar::Int;
-  const std::string name = isInt ? "sk_int" : "sk_uint";
-  add(isInt ? "int sk_int(float x) {\n"
-              "  if (x >= 2147483648.0) return 2147483647;\n"
-              "  return x > -2147483648.0 ? int(x) : x <= -2147483648.0 ? -2147483647 - 1 : 0;\n"
-              "}\n"
-            : "uint sk_uint(float x) { return x >= 4294967296.0 ? 0xffffffffu : x > 0.0 ? uint(x) : 0u; }\n");
-  if (to.isVector()) {
-    add(fmt::format("{0} {1}({2} x) {{ return {0}({3}); }}\n",
-                    glslSpelling(arithmeticScalar(to.scalar), to.width), name,
-                    glslSpelling(Scalar::Float, to.width), byComponent(name + "(x.@)", to.width)));
-  }
-  return name;
+  return addByComponent(
+      isInt ? "sk_int" : "sk_uint", to.arithmeticType(), {to.withScalar(Scalar::Float)},
+      {isInt
+           ? "int sk_int(float x) {\n"
+             "  if (x >= 2147483648.0) return 2147483647;\n"
+             "  return x > -2147483648.0 ? int(x) : x <= -2147483648.0 ? -2147483647 - 1 : 0;\n"
+             "}\n"
+           : "uint sk_uint(float x) { return x >= 4294967296.0 ? 0xffffffffu : x > 0.0 ? uint(x) : 0u; }\n"});
 }
 
-sk::program::IntrinsicUse& Polyfills::use(sk::program::Intrinsic intrinsic) {
-  const auto found = std::ranges::find(intrinsics_, intrinsic, &sk::program::IntrinsicUse::intrinsic);
-  return found != intrinsics_.end() ? *found : intrinsics_.emplace_back(intrinsic, std::uint8_t{0});
+FunctionId Polyfills::quantize(Type type) {
+  return addByComponent("sk_" + spelling(type.scalar), type.arithmeticType(), {type.arithmeticType()},
+                        {quantizing(type.scalar)});
 }
 
-std::string Polyfills::defined(sk::program::Intrinsic intrinsic, int width) {
-  std::uint8_t& widths = use(intrinsic).widths;
-  widths = static_cast<std::uint8_t>(widths | 1U << (width - 1));
-  return functionName(intrinsic);
+FunctionId Polyfills::select(Type type) {
+  const Type cond = type.withScalar(Scalar::Bool);
+  return add("sk_select", type, {cond, type, type},
+             {fmt::format("{0} sk_select(bvec{1} c, {0} yes, {0} no) {{\n  return {0}({2});\n}}\n",
+                          glslSpelling(type.scalar, type.width), type.width,
+                          byComponent(type.isDouble() ? "sk_choose(c.@, yes.@, no.@)" : "c.@ ? yes.@ : no.@",
+                                      type.width))});
 }
 
-std::string Polyfills::definedOfDouble(sk::program::Intrinsic intrinsic) {
-  use(intrinsic).ofDouble = true;
-  return functionName(intrinsic);
-}
-
-std::string Polyfills::quantize(Type type) {
-  const std::string name = "sk_" + spelling(type.scalar);
-  add(quantizing(type.scalar));
-  if (type.isVector()) {
-    add(fmt::format("{0} {1}({0} x) {{ return {0}({2}); }}\n", glslSpelling(type.scalar, type.width), name,
-                    byComponent(name + "(x.@)", type.width)));
-  }
-  return name;
-}
-
-std::string Polyfills::select(Type type) {
-  add(fmt::format(
-      "{0} sk_select(bvec{1} c, {0} yes, {0} no) {{\n  return {0}({2});\n}}\n",
-      glslSpelling(type.scalar, type.width), type.width,
-      byComponent(type.isDouble() ? "sk_choose(c.@, yes.@, no.@)" : "c.@ ? yes.@ : no.@", type.width)));
-  return "sk_select";
-}
-
-std::string Polyfills::component(Type vector, Type index) {
-  const bool isUint = index.scalar == ir::Scalar::Uint;
+FunctionId Polyfills::component(Type vector, Type index) {
+  const bool isUint = index.scalar == Scalar::Uint;
   std::string choice;
-  for (int i = 0; i + 1 < vector.width; ++i) {
-    const std::string next = isUint ? fmt::format("{}u", i + 1) : std::to_string(i + 1);
-    choice += fmt::format("i < {} ? v.{} : ", next, "xyzw"[i]);
-  }
-  add(fmt::format("{} sk_component({} v, {} i) {{\n  return {}v.{};\n}}\n", glslSpelling(vector.scalar, 1),
-                  glslSpelling(vector.scalar, vector.width), isUint ? "uint" : "int", choice,
-                  "xyzw"[vector.width - 1]));
-  return "sk_component";
+  for (int i = 0; i + 1 < vector.width; ++i)
+    choice += fmt::format("i < {}{} ? v.{} : ", i + 1, isUint ? "u" : "", "xyzw"[i]);
+  return add("sk_component", vector.component(), {vector, index},
+             {fmt::format("{} sk_component({} v, {} i) {{\n  return {}v.{};\n}}\n",
+                          glslSpelling(vector.scalar, 1), glslSpelling(vector.scalar, vector.width),
+                          glslSpelling(index.scalar, 1), choice, "xyzw"[vector.width - 1])});
 }
 
 }  // namespace skc::emit

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Collects, while expressions are printed, the functions that a body needs because GLSL 3.30 lacks them: each
-// once, in the order of first use.
+// The functions that programs need because GLSL 3.30 lacks what they compute. legalize adds them to the module: each is a
+// Function without a body, whose calls print like all others, and whose GLSL is here.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ir/ir.hpp"
@@ -12,50 +15,61 @@
 
 namespace skc::emit {
 
+struct Polyfill {
+  std::string text;  ///< its definition; empty if the assembler defines it
+  std::vector<ir::FunctionId> callees = {};  ///< the polyfills that the text calls
+  std::optional<sk::program::Intrinsic> ofDouble = {};  ///< the assembler defines it only on request
+};
+
 class Polyfills {
  public:
-  /// Adds the function of an intrinsic's row for this type of its first argument.
-  void intrinsic(ir::Intrinsic intrinsic, ir::Type argument);
-  /// && or || for two bool vectors; returns the function's name.
-  std::string logical(ir::BinaryOp op, int width);
-  /// Componentwise select between two vectors of int, uint or bool; returns the function's name.
-  std::string select(ir::Type type);
-  /// A component of a vector at an index that is computed, the nearest one to an index outside; returns the function's name.
-  /// Chromium 156 with SwiftShader takes another component for `c ? u : vec2(v[i], 0)`.
-  std::string component(ir::Type vector, ir::Type index);
-  /// / or % of integers, defined for all operands; returns the function's name. GLSL's are undefined if the
-  /// divisor is 0, the quotient is out of range, or, for %, an operand is negative.
-  std::string quotient(ir::BinaryOp op, ir::Type lhs, ir::Type rhs);
-  /// The magnitude of ints, as C++ has it, that of the lowest int being the lowest int; returns the function's name. NVIDIA
-  /// (580) takes `abs(x) < 0` for false.
-  std::string magnitude(ir::Type type);
-  /// Whether a float is neither 0 nor -0; returns the function's name. NVIDIA (580) takes `bool(floor(x))` for false, and
-  /// `floor(x) != 0.0`, too, where an `else` belongs to it; likewise with ceil.
-  std::string nonzero();
-  /// Converts reals to int or uint: truncated, clamped, NaN to 0; returns the function's name.
-  std::string truncated(ir::Type to);
-  /// An intrinsic that the assembler defines, for arguments of this width; returns the function's name.
-  std::string defined(sk::program::Intrinsic intrinsic, int width);
-  /// The same for one double.
-  std::string definedOfDouble(sk::program::Intrinsic intrinsic);
+  /// `module` gets the functions, and must outlive this.
+  explicit Polyfills(ir::Module& module) : module_(&module) {}
 
-  /// Converts from the arithmetic type to a narrow type; returns the function's name.
-  std::string quantize(ir::Type type);
+  /// The function with this name and these parameters; adds it if it is new.
+  ir::FunctionId add(std::string_view name, ir::Type result, const std::vector<ir::Type>& parameters,
+                     Polyfill polyfill);
+  /// The same for a function that works by component: `scalar` is its polyfill for components. Adds one for vectors,
+  /// which calls that one, if a parameter is a vector.
+  ir::FunctionId addByComponent(std::string_view name, ir::Type result,
+                                const std::vector<ir::Type>& parameters, Polyfill scalar);
+  ir::ExprPtr call(ir::FunctionId function, std::vector<ir::ExprPtr> args) const;
 
-  /// Adds any other function, unless it has been added.
-  void add(std::string function);
+  const Polyfill& operator[](ir::FunctionId function) const { return polyfills_.at(function); }
 
-  /// The definitions of the functions added.
-  const std::vector<std::string>& functions() const { return functions_; }
-  /// The intrinsics that the assembler must define.
-  const std::vector<sk::program::IntrinsicUse>& intrinsics() const { return intrinsics_; }
+  // The functions of the legalized operations, each for arguments of these types.
+
+  /// && or || of bool vectors.
+  ir::FunctionId logical(ir::BinaryOp op, ir::Type type);
+  /// Componentwise select between vectors of int, uint, bool or double.
+  ir::FunctionId select(ir::Type type);
+  /// The component of a vector at a computed index, the nearest component to an index outside. Chromium 156 with SwiftShader takes
+  /// another component for `c ? u : vec2(v[i], 0)`.
+  ir::FunctionId component(ir::Type vector, ir::Type index);
+  /// / or % of integers, defined for all operands. GLSL's are undefined if the divisor is 0, the quotient is out of range,
+  /// or, for %, an operand is negative.
+  ir::FunctionId quotient(ir::BinaryOp op, ir::Type lhs, ir::Type rhs);
+  /// The magnitude of ints as in C++; the lowest int is its own. NVIDIA (580) takes `abs(x) < 0` for false.
+  ir::FunctionId magnitude(ir::Type type);
+  /// True if a float is neither 0 nor -0. NVIDIA (580) takes `bool(floor(x))` for false, and `floor(x) != 0.0`, too, if an
+  /// `else` belongs to it; likewise with ceil.
+  ir::FunctionId nonzero();
+  /// Converts floats to int or uint: truncates, clamps, and makes NaN 0.
+  ir::FunctionId truncated(ir::Type to);
+  /// Rounds from the arithmetic type to a narrow type.
+  ir::FunctionId quantize(ir::Type type);
 
  private:
-  sk::program::IntrinsicUse& use(sk::program::Intrinsic intrinsic);
-
-  std::vector<std::string> functions_;
-  std::vector<sk::program::IntrinsicUse> intrinsics_;
+  ir::Module* module_;
+  std::map<ir::FunctionId, Polyfill> polyfills_;
+  std::map<std::string, ir::FunctionId> ids_;  ///< by name and parameters
 };
+
+/// The functions that a kernel reaches and skc prints, callees before callers: without polyfills.
+std::vector<ir::FunctionId> ownFunctionsOf(const ir::Module& module, const ir::Kernel& kernel);
+
+/// "sk_double3 a, sk_double b", with names from `first` on.
+std::string parameterList(const std::vector<ir::Type>& types, char first = 'a');
 
 /// Replaces $T $I $U $B in a pattern of intrinsics.def by the types of the argument's width.
 std::string withTypes(std::string_view pattern, ir::Type argument);

@@ -32,7 +32,7 @@ class SimplePrinter {
           std::vector<std::string> args;
           for (const ExprPtr& arg : n.args) args.push_back(expr(arg));
           const std::string call = context_.names.function(n.callee) + "(" + join(args, ", ") + ")";
-          return n.result ? glslAssignment(context_, id_, *n.result, call) : call;
+          return n.result ? expr(n.result) + " = " + call : call;
         },
         [&](const Push& n) -> MaybeText {
           return fmt::format("sk_push_{}({})", context_.names.symbol(n.stream.id), expr(n.value));

@@ -190,7 +190,7 @@ struct Function {
   Block body;
   Loc loc;
   std::optional<TableId> table = {};  ///< the table that may replace a Call of it
-  bool isLibrary = false;  ///< from the native library: its error bounds hold for the code as written
+  bool isLibrary = false;  ///< of the native library, with error bounds for the code as written, or of GLSL
 };
 
 /// A table of the values of a function that takes one float In and gives a float. tabulate sets `kernel` if a

@@ -124,9 +124,11 @@ static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program
 template <class Storage>
 class Builder {
  public:
-  /// `legal`: `module` after legalize.
-  Builder(const Module& legal, const Module& module, Targets targets, const CodeOf& codeOf, Storage& storage)
+  /// `legal`: `module` after legalize, which has added the polyfills.
+  Builder(const Module& legal, const Polyfills& polyfills, const Module& module, Targets targets,
+          const CodeOf& codeOf, Storage& storage)
       : module_(legal),
+        polyfills_(polyfills),
         given_(module),
         types_(legal),
         targets_(targets),
@@ -204,8 +206,7 @@ class Builder {
   sk::program::Kernel describe(KernelId id, const Plan* plan = nullptr, const Pass* pass = nullptr) {
     const Kernel& kernel = module_.kernels[id];
     const KernelNames names(module_, kernel, types_);
-    Polyfills polyfills;
-    const GlslContext context{module_, types_, names, kernel, polyfills, /*marks=*/true};
+    const GlslContext context{module_, types_, names, kernel, polyfills_, /*marks=*/true};
     const analysis::StreamUses uses = analysis::streamUses(module_, kernel);
     GlslBody text = kernel.isNativeOnly ? GlslBody() : glslBody(context);
     std::vector<sk::program::Parameter> parameters;
@@ -236,7 +237,7 @@ class Builder {
             .usesLoops = uses.loops,
             .usesDoubles = usesDoubles(module_, kernel),
             .usesExactSums = usesExactSums(module_, kernel),
-            .intrinsics = storage_.keep(polyfills.intrinsics()),
+            .intrinsics = storage_.keep(std::move(text.intrinsics)),
             .tables = storage_.keep(std::move(tables)),
             .drawn = targets_.fragment && !kernel.isNativeOnly,
             .dispatched = targets_.compute && !kernel.isNativeOnly,
@@ -255,10 +256,8 @@ class Builder {
       return {};
     }
     const KernelNames names[] = {{module_, fold, types_}, {module_, combine, types_}};
-    Polyfills polyfills[2];
-    const GlslContext contexts[] = {{module_, types_, names[0], fold, polyfills[0], /*marks=*/true},
-                                    {module_, types_, names[1], combine, polyfills[1], /*marks=*/true}};
-    for (const GlslContext& context : contexts) glslBody(context);
+    const GlslContext contexts[] = {{module_, types_, names[0], fold, polyfills_, /*marks=*/true},
+                                    {module_, types_, names[1], combine, polyfills_, /*marks=*/true}};
     return storage_.keep(glslAddition(contexts[0], contexts[1]).value_or(""));
   }
 
@@ -480,6 +479,7 @@ class Builder {
   }
 
   const Module& module_;
+  const Polyfills& polyfills_;
   const Module& given_;
   TypeNames types_;
   const Targets targets_;
@@ -493,8 +493,8 @@ class Builder {
 Program::Program(const Module& module, Targets targets, const CodeOf& codeOf)
     : storage_(std::make_unique<Storage>()) {
   Module legal = ir::clone(module);
-  legalize(legal, glslCapabilities);
-  Builder<Storage>(legal, module, targets, codeOf, *storage_).run();
+  const Polyfills polyfills = legalize(legal, glslCapabilities);
+  Builder<Storage>(legal, polyfills, module, targets, codeOf, *storage_).run();
 }
 Program::Program(Program&&) noexcept = default;
 Program& Program::operator=(Program&&) noexcept = default;
