@@ -42,8 +42,7 @@ struct HeldValue {
   std::string uniforms;
   std::string statements;  ///< at the beginning of main()
 };
-HeldValue heldValue(sk::assemble::Profile profile, const sk::program::Kernel& kernel,
-                    const sk::program::Parameter& uniform);
+HeldValue heldValue(const sk::assemble::Profile& profile, const sk::program::Parameter& uniform);
 /// Whether the runtime finds that text itself: for floats, ints and uints, and their vectors.
 bool isPlain(const sk::program::Parameter& uniform);
 

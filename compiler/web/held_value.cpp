@@ -6,65 +6,29 @@
 //                                uniform ivec4 sk_origin_k;
 //   void main() {                void main() {
 //                                  float sk_arg_k = texelFetch(sk_tex_k, sk_origin_k.xy, 0).x;
-// The assembler is asked for both texts, of a kernel with this parameter alone.
-#include <string_view>
+// Both texts are the assembler's.
+#include <algorithm>
 
-#include <fmt/format.h>
-
+#include "assemble/elements/arguments.hpp"
+#include "assemble/glsl/own_arithmetic.hpp"
 #include "web/ahead_programs.hpp"
 
 namespace skc::web {
-namespace {
 
-/// The lines of a text that begin with `start`.
-std::string linesWith(std::string_view start, std::string_view text) {
-  std::string lines;
-  while (!text.empty()) {
-    const std::string_view line = text.substr(0, text.find('\n') + 1);
-    if (line.starts_with(start)) lines += line;
-    text.remove_prefix(line.size());
-  }
-  return lines;
-}
+using sk::program::Scalar;
 
-}  // namespace
-
-HeldValue heldValue(sk::assemble::Profile profile, const sk::program::Kernel& kernel,
-                    const sk::program::Parameter& uniform) {
-  constexpr std::string_view entry = "sk_nothing";
-  profile.asWritten = false;  // the program may have nothing that keeps floats
-  sk::program::Kernel alone{.name = uniform.name,
-                            .entry = entry,
-                            .declarations = {},
-                            .body = {},
-                            .parameters = {&uniform, 1},
-                            .sources = {}};
-  alone.usesDoubles = kernel.usesDoubles;
-  sk::assemble::Variant variant;
-  variant.access = {{.addressing = sk::assemble::Addressing::Plane, .view = true}};
-  const std::string text = sk::assemble::kernelProgram(profile, alone, variant);
-  constexpr std::string_view main = "void main() {\n";
-  const std::size_t begin = text.rfind(main) + main.size();
-  const std::size_t end = text.rfind(fmt::format("  {}(", entry));
-  const bool converts = text.find(" sk_widen") != std::string::npos;
-  if (converts) return {};  // the program may have that function, too
-  const std::string_view whole = text;
-  const std::string_view first = whole.substr(0, whole.rfind(main));
-  std::string uniforms;
-  for (const std::string_view type : {"sampler2D", "isampler2D", "usampler2D", "ivec4"})
-    uniforms += linesWith(fmt::format("uniform {} sk_", type), first);
-  // If the value has several planes, a function combines them.
-  const std::size_t function =
-      first.find(fmt::format("\n{} sk_fetch_{}(", uniform.element->glsl, uniform.symbol));
-  if (function != std::string_view::npos) {
-    constexpr std::string_view last = "\n}\n";
-    uniforms += first.substr(function + 1, first.find(last, function) + last.size() - function - 1);
-  }
-  return {uniforms, std::string(whole.substr(begin, end - begin))};
+HeldValue heldValue(const sk::assemble::Profile& profile, const sk::program::Parameter& uniform) {
+  const bool widensVectors = uniform.held != nullptr &&
+                             std::ranges::any_of(uniform.held->fields, [](const sk::program::Field& field) {
+                               return field.scalar == Scalar::Float && field.width > 1;
+                             });
+  if (widensVectors) return {};  // by a function that the program may have, too
+  sk::assemble::ProgramText program(profile);
+  sk::assemble::uniformValue(program, uniform, {.addressing = sk::assemble::Addressing::Plane, .view = true});
+  return {sk::assemble::unmarked(program.ownText()), sk::assemble::unmarked(program.statements())};
 }
 
 bool isPlain(const sk::program::Parameter& uniform) {
-  using sk::program::Scalar;
   const sk::program::Field& field = heldBy(uniform).fields.front();
   const bool isOne = heldBy(uniform).fields.size() == 1 && field.path.empty() && field.part < 0;
   return isOne && uniform.held == nullptr &&

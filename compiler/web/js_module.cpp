@@ -302,7 +302,7 @@ class ScriptWriter {
     for (const Parameter& parameter : kernel.parameters) {
       parameters.push_back(parameterOf(parameter));
       if (parameter.role != Role::Uniform || !takesStreams || isPlain(parameter)) continue;
-      const auto [uniforms, statements] = heldValue(webProfile(), kernel, parameter);
+      const auto [uniforms, statements] = heldValue(webProfile(), parameter);
       if (!statements.empty()) parameters.back()["fromStream"] = {uniforms, statements};
     }
     return {{"name", kernel.name}, {"parameters", std::move(parameters)}};
@@ -396,18 +396,16 @@ class ScriptWriter {
     std::string texts;
     for (const Parameter& parameter : kernel.parameters) {
       if (parameter.role != Role::Uniform || isPlain(parameter)) continue;
-      const auto [uniforms, statements] = heldValue(webProfile(), kernel, parameter);
+      const auto [uniforms, statements] = heldValue(webProfile(), parameter);
       texts += uniforms + statements;
     }
     return texts;
   }
 
-  std::size_t indexOf(std::string text, const std::vector<const Kernel*>& kernels) {
-    const std::size_t comment = text.find("\n//");  // it names the layouts, as the key does
-    if (comment != std::string::npos) text.erase(comment, text.find('\n', comment + 1) - comment);
+  std::size_t indexOf(std::string_view program, const std::vector<const Kernel*>& kernels) {
     std::string more;
     for (const Kernel* kernel : kernels) more += heldTexts(*kernel);
-    text = escaped(withUsedFunctions(text, more));
+    std::string text = escaped(withUsedFunctions(program, more));
     const std::size_t body = text.find("\n\n");  // after the precisions
     if (body != std::string::npos) share(text, text.substr(0, body + 1));
     for (const Kernel* kernel : kernels) {

@@ -89,7 +89,6 @@ class Words {
 }  // namespace
 
 std::string withUsedFunctions(std::string_view program, std::string_view more) {
-  if (program.find("#if") != std::string_view::npos) return std::string(program);
   const std::vector<Section> sections = sectionsOf(program);
   Words words;
   words.add("main");

@@ -15,7 +15,7 @@
 namespace skc::web {
 
 /// The program without functions that are not used, by main(), by declarations or by `more`, and without comments between
-/// functions. Programs with conditional compilation stay as they are.
+/// functions. It must have no conditional compilation.
 std::string withUsedFunctions(std::string_view program, std::string_view more);
 
 }  // namespace skc::web

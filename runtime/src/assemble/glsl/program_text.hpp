@@ -152,6 +152,10 @@ class ProgramText {
   void keepDenormals() { keepsDenormals_ = true; }
   bool keepsDenormals() const { return keepsDenormals_; }
 
+  /// Declarations and functions of the assembler's own, with marks.
+  std::string ownText() const;
+  /// The lines of main() that statement() has added.
+  const std::string& statements() const { return main_; }
   /// The whole program. `comment` is its first line, without the slashes.
   std::string finish(const Profile& profile, std::string_view comment, const program::Kernel& kernel) const;
 
@@ -160,8 +164,6 @@ class ProgramText {
   void defineWith(std::string_view signature, std::string_view lines);
 
   bool isDrawn() const { return stage_ == Stage::Fragment; }
-  /// Declarations and functions of the assembler's own, with marks.
-  std::string ownText() const;
   std::string declarationOfOutputs() const;
   std::string declarationOfBuffer() const;
   std::string mainOf(const std::string& body) const;
