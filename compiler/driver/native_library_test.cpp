@@ -64,7 +64,7 @@ struct Row {
   bool isBinary() const { return signatures.find(',') < signatures.find(')'); }
 };
 const Row rows[] = {
-#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) \
+#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, polyfill) \
   {spelling, signatures, #library},
 #include "ir/intrinsics.def"
 #undef SKC_INTRINSIC

@@ -258,16 +258,16 @@ template <class T> T frexp(T x, __sk_I<T>& exponent);
 std::string intrinsics() {
   // One declaration for each name and number of arguments, covering the signatures of all such rows.
   std::map<std::pair<std::string_view, std::size_t>, std::vector<std::string_view>> overloads;
-#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) \
-  {                                                                                            \
-    std::string_view all = signatures;                                                         \
-    while (!all.empty()) {                                                                     \
-      std::string_view one = all.substr(0, all.find(' '));                                     \
-      all.remove_prefix(std::min(all.size(), one.size() + 1));                                 \
-      std::size_t arity = 1;                                                                   \
-      for (char c : one) arity += c == ',';                                                    \
-      overloads[{spelling, arity}].push_back(one);                                             \
-    }                                                                                          \
+#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, polyfill) \
+  {                                                                                \
+    std::string_view all = signatures;                                             \
+    while (!all.empty()) {                                                         \
+      std::string_view one = all.substr(0, all.find(' '));                         \
+      all.remove_prefix(std::min(all.size(), one.size() + 1));                     \
+      std::size_t arity = 1;                                                       \
+      for (char c : one) arity += c == ',';                                        \
+      overloads[{spelling, arity}].push_back(one);                                 \
+    }                                                                              \
   }
 #include "ir/intrinsics.def"
 #undef SKC_INTRINSIC

@@ -78,7 +78,7 @@ class Used {
     } else if (const auto* intrinsic = std::get_if<IntrinsicCall>(&expr.node)) {
       if (const auto defined = definedIntrinsic(*intrinsic)) {
         std::uint8_t& widths = use(*defined).widths;
-        widths = static_cast<std::uint8_t>(widths | 1U << (widestOf(intrinsic->args) - 1U));
+        widths = static_cast<std::uint8_t>(widths | 1U << (intrinsic->args[0]->type.width - 1U));
       }
       const std::string_view polyfill = row(intrinsic->intrinsic).polyfill;
       if (!polyfill.empty()) add(withTypes(polyfill, intrinsic->args[0]->type) + "\n");

@@ -12,7 +12,7 @@
 
 namespace skc::emit {
 
-/// For each constant of the module, whether it must be a function.
+/// For each constant of a module after legalize, whether it must be a function.
 std::vector<bool> functionConstants(const ir::Module& module);
 
 /// "const float pi = 3.1415927;" or "float none() { return uintBitsToFloat(0xff800000u); }", with a newline.

@@ -60,11 +60,6 @@ class DoubleFunctions {
   /// `type`: of the first argument.
   DoubleFunctions(Polyfills& polyfills, Type type) : polyfills_(polyfills), type_(type) {}
 
-  /// A function whose components the assembler defines.
-  FunctionId byComponent(std::string_view function, Type result, const std::vector<Type>& types) {
-    return polyfills_.addByComponent(function, result, types, {});
-  }
-
   FunctionId intrinsic(Intrinsic intrinsic, const std::vector<Type>& types) {
     switch (intrinsic) {
       case Intrinsic::Dot: return dot();
@@ -110,11 +105,11 @@ class DoubleFunctions {
     return add("sk_dot", doubleType, {type_, type_}, fmt::format(" return {}; ", sum), {});
   }
 
-  FunctionId scaled() { return byComponent("sk_ldexp", type_, {type_, Type::of(Scalar::Int)}); }
-  FunctionId difference() { return byComponent("sk_sub", type_, {type_, type_}); }
-  FunctionId product() { return byComponent("sk_mul", type_, {type_, doubleType}); }
-  FunctionId quotient() { return byComponent("sk_div", type_, {type_, doubleType}); }
-  FunctionId negated() { return byComponent("sk_neg", type_, {type_}); }
+  FunctionId scaled() { return polyfills_.addByComponent("sk_ldexp", type_, {type_, Type::of(Scalar::Int)}); }
+  FunctionId difference() { return polyfills_.addByComponent("sk_sub", type_, {type_, type_}); }
+  FunctionId product() { return polyfills_.addByComponent("sk_mul", type_, {type_, doubleType}); }
+  FunctionId quotient() { return polyfills_.addByComponent("sk_div", type_, {type_, doubleType}); }
+  FunctionId negated() { return polyfills_.addByComponent("sk_neg", type_, {type_}); }
 
   /// The magnitude of the largest component, the largest of finite numbers and infinity.
   FunctionId largest() {
@@ -195,11 +190,6 @@ class DoubleFunctions {
   Type type_;
 };
 
-FunctionId byComponent(Polyfills& polyfills, std::string_view function, Type result,
-                       const std::vector<Type>& types) {
-  return DoubleFunctions(polyfills, types[0]).byComponent(function, result, types);
-}
-
 std::string namesOf(const std::vector<std::uint8_t>& components) {
   std::string names;
   for (const std::uint8_t component : components) names += letters[component];
@@ -221,7 +211,7 @@ std::string doubleLiteral(const Literal& literal) {
 }
 
 ExprPtr doubleNegated(Polyfills& polyfills, ExprPtr operand) {
-  const FunctionId function = byComponent(polyfills, "sk_neg", operand->type, {operand->type});
+  const FunctionId function = polyfills.addByComponent("sk_neg", operand->type, {operand->type});
   return polyfills.call(function, exprs(std::move(operand)));
 }
 
@@ -230,7 +220,7 @@ ExprPtr doubleBinary(Polyfills& polyfills, BinaryOp op, ExprPtr a, ExprPtr b) {
   if (entry.doubles.empty())
     return doubleIntrinsic(polyfills, entry.vectors.value(), exprs(std::move(a), std::move(b)));
   const Type lhs = a->type, rhs = b->type;
-  const FunctionId function = byComponent(polyfills, entry.doubles, lhs.isVector() ? lhs : rhs, {lhs, rhs});
+  const FunctionId function = polyfills.addByComponent(entry.doubles, lhs.isVector() ? lhs : rhs, {lhs, rhs});
   return polyfills.call(function, exprs(std::move(a), std::move(b)));
 }
 
@@ -240,11 +230,11 @@ ExprPtr doubleConverted(Polyfills& polyfills, Type to, ExprPtr operand) {
     return doubleIntrinsic(polyfills, Intrinsic::NotEqualTo, exprs(std::move(operand), literalOf(from, 0)));
   if (from.isBool()) return doubleConverted(polyfills, to, convert(Scalar::Int, std::move(operand)));
   if (to.scalar == Scalar::Half) {
-    const FunctionId toOdd = byComponent(polyfills, "sk_to_odd", to.arithmeticType(), {from});
+    const FunctionId toOdd = polyfills.addByComponent("sk_to_odd", to.arithmeticType(), {from});
     return polyfills.call(polyfills.quantize(to), exprs(polyfills.call(toOdd, exprs(std::move(operand)))));
   }
   const std::string function = "sk_to_" + glslSpelling(to.scalar, 1).substr(to.isDouble() ? 3 : 0);
-  return polyfills.call(byComponent(polyfills, function, to, {from}), exprs(std::move(operand)));
+  return polyfills.call(polyfills.addByComponent(function, to, {from}), exprs(std::move(operand)));
 }
 
 ExprPtr doubleVector(Polyfills& polyfills, Type type, Args parts) {

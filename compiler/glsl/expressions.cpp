@@ -48,7 +48,6 @@ bool computes(Intrinsic intrinsic) {
     case Intrinsic::Degrees:
     case Intrinsic::InverseSqrt:
     case Intrinsic::Rsqrt:
-    case Intrinsic::Fma:
     case Intrinsic::Dot:
     case Intrinsic::Cross:
     case Intrinsic::Faceforward:
@@ -71,14 +70,6 @@ Text markedZero(std::uint32_t bits) { return signedText((bits == 0 ? "" : "-") +
 /// True if the values of these functions are those of an argument, so that a literal 0 among them loses nothing.
 bool chooses(Intrinsic intrinsic) {
   return intrinsic == Intrinsic::Min || intrinsic == Intrinsic::Max || intrinsic == Intrinsic::Clamp;
-}
-
-/// True if GLSL's clamp of ints is defined: the lower bound is not the greater one.
-bool hasOrderedBounds(const std::vector<ExprPtr>& args) {
-  const auto* low = std::get_if<Literal>(&args[1]->node);
-  const auto* high = std::get_if<Literal>(&args[2]->node);
-  return args[1]->type.scalar == Scalar::Int && low != nullptr && high != nullptr &&
-         static_cast<std::int32_t>(low->bits) <= static_cast<std::int32_t>(high->bits);
 }
 
 /// True for large numbers that read better in hexadecimal: 0x7f800000, 0x00ffffff.
@@ -268,26 +259,14 @@ class GlslExpr {
   }
   Text print(const Expr&, const IntrinsicCall& n) const {
     const IntrinsicRow& entry = row(n.intrinsic);
-    const Type argument = n.args[0]->type;
-    if (const auto defined = definedIntrinsic(n)) {
-      const Scope scope(isStored_, !context_.marks || !function_);
-      return definedCall(*defined, n.args, chooses(n.intrinsic));
-    }
-    if (n.intrinsic == Intrinsic::Fma) return multiplyAdd(n.args);
-    const bool isGlslOwn = entry.polyfill.empty();
-    const Scope scope(isStored_, isGlslOwn ? isStored_ : !context_.marks || !function_);
-    if (hasFormula(n.intrinsic) && context_.marks && function_)
-      return {fmt::format("{}{}{}", mark::function, entry.glsl, list(n.args))};
-    if (n.intrinsic == Intrinsic::Clamp && hasOrderedBounds(n.args)) return {"clamp" + list(n.args)};
-    const bool usesVectorColumn = argument.isVector() && !entry.glslVector.empty();
-    const std::string_view pattern = usesVectorColumn ? entry.glslVector : entry.glsl;
-    if (pattern.find('$') == std::string_view::npos) {
-      return {std::string(pattern) + (chooses(n.intrinsic) ? comparedList(n.args) : list(n.args)),
-              Precedence::Primary,
-              /*isOperation=*/mayCancel(n.intrinsic)};
-    }
-    if (pattern == "$0") return printed(*n.args[0]);
-    return fromPattern(withTypes(pattern, argument), n.args);
+    const auto defined = definedIntrinsic(n);
+    const bool isOurs = defined || !entry.polyfill.empty();
+    const Scope scope(isStored_, isOurs ? !context_.marks || !function_ : isStored_);
+    const bool isMarked = hasFormula(n.intrinsic) && context_.marks && function_;
+    return {
+        fmt::format("{}{}{}", isMarked ? mark::function : "", defined ? functionName(*defined) : entry.glsl,
+                    chooses(n.intrinsic) ? comparedList(n.args) : list(n.args)),
+        Precedence::Primary, /*isOperation=*/mayCancel(n.intrinsic)};
   }
   Text print(const Expr&, const GatherRead& n) const {
     return {call("sk_at", n.stream) + "(" + passedText(*n.index) + ")"};
@@ -328,28 +307,6 @@ class GlslExpr {
             precedence};
   }
 
-  /// fma(a, b, c), which GLSL 3.30 lacks.
-  Text multiplyAdd(const std::vector<ExprPtr>& args) const {
-    const std::string product =
-        fmt::format("{} * {}", text(*args[0], Precedence::Multiplicative), text(*args[1], Precedence::Unary));
-    const bool isMarked = context_.marks && function_;
-    return {fmt::format("{}{}{} + {}", isMarked ? mark::operation : "", product,
-                        isMarked ? mark::operationEnd : "", text(*args[2], Precedence::Multiplicative)),
-            Precedence::Additive, true};
-  }
-
-  /// Calls a function that the assembler defines, all of whose arguments have one width.
-  Text definedCall(sk::program::Intrinsic intrinsic, const std::vector<ExprPtr>& args, bool isChoice) const {
-    const std::uint8_t width = widestOf(args);
-    std::vector<std::string> list;
-    for (const ExprPtr& arg : args) {
-      const bool isNarrower = arg->type.width < width;
-      const std::string value = isChoice ? comparedText(*arg) : text(*arg);
-      list.push_back(isNarrower ? fmt::format("vec{}({})", width, value) : value);
-    }
-    return {fmt::format("{}({})", functionName(intrinsic), join(list, ", "))};
-  }
-
   /// "sk_at_u"; the domain has the shape of the first output, if there is one.
   std::string call(std::string_view function, StreamRef stream) const {
     const bool isDomain = stream.space == StreamRef::Space::Domain;
@@ -370,35 +327,15 @@ class GlslExpr {
     return operand(outer, expr, around);
   }
 
-  std::vector<std::string> texts(const std::vector<ExprPtr>& items) const {
-    std::vector<std::string> list;
-    for (const ExprPtr& item : items) list.push_back(text(*item));
-    return list;
-  }
   std::string comparedList(const std::vector<ExprPtr>& items) const {
     std::vector<std::string> texts;
     for (const ExprPtr& item : items) texts.push_back(comparedText(*item));
     return "(" + join(texts, ", ") + ")";
   }
-  std::string list(const std::vector<ExprPtr>& items) const { return "(" + join(texts(items), ", ") + ")"; }
-
-  /// Substitutes arguments in a pattern such as "($0 * $1 + $2)"; drops outer brackets that are not needed.
-  Text fromPattern(std::string_view pattern, const std::vector<ExprPtr>& args) const {
-    const bool isBracketed = pattern.front() == '(' && pattern.back() == ')';
-    if (isBracketed) pattern = pattern.substr(1, pattern.size() - 2);
-    std::string result;
-    for (std::size_t i = 0; i < pattern.size(); ++i) {
-      if (pattern[i] != '$') {
-        result += pattern[i];
-        continue;
-      }
-      const char before = i == 0 ? ' ' : pattern[i - 1];
-      const char after = i + 2 < pattern.size() ? pattern[i + 2] : ' ';
-      const bool isArgument = before == '(' || after == ')' || after == ',';
-      const Expr& arg = *args[static_cast<std::size_t>(pattern[++i] - '0')];
-      result += text(arg, isArgument ? Precedence::Lowest : Precedence::Unary);
-    }
-    return {result, isBracketed ? Precedence::Conditional : Precedence::Primary};
+  std::string list(const std::vector<ExprPtr>& items) const {
+    std::vector<std::string> texts;
+    for (const ExprPtr& item : items) texts.push_back(text(*item));
+    return "(" + join(texts, ", ") + ")";
   }
 
   const GlslContext& context_;

@@ -43,12 +43,6 @@ std::optional<Defined> definedIntrinsic(const ir::IntrinsicCall& call) {
   return row->defined;
 }
 
-std::uint8_t widestOf(const std::vector<ir::ExprPtr>& args) {
-  std::uint8_t width = 1;
-  for (const ir::ExprPtr& arg : args) width = std::max(width, arg->type.width);
-  return width;
-}
-
 std::optional<Defined> definedOfDoubles(ir::Intrinsic intrinsic) {
   const auto row = std::ranges::find(floatIntrinsics, intrinsic, &FloatIntrinsic::intrinsic);
   if (row == floatIntrinsics.end() || row->defined > Defined::Pow) return std::nullopt;

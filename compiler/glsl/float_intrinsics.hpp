@@ -4,11 +4,9 @@
 // device's own functions; for doubles, it defines those that GLSL lacks.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "ir/ir.hpp"
 #include "sk/program.hpp"
@@ -18,10 +16,7 @@ namespace skc::emit {
 /// The runtime's name for an intrinsic with these arguments; nullopt if GLSL's own function serves.
 std::optional<sk::program::Intrinsic> definedIntrinsic(const ir::IntrinsicCall& call);
 
-/// The width of all parameters of that function: the widest argument's.
-std::uint8_t widestOf(const std::vector<ir::ExprPtr>& args);
-
-/// The runtime's name for an intrinsic of doubles; nullopt for the rows of double_functions.def.
+/// The same for doubles; nullopt for the rows of double_functions.def.
 std::optional<sk::program::Intrinsic> definedOfDoubles(ir::Intrinsic intrinsic);
 
 /// "Sin".

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "glsl/kernel_names.hpp"
 
-#include <algorithm>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "glsl/polyfills.hpp"
@@ -17,28 +15,13 @@ namespace {
 using namespace ir;
 using Names = std::set<std::string>;
 
-/// Adds all identifiers in a piece of GLSL.
-void addIdentifiers(std::string_view text, Names& names) {
-  const auto isLetter = [](char c) { return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  for (std::size_t i = 0; i < text.size();) {
-    std::size_t end = i;
-    while (end < text.size() && (isLetter(text[end]) || (end > i && text[end] >= '0' && text[end] <= '9')))
-      ++end;
-    if (end > i) names.insert(std::string(text.substr(i, end - i)));
-    i = std::max(end, i + 1);
-  }
-}
-
 /// The built-in functions that a function's text may call.
 Names builtinsOf(const Function& function) {
   Names names = {"equal", "greaterThan", "greaterThanEqual", "lessThan",       "lessThanEqual",
                  "mix",   "not",         "notEqual",         "uintBitsToFloat"};
   walkExprs(function.body, [&](const Expr& expr) {
-    const auto* n = std::get_if<IntrinsicCall>(&expr.node);
-    if (n == nullptr) return;
-    addIdentifiers(row(n->intrinsic).glsl, names);
-    addIdentifiers(row(n->intrinsic).glslVector, names);
-    if (n->intrinsic == Intrinsic::Clamp) names.insert("clamp");
+    if (const auto* n = std::get_if<IntrinsicCall>(&expr.node))
+      names.insert(std::string(row(n->intrinsic).glsl));
   });
   return names;
 }

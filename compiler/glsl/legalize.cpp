@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "glsl/doubles.hpp"
+#include "glsl/float_intrinsics.hpp"
 #include "glsl/known_values.hpp"
 #include "ir/build.hpp"
 #include "ir/evaluate.hpp"
@@ -31,6 +32,14 @@ bool isAssignable(const Expr& lvalue) {
     return (!isOfDoubles(*n) || isKnown(*n)) && isAssignable(*n->base);
   if (const auto* n = std::get_if<Member>(&lvalue.node)) return isAssignable(*n->base);
   return true;
+}
+
+/// True if GLSL's clamp of ints is defined: the lower bound is not the greater one.
+bool hasOrderedBounds(const std::vector<ExprPtr>& args) {
+  const auto* low = std::get_if<Literal>(&args[1]->node);
+  const auto* high = std::get_if<Literal>(&args[2]->node);
+  return args[1]->type.scalar == Scalar::Int && low != nullptr && high != nullptr &&
+         static_cast<std::int32_t>(low->bits) <= static_cast<std::int32_t>(high->bits);
 }
 
 class Legalizer {
@@ -263,6 +272,54 @@ class Legalizer {
       slot = doubleIntrinsic(polyfills_, n.intrinsic, std::move(n.args));
     } else if (n.intrinsic == Intrinsic::Abs && argument.scalar == Scalar::Int && !target_.comparesWithZero) {
       slot = polyfills_.call(polyfills_.magnitude(argument), std::move(n.args));
+    } else if (!target_.hasIntrinsics) {
+      compose(slot, n);
+    }
+  }
+
+  /// Expresses an intrinsic by others, if GLSL lacks it for these arguments.
+  void compose(ExprPtr& slot, IntrinsicCall& n) {
+    std::vector<ExprPtr>& args = n.args;
+    const Type argument = args[0]->type;
+    if (definedIntrinsic(n)) return broadcast(args);
+    switch (n.intrinsic) {
+      case Intrinsic::Fma: {
+        ExprPtr product = ir::binary(BinaryOp::Mul, std::move(args[0]), std::move(args[1]));
+        slot = ir::binary(BinaryOp::Add, std::move(product), std::move(args[2]));
+        return;
+      }
+      case Intrinsic::Clamp: {
+        if (hasOrderedBounds(args)) return;
+        ExprPtr above = ir::intrinsic(Intrinsic::Max, exprs(std::move(args[0]), std::move(args[1])));
+        slot = ir::intrinsic(Intrinsic::Min, exprs(std::move(above), std::move(args[2])));
+        return;
+      }
+      case Intrinsic::Isfinite: {
+        ExprPtr exponent =
+            ir::binary(BinaryOp::BitAnd, ir::intrinsic(Intrinsic::FloatBitsToUint, std::move(args)),
+                       literal(0x7f800000u));
+        ExprPtr infinity = literal(0x7f800000u);
+        if (argument.isVector()) infinity = construct(exponent->type, exprs(std::move(infinity)));
+        slot = ir::binary(argument.isVector() ? BinaryOp::Less : BinaryOp::NotEqual, std::move(exponent),
+                          std::move(infinity));
+        return;
+      }
+      case Intrinsic::Any:
+      case Intrinsic::All:
+        if (argument.isVector()) return;
+        slot = std::move(args[0]);
+        return rewrite(slot);
+      default: return;
+    }
+  }
+
+  /// The assembler's functions take floats of one width.
+  static void broadcast(std::vector<ExprPtr>& args) {
+    const ExprPtr& widest =
+        *std::ranges::max_element(args, {}, [](const ExprPtr& arg) { return arg->type.width; });
+    const Type type = widest->type;
+    for (ExprPtr& arg : args) {
+      if (arg->type.width < type.width) arg = construct(type, exprs(std::move(arg)));
     }
   }
 

@@ -22,6 +22,7 @@ struct Capabilities {
   bool dividesIntegers = false;  ///< by 0 and -1, too; a remainder has the sign of the dividend
   bool convertsAnyFloat = false;  ///< to the nearest int or uint, NaN to 0
   bool hasNarrowTypes = false;
+  bool hasIntrinsics = false;  ///< all of intrinsics.def, for scalars as for vectors
   bool hasDoubles = false;
   bool choosesByComponent = false;  ///< &&, || and ?: of vectors other than floats, and v[i]
   bool comparesWithZero =

@@ -28,11 +28,11 @@ class Polyfills {
 
   /// The function with this name and these parameters; adds it if it is new.
   ir::FunctionId add(std::string_view name, ir::Type result, const std::vector<ir::Type>& parameters,
-                     Polyfill polyfill);
+                     Polyfill polyfill = {});
   /// The same for a function that works by component: `scalar` is its polyfill for components. Adds one for vectors,
   /// which calls that one, if a parameter is a vector.
   ir::FunctionId addByComponent(std::string_view name, ir::Type result,
-                                const std::vector<ir::Type>& parameters, Polyfill scalar);
+                                const std::vector<ir::Type>& parameters, Polyfill scalar = {});
   ir::ExprPtr call(ir::FunctionId function, std::vector<ir::ExprPtr> args) const;
 
   const Polyfill& operator[](ir::FunctionId function) const { return polyfills_.at(function); }

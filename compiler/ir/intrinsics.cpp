@@ -8,8 +8,8 @@ namespace skc::ir {
 namespace {
 
 constexpr IntrinsicRow rows[] = {
-#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) \
-  {Intrinsic::Name, #Name, spelling, signatures, glsl, glslVector, polyfill},
+#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, polyfill) \
+  {Intrinsic::Name, #Name, spelling, signatures, glsl, polyfill},
 #include "ir/intrinsics.def"
 #undef SKC_INTRINSIC
 };

@@ -15,14 +15,14 @@
 namespace skc::ir {
 
 enum class Intrinsic : std::uint16_t {
-#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) Name,
+#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, polyfill) Name,
 #include "ir/intrinsics.def"
 #undef SKC_INTRINSIC
 };
 
 struct IntrinsicRow {
   Intrinsic id;
-  std::string_view name, spelling, signatures, glsl, glslVector, polyfill;
+  std::string_view name, spelling, signatures, glsl, polyfill;
 };
 const IntrinsicRow& row(Intrinsic intrinsic);
 /// All rows, in the order of the table.

@@ -76,7 +76,7 @@ Part libm(const ScalarBuilder& f, const char* name, const Part& x, const Part& y
 Parts intrinsic(Lanes& lanes, Intrinsic intrinsic, const Arguments& arguments) {
   const ScalarBuilder f(lanes);
   switch (intrinsic) {
-#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) \
+#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, polyfill) \
   case Intrinsic::Name: SKC_NATIVE_##native;
 #include "ir/intrinsics.def"
 #undef SKC_INTRINSIC

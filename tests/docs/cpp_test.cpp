@@ -75,8 +75,8 @@ std::string wrapped(const docs::Document& document, const Block& block, std::set
 
 /// Rows of our tables, standing alone, are at least of the right shape.
 constexpr const char* rowsOfTables =
-    "#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) "
-    "static_assert(sizeof(spelling signatures #library #native glsl glslVector polyfill) > 1);\n"
+    "#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, polyfill) "
+    "static_assert(sizeof(spelling signatures #library #native glsl polyfill) > 1);\n"
     "#define SKC_DIAGNOSTIC(Name, severity, text) "
     "static_assert(skc::Severity::severity <= skc::Severity::Note && sizeof(text) > 1);\n";
 

@@ -40,8 +40,7 @@ Signatures intrinsics() {
   const auto add = [&](const std::string& spelling, const std::string& signatures) {
     if (!spelling.empty()) found[spelling].merge(wordsOf(signatures));
   };
-#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) \
-  add(spelling, signatures);
+#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, polyfill) add(spelling, signatures);
 #include "ir/intrinsics.def"
 #undef SKC_INTRINSIC
   return found;

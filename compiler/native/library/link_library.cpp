@@ -39,7 +39,7 @@ struct Row {
 #define SKC_LIBRARY_Reals(function) In::Reals, #function
 #define SKC_LIBRARY_Sums(function) In::Sums, #function
 constexpr Row rows[] = {
-#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) \
+#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, polyfill) \
   {Intrinsic::Name, SKC_LIBRARY_##library},
 #include "ir/intrinsics.def"
 #undef SKC_INTRINSIC
