@@ -33,7 +33,7 @@ std::string byComponent(std::string_view pattern, int width) {
   return join(items, ", ");
 }
 
-/// The function that rounds a value of the arithmetic type to a narrow scalar, as quantize.hpp specifies.
+/// The function that rounds a value of the arithmetic type to a narrow scalar, as scalar_operations.hpp specifies.
 std::string quantizing(Scalar narrow) {
   switch (narrow) {
     case Scalar::Char: return "int sk_char(int x) { return (x << 24) >> 24; }\n";

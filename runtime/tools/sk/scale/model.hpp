@@ -13,8 +13,7 @@
 // Long Messages into the LogP Model", SPAA 1995, section 3. Only formulas.
 //
 // Counts what a rank sends when a grid is split into blocks and halos are exchanged, as sk::Domain does it: one message to
-// each neighbour, also to those at edges and corners, with the elements of all streams that the call reads. Only integers;
-// network.hpp has times.
+// each neighbour, also to those at edges and corners, with the elements of all streams that the call reads. Only integers.
 #pragma once
 
 #include <cstdint>
