@@ -15,7 +15,7 @@
 #include "run.hpp"
 #include "scene.hpp"
 #include "simulation.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 using namespace examples;
 

@@ -14,12 +14,6 @@
 namespace examples {
 namespace {
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
-
 double timeOf(Simulation& simulation, std::int64_t steps) {
   const Stopwatch stopwatch;
   simulation.advance(steps);

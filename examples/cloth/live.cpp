@@ -17,17 +17,14 @@ namespace {
 
 /// What a person can change while it runs.
 struct Show {
-  bool paused = false;
   bool restarts = false;
   double wind = 1.0;  ///< in place of the scene's
 };
 
-void obey(const Input& input, Show& show, Window& window, Orbit& camera) {
+void obey(const Input& input, Show& show, Orbit& camera) {
   if (input.isDragged) camera.turn(-0.006 * input.dragX, 0.006 * input.dragY);
   if (input.wheel != 0) camera.approach(std::pow(0.9, input.wheel));
   for (const char key : input.typed) {
-    if (key == '\x1b' || key == 'q') window.close();
-    if (key == ' ') show.paused = !show.paused;
     if (key == 'r' || key == 'R') show.restarts = true;
     if (key == 'w' || key == 'W') show.wind = show.wind >= 2.0 ? 0.0 : show.wind + 0.5;
   }
@@ -43,8 +40,7 @@ Scene withWind(const Scene& scene, double factor) {
 
 void runLive(const Scene& scene, sk::Precision precision, const std::string& name, PictureSize size) {
   Window window(scene.title, size.width, size.height);
-  const bool hosted = name == "native" || name.starts_with("reference");
-  sk::Device device = hosted ? sk::Device(name) : sk::Device::adopt();
+  sk::Device device = Window::device(name);
   const auto make = [&](double wind) {
     return std::make_unique<Simulation>(device, withWind(scene, wind), Features::of(scene), precision);
   };
@@ -54,7 +50,7 @@ void runLive(const Scene& scene, sk::Precision precision, const std::string& nam
   double milliseconds = 16.0;  // a frame's, lately
   while (window.isOpen()) {
     const Stopwatch stopwatch;
-    if (!show.paused) {
+    if (!window.isPaused()) {
       // As many steps as the last frame took, but no more than keep the picture moving.
       const auto due = static_cast<std::int64_t>(std::min(milliseconds, 40.0) / 1000.0 / scene.run.dt);
       simulation->advance(std::max<std::int64_t>(1, due));
@@ -66,11 +62,10 @@ void runLive(const Scene& scene, sk::Precision precision, const std::string& nam
       }
       drawing.update(*simulation);
     }
-    const Window::Size pixels = window.size();
-    if (pixels.width > 0 && pixels.height > 0)
-      drawing.draw(pixels.width, pixels.height, device.isSoftware() ? 1 : 2, 0);
+    if (const auto pixels = window.size())
+      drawing.draw(pixels->width, pixels->height, device.isSoftware() ? 1 : 2, 0);
     const double wind = show.wind;
-    obey(window.show(), show, window, drawing.camera());
+    obey(window.show(), show, drawing.camera());
     if (show.restarts || show.wind != wind) {
       const State state = simulation->state();
       simulation = make(show.wind);
@@ -78,9 +73,9 @@ void runLive(const Scene& scene, sk::Precision precision, const std::string& nam
       show.restarts = false;
     }
     milliseconds = 0.8 * milliseconds + 0.2 * stopwatch.milliseconds();
-    window.setTitle(fmt::format("{} - t = {:.1f} s, {:.0f} frames/s{}", scene.title,
-                                static_cast<double>(simulation->step()) * scene.run.dt, 1000.0 / milliseconds,
-                                show.paused ? ", paused" : ""));
+    window.setTitle(fmt::format("{} - t = {:.1f} s, {:.0f} frames/s", scene.title,
+                                static_cast<double>(simulation->step()) * scene.run.dt,
+                                1000.0 / milliseconds));
   }
 }
 

@@ -24,8 +24,8 @@
 #include "simulation.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
-#include "support/extents.hpp"
-#include "support/join_ranks.hpp"
+#include "support/options.hpp"
+#include "support/ranks.hpp"
 #include "table_file.hpp"
 
 namespace {

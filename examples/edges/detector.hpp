@@ -10,7 +10,7 @@
 
 #include <sk/sk.hpp>
 
-#include "support/picture.hpp"
+#include "support/image.hpp"
 
 namespace examples {
 

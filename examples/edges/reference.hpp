@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "support/picture.hpp"
+#include "support/image.hpp"
 #include "support/verification.hpp"
 
 namespace examples {

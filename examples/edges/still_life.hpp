@@ -3,7 +3,7 @@
 // A picture to work on where the user has none: shapes, gradients and grain, the same on every machine.
 #pragma once
 
-#include "support/picture.hpp"
+#include "support/image.hpp"
 
 namespace examples {
 

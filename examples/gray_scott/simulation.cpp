@@ -2,7 +2,7 @@
 #include "simulation.hpp"
 
 #include "gray_scott.sk.hpp"
-#include "support/picture.hpp"
+#include "support/image.hpp"
 #include "support/stopwatch.hpp"
 
 namespace examples {

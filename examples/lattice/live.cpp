@@ -87,15 +87,16 @@ class Screen {
 };
 
 struct Show {
-  bool paused = false, single = false, restarts = false, next = false;
+  bool single = false, restarts = false, next = false;
   int steps = 8;  ///< for a picture
 };
 
 void obey(const Input& input, Show& show, Window& window) {
   for (const char key : input.typed) {
-    if (key == '\x1b' || key == 'q') window.close();
-    if (key == ' ') show.paused = !show.paused;
-    if (key == 's') show.single = show.paused = true;
+    if (key == 's') {
+      show.single = true;
+      window.pause();
+    }
     if (key == 'f') show.next = true;
     if (key == 'r') show.restarts = true;
     if (key == '+') show.steps = std::min(show.steps * 2, 1 << 16);
@@ -144,7 +145,7 @@ void runLive(const Scene& scene, const std::string& deviceName) {
   double milliseconds = 16.0;
   while (window.isOpen()) {
     const Stopwatch stopwatch;
-    if (!show.paused || show.single) {
+    if (!window.isPaused() || show.single) {
       const int steps = show.single ? 1 : show.steps;
       lattice->advance(steps);
       step += steps;
@@ -152,8 +153,8 @@ void runLive(const Scene& scene, const std::string& deviceName) {
       requireFinite(*lattice, step);
     }
     const Painter::Texture texture = painter->texture(*lattice);
-    if (const Window::Size size = window.size(); size.width > 0 && size.height > 0)
-      screen.draw(texture.texture, texture.isColour, texture.low, texture.high, size);
+    if (const auto size = window.size())
+      screen.draw(texture.texture, texture.isColour, texture.low, texture.high, *size);
     obey(window.show(), show, window);
     if (show.restarts) {
       lattice = make();
@@ -167,9 +168,8 @@ void runLive(const Scene& scene, const std::string& deviceName) {
     }
     show.restarts = show.next = false;
     milliseconds = 0.8 * milliseconds + 0.2 * stopwatch.milliseconds();
-    window.setTitle(fmt::format("{} - {} - step {}, {:.0f} pictures/s{}", scene.title,
-                                nameOf(views[view].shown), step, 1000.0 / milliseconds,
-                                show.paused ? ", paused" : ""));
+    window.setTitle(fmt::format("{} - {} - step {}, {:.0f} pictures/s", scene.title,
+                                nameOf(views[view].shown), step, 1000.0 / milliseconds));
   }
 }
 

@@ -9,8 +9,8 @@
 
 #include "flow.sk.hpp"
 #include "observe.sk.hpp"
-#include "support/box_view.hpp"
 #include "support/colormap.hpp"
+#include "support/field_view.hpp"
 #include "view.sk.hpp"
 
 namespace examples {

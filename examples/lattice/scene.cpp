@@ -24,7 +24,6 @@ constexpr std::array<std::string_view, 3> densityNames = {"computed", "linear", 
 constexpr std::array<std::string_view, 2> profileNames = {"uniform", "conduction"};
 constexpr std::array<std::string_view, 7> shownNames = {"temperature", "u",        "v",      "speed",
                                                         "vorticity",   "pressure", "bubbles"};
-constexpr std::array<std::string_view, 4> precisionNames = {"half", "single", "extended", "double"};
 constexpr std::array<sk::Precision, 4> precisions = {sk::Precision::Half, sk::Precision::Single,
                                                      sk::Precision::Extended, sk::Precision::Double};
 
@@ -213,12 +212,6 @@ bool has(const Model& model, Shown shown) {
     case Shown::Pressure: return model.flow.has_value();
   }
   return false;
-}
-
-std::string_view nameOf(sk::Precision precision) {
-  const auto place = std::find(precisions.begin(), precisions.end(), precision);
-  return place == precisions.end() ? "single"
-                                   : precisionNames[static_cast<std::size_t>(place - precisions.begin())];
 }
 
 std::string_view nameOf(Shown shown) { return shownNames[static_cast<std::size_t>(shown)]; }

@@ -12,6 +12,7 @@
 
 #include "model.hpp"
 #include "support/record.hpp"
+#include "support/scene_file.hpp"
 
 namespace examples {
 
@@ -72,8 +73,7 @@ struct Overrides {
 /// Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong and the way out".
 Scene readScene(const std::filesystem::path& file, const Overrides& overrides);
 
-/// As scenes write them: "single", "double" ...; "temperature", "u" ...
-std::string_view nameOf(sk::Precision precision);
+/// As scenes write it: "temperature", "u" ...
 std::string_view nameOf(Shown shown);
 
 /// Whether a model's operators make it.

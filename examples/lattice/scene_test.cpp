@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace examples {
 namespace {

@@ -15,11 +15,6 @@
 namespace examples {
 namespace {
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 Model boiling(std::int64_t width, std::int64_t height, Density density) {
   Model m;
   m.grid = {width, height};

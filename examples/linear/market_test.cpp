@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "matrix_market.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace linear {
 namespace {

@@ -13,7 +13,7 @@
 #include "picture_test.hpp"
 #include "scene.hpp"
 #include "soup_test.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace rays {
 namespace {

@@ -14,7 +14,7 @@
 #include "scene.hpp"
 #include "shapes.hpp"
 #include "study.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 #include "trace.hpp"
 
 namespace rays {

@@ -81,14 +81,12 @@ class Screen {
 };
 
 struct Show {
-  bool paused = false, restarts = false;
+  bool restarts = false;
 };
 
 /// True if the camera has moved.
-bool obey(const examples::Input& input, Show& show, Scene& scene, examples::Window& window) {
+bool obey(const examples::Input& input, Show& show, Scene& scene) {
   for (const char key : input.typed) {
-    if (key == '\x1b' || key == 'q') window.close();
-    if (key == ' ') show.paused = !show.paused;
     if (key == 'r') show.restarts = true;
     if (key == '+') scene.output.exposure *= 1.25;
     if (key == '-') scene.output.exposure /= 1.25;
@@ -117,8 +115,7 @@ void runLive(Scene& scene, const std::string& name) {
   const Picture& picture = scene.picture;
   const examples::Window::Size opened = windowSize(picture);
   examples::Window window(scene.title, opened.width, opened.height);
-  const bool hosted = name == "native" || name.starts_with("reference");
-  sk::Device device = hosted ? sk::Device(name) : sk::Device::adopt();
+  sk::Device device = examples::Window::device(name);
   const std::unique_ptr<Engine> engine = scene.engines.at(scene.engine)(device, scene.model);
   for (const std::string& warning : engine->warnings()) fmt::print(stderr, "rays: warning: {}\n", warning);
   const std::unique_ptr<Renderer> renderer = engine->renderer(picture);
@@ -130,22 +127,21 @@ void runLive(Scene& scene, const std::string& name) {
     // A frame takes the samples that fit into 50 ms, because showing them costs time, too.
     const auto due = static_cast<std::int64_t>(50.0 / passMilliseconds);
     const std::int64_t end = std::min(samples + std::clamp<std::int64_t>(due, 1, 16), scene.output.samples);
-    if (!show.paused && samples < end) {
+    if (!window.isPaused() && samples < end) {
       const examples::Stopwatch stopwatch;
       const auto passes = static_cast<double>(end - samples);
       while (samples < end) renderer->pass(samples++);
       screen.show(renderer->image());
       passMilliseconds = std::max(0.1, stopwatch.milliseconds() / passes);
     }
-    if (const examples::Window::Size size = window.size(); size.width > 0 && size.height > 0)
-      screen.draw(scene.output, size);
+    if (const auto size = window.size()) screen.draw(scene.output, *size);
     show.restarts = false;
-    if (obey(window.show(), show, scene, window) || show.restarts) {
+    if (obey(window.show(), show, scene) || show.restarts) {
       renderer->look(scene.model.camera);
       samples = 0;
     }
-    window.setTitle(fmt::format("{} - {} of {} samples, {:.3g} ms each{}", scene.title, samples,
-                                scene.output.samples, passMilliseconds, show.paused ? ", paused" : ""));
+    window.setTitle(fmt::format("{} - {} of {} samples, {:.3g} ms each", scene.title, samples,
+                                scene.output.samples, passMilliseconds));
   }
 }
 

@@ -31,8 +31,8 @@
 #include "scene.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
-#include "support/extents.hpp"
-#include "support/join_ranks.hpp"
+#include "support/options.hpp"
+#include "support/ranks.hpp"
 #include "support/stopwatch.hpp"
 #include "trace.hpp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "shapes.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace rays {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "engine.hpp"
 #include "scene.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace rays {
 

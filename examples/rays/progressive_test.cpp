@@ -18,7 +18,7 @@
 #include "scene.hpp"
 #include "skip.hpp"
 #include "state_file.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace rays {
 namespace {

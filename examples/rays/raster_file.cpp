@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "exr_file.hpp"
-#include "support/picture.hpp"
+#include "support/image.hpp"
 
 namespace rays {
 namespace {

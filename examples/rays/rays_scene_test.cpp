@@ -10,7 +10,7 @@
 #include "hits_file.hpp"
 #include "layers.hpp"
 #include "light_table.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace rays {
 namespace {

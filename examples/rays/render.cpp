@@ -13,7 +13,7 @@
 #include "exr_file.hpp"
 #include "raster_file.hpp"
 #include "state_file.hpp"
-#include "support/picture.hpp"
+#include "support/image.hpp"
 #include "support/progress.hpp"
 #include "support/stopwatch.hpp"
 

@@ -17,7 +17,7 @@
 #include "path_tables.hpp"
 #include "raster_file.hpp"
 #include "scene.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace rays {
 namespace {

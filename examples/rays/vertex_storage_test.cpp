@@ -10,7 +10,7 @@
 #include "reference.hpp"
 #include "scene.hpp"
 #include "soup_test.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace rays {
 namespace {

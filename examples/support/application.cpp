@@ -67,9 +67,9 @@ void Application::report(std::string did, std::string where, double milliseconds
   fmt::print("{}: {} on {} in {}\n", name_, did_, where_, duration(milliseconds_));
 }
 
-void Application::verified(const Verification& verification) {
-  fmt::print("verified {}\n", verification.text());
-  verifications_.push_back(verification);
+void Application::verified(std::span<const Verification> verifications) {
+  for (const Verification& verification : verifications) fmt::print("verified {}\n", verification.text());
+  verifications_.insert(verifications_.end(), verifications.begin(), verifications.end());
 }
 
 void Application::parse(int argc, char** argv) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,9 @@ class Application {
 
   /// Says what the run did, where, and how long it took there, for the report and the table of demo.sh.
   void report(std::string did, std::string where, double milliseconds);
-  /// Prints a verification and keeps it for the exit status.
-  void verified(const Verification& verification);
+  /// Prints verifications and keeps them for the exit status.
+  void verified(const Verification& verification) { verified(std::span(&verification, 1)); }
+  void verified(std::span<const Verification> verifications);
 
   /// Parses the command line, calls `body`, turns whatever it throws into a message. Returns main's exit
   /// status: 1 after an error or where a verification missed its bound. All ranks must call it.

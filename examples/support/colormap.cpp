@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
-#include <fmt/format.h>
-
-#include "support/picture.hpp"
+#include "support/image.hpp"
+#include "support/named.hpp"
 
 namespace examples {
 namespace {
@@ -102,14 +100,10 @@ std::vector<std::string_view> colormapNames() {
 }
 
 std::vector<sk::float3> colormap(std::string_view name, int entries) {
-  const auto map = std::find_if(maps.begin(), maps.end(), [&](const Map& m) { return m.name == name; });
-  if (map == maps.end()) {
-    throw std::runtime_error(
-        fmt::format("no colour map is called '{}'; there are {}", name, fmt::join(colormapNames(), ", ")));
-  }
+  const Map& map = rowNamed(maps, name, "colour map");
   std::vector<sk::float3> colours;
   for (int i = 0; i < entries; ++i) {
-    colours.push_back(displayable(along(*map, entries > 1 ? static_cast<double>(i) / (entries - 1) : 0.5)));
+    colours.push_back(displayable(along(map, entries > 1 ? static_cast<double>(i) / (entries - 1) : 0.5)));
   }
   return colours;
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "support/picture.hpp"
+#include "support/image.hpp"
 
 namespace examples {
 namespace {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// Pictures with a title above, a line below, and a bar that says what colours mean.
+// Text in images, and pictures with a title above, a line below, and a bar that says what colours mean.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sk/types.hpp>
@@ -12,6 +13,22 @@
 #include "support/image.hpp"
 
 namespace examples {
+
+/// What of a text lies at the place that is given.
+enum class Anchor { Left, Centre, Right };
+
+/// Anti-aliased DejaVu Sans, which the program carries with it.
+struct Lettering {
+  float size = 16;  ///< pixels from the lowest to the highest that letters reach
+  sk::float3 colour = {0, 0, 0};  ///< sRGB-encoded, in [0, 1]
+  Anchor anchor = Anchor::Left;
+  bool bold = false;
+};
+
+/// Sets UTF-8 with its baseline at row `y`. What is outside of the image is dropped; what the font lacks is a box.
+void letter(Image& image, float x, float y, std::string_view text, const Lettering& how);
+/// The width in pixels.
+float widthOf(std::string_view text, const Lettering& how);
 
 struct Caption {
   std::string title;     ///< bold, above; empty: none

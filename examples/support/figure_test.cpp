@@ -9,8 +9,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "support/lettering.hpp"
-
 namespace {
 
 using namespace examples;

@@ -4,17 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+#include <stb/stb_image_write.h>
 #include <unistd.h>
-
-#include "support/animated_png.hpp"
 
 namespace examples {
 
@@ -43,15 +44,119 @@ class NumberedFiles final : public Film::Writer {
   fs::path file_;
 };
 
+constexpr std::size_t signatureBytes = 8;
+
+std::string bigEndian(std::uint32_t value, int bytes = 4) {
+  std::string text;
+  for (int i = bytes - 1; i >= 0; --i) text += static_cast<char>((value >> (8 * i)) & 0xff);
+  return text;
+}
+
+std::uint32_t numberAt(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = (value << 8) | static_cast<unsigned char>(bytes[at + i]);
+  return value;
+}
+
+/// The CRC of ISO 3309 that ends every chunk.
+std::uint32_t checksum(std::string_view bytes) {
+  static const std::array<std::uint32_t, 256> table = [] {
+    std::array<std::uint32_t, 256> made{};
+    for (std::uint32_t n = 0; n < 256; ++n) {
+      std::uint32_t c = n;
+      for (int bit = 0; bit < 8; ++bit) c = (c & 1) != 0 ? 0xedb88320u ^ (c >> 1) : c >> 1;
+      made[n] = c;
+    }
+    return made;
+  }();
+  std::uint32_t c = 0xffffffffu;
+  for (const char byte : bytes) c = table[(c ^ static_cast<unsigned char>(byte)) & 0xff] ^ (c >> 8);
+  return c ^ 0xffffffffu;
+}
+
+/// A PNG of its own, of which a frame takes the compressed pixels.
+std::string encoded(const Image& image) {
+  std::string bytes;
+  const auto append = [](void* to, void* data, int size) {
+    static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+  };
+  stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.rgb.data(), image.width * 3);
+  return bytes;
+}
+
+/// Calls visit(type, data) for each chunk of a PNG.
+template <class Visit>
+void forEachChunk(std::string_view png, Visit&& visit) {
+  for (std::size_t at = signatureBytes; at + 12 <= png.size();) {
+    const std::size_t length = numberAt(png, at);
+    visit(png.substr(at + 4, 4), png.substr(at + 8, length));
+    at += length + 12;
+  }
+}
+
+/// Animated PNG (W3C, "PNG Specification, Third Edition", section 11.3.6): the frames of a film in one file that browsers show,
+/// without loss, and that programs which know none of it show the first frame of.
 class AnimatedFile final : public Film::Writer {
  public:
-  AnimatedFile(const fs::path& file, int framesPerSecond) : png_(file, framesPerSecond) {}
+  AnimatedFile(const fs::path& file, int framesPerSecond) : name_(file), framesPerSecond_(framesPerSecond) {
+    std::error_code ignored;
+    if (file.has_parent_path()) fs::create_directories(file.parent_path(), ignored);
+    file_.open(file, std::ios::out | std::ios::binary | std::ios::trunc);
+    if (!file_) {
+      throw std::runtime_error(
+          fmt::format("cannot write '{}'; name a file in a folder that can be written", file.string()));
+    }
+  }
 
-  void add(const Image& image, int) override { png_.add(image); }
-  void finish() override { png_.finish(); }
+  void add(const Image& image, int number) override {
+    if (number == 0) begin(image);
+    writeChunk("fcTL", bigEndian(sequence_++) + bigEndian(static_cast<std::uint32_t>(image.width)) +
+                           bigEndian(static_cast<std::uint32_t>(image.height)) + bigEndian(0) + bigEndian(0) +
+                           bigEndian(1, 2) + bigEndian(static_cast<std::uint32_t>(framesPerSecond_), 2) +
+                           '\0' + '\0');
+    forEachChunk(encoded(image), [&](std::string_view type, std::string_view data) {
+      if (type != "IDAT") return;
+      if (number == 0) {
+        writeChunk(type, data);
+      } else {
+        writeChunk("fdAT", bigEndian(sequence_++) + std::string(data));
+      }
+    });
+    ++frames_;
+  }
+  /// Repeats for ever.
+  void finish() override {
+    if (frames_ > 0) {
+      writeChunk("IEND", "");
+      file_.seekp(control_);
+      writeChunk("acTL", bigEndian(frames_) + bigEndian(0));
+    }
+    file_.close();
+    if (!file_)
+      throw std::runtime_error(fmt::format("'{}' could not be written; is the disk full?", name_.string()));
+  }
 
  private:
-  AnimatedPng png_;
+  void begin(const Image& image) {
+    const std::string png = encoded(image);
+    file_.write(png.data(), signatureBytes);
+    forEachChunk(png, [&](std::string_view type, std::string_view data) {
+      if (type == "IHDR") writeChunk(type, data);
+    });
+    control_ = file_.tellp();
+    writeChunk("acTL", bigEndian(0) + bigEndian(0));
+  }
+  void writeChunk(std::string_view type, std::string_view data) {
+    const std::string body = std::string(type) + std::string(data);
+    file_ << bigEndian(static_cast<std::uint32_t>(data.size())) << body << bigEndian(checksum(body));
+  }
+
+  fs::path name_;
+  std::fstream file_;
+  int framesPerSecond_;
+  std::uint32_t frames_ = 0;
+  std::uint32_t sequence_ = 0;  ///< of the next chunk that has a number
+  std::streampos control_ = 0;  ///< of the chunk that tells the number of frames
 };
 
 /// Whether PATH has a program of this name.

@@ -6,12 +6,11 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
 #include <string>
 
 #include <catch2/catch.hpp>
 
-#include "support/picture.hpp"
+#include "support/image.hpp"
 
 namespace {
 

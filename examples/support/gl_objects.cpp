@@ -109,4 +109,26 @@ GlProgram makeProgram(std::string_view vertex, std::string_view fragment) {
   return program;
 }
 
+FullView::FullView(std::string_view fragment)
+    : program_(makeProgram(R"(
+  out vec2 at;
+  void main() {
+    at = vec2(gl_VertexID % 2, gl_VertexID / 2);
+    gl_Position = vec4(2.0 * at - 1.0, 0.0, 1.0);
+  })",
+                           fragment)) {}
+
+void FullView::bind(const char* name, int unit, GLuint texture) const {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glUniform1i((*this)[name], unit);
+}
+
+void FullView::draw() const {
+  glBindVertexArray(nothing_.get());
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  glBindVertexArray(0);
+  glUseProgram(0);
+}
+
 }  // namespace examples

@@ -58,4 +58,22 @@ GlFramebuffer makeFramebuffer(GLuint colour, GLuint depth);
 /// GLSL 3.30; every part is put behind the #version line. Throws std::runtime_error with the driver's message.
 GlProgram makeProgram(std::string_view vertex, std::string_view fragment);
 
+/// A fragment program that covers a viewport. It gets `in vec2 at`, which is (0, 0) in the lower left corner and (1, 1) in the upper right one.
+class FullView {
+ public:
+  explicit FullView(std::string_view fragment);
+  /// Makes the program current, so that its uniforms can be set.
+  void use() const { glUseProgram(program_.get()); }
+  /// The place of a uniform.
+  GLint operator[](const char* name) const { return glGetUniformLocation(program_.get(), name); }
+  /// Binds a texture to a unit for a sampler.
+  void bind(const char* name, int unit, GLuint texture) const;
+  /// Draws, and leaves no program behind.
+  void draw() const;
+
+ private:
+  GlProgram program_;
+  GlVertexArray nothing_ = makeVertexArray();
+};
+
 }  // namespace examples

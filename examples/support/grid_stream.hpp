@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The streams of a grid, which are on one device or divided over the ranks of MPI. Kernels and reductions take either kind, so
-// that an example says once what it computes. This header knows no MPI; join_ranks.hpp makes what is divided.
+// that an example says once what it computes. This header knows no MPI; joinRanks() makes what is divided.
 #pragma once
 
 #include <cstdint>

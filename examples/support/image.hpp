@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Pixels as screens and films want them. It knows nothing of files but PNG, and nothing of devices.
+// Pixels as screens and films want them, and as files have them. It knows PNG and what else stb_image reads, and nothing of devices, but its
+// pixels are what streams of int3 and float3 take and give.
 #pragma once
 
 #include <cstddef>
@@ -42,5 +43,25 @@ void blend(Image& image, int x, int y, const sk::float3& colour, float share);
 void checkPngName(const std::filesystem::path& file);
 /// Creates the file's folder. Throws std::runtime_error where the file cannot be written, or as checkPngName does.
 void savePng(const std::filesystem::path& file, const Image& image);
+
+/// What a file's pixels are: integer codes from 0 to `white`, gamma-encoded as sRGB, row by row from the
+/// top (grey pictures have three equal components, what is transparent is seen on white).
+struct Picture {
+  int width = 0;
+  int height = 0;
+  int white = 255;  ///< 255 or 65535
+  std::vector<sk::int3> pixels;  ///< width * height
+};
+
+/// Reads a picture. Throws std::runtime_error with the file's name where it is missing, no picture, or larger than 2^26 pixels.
+Picture loadPicture(const std::filesystem::path& file);
+
+/// The same of pixels for imageOf(), and of codes.
+void savePng(const std::filesystem::path& file, int width, int height, std::span<const sk::float3> pixels);
+void savePng(const std::filesystem::path& file, const Picture& picture);
+
+/// The curve of sRGB (IEC 61966-2-1), between values in [0, 1].
+double linearFromSrgb(double encoded);
+double srgbFromLinear(double linear);
 
 }  // namespace examples

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Implements join_ranks.hpp where MPI is not installed.
+// Implements joinRanks() where MPI is not installed.
 #include <stdexcept>
 
-#include "support/join_ranks.hpp"
+#include "support/ranks.hpp"
 
 namespace examples {
 namespace {

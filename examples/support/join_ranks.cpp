@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Implements Ranks by sk::mpi.
-#include "support/join_ranks.hpp"
+// Implements joinRanks() by sk::mpi.
+#include "support/ranks.hpp"
 
 #include <algorithm>
 #include <chrono>

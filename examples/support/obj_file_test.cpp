@@ -9,7 +9,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace examples {
 namespace {

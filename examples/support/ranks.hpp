@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The processes that run an example together, as mpirun or srun starts them. This header knows no MPI; joinRanks() of
-// join_ranks.hpp makes ranks that do.
+// The processes that run an example together, as mpirun or srun starts them. This header knows no MPI; joinRanks() and divideGrid() do,
+// which are in the library sk_examples_ranks. Where MPI is not installed, each process is alone.
 #pragma once
 
 #include <cstdint>
@@ -60,5 +60,12 @@ class OwnedSpace {
 
 /// "4 ranks, each on native", or the device's name alone.
 std::string placeOf(const Ranks& ranks, std::string_view device);
+
+/// All processes that a launcher has started with this one; without a launcher, this process alone. On all ranks but the first,
+/// standard output leads nowhere from then on.
+std::unique_ptr<Ranks> joinRanks();
+
+/// Divides a grid over all ranks. MPI must have been initialized. Throws std::logic_error where it is not installed.
+std::unique_ptr<DividedGrid> divideGrid(const std::string& device, const sk::Shape& shape, Ends ends);
 
 }  // namespace examples

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "support/progress.hpp"
+
 namespace examples {
 
 Record readRecord(const std::optional<SceneTable>& table, std::string_view name) {
@@ -13,9 +15,8 @@ Record readRecord(const std::optional<SceneTable>& table, std::string_view name)
   r.output = fmt::format("{}.png", name);
   if (!table) return r;
   if (const auto output = table->text("output")) r.output = *output;
-  r.frames = static_cast<int>(table->integer("frames", Range{1, 99999}).value_or(r.frames));
-  r.framesPerSecond =
-      static_cast<int>(table->integer("frames_per_second", Range{1, 120}).value_or(r.framesPerSecond));
+  table->read("frames", r.frames, Range{1, 99999});
+  table->read("frames_per_second", r.framesPerSecond, Range{1, 120});
   if (const auto csv = table->text("csv")) r.csv = *csv;
   return r;
 }
@@ -65,6 +66,24 @@ CsvFile::CsvFile(const std::filesystem::path& file, std::string_view heads, bool
 void CsvFile::add(std::string_view row) {
   if (!isWanted() || !writes_) return;
   if (!(file_ << row << '\n').flush()) throw std::runtime_error(fmt::format("cannot write '{}'", name_));
+}
+
+int runRecorded(const RecordedRun& run) {
+  Pictures pictures(run.record, run.isFirst);
+  CsvFile csv(run.record.csv, run.heads, run.isFirst);
+  if (pictures.wantsStart()) pictures.add(run.picture());
+  Progress progress(std::string(run.name), run.steps);
+  for (std::int64_t i = 1; i <= run.steps; ++i) {
+    run.step(i);
+    if (csv.isWanted()) csv.add(run.row());
+    if (pictures.isDue(i, run.steps)) {
+      progress.clear();
+      pictures.add(run.picture());
+    }
+    if (run.isFirst) progress.update(i);
+  }
+  pictures.finish();
+  return pictures.count();
 }
 
 void printWritten(const Record& record, int pictures) {

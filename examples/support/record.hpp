@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,10 +15,6 @@
 #include "support/film.hpp"
 #include "support/image.hpp"
 #include "support/scene_file.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace examples {
 
@@ -31,19 +28,6 @@ struct Record {
 /// Reads output, frames, frames_per_second and csv of the table [record]. `name` is the scene's; its picture is NAME.png by default.
 Record readRecord(const std::optional<SceneTable>& table, std::string_view name);
 
-/// The options --output, --frames and --csv, which take precedence over the scene.
-class RecordOptions {
- public:
-  /// Adds the options, of which `columns` describes the file of --csv. This object must outlive the parsing.
-  RecordOptions(CLI::App& cli, std::string_view columns);
-  void apply(Record& record) const;
-
- private:
-  std::optional<std::filesystem::path> output_;
-  std::optional<int> frames_;
-  std::filesystem::path csv_;
-};
-
 /// The pictures of a run, in one PNG file or a film. A run that throws keeps the pictures that were added, in a complete file.
 class Pictures {
  public:
@@ -56,6 +40,8 @@ class Pictures {
 
   /// False if the record has no output; nothing may be added then.
   bool isWanted() const { return !record_.output.empty(); }
+  /// Whether all pictures go to one film, or to numbered files.
+  bool isFilm() const { return film_ != nullptr; }
   /// Whether the start of the run is the first frame.
   bool wantsStart() const { return isWanted() && record_.frames > 1; }
   /// The step that the next frame shows, in a run of `steps` steps; `steps` after the last frame.
@@ -89,6 +75,22 @@ class CsvFile {
   bool writes_;
   std::ofstream file_;
 };
+
+/// A run that takes its steps one by one, with what it records. On ranks other than the first, nothing is written, but all ranks
+/// make rows and pictures.
+struct RecordedRun {
+  std::string_view name;  ///< of the bar of progress
+  std::int64_t steps;
+  const Record& record;
+  bool isFirst;  ///< of the ranks
+  std::string_view heads;  ///< of the columns of numbers
+  std::function<void(std::int64_t)> step;  ///< takes the number of the step, from 1 on
+  std::function<std::string()> row;  ///< numbers after a step
+  std::function<Image()> picture;
+};
+
+/// Runs all steps. Returns the number of pictures. Throws what the functions throw; the files are complete then.
+int runRecorded(const RecordedRun& run);
 
 /// Prints which files a run wrote.
 void printWritten(const Record& record, int pictures);

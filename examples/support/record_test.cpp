@@ -10,9 +10,10 @@
 #include <CLI/CLI.hpp>
 #include <catch2/catch.hpp>
 
-#include "support/box_view.hpp"
+#include "support/field_view.hpp"
+#include "support/options.hpp"
+#include "support/testing.hpp"
 #include "support/text_file.hpp"
-#include "support/written_file.hpp"
 
 namespace {
 

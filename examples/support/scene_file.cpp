@@ -92,6 +92,17 @@ void checkKnown(const std::string& file, const toml::table& table,
 
 }  // namespace
 
+static_assert(static_cast<int>(sk::Precision::Half) == 1 && static_cast<int>(sk::Precision::Double) == 4);
+
+sk::Precision precisionNamed(std::string_view name) {
+  return static_cast<sk::Precision>(1 + (std::ranges::find(precisionNames, name) - precisionNames.begin()));
+}
+
+std::string_view nameOf(sk::Precision precision) {
+  return precision == sk::Precision::Default ? "single"
+                                             : precisionNames[static_cast<std::size_t>(precision) - 1];
+}
+
 struct SceneTable::Access {
   const SceneTable& of;
   std::string_view key;
@@ -209,6 +220,23 @@ std::optional<std::size_t> SceneTable::choice(std::string_view key,
          fmt::format("there is no {} '{}'; {}", key, *name, hint(*name, Names(names.begin(), names.end()))));
   }
   return static_cast<std::size_t>(found - names.begin());
+}
+
+std::optional<Vector> SceneTable::vector(std::string_view key) const {
+  const auto v = numbers(key, 3, Range{-1e30, 1e30});
+  return v ? std::optional(Vector{(*v)[0], (*v)[1], (*v)[2]}) : std::nullopt;
+}
+
+std::optional<Vector> SceneTable::direction(std::string_view key) const {
+  const auto v = vector(key);
+  if (v && !(length(*v) > 0)) refuse(key, "is a direction and cannot be zero");
+  return v ? std::optional(normalized(*v)) : std::nullopt;
+}
+
+std::optional<sk::Precision> SceneTable::precision(std::string_view key,
+                                                   std::span<const std::string_view> names) const {
+  const auto number = choice(key, names);
+  return number ? std::optional(precisionNamed(names[*number])) : std::nullopt;
 }
 
 void SceneTable::fail(std::string_view key, std::string_view message) const {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Scenes: TOML files whose every key is asked for by name, so that a wrong one is told at its line and column, with the way out.
-// It knows nothing of what scenes mean.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -12,7 +12,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
+
+#include <sk/options.hpp>
+
+#include "support/vec.hpp"
 
 namespace examples {
 
@@ -20,6 +25,22 @@ namespace examples {
 struct Range {
   double least = std::numeric_limits<double>::lowest();
   double most = std::numeric_limits<double>::max();
+};
+
+/// Precisions as scenes and command lines name them.
+inline constexpr std::array<std::string_view, 4> precisionNames = {"half", "single", "extended", "double"};
+/// Those that most devices have.
+inline constexpr std::array<std::string_view, 2> commonPrecisions = {"single", "double"};
+/// The precision with one of these names.
+sk::Precision precisionNamed(std::string_view name);
+/// Default is "single".
+std::string_view nameOf(sk::Precision precision);
+
+/// What the command line says in place of a scene.
+struct SceneOverrides {
+  std::vector<std::int64_t> size;  ///< cells along x, y and, in space, z; as many as are given
+  std::optional<std::int64_t> steps;
+  std::optional<sk::Precision> precision;
 };
 
 /// A table of a scene. Asking for a key marks it as known; `none` where the scene has it not. Everything throws
@@ -40,6 +61,32 @@ class SceneTable {
   std::optional<std::vector<double>> numbers(std::string_view key, int count, const Range& range = {}) const;
   /// The number of a name in a list.
   std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> names) const;
+
+  /// Three numbers, as large as squares of floats may be.
+  std::optional<Vector> vector(std::string_view key) const;
+  /// A vector of unit length; a zero vector is refused.
+  std::optional<Vector> direction(std::string_view key) const;
+  /// One of `names`, which are those of precisionNames or some of them.
+  std::optional<sk::Precision> precision(std::string_view key, std::span<const std::string_view> names) const;
+
+  /// Sets `value` to what the key has; it stays where the table has none.
+  template <class T>
+  void read(std::string_view key, T& value, const Range& range = {}) const {
+    if constexpr (std::is_same_v<T, bool>)
+      value = flag(key).value_or(value);
+    else if constexpr (std::is_integral_v<T>)
+      value = static_cast<T>(integer(key, range).value_or(static_cast<std::int64_t>(value)));
+    else
+      value = number(key, range).value_or(value);
+  }
+  void read(std::string_view key, std::string& value) const { value = text(key).value_or(value); }
+  void read(std::string_view key, Vector& value) const { value = vector(key).value_or(value); }
+  /// Names are those of the enumerators, from 0 on.
+  template <class Enum>
+    requires std::is_enum_v<Enum>
+  void read(std::string_view key, Enum& value, std::span<const std::string_view> names) const {
+    value = static_cast<Enum>(choice(key, names).value_or(static_cast<std::size_t>(value)));
+  }
 
   /// Throws where something else is wrong with a key, or with its absence.
   [[noreturn]] void fail(std::string_view key, std::string_view message) const;

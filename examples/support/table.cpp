@@ -26,7 +26,7 @@ std::string Table::text() const {
   return text;
 }
 
-std::string Table::markdown() const {
+std::string Table::markdown(Align others) const {
   std::string text;
   for (std::size_t row = 0; row < rows_.size(); ++row) {
     text += '|';
@@ -34,7 +34,8 @@ std::string Table::markdown() const {
     text += '\n';
     if (row > 0) continue;
     text += '|';
-    for (std::size_t i = 0; i < rows_[row].size(); ++i) text += "---|";
+    for (std::size_t i = 0; i < rows_[row].size(); ++i)
+      text += i > 0 && others == Align::Right ? "---:|" : "---|";
     text += '\n';
   }
   return text;

@@ -10,8 +10,6 @@
 #include <string>
 #include <string_view>
 
-#include <fmt/format.h>
-
 namespace examples {
 
 /// The text behind UTF-8's byte order mark, if it begins with one.

@@ -2,7 +2,6 @@
 #include "support/text_cursor.hpp"
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>

@@ -45,12 +45,13 @@ Window::Window(const std::string& title, int width, int height) : window_(open(t
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window, this);
   glfwSetCharCallback(window, [](GLFWwindow* of, unsigned character) {
-    auto& input = static_cast<Window*>(glfwGetWindowUserPointer(of))->input_;
-    if (character < 128) input.typed += static_cast<char>(character);
+    auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(of));
+    if (character == 'q') glfwSetWindowShouldClose(of, GLFW_TRUE);
+    if (character == ' ') self.isPaused_ = !self.isPaused_;
+    if (character < 128) self.input_.typed += static_cast<char>(character);
   });
   glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int) {
-    auto& input = static_cast<Window*>(glfwGetWindowUserPointer(of))->input_;
-    if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) input.typed += '\x1b';
+    if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) glfwSetWindowShouldClose(of, GLFW_TRUE);
   });
   glfwSetScrollCallback(window, [](GLFWwindow* of, double, double notches) {
     static_cast<Window*>(glfwGetWindowUserPointer(of))->input_.wheel += notches;
@@ -59,14 +60,20 @@ Window::Window(const std::string& title, int width, int height) : window_(open(t
 
 Window::~Window() = default;
 
-bool Window::isOpen() const { return glfwWindowShouldClose(window_.get()) == GLFW_FALSE; }
-void Window::close() { glfwSetWindowShouldClose(window_.get(), GLFW_TRUE); }
-void Window::setTitle(const std::string& title) { glfwSetWindowTitle(window_.get(), title.c_str()); }
+sk::Device Window::device(const std::string& name) {
+  const bool isHosted = name == "native" || name.starts_with("reference");
+  return isHosted ? sk::Device(name) : sk::Device::adopt();
+}
 
-Window::Size Window::size() const {
+bool Window::isOpen() const { return glfwWindowShouldClose(window_.get()) == GLFW_FALSE; }
+void Window::setTitle(const std::string& title) {
+  glfwSetWindowTitle(window_.get(), (title + (isPaused_ ? ", paused" : "")).c_str());
+}
+
+std::optional<Window::Size> Window::size() const {
   Size size{};
   glfwGetFramebufferSize(window_.get(), &size.width, &size.height);
-  return size;
+  return size.width > 0 && size.height > 0 ? std::optional(size) : std::nullopt;
 }
 
 Input Window::show() {

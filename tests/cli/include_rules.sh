@@ -50,7 +50,7 @@ tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 tests/faults          sk epoxy
 tests/mpi             sk support device/stream_state.hpp
-tests/fuzz            sk ir program driver analysis transforms native/native.hpp device/configuration.hpp support/cache_folder.hpp support/function_oracle.hpp support/oracle.hpp support/picture.hpp
+tests/fuzz            sk ir program driver analysis transforms native/native.hpp device/configuration.hpp support/cache_folder.hpp support/function_oracle.hpp support/oracle.hpp support/image.hpp
 '
 # What all rooms of the assembler share.
 rules=${rules//ASSEMBLE/assemble/assemble.hpp assemble/condition.hpp assemble/region_layout.hpp assemble/relayed_values.hpp}

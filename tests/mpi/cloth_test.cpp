@@ -13,7 +13,7 @@
 #include "run.hpp"
 #include "scene.hpp"
 #include "simulation.hpp"
-#include "support/join_ranks.hpp"
+#include "support/ranks.hpp"
 
 namespace {
 

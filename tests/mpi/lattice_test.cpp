@@ -19,7 +19,7 @@
 #include "reference.hpp"
 #include "run.hpp"
 #include "scene.hpp"
-#include "support/join_ranks.hpp"
+#include "support/ranks.hpp"
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include "ranks.hpp"
 #include "render.hpp"
 #include "scene.hpp"
-#include "support/join_ranks.hpp"
+#include "support/ranks.hpp"
 
 namespace {
 

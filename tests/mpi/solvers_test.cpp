@@ -14,7 +14,7 @@
 #include "preconditioner.hpp"
 #include "ranks.hpp"
 #include "solve.hpp"
-#include "support/join_ranks.hpp"
+#include "support/ranks.hpp"
 #include "system.hpp"
 
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "scene.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 #include "vortices.hpp"
 
 namespace fluid {

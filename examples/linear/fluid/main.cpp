@@ -16,9 +16,9 @@
 #include "scene.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
-#include "support/extents.hpp"
 #include "support/host_memory.hpp"
-#include "support/join_ranks.hpp"
+#include "support/options.hpp"
+#include "support/ranks.hpp"
 #include "support/record.hpp"
 
 namespace {

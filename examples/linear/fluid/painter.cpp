@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "support/box_view.hpp"
 #include "support/colormap.hpp"
+#include "support/field_view.hpp"
 #include "support/figure.hpp"
 #include "view.sk.hpp"
 

@@ -15,7 +15,7 @@
 
 #include "equations.hpp"
 #include "flow.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace smooth {
 namespace {

@@ -18,6 +18,7 @@
 #include "support/application.hpp"
 #include "support/figure.hpp"
 #include "support/image.hpp"
+#include "support/options.hpp"
 #include "support/progress.hpp"
 #include "support/scene_file.hpp"
 #include "support/stopwatch.hpp"

@@ -10,7 +10,7 @@
 #include "run.hpp"
 #include "scene.hpp"
 #include "study.hpp"
-#include "support/written_file.hpp"
+#include "support/testing.hpp"
 
 namespace waves {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "parsers/entry.hpp"
 #include "parsers/memory_file.hpp"
-#include "support/picture.hpp"
+#include "support/image.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const fuzz::MemoryFile file;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "support/box_view.hpp"
+#include "support/field_view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +15,30 @@ sk::float3 scaled(const Axis& axis, double length) {
 }
 
 }  // namespace
+
+void readFieldView(const SceneTable& table, FieldView& view) {
+  constexpr Range anything{-1e30, 1e30};
+  table.read("colours", view.colours);
+  view.low = table.number("low", anything);
+  view.high = table.number("high", anything);
+  if (view.low && view.high && *view.low >= *view.high) table.refuse("high", "is not above low");
+  table.read("zoom", view.zoom, Range{1, 64});
+}
+
+int zoomFor(const FieldView& view, std::int64_t width, std::int64_t height) {
+  if (view.zoom > 0) return view.zoom;
+  return static_cast<int>(std::clamp<std::int64_t>(1024 / std::max(width, height), 1, 64));
+}
+
+ShownValues shownValues(const FieldView& view, double least, double most, bool isSigned) {
+  ShownValues v{view.low.value_or(least), view.high.value_or(most)};
+  if (isSigned && !view.low && !view.high) {
+    v.high = std::max(std::abs(v.low), std::abs(v.high));
+    v.low = -v.high;
+  }
+  if (!(v.high > v.low)) v.high = v.low + std::max(1e-6, 1e-3 * std::abs(v.low));
+  return v;
+}
 
 BoxView boxView(const std::array<std::int64_t, 3>& cells, double turn, double tilt, std::int64_t width) {
   constexpr double margin = 1.04;

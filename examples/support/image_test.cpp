@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "support/picture.hpp"
+#include "support/image.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 
 namespace examples {
 namespace {

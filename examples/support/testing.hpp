@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Files for tests, which go when the test does.
+// What tests of several examples use.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,11 @@
 #include <string>
 #include <utility>
 
+#include <sk/sk.hpp>
+
 namespace examples {
 
-/// A file with this text, for as long as it lives.
+/// A file with this text, which goes when the test does.
 class WrittenFile {
  public:
   explicit WrittenFile(const std::string& text, std::filesystem::path path = "written.toml")
@@ -26,5 +28,11 @@ class WrittenFile {
  private:
   std::filesystem::path path_;
 };
+
+/// Native code, or the profile of this name on a software renderer.
+inline sk::Device deviceNamed(const std::string& name) {
+  if (name == "native") return sk::Device::native();
+  return sk::Device({.device = "software", .profile = name});
+}
 
 }  // namespace examples
