@@ -28,36 +28,26 @@ class Contender {
         lattice_.write(field, std::vector<double>(static_cast<std::size_t>(model.grid.cells()), 1.0));
     }
     cost_.operators = fmt::format("{}", fmt::join(operatorsOf(model), ", "));
-    device_.countPasses(true);
-    lattice_.advance(1);
-    const sk::PassCount count = device_.passCount();
-    device_.countPasses(false);
+    const sk::PassCount count = passesOf(device_, [&] { lattice_.advance(1); });
     cost_.streams = lattice_.streams();
     cost_.passes = static_cast<double>(count.passes);
     cost_.bytes = static_cast<double>(count.bytesRead + count.bytesWritten);
   }
 
   /// How many steps take some ten milliseconds.
-  int stepsForRound() {
-    const Stopwatch stopwatch;
-    lattice_.advance(3);
-    device_.finish();
-    return std::clamp(static_cast<int>(30.0 / std::max(stopwatch.milliseconds(), 1e-3)), 1, 200);
-  }
-  void round(int steps) {
-    const Stopwatch stopwatch;
-    lattice_.advance(steps);
-    device_.finish();
-    times_.push_back(stopwatch.milliseconds() / steps);
-  }
+  int stepsForRound() { return std::clamp(static_cast<int>(30.0 / std::max(timeOf(3), 1e-3)), 1, 200); }
+  void round(int steps) { times_.push_back(timeOf(steps) / steps); }
   Cost cost() {
-    std::sort(times_.begin(), times_.end());
-    cost_.milliseconds = times_[times_.size() / 2];
+    cost_.milliseconds = median(times_);
     return cost_;
   }
   Lattice& lattice() { return lattice_; }
 
  private:
+  double timeOf(int steps) {
+    return millisecondsOf(device_, [&] { lattice_.advance(steps); });
+  }
+
   sk::Device& device_;
   Lattice lattice_;
   Cost cost_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "initial.hpp"
+#include "run.hpp"
 
 #include <algorithm>
 #include <cmath>

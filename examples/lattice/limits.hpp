@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How large a step of time may be: each operator's own limit, from the eigenvalues of its differences.
+// What linear theory says: how large a step of time may be, each operator's own limit from the eigenvalues of its differences; and where
+// convection begins between plates of infinite extent (S. Chandrasekhar, "Hydrodynamic and Hydromagnetic Stability", 1961, chapter II).
 #pragma once
 
 #include <string>
@@ -35,5 +36,13 @@ int dimensionsOf(const Grid& grid);
 
 /// All that the model has.
 std::vector<Limit> limitsOf(const Model& model);
+
+/// The Rayleigh number above which rolls of wave number k (times the height) grow between plates without friction:
+/// (pi^2 + k^2)^3 / k^2; the least is 657.511, at k = 2.2214.
+double criticalBetweenFreePlates(double k);
+
+/// The same between rigid ones, by bisection of the characteristic equation of even modes; the least is 1707.762, at 3.117.
+/// For k from 1 to 8.
+double criticalBetweenRigidPlates(double k);
 
 }  // namespace examples

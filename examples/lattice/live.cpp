@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "live.hpp"
+#include "run.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -8,10 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "initial.hpp"
 #include "lattice.hpp"
 #include "painter.hpp"
-#include "run.hpp"
 #include "support/colormap.hpp"
 #include "support/gl_objects.hpp"
 #include "support/stopwatch.hpp"
@@ -19,13 +17,6 @@
 
 namespace examples {
 namespace {
-
-constexpr std::string_view cornersShader = R"(
-  out vec2 at;
-  void main() {
-    at = vec2(gl_VertexID % 2, gl_VertexID / 2);
-    gl_Position = vec4(2.0 * at - 1.0, 0.0, 1.0);
-  })";
 
 // Values are interpolated between cells before they are coloured: colours between two colours are others.
 constexpr std::string_view fieldShader = R"(
@@ -62,27 +53,16 @@ class Screen {
       throw std::runtime_error(
           "the lattice is too large to be drawn from one texture; take a smaller --size");
     glViewport(0, 0, size.width, size.height);
-    glUseProgram(program_.get());
-    glBindVertexArray(nothing_.get());
-    bind(0, "field", field.name);
-    bind(1, "palette", palette_.texture().name);
-    glUniform2f(glGetUniformLocation(program_.get(), "range"), static_cast<float>(low),
-                static_cast<float>(high));
-    glUniform1i(glGetUniformLocation(program_.get(), "isColour"), isColour ? 1 : 0);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    glBindVertexArray(0);
-    glUseProgram(0);
+    view_.use();
+    view_.bind("field", 0, field.name);
+    view_.bind("palette", 1, palette_.texture().name);
+    glUniform2f(view_["range"], static_cast<float>(low), static_cast<float>(high));
+    glUniform1i(view_["isColour"], isColour ? 1 : 0);
+    view_.draw();
   }
 
  private:
-  void bind(int unit, const char* name, GLuint texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, texture);
-    glUniform1i(glGetUniformLocation(program_.get(), name), unit);
-  }
-
-  GlProgram program_ = makeProgram(cornersShader, fieldShader);
-  GlVertexArray nothing_ = makeVertexArray();
+  FullView view_{fieldShader};
   sk::Stream<sk::float3> palette_;
 };
 
@@ -94,8 +74,8 @@ struct Show {
 void obey(const Input& input, Show& show, Window& window) {
   for (const char key : input.typed) {
     if (key == 's') {
-      show.single = true;
       window.pause();
+      show.single = true;
     }
     if (key == 'f') show.next = true;
     if (key == 'r') show.restarts = true;

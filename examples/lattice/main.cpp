@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
 // lattice: coupled map lattices from scene files, and the studies of their numerics.
-#include <cmath>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
 #include <sk/sk.hpp>
 
 #include "account.hpp"
-#include "initial.hpp"
 #include "lattice.hpp"
 #include "limits.hpp"
-#include "live.hpp"
 #include "run.hpp"
 #include "scene.hpp"
 #include "study.hpp"
@@ -23,44 +17,23 @@
 #include "support/host_memory.hpp"
 #include "support/options.hpp"
 #include "support/ranks.hpp"
-#include "support/record.hpp"
 
 namespace {
 
 struct Settings {
-  std::filesystem::path scene;
-  std::string size;
-  std::optional<std::int64_t> steps;
-  std::optional<double> settle;
-  std::string precision;
+  examples::Overrides overrides;
   bool account = true;
   bool window = false;
 };
 
 void addOptions(CLI::App& cli, Settings& s) {
-  cli.add_option("scene", s.scene, "what to run: a TOML file, as in examples/lattice/scenes");
-  cli.add_option("--size", s.size, "cells, WxH or WxHxD, in place of the scene's");
-  cli.add_option("--steps", s.steps, "steps, in place of the scene's")->check(CLI::Range(1, 1'000'000'000));
-  cli.add_option("--until-settled", s.settle, "end when no field changes by more than this in a step")
+  cli.add_option("--until-settled", s.overrides.settle,
+                 "end when no field changes by more than this in a step")
       ->check(CLI::Range(0.0, 1e12));
-  cli.add_option("--precision", s.precision, "half, single, extended or double, in place of the scene's")
-      ->check(CLI::IsMember({"half", "single", "extended", "double"}));
+  examples::addChoice(cli, "--precision", s.overrides.precision, examples::precisionNames,
+                      "half, single, extended or double, in place of the scene's");
   cli.add_flag("--window", s.window, "show it in a window while it runs: space, s, f, +, -, r, q");
   cli.add_flag("!--no-account", s.account, "leave out what the full model would have cost");
-}
-
-examples::Scene sceneOf(const Settings& s, const examples::RecordOptions& record) {
-  examples::Overrides overrides;
-  if (!s.size.empty()) overrides.size = examples::extentsOf("--size", s.size, {1, 32768, 3});
-  overrides.steps = s.steps;
-  overrides.settle = s.settle;
-  if (s.precision == "half") overrides.precision = sk::Precision::Half;
-  if (s.precision == "single") overrides.precision = sk::Precision::Single;
-  if (s.precision == "extended") overrides.precision = sk::Precision::Extended;
-  if (s.precision == "double") overrides.precision = sk::Precision::Double;
-  examples::Scene scene = examples::readScene(s.scene, overrides);
-  record.apply(scene.record);
-  return scene;
 }
 
 std::string sizeText(const examples::Grid& g) {
@@ -122,13 +95,17 @@ int main(int argc, char** argv) {
   examples::Application app(
       "lattice", "Boiling, convection, reaction with diffusion: coupled map lattices from scene files.",
       examples::joinRanks());
+  const examples::SceneOptions options(
+      app.options(), "what to run: a TOML file, as in examples/lattice/scenes",
+      "cells, WxH or WxHxD, in place of the scene's", {1, 32768, 3}, "examples/lattice/scenes/boiling.toml");
   addOptions(app.options(), settings);
-  const examples::StudyOptions study(app, "measure the numerics", examples::studies());
+  const examples::StudyOptions study(app, "measure the numerics", examples::studies);
   const examples::RecordOptions record(app.options(), "means, extremes, Nusselt number ... while it runs");
   return app.run(argc, argv, [&] {
     if (study.isGiven()) return study.run();
-    if (settings.scene.empty())
-      throw std::runtime_error("no scene is named; try examples/lattice/scenes/boiling.toml");
-    simulate(app, sceneOf(settings, record), settings);
+    const std::filesystem::path& file = options.apply(settings.overrides);
+    examples::Scene scene = examples::readScene(file, settings.overrides);
+    record.apply(scene.record);
+    simulate(app, scene, settings);
   });
 }

@@ -2,28 +2,13 @@
 #include "painter.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-
-#include <fmt/format.h>
 
 #include "flow.sk.hpp"
 #include "observe.sk.hpp"
 #include "support/colormap.hpp"
-#include "support/field_view.hpp"
 #include "view.sk.hpp"
 
 namespace examples {
-namespace {
-
-int zoomFor(const Scene& scene) {
-  if (scene.view.zoom > 0) return scene.view.zoom;
-  const std::int64_t side = std::max(scene.model.grid.width, scene.model.grid.height);
-  return static_cast<int>(std::clamp<std::int64_t>(1024 / side, 1, 64));
-}
-
-}  // namespace
-
 Painter::Painter(sk::Device& device, const Scene& scene)
     : device_(device),
       scene_(scene),
@@ -51,20 +36,14 @@ GridStream<float>& Painter::shown(Lattice& lattice) {
   return lattice.stream(Field::Temperature);
 }
 
-Painter::Values Painter::range(const GridStream<float>& field) const {
+ShownValues Painter::range(const GridStream<float>& field) const {
   const auto [least, most, total, broken] = lattice::observe(field);
-  Values v{scene_.view.low.value_or(least), scene_.view.high.value_or(most)};
-  if (scene_.view.shown == Shown::Vorticity && !scene_.view.low && !scene_.view.high) {
-    v.high = std::max(std::abs(v.low), std::abs(v.high));
-    v.low = -v.high;
-  }
-  if (!(v.high > v.low)) v.high = v.low + std::max(1e-6, 1e-3 * std::abs(v.low));
-  return v;
+  return shownValues(scene_.view, least, most, scene_.view.shown == Shown::Vorticity);
 }
 
-sk::Stream<sk::float3> Painter::plane(const sk::Stream<float>& field, Values values) {
+sk::Stream<sk::float3> Painter::plane(const sk::Stream<float>& field, ShownValues values) {
   const Grid& g = scene_.model.grid;
-  const int zoom = zoomFor(scene_);
+  const int zoom = zoomFor(scene_.view, g.width, g.height);
   auto colour = device_.stream<sk::float3>({g.height * zoom, g.width * zoom});
   const auto low = static_cast<float>(values.low), high = static_cast<float>(values.high);
   const auto relief = static_cast<float>(scene_.view.relief);
@@ -72,7 +51,7 @@ sk::Stream<sk::float3> Painter::plane(const sk::Stream<float>& field, Values val
   return colour;
 }
 
-sk::Stream<sk::float3> Painter::bubbles(const sk::Stream<float>& temperature, Values values, int finer) {
+sk::Stream<sk::float3> Painter::bubbles(const sk::Stream<float>& temperature, ShownValues values, int finer) {
   const Grid& g = scene_.model.grid;
   const BoxView view = boxView({g.width, g.height, g.depth}, 0.55, 0.32, 960L * finer);
   const lattice::Camera camera = {view.middle, view.right, view.up, view.ahead};

@@ -34,13 +34,10 @@ class Painter {
   Texture texture(Lattice& lattice);
 
  private:
-  struct Values {
-    double low, high;
-  };
   GridStream<float>& shown(Lattice& lattice);
-  Values range(const GridStream<float>& field) const;
-  sk::Stream<sk::float3> plane(const sk::Stream<float>& field, Values values);
-  sk::Stream<sk::float3> bubbles(const sk::Stream<float>& temperature, Values values, int finer);
+  ShownValues range(const GridStream<float>& field) const;
+  sk::Stream<sk::float3> plane(const sk::Stream<float>& field, ShownValues values);
+  sk::Stream<sk::float3> bubbles(const sk::Stream<float>& temperature, ShownValues values, int finer);
 
   sk::Device& device_;
   Scene scene_;
@@ -49,7 +46,7 @@ class Painter {
   std::optional<GridStream<float>> derived_;
   Gathered<float> gathered_;
   std::optional<sk::Stream<sk::float3>> seen_;
-  Values last_ = {0.0, 1.0};
+  ShownValues last_;
 };
 
 }  // namespace examples

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // A scene from its first step to its last: pictures, numbers, the watch for what is not finite, and the end where nothing
-// changes any more.
+// changes any more; or in a window (live.cpp).
 #pragma once
 
 #include <string>
@@ -14,6 +14,9 @@
 #include "support/host_memory.hpp"
 
 namespace examples {
+
+/// Writes what the scene begins with: computed on the host, the same on every device. Random numbers are of its seed alone.
+void writeInitial(const Model& model, const Initial& initial, Lattice& lattice);
 
 struct Outcome {
   std::int64_t steps = 0;
@@ -34,5 +37,10 @@ Outcome runScene(const Scene& scene, Lattice& lattice);
 
 /// Throws where a field has a number that is not finite.
 void requireFinite(Lattice& lattice, std::int64_t step);
+
+/// Runs in a window until it is closed, drawn from the texture of a field's stream, which never visits host memory. Keys: space stops and goes on, s makes one step, f shows the next field, + and - take more or
+/// fewer steps for a picture, r begins anew, q and Escape end. Throws std::runtime_error where there is no display, for
+/// a device that has no OpenGL, and where a number is not finite.
+void runLive(const Scene& scene, const std::string& deviceName);
 
 }  // namespace examples

@@ -24,8 +24,6 @@ constexpr std::array<std::string_view, 3> densityNames = {"computed", "linear", 
 constexpr std::array<std::string_view, 2> profileNames = {"uniform", "conduction"};
 constexpr std::array<std::string_view, 7> shownNames = {"temperature", "u",        "v",      "speed",
                                                         "vorticity",   "pressure", "bubbles"};
-constexpr std::array<sk::Precision, 4> precisions = {sk::Precision::Half, sk::Precision::Single,
-                                                     sk::Precision::Extended, sk::Precision::Double};
 
 Grid readGrid(const SceneTable& table, const Overrides& overrides) {
   Grid grid;
@@ -43,22 +41,20 @@ Grid readGrid(const SceneTable& table, const Overrides& overrides) {
   if (overrides.size.size() > 1) grid.height = overrides.size[1];
   if (overrides.size.size() > 2) grid.depth = overrides.size[2];
   if (grid.cells() > std::int64_t{1} << 28) table.refuse("size", "makes more than 2^28 cells; take fewer");
-  grid.spacing = table.number("spacing", positive).value_or(1.0);
+  table.read("spacing", grid.spacing, positive);
   return grid;
 }
 
 Boundary readBoundary(const SceneTable& table, bool isSpace) {
   Boundary b;
-  const auto edge = [&](std::string_view key, Edge otherwise) {
-    const auto choice = table.choice(key, edgeNames);
-    return choice ? static_cast<Edge>(*choice) : otherwise;
-  };
-  const Edge sides = edge("sides", Edge::Wrap);
+  Edge sides = Edge::Wrap;
+  table.read("sides", sides, edgeNames);
   const std::array<std::string_view, 4> keys = {"left", "right", "bottom", "top"};
   const std::array<std::string_view, 4> warmths = {"left_temperature", "right_temperature",
                                                    "bottom_temperature", "top_temperature"};
   for (std::size_t side = 0; side < 4; ++side) {
-    b.edges[side] = edge(keys[side], side < 2 ? sides : Edge::Wrap);
+    b.edges[side] = side < 2 ? sides : Edge::Wrap;
+    table.read(keys[side], b.edges[side], edgeNames);
     const auto temperature = table.number(warmths[side], anything);
     if (temperature && b.edges[side] != Edge::Wall) {
       table.refuse(warmths[side], fmt::format("is only for a wall; say {} = \"wall\"", keys[side]));
@@ -103,7 +99,7 @@ Buoyancy readBuoyancy(const SceneTable& table) {
   Buoyancy b;
   b.sigma = table.number("sigma", Range{-1.0, 1.0}).value_or(0.1);
   b.alpha = table.number("alpha", Range{-1e6, 1e6}).value_or(1.0);
-  if (const auto how = table.choice("tanh", densityNames)) b.density = static_cast<Density>(*how);
+  table.read("tanh", b.density, densityNames);
   return b;
 }
 
@@ -125,11 +121,11 @@ Reaction readReaction(const SceneTable& table) {
     r.feed = *feed;
     r.kill = *kill;
   }
-  r.diffusionU = table.number("diffusion_u", fromZero).value_or(r.diffusionU);
-  r.diffusionV = table.number("diffusion_v", fromZero).value_or(r.diffusionV);
-  r.spacing = table.number("spacing", positive).value_or(r.spacing);
-  r.timeStep = table.number("time_step", fromZero).value_or(r.timeStep);
-  r.stirring = table.number("stirring", anything).value_or(r.stirring);
+  table.read("diffusion_u", r.diffusionU, fromZero);
+  table.read("diffusion_v", r.diffusionV, fromZero);
+  table.read("spacing", r.spacing, positive);
+  table.read("time_step", r.timeStep, fromZero);
+  table.read("stirring", r.stirring, anything);
   return r;
 }
 
@@ -151,44 +147,34 @@ void readFlow(const SceneTable& table, Model& model) {
 
 Initial readInitial(const SceneTable& table) {
   Initial i;
-  if (const auto profile = table.choice("profile", profileNames)) i.profile = static_cast<Profile>(*profile);
-  i.temperature = table.number("temperature", anything).value_or(0.0);
-  i.noise = table.number("noise", fromZero).value_or(0.0);
-  i.rolls = table.number("rolls", Range{0.0, 1e4}).value_or(0.0);
-  i.blobs = static_cast<int>(table.integer("blobs", Range{0, 1e4}).value_or(0));
-  i.blobRadius = table.number("blob_radius", positive).value_or(i.blobRadius);
-  i.blobTemperature = table.number("blob_temperature", anything).value_or(0.0);
-  i.seeds = static_cast<int>(table.integer("seeds", Range{0, 1e6}).value_or(1));
-  i.seedSide = static_cast<int>(table.integer("seed_side", Range{1, 1e4}).value_or(20));
-  i.u = table.number("u", anything).value_or(i.u);
-  i.v = table.number("v", anything).value_or(i.v);
-  i.random = static_cast<std::uint32_t>(table.integer("random", Range{0, 4294967295.0}).value_or(1));
+  table.read("profile", i.profile, profileNames);
+  table.read("temperature", i.temperature, anything);
+  table.read("noise", i.noise, fromZero);
+  table.read("rolls", i.rolls, Range{0.0, 1e4});
+  table.read("blobs", i.blobs, Range{0, 1e4});
+  table.read("blob_radius", i.blobRadius, positive);
+  table.read("blob_temperature", i.blobTemperature, anything);
+  table.read("seeds", i.seeds, Range{0, 1e6});
+  table.read("seed_side", i.seedSide, Range{1, 1e4});
+  table.read("u", i.u, anything);
+  table.read("v", i.v, anything);
+  table.read("random", i.random, Range{0, 4294967295.0});
   return i;
 }
 
-Settling readSettling(const SceneTable& table) {
-  Settling s;
-  s.tolerance = table.number("tolerance", fromZero).value_or(s.tolerance);
-  s.every = table.integer("every", Range{1, 1e9}).value_or(s.every);
-  return s;
+Shown usuallyShown(const Model& model) {
+  return model.reaction ? Shown::V : model.grid.isSpace() ? Shown::Bubbles : Shown::Temperature;
 }
 
-View readView(const SceneTable& table, const Model& model) {
-  View v;
-  v.shown = model.reaction ? Shown::V : model.grid.isSpace() ? Shown::Bubbles : Shown::Temperature;
-  if (const auto shown = table.choice("field", shownNames)) v.shown = static_cast<Shown>(*shown);
+void readView(const SceneTable& table, const Model& model, View& v) {
+  table.read("field", v.shown, shownNames);
   if (!has(model, v.shown)) {
     table.refuse("field", fmt::format("'{}' is not in this scene, whose operators do not make it",
                                       shownNames[static_cast<std::size_t>(v.shown)]));
   }
-  v.colours = table.text("colours").value_or(v.colours);
-  v.low = table.number("low", anything);
-  v.high = table.number("high", anything);
-  if (v.low && v.high && *v.low >= *v.high) table.refuse("high", "is not above low");
-  v.relief = table.number("relief", Range{0.0, 1000.0}).value_or(0.0);
-  v.zoom = static_cast<int>(table.integer("zoom", Range{1, 64}).value_or(0));
-  v.mirror = table.flag("mirror").value_or(false);
-  return v;
+  readFieldView(table, v);
+  table.read("relief", v.relief, Range{0.0, 1000.0});
+  table.read("mirror", v.mirror);
 }
 
 void refuseUnstable(const SceneTable& run, const Model& model) {
@@ -231,21 +217,24 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
 
   const auto run = table.table("run");
   if (!run) table.refuse("run", "is missing: the table [run] has the steps");
-  scene.steps = run->integer("steps", Range{1, 1e12}).value_or(scene.steps);
-  if (overrides.steps) scene.steps = *overrides.steps;
+  run->read("steps", scene.steps, Range{1, 1e12});
+  scene.steps = overrides.steps.value_or(scene.steps);
   const auto timeStep = run->number("time_step", fromZero);
   model.timeStep = timeStep.value_or(1.0);
-  if (const auto precision = run->choice("precision", precisionNames))
-    model.precision = precisions[*precision];
-  if (overrides.precision) model.precision = *overrides.precision;
-  if (const auto settling = run->table("until_settled")) scene.settling = readSettling(*settling);
+  model.precision = run->precision("precision", precisionNames).value_or(model.precision);
+  model.precision = overrides.precision.value_or(model.precision);
+  if (const auto settling = run->table("until_settled")) {
+    scene.settling.emplace();
+    settling->read("tolerance", scene.settling->tolerance, fromZero);
+    settling->read("every", scene.settling->every, Range{1, 1e9});
+  }
   if (overrides.settle) {
     if (!scene.settling) scene.settling.emplace();
     scene.settling->tolerance = *overrides.settle;
   }
 
   if (const auto t = table.table("diffusion")) model.diffusion = readDiffusion(*t, model);
-  model.boilingPoint = table.number("boiling_point", anything).value_or(0.0);
+  table.read("boiling_point", model.boilingPoint, anything);
   if (const auto t = table.table("buoyancy")) model.buoyancy = readBuoyancy(*t);
   if (const auto t = table.table("latent_heat")) {
     model.latentHeat = LatentHeat{t->number("eta", anything).value_or(0.0)};
@@ -271,11 +260,9 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   if (const auto t = table.table("initial")) scene.initial = readInitial(*t);
   const auto record = table.table("record");
   scene.record = readRecord(record, scene.name);
-  if (record) scene.csvInterval = record->integer("every", Range{1, 1e12}).value_or(0);
-  if (const auto t = table.table("view"))
-    scene.view = readView(*t, model);
-  else
-    scene.view.shown = model.reaction ? Shown::V : model.grid.isSpace() ? Shown::Bubbles : Shown::Temperature;
+  if (record) record->read("every", scene.csvInterval, Range{1, 1e12});
+  scene.view.shown = usuallyShown(model);
+  if (const auto t = table.table("view")) readView(*t, model, scene.view);
   table.finish();
   return scene;
 }

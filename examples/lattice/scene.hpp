@@ -8,11 +8,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "model.hpp"
+#include "support/field_view.hpp"
 #include "support/record.hpp"
-#include "support/scene_file.hpp"
 
 namespace examples {
 
@@ -41,12 +40,10 @@ struct Settling {
 /// What a picture shows: a field, or what is made of some.
 enum class Shown : std::uint8_t { Temperature, U, V, Speed, Vorticity, Pressure, Bubbles };
 
-struct View {
+struct View : FieldView {
+  View() { colours = "ember"; }
   Shown shown = Shown::Temperature;
-  std::string colours = "ember";
-  std::optional<double> low, high;  ///< else what the field has
   double relief = 0.0;
-  int zoom = 0;  ///< pixels a cell; 0: as many as make a picture of a thousand
   bool mirror = false;  ///< the colours from the high end to the low one
 };
 
@@ -63,11 +60,8 @@ struct Scene {
 };
 
 /// What the command line says in place of the file.
-struct Overrides {
-  std::vector<std::int64_t> size;  ///< width, height and depth, as many as are given
-  std::optional<std::int64_t> steps;
+struct Overrides : SceneOverrides {
   std::optional<double> settle;
-  std::optional<sk::Precision> precision;
 };
 
 /// Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong and the way out".

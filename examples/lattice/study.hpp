@@ -4,10 +4,7 @@
 // in a table of Markdown, which the documentation shows.
 #pragma once
 
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
+#include <array>
 
 #include <sk/sk.hpp>
 
@@ -15,8 +12,6 @@
 #include "support/table.hpp"
 
 namespace examples {
-
-std::span<const Study> studies();
 
 Findings studyStability(sk::Device& device, bool small);
 Findings studyOnset(sk::Device& device, bool small);
@@ -26,5 +21,17 @@ Findings studyGrowth(sk::Device& device, bool small);
 Findings studyStopping(sk::Device& device, bool small);
 Findings studyTables(sk::Device& device, bool small);
 Findings studyBroken(sk::Device& device, bool small);
+
+inline constexpr std::array<Study, 8> studies = {{
+    {"stability", "the largest stable step of time, by bisection, against theory", studyStability},
+    {"onset", "the Rayleigh number at which convection begins, under refinement", studyOnset},
+    {"cavity", "Nusselt numbers of a cavity with warm and cold sides, against de Vahl Davis (1983)",
+     studyCavity},
+    {"conservation", "how well the total of heat stays", studyConservation},
+    {"growth", "how single and double precision grow apart, and what stays alike", studyGrowth},
+    {"stopping", "what it costs to ask whether a run has settled", studyStopping},
+    {"tables", "what a table of tanh saves, and what it is off by", studyTables},
+    {"broken", "what becomes of NaN, infinity and overflow in one cell", studyBroken},
+}};
 
 }  // namespace examples

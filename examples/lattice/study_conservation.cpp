@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // Heat that neither comes nor goes: how much of the total is lost to rounding, and that what is not finite is found.
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: MIT
 //
 // What asking costs, and what looking up saves: ratios of times, in turns on the same device.
-#include <algorithm>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "initial.hpp"
 #include "lattice.hpp"
 #include "limits.hpp"
+#include "run.hpp"
 #include "study.hpp"
 #include "support/stopwatch.hpp"
 
 namespace examples {
 namespace {
+
+/// Of times to others, which were measured in turns.
+double medianRatio(const std::vector<double>& times, const std::vector<double>& others) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < times.size(); ++i) ratios.push_back(times[i] / others[i]);
+  return median(ratios);
+}
 
 Model boiling(std::int64_t width, std::int64_t height, Density density) {
   Model m;
@@ -48,23 +54,21 @@ Findings studyStopping(sk::Device& device, bool small) {
   std::vector<std::vector<double>> times(lattices.size());
   for (int round = 0; round <= rounds; ++round) {
     for (std::size_t i = 0; i < lattices.size(); ++i) {
-      const Stopwatch stopwatch;
-      for (int step = 0; step < steps;) {
-        const int every = i == 0 ? steps : everies[i - 1];
-        lattices[i].advance(i == 0 ? every : every - 1);
-        if (i > 0) lattices[i].advanceAndMeasure();
-        step += every;
-      }
-      device.finish();
-      if (round > 0) times[i].push_back(stopwatch.milliseconds());
+      const double milliseconds = millisecondsOf(device, [&] {
+        for (int step = 0; step < steps;) {
+          const int every = i == 0 ? steps : everies[i - 1];
+          lattices[i].advance(i == 0 ? every : every - 1);
+          if (i > 0) lattices[i].advanceAndMeasure();
+          step += every;
+        }
+      });
+      if (round > 0) times[i].push_back(milliseconds);
     }
   }
   Table table({"asked", "time over never asking"});
   for (std::size_t i = 1; i < lattices.size(); ++i) {
-    std::vector<double> ratios;
-    for (std::size_t r = 0; r < times[i].size(); ++r) ratios.push_back(times[i][r] / times[0][r]);
     table.add({everies[i - 1] == 1 ? "every step" : fmt::format("every {} steps", everies[i - 1]),
-               fmt::format("{:.2f}", median(ratios))});
+               fmt::format("{:.2f}", medianRatio(times[i], times[0]))});
   }
   return {table.markdown(), {}};
 }
@@ -87,23 +91,19 @@ Findings studyTables(sk::Device& device, bool small) {
   std::vector<std::vector<double>> times(lattices.size());
   for (int round = 0; round <= rounds; ++round) {
     for (std::size_t i = 0; i < lattices.size(); ++i) {
-      const Stopwatch stopwatch;
-      lattices[i].advance(steps);
-      device.finish();
-      if (round > 0) times[i].push_back(stopwatch.milliseconds());
+      const double milliseconds = millisecondsOf(device, [&] { lattices[i].advance(steps); });
+      if (round > 0) times[i].push_back(milliseconds);
     }
   }
   Table table({"tanh", "error predicted", "error measured", "time of a step over computing"});
   Verification verification("measured errors of tables over predicted ones", 1.0,
                             "the prediction is a bound");
   for (std::size_t i = 0; i < lattices.size(); ++i) {
-    std::vector<double> ratios;
-    for (std::size_t r = 0; r < times[i].size(); ++r) ratios.push_back(times[i][r] / times[0][r]);
     const auto reports = tablesOf(lattices[i].model(), device);
     if (!reports.empty()) verification.note(0, reports.front().measured / reports.front().predicted);
     table.add({ways[i].name, reports.empty() ? "-" : fmt::format("{:.1e}", reports.front().predicted),
                reports.empty() ? "-" : fmt::format("{:.1e}", reports.front().measured),
-               fmt::format("{:.2f}", median(ratios))});
+               fmt::format("{:.2f}", medianRatio(times[i], times[0]))});
   }
   return {table.markdown(), {verification}};
 }

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "gray_scott/model.hpp"
-#include "initial.hpp"
 #include "lattice.hpp"
 #include "limits.hpp"
+#include "run.hpp"
 #include "statistics.hpp"
 #include "study.hpp"
 

@@ -8,11 +8,10 @@
 
 #include <fmt/format.h>
 
-#include "initial.hpp"
 #include "lattice.hpp"
 #include "limits.hpp"
+#include "run.hpp"
 #include "study.hpp"
-#include "theory.hpp"
 
 namespace examples {
 namespace {

@@ -2,7 +2,6 @@
 //
 // The limits of limits.hpp, found by trying: the wave that changes its sign from cell to cell is the first to grow.
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

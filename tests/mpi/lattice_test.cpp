@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
 
-#include "initial.hpp"
 #include "lattice.hpp"
 #include "ranks.hpp"
 #include "reference.hpp"
