@@ -14,19 +14,14 @@
 namespace examples {
 namespace {
 
-double timeOf(Simulation& simulation, std::int64_t steps) {
-  const Stopwatch stopwatch;
-  simulation.advance(steps);
-  simulation.finish();
-  return stopwatch.milliseconds() / static_cast<double>(steps);
+/// Milliseconds of a step.
+double timeOf(sk::Device& device, Simulation& simulation, std::int64_t steps) {
+  return millisecondsOf(device, [&] { simulation.advance(steps); }) / static_cast<double>(steps);
 }
 
 void count(sk::Device& device, Simulation& simulation, Cost& cost) {
   constexpr int steps = 4;
-  device.countPasses(true);
-  simulation.advance(steps);
-  const sk::PassCount passes = device.passCount();
-  device.countPasses(false);
+  const sk::PassCount passes = passesOf(device, [&] { simulation.advance(steps); });
   cost.streams = simulation.streams();
   cost.passes = static_cast<double>(passes.passes) / steps;
   cost.bytes = static_cast<double>(passes.bytesRead + passes.bytesWritten) / steps;
@@ -59,13 +54,13 @@ Comparison compareWithFull(sk::Device& device, const Scene& scene, sk::Precision
   full.finish();
 
   // Rounds of some milliseconds each, so that the clock and the caches do not decide.
-  const double first = std::max(1e-3, timeOf(required, 4));
-  timeOf(full, 4);
+  const double first = std::max(1e-3, timeOf(device, required, 4));
+  timeOf(device, full, 4);
   const auto steps = std::clamp<std::int64_t>(static_cast<std::int64_t>(8.0 / first), 2, 50);
   std::vector<double> requiredTimes, fullTimes;
   for (int round = 0; round < 9; ++round) {
-    requiredTimes.push_back(timeOf(required, steps));
-    fullTimes.push_back(timeOf(full, steps));
+    requiredTimes.push_back(timeOf(device, required, steps));
+    fullTimes.push_back(timeOf(device, full, steps));
   }
   result.required.milliseconds = median(requiredTimes);
   result.full.milliseconds = median(fullTimes);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // Where formulas have no value: each case has a result that is written down, the same on every device.
-#include <cmath>
 #include <limits>
 
 #include <catch2/catch.hpp>

@@ -1,13 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "drawing.hpp"
 
+#include <algorithm>
+#include <stdexcept>
 #include <vector>
+
+#include <fmt/format.h>
+
+#include "support/figure.hpp"
+#include "support/stopwatch.hpp"
 
 namespace examples {
 namespace {
 
 /// OpenGL ES and native devices do not draw by OpenGL 3.3.
 bool draws(const sk::Device& device) { return device.profile().starts_with("glsl"); }
+
+const Scene& drawable(const Scene& scene) {
+  if (scene.cloth.columns < 2 || scene.cloth.rows < 2) {
+    throw std::runtime_error(
+        "a cloth of one row or column has no faces to draw; leave --output out, and take --csv or --obj");
+  }
+  return scene;
+}
 
 }  // namespace
 
@@ -65,6 +80,43 @@ Image Drawing::picture(int width, int height, int factor) {
 
 void Drawing::draw(int width, int height, int factor, GLuint target) {
   renderer_->draw(camera_, bodies_, width, height, factor, target);
+}
+
+Filming::Filming(sk::Device& device, const Scene& scene, const Look& look, const std::string& precision)
+    : scene_(scene),
+      look_(look),
+      where_(fmt::format("{} precision on {}", precision, device.name())),
+      drawing_(device, scene),
+      pictures_(drawable(scene).record) {}
+
+Image Filming::frameOf(Simulation& simulation) {
+  const Stopwatch stopwatch;
+  drawing_.update(simulation);
+  const Image plot = drawing_.picture(look_.size.width, look_.size.height, look_.samples);
+  const double time = static_cast<double>(simulation.step()) * scene_.run.dt;
+  const Caption caption{
+      scene_.title, scene_.subtitle,
+      fmt::format("{} x {} points, t = {:.2f} s, {}", scene_.cloth.columns, scene_.cloth.rows, time, where_)};
+  Image image = look_.isTitled ? figure(plot, caption) : plot;
+  milliseconds_ += stopwatch.milliseconds();
+  return image;
+}
+
+void Filming::add(Simulation& simulation) {
+  if (pictures_.isFilm()) pictures_.add(frameOf(simulation));
+}
+
+void Filming::finish(Simulation& simulation) {
+  if (!pictures_.isFilm()) pictures_.add(frameOf(simulation));
+  pictures_.finish();
+}
+
+std::string Filming::report() const {
+  return fmt::format(
+      "wrote {}, {} frame{} of {} x {}, {:.3g} ms each; positions went {}", scene_.record.output.string(),
+      pictures_.count(), pictures_.count() == 1 ? "" : "s", look_.size.width, look_.size.height,
+      milliseconds_ / std::max(1, pictures_.count()),
+      drawing_.isDirect() ? "from stream to vertex buffer on the device" : "up from host memory");
 }
 
 }  // namespace examples

@@ -2,7 +2,7 @@
 //
 // The way of a simulated cloth to a picture. On a GL device its points go from the streams to the buffers that are drawn, in the
 // same context, and never visit host memory; of a native device, whose streams are host memory, they are uploaded once a
-// frame to a context of their own.
+// frame to a context of their own. And a run's frames, drawn, titled and put on file; what was filmed before a run breaks stays.
 #pragma once
 
 #include <optional>
@@ -15,6 +15,7 @@
 #include "simulation.hpp"
 #include "support/gl_objects.hpp"
 #include "support/image.hpp"
+#include "support/record.hpp"
 
 namespace examples {
 
@@ -53,5 +54,33 @@ class Drawing {
 
 /// What draws where the simulation's device does not: the first GPU, else software. Throws sk::Error where there is no OpenGL.
 sk::Device drawingDevice();
+
+/// How frames look.
+struct Look {
+  PictureSize size;
+  int samples = 2;  ///< samples x samples to a pixel
+  bool isTitled = true;
+};
+
+class Filming {
+ public:
+  /// To scene.record.output. Throws before anything is simulated where that cannot be written, or nothing can draw.
+  Filming(sk::Device& device, const Scene& scene, const Look& look, const std::string& precision);
+
+  void add(Simulation& simulation);
+  void finish(Simulation& simulation);
+  /// One line on what was written, and how long drawing took.
+  std::string report() const;
+
+ private:
+  Image frameOf(Simulation& simulation);
+
+  Scene scene_;
+  Look look_;
+  std::string where_;
+  Drawing drawing_;
+  Pictures pictures_;
+  double milliseconds_ = 0;
+};
 
 }  // namespace examples

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "live.hpp"
+#include "run.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "drawing.hpp"
 #include "support/stopwatch.hpp"
 #include "support/window.hpp"
 

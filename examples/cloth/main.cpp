@@ -2,10 +2,7 @@
 //
 // cloth: a scene of cloth, bodies and wind from a file; its run in numbers, pictures, a film or a window.
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -16,17 +13,16 @@
 
 #include "checks.hpp"
 #include "cost.hpp"
-#include "filming.hpp"
-#include "live.hpp"
+#include "drawing.hpp"
 #include "obj.hpp"
 #include "run.hpp"
 #include "scene.hpp"
 #include "simulation.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
+#include "support/named.hpp"
 #include "support/options.hpp"
 #include "support/ranks.hpp"
-#include "table_file.hpp"
 
 namespace {
 
@@ -50,10 +46,8 @@ struct Settings {
 
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "a scene, as those in examples/cloth/scenes");
-  std::string names;
-  for (const examples::ClothStudy& study : examples::studies())
-    names += fmt::format("\n  {:<10} {}", study.name, study.asks);
-  cli.add_option("--study", s.study, "in place of a scene, a table of the numerics:" + names);
+  cli.add_option("--study", s.study,
+                 examples::listed("in place of a scene, a table of the numerics:", examples::studies, 10));
   cli.add_option("--precision", s.precision,
                  "what steps are computed in: single, extended or double (default: single)")
       ->check(CLI::IsMember({"single", "extended", "double"}));
@@ -81,11 +75,6 @@ void addOptions(CLI::App& cli, Settings& s) {
                "measure the full model beside the scene's (the default)");
 }
 
-sk::Precision precisionOf(const std::string& name) {
-  if (name == "extended") return sk::Precision::Extended;
-  return name == "double" ? sk::Precision::Double : sk::Precision::Single;
-}
-
 examples::Scene sceneOf(const Settings& s) {
   if (s.scene.empty())
     throw std::runtime_error("which scene? Name a file, one of examples/cloth/scenes for instance");
@@ -94,7 +83,7 @@ examples::Scene sceneOf(const Settings& s) {
   examples::Scene scene = examples::readScene(s.scene, points);
   if (s.steps) scene.run.steps = *s.steps;
   if (s.frames) scene.record.frames = *s.frames;
-  if (!s.output.empty()) scene.record.film = s.output;
+  if (!s.output.empty()) scene.record.output = s.output;
   if (!s.csv.empty()) scene.record.csv = s.csv;
   if (!s.obj.empty()) scene.record.obj = s.obj;
   return scene;
@@ -117,6 +106,16 @@ sk::Device openDevice(const std::string& name, bool isFilmed) {
   sk::Device device(name);
   if (isFilmed && device.profile() != "native") device = sk::Device({.device = name, .sharesContext = true});
   return device;
+}
+
+/// A line of the table of numbers.
+std::string rowOf(const examples::Simulation& simulation, const examples::Scene& scene,
+                  std::int64_t linksAtFirst) {
+  const examples::Observation o = simulation.observe();
+  return fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{}",
+                     simulation.step(), static_cast<double>(simulation.step()) * scene.run.dt, o.kinetic,
+                     o.elastic, o.potential, o.strain, o.largest, o.centre.x, o.centre.y, o.centre.z,
+                     simulation.census().fastest, linksAtFirst - simulation.links());
 }
 
 /// The whole of a cloth that is divided over ranks, on the first one's device: what is drawn and observed there has the bits of a
@@ -145,7 +144,7 @@ class WholeCloth {
 
 void runScene(examples::Application& app, const Settings& s) {
   const examples::Scene scene = sceneOf(s);
-  const sk::Precision precision = precisionOf(s.precision);
+  const sk::Precision precision = examples::precisionNamed(s.precision);
   const examples::PictureSize size = sizeOf(s.size);
   examples::Ranks& ranks = app.ranks();
   if (s.window) {
@@ -153,7 +152,7 @@ void runScene(examples::Application& app, const Settings& s) {
     return examples::runLive(scene, precision, app.device(), size);
   }
   const examples::Features features = examples::Features::of(scene);
-  const bool isFilmed = !scene.record.film.empty(), isObserved = !scene.record.csv.empty();
+  const bool isFilmed = !scene.record.output.empty(), isObserved = !scene.record.csv.empty();
   const auto divided = ranks.divide(app.device(), examples::shapeOf(scene), examples::Ends::Open);
   std::optional<sk::Device> device;
   if (ranks.isFirst()) device = openDevice(app.device(), isFilmed);
@@ -165,12 +164,18 @@ void runScene(examples::Application& app, const Settings& s) {
   std::optional<examples::Filming> filming;
   if (isFilmed && device)
     filming.emplace(*device, scene, examples::Look{size, s.samples, !s.bare}, s.precision);
-  std::optional<examples::TableFile> csv;
-  if (isObserved && device) csv.emplace(scene.record.csv);
+  examples::CsvFile csv(scene.record.csv,
+                        "step,time_s,kinetic_J,elastic_J,potential_J,mean_strain,largest_strain,centre_x_m,"
+                        "centre_y_m,centre_z_m,fastest_m_per_s,torn_links",
+                        ranks.isFirst());
+  std::int64_t linksAtFirst = 0;
   const examples::Outcome outcome = examples::run(simulation, scene, [&](int) {
     if (!isFilmed && !isObserved) return;
     examples::Simulation* const now = whole.now();
-    if (csv) csv->add(*now, scene);
+    if (now && isObserved) {
+      if (now->step() == 0) linksAtFirst = now->links();
+      csv.add(rowOf(*now, scene, linksAtFirst));
+    }
     if (filming) filming->add(*now);
   });
   examples::Simulation again(space, scene, features, precision);
@@ -180,7 +185,6 @@ void runScene(examples::Application& app, const Settings& s) {
   examples::Simulation* const last = whole.now();
   if (last == nullptr) return;
 
-  if (csv) csv->finish();
   if (filming) filming->finish(*last);
   if (!scene.record.obj.empty()) {
     last->dress();
@@ -212,8 +216,8 @@ int main(int argc, char** argv) {
   return app.run(argc, argv, [&] {
     if (settings.study.empty()) return runScene(app, settings);
     app.ranks().refuseSeveral("--study", "start it without mpirun");
-    const examples::ClothStudy& study = examples::findStudy(settings.study);
+    const examples::Study& study = examples::rowNamed(examples::studies, settings.study, "study");
     sk::Device device(app.device());
-    fmt::print("{}", study.run(device));
+    fmt::print("{}", study.run(device, false).table);
   });
 }

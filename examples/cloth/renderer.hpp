@@ -4,7 +4,6 @@
 // buffers of the context, which a device or the host has filled; it knows nothing of either.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "camera.hpp"

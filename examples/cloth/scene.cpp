@@ -7,7 +7,8 @@
 #include <numbers>
 #include <string_view>
 
-#include "scene_bodies.hpp"
+#include <fmt/format.h>
+
 #include "support/scene_file.hpp"
 
 namespace examples {
@@ -15,6 +16,16 @@ namespace {
 
 constexpr Range positive{1e-9, 1e9};
 constexpr Range notNegative{0.0, 1e9};
+
+/// Reads a vector of unit length.
+void readDirection(const SceneTable& t, std::string_view key, Vector& value) {
+  value = t.direction(key).value_or(value);
+}
+
+/// Reads red, green and blue from 0 to 1, sRGB-encoded.
+void readColour(const SceneTable& t, std::string_view key, Vector& value) {
+  if (const auto v = t.numbers(key, 3, {0.0, 1.0})) value = {(*v)[0], (*v)[1], (*v)[2]};
+}
 
 Cloth clothOf(const SceneTable& t) {
   Cloth c;
@@ -31,13 +42,13 @@ Cloth clothOf(const SceneTable& t) {
     c.width = (*size)[0];
     c.height = (*size)[1];
   }
-  c.mass = t.number("mass", positive).value_or(c.mass);
-  c.rest = t.number("rest", {0.0, 100.0}).value_or(c.rest);
-  c.origin = vectorOf(t, "origin").value_or(c.origin);
-  c.right = directionOf(t, "right").value_or(c.right);
-  c.down = directionOf(t, "down").value_or(c.down);
-  c.shake = t.number("shake", notNegative).value_or(0.0);
-  c.seed = static_cast<std::uint32_t>(t.integer("seed", {0, 4294967295.0}).value_or(1));
+  t.read("mass", c.mass, positive);
+  t.read("rest", c.rest, {0.0, 100.0});
+  t.read("origin", c.origin);
+  readDirection(t, "right", c.right);
+  readDirection(t, "down", c.down);
+  t.read("shake", c.shake, notNegative);
+  t.read("seed", c.seed, {0, 4294967295.0});
   return c;
 }
 
@@ -55,68 +66,202 @@ LinkSettings linksOf(const SceneTable& scene) {
   links.shear = t->number("shear", stiffness);
   links.bend = t->number("bend", stiffness);
   constexpr std::array<std::string_view, 2> laws = {"exact", "jakobsen"};
-  if (const auto law = t->choice("law", laws)) links.law = static_cast<Law>(*law);
+  t->read("law", links.law, laws);
   if (relaxed) {
-    links.iterations = static_cast<int>(t->integer("iterations", {1, 10000}).value_or(1));
-    links.relaxation = t->number("relaxation", {0.0, 16.0}).value_or(1.0);
+    t->read("iterations", links.iterations, {1, 10000});
+    t->read("relaxation", links.relaxation, {0.0, 16.0});
   }
   return links;
 }
 
 WindSettings windOf(const SceneTable& t) {
   WindSettings w;
-  w.velocity = vectorOf(t, "velocity").value_or(Vector{});
-  w.density = t.number("density", notNegative).value_or(w.density);
-  w.across = t.number("across", notNegative).value_or(w.across);
-  w.along = t.number("along", notNegative).value_or(w.along);
-  w.gust = t.number("gust", {0.0, 10.0}).value_or(0.0);
-  w.swirl = t.number("swirl", {0.0, 10.0}).value_or(0.0);
-  w.period = t.number("period", positive).value_or(w.period);
-  w.wavelength = t.number("wavelength", positive).value_or(w.wavelength);
+  t.read("velocity", w.velocity);
+  t.read("density", w.density, notNegative);
+  t.read("across", w.across, notNegative);
+  t.read("along", w.along, notNegative);
+  t.read("gust", w.gust, {0.0, 10.0});
+  t.read("swirl", w.swirl, {0.0, 10.0});
+  t.read("period", w.period, positive);
+  t.read("wavelength", w.wavelength, positive);
   return w;
 }
 
 RunSettings runOf(const SceneTable& t) {
   RunSettings r;
-  r.dt = t.number("dt", {1e-9, 10.0}).value_or(r.dt);
-  r.steps = t.integer("steps", {1, 1e12}).value_or(r.steps);
+  t.read("dt", r.dt, {1e-9, 10.0});
+  t.read("steps", r.steps, {1, 1e12});
   constexpr std::array<std::string_view, 2> forms = {"displacements", "positions"};
-  if (const auto form = t.choice("verlet", forms)) r.verlet = static_cast<Verlet>(*form);
+  t.read("verlet", r.verlet, forms);
   r.untilSettled = t.number("until_settled", positive);
-  r.checkEvery = static_cast<int>(t.integer("check_every", {1, 1e6}).value_or(r.checkEvery));
+  t.read("check_every", r.checkEvery, {1, 1e6});
   return r;
 }
 
-RecordSettings recordOf(const SceneTable& t) {
-  RecordSettings r;
-  r.frames = static_cast<int>(t.integer("frames", {1, 1e6}).value_or(r.frames));
-  r.framesPerSecond = t.number("frames_per_second", {1, 1000}).value_or(r.framesPerSecond);
-  r.film = t.text("film").value_or("");
+void readRecord(const SceneTable& t, RecordSettings& r) {
+  t.read("frames", r.frames, {1, 1e6});
+  r.framesPerSecond =
+      static_cast<int>(std::lround(t.number("frames_per_second", {1, 1000}).value_or(r.framesPerSecond)));
+  r.output = t.text("film").value_or("");
   r.csv = t.text("csv").value_or("");
-  r.obj = t.text("obj").value_or("");
-  return r;
+  t.read("obj", r.obj);
 }
 
 ViewSettings viewOf(const SceneTable& t) {
   ViewSettings v;
-  v.eye = vectorOf(t, "eye").value_or(v.eye);
-  v.at = vectorOf(t, "at").value_or(v.at);
+  t.read("eye", v.eye);
+  t.read("at", v.at);
   if (v.eye == v.at) t.fail("eye", "the eye is where it looks at; move one of them");
-  v.fieldOfView = t.number("field_of_view", {1, 120}).value_or(v.fieldOfView);
-  v.light = directionOf(t, "light").value_or(v.light);
-  v.front = colourOf(t, "front").value_or(v.front);
-  v.back = colourOf(t, "back").value_or(v.back);
-  v.second = colourOf(t, "second").value_or(v.second);
-  v.background = colourOf(t, "background").value_or(v.background);
-  v.ground = colourOf(t, "ground").value_or(v.ground);
+  t.read("field_of_view", v.fieldOfView, {1, 120});
+  readDirection(t, "light", v.light);
+  readColour(t, "front", v.front);
+  readColour(t, "back", v.back);
+  readColour(t, "second", v.second);
+  readColour(t, "background", v.background);
+  readColour(t, "ground", v.ground);
   constexpr std::array<std::string_view, 5> patterns = {"plain", "stripes", "checks", "grid", "harlequin"};
-  if (const auto pattern = t.choice("pattern", patterns)) v.pattern = static_cast<int>(*pattern);
-  v.repeats = t.number("repeats", {0.5, 1000}).value_or(v.repeats);
+  v.pattern = static_cast<int>(t.choice("pattern", patterns).value_or(0));
+  t.read("repeats", v.repeats, {0.5, 1000});
   v.floor = t.number("floor");
   return v;
 }
 
+constexpr Range bodyLength{1e-6, 1e6};
+
+Vector needed(const SceneTable& t, std::string_view key) {
+  const auto value = t.vector(key);
+  if (!value) t.fail(key, fmt::format("'{}' is missing; say where, as [x, y, z]", key));
+  return *value;
+}
+
+double radiusOf(const SceneTable& t) {
+  const auto radius = t.number("radius", bodyLength);
+  if (!radius) t.fail("radius", "'radius' is missing; say it in metres");
+  return *radius;
+}
+
+/// What all kinds of bodies have.
+Body bodyOf(const SceneTable& t, Kind kind) {
+  Body b;
+  b.kind = kind;
+  t.read("friction", b.friction, {0.0, 100.0});
+  t.read("swing", b.swing);
+  t.read("period", b.period, {1e-6, 1e9});
+  readColour(t, "colour", b.colour);
+  return b;
+}
+
+Body sphereOf(const SceneTable& t) {
+  Body b = bodyOf(t, Kind::Sphere);
+  b.at = needed(t, "centre");
+  b.size.x = radiusOf(t);
+  return b;
+}
+
+Body planeOf(const SceneTable& t) {
+  Body b = bodyOf(t, Kind::Plane);
+  b.at = needed(t, "through");
+  b.along = t.direction("normal").value_or(Vector{0, 1, 0});
+  return b;
+}
+
+Body capsuleOf(const SceneTable& t) {
+  Body b = bodyOf(t, Kind::Capsule);
+  b.at = needed(t, "from");
+  b.along = needed(t, "to") - b.at;
+  b.size.x = radiusOf(t);
+  return b;
+}
+
+Body boxOf(const SceneTable& t) {
+  Body b = bodyOf(t, Kind::Box);
+  b.at = needed(t, "centre");
+  const auto size = t.numbers("size", 3, bodyLength);
+  if (!size) t.fail("size", "'size' is missing; say it in metres, as [x, y, z]");
+  b.size = 0.5 * Vector{(*size)[0], (*size)[1], (*size)[2]};
+  const double half = t.number("turned", {-360, 360}).value_or(0.0) * std::numbers::pi / 360.0;
+  b.axis = std::sin(half) * t.direction("axis").value_or(Vector{0, 1, 0});
+  b.turn = std::cos(half);
+  return b;
+}
+
+/// Every n-th point of a line of them, the last one, too.
+void addLine(std::vector<std::int64_t>& points, std::int64_t begin, std::int64_t stride, int count,
+             int every) {
+  for (int i = 0; i < count; i += every) points.push_back(begin + i * stride);
+  if ((count - 1) % every != 0) points.push_back(begin + (count - 1) * stride);
+}
+
+void addEdge(std::vector<std::int64_t>& points, std::size_t edge, const Cloth& c, int every) {
+  const std::int64_t columns = c.columns;
+  if (edge == 0) addLine(points, 0, 1, c.columns, every);
+  if (edge == 1) addLine(points, (c.rows - 1) * columns, 1, c.columns, every);
+  if (edge == 2) addLine(points, 0, columns, c.rows, every);
+  if (edge == 3) addLine(points, columns - 1, columns, c.rows, every);
+}
+
+Pin pinOf(const SceneTable& t, const Cloth& c) {
+  Pin pin;
+  constexpr std::array<std::string_view, 4> corners = {"top-left", "top-right", "bottom-left",
+                                                       "bottom-right"};
+  constexpr std::array<std::string_view, 4> edges = {"top", "bottom", "left", "right"};
+  const std::int64_t columns = c.columns;
+  if (const auto corner = t.choice("corner", corners)) {
+    pin.points.push_back((*corner < 2 ? 0 : c.rows - 1) * columns + (*corner % 2 == 0 ? 0 : columns - 1));
+  }
+  const int every = static_cast<int>(t.integer("every", {1, 1e6}).value_or(1));
+  if (const auto edge = t.choice("edge", edges)) addEdge(pin.points, *edge, c, every);
+  if (const auto point = t.numbers("point", 2, {0, 1 << 15})) {
+    const auto x = static_cast<std::int64_t>((*point)[0]), y = static_cast<std::int64_t>((*point)[1]);
+    if (x >= columns || y >= c.rows) {
+      t.fail("point",
+             fmt::format("there are {} columns and {} rows of points, counted from 0", c.columns, c.rows));
+    }
+    pin.points.push_back(y * columns + x);
+  }
+  if (pin.points.empty()) t.fail("corner", "a pin holds a 'corner', an 'edge' or a 'point'");
+  t.read("carry", pin.carry);
+  if (const auto during = t.numbers("during", 2, {0.0, 1e9})) {
+    pin.begin = (*during)[0];
+    pin.end = (*during)[1];
+    if (pin.end <= pin.begin) t.fail("during", "the end is not after the beginning");
+  } else if (pin.carry != Vector{}) {
+    t.fail("carry", "say when, by during = [begin, end] in seconds");
+  }
+  return pin;
+}
+
+/// One pin for each table [[pin]].
+std::vector<Pin> pinsOf(const SceneTable& scene, const Cloth& cloth) {
+  std::vector<Pin> pins;
+  std::size_t held = 0;
+  for (const SceneTable& table : scene.tables("pin")) {
+    pins.push_back(pinOf(table, cloth));
+    held += pins.back().points.size();
+    // each point may be that of two edges, a corner, and itself
+    if (held >
+        std::size_t{4} * static_cast<std::size_t>(cloth.columns) * static_cast<std::size_t>(cloth.rows))
+      table.fail("edge", "the pins hold points over and over again; name each edge once");
+  }
+  return pins;
+}
+
+/// One body for each table [[sphere]], [[plane]], [[capsule]] and [[box]].
+std::vector<Body> bodiesOf(const SceneTable& scene) {
+  std::vector<Body> bodies;
+  for (const SceneTable& t : scene.tables("sphere")) bodies.push_back(sphereOf(t));
+  for (const SceneTable& t : scene.tables("plane")) bodies.push_back(planeOf(t));
+  for (const SceneTable& t : scene.tables("capsule")) bodies.push_back(capsuleOf(t));
+  for (const SceneTable& t : scene.tables("box")) bodies.push_back(boxOf(t));
+  return bodies;
+}
+
 }  // namespace
+
+Vector Body::shift(double time) const {
+  if (swing == Vector{}) return {};
+  return std::sin(2.0 * std::numbers::pi * time / period) * swing;
+}
 
 bool Scene::has(Kind kind) const {
   return std::any_of(bodies.begin(), bodies.end(), [&](const Body& b) { return b.kind == kind; });
@@ -126,7 +271,7 @@ Scene readScene(const std::filesystem::path& file, const std::optional<Points>& 
   const SceneTable t = loadScene(file);
   Scene scene;
   scene.title = t.text("title").value_or(file.stem().string());
-  scene.subtitle = t.text("subtitle").value_or("");
+  t.read("subtitle", scene.subtitle);
   const auto cloth = t.table("cloth");
   if (!cloth) t.fail("cloth", "a scene needs a table [cloth], with the points, size and place of one");
   scene.cloth = clothOf(*cloth);
@@ -140,19 +285,18 @@ Scene readScene(const std::filesystem::path& file, const std::optional<Points>& 
     if (!scene.tear) tear->fail("strain", "say at which strain links tear: 0.3 is 30 % longer than at rest");
   }
   if (const auto gravity = t.table("gravity")) {
-    scene.gravity = vectorOf(*gravity, "acceleration").value_or(Vector{0, -9.81, 0});
+    scene.gravity = gravity->vector("acceleration").value_or(Vector{0, -9.81, 0});
   }
-  if (const auto air = t.table("air")) scene.damping = air->number("damping", {0.0, 1e6}).value_or(0.0);
+  if (const auto air = t.table("air")) air->read("damping", scene.damping, {0.0, 1e6});
   if (const auto wind = t.table("wind")) scene.wind = windOf(*wind);
   scene.pins = pinsOf(t, scene.cloth);
   scene.bodies = bodiesOf(t);
-  if (const auto contact = t.table("contact"))
-    scene.thickness = contact->number("thickness", {0.0, 1e3}).value_or(0.0);
+  if (const auto contact = t.table("contact")) contact->read("thickness", scene.thickness, {0.0, 1e3});
   if (const auto run = t.table("run")) scene.run = runOf(*run);
   if (scene.run.verlet == Verlet::Positions && !scene.bodies.empty()) {
     t.fail("run", "bodies change displacements; take verlet = \"displacements\" in a scene that has any");
   }
-  if (const auto record = t.table("record")) scene.record = recordOf(*record);
+  if (const auto record = t.table("record")) readRecord(*record, scene.record);
   if (const auto view = t.table("view")) scene.view = viewOf(*view);
   t.finish();
   return scene;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "support/record.hpp"
 #include "support/vec.hpp"
 
 namespace examples {
@@ -89,13 +90,13 @@ struct RunSettings {
   int checkEvery = 100;  ///< steps between looks for broken numbers and for rest
 };
 
-/// What a run leaves behind.
-struct RecordSettings {
-  int frames = 1;  ///< evenly spaced, from the first state to the end; 1: the end
-  double framesPerSecond = 30;
-  std::string film;  ///< files; empty: none
-  std::string csv;
-  std::string obj;
+/// What a run leaves behind; no picture unless one is named.
+struct RecordSettings : Record {
+  std::string obj;  ///< a file; empty: none
+};
+
+struct PictureSize {
+  int width, height;
 };
 
 struct ViewSettings {
@@ -127,7 +128,7 @@ struct Scene {
   std::vector<Body> bodies;
   double thickness = 0.0;  ///< metres that points keep from the surface of bodies
   RunSettings run;
-  RecordSettings record;
+  RecordSettings record{{.output = {}, .framesPerSecond = 30}, {}};
   ViewSettings view;
 
   std::int64_t points() const { return std::int64_t{cloth.columns} * cloth.rows; }

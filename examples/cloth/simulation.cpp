@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "cloth.sk.hpp"
 #include "support/stopwatch.hpp"

@@ -60,25 +60,24 @@ std::string three(double a, double b, double c) {
 
 }  // namespace
 
-std::string studyChaos(sk::Device& device) {
+Findings studyChaos(sk::Device& device, bool) {
   const Scene scene = crumpling(1), other = crumpling(2);
   Simulation single = simulate(device, scene), exact = simulate(device, scene, sk::Precision::Double),
              shaken = simulate(device, other, sk::Precision::Double);
-  std::string table = heads({"time", "single from double", "another shake from double", "mean strain, %",
-                             "mean height, cm", "its deviation, cm", "energy, mJ"});
+  Table table({"time", "single from double", "another shake from double", "mean strain, %", "mean height, cm",
+               "its deviation, cm", "energy, mJ"});
   for (const double time : {0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.2, 2.0, 3.0}) {
     for (Simulation* s : {&single, &exact, &shaken})
       s->advance(std::llround(time / scene.run.dt) - s->step());
     const std::vector<double> p = single.positions(), q = exact.positions(), r = shaken.positions();
     const Heights a = heightsOf(p), b = heightsOf(q), c = heightsOf(r);
     const Observation x = single.observe(), y = exact.observe(), z = shaken.observe();
-    table +=
-        row({fmt::format("{:.1f} s", time), fmt::format("{:.1e} m", apart(p, q)),
-             fmt::format("{:.1e} m", apart(r, q)), three(x.strain, y.strain, z.strain),
-             three(a.mean, b.mean, c.mean), three(a.deviation, b.deviation, c.deviation),
-             fmt::format("{:.0f}, {:.0f}, {:.0f}", 1e3 * x.energy(), 1e3 * y.energy(), 1e3 * z.energy())});
+    table.add({fmt::format("{:.1f} s", time), fmt::format("{:.1e} m", apart(p, q)),
+               fmt::format("{:.1e} m", apart(r, q)), three(x.strain, y.strain, z.strain),
+               three(a.mean, b.mean, c.mean), three(a.deviation, b.deviation, c.deviation),
+               fmt::format("{:.0f}, {:.0f}, {:.0f}", 1e3 * x.energy(), 1e3 * y.energy(), 1e3 * z.energy())});
   }
-  return table;
+  return {table.markdown(Align::Right)};
 }
 
 }  // namespace examples

@@ -62,22 +62,22 @@ std::vector<Case> cases() {
 
 }  // namespace
 
-std::string studyCost(sk::Device& device) {
-  std::string table = heads({"a scene of 256 x 256 points", "passes", "bytes a point", "ms", "full: passes",
-                             "bytes a point", "ms", "ratio", "difference"});
+Findings studyCost(sk::Device& device, bool) {
+  Table table({"a scene of 256 x 256 points", "passes", "bytes a point", "ms", "full: passes",
+               "bytes a point", "ms", "ratio", "difference"});
   for (const Case& c : cases()) {
     Simulation simulation = simulate(device, c.scene);
     simulation.advance(4);
     const Comparison r = compareWithFull(device, c.scene, sk::Precision::Single, simulation.state());
     const auto points = static_cast<double>(c.scene.points());
-    table += row({c.name, fmt::format("{:.4g}", r.required.passes),
-                  fmt::format("{:.0f}", r.required.bytes / points),
-                  fmt::format("{:.3g}", r.required.milliseconds), fmt::format("{:.4g}", r.full.passes),
-                  fmt::format("{:.0f}", r.full.bytes / points), fmt::format("{:.3g}", r.full.milliseconds),
-                  fmt::format("{:.2f}", r.full.milliseconds / r.required.milliseconds),
-                  fmt::format("{:.1g} m", r.deviation)});
+    table.add({c.name, fmt::format("{:.4g}", r.required.passes),
+               fmt::format("{:.0f}", r.required.bytes / points),
+               fmt::format("{:.3g}", r.required.milliseconds), fmt::format("{:.4g}", r.full.passes),
+               fmt::format("{:.0f}", r.full.bytes / points), fmt::format("{:.3g}", r.full.milliseconds),
+               fmt::format("{:.2f}", r.full.milliseconds / r.required.milliseconds),
+               fmt::format("{:.1g} m", r.deviation)});
   }
-  return table;
+  return {table.markdown(Align::Right)};
 }
 
 }  // namespace examples

@@ -129,29 +129,28 @@ Energies measure(sk::Device& device, const Scene& scene, sk::Precision precision
   return e;
 }
 
-std::string rowOf(const char* system, const char* trial, const Energies& e) {
+std::vector<std::string> rowOf(const char* system, const char* trial, const Energies& e) {
   const auto tenth = static_cast<std::ptrdiff_t>(e.totals.size() / 10);
   const auto mean = [&](auto begin) {
     return std::accumulate(begin, begin + tenth, 0.0) / static_cast<double>(tenth);
   };
   const auto [least, most] = std::minmax_element(e.totals.begin(), e.totals.end());
   const double drift = mean(e.totals.end() - tenth) - mean(e.totals.begin());
-  return row({system, trial, fmt::format("{:.1e}", (*most - *least) / e.scale),
-              fmt::format("{:+.1e}", drift / e.scale)});
+  return {system, trial, fmt::format("{:.1e}", (*most - *least) / e.scale),
+          fmt::format("{:+.1e}", drift / e.scale)};
 }
 
 }  // namespace
 
-std::string studyEnergy(sk::Device& device) {
-  std::string table =
-      heads({"system", "Verlet with", "largest minus least", "last tenth minus first, means"});
-  for (const Trial& t : trials()) {
-    table += rowOf("one spring", t.name, measure(device, oscillator(t.verlet), t.precision, true));
+Findings studyEnergy(sk::Device& device, bool) {
+  Table table({"system", "Verlet with", "largest minus least", "last tenth minus first, means"});
+  for (const Trial& t : trials) {
+    table.add(rowOf("one spring", t.name, measure(device, oscillator(t.verlet), t.precision, true)));
   }
-  for (const Trial& t : trials()) {
-    table += rowOf("9 x 9 points", t.name, measure(device, springCloth(t.verlet), t.precision, false));
+  for (const Trial& t : trials) {
+    table.add(rowOf("9 x 9 points", t.name, measure(device, springCloth(t.verlet), t.precision, false)));
   }
-  return table;
+  return {table.markdown(Align::Right)};
 }
 
 }  // namespace examples

@@ -95,25 +95,24 @@ double catenaryScale(double span, double length) {
 
 }  // namespace
 
-std::string studyFall(sk::Device& device) {
+Findings studyFall(sk::Device& device, bool) {
   constexpr double expected = 100 - g / 2;
-  std::string table = heads({"dt", "positions, single", "displacements, single", "displacements, double"});
+  Table table({"dt", "positions, single", "displacements, single", "displacements, double"});
   for (const double dt : {1e-2, 1e-3, 5e-4, 1e-4, 1e-5}) {
     std::vector<std::string> cells{fmt::format("{:g} s", dt)};
-    for (const Trial& t : trials()) {
+    for (const Trial& t : trials) {
       if (t.precision == sk::Precision::Extended) continue;
       Simulation simulation = simulate(device, fallingPoint(dt, t.verlet), t.precision);
       simulation.advance(std::llround(1.0 / dt));
       cells.push_back(fmt::format("{:+.1e} m", simulation.positions()[1] - expected));
     }
-    table += row(cells);
+    table.add(cells);
   }
-  return table;
+  return {table.markdown(Align::Right)};
 }
 
-std::string studyPendulum(sk::Device& device) {
-  std::string table =
-      heads({"let go at", "closed form", "spring, dt = 1 ms", "0.5 ms", "constraint, dt = 1 ms", "0.5 ms"});
+Findings studyPendulum(sk::Device& device, bool) {
+  Table table({"let go at", "closed form", "spring, dt = 1 ms", "0.5 ms", "constraint, dt = 1 ms", "0.5 ms"});
   for (const double degrees : {10.0, 45.0, 90.0, 150.0}) {
     const double angle = degrees * std::numbers::pi / 180, expected = periodOf(angle);
     std::vector<std::string> cells{fmt::format("{:g} degrees", degrees), fmt::format("{:.6f} s", expected)};
@@ -123,14 +122,13 @@ std::string studyPendulum(sk::Device& device) {
             fmt::format("{:+.1e}", measuredPeriod(device, pendulum(dt, angle, spring)) / expected - 1));
       }
     }
-    table += row(cells);
+    table.add(cells);
   }
-  return table;
+  return {table.markdown(Align::Right)};
 }
 
-std::string studyCatenary(sk::Device& device) {
-  std::string table =
-      heads({"dt", "longer than at rest", "sag", "the catenary's", "largest distance from it"});
+Findings studyCatenary(sk::Device& device, bool) {
+  Table table({"dt", "longer than at rest", "sag", "the catenary's", "largest distance from it"});
   for (const double dt : {2e-3, 1e-3, 5e-4, 2.5e-4}) {
     const Scene scene = hangingChain(dt);
     Simulation simulation = simulate(device, scene);
@@ -147,11 +145,11 @@ std::string studyCatenary(sk::Device& device) {
     double off = 0;
     for (std::size_t i = 0; i < p.size() / 4; ++i)
       off = std::max(off, std::abs(p[4 * i + 1] - height(p[4 * i])));
-    table += row({fmt::format("{:g} s", dt), fmt::format("{:.2g} %", 100 * (length / scene.cloth.width - 1)),
-                  fmt::format("{:.4f} m", -lowest), fmt::format("{:.4f} m", -height(0)),
-                  fmt::format("{:.1e} m", off)});
+    table.add({fmt::format("{:g} s", dt), fmt::format("{:.2g} %", 100 * (length / scene.cloth.width - 1)),
+               fmt::format("{:.4f} m", -lowest), fmt::format("{:.4f} m", -height(0)),
+               fmt::format("{:.1e} m", off)});
   }
-  return table;
+  return {table.markdown(Align::Right)};
 }
 
 }  // namespace examples

@@ -80,7 +80,7 @@ double boundary(double stable, double unstable, const std::function<bool(double)
   return 0.5 * (stable + unstable);
 }
 
-std::string springRow(sk::Device& device, const char* name, Scene scene) {
+std::vector<std::string> springRow(sk::Device& device, const char* name, Scene scene) {
   scene.links.springs = true;
   const double mass = scene.cloth.mass / static_cast<double>(scene.points());
   const double predicted = 2 / std::sqrt(largestEigenvalue(scene, 1.0) / mass);
@@ -88,11 +88,11 @@ std::string springRow(sk::Device& device, const char* name, Scene scene) {
     scene.run.dt = dt;
     return explodes(device, scene);
   });
-  return row({name, "dt", fmt::format("{:.5f} s", predicted), fmt::format("{:.5f} s", found),
-              fmt::format("{:.4f}", found / predicted)});
+  return {name, "dt", fmt::format("{:.5f} s", predicted), fmt::format("{:.5f} s", found),
+          fmt::format("{:.4f}", found / predicted)};
 }
 
-std::string relaxRow(sk::Device& device, const char* name, Scene scene, int rounds) {
+std::vector<std::string> relaxRow(sk::Device& device, const char* name, Scene scene, int rounds) {
   scene.links.iterations = rounds;
   // A step multiplies by l = (1 - f a)^rounds before it adds the displacement: x(n+1) = l (2 x(n) - x(n-1)) is bounded for
   // -1/3 <= l <= 1.
@@ -102,29 +102,29 @@ std::string relaxRow(sk::Device& device, const char* name, Scene scene, int roun
     scene.links.relaxation = relaxation;
     return explodes(device, scene);
   });
-  return row({fmt::format("{}, {} round{}", name, rounds, rounds == 1 ? "" : "s"), "relaxation",
-              fmt::format("{:.4f}", predicted), fmt::format("{:.4f}", found),
-              fmt::format("{:.4f}", found / predicted)});
+  return {fmt::format("{}, {} round{}", name, rounds, rounds == 1 ? "" : "s"), "relaxation",
+          fmt::format("{:.4f}", predicted), fmt::format("{:.4f}", found),
+          fmt::format("{:.4f}", found / predicted)};
 }
 
 }  // namespace
 
-std::string studyStability(sk::Device& device) {
+Findings studyStability(sk::Device& device, bool) {
   Scene pair = sheet(2, 1), chain = sheet(33, 1), woven = sheet(17, 17), whole = sheet(17, 17);
   for (Scene* s : {&pair, &chain, &woven, &whole}) s->links.structural = 1.0;
   woven.links.shear = whole.links.shear = 0.5;
   whole.links.bend = 0.25;
-  std::string table = heads({"links", "limit of", "predicted", "found", "ratio"});
-  table += springRow(device, "springs, 2 points", pair);
-  table += springRow(device, "springs, 33 points in a row", chain);
-  table += springRow(device, "springs, 17 x 17, structural and shear", woven);
-  table += springRow(device, "springs, 17 x 17, all", whole);
+  Table table({"links", "limit of", "predicted", "found", "ratio"});
+  table.add(springRow(device, "springs, 2 points", pair));
+  table.add(springRow(device, "springs, 33 points in a row", chain));
+  table.add(springRow(device, "springs, 17 x 17, structural and shear", woven));
+  table.add(springRow(device, "springs, 17 x 17, all", whole));
   for (const int rounds : {1, 2, 3})
-    table += relaxRow(device, "constraints, 33 points in a row", chain, rounds);
+    table.add(relaxRow(device, "constraints, 33 points in a row", chain, rounds));
   for (const int rounds : {1, 2})
-    table += relaxRow(device, "constraints, 17 x 17, structural and shear", woven, rounds);
-  table += relaxRow(device, "constraints, 17 x 17, all", whole, 1);
-  return table;
+    table.add(relaxRow(device, "constraints, 17 x 17, structural and shear", woven, rounds));
+  table.add(relaxRow(device, "constraints, 17 x 17, all", whole, 1));
+  return {table.markdown(Align::Right)};
 }
 
 }  // namespace examples
