@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // edges [IN.png] [OUT.png]: the edges of any picture, or of a generated one.
-#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -113,12 +112,10 @@ void findEdges(examples::Application& app, const Settings& s) {
   examples::Detector detector(device, picture, linear, weights, thresholds);
   detector.detect();  // once unmeasured: programs are compiled at their first call
   device.finish();
-  const examples::Stopwatch stopwatch;
-  detector.detect();
-  device.finish();
+  const double milliseconds = examples::millisecondsOf(device, [&] { detector.detect(); });
   app.report(
       fmt::format("edges of {} x {} pixels{}", picture.width, picture.height, thresholds ? ", linked" : ""),
-      device.name(), stopwatch.milliseconds());
+      device.name(), milliseconds);
 
   save(s, picture, painted(detector, device, s.style));
   fmt::print("wrote {}\n", s.output.string());
