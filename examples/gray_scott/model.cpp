@@ -3,10 +3,8 @@
 
 #include <array>
 #include <random>
-#include <stdexcept>
-#include <string>
 
-#include <fmt/format.h>
+#include "support/named.hpp"
 
 namespace examples {
 namespace {
@@ -33,14 +31,7 @@ constexpr std::array<Pattern, 13> table = {{
 
 std::span<const Pattern> patterns() { return table; }
 
-const Pattern& findPattern(std::string_view name) {
-  std::string names;
-  for (const Pattern& pattern : table) {
-    if (pattern.name == name) return pattern;
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", pattern.name);
-  }
-  throw std::runtime_error(fmt::format("no pattern is called '{}'; there are {}", name, names));
-}
+const Pattern& findPattern(std::string_view name) { return rowNamed(table, name, "pattern"); }
 
 double largestTimeStep(const Parameters& p) { return 2.0 / (8.0 * p.spreadU + p.feed); }
 

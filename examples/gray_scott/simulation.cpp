@@ -24,10 +24,9 @@ void Simulation::paintWith(std::span<const sk::float3> palette, float relief) {
 void Simulation::advance(int steps) {
   const Parameters& p = parameters_;
   const gray_scott::Medium medium{p.feed, p.kill, p.spreadU, p.spreadV, p.dt};
-  const Stopwatch stopwatch;
-  for (int i = 0; i < steps; ++i) gray_scott::advance(medium, field_, field_);
-  device_.finish();
-  milliseconds_ += stopwatch.milliseconds();
+  milliseconds_ += millisecondsOf(device_, [&] {
+    for (int i = 0; i < steps; ++i) gray_scott::advance(medium, field_, field_);
+  });
 }
 
 FieldBounds Simulation::bounds() {
