@@ -35,10 +35,7 @@ int Saxpy::run(int argc, char** argv, const std::function<void()>& body) {
 void Saxpy::time(sk::Device& device, const std::function<void()>& call) {
   call();
   device.finish();
-  const Stopwatch stopwatch;
-  call();
-  device.finish();
-  app_.report(fmt::format("r = a x + y for {} elements", size_), device.name(), stopwatch.milliseconds());
+  app_.report(fmt::format("r = a x + y for {} elements", size_), device.name(), millisecondsOf(device, call));
 }
 
 void Saxpy::check(std::span<const float> result) {
