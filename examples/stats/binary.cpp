@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Raw floats to columns.
+// Files to bytes, and raw floats to columns.
 #include <bit>
 #include <cmath>
 #include <stdexcept>
@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "data.hpp"
-#include "file_bytes.hpp"
+#include "support/text_file.hpp"
 
 namespace examples {
 namespace {
@@ -44,6 +44,12 @@ Data readBinary(const std::filesystem::path& file, int columns, BinaryOrder orde
     data.columns.push_back(std::move(column));
   }
   return data;
+}
+
+std::string readBytes(const std::filesystem::path& file) {
+  std::string bytes = bytesOf(file, "the table");
+  if (bytes.empty()) throw std::runtime_error(fmt::format("'{}' is empty", file.string()));
+  return bytes;
 }
 
 }  // namespace examples

@@ -13,7 +13,6 @@
 
 #include "csv_records.hpp"
 #include "data.hpp"
-#include "file_bytes.hpp"
 #include "support/text_cursor.hpp"
 
 namespace examples {

@@ -61,8 +61,9 @@ TEST_CASE("lines are counted through quoted line ends") {
   }
 }
 
-TEST_CASE("quotes that are wrong") {
+TEST_CASE("quotes and numbers of fields that are wrong") {
   CHECK_THROWS_WITH(split("a\n\"b"), "t.csv:2: a quote is opened but never closed");
+  CHECK_THROWS_WITH(parse("a,b\n1,2,\n3,4,5\n"), Catch::Contains(":3: 3 fields, but the first line has 2"));
   CHECK_THROWS_WITH(split("a\n\"b\"c"), Catch::StartsWith("t.csv:2: text follows a closing quote"));
 }
 

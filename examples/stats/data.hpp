@@ -25,6 +25,9 @@ struct CsvOptions {
   std::vector<std::string> select;  ///< columns to read, in this order; empty for all
 };
 
+/// The bytes of a file. Throws std::runtime_error naming the file where it is missing, cannot be read or is empty.
+std::string readBytes(const std::filesystem::path& file);
+
 /// Reads CSV (RFC 4180: quotes, doubled quotes, line ends within quotes; lines end with LF, CR LF or CR). The first
 /// line names the columns unless it is all numbers. An empty field, NA, NaN or null is a missing number, and
 /// so is what a short line lacks (but not nearly all columns of nearly all lines). A column without a single number is text and left out, unless selected.
