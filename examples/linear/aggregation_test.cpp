@@ -3,33 +3,32 @@
 // Algebraic multigrid by smoothed aggregation: its levels, and solutions beside Eigen's direct solver in double precision.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <random>
 #include <set>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
 #include <catch2/catch.hpp>
 #include <sk/sk.hpp>
 
 #include "aggregation.hpp"
 #include "eigenvalues.hpp"
 #include "layout.hpp"
-#include "named.hpp"
 #include "solve.hpp"
 #include "sparse.hpp"
 #include "stencil.hpp"
-#include "test_devices.hpp"
+#include "support/named.hpp"
+#include "test_eigen.hpp"
+#include "test_solves.hpp"
 
 namespace linear {
 namespace {
 
 using Lower = Eigen::SparseMatrix<double>;
 
-struct Choice {
+struct Wanted {
   std::string_view solver = "cg";
   std::string_view layout = "rows";
   Arithmetic arithmetic = {};
@@ -41,31 +40,16 @@ struct Reached {
   HierarchyAccount hierarchy;
 };
 
-Reached solveWith(sk::Device& device, const SparseMatrix& a, const std::vector<double>& b,
-                  const Choice& choice = {}) {
+Reached solveByAggregation(sk::Device& device, const SparseMatrix& a, const std::vector<double>& b,
+                           const Wanted& choice = {}) {
   const Operator o = operatorOf(a);
   const auto matrix = makeMatrix(device, scaled(a, o.scale), choice.layout, choice.arithmetic);
-  const auto preconditioner = rowNamed(preconditionerKinds(), "aggregation", "preconditioner")
+  const auto preconditioner = examples::rowNamed(preconditionerKinds(), "aggregation", "preconditioner")
                                   .make(device, *matrix, o, choice.arithmetic);
-  const auto method = rowNamed(methodKinds(), choice.solver, "solver")
+  const auto method = examples::rowNamed(methodKinds(), choice.solver, "solver")
                           .make(device, *matrix, preconditioner.get(), choice.arithmetic, {.a = &o});
   return {solve(*method, o, b, choice.arithmetic, {.tolerance = choice.tolerance, .most = 500, .every = 1}),
           *preconditioner->hierarchy()};
-}
-
-Lower eigenOf(const SparseMatrix& a, std::int64_t size) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::int64_t i = 0; i < size; ++i)
-    for (auto k = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
-         k < static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]); ++k)
-      if (a.column[k] < size) entries.emplace_back(static_cast<int>(i), a.column[k], a.value[k]);
-  Lower m(size, size);
-  m.setFromTriplets(entries.begin(), entries.end());
-  return m;
-}
-
-Eigen::VectorXd vectorOf(const std::vector<double>& v) {
-  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
 /// 1 / the smallest eigenvalue, by inverse iteration.
@@ -81,7 +65,7 @@ double inverseNorm(const Eigen::SimplicialLDLT<Lower>& factors, Eigen::Index n) 
 
 /// ||x - y|| against what the residual may mean, ||A^-1|| ||r||, where inverse iteration may miss half of the norm; and Eigen's own roundings.
 void checkSolution(const SparseMatrix& a, const std::vector<double>& b, const Solution& s) {
-  const Lower m = eigenOf(a, a.rows);
+  const Lower m = eigenOf(a);
   const Eigen::SimplicialLDLT<Lower> factors(m);
   REQUIRE(factors.info() == Eigen::Success);
   const Eigen::VectorXd expected = factors.solve(vectorOf(b)), x = vectorOf(s.x);
@@ -93,7 +77,7 @@ void checkSolution(const SparseMatrix& a, const std::vector<double>& b, const So
 /// For a matrix whose kernel are the constants: the last unknown is 0, then the mean.
 void checkSingularSolution(const SparseMatrix& a, const std::vector<double>& b, const Solution& s) {
   const Eigen::Index n = a.rows;
-  const Lower m = eigenOf(a, n - 1), whole = eigenOf(a, n);
+  const Lower m = eigenOf(a, n - 1), whole = eigenOf(a);
   const Eigen::SimplicialLDLT<Lower> factors(m);
   Eigen::VectorXd expected = Eigen::VectorXd::Zero(n), x = vectorOf(s.x);
   expected.head(n - 1) = factors.solve(vectorOf(b).head(n - 1));
@@ -101,12 +85,6 @@ void checkSingularSolution(const SparseMatrix& a, const std::vector<double>& b, 
   expected.array() -= expected.mean();
   CHECK((x - expected).norm() <=
         2.0 * inverseNorm(factors, n - 1) * (vectorOf(b) - whole * x).norm() + 1e-11 * expected.norm());
-}
-
-std::vector<double> wavy(std::int64_t n) {
-  std::vector<double> x;
-  for (std::int64_t i = 0; i < n; ++i) x.push_back(1.0 + 0.5 * std::sin(1.7 * static_cast<double>(i)));
-  return x;
 }
 
 std::vector<double> balanced(std::vector<double> b) {
@@ -209,7 +187,7 @@ TEST_CASE("Solutions with smoothed aggregation are Eigen's, after few iterations
   for (const Case& c : cases) {
     CAPTURE(c.name);
     const std::vector<double> b = wavy(c.a.rows);
-    const Reached r = solveWith(device, c.a, b);
+    const Reached r = solveByAggregation(device, c.a, b);
     CHECK(r.solution.outcome == Outcome::Converged);
     CHECK(r.solution.iterations <= c.most);
     CHECK(r.hierarchy.operatorComplexity() < 2.0);
@@ -285,7 +263,7 @@ TEST_CASE("Smoothed aggregation needs as many iterations on large grids as on sm
   std::vector<std::int64_t> iterations;
   for (const std::int64_t n : {16, 32, 64, 128}) {
     const SparseMatrix a = assemble(poisson({n, n}));
-    iterations.push_back(solveWith(device, a, wavy(n * n), {.tolerance = 1e-8}).solution.iterations);
+    iterations.push_back(solveByAggregation(device, a, wavy(n * n), {.tolerance = 1e-8}).solution.iterations);
   }
   CAPTURE(iterations);
   CHECK(iterations.back() <= 12);
@@ -300,8 +278,8 @@ TEST_CASE("Cycles of smoothed aggregation are the same on every device, in every
   std::vector<double> expected;  // in doubles
   const auto cycle = [&](sk::Device& device, Matrix& matrix, const Operator& of,
                          const Arithmetic& arithmetic) {
-    const auto preconditioner =
-        rowNamed(preconditionerKinds(), "aggregation", "preconditioner").make(device, matrix, of, arithmetic);
+    const auto preconditioner = examples::rowNamed(preconditionerKinds(), "aggregation", "preconditioner")
+                                    .make(device, matrix, of, arithmetic);
     Vector in = device.stream<float>(matrix.domain(), arithmetic.vectors),
            out = device.stream<float>(matrix.domain(), arithmetic.vectors),
            product = device.stream<float>({1}, arithmetic.sums());
@@ -314,8 +292,6 @@ TEST_CASE("Cycles of smoothed aggregation are the same on every device, in every
   };
   {
     sk::Device device = sk::Device::native();
-    const Arithmetic doubles{
-        .precision = sk::Precision::Double, .matrix = sk::Storage::Double, .vectors = sk::Storage::Double};
     const auto matrix = makeMatrix(device, scaled(a, o.scale), "slices", doubles);
     expected = cycle(device, *matrix, o, doubles);
   }
@@ -330,7 +306,7 @@ TEST_CASE("Cycles of smoothed aggregation are the same on every device, in every
     CAPTURE(device.profile());
     const auto stencil = makeMatrix(scaled(grid, ofGrid.scale), {});
     CHECK((vectorOf(cycle(device, *stencil, ofGrid, {})) - vectorOf(expected)).norm() <= bound);
-    const Reached reached = solveWith(device, a, r, {.layout = "slices", .tolerance = 1e-6});
+    const Reached reached = solveByAggregation(device, a, r, {.layout = "slices", .tolerance = 1e-6});
     CHECK(reached.solution.outcome == Outcome::Converged);
     CHECK(reached.solution.iterations <= 8);
     checkSolution(a, r, reached.solution);
@@ -340,16 +316,14 @@ TEST_CASE("Cycles of smoothed aggregation are the same on every device, in every
 TEST_CASE("The cycle is symmetric, and solves by itself and in other precisions") {
   sk::Device device = sk::Device::native();
   const SparseMatrix smooth = assemble(poisson({21, 22}));
-  const Reached alone = solveWith(device, smooth, wavy(smooth.rows), {.solver = "stationary"});
+  const Reached alone = solveByAggregation(device, smooth, wavy(smooth.rows), {.solver = "stationary"});
   CHECK(alone.solution.outcome == Outcome::Converged);
   CHECK(alone.solution.iterations <= 22);
   checkSolution(smooth, wavy(smooth.rows), alone.solution);
   const Arithmetic halves{
       .precision = sk::Precision::Single, .matrix = sk::Storage::Half, .vectors = sk::Storage::Half};
-  for (const Arithmetic& arithmetic : {halves, Arithmetic{.precision = sk::Precision::Double,
-                                                          .matrix = sk::Storage::Double,
-                                                          .vectors = sk::Storage::Double}}) {
-    const Reached r = solveWith(device, smooth, wavy(smooth.rows), {.arithmetic = arithmetic});
+  for (const Arithmetic& arithmetic : {halves, doubles}) {
+    const Reached r = solveByAggregation(device, smooth, wavy(smooth.rows), {.arithmetic = arithmetic});
     CHECK(r.solution.outcome == Outcome::Converged);
     CHECK(r.solution.iterations < 60);
     checkSolution(smooth, wavy(smooth.rows), r.solution);
@@ -358,7 +332,7 @@ TEST_CASE("The cycle is symmetric, and solves by itself and in other precisions"
   const Operator o = operatorOf(a);
   const auto matrix = makeMatrix(device, scaled(a, o.scale), "rows", {});
   const auto m =
-      rowNamed(preconditionerKinds(), "aggregation", "preconditioner").make(device, *matrix, o, {});
+      examples::rowNamed(preconditionerKinds(), "aggregation", "preconditioner").make(device, *matrix, o, {});
   Vector u = device.stream<float>({a.rows}), v = device.stream<float>({a.rows}),
          mu = device.stream<float>({a.rows}), mv = device.stream<float>({a.rows}),
          product = device.stream<float>({1});
@@ -385,16 +359,17 @@ TEST_CASE("Singular matrices are solved where the right-hand side allows it, of 
   for (const SparseMatrix& a : {grid, laplacian(1000, hubs(1000), 0.0, one)}) {
     sk::Device device = sk::Device::native();
     const std::vector<double> b = balanced(wavy(a.rows));
-    const Reached r = solveWith(device, a, b);
+    const Reached r = solveByAggregation(device, a, b);
     CHECK(r.solution.outcome == Outcome::SingularAndCompatible);
     CHECK(r.solution.iterations < 50);
     checkSingularSolution(a, b, r.solution);
   }
   sk::Device device = sk::Device::native();
-  const Reached r = solveWith(device, paths, alternating);
+  const Reached r = solveByAggregation(device, paths, alternating);
   CHECK(r.solution.outcome == Outcome::SingularAndCompatible);
   CHECK(r.solution.iterations < 30);
-  CHECK(solveWith(device, grid, wavy(grid.rows)).solution.outcome == Outcome::SingularAndIncompatible);
+  CHECK(solveByAggregation(device, grid, wavy(grid.rows)).solution.outcome ==
+        Outcome::SingularAndIncompatible);
 }
 
 TEST_CASE("Matrices without rows or without neighbours, and small ones, need no coarse level") {
@@ -403,7 +378,7 @@ TEST_CASE("Matrices without rows or without neighbours, and small ones, need no 
     CAPTURE(n);
     const SparseMatrix a = diagonalMatrix(n);
     const std::vector<double> b = wavy(n);
-    const Reached r = solveWith(device, a, b);
+    const Reached r = solveByAggregation(device, a, b);
     CHECK(r.solution.outcome == Outcome::Converged);
     REQUIRE(r.hierarchy.levels.size() == 1);
     CHECK(r.hierarchy.operatorComplexity() == 1.0);
@@ -412,7 +387,7 @@ TEST_CASE("Matrices without rows or without neighbours, and small ones, need no 
       CHECK(std::abs(r.solution.x[i] - b[i] / (1.0 + static_cast<double>(i % 7))) <= 1e-9);
   }
   const Entry two[] = {{0, 0, 2.0}, {0, 1, 1.0}, {1, 0, 1.0}, {1, 1, 2.0}};
-  const Reached r = solveWith(device, assemble(2, 2, two), {4.0, 5.0});
+  const Reached r = solveByAggregation(device, assemble(2, 2, two), {4.0, 5.0});
   CHECK(r.solution.iterations <= 2);
   CHECK(std::abs(r.solution.x[0] - 1.0) <= 1e-9);
   CHECK(std::abs(r.solution.x[1] - 2.0) <= 1e-9);
@@ -421,11 +396,11 @@ TEST_CASE("Matrices without rows or without neighbours, and small ones, need no 
 TEST_CASE("Matrices that smoothed aggregation cannot take are told, with what can") {
   sk::Device device = sk::Device::native();
   const Entry zero[] = {{0, 1, 1.0}, {1, 0, 1.0}, {1, 1, 1.0}};
-  CHECK_THROWS_WITH(solveWith(device, assemble(2, 2, zero), {1, 2}),
+  CHECK_THROWS_WITH(solveByAggregation(device, assemble(2, 2, zero), {1, 2}),
                     "row 1 has no diagonal entry, or 0, and the preconditioner 'aggregation' divides by it; "
                     "take --preconditioner none");
   const Entry negative[] = {{0, 0, 1.0}, {1, 1, -2.0}};
-  CHECK_THROWS_WITH(solveWith(device, assemble(2, 2, negative), {1, 2}),
+  CHECK_THROWS_WITH(solveByAggregation(device, assemble(2, 2, negative), {1, 2}),
                     "row 2 has the diagonal entry -2, and the preconditioner 'aggregation' needs positive "
                     "ones, as positive definite matrices have; take --solver minres --preconditioner none");
 }

@@ -10,10 +10,8 @@
 #include <sk/sk.hpp>
 
 #include "compact.hpp"
-#include "multigrid.hpp"
-#include "multigrid_varying.hpp"
-#include "solve.hpp"
 #include "system.hpp"
+#include "test_solves.hpp"
 
 namespace linear {
 namespace {
@@ -25,16 +23,11 @@ double errorAt(sk::Device& device, int rank, std::int64_t n, bool isCompact) {
   const SparseMatrix sparse = assemble(compact);
   Operator a = isCompact ? operatorOf(sparse) : operatorOf(known.grid);
   if (isCompact) a.varying = &compact;
-  const Arithmetic doubles{
-      .precision = sk::Precision::Double, .matrix = sk::Storage::Double, .vectors = sk::Storage::Double};
   const std::unique_ptr<Matrix> matrix = isCompact ? makeMatrix(device, scaled(compact, a.scale), doubles)
                                                    : makeMatrix(scaled(known.grid, a.scale), doubles);
-  const std::unique_ptr<Preconditioner> m =
-      isCompact ? makeMultigrid(device, scaled(compact, a.scale), doubles, {})
-                : makeMultigrid(device, scaled(known.grid, a.scale), doubles, {});
-  const auto method = makeGradients({device, *matrix, m.get(), doubles, {}});
-  const Solution s = solve(*method, a, isCompact ? known.fourthOrder() : known.secondOrder(), doubles,
-                           {.tolerance = 1e-11, .every = 1});
+  const Solution s = solveBy(
+      device, *matrix, a, isCompact ? known.fourthOrder() : known.secondOrder(),
+      {.preconditioner = "multigrid", .arithmetic = doubles, .settings = {.tolerance = 1e-11, .every = 1}});
   CHECK(s.outcome == Outcome::Converged);
   CHECK(s.iterations < 25);
   return known.errorOf(s.x);
@@ -54,7 +47,6 @@ TEST_CASE("Errors fall with the second and the fourth power of the spacing") {
 }
 
 TEST_CASE("Compact discretisations keep their order at Neumann and periodic ends") {
-  constexpr Ends mirrors{Side::Neumann, Side::Neumann}, ring{Side::Periodic, Side::Periodic};
   constexpr double pi = std::numbers::pi;
   /// The residual of cos(pi x) cos(2 pi y) cos(pi z), which is as large as the sixth power of the spacing.
   const auto residual = [&](int rank, std::int64_t n) {

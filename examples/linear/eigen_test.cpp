@@ -3,7 +3,6 @@
 // Solutions beside those of Eigen's direct solvers in double precision, for systems that are hard in some way.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -12,55 +11,22 @@
 #include <sk/sk.hpp>
 
 #include "layout.hpp"
-#include "named.hpp"
 #include "ordering.hpp"
 #include "residual.hpp"
 #include "solve.hpp"
 #include "sparse.hpp"
 #include "stencil.hpp"
+#include "support/named.hpp"
+#include "test_eigen.hpp"
+#include "test_solves.hpp"
 
 namespace linear {
 namespace {
 
-struct Choice {
-  std::string_view solver = "cg";
-  std::string_view preconditioner = "jacobi";
-  std::string_view layout = "slices";
-  Arithmetic arithmetic = {};
-  SolveSettings settings = {};
-  std::string_view ordering = "colours";
-  MethodSettings method = {};
-};
-
-Solution solveWith(sk::Device& device, const SparseMatrix& a, const std::vector<double>& b, Choice choice) {
-  const Operator o = operatorOf(a);
-  const std::unique_ptr<Matrix> matrix =
-      makeMatrix(device, scaled(a, o.scale), choice.layout, choice.arithmetic);
-  const auto preconditioner = rowNamed(preconditionerKinds(), choice.preconditioner, "preconditioner")
-                                  .make(device, *matrix, o, choice.arithmetic, {.ordering = choice.ordering});
-  choice.method.a = &o;
-  const auto method = rowNamed(methodKinds(), choice.solver, "solver")
-                          .make(device, *matrix, preconditioner.get(), choice.arithmetic, choice.method);
-  return solve(*method, o, b, choice.arithmetic, choice.settings);
-}
-
-Eigen::MatrixXd dense(const SparseMatrix& a) {
-  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(a.rows, a.columns);
-  for (std::int64_t i = 0; i < a.rows; ++i)
-    for (auto k = static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i)]);
-         k < static_cast<std::size_t>(a.starts[static_cast<std::size_t>(i) + 1]); ++k)
-      m(i, a.column[k]) = a.value[k];
-  return m;
-}
-
-Eigen::VectorXd vectorOf(const std::vector<double>& v) {
-  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
-}
-
 /// ||x - y|| / ||y|| against what a residual of that size may mean: ||A^-1|| ||r|| / ||y||, and Eigen's own roundings. Frobenius norms
 /// of matrices bound their 2-norms.
 void checkSolution(const SparseMatrix& a, const std::vector<double>& b, const Solution& s) {
-  const Eigen::MatrixXd m = dense(a);
+  const Eigen::MatrixXd m = eigenOf(a);
   const Eigen::FullPivLU<Eigen::MatrixXd> factors(m);
   const Eigen::VectorXd expected = factors.solve(vectorOf(b));
   const double inverseNorm = factors.inverse().norm();
@@ -87,19 +53,6 @@ SparseMatrix transport(std::int64_t w, std::int64_t h, double alongY, double win
   return assemble(w * h, w * h, entries);
 }
 
-SparseMatrix hilbert(std::int64_t n) {
-  std::vector<Entry> entries;
-  for (std::int64_t i = 0; i < n; ++i)
-    for (std::int64_t j = 0; j < n; ++j) entries.push_back({i, j, 1.0 / static_cast<double>(i + j + 1)});
-  return assemble(n, n, entries);
-}
-
-std::vector<double> wavy(std::int64_t n) {
-  std::vector<double> x;
-  for (std::int64_t i = 0; i < n; ++i) x.push_back(1.0 + 0.5 * std::sin(1.7 * static_cast<double>(i)));
-  return x;
-}
-
 TEST_CASE("Solutions are Eigen's, on devices of every precision") {
   const SparseMatrix anisotropic = transport(7, 5, 1e-3, 0.0), windy = transport(7, 5, 1.0, 0.4);
   const std::vector<double> b = wavy(35);
@@ -108,7 +61,7 @@ TEST_CASE("Solutions are Eigen's, on devices of every precision") {
     for (const std::string_view solver :
          {"cg", "pipelined", "chebyshev", "minres", "gmres", "bicgstab", "sor"}) {
       CAPTURE(name, solver);
-      const bool isSymmetric = rowNamed(methodKinds(), solver, "solver").needsSymmetry;
+      const bool isSymmetric = examples::rowNamed(methodKinds(), solver, "solver").needsSymmetry;
       const SparseMatrix& a = isSymmetric ? anisotropic : windy;
       const Solution s = solveWith(device, a, b, {.solver = solver, .settings = {.tolerance = 1e-11}});
       CHECK(s.outcome == Outcome::Converged);
@@ -176,9 +129,9 @@ TEST_CASE(
           CHECK((p.column[k] == i || p.column[k] < o.starts[g] || p.column[k] >= o.starts[g + 1]));
   }
   SparseMatrix line = transport(13, 1, 0.0, 0.2);  // tridiagonal: its factors fill nothing
-  const Eigen::MatrixXd expected = dense(line);
+  const Eigen::MatrixXd expected = eigenOf(line);
   CHECK(factorise(line, true) == -1);
-  const Eigen::MatrixXd factors = dense(line);
+  const Eigen::MatrixXd factors = eigenOf(line);
   const Eigen::MatrixXd lower = factors.triangularView<Eigen::UnitLower>(),
                         upper = factors.triangularView<Eigen::Upper>();
   CHECK((lower * upper - expected).norm() <= 1e-14);
@@ -197,7 +150,7 @@ TEST_CASE("Ill-conditioned systems report what they have reached") {
       CAPTURE(solver, s.residualTrue);
       CHECK((s.outcome == Outcome::Converged) == (s.residualTrue <= 1e-8));
       CHECK(s.residualTrue < 1e-4);
-      CHECK((vectorOf(b) - dense(a) * vectorOf(s.x)).norm() <=
+      CHECK((vectorOf(b) - eigenOf(a) * vectorOf(s.x)).norm() <=
             1.001 * s.residualTrue * vectorOf(b).norm() + 1e-15);
     }
   }
@@ -213,22 +166,18 @@ TEST_CASE("Ill-conditioned systems report what they have reached") {
 
 TEST_CASE("Singular, indefinite and tiny systems end with the outcome that they have") {
   sk::Device device = sk::Device::native();
-  SparseMatrix shifted = transport(9, 7, 1.0, 0.0);
-  for (std::size_t i = 0; i < 63; ++i)
-    for (auto k = static_cast<std::size_t>(shifted.starts[i]);
-         k < static_cast<std::size_t>(shifted.starts[i + 1]); ++k)
-      if (shifted.column[k] == static_cast<std::int32_t>(i)) shifted.value[k] -= 2.05;
+  const SparseMatrix indefinite = shifted(transport(9, 7, 1.0, 0.0), 2.05);
   for (const std::string_view solver : {"minres", "gmres"}) {
     CAPTURE(solver);
-    const Solution s = solveWith(device, shifted, wavy(63),
+    const Solution s = solveWith(device, indefinite, wavy(63),
                                  {.solver = solver, .preconditioner = "none", .method = {.restart = 63}});
     CHECK(s.outcome == Outcome::Converged);
-    checkSolution(shifted, wavy(63), s);
+    checkSolution(indefinite, wavy(63), s);
   }
   for (const std::string_view solver : {"cg", "pipelined", "chebyshev"})
-    CHECK(solveWith(device, shifted, wavy(63), {.solver = solver, .preconditioner = "none"}).outcome ==
+    CHECK(solveWith(device, indefinite, wavy(63), {.solver = solver, .preconditioner = "none"}).outcome ==
           Outcome::NotPositiveDefinite);
-  CHECK_THROWS_WITH(solveWith(device, scaled(shifted, -1.0), wavy(63), {.preconditioner = "ic0"}),
+  CHECK_THROWS_WITH(solveWith(device, scaled(indefinite, -1.0), wavy(63), {.preconditioner = "ic0"}),
                     Catch::Contains("is not positive definite"));
 
   const Entry zero[] = {{0, 1, 1.0}, {1, 0, 1.0}};
@@ -287,14 +236,13 @@ TEST_CASE("The device finds asymmetry, and the host its place") {
 }
 
 TEST_CASE("Residuals are those of double precision, wherever they are computed") {
-  const SparseMatrix a = hilbert(20);  // entries that floats do not have
+  const SparseMatrix a = hilbert(20);
   const Operator o = operatorOf(a);
   const std::vector<double> b = wavy(20),
                             x = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
-  const Eigen::VectorXd expected = vectorOf(b) - o.scale * (dense(a) * vectorOf(x));
+  const Eigen::VectorXd expected = vectorOf(b) - o.scale * (eigenOf(a) * vectorOf(x));
   for (const bool isDrawn : {false, true}) {
-    sk::Device device = isDrawn ? sk::Device(sk::DeviceOptions{.device = "software", .profile = "essl300"})
-                                : sk::Device::native();
+    sk::Device device = examples::deviceNamed(isDrawn ? "essl300" : "native");
     for (const std::string_view layout : {"rows", "slices", "dense", "diagonals"}) {
       CAPTURE(isDrawn, layout);
       const auto matrix = makeMatrix(device, scaled(a, o.scale), layout, {});

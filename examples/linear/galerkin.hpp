@@ -4,7 +4,6 @@
 // Galerkin's coarse matrices. It knows no device.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "varying.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <ctime>
 
-#include "named.hpp"
+#include "support/named.hpp"
 #include "support/stopwatch.hpp"
 
 namespace linear {
@@ -56,7 +56,7 @@ std::vector<std::int64_t> diagonalsOf(const SparseMatrix& a, std::size_t most) {
 }
 
 std::int64_t bytesOf(const SparseMatrix& a, std::string_view layout, std::int64_t entryBytes) {
-  if (layout != "auto") return rowNamed(layoutKinds(), layout, "layout").bytes(a, entryBytes);
+  if (layout != "auto") return examples::rowNamed(layoutKinds(), layout, "layout").bytes(a, entryBytes);
   std::int64_t least = layouts[0].bytes(a, entryBytes);
   for (const LayoutKind& kind : layouts)
     if (kind.suits(a)) least = std::min(least, kind.bytes(a, entryBytes));
@@ -108,11 +108,12 @@ std::vector<LayoutCost> layoutCosts(const sk::Device& device, const SparseMatrix
 
 std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const SparseMatrix& a, std::string_view layout,
                                    const Arithmetic& arithmetic, std::vector<LayoutCost>* costs) {
-  if (layout != "auto") return rowNamed(layoutKinds(), layout, "layout").make(device, a, arithmetic);
+  if (layout != "auto")
+    return examples::rowNamed(layoutKinds(), layout, "layout").make(device, a, arithmetic);
   const std::vector<LayoutCost> all = layoutCosts(device, a, arithmetic);
   if (costs != nullptr) *costs = all;
   const std::string_view best = all.empty() ? layouts[0].name : all.front().layout;
-  return rowNamed(layoutKinds(), best, "layout").make(device, a, arithmetic);
+  return examples::rowNamed(layoutKinds(), best, "layout").make(device, a, arithmetic);
 }
 
 }  // namespace linear

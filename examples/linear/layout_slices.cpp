@@ -4,7 +4,6 @@
 // multiplication on modern processors with wide SIMD units" (2014). Rows of similar lengths, found among `window` neighbours, share a slice, whose
 // entries are stored side by side and filled to the longest row. The vectors keep their order: each row knows its slot.
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <stdexcept>

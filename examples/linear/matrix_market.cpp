@@ -6,7 +6,6 @@
 #include <cmath>
 #include <iterator>
 #include <new>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 

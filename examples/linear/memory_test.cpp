@@ -10,16 +10,16 @@
 
 #include "layout.hpp"
 #include "memory.hpp"
-#include "named.hpp"
 #include "stencil.hpp"
+#include "support/named.hpp"
 
 namespace linear {
 namespace {
 
 MemoryChoices choicesOf(std::string_view solver, std::string_view preconditioner, std::string_view layout,
                         const Arithmetic& arithmetic) {
-  return {rowNamed(methodKinds(), solver, "solver"),
-          rowNamed(preconditionerKinds(), preconditioner, "preconditioner"), layout, arithmetic};
+  return {examples::rowNamed(methodKinds(), solver, "solver"),
+          examples::rowNamed(preconditionerKinds(), preconditioner, "preconditioner"), layout, arithmetic};
 }
 
 TEST_CASE("Bytes of layouts are known before anything is copied") {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Geometric multigrid for stencils with the same coefficients everywhere: as a preconditioner, one cycle.
+// Geometric multigrid as a preconditioner, which is one cycle: for stencils with the same coefficients everywhere, and for others.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,7 @@
 
 #include "cycles.hpp"
 #include "stencil.hpp"
+#include "varying.hpp"
 
 namespace linear {
 
@@ -34,5 +35,24 @@ inline std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const S
 /// The stencil for a grid with half the elements along each dimension that has more than three, and whose coefficient is at least a quarter of
 /// the largest of these (semi-coarsening; Trottenberg et al., section 5.1): coefficients go with the square of the distance between elements.
 Stencil coarsened(const Stencil& a);
+
+/// The same for coefficients that differ, and jump, from element to element (multigrid_varying.cpp), on the coarse grids of galerkin.hpp. `a` is the matrix as the device has it, and symmetric. A sweep is two of Jacobi's iterations, whose factors are
+/// those of Chebyshev's polynomial for the upper part of the spectrum. Elements whose rows are 0 stay 0.
+std::unique_ptr<Hierarchy> makeHierarchy(const Space& space, const VaryingStencil& a,
+                                         const Arithmetic& arithmetic);
+inline std::unique_ptr<Hierarchy> makeHierarchy(sk::Device& device, const VaryingStencil& a,
+                                                const Arithmetic& arithmetic) {
+  return makeHierarchy(Space(device, a.grid), a, arithmetic);
+}
+
+/// One cycle for z = A^-1 r, from z = 0, on these grids.
+std::unique_ptr<Preconditioner> makeMultigrid(const Space& space, const VaryingStencil& a,
+                                              const Arithmetic& arithmetic,
+                                              const MultigridSettings& settings);
+inline std::unique_ptr<Preconditioner> makeMultigrid(sk::Device& device, const VaryingStencil& a,
+                                                     const Arithmetic& arithmetic,
+                                                     const MultigridSettings& settings) {
+  return makeMultigrid(Space(device, a.grid), a, arithmetic, settings);
+}
 
 }  // namespace linear

@@ -4,7 +4,6 @@
 // the discretisation's error.
 #include <array>
 #include <cmath>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,30 +13,15 @@
 
 #include "compact.hpp"
 #include "multigrid.hpp"
-#include "named.hpp"
 #include "operator.hpp"
 #include "report.hpp"
 #include "solve.hpp"
 #include "stencil.hpp"
 #include "system.hpp"
-#include "test_devices.hpp"
+#include "test_solves.hpp"
 
 namespace linear {
 namespace {
-
-constexpr Arithmetic doubles{
-    .precision = sk::Precision::Double, .matrix = sk::Storage::Double, .vectors = sk::Storage::Double};
-
-std::vector<double> randomVector(std::int64_t n, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<double> v(static_cast<std::size_t>(n));
-  for (double& x : v) x = std::uniform_real_distribution<double>(-1, 1)(random);
-  return v;
-}
-
-constexpr Ends fixedEnds{Side::Dirichlet, Side::Dirichlet}, mirrors{Side::Neumann, Side::Neumann},
-    ring{Side::Periodic, Side::Periodic}, mixed{Side::Dirichlet, Side::Neumann},
-    turned{Side::Neumann, Side::Dirichlet};
 
 Stencil poissonWith(const sk::Shape& grid, const std::vector<Ends>& ends) {
   return withEnds(poisson(grid), ends);
@@ -47,12 +31,6 @@ void removeMean(std::vector<double>& v) {
   double sum = 0.0;
   for (const double x : v) sum += x;
   for (double& x : v) x -= sum / static_cast<double>(v.size());
-}
-
-double norm(const std::vector<double>& v) {
-  double sum = 0.0;
-  for (const double x : v) sum += x * x;
-  return std::sqrt(sum);
 }
 
 std::vector<double> appliedTo(sk::Device& device, Preconditioner& m, const Stencil& a,
@@ -80,37 +58,39 @@ double rateOf(sk::Device& device, const Stencil& a, const MultigridSettings& set
   return fifth > 0.0 ? std::cbrt(norm(r) / fifth) : 0.0;
 }
 
+/// Of V(2,1)-cycles.
+constexpr MultigridSettings sweeps{.before = 2, .after = 1, .isSymmetric = false};
+
 TEST_CASE("V(2,1)-cycles converge at one rate on every grid") {
   sk::Device device = sk::Device::native();
   for (const sk::Shape& grid :
        {sk::Shape{31, 31}, sk::Shape{32, 32}, sk::Shape{61, 67}, sk::Shape{127, 127}, sk::Shape{40, 3}}) {
     CAPTURE(grid[0], grid[1]);
-    CHECK(rateOf(device, poisson(grid), {.before = 2, .after = 1, .isSymmetric = false}) < 0.15);
+    CHECK(rateOf(device, poisson(grid), sweeps) < 0.15);
   }
-  CHECK(rateOf(device, poisson({15, 16, 17}), {.before = 2, .after = 1, .isSymmetric = false}) < 0.3);
+  CHECK(rateOf(device, poisson({15, 16, 17}), sweeps) < 0.3);
   CHECK(rateOf(device, poisson({1, 1}), {}) < 0.01);
 }
 
 TEST_CASE("Every grid of a hierarchy has a rate of its own, which the preconditioner measures") {
-  const MultigridSettings settings{.before = 2, .after = 1, .isSymmetric = false};
   for (sk::Device& device : testDevices()) {
     const bool isNative = device.profile() == sk::Device::native().profile();
     for (const sk::Shape& grid : {sk::Shape{64, 61}, sk::Shape{33, 90}, sk::Shape{127, 127}}) {
       if (!isNative && grid[0] != 33) continue;  // drawn on the host: slow
       CAPTURE(device.profile(), grid[0], grid[1]);
-      const std::vector<LevelRate> rates = makeMultigrid(device, poisson(grid), {}, settings)->rates();
+      const std::vector<LevelRate> rates = makeMultigrid(device, poisson(grid), {}, sweeps)->rates();
       REQUIRE(rates.size() >= 5);
       CHECK(rates.front().grid == grid);
       CHECK(rates.back().grid.size() <= 9);
       for (const LevelRate& level : rates) CHECK(level.rate <= 0.15);
       CHECK(rates.back().rate < 1e-5);  // solved by its inverse
       if (grid[0] == 127)
-        CHECK(rates.front().rate == Approx(rateOf(device, poisson(grid), settings)).margin(0.02));
+        CHECK(rates.front().rate == Approx(rateOf(device, poisson(grid), sweeps)).margin(0.02));
     }
   }
   sk::Device device = sk::Device::native();
   for (const LevelRate& level :
-       makeMultigrid(device, poissonWith({20, 31}, {mirrors, ring}), {}, settings)->rates())
+       makeMultigrid(device, poissonWith({20, 31}, {mirrors, ring}), {}, sweeps)->rates())
     CHECK(level.rate <= 0.15);
   Account account;
   account.rates = {{{41, 63}, 0.125}};
@@ -128,9 +108,9 @@ TEST_CASE("V(2,1)-cycles converge as fast where one dimension couples more stron
   for (const double ratio : {1e-3, 0.1, 10.0, 1e3}) {
     CAPTURE(ratio);
     const Stencil plane = poisson({45, 52}, std::array{1.0, ratio});
-    CHECK(rateOf(device, plane, {.before = 2, .after = 1, .isSymmetric = false}) < 0.2);
+    CHECK(rateOf(device, plane, sweeps) < 0.2);
     const Stencil solid = poisson({12, 14, 17}, std::array{1.0, ratio, 1.0});
-    CHECK(rateOf(device, solid, {.before = 2, .after = 1, .isSymmetric = false}) < 0.3);
+    CHECK(rateOf(device, solid, sweeps) < 0.3);
   }
   CHECK_THROWS_WITH(poisson({3, 4}, std::array{1.0}), Catch::Contains("as many diffusivities, not 1"));
   CHECK_THROWS_WITH(poisson({3, 4}, std::array{1.0, -2.0}), Catch::Contains("which -2 is not"));
@@ -145,18 +125,17 @@ TEST_CASE("V(2,1)-cycles converge at one rate whatever the ends of the grid") {
         const Stencil a = poissonWith({n, n + 2}, {ends, others});
         // At the seams of two rings with odd extents, on this grid or a coarser one, neighbours of one colour are relaxed at once.
         const double bound = others == ring ? 0.2 : 0.15;
-        CHECK(rateOf(device, a, {.before = 2, .after = 1, .isSymmetric = false}) < bound);
+        CHECK(rateOf(device, a, sweeps) < bound);
       }
   for (const Ends& ends : {mirrors, ring, mixed}) {
     CAPTURE(static_cast<int>(ends.low), static_cast<int>(ends.high));
     const Stencil a = poissonWith({9, 10, 11}, {ends, ends, ends});
-    CHECK(rateOf(device, a, {.before = 2, .after = 1, .isSymmetric = false}) < 0.3);
+    CHECK(rateOf(device, a, sweeps) < 0.3);
   }
   for (const sk::Shape& grid : {sk::Shape{1, 2}, sk::Shape{3, 3}, sk::Shape{1, 40}}) {  // hardly a grid
     CAPTURE(grid[0], grid[1]);
     for (const Ends& ends : {mirrors, ring})
-      CHECK(rateOf(device, poissonWith(grid, {ends, ends}), {.before = 2, .after = 1, .isSymmetric = false}) <
-            0.15);
+      CHECK(rateOf(device, poissonWith(grid, {ends, ends}), sweeps) < 0.15);
   }
 }
 
@@ -185,11 +164,8 @@ TEST_CASE("A V-cycle is a symmetric preconditioner") {
 Solution solved(sk::Device& device, const Stencil& a, const std::vector<double>& b,
                 std::string_view preconditioner, double tolerance) {
   const Operator o = operatorOf(a);
-  const std::unique_ptr<Matrix> matrix = makeMatrix(scaled(a, o.scale), Arithmetic{});
-  const auto m =
-      rowNamed(preconditionerKinds(), preconditioner, "preconditioner").make(device, *matrix, o, {});
-  const auto method = rowNamed(methodKinds(), "cg", "solver").make(device, *matrix, m.get(), {});
-  return solve(*method, o, b, {}, {.tolerance = tolerance});
+  return solveBy(device, *makeMatrix(scaled(a, o.scale), Arithmetic{}), o, b,
+                 {.preconditioner = preconditioner, .settings = {.tolerance = tolerance}});
 }
 
 /// The largest errors after one and two cycles of full multigrid, as parts of the largest error of the discretisation.

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "multigrid_varying.hpp"
+#include "multigrid.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "galerkin.hpp"
 #include "multigrid.sk.hpp"

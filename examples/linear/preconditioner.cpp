@@ -2,17 +2,12 @@
 #include "preconditioner.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
-#include <utility>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "aggregation.hpp"
 #include "chebyshev.hpp"
 #include "multigrid.hpp"
-#include "multigrid_varying.hpp"
 #include "operator.hpp"
 #include "relaxation.hpp"
 #include "vectors.sk.hpp"

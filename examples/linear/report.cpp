@@ -4,11 +4,57 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace linear {
+namespace {
+
+/// Powers of ten from below the smallest to above the largest residual, and the last iteration.
+struct Axes {
+  Axes(std::span<const HistoryPoint> history, double tolerance) {
+    int least = std::numeric_limits<int>::max(), greatest = std::numeric_limits<int>::min();
+    const auto take = [&](double value) {
+      if (!(value > 0.0) || !std::isfinite(value)) return;
+      least = std::min(least, static_cast<int>(std::floor(std::log10(value))));
+      greatest = std::max(greatest, static_cast<int>(std::ceil(std::log10(value))));
+    };
+    for (const HistoryPoint& p : history) take(p.residual);
+    take(tolerance);
+    low = least;
+    high = std::max(greatest, least + 1);
+    last = std::max<std::int64_t>(history.back().iteration, 1);
+  }
+  /// From 0, at the bottom, to 1.
+  double heightOf(double residual) const {
+    if (!(residual > 0.0)) return 0.0;
+    return std::clamp((std::log10(residual) - low) / (high - low), 0.0, 1.0);
+  }
+  double placeOf(std::int64_t iteration) const {
+    return static_cast<double>(iteration) / static_cast<double>(last);
+  }
+
+  int low = 0, high = 1;
+  std::int64_t last = 1;
+};
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '<')
+      result += "&lt;";
+    else if (c == '&')
+      result += "&amp;";
+    else
+      result += c;
+  }
+  return result;
+}
+
+}  // namespace
 
 std::string textOf(const Account& account, const Solution& solution) {
   std::string text;
@@ -72,6 +118,71 @@ std::string jsonOf(const Account& account, const Solution& solution) {
     hierarchy["setup_seconds"] = account.hierarchy->seconds;
   }
   return json.dump(2) + "\n";
+}
+
+std::string textChart(std::span<const HistoryPoint> history, double tolerance) {
+  if (history.size() < 2) return "";
+  constexpr int width = 64, height = 12;
+  const Axes axes(history, tolerance);
+  std::vector<std::string> lines(height, std::string(width, ' '));
+  const auto lineOf = [&](double residual) {
+    return static_cast<std::size_t>(std::lround((1.0 - axes.heightOf(residual)) * (height - 1)));
+  };
+  lines[lineOf(tolerance)].assign(width, '.');
+  for (const HistoryPoint& p : history)
+    lines[lineOf(p.residual)]
+         [static_cast<std::size_t>(std::lround(axes.placeOf(p.iteration) * (width - 1)))] = '*';
+  std::string text;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string label = i == 0                  ? fmt::format("1e{}", axes.high)
+                              : i + 1 == lines.size() ? fmt::format("1e{}", axes.low)
+                                                      : "";
+    fmt::format_to(std::back_inserter(text), "  {:>6} |{}\n", label,
+                   lines[i].substr(0, lines[i].find_last_not_of(' ') + 1));
+  }
+  fmt::format_to(std::back_inserter(text), "  {:>6} +{:-<{}}\n  {:>6}  0{:>{}}\n", "", "", width, "",
+                 axes.last, width - 1);
+  return text;
+}
+
+std::string svgChart(std::span<const HistoryPoint> history, double tolerance, const std::string& title) {
+  constexpr double width = 640.0, height = 400.0, left = 64.0, right = 16.0, top = 40.0, bottom = 48.0;
+  const std::vector<HistoryPoint> points = history.empty()
+                                               ? std::vector<HistoryPoint>{{0, 1.0}}
+                                               : std::vector<HistoryPoint>(history.begin(), history.end());
+  const Axes axes(points, tolerance);
+  const auto x = [&](std::int64_t iteration) {
+    return left + axes.placeOf(iteration) * (width - left - right);
+  };
+  const auto y = [&](double residual) {
+    return top + (1.0 - axes.heightOf(residual)) * (height - top - bottom);
+  };
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" font-family=\"sans-serif\" "
+      "font-size=\"12\">\n"
+      "<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n<text x=\"{2}\" y=\"24\" "
+      "font-size=\"14\">{3}</text>\n",
+      width, height, left, escaped(title));
+  const auto out = std::back_inserter(svg);
+  const int step = std::max(1, (axes.high - axes.low) / 8);
+  for (int e = axes.low; e <= axes.high; e += step) {
+    const double at = y(std::pow(10.0, e));
+    fmt::format_to(out,
+                   "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#ddd\"/>\n"
+                   "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">1e{5}</text>\n",
+                   left, width - right, at, left - 8.0, at + 4.0, e);
+  }
+  fmt::format_to(
+      out,
+      "<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#c33\" stroke-dasharray=\"4 3\"/>\n"
+      "<polyline fill=\"none\" stroke=\"#236\" stroke-width=\"1.5\" points=\"",
+      left, width - right, y(tolerance), y(tolerance));
+  for (const HistoryPoint& p : points) fmt::format_to(out, "{:.1f},{:.1f} ", x(p.iteration), y(p.residual));
+  fmt::format_to(out,
+                 "\"/>\n<text x=\"{}\" y=\"{}\">0</text>\n<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{} "
+                 "iterations</text>\n</svg>\n",
+                 left, height - bottom + 20.0, width - right, height - bottom + 20.0, axes.last);
+  return svg;
 }
 
 }  // namespace linear

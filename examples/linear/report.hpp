@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// What a solve has come to, for people and for programs.
+// What a solve has come to, for people and for programs, and charts of its residuals over iterations with a logarithmic scale.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,5 +39,10 @@ std::string textOf(const Account& account, const Solution& solution);
 /// finite are null. For a preconditioner that has built levels, also hierarchy: levels (unknowns, entries and layout of each), operator_complexity and
 /// setup_seconds; for a layout with offsets, offset_bits.
 std::string jsonOf(const Account& account, const Solution& solution);
+
+/// A chart for the terminal. Lines of text, each ended; "" if there are fewer than two points.
+std::string textChart(std::span<const HistoryPoint> history, double tolerance);
+/// A whole SVG document.
+std::string svgChart(std::span<const HistoryPoint> history, double tolerance, const std::string& title);
 
 }  // namespace linear

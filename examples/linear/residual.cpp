@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "layout.hpp"
-#include "named.hpp"
 #include "residual.sk.hpp"
 #include "vectors.sk.hpp"
 

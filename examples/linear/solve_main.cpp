@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 #include <new>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -14,18 +13,17 @@
 #include <fmt/format.h>
 #include <sk/sk.hpp>
 
-#include "chart.hpp"
 #include "layout.hpp"
 #include "matrix_market.hpp"
 #include "memory.hpp"
 #include "method.hpp"
-#include "named.hpp"
 #include "preconditioner.hpp"
 #include "report.hpp"
 #include "residual.hpp"
 #include "solve.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
+#include "support/named.hpp"
 #include "support/progress.hpp"
 #include "support/ranks.hpp"
 #include "support/stopwatch.hpp"
@@ -68,13 +66,7 @@ constexpr Choice<sk::Accumulate> accumulations[] = {{"tree", sk::Accumulate::Tre
 
 template <class T, std::size_t n>
 T chosen(const Choice<T> (&table)[n], std::string_view name, std::string_view what) {
-  return linear::rowNamed(std::span<const Choice<T>>(table), name, what).value;
-}
-
-template <class Kinds>
-std::string described(std::string head, const Kinds& kinds) {
-  for (const auto& kind : kinds) head += fmt::format("\n  {:<11} {}", kind.name, kind.does);
-  return head;
+  return examples::rowNamed(table, name, what).value;
 }
 
 void addOptions(CLI::App& cli, Settings& s) {
@@ -87,10 +79,10 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--rhs", s.rightHandSide,
                  "the right-hand side, a Matrix Market file; without one, A times ones, or A times random "
                  "numbers on a singular grid");
-  cli.add_option("--solver", s.solver, described("the method:", linear::methodKinds()))
+  cli.add_option("--solver", s.solver, examples::listed("the method:", linear::methodKinds(), 11))
       ->capture_default_str();
   cli.add_option("--preconditioner", s.preconditioner,
-                 described("what the residual is multiplied by:", linear::preconditionerKinds()))
+                 examples::listed("what the residual is multiplied by:", linear::preconditionerKinds(), 11))
       ->capture_default_str();
   cli.add_option("--restart", s.restart, "steps after which gmres begins anew")
       ->check(CLI::Range(1, 1000))
@@ -111,11 +103,12 @@ void addOptions(CLI::App& cli, Settings& s) {
          "a call\n  levels      the order of the matrix, which needs fewer iterations")
       ->check(CLI::IsMember({"colours", "levels"}))
       ->capture_default_str();
-  cli.add_option("--layout", s.layout,
-                 described("how the device holds the matrix:\n  auto        the one whose product should "
-                           "cost least: a model, not a trial\n"
-                           "  stencil     not at all: coefficients of a grid",
-                           linear::layoutKinds()))
+  cli.add_option(
+         "--layout", s.layout,
+         examples::listed("how the device holds the matrix:\n  auto        the one whose product should "
+                          "cost least: a model, not a trial\n"
+                          "  stencil     not at all: coefficients of a grid",
+                          linear::layoutKinds(), 11))
       ->capture_default_str();
   cli.add_option("--precision", s.precision, "what iterations compute in: half, single, extended or double")
       ->capture_default_str();
@@ -135,11 +128,12 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30))
       ->capture_default_str();
   cli.add_flag("!--no-refinement", s.solve.refines, "run the method once, in its own precision");
-  s.studyOption = cli.add_option("--study", s.study,
-                                 described("print tables: with a matrix, what each precision, storage and "
-                                           "accumulation attains; without one, NAME:",
-                                           linear::studyKinds()))
-                      ->expected(0, 1);
+  s.studyOption =
+      cli.add_option("--study", s.study,
+                     examples::listed("print tables: with a matrix, what each precision, storage and "
+                                      "accumulation attains; without one, NAME:",
+                                      linear::studyKinds(), 11))
+          ->expected(0, 1);
   cli.add_option("--solution", s.solution, "write x to this Matrix Market file");
   cli.add_option("--json", s.json, "write what was reached to this file");
   cli.add_option("--chart", s.svg, "draw the residual over the iterations to this file, as SVG");
@@ -238,9 +232,9 @@ void solveSystem(examples::Application& app, Settings& s) {
       .matrix = chosen(storages, s.entries.empty() ? s.storage : s.entries, "storage"),
       .vectors = chosen(storages, s.storage, "storage"),
       .accumulate = chosen(accumulations, s.accumulate, "accumulation")};
-  const linear::MethodKind& methodKind = linear::rowNamed(linear::methodKinds(), s.solver, "solver");
+  const linear::MethodKind& methodKind = examples::rowNamed(linear::methodKinds(), s.solver, "solver");
   const linear::PreconditionerKind& preconditionerKind =
-      linear::rowNamed(linear::preconditionerKinds(), s.preconditioner, "preconditioner");
+      examples::rowNamed(linear::preconditionerKinds(), s.preconditioner, "preconditioner");
 
   const linear::System system(s.matrix, s.rightHandSide);
   const linear::Operator& a = system.matrix();
@@ -311,10 +305,10 @@ void solveSystem(examples::Application& app, Settings& s) {
 }
 
 void study(examples::Application& app, std::string_view name) {
-  const linear::StudyKind& kind = linear::rowNamed(linear::studyKinds(), name, "study");
+  const examples::Study& kind = examples::rowNamed(linear::studyKinds(), name, "study");
   sk::Device device(app.device());
   const examples::Stopwatch watch;
-  const std::string table = kind.run(device);
+  const std::string table = kind.run(device, false).table;
   app.report(fmt::format("study of {}", kind.does), device.name(), watch.milliseconds());
   fmt::print("\n{}", table);
 }

@@ -3,7 +3,6 @@
 // Solves whose outcome is known: what converges, to which residual, and what each failure is called.
 #include <cmath>
 #include <memory>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,41 +10,16 @@
 #include <sk/sk.hpp>
 
 #include "layout.hpp"
-#include "named.hpp"
 #include "solve.hpp"
 #include "sparse.hpp"
 #include "stencil.hpp"
+#include "support/named.hpp"
+#include "test_solves.hpp"
 
 namespace linear {
 namespace {
 
-struct Choice {
-  std::string_view solver = "cg";
-  std::string_view preconditioner = "jacobi";
-  Arithmetic arithmetic = {};
-  SolveSettings settings = {};
-  std::string_view layout = "rows";
-};
-
-Solution solveWith(sk::Device& device, const SparseMatrix& a, const std::vector<double>& b,
-                   const Choice& choice) {
-  const Operator o = operatorOf(a);
-  const std::unique_ptr<Matrix> matrix =
-      makeMatrix(device, scaled(a, o.scale), choice.layout, choice.arithmetic);
-  const auto preconditioner = rowNamed(preconditionerKinds(), choice.preconditioner, "preconditioner")
-                                  .make(device, *matrix, o, choice.arithmetic);
-  const auto method = rowNamed(methodKinds(), choice.solver, "solver")
-                          .make(device, *matrix, preconditioner.get(), choice.arithmetic, {.a = &o});
-  return solve(*method, o, b, choice.arithmetic, choice.settings);
-}
-
 std::vector<double> ones(std::int64_t n) { return std::vector<double>(static_cast<std::size_t>(n), 1.0); }
-
-std::vector<double> wavy(std::int64_t n) {
-  std::vector<double> x;
-  for (std::int64_t i = 0; i < n; ++i) x.push_back(1.0 + 0.5 * std::sin(1.7 * static_cast<double>(i)));
-  return x;
-}
 
 /// Convection against diffusion on a line: not symmetric.
 SparseMatrix convection(std::int64_t n) {
@@ -96,7 +70,7 @@ TEST_CASE("Refinement reaches the backward error of double precision from each p
       {},
       {.precision = sk::Precision::Half, .matrix = sk::Storage::Half, .vectors = sk::Storage::Half},
       {.precision = sk::Precision::Single, .matrix = sk::Storage::Half, .vectors = sk::Storage::Single},
-      {.precision = sk::Precision::Double, .matrix = sk::Storage::Double, .vectors = sk::Storage::Double}};
+      doubles};
   for (const Arithmetic& arithmetic : precisions) {
     CAPTURE(static_cast<int>(arithmetic.precision), static_cast<int>(arithmetic.vectors));
     const Solution s = solveWith(device, a, b, {.arithmetic = arithmetic, .settings = {.tolerance = 1e-14}});
@@ -124,26 +98,16 @@ double residualInQuad(const SparseMatrix& a, const std::vector<double>& x, const
 TEST_CASE(
     "The reported residual is the true one to 1 %, also where doubles leave only rounding errors of it") {
   // Hilbert's matrix and a right-hand side for which x is huge: ||A|| ||x|| is up to 10^12 times ||b||.
-  std::vector<Entry> entries;
-  constexpr std::int64_t n = 12;
-  for (std::int64_t i = 0; i < n; ++i)
-    for (std::int64_t k = 0; k < n; ++k) entries.push_back({i, k, 1.0 / static_cast<double>(i + k + 1)});
-  const SparseMatrix hilbert = assemble(n, n, entries), grid = assemble(poisson({13, 11}));
+  const SparseMatrix bad = hilbert(12), grid = assemble(poisson({13, 11}));
   for (const char* profile : {"native", "essl300"}) {  // the device computes residuals, and the host
-    sk::Device device = profile == std::string_view("native")
-                            ? sk::Device::native()
-                            : sk::Device(sk::DeviceOptions{.device = "software", .profile = profile});
-    for (const SparseMatrix* a : {&hilbert, &grid}) {
+    sk::Device device = examples::deviceNamed(profile);
+    for (const SparseMatrix* a : {&bad, &grid}) {
       const std::vector<double> b = wavy(a->rows);
       for (const double tolerance : {1e-2, 1e-8, 1e-15, 0.0}) {
-        for (const bool inDoubles : {false, true}) {
+        for (const Arithmetic& arithmetic : {Arithmetic{}, doubles}) {
+          const bool inDoubles = arithmetic.precision == sk::Precision::Double;
           if (inDoubles && profile != std::string_view("native")) continue;
           CAPTURE(profile, a->rows, tolerance, inDoubles);
-          Arithmetic arithmetic;
-          if (inDoubles)
-            arithmetic = {.precision = sk::Precision::Double,
-                          .matrix = sk::Storage::Double,
-                          .vectors = sk::Storage::Double};
           const Solution s = solveWith(
               device, *a, b,
               {.arithmetic = arithmetic, .settings = {.tolerance = tolerance, .most = 300, .every = 8}});
@@ -160,15 +124,14 @@ TEST_CASE("Devices that draw solve like native ones") {
   const SparseMatrix a = assemble(poisson({9, 10}));
   const std::vector<double> b = multiply(a, ones(a.columns));
   for (const char* profile : {"glsl330", "essl300"}) {
-    sk::Device device(sk::DeviceOptions{.device = "software", .profile = profile});
+    sk::Device device = examples::deviceNamed(profile);
     const bool isEs = std::string_view(profile) == "essl300";
     for (const std::string_view solver :
          isEs ? std::vector<std::string_view>{"cg", "bicgstab", "sor", "pipelined"}
               : std::vector<std::string_view>{"cg", "gmres", "chebyshev"}) {
       CAPTURE(profile, solver);
       const Solution s =
-          solveWith(device, a, b,
-                    {.solver = solver, .settings = {.tolerance = isEs ? 1e-6 : 1e-12}, .layout = "slices"});
+          solveWith(device, a, b, {.solver = solver, .settings = {.tolerance = isEs ? 1e-6 : 1e-12}});
       CHECK(s.outcome == Outcome::Converged);
     }
   }
@@ -180,13 +143,12 @@ TEST_CASE("Fused iterations for stencils are those of a stored matrix") {
     const std::vector<double> b = multiply(stencil, ones(stencil.size()));
     const Operator o = operatorOf(stencil);
     for (const bool isDrawn : {false, true}) {
-      sk::Device device = isDrawn ? sk::Device(sk::DeviceOptions{.device = "software", .profile = "essl300"})
-                                  : sk::Device::native();
-      const auto stored = solveWith(device, assemble(stencil), b, {.preconditioner = "none"});
+      sk::Device device = examples::deviceNamed(isDrawn ? "essl300" : "native");
+      const auto stored =
+          solveWith(device, assemble(stencil), b, {.preconditioner = "none", .layout = "rows"});
       const std::unique_ptr<Matrix> matrix = makeMatrix(scaled(stencil, o.scale), Arithmetic{});
       REQUIRE(matrix->isFused());
-      const auto method = rowNamed(methodKinds(), "cg", "solver").make(device, *matrix, nullptr, {});
-      const Solution fused = solve(*method, o, b, {}, {});
+      const Solution fused = solveBy(device, *matrix, o, b, {.preconditioner = "none"});
       CHECK(fused.outcome == Outcome::Converged);
       CHECK(std::abs(fused.iterations - stored.iterations) <= 2);
     }
@@ -194,13 +156,8 @@ TEST_CASE("Fused iterations for stencils are those of a stored matrix") {
 }
 
 TEST_CASE("Minimal residuals solve what is indefinite, and what is singular and compatible") {
-  SparseMatrix shifted = assemble(poisson({9, 11}));
-  for (std::size_t i = 0; i < 99; ++i)
-    for (auto k = static_cast<std::size_t>(shifted.starts[i]);
-         k < static_cast<std::size_t>(shifted.starts[i + 1]); ++k)
-      if (shifted.column[k] == static_cast<std::int32_t>(i))
-        shifted.value[k] -= 2.05;  // some eigenvalues are negative then
-  const std::vector<double> b = multiply(shifted, ones(99));
+  const SparseMatrix indefinite = shifted(assemble(poisson({9, 11})), 2.05);
+  const std::vector<double> b = multiply(indefinite, ones(99));
   std::vector<Entry> ends;  // a line whose ends are free
   for (std::int64_t i = 0; i + 1 < 30; ++i)
     for (const Entry& e : {Entry{i, i, 1}, Entry{i + 1, i + 1, 1}, Entry{i, i + 1, -1}, Entry{i + 1, i, -1}})
@@ -210,9 +167,8 @@ TEST_CASE("Minimal residuals solve what is indefinite, and what is singular and 
   balanced[3] = 1.0;
   balanced[20] = -1.0;
   for (const bool isDrawn : {false, true}) {
-    sk::Device device = isDrawn ? sk::Device(sk::DeviceOptions{.device = "software", .profile = "glsl330"})
-                                : sk::Device::native();
-    const Solution s = solveWith(device, shifted, b, {.solver = "minres", .preconditioner = "none"});
+    sk::Device device = examples::deviceNamed(isDrawn ? "glsl330" : "native");
+    const Solution s = solveWith(device, indefinite, b, {.solver = "minres", .preconditioner = "none"});
     CHECK(s.outcome == Outcome::Converged);
     CHECK(s.iterations < 400);
     CHECK(solveWith(device, free, balanced, {.solver = "minres", .preconditioner = "jacobi"}).outcome ==

@@ -12,7 +12,7 @@
 #include "compact.hpp"
 #include "layout.hpp"
 #include "multigrid.hpp"
-#include "named.hpp"
+#include "support/named.hpp"
 #include "support/stopwatch.hpp"
 #include "support/table.hpp"
 
@@ -65,11 +65,11 @@ Reached reached(sk::Device& device, const System& system, const Run& run) {
   const Operator& a = system.matrix();
   const std::unique_ptr<Matrix> matrix = system.makeMatrix(device, run.layout, run.arithmetic, nullptr);
   const auto preconditioner =
-      rowNamed(preconditionerKinds(), run.preconditioner, "preconditioner")
+      examples::rowNamed(preconditionerKinds(), run.preconditioner, "preconditioner")
           .make(device, *matrix, a, run.arithmetic,
                 {.omega = run.omega, .ordering = run.ordering, .before = run.before, .after = run.after});
   const auto method =
-      rowNamed(methodKinds(), run.method, "solver")
+      examples::rowNamed(methodKinds(), run.method, "solver")
           .make(device, *matrix, preconditioner.get(), run.arithmetic, {.omega = run.omega, .a = &a});
   Reached r;
   for (int i = 0; i < 2; ++i)
@@ -96,16 +96,16 @@ Solution solveWith(sk::Device& device, const System& system, const StudyChoices&
 std::string number(double v) { return fmt::format("{:.1e}", v); }
 std::string milliseconds(double seconds) { return fmt::format("{:.3g}", seconds * 1000.0); }
 
-std::string precisions(sk::Device& device) {
+examples::Findings precisions(sk::Device& device, bool) {
   const System system("poisson:63x63", {});
-  return studyPrecisions(device, system,
-                         {rowNamed(methodKinds(), "cg", "solver"),
-                          rowNamed(preconditionerKinds(), "jacobi", "preconditioner"),
-                          "auto",
-                          {}});
+  return {studyPrecisions(device, system,
+                          {examples::rowNamed(methodKinds(), "cg", "solver"),
+                           examples::rowNamed(preconditionerKinds(), "jacobi", "preconditioner"),
+                           "auto",
+                           {}})};
 }
 
-std::string solvers(sk::Device& device) {
+examples::Findings solvers(sk::Device& device, bool) {
   const System system("poisson:63x63", {});
   examples::Table table(
       {"solver", "preconditioner", "outcome", "iterations", "residual", "ms", "us for an iteration"});
@@ -125,10 +125,10 @@ std::string solvers(sk::Device& device) {
                fmt::format("{:.3g}",
                            s.seconds * 1e6 / static_cast<double>(std::max<std::int64_t>(1, s.iterations)))});
   }
-  return table.markdown();
+  return {table.markdown()};
 }
 
-std::string preconditionerTable(sk::Device& device) {
+examples::Findings preconditionerTable(sk::Device& device, bool) {
   const System system("poisson:63x63", {});
   examples::Table table({"preconditioner", "ordering", "outcome", "iterations", "residual", "ms"});
   for (const PreconditionerKind& kind : preconditionerKinds()) {
@@ -143,10 +143,10 @@ std::string preconditionerTable(sk::Device& device) {
                  milliseconds(s.seconds)});
     }
   }
-  return table.markdown();
+  return {table.markdown()};
 }
 
-std::string layoutsOfGrids(sk::Device& device) {
+examples::Findings layoutsOfGrids(sk::Device& device, bool) {
   const System system("poisson:128x128", {});
   examples::Table table({"layout", "entries in", "bytes for an unknown", "ms for a product",
                          "a byte's cost beside rows", "in the model", "iterations", "residual", "ms"});
@@ -164,7 +164,7 @@ std::string layoutsOfGrids(sk::Device& device) {
       if (costOfRows == 0.0) costOfRows = costOf(r);
       std::string measured, model;
       if (layout != "stencil") {
-        const LayoutKind& kind = rowNamed(layoutKinds(), layout, "layout");
+        const LayoutKind& kind = examples::rowNamed(layoutKinds(), layout, "layout");
         measured = fmt::format("{:.2f}", costOf(r) / costOfRows);
         model = kind.suits(sparseOf(system.matrix()))
                     ? fmt::format("{:g}", device.profile() == "native" ? kind.native : kind.others)
@@ -178,7 +178,7 @@ std::string layoutsOfGrids(sk::Device& device) {
                  std::to_string(r.solution.iterations), number(r.solution.residualTrue),
                  milliseconds(r.solution.seconds)});
     }
-  return table.markdown();
+  return {table.markdown()};
 }
 
 struct NamedCycle {
@@ -186,7 +186,7 @@ struct NamedCycle {
   int before, after;
 };
 
-std::string multigridRates(sk::Device& device) {
+examples::Findings multigridRates(sk::Device& device, bool) {
   examples::Table table({"grid", "cycle", "iterations", "residual an iteration",
                          "rates from the finest grid to the coarsest", "ms"});
   constexpr NamedCycle cycles[] = {{"V(1,1)", "multigrid", 1, 1},
@@ -211,10 +211,10 @@ std::string multigridRates(sk::Device& device) {
                  fmt::format("{:.3f}", std::pow(r.solution.residualTrue, 1.0 / iterations)), rates,
                  milliseconds(r.solution.seconds)});
     }
-  return table.markdown();
+  return {table.markdown()};
 }
 
-std::string jumps(sk::Device& device) {
+examples::Findings jumps(sk::Device& device, bool) {
   examples::Table table({"coefficients", "grid", "ratio", "largest rate of V(2,1)", "V(2,1) alone",
                          "cg with V(1,1)", "the same in floats", "cg with jacobi"});
   constexpr std::string_view grids[][2] = {
@@ -244,7 +244,7 @@ std::string jumps(sk::Device& device) {
       }
       table.add(row);
     }
-  return table.markdown();
+  return {table.markdown()};
 }
 
 /// By conjugate gradients with multigrid.
@@ -260,14 +260,15 @@ Solution solvedKnown(sk::Device& device, const KnownSolution& known, bool isComp
   if (isCompact) a.varying = &compact;
   const std::unique_ptr<Matrix> matrix = isCompact ? makeMatrix(device, scaled(compact, a.scale), doubles)
                                                    : makeMatrix(scaled(known.grid, a.scale), doubles);
-  const auto m =
-      rowNamed(preconditionerKinds(), "multigrid", "preconditioner").make(device, *matrix, a, doubles);
-  const auto method = rowNamed(methodKinds(), "cg", "solver").make(device, *matrix, m.get(), doubles);
+  const auto m = examples::rowNamed(preconditionerKinds(), "multigrid", "preconditioner")
+                     .make(device, *matrix, a, doubles);
+  const auto method =
+      examples::rowNamed(methodKinds(), "cg", "solver").make(device, *matrix, m.get(), doubles);
   return solve(*method, a, isCompact ? known.fourthOrder() : known.secondOrder(), doubles,
                {.tolerance = 1e-12, .every = 1});
 }
 
-std::string orders(sk::Device& device) {
+examples::Findings orders(sk::Device& device, bool) {
   examples::Table table({"grid", "5 or 7 entries: error", "order", "iterations", "9 or 19 entries: error",
                          "order", "iterations"});
   for (const int rank : {2, 3}) {
@@ -288,7 +289,7 @@ std::string orders(sk::Device& device) {
       table.add(row);
     }
   }
-  return table.markdown();
+  return {table.markdown()};
 }
 
 /// The largest errors after one and two cycles of full multigrid in floats, as parts of the largest error of the discretisation, and the time of a cycle.
@@ -323,7 +324,7 @@ std::vector<std::string> nested(sk::Device& device, const KnownSolution& known, 
   return errors;
 }
 
-std::string fullMultigrid(sk::Device& device) {
+examples::Findings fullMultigrid(sk::Device& device, bool) {
   examples::Table table(
       {"grid", "error of the discretisation", "sweeps", "after one cycle", "after two", "ms a cycle"});
   for (const auto& [rank, n] :
@@ -340,10 +341,10 @@ std::string fullMultigrid(sk::Device& device) {
       table.add(row);
     }
   }
-  return table.markdown();
+  return {table.markdown()};
 }
 
-std::string aggregation(sk::Device& device) {
+examples::Findings aggregation(sk::Device& device, bool) {
   examples::Table table({"grid", "computed in", "levels", "operator complexity", "set-up ms",
                          "cg with jacobi", "cg with aggregation", "aggregation alone", "ms"});
   const Arithmetic singles, doubles = arithmeticOf(Double, sk::Storage::Double, sk::Accumulate::Default);
@@ -368,10 +369,10 @@ std::string aggregation(sk::Device& device) {
                std::to_string(plain.solution.iterations), std::to_string(r.solution.iterations),
                std::to_string(alone.solution.iterations), milliseconds(r.solution.seconds)});
   }
-  return table.markdown();
+  return {table.markdown()};
 }
 
-constexpr StudyKind studies[] = {
+constexpr examples::Study studies[] = {
     {"precision", "precisions, storages and accumulations, with and without refinement", precisions},
     {"solvers", "every solver, for Poisson's equation", solvers},
     {"preconditioners", "every symmetric preconditioner, with conjugate gradients", preconditionerTable},
@@ -386,7 +387,7 @@ constexpr StudyKind studies[] = {
 
 }  // namespace
 
-std::span<const StudyKind> studyKinds() { return studies; }
+std::span<const examples::Study> studyKinds() { return studies; }
 
 std::string studyPrecisions(sk::Device& device, const System& system, const StudyChoices& choices) {
   examples::Table table({"computed in", "stored as", "sums", "refined", "outcome", "iterations", "residual",

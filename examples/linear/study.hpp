@@ -6,11 +6,11 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "method.hpp"
 #include "preconditioner.hpp"
 #include "solve.hpp"
+#include "support/study.hpp"
 #include "system.hpp"
 
 namespace linear {
@@ -26,14 +26,7 @@ struct StudyChoices {
 /// the cheapest choice within the tolerance. Choices that the device does not have are left out.
 std::string studyPrecisions(sk::Device& device, const System& system, const StudyChoices& choices);
 
-/// A study of systems of its own, whose table docs/linear.md shows.
-struct StudyKind {
-  std::string_view name;  ///< of --study
-  std::string_view does;
-  /// A table in Markdown.
-  std::string (*run)(sk::Device& device);
-};
-
-std::span<const StudyKind> studyKinds();
+/// Studies of systems of their own, whose tables docs/linear.md shows.
+std::span<const examples::Study> studyKinds();
 
 }  // namespace linear

@@ -9,11 +9,11 @@
 
 #include <fmt/format.h>
 
-#include "coefficients.hpp"
 #include "compact.hpp"
 #include "matrix_market.hpp"
-#include "named.hpp"
 #include "support/host_memory.hpp"
+#include "support/named.hpp"
+#include "varying.hpp"
 
 namespace linear {
 
@@ -76,7 +76,7 @@ Side sideNamed(std::string_view name) {
   };
   static constexpr Row sides[] = {
       {"dirichlet", Side::Dirichlet}, {"neumann", Side::Neumann}, {"periodic", Side::Periodic}};
-  return rowNamed(std::span<const Row>(sides), name, "end of a grid").side;
+  return examples::rowNamed(sides, name, "end of a grid").side;
 }
 
 /// "END" or "LOW-HIGH" for each dimension, in the order of the extents, or once for all.
@@ -112,7 +112,7 @@ std::vector<double> patternOf(const Stencil& grid, std::string_view text) {
   const std::size_t equals = text.find('=');
   const std::string_view number = text.substr(equals + 1);
   const CoefficientPattern& pattern =
-      rowNamed(coefficientPatterns(), text.substr(0, equals), "pattern of coefficients");
+      examples::rowNamed(coefficientPatterns(), text.substr(0, equals), "pattern of coefficients");
   double ratio = 0.0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), ratio);
   if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(ratio) || ratio <= 0.0)

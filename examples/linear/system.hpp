@@ -19,7 +19,7 @@ class System {
  public:
   /// `matrix` is a Matrix Market file, or "poisson:WxH" or "poisson:WxHxD" for Poisson's equation on a grid; ":X,Y" or
   /// ":X,Y,Z" after it are diffusivities along the dimensions, in the order of the extents, and ":periodic,dirichlet-neumann" are the ends, one pair or one word for both, for
-  /// each dimension or for all. ":compact" is the fourth-order discretisation (compact.hpp). ":PATTERN=RATIO" has coefficients that jump from element to element (coefficients.hpp), and ":coefficients=FILE", which comes last, those of a Matrix Market
+  /// each dimension or for all. ":compact" is the fourth-order discretisation (compact.hpp). ":PATTERN=RATIO" has coefficients that jump from element to element (varying.hpp), and ":coefficients=FILE", which comes last, those of a Matrix Market
   /// file, one for each element, the fastest dimension first. The right-hand side
   /// is a file, or A times ones if there is none; on singular grids, A times random numbers. Throws std::runtime_error if one of them is wrong.
   System(const std::string& matrix, const std::filesystem::path& rightHandSide);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <sk/sk.hpp>
@@ -83,5 +84,15 @@ std::unique_ptr<Matrix> makeMatrix(sk::Device& device, const VaryingStencil& a, 
 Vector entriesOf(const Space& space, const VaryingStencil& a, sk::Storage storage);
 /// The shape of a number of values for each element of a grid.
 sk::Shape stackOf(std::int64_t count, const sk::Shape& grid);
+
+/// Coefficients that jump from element to element of a grid, by the name of their pattern.
+struct CoefficientPattern {
+  std::string_view name;  ///< in "poisson:WxH:NAME=RATIO"
+  std::string_view does;
+  /// Returns a coefficient for each element: 1 in the background, and up to `ratio` elsewhere.
+  std::vector<double> (*make)(const Stencil& grid, double ratio);
+};
+
+std::span<const CoefficientPattern> coefficientPatterns();
 
 }  // namespace linear

@@ -13,39 +13,22 @@
 #include <catch2/catch.hpp>
 #include <sk/sk.hpp>
 
-#include "coefficients.hpp"
 #include "galerkin.hpp"
-#include "multigrid_varying.hpp"
-#include "named.hpp"
+#include "multigrid.hpp"
 #include "solve.hpp"
+#include "support/named.hpp"
 #include "system.hpp"
-#include "test_devices.hpp"
+#include "test_eigen.hpp"
+#include "test_solves.hpp"
+#include "varying.hpp"
 
 namespace linear {
 namespace {
 
-constexpr Arithmetic doubles{
-    .precision = sk::Precision::Double, .matrix = sk::Storage::Double, .vectors = sk::Storage::Double};
-constexpr Ends fixedEnds{Side::Dirichlet, Side::Dirichlet}, mirrors{Side::Neumann, Side::Neumann},
-    ring{Side::Periodic, Side::Periodic}, mixed{Side::Dirichlet, Side::Neumann};
-
-std::vector<double> randomVector(std::int64_t n, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<double> v(static_cast<std::size_t>(n));
-  for (double& x : v) x = std::uniform_real_distribution<double>(-1, 1)(random);
-  return v;
-}
-
-double norm(const std::vector<double>& v) {
-  double sum = 0.0;
-  for (const double x : v) sum += x * x;
-  return std::sqrt(sum);
-}
-
 VaryingStencil withPattern(const sk::Shape& grid, const std::vector<Ends>& ends, std::string_view pattern,
                            double ratio) {
   const Stencil a = withEnds(poisson(grid), ends);
-  return diffusion(a, rowNamed(coefficientPatterns(), pattern, "pattern").make(a, ratio));
+  return diffusion(a, examples::rowNamed(coefficientPatterns(), pattern, "pattern").make(a, ratio));
 }
 
 /// Entries for all neighbours, random and symmetric, on a grid that is periodic along its fastest dimension.
@@ -158,28 +141,20 @@ TEST_CASE("Interpolation keeps the flux where a coefficient jumps") {
 /// ||x - y|| / ||y|| for the y of Eigen's Cholesky factors.
 double differenceFromEigen(const SparseMatrix& a, const std::vector<double>& b,
                            const std::vector<double>& x) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < a.rows; ++i)
-    for (auto k = a.starts[static_cast<std::size_t>(i)]; k < a.starts[static_cast<std::size_t>(i) + 1]; ++k)
-      entries.emplace_back(i, a.column[static_cast<std::size_t>(k)], a.value[static_cast<std::size_t>(k)]);
-  Eigen::SparseMatrix<double> m(a.rows, a.columns);
-  m.setFromTriplets(entries.begin(), entries.end());
-  const auto mapped = [](const std::vector<double>& v) {
-    return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
-  };
-  const Eigen::VectorXd expected = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(m).solve(mapped(b));
-  return (mapped(x) - expected).norm() / expected.norm();
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(eigenOf(a));
+  const Eigen::VectorXd expected = factors.solve(vectorOf(b));
+  return (vectorOf(x) - expected).norm() / expected.norm();
 }
 
 Solution solved(sk::Device& device, const System& system, std::string_view solver,
                 std::string_view preconditioner, const Arithmetic& arithmetic, double tolerance) {
   const Operator& a = system.matrix();
   const std::unique_ptr<Matrix> matrix = system.makeMatrix(device, "auto", arithmetic, nullptr);
-  const auto m =
-      rowNamed(preconditionerKinds(), preconditioner, "preconditioner").make(device, *matrix, a, arithmetic);
-  const auto method =
-      rowNamed(methodKinds(), solver, "solver").make(device, *matrix, m.get(), arithmetic, {.a = &a});
-  return solve(*method, a, system.rightHandSide(), arithmetic, {.tolerance = tolerance, .every = 1});
+  return solveBy(device, *matrix, a, system.rightHandSide(),
+                 {.solver = solver,
+                  .preconditioner = preconditioner,
+                  .arithmetic = arithmetic,
+                  .settings = {.tolerance = tolerance, .every = 1}});
 }
 
 TEST_CASE("Multigrid solves equations with jumps of a million as Eigen does") {

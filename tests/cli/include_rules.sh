@@ -45,7 +45,7 @@ runtime/tools         sk support/cache_folder.hpp native probe/probe.hpp assembl
 runtime/tests         sk support trace device call gl gl_device native assemble epoxy
 examples              sk toml epoxy
 tests                 sk
-tests/bench           sk epoxy
+tests/bench           sk epoxy support/named.hpp
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 tests/faults          sk epoxy

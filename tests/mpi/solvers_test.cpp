@@ -10,10 +10,10 @@
 #include <catch2/catch.hpp>
 
 #include "method.hpp"
-#include "named.hpp"
 #include "preconditioner.hpp"
 #include "ranks.hpp"
 #include "solve.hpp"
+#include "support/named.hpp"
 #include "support/ranks.hpp"
 #include "system.hpp"
 
@@ -31,9 +31,9 @@ Solution solved(const linear::System& system, const linear::Space& space, const 
   const linear::Operator& a = system.matrix();
   const auto matrix = system.makeMatrix(space, "auto", exactSums, nullptr);
   const auto preconditioner =
-      linear::rowNamed(linear::preconditionerKinds(), choice.preconditioner, "preconditioner")
+      examples::rowNamed(linear::preconditionerKinds(), choice.preconditioner, "preconditioner")
           .make(space.device(), *matrix, a, exactSums);
-  const auto method = linear::rowNamed(linear::methodKinds(), choice.solver, "solver")
+  const auto method = examples::rowNamed(linear::methodKinds(), choice.solver, "solver")
                           .make(space.device(), *matrix, preconditioner.get(), exactSums, {.a = &a});
   return linear::solve(*method, a, system.rightHandSide(), exactSums, {.tolerance = 1e-8, .most = 150});
 }

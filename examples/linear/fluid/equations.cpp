@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "momentum.sk.hpp"
-#include "multigrid_varying.hpp"
+#include "multigrid.hpp"
 #include "varying.hpp"
 
 namespace fluid {

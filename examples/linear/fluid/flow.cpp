@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "momentum.sk.hpp"
-#include "named.hpp"
 #include "pressure.sk.hpp"
+#include "support/named.hpp"
 #include "transport.sk.hpp"
 #include "vectors.sk.hpp"
 
@@ -114,10 +114,10 @@ Flow::Flow(const linear::Space& space, const Model& model, const Triple& inside)
   if (model.projector == Projector::Multigrid) {
     preconditioner_ = makePressureMultigrid(space, model, cells, arithmetic_);
   } else {
-    const auto& kind = linear::rowNamed(linear::preconditionerKinds(), "chebyshev", "preconditioner");
+    const auto& kind = examples::rowNamed(linear::preconditionerKinds(), "chebyshev", "preconditioner");
     preconditioner_ = kind.make(device, *matrix_, pressureOperator(model, cells), arithmetic_);
   }
-  const auto& gradients = linear::rowNamed(linear::methodKinds(), "cg", "solver");
+  const auto& gradients = examples::rowNamed(linear::methodKinds(), "cg", "solver");
   method_ = gradients.make(device, *matrix_, preconditioner_.get(), arithmetic_);
 
   const auto start = [&](std::optional<linear::Vector>& stream, double value) {

@@ -13,10 +13,10 @@
 
 #include "equations.hpp"
 #include "layout.hpp"
-#include "named.hpp"
 #include "preconditioner.hpp"
 #include "residual.hpp"
 #include "solve.hpp"
+#include "support/named.hpp"
 
 namespace smooth {
 
@@ -123,9 +123,9 @@ class Flow::Solver {
     preconditioner_.reset();
     sk::Device& device = device_;
     matrix_ = linear::makeMatrix(device, linear::scaled(balanced_, a_.scale), settings_.layout, arithmetic_);
-    preconditioner_ = linear::rowNamed(linear::preconditionerKinds(), preconditioner, "preconditioner")
+    preconditioner_ = examples::rowNamed(linear::preconditionerKinds(), preconditioner, "preconditioner")
                           .make(device, *matrix_, a_, arithmetic_);
-    method_ = linear::rowNamed(linear::methodKinds(), "cg", "solver")
+    method_ = examples::rowNamed(linear::methodKinds(), "cg", "solver")
                   .make(device, *matrix_, preconditioner_.get(), arithmetic_);
     residual_ = linear::makeResidual(device, *matrix_, a_, arithmetic_);
   }

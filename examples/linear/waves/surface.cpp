@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "named.hpp"
+#include "support/named.hpp"
 #include "surface.sk.hpp"
 #include "vectors.sk.hpp"
 
@@ -93,7 +93,7 @@ Surface::Surface(const linear::Space& space, const Model& model)
     s->fill(0.0f);
   }
   matrix_ = std::make_unique<WaveMatrix>(space_, model_, arithmetic_);
-  method_ = linear::rowNamed(linear::methodKinds(), "cg", "solver")
+  method_ = examples::rowNamed(linear::methodKinds(), "cg", "solver")
                 .make(space_.device(), *matrix_, nullptr, arithmetic_);
 }
 

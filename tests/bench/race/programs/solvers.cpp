@@ -20,12 +20,12 @@
 #include "layout.hpp"
 #include "method.hpp"
 #include "multigrid.hpp"
-#include "named.hpp"
 #include "our_task.hpp"
 #include "preconditioner.hpp"
 #include "programs/all.hpp"
 #include "solve.hpp"
 #include "stencil.hpp"
+#include "support/named.hpp"
 #include "system.hpp"
 
 namespace race {
@@ -79,7 +79,7 @@ class Gradients final : public OurTask {
       : OurTask(device),
         steps_(gradientSteps(static_cast<double>(p.size()))),
         matrix_(linear::makeMatrix(linear::poisson({p.rows, p.columns}), plainSums)),
-        method_(linear::rowNamed(linear::methodKinds(), "cg", "solver")
+        method_(examples::rowNamed(linear::methodKinds(), "cg", "solver")
                     .make(device, *matrix_, nullptr, plainSums)),
         b_(filled<float>(matrix_->domain(), p.floats[0])) {}
 
@@ -130,7 +130,7 @@ class Nested final : public OurTask {
         matrix_(linear::makeMatrix(stencil_, plainSums)),
         multigrid_(linear::makeMultigrid(device, stencil_, plainSums,
                                          {.cycle = linear::Cycle::Full, .isSymmetric = false})),
-        method_(linear::rowNamed(linear::methodKinds(), "stationary", "solver")
+        method_(examples::rowNamed(linear::methodKinds(), "stationary", "solver")
                     .make(device, *matrix_, multigrid_.get(), plainSums)),
         b_(filled<float>(matrix_->domain(), p.floats[0])) {}
 
@@ -158,9 +158,9 @@ class Cycled final : public OurTask {
       : OurTask(device),
         system_(fmt::format("poisson:{0}x{0}x{0}", cycledExtent), {}),
         matrix_(system_.makeMatrix(device, "stencil", plainSums, nullptr)),
-        preconditioner_(linear::rowNamed(linear::preconditionerKinds(), "multigrid", "preconditioner")
+        preconditioner_(examples::rowNamed(linear::preconditionerKinds(), "multigrid", "preconditioner")
                             .make(device, *matrix_, system_.matrix(), plainSums)),
-        method_(linear::rowNamed(linear::methodKinds(), "cg", "solver")
+        method_(examples::rowNamed(linear::methodKinds(), "cg", "solver")
                     .make(device, *matrix_, preconditioner_.get(), plainSums)) {}
 
   std::vector<float> result() override { return {solution_.x.begin(), solution_.x.end()}; }
