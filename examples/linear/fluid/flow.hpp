@@ -4,12 +4,10 @@
 // not need do not exist.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <sk/sk.hpp>

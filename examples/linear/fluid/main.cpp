@@ -3,8 +3,6 @@
 // fluid: incompressible flows from scene files, and the studies of their accuracy.
 #include <algorithm>
 #include <filesystem>
-#include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,48 +17,8 @@
 #include "support/host_memory.hpp"
 #include "support/options.hpp"
 #include "support/ranks.hpp"
-#include "support/record.hpp"
 
 namespace {
-
-struct Settings {
-  std::filesystem::path scene;
-  std::string size, scheme, projection, precision;
-  std::optional<std::int64_t> steps;
-};
-
-void addOptions(CLI::App& cli, Settings& s) {
-  cli.add_option("scene", s.scene, "what flows: a TOML file, as in examples/linear/fluid/scenes");
-  cli.add_option("--size", s.size,
-                 "cells, WxH or WxHxD, in place of the scene's; the width of what is simulated stays");
-  cli.add_option("--steps", s.steps, "steps, in place of the scene's")->check(CLI::Range(1, 1'000'000'000));
-  cli.add_option("--scheme", s.scheme,
-                 "semi-lagrangian, maccormack, bfecc or central, in place of the scene's")
-      ->check(CLI::IsMember({"semi-lagrangian", "maccormack", "bfecc", "central"}));
-  cli.add_option("--projection", s.projection,
-                 "chebyshev or multigrid, what preconditions the projection, in place of the scene's")
-      ->check(CLI::IsMember({"chebyshev", "multigrid"}));
-  cli.add_option("--precision", s.precision, "single or double, in place of the scene's")
-      ->check(CLI::IsMember({"single", "double"}));
-}
-
-fluid::Scene sceneOf(const Settings& s, const examples::RecordOptions& record) {
-  fluid::Overrides overrides;
-  if (!s.size.empty()) overrides.size = examples::extentsOf("--size", s.size, {2, 16384, 3});
-  overrides.steps = s.steps;
-  const auto names = fluid::schemeNames();
-  if (!s.scheme.empty())
-    overrides.scheme = static_cast<fluid::Scheme>(std::ranges::find(names, s.scheme) - names.begin());
-  const auto projectors = fluid::projectorNames();
-  if (!s.projection.empty())
-    overrides.projector =
-        static_cast<fluid::Projector>(std::ranges::find(projectors, s.projection) - projectors.begin());
-  if (s.precision == "single") overrides.precision = sk::Precision::Single;
-  if (s.precision == "double") overrides.precision = sk::Precision::Double;
-  fluid::Scene scene = fluid::readScene(s.scene, overrides);
-  record.apply(scene.record);
-  return scene;
-}
 
 /// What a scene does without, and is therefore neither compiled nor stored.
 std::string leftOut(const fluid::Model& m) {
@@ -99,24 +57,35 @@ void simulate(examples::Application& app, const fluid::Scene& scene) {
         "{} steps did not reach the tolerance {:.1g} in {} iterations; take a larger one, or more of them\n",
         o.missed, m.tolerance, m.mostIterations);
   examples::printWritten(scene.record, o.pictures);
-  for (const examples::Verification& verification : o.verifications) app.verified(verification);
+  app.verified(o.verifications);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  Settings settings;
+  fluid::Overrides overrides;
   examples::Application app(
       "fluid", "Incompressible flows in planes and in space: Navier and Stokes' equations from scene files.",
       examples::joinRanks());
-  addOptions(app.options(), settings);
-  const examples::StudyOptions study(app, "compare with solutions that are known", fluid::studies());
-  const examples::RecordOptions record(app.options(),
+  CLI::App& cli = app.options();
+  const examples::SceneOptions options(
+      cli, "what flows: a TOML file, as in examples/linear/fluid/scenes",
+      "cells, WxH or WxHxD, in place of the scene's; the width of what is simulated stays", {2, 16384, 3},
+      "examples/linear/fluid/scenes/plume.toml");
+  examples::addChoice(cli, "--scheme", overrides.scheme, fluid::schemeNames,
+                      "semi-lagrangian, maccormack, bfecc or central, in place of the scene's");
+  examples::addChoice(cli, "--projection", overrides.projector, fluid::projectorNames,
+                      "chebyshev or multigrid, what preconditions the projection, in place of the scene's");
+  examples::addChoice(cli, "--precision", overrides.precision, examples::commonPrecisions,
+                      "single or double, in place of the scene's");
+  const examples::StudyOptions study(app, "compare with solutions that are known", fluid::studies);
+  const examples::RecordOptions record(cli,
                                        "time step, speed, divergence, iterations and energy of each step");
   return app.run(argc, argv, [&] {
     if (study.isGiven()) return study.run();
-    if (settings.scene.empty())
-      throw std::runtime_error("no scene is named; try examples/linear/fluid/scenes/plume.toml");
-    simulate(app, sceneOf(settings, record));
+    const std::filesystem::path& file = options.apply(overrides);
+    fluid::Scene scene = fluid::readScene(file, overrides);
+    record.apply(scene.record);
+    simulate(app, scene);
   });
 }

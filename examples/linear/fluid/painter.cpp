@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "support/colormap.hpp"
-#include "support/field_view.hpp"
 #include "support/figure.hpp"
 #include "view.sk.hpp"
 
@@ -62,21 +61,12 @@ examples::Image Painter::plane(Flow& flow) {
   const auto field = inner(all, m).reshape({m.cells[1], m.cells[0]});
   const std::vector<double> values = field.readReals();
   const auto [least, most] = std::ranges::minmax_element(values);
-  low_ = scene_.view.low.value_or(*least);
-  high_ = scene_.view.high.value_or(*most);
-  if (scene_.view.shown == Shown::Vorticity && !scene_.view.low && !scene_.view.high) {
-    high_ = std::max(std::abs(low_), std::abs(high_));
-    low_ = -high_;
-  }
-  if (!(high_ > low_)) high_ = low_ + std::max(1e-6, 1e-3 * std::abs(low_));
-  const int zoom =
-      scene_.view.zoom > 0
-          ? scene_.view.zoom
-          : static_cast<int>(std::clamp<std::int64_t>(1024 / std::max(m.cells[0], m.cells[1]), 1, 64));
+  values_ = examples::shownValues(scene_.view, *least, *most, scene_.view.shown == Shown::Vorticity);
+  const int zoom = examples::zoomFor(scene_.view, m.cells[0], m.cells[1]);
   auto colour = device_.stream<sk::float3>({m.cells[1] * zoom, m.cells[0] * zoom});
   const auto draw = [&](const auto& covered) {
-    fluid::paint(!m.obstacles.empty(), palette_, static_cast<float>(low_), static_cast<float>(high_),
-                 1.0f / static_cast<float>(zoom), field, covered, colour);
+    fluid::paint(!m.obstacles.empty(), palette_, static_cast<float>(values_.low),
+                 static_cast<float>(values_.high), 1.0f / static_cast<float>(zoom), field, covered, colour);
   };
   if (m.obstacles.empty())
     draw(sk::none);
@@ -130,7 +120,7 @@ examples::Image Painter::paint(Flow& flow, const std::string& moment) {
   if (scene_.model.isSpace()) return examples::figure(image, {scene_.title, "", moment});
   const std::string label = labels[static_cast<std::size_t>(scene_.view.shown)];
   return examples::figure(image, {scene_.title, "", moment},
-                          examples::ColourBar{colours_, low_, high_, label});
+                          examples::ColourBar{colours_, values_.low, values_.high, label});
 }
 
 }  // namespace fluid

@@ -33,7 +33,7 @@ class Painter {
   std::optional<linear::Vector> derived_;
   std::optional<sk::Stream<float>> light_;
   examples::Gathered<float> shown_, heat_;
-  double low_ = 0.0, high_ = 1.0;
+  examples::ShownValues values_;
 };
 
 }  // namespace fluid

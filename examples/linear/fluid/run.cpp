@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -12,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "painter.hpp"
-#include "support/progress.hpp"
 #include "support/record.hpp"
 #include "support/stopwatch.hpp"
 
@@ -24,20 +22,18 @@ namespace {
 std::string captionOf(const Flow& flow) {
   const Model& m = flow.model();
   return fmt::format("{} cells   {}   step {}   time {:.3g}", sizeText(m),
-                     schemeNames()[static_cast<std::size_t>(m.scheme)], flow.steps(), flow.time());
+                     schemeNames[static_cast<std::size_t>(m.scheme)], flow.steps(), flow.time());
 }
 
 constexpr const char* csvHeads =
     "step,time,time_step,cfl,speed,divergence_before,divergence_after,residual,iterations,energy";
 
 /// All ranks must come here, for the energy.
-void tell(examples::CsvFile& csv, const Step& s, const Flow& flow) {
+std::string rowOf(const Step& s, const Flow& flow) {
   const Projection& p = s.projection;
-  const double energy = flow.kineticEnergy();
-  if (csv.isWanted())
-    csv.add(fmt::format("{},{:.9g},{:.9g},{:.4g},{:.9g},{:.4g},{:.4g},{:.4g},{},{:.9g}", flow.steps(),
-                        flow.time(), s.timeStep, s.cfl, s.speed, p.before, p.after, p.residual, p.iterations,
-                        energy));
+  return fmt::format("{},{:.9g},{:.9g},{:.4g},{:.9g},{:.4g},{:.4g},{:.4g},{},{:.9g}", flow.steps(),
+                     flow.time(), s.timeStep, s.cfl, s.speed, p.before, p.after, p.residual, p.iterations,
+                     flow.kineticEnergy());
 }
 
 /// The fields of a flow, as the device holds them.
@@ -150,50 +146,37 @@ Outcome run(const linear::Space& space, const Scene& scene) {
   Outcome outcome;
   Flow flow = begin(space, scene);
   outcome.streams = flow.streams();
-  examples::Pictures pictures(scene.record, isFirst);
-  examples::CsvFile csv(isFirst ? scene.record.csv : std::filesystem::path(), csvHeads);
-  const bool isTold = !scene.record.csv.empty();
   std::optional<Painter> painter;
-  if (pictures.isWanted()) painter.emplace(device, scene);
-  if (pictures.wantsStart()) pictures.add(painter->paint(flow, captionOf(flow)));
+  if (!scene.record.output.empty()) painter.emplace(device, scene);
   State beforeLast;
-  {
-    examples::Progress progress(scene.name, scene.steps);
-    for (std::int64_t i = 1; i <= scene.steps; ++i) {
-      const bool isLast = i == scene.steps;
-      if (isLast) {
-        beforeLast = stateOf(flow);
-        device.countPasses(true);
-      }
-      const examples::Stopwatch watch;
+  const auto step = [&](std::int64_t i) {
+    const bool isLast = i == scene.steps;
+    if (isLast) {
+      beforeLast = stateOf(flow);
+      device.countPasses(true);
+    }
+    outcome.milliseconds += examples::millisecondsOf(device, [&] {
       outcome.last = flow.step();
       if (isLast) flow.requireFinite();
-      device.finish();
-      outcome.milliseconds += watch.milliseconds();
-      if (isLast) {
-        const sk::PassCount count = device.passCount();
-        device.countPasses(false);
-        outcome.passes = static_cast<double>(count.passes);
-        outcome.bytes = static_cast<double>(count.bytesRead + count.bytesWritten);
-      }
-      const Step& s = outcome.last;
-      outcome.shortest = std::min(outcome.shortest, s.timeStep);
-      outcome.longest = std::max(outcome.longest, s.timeStep);
-      outcome.largestCfl = std::max(outcome.largestCfl, s.cfl);
-      outcome.iterations += s.projection.iterations;
-      outcome.missed += s.projection.reached ? 0 : 1;
-      if (isTold) tell(csv, s, flow);
-      if (pictures.isDue(i, scene.steps)) {
-        progress.clear();
-        pictures.add(painter->paint(flow, captionOf(flow)));
-      }
-      if (isFirst) progress.update(i);
+    });
+    if (isLast) {
+      const sk::PassCount count = device.passCount();
+      device.countPasses(false);
+      outcome.passes = static_cast<double>(count.passes);
+      outcome.bytes = static_cast<double>(count.bytesRead + count.bytesWritten);
     }
-  }
-  pictures.finish();
+    const Step& s = outcome.last;
+    outcome.shortest = std::min(outcome.shortest, s.timeStep);
+    outcome.longest = std::max(outcome.longest, s.timeStep);
+    outcome.largestCfl = std::max(outcome.largestCfl, s.cfl);
+    outcome.iterations += s.projection.iterations;
+    outcome.missed += s.projection.reached ? 0 : 1;
+  };
+  outcome.pictures = examples::runRecorded({scene.name, scene.steps, scene.record, isFirst, csvHeads, step,
+                                            [&] { return rowOf(outcome.last, flow); },
+                                            [&] { return painter->paint(flow, captionOf(flow)); }});
   outcome.steps = flow.steps();
   outcome.time = flow.time();
-  outcome.pictures = pictures.count();
 
   examples::Verification divergence("root mean square of div u * h over the speed, in double precision",
                                     scene.model.tolerance + 4.0 * examples::roundoff,

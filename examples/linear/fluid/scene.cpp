@@ -2,10 +2,7 @@
 #include "scene.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -25,14 +22,11 @@ constexpr Range fromZero{0.0, 1e12};
 constexpr Range anything{-1e12, 1e12};
 constexpr std::int64_t mostCells = std::int64_t{1} << 26;
 
-constexpr std::array<std::string_view, 4> schemes = {"semi-lagrangian", "maccormack", "bfecc", "central"};
-constexpr std::array<std::string_view, 2> projectors = {"chebyshev", "multigrid"};
 constexpr std::array<std::string_view, 5> sides = {"periodic", "wall", "slip", "inflow", "outflow"};
 constexpr std::array<std::string_view, 6> velocityKeys = {
     "left_velocity", "right_velocity", "bottom_velocity", "top_velocity", "back_velocity", "front_velocity"};
 constexpr std::array<std::string_view, 2> obstacleKinds = {"wall", "slip"};
 constexpr std::array<std::string_view, 4> shownNames = {"smoke", "temperature", "vorticity", "speed"};
-constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
 
 /// Two or three numbers; the third is 0 if it is missing.
 std::optional<Triple> triple(const SceneTable& table, std::string_view key) {
@@ -77,8 +71,7 @@ void readGrid(const SceneTable& table, const Overrides& overrides, Model& model)
 }
 
 void readSide(const SceneTable& table, std::size_t side, Model& model) {
-  const auto kind = table.choice(sideNames[side], sides);
-  model.sides[side] = kind ? static_cast<Side>(*kind) : Side::Wall;
+  table.read(sideNames[side], model.sides[side], sides);
   const auto velocity = triple(table, velocityKeys[side]);
   const Side is = model.sides[side];
   if (is == Side::Inflow && !velocity)
@@ -137,9 +130,9 @@ void readSources(const SceneTable& table, Model& model) {
 
 void readBuoyancy(const SceneTable& table, Model& model) {
   Buoyancy b;
-  b.lift = table.number("lift", anything).value_or(0.0);
-  b.ambient = table.number("ambient", anything).value_or(0.0);
-  b.sink = table.number("sink", anything).value_or(0.0);
+  table.read("lift", b.lift, anything);
+  table.read("ambient", b.ambient, anything);
+  table.read("sink", b.sink, anything);
   if (b.lift != 0.0 && !model.hasHeat) table.refuse("lift", "acts on temperatures, and no source has one");
   if (b.sink != 0.0 && !model.hasSmoke) table.refuse("sink", "acts on smoke, and no source has any");
   model.buoyancy = b;
@@ -150,7 +143,7 @@ void readViscosity(const SceneTable& table, Model& model) {
   const auto value = table.number("value", fromZero);
   if (!value) table.refuse("value", "is missing: the kinematic viscosity");
   v.value = *value;
-  v.isImplicit = table.flag("implicit").value_or(false);
+  table.read("implicit", v.isImplicit);
   if (v.isImplicit && model.scheme == Scheme::Central)
     table.refuse("implicit",
                  "goes with the other schemes; central differences take the viscosity explicitly");
@@ -159,16 +152,13 @@ void readViscosity(const SceneTable& table, Model& model) {
 
 void readRun(const SceneTable& table, Scene& scene) {
   Model& model = scene.model;
-  scene.steps = table.integer("steps", Range{1, 1e9}).value_or(scene.steps);
+  table.read("steps", scene.steps, Range{1, 1e9});
   model.cfl = table.number("cfl", Range{1e-6, 100.0}).value_or(model.scheme == Scheme::Central ? 0.7 : 1.5);
   model.timeStep = table.number("time_step", positive);
-  model.tolerance = table.number("tolerance", Range{1e-12, 0.1}).value_or(model.tolerance);
-  if (const auto projector = table.choice("projection", projectors))
-    model.projector = static_cast<Projector>(*projector);
-  model.mostIterations =
-      static_cast<int>(table.integer("most_iterations", Range{1, 1e6}).value_or(model.mostIterations));
-  if (const auto precision = table.choice("precision", precisionNames))
-    model.precision = *precision == 0 ? sk::Precision::Single : sk::Precision::Double;
+  table.read("tolerance", model.tolerance, Range{1e-12, 0.1});
+  table.read("projection", model.projector, projectorNames);
+  table.read("most_iterations", model.mostIterations, Range{1, 1e6});
+  model.precision = table.precision("precision", examples::commonPrecisions).value_or(model.precision);
   if (!model.timeStep || !model.viscosity || model.viscosity->isImplicit) return;
   const double longest = model.spacing * model.spacing / (2.0 * model.rank() * model.viscosity->value);
   if (*model.timeStep > longest)
@@ -183,41 +173,34 @@ void readRun(const SceneTable& table, Scene& scene) {
 void readView(const SceneTable& table, Scene& scene) {
   View& v = scene.view;
   const Model& model = scene.model;
-  if (const auto shown = table.choice("field", shownNames)) v.shown = static_cast<Shown>(*shown);
+  table.read("field", v.shown, shownNames);
   if ((v.shown == Shown::Smoke && !model.hasSmoke) || (v.shown == Shown::Temperature && !model.hasHeat))
     table.refuse("field", fmt::format("'{}' is not in this scene: no source has any",
                                       shownNames[static_cast<std::size_t>(v.shown)]));
   if (model.isSpace() && v.shown != Shown::Smoke)
     table.refuse("field", "is of planes; in space, smoke is drawn");
-  if (const auto colours = table.text("colours")) v.colours = *colours;
+  examples::readFieldView(table, v);
   try {
     examples::colormap(v.colours, 2);
   } catch (const std::exception& error) {
     table.fail("colours", error.what());
   }
-  v.low = table.number("low", anything);
-  v.high = table.number("high", anything);
-  if (v.low && v.high && *v.low >= *v.high) table.refuse("high", "is not above low");
-  v.zoom = static_cast<int>(table.integer("zoom", Range{1, 64}).value_or(0));
-  v.turn = table.number("turn", Range{-10.0, 10.0}).value_or(v.turn);
-  v.tilt = table.number("tilt", Range{0.02, 1.5}).value_or(v.tilt);
-  v.thickness = table.number("thickness", Range{1e-3, 1e4}).value_or(v.thickness);
-  v.glows = table.flag("glows").value_or(false);
+  table.read("turn", v.turn, Range{-10.0, 10.0});
+  table.read("tilt", v.tilt, Range{0.02, 1.5});
+  table.read("thickness", v.thickness, Range{1e-3, 1e4});
+  table.read("glows", v.glows);
   if (v.glows && !model.hasHeat) table.refuse("glows", "is of heat, and no source has a temperature");
 }
 
 Initial readInitial(const SceneTable& table) {
   Initial i;
   i.velocity = triple(table, "velocity").value_or(i.velocity);
-  i.noise = table.number("noise", fromZero).value_or(0.0);
-  i.random = static_cast<std::uint32_t>(table.integer("random", Range{0, 4294967295.0}).value_or(1));
+  table.read("noise", i.noise, fromZero);
+  table.read("random", i.random, Range{0, 4294967295.0});
   return i;
 }
 
 }  // namespace
-
-std::span<const std::string_view> schemeNames() { return schemes; }
-std::span<const std::string_view> projectorNames() { return projectors; }
 
 Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   const SceneTable table = examples::loadScene(file);
@@ -231,9 +214,8 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
     table.refuse("grid", "is missing: the table [grid] has the size");
   for (std::size_t side = 0; side < 2 * static_cast<std::size_t>(model.rank()); ++side)
     model.sides[side] = Side::Wall;
-  if (const auto t = table.table("convection"))
-    if (const auto scheme = t->choice("scheme", schemes)) model.scheme = static_cast<Scheme>(*scheme);
-  if (overrides.scheme) model.scheme = *overrides.scheme;
+  if (const auto t = table.table("convection")) t->read("scheme", model.scheme, schemeNames);
+  model.scheme = overrides.scheme.value_or(model.scheme);
   if (const auto t = table.table("boundary")) readBoundary(*t, model);
   for (const SceneTable& t : table.tables("obstacle")) model.obstacles.push_back(readShape(t));
   readSources(table, model);

@@ -3,15 +3,15 @@
 // Scenes of flows: TOML files, read to a model, a start and what to make of them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "model.hpp"
+#include "support/field_view.hpp"
 #include "support/record.hpp"
 
 namespace fluid {
@@ -24,11 +24,9 @@ struct Initial {
 
 enum class Shown { Smoke, Temperature, Vorticity, Speed };
 
-struct View {
+struct View : examples::FieldView {
+  View() { colours = "lagoon"; }
   Shown shown = Shown::Speed;
-  std::string colours = "lagoon";
-  std::optional<double> low, high;
-  int zoom = 0;  ///< pixels a cell; 0: chosen for about a thousand across
   double turn = 0.55, tilt = 0.3;  ///< of the camera in space, in radians
   double thickness = 1.0;  ///< in space, how opaque smoke of density 1 is in a tenth of the grid's height
   bool glows = false;  ///< what is hot, in space
@@ -43,18 +41,16 @@ struct Scene {
   View view;
 };
 
-/// What a command line says in place of the file.
-struct Overrides {
-  std::vector<std::int64_t> size;  ///< cells; the spacing follows, so that the width stays
-  std::optional<std::int64_t> steps;
+/// What a command line says in place of the file. Of another size the spacing follows, so that the width stays.
+struct Overrides : examples::SceneOverrides {
   std::optional<Scheme> scheme;
   std::optional<Projector> projector;
-  std::optional<sk::Precision> precision;
 };
 
 /// As scenes write them.
-std::span<const std::string_view> schemeNames();
-std::span<const std::string_view> projectorNames();
+inline constexpr std::array<std::string_view, 4> schemeNames = {"semi-lagrangian", "maccormack", "bfecc",
+                                                                "central"};
+inline constexpr std::array<std::string_view, 2> projectorNames = {"chebyshev", "multigrid"};
 
 /// Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong and the way out".
 Scene readScene(const std::filesystem::path& file, const Overrides& overrides);

@@ -65,19 +65,14 @@ Findings studyCost(sk::Device& device, bool small) {
     scene.initial.noise = 1.0;  // so that there is always something to project
     Flow flow = begin(linear::Space(device, scene.model.shape()), scene);
     flow.step();
-    device.countPasses(true);
-    flow.step();
-    const sk::PassCount count = device.passCount();
-    device.countPasses(false);
+    const sk::PassCount count = examples::passesOf(device, [&] { flow.step(); });
     measured.push_back({row.name, std::move(flow), count, 1e300});
   }
   // In turns, since a machine is not always equally fast.
   for (int i = 0; i < (small ? 2 : 25); ++i) {
     for (Measured& m : measured) {
-      const examples::Stopwatch watch;
-      m.flow.step();
-      device.finish();
-      m.milliseconds = std::min(m.milliseconds, watch.milliseconds());
+      const double milliseconds = examples::millisecondsOf(device, [&] { m.flow.step(); });
+      m.milliseconds = std::min(m.milliseconds, milliseconds);
     }
   }
   examples::Verification fewer(
