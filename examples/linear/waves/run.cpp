@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -11,7 +10,6 @@
 
 #include "painter.hpp"
 #include "support/figure.hpp"
-#include "support/progress.hpp"
 #include "support/record.hpp"
 #include "support/stopwatch.hpp"
 
@@ -22,20 +20,10 @@ namespace {
 examples::Image pictureOf(Painter& painter, const Scene& scene, const Surface& surface) {
   const Model& m = scene.model;
   const std::string moment = fmt::format("{} x {} cells   {}   Courant number {:.3g}   step {}   time {:.3g}",
-                                         m.width, m.height, schemeNames()[static_cast<std::size_t>(m.scheme)],
+                                         m.width, m.height, schemeNames[static_cast<std::size_t>(m.scheme)],
                                          std::sqrt(m.lambdaSquared()), surface.steps(), surface.time());
   const examples::Image water = painter.paint(surface);
   return surface.space().isFirst() ? examples::figure(water, {scene.title, "", moment}) : water;
-}
-
-constexpr const char* csvHeads = "step,time,iterations,residual,energy";
-
-/// All ranks must come here, for the energy.
-void tell(examples::CsvFile& csv, const Step& s, const Surface& surface) {
-  const double energy = surface.energy();
-  if (csv.isWanted())
-    csv.add(fmt::format("{},{:.9g},{},{:.4g},{:.9g}", surface.steps(), surface.time(), s.iterations,
-                        s.residual, energy));
 }
 
 /// The energy between drops, each of which begins a stretch of its own.
@@ -95,53 +83,45 @@ Outcome run(const linear::Space& space, const Scene& scene) {
   Outcome outcome;
   Surface surface(space, m);
   Energies energies(surface);
-  examples::Pictures pictures(scene.record, isFirst);
-  examples::CsvFile csv(isFirst ? scene.record.csv : std::filesystem::path(), csvHeads);
-  const bool isTold = !scene.record.csv.empty();
   std::optional<Painter> painter;
-  if (pictures.isWanted()) painter.emplace(device, scene);
+  if (!scene.record.output.empty()) painter.emplace(device, scene);
   auto drop = scene.drops.begin();
   std::vector<double> heights, velocities;
-  {
-    examples::Progress progress(scene.name, scene.steps);
-    for (std::int64_t i = 1; i <= scene.steps; ++i) {
-      const bool isLast = i == scene.steps;
-      if (drop != scene.drops.end() && drop->time <= surface.time()) {
-        energies.end();
-        heights = surface.heights();
-        for (; drop != scene.drops.end() && drop->time <= surface.time(); ++drop) {
-          if (isFirst) add(*drop, m, heights);
-        }
-        surface.writeHeights(heights);
-        energies.begin();
-      }
-      if (i == 1 && pictures.wantsStart()) pictures.add(pictureOf(*painter, scene, surface));
-      if (isLast) {
-        heights = surface.heights();
-        velocities = surface.velocities();
-      }
-      const examples::Stopwatch watch;
-      const Step step = surface.step();
-      device.finish();
-      outcome.milliseconds += watch.milliseconds();
-      energies.add(step);
-      outcome.iterations += step.iterations;
-      outcome.mostIterations = std::max(outcome.mostIterations, step.iterations);
-      outcome.residual = std::max(outcome.residual, step.residual);
-      outcome.missed += step.reached ? 0 : 1;
-      if (isTold) tell(csv, step, surface);
-      if (pictures.isDue(i, scene.steps)) {
-        progress.clear();
-        pictures.add(pictureOf(*painter, scene, surface));
-      }
-      if (isFirst) progress.update(i);
+  const auto dropWhatIsDue = [&] {
+    const auto isDue = [&] { return drop != scene.drops.end() && drop->time <= surface.time(); };
+    if (!isDue()) return;
+    energies.end();
+    heights = surface.heights();
+    for (; isDue(); ++drop)
+      if (isFirst) add(*drop, m, heights);
+    surface.writeHeights(heights);
+    energies.begin();
+  };
+  Step last{};
+  const auto step = [&](std::int64_t i) {
+    dropWhatIsDue();
+    if (i == scene.steps) {
+      heights = surface.heights();
+      velocities = surface.velocities();
     }
-  }
-  pictures.finish();
+    outcome.milliseconds += examples::millisecondsOf(device, [&] { last = surface.step(); });
+    energies.add(last);
+    outcome.iterations += last.iterations;
+    outcome.mostIterations = std::max(outcome.mostIterations, last.iterations);
+    outcome.residual = std::max(outcome.residual, last.residual);
+    outcome.missed += last.reached ? 0 : 1;
+  };
+  const auto row = [&] {  // all ranks must come here, for the energy
+    return fmt::format("{},{:.9g},{},{:.4g},{:.9g}", surface.steps(), surface.time(), last.iterations,
+                       last.residual, surface.energy());
+  };
+  dropWhatIsDue();  // so that the first picture has what falls at the start
+  outcome.pictures = examples::runRecorded({scene.name, scene.steps, scene.record, isFirst,
+                                            "step,time,iterations,residual,energy", step, row,
+                                            [&] { return pictureOf(*painter, scene, surface); }});
   energies.end();
   outcome.steps = surface.steps();
   outcome.time = surface.time();
-  outcome.pictures = pictures.count();
   outcome.residualLast = surface.residualInDouble();
   outcome.energy = surface.energy();
   if (!isFirst) return outcome;

@@ -2,7 +2,6 @@
 #include "scene.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -18,8 +17,6 @@ using examples::SceneTable;
 
 constexpr Range positive{1e-12, 1e12};
 constexpr std::int64_t mostCells = std::int64_t{1} << 26;
-constexpr std::array<std::string_view, 2> schemes = {"crank-nicolson", "backward-euler"};
-constexpr std::array<std::string_view, 2> precisionNames = {"single", "double"};
 
 void readWater(const SceneTable& table, const Overrides& overrides, Model& m) {
   const auto size = table.numbers("size", 2);
@@ -35,19 +32,17 @@ void readWater(const SceneTable& table, const Overrides& overrides, Model& m) {
   }
   if (m.width * m.height > mostCells) table.refuse("size", "makes more than 2^26 cells; take fewer");
   m.spacing = width / static_cast<double>(m.width);
-  m.speed = table.number("speed", positive).value_or(1.0);
+  table.read("speed", m.speed, positive);
 }
 
 void readRun(const SceneTable& table, Scene& scene) {
   Model& m = scene.model;
-  scene.steps = table.integer("steps", Range{1, 1e9}).value_or(scene.steps);
-  m.timeStep = table.number("time_step", positive).value_or(m.timeStep);
-  if (const auto scheme = table.choice("scheme", schemes)) m.scheme = static_cast<Scheme>(*scheme);
-  m.tolerance = table.number("tolerance", Range{1e-15, 0.1}).value_or(m.tolerance);
-  m.mostIterations =
-      static_cast<int>(table.integer("most_iterations", Range{1, 1e6}).value_or(m.mostIterations));
-  if (const auto precision = table.choice("precision", precisionNames))
-    m.precision = *precision == 0 ? sk::Precision::Single : sk::Precision::Double;
+  table.read("steps", scene.steps, Range{1, 1e9});
+  table.read("time_step", m.timeStep, positive);
+  table.read("scheme", m.scheme, schemeNames);
+  table.read("tolerance", m.tolerance, Range{1e-15, 0.1});
+  table.read("most_iterations", m.mostIterations, Range{1, 1e6});
+  m.precision = table.precision("precision", examples::commonPrecisions).value_or(m.precision);
 }
 
 Drop readDrop(const SceneTable& table) {
@@ -75,17 +70,15 @@ void readView(const SceneTable& table, View& v) {
     v.width = static_cast<int>((*pixels)[0]);
     v.height = static_cast<int>((*pixels)[1]);
   }
-  v.turn = table.number("turn", Range{-10.0, 10.0}).value_or(v.turn);
-  v.tilt = table.number("tilt", Range{0.15, 1.5}).value_or(v.tilt);
-  v.distance = table.number("distance", Range{0.2, 10.0}).value_or(v.distance);
-  v.depth = table.number("depth", Range{0.01, 4.0}).value_or(v.depth);
-  v.tiles = table.number("tiles", Range{1.0, 200.0}).value_or(v.tiles);
-  v.exaggeration = table.number("exaggeration", Range{0.0, 100.0}).value_or(v.exaggeration);
+  table.read("turn", v.turn, Range{-10.0, 10.0});
+  table.read("tilt", v.tilt, Range{0.15, 1.5});
+  table.read("distance", v.distance, Range{0.2, 10.0});
+  table.read("depth", v.depth, Range{0.01, 4.0});
+  table.read("tiles", v.tiles, Range{1.0, 200.0});
+  table.read("exaggeration", v.exaggeration, Range{0.0, 100.0});
 }
 
 }  // namespace
-
-std::span<const std::string_view> schemeNames() { return schemes; }
 
 Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   const SceneTable table = examples::loadScene(file);
@@ -99,9 +92,9 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
     table.refuse("water", "is missing: the table [water] has the size");
   m.timeStep = m.spacing / m.speed;
   if (const auto t = table.table("run")) readRun(*t, scene);
-  if (overrides.scheme) m.scheme = *overrides.scheme;
-  if (overrides.precision) m.precision = *overrides.precision;
-  if (overrides.steps) scene.steps = *overrides.steps;
+  m.scheme = overrides.scheme.value_or(m.scheme);
+  m.precision = overrides.precision.value_or(m.precision);
+  scene.steps = overrides.steps.value_or(scene.steps);
   for (const SceneTable& t : table.tables("drop")) scene.drops.push_back(readDrop(t));
   if (scene.drops.empty()) table.refuse("drop", "is missing: without a [[drop]] the water stays flat");
   std::ranges::stable_sort(scene.drops, {}, &Drop::time);

@@ -3,10 +3,10 @@
 // Scenes of water: TOML files, read to a model, the drops that fall into it, and what to make of them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,16 +40,13 @@ struct Scene {
   View view;
 };
 
-/// What a command line says in place of the file.
-struct Overrides {
-  std::vector<std::int64_t> size;  ///< cells along x and y; width of the pool and time step stay
-  std::optional<std::int64_t> steps;
+/// What a command line says in place of the file. Of another size, the width of the pool and the time step stay.
+struct Overrides : examples::SceneOverrides {
   std::optional<Scheme> scheme;
-  std::optional<sk::Precision> precision;
 };
 
 /// As scenes write them.
-std::span<const std::string_view> schemeNames();
+inline constexpr std::array<std::string_view, 2> schemeNames = {"crank-nicolson", "backward-euler"};
 
 /// Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong and the way out".
 Scene readScene(const std::filesystem::path& file, const Overrides& overrides);

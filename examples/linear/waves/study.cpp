@@ -2,7 +2,6 @@
 #include "study.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -14,12 +13,6 @@
 namespace waves {
 
 namespace {
-
-constexpr std::array<Study, 2> all = {{
-    {"dispersion", "the frequency of standing waves against the scheme's and the wave equation's",
-     studyDispersion},
-    {"energy", "what becomes of the energy in many steps", studyEnergy},
-}};
 
 Model square(std::int64_t n, double courant) {
   Model m;
@@ -56,8 +49,6 @@ const char* nameOf(Scheme scheme) {
 }
 
 }  // namespace
-
-std::span<const Study> studies() { return all; }
 
 std::vector<double> heightsOf(const Mode& mode, const Model& m) {
   std::vector<double> values;

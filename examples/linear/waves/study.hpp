@@ -3,9 +3,7 @@
 // The studies of `waves --study NAME`, in tables of Markdown that the documentation shows.
 #pragma once
 
-#include <span>
-#include <string>
-#include <string_view>
+#include <array>
 #include <vector>
 
 #include <sk/sk.hpp>
@@ -17,8 +15,6 @@ namespace waves {
 
 using examples::Findings;
 using examples::Study;
-
-std::span<const Study> studies();
 
 /// A standing wave with `x` and `y` half waves along the two dimensions.
 struct Mode {
@@ -45,5 +41,11 @@ Measured measure(sk::Device& device, const Model& model, const Mode& mode, std::
 
 Findings studyDispersion(sk::Device& device, bool small);
 Findings studyEnergy(sk::Device& device, bool small);
+
+inline constexpr std::array<Study, 2> studies = {{
+    {"dispersion", "the frequency of standing waves against the scheme's and the wave equation's",
+     studyDispersion},
+    {"energy", "what becomes of the energy in many steps", studyEnergy},
+}};
 
 }  // namespace waves
