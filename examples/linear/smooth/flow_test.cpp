@@ -140,9 +140,7 @@ Surface spoiled(double thin) {
 
 TEST_CASE("Meshes with slivers flow in the precision that their matrix needs") {
   for (const bool hasDoubles : {true, false}) {
-    sk::Device device = hasDoubles
-                            ? sk::Device::native()
-                            : sk::Device(sk::DeviceOptions{.device = "software", .profile = "essl300"});
+    sk::Device device = examples::deviceNamed(hasDoubles ? "native" : "essl300");
     CAPTURE(hasDoubles);
     Flow flow(device, spoiled(1e-7), {.timeStep = 0.01, .layout = "rows"});
     const double before = areaOf(flow.surface());

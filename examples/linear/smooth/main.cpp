@@ -13,7 +13,6 @@
 #include <sk/sk.hpp>
 
 #include "flow.hpp"
-#include "picture.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
 #include "support/figure.hpp"
@@ -75,13 +74,13 @@ Scene readScene(const std::filesystem::path& file) {
   scene.surface = readSurface(*surface, file.parent_path());
   if (const auto flow = table.table("flow")) {
     smooth::FlowSettings& f = scene.flow;
-    f.timeStep = flow->number("time_step", positive).value_or(f.timeStep);
-    f.keepsVolume = flow->flag("keep_volume").value_or(false);
+    flow->read("time_step", f.timeStep, positive);
+    flow->read("keep_volume", f.keepsVolume);
     f.fixesBoundary = flow->choice("boundary", boundaries).value_or(0) == 0;
-    f.tolerance = flow->number("tolerance", {1e-14, 0.1}).value_or(f.tolerance);
-    f.layout = flow->text("layout").value_or(f.layout);
+    flow->read("tolerance", f.tolerance, {1e-14, 0.1});
+    flow->read("layout", f.layout);
     f.precision = smooth::precisionNames()[flow->choice("precision", smooth::precisionNames()).value_or(0)];
-    scene.steps = flow->integer("steps", {1, 1e9}).value_or(scene.steps);
+    flow->read("steps", scene.steps, {1, 1e9});
   }
   table.finish();
   return scene;
@@ -173,7 +172,7 @@ int main(int argc, char** argv) {
                  "of the iterations: single, extended, double, or auto for what the matrix needs (default)");
   cli.add_option("--obj", settings.obj, "file for the surface at the end");
   cli.add_option("-o,--output", settings.picture, "picture of the surface before and after, .png");
-  const examples::StudyOptions study(app, "measure flows whose solution is known", smooth::studies());
+  const examples::StudyOptions study(app, "measure flows whose solution is known", smooth::studies);
   return app.run(argc, argv, [&] {
     if (study.isGiven()) return study.run();
     if (settings.input.empty())

@@ -4,10 +4,7 @@
 // Markdown that the documentation shows.
 #pragma once
 
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
+#include <array>
 
 #include <sk/sk.hpp>
 
@@ -18,9 +15,13 @@ namespace smooth {
 using examples::Findings;
 using examples::Study;
 
-std::span<const Study> studies();
-
 Findings studySphere(sk::Device& device, bool small);
 Findings studyLayouts(sk::Device& device, bool small);
+
+inline constexpr std::array<Study, 2> studies = {{
+    {"sphere", "the radius of a sphere that shrinks, against sqrt(r^2 - 4 t), and the order of convergence",
+     studySphere},
+    {"layouts", "iterations, residual and time of a step with each layout of the matrix", studyLayouts},
+}};
 
 }  // namespace smooth

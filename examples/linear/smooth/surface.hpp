@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Surfaces of triangles on the host: their files, generators, measures and faults. Nothing here knows a device.
+// Surfaces of triangles on the host: their files, generators, measures, faults and pictures. Nothing here knows a device.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/image.hpp"
 #include "support/vec.hpp"
 
 namespace smooth {
@@ -54,5 +55,8 @@ void addNoise(Surface& surface, double amplitude, std::uint32_t seed);
 Surface loadObj(const std::filesystem::path& file);
 /// Positions have as many digits as it takes to read the same doubles again.
 void saveObj(const std::filesystem::path& file, const Surface& surface);
+
+/// A shaded picture, drawn by a depth buffer: seen from the front and above, as large as `frame` fills a picture of size x size; one brightness for each face, so that noise is seen.
+examples::Image pictureOf(const Surface& surface, const Surface& frame, int size);
 
 }  // namespace smooth
