@@ -2,7 +2,6 @@
 #include "alike.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>

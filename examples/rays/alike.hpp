@@ -3,7 +3,6 @@
 // Compares pictures by different engines, machines and devices: they may differ by noise alone.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,7 +11,6 @@
 
 #include "engine.hpp"
 #include "scene.hpp"
-#include "support/scene_file.hpp"
 
 namespace rays {
 

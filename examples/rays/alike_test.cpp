@@ -4,9 +4,12 @@
 #include "alike.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "support/testing.hpp"
 
 namespace rays {
 namespace {
@@ -39,7 +42,7 @@ TEST_CASE("scenes look alike drawn and dispatched") {
   for (const auto& [name, mode, profile] :
        {Case{"caustics", "bvh", "glsl330"}, {"terrain", "streaming, branching", "glsl430"}}) {
     INFO(name << " by " << mode << " on " << profile);
-    sk::Device device(sk::DeviceOptions{.device = "software", .profile = profile});
+    sk::Device device = examples::deviceNamed(profile);
     const Scene scene = readScene(std::string(SK_RAYS_SCENES) + "/" + name + ".toml",
                                   {.width = 8, .height = 6, .samples = 2, .mostLevel = 1});
     const Result got = resultOf(device, scene, *std::ranges::find(all, std::string(mode), &Mode::name));

@@ -32,6 +32,17 @@ Bounds boundsOf(const Triangle& triangle);
 /// Larger by 2^-20 of the radius, since the sphere's test rounds more often than the test of boxes.
 Bounds boundsOf(const Sphere& sphere);
 
+using Corner = std::array<double, 3>;
+
+inline Corner cornerOf(const sk::float3& v) { return {v.x, v.y, v.z}; }
+
+/// Overlap tests in double precision, for structures that list the shapes in their cells. Returns true if a triangle meets a box: none of the separating axes separates them (T. Akenine-Möller, "Fast 3D triangle-box overlap
+/// testing", 2001).
+bool meets(const std::array<Corner, 3>& triangle, const Corner& centre, const Corner& half);
+
+/// Returns true if a sphere's surface meets a box. The radius is widened by 2^-20 to both sides: see boundsOf().
+bool meets(const Corner& middle, double radius, const Corner& centre, const Corner& half);
+
 /// A leaf has `count` > 0 shapes from `first` on in Bvh::order; else its children are nodes `first` and `first` + 1.
 struct BvhNode {
   Bounds bounds;
@@ -75,5 +86,30 @@ std::vector<sk::float4> planeLayout(const Model& model);
 
 /// An int from -1 to 2^29 as a float that no device rounds or takes for a denormal.
 float packedInt(std::int64_t i);
+
+// The same hierarchy with nodes of eight children, whose boxes are bytes (H. Ylitie, T. Karras, S. Laine, "Efficient incoherent ray traversal on
+// GPUs through compressed wide BVHs", 2017; wide_bvh.cpp).
+
+/// Children of a wide node. Bit k of a child's slot says on which side of axis k it lies, so that a ray whose direction has the signs `octant`
+/// meets slots in the order of slot ^ octant.
+inline constexpr int wideChildren = 8;
+
+/// How many wide nodes there may be: kernels keep a node's number and a bit for each child in an int.
+inline constexpr std::size_t mostWideNodes = std::size_t{1} << 23;
+
+struct WideBvh {
+  /// Four elements a node. The first has the bits of the origin's coordinates, and a byte for each axis: the biased exponent of what a step
+  /// is long. The others have a byte for each child, in steps from the origin: (low x, low y), (low z, high x), (high y, high z), each of
+  /// them in two ints, slots 0 to 3 and 4 to 7.
+  std::vector<sk::int4> nodes;
+  /// Eight a node: the child's number; or -(8 first + count), the shapes of a leaf in Bvh::order; -8 for none.
+  std::vector<std::int32_t> children;
+
+  std::size_t size() const { return nodes.size() / 4; }
+};
+
+/// Opens the child with the largest surface until a node has eight. Boxes hold those of `bvh`, with so much room that kernels
+/// may compute distances from bytes (docs/rays.md). Throws std::runtime_error beyond mostWideNodes.
+WideBvh widen(const Bvh& bvh);
 
 }  // namespace rays

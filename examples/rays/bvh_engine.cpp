@@ -3,14 +3,18 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <sk/algorithm.hpp>
 
 #include "bvh.sk.hpp"
-#include "bvh_tracer.hpp"
 #include "device_scene.hpp"
-#include "path_renderer.hpp"
+#include "path_tables.hpp"
 #include "ray_streams.hpp"
 #include "streaming_renderer.hpp"
+#include "wavefront.sk.hpp"
 
 namespace rays {
 namespace {
@@ -22,11 +26,28 @@ constexpr std::array<std::string_view, 3> traversalNames = {"stack", "leaves", "
 constexpr std::array<std::string_view, 2> machineNames = {"megakernel", "wavefront"};
 constexpr std::array<std::string_view, 3> sortNames = {"none", "origin", "direction"};
 constexpr std::array<std::string_view, 2> intersectionNames = {"watertight", "moller"};
-constexpr std::array<std::string_view, 3> precisionNames = {"single", "double", "extended"};
-constexpr std::array precisions = {sk::Precision::Single, sk::Precision::Double, sk::Precision::Extended};
 constexpr std::array<std::string_view, 2> storageNames = {"single", "half"};
 /// Rays of one call; more come in several.
 constexpr std::size_t batch = std::size_t{1} << 20;
+
+/// Path tracing by one kernel.
+class PathRenderer : public PathsRenderer {
+ public:
+  PathRenderer(DeviceScene& scene, const Picture& picture)
+      : PathsRenderer(scene.device(), scene.model(), picture), scene_(scene) {}
+
+  void pass(std::int64_t index) override {
+    const PathTables& t = tables_;
+    passBy([&](auto& radiance) {
+      scene_.call(kernels::followPaths, features(), static_cast<unsigned>(t.sampling), t.view, t.setting,
+                  static_cast<std::uint32_t>(index), t.seed, t.materials, t.corners, t.lights, t.sky,
+                  t.texels, t.textures, pixels(), radiance);
+    });
+  }
+
+ private:
+  DeviceScene& scene_;
+};
 
 class BvhEngine : public Engine {
  public:
@@ -66,7 +87,7 @@ class BvhEngine : public Engine {
   std::unique_ptr<Renderer> renderer(const Picture& picture) override {
     if (settings_.machine == PathMachine::Wavefront)
       return makeMultipassRenderer(scene_.view(), tracer_, picture, Use::Paths);
-    return makePathRenderer(scene_, picture);
+    return std::make_unique<PathRenderer>(scene_, picture);
   }
 
   std::vector<std::string> account() override { return scene_.account(); }
@@ -104,16 +125,21 @@ DeviceSettings settingsOf(const SceneTable& table) {
                  "links past what is missed are for 'nodes' of 2 children; choose another 'traversal'");
     settings.nodes = static_cast<int>(*nodes);
   }
-  settings.intersection =
-      static_cast<HowToIntersect>(table.choice("intersection", intersectionNames).value_or(0));
-  settings.machine = static_cast<PathMachine>(table.choice("machine", machineNames).value_or(0));
-  settings.sort = static_cast<RaySort>(table.choice("sort", sortNames).value_or(0));
-  settings.precision = precisions[table.choice("precision", precisionNames).value_or(0)];
-  settings.storage = static_cast<VertexStorage>(table.choice("storage", storageNames).value_or(0));
-  settings.bvh.bins = static_cast<int>(table.integer("bins", Range{2, 64}).value_or(settings.bvh.bins));
-  settings.bvh.leaf = static_cast<int>(table.integer("leaf", Range{1, 7}).value_or(settings.bvh.leaf));
+  table.read("intersection", settings.intersection, intersectionNames);
+  table.read("machine", settings.machine, machineNames);
+  table.read("sort", settings.sort, sortNames);
+  settings.precision = table.precision("precision", std::span(examples::precisionNames).subspan(1))
+                           .value_or(settings.precision);
+  table.read("storage", settings.storage, storageNames);
+  table.read("bins", settings.bvh.bins, Range{2, 64});
+  table.read("leaf", settings.bvh.leaf, Range{1, 7});
   return settings;
 }
+
+/// Cells along each axis that keys tell apart.
+constexpr float cells = 512.0f;
+
+float scaleOf(float least, float most) { return cells / std::max(most - least, 0x1p-60f); }
 
 }  // namespace
 
@@ -126,6 +152,26 @@ MakeEngine readBvhEngine(const std::optional<SceneTable>& table) {
   const DeviceSettings settings = table ? settingsOf(*table) : DeviceSettings{};
   return
       [settings](sk::Device& device, const Model& model) { return makeBvhEngine(device, model, settings); };
+}
+
+sk::Stream<int> BvhTracer::keys(const sk::Stream<sk::float4>& from,
+                                const sk::Stream<sk::float4>& along) const {
+  const Bounds box = scene_.bvh().nodes[0].bounds;
+  sk::Stream<int> keys = scene_.device().stream<int>(from.shape());
+  kernels::rayKeys(sort_ == RaySort::Origin ? 0u : 1u, box.least,
+                   sk::float3{scaleOf(box.least.x, box.most.x), scaleOf(box.least.y, box.most.y),
+                              scaleOf(box.least.z, box.most.z)},
+                   from, along, keys);
+  return keys;
+}
+
+void BvhTracer::find(bool anyHit, const sk::Stream<sk::float4>& from, const sk::Stream<sk::float4>& along,
+                     sk::Stream<kernels::Found>& found) {
+  if (from.size() == 0) return;
+  if (sort_ == RaySort::None || scene_.bvh().nodes.empty())
+    scene_.call(kernels::findInHierarchy, anyHit, from, along, found);
+  else
+    scene_.call(kernels::findInOrder, anyHit, sk::order(keys(from, along)), from, along, found);
 }
 
 }  // namespace rays

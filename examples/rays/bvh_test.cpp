@@ -8,33 +8,23 @@
 #include <string>
 #include <vector>
 
+#include "bvh.hpp"
 #include "bvh_engine.hpp"
-#include "picture_test.hpp"
+#include "scenes_test.hpp"
 #include "shapes.hpp"
-#include "soup_test.hpp"
 #include "study.hpp"
-#include "wide_bvh.hpp"
 
 namespace rays {
 namespace {
 
-sk::Device deviceNamed(const std::string& name) {
-  if (name == "native") return sk::Device::native();
-  return sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
-}
-
 std::vector<Hit> closestBy(sk::Device& device, const Model& model, const std::vector<Ray>& rays,
                            const DeviceSettings& settings) {
-  std::vector<Hit> hits(rays.size());
-  makeBvhEngine(device, model, settings)->closest(rays, hits);
-  return hits;
+  return hitsOf(*makeBvhEngine(device, model, settings), rays);
 }
 
 std::vector<std::uint8_t> occludedBy(sk::Device& device, const Model& model, const std::vector<Ray>& rays,
                                      const DeviceSettings& settings) {
-  std::vector<std::uint8_t> blocked(rays.size());
-  makeBvhEngine(device, model, settings)->occluded(rays, blocked);
-  return blocked;
+  return shadowsOf(*makeBvhEngine(device, model, settings), rays);
 }
 
 float floatOf(std::int32_t bits) { return std::bit_cast<float>(bits); }
@@ -126,7 +116,7 @@ TEST_CASE("nodes of eight and sorted rays change no bit of a hit") {
     CHECK(closestBy(native, model, rays, {.sort = RaySort::Origin}) == expected);
     CHECK(closestBy(native, model, rays, {.sort = RaySort::Direction}) == expected);
   }
-  sk::Device gl = deviceNamed("glsl430");
+  sk::Device gl = examples::deviceNamed("glsl430");
   const Model model = soup({});
   const std::vector<Hit> expected = closestBy(gl, model, rays, {.nodes = 2});
   CHECK(closestBy(gl, model, rays, {.nodes = 8, .sort = RaySort::Direction}) == expected);
@@ -177,7 +167,7 @@ through = [0, -0.3, 0]
 material = "grey"
 )";
   const auto imageBy = [](sk::Device& device, const std::string& of, const std::string& settings) {
-    return pictureBy(device, of + "[bvh]\n" + settings, "written_wavefront.toml", "bvh", 2);
+    return pictureBy(device, of + "[bvh]\n" + settings, "bvh", 2);
   };
   sk::Device native = sk::Device::native();
   const std::vector<float> expected = imageBy(native, scene, "machine = \"megakernel\"\n");
@@ -188,7 +178,7 @@ material = "grey"
   for (const std::string type : {"type = \"glass\"\n", "type = \"metal\"\n"})
     grey.erase(grey.find(type), type.size());
   const std::vector<float> greyByOne = imageBy(native, grey, "machine = \"megakernel\"\n");
-  sk::Device gl = deviceNamed("glsl430");
+  sk::Device gl = examples::deviceNamed("glsl430");
   const std::vector<float> greyByQueues = imageBy(gl, grey, "machine = \"wavefront\"\n");
   double sum = 0.0, difference = 0.0;
   for (std::size_t i = 0; i < greyByOne.size(); ++i) {

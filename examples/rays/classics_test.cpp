@@ -10,36 +10,11 @@
 
 #include <fmt/format.h>
 
-#include "picture_test.hpp"
-#include "scene.hpp"
-#include "soup_test.hpp"
+#include "scenes_test.hpp"
 #include "support/testing.hpp"
 
 namespace rays {
 namespace {
-
-sk::Device deviceOf(const std::string& name) {
-  if (name == "native") return sk::Device::native();
-  return sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
-}
-
-std::unique_ptr<Engine> engineOf(sk::Device& device, const Model& model, const std::string& name,
-                                 const std::string& settings) {
-  const examples::WrittenFile file(fmt::format("[{}]\n{}", name, settings), "written_classic.toml");
-  return readScene(file.path(), {}).engines.at(name)(device, model);
-}
-
-std::vector<Hit> hitsOf(Engine& engine, const std::vector<Ray>& rays) {
-  std::vector<Hit> hits(rays.size());
-  engine.closest(rays, hits);
-  return hits;
-}
-
-std::vector<std::uint8_t> shadowsOf(Engine& engine, const std::vector<Ray>& rays) {
-  std::vector<std::uint8_t> blocked(rays.size());
-  engine.occluded(rays, blocked);
-  return blocked;
-}
 
 /// Where an engine finds another id, it must be at the same distance. Tests and programs may round t differently, by 16 roundings of the
 /// lengths that it is computed from, t and the scene's 1. Different tests of a triangle differ by more where it is nearly in line with the ray.
@@ -63,7 +38,7 @@ void compareHits(const std::vector<Hit>& got, const std::vector<Hit>& expected, 
 struct Expected {
   Expected(const Model& model, const std::vector<Ray>& rays, const std::string& test) {
     sk::Device device = sk::Device::native();
-    const std::unique_ptr<Engine> bvh = engineOf(device, model, "bvh", test);
+    const std::unique_ptr<Engine> bvh = engineOf(device, model, test, "bvh");
     hits = hitsOf(*bvh, rays);
     shadows = shadowsOf(*bvh, rays);
   }
@@ -81,7 +56,7 @@ constexpr Way inOneKernel{"streaming", "machine = 'branching'\n"},
 void compareEngine(sk::Device& device, const Model& model, const std::vector<Ray>& rays, const Way& way,
                    const std::string& test, const Expected& expected, float bound = 0x1p-20f) {
   INFO(way.engine << ' ' << way.machine);
-  const std::unique_ptr<Engine> engine = engineOf(device, model, way.engine, way.machine + test);
+  const std::unique_ptr<Engine> engine = engineOf(device, model, way.machine + test, way.engine);
   compareHits(hitsOf(*engine, rays), expected.hits, bound);
   CHECK(shadowsOf(*engine, rays) == expected.shadows);
 }
@@ -109,7 +84,7 @@ TEST_CASE("all engines find the same hits and shadows, on every device") {
   for (const auto& [profile, way] :
        {OnGl{"glsl330", inPasses}, {"glsl430", inPasses}, {"glsl430", inOneKernel}, {"essl300", inBuckets}}) {
     INFO(profile);
-    sk::Device device = deviceOf(profile);
+    sk::Device device = examples::deviceNamed(profile);
     // Drivers round a test of a triangle as a different test, with which native code computes t.
     compareEngine(device, model, rays, way, test, expected, 1e-5f);
   }
@@ -130,12 +105,12 @@ TEST_CASE("the multipass machine finds the same however it is set") {
   sk::Device device = sk::Device::native();
   const Model model = soup({});
   const std::vector<Ray> rays = raysAtRandom(300);
-  const std::vector<Hit> hits = hitsOf(*engineOf(device, model, "streaming", ""), rays);
+  const std::vector<Hit> hits = hitsOf(*engineOf(device, model, "", "streaming"), rays);
   for (const int tests : {1, 16}) {
     for (const double compact : {0.0, 1.0}) {
       const std::string settings =
           fmt::format("machine = 'multipass'\ntests = {}\nrounds = 3\ncompact = {:.1f}", tests, compact);
-      compareHits(hitsOf(*engineOf(device, model, "streaming", settings), rays), hits);
+      compareHits(hitsOf(*engineOf(device, model, settings, "streaming"), rays), hits);
     }
   }
 }
@@ -144,12 +119,12 @@ TEST_CASE("the ray engine finds the same however it is set, also by its own test
   sk::Device device = sk::Device::native();
   const Model model = soup({});
   const std::vector<Ray> rays = raysAtRandom(300);
-  const std::vector<Hit> hits = hitsOf(*engineOf(device, model, "bvh", "intersection = 'moller'"), rays);
+  const std::vector<Hit> hits = hitsOf(*engineOf(device, model, "intersection = 'moller'", "bvh"), rays);
   for (const char* settings :
        {"", "bucket = 64\ncache = 1\nin_flight = 0\nshapes_per_call = 3", "bucket = 4096\nleaf = 1",
         "bucket = 64\ncache = 2\nin_flight = 1\nleaf = 1000"}) {
     INFO(settings);
-    compareHits(hitsOf(*engineOf(device, model, "ray_engine", settings), rays), hits, 1e-5f);
+    compareHits(hitsOf(*engineOf(device, model, settings, "ray_engine"), rays), hits, 1e-5f);
   }
 }
 
@@ -186,9 +161,8 @@ intersection = "watertight"
 )";
   const auto imageBy = [](const std::string& scene, const char* name, const char* engine,
                           const std::string& settings) {
-    sk::Device device = deviceOf(name);
-    return pictureBy(device, fmt::format("{}\n[streaming]\n{}", scene, settings), "written_picture.toml",
-                     engine, 1);
+    sk::Device device = examples::deviceNamed(name);
+    return pictureBy(device, fmt::format("{}\n[streaming]\n{}", scene, settings), engine, 1);
   };
   const std::vector<float> withIt = imageBy(withGlass, "native", "bvh", "");
   CHECK(std::ranges::count_if(withIt, [](float part) { return part > 0; }) > 600);
@@ -240,14 +214,10 @@ material = "mirror"
   sk::Device device = sk::Device::native();
   for (const char* machine : {"branching", "multipass"}) {
     const auto greenOf = [&](const char* use) {
-      const examples::WrittenFile file(
-          fmt::format("{}\n[streaming]\nuse = '{}'\nmachine = '{}'", scene, use, machine),
-          "written_use.toml");
-      const Scene read = readScene(file.path(), {});
-      const std::unique_ptr<Engine> made = read.engines.at("streaming")(device, read.model);
-      const std::unique_ptr<Renderer> renderer = made->renderer(read.picture);
-      renderer->pass(0);
-      const std::vector<sk::float3> image = renderer->image();
+      const Scene read =
+          sceneFrom(fmt::format("{}\n[streaming]\nuse = '{}'\nmachine = '{}'", scene, use, machine));
+      const std::vector<sk::float3> image =
+          imageOf(*read.engines.at("streaming")(device, read.model), read.picture, 1);
       return std::array{image[0].y, image[1].y};
     };
     // Irradiance 1 on an albedo of 0.5 is radiance 0.5 / pi.
@@ -279,10 +249,10 @@ TEST_CASE("rays that are not finite end, and hit nothing that matters") {
     }
   }
   for (const char* machine : {"branching", "multipass"}) {
-    const auto engine = engineOf(device, model, "streaming", fmt::format("machine = '{}'", machine));
+    const auto engine = engineOf(device, model, fmt::format("machine = '{}'", machine), "streaming");
     CHECK(hitsOf(*engine, rays).size() == rays.size());
   }
-  for (const Hit& hit : hitsOf(*engineOf(device, model, "ray_engine", ""), rays)) CHECK(hit.id == -1);
+  for (const Hit& hit : hitsOf(*engineOf(device, model, "", "ray_engine"), rays)) CHECK(hit.id == -1);
 }
 
 }  // namespace

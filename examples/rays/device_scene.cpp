@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "device_scene.hpp"
 
+#include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -41,6 +44,12 @@ TraversalDefault fastestOn(const sk::Device& device) {
 /// A copy where shapes are to be rounded, else none.
 std::unique_ptr<Model> copyToRound(const Model& model, VertexStorage storage) {
   return storage == VertexStorage::Half ? std::make_unique<Model>(model) : nullptr;
+}
+
+std::vector<std::uint32_t> ownOrder(const Model& model) {
+  std::vector<std::uint32_t> order(model.triangles.size() + model.spheres.size());
+  std::iota(order.begin(), order.end(), 0u);
+  return order;
 }
 
 }  // namespace
@@ -148,5 +157,17 @@ std::vector<std::string> DeviceScene::warnings() const {
                   "\"single\" keeps them",
                   rounding_.collapsed, model_->triangles.size())};
 }
+
+DeviceShapes::DeviceShapes(sk::Device& onDevice, const Model& ofModel)
+    : device(onDevice),
+      model(ofModel),
+      contracted(!onDevice.name().starts_with("native")),
+      hasTriangles(!ofModel.triangles.empty()),
+      hasSpheres(!ofModel.spheres.empty()),
+      hasPlanes(!ofModel.planes.empty()),
+      planeCount(static_cast<int>(ofModel.planes.size())),
+      firstPlane(ofModel.planeId(0)),
+      planes(streamOf(onDevice, planeLayout(ofModel))),
+      shapes(onDevice, ownOrder(ofModel), ofModel) {}
 
 }  // namespace rays

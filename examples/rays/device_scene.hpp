@@ -17,7 +17,6 @@
 #include "bvh.sk.hpp"
 #include "model.hpp"
 #include "vertex_storage.hpp"
-#include "wide_bvh.hpp"
 
 namespace rays {
 
@@ -132,6 +131,23 @@ class DeviceScene {
   std::optional<ShapeStreams> shapes_;
   sk::Stream<sk::int4> wide_;
   sk::Stream<std::int32_t> children_;
+};
+
+/// A model's shapes in the order of their numbers: triangles before spheres.
+struct DeviceShapes {
+  /// Both must outlive it.
+  DeviceShapes(sk::Device& onDevice, const Model& ofModel);
+
+  ShapeView view() const { return {device, model, hasTriangles, hasSpheres, planes, shapes}; }
+  bool hasShapes() const { return hasTriangles || hasSpheres; }
+
+  sk::Device& device;
+  const Model& model;
+  bool contracted;  ///< the device may contract products and sums
+  bool hasTriangles, hasSpheres, hasPlanes;
+  int planeCount, firstPlane;
+  sk::Stream<sk::float4> planes;
+  ShapeStreams shapes;
 };
 
 }  // namespace rays

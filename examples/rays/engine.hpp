@@ -77,7 +77,7 @@ class Engine {
   virtual ~Engine() = default;
 
   /// Finds the nearest hit of each ray, and the least id among hits at one distance. `hits` has the size of `rays`. The greatest
-  /// component of a ray's direction lies between 1/2 and 4 (traceRays in trace.hpp sees to that).
+  /// component of a ray's direction lies between 1/2 and 4 (traceRays() sees to that).
   virtual void closest(std::span<const Ray> rays, std::span<Hit> hits) = 0;
   /// Sets `blocked` to 1 for rays that hit anything, else to 0.
   virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) = 0;
@@ -104,5 +104,16 @@ struct EngineKind {
 
 /// All of them; the first is the default.
 std::span<const EngineKind> engineKinds();
+
+/// What Engine::closest() and Engine::occluded() find.
+std::vector<Hit> hitsOf(Engine& engine, std::span<const Ray> rays);
+std::vector<std::uint8_t> shadowsOf(Engine& engine, std::span<const Ray> rays);
+
+/// The nearest hits of rays that have the lengths of the scene file, and directions of any length. Denormal directions count as
+/// they are.
+std::vector<Hit> traceRays(Engine& engine, const Model& model, std::span<const Ray> rays);
+
+/// Hits of engines as those of the scene file: `t` in its lengths. For rays of unit length in the model's units.
+void toSceneLengths(const Model& model, std::span<Hit> hits);
 
 }  // namespace rays

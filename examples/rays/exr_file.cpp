@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "exr_file.hpp"
+#include "raster_file.hpp"
 
 #include <array>
 #include <cstddef>

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "overlap.hpp"
+#include "bvh.hpp"
 
 namespace rays {
 namespace {

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "soup_test.hpp"
+#include "scenes_test.hpp"
 
 namespace rays {
 namespace {

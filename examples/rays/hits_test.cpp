@@ -10,32 +10,13 @@
 #include <fmt/format.h>
 
 #include "bvh.hpp"
-#include "reference.hpp"
-#include "scene.hpp"
+#include "scenes_test.hpp"
 #include "shapes.hpp"
 #include "study.hpp"
 #include "support/testing.hpp"
-#include "trace.hpp"
 
 namespace rays {
 namespace {
-
-sk::Device profileDevice(const std::string& name) {
-  if (name == "native") return sk::Device::native();
-  return sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
-}
-
-std::unique_ptr<Engine> engineOf(sk::Device& device, const Model& model, const std::string& settings = "") {
-  const examples::WrittenFile file("[bvh]\n" + settings, "written_engine.toml");
-  return readScene(file.path(), {}).engines.at("bvh")(device, model);
-}
-
-/// Returns the largest error of the hits, compared with a test of all triangles.
-double largestError(const Model& model, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < rays.size(); ++i) largest = std::max(largest, errorOf(model, rays[i], hits[i]));
-  return largest;
-}
 
 std::vector<Ray> randomRays(std::size_t count, std::mt19937& random) {
   std::normal_distribution<float> normal;
@@ -57,17 +38,13 @@ std::size_t differences(const std::vector<Hit>& a, const std::vector<Hit>& b) {
 }
 
 std::size_t leaks(Engine& engine, const Model& model, const std::vector<Ray>& rays) {
-  std::size_t missed = 0;
-  for (const Hit& hit : traceRays(engine, model, rays)) missed += hit.id < 0;
-  return missed;
+  return misses(traceRays(engine, model, rays));
 }
 
 /// The hits of an engine, which the tests for shadows must agree with.
 std::vector<Hit> checkedHits(Engine& engine, const std::vector<Ray>& rays) {
-  std::vector<Hit> hits(rays.size());
-  engine.closest(rays, hits);
-  std::vector<std::uint8_t> blocked(rays.size());
-  engine.occluded(rays, blocked);
+  const std::vector<Hit> hits = hitsOf(engine, rays);
+  const std::vector<std::uint8_t> blocked = shadowsOf(engine, rays);
   std::size_t differ = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) differ += (blocked[i] != 0) != (hits[i].id >= 0);
   CHECK(differ == 0);
@@ -95,12 +72,11 @@ TEST_CASE("hits are those of loops in double precision, on every device and by e
     CHECK(largestError(model, rays, hits) < 0x1p-20);
     if (native.empty()) native = hits;
     CHECK(differences(hits, native) == 0);
-    sk::Device gl = profileDevice(way.profile);
+    sk::Device gl = examples::deviceNamed(way.profile);
     CHECK(differences(checkedHits(*engineOf(gl, model, way.settings), rays), native) == 0);
   }
-  std::vector<Hit> hits(rays.size());
-  engineOf(device, model, "intersection = \"moller\"\n")->closest(rays, hits);
-  CHECK(largestError(model, rays, hits) < 0x1p-20);
+  CHECK(largestError(model, rays, hitsOf(*engineOf(device, model, "intersection = \"moller\"\n"), rays)) <
+        0x1p-20);
 }
 
 TEST_CASE("no ray passes between triangles that share an edge or a vertex") {
@@ -112,7 +88,7 @@ TEST_CASE("no ray passes between triangles that share an edge or a vertex") {
   }
   for (const char* name : {"glsl330", "essl300", "glsl430"}) {
     INFO(name);
-    sk::Device gl = profileDevice(name);
+    sk::Device gl = examples::deviceNamed(name);
     const Model model = modelOf(icosphere(2, false));
     CHECK(leaks(*engineOf(gl, model), model, raysToEdges(model, {}, 20'000, 11)) == 0);
   }
@@ -133,8 +109,7 @@ TEST_CASE("scenes of any size have the same hits, and directions of any length")
   std::vector<Hit> expected;
   for (const int exponent : {0, -50, 50}) {
     const double size = std::ldexp(1.0, exponent);
-    const examples::WrittenFile sized(fmt::format("{}{:.20g}]\n", mesh, size), "written_sized.toml");
-    const Scene scene = readScene(sized.path(), {});
+    const Scene scene = sceneFrom(fmt::format("{}{:.20g}]\n", mesh, size));
     std::vector<Ray> scaled = rays;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const auto by = [](sk::float3 v, double s) {
@@ -167,8 +142,7 @@ TEST_CASE("rays in the planes of faces, along edges and with zeros of both signs
                                  {.origin = {0, 0, 0.5f}, .direction = {0, 0, 1}},
                                  {.origin = {0, 0, 0.5000001f}, .direction = {0, 0, 1}},
                                  {.origin = {0, 0, 4194304}, .direction = {1e-9f, 0, -1}}};
-  std::vector<Hit> hits(rays.size());
-  engine->closest(rays, hits);
+  const std::vector<Hit> hits = hitsOf(*engine, rays);
   CHECK(hits[0].t == 1.5f);
   CHECK(hits[1] == hits[0]);
   CHECK(hits[2].t == 1.5f);
@@ -210,8 +184,7 @@ TEST_CASE("spheres and planes are hit where they are") {
                                  {.origin = {3, 0, 0}, .direction = {0, -1, 0}},
                                  {.origin = {0.9999f, 0, 1000}, .direction = {0, 0, -1}},
                                  {.origin = {0, 2, 0}, .direction = {1, 0, 0}}};
-  std::vector<Hit> hits(rays.size());
-  engine->closest(rays, hits);
+  const std::vector<Hit> hits = hitsOf(*engine, rays);
   CHECK(hits[0] == Hit{0, 1.5f, 0.75f, 0.5f});
   CHECK(hits[1].t == 0.5f);
   CHECK(hits[2] == Hit{2, 0.5f, 0, 0});

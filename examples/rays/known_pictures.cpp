@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "known_pictures.hpp"
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>

@@ -4,9 +4,7 @@
 // number.
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <sk/sk.hpp>

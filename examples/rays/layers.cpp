@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "camera.hpp"
+#include "engine.hpp"
 #include "raster_file.hpp"
-#include "trace.hpp"
 
 namespace rays {
 namespace {
@@ -82,8 +82,7 @@ sk::float3 grey(float x) { return {x, x, x}; }
 
 std::vector<Layer> layersOf(Engine& engine, const Model& model, const Picture& picture) {
   const std::vector<Ray> rays = primaryRays(model.camera, picture.width, picture.height);
-  std::vector<Hit> hits(rays.size());
-  engine.closest(rays, hits);
+  std::vector<Hit> hits = hitsOf(engine, rays);
   std::vector<Layer> layers = {{.name = "depth", .isSingle = true},
                                {.name = "normal"},
                                {.name = "albedo"},
@@ -104,8 +103,7 @@ std::vector<Layer> layersOf(Engine& engine, const Model& model, const Picture& p
 
 bool seesBacksAlone(Engine& engine, const Model& model) {
   const std::vector<Ray> rays = primaryRays(model.camera, 8, 8);
-  std::vector<Hit> hits(rays.size());
-  engine.closest(rays, hits);
+  const std::vector<Hit> hits = hitsOf(engine, rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (hits[i].id < 0) return false;
     const Seen seen = seenAt(model, rays[i], hits[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "live.hpp"
+#include "render.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,13 +18,6 @@
 namespace rays {
 namespace {
 
-constexpr std::string_view cornersShader = R"(
-  out vec2 at;
-  void main() {
-    at = vec2(gl_VertexID % 2, 1 - gl_VertexID / 2);
-    gl_Position = vec4(2.0 * vec2(at.x, 1.0 - at.y) - 1.0, 0.0, 1.0);
-  })";
-
 // As toneMapped in render.cpp.
 constexpr std::string_view toneShader = R"(
   in vec2 at;
@@ -33,7 +26,7 @@ constexpr std::string_view toneShader = R"(
   uniform float exposure;
   uniform bool isFilmic;
   void main() {
-    vec3 x = max(exposure * texture(radiance, at).rgb, 0.0);
+    vec3 x = max(exposure * texture(radiance, vec2(at.x, 1.0 - at.y)).rgb, 0.0);
     if (isFilmic) x = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
     x = clamp(x, 0.0, 1.0);
     colour = vec4(mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, greaterThan(x, vec3(0.0031308))), 1.0);
@@ -61,33 +54,24 @@ class Screen {
     const double scale = std::min(double(size.width) / width_, double(size.height) / height_);
     const int w = static_cast<int>(scale * width_), h = static_cast<int>(scale * height_);
     glViewport((size.width - w) / 2, (size.height - h) / 2, w, h);
-    glUseProgram(program_.get());
-    glBindVertexArray(nothing_.get());
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, texture_.get());
-    glUniform1i(glGetUniformLocation(program_.get(), "radiance"), 0);
-    glUniform1f(glGetUniformLocation(program_.get(), "exposure"), static_cast<float>(output.exposure));
-    glUniform1i(glGetUniformLocation(program_.get(), "isFilmic"), output.tone == ToneMap::Filmic ? 1 : 0);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    glBindVertexArray(0);
-    glUseProgram(0);
+    view_.use();
+    view_.bind("radiance", 0, texture_.get());
+    glUniform1f(view_["exposure"], static_cast<float>(output.exposure));
+    glUniform1i(view_["isFilmic"], output.tone == ToneMap::Filmic ? 1 : 0);
+    view_.draw();
   }
 
  private:
   int width_, height_;
-  examples::GlProgram program_ = examples::makeProgram(cornersShader, toneShader);
-  examples::GlVertexArray nothing_ = examples::makeVertexArray();
+  examples::FullView view_{toneShader};
   examples::GlTexture texture_;
 };
 
-struct Show {
+/// True if the picture begins anew: the camera has moved, or somebody wants it.
+bool obey(const examples::Input& input, Scene& scene) {
   bool restarts = false;
-};
-
-/// True if the camera has moved.
-bool obey(const examples::Input& input, Show& show, Scene& scene) {
   for (const char key : input.typed) {
-    if (key == 'r') show.restarts = true;
+    if (key == 'r') restarts = true;
     if (key == '+') scene.output.exposure *= 1.25;
     if (key == '-') scene.output.exposure /= 1.25;
   }
@@ -97,7 +81,7 @@ bool obey(const examples::Input& input, Show& show, Scene& scene) {
   else if (input.wheel != 0)
     camera = approached(camera, std::pow(0.9, input.wheel));
   else
-    return false;
+    return restarts;
   return true;
 }
 
@@ -120,7 +104,6 @@ void runLive(Scene& scene, const std::string& name) {
   for (const std::string& warning : engine->warnings()) fmt::print(stderr, "rays: warning: {}\n", warning);
   const std::unique_ptr<Renderer> renderer = engine->renderer(picture);
   Screen screen(picture.width, picture.height);
-  Show show;
   std::int64_t samples = 0;
   double passMilliseconds = 1.0;
   while (window.isOpen()) {
@@ -135,8 +118,7 @@ void runLive(Scene& scene, const std::string& name) {
       passMilliseconds = std::max(0.1, stopwatch.milliseconds() / passes);
     }
     if (const auto size = window.size()) screen.draw(scene.output, *size);
-    show.restarts = false;
-    if (obey(window.show(), show, scene) || show.restarts) {
+    if (obey(window.show(), scene)) {
       renderer->look(scene.model.camera);
       samples = 0;
     }

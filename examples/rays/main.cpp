@@ -2,9 +2,7 @@
 //
 // rays: pictures and hits of scene files, by the engine that the scene asks for.
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -25,16 +23,15 @@
 #include "hits_file.hpp"
 #include "layers.hpp"
 #include "light_table.hpp"
-#include "live.hpp"
 #include "reference.hpp"
 #include "render.hpp"
 #include "scene.hpp"
 #include "study.hpp"
 #include "support/application.hpp"
+#include "support/named.hpp"
 #include "support/options.hpp"
 #include "support/ranks.hpp"
 #include "support/stopwatch.hpp"
-#include "trace.hpp"
 
 namespace {
 
@@ -57,10 +54,7 @@ struct Settings {
 
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "what to see: a TOML file, as in examples/rays/scenes");
-  std::string engines = "in place of the scene's:";
-  for (const rays::EngineKind& kind : rays::engineKinds())
-    engines += fmt::format("\n  {:<11} {}", kind.name, kind.does);
-  cli.add_option("--engine", s.engine, engines);
+  cli.add_option("--engine", s.engine, examples::listed("in place of the scene's:", rays::engineKinds(), 11));
   cli.add_option("--size", s.size, "pixels, WxH, in place of the scene's");
   cli.add_option("--samples", s.samples, "for each pixel, in place of the scene's")
       ->check(CLI::Range(1, 1'000'000));
@@ -128,10 +122,7 @@ void writeHits(examples::Application& app, const Settings& s, const rays::Scene&
   if (fromFile) {
     hits = rays::traceRays(*engine, scene.model, rays::loadRays(s.rays));
   } else {
-    const std::vector<rays::Ray> primary =
-        rays::primaryRays(scene.model.camera, picture.width, picture.height);
-    hits.resize(primary.size());
-    engine->closest(primary, hits);
+    hits = rays::hitsOf(*engine, rays::primaryRays(scene.model.camera, picture.width, picture.height));
     rays::toSceneLengths(scene.model, hits);
   }
   rays::saveHits(s.hits, hits, fromFile ? 0 : std::max(picture.width, 1));
@@ -233,7 +224,7 @@ int main(int argc, char** argv) {
   examples::Application app("rays", "Pictures and hits of scene files by tracing rays.",
                             examples::joinRanks());
   addOptions(app.options(), settings);
-  const examples::StudyOptions study(app, "measure what choices are worth", rays::studies());
+  const examples::StudyOptions study(app, "measure what choices are worth", rays::studies);
   return app.run(argc, argv, [&] {
     if (study.isGiven()) return study.run();
     if (settings.scene.empty())

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "marching_cubes.hpp"
+#include "shapes.hpp"
 
 #include <algorithm>
 #include <map>

@@ -2,27 +2,17 @@
 #include "mesh.hpp"
 
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <string>
 #include <utility>
 
+#include "scenes_test.hpp"
 #include "shapes.hpp"
 #include "support/testing.hpp"
 
 namespace rays {
 namespace {
-
-std::string plyMessage(const std::string& text) {
-  try {
-    parsePly("a.ply", text);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "none";
-}
 
 const std::string plyHead =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
@@ -32,18 +22,6 @@ void put(std::string& bytes, T value, bool isBig) {
   char raw[sizeof(T)];
   std::memcpy(raw, &value, sizeof(T));
   for (std::size_t i = 0; i < sizeof(T); ++i) bytes += raw[isBig ? sizeof(T) - 1 - i : i];
-}
-
-/// Whether each edge is there once in each direction.
-bool isClosed(const Mesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-  for (const Face& face : mesh.faces)
-    for (std::size_t i = 0; i < 3; ++i) ++edges[{face.points[i], face.points[(i + 1) % 3]}];
-  for (const auto& [edge, count] : edges) {
-    const auto back = edges.find({edge.second, edge.first});
-    if (back == edges.end() || back->second != count) return false;
-  }
-  return true;
 }
 
 TEST_CASE("OBJ faces have polygons, relative indices and materials") {
@@ -168,32 +146,35 @@ TEST_CASE("PLY elements come in any order, lines end in any way, and polygons ar
 TEST_CASE("errors in PLY files name their location") {
   const std::string faces =
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n";
-  CHECK_THAT(plyMessage("obj\n"), Catch::StartsWith("a.ply:1:1: this is no PLY file"));
-  CHECK_THAT(plyMessage(""), Catch::Contains("this is no PLY file"));
-  CHECK_THAT(plyMessage("ply\nformat utf 1.0\n"), Catch::StartsWith("a.ply:2:8: 'utf' is no format"));
-  CHECK_THAT(plyMessage("ply\nelement vertex 1\nproperty real x\n"),
-             Catch::StartsWith("a.ply:3:10: 'real' is no type"));
-  CHECK_THAT(plyMessage(plyHead), Catch::Contains("'end_header' is missing"));
-  CHECK(plyMessage(plyHead + faces + "3 0 1 4\n") ==
-        "a.ply:14:7: there is no vertex 4; they count from 0, and there are 4");
-  CHECK_THAT(plyMessage(plyHead + faces + "3 0 1\n"), Catch::Contains("the file ends too early"));
-  CHECK_THAT(plyMessage(plyHead + faces + "2 0 1\n"), Catch::Contains("a face has three corners at least"));
-  CHECK_THAT(plyMessage(plyHead + faces + "3 0 1 0.5\n"), Catch::Contains("'0.5' is no integer"));
-  CHECK(plyMessage(plyHead + faces + "3 0 1 2 3\n") ==
-        "a.ply:14:9: the file goes on after its last element; the header has fewer");
-  CHECK(plyMessage(plyHead + "element vertex 4\n") == "a.ply:7:9: there is another element 'vertex' above");
-  CHECK(plyMessage(plyHead + "element face\n") == "a.ply:7:13: the number of elements is missing");
-  CHECK(plyMessage(plyHead + "element face 1\nproperty int vertex_indices\nend_header\n") ==
-        "a.ply:9:1: faces have no list 'vertex_indices'");
-  CHECK(plyMessage(
-            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n") ==
-        "a.ply:6:1: vertices have no property 'z'");
-  CHECK_THAT(plyMessage("ply\nformat ascii 1.0\nelement face 1\nproperty list float int "
-                        "vertex_index\nend_header\n3.5 0 0 0\n"),
-             Catch::EndsWith("a list cannot have 3.5 elements"));
-  CHECK_THAT(plyMessage("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int "
-                        "vertex_index\nend_header\n3 0 0 0\n"),
-             Catch::EndsWith("there is no vertex 0; they count from 0, and there are 0"));
+  const std::pair<std::string, const char*> cases[] = {
+      {"obj\n", "a.ply:1:1: this is no PLY file"},
+      {"", "this is no PLY file"},
+      {"ply\nformat utf 1.0\n", "a.ply:2:8: 'utf' is no format"},
+      {"ply\nelement vertex 1\nproperty real x\n", "a.ply:3:10: 'real' is no type"},
+      {plyHead, "'end_header' is missing"},
+      {plyHead + faces + "3 0 1 4\n", "a.ply:14:7: there is no vertex 4; they count from 0, and there are 4"},
+      {plyHead + faces + "3 0 1\n", "the file ends too early"},
+      {plyHead + faces + "2 0 1\n", "a face has three corners at least"},
+      {plyHead + faces + "3 0 1 0.5\n", "'0.5' is no integer"},
+      {plyHead + faces + "3 0 1 2 3\n",
+       "a.ply:14:9: the file goes on after its last element; the header has fewer"},
+      {"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
+       "property float z\nelement face 4000000000\nproperty list uchar int vertex_indices\nend_header\n",
+       "the file ends too early"},
+      {plyHead + "element vertex 4\n", "a.ply:7:9: there is another element 'vertex' above"},
+      {plyHead + "element face\n", "a.ply:7:13: the number of elements is missing"},
+      {plyHead + "element face 1\nproperty int vertex_indices\nend_header\n",
+       "a.ply:9:1: faces have no list 'vertex_indices'"},
+      {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n",
+       "a.ply:6:1: vertices have no property 'z'"},
+      {"ply\nformat ascii 1.0\nelement face 1\nproperty list float int "
+       "vertex_index\nend_header\n3.5 0 0 0\n",
+       "a list cannot have 3.5 elements"},
+      {"ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int "
+       "vertex_index\nend_header\n3 0 0 0\n",
+       "there is no vertex 0; they count from 0, and there are 0"}};
+  for (const auto& [text, message] : cases)
+    CHECK_THROWS_WITH(parsePly("a.ply", text), Catch::Contains(message));
   CHECK_THROWS_WITH(loadMesh("none.ply", true), Catch::Contains("does not exist"));
   CHECK_THROWS_WITH(loadMesh("none.stl", true), Catch::Contains("meshes are .obj or .ply files"));
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
 // OBJ files as meshes, and the MTL files of their materials, which are a Phong model.
-#include "mesh.hpp"
-
 #include <algorithm>
+#include <cctype>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "mesh.hpp"
 #include "support/obj_file.hpp"
 #include "support/text_file.hpp"
 
@@ -145,6 +146,18 @@ Mesh parseObj(const std::string& name, const std::string& text, const std::files
     if (hasCorners) mesh.corners.push_back(cornersOf(file, corners));
   }
   return mesh;
+}
+
+Mesh loadMesh(const std::filesystem::path& file, bool wantsMaterials) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool isObj = ending == ".obj";
+  if (!isObj && ending != ".ply")
+    throw std::runtime_error(fmt::format("{}: meshes are .obj or .ply files", file.string()));
+  const std::string bytes = examples::bytesOf(file, "the mesh");
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  return isObj ? parseObj(file.string(), bytes, folder, wantsMaterials) : parsePly(file.string(), bytes);
 }
 
 }  // namespace rays

@@ -4,12 +4,10 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "bvh.hpp"
 #include "model.hpp"
-#include "overlap.hpp"
 
 namespace rays {
 

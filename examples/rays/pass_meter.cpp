@@ -2,13 +2,22 @@
 #include "pass_meter.hpp"
 
 #include <algorithm>
+#include <ctime>
 
-#include "study.hpp"
+#include "support/stopwatch.hpp"
 
 namespace rays {
 
+bool runsOnProcessor(const sk::Device& device) {
+  return device.isSoftware() || device.name().starts_with("native");
+}
+
 double milliseconds(const sk::Device& device, const std::function<void()>& call) {
-  return callMilliseconds(device.isSoftware() || device.name().starts_with("native"), call);
+  const examples::Stopwatch stopwatch;
+  const std::clock_t start = std::clock();
+  call();
+  return runsOnProcessor(device) ? 1e3 * double(std::clock() - start) / CLOCKS_PER_SEC
+                                 : stopwatch.milliseconds();
 }
 
 void PassMeter::note(std::string_view kernel, std::int64_t elements, double time) {

@@ -13,7 +13,9 @@
 
 namespace rays {
 
-/// Milliseconds of a call: the processor's time on native and software devices, the wall clock's on others.
+/// Native and software devices do.
+bool runsOnProcessor(const sk::Device& device);
+/// Of a call: the processor's time on devices that run there, whatever else runs beside it; else the time that passes.
 double milliseconds(const sk::Device& device, const std::function<void()>& call);
 
 class PassMeter {

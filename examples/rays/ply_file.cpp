@@ -5,7 +5,6 @@
 #include "mesh.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <map>

@@ -2,7 +2,6 @@
 #include "raster_file.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
@@ -12,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include "exr_file.hpp"
 #include "support/image.hpp"
 
 namespace rays {

@@ -10,11 +10,11 @@
 
 #include <fmt/format.h>
 
-#include "device_shapes.hpp"
+#include "device_scene.hpp"
 #include "octree.hpp"
 #include "ray_engine.sk.hpp"
+#include "ray_streams.hpp"
 #include "ray_tree.hpp"
-#include "stream_tracer.hpp"
 #include "streaming_renderer.hpp"
 #include "support/stopwatch.hpp"
 
@@ -215,17 +215,14 @@ class OctreeEngine : public RayEngine, public StreamTracer {
 
 RayEngineSettings settingsOf(const SceneTable& table) {
   RayEngineSettings s;
-  if (const auto test = table.choice("intersection", testNames)) s.test = static_cast<BucketTest>(*test);
-  const auto whole = [&](std::string_view key, double least, double most, int& value) {
-    value = static_cast<int>(table.integer(key, Range{least, most}).value_or(value));
-  };
-  whole("bucket", 64, 65536, s.bucket);
+  table.read("intersection", s.test, testNames);
+  table.read("bucket", s.bucket, Range{64, 65536});
   if (s.bucket % static_cast<int>(bucketWidth) != 0)
     table.fail("bucket", "'bucket' is a multiple of 64, for buckets are 64 rays wide");
-  whole("cache", 1, 4096, s.cache);
-  whole("shapes_per_call", 1, mostShapes, s.shapesPerCall);
-  whole("in_flight", 0, 64, s.inFlight);
-  whole("leaf", 1, 1000, s.leaf);
+  table.read("cache", s.cache, Range{1, 4096});
+  table.read("shapes_per_call", s.shapesPerCall, Range{1, mostShapes});
+  table.read("in_flight", s.inFlight, Range{0, 64});
+  table.read("leaf", s.leaf, Range{1, 1000});
   return s;
 }
 

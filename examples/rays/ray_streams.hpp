@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Rays of the host as streams, in the layout that kernels take them in.
+// Rays on the device: those of the host, in the layout that kernels take them in, and what finds hits that stay there.
 #pragma once
 
 #include <span>
@@ -8,6 +8,7 @@
 #include <sk/sk.hpp>
 
 #include "model.hpp"
+#include "streaming.sk.hpp"
 
 namespace rays {
 
@@ -17,5 +18,14 @@ struct RayStreams {
 };
 
 RayStreams uploadRays(sk::Device& device, std::span<const Ray> rays);
+
+class StreamTracer {
+ public:
+  virtual ~StreamTracer() = default;
+
+  /// The nearest hit of each ray, or any. All streams have rank 1 and one size. A ray whose greatest distance is negative hits nothing.
+  virtual void find(bool anyHit, const sk::Stream<sk::float4>& from, const sk::Stream<sk::float4>& along,
+                    sk::Stream<kernels::Found>& found) = 0;
+};
 
 }  // namespace rays

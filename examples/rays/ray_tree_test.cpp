@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "octree.hpp"
-#include "soup_test.hpp"
+#include "scenes_test.hpp"
 
 namespace rays {
 namespace {

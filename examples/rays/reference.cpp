@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "camera.hpp"
@@ -144,8 +143,7 @@ examples::Verification checkEngine(Engine& engine, const Model& model, int width
   if (step > 1 && width % static_cast<int>(step) == 0) ++step;
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < all.size(); i += step) rays.push_back(all[i]);
-  std::vector<Hit> hits(rays.size());
-  engine.closest(rays, hits);
+  const std::vector<Hit> hits = hitsOf(engine, rays);
   for (std::size_t i = 0; i < rays.size(); ++i)
     verification.note(static_cast<std::int64_t>(i), errorOf(model, rays[i], hits[i], test));
   return verification;

@@ -3,9 +3,6 @@
 // Hits by loops in double precision over everything there is: what engines are held against.
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "engine.hpp"
 #include "model.hpp"
 #include "support/verification.hpp"

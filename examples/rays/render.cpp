@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "exposure.hpp"
-#include "exr_file.hpp"
 #include "raster_file.hpp"
 #include "state_file.hpp"
 #include "support/image.hpp"

@@ -48,4 +48,9 @@ void saveRendering(const Rendering& rendering, const Scene& scene, const std::ve
 /// Throws what `saveRendering` would throw for the ending or the size, before anything is rendered.
 void checkOutput(const Scene& scene);
 
+/// Shows the scene in a window, where it becomes better as long as nobody moves, until the window is closed (live.cpp). The mouse turns the camera about the point that it looks at, the wheel goes nearer and farther; space stops and goes
+/// on, r begins anew, + and - change the exposure, q and Escape end. `device` is native or reference, or the window's own OpenGL is taken. Throws
+/// std::runtime_error where there is no display.
+void runLive(Scene& scene, const std::string& device);
+
 }  // namespace rays

@@ -6,7 +6,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -16,7 +15,7 @@
 #include "light_table.hpp"
 #include "path_tables.hpp"
 #include "raster_file.hpp"
-#include "scene.hpp"
+#include "scenes_test.hpp"
 #include "support/testing.hpp"
 
 namespace rays {
@@ -31,7 +30,7 @@ struct Estimate {
 };
 
 std::vector<sk::float3> radianceOf(sk::Device& device, const std::string& text) {
-  const Scene scene = readScene(examples::WrittenFile(text, "written_render.toml").path(), {});
+  const Scene scene = sceneFrom(text);
   const std::unique_ptr<Engine> engine = scene.engines.at("bvh")(device, scene.model);
   return render(*engine->renderer(scene.picture), scene).radiance;
 }
@@ -209,7 +208,7 @@ TEST_CASE("dispatched pictures are those of native code, but for what functions 
   sk::Device native = sk::Device::native();
   const std::vector<sk::float3> expected = radianceOf(native, sceneText);
   // A second to compile. Scenes that look alike (alike_test.cpp) are drawn on glsl330.
-  sk::Device device(sk::DeviceOptions{.device = "software", .profile = "glsl430"});
+  sk::Device device = examples::deviceNamed("glsl430");
   const std::vector<sk::float3> got = radianceOf(device, sceneText);
   // Sines and cosines may send a path past an edge: rarely.
   std::size_t differ = 0;
@@ -239,7 +238,7 @@ TEST_CASE("textures are where their coordinates are, in the picture and in the l
       "= \"written_texture.pfm\"\n"
       "[[mesh]]\nshape = \"quad\"\nmaterial = \"t\"\n";
   sk::Device device = sk::Device::native();
-  const Scene read = readScene(examples::WrittenFile(scene, "written_render.toml").path(), {});
+  const Scene read = sceneFrom(scene);
   const std::unique_ptr<Engine> engine = read.engines.at("bvh")(device, read.model);
   const std::vector<sk::float3> albedo = layersOf(*engine, read.model, read.picture)[2].pixels;
   // The centres of pixels are at 1/8, 3/8 ... of the texture, whose texels have their centres at 1/4 and 3/4 and repeat.
@@ -267,7 +266,7 @@ TEST_CASE("layers have distance, normal and id in the scene's own lengths") {
       "[camera]\nfrom = [0, 0, 500]\nto = [0, 0, 0]\nfield_of_view = 1\n[picture]\nsize = [1, 1]\nsamples = "
       "1\n[[sphere]]\nradius = 100\n";
   sk::Device device = sk::Device::native();
-  const Scene read = readScene(examples::WrittenFile(scene, "written_render.toml").path(), {});
+  const Scene read = sceneFrom(scene);
   const std::unique_ptr<Engine> engine = read.engines.at("bvh")(device, read.model);
   const std::vector<Layer> layers = layersOf(*engine, read.model, read.picture);
   CHECK(layers[0].pixels[0].x == Approx(400));
@@ -280,7 +279,7 @@ TEST_CASE("the variance is that of the mean") {
   const std::string text = pictureOf(200, 2) + floor +
                            "[environment]\ncolour = [1, 1, 1]\n[[mesh]]\nshape = \"box\"\ntranslate = [0.3, "
                            "0.6, 0]\nscale = [0.4]\n";
-  const Scene scene = readScene(examples::WrittenFile(text, "written_render.toml").path(), {});
+  const Scene scene = sceneFrom(text);
   const std::unique_ptr<Engine> engine = scene.engines.at("bvh")(device, scene.model);
   const std::unique_ptr<Renderer> renderer = engine->renderer(scene.picture);
   const Estimate between = estimateOf(render(*renderer, scene).radiance);

@@ -3,19 +3,20 @@
 // Rays and triangles that break tests which are nearly right: grazing rays, slivers, copies, meshes far away, directions with zeros.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
+#include <catch2/catch.hpp>
+
 #include "bvh_engine.hpp"
-#include "reference.hpp"
 #include "scene_shapes.hpp"
+#include "scenes_test.hpp"
 #include "shapes.hpp"
 #include "study.hpp"
-#include "trace.hpp"
+#include "support/testing.hpp"
 
 namespace rays {
 namespace {
@@ -27,10 +28,6 @@ constexpr std::array ways = {HowToTraverse::Stack, HowToTraverse::Leaves, HowToT
 std::vector<Hit> hitsOf(sk::Device& device, const Model& model, const std::vector<Ray>& rays,
                         HowToTraverse way = HowToTraverse::Stack) {
   return traceRays(*makeBvhEngine(device, model, {.traversal = way}), model, rays);
-}
-
-std::size_t misses(const std::vector<Hit>& hits) {
-  return static_cast<std::size_t>(std::ranges::count_if(hits, [](const Hit& hit) { return hit.id < 0; }));
 }
 
 /// The model of a mesh whose points are changed first.
@@ -45,6 +42,20 @@ Model modelOf(Mesh mesh, const Change& change) {
 Model inUnits(Model model) {
   chooseUnit(model);
   return model;
+}
+
+/// Needles that meet in two points; the edge between them rises and falls by `wave`.
+Mesh bipyramid(std::uint32_t sides, double wave) {
+  Mesh mesh;
+  mesh.points = {{0.01, 0.5, 0.003}, {-0.02, -0.5, 0.01}};
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    mesh.points.push_back({0.5 * std::cos(angle), wave * std::sin(3 * angle), 0.5 * std::sin(angle)});
+    const std::uint32_t next = 2 + (i + 1) % sides;
+    mesh.faces.push_back({.points = {0, 2 + i, next}});
+    mesh.faces.push_back({.points = {1, next, 2 + i}});
+  }
+  return mesh;
 }
 
 using Quad = __float128;
@@ -107,9 +118,7 @@ TEST_CASE("grazing rays, to a millionth of a radian, stay on their side of a wal
   }
   const std::vector<Hit> hits = hitsOf(device, model, rays);
   CHECK(misses(hits) == 0);
-  double worst = 0.0;
-  for (std::size_t i = 0; i < rays.size(); ++i) worst = std::max(worst, errorOf(model, rays[i], hits[i]));
-  CHECK(worst < 0x1p-20);
+  CHECK(largestError(model, rays, hits) < 0x1p-20);
   for (const HowToTraverse way : ways) CHECK(hitsOf(device, model, rays, way) == hits);
 }
 
@@ -128,17 +137,7 @@ TEST_CASE("nothing passes between slivers") {
   }
   for (const HowToTraverse way : ways) CHECK(misses(hitsOf(device, flat, rays, way)) == 0);
 
-  Mesh needles;
-  constexpr std::uint32_t sides = 1024;
-  needles.points = {{0.01, 0.5, 0.003}, {-0.02, -0.5, 0.01}};
-  for (std::uint32_t i = 0; i < sides; ++i) {
-    const double angle = 2 * std::numbers::pi * i / sides;
-    needles.points.push_back({0.5 * std::cos(angle), 0.01 * std::sin(3 * angle), 0.5 * std::sin(angle)});
-    const std::uint32_t next = 2 + (i + 1) % sides;
-    needles.faces.push_back({.points = {0, 2 + i, next}});
-    needles.faces.push_back({.points = {1, next, 2 + i}});
-  }
-  const Model model = rays::modelOf(needles);
+  const Model model = rays::modelOf(bipyramid(1024, 0.01));
   for (const HowToTraverse way : ways)
     CHECK(misses(hitsOf(device, model, raysToEdges(model, {}, 10'000, 37), way)) == 0);
 }
@@ -146,8 +145,7 @@ TEST_CASE("nothing passes between slivers") {
 TEST_CASE("hits of needles keep the bound that grows with their aspect ratio") {
   for (const char* name : {"native", "essl300"}) {
     const bool isNative = name == std::string("native");
-    sk::Device device = isNative ? sk::Device::native()
-                                 : sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
+    sk::Device device = examples::deviceNamed(name);
     for (const sk::Precision precision : {sk::Precision::Single, sk::Precision::Double}) {
       // The study of needles checks pairs of floats.
       if (!isNative && precision != sk::Precision::Single) continue;
@@ -174,18 +172,7 @@ TEST_CASE("hits of needles keep the bound that grows with their aspect ratio") {
 }
 
 TEST_CASE("a scene of needles passes its verification") {
-  // A bipyramid of many sides.
-  Mesh pyramid;
-  constexpr std::uint32_t sides = 4096;
-  pyramid.points = {{0.01, 0.5, 0.003}, {-0.02, -0.5, 0.01}};
-  for (std::uint32_t i = 0; i < sides; ++i) {
-    const double angle = 2 * std::numbers::pi * i / sides;
-    pyramid.points.push_back({0.5 * std::cos(angle), 0.0, 0.5 * std::sin(angle)});
-    const std::uint32_t next = 2 + (i + 1) % sides;
-    pyramid.faces.push_back({.points = {0, 2 + i, next}});
-    pyramid.faces.push_back({.points = {1, next, 2 + i}});
-  }
-  Model model = inUnits(rays::modelOf(pyramid));
+  Model model = inUnits(rays::modelOf(bipyramid(4096, 0.0)));
   model.camera.from = {0.3, 0.4, 2.0};
   sk::Device device = sk::Device::native();
   const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, {});
@@ -227,14 +214,8 @@ TEST_CASE("of triangles that overlap in one plane, each may be hit, at one dista
   }
   sk::Device native = sk::Device::native();
   const std::vector<Hit> hits = hitsOf(native, model, rays);
-  double worst = 0.0;
-  std::size_t found = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    worst = std::max(worst, errorOf(model, rays[i], hits[i]));
-    found += hits[i].id >= 0;
-  }
-  CHECK(found > 2500);
-  CHECK(worst < 0x1p-20);
+  CHECK(rays.size() - misses(hits) > 2500);
+  CHECK(largestError(model, rays, hits) < 0x1p-20);
   for (const HowToTraverse way : ways) CHECK(hitsOf(native, model, rays, way) == hits);
 }
 
@@ -276,9 +257,7 @@ TEST_CASE("directions with zeros of either sign, of any length and of denormal c
   const Model model = rays::modelOf(box());
   for (const char* name : {"native", "glsl330"}) {
     INFO(name);
-    sk::Device device = name == std::string("native")
-                            ? sk::Device::native()
-                            : sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
+    sk::Device device = examples::deviceNamed(name);
     const std::vector<Hit> hits = hitsOf(device, model, rays);
     CHECK(misses(hits) == 0);
     CHECK(hitsOf(device, model, positive) == hits);
@@ -298,9 +277,7 @@ TEST_CASE("distances in doubles are right to the last bit of a float") {
   const Model model = rays::modelOf(icosphere(2, false));
   const std::vector<Ray> rays = raysToEdges(model, {}, 2000, 59);
   for (const char* name : {"native", "glsl330"}) {
-    sk::Device device = name == std::string("native")
-                            ? sk::Device::native()
-                            : sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
+    sk::Device device = examples::deviceNamed(name);
     const std::vector<Hit> hits =
         traceRays(*makeBvhEngine(device, model, {.precision = sk::Precision::Double}), model, rays);
     double worst = 0.0;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>
@@ -29,19 +28,19 @@ constexpr std::array<std::string_view, 3> strategyNames = {"both", "lights", "su
 
 Material readMaterial(const SceneTable& table, const Reading& reading, Model& model) {
   Material m;
-  m.name = table.text("name").value_or("");
-  if (m.name.empty()) refuse(table, "name", "is missing; things name their material by it");
+  table.read("name", m.name);
+  if (m.name.empty()) table.refuse("name", "is missing; things name their material by it");
   if (reading.materials.contains(m.name))
-    refuse(table, "name", fmt::format("'{}' is taken by another material", m.name));
-  m.scattering = static_cast<Scattering>(table.choice("type", scatteringNames).value_or(0));
+    table.refuse("name", fmt::format("'{}' is taken by another material", m.name));
+  table.read("type", m.scattering, scatteringNames);
   const bool isClear = m.scattering == Scattering::Glass || m.scattering == Scattering::Frosted;
   const bool isRough = m.scattering == Scattering::Metal || m.scattering == Scattering::Frosted;
   const sk::float3 grey = {0.8f, 0.8f, 0.8f}, white = {1, 1, 1};
   m.colour = colourOf(table, "colour", isClear ? white : grey);
   if (std::max({m.colour.x, m.colour.y, m.colour.z}) > 1)
-    refuse(table, "colour", "has components from 0 to 1; what is brighter would make light");
+    table.refuse("colour", "has components from 0 to 1; what is brighter would make light");
   m.emission = colourOf(table, "emission", {0, 0, 0});
-  m.glowsBehind = table.flag("both_sides").value_or(false);
+  table.read("both_sides", m.glowsBehind);
   if (isClear) m.ior = static_cast<float>(table.number("ior", Range{1.001, 4.0}).value_or(1.5));
   if (isRough) m.roughness = static_cast<float>(table.number("roughness", Range{1e-3, 1.0}).value_or(0.2));
   if (const auto file = table.text("texture")) {
@@ -64,11 +63,11 @@ void readLights(const SceneTable& root, Model& model) {
   for (const SceneTable& table : root.tables("light")) {
     if (table.choice("type", lightNames).value_or(0) == 0) {
       model.points.push_back(
-          {toFloat3(vectorOf(table, "position", {0, 0, 0})), colourOf(table, "intensity", {1, 1, 1})});
+          {toFloat3(table.vector("position").value_or(Vector{})), colourOf(table, "intensity", {1, 1, 1})});
       continue;
     }
-    const Vector towards = vectorOf(table, "towards", {0, 1, 0});
-    if (!(length(towards) > 0)) refuse(table, "towards", "must not be zero");
+    const Vector towards = table.vector("towards").value_or(Vector{0, 1, 0});
+    if (!(length(towards) > 0)) table.refuse("towards", "must not be zero");
     const double angle = table.number("angle", Range{0.0, 45.0}).value_or(0.27);
     model.suns.push_back({toFloat3(normalized(towards)), colourOf(table, "irradiance", {1, 1, 1}),
                           static_cast<float>(angle * std::numbers::pi / 180.0)});
@@ -89,15 +88,15 @@ Camera readCamera(const SceneTable& root) {
   Camera camera;
   const std::optional<SceneTable> table = root.table("camera");
   if (!table) return camera;
-  camera.from = vectorOf(*table, "from", camera.from);
-  camera.to = vectorOf(*table, "to", camera.to);
-  camera.up = vectorOf(*table, "up", camera.up);
-  camera.fieldOfView = table->number("field_of_view", Range{0.01, 179.0}).value_or(camera.fieldOfView);
-  camera.lens = table->number("lens", Range{0.0, 1e30}).value_or(0.0);
+  table->read("from", camera.from);
+  table->read("to", camera.to);
+  table->read("up", camera.up);
+  table->read("field_of_view", camera.fieldOfView, Range{0.01, 179.0});
+  table->read("lens", camera.lens, Range{0.0, 1e30});
   camera.focus = table->number("focus", positiveLength).value_or(length(camera.to - camera.from));
-  if (camera.from == camera.to) refuse(*table, "to", "is the point 'from', so the camera looks nowhere");
+  if (camera.from == camera.to) table->refuse("to", "is the point 'from', so the camera looks nowhere");
   if (!(length(cross(normalized(camera.to - camera.from), normalized(camera.up))) > 1e-9))
-    refuse(*table, "up", "is zero, or the direction in which the camera looks");
+    table->refuse("up", "is zero, or the direction in which the camera looks");
   return camera;
 }
 
@@ -110,25 +109,25 @@ void readPicture(const SceneTable& root, const Overrides& overrides, Scene& scen
       picture.width = static_cast<int>((*size)[0]);
       picture.height = static_cast<int>((*size)[1]);
       if (picture.width != (*size)[0] || picture.height != (*size)[1])
-        refuse(*table, "size", "takes whole numbers");
+        table->refuse("size", "takes whole numbers");
     }
-    picture.depth = static_cast<int>(table->integer("depth", Range{1, 1000}).value_or(picture.depth));
-    picture.seed = static_cast<std::uint32_t>(table->integer("seed", Range{0, 65535}).value_or(picture.seed));
-    picture.sampling = static_cast<Sampling>(table->choice("sampling", samplingNames).value_or(1));
-    picture.strategy = static_cast<Strategy>(table->choice("strategy", strategyNames).value_or(0));
-    output.samples = table->integer("samples", Range{1, 1e6}).value_or(output.samples);
-    output.seconds = table->number("seconds", Range{0.0, 1e7}).value_or(output.seconds);
-    output.error = table->number("error", Range{0.0, 1.0}).value_or(output.error);
-    output.least = static_cast<int>(table->integer("least_samples", Range{2, 1e6}).value_or(output.least));
-    output.exposure = table->number("exposure", Range{1e-6, 1e6}).value_or(output.exposure);
-    output.tone = static_cast<ToneMap>(table->choice("tone", toneNames).value_or(0));
+    table->read("depth", picture.depth, Range{1, 1000});
+    table->read("seed", picture.seed, Range{0, 65535});
+    table->read("sampling", picture.sampling, samplingNames);
+    table->read("strategy", picture.strategy, strategyNames);
+    table->read("samples", output.samples, Range{1, 1e6});
+    table->read("seconds", output.seconds, Range{0.0, 1e7});
+    table->read("error", output.error, Range{0.0, 1.0});
+    table->read("least_samples", output.least, Range{2, 1e6});
+    table->read("exposure", output.exposure, Range{1e-6, 1e6});
+    table->read("tone", output.tone, toneNames);
     if (const auto file = table->text("output")) output.picture = *file;
   }
-  if (overrides.width) picture.width = *overrides.width;
-  if (overrides.height) picture.height = *overrides.height;
-  if (overrides.samples) output.samples = *overrides.samples;
-  if (overrides.seconds) output.seconds = *overrides.seconds;
-  if (overrides.error) output.error = *overrides.error;
+  picture.width = overrides.width.value_or(picture.width);
+  picture.height = overrides.height.value_or(picture.height);
+  output.samples = overrides.samples.value_or(output.samples);
+  output.seconds = overrides.seconds.value_or(output.seconds);
+  output.error = overrides.error.value_or(output.error);
 }
 
 /// Every engine reads its table, so that a scene may hold settings of several.

@@ -11,11 +11,9 @@
 
 #include <fmt/format.h>
 
-#include "marching_cubes.hpp"
 #include "mesh.hpp"
 #include "raster_file.hpp"
 #include "shapes.hpp"
-#include "teapot.hpp"
 
 namespace rays {
 namespace {
@@ -62,18 +60,18 @@ Transform rotation(const std::array<double, 4>& axisAndDegrees) {
 Transform readTransform(const SceneTable& table) {
   Vector scale{1, 1, 1};
   if (const auto s = table.numbers("scale", -1, Range{-1e18, 1e18})) {
-    if (s->size() != 1 && s->size() != 3) refuse(table, "scale", "is one number in brackets, or three");
+    if (s->size() != 1 && s->size() != 3) table.refuse("scale", "is one number in brackets, or three");
     scale = s->size() == 1 ? Vector{(*s)[0], (*s)[0], (*s)[0]} : Vector{(*s)[0], (*s)[1], (*s)[2]};
-    if (scale.x == 0 || scale.y == 0 || scale.z == 0) refuse(table, "scale", "must not be 0");
+    if (scale.x == 0 || scale.y == 0 || scale.z == 0) table.refuse("scale", "must not be 0");
   }
   Transform t;
   if (const auto r = table.numbers("rotate", 4)) {
     if ((*r)[0] == 0 && (*r)[1] == 0 && (*r)[2] == 0)
-      refuse(table, "rotate", "is an axis, which is not zero, and an angle in degrees");
+      table.refuse("rotate", "is an axis, which is not zero, and an angle in degrees");
     t = rotation({(*r)[0], (*r)[1], (*r)[2], (*r)[3]});
   }
   for (Vector& row : t.rows) row = {row.x * scale.x, row.y * scale.y, row.z * scale.z};
-  t.move = vectorOf(table, "translate", {0, 0, 0});
+  table.read("translate", t.move);
   return t;
 }
 
@@ -125,13 +123,13 @@ Mesh computedMesh(const SceneTable& table, std::size_t shape, int mostLevel) {
 Mesh meshOf(const SceneTable& table, const Reading& reading, bool wantsMaterials) {
   const auto shape = table.choice("shape", shapeNames);
   const auto file = table.text("file");
-  if (shape && file) refuse(table, "shape", "and 'file' exclude each other");
+  if (shape && file) table.refuse("shape", "and 'file' exclude each other");
   if (shape) return computedMesh(table, *shape, reading.mostLevel);
-  if (!file) refuse(table, "file", "is missing; name an OBJ or PLY file, or a 'shape'");
+  if (!file) table.refuse("file", "is missing; name an OBJ or PLY file, or a 'shape'");
   const std::filesystem::path path = reading.folder / *file;
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
-    refuse(table, "file", fmt::format("'{}' does not exist", path.string()));
+    table.refuse("file", fmt::format("'{}' does not exist", path.string()));
   return loadMesh(path, wantsMaterials);
 }
 
@@ -237,12 +235,12 @@ void readMeshes(const SceneTable& root, Reading& reading, Model& model) {
     const std::optional<std::string> name = table.text("name");
     if (!name) continue;
     if (!defined.try_emplace(*name, Defined{std::move(named), material}).second)
-      refuse(table, "name", fmt::format("'{}' is taken by another mesh", *name));
+      table.refuse("name", fmt::format("'{}' is taken by another mesh", *name));
   }
   for (const SceneTable& table : root.tables("instance")) {
     const std::string of = table.text("of").value_or("");
     const auto found = defined.find(of);
-    if (found == defined.end()) refuse(table, "of", fmt::format("names no mesh: '{}'", of));
+    if (found == defined.end()) table.refuse("of", fmt::format("names no mesh: '{}'", of));
     const std::optional<std::int32_t> material = materialOf(table, reading);
     placing.add(table, found->second.named, readTransform(table),
                 material ? material : found->second.material);
@@ -251,13 +249,13 @@ void readMeshes(const SceneTable& root, Reading& reading, Model& model) {
 
 void readRound(const SceneTable& root, const Reading& reading, Model& model) {
   for (const SceneTable& table : root.tables("sphere")) {
-    const Vector centre = vectorOf(table, "centre", {0, 0, 0});
+    const Vector centre = table.vector("centre").value_or(Vector{});
     const double radius = table.number("radius", positiveLength).value_or(1.0);
     model.spheres.push_back(
         {toFloat3(centre), static_cast<float>(radius), materialNumber(table, "material", reading)});
   }
   for (const SceneTable& table : root.tables("flake")) {
-    const Vector centre = vectorOf(table, "centre", {0, 0, 0});
+    const Vector centre = table.vector("centre").value_or(Vector{});
     const double radius = table.number("radius", positiveLength).value_or(1.0);
     const auto level = static_cast<int>(table.integer("level", Range{0, 6}).value_or(3));
     const std::int32_t material = materialNumber(table, "material", reading);
@@ -270,10 +268,10 @@ void readRound(const SceneTable& root, const Reading& reading, Model& model) {
 
 void readPlanes(const SceneTable& root, const Reading& reading, Model& model) {
   for (const SceneTable& table : root.tables("plane")) {
-    const Vector normal = vectorOf(table, "normal", {0, 1, 0});
-    if (!(length(normal) > 0)) refuse(table, "normal", "must not be zero");
+    const Vector normal = table.vector("normal").value_or(Vector{0, 1, 0});
+    if (!(length(normal) > 0)) table.refuse("normal", "must not be zero");
     const Vector n = normalized(normal);
-    const double distance = dot(n, vectorOf(table, "through", {0, 0, 0}));
+    const double distance = dot(n, table.vector("through").value_or(Vector{}));
     model.planes.push_back(
         {toFloat3(n), static_cast<float>(distance), materialNumber(table, "material", reading)});
   }
@@ -289,15 +287,6 @@ sk::float3 scaled(const sk::float3& p, float by) { return {p.x * by, p.y * by, p
 
 }  // namespace
 
-void refuse(const SceneTable& table, std::string_view key, std::string_view what) {
-  table.fail(key, fmt::format("'{}' {}", key, what));
-}
-
-Vector vectorOf(const SceneTable& table, std::string_view key, Vector otherwise) {
-  const auto v = table.numbers(key, 3, anyLength);
-  return v ? Vector{(*v)[0], (*v)[1], (*v)[2]} : otherwise;
-}
-
 sk::float3 colourOf(const SceneTable& table, std::string_view key, sk::float3 otherwise) {
   const auto v = table.numbers(key, 3, Range{0.0, 1e30});
   return v ? toFloat3(Vector{(*v)[0], (*v)[1], (*v)[2]}) : otherwise;
@@ -311,7 +300,7 @@ std::int32_t materialNumber(const SceneTable& table, std::string_view key, const
   std::vector<std::string_view> names;
   for (const auto& [known, number] : reading.materials) names.push_back(known);
   table.choice(key, names);  // tells which there are
-  refuse(table, key, "names no material");
+  table.refuse(key, "names no material");
 }
 
 void readShapes(const SceneTable& root, Reading& reading, Model& model) {

@@ -22,12 +22,8 @@ struct Reading {
   std::vector<std::string> warnings{};
 };
 
-inline constexpr examples::Range anyLength{-1e30, 1e30};
 inline constexpr examples::Range positiveLength{1e-30, 1e30};
 
-/// What is wrong with a key, or with its absence, as a sentence that begins with its name.
-[[noreturn]] void refuse(const examples::SceneTable& table, std::string_view key, std::string_view what);
-Vector vectorOf(const examples::SceneTable& table, std::string_view key, Vector otherwise);
 sk::float3 colourOf(const examples::SceneTable& table, std::string_view key, sk::float3 otherwise);
 
 /// Triangles, spheres and planes with lengths as in the file. `unit` scales them, after all is read.

@@ -1,34 +1,24 @@
 // SPDX-License-Identifier: MIT
 //
 // Meshes that kernels and patches make.
+#include "shapes.hpp"
+
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <random>
-#include <utility>
 #include <vector>
 
-#include "marching_cubes.hpp"
-#include "teapot.hpp"
+#include <catch2/catch.hpp>
+
+#include "scenes_test.hpp"
+#include "support/testing.hpp"
 
 namespace rays {
 namespace {
 
 using examples::vecOf;
-
-/// Returns true if every directed edge occurs as often as its reverse.
-bool isClosed(const std::vector<sk::int3>& triangles) {
-  std::map<std::pair<int, int>, int> balance;
-  for (const sk::int3& t : triangles) {
-    for (const auto& [a, b] : {std::pair{t.x, t.y}, std::pair{t.y, t.z}, std::pair{t.z, t.x}}) {
-      ++balance[{a, b}];
-      --balance[{b, a}];
-    }
-  }
-  return std::ranges::all_of(balance, [](const auto& edge) { return edge.second == 0; });
-}
 
 double volumeOf(const Mesh& mesh) {
   double sum = 0.0;
@@ -60,16 +50,17 @@ TEST_CASE("marching cubes make closed surfaces of any field, on every device") {
   std::vector<sk::int3> expected;
   for (const char* profile : {"native", "essl300", "glsl430"}) {
     INFO(profile);
-    sk::Device device = profile == std::string("native")
-                            ? sk::Device::native()
-                            : sk::Device(sk::DeviceOptions{.device = "software", .profile = profile});
+    sk::Device device = examples::deviceNamed(profile);
     auto field = device.stream<float>({points, points, points});
     field.write(values);
     const std::vector<sk::int3> triangles = surfaceOf(device, field);
     if (expected.empty()) expected = triangles;
     // Random signs have nearly all of the 256 kinds of cells.
     CHECK(triangles.size() > 4000);
-    CHECK(isClosed(triangles));
+    Mesh mesh;
+    for (const sk::int3& t : triangles)
+      mesh.faces.push_back({.points = {std::uint32_t(t.x), std::uint32_t(t.y), std::uint32_t(t.z)}});
+    CHECK(isClosed(mesh));
     CHECK((triangles == expected));
   }
 }
@@ -95,10 +86,8 @@ TEST_CASE("a cell's triangles are seen from outside where its corners are inside
 TEST_CASE("the gyroid is closed, lies in its ball and has its normals") {
   sk::Device device = sk::Device::native();
   const Mesh mesh = gyroid(device, 48, 1.25, 0.4);
-  std::vector<sk::int3> faces;
-  for (const Face& f : mesh.faces) faces.push_back({int(f.points[0]), int(f.points[1]), int(f.points[2])});
-  CHECK(faces.size() > 5000);
-  CHECK(isClosed(faces));
+  CHECK(mesh.faces.size() > 5000);
+  CHECK(isClosed(mesh));
   for (const Vector& p : mesh.points) CHECK(length(p) <= 0.481);
   // As much as points of a lattice are in it.
   int inside = 0;

@@ -3,7 +3,6 @@
 // A picture that is not finished, on file: what was gathered, and of what picture, so that no other one goes on from it. It knows no device.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -79,13 +79,13 @@ class StreamingEngine : public Engine {
 
 StreamingSettings settingsOf(const SceneTable& table) {
   StreamingSettings s;
-  s.machine = static_cast<Machine>(table.choice("machine", machineNames).value_or(0));
-  s.use = static_cast<Use>(table.choice("use", useNames).value_or(0));
-  s.intersection = static_cast<HowToIntersect>(table.choice("intersection", intersectionNames).value_or(0));
-  s.grid.density = table.number("density", Range{1e-6, 1000}).value_or(s.grid.density);
-  s.tests = static_cast<int>(table.integer("tests", Range{1, 64}).value_or(s.tests));
-  s.rounds = static_cast<int>(table.integer("rounds", Range{1, 1000}).value_or(s.rounds));
-  s.compact = table.number("compact", Range{0.0, 1.0}).value_or(s.compact);
+  table.read("machine", s.machine, machineNames);
+  table.read("use", s.use, useNames);
+  table.read("intersection", s.intersection, intersectionNames);
+  table.read("density", s.grid.density, Range{1e-6, 1000});
+  table.read("tests", s.tests, Range{1, 64});
+  table.read("rounds", s.rounds, Range{1, 1000});
+  table.read("compact", s.compact, Range{0.0, 1.0});
   return s;
 }
 

@@ -2,7 +2,6 @@
 #include "streaming_renderer.hpp"
 
 #include <utility>
-#include <vector>
 
 #include "path_tables.hpp"
 #include "streaming_path.sk.hpp"

@@ -6,10 +6,9 @@
 #include <memory>
 
 #include "engine.hpp"
-#include "grid_scene.hpp"
 #include "grid_tracer.hpp"
 #include "pass_meter.hpp"
-#include "stream_tracer.hpp"
+#include "ray_streams.hpp"
 
 namespace rays {
 

@@ -3,15 +3,14 @@
 // Experiments on what choices are worth. One file each; docs/rays.md shows their tables.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <functional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include <sk/sk.hpp>
 
-#include "bench_scenes.hpp"
 #include "mesh.hpp"
 #include "model.hpp"
 #include "support/study.hpp"
@@ -20,8 +19,6 @@ namespace rays {
 
 using examples::Findings;
 using examples::Study;
-
-std::span<const Study> studies();
 
 Findings studyLeaks(sk::Device& device, bool isSmall);
 Findings studyNeedles(sk::Device& device, bool isSmall);
@@ -41,12 +38,28 @@ Findings studyRayEngine(sk::Device& device, bool isSmall);
 /// Embree on the same rays, where the program was built with it; throws std::runtime_error elsewhere.
 Findings studyEmbree(sk::Device& device, bool isSmall);
 
+inline constexpr std::array<Study, 14> studies = {{
+    {"leaks", "what tests of triangles miss at edges and vertices, and how exact their distances are",
+     studyLeaks},
+    {"needles", "how the errors of distances grow with the aspect ratio of triangles", studyNeedles},
+    {"alike", "how far apart pictures are by every mode, on fragment, compute and native", studyAlike},
+    {"light", "means of pictures that are known, by each way to reach lights", studyLight},
+    {"convergence", "how fast errors fall with independent samples and with Sobol's", studyConvergence},
+    {"precision", "what tests of triangles in halves, floats and doubles miss, and what they cost",
+     studyPrecision},
+    {"sums", "what sums of a million samples lose in floats", studySums},
+    {"speed", "rays per second by test, traversal and size of leaves", studySpeed},
+    {"wavefront", "paths by one kernel or by queues, and what sorting rays is worth", studyWavefront},
+    {"streaming", "what a uniform grid and each kernel of a multipass machine cost", studyStreaming},
+    {"stopping", "what it saves that pixels stop when they are good enough, and what is wrong then",
+     studyStopping},
+    {"ray_engine", "what sizes of buckets and calls are worth, and not to wait", studyRayEngine},
+    {"engines", "the three engines on the scenes of the benchmarks", studyEngines},
+    {"embree", "the same rays by Embree: rays per second, and hits that differ", studyEmbree},
+}};
+
 /// A closed mesh in a ring on rough ground: 225,000 triangles, or few. The camera looks at all of it.
 Model speedModel(bool isSmall);
-/// How long a call takes: the processor's time on devices that run there, whatever else runs beside it; else the time that passes.
-double callMilliseconds(bool isProcessor, const std::function<void()>& call);
-
-bool runsOnProcessor(const sk::Device& device);
 /// The best of some calls, each with the wait for it. They follow one that compiles and, on a GPU, others that raise its clock.
 double bestMilliseconds(sk::Device& device, int calls, const std::function<void()>& call);
 /// Millions of elements a second, likewise.
@@ -65,5 +78,16 @@ std::vector<Ray> raysToTriangles(const Model& model, std::size_t count, unsigned
 
 /// From near `moved`, inside a closed mesh that was moved there, to its vertices and to points of its edges, as floats have them.
 std::vector<Ray> raysToEdges(const Model& model, Vector moved, std::size_t count, unsigned seed);
+
+/// Vases, rings and blocks between walls, where every ray hits something: 301,000 triangles, or few.
+Model interior(bool isSmall);
+
+/// A torus with bumps and folds: 70,000 triangles, or few.
+Model organic(bool isSmall);
+
+/// Rays from what `rays` hit, in any direction about the normal, with the density of the cosine. They are in the order of `rays`, which is gone
+/// through again until there are `count`. Throws std::logic_error if nothing is hit.
+std::vector<Ray> diffuseRays(const Model& model, std::span<const Ray> rays, std::span<const Hit> hits,
+                             std::size_t count);
 
 }  // namespace rays

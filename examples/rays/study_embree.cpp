@@ -13,6 +13,7 @@
 
 #include "bvh_engine.hpp"
 #include "camera.hpp"
+#include "pass_meter.hpp"
 #include "study.hpp"
 #include "support/table.hpp"
 
@@ -106,9 +107,10 @@ struct Compared {
 Compared compare(RTCScene scene, bool inPackets, std::span<const Ray> rays, std::span<const Hit> ours,
                  int calls) {
   std::vector<Hit> hits(rays.size());
+  const sk::Device processor = sk::Device::native();
   double best = HUGE_VAL;
   for (int i = 0; i < calls; ++i) {
-    best = std::min(best, callMilliseconds(true, [&] {
+    best = std::min(best, milliseconds(processor, [&] {
                       if (inPackets)
                         traceInPackets(scene, rays, hits);
                       else
@@ -130,11 +132,9 @@ Findings studyEmbree(sk::Device& device, bool isSmall) {
   const int side = isSmall ? 48 : 512;
   const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, {});
   const std::vector<Ray> primary = primaryRays(model.camera, side, side);
-  std::vector<Hit> hits(primary.size());
-  engine->closest(primary, hits);
+  const std::vector<Hit> hits = hitsOf(*engine, primary);
   const std::vector<Ray> diffuse = diffuseRays(model, primary, hits, primary.size());
-  std::vector<Hit> diffuseHits(diffuse.size());
-  engine->closest(diffuse, diffuseHits);
+  const std::vector<Hit> diffuseHits = hitsOf(*engine, diffuse);
 
   examples::Table table({"tracer", "rays", "primary, M/s", "diffuse, M/s", "other ids", "hits of one alone"});
   examples::Verification same("hits that Embree or this program has alone, of a million", 100.0,

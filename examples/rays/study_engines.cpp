@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include "bvh_engine.hpp"
-#include "bvh_tracer.hpp"
 #include "camera.hpp"
 #include "grid_tracer.hpp"
 #include "pass_meter.hpp"
@@ -61,9 +60,8 @@ Findings studyEngines(sk::Device& device, bool isSmall) {
        {std::pair{"interior", interior(isSmall)}, std::pair{"organic mesh", organic(isSmall)}}) {
     const std::string scene = fmt::format("{}, {} triangles", name, model.triangles.size());
     const std::vector<Ray> primary = primaryRays(model.camera, side, side);
-    std::vector<Hit> hits(primary.size());
     const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, {});
-    engine->closest(primary, hits);
+    const std::vector<Hit> hits = hitsOf(*engine, primary);
     const std::array<std::vector<Ray>, 2> rays = {primary, diffuseRays(model, primary, hits, primary.size())};
     const auto add = [&](const char* how, const Rates& rates) {
       table.add({scene, how, textOf(rates.primary), textOf(rates.diffuse)});

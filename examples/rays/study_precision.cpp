@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // The test of triangles in halves, floats and doubles, with vertices stored in halves and in floats: hits, leaks, distances, time.
-#include "study.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@
 #include "precision.sk.hpp"
 #include "reference.hpp"
 #include "shapes.hpp"
+#include "study.hpp"
 #include "support/table.hpp"
 
 namespace rays {
@@ -48,16 +49,11 @@ Found trace(sk::Device& device, const Model& model, const std::vector<Ray>& rays
   along.write(directions);
   auto id = device.stream<int>({n});
   const bool isNative = device.name().starts_with("native");
-  const auto call = [&] {
+  const double milliseconds = bestMilliseconds(device, 3, [&] {
     kernels::closestOfAll.with({.precision = precision})(static_cast<unsigned>(how), !isNative,
                                                          static_cast<int>(model.triangles.size()), vertices,
                                                          from, along, hit, id);
-    device.finish();
-  };
-  call();  // compiles
-  double milliseconds = HUGE_VAL;
-  for (int i = 0; i < 3; ++i)
-    milliseconds = std::min(milliseconds, callMilliseconds(isNative || device.isSoftware(), call));
+  });
   return {hit.read(), id.read(), 1e6 * milliseconds / (double(n) * double(model.triangles.size()))};
 }
 
@@ -138,6 +134,35 @@ Findings studyPrecision(sk::Device& device, bool isSmall) {
     }
   }
   return {table.markdown(), {leaks}};
+}
+
+Findings studySums(sk::Device& device, bool isSmall) {
+  const int sums = isSmall ? 64 : 1024;
+  constexpr int count = 1'000'000;
+  examples::Table table({"a million samples", "floats", "compensated", "doubles"});
+  examples::Verification kept("mean error of compensated sums and of doubles", 0x1p-24,
+                              "half a unit of the float that holds the mean");
+  const std::array<std::string_view, 3> kinds = {"0.1 each", "independent, from 0 to 1",
+                                                 "one of 100,000, then from 0 to 0.01"};
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    auto plain = device.stream<float>({sums}), compensated = device.stream<float>({sums});
+    auto wide = device.stream<double>({sums});
+    kernels::addMany(static_cast<unsigned>(kind), count, 17u, sk::iter(0, sums), plain, compensated, wide);
+    const std::vector<float> floats = plain.read(), kahan = compensated.read();
+    const std::vector<double> doubles = wide.read();
+    double ofFloats = 0.0, ofKahan = 0.0, ofDoubles = 0.0;
+    for (std::size_t i = 0; i < doubles.size(); ++i) {
+      ofFloats += (floats[i] / doubles[i] - 1) / sums;
+      ofKahan += (kahan[i] / doubles[i] - 1) / sums;
+      // As a picture holds it.
+      ofDoubles += (static_cast<float>(doubles[i] / count) * double(count) / doubles[i] - 1) / sums;
+    }
+    kept.note(static_cast<std::int64_t>(kind), std::abs(ofKahan));
+    kept.note(static_cast<std::int64_t>(kind), std::abs(ofDoubles));
+    table.add({std::string(kinds[kind]), fmt::format("{:+.1e}", ofFloats), fmt::format("{:+.1e}", ofKahan),
+               fmt::format("{:+.1e}", ofDoubles)});
+  }
+  return {table.markdown(), {kept}};
 }
 
 }  // namespace rays

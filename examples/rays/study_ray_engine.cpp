@@ -52,8 +52,7 @@ Findings studyRayEngine(sk::Device& device, bool isSmall) {
   Model model = speedModel(true);
   const std::vector<Ray> primary = primaryRays(model.camera, side, side);
   const std::unique_ptr<Engine> hierarchy = makeBvhEngine(device, model, {});
-  std::vector<Hit> hits(primary.size());
-  hierarchy->closest(primary, hits);
+  const std::vector<Hit> hits = hitsOf(*hierarchy, primary);
   const std::vector<Ray> diffuse = diffuseRays(model, primary, hits, primary.size());
   const auto rate = [](const std::vector<Ray>& rays, double time) {
     return fmt::format("{:.3f}", double(rays.size()) / time / 1e3);

@@ -13,6 +13,7 @@
 #include "bvh_engine.hpp"
 #include "camera.hpp"
 #include "device_scene.hpp"
+#include "pass_meter.hpp"
 #include "ray_streams.hpp"
 #include "reference.hpp"
 #include "shapes.hpp"
@@ -75,16 +76,12 @@ double bestMilliseconds(sk::Device& device, int calls, const std::function<void(
     while (stopwatch.milliseconds() < 400) whole();
   }
   double best = HUGE_VAL;
-  for (int i = 0; i < calls; ++i) best = std::min(best, callMilliseconds(runsOnProcessor(device), whole));
+  for (int i = 0; i < calls; ++i) best = std::min(best, milliseconds(device, whole));
   return best;
 }
 
 double callRate(sk::Device& device, double elements, int calls, const std::function<void()>& call) {
   return elements / bestMilliseconds(device, calls, call) / 1e3;
-}
-
-bool runsOnProcessor(const sk::Device& device) {
-  return device.isSoftware() || device.name().starts_with("native");
 }
 
 Model speedModel(bool isSmall) {
@@ -115,8 +112,7 @@ Findings studySpeed(sk::Device& device, bool isSmall) {
       const DeviceSettings settings{
           .bvh = {.leaf = leaf}, .traversal = way.traversal, .nodes = way.nodes, .intersection = way.how};
       const std::unique_ptr<Engine> engine = makeBvhEngine(device, model, settings);
-      std::vector<Hit> hits(primary.size());
-      engine->closest(primary, hits);
+      const std::vector<Hit> hits = hitsOf(*engine, primary);
       DeviceScene scene(device, model, settings);
       Streams first = streamsOf(device, primary),
               second = streamsOf(device, diffuseRays(model, primary, hits, primary.size()));

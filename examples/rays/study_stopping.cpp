@@ -4,7 +4,6 @@
 #include "study.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>

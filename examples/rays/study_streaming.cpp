@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -195,8 +194,7 @@ Findings studyStreaming(sk::Device& device, bool isSmall) {
   Model model = litModel(speedModel(isSmall));
   const std::vector<Ray> primary = primaryRays(model.camera, side, side);
   const std::unique_ptr<Engine> engine = makeStreamingEngine(device, model, {});
-  std::vector<Hit> hits(primary.size());
-  engine->closest(primary, hits);
+  const std::vector<Hit> hits = hitsOf(*engine, primary);
   GridScene scene(device, model, {}, HowToIntersect::Watertight);
   const Picture picture{.width = side, .height = side, .depth = 4};
   Findings findings;

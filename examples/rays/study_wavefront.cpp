@@ -13,8 +13,8 @@
 #include <sk/algorithm.hpp>
 
 #include "bvh_engine.hpp"
-#include "bvh_tracer.hpp"
 #include "camera.hpp"
+#include "pass_meter.hpp"
 #include "ray_streams.hpp"
 #include "support/table.hpp"
 
@@ -76,8 +76,7 @@ Findings studyWavefront(sk::Device& device, bool isSmall) {
   // Light that comes from everywhere within, so that paths end by chance alone.
   model.materials[0].emission = {0.1f, 0.1f, 0.1f};
   const std::vector<Ray> primary = primaryRays(model.camera, side, side);
-  std::vector<Hit> hits(primary.size());
-  makeBvhEngine(device, model, {})->closest(primary, hits);
+  const std::vector<Hit> hits = hitsOf(*makeBvhEngine(device, model, {}), primary);
   Findings findings;
   findings.table =
       tableOfSorts(device, model, primary, diffuseRays(model, primary, hits, primary.size()), calls) + "\n";

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "teapot.hpp"
+#include "shapes.hpp"
 
 #include <array>
-#include <cmath>
 
 namespace rays {
 namespace {

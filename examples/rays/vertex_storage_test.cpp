@@ -7,34 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "reference.hpp"
-#include "scene.hpp"
-#include "soup_test.hpp"
+#include "scenes_test.hpp"
 #include "support/testing.hpp"
 
 namespace rays {
 namespace {
-
-std::unique_ptr<Engine> storingEngine(sk::Device& device, const Model& model, const std::string& settings) {
-  const examples::WrittenFile file("[bvh]\n" + settings, "written_storage.toml");
-  return readScene(file.path(), {}).engines.at("bvh")(device, model);
-}
-
-std::vector<Hit> hitsOfEngine(Engine& engine, const std::vector<Ray>& rays) {
-  std::vector<Hit> hits(rays.size());
-  engine.closest(rays, hits);
-  return hits;
-}
-
-std::string storageMessage(const std::string& text) {
-  const examples::WrittenFile file(text, "written_storage.toml");
-  try {
-    readScene(file.path(), {});
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST_CASE("hits of shapes in halves are those of the rounded shapes, on every device") {
   Model model = soup({});
@@ -44,21 +21,19 @@ TEST_CASE("hits of shapes in halves are those of the rounded shapes, on every de
   for (const char* name : {"native", "glsl330", "essl300", "glsl430"}) {
     INFO(name);
     const bool isNative = name == std::string("native");
-    sk::Device device = isNative ? sk::Device::native()
-                                 : sk::Device(sk::DeviceOptions{.device = "software", .profile = name});
-    const std::unique_ptr<Engine> engine = storingEngine(device, model, "storage = \"half\"\n");
+    sk::Device device = examples::deviceNamed(name);
+    const std::unique_ptr<Engine> engine = engineOf(device, model, "storage = \"half\"\n");
     const Model& rounded = engine->model();
-    const std::vector<Hit> expected = hitsOfEngine(*storingEngine(device, rounded, ""), rays);
-    const bool isSame = hitsOfEngine(*engine, rays) == expected;
+    const std::vector<Hit> expected = hitsOf(*engineOf(device, rounded, ""), rays);
+    const bool isSame = hitsOf(*engine, rays) == expected;
     CHECK(isSame);
     if (isNative) {
       CHECK(&rounded != &model);
-      CHECK(expected != hitsOfEngine(*storingEngine(device, model, ""), rays));
+      CHECK(expected != hitsOf(*engineOf(device, model, ""), rays));
       for (std::size_t i = 0; i < rays.size(); ++i) CHECK(errorOf(rounded, rays[i], expected[i]) < 0x1p-20);
-      CHECK(hitsOfEngine(*storingEngine(device, model, "storage = \"half\"\nnodes = 2\n"), rays) == expected);
-      CHECK(
-          hitsOfEngine(*storingEngine(device, model, "storage = \"half\"\nprecision = \"double\"\n"), rays) ==
-          hitsOfEngine(*storingEngine(device, rounded, "precision = \"double\"\n"), rays));
+      CHECK(hitsOf(*engineOf(device, model, "storage = \"half\"\nnodes = 2\n"), rays) == expected);
+      CHECK(hitsOf(*engineOf(device, model, "storage = \"half\"\nprecision = \"double\"\n"), rays) ==
+            hitsOf(*engineOf(device, rounded, "precision = \"double\"\n"), rays));
     }
   }
 }
@@ -75,14 +50,10 @@ TEST_CASE("pictures of shapes in halves are those of the rounded shapes") {
   for (Sphere& s : model.spheres) s.material = 2 * 2048 + 2;
   sk::Device device = sk::Device::native();
   for (const std::string settings : {"", "machine = \"wavefront\"\n"}) {
-    const std::unique_ptr<Engine> engine = storingEngine(device, model, settings + "storage = \"half\"\n");
-    const std::unique_ptr<Engine> plain = storingEngine(device, engine->model(), settings);
-    const auto image = [](Engine& of) {
-      const std::unique_ptr<Renderer> renderer = of.renderer({.width = 24, .height = 16, .depth = 3});
-      renderer->pass(0);
-      return renderer->image();
-    };
-    CHECK(image(*engine) == image(*plain));
+    const std::unique_ptr<Engine> engine = engineOf(device, model, settings + "storage = \"half\"\n");
+    const std::unique_ptr<Engine> plain = engineOf(device, engine->model(), settings);
+    const Picture picture{.width = 24, .height = 16, .depth = 3};
+    CHECK(imageOf(*engine, picture, 1) == imageOf(*plain, picture, 1));
   }
 }
 
@@ -105,22 +76,23 @@ TEST_CASE("rounding to halves tells the largest move and the triangles that it c
   CHECK_THROWS_WITH(roundToHalves(model), Catch::Contains("too large for halves"));
   model.triangles[0].a.x = 1.0f + 0x1p-12f;
   sk::Device device = sk::Device::native();
-  CHECK(storingEngine(device, model, "storage = \"single\"\n")->warnings().empty());
+  CHECK(engineOf(device, model, "storage = \"single\"\n")->warnings().empty());
   model.triangles[1].b.x = 1 + 0x1p-12f;
   model.triangles[1].c.y = 1 + 0x1p-10f;
-  const std::unique_ptr<Engine> engine = storingEngine(device, model, "storage = \"half\"\n");
+  const std::unique_ptr<Engine> engine = engineOf(device, model, "storage = \"half\"\n");
   REQUIRE(engine->warnings().size() == 1);
   CHECK_THAT(engine->warnings()[0], Catch::Contains("1 of 3 triangles without an area"));
   CHECK_THAT(engine->account().back(), Catch::Contains("32 bytes each in place of 48"));
 }
 
 TEST_CASE("storages that there are not are errors that name those that there are") {
-  CHECK_THAT(storageMessage("[bvh]\nstorage = \"haf\"\n"),
-             Catch::Contains(":2:") && Catch::Contains("did you mean 'half'"));
-  CHECK_THAT(storageMessage("[bvh]\nstorage = \"double\"\n"),
-             Catch::Contains("storage") && Catch::Contains("single") && Catch::Contains("half"));
-  CHECK_THAT(storageMessage("[bvh]\nprecision = \"half\"\n"),
-             Catch::Contains("precision") && Catch::Contains("single") && Catch::Contains("double"));
+  using Catch::Contains;
+  CHECK_THROWS_WITH(sceneFrom("[bvh]\nstorage = \"haf\"\n"),
+                    Contains(":2:") && Contains("did you mean 'half'"));
+  CHECK_THROWS_WITH(sceneFrom("[bvh]\nstorage = \"double\"\n"),
+                    Contains("storage") && Contains("single") && Contains("half"));
+  CHECK_THROWS_WITH(sceneFrom("[bvh]\nprecision = \"half\"\n"),
+                    Contains("precision") && Contains("single") && Contains("double"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "wide_bvh.hpp"
+#include "bvh.hpp"
 
 #include <array>
 #include <bit>

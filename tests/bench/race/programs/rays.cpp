@@ -15,13 +15,12 @@
 #include "bvh.sk.hpp"
 #include "our_task.hpp"
 #include "programs/all.hpp"
-#include "rays/bench_scenes.hpp"
 #include "rays/bvh.hpp"
 #include "rays/bvh_engine.hpp"
 #include "rays/camera.hpp"
 #include "rays/device_scene.hpp"
 #include "rays/reference.hpp"
-#include "rays/wide_bvh.hpp"
+#include "rays/study.hpp"
 #include "rays_layout.hpp"
 
 namespace race {
