@@ -348,8 +348,6 @@ void IndexExpressions::assign(const Expr& place, IndexValues value) {
   assign(*n.base, std::move(base));
 }
 
-using namespace ir;
-
 namespace {
 
 /// More distances that differ in their Spec parameters count as unknown.

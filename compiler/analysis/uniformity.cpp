@@ -112,8 +112,6 @@ bool Uniformity::blends(FunctionId function, const Stmt& stmt, VarId var) const 
   return at(function).blended.contains({&stmt, var});
 }
 
-using namespace ir;
-
 LastUses::LastUses(const Function& function) : lastUse_(function.variables.size(), 0) {
   visit(function.body);
 }

@@ -27,6 +27,7 @@ namespace skc::native {
 using namespace ir;
 using analysis::Shape;
 using analysis::Uniformity;
+using sk::native::Argument;
 
 namespace {
 
@@ -158,9 +159,6 @@ std::vector<BlockGather> blockGathers(const Module& module, const Kernel& kernel
   if (weigh(module, loop.body, {.node = 1}, mostExpressions + 1) > mostExpressions) found.clear();
   return found;
 }
-
-using namespace ir;
-using sk::native::Argument;
 
 namespace {
 

@@ -21,7 +21,6 @@
 #include "ir/ir.hpp"
 #include "ir/op_weight.hpp"
 #include "ir/walk.hpp"
-#include "native/slots.hpp"
 #include "native/debug_info.hpp"
 #include "native/entries.hpp"
 #include "native/lane_count.hpp"
@@ -29,6 +28,7 @@
 #include "native/llvm_passes.hpp"
 #include "native/native.hpp"
 #include "native/row_plan.hpp"
+#include "native/slots.hpp"
 #include "native/target.hpp"
 #include "support/internal_error.hpp"
 #include "transforms/predicate.hpp"
@@ -41,6 +41,8 @@ namespace {
 // (sk/native/code.hpp).
 
 using namespace ir;
+using sk::native::EntryKind;
+using sk::native::Real;
 
 /// Counts how often a group of lanes may append records for one parameter, up to `many`.
 class RecordCounter {
@@ -137,8 +139,6 @@ void optimize(llvm::Module& module, llvm::TargetMachine& machine) {
 // may be called with or without contraction, which takes two entries; this file decides for which kernels the
 // second entry is worth compiling.
 
-using namespace ir;
-
 bool isSum(BinaryOp op) { return op == BinaryOp::Add || op == BinaryOp::Sub; }
 
 bool isProduct(const Expr& expr) {
@@ -197,10 +197,6 @@ bool canContract(const Module& module, const Kernel& kernel) {
 }
 
 }  // namespace
-
-using namespace ir;
-using sk::native::EntryKind;
-using sk::native::Real;
 
 namespace {
 

@@ -227,8 +227,6 @@ Part toIndex(Lanes& lanes, const Part& x) {
   return f.select(isBeyond, {lanes.integer(lanes.int32(), static_cast<std::int64_t>(last))}, index);
 }
 
-using namespace ir;
-
 namespace {
 
 Parts times(const ScalarBuilder& f, const Parts& a, const Part& factor) {

@@ -16,6 +16,8 @@
 namespace skc::native {
 
 using namespace ir;
+using sk::native::Code;
+using sk::native::Entry;
 using sk::native::Slot;
 
 namespace {
@@ -95,10 +97,6 @@ SlotPlan planSlots(const Module& module, const Kernel& kernel) {
   }
   return plan;
 }
-
-using sk::native::Code;
-using sk::native::Entry;
-using sk::native::Slot;
 
 namespace {
 

@@ -107,8 +107,6 @@ std::string constructor(const Module& module, const StreamStruct& streams) {
 
 namespace {
 
-using namespace ir;
-
 struct Finder {
   const Module& module;
   std::vector<bool> isFound;

@@ -120,8 +120,6 @@ Stub emitStub(const Module& module, const Program& program, std::string_view fil
 
 namespace {
 
-using namespace ir;
-
 class SourceWriter {
  public:
   SourceWriter(const Module& module, const Program& program, const StubParts& parts)

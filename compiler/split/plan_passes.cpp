@@ -402,8 +402,6 @@ PlannedSplit planPasses(const Module& module, const Kernel& kernel, const Limits
 
 namespace {
 
-using namespace ir;
-
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 class PassKernelBuilder {

@@ -174,8 +174,6 @@ KernelId makeSumVariant(Module& module, KernelId of, const std::vector<FloatSum>
   return fold;
 }
 
-using namespace ir;
-
 KernelParam makeParam(std::string name, ParamRole role, Type type, Loc loc) {
   KernelParam param;
   param.name = std::move(name);

@@ -168,8 +168,6 @@ bool splitCounters(Function& function, FunctionId id, const analysis::Uniformity
 
 }  // namespace
 
-using namespace ir;
-
 namespace {
 
 /// True if a statement would have side effects, or might not end, in inactive lanes.

@@ -420,8 +420,6 @@ void unrollLoops(Module& module, Kernel& kernel) {
 
 namespace {
 
-using namespace ir;
-
 /// Whether an expression or a block reads a variable.
 template <class Node>
 bool mentions(const Node& node, VarId var) {

@@ -113,7 +113,6 @@ bool StreamEditor::fail(Diag diag, const Token& location, std::initializer_list<
   return false;
 }
 
-using clang::Token;
 namespace tok = clang::tok;
 
 namespace {
@@ -257,7 +256,6 @@ bool ConstructorEditor::initialisesVariable(const TokenCursor& cursor, const Tok
   }
 }
 
-using clang::Token;
 namespace tok = clang::tok;
 
 namespace {

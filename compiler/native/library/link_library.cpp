@@ -184,8 +184,6 @@ void FunctionImporter::adapt(Block& block) {
 
 namespace {
 
-using namespace ir;
-
 class KernelCalls {
  public:
   KernelCalls(Module& module, const LinkedFunctions& linked) : module_(module), linked_(linked) {}

@@ -22,6 +22,9 @@ namespace sk {
 namespace {
 
 using assemble::isNeeded;
+using program::Element;
+using program::Field;
+using program::Fit;
 using program::Kernel;
 using program::Parameter;
 using program::Role;
@@ -236,13 +239,6 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
   if (domain.size() == 0 && !hasAppendOutputs) return std::nullopt;
   return CheckedCall{device, call};
 }
-
-using program::Element;
-using program::Field;
-using program::Fit;
-using program::Kernel;
-using program::Parameter;
-using program::Role;
 
 namespace {
 

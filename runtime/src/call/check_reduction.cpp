@@ -271,10 +271,6 @@ ResolvedReduction checkReduction(const Reduction& reduction, std::span<const Arg
   return Arguments(reduction, arguments).check(values, scan, placed);
 }
 
-using program::Kernel;
-using program::Parameter;
-using program::Role;
-
 namespace {
 
 const Parameter& firstWith(const Kernel& fold, Role role) {

@@ -299,9 +299,6 @@ LocalCall partCall(const ResolvedCall& call, const Box& box) {
 
 namespace {
 
-using program::Kernel;
-using program::Role;
-
 std::unique_ptr<StreamState> streamLike(const StreamRegion& region) {
   const StreamState& stream = *region.stream;
   return stream.device->createStream(*stream.element, region.shape, stream.storage);

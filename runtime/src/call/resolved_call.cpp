@@ -18,7 +18,9 @@ namespace sk {
 using assemble::isNeeded;
 using program::Kernel;
 using program::Parameter;
+using program::Reduction;
 using program::Role;
+using program::WideReduction;
 
 std::uint32_t specBits(const Parameter& parameter, const void* value) {
   if (parameter.element->fields[0].scalar == program::Scalar::Bool) {
@@ -120,12 +122,6 @@ Argument TemporaryResults::add(const program::Element& element) {
 }
 
 namespace {
-
-using program::Kernel;
-using program::Parameter;
-using program::Reduction;
-using program::Role;
-using program::WideReduction;
 
 [[noreturn]] void failWithoutVariant(const Kernel& kernel, std::string_view precision, std::string_view why) {
   fail(Error::Kind::Compile, kernel, "it has no form in {}: {}; call it in Precision::Single", precision,

@@ -187,8 +187,6 @@ void mergeTexels(GlDevice& device, const program::Element& element, std::span<Re
 
 }  // namespace
 
-using assemble::RegionLayout;
-
 GlStream::GlStream(GlDevice& on, const program::Element& type, const Shape& extents, Storage as)
     : StreamState(on, type, extents, as) {
   if (storage != Storage::Single) {

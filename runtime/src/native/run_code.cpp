@@ -133,7 +133,11 @@ class PaddedRows {
   std::vector<Copy> copies_;
 };
 
+using native::Deal;
 using native::Extents;
+using native::Range;
+using program::Kernel;
+using program::Role;
 
 constexpr std::int64_t padding = 2 * cacheLine;
 
@@ -207,12 +211,6 @@ void PaddedRows::copyRows(const Copy& copy, std::size_t scalar) {
     }
   });
 }
-
-using native::Deal;
-using native::Extents;
-using native::Range;
-using program::Kernel;
-using program::Role;
 
 /// One kernel over one domain.
 class CodeRun {

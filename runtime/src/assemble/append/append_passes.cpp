@@ -12,8 +12,12 @@
 namespace sk::assemble {
 namespace {
 
+using program::Field;
+using program::Kernel;
 using program::Parameter;
 using program::Role;
+using program::Scalar;
+using program::ScatterOp;
 
 /// Up to this many pushes per element, slots are cheaper than counting.
 constexpr int mostSlots = 4;
@@ -157,13 +161,6 @@ std::string isInside(ProgramText& program, const Parameter& appendOutput) {
   return fmt::format("all(lessThan(uvec{0}(sk_i), uvec{0}({1}{2})))", appendOutput.rank, shape,
                      swizzles[appendOutput.rank]);
 }
-
-using program::Field;
-using program::Kernel;
-using program::Parameter;
-using program::Role;
-using program::Scalar;
-using program::ScatterOp;
 
 namespace {
 

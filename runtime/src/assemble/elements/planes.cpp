@@ -17,6 +17,7 @@ namespace {
 
 using program::Element;
 using program::Field;
+using program::Kernel;
 using program::Parameter;
 using program::Scalar;
 
@@ -438,12 +439,6 @@ void store(ProgramText& program, const Parameter& parameter, std::string_view va
     program.statement(fmt::format("{}{} = {};", indent, output, toOutput(field, std::move(value))));
   }
 }
-
-using program::Element;
-using program::Field;
-using program::Kernel;
-using program::Parameter;
-using program::Scalar;
 
 namespace {
 

@@ -31,6 +31,7 @@ inline bool isByGroupsOfBlocks(const ReduceVariant& variant) {
   return variant.grouped && variant.walk == Walk::Index;
 }
 
+using program::Kernel;
 using program::Parameter;
 using program::Reduction;
 using program::Role;
@@ -163,11 +164,6 @@ class BlockText : FoldText {
 std::string blockProgram(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant) {
   return BlockText(profile, reduction, variant).write();
 }
-
-using program::Kernel;
-using program::Parameter;
-using program::Reduction;
-using program::Role;
 
 /// The kernel that a walk calls: none for the identities, which have no elements.
 Kernel kernelOf(const Reduction& reduction, Walk walk) {

@@ -230,12 +230,6 @@ bool gathersInGroups(GlDevice& device, const ResolvedReduction& call) {
          assemble::mayFoldInGroups(call.reduction) && fits(device, call.reduction, call);
 }
 
-using assemble::RegionLayout;
-using program::Kernel;
-using program::Parameter;
-using program::Reduction;
-using program::Role;
-
 /// Throws sk::Error if SK_CHECK asks for tests of folds, which only native devices run, lest the fold seem
 /// tested.
 void refuseFoldCheck(const Reduction& reduction) {

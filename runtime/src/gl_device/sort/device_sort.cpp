@@ -35,6 +35,8 @@ using assemble::RadixStep;
 using assemble::RadixStorage;
 using assemble::Rect;
 using assemble::RegionLayout;
+using program::Element;
+using program::Kernel;
 using program::Parameter;
 using program::Role;
 
@@ -253,11 +255,6 @@ const program::Element& sortWords() { return ElementTraits<std::uint32_t>::eleme
 const program::Element& sortWordPairs() { return ElementTraits<uint2>::element(); }
 
 namespace {
-
-using program::Element;
-using program::Kernel;
-using program::Parameter;
-using program::Role;
 
 /// A kernel and what it refers to. Its entry is the only function `sort_kernel`.
 struct SortKernel {
