@@ -218,7 +218,10 @@ void RankReduction::layOutSteps() {
 void RankReduction::post(const Call& call) {
   Agreement& agreement = domain_.agreement;
   const std::size_t wordBytes = words_.size() * sizeof(std::int64_t);
-  const bool isTogether = all_.size() <= Agreement::Posted::most && wordBytes <= Agreement::Posted::most;
+  // Where ranks call different reductions, their messages may have different lengths, of which MPI would end the run: who looks for
+  // that waits for the comparison first. (All ranks must decide alike, which Call::isFirst does not after a call that failed on one.)
+  const bool isTogether =
+      !agreement.isAlways() && all_.size() <= Agreement::Posted::most && wordBytes <= Agreement::Posted::most;
   if (isTogether) {
     agreement.start(agreed_, call, std::nullopt, {.words = words_.size(), .bytes = all_.size()});
   } else {

@@ -156,3 +156,20 @@ TEST_CASE("ranks that part later are told so at the next call that has messages"
              Contains("do not make the same call") && Contains("rank 0 has diffuse"));
   checkThatItWorks(u, v);
 }
+
+// Their messages have different lengths, of which MPI would end the run.
+TEST_CASE("ranks that fold differently are told so with SK_CHECK=collectives", "[.collectives]") {
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
+  auto u = domain.stream<float>(), v = domain.stream<float>();
+  u.fill(1.0F);
+  CHECK_THAT(errorOf([&] { isLast() ? (void)largest(u) : (void)sum(u); }),
+             Contains("do not make the same call"));
+  checkThatItWorks(u, v);
+  const auto exactly = dot.with({.accumulate = sk::Accumulate::Exact});
+  CHECK_THAT(errorOf([&] { isLast() ? (void)exactly(u, u) : (void)dot(u, u); }),
+             Contains("do not make the same call"));
+  checkThatItWorks(u, v);
+  CHECK(largest(u) == 2.0F);
+  CHECK_THAT(errorOf([&] { isLast() ? (void)largest(u) : (void)sum(u); }),
+             Contains("do not make the same call"));
+}
