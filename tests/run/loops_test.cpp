@@ -181,7 +181,7 @@ TEST_CASE("what a loop cannot repeat is refused, and the device goes on") {
     CHECK_THAT(refusal([&] { static_cast<void>(loops::total(x)); }), Contains("a stream of one element"));
     CHECK_THAT(refusal([&] { loops::evens(n, pushed); }), Contains("'y' is a variable output"));
     CHECK_THAT(refusal([&] { std::swap(x, longer); }), Contains("were swapped"));
-    std::swap(x, longer);
+    CHECK(x.shape() == sk::Shape{3});
     CHECK_THAT(refusal([&] { x = device.stream<float>({3}); }), Contains("std::swap(u, v)"));
     x = streamOf<float>(device, {1, 2, 3});
     CHECK_THAT(refusal([&] { loops::add(1, x, longer); }), Contains("add"));
@@ -248,4 +248,22 @@ TEST_CASE("a loop refuses a stream that has another shape, and a device that has
 }
 
 }  // namespace
+
+TEST_CASE("a recording that is given up has swapped no streams") {
+  sk::Device device;
+  auto a = device.stream<float>({2}), b = device.stream<float>({2}), c = device.stream<float>({3});
+  a.fill(1);
+  b.fill(2);
+  c.fill(3);
+  CHECK_THROWS_AS(device.record([&] {
+    std::swap(a, b);
+    throw std::runtime_error("no more");
+  }),
+                  std::runtime_error);
+  CHECK_THROWS_WITH(device.record([&] { std::swap(a, c); }), Contains("were swapped"));
+  CHECK(a.read() == std::vector<float>{1, 1});
+  CHECK(b.read() == std::vector<float>{2, 2});
+  CHECK(c.read() == std::vector<float>{3, 3, 3});
+}
+
 }  // namespace run_tests

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <unordered_map>
 #include <utility>
 
@@ -42,7 +43,10 @@ LoopState::LoopState(DeviceState& device) : device_(&device) {
 }
 
 LoopState::~LoopState() {
-  if (isRecording()) dropScalars();
+  if (isRecording()) {
+    dropScalars();
+    undoSwaps();
+  }
   endRecording();
   runner_.reset();  // before the streams whose elements it may hold
   if (device_ != nullptr) std::erase(device_->loops, this);
@@ -92,24 +96,46 @@ void LoopState::dropScalars() noexcept {
   }
 }
 
-void LoopState::finish() {
-  failIfLost();
-  flushScalars(*device_);
+LoopState::Moves LoopState::moves() const {
   std::unordered_map<const detail::StreamOwner*, StreamState*> now;
   for (StreamState* stream = device_->firstStream(); stream != nullptr; stream = stream->next()) {
     if (stream->holder != nullptr) now.emplace(stream->holder, stream);
   }
-  std::vector<std::pair<StreamState*, StreamState*>> moved;  // what a handle held before, and holds now
+  Moves moved;
   for (const Held& before : held_) {
     const auto found = now.find(before.holder);
     if (found != now.end() && found->second != before.stream)
       moved.emplace_back(before.stream, found->second);
   }
-  findExchanges(moved);
+  return moved;
+}
+
+void LoopState::undo(const Moves& moved) {
   std::vector<std::pair<detail::StreamOwner*, StreamState*>> holders;
   for (const auto& [before, after] : moved) holders.emplace_back(after->holder, before);
   for (const auto& [holder, before] : holders) static_cast<void>(holder->release());
   for (const auto& [holder, before] : holders) *holder = detail::StreamOwner(before);
+}
+
+/// Gives handles back what they held before a recording that is given up. Where its body has put other streams in them, or deleted
+/// streams, they keep what they hold.
+void LoopState::undoSwaps() noexcept try {
+  const Moves moved = moves();
+  std::vector<StreamState*> before, after;
+  for (const auto& [from, to] : moved) {
+    before.push_back(from);
+    after.push_back(to);
+  }
+  if (std::ranges::is_permutation(before, after)) undo(moved);
+} catch (const std::bad_alloc&) {  // the handles keep what they hold
+}
+
+void LoopState::finish() {
+  failIfLost();
+  flushScalars(*device_);
+  const Moves moved = moves();
+  findExchanges(moved);
+  undo(moved);
   runner_ = device_->makeLoopRunner();
   endRecording();
 }

@@ -78,6 +78,11 @@ class LoopState {
   bool isRecording() const;
   void endRecording() noexcept;
   void dropScalars() noexcept;
+  /// What each handle held before the recording, and what it holds now, where that is something else.
+  using Moves = std::vector<std::pair<StreamState*, StreamState*>>;
+  Moves moves() const;
+  static void undo(const Moves& moved);
+  void undoSwaps() noexcept;
   void findExchanges(std::span<const std::pair<StreamState*, StreamState*>> moved);
 
   DeviceState* device_;  ///< null after the device has ended
