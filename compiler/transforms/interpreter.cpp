@@ -117,7 +117,7 @@ class Interpreter {
     if (steps_-- <= 0) throw CannotInterpret{};
   }
 
-  /// Of one lane.
+  /// The number of scalars that one lane holds of a value of this type.
   std::size_t size(Type type) const {
     const std::uint64_t count = scalarCount(module_, type);
     if (count > 256) throw CannotInterpret{};

@@ -14,7 +14,7 @@
 namespace examples {
 namespace {
 
-/// Of times to others, which were measured in turns.
+/// The median of the ratios of times to others that were measured in turns with them.
 double medianRatio(const std::vector<double>& times, const std::vector<double>& others) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < times.size(); ++i) ratios.push_back(times[i] / others[i]);

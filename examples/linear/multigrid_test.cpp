@@ -58,7 +58,7 @@ double rateOf(sk::Device& device, const Stencil& a, const MultigridSettings& set
   return fifth > 0.0 ? std::cbrt(norm(r) / fifth) : 0.0;
 }
 
-/// Of V(2,1)-cycles.
+/// V(2,1)-cycles smooth twice before and once after each coarse correction.
 constexpr MultigridSettings sweeps{.before = 2, .after = 1, .isSymmetric = false};
 
 TEST_CASE("V(2,1)-cycles converge at one rate on every grid") {

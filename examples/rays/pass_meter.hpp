@@ -15,7 +15,8 @@ namespace rays {
 
 /// Native and software devices do.
 bool runsOnProcessor(const sk::Device& device);
-/// Of a call: the processor's time on devices that run there, whatever else runs beside it; else the time that passes.
+/// The time that a call takes: processor time on devices that run on the processor, which other processes do not change; elapsed time
+/// on others.
 double milliseconds(const sk::Device& device, const std::function<void()>& call);
 
 class PassMeter {

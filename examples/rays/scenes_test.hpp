@@ -86,7 +86,7 @@ inline std::unique_ptr<Engine> engineOf(sk::Device& device, const Model& model,
   return sceneFrom(fmt::format("[{}]\n{}", name, settings)).engines.at(name)(device, model);
 }
 
-/// Of `samples` samples of each pixel.
+/// Renders a picture with `samples` samples in each pixel.
 inline std::vector<sk::float3> imageOf(Engine& engine, const Picture& picture, int samples) {
   const std::unique_ptr<Renderer> renderer = engine.renderer(picture);
   for (int i = 0; i < samples; ++i) renderer->pass(i);
@@ -107,7 +107,7 @@ inline std::size_t misses(const std::vector<Hit>& hits) {
   return static_cast<std::size_t>(std::ranges::count_if(hits, [](const Hit& hit) { return hit.id < 0; }));
 }
 
-/// Of the hits, compared with a test of all triangles.
+/// The largest error of the hits, compared with a test of all triangles.
 inline double largestError(const Model& model, const std::vector<Ray>& rays, const std::vector<Hit>& hits) {
   double largest = 0.0;
   for (std::size_t i = 0; i < rays.size(); ++i) largest = std::max(largest, errorOf(model, rays[i], hits[i]));

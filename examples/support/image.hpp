@@ -56,7 +56,7 @@ struct Picture {
 /// Reads a picture. Throws std::runtime_error with the file's name where it is missing, no picture, or larger than 2^26 pixels.
 Picture loadPicture(const std::filesystem::path& file);
 
-/// The same of pixels for imageOf(), and of codes.
+/// Saves the picture that imageOf() makes of pixels, or a picture of codes.
 void savePng(const std::filesystem::path& file, int width, int height, std::span<const sk::float3> pixels);
 void savePng(const std::filesystem::path& file, const Picture& picture);
 

@@ -29,7 +29,7 @@ struct Range {
 
 /// Precisions as scenes and command lines name them.
 inline constexpr std::array<std::string_view, 4> precisionNames = {"half", "single", "extended", "double"};
-/// Those that most devices have.
+/// The names of the precisions that most devices have.
 inline constexpr std::array<std::string_view, 2> commonPrecisions = {"single", "double"};
 /// The precision with one of these names.
 sk::Precision precisionNamed(std::string_view name);

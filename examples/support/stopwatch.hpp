@@ -24,7 +24,7 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// Of a call with all work that it queues.
+/// The elapsed milliseconds of a call, until the device has finished all work that it queues.
 template <class Call>
 double millisecondsOf(sk::Device& device, const Call& call) {
   const Stopwatch stopwatch;

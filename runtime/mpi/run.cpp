@@ -159,7 +159,8 @@ bool readsNeighbors(const Kernel& kernel) {
 }  // namespace
 
 Call beginCall(DomainState& domain, const Kernel& kernel, const CallOptions& options) {
-  const std::uint64_t object = domain.rankDevice->objects.of(&kernel);
+  const bool isCompared = domain.agreement.ranks() > 1;
+  const std::uint64_t object = isCompared ? domain.rankDevice->objects.of(&kernel) : 0;
   return domain.agreement.begin(kernel.name, idOf(kernel, object, options),
                                 [&] { return hashOf(kernel, options); });
 }

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Finds all errors in the arguments of a call before any of it runs. Each check throws sk::Error, which names
-// the kernel, the parameters and the shapes.
-//
-// Checks of one argument, shared by kernels and reductions. Each throws sk::Error, which names the kernel and
-// the parameter.
+// Finds all errors in the arguments of a call before any of it runs: checks of one argument, which kernels and reductions share, and of
+// the call of a kernel. Each throws sk::Error, which names the kernel, the parameters and the shapes.
 #pragma once
 
 #include <optional>

@@ -90,47 +90,46 @@ const program::Reduction& compensatedSum() {
   static const std::array<program::Parameter, 4> combined{
       parameter("x", Role::Input, {}), parameter("t", Role::Accumulator, {}),
       parameter("part", Role::Input, {}), parameter("lost", Role::Accumulator, {})};
-#define SK_ERROR_OF_SUM                            \
-  "float sk_trial_error(float a, float b) {\n"     \
-  "  sk_precise float s = sk_keep(a + b);\n"       \
-  "  bool isLarge = bool(step(abs(b), abs(a)));\n" \
-  "  float large = mix(b, a, isLarge);\n"          \
-  "  float small = mix(a, b, isLarge);\n"          \
-  "  sk_precise float c = sk_keep(s - large);\n"   \
-  "  sk_precise float d = sk_keep(small - c);\n"   \
-  "  return d;\n"                                  \
-  "}\n"                                            \
-  "float sk_trial_sum(float a, float b) {\n"       \
-  "  sk_precise float s = sk_keep(a + b);\n"       \
-  "  return s;\n"                                  \
-  "}\n"
+  static constexpr std::string_view functions =
+      "float sk_trial_error(float a, float b) {\n"
+      "  sk_precise float s = sk_keep(a + b);\n"
+      "  bool isLarge = bool(step(abs(b), abs(a)));\n"
+      "  float large = mix(b, a, isLarge);\n"
+      "  float small = mix(a, b, isLarge);\n"
+      "  sk_precise float c = sk_keep(s - large);\n"
+      "  sk_precise float d = sk_keep(small - c);\n"
+      "  return d;\n"
+      "}\n"
+      "float sk_trial_sum(float a, float b) {\n"
+      "  sk_precise float s = sk_keep(a + b);\n"
+      "  return s;\n"
+      "}\n";
   static const program::Reduction reduction{
       .fold = {.name = "compensated sums",
                .entry = "sk_trial_fold",
-               .declarations = {},
-               .body = SK_ERROR_OF_SUM "void sk_trial_fold(float x, $pinout float t, $pinout float lost) {\n"
-                                       "  lost += sk_trial_error(t, x);\n"
-                                       "  t = sk_trial_sum(t, x);\n"
-                                       "}\n",
+               .declarations = functions,
+               .body = "void sk_trial_fold(float x, $pinout float t, $pinout float lost) {\n"
+                       "  lost += sk_trial_error(t, x);\n"
+                       "  t = sk_trial_sum(t, x);\n"
+                       "}\n",
                .parameters = folded,
                .sources = {},
                .usesExactSums = true},
       .combine = {.name = "compensated sums",
                   .entry = "sk_trial_combine",
-                  .declarations = {},
-                  .body = SK_ERROR_OF_SUM
-                  "void sk_trial_combine(float x, $pinout float t, float part, $pinout float lost) {\n"
-                  "  lost += part;\n"
-                  "  lost += sk_trial_error(t, x);\n"
-                  "  t = sk_trial_sum(t, x);\n"
-                  "}\n",
+                  .declarations = functions,
+                  .body =
+                      "void sk_trial_combine(float x, $pinout float t, float part, $pinout float lost) {\n"
+                      "  lost += part;\n"
+                      "  lost += sk_trial_error(t, x);\n"
+                      "  t = sk_trial_sum(t, x);\n"
+                      "}\n",
                   .parameters = combined,
                   .sources = {},
                   .usesExactSums = true},
       .combineOperands = {},
       .seeded = false,
       .commutative = true};
-#undef SK_ERROR_OF_SUM
   return reduction;
 }
 
