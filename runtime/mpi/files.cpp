@@ -100,6 +100,24 @@ class FileHandle {
   MPI_File file_ = MPI_FILE_NULL;
 };
 
+/// A file that this rank alone has opened.
+class OwnFile {
+ public:
+  OwnFile(const std::string& name, int flags) : file_(::open(name.c_str(), flags | O_CLOEXEC, 0666)) {}
+  ~OwnFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  OwnFile(const OwnFile&) = delete;
+  OwnFile& operator=(const OwnFile&) = delete;
+
+  bool isOpen() const { return file_ >= 0; }
+  /// Brings to the disk what this host has written of the file. Returns false, and sets errno, if it cannot.
+  bool sync() const { return ::fsync(file_) == 0; }
+
+ private:
+  int file_;
+};
+
 /// A file that all ranks have opened.
 class SharedFile {
  public:
@@ -108,7 +126,7 @@ class SharedFile {
   /// Collective, as all functions.
   SharedFile(const DomainState& domain, const std::string& name, Use use)
       : domain_(domain), name_(name), what_(use == Use::Write ? "write" : "read") {
-    domain_.agreement.together(stepOf("opening a file"), [&] { tryAlone(use); });
+    domain_.agreement.together(stepOf("opening a file"), [&] { openAlone(use); });
     const int mode = use == Use::Write ? MPI_MODE_CREATE | MPI_MODE_WRONLY : MPI_MODE_RDONLY;
     const int status = handle_.open(domain.communicator, name, mode);
     if (domain.agreement.most(handle_.isOpen() ? 0 : 1) != 0) handle_.leaveOpen();
@@ -119,12 +137,13 @@ class SharedFile {
   void writeHeader(const std::string& header) {
     check(MPI_File_set_size(handle_, 0));
     MPI_Status status;
-    int error = MPI_SUCCESS;
+    int error = MPI_SUCCESS, wanted = 0, done = 0;
     if (domain_.rank == 0) {
-      error =
-          MPI_File_write_at(handle_, 0, header.data(), static_cast<int>(header.size()), MPI_BYTE, &status);
+      wanted = static_cast<int>(header.size());
+      error = MPI_File_write_at(handle_, 0, header.data(), wanted, MPI_BYTE, &status);
+      if (error == MPI_SUCCESS) MPI_Get_count(&status, MPI_BYTE, &done);
     }
-    check(error);
+    domain_.agreement.together(stepOf(what_), [&] { checkTransfer(error, wanted, done); });
   }
 
   /// Writes or reads this rank's elements, behind the header. `transfer` is MPI_File_write_all or MPI_File_read_all.
@@ -146,32 +165,37 @@ class SharedFile {
       int done = 0;
       if (result == MPI_SUCCESS) MPI_Get_count(&status, view->element(), &done);
       if (refusal) continue;
-      refusal = mpi::caught("a file", [&] {
-        if (result != MPI_SUCCESS) failForFile(message(result));
-        if (done != wanted) {
-          failForFile(fmt::format("cannot {} '{}': only a part of the elements went through; {}", what_,
-                                  name_, hint()));
-        }
-      });
+      refusal = mpi::caught("a file", [&] { checkTransfer(result, wanted, done); });
     }
     domain_.agreement.agree(stepOf(what_), refusal);
   }
 
-  /// Throws if what was written cannot be stored.
+  /// Throws if what was written cannot be stored. Not by MPI_File_sync: where a write has failed on one rank alone, Open MPI's returns
+  /// there without waiting for the other ranks, which then wait in MPI_File_close for ever.
   void close(bool wasWritten) {
-    const int stored = wasWritten ? MPI_File_sync(handle_) : MPI_SUCCESS;
     const int closed = handle_.close();
-    check(stored != MPI_SUCCESS ? stored : closed);
+    domain_.agreement.together(stepOf(what_), [&] {
+      if (closed != MPI_SUCCESS) failForFile(message(closed));
+      if (wasWritten && !alone_->sync()) failWithReason();
+    });
   }
 
  private:
   /// Opens the file on this rank alone: MPI may wait for ever where only some
-  /// ranks can.
-  void tryAlone(Use use) const {
-    const int file = use == Use::Write ? ::open(name_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666)
-                                       : ::open(name_.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) failForFile(fmt::format("cannot {} '{}': {}", what_, name_, std::strerror(errno)));
-    ::close(file);
+  /// ranks can. It stays open, so that sync() hears of all errors from now on.
+  void openAlone(Use use) {
+    alone_.emplace(name_, use == Use::Write ? O_WRONLY | O_CREAT : O_RDONLY);
+    if (!alone_->isOpen()) failWithReason();
+  }
+  [[noreturn]] void failWithReason() const {
+    failForFile(fmt::format("cannot {} '{}': {}", what_, name_, std::strerror(errno)));
+  }
+  /// Throws unless MPI has transferred all of `wanted` elements.
+  void checkTransfer(int status, int wanted, int done) const {
+    if (status != MPI_SUCCESS) failForFile(message(status));
+    if (done == wanted) return;
+    failForFile(
+        fmt::format("cannot {} '{}': only a part of the elements went through; {}", what_, name_, hint()));
   }
   std::string hint() const {
     return std::strcmp(what_, "write") == 0 ? "is the disk full?" : "is the file being written?";
@@ -188,6 +212,7 @@ class SharedFile {
   const DomainState& domain_;
   const std::string& name_;
   const char* what_;
+  std::optional<OwnFile> alone_;
   FileHandle handle_;
 };
 

@@ -260,3 +260,33 @@ TEST_CASE("components are gathered and scattered in the precision in which they 
   numbers.fill(3);
   CHECK_THAT(errorOf([&] { (void)numbers.gatherReals(); }), Contains("readReals"));
 }
+
+// Some ranks write for others, so that a fault of those alone is one of the file.
+TEST_CASE("a file that one rank alone cannot write is refused by all, which go on together") {
+  const Folder folder;
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {64, 64}});
+  auto u = domain.stream<float>(), v = domain.stream<float>();
+  u.fill(start);
+  const std::string file = folder / "u.npy";
+  rlimit limit{};
+  ::getrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, SIG_IGN);
+  int refusals = 0;
+  for (const rlim_t most : {64, 4096}) {  // a part of the header, and of the elements
+    for (int victim = 0; victim < domain.ranks(); ++victim) {
+      const rlimit little{.rlim_cur = most, .rlim_max = limit.rlim_max};
+      if (domain.rank() == victim) ::setrlimit(RLIMIT_FSIZE, &little);
+      const std::string error = errorOf([&] { u.save(file); });
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      int thrown = error == "no error" ? 0 : 1;
+      MPI_Allreduce(MPI_IN_PLACE, &thrown, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+      CHECK((thrown == 0 || thrown == domain.ranks()));
+      if (thrown != 0) CHECK_THAT(error, Contains("cannot write") && Contains("u.npy"));
+      refusals += thrown != 0 ? 1 : 0;
+      u.save(file);
+      v.load(file);
+      CHECK(v.read() == u.read());
+    }
+  }
+  CHECK(refusals >= 2);
+}
