@@ -298,4 +298,24 @@ CallOptions Configuration::resolve(const program::Kernel& kernel, const CallOpti
   return merged(options, kernel.options);
 }
 
+std::vector<std::string> choicesOf(const CallOptions& options) {
+  std::vector<std::string> choices;
+  const auto add = [&](std::string_view key, std::span<const std::string_view> names, auto choice) {
+    const auto number = static_cast<std::size_t>(choice);
+    if (number != 0) choices.push_back(fmt::format("{} {}", key, names[number - 1]));
+  };
+  add("precision", precisions, options.precision);
+  add("accumulate", accumulates, options.accumulate);
+  add("intrinsics", intrinsics, options.intrinsics);
+  add("tables", tableUses, options.tables);
+  add("target", targets, options.target);
+  add("contraction", contractions, options.contraction);
+  add("order", orders, options.order);
+  return choices;
+}
+
+std::string_view nameOf(Storage storage) {
+  return storage == Storage::Default ? "default" : storages[static_cast<std::size_t>(storage) - 1];
+}
+
 }  // namespace sk

@@ -28,6 +28,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gl/known_devices.hpp"
 #include "sk/linked_file.hpp"
@@ -77,5 +78,9 @@ class Configuration {
   std::map<std::string, Storage, std::less<>> streams_;
   std::map<std::string, gl::TraitChoices, std::less<>> devices_;
 };
+
+/// The names of the choices that are not Default, as a file has them: "precision double".
+std::vector<std::string> choicesOf(const CallOptions& options);
+std::string_view nameOf(Storage storage);
 
 }  // namespace sk
