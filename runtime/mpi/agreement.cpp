@@ -44,8 +44,7 @@ enum Number : std::uint8_t {
   FewestCallsAt,
   MostHashAt,
   LeastHashAt,
-  WordsAt,
-  BytesAt
+  PostedAt  ///< 1 if a rank has posted words
 };
 
 constexpr int rankBits = 24;
@@ -66,6 +65,39 @@ struct Ends {
 Ends endsOf(std::uint64_t most, std::uint64_t least) {
   if (most >> rankBits == ~least >> rankBits) return {0, 0};
   return {static_cast<int>(rankMask - (most & rankMask)), static_cast<int>(~least & rankMask)};
+}
+
+/// What a rank says of its call: the name, and a line for each detail. What cannot be said for lack of memory is left out.
+Error wordsOf(const Call& call) noexcept {
+  try {
+    return Error(fmt::format("{}\n{}", call.what, call.details == nullptr ? "" : call.details->details()));
+  } catch (const std::exception&) {
+    return currentError("a call");
+  }
+}
+
+std::vector<std::string_view> linesOf(std::string_view words) {
+  std::vector<std::string_view> lines;
+  while (!words.empty()) {
+    const std::size_t end = std::min(words.find('\n'), words.size());
+    lines.push_back(words.substr(0, end));
+    words.remove_prefix(std::min(end + 1, words.size()));
+  }
+  return lines;
+}
+
+/// The name of a call, with those of its details that the call of another rank lacks, if that has the same name.
+std::string shown(std::string_view words, std::string_view others) {
+  const std::vector<std::string_view> lines = linesOf(words), otherLines = linesOf(others);
+  if (lines.empty() || otherLines.empty() || lines.front() != otherLines.front())
+    return std::string(lines.empty() ? words : lines.front());
+  std::string details;
+  for (const std::string_view line : std::span(lines).subspan(1)) {
+    if (std::ranges::find(otherLines, line) == otherLines.end())
+      details += fmt::format("{}{}", details.empty() ? "" : ", ", line);
+  }
+  if (!details.empty()) return fmt::format("{} ({})", lines.front(), details);
+  return fmt::format("{}{}", lines.front(), lines == otherLines ? " (with other code or halos)" : "");
 }
 
 /// A tag that no other message uses.
@@ -91,7 +123,7 @@ void Agreement::readEnvironment() {
   waitLimit_.setSeconds(WaitLimit::secondsOfEnvironment());
 }
 
-Agreement::Numbers Agreement::numbersOf(const Call& call, bool isRefused, const Posted& posted) const {
+Agreement::Numbers Agreement::numbersOf(const Call& call, bool isRefused, bool hasPosted) const {
   Numbers numbers{};
   numbers[RefusedAt] = isRefused ? static_cast<std::uint64_t>(ranks_ - rank_) : 0;
   numbers[AcceptedAt] = isRefused ? 0 : 1;
@@ -100,8 +132,7 @@ Agreement::Numbers Agreement::numbersOf(const Call& call, bool isRefused, const 
   numbers[FewestCallsAt] = leastWith(calls_, rank_);
   numbers[MostHashAt] = mostWith(hash, rank_);
   numbers[LeastHashAt] = leastWith(hash, rank_);
-  numbers[WordsAt] = posted.words;
-  numbers[BytesAt] = posted.bytes;
+  numbers[PostedAt] = hasPosted ? 1 : 0;
   return numbers;
 }
 
@@ -135,8 +166,8 @@ void Agreement::agree(const Call& call, const Refusal& refusal) {
   }
   settle();
   if (announced_) announce(call);
-  const Numbers own = numbersOf(call, refusal.has_value(), {}), all = compare(call, own);
-  takePart(own, all);
+  const Numbers own = numbersOf(call, refusal.has_value(), false), all = compare(call, own);
+  takePart(all);
   if (const Refusal error = verdict(all, call, calls_, refusal)) throw Error(*error);
 }
 
@@ -144,16 +175,21 @@ void Agreement::agree(const Call& call, const Refusal& refusal) {
 /// place of their next call. This rank then goes on with its own.
 void Agreement::announce(const Call& call) {
   const Refusal error = std::exchange(announced_, std::nullopt);
-  const Numbers own = numbersOf(call, true, {}), all = compare(call, own);
-  takePart(own, all);
+  const Numbers own = numbersOf(call, true, false), all = compare(call, own);
+  takePart(all);
+  const std::uint64_t sinceThen = calls_ - failedAt_;  // as the others count from now on
   (void)verdict(all, call, calls_, error);
-  calls_ = 1;
+  calls_ = sinceThen;
   if (call.id != 0) known_[call.id] = call.hash;
 }
 
 void Agreement::failAlone(const Error& error) {
   if (ranks_ > 1) {
-    if (!announced_) announced_ = error;
+    if (!announced_) {
+      announced_ = error;
+      failedAt_ = calls_;
+    }
+    known_.clear();  // as on the others when they hear of it: what a handler calls is compared on all
     for (Member* const member : members_) member->forget();
   }
   throw Error(error);
@@ -165,15 +201,14 @@ std::uint64_t Agreement::most(std::uint64_t own) {
   return all;
 }
 
-void Agreement::start(Started& started, const Call& call, const Refusal& refusal, const Posted& posted) {
-  if (refusal) return agree(call, refusal);
+void Agreement::start(Started& started, const Call& call) {
   settle();
   if (announced_) announce(call);
   if (broken_) throw Error(*broken_);
   started_.push_back(&started);
   started.call_ = call;
   started.calls_ = calls_;
-  started.own_ = numbersOf(call, false, posted);
+  started.own_ = numbersOf(call, false, true);
   const int status =
       MPI_Iallreduce(started.own_.data(), started.all_.data(), static_cast<int>(Started::numbers),
                      MPI_UINT64_T, MPI_MAX, used_, &started.request_);
@@ -221,22 +256,18 @@ void Agreement::settle() {
 
 /// Contributes zeros to what other ranks have posted, where this one has posted
 /// nothing.
-void Agreement::takePart(const Numbers& own, const Numbers& all) {
-  const auto add = [&](Number number, MPI_Datatype type, MPI_Op op) {
-    if (all[number] <= own[number] || all[number] > zeros_.size()) return;
-    MPI_Request request = MPI_REQUEST_NULL;
-    std::ranges::fill(zeros_, std::byte{0});
-    check(MPI_Iallreduce(MPI_IN_PLACE, zeros_.data(), static_cast<int>(all[number]), type, op, used_,
-                         &request));
-    check(waitLimit_.wait({&request, 1}));
-  };
-  add(WordsAt, MPI_INT64_T, MPI_SUM);
-  add(BytesAt, MPI_BYTE, MPI_BOR);
+void Agreement::takePart(const Numbers& all) {
+  if (all[PostedAt] == 0) return;
+  MPI_Request request = MPI_REQUEST_NULL;
+  std::ranges::fill(zeros_, 0);
+  check(MPI_Iallreduce(MPI_IN_PLACE, zeros_.data(), static_cast<int>(zeros_.size()), MPI_INT64_T, MPI_SUM,
+                       used_, &request));
+  check(waitLimit_.wait({&request, 1}));
 }
 
 /// What all ranks throw, if anything.
 Refusal Agreement::verdict(const Numbers& all, const Call& call, std::uint64_t calls, const Refusal& own) {
-  Refusal error = all[RefusedAt] != 0 ? refused(all, own) : different(all, call.what, calls);
+  Refusal error = all[RefusedAt] != 0 ? refused(all, own) : different(all, call, calls);
   if (error) forget();
   return error;
 }
@@ -253,21 +284,21 @@ Refusal Agreement::refused(const Numbers& all, const Refusal& own) {
   }
 }
 
-Refusal Agreement::different(const Numbers& all, std::string_view what, std::uint64_t calls) {
+Refusal Agreement::different(const Numbers& all, const Call& call, std::uint64_t calls) {
   Ends ends = endsOf(all[MostHashAt], all[LeastHashAt]);
   const bool isOther = ends.most != ends.least;
   if (!isOther) ends = endsOf(all[MostCallsAt], all[FewestCallsAt]);
   if (ends.most == ends.least) return std::nullopt;
   const auto [one, other] = std::minmax(ends.most, ends.least);
-  const std::string own = isOther ? std::string(what) : fmt::format("{} as its call {}", what, calls);
-  if (rank_ == one || rank_ == other) send(Error(own));
-  const std::string first = rank_ == one ? own : receive(one).what();
-  const std::string second = rank_ == other ? own : receive(other).what();
+  const Error own = isOther ? wordsOf(call) : Error(fmt::format("{} as its call {}", call.what, calls));
+  if (rank_ == one || rank_ == other) send(own);
+  const std::string first = rank_ == one ? own.what() : receive(one).what();
+  const std::string second = rank_ == other ? own.what() : receive(other).what();
   return Error(
       fmt::format("the ranks do not make the same call: rank {} has "
                   "{}, rank {} has {}; let all ranks run one "
                   "program, with the same arguments in the same order",
-                  one, first, other, second));
+                  one, shown(first, second), other, shown(second, first)));
 }
 
 /// Sends the error to all other ranks.
@@ -298,7 +329,7 @@ Error Agreement::receive(int from) {
 
 /// All ranks are at the same place.
 void Agreement::forget() noexcept {
-  calls_ = 0;
+  calls_ = failedAt_ = 0;
   known_.clear();
   for (Member* const member : members_) member->forget();
 }

@@ -22,6 +22,7 @@
 // before they are thrown.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -77,6 +78,16 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325;
 };
 
+/// What a rank can say of a call beyond its name.
+class Details {
+ public:
+  /// One detail a line, as in "root 0". Only what differs between two ranks is shown.
+  virtual std::string details() const = 0;
+
+ protected:
+  ~Details() = default;
+};
+
 /// What is called. All ranks must give the same hash.
 struct Call {
   std::string_view what;  ///< for messages
@@ -84,6 +95,10 @@ struct Call {
   std::uint64_t id = 0;  ///< on this rank, of calls that are compared only once; or 0
   bool isFirst = true;      ///< whether it has not been compared
   std::uint64_t detail = 0;  ///< of this one call
+  const Details* details = nullptr;  ///< null, or lives until the ranks have been compared
+
+  /// Adds to what is compared of this one call.
+  void add(std::uint64_t number) { detail = (detail ^ number) * 0x9e3779b97f4a7c15; }
 };
 
 class Agreement {
@@ -98,16 +113,6 @@ class Agreement {
     ~Member() = default;
   };
 
-  /// The messages that a rank posts together with a comparison that it does not
-  /// wait for: an all-reduce of words, which adds, and one of bytes, which
-  /// combines bits. Ranks that refuse take part in them with zeros.
-  struct Posted {
-    std::uint64_t words = 0, bytes = 0;
-    /// The most bytes of each of the two. More than this waits for the
-    /// comparison.
-    static constexpr std::size_t most = std::size_t{1} << 16;
-  };
-
   /// A comparison under way.
   class Started {
    public:
@@ -117,7 +122,7 @@ class Agreement {
 
    private:
     friend class Agreement;
-    static constexpr std::size_t numbers = 8;
+    static constexpr std::size_t numbers = 7;
     std::array<std::uint64_t, numbers> own_{}, all_{};
     Call call_;
     std::uint64_t calls_ = 0;
@@ -127,9 +132,9 @@ class Agreement {
 
   /// Allocates nothing, so that a rank without memory can refuse to open() it.
   Agreement() = default;
-  /// Allocates what calls need, before open().
-  void reserve() {
-    zeros_.resize(Posted::most);
+  /// Allocates what calls over this number of ranks need, before open().
+  void reserve(int ranks) {
+    zeros_.resize(std::max<std::size_t>(leastWords, static_cast<std::size_t>(ranks)));
     started_.reserve(16);
   }
   /// Collective: begins to compare the ranks of a communicator, on a duplicate of it, unless one of them refuses already.
@@ -140,6 +145,8 @@ class Agreement {
   int rank() const { return rank_; }
   int ranks() const { return ranks_; }
   MPI_Comm communicator() const { return used_; }
+  /// Counts the domains beside each other, which all ranks create together.
+  std::int64_t nextDomain() { return ++domains_; }
   const WaitLimit& waitLimit() const { return waitLimit_; }
 
   /// Reads SK_CHECK and SK_MPI_TIMEOUT. Throws sk::Error if they have other
@@ -186,9 +193,12 @@ class Agreement {
   /// Collective, between two steps: the largest of a number of each rank.
   std::uint64_t most(std::uint64_t own);
 
-  /// Begins to compare, without waiting. If this rank does not refuse, it then
-  /// posts `posted` on communicator(), words before bytes.
-  void start(Started& started, const Call& call, const Refusal& refusal, const Posted& posted);
+  /// The words of the message that follows start(). Their number depends on the number of ranks alone, not on what a rank calls: where
+  /// ranks call different things, their messages still fit each other. There is room for a double of each rank, and for an exact sum.
+  std::size_t postedWords() const { return zeros_.size(); }
+  /// Begins to compare, without waiting. The caller, which does not refuse the call, then posts an all-reduce on communicator() that adds
+  /// postedWords() integers of 64 bits. Ranks that refuse, or that call something else, take part in it with zeros.
+  void start(Started& started, const Call& call);
   /// Whether all ranks have started.
   bool isReady(Started& started);
   /// Waits until all ranks have started. Throws only if MPI fails.
@@ -214,15 +224,17 @@ class Agreement {
  private:
   using Numbers = std::array<std::uint64_t, Started::numbers>;
 
-  Numbers numbersOf(const Call& call, bool isRefused, const Posted& posted) const;
+  static constexpr std::size_t leastWords = 64;
+
+  Numbers numbersOf(const Call& call, bool isRefused, bool hasPosted) const;
   void announce(const Call& call);
   Numbers compare(const Call& call, const Numbers& own);
   void conclude(Started& started);
   void settle();
   Refusal verdict(const Numbers& all, const Call& call, std::uint64_t calls, const Refusal& own);
   Refusal refused(const Numbers& all, const Refusal& own);
-  Refusal different(const Numbers& all, std::string_view what, std::uint64_t calls);
-  void takePart(const Numbers& own, const Numbers& all);
+  Refusal different(const Numbers& all, const Call& call, std::uint64_t calls);
+  void takePart(const Numbers& all);
   void send(const Error& error);
   Error receive(int from);
   void forget() noexcept;
@@ -233,15 +245,17 @@ class Agreement {
   int rank_ = 0, ranks_ = 1;
   WaitLimit waitLimit_;
   bool isAlways_ = false;
+  std::int64_t domains_ = 0;
   std::uint64_t calls_ = 0;  ///< since the ranks have begun to compare
   std::unordered_map<std::uint64_t, std::uint64_t>
       known_;  ///< hashes of calls that have been compared, by id
   Refusal announced_;  ///< what this rank has thrown, and the others have not
       ///< heard of
+  std::uint64_t failedAt_ = 0;  ///< calls_ when it was thrown
   Refusal broken_;  ///< why no more can be compared
   std::vector<Started*> started_;  ///< in their order
   std::vector<Member*> members_;
-  std::vector<std::byte> zeros_;  ///< for takePart()
+  std::vector<std::int64_t> zeros_;  ///< for takePart()
 };
 
 }  // namespace sk::mpi

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "exchange.hpp"
@@ -25,8 +26,9 @@ class CallPlan {
 
   /// Whether halos are exchanged.
   bool hasMessages() const { return !requests_.empty() || !otherRequests_.empty(); }
-  /// What is exchanged, to compare it.
+  /// What is exchanged, to compare it, and in words.
   std::uint64_t hash() const;
+  std::string halos() const;
   /// Makes ready on this rank what may fail: the arrays and buffers of the
   /// exchanges, and of the call, if it computes. Throws sk::Error.
   void prepareExchanges();
@@ -75,10 +77,6 @@ class CallPlan {
 
 /// Begins a call: counts it, and says whether the ranks have to compare it.
 Call beginCall(DomainState& domain, const program::Kernel& kernel, const CallOptions& options);
-/// Adds to the hash what SK_CHECK=collectives compares beside the kernel:
-/// values, the box, and which arguments are streams of a domain.
-void addArguments(Call& call, const program::Kernel& kernel, std::span<const Argument> arguments,
-                  const Box& box);
 
 /// The arguments, with this rank's placed streams for those of the domain.
 std::vector<Argument> ownArguments(std::span<const Argument> arguments);

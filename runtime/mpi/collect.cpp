@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "agreement.hpp"
+#include "call_details.hpp"
 #include "sk/error.hpp"
 
 namespace sk::mpi {
@@ -118,14 +119,6 @@ void checkRoot(const DomainState& domain, int root, std::string_view what) {
                           domain.parts.ranks() - 1));
 }
 
-mpi::Call callOf(std::string_view what, int root, std::size_t size) {
-  mpi::Hash hash;
-  hash.add(what);
-  hash.add(root);
-  hash.add(static_cast<std::int64_t>(size));
-  return {what, hash.value()};
-}
-
 std::size_t componentsOf(const program::Element& element) {
   std::size_t components = 0;
   for (const program::Field& field : element.fields) components += static_cast<std::size_t>(field.width);
@@ -148,10 +141,14 @@ void detail::readOwn(DomainStreamState* stream, OwnVisit visit, void* context) {
   visit(context, own.part(own.domain->own));
 }
 
-void detail::writeOwn(DomainStreamState* stream, OwnVisit visit, void* context) {
-  DomainStreamState& own = liveStream(stream, "write");
-  own.domain->agreement.act(
-      "write", [&] { own.writeOwn([&](const StreamRegion& region) { visit(context, region); }); });
+void detail::writeOwn(DomainStreamState* stream, OwnWrite kind, OwnVisit visit, void* context) {
+  const std::string_view what = kind == OwnWrite::Elements ? "write" : "fill";
+  DomainStreamState& own = liveStream(stream, what);
+  mpi::Agreement& agreement = own.domain->agreement;
+  const auto write = [&] { own.writeOwn([&](const StreamRegion& region) { visit(context, region); }); };
+  agreement.count();
+  if (kind == OwnWrite::Value && !agreement.isAlways()) return agreement.act(what, write);
+  agreement.together(mpi::StreamCall(what, own).call(), write);
 }
 
 void detail::gather(DomainStreamState* stream, int root, void* (*room)(void*, std::size_t), void* context) {
@@ -161,7 +158,7 @@ void detail::gather(DomainStreamState* stream, int root, void* (*room)(void*, st
   std::vector<std::byte> own;
   void* all = nullptr;
   domain.agreement.count();
-  domain.agreement.together(callOf("gather", root, size), [&] {
+  domain.agreement.together(mpi::StreamCall("gather", *stream).with("root", root).call(), [&] {
     checkRoot(domain, root, "gather");
     const StreamRegion region = stream->part(domain.own);
     const auto count = static_cast<std::size_t>(region.shape.size());
@@ -177,7 +174,7 @@ void detail::scatter(DomainStreamState* stream, int root, const void* elements, 
   const DomainState& domain = *liveStream(stream, "scatter").domain;
   std::optional<mpi::Collection> collection;
   domain.agreement.count();
-  domain.agreement.together(callOf("scatter", root, stream->element.size), [&] {
+  domain.agreement.together(mpi::StreamCall("scatter", *stream).with("root", root).call(), [&] {
     checkRoot(domain, root, "scatter");
     const std::int64_t size = domain.parts.whole().size();
     if (domain.rank == root && static_cast<std::int64_t>(count) != size) {
@@ -203,7 +200,7 @@ std::vector<double> detail::gatherReals(DomainStreamState* stream, int root) {
   std::vector<std::byte> own;
   std::vector<double> all;
   domain.agreement.count();
-  domain.agreement.together(callOf("gatherReals", root, size), [&] {
+  domain.agreement.together(mpi::StreamCall("gatherReals", *stream).with("root", root).call(), [&] {
     checkRoot(domain, root, "gatherReals");
     const std::vector<double> reals = readReals(stream->part(domain.own));
     collection.emplace(domain, root, size);
@@ -221,7 +218,7 @@ void detail::scatterReals(DomainStreamState* stream, int root, std::span<const d
   const std::size_t width = componentsOf(stream->element);
   std::optional<mpi::Collection> collection;
   domain.agreement.count();
-  domain.agreement.together(callOf("scatterReals", root, width * sizeof(double)), [&] {
+  domain.agreement.together(mpi::StreamCall("scatterReals", *stream).with("root", root).call(), [&] {
     checkRoot(domain, root, "scatterReals");
     const auto cells = static_cast<std::size_t>(domain.parts.whole().size());
     if (domain.rank == root && components.size() != cells * width) {

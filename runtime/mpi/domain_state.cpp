@@ -7,11 +7,15 @@
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "agreement.hpp"
+#include "call_details.hpp"
+#include "device/configuration.hpp"
 #include "device/stream_state.hpp"
 #include "open_device.hpp"
 #include "sk/error.hpp"
@@ -130,16 +134,22 @@ domain::Decomposition decompose(const DomainOptions& options, int ranks) {
 
 std::uint64_t hashOf(const DomainOptions& options) {
   mpi::Hash hash;
-  hash.add(toString(options.shape));
-  hash.add(toString(options.split));
-  for (const bool periodic : options.periodic) hash.add(periodic ? 1 : 0);
+  hash.add(options.shape.rank());
+  hash.add(options.split.rank());
+  for (int d = 0; d < options.shape.rank(); ++d) {
+    hash.add(options.shape[d]);
+    hash.add(options.periodic[static_cast<std::size_t>(d)] ? 1 : 0);
+  }
+  for (int d = 0; d < options.split.rank(); ++d) hash.add(options.split[d]);
   hash.add(options.exchangeEvery);
   return hash.value();
 }
 
 std::string nameOf(const DomainOptions& options) {
-  return fmt::format("a domain of shape {}, split {}, exchangeEvery {}", toString(options.shape),
-                     toString(options.split), options.exchangeEvery);
+  const auto dimensions = std::span(options.periodic).first(static_cast<std::size_t>(options.shape.rank()));
+  return fmt::format("a domain of shape {}, split {}, periodic {{{}}}, exchangeEvery {}",
+                     toString(options.shape), toString(options.split), fmt::join(dimensions, ", "),
+                     options.exchangeEvery);
 }
 
 /// The options of a domain beside another one: parts are those of the other one, if the options do not say how to divide.
@@ -172,7 +182,9 @@ detail::DomainOwner DomainState::create(MPI_Comm given, const DomainOptions& cho
   std::string name;
   const mpi::Refusal refusal = mpi::caught("sk::Domain", [&] {
     start.agreement = std::make_shared<mpi::Agreement>();
-    start.agreement->reserve();
+    int ranks = 0;
+    mpi::check(MPI_Comm_size(given, &ranks), "sk::Domain");
+    start.agreement->reserve(ranks);
     start.options = chosen;
     name = nameOf(chosen);
   });
@@ -193,8 +205,11 @@ detail::DomainOwner DomainState::createBeside(const DomainState& beside, const D
   start.agreement = beside.sharedAgreement;
   start.rankDevice = beside.rankDevice;
   mpi::Agreement& agreement = *start.agreement;
+  std::string name;
+  const mpi::Refusal refusal = mpi::caught("sk::Domain", [&] { name = nameOf(chosen); });
   agreement.count();
-  agreement.together({"a domain beside another", hashOf(chosen)}, [&] {
+  agreement.together({name, hashOf(chosen)}, [&] {
+    if (refusal) throw Error(*refusal);
     start.options = optionsBeside(beside, chosen);
     start.parts = decompose(start.options, agreement.ranks());
   });
@@ -205,11 +220,13 @@ detail::DomainOwner DomainState::finish(Start& start, MPI_Comm communicator) {
   const int status =
       start.communicator.become([&](MPI_Comm* copy) { return MPI_Comm_dup(communicator, copy); });
   const std::shared_ptr<mpi::Agreement> agreement = start.agreement;  // a domain that fails destroys its own
-  return agreement->together({"a domain"}, [&] {
+  detail::DomainOwner state = agreement->together({"a domain"}, [&] {
     mpi::check(status, "sk::Domain");
     MPI_Comm_set_errhandler(start.communicator, MPI_ERRORS_RETURN);
     return detail::DomainOwner(new DomainState(start));
   });
+  state->number = agreement->nextDomain();
+  return state;
 }
 
 DomainState::DomainState(Start& start)
@@ -242,21 +259,22 @@ detail::DomainStreamOwner DomainState::createStream(const program::Element& elem
   const auto create = [&] {
     return detail::DomainStreamOwner(new DomainStreamState(*this, element, storage, name));
   };
+  detail::DomainStreamOwner stream;
   agreement.count();
   if (agreement.isAlways()) {
-    mpi::Hash hash;
-    hash.add(element.name);
-    hash.add(static_cast<std::int64_t>(storage));
-    return agreement.together({"a stream of a domain", hash.value()}, create);
+    mpi::StreamCall call("a stream", *this);
+    call.with("elements", element.name).with("storage", sk::nameOf(storage));
+    stream = agreement.together(call.call(), create);
+  } else {
+    agreement.act("a stream of a domain", [&] { stream = create(); });
   }
-  detail::DomainStreamOwner stream;
-  agreement.act("a stream of a domain", [&] { stream = create(); });
+  stream->number = ++streamCount;
   return stream;
 }
 
 const mpi::Communicator& DomainState::lineOf(int dimension) {
-  const auto found = lines_.find(dimension);
-  if (found != lines_.end()) return found->second;
+  std::optional<mpi::Communicator>& known = lines_[static_cast<std::size_t>(dimension)];
+  if (known) return *known;
   const Index place = parts.placeOf(rank);
   int color = 0;
   for (int d = 0; d < place.rank(); ++d) {
@@ -268,9 +286,8 @@ const mpi::Communicator& DomainState::lineOf(int dimension) {
   agreement.together({"the ranks along a dimension"}, [&] {
     mpi::check(status, "the ranks along a dimension");
     MPI_Comm_set_errhandler(line, MPI_ERRORS_RETURN);
-    lines_.try_emplace(dimension, std::move(line));
   });
-  return lines_.at(dimension);
+  return known.emplace(std::move(line));  // on all ranks or on none
 }
 
 DomainStreamState* domainStream(const StreamRegion& region) {

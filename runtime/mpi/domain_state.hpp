@@ -4,16 +4,19 @@
 // with the reductions that combine the results of ranks.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
 #include "agreement.hpp"
 #include "device/device_state.hpp"
+#include "device/stream_state.hpp"
 #include "device/unload_watch.hpp"
 #include "device/write_scope.hpp"
 #include "domain/decomposition.hpp"
@@ -63,6 +66,7 @@ class DomainStreamState final : public detail::DistributedStream {
   /// The elements of a box of the whole, all of which are held.
   StreamRegion part(const Box& box) const;
   StreamRegion part(StreamState* state, const Box& box) const;
+  Storage storage() const { return local_->storage; }
   /// Makes room for a halo. The elements stay, and so does what is valid.
   void deepen(const domain::Depth& depth);
   /// Calls write(region), which writes all elements of this rank: a lost stream
@@ -74,6 +78,8 @@ class DomainStreamState final : public detail::DistributedStream {
   void exchange();
 
   DomainState* domain;  ///< null after the domain has ended
+  std::int64_t number =
+      0;  ///< among the streams of the domain, from 1 on; with SK_CHECK=collectives the same on all ranks
   const program::Element& element;
   domain::Depth allocated;  ///< the depth of the halo where there is a neighbor; ranks may differ
   domain::Depth valid;  ///< the depth in which the halo has the elements of the neighbors
@@ -154,6 +160,7 @@ class DomainState final : public detail::Distribution, private mpi::Agreement::M
   std::shared_ptr<mpi::Agreement> sharedAgreement;  ///< by domains beside each other
   mpi::Agreement& agreement;
   mpi::Communicator communicator;
+  std::int64_t number = 0;  ///< among the domains beside each other, from 1 on; the same on all ranks
   int rank = 0;
   DomainOptions options;
   domain::Decomposition parts;
@@ -163,6 +170,7 @@ class DomainState final : public detail::Distribution, private mpi::Agreement::M
   Device& device;
   DomainStatistics statistics;
   std::vector<DomainStreamState*> streams;
+  std::int64_t streamCount = 0;  ///< of all that have been created
   detail::TransferOwner* later =
       nullptr;  ///< where the next reduction to a value is kept instead of awaited; or null
   HaloStaging staging;  ///< ends before the device
@@ -178,7 +186,7 @@ class DomainState final : public detail::Distribution, private mpi::Agreement::M
   void keepLater(const program::Reduction& reduction, std::span<void* const> results,
                  std::unique_ptr<mpi::RankReduction> part);
 
-  std::map<int, mpi::Communicator> lines_;
+  std::array<std::optional<mpi::Communicator>, maxRank> lines_;
 };
 
 template <class Write>

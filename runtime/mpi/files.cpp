@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "agreement.hpp"
+#include "call_details.hpp"
 #include "device/stream_state.hpp"
 #include "domain_state.hpp"
 #include "npy.hpp"
@@ -290,7 +291,7 @@ void detail::save(DomainStreamState* stream, const std::string& file) {
   std::string header, partial;
   std::vector<std::byte> bytes;
   agreement.count();
-  agreement.together(stepOf("save"), [&] {
+  agreement.together(mpi::StreamCall("save", *stream).with("file", file).call(), [&] {
     size = mpi::elementBytes(stream->element, hasDoubles(own));
     header = mpi::npyHeader(mpi::npyArray(stream->element, domain.parts.whole(), hasDoubles(own)));
     bytes = bytesOfOwn(own, size);
@@ -323,7 +324,7 @@ void detail::load(DomainStreamState* stream, const std::string& file) {
   std::vector<std::byte> bytes;
   std::vector<double> values;
   agreement.count();
-  agreement.together(stepOf("load"), [&] {
+  agreement.together(mpi::StreamCall("load", *stream).with("file", file).call(), [&] {
     size = mpi::elementBytes(stream->element, hasDoubles(own));
     const mpi::NpyArray wanted = mpi::npyArray(stream->element, domain.parts.whole(), hasDoubles(own));
     if (domain.rank == 0) {

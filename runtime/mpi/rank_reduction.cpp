@@ -8,6 +8,7 @@
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
 #include "call/resolved_call.hpp"
+#include "call_details.hpp"
 #include "native/exact_accumulator.hpp"
 #include "support/convert_elements.hpp"
 
@@ -150,6 +151,7 @@ void RankReduction::fold() {
   if (!exact || !sumsEverything()) startStep(variant, nullptr, call_.arguments);
   if (exact) foldExactly();
   if (!steps_.empty()) layOutSteps();
+  layOutPosted();
 }
 
 void RankReduction::foldExactly() {
@@ -215,15 +217,47 @@ void RankReduction::layOutSteps() {
   all_.resize(total);
 }
 
-void RankReduction::post(const Call& call) {
+/// Bytes of different ranks have different places, so that adding words combines them.
+void RankReduction::layOutPosted() {
+  const std::size_t count = domain_.agreement.postedWords(), wordBytes = words_.size() * sizeof(std::int64_t);
+  if (wordBytes + all_.size() > count * sizeof(std::int64_t)) return;
+  posted_.resize(count);
+  std::ranges::copy(words_, posted_.begin());
+  if (own_.empty()) return;
+  auto* const parts = reinterpret_cast<std::byte*>(posted_.data()) + wordBytes;
+  std::ranges::copy(own_, parts + offsets_[static_cast<std::size_t>(domain_.rank)]);
+}
+
+void RankReduction::takePosted() {
+  if (posted_.empty()) return;
+  std::copy_n(posted_.begin(), words_.size(), words_.begin());
+  const auto* const parts = reinterpret_cast<const std::byte*>(posted_.data() + words_.size());
+  std::copy_n(parts, all_.size(), all_.begin());
+}
+
+/// What the ranks must have alike, lest their messages have different lengths or be laid out in other ways.
+std::uint64_t RankReduction::hashOfMessages() const {
+  Hash hash;
+  for (const Index& corner : {box_.begin, box_.end}) {
+    for (int d = 0; d < corner.rank(); ++d) hash.add(corner[d]);
+  }
+  hash.add(static_cast<std::int64_t>(words_.size()));
+  hash.add(static_cast<std::int64_t>(all_.size()));
+  return hash.value();
+}
+
+std::string RankReduction::details() const {
+  return details_.empty() ? linesOf(domain_, call_.options, box_) : details_;
+}
+
+void RankReduction::post(const Call& given) {
   Agreement& agreement = domain_.agreement;
-  const std::size_t wordBytes = words_.size() * sizeof(std::int64_t);
-  // Where ranks call different reductions, their messages may have different lengths, of which MPI would end the run: who looks for
-  // that waits for the comparison first. (All ranks must decide alike, which Call::isFirst does not after a call that failed on one.)
-  const bool isTogether =
-      !agreement.isAlways() && all_.size() <= Agreement::Posted::most && wordBytes <= Agreement::Posted::most;
+  Call call = given;
+  call.details = this;
+  call.add(hashOfMessages());
+  const bool isTogether = !posted_.empty();
   if (isTogether) {
-    agreement.start(agreed_, call, std::nullopt, {.words = words_.size(), .bytes = all_.size()});
+    agreement.start(agreed_, call);
   } else {
     agreement.agree(call, std::nullopt);
   }
@@ -236,23 +270,18 @@ void RankReduction::post(const Call& call) {
     agreement.giveUp(*error);
     throw Error(*error);
   };
-  if (!words_.empty()) {
-    begin(wordsRequest_, [&](MPI_Request* request) {
-      return MPI_Iallreduce(MPI_IN_PLACE, words_.data(), static_cast<int>(words_.size()), MPI_INT64_T,
-                            MPI_SUM, communicator, request);
+  const auto add = [&](MPI_Request& request, std::vector<std::int64_t>& words) {
+    begin(request, [&](MPI_Request* at) {
+      return MPI_Iallreduce(MPI_IN_PLACE, words.data(), static_cast<int>(words.size()), MPI_INT64_T, MPI_SUM,
+                            communicator, at);
     });
-  }
+  };
+  if (isTogether) return add(wordsRequest_, posted_);
+  if (!words_.empty()) add(wordsRequest_, words_);
   if (steps_.empty()) return;
-  if (!isTogether) {
-    return begin(stepsRequest_, [&](MPI_Request* request) {
-      return MPI_Iallgatherv(own_.data(), static_cast<int>(own_.size()), MPI_BYTE, all_.data(),
-                             counts_.data(), offsets_.data(), MPI_BYTE, communicator, request);
-    });
-  }
-  std::ranges::copy(own_, all_.begin() + offsets_[static_cast<std::size_t>(domain_.rank)]);
   begin(stepsRequest_, [&](MPI_Request* request) {
-    return MPI_Iallreduce(MPI_IN_PLACE, all_.data(), static_cast<int>(all_.size()), MPI_BYTE, MPI_BOR,
-                          communicator, request);
+    return MPI_Iallgatherv(own_.data(), static_cast<int>(own_.size()), MPI_BYTE, all_.data(), counts_.data(),
+                           offsets_.data(), MPI_BYTE, communicator, request);
   });
 }
 
@@ -305,6 +334,7 @@ void RankReduction::take(std::span<void* const> results) {
 }
 
 void RankReduction::finish() {
+  takePosted();
   for (std::size_t k = 0; k < steps_.size(); ++k) finishStep(k);
   finishWords();
 }

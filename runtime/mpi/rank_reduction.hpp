@@ -8,6 +8,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "accumulators.hpp"
@@ -28,7 +30,7 @@ struct Variant {
   bool inDoubles = false;  ///< native code keeps doubles for floats
 };
 
-class RankReduction {
+class RankReduction final : private Details {
  public:
   /// `arguments` are those of the rank's own elements in the box of the call, or of any elements if it has none there.
   RankReduction(DomainState& domain, const program::Reduction& reduction, const BoxedArguments& arguments,
@@ -39,6 +41,8 @@ class RankReduction {
 
   /// Folds this rank's elements. Throws sk::Error if it cannot.
   void fold();
+  /// What else than options, the box and the domain the ranks compare of the call, if anything, in lines.
+  void setDetails(std::string details) { details_ = std::move(details); }
   /// Posts what is collective, on all ranks on which fold() has succeeded; the
   /// others refuse the call.
   void post(const Call& call);
@@ -67,6 +71,7 @@ class RankReduction {
     Bytes own;  ///< of this rank's parts
   };
 
+  std::string details() const override;
   bool isInterleaved() const;
   Shape partsOf(int rank) const;
   std::int64_t countOfParts() const;
@@ -77,6 +82,9 @@ class RankReduction {
   void startStep(const Variant& variant, const program::ExactSum* digits,
                  std::span<const Argument> arguments);
   void layOutSteps();
+  void layOutPosted();
+  void takePosted();
+  std::uint64_t hashOfMessages() const;
   void foldExactly();
   int complete();
   std::vector<std::int64_t> exactWords();
@@ -98,11 +106,15 @@ class RankReduction {
   std::vector<std::unique_ptr<Step>> steps_;
   Bytes own_, all_;  ///< the parts of all steps: of this rank, and of all
   Agreement::Started agreed_;
+  /// The words of exact sums and then the parts of all steps, if these are so few that they do not wait until the ranks have been
+  /// compared; or empty.
+  std::vector<std::int64_t> posted_;
   std::vector<int> counts_, offsets_;
   MPI_Request stepsRequest_ = MPI_REQUEST_NULL;
   std::vector<std::int64_t> words_;  ///< of all exact sums, if the device keeps them as integers
   std::vector<std::size_t> wordCounts_;
-  MPI_Request wordsRequest_ = MPI_REQUEST_NULL;
+  MPI_Request wordsRequest_ = MPI_REQUEST_NULL;  ///< of words_, or of posted_
+  std::string details_;
 };
 
 }  // namespace sk::mpi

@@ -13,6 +13,7 @@
 #include "call/check_reduction.hpp"
 #include "call/placed.hpp"
 #include "call/resolved_call.hpp"
+#include "call_details.hpp"
 #include "call_plan.hpp"
 #include "device/stream_state.hpp"
 #include "rank_reduction.hpp"
@@ -109,8 +110,10 @@ class Fold {
         reduction_(reduction),
         arguments_(arguments),
         options_(options),
+        details_(domain, reduction.fold, arguments, options),
         call_(mpi::beginCall(domain, reduction.fold, options)) {
-    if (domain.agreement.isAlways()) mpi::addArguments(call_, reduction.fold, arguments, options.box);
+    call_.details = &details_;
+    if (domain.agreement.isAlways()) details_.addTo(call_);
   }
 
   /// Checks what this rank can, and exchanges the halos of gathers. The first
@@ -129,7 +132,10 @@ class Fold {
     });
     if (!plan || !plan->hasMessages()) return;
     mpi::Call call = call_;
-    call.detail ^= plan->hash();
+    mpi::KernelDetails details = details_;
+    details.setPlan(*plan);
+    call.details = &details;
+    call.add(plan->hash());
     domain_.agreement.agree(call, std::exchange(refusal_, std::nullopt));
     refusal_ = mpi::caught(name(), [&] { plan->exchangeHalos(); });
   }
@@ -142,6 +148,7 @@ class Fold {
       refusal_ = mpi::caught(name(), [&] {
         part = partOf(domain_, reduction_, arguments, options_);
         part->fold();
+        if (domain_.agreement.isAlways()) part->setDetails(details_.details());
       });
     }
     if (refusal_) {
@@ -166,6 +173,7 @@ class Fold {
   const Reduction& reduction_;
   const std::span<const Argument> arguments_;
   const CallOptions& options_;
+  mpi::KernelDetails details_;
   mpi::Call call_;
   mpi::Refusal refusal_;
 };

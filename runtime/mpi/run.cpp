@@ -12,6 +12,7 @@
 #include "agreement.hpp"
 #include "call/box.hpp"
 #include "call/check_call.hpp"
+#include "call_details.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/stream_state.hpp"
@@ -144,11 +145,6 @@ std::uint64_t hashOf(const Kernel& kernel, const CallOptions& options) {
   return hash.value();
 }
 
-void add(Hash& hash, const Index& index) {
-  hash.add(index.rank());
-  for (int d = 0; d < index.rank(); ++d) hash.add(index[d]);
-}
-
 /// Whether calls of the kernel may exchange halos at all.
 bool readsNeighbors(const Kernel& kernel) {
   return std::ranges::any_of(kernel.parameters, [](const program::Parameter& parameter) {
@@ -160,25 +156,14 @@ bool readsNeighbors(const Kernel& kernel) {
 
 Call beginCall(DomainState& domain, const Kernel& kernel, const CallOptions& options) {
   const bool isCompared = domain.agreement.ranks() > 1;
-  const std::uint64_t object = isCompared ? domain.rankDevice->objects.of(&kernel) : 0;
-  return domain.agreement.begin(kernel.name, idOf(kernel, object, options),
-                                [&] { return hashOf(kernel, options); });
-}
-
-void addArguments(Call& call, const Kernel& kernel, std::span<const Argument> arguments, const Box& box) {
-  Hash hash;
-  hash.add(static_cast<std::int64_t>(call.detail));
-  add(hash, box.begin);
-  add(hash, box.end);
-  for (std::size_t i = 0; i < arguments.size() && i < kernel.parameters.size(); ++i) {
-    hash.add(arguments[i].region.distributed != nullptr ? 1 : 0);
-    hash.add(toString(arguments[i].region.shape));
-    if (arguments[i].value == nullptr) continue;
-    const program::Parameter& parameter = kernel.parameters[i];
-    const std::size_t ends = parameter.role == Role::Iterator ? 2 : 1;
-    hash.addBytes({static_cast<const char*>(arguments[i].value), ends * parameter.element->size});
-  }
-  call.detail = hash.value();
+  Call call;
+  domain.agreement.act(kernel.name, [&] {
+    const std::uint64_t object = isCompared ? domain.rankDevice->objects.of(&kernel) : 0;
+    call = domain.agreement.begin(kernel.name, idOf(kernel, object, options),
+                                  [&] { return hashOf(kernel, options); });
+  });
+  call.add(static_cast<std::uint64_t>(domain.number));
+  return call;
 }
 
 std::vector<Argument> ownArguments(std::span<const Argument> arguments) {
@@ -250,12 +235,28 @@ std::uint64_t CallPlan::hash() const {
   for (const std::vector<HaloRequest>& requests : {std::cref(requests_), std::cref(otherRequests_)}) {
     hash.add(static_cast<std::int64_t>(requests.size()));
     for (const HaloRequest& request : requests) {
+      hash.add(request.stream->domain->number);
       hash.add(request.stream->element.name);
+      hash.add(static_cast<std::int64_t>(request.stream->storage()));
       for (const std::int64_t depth : request.depth.below) hash.add(depth);
       for (const std::int64_t depth : request.depth.above) hash.add(depth);
     }
   }
   return hash.value();
+}
+
+std::string CallPlan::halos() const {
+  std::string names;
+  for (const std::vector<SpreadArgument>& arguments : {std::cref(spread_), std::cref(others_)}) {
+    for (const SpreadArgument& one : arguments) {
+      const auto isOfOne = [&](const HaloRequest& request) { return request.stream == one.stream; };
+      if (!one.isGather ||
+          (std::ranges::none_of(requests_, isOfOne) && std::ranges::none_of(otherRequests_, isOfOne)))
+        continue;
+      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", kernel_.parameters[one.index].name);
+    }
+  }
+  return names.empty() ? "no halo to exchange" : "halos to exchange of " + names;
 }
 
 /// Makes room for the halos that this call and the ones like it need.
@@ -442,8 +443,13 @@ void DomainState::run(const Kernel& kernel, std::span<const Argument> arguments,
     plan->prepare();
   });
   if (call.isFirst || agreement.isAlways() || (plan ? plan->hasMessages() : mpi::readsNeighbors(kernel))) {
-    if (plan) call.detail = plan->hash();
-    if (agreement.isAlways()) mpi::addArguments(call, kernel, arguments, chosen.box);
+    mpi::KernelDetails details(*this, kernel, arguments, chosen);
+    call.details = &details;
+    if (plan) {
+      call.add(plan->hash());
+      details.setPlan(*plan);
+    }
+    if (agreement.isAlways()) details.addTo(call);
     agreement.agree(call, refusal);
   } else if (refusal) {
     agreement.failAlone(*refusal);

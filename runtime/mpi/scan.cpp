@@ -11,6 +11,7 @@
 #include "accumulators.hpp"
 #include "call/box.hpp"
 #include "call/check_call.hpp"
+#include "call_details.hpp"
 #include "call_plan.hpp"
 #include "domain_state.hpp"
 
@@ -56,6 +57,9 @@ class RankScan {
     sk::scan(reduction_, withResults(*results_, own), options_);
     foldTotals();
   }
+
+  /// The bytes of the total of one line, after prepare(). (Ranks may have different numbers of lines.)
+  std::size_t lineBytes() const { return lineBytes_; }
 
   /// Collective, after prepare(), on the ranks along the dimension.
   void exchangeTotals(const mpi::Communicator& line) {
@@ -172,7 +176,8 @@ class RankScan {
   void foldTotals() {
     const Shape shape = shapeOfTotals();
     Accumulators totals = accumulators(shape.size());
-    own_.resize(totals.elements() * totals.elementBytes());
+    lineBytes_ = totals.elementBytes();
+    own_.resize(totals.elements() * lineBytes_);
     if (own_.size() > mpi::mostBytes / static_cast<std::size_t>(ranks())) {
       fail(Error::Kind::Memory, reduction_.fold,
            "it has {} lines on a rank, whose totals do not fit in one message "
@@ -217,6 +222,7 @@ class RankScan {
   int dimension_;
   std::vector<Argument> local_;
   std::optional<Accumulators> results_;
+  std::size_t lineBytes_ = 0;
   Bytes own_, all_;  ///< totals: of this rank, and of all along the dimension
 };
 
@@ -252,7 +258,9 @@ void checkArguments(DomainState& domain, const Reduction& reduction, std::span<c
 void DomainState::scan(const Reduction& reduction, std::span<const Argument> arguments,
                        const CallOptions& chosen) {
   mpi::Call call = mpi::beginCall(*this, reduction.fold, chosen);
-  if (agreement.isAlways()) mpi::addArguments(call, reduction.fold, arguments, chosen.box);
+  const mpi::KernelDetails details(*this, reduction.fold, arguments, chosen);
+  call.details = &details;
+  if (agreement.isAlways()) details.addTo(call);
   std::optional<RankScan> scan;
   const mpi::Refusal refusal = mpi::caught(reduction.fold.name, [&] {
     mpi::refuseRecording(*this, reduction.fold);
@@ -271,6 +279,7 @@ void DomainState::scan(const Reduction& reduction, std::span<const Argument> arg
     scan.emplace(*this, reduction, arguments, chosen);
     if (scan->hasMessages()) scan->prepare();
   });
+  if (!refusal) call.add(scan->lineBytes());
   if (refusal || call.isFirst || agreement.isAlways() || scan->hasMessages()) agreement.agree(call, refusal);
   const mpi::Communicator* const line = scan->hasMessages() ? &lineOf(scan->dimension()) : nullptr;
   agreement.act(reduction.fold.name, [&] {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "agreement.hpp"
+#include "call_details.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/stream_state.hpp"
@@ -98,8 +99,7 @@ void detail::copyOwn(DomainStreamState* from, DomainStreamState* given) {
   const DomainStreamState& source = liveStream(from, "copyTo");
   DomainStreamState& target = liveStream(given, "copyTo");
   mpi::Agreement& agreement = target.domain->agreement;
-  agreement.count();
-  agreement.act("copyTo", [&] {
+  const auto copyAll = [&] {
     if (source.domain != target.domain) {
       throw Error(
           "copyTo: the two streams are of different domains; create "
@@ -107,7 +107,10 @@ void detail::copyOwn(DomainStreamState* from, DomainStreamState* given) {
           "ordinary stream");
     }
     target.writeOwn([&](const StreamRegion& to) { copy(source.part(source.domain->own), to); });
-  });
+  };
+  agreement.count();
+  if (!agreement.isAlways()) return agreement.act("copyTo", copyAll);
+  agreement.together(mpi::StreamCall("copyTo", source).with("target stream", target.number).call(), copyAll);
 }
 
 void detail::copyToWhole(DomainStreamState* stream, const StreamRegion& whole) {
@@ -117,14 +120,13 @@ void detail::copyToWhole(DomainStreamState* stream, const StreamRegion& whole) {
     return copy(stream->part(domain.own), whole);
   }
   std::optional<AllBytes> bytes;
-  mpi::Hash hash;
-  hash.add(stream->element.name);
   domain.agreement.count();
-  domain.agreement.together({"copyTo", hash.value()}, [&] {
-    checkWhole(stream, whole, "copyTo");
-    checkElementsOf(stream->part(domain.own), false, "copyTo");
-    bytes.emplace(domain, stream->part(domain.own));
-  });
+  domain.agreement.together(mpi::StreamCall("copyTo", *stream).with("target", "an ordinary stream").call(),
+                            [&] {
+                              checkWhole(stream, whole, "copyTo");
+                              checkElementsOf(stream->part(domain.own), false, "copyTo");
+                              bytes.emplace(domain, stream->part(domain.own));
+                            });
   domain.agreement.act("copyTo", [&] {
     const std::byte* from = bytes->receive();
     WriteScope writes;
@@ -143,12 +145,14 @@ void detail::copyToWhole(DomainStreamState* stream, const StreamRegion& whole) {
 
 void detail::copyFromWhole(DomainStreamState* stream, const StreamRegion& whole) {
   mpi::Agreement& agreement = liveStream(stream, "copyFrom").domain->agreement;
-  agreement.count();
-  agreement.act("copyFrom", [&] {
+  const auto copyAll = [&] {
     checkWhole(stream, whole, "copyFrom");
     const Box& own = stream->domain->own;
     stream->writeOwn([&](const StreamRegion& to) { copy(partOf(whole, own.begin, own.end), to); });
-  });
+  };
+  agreement.count();
+  if (!agreement.isAlways()) return agreement.act("copyFrom", copyAll);
+  agreement.together(mpi::StreamCall("copyFrom", *stream).call(), copyAll);
 }
 
 }  // namespace sk

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
 // Counts what the tests' ranks create and free, by MPI's profiling interface: requests, communicators and files. A program that
-// ends with any of them left fails. Debian's builds of Open MPI and MPICH do not report them.
+// ends with any of them left fails. Debian's builds of Open MPI and MPICH do not report them. Also counts messages that reduce.
 #include <atomic>
 #include <cstdio>
 
 #include <mpi.h>
 
+#include "ranks.hpp"
+
 namespace {
 
 std::atomic<int> requests{0}, communicators{0}, files{0};
+std::atomic<long> reducedMessages{0}, reducedBytes{0};
 
 int created(std::atomic<int>& kind, int status) {
   if (status == MPI_SUCCESS) ++kind;
@@ -24,6 +27,8 @@ int completed(MPI_Request before, const MPI_Request* after, int status) {
 
 }  // namespace
 
+Reduced reducedSoFar() { return {reducedMessages, reducedBytes}; }
+
 extern "C" {
 
 int MPI_Isend(const void* bytes, int count, MPI_Datatype type, int to, int tag, MPI_Comm all,
@@ -36,6 +41,10 @@ int MPI_Irecv(void* bytes, int count, MPI_Datatype type, int from, int tag, MPI_
 }
 int MPI_Iallreduce(const void* from, void* to, int count, MPI_Datatype type, MPI_Op op, MPI_Comm all,
                    MPI_Request* request) {
+  int size = 0;
+  MPI_Type_size(type, &size);
+  ++reducedMessages;
+  reducedBytes += static_cast<long>(count) * size;
   return created(requests, PMPI_Iallreduce(from, to, count, type, op, all, request));
 }
 int MPI_Iallgatherv(const void* from, int count, MPI_Datatype type, void* to, const int* counts,

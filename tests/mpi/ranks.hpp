@@ -11,6 +11,13 @@
 int rankOfWorld();
 int ranksOfWorld();
 
+/// What this rank has given to MPI_Iallreduce.
+struct Reduced {
+  long messages, bytes;
+  bool operator==(const Reduced&) const = default;
+};
+Reduced reducedSoFar();
+
 /// The elements of rank 0, on every rank.
 template <class T>
 std::vector<T> everywhere(std::vector<T> elements) {

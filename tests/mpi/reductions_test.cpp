@@ -177,6 +177,26 @@ TEST_CASE("folded outputs, streams of one element and messages") {
   });
 }
 
+TEST_CASE("a reduction of one value takes two messages, of one length for all reductions") {
+  if (ranksOfWorld() == 1) return;
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = shape});
+  auto x = domain.stream<float>();
+  x.fill(1.0F);
+  const auto sentBy = [](auto&& call) {
+    const Reduced before = reducedSoFar();
+    call();
+    const Reduced after = reducedSoFar();
+    return Reduced{after.messages - before.messages, after.bytes - before.bytes};
+  };
+  const auto exactly = sum.with({.accumulate = sk::Accumulate::Exact});
+  (void)sum(x);
+  const Reduced sent = sentBy([&] { (void)sum(x); });
+  CHECK(sent.messages == 2);
+  CHECK(sentBy([&] { (void)largest(x); }) == sent);
+  CHECK(sentBy([&] { (void)exactly(x); }) == sent);
+  CHECK(sentBy([&] { (void)both(x); }) == sent);
+}
+
 TEST_CASE("a reduction that is asked later gives the value of its call") {
   const sk::CallOptions exact{.accumulate = sk::Accumulate::Exact};
   forEachSplit({.shape = shape}, [&](sk::Domain& domain) {

@@ -4,7 +4,11 @@
 // others hear of at their next call; and ranks that make different calls are told so, whenever it happens.
 #include <catch2/catch.hpp>
 
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "device/stream_state.hpp"
 #include "domain.sk.hpp"
@@ -12,6 +16,7 @@
 #include "error_of.hpp"
 #include "ranks.hpp"
 #include "reductions.sk.hpp"
+#include "refusals.sk.hpp"
 #include "sk/mpi.hpp"
 
 namespace {
@@ -119,6 +124,47 @@ TEST_CASE("all ranks throw for a wrong argument of one rank, in that call or in 
   checkThatItWorks(u, v);
 }
 
+TEST_CASE("handlers may call anything, in the same order on all ranks") {
+  if (ranksOfWorld() == 1) return;
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
+  auto u = domain.stream<float>(), v = domain.stream<float>();
+  auto table = domain.device().stream<float>({24, 8});
+  const auto recover = [&] {
+    u.fill(1.0F);
+    scaled(2.0F, u, u, v);  // has no messages
+    u.copyTo(v);
+    auto more = domain.stream<float>();
+    more.fill(0.0F);
+    checkThatItWorks(u, v);
+  };
+  recover();
+  for (int round = 0; round < 2; ++round) {
+    const std::string error = errorOf([&] {
+      isLast() ? scaled(0.1F, table, u, v) : scaled(0.1F, u, u, v);
+      scaled(0.1F, u, u, v);
+      (void)sum(u);
+    });
+    CHECK_THAT(error, Contains("scaled: 'x'"));
+    recover();
+  }
+}
+
+TEST_CASE("ranks agree on what they write") {
+  if (ranksOfWorld() == 1) return;
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
+  auto u = domain.stream<float>(), v = domain.stream<float>();
+  const std::vector<float> own(u.read().size(), 3.0F);
+  CHECK_THAT(errorOf([&] { u.write(isLast() ? std::vector<float>(1) : own); }), Contains(last()));
+  u.write(own);
+  CHECK(sum(u) == 3.0F * 24 * 8);
+  const auto start = [](const sk::Index&) {
+    if (isLast()) throw std::runtime_error("no start");
+    return 2.0F;
+  };
+  CHECK_THAT(errorOf([&] { u.fill(start); }), Contains(last() + "fill: no start"));
+  checkThatItWorks(u, v);
+}
+
 TEST_CASE("what fails in later() on one rank is heard of by the others") {
   if (ranksOfWorld() == 1) return;
   sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
@@ -157,19 +203,167 @@ TEST_CASE("ranks that part later are told so at the next call that has messages"
   checkThatItWorks(u, v);
 }
 
-// Their messages have different lengths, of which MPI would end the run.
-TEST_CASE("ranks that fold differently are told so with SK_CHECK=collectives", "[.collectives]") {
+// Of messages with different lengths, MPI would end the run.
+TEST_CASE("ranks that fold differently are told so, however long their messages are", "[collectives]") {
+  if (ranksOfWorld() == 1) return;
   sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
-  auto u = domain.stream<float>(), v = domain.stream<float>();
+  sk::Domain columns(domain, {.shape = {400, 8}, .split = {1, ranksOfWorld()}});
+  auto u = domain.stream<float>(), v = domain.stream<float>(), c = columns.stream<float>();
+  auto n = columns.stream<unsigned>();
   u.fill(1.0F);
-  CHECK_THAT(errorOf([&] { isLast() ? (void)largest(u) : (void)sum(u); }),
-             Contains("do not make the same call"));
-  checkThatItWorks(u, v);
+  c.fill(1.0F);
+  n.fill(1U);
   const auto exactly = dot.with({.accumulate = sk::Accumulate::Exact});
-  CHECK_THAT(errorOf([&] { isLast() ? (void)exactly(u, u) : (void)dot(u, u); }),
+  const auto upper = sum.with({.box = {{0, 0}, {1, 8}}}), lower = sum.with({.box = {{1, 0}, {24, 8}}});
+  const auto differ = [&](const std::function<void()>& one, const std::function<void()>& other) {
+    for (const bool areKnown : {false, true}) {
+      if (areKnown) {
+        one();
+        other();
+      }
+      CHECK_THAT(errorOf([&] { isLast() ? one() : other(); }), Contains("do not make the same call"));
+      checkThatItWorks(u, v);
+      CHECK_THAT(errorOf([&] { isLast() ? other() : one(); }), Contains("do not make the same call"));
+      checkThatItWorks(u, v);
+    }
+  };
+  differ([&] { (void)largest(u); }, [&] { (void)sum(u); });
+  differ([&] { (void)exactly(u, u); }, [&] { (void)dot(u, u); });
+  differ([&] { (void)exactly(u, u); }, [&] { (void)hash(n); });
+  differ([&] { (void)hash(n); }, [&] { (void)sum(u); });
+  differ([&] { (void)upper(u); }, [&] { (void)lower(u); });
+  differ([&] { (void)sum(c); }, [&] { (void)sum(u); });
+  differ([&] { (void)domain.later(exactly, u, u).get(); }, [&] { (void)domain.later(sum, u).get(); });
+  differ([&] { (void)columns.later(hash, n).get(); }, [&] { (void)domain.later(sum, u).get(); });
+  u.fill(1.0F);
+  CHECK_THAT(errorOf([&] {
+               sk::Future<float> later = isLast() ? domain.later(largest, u) : domain.later(sum, u);
+               (void)sum(u);
+             }),
              Contains("do not make the same call"));
   checkThatItWorks(u, v);
-  CHECK(largest(u) == 2.0F);
-  CHECK_THAT(errorOf([&] { isLast() ? (void)largest(u) : (void)sum(u); }),
+}
+
+// Their messages go to other communicators, where nobody would receive them, or have other lengths.
+TEST_CASE("ranks that name streams of other domains, or of other types, are told so", "[collectives]") {
+  if (ranksOfWorld() == 1) return;
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around, .split = {ranksOfWorld(), 1}});
+  sk::Domain another(domain, {.shape = {24, 8}, .periodic = around});
+  auto u = domain.stream<float>(), v = domain.stream<float>(), w = another.stream<float>();
+  auto d = domain.stream<float>(sk::Storage::Double);
+  auto whole = domain.device().stream<float>({24, 8});
+  const auto differ = [&](bool isStored, const std::function<void(sk::DomainStream<float>&)>& call) {
+    for (sk::DomainStream<float>* const other : {&w, &d}) {
+      if (other == &d && !isStored) continue;  // elements travel as they are declared
+      for (sk::DomainStream<float>* const stream : {&u, other}) stream->fill(1.0F);
+      CHECK_THAT(
+          errorOf([&] { call(isLast() ? *other : u); }),
+          Contains("do not make the same call") || Contains("ordinary stream has another sk::Storage"));
+      checkThatItWorks(u, v);
+    }
+  };
+  const std::vector<float> all(domain.rank() == 0 ? 24 * 8 : 0, 3.0F);
+  const std::string file = (std::filesystem::temp_directory_path() / "sk_mpi_refusals_never.npy").string();
+  differ(true, [&](auto& stream) { diffuse(0.125F, stream, stream); });
+  differ(false, [&](auto& stream) { (void)stream.gather(); });
+  differ(false, [&](auto& stream) { (void)stream.gatherReals(); });
+  differ(false, [&](auto& stream) { stream.scatter(all); });
+  differ(true, [&](auto& stream) { stream.copyTo(whole); });
+  differ(true, [&](auto& stream) { stream.save(file); });
+  differ(true, [&](auto& stream) { summed.with({.along = 0})(stream, stream); });
+  differ(false, [&](auto& stream) { (void)sum(stream); });
+  CHECK_THAT(errorOf([&] { isLast() ? u.save(file + "1") : u.save(file + "2"); }),
              Contains("do not make the same call"));
+  checkThatItWorks(u, v);
+}
+
+TEST_CASE("errors say what differs between two calls of one name", "[collectives]") {
+  if (ranksOfWorld() == 1) return;
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around, .split = {ranksOfWorld(), 1}});
+  sk::Domain another(domain, {.shape = {24, 8}, .periodic = around});
+  auto u = domain.stream<float>(), v = domain.stream<float>(), w = another.stream<float>();
+  auto d = domain.stream<float>(sk::Storage::Double);
+  auto n = domain.stream<int>();
+  const std::vector<float> all(domain.rank() == 0 ? 24 * 8 : 0, 3.0F);
+  const auto parts = [&](const std::string& others, const std::string& lasts,
+                         const std::function<void()>& other, const std::function<void()>& one) {
+    u.fill(1.0F);
+    w.fill(1.0F);
+    d.fill(1.0F);
+    n.fill(1);
+    CHECK_THAT(errorOf([&] { isLast() ? one() : other(); }),
+               Contains("rank 0 has " + others) &&
+                   Contains("rank " + std::to_string(ranksOfWorld() - 1) + " has " + lasts));
+    checkThatItWorks(u, v);
+  };
+  parts("gather (root 0)", "gather (root 1)", [&] { (void)u.gather(0); }, [&] { (void)u.gather(1); });
+  parts("gather (domain 1", "gather (domain 2", [&] { (void)u.gather(); }, [&] { (void)w.gather(); });
+  parts(
+      "gather (elements float", "gather (elements int", [&] { (void)u.gather(); }, [&] { (void)n.gather(); });
+  parts(
+      "scatter (storage single", "scatter (storage double", [&] { u.scatter(all); }, [&] { d.scatter(all); });
+  parts(
+      "save (file /never/a.npy)", "save (file /never/b.npy)", [&] { u.save("/never/a.npy"); },
+      [&] { u.save("/never/b.npy"); });
+  parts(
+      "sum (box from {0, 0} to {2, 8})", "sum (box from {0, 0} to {4, 8})",
+      [&] { (void)sum.with({.box = {{0, 0}, {2, 8}}})(u); },
+      [&] { (void)sum.with({.box = {{0, 0}, {4, 8}}})(u); });
+  parts(
+      "sum (accumulate tree)", "sum (accumulate exact)",
+      [&] { (void)sum.with({.accumulate = sk::Accumulate::Tree})(u); },
+      [&] { (void)sum.with({.accumulate = sk::Accumulate::Exact})(u); });
+  parts(
+      "diffuse (precision double)", "diffuse (precision single)",
+      [&] { diffuse.with({.precision = sk::Precision::Double})(0.1F, u, v); },
+      [&] { diffuse.with({.precision = sk::Precision::Single})(0.1F, u, v); });
+  parts(
+      "summed (along 0)", "summed (exclusive)", [&] { summed.with({.along = 0})(u, v); },
+      [&] { summed.with({.scan = sk::Scan::Exclusive})(u, v); });
+  sk::DomainOptions options{.shape = {24, 8}, .periodic = {true, isLast()}};
+  const std::string domains = errorOf([&] { sk::Domain(MPI_COMM_WORLD, options); });
+  CHECK_THAT(domains, Contains("periodic {true, false}") && Contains("periodic {true, true}"));
+  CHECK_THAT(errorOf([&] { sk::Domain(domain, options); }), Contains("periodic {true, false}"));
+  checkThatItWorks(u, v);
+}
+
+TEST_CASE("with SK_CHECK=collectives, the ranks compare all that they call", "[.][collectives]") {
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
+  auto u = domain.stream<float>(), v = domain.stream<float>(), w = domain.stream<float>();
+  auto whole = domain.device().stream<float>({24, 8});
+  whole.fill(1.0F);
+  const auto parts = [&](const std::string& others, const std::string& lasts,
+                         const std::function<void()>& other, const std::function<void()>& one) {
+    w.fill(1.0F);
+    for (const bool areKnown : {false, true}) {
+      if (areKnown) {
+        other();
+        one();
+      }
+      CHECK_THAT(errorOf([&] { isLast() ? one() : other(); }),
+                 Contains("rank 0 has " + others) &&
+                     Contains("rank " + std::to_string(ranksOfWorld() - 1) + " has " + lasts));
+      checkThatItWorks(u, v);
+    }
+  };
+  parts(
+      "scaled (x = stream 1 of domain 1)", "scaled (x = stream 3 of domain 1)",
+      [&] { scaled(1.0F, u, v, v); }, [&] { scaled(1.0F, w, v, v); });
+  parts(
+      "diffuse (u = stream 1 of domain 1", "diffuse (u = stream 3 of domain 1", [&] { diffuse(0.1F, u, v); },
+      [&] { diffuse(0.1F, w, v); });
+  parts(
+      "scaled (a = 0.5)", "scaled (a = 0.25)", [&] { scaled(0.5F, u, v, v); },
+      [&] { scaled(0.25F, u, v, v); });
+  parts(
+      "sum (x = stream 1 of domain 1)", "sum (x = stream 3 of domain 1)", [&] { (void)sum(u); },
+      [&] { (void)sum(w); });
+  parts(
+      "sum (x = stream 1 of domain 1)", "sum (x = stream 3 of domain 1)",
+      [&] { (void)domain.later(sum, u).get(); }, [&] { (void)domain.later(sum, w).get(); });
+  parts("gather (stream 1)", "gather (stream 3)", [&] { (void)u.gather(); }, [&] { (void)w.gather(); });
+  parts("fill (stream 1)", "fill (stream 3)", [&] { u.fill(1.0F); }, [&] { w.fill(1.0F); });
+  parts("copyTo (target stream 1)", "copyTo (target stream 3)", [&] { v.copyTo(u); }, [&] { v.copyTo(w); });
+  parts("copyFrom (stream 1)", "copyFrom (stream 3)", [&] { u.copyFrom(whole); }, [&] { w.copyFrom(whole); });
+  parts("sum", "fill", [&] { (void)sum(u); }, [&] { u.fill(1.0F); });
 }

@@ -81,10 +81,12 @@ using DomainStreamOwner = Owner<DomainStreamState, DomainDeleter>;
 StreamRegion regionOf(DomainStreamState* stream);
 const Box& ownBox(const DomainStreamState* stream);
 /// Calls visit(context, region) for the elements of this rank on its device.
-/// writeOwn: which it writes, all of them.
 using OwnVisit = void (*)(void* context, const StreamRegion& region);
 void readOwn(DomainStreamState* stream, OwnVisit visit, void* context);
-void writeOwn(DomainStreamState* stream, OwnVisit visit, void* context);
+/// What visit() writes, all elements: one value, which needs no other rank, or what the application gives or computes, which it may
+/// do wrong on one rank alone, so that the ranks agree on it.
+enum class OwnWrite : std::uint8_t { Value, Function, Elements };
+void writeOwn(DomainStreamState* stream, OwnWrite kind, OwnVisit visit, void* context);
 /// On the root, room(context, count) allocates all elements and returns where
 /// they are.
 void gather(DomainStreamState* stream, int root, void* (*room)(void*, std::size_t), void* context);
@@ -118,9 +120,10 @@ class DomainStream {
   /// The box of this rank, in indices of the whole.
   Box own() const { return detail::ownBox(state_.get()); }
 
-  /// Sets every element to a value, or to start(index), where the index is that of the whole, rows first.
+  /// Sets every element to a value, or to start(index), where the index is that of the whole, rows first. Every rank must call it; the
+  /// second is collective, and throws on all ranks what start() throws on one of them.
   void fill(const T& value) {
-    write([&](const View<T>& own) { own.fill(value); });
+    write(detail::OwnWrite::Value, [&](const View<T>& own) { own.fill(value); });
   }
   template <std::invocable<const Index&> Start>
     requires std::convertible_to<std::invoke_result_t<Start, const Index&>, T>
@@ -137,9 +140,10 @@ class DomainStream {
         &elements);
     return elements;
   }
-  /// Writes the elements of this rank: exactly own()'s, row-major. Every rank must write its own.
+  /// Writes the elements of this rank: exactly own()'s, row-major. Collective: every rank must write its own. Throws sk::Error on all
+  /// ranks if one of them gives another number of elements.
   void write(std::span<const HostElement<T>> elements) {
-    write([&](const View<T>& own) { own.write(elements); });
+    write(detail::OwnWrite::Elements, [&](const View<T>& own) { own.write(elements); });
   }
 
   /// All elements, row-major, on rank `root`; nothing on the others.
@@ -193,9 +197,9 @@ class DomainStream {
   explicit DomainStream(detail::DomainStreamOwner state) : state_(std::move(state)) {}
 
   template <std::invocable<const View<T>&> Write>
-  void write(Write&& visit) {
+  void write(detail::OwnWrite kind, Write&& visit) {
     detail::writeOwn(
-        state_.get(),
+        state_.get(), kind,
         [](void* call, const StreamRegion& own) {
           (*static_cast<std::remove_reference_t<Write>*>(call))(View<T>(own));
         },
@@ -273,7 +277,7 @@ template <ElementType T>
 template <std::invocable<const Index&> Start>
   requires std::convertible_to<std::invoke_result_t<Start, const Index&>, T>
 void DomainStream<T>::fill(Start&& start) {
-  write([&](const View<T>& own) {
+  write(detail::OwnWrite::Function, [&](const View<T>& own) {
     const Box box = this->own();
     const int rank = box.begin.rank();
     const std::int64_t row = box.end[rank - 1] - box.begin[rank - 1];
