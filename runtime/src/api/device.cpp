@@ -211,6 +211,7 @@ constexpr std::string_view aDevice = "a new device";
 template <class Options>
 detail::DeviceOwner open(Options&& options) {
   return withHostMemory(aDevice, [&] {
+    requireKnownCheck();
     const DeviceOptions requested = withEnvironment(options());
     Configuration configuration = configurationOf(requested);
     std::unique_ptr<DeviceState> state = openState(requested, configuration);
@@ -219,8 +220,10 @@ detail::DeviceOwner open(Options&& options) {
 }
 
 detail::DeviceOwner openNative(RealType real) {
-  return withHostMemory(
-      aDevice, [&] { return configured(std::make_unique<NativeDevice>(real), {}, configurationOf({})); });
+  return withHostMemory(aDevice, [&] {
+    requireKnownCheck();
+    return configured(std::make_unique<NativeDevice>(real), {}, configurationOf({}));
+  });
 }
 
 }  // namespace
@@ -238,6 +241,7 @@ Device& Device::operator=(Device&& other) noexcept = default;
 
 Device Device::adopt(const DeviceOptions& given) {
   return withHostMemory(aDevice, [&] {
+    requireKnownCheck();
     const DeviceOptions options = withEnvironment(given);
     Configuration configuration = configurationOf(options);
     std::unique_ptr<DeviceState> state =

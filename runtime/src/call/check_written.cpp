@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "call/check_written.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -77,22 +80,32 @@ namespace {
 
 enum class Check : std::uint8_t { None, Folds, Halos, Written, Collectives };
 
+constexpr std::array<std::pair<std::string_view, Check>, 4> checks = {{{"folds", Check::Folds},
+                                                                       {"halos", Check::Halos},
+                                                                       {"written", Check::Written},
+                                                                       {"collectives", Check::Collectives}}};
+
+Check checkNamed(std::string_view name) {
+  if (name.empty()) return Check::None;
+  std::string known;
+  for (const auto& [word, check] : checks) {
+    if (word == name) return check;
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", word);
+  }
+  throw Error(fmt::format("there is no check '{}'; choose one of {}, or unset SK_CHECK", name, known));
+}
+
 Check chosenCheck() {
   static const Check chosen = [] {
     const char* const value = std::getenv("SK_CHECK");
-    if (value == nullptr || *value == '\0') return Check::None;
-    if (std::string_view(value) == "folds") return Check::Folds;
-    if (std::string_view(value) == "halos") return Check::Halos;
-    if (std::string_view(value) == "written") return Check::Written;
-    if (std::string_view(value) == "collectives") return Check::Collectives;
-    throw Error(fmt::format(
-        "there is no check '{}'; choose folds, halos, written or collectives, or unset SK_CHECK", value));
+    return checkNamed(value == nullptr ? "" : value);
   }();
   return chosen;
 }
 
 }  // namespace
 
+void requireKnownCheck() { static_cast<void>(chosenCheck()); }
 bool checksFolds() { return chosenCheck() == Check::Folds; }
 bool checksHalos() { return chosenCheck() == Check::Halos; }
 bool checksWritten() { return chosenCheck() == Check::Written; }

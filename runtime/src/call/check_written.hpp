@@ -14,7 +14,11 @@
 
 namespace sk {
 
-// All throw sk::Error for a value that names no check.
+// All throw sk::Error for a value that names no check. The first device or domain that is opened asks for the value, so that a check
+// that does not exist is not taken for one that finds nothing.
+
+/// Throws sk::Error if SK_CHECK names no check.
+void requireKnownCheck();
 
 /// Whether SK_CHECK is `folds`: reductions are tested on elements of each call (native/check_fold.hpp).
 bool checksFolds();
