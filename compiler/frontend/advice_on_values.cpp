@@ -24,19 +24,16 @@
 namespace skc::frontend {
 namespace {
 
-/// The classes of gather parameters and of variable outputs, in the prelude.
-constexpr llvm::StringRef gatherClass = "gather_", variableOutputClass = "variable_output";
+/// The class of variable outputs, in the prelude.
+constexpr llvm::StringRef variableOutputClass = "variable_output";
 
 // ---- streams --------------------------------------------------------------------------------------
 
 /// The rank of the gather among the diagnostic's types; 0 if there is none.
 int gatherRankIn(const clang::Diagnostic& diagnostic) {
   for (const clang::QualType type : typesIn(diagnostic)) {
-    if (!isOfClass(type, gatherClass)) continue;
-    const llvm::StringRef name = type->getAsCXXRecordDecl()->getName();
-    for (int rank = 1; rank <= 4; ++rank) {
-      if (name == llvm::StringRef(gatherTemplateName(rank))) return rank;
-    }
+    const clang::CXXRecordDecl* record = type.isNull() ? nullptr : type->getAsCXXRecordDecl();
+    if (const int rank = gatherRank(record); rank != 0) return rank;
   }
   return 0;
 }
@@ -147,7 +144,8 @@ Advice adviceOnMissingMember(const clang::Diagnostic& diagnostic) {
   const auto* context = reinterpret_cast<const clang::DeclContext*>(diagnostic.getRawArg(1));
   const auto* type = llvm::dyn_cast_or_null<clang::NamedDecl>(context);
   if (type == nullptr || type->getIdentifier() == nullptr) return {};
-  if (type->getName().starts_with(gatherClass)) return {format(Diag::StreamMember, {nameIn(diagnostic, 0)})};
+  if (type->getName() == llvm::StringRef(gatherClass))
+    return {format(Diag::StreamMember, {nameIn(diagnostic, 0)})};
   if (isMatrixName(type->getName())) return {format(Diag::MatrixMember, {nameIn(diagnostic, 0)})};
   return {type->getName() == variableOutputClass ? format(Diag::PushForm, {}) : std::string()};
 }

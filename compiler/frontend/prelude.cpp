@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <clang/AST/DeclTemplate.h>
 #include <fmt/format.h>
 
 #include "ir/intrinsics.hpp"
@@ -197,21 +198,34 @@ constexpr std::string_view gathersAndStreams = R"(
 template <class T> struct __sk_element { using type = T; };
 template <class T, unsigned long n> struct __sk_element<T[n]> { using type = const T (&)[n]; };
 template <class T> using __sk_read = typename __sk_element<T>::type;
-template <class T> struct gather_1d {
+template <class T, int rank> struct stream_gather;
+template <class T> using gather_1d = stream_gather<T, 1>;
+template <class T> using gather_2d = stream_gather<T, 2>;
+template <class T> using gather_3d = stream_gather<T, 3>;
+template <class T> using gather_4d = stream_gather<T, 4>;
+template <class T> struct stream_gather<T, 1> {
   __sk_read<T> operator[](int) const; __sk_read<T> operator[](uint) const; __sk_read<T> operator[](float) const;
 };
-template <class T> struct gather_2d {
+template <class T> struct stream_gather<T, 2> {
   gather_1d<T> operator[](int) const; gather_1d<T> operator[](uint) const;
   gather_1d<T> operator[](float) const; __sk_read<T> operator[](int2) const; __sk_read<T> operator[](float2) const;
 };
-template <class T> struct gather_3d {
+template <class T> struct stream_gather<T, 3> {
   gather_2d<T> operator[](int) const; gather_2d<T> operator[](uint) const;
   gather_2d<T> operator[](float) const; __sk_read<T> operator[](int3) const; __sk_read<T> operator[](float3) const;
 };
-template <class T> struct gather_4d {
+template <class T> struct stream_gather<T, 4> {
   gather_3d<T> operator[](int) const; gather_3d<T> operator[](uint) const;
   gather_3d<T> operator[](float) const; __sk_read<T> operator[](int4) const; __sk_read<T> operator[](float4) const;
 };
+template <class T, int rank> using gather = stream_gather<T, rank>;
+template <int rank> struct __sk_index;
+template <> struct __sk_index<1> { using type = int; };
+template <> struct __sk_index<2> { using type = int2; };
+template <> struct __sk_index<3> { using type = int3; };
+template <> struct __sk_index<4> { using type = int4; };
+template <int rank> using index = typename __sk_index<rank>::type;
+template <int rank> typename __sk_index<rank>::type axis(int d);
 template <class T> __sk_read<T> neighbor(gather_1d<T> a, int dx);
 template <class T> __sk_read<T> neighbor(gather_2d<T> a, int dx, int dy = 0);
 template <class T> __sk_read<T> neighbor(gather_2d<T> a, int2 offset);
@@ -230,6 +244,8 @@ template <class T> typename __sk_sampled<T>::type sample(gather_3d<T> a, float3 
 template <class T> typename __sk_sampled<T>::type sample(gather_4d<T> a, float4 position);
 template <class T> int4 indexof(const T& stream);
 template <class T> int4 extentof(const T& stream);
+template <int rank, class T> typename __sk_index<rank>::type indexof(const T& stream);
+template <int rank, class T> typename __sk_index<rank>::type extentof(const T& stream);
 template <class T> struct scatter_1d {
   T& operator[](int) const; T& operator[](uint) const; T& operator[](float) const;
 };
@@ -326,6 +342,15 @@ std::optional<ir::Type> classType(std::string_view name) {
 std::string vectorConstructorName(std::string_view name) { return fmt::format("__sk_make_{}", name); }
 
 std::string gatherTemplateName(int rank) { return fmt::format("gather_{}d", rank); }
+
+int gatherRank(const clang::CXXRecordDecl* record) {
+  const auto* instance = llvm::dyn_cast_or_null<clang::ClassTemplateSpecializationDecl>(record);
+  if (instance == nullptr || instance->getName() != llvm::StringRef(gatherClass)) return 0;
+  const clang::TemplateArgumentList& arguments = instance->getTemplateArgs();
+  return arguments.size() == 2 ? static_cast<int>(arguments[1].getAsIntegral().getExtValue()) : 0;
+}
+
+bool isYielding(std::string_view name) { return name == "gather" || name == "index" || name == "axis"; }
 
 std::string appendTemplateName(int rank) {
   return rank == 0 ? "variable_output" : fmt::format("scatter_{}d", rank);

@@ -11,6 +11,10 @@
 
 #include "ir/type.hpp"
 
+namespace clang {
+class CXXRecordDecl;
+}
+
 namespace skc::frontend {
 
 /// The prelude's text, wrapped in line markers that name it and mark it as a system header.
@@ -28,8 +32,17 @@ std::optional<ir::Type> classType(std::string_view name);
 /// The function that replaces `name(...)` in the edited token stream.
 std::string vectorConstructorName(std::string_view name);
 
-/// The class template of a gather with this rank, 1 to 4: "gather_2d".
+/// The template of a gather with this rank, 1 to 4: "gather_2d".
 std::string gatherTemplateName(int rank);
+
+/// The class of all gathers, as Clang prints it: "stream_gather<float, 2>". Programs write gather<float, 2>.
+inline constexpr std::string_view gatherClass = "stream_gather";
+
+/// The rank of a gather's class; 0 for any other class.
+int gatherRank(const clang::CXXRecordDecl* record);
+
+/// Names of the prelude that programs may declare themselves, and then have no other meaning: "gather", "index", "axis".
+bool isYielding(std::string_view name);
 
 /// The class template of a scatter output with this rank, 1 to 4, or of a variable output for 0.
 std::string appendTemplateName(int rank);

@@ -372,6 +372,7 @@ Kernel clone(const Kernel& kernel) {
               .signature = kernel.signature,
               .entry = kernel.entry,
               .params = {},
+              .bundles = kernel.bundles,
               .reduction = kernel.reduction,
               .isScan = kernel.isScan,
               .isSynthesized = kernel.isSynthesized,
@@ -404,7 +405,8 @@ Module clone(const Module& module) {
               .functions = {},
               .tables = module.tables,
               .kernels = {},
-              .streams = module.streams};
+              .streams = module.streams,
+              .bundleTypes = module.bundleTypes};
   for (const Constant& constant : module.constants) copy.constants.push_back(clone(constant));
   for (const Function& function : module.functions) copy.functions.push_back(ir::clone(function));
   for (const Kernel& kernel : module.kernels) copy.kernels.push_back(clone(kernel));

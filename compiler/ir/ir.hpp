@@ -275,6 +275,29 @@ struct KernelParam {
   std::vector<std::int32_t> promise = {};
 };
 
+/// A struct of parameters that belong together. C++ passes it as one argument; the IR's kernels have a parameter for each
+/// member that they read.
+struct BundleMember {
+  std::string name;
+  ParamRole role;  ///< Gather, Uniform or Spec; of a bundle within a bundle Uniform
+  Type type;  ///< void for a bundle
+  std::uint8_t rank = 0;  ///< of a Gather
+  std::optional<std::uint32_t> bundle = {};  ///< its index in Module::bundleTypes, if it is one
+};
+struct BundleType {
+  std::string name;  ///< without namespaces; of an instance of a template with its arguments
+  std::vector<std::string> scope;  ///< enclosing namespaces, outermost first
+  std::vector<BundleMember> members;
+  Loc loc;
+};
+
+/// A bundle among a kernel's parameters: those from `first` on, which may be none, are named "bundle.member".
+struct BundleParam {
+  std::string name;
+  std::uint32_t type;  ///< index in Module::bundleTypes
+  std::uint32_t first, count;
+};
+
 /// The type of the elements that the parameter's stream holds.
 inline Type heldType(const KernelParam& param) { return param.held.value_or(param.type); }
 
@@ -469,6 +492,7 @@ struct Kernel {
       ///< Output and Accumulator InOut, Gather Gather,
       ///< VariableOutput and Scatter AppendOutput
   std::vector<KernelParam> params;
+  std::vector<BundleParam> bundles = {};  ///< of kernels that C++ calls, in order
   std::optional<Reduction> reduction;  ///< set for `reduce` and `scan`, and a kernel with accumulators
   bool isScan = false;  ///< keeps the accumulators after each element
   bool isSynthesized = false;  ///< synthesized by a transform: C++ cannot call it
@@ -525,6 +549,7 @@ struct Module {
   std::vector<Table> tables;
   std::vector<Kernel> kernels;
   std::vector<DeclaredStream> streams;
+  std::vector<BundleType> bundleTypes;  ///< an inner one before those that have it as a member
 };
 
 }  // namespace skc::ir

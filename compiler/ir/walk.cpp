@@ -187,8 +187,8 @@ struct Visitor {
   }
 
   void visit(Kernel& kernel) {
-    auto& [name, scope, signature, entry, params, reduction, isScan, isSynthesized, isNativeOnly, parts,
-           isPart, plans, pass, variants, choices, loops, unrolled, loc] = kernel;
+    auto& [name, scope, signature, entry, params, bundles, reduction, isScan, isSynthesized, isNativeOnly,
+           parts, isPart, plans, pass, variants, choices, loops, unrolled, loc] = kernel;
     for (KernelParam& param : params) visit(param);
     for (Plan& plan : plans) visit(plan);
   }
@@ -198,12 +198,22 @@ struct Visitor {
     onType(type);
   }
 
+  void visit(BundleType& bundle) {
+    auto& [name, scope, members, loc] = bundle;
+    for (BundleMember& member : members) {
+      auto& [memberName, role, type, rank, inner] = member;
+      onType(type);
+    }
+  }
+
   void visit(Module& module) {
-    auto& [file, sources, structs, arrays, constants, functions, tables, kernels, streams] = module;
+    auto& [file, sources, structs, arrays, constants, functions, tables, kernels, streams, bundleTypes] =
+        module;
     for (Constant& constant : constants) visit(constant);
     for (Function& function : functions) visit(function);
     for (Kernel& kernel : kernels) visit(kernel);
     for (DeclaredStream& stream : streams) visit(stream);
+    for (BundleType& bundle : bundleTypes) visit(bundle);
   }
 };
 

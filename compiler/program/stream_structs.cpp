@@ -150,6 +150,9 @@ std::vector<std::uint32_t> usedStructs(const Module& module) {
     for (const KernelParam& param : kernel.params) finder.add(param.type);
   }
   for (const DeclaredStream& stream : module.streams) finder.add(stream.type);
+  for (const BundleType& bundle : module.bundleTypes) {
+    for (const BundleMember& member : bundle.members) finder.add(member.type);
+  }
   return std::move(finder.list);
 }
 

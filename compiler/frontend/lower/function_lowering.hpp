@@ -86,6 +86,8 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
 
   // ---- statements (lower_stmt.cpp) --------------------------------------------------------------
   void parameters(const clang::FunctionDecl* declaration);
+  ir::Variable parameter(const clang::ValueDecl* declared, std::string name);
+  void self(const clang::CXXMethodDecl* method);
   void aliasParameters(const Aliases& aliases);
   void body(const clang::Stmt* statement, ir::Block& into);
   void statement(const clang::Stmt* statement);
@@ -139,6 +141,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
 
   // ---- values (lower_value.cpp, lower_literal.cpp) ----------------------------------------------
   ir::ExprPtr make(ir::Type type, clang::SourceLocation where, ir::Expr::Node node);
+  ir::ExprPtr read(ir::VarId variable, clang::QualType type, clang::SourceLocation where);
   ir::ExprPtr literal(ir::Type type, std::uint32_t bits, clang::SourceLocation where);
   /// True for an expression of literals only (lower_literal.cpp), whose precision depends on its context.
   bool isLiterals(const clang::Expr* e) const;
@@ -182,6 +185,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr sample(const clang::CallExpr* e);
   std::string elementBeside(const clang::ValueDecl* parameter);
   ir::ExprPtr indexOrExtent(const clang::CallExpr* e, bool isIndex);
+  ir::ExprPtr axis(const clang::CallExpr* e);
   ir::ExprPtr gatherRead(const clang::CXXOperatorCallExpr* e);
   ir::ExprPtr classOperator(const clang::CXXOperatorCallExpr* e);
   ir::ExprPtr classAssignment(ir::BinaryOp op, const clang::CXXOperatorCallExpr* e);
@@ -200,8 +204,10 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
     const clang::Expr* source;
     bool isReference;  ///< bound to an object, not to a copy of its value
     ir::ExprPtr value = nullptr;
+    std::optional<ir::VarId> member = {};  ///< the variable, if the parameter is a member of a bundle
   };
   std::vector<Argument> argumentsOf(const clang::CallExpr* e, const clang::FunctionDecl* callee) const;
+  ir::ExprPtr memberArgument(ir::VarId member, const clang::Expr* bundle) const;
   void lowerArguments(std::vector<Argument>& arguments, const std::vector<ir::Variable>& parameters,
                       bool rightToLeft);
   void keepWritten(std::vector<Argument>& arguments, const std::vector<ir::Variable>& parameters);
@@ -220,6 +226,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::Type indexType(std::size_t count, clang::SourceLocation where);
   ir::ExprPtr packed(Exprs indices, clang::SourceLocation where);
   void abandonIfUnknown(const clang::Stmt* s) const;
+  std::optional<ir::VarId> variableNamed(const clang::Expr* e) const;
   std::optional<ir::VarId> streamVariable(const clang::Expr* e) const;
   ir::VarId gatherVariable(const clang::Expr* e);
 
@@ -241,6 +248,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ModuleLowering& module_;
   ir::Function function_;
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
+  std::map<Bundles::Place, ir::VarId> members_;  ///< of bundles
   std::unordered_set<const clang::Decl*> initialising_;  ///< variables whose initial values are being lowered
   std::unordered_map<ir::VarId, ir::ExprPtr> aliases_;  ///< what parameters name that are parts of others
   std::optional<ir::VarId> this_;

@@ -92,6 +92,7 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
     return vectorConstructor(e, module_.type(e->getType(), e->getBeginLoc()));
   if (name == "indexof") return indexOrExtent(e, true);
   if (name == "extentof") return indexOrExtent(e, false);
+  if (name == "axis") return axis(e);
   if (name == "neighbor") return neighbor(e);
   if (name == "sample") return sample(e);
   if (name == "push") return push(e);
@@ -279,35 +280,26 @@ ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::
 
 // ---- streams --------------------------------------------------------------------------------------
 
-namespace {
-
-/// Skips the copies that C++ makes of a gather passed by value.
-const clang::Expr* withoutCopies(const clang::Expr* e) {
-  while (true) {
-    e = e->IgnoreParenImpCasts();
-    if (const auto* construct = llvm::dyn_cast<clang::CXXConstructExpr>(e);
-        construct && construct->getNumArgs() == 1) {
-      e = construct->getArg(0);
-    } else if (const auto* temporary = llvm::dyn_cast<clang::MaterializeTemporaryExpr>(e)) {
-      e = temporary->getSubExpr();
-    } else {
-      return e;
-    }
+/// The variable that `e` names, which may be a member of a bundle; nullopt for any other expression.
+std::optional<ir::VarId> FunctionLowering::variableNamed(const clang::Expr* e) const {
+  e = withoutCopies(e);
+  if (const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(e)) {
+    const auto found = variables_.find(reference->getDecl());
+    return found == variables_.end() ? std::nullopt : std::optional(found->second);
   }
+  const std::optional<Bundles::Place> place = module_.bundles().placeOf(e);
+  const auto found = place ? members_.find(*place) : members_.end();
+  return found == members_.end() ? std::nullopt : std::optional(found->second);
 }
-
-}  // namespace
 
 /// The Gather, Element or output variable that `e` names; nullopt for any other expression.
 std::optional<ir::VarId> FunctionLowering::streamVariable(const clang::Expr* e) const {
-  const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(withoutCopies(e));
-  if (!reference) return std::nullopt;
-  const auto found = variables_.find(reference->getDecl());
-  if (found == variables_.end()) return std::nullopt;
-  const ir::VarRole role = function_.variables[found->second].role;
+  const std::optional<ir::VarId> named = variableNamed(e);
+  if (!named) return std::nullopt;
+  const ir::VarRole role = function_.variables[*named].role;
   const bool isStream =
       role == ir::VarRole::Gather || role == ir::VarRole::Element || role == ir::VarRole::AppendOutput;
-  return isStream ? std::optional(found->second) : std::nullopt;
+  return isStream ? named : std::nullopt;
 }
 
 ir::VarId FunctionLowering::gatherVariable(const clang::Expr* e) {
@@ -339,30 +331,50 @@ ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) 
   const SourceLocation where = argument->getBeginLoc();
   const std::string_view name = isIndex ? "indexof" : "extentof";
   const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(argument);
-  const ParamSyntax* syntax =
-      reference ? module_.syntax().param(reference->getDecl()->getLocation()) : nullptr;
-  const bool isValue =
-      !syntax || syntax->role == ir::ParamRole::Uniform || syntax->role == ir::ParamRole::Spec;
-  if (isValue) module_.fail(Diag::NotAStream, where, {name});
-  const auto found = variables_.find(reference->getDecl());
-  if (found == variables_.end()) throw Abandoned{};
-  const std::string& parameter = function_.variables[found->second].name;
-  if (isIndex && syntax->role == ir::ParamRole::Gather)
-    module_.fail(Diag::IndexOfGather, where, {parameter, elementBeside(reference->getDecl())});
-  const bool isAppendOutput = function_.variables[found->second].role == ir::VarRole::AppendOutput;
-  if (isIndex && isAppendOutput)
-    module_.fail(Diag::IndexOfAppendOutput, where, {parameter, elementBeside(reference->getDecl())});
-  if (syntax->role == ir::ParamRole::VariableOutput)
-    module_.fail(Diag::ExtentOfAppendOutput, where, {parameter});
-  ir::StreamRef stream{ir::StreamRef::Space::Variable, found->second};
-  if (syntax->role == ir::ParamRole::Output || syntax->role == ir::ParamRole::Iterator) {
-    stream = {ir::StreamRef::Space::Domain, 0};
-  } else if (syntax->role == ir::ParamRole::Accumulator) {
+  const std::optional<Bundles::Place> place = module_.bundles().placeOf(argument);
+  const clang::ValueDecl* declared = nullptr;
+  if (reference != nullptr) declared = reference->getDecl();
+  if (place && !place->path.empty()) declared = place->path.back();
+  const ir::ParamRole role = declared ? module_.roleOf(declared) : ir::ParamRole::Uniform;
+  if (role == ir::ParamRole::Uniform || role == ir::ParamRole::Spec || role == ir::ParamRole::Accumulator)
     module_.fail(Diag::NotAStream, where, {name});
-  }
+  const std::optional<ir::VarId> found = variableNamed(argument);
+  if (!found) throw Abandoned{};
+  const std::string& parameter = function_.variables[*found].name;
+  if (isIndex && role == ir::ParamRole::Gather)
+    module_.fail(Diag::IndexOfGather, where, {parameter, elementBeside(declared)});
+  const bool isAppendOutput = function_.variables[*found].role == ir::VarRole::AppendOutput;
+  if (isIndex && isAppendOutput)
+    module_.fail(Diag::IndexOfAppendOutput, where, {parameter, elementBeside(declared)});
+  if (role == ir::ParamRole::VariableOutput) module_.fail(Diag::ExtentOfAppendOutput, where, {parameter});
+  ir::StreamRef stream{ir::StreamRef::Space::Variable, *found};
+  if (role == ir::ParamRole::Output || role == ir::ParamRole::Iterator)
+    stream = {ir::StreamRef::Space::Domain, 0};
   const ir::Type type = ir::Type::of(Scalar::Int, 4);
-  if (isIndex) return make(type, where, ir::IndexOf{stream});
-  return make(type, where, ir::ExtentOf{stream});
+  ExprPtr all = isIndex ? make(type, where, ir::IndexOf{stream}) : make(type, where, ir::ExtentOf{stream});
+  const int rank = module_.type(e->getType(), where).width;  // of indexof<2>(r), 2
+  if (rank == type.width) return all;
+  return ir::swizzle(std::move(all), std::string_view("xyzw").substr(0, static_cast<std::size_t>(rank)),
+                     module_.loc(where));
+}
+
+/// axis<3>(d): the offset of the next element in a dimension, x first.
+ExprPtr FunctionLowering::axis(const clang::CallExpr* e) {
+  const SourceLocation where = e->getBeginLoc();
+  const Loc loc = module_.loc(where);
+  const int rank = module_.type(e->getType(), where).width;
+  ExprPtr dimension = value(e->getArg(0));
+  const bool isSimple = std::holds_alternative<ir::Literal>(dimension->node) ||
+                        std::holds_alternative<ir::VarRef>(dimension->node);
+  if (rank > 1 && !isSimple) spill(dimension);
+  Exprs components;
+  for (int d = 0; d < rank; ++d) {
+    ExprPtr chosen =
+        ir::binary(ir::BinaryOp::Equal, ir::clone(*dimension), ir::literal(std::int32_t{d}, loc), loc);
+    components.push_back(ir::convert(Scalar::Int, std::move(chosen), loc));
+  }
+  if (rank == 1) return std::move(components[0]);
+  return ir::construct(ir::Type::of(Scalar::Int, rank), std::move(components), loc);
 }
 
 /// neighbor(a, dx), neighbor(a, dx, dy) ..., neighbor(a, int2) ...

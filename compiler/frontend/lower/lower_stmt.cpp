@@ -82,63 +82,84 @@ ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration, 
 }
 
 void FunctionLowering::parameters(const clang::FunctionDecl* declaration) {
-  const auto* method = llvm::dyn_cast<clang::CXXMethodDecl>(declaration);
-  if (method && method->isInstance()) {
-    ir::Variable self;
-    self.name = "self";
-    self.type = module_.type(module_.context().getRecordType(method->getParent()), method->getLocation());
-    self.role = method->isConst() ? ir::VarRole::In : ir::VarRole::InOut;
-    self.isConst = method->isConst();
-    self.loc = function_.loc;
-    this_ = 0;
-    function_.variables.push_back(std::move(self));
-  }
-  for (const clang::ParmVarDecl* parameter : declaration->parameters()) {
-    const SourceLocation where = parameter->getLocation();
-    ir::Variable variable;
-    variable.name = parameter->getNameAsString();
-    variable.loc = module_.loc(where);
-    const clang::QualType type = parameter->getType();
-    if (const int rank = module_.gatherRank(type, where, variable.type)) {
-      variable.role = ir::VarRole::Gather;
-      variable.rank = static_cast<std::uint8_t>(rank);
-      variable.isConst = true;
-    } else if (const auto appendRank = module_.appendRank(type, where, variable.type)) {
-      variable.role = ir::VarRole::AppendOutput;
-      variable.rank = static_cast<std::uint8_t>(*appendRank);
-      variable.isConst = true;
-    } else {
-      const clang::QualType value = type.getNonReferenceType();
-      const clang::QualType written = parameter->getOriginalType();
-      if (const auto* array = module_.context().getAsConstantArrayType(written)) {   // by an alias
-        const ParamSyntax* declared = module_.syntax().param(where);
-        if (declared && declared->role == ir::ParamRole::Input)
-          module_.fail(Diag::ArrayAsElement, where, {variable.name});
-        module_.fail(Diag::ArrayDecays, where,
-                     {variable.name, std::to_string(array->getSize().getZExtValue()),
-                      array->getElementType().getUnqualifiedType().getAsString()});
-      }
-      variable.type = module_.type(value, where);
-      const ParamSyntax* syntax = module_.syntax().param(where);
-      const bool mutableReference = type->isLValueReferenceType() && !value.isConstQualified();
-      if (type->isRValueReferenceType()) module_.fail(Diag::RvalueReference, where, {type.getAsString()});
-      variable.isConst = !mutableReference && value.isConstQualified();
-      variable.role = mutableReference ? ir::VarRole::InOut : ir::VarRole::In;
-      if (syntax && syntax->role == ir::ParamRole::Input) variable.role = ir::VarRole::Element;
-      if (syntax && syntax->role == ir::ParamRole::Spec && value->isEnumeralType() &&
-          variable.type.isNarrow()) {
-        variable.type = variable.type.arithmeticType();
-        narrowSpecs_.insert(static_cast<ir::VarId>(function_.variables.size()));
-      }
-      const bool byValue =
-          syntax && syntax->role != ir::ParamRole::Output && syntax->role != ir::ParamRole::Accumulator;
-      if (byValue && type->isReferenceType() && !value->isConstantArrayType()) {
-        module_.fail(Diag::ReferenceType, where, {type.getAsString()});
-      }
+  for (const Bundles::Source& source : module_.bundles().parametersOf(declaration)) {
+    if (source.parameter == nullptr && source.member.empty()) {
+      self(llvm::cast<clang::CXXMethodDecl>(declaration));
+      continue;
     }
-    variables_[parameter] = static_cast<ir::VarId>(function_.variables.size());
+    const auto id = static_cast<ir::VarId>(function_.variables.size());
+    std::string name = source.parameter ? source.parameter->getNameAsString() : "self";
+    if (source.member.empty()) {
+      function_.variables.push_back(parameter(source.parameter, std::move(name)));
+      variables_[source.parameter] = id;
+      continue;
+    }
+    for (const clang::FieldDecl* field : source.member) name += "_" + field->getNameAsString();
+    ir::Variable variable = parameter(source.member.back(), std::move(name));
+    variable.isConst = true;
     function_.variables.push_back(std::move(variable));
+    members_[{source.parameter, source.member}] = id;
   }
+}
+
+/// Adds the parameter for the object of a member function.
+void FunctionLowering::self(const clang::CXXMethodDecl* method) {
+  ir::Variable self;
+  self.name = "self";
+  self.type = module_.type(module_.context().getRecordType(method->getParent()), method->getLocation());
+  self.role = method->isConst() ? ir::VarRole::In : ir::VarRole::InOut;
+  self.isConst = method->isConst();
+  self.loc = function_.loc;
+  this_ = static_cast<ir::VarId>(function_.variables.size());
+  function_.variables.push_back(std::move(self));
+}
+
+/// The variable for a parameter, or for a member of one that is a bundle.
+ir::Variable FunctionLowering::parameter(const clang::ValueDecl* declared, std::string name) {
+  const SourceLocation where = declared->getLocation();
+  ir::Variable variable;
+  variable.name = std::move(name);
+  variable.loc = module_.loc(where);
+  const clang::QualType type = declared->getType();
+  if (const int rank = module_.gatherRank(type, where, variable.type)) {
+    variable.role = ir::VarRole::Gather;
+    variable.rank = static_cast<std::uint8_t>(rank);
+    variable.isConst = true;
+    return variable;
+  }
+  if (const auto appendRank = module_.appendRank(type, where, variable.type)) {
+    variable.role = ir::VarRole::AppendOutput;
+    variable.rank = static_cast<std::uint8_t>(*appendRank);
+    variable.isConst = true;
+    return variable;
+  }
+  const clang::QualType value = type.getNonReferenceType();
+  const ParamSyntax* syntax = module_.syntax().param(where);
+  const auto* ofFunction = llvm::dyn_cast<clang::ParmVarDecl>(declared);
+  const clang::QualType written = ofFunction ? ofFunction->getOriginalType() : type;
+  const auto* array = module_.context().getAsConstantArrayType(written);
+  if (array != nullptr && ofFunction != nullptr) {  // by an alias
+    if (syntax && syntax->role == ir::ParamRole::Input)
+      module_.fail(Diag::ArrayAsElement, where, {variable.name});
+    module_.fail(Diag::ArrayDecays, where,
+                 {variable.name, std::to_string(array->getSize().getZExtValue()),
+                  array->getElementType().getUnqualifiedType().getAsString()});
+  }
+  variable.type = module_.type(value, where);
+  const bool mutableReference = type->isLValueReferenceType() && !value.isConstQualified();
+  if (type->isRValueReferenceType()) module_.fail(Diag::RvalueReference, where, {type.getAsString()});
+  variable.isConst = !mutableReference && value.isConstQualified();
+  variable.role = mutableReference ? ir::VarRole::InOut : ir::VarRole::In;
+  if (syntax && syntax->role == ir::ParamRole::Input) variable.role = ir::VarRole::Element;
+  if (syntax && syntax->role == ir::ParamRole::Spec && value->isEnumeralType() && variable.type.isNarrow()) {
+    variable.type = variable.type.arithmeticType();
+    narrowSpecs_.insert(static_cast<ir::VarId>(function_.variables.size()));
+  }
+  const bool byValue =
+      syntax && syntax->role != ir::ParamRole::Output && syntax->role != ir::ParamRole::Accumulator;
+  if (byValue && type->isReferenceType() && !value->isConstantArrayType())
+    module_.fail(Diag::ReferenceType, where, {type.getAsString()});
+  return variable;
 }
 
 namespace {

@@ -106,13 +106,9 @@ ir::Type ModuleLowering::elementType(clang::QualType qualified, SourceLocation u
 
 int ModuleLowering::gatherRank(clang::QualType qualified, SourceLocation use, ir::Type& element) {
   const auto* instance = instanceOf(qualified);
-  if (!instance || !isPrelude(instance)) return 0;
-  for (int rank = 1; rank <= 4; ++rank) {
-    if (instance->getName() != gatherTemplateName(rank)) continue;
-    element = elementType(instance->getTemplateArgs()[0].getAsType(), use);
-    return rank;
-  }
-  return 0;
+  const int rank = instance && isPrelude(instance) ? frontend::gatherRank(instance) : 0;
+  if (rank != 0) element = elementType(instance->getTemplateArgs()[0].getAsType(), use);
+  return rank;
 }
 
 std::optional<int> ModuleLowering::appendRank(clang::QualType qualified, SourceLocation use,
@@ -186,6 +182,7 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
   if (found != structs_.end()) return ir::Type::structType(found->second);
   if (record->isLambda()) fail(Diag::Lambda, use);
   if (isPrelude(record)) fail(Diag::GatherAsValue, use);
+  if (bundles_.reasonFor(record) != nullptr) refuseBundle(context().getRecordType(record), use);
   const std::string name = structName(record);
   if (record->isUnion()) fail(Diag::Union, use, {name});
   if (record->isPolymorphic()) fail(Diag::VirtualFunction, use, {name});
@@ -212,6 +209,51 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
   refusedStructs_.erase(record);
   checkSize(ir::Type::structType(index), record->getLocation());
   return ir::Type::structType(index);
+}
+
+void ModuleLowering::refuseBundle(clang::QualType type, SourceLocation use) {
+  const clang::CXXRecordDecl* record = bundles_.bundle(type);
+  fail(Diag::BundleAsValue, use, {structName(record), bundles_.reasonFor(record)->getNameAsString()});
+}
+
+ir::ParamRole ModuleLowering::roleOf(const clang::ValueDecl* declared) const {
+  const clang::CXXRecordDecl* record = declared->getType().getNonReferenceType()->getAsCXXRecordDecl();
+  if (frontend::gatherRank(record) != 0) return ir::ParamRole::Gather;
+  const ParamSyntax* syntax = syntax_.param(declared->getLocation());
+  return syntax ? syntax->role : ir::ParamRole::Uniform;
+}
+
+/// The type of a bundle, for C++, with the types of its members.
+std::uint32_t ModuleLowering::bundleType(const clang::CXXRecordDecl* record) {
+  if (const auto known = bundleTypes_.find(record); known != bundleTypes_.end()) return known->second;
+  checkPlain(record);
+  ir::BundleType bundle;
+  bundle.name = structName(record);
+  if (const auto* instance = llvm::dyn_cast<clang::ClassTemplateSpecializationDecl>(record)) {
+    for (const clang::TemplateArgument& argument : instance->getTemplateArgs().asArray())
+      bundle.name += '_' + spelling(argument, record->getLocation());
+    std::ranges::replace(bundle.name, '-', 'm');
+  }
+  bundle.scope = scopeOf(record);
+  bundle.loc = loc(record->getLocation());
+  for (const clang::FieldDecl* field : record->fields()) {
+    const SourceLocation where = field->getLocation();
+    if (field->hasInClassInitializer())
+      fail(Diag::BundleDefault, where, {field->getNameAsString(), bundle.name});
+    ir::BundleMember member{field->getNameAsString(), roleOf(field), {}, {}, {}};
+    if (const clang::CXXRecordDecl* inner = bundles_.bundle(field->getType())) {
+      member.bundle = bundleType(inner);
+    } else if (const int rank = gatherRank(field->getType(), where, member.type)) {
+      member.rank = static_cast<std::uint8_t>(rank);
+    } else {
+      member.type = type(field->getType(), where);
+    }
+    bundle.members.push_back(std::move(member));
+  }
+  const auto index = static_cast<std::uint32_t>(module_.bundleTypes.size());
+  module_.bundleTypes.push_back(std::move(bundle));
+  bundleTypes_[record] = index;
+  return index;
 }
 
 ir::Type ModuleLowering::arrayType(ir::Type element, std::uint64_t length, SourceLocation use) {

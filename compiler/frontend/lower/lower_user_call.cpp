@@ -38,20 +38,26 @@ bool mayOverlap(const ir::Module& module, const ir::Expr& e, const ir::Expr& lva
 std::vector<FunctionLowering::Argument> FunctionLowering::argumentsOf(
     const clang::CallExpr* e, const clang::FunctionDecl* callee) const {
   std::vector<Argument> arguments;
-  if (const auto* method = llvm::dyn_cast<clang::CXXMemberCallExpr>(e)) {
-    const clang::Expr* object = method->getImplicitObjectArgument();
-    arguments.push_back({object, namesObject(object)});
-  }
-  const auto* method = llvm::dyn_cast<clang::CXXMethodDecl>(callee);
-  const bool startsWithObject =
-      llvm::isa<clang::CXXOperatorCallExpr>(e) && method != nullptr && method->isInstance();
-  for (unsigned i = 0; i < e->getNumArgs(); ++i) {
-    const bool isObject = startsWithObject && i == 0;
-    const unsigned parameter = i - (startsWithObject ? 1 : 0);
-    const bool isReference = isObject || callee->getParamDecl(parameter)->getType()->isReferenceType();
-    arguments.push_back({e->getArg(i), isReference && namesObject(e->getArg(i))});
+  Bundles& bundles = module_.bundles();
+  for (const Bundles::Source& source : bundles.parametersOf(callee->getDefinition())) {
+    const clang::Expr* given = argumentFor(e, callee, source.parameter);
+    if (source.member.empty()) {
+      const bool isReference = source.parameter == nullptr || source.parameter->getType()->isReferenceType();
+      arguments.push_back({given, isReference && namesObject(given)});
+      continue;
+    }
+    std::optional<Bundles::Place> place = bundles.placeOf(given);
+    if (!place) module_.fail(Diag::BundleMade, given->getBeginLoc(), {given->getType().getAsString()});
+    place->path.insert(place->path.end(), source.member.begin(), source.member.end());
+    arguments.push_back({given, false, nullptr, members_.at(*place)});
   }
   return arguments;
+}
+
+/// What is passed for a member of a bundle.
+ExprPtr FunctionLowering::memberArgument(ir::VarId member, const clang::Expr* bundle) const {
+  return ir::makeExpr(function_.variables[member].type, ir::VarRef{member},
+                      module_.loc(bundle->getBeginLoc()));
 }
 
 /// Evaluates the arguments one after the other, and keeps those evaluated earlier from the effects of later ones.
@@ -61,14 +67,16 @@ void FunctionLowering::lowerArguments(std::vector<Argument>& arguments,
     const std::size_t i = rightToLeft ? arguments.size() - 1 - n : n;
     ir::Block effects;
     ir::Block* outer = std::exchange(out_, &effects);
-    arguments[i].value = argument(arguments[i].source, parameters[i]);
+    arguments[i].value = arguments[i].member ? memberArgument(*arguments[i].member, arguments[i].source)
+                                             : argument(arguments[i].source, parameters[i]);
     out_ = outer;
     if (effects.empty()) continue;
     const Variables changed = ir::assignedIn(effects);
     for (std::size_t k = 0; k < arguments.size(); ++k) {
       if (k == i || !arguments[k].value) continue;
       const ir::VarRole role = parameters[k].role;
-      const bool isStream = role == ir::VarRole::Gather || role == ir::VarRole::AppendOutput ||
+      const bool isStream = arguments[k].member || role == ir::VarRole::Gather ||
+                            role == ir::VarRole::AppendOutput ||
                             (role == ir::VarRole::Element && streamVariable(arguments[k].source));
       if (isStream) continue;
       if (role == ir::VarRole::InOut || arguments[k].isReference)
@@ -264,8 +272,8 @@ void FunctionLowering::emitCall(const UserCall& call, std::vector<Argument> argu
       std::vector<Argument> chosen;
       for (std::size_t k = 0; k < arguments.size(); ++k) {
         const Argument& other = arguments[k];
-        chosen.push_back(
-            {other.source, other.isReference, k == i ? std::move(object) : ir::clone(*other.value)});
+        chosen.push_back({other.source, other.isReference,
+                          k == i ? std::move(object) : ir::clone(*other.value), other.member});
       }
       emitCall(call, std::move(chosen));
     });

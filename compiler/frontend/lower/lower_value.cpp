@@ -72,16 +72,9 @@ ExprPtr FunctionLowering::VisitCXXBoolLiteralExpr(const clang::CXXBoolLiteralExp
 ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
   const clang::ValueDecl* declared = e->getDecl();
   const SourceLocation where = e->getLocation();
-  if (const auto found = variables_.find(declared); found != variables_.end()) {
-    const ir::Variable& variable = function_.variables[found->second];
-    if (variable.role == ir::VarRole::Gather) module_.fail(Diag::GatherAsValue, where);
-    if (variable.role == ir::VarRole::AppendOutput) module_.fail(Diag::AppendRead, where, {variable.name});
-    if (const auto part = aliases_.find(found->second); part != aliases_.end())
-      return ir::clone(part->second);
-    ExprPtr read = make(variable.type, where, ir::VarRef{found->second});
-    if (!narrowSpecs_.contains(found->second)) return read;
-    return ir::convert(module_.type(e->getType(), where).scalar, std::move(read), module_.loc(where));
-  }
+  if (const auto found = variables_.find(declared); found != variables_.end())
+    return read(found->second, e->getType(), where);
+  if (module_.bundles().placeOf(e)) module_.refuseBundle(declared->getType(), where);
   if (const auto* enumerator = llvm::dyn_cast<clang::EnumConstantDecl>(declared)) {
     const ir::Type type = module_.type(e->getType(), where);
     return literal(type, static_cast<std::uint32_t>(enumerator->getInitVal().getExtValue()), where);
@@ -99,7 +92,19 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
   return VisitExpr(e);
 }
 
+/// The value of a variable, whose type in C++ is `type`.
+ExprPtr FunctionLowering::read(ir::VarId id, clang::QualType type, SourceLocation where) {
+  const ir::Variable& variable = function_.variables[id];
+  if (variable.role == ir::VarRole::Gather) module_.fail(Diag::GatherAsValue, where);
+  if (variable.role == ir::VarRole::AppendOutput) module_.fail(Diag::AppendRead, where, {variable.name});
+  if (const auto part = aliases_.find(id); part != aliases_.end()) return ir::clone(part->second);
+  ExprPtr read = make(variable.type, where, ir::VarRef{id});
+  if (!narrowSpecs_.contains(id)) return read;
+  return ir::convert(module_.type(type, where).scalar, std::move(read), module_.loc(where));
+}
+
 ExprPtr FunctionLowering::VisitCXXThisExpr(const clang::CXXThisExpr* e) {
+  if (module_.bundles().placeOf(e)) module_.refuseBundle(e->getType()->getPointeeType(), e->getLocation());
   if (const auto part = aliases_.find(*this_); part != aliases_.end()) return ir::clone(part->second);
   return make(function_.variables[*this_].type, e->getLocation(), ir::VarRef{*this_});
 }
@@ -334,6 +339,9 @@ ExprPtr FunctionLowering::VisitMemberExpr(const clang::MemberExpr* e) {
     }
     return VisitExpr(e);
   }
+  if (const std::optional<ir::VarId> member = variableNamed(e))
+    return read(*member, e->getType(), e->getMemberLoc());
+  if (module_.bundles().placeOf(e)) module_.refuseBundle(e->getType(), e->getMemberLoc());
   if (e->isArrow() && !llvm::isa<clang::CXXThisExpr>(e->getBase()->IgnoreParenImpCasts())) {
     module_.fail(Diag::Pointer, e->getOperatorLoc(), {e->getBase()->getType().getAsString()});
   }

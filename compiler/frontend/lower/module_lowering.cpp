@@ -129,9 +129,7 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   if (declaration->getPrimaryTemplate()) nameInstance(declaration, kernel);
   kernel.loc = loc(where);
   kernel.entry = function(declaration, where);
-  for (unsigned i = 0; i < declaration->getNumParams(); ++i) {
-    kernel.params.push_back(kernelParam(declaration->getParamDecl(i), functionAt(kernel.entry).variables[i]));
-  }
+  parameters(declaration->getDefinition(), kernel);
   const auto isAccumulator = [](const ir::KernelParam& param) {
     return param.role == ir::ParamRole::Accumulator;
   };
@@ -199,12 +197,34 @@ std::string ModuleLowering::spelling(const clang::TemplateArgument& argument, So
   return llvm::toString(argument.getAsIntegral(), 10);
 }
 
-ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaration,
+/// Adds the parameters of a kernel whose entry has been lowered.
+void ModuleLowering::parameters(const clang::FunctionDecl* definition, ir::Kernel& kernel) {
+  const std::vector<Bundles::Source> sources = bundles_.parametersOf(definition);
+  for (const clang::ParmVarDecl* parameter : definition->parameters()) {
+    const clang::CXXRecordDecl* record = bundles_.bundle(parameter->getType());
+    const auto first = static_cast<std::uint32_t>(kernel.params.size());
+    for (const Bundles::Source& source : sources) {
+      if (source.parameter != parameter) continue;
+      std::string name = parameter->getNameAsString();
+      for (const clang::FieldDecl* field : source.member) name += "." + field->getNameAsString();
+      const clang::ValueDecl* declared = parameter;
+      if (record != nullptr) declared = source.member.back();
+      const ir::Variable& variable = functionAt(kernel.entry).variables[kernel.params.size()];
+      kernel.params.push_back(kernelParam(declared, std::move(name), variable));
+    }
+    if (record == nullptr) continue;
+    const auto count = static_cast<std::uint32_t>(kernel.params.size()) - first;
+    kernel.bundles.push_back({parameter->getNameAsString(), bundleType(record), first, count});
+  }
+}
+
+ir::KernelParam ModuleLowering::kernelParam(const clang::ValueDecl* declaration, std::string name,
                                             const ir::Variable& variable) {
   const ParamSyntax* syntax = syntax_.param(declaration->getLocation());
   ir::KernelParam param;
-  param.name = declaration->getNameAsString();
-  param.role = syntax ? syntax->role : ir::ParamRole::Uniform;
+  param.name = std::move(name);
+  param.role = roleOf(declaration);
+  param.rank = variable.rank;
   param.type = variable.type;
   param.loc = loc(declaration->getLocation());
   if (param.role != ir::ParamRole::Uniform) {
@@ -218,7 +238,6 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
     fail(Diag::SpecType, declaration->getLocation(), {param.name, spelling(param.type)});
   }
   if (syntax) {
-    param.rank = syntax->rank;
     param.boundary = syntax->boundary;
     param.filter = syntax->filter;
     param.promise = syntax->halo;
@@ -344,9 +363,12 @@ void ModuleLowering::pairReductions() {
 }
 
 ir::ExprPtr ModuleLowering::generatedConstant(const std::string& name) {
-  const auto found = generated_.find(name);
-  if (found == generated_.end()) throw Abandoned{};
-  return constantValue(found->second, /*inlined=*/true);
+  const clang::VarDecl* found = nullptr;
+  for (const auto* constants : {&generated_, &generatedGlobals_}) {
+    if (const auto at = constants->find(name); at != constants->end() && found == nullptr) found = at->second;
+  }
+  if (found == nullptr) throw Abandoned{};
+  return constantValue(found, /*inlined=*/true);
 }
 
 // ---- constants ----------------------------------------------------------------------------------

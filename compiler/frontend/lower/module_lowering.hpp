@@ -16,6 +16,7 @@
 #include <llvm/ADT/SmallPtrSet.h>
 
 #include "frontend/lower/aliases.hpp"
+#include "frontend/lower/bundles.hpp"
 #include "frontend/tokens/syntax.hpp"
 #include "ir/ir.hpp"
 #include "support/diagnostics.hpp"
@@ -39,7 +40,7 @@ struct Abandoned {};
 class ModuleLowering {
  public:
   ModuleLowering(clang::Sema& sema, const DeclarationSyntax& syntax, Diagnostics& diagnostics)
-      : sema_(sema), syntax_(syntax), diagnostics_(diagnostics) {}
+      : sema_(sema), syntax_(syntax), diagnostics_(diagnostics), bundles_(syntax) {}
 
   ir::Module run(const std::string& file);
 
@@ -49,6 +50,10 @@ class ModuleLowering {
   int gatherRank(clang::QualType type, clang::SourceLocation use, ir::Type& element);
   /// The same for the class of a scatter output; 0 for the class of a variable output.
   std::optional<int> appendRank(clang::QualType type, clang::SourceLocation use, ir::Type& element);
+  /// The role of a kernel's parameter, or of a member of a bundle.
+  ir::ParamRole roleOf(const clang::ValueDecl* declared) const;
+  /// Reports a bundle where a value is needed.
+  [[noreturn]] void refuseBundle(clang::QualType type, clang::SourceLocation use);
 
   /// Lowers the definition of `declaration` at its first use. Reports recursion at `use`.
   /// `aliases`: the version for calls whose references name parts of one object.
@@ -75,6 +80,7 @@ class ModuleLowering {
   std::string textOf(const clang::Expr* e) const;
 
   const DeclarationSyntax& syntax() const { return syntax_; }
+  Bundles& bundles() { return bundles_; }
   clang::ASTContext& context() const;
   clang::SourceManager& sources() const;
   Diagnostics& diagnostics() { return diagnostics_; }
@@ -95,7 +101,10 @@ class ModuleLowering {
   void kernelTemplate(const clang::FunctionTemplateDecl* declaration);
   void nameInstance(const clang::FunctionDecl* instance, ir::Kernel& kernel);
   std::string spelling(const clang::TemplateArgument& argument, clang::SourceLocation use);
-  ir::KernelParam kernelParam(const clang::ParmVarDecl* declaration, const ir::Variable& variable);
+  void parameters(const clang::FunctionDecl* definition, ir::Kernel& kernel);
+  std::uint32_t bundleType(const clang::CXXRecordDecl* record);
+  ir::KernelParam kernelParam(const clang::ValueDecl* declaration, std::string name,
+                              const ir::Variable& variable);
   void checkElement(ir::Type type, std::string_view name, clang::SourceLocation where);
   void checkFoldedOutputs(const ir::Kernel& kernel, const KernelSyntax& syntax);
   void checkKernelShape(const ir::Kernel& kernel, clang::SourceLocation where);
@@ -125,8 +134,9 @@ class ModuleLowering {
   clang::Sema& sema_;
   const DeclarationSyntax& syntax_;
   Diagnostics& diagnostics_;
+  Bundles bundles_;
   ir::Module module_;
-  std::unordered_map<const clang::Decl*, std::uint32_t> structs_;
+  std::unordered_map<const clang::Decl*, std::uint32_t> structs_, bundleTypes_;
   llvm::SmallPtrSet<const clang::CXXRecordDecl*, 4> refusedStructs_;  ///< reported, or in progress
   std::unordered_map<const clang::Decl*, ir::ConstantId> constants_;
   std::map<std::pair<const clang::Decl*, std::string>, FunctionEntry> functions_;  ///< by Aliases::key, too

@@ -46,36 +46,6 @@ bool isKind(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind kin
   return at < tokens.size() && tokens[at].is(kind);
 }
 
-/// Splits the tokens between the parentheses at commas outside any bracket.
-std::vector<std::vector<Token>> splitAtCommas(const std::vector<Token>& declared) {
-  std::vector<std::vector<Token>> parts(1);
-  int depth = 0;
-  bool isValue = false;   // after `=`, `<` is a comparison, but in `Pair<int, int>{0, 1}`
-  for (std::size_t i = 1; i + 1 < declared.size(); ++i) {
-    const Token& token = declared[i];
-    if (token.isOneOf(tok::l_paren, tok::l_square, tok::l_brace)) ++depth;
-    if (token.isOneOf(tok::r_paren, tok::r_square, tok::r_brace)) --depth;
-    if (token.is(tok::equal)) isValue = true;
-    std::size_t end = token.is(tok::less) ? endOfList(declared, i) : 0;
-    if (isValue && !(isKind(declared, end + 1, tok::l_brace) || isKind(declared, end + 1, tok::l_paren)))
-      end = 0;
-    if (end != 0) {
-      parts.back().insert(parts.back().end(), declared.begin() + static_cast<std::ptrdiff_t>(i),
-                          declared.begin() + static_cast<std::ptrdiff_t>(end) + 1);
-      i = end;
-      continue;
-    }
-    if (token.is(tok::comma) && depth == 0) {
-      isValue = false;
-      parts.emplace_back();
-    } else {
-      parts.back().push_back(token);
-    }
-  }
-  if (parts.size() == 1 && parts.front().empty()) parts.clear();
-  return parts;
-}
-
 /// `({0, 1})` without its parentheses, which C++ does not allow there; any other value unchanged.
 std::vector<Token> borderValue(const std::vector<Token>& parenthesized) {
   if (parenthesized[1].isNot(tok::l_brace)) return parenthesized;
@@ -111,6 +81,24 @@ std::size_t endOfArguments(const std::vector<Token>& parameter, std::size_t less
   return goesOn ? end : 0;
 }
 
+/// True for `gather<T, rank>`.
+bool isGatherType(const std::vector<Token>& type) {
+  return type.size() > 3 && isWord(type[0], "gather") && type[1].is(tok::less);
+}
+
+/// The type of a gather's elements: of `gather<T, rank>`, T.
+std::vector<Token> elementTypeOf(const std::vector<Token>& type) {
+  if (!isGatherType(type)) return type;
+  int depth = 0;
+  for (std::size_t i = 2; i < type.size(); ++i) {
+    if (type[i].is(tok::less)) ++depth;
+    depth -= closedLists(type[i]);
+    if (type[i].is(tok::comma) && depth == 0)
+      return {type.begin() + 2, type.begin() + static_cast<std::ptrdiff_t>(i)};
+  }
+  return type;
+}
+
 std::string repeated(std::string_view text, int times) {
   std::string result;
   for (int i = 0; i < times; ++i) result += text;
@@ -140,7 +128,6 @@ std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind ki
 
 void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, Tokens& out) {
   ParameterParts parts;
-  std::size_t at = 0;
   if (kind == FunctionKind::Helper) {
     // An ordinary parameter goes to Clang unchanged, including default arguments and templates.
     bool ours = isNamedWord(parameter.front(), {"out", "inout"}) && parameter.size() > 2;
@@ -154,12 +141,7 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
       return;
     }
   }
-  if (!takeAttributes(parameter, at, parts)) return;
-  takeQualifier(parameter, at, parts);
-  if (!takeDeclarator(parameter, at, parts)) return;
-  if (hasSecondQualifier(parts)) return;
-  if (hasLateQualifier(parts)) return;
-  if (!takeSuffix(parameter, at, parts)) return;
+  if (!takeParts(parameter, parts)) return;
   if (kind != FunctionKind::Helper && (parts.type.back().is(tok::amp) || parts.isArrayReference)) {
     diagnostics_.report(Diag::KernelReference, locOf(parts.type.back()), {nameOf(parts.name)});
     return;
@@ -174,6 +156,37 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
   }
   if (!resolveRole(parts, kind)) return;
   print(parts, kind, out);
+}
+
+/// Takes the parts of a parameter's declaration. False after an error.
+bool ParameterEditor::takeParts(const Tokens& parameter, ParameterParts& parts) {
+  std::size_t at = 0;
+  if (!takeAttributes(parameter, at, parts)) return false;
+  takeQualifier(parameter, at, parts);
+  if (!takeDeclarator(parameter, at, parts)) return false;
+  if (hasSecondQualifier(parts) || hasLateQualifier(parts)) return false;
+  return takeSuffix(parameter, at, parts);
+}
+
+void ParameterEditor::editMember(const Tokens& declared, Tokens& out) {
+  ParameterParts parts;
+  if (!takeParts(declared, parts)) return;
+  const std::string qualifier = parts.hasQualifier ? nameOf(parts.qualifier) : "";
+  std::string_view other;
+  if (qualifier == "out" || qualifier == "inout" || qualifier == "vout") {
+    other = "an output";
+  } else if (qualifier == "reduce" || qualifier == "scan") {
+    other = "an accumulator";
+  } else if (qualifier == "iter") {
+    other = "an iterator";
+  } else if (parts.isElement) {
+    other = "an element of a stream";
+  }
+  if (!other.empty()) {
+    diagnostics_.report(Diag::BundleMember, locOf(parts.name), {nameOf(parts.name), other});
+  } else if (resolveRole(parts, FunctionKind::Kernel)) {
+    print(parts, FunctionKind::Kernel, out, /*isMember=*/true);
+  }
 }
 
 /// [[clamp]] [[wrap]] [[mirror]] [[border(v)]] [[filter]] [[halo(2)]] [[wrap, filter]]
@@ -446,7 +459,8 @@ bool ParameterEditor::resolveRole(ParameterParts& parts, FunctionKind kind) {
   const bool isAppendOutput = qualifier == "vout" || (qualifier == "out" && parts.rank > 0);
   if (isAppendOutput) return resolveAppendOutput(parts, kind);
   if (parts.rank > 4) return fail(Diag::StreamRank, {name, std::to_string(parts.rank)});
-  if (parts.hasAttribute && (parts.rank == 0 || !qualifier.empty())) {
+  const bool isGather = parts.rank > 0 || isGatherType(parts.type);
+  if (parts.hasAttribute && (!isGather || !qualifier.empty())) {
     diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.attribute), {nameOf(parts.attribute), name});
     return false;
   }
@@ -518,13 +532,13 @@ bool ParameterEditor::resolveAppendOutput(ParameterParts& parts, FunctionKind ki
   return true;
 }
 
-void ParameterEditor::print(const ParameterParts& parts, FunctionKind kind, Tokens& out) {
+void ParameterEditor::print(const ParameterParts& parts, FunctionKind kind, Tokens& out, bool isMember) {
   const clang::SourceLocation location = parts.name.getLocation();
   ParamSyntax syntax = parts.syntax;
   if (kind == FunctionKind::Helper) {
     syntax.boundary = ir::Boundary::Clamp;   // the mode is that of the kernel's gather
   } else if (!parts.border.empty()) {
-    syntax.border = generateConstant(parts.type, borderValue(parts.border), location);
+    syntax.border = generateConstant(elementTypeOf(parts.type), borderValue(parts.border), location);
   }
   if (!parts.value.empty()) syntax.identity = generateConstant(parts.type, parts.value, location);
   if (syntax.rank > 0) indexed_.push_back({parts.name, syntax.rank});
@@ -553,13 +567,14 @@ void ParameterEditor::print(const ParameterParts& parts, FunctionKind kind, Toke
     case ir::ParamRole::Uniform:
     case ir::ParamRole::Iterator:
     case ir::ParamRole::Spec:
-      if (parts.type.front().isNot(tok::kw_const) && !parts.isArrayReference)
+      if (!isMember && parts.type.front().isNot(tok::kw_const) && !parts.isArrayReference)
         out.push_back(builder_.word("const", start));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       break;
   }
-  if (parts.length.empty()) {
+  if (parts.length.empty() || isMember) {
     out.push_back(parts.name);
+    out.insert(out.end(), parts.length.begin(), parts.length.end());
   } else {   // a reference, since C++ cannot pass arrays by value
     out.push_back(builder_.make(tok::l_paren, location));
     out.push_back(builder_.make(tok::amp, location));

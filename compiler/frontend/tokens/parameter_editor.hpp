@@ -44,10 +44,15 @@ class ParameterEditor {
   /// `declared` and the result include the parentheses.
   std::vector<clang::Token> edit(const std::vector<clang::Token>& declared, FunctionKind kind);
 
+  /// Appends the member of a struct that `declared`, without its `;`, declares as a parameter: `[[wrap]] float4 sky[][]`,
+  /// `spec bool spheres`. Reports what a bundle cannot have, and appends nothing for it.
+  void editMember(const std::vector<clang::Token>& declared, std::vector<clang::Token>& out);
+
  private:
   using Tokens = std::vector<clang::Token>;
   struct ParameterParts;
 
+  bool takeParts(const Tokens& parameter, ParameterParts& parts);
   void editParameter(const Tokens& parameter, FunctionKind kind, Tokens& out);
   bool takeAttributes(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
   bool takeAttribute(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
@@ -64,7 +69,7 @@ class ParameterEditor {
   bool resolveRole(ParameterParts& parts, FunctionKind kind);
   bool resolveAppendOutput(ParameterParts& parts, FunctionKind kind);
   std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation location);
-  void print(const ParameterParts& parts, FunctionKind kind, Tokens& out);
+  void print(const ParameterParts& parts, FunctionKind kind, Tokens& out, bool isMember = false);
 
   clang::Preprocessor& preprocessor_;
   TokenBuilder builder_;

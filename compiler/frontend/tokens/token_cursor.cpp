@@ -165,4 +165,33 @@ void TokenBuilder::constant(const std::string& name, const std::vector<Token>& t
   out.push_back(make(tok::semi, location));
 }
 
+std::vector<std::vector<Token>> splitAtCommas(const std::vector<Token>& declared) {
+  std::vector<std::vector<Token>> parts(1);
+  int depth = 0;
+  bool isValue = false;   // after `=`, `<` is a comparison, but in `Pair<int, int>{0, 1}`
+  for (std::size_t i = 1; i + 1 < declared.size(); ++i) {
+    const Token& token = declared[i];
+    if (token.isOneOf(tok::l_paren, tok::l_square, tok::l_brace)) ++depth;
+    if (token.isOneOf(tok::r_paren, tok::r_square, tok::r_brace)) --depth;
+    if (token.is(tok::equal)) isValue = true;
+    std::size_t end = token.is(tok::less) ? endOfList(declared, i) : 0;
+    if (isValue && !(end + 1 < declared.size() && declared[end + 1].isOneOf(tok::l_brace, tok::l_paren)))
+      end = 0;
+    if (end != 0) {
+      parts.back().insert(parts.back().end(), declared.begin() + static_cast<std::ptrdiff_t>(i),
+                          declared.begin() + static_cast<std::ptrdiff_t>(end) + 1);
+      i = end;
+      continue;
+    }
+    if (token.is(tok::comma) && depth == 0) {
+      isValue = false;
+      parts.emplace_back();
+    } else {
+      parts.back().push_back(token);
+    }
+  }
+  if (parts.size() == 1 && parts.front().empty()) parts.clear();
+  return parts;
+}
+
 }  // namespace skc::frontend

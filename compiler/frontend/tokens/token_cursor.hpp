@@ -30,6 +30,15 @@ inline bool isWord(const clang::Token& token, llvm::StringRef word) {
   return token.is(clang::tok::identifier) && token.getIdentifierInfo()->getName() == word;
 }
 
+/// Whether a token may begin a type.
+inline bool startsType(const clang::Token& token) {
+  return token.is(clang::tok::coloncolon) ||
+         (!token.isAnnotation() && !token.isLiteral() && token.getIdentifierInfo() != nullptr);
+}
+
+/// The parameters between the parentheses of a list: its tokens, split at commas outside any bracket.
+std::vector<std::vector<clang::Token>> splitAtCommas(const std::vector<clang::Token>& declared);
+
 /// How many template lists a token closes: two for the `>>` of `Pair<Pair<T>>`.
 inline int closedLists(const clang::Token& token) {
   return token.is(clang::tok::greater) ? 1 : token.is(clang::tok::greatergreater) ? 2 : 0;

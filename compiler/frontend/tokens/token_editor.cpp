@@ -9,9 +9,10 @@
 #include "frontend/choices.hpp"
 #include "frontend/clang_loc.hpp"
 #include "frontend/prelude.hpp"
+#include "frontend/tokens/bundle_editor.hpp"
 #include "frontend/tokens/comma_indices.hpp"
-#include "frontend/tokens/parameter_editor.hpp"
 #include "frontend/tokens/declaration_editors.hpp"
+#include "frontend/tokens/parameter_editor.hpp"
 #include "frontend/tokens/token_cursor.hpp"
 
 namespace skc::frontend {
@@ -42,6 +43,11 @@ class Editor {
     while (!cursor_.at(tok::eof) && sources.isInSystemHeader(cursor_.peek().getLocation())) {
       out_.push_back(cursor_.take());
     }
+    const llvm::StringSet<> declared = declaredInPlace(cursor_);
+    for (Token& token : out_) {
+      if (token.isNot(tok::identifier) || !declared.contains(nameOf(token))) continue;
+      token = TokenBuilder(preprocessor_).word("__sk_hidden_" + nameOf(token), token.getLocation());
+    }
   }
 
   bool atWord(llvm::StringRef word) const { return isWord(cursor_.peek(), word); }
@@ -57,11 +63,8 @@ class Editor {
            : isWord(word, "scan") ? FunctionKind::Scan
                                   : FunctionKind::Kernel;
   }
-  static bool startsType(const Token& token) {
-    return token.is(tok::identifier) || token.is(tok::coloncolon) || token.getIdentifierInfo() != nullptr;
-  }
-
   void editDeclaration() {
+    if (!std::exchange(isBehindTemplate_, false)) declarationBegin_ = out_.size();
     if (const std::size_t behind = endOfChoices(cursor_); behind != 0) return editChoices(behind);
     if (atKernel()) return editKernel();
     if (atDeclarationWord("stream")) return editStream();
@@ -118,6 +121,7 @@ class Editor {
     copyTokens(cursor_.templateParameters(templates_));
     if (cursor_.at(tok::kw_requires)) copyConstraint();
     noteTemplate();
+    isBehindTemplate_ = true;
     if (atDeclarationWord("stream")) diagnostics_.report(Diag::StreamTemplate, locOf(cursor_.peek()));
   }
 
@@ -344,7 +348,7 @@ class Editor {
       initializer = initializer || token.is(tok::equal) || isValueAhead();
       if (token.isOneOf(tok::kw_struct, tok::kw_class, tok::kw_union, tok::kw_enum)) record = true;
       if (token.is(tok::l_brace)) {
-        copyBraces();
+        record && !initializer && !function ? copyRecord() : copyBraces();
         if (!initializer && (function || !record)) return function;
         continue;
       }
@@ -403,6 +407,24 @@ class Editor {
       if (cursor_.at(tok::r_brace)) --depth;
       copyToken();
     } while (depth > 0 && !cursor_.at(tok::eof));
+  }
+
+  /// Copies the `{ ... }` of a struct, and edits the members that make it a bundle.
+  void copyRecord() {
+    std::vector<Token> constants;
+    ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, constants);
+    BundleEditor members(parameters);
+    int depth = 0;
+    do {
+      checkInner();
+      if (cursor_.at(tok::l_brace)) ++depth;
+      if (cursor_.at(tok::r_brace)) --depth;
+      const bool isBetween = cursor_.peek().isOneOf(tok::l_brace, tok::r_brace, tok::semi);
+      copyToken();
+      if (isBetween && depth > 0) members.edit(cursor_, out_);
+    } while (depth > 0 && !cursor_.at(tok::eof));
+    out_.insert(out_.begin() + static_cast<std::ptrdiff_t>(declarationBegin_), constants.begin(),
+                constants.end());
   }
 
   /// Reports `stream float a<n>` and Brook's `indexof a` in a body or a struct, and kernels there, which it skips.
@@ -485,6 +507,8 @@ class Editor {
   llvm::SmallPtrSet<const clang::IdentifierInfo*, 16>
       templates_;  ///< names of templates, which `<` may follow
   int constants_ = 0;
+  std::size_t declarationBegin_ = 0;  ///< in out_, of the current declaration with its template's head
+  bool isBehindTemplate_ = false;
 };
 
 /// Reports `a<b<c<d`: Clang tries each `<` as a bracket and as an operator, which doubles the time.

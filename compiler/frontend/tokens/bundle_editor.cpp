@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/tokens/bundle_editor.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "frontend/prelude.hpp"
+
+namespace skc::frontend {
+
+using clang::Token;
+namespace tok = clang::tok;
+using Tokens = std::vector<Token>;
+
+namespace {
+
+/// True for a qualifier of parameters, before a type and a name.
+bool isQualifierAt(const TokenCursor& cursor, std::size_t at) {
+  for (const llvm::StringRef word : {"spec", "out", "inout", "reduce", "scan", "iter", "vout"}) {
+    if (isWord(cursor.peek(at), word))
+      return startsType(cursor.peek(at + 1)) && !cursor.at(at + 2, tok::equal);
+  }
+  return false;
+}
+
+/// The index of what follows the attributes from here on, before `end`.
+std::size_t behindAttributes(const TokenCursor& cursor, std::size_t end) {
+  std::size_t at = 0;
+  while (cursor.at(at, tok::l_square) && cursor.at(at + 1, tok::l_square)) {
+    while (at < end && !(cursor.at(at, tok::r_square) && cursor.at(at + 1, tok::r_square))) ++at;
+    at += 2;
+  }
+  return at;
+}
+
+/// Each declarator of `T a[], b[][]` as a declaration of its own.
+std::vector<Tokens> declaratorsOf(const Tokens& declared) {
+  std::vector<Tokens> members(1);
+  Tokens head;  // what precedes the first name
+  int depth = 0;
+  for (const Token& token : declared) {
+    if (token.isOneOf(tok::l_paren, tok::l_square, tok::less)) ++depth;
+    if (token.isOneOf(tok::r_paren, tok::r_square)) --depth;
+    depth -= closedLists(token);
+    if (token.isNot(tok::comma) || depth > 0) {
+      members.back().push_back(token);
+      continue;
+    }
+    if (head.empty()) {
+      head = members.front();
+      while (!head.empty() && head.back().isOneOf(tok::l_square, tok::r_square)) head.pop_back();
+      if (!head.empty()) head.pop_back();
+    }
+    members.push_back(head);
+  }
+  return members;
+}
+
+}  // namespace
+
+void BundleEditor::edit(TokenCursor& cursor, Tokens& out) {
+  while (editMember(cursor, out)) {
+  }
+}
+
+/// Edits `[[wrap]] float4 sky[][], ground[];` or `spec bool spheres;`; returns false for any other member.
+bool BundleEditor::editMember(TokenCursor& cursor, Tokens& out) {
+  std::size_t end = 0;
+  while (!cursor.peek(end).isOneOf(tok::semi, tok::l_brace, tok::r_brace, tok::eof)) ++end;
+  if (!cursor.at(end, tok::semi)) return false;
+  const std::size_t start = behindAttributes(cursor, end);
+  bool isOurs = start > 0 || isQualifierAt(cursor, start);
+  for (std::size_t i = start; i < end; ++i) {
+    if (cursor.at(i, tok::l_paren)) return false;  // a function
+    const bool hasBrackets = cursor.at(i, tok::l_square) && cursor.at(i + 1, tok::r_square);
+    const bool isElement = cursor.at(i, tok::less) && cursor.at(i + 1, tok::greater);
+    isOurs = isOurs || hasBrackets || isElement;
+  }
+  if (!isOurs) return false;
+  Tokens declared;
+  for (std::size_t i = 0; i < end; ++i) declared.push_back(cursor.take());
+  const Token semicolon = cursor.take();
+  for (const Tokens& member : declaratorsOf(declared)) {
+    parameters_.editMember(member, out);
+    out.push_back(semicolon);
+  }
+  return true;
+}
+
+llvm::StringSet<> declaredInPlace(const TokenCursor& cursor) {
+  llvm::StringSet<> names;
+  std::vector<bool> isNamespace;  // by open brace
+  bool isInNamespaces = true;  // and in no other braces
+  bool opensNamespace = false, declaresStreams = false;
+  int parentheses = 0;
+  Token before = cursor.peek();
+  for (std::size_t i = 0; cursor.peek(i).isNot(tok::eof); before = cursor.peek(i), ++i) {
+    const Token& token = cursor.peek(i);
+    if (token.is(tok::kw_namespace)) opensNamespace = true;
+    if (before.isOneOf(tok::semi, tok::l_brace, tok::r_brace) || i == 0)
+      declaresStreams = isWord(token, "stream");
+    if (token.is(tok::l_paren)) ++parentheses;
+    if (token.is(tok::r_paren)) --parentheses;
+    if (token.is(tok::semi)) opensNamespace = false;
+    if (token.is(tok::l_brace)) isNamespace.push_back(std::exchange(opensNamespace, false));
+    if (token.is(tok::r_brace) && !isNamespace.empty()) isNamespace.pop_back();
+    if (token.isOneOf(tok::l_brace, tok::r_brace))
+      isInNamespaces = std::ranges::find(isNamespace, false) == isNamespace.end();
+    if (!isInNamespaces || parentheses > 0 || token.isNot(tok::identifier) || !isYielding(nameOf(token)))
+      continue;
+    const bool isListed = cursor.at(i + 1, tok::less);  // `gather<float, 2>`, or the extents of a stream
+    const bool isBehindType =
+        startsType(before) && !before.isOneOf(tok::coloncolon, tok::kw_inline, tok::kw_static,
+                                              tok::kw_constexpr, tok::kw_const, tok::kw_typename);
+    if (declaresStreams ? isListed : isBehindType && !isListed) names.insert(nameOf(token));
+  }
+  return names;
+}
+
+}  // namespace skc::frontend
