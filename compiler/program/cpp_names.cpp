@@ -38,6 +38,10 @@ class Scopes {
       for (const std::string& alias : type.aliases) names.reserve(alias);
       reserveNamespaces(type.scope);
     }
+    for (const BundleType& bundle : module.bundleTypes) {
+      namesOf(bundle.scope).reserve(cppName(bundle));
+      reserveNamespaces(bundle.scope);
+    }
     for (const Kernel& kernel : module.kernels) reserveNamespaces(kernel.scope);
     for (const DeclaredStream& stream : module.streams) reserveNamespaces(stream.scope);
   }
@@ -117,6 +121,10 @@ std::string cppType(const Module& module, Type type, const std::vector<std::stri
   return entry.scope == scope ? name : qualifier(entry.scope) + name;
 }
 
+std::string cppType(const BundleType& bundle, const std::vector<std::string>& scope) {
+  return (bundle.scope == scope ? "" : qualifier(bundle.scope)) + cppName(bundle);
+}
+
 std::string cppName(const Module& module, const Struct& type) {
   if (isShared(module, type)) return type.name;
   Namer names(type.scope.empty() ? isReservedForStruct : isMacro);
@@ -131,6 +139,10 @@ std::string cppName(const Module& module, const Struct& type) {
     if (isSame(other)) names.take(other.name);
   }
   return names.take(type.name);
+}
+
+std::string cppName(const BundleType& bundle) {
+  return Namer(bundle.scope.empty() ? isReservedForStruct : isMacro).take(bundle.name);
 }
 
 std::string cppName(const Kernel& kernel, const KernelParam& param) {
@@ -199,6 +211,10 @@ void reportCppNames(const Module& module, Diagnostics& diagnostics) {
     if (type.isSynthesized || isShared(module, type)) continue;
     reportName(diagnostics, type.loc, "struct", type.name, cppName(module, type), type.scope.empty());
     for (const StructField& field : type.fields) reportMacro(field.name, "member", type.loc);
+  }
+  for (const BundleType& bundle : module.bundleTypes) {
+    reportName(diagnostics, bundle.loc, "bundle", bundle.name, cppName(bundle), bundle.scope.empty());
+    for (const BundleMember& member : bundle.members) reportMacro(member.name, "member", bundle.loc);
   }
   for (const DeclaredStream& stream : module.streams) reportMacro(stream.name, "stream", stream.loc);
   const std::vector<const Kernel*> units = unitsOf(module);

@@ -58,7 +58,71 @@ bool isReturned(const KernelParam& param, Form form) {
   return param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
 }
 
+/// The parameters without those that are members of bundles.
+std::vector<const KernelParam*> ownParameters(const Kernel& kernel) {
+  std::vector<const KernelParam*> list;
+  for (const CppParameter& parameter : cppParameters(kernel)) {
+    if (parameter.param != nullptr) list.push_back(parameter.param);
+  }
+  return list;
+}
+
+/// The parameters that a function takes: its type and its name each.
+std::vector<std::pair<std::string, std::string>> functionParameters(const Module& module,
+                                                                    const Kernel& kernel, Form form,
+                                                                    Uniforms uniforms,
+                                                                    const std::vector<std::string>& scope) {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const auto& [param, bundle] : cppParameters(kernel)) {
+    if (bundle != nullptr) {
+      list.emplace_back(fmt::format("const {}&", cppType(module.bundleTypes[bundle->type], scope)),
+                        bundle->name);
+    } else if (!isReturned(*param, form)) {
+      list.emplace_back(parameterType(module, *param, uniforms, scope), cppName(kernel, *param));
+    }
+  }
+  return list;
+}
+
 }  // namespace
+
+std::vector<CppParameter> cppParameters(const Kernel& kernel) {
+  std::vector<CppParameter> list;
+  auto bundle = kernel.bundles.begin();
+  for (std::uint32_t i = 0; i <= kernel.params.size();) {
+    if (bundle != kernel.bundles.end() && bundle->first == i) {
+      list.push_back({nullptr, &*bundle});
+      i += (bundle++)->count;
+    } else if (i < kernel.params.size()) {
+      list.push_back({&kernel.params[i++], nullptr});
+    } else {
+      break;
+    }
+  }
+  return list;
+}
+
+std::string bundleMembers(const Module& module, const BundleType& bundle,
+                          const std::vector<std::string>& scope) {
+  std::string text;
+  for (const BundleMember& member : bundle.members) {
+    std::string type;
+    if (member.bundle) {
+      type = cppType(module.bundleTypes[*member.bundle], scope);
+    } else if (member.type.kind == Type::Kind::Array) {
+      const Array& array = module.arrays[member.type.index];
+      type = fmt::format("sk::UniformMember<std::array<{}, {}>>", cppType(module, array.element, scope),
+                         array.length);
+    } else {
+      const std::string_view kind = member.role == ParamRole::Gather ? "Gather"
+                                    : member.role == ParamRole::Spec ? "Spec"
+                                                                     : "Uniform";
+      type = fmt::format("sk::{}Member<{}>", kind, cppType(module, member.type, scope));
+    }
+    text += fmt::format("  {} {}{{}};\n", type, member.name);
+  }
+  return text;
+}
 
 std::vector<Form> formsOf(const Kernel& kernel) {
   if (kernel.isScan) return {Form::Scan};
@@ -68,7 +132,8 @@ std::vector<Form> formsOf(const Kernel& kernel) {
 }
 
 std::vector<Uniforms> uniformsOf(const Kernel& kernel) {
-  if (std::ranges::none_of(kernel.params, mayBeStream)) return {Uniforms::Values};
+  const auto isUniform = [](const KernelParam* param) { return mayBeStream(*param); };
+  if (std::ranges::none_of(ownParameters(kernel), isUniform)) return {Uniforms::Values};
   return {Uniforms::Values, Uniforms::Streams};
 }
 
@@ -85,18 +150,15 @@ std::string resultType(const Module& module, const Kernel& kernel, Form form,
 std::string parameterList(const Module& module, const Kernel& kernel, Form form, Uniforms uniforms,
                           const std::vector<std::string>& scope) {
   std::vector<std::string> list;
-  for (const KernelParam& param : kernel.params) {
-    if (isReturned(param, form)) continue;
-    list.push_back(parameterType(module, param, uniforms, scope) + ' ' + cppName(kernel, param));
-  }
+  for (const auto& [type, name] : functionParameters(module, kernel, form, uniforms, scope))
+    list.push_back(type + ' ' + name);
   return join(list, ", ") + ") const";
 }
 
 std::string parameterTypes(const Module& module, const Kernel& kernel, Form form, Uniforms uniforms) {
   std::vector<std::string> list;
-  for (const KernelParam& param : kernel.params) {
-    if (!isReturned(param, form)) list.push_back(parameterType(module, param, uniforms, {}));
-  }
+  for (const auto& [type, name] : functionParameters(module, kernel, form, uniforms, {}))
+    list.push_back(type);
   return join(list, ", ");
 }
 

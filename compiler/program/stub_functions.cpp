@@ -61,9 +61,14 @@ class FunctionWriter {
   /// Writes the array of arguments, and returns its name.
   std::string arguments(const Kernel& kernel, Form form, Uniforms uniforms) {
     std::vector<std::string> items;
-    for (const KernelParam& param : kernel.params) {
-      const bool isReturned = param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
-      items.push_back(isReturned ? "{}" : argument(kernel, param, uniforms));
+    for (const auto& [param, bundle] : cppParameters(kernel)) {
+      if (bundle != nullptr) {
+        for (std::uint32_t i = 0; i < bundle->count; ++i)
+          items.push_back(kernel.params[bundle->first + i].name + ".argument()");
+        continue;
+      }
+      const bool isReturned = param->role == ParamRole::Accumulator && form == Form::ReduceToValue;
+      items.push_back(isReturned ? "{}" : argument(kernel, *param, uniforms));
     }
     const std::string list = localName(kernel, "arguments");
     const std::string head = fmt::format("  const sk::Argument {}[] = {{", list);
@@ -103,7 +108,8 @@ class FunctionWriter {
   /// A name for a local variable that differs from all parameters.
   static std::string localName(const Kernel& kernel, std::string name) {
     Namer names;
-    for (const KernelParam& param : kernel.params) names.reserve(cppName(kernel, param));
+    for (const auto& [param, bundle] : cppParameters(kernel))
+      names.reserve(bundle != nullptr ? bundle->name : cppName(kernel, *param));
     return names.take(std::move(name));
   }
 

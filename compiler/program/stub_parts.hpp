@@ -41,6 +41,17 @@ std::vector<Form> formsOf(const ir::Kernel& kernel);
 enum class Uniforms : std::uint8_t { Values, Streams };
 std::vector<Uniforms> uniformsOf(const ir::Kernel& kernel);
 
+/// A parameter of a callable's functions: one of the kernel's, or a bundle, which stands for several. The other is null.
+struct CppParameter {
+  const ir::KernelParam* param;
+  const ir::BundleParam* bundle;
+};
+std::vector<CppParameter> cppParameters(const ir::Kernel& kernel);
+
+/// The structs of bundles, for FILE.sk.hpp.
+std::string bundleMembers(const ir::Module& module, const ir::BundleType& bundle,
+                          const std::vector<std::string>& scope);
+
 /// A function's result type as written inside namespace `scope`.
 std::string resultType(const ir::Module& module, const ir::Kernel& kernel, Form form,
                        const std::vector<std::string>& scope);

@@ -395,7 +395,7 @@ std::size_t uniformPlanes(const Kernel& kernel, std::span<const Argument> argume
 void checkValue(const Kernel& kernel, const Parameter& parameter, const Argument& argument,
                 const Shape& domain) {
   if (argument.value == nullptr) {
-    fail(kernel, "'{}' has no value", parameter.name);
+    fail(kernel, "'{}' has no value; give it one", parameter.name);
   }
   if (parameter.role != Role::Iterator) {
     return;
@@ -412,6 +412,9 @@ void checkValue(const Kernel& kernel, const Parameter& parameter, const Argument
 }
 
 void checkGiven(const Kernel& kernel, const Parameter& parameter, const Argument& argument) {
+  if (argument.isNone && parameter.neededIf.text.empty())
+    fail(kernel, "the kernel reads '{}', which is not given; give this member of the bundle {}",
+         parameter.name, parameter.role == Role::Gather ? "a stream" : "a value");
   if (argument.isNone) {
     fail(kernel, "'{}' is sk::none, but the kernel needs it here, where {} holds; give a stream",
          parameter.name, parameter.neededIf.text);

@@ -36,6 +36,8 @@ assemble::SpecValues specsOf(const Kernel& kernel, std::span<const Argument> arg
   std::size_t count = 0;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     if (kernel.parameters[i].role == Role::Spec) {
+      if (arguments[i].value == nullptr)
+        fail(kernel, "'{}' has no value; give it one", kernel.parameters[i].name);
       specs[count++] = specBits(kernel.parameters[i], arguments[i].value);
     }
   }
