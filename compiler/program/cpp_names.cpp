@@ -185,7 +185,13 @@ std::vector<const Kernel*> unitsOf(const Module& module) {
 void reportAlike(const Module& module, const std::vector<const Kernel*>& overloads,
                  Diagnostics& diagnostics) {
   std::map<std::string, const Kernel*> taken;
-  for (const Kernel* kernel : overloads) {
+  std::vector<const Kernel*> distinct;
+  for (const SameFunction& function : sameFunctions(module, overloads)) {
+    const bool isChosen = function.chooser != nullptr;
+    distinct.insert(distinct.end(), function.kernels.begin(),
+                    isChosen ? function.kernels.begin() + 1 : function.kernels.end());
+  }
+  for (const Kernel* kernel : distinct) {
     for (const Form form : formsOf(*kernel)) {
       for (const Uniforms uniforms : uniformsOf(*kernel)) {
         const std::string types = parameterTypes(module, *kernel, form, uniforms);

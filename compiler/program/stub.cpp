@@ -4,6 +4,7 @@
 #include "program/stub.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -85,6 +86,54 @@ std::vector<std::pair<std::string, std::string>> functionParameters(const Module
 }
 
 }  // namespace
+
+namespace {
+
+/// All types by which C++ tells a kernel's functions from those of others.
+std::string signatureOf(const Module& module, const Kernel& kernel) {
+  std::string text;
+  for (const Form form : formsOf(kernel)) {
+    for (const Uniforms uniforms : uniformsOf(kernel))
+      text += parameterTypes(module, kernel, form, uniforms) + ";";
+  }
+  return text;
+}
+
+/// The gather of that name; null if there is none.
+const KernelParam* gatherNamed(const Kernel& kernel, std::string_view name) {
+  const auto found = std::ranges::find(kernel.params, name, &KernelParam::name);
+  return found != kernel.params.end() && found->role == ParamRole::Gather ? &*found : nullptr;
+}
+
+/// The first gather of all kernels that has another rank in each.
+const KernelParam* chooserOf(const std::vector<const Kernel*>& kernels) {
+  for (const KernelParam& param : kernels.front()->params) {
+    unsigned ranks = 0;
+    const bool tells = std::ranges::all_of(kernels, [&](const Kernel* kernel) {
+      const KernelParam* gather = gatherNamed(*kernel, param.name);
+      const bool isNew = gather != nullptr && (ranks >> gather->rank & 1U) == 0;
+      if (isNew) ranks |= 1U << gather->rank;
+      return isNew;
+    });
+    if (tells && kernels.size() > 1) return &param;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<SameFunction> sameFunctions(const Module& module, const std::vector<const Kernel*>& overloads) {
+  std::vector<SameFunction> functions;
+  std::map<std::pair<std::string, std::vector<Form>>, std::size_t> known;
+  for (const Kernel* kernel : overloads) {
+    const auto [at, isNew] =
+        known.try_emplace({signatureOf(module, *kernel), formsOf(*kernel)}, functions.size());
+    if (isNew) functions.emplace_back();
+    functions[at->second].kernels.push_back(kernel);
+  }
+  for (SameFunction& function : functions) function.chooser = chooserOf(function.kernels);
+  return functions;
+}
 
 std::vector<CppParameter> cppParameters(const Kernel& kernel) {
   std::vector<CppParameter> list;

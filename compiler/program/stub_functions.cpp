@@ -23,9 +23,12 @@ class FunctionWriter {
 
   std::string text(const std::vector<Callable>& callables) {
     for (const Callable& callable : callables) {
-      for (std::size_t unit : callable.units) {
-        for (Form form : formsOf(kernelOf(unit))) {
-          for (Uniforms uniforms : uniformsOf(kernelOf(unit))) function(callable, unit, form, uniforms);
+      std::vector<const Kernel*> overloads;
+      for (const std::size_t unit : callable.units) overloads.push_back(&kernelOf(unit));
+      for (const SameFunction& same : sameFunctions(module_, overloads)) {
+        const Kernel& first = *same.kernels.front();
+        for (Form form : formsOf(first)) {
+          for (Uniforms uniforms : uniformsOf(first)) function(callable, same, form, uniforms);
         }
       }
     }
@@ -33,28 +36,51 @@ class FunctionWriter {
   }
 
  private:
-  void function(const Callable& callable, std::size_t unit, Form form, Uniforms uniforms) {
-    const Kernel& kernel = kernelOf(unit);
+  void function(const Callable& callable, const SameFunction& same, Form form, Uniforms uniforms) {
+    const Kernel& kernel = *same.kernels.front();
     const std::string head = fmt::format("{} {}{}::operator()(", resultType(module_, kernel, form, {}),
                                          qualifier(callable.scope), callable.type);
     text_ += "\n" +
              wrapLine(head + parameterList(module_, kernel, form, uniforms, {}) + " {", 100, head.size()) +
              "\n";
+    same.chooser == nullptr ? call(kernel, form, uniforms) : choose(same, form, uniforms);
+    text_ += "}\n";
+  }
+
+  void call(const Kernel& kernel, Form form, Uniforms uniforms) {
+    const std::string& name = nameOf(kernel);
     switch (form) {
-      case Form::Run: run(kernel, unit, uniforms); break;
-      case Form::ReduceToValue: reduceToValue(kernel, unit, uniforms); break;
+      case Form::Run: run(kernel, name, uniforms); break;
+      case Form::ReduceToValue: reduceToValue(kernel, name, uniforms); break;
       case Form::ReduceToStream:
       case Form::Scan:
       case Form::Fold:
         text_ += fmt::format("  sk::{}(sk::program::{}, {}, this->options);\n",
-                             form == Form::Fold ? "fold" : wordOf(kernel), names_[unit] + Part::Reduction,
+                             form == Form::Fold ? "fold" : wordOf(kernel), name + Part::Reduction,
                              arguments(kernel, form, uniforms));
     }
-    text_ += "}\n";
   }
 
-  void run(const Kernel& kernel, std::size_t unit, Uniforms uniforms) {
-    text_ += fmt::format("  sk::run(sk::program::{}, {}, this->options);\n", names_[unit] + Part::Kernel,
+  /// Calls the kernel whose gather has the rank of its argument.
+  void choose(const SameFunction& same, Form form, Uniforms uniforms) {
+    const Kernel& first = *same.kernels.front();
+    const std::string rank = localName(first, "rank");
+    text_ += fmt::format("  const int {} = sk::detail::rankOf({}.argument());\n", rank, same.chooser->name);
+    std::vector<std::string> ranks;
+    for (const Kernel* kernel : same.kernels) {
+      const auto gather = std::ranges::find(kernel->params, same.chooser->name, &KernelParam::name);
+      ranks.push_back(std::to_string(gather->rank));
+      text_ += fmt::format("  if ({} == {}) {{\n", rank, ranks.back());
+      call(*kernel, form, uniforms);
+      if (form != Form::ReduceToValue) text_ += "  return;\n";
+      text_ += "  }\n";
+    }
+    text_ += fmt::format("  sk::detail::refuseRank(\"{}\", \"{}\", {}, \"{}\");\n", first.name,
+                         same.chooser->name, rank, join(ranks, " or "));
+  }
+
+  void run(const Kernel& kernel, const std::string& name, Uniforms uniforms) {
+    text_ += fmt::format("  sk::run(sk::program::{}, {}, this->options);\n", name + Part::Kernel,
                          arguments(kernel, Form::Run, uniforms));
   }
 
@@ -87,7 +113,7 @@ class FunctionWriter {
     return name + ".argument()";
   }
 
-  void reduceToValue(const Kernel& kernel, std::size_t unit, Uniforms uniforms) {
+  void reduceToValue(const Kernel& kernel, const std::string& name, Uniforms uniforms) {
     const auto count =
         std::count_if(kernel.params.begin(), kernel.params.end(),
                       [](const KernelParam& param) { return param.role == ParamRole::Accumulator; });
@@ -102,7 +128,7 @@ class FunctionWriter {
     const std::string head = fmt::format("  void* const {}[] = {{", results);
     text_ += wrapLine(head + join(places, ", ") + "};", 100, head.size()) + "\n";
     text_ += fmt::format("  sk::reduce(sk::program::{}, {}, {}, this->options);\n  return {};\n",
-                         names_[unit] + Part::Reduction, list, results, value);
+                         name + Part::Reduction, list, results, value);
   }
 
   /// A name for a local variable that differs from all parameters.
@@ -111,6 +137,13 @@ class FunctionWriter {
     for (const auto& [param, bundle] : cppParameters(kernel))
       names.reserve(bundle != nullptr ? bundle->name : cppName(kernel, *param));
     return names.take(std::move(name));
+  }
+
+  /// The prefix of the constants that describe a kernel.
+  const std::string& nameOf(const Kernel& kernel) const {
+    std::size_t unit = 0;
+    while (&kernelOf(unit) != &kernel) ++unit;
+    return names_[unit];
   }
 
   const Kernel& kernelOf(std::size_t unit) const { return module_.kernels[program_.units()[unit].id]; }

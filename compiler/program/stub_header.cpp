@@ -170,9 +170,15 @@ class HeaderWriter {
       text_ += fmt::format("/// Called {} here, since C++ has another {}.\n", callable.object, first.name);
     }
     text_ += fmt::format("struct {0} : sk::WithOptions<{0}> {{\n", callable.type);
-    for (std::size_t unit : callable.units) {
-      const Kernel& kernel = kernelOf(unit);
-      if (isOverloaded) text_ += comment(kernel.signature, 2);
+    std::vector<const Kernel*> overloads;
+    for (const std::size_t unit : callable.units) overloads.push_back(&kernelOf(unit));
+    for (const SameFunction& same : sameFunctions(module_, overloads)) {
+      const Kernel& kernel = *same.kernels.front();
+      for (const Kernel* overload : same.kernels) {
+        if (isOverloaded) text_ += comment(overload->signature, 2);
+      }
+      if (same.chooser != nullptr)
+        text_ += fmt::format("  /// The rank of {} chooses.\n", same.chooser->name);
       for (Form form : formsOf(kernel)) {
         text_ += purpose(kernel, form);
         const std::string head = fmt::format("  {} operator()(", resultType(module_, kernel, form, scope_));

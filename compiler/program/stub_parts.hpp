@@ -41,6 +41,16 @@ std::vector<Form> formsOf(const ir::Kernel& kernel);
 enum class Uniforms : std::uint8_t { Values, Streams };
 std::vector<Uniforms> uniformsOf(const ir::Kernel& kernel);
 
+/// Overloads that are one function in C++, since their parameters have the same types: it chooses by the rank of a gather.
+struct SameFunction {
+  std::vector<const ir::Kernel*> kernels;
+  /// The gather of all kernels whose ranks differ; null if there is one kernel, or if no gather tells them apart.
+  const ir::KernelParam* chooser = nullptr;
+};
+/// Groups overloads, in the order of the first of each group.
+std::vector<SameFunction> sameFunctions(const ir::Module& module,
+                                        const std::vector<const ir::Kernel*>& overloads);
+
 /// A parameter of a callable's functions: one of the kernel's, or a bundle, which stands for several. The other is null.
 struct CppParameter {
   const ir::KernelParam* param;

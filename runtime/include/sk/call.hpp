@@ -237,6 +237,14 @@ void scan(const program::Reduction& reduction, std::span<const Argument> argumen
 
 namespace detail {
 
+/// The rank of a gather's argument, by which stubs choose among kernels; 0 if none is given.
+inline int rankOf(const Argument& argument) {
+  const Shape& whole = argument.region.placement.whole;
+  return whole.rank() != 0 ? whole.rank() : argument.region.shape.rank();
+}
+/// Throws sk::Error: no kernel of this name takes such a gather. `ranks`: "2 or 3".
+[[noreturn]] void refuseRank(const char* kernel, const char* gather, int rank, const char* ranks);
+
 /// Runs calls with streams that several processes share (sk/mpi.hpp): the functions above pass such a call on. An empty
 /// `results` means that the arguments of accumulators are streams.
 class Distribution {

@@ -129,6 +129,18 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
 
 }  // namespace
 
+void detail::refuseRank(const char* kernel, const char* gather, int rank, const char* ranks) {
+  if (rank == 0)
+    throw Error(
+        fmt::format("{}: '{}' is not given, and its rank chooses the kernel; give a stream of rank {}",
+                    kernel, gather, ranks));
+  throw Error(
+      fmt::format("{}: '{}' has rank {}, but there are kernels for rank {} alone; give such a stream, or "
+                  "instantiate the template for rank {}",
+                  kernel, gather, rank, ranks, rank),
+      Error::Kind::Shape);
+}
+
 void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
   if (detail::Distribution* all = distributionOf(kernel, arguments))
     return all->run(kernel, arguments, options);
