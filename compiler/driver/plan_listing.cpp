@@ -70,7 +70,7 @@ class PlanPrinter {
     if (!plan->temporaries.empty()) {
       text_ += fmt::format("  with nothing saved the cost were {:.0f}\n", plan->costWithoutTemporaries);
     }
-    for (const Bundle& bundle : plan->bundles) printBundle(kernel, bundle);
+    for (const Stack& stack : plan->stacks) printStack(kernel, stack);
   }
 
   /// Prints which scatter outputs combine values by sorted records in compute programs (assemble::isListed).
@@ -139,15 +139,15 @@ class PlanPrinter {
         counted(temporary.readers, "pass"), element * temporary.readers);
   }
 
-  void printBundle(const Kernel& kernel, const Bundle& bundle) {
+  void printStack(const Kernel& kernel, const Stack& stack) {
     std::vector<std::string> names;
-    for (const ArgumentPlane& plane : bundle.layers) {
+    for (const ArgumentPlane& plane : stack.layers) {
       const KernelParam& param = kernel.params[plane.argument];
       const bool isWhole = param.type.isArithmetic();
       names.push_back(isWhole ? param.name : fmt::format("{} (plane {})", param.name, plane.plane));
     }
     text_ += wrapLine(fmt::format("  planes of {} that share a texture unit: {}",
-                                  ir::print(module_, bundle.type), join(names, ", ")),
+                                  ir::print(module_, stack.type), join(names, ", ")),
                       100, 4) +
              "\n";
   }

@@ -285,7 +285,8 @@ struct BundleMember {
   std::optional<std::uint32_t> bundle = {};  ///< its index in Module::bundleTypes, if it is one
 };
 struct BundleType {
-  std::string name;  ///< without namespaces; of an instance of a template with its arguments
+  std::string name;  ///< without namespaces
+  std::string arguments;  ///< of an instance of a template: "_2"
   std::vector<std::string> scope;  ///< enclosing namespaces, outermost first
   std::vector<BundleMember> members;
   Loc loc;
@@ -435,7 +436,7 @@ struct ArgumentPlane {
   bool operator==(const ArgumentPlane&) const = default;
 };
 /// Planes of one texel format that are copied to the layers of one texture, and so share a texture unit.
-struct Bundle {
+struct Stack {
   Type type;
   std::vector<ArgumentPlane> layers;
 };
@@ -444,7 +445,7 @@ struct Bundle {
 struct Plan {
   Limits limits;  ///< what its passes need
   std::vector<Temporary> temporaries;
-  std::vector<Bundle> bundles;
+  std::vector<Stack> stacks;
   std::vector<Pass> passes;
   double cost = 0;
   double costWithoutTemporaries = 0;  ///< if every value were computed wherever it is needed

@@ -175,13 +175,13 @@ struct Visitor {
   }
 
   void visit(Plan& plan) {
-    auto& [limits, temporaries, bundles, passes, cost, costWithoutTemporaries] = plan;
+    auto& [limits, temporaries, stacks, passes, cost, costWithoutTemporaries] = plan;
     for (Temporary& temporary : temporaries) {
       auto& [name, type, computeCost, readers] = temporary;
       onType(type);
     }
-    for (Bundle& bundle : bundles) {
-      auto& [type, layers] = bundle;
+    for (Stack& stack : stacks) {
+      auto& [type, layers] = stack;
       onType(type);
     }
   }
@@ -199,7 +199,7 @@ struct Visitor {
   }
 
   void visit(BundleType& bundle) {
-    auto& [name, scope, members, loc] = bundle;
+    auto& [name, arguments, scope, members, loc] = bundle;
     for (BundleMember& member : members) {
       auto& [memberName, role, type, rank, inner] = member;
       onType(type);

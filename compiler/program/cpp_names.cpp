@@ -39,7 +39,7 @@ class Scopes {
       reserveNamespaces(type.scope);
     }
     for (const BundleType& bundle : module.bundleTypes) {
-      namesOf(bundle.scope).reserve(cppName(bundle));
+      namesOf(bundle.scope).reserve(cppName(module, bundle));
       reserveNamespaces(bundle.scope);
     }
     for (const Kernel& kernel : module.kernels) reserveNamespaces(kernel.scope);
@@ -121,8 +121,8 @@ std::string cppType(const Module& module, Type type, const std::vector<std::stri
   return entry.scope == scope ? name : qualifier(entry.scope) + name;
 }
 
-std::string cppType(const BundleType& bundle, const std::vector<std::string>& scope) {
-  return (bundle.scope == scope ? "" : qualifier(bundle.scope)) + cppName(bundle);
+std::string cppType(const Module& module, const BundleType& bundle, const std::vector<std::string>& scope) {
+  return (bundle.scope == scope ? "" : qualifier(bundle.scope)) + cppName(module, bundle);
 }
 
 std::string cppName(const Module& module, const Struct& type) {
@@ -141,8 +141,13 @@ std::string cppName(const Module& module, const Struct& type) {
   return names.take(type.name);
 }
 
-std::string cppName(const BundleType& bundle) {
-  return Namer(bundle.scope.empty() ? isReservedForStruct : isMacro).take(bundle.name);
+std::string cppName(const Module& module, const BundleType& bundle) {
+  const auto isOther = [&](const BundleType& other) {
+    return other.name == bundle.name && other.scope == bundle.scope &&
+           bundleMembers(module, other, {}) != bundleMembers(module, bundle, {});
+  };
+  const std::string arguments = std::ranges::any_of(module.bundleTypes, isOther) ? bundle.arguments : "";
+  return Namer(bundle.scope.empty() ? isReservedForStruct : isMacro).take(bundle.name + arguments);
 }
 
 std::string cppName(const Kernel& kernel, const KernelParam& param) {
@@ -219,7 +224,9 @@ void reportCppNames(const Module& module, Diagnostics& diagnostics) {
     for (const StructField& field : type.fields) reportMacro(field.name, "member", type.loc);
   }
   for (const BundleType& bundle : module.bundleTypes) {
-    reportName(diagnostics, bundle.loc, "bundle", bundle.name, cppName(bundle), bundle.scope.empty());
+    const std::string name = cppName(module, bundle);
+    if (name != bundle.name + bundle.arguments)
+      reportName(diagnostics, bundle.loc, "bundle", bundle.name, name, bundle.scope.empty());
     for (const BundleMember& member : bundle.members) reportMacro(member.name, "member", bundle.loc);
   }
   for (const DeclaredStream& stream : module.streams) reportMacro(stream.name, "stream", stream.loc);

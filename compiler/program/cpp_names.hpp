@@ -37,10 +37,11 @@ std::string cppType(const ir::Module& module, ir::Type type, const std::vector<s
 /// The name of a struct or of a bundle in its namespace, and a parameter's in its function: with an underscore at the end if C++ does not allow the
 /// user's.
 std::string cppName(const ir::Module& module, const ir::Struct& type);
-std::string cppName(const ir::BundleType& bundle);
+std::string cppName(const ir::Module& module, const ir::BundleType& bundle);
 std::string cppName(const ir::Kernel& kernel, const ir::KernelParam& param);
 /// The struct of a bundle: "geometry::Scene"; just "Scene" as seen from namespace geometry.
-std::string cppType(const ir::BundleType& bundle, const std::vector<std::string>& scope = {});
+std::string cppType(const ir::Module& module, const ir::BundleType& bundle,
+                    const std::vector<std::string>& scope = {});
 
 /// Reports which kernels and structs have another name in C++, and which names C++ programs cannot write.
 void reportCppNames(const ir::Module& module, Diagnostics& diagnostics);

@@ -363,14 +363,14 @@ class Builder {
   sk::program::Plan describe(const Plan& plan) {
     std::vector<const sk::program::Element*> temporaries;
     for (const Temporary& temporary : plan.temporaries) temporaries.push_back(&element(temporary.type));
-    std::vector<sk::program::Bundle> bundles;
-    for (const Bundle& bundle : plan.bundles) {
+    std::vector<sk::program::Stack> stacks;
+    for (const Stack& stack : plan.stacks) {
       std::vector<sk::program::ArgumentPlane> layers;
-      for (const ArgumentPlane& plane : bundle.layers) {
+      for (const ArgumentPlane& plane : stack.layers) {
         layers.push_back({static_cast<std::uint8_t>(plane.argument), static_cast<std::uint8_t>(plane.plane)});
       }
-      bundles.push_back({static_cast<sk::program::Scalar>(bundle.type.scalar), bundle.type.width,
-                         storage_.keep(std::move(layers))});
+      stacks.push_back({static_cast<sk::program::Scalar>(stack.type.scalar), stack.type.width,
+                        storage_.keep(std::move(layers))});
     }
     std::vector<sk::program::Pass> passes;
     for (const Pass& pass : plan.passes) {
@@ -383,26 +383,26 @@ class Builder {
     return {.drawBuffers = static_cast<std::uint8_t>(plan.limits.drawBuffers),
             .textureUnits = static_cast<std::uint8_t>(plan.limits.textureUnits),
             .temporaries = storage_.keep(std::move(temporaries)),
-            .bundles = storage_.keep(std::move(bundles)),
+            .stacks = storage_.keep(std::move(stacks)),
             .passes = storage_.keep(std::move(passes))};
   }
 
-  /// The layers that hold the bundled planes of an argument; empty if none is bundled. Outputs never are.
+  /// The layers that hold the stacked planes of an argument; empty if none is stacked. Outputs never are.
   std::span<const sk::program::Layer> layersOf(const Plan& plan, std::uint32_t argument,
                                                const sk::program::Parameter& parameter) {
     if (parameter.role == sk::program::Role::Output) return {};
     std::vector<sk::program::Layer> layers(heldBy(parameter).fields.size());
-    bool isBundled = false;
-    for (std::size_t b = 0; b < plan.bundles.size(); ++b) {
-      const std::vector<ArgumentPlane>& places = plan.bundles[b].layers;
+    bool isStacked = false;
+    for (std::size_t b = 0; b < plan.stacks.size(); ++b) {
+      const std::vector<ArgumentPlane>& places = plan.stacks[b].layers;
       for (std::size_t layer = 0; layer < places.size(); ++layer) {
         if (places[layer].argument != argument) continue;
         layers[places[layer].plane] = {static_cast<std::int8_t>(b), static_cast<std::uint8_t>(layer),
                                        static_cast<std::uint8_t>(places.size())};
-        isBundled = true;
+        isStacked = true;
       }
     }
-    if (!isBundled) return {};
+    if (!isStacked) return {};
     return storage_.keep(std::move(layers));
   }
 

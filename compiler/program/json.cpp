@@ -57,13 +57,41 @@ class Writer {
             {"kernels", std::move(kernels_.list())},
             {"elements", std::move(elements_.list())},
             {"tables", std::move(tables)},
-            {"structs", structs()}};
+            {"structs", structs()},
+            {"bundles", bundles()}};
   }
 
  private:
   Json callable(const Unit& unit) {
     const std::string_view kind = unit.isScan ? "scan" : unit.reduction != nullptr ? "reduce" : "kernel";
-    return {{"kind", kind}, {"kernel", value(unit.kernel)}, {"reduction", value(unit.reduction)}};
+    Json bundles = Json::array();
+    for (const ir::BundleParam& bundle : module_.kernels[unit.id].bundles) {
+      bundles.push_back(
+          {{"name", bundle.name}, {"type", bundle.type}, {"first", bundle.first}, {"count", bundle.count}});
+    }
+    return {{"kind", kind},
+            {"kernel", value(unit.kernel)},
+            {"reduction", value(unit.reduction)},
+            {"bundles", std::move(bundles)}};
+  }
+
+  Json bundles() const {
+    Json list = Json::array();
+    for (const ir::BundleType& bundle : module_.bundleTypes) {
+      Json members = Json::array();
+      for (const ir::BundleMember& member : bundle.members) {
+        const bool isBundle = member.bundle.has_value();
+        members.push_back(
+            {{"name", member.name},
+             {"role", isBundle ? Json("bundle") : Json(nameOf(static_cast<p::Role>(member.role)))},
+             {"type", isBundle ? Json() : Json(ir::print(module_, member.type))},
+             {"rank", member.rank},
+             {"bundle", isBundle ? Json(*member.bundle) : Json()}});
+      }
+      list.push_back({{"name", ir::qualifier(bundle.scope) + bundle.name + bundle.arguments},
+                      {"members", std::move(members)}});
+    }
+    return list;
   }
 
   Json structs() const {

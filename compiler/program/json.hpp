@@ -14,7 +14,7 @@ namespace skc::emit {
 
 /// The version of the JSON's schema: raised when a member is removed, renamed, or changes its meaning, but not when one
 /// is added.
-inline constexpr int jsonSchema = 3;
+inline constexpr int jsonSchema = 4;
 
 /// `fileName` is the .sk file's name without directories.
 std::string jsonText(const ir::Module& module, const Program& program, std::string_view fileName);

@@ -158,7 +158,7 @@ template <>
 struct Members<p::Layer> {
   static constexpr std::string_view type = "Layer";
   static constexpr std::tuple list{
-      Member{"bundle", &p::Layer::bundle},
+      Member{"stack", &p::Layer::stack},
       Member{"layer", &p::Layer::layer},
       Member{"count", &p::Layer::count},
   };
@@ -340,12 +340,12 @@ struct Members<p::ArgumentPlane> {
 };
 
 template <>
-struct Members<p::Bundle> {
-  static constexpr std::string_view type = "Bundle";
+struct Members<p::Stack> {
+  static constexpr std::string_view type = "Stack";
   static constexpr std::tuple list{
-      Member{"scalar", &p::Bundle::scalar},
-      Member{"width", &p::Bundle::width},
-      Member{"layers", &p::Bundle::layers, Part::Layers},
+      Member{"scalar", &p::Stack::scalar},
+      Member{"width", &p::Stack::width},
+      Member{"layers", &p::Stack::layers, Part::Layers},
   };
 };
 
@@ -356,7 +356,7 @@ struct Members<p::Plan> {
       Member{"drawBuffers", &p::Plan::drawBuffers},
       Member{"textureUnits", &p::Plan::textureUnits},
       Member{"temporaries", &p::Plan::temporaries, Part::Temporaries},
-      Member{"bundles", &p::Plan::bundles, Part::Bundles},
+      Member{"stacks", &p::Plan::stacks, Part::Stacks},
       Member{"passes", &p::Plan::passes, Part::Passes},
   };
 };
@@ -446,9 +446,9 @@ static_assert(listsAll<p::Field> && listsAll<p::Element> && listsAll<p::Conditio
                   listsAll<sk::TableRange> && listsAll<p::Table> && listsAll<p::TableUse> &&
                   listsAll<p::UnrolledKernel> && listsAll<sk::CallOptions> && listsAll<p::Kernel> &&
                   listsAll<p::PassOperand> && listsAll<p::Pass> && listsAll<p::ArgumentPlane> &&
-                  listsAll<p::Bundle> && listsAll<p::Plan> && listsAll<p::SumTerm> &&
-                  listsAll<p::Reduction> && listsAll<p::FoldParts> && listsAll<p::WideReduction> &&
-                  listsAll<p::CompensatedSum> && listsAll<p::CompensatedReduction> && listsAll<p::ExactSum>,
+                  listsAll<p::Stack> && listsAll<p::Plan> && listsAll<p::SumTerm> && listsAll<p::Reduction> &&
+                  listsAll<p::FoldParts> && listsAll<p::WideReduction> && listsAll<p::CompensatedSum> &&
+                  listsAll<p::CompensatedReduction> && listsAll<p::ExactSum>,
               "a descriptor has another member: list it, and document it in docs/json.md");
 
 // ---- names of enumerators -------------------------------------------------------------------------

@@ -76,7 +76,7 @@ std::vector<std::pair<std::string, std::string>> functionParameters(const Module
   std::vector<std::pair<std::string, std::string>> list;
   for (const auto& [param, bundle] : cppParameters(kernel)) {
     if (bundle != nullptr) {
-      list.emplace_back(fmt::format("const {}&", cppType(module.bundleTypes[bundle->type], scope)),
+      list.emplace_back(fmt::format("const {}&", cppType(module, module.bundleTypes[bundle->type], scope)),
                         bundle->name);
     } else if (!isReturned(*param, form)) {
       list.emplace_back(parameterType(module, *param, uniforms, scope), cppName(kernel, *param));
@@ -157,7 +157,7 @@ std::string bundleMembers(const Module& module, const BundleType& bundle,
   for (const BundleMember& member : bundle.members) {
     std::string type;
     if (member.bundle) {
-      type = cppType(module.bundleTypes[*member.bundle], scope);
+      type = cppType(module, module.bundleTypes[*member.bundle], scope);
     } else if (member.type.kind == Type::Kind::Array) {
       const Array& array = module.arrays[member.type.index];
       type = fmt::format("sk::UniformMember<std::array<{}, {}>>", cppType(module, array.element, scope),

@@ -71,8 +71,13 @@ class FunctionWriter {
       const auto gather = std::ranges::find(kernel->params, same.chooser->name, &KernelParam::name);
       ranks.push_back(std::to_string(gather->rank));
       text_ += fmt::format("  if ({} == {}) {{\n", rank, ranks.back());
+      const std::size_t begin = text_.size();
       call(*kernel, form, uniforms);
-      if (form != Form::ReduceToValue) text_ += "  return;\n";
+      for (std::size_t at = begin; at < text_.size(); at = text_.find('\n', at) + 1) {
+        text_.insert(at, "  ");
+        if (text_.find('\n', at) == std::string::npos) break;
+      }
+      if (form != Form::ReduceToValue) text_ += "    return;\n";
       text_ += "  }\n";
     }
     text_ += fmt::format("  sk::detail::refuseRank(\"{}\", \"{}\", {}, \"{}\");\n", first.name,

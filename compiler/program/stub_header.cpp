@@ -3,6 +3,7 @@
 // Prints FILE.sk.hpp: the structs that kernels and streams use, registered as element types, the callable
 // objects, and the structs that allocate streams.
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -77,10 +78,12 @@ class HeaderWriter {
 
   /// Prints each bundle, guarded like a struct.
   void bundles() {
+    std::set<std::string> known;
     for (const BundleType& bundle : module_.bundleTypes) {
-      const std::string type = cppType(bundle);
-      const std::string name = cppType(bundle, bundle.scope);
+      const std::string type = cppType(module_, bundle);
+      const std::string name = cppName(module_, bundle);
       const std::string guard = guardOf(bundle.scope, name);
+      if (!known.insert(guard).second) continue;  // an instance for another rank
       enter({});
       const auto hash = static_cast<std::uint32_t>(textHash(bundleMembers(module_, bundle, {})));
       text_ += fmt::format("\n#ifndef {0}\n#define {0} 0x{1:08x}\n", guard, hash);

@@ -45,11 +45,11 @@ class Chooser {
  public:
   Chooser(const Module& module, const Kernel& kernel) : module_(module), kernel_(kernel) {}
 
-  std::vector<Bundle> run(const std::vector<PassReads>& passes, std::uint32_t units) {
+  std::vector<Stack> run(const std::vector<PassReads>& passes, std::uint32_t units) {
     for (const PassReads& pass : passes) {
-      while (unitsOf(pass) > units) bundleOne(pass);
+      while (unitsOf(pass) > units) stackOne(pass);
     }
-    return std::move(bundles_);
+    return std::move(stacks_);
   }
 
  private:
@@ -65,54 +65,54 @@ class Chooser {
     return planes;
   }
 
-  Bundle* bundleOf(const ArgumentPlane& plane) {
-    const auto holds = [&](const Bundle& bundle) {
-      return std::ranges::find(bundle.layers, plane) != bundle.layers.end();
+  Stack* stackOf(const ArgumentPlane& plane) {
+    const auto holds = [&](const Stack& stack) {
+      return std::ranges::find(stack.layers, plane) != stack.layers.end();
     };
-    const auto found = std::ranges::find_if(bundles_, holds);
-    return found == bundles_.end() ? nullptr : &*found;
+    const auto found = std::ranges::find_if(stacks_, holds);
+    return found == stacks_.end() ? nullptr : &*found;
   }
 
   std::uint32_t unitsOf(const PassReads& pass) {
     std::uint32_t units = pass.temporaries;
-    std::vector<const Bundle*> counted;
+    std::vector<const Stack*> counted;
     for (const ReadPlane& plane : planesRead(pass)) {
-      const Bundle* bundle = bundleOf(plane.plane);
-      if (bundle != nullptr && std::ranges::find(counted, bundle) != counted.end()) continue;
-      if (bundle != nullptr) counted.push_back(bundle);
+      const Stack* stack = stackOf(plane.plane);
+      if (stack != nullptr && std::ranges::find(counted, stack) != counted.end()) continue;
+      if (stack != nullptr) counted.push_back(stack);
       ++units;
     }
     return units;
   }
 
-  /// Adds one more plane of the pass to a bundle: to an existing one, since that frees a unit, or else to a
+  /// Adds one more plane of the pass to a stack: to an existing one, since that frees a unit, or else to a
   /// new one in the format that most planes have.
-  void bundleOne(const PassReads& pass) {
+  void stackOne(const PassReads& pass) {
     std::vector<ReadPlane> free = planesRead(pass);
-    std::erase_if(free, [&](const ReadPlane& plane) { return bundleOf(plane.plane) != nullptr; });
+    std::erase_if(free, [&](const ReadPlane& plane) { return stackOf(plane.plane) != nullptr; });
     assert(!free.empty() && "there are fewer formats than texture units");
     for (const ReadPlane& plane : free) {
-      const auto bundle = std::ranges::find(bundles_, plane.type, &Bundle::type);
-      if (bundle == bundles_.end()) continue;
-      bundle->layers.push_back(plane.plane);
+      const auto stack = std::ranges::find(stacks_, plane.type, &Stack::type);
+      if (stack == stacks_.end()) continue;
+      stack->layers.push_back(plane.plane);
       return;
     }
     const auto countOf = [&](const ReadPlane& one) {
       return std::ranges::count(free, one.type, &ReadPlane::type);
     };
     const ReadPlane most = *std::ranges::max_element(free, {}, countOf);
-    bundles_.push_back({most.type, {most.plane}});
+    stacks_.push_back({most.type, {most.plane}});
   }
 
   const Module& module_;
   const Kernel& kernel_;
-  std::vector<Bundle> bundles_;
+  std::vector<Stack> stacks_;
 };
 
-/// Chooses bundles that bring every pass within `units`, with as few planes in them as possible. Every pass
-/// reads a bundled plane from its bundle.
-std::vector<Bundle> chooseBundles(const Module& module, const Kernel& kernel,
-                                  const std::vector<PassReads>& passes, std::uint32_t units) {
+/// Chooses stacks that bring every pass within `units`, with as few planes in them as possible. Every pass
+/// reads a stacked plane from its stack.
+std::vector<Stack> chooseStacks(const Module& module, const Kernel& kernel,
+                                const std::vector<PassReads>& passes, std::uint32_t units) {
   return Chooser(module, kernel).run(passes, units);
 }
 
@@ -343,7 +343,7 @@ class Planner {
     return cost;
   }
 
-  /// Cost of copying planes to bundles if a pass reads more planes than it has texture units; infinite if the
+  /// Cost of copying planes to stacks if a pass reads more planes than it has texture units; infinite if the
   /// temporaries that the pass loads take more than half of the units.
   double unitCost(const Slice& slice) const {
     const auto temporaries = static_cast<std::uint32_t>(std::ranges::count(slice.loaded, true));
@@ -374,7 +374,7 @@ class Planner {
       reads.push_back({demand_.params(pass.slice),
                        static_cast<std::uint32_t>(std::ranges::count(pass.slice.loaded, true))});
     }
-    plan.bundles = chooseBundles(module_, kernel_, reads, limits_.textureUnits);
+    plan.stacks = chooseStacks(module_, kernel_, reads, limits_.textureUnits);
     plan.cost = costOf(passes);
     plan.costWithoutTemporaries = costWithoutTemporaries;
     return plan;

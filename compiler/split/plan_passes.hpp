@@ -39,7 +39,7 @@ struct PlannedSplit {
   std::vector<ir::VarId> saved;  ///< temporaries, in the order in which they are final
   std::vector<double> computeCosts;  ///< one per temporary
   std::vector<PlannedPass> passes;
-  std::vector<ir::Bundle> bundles;
+  std::vector<ir::Stack> stacks;
   double cost = 0;
   double costWithoutTemporaries = 0;
 };

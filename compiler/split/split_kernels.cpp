@@ -39,7 +39,7 @@ Plan makePlan(Module& module, KernelId whole, const Limits& limits) {
   const Function& entry = module.functions[module.kernels[whole].entry];
   Plan plan{.limits = {widestOf(planned.passes), limits.textureUnits},
             .temporaries = {},
-            .bundles = planned.bundles,
+            .stacks = planned.stacks,
             .passes = {},
             .cost = planned.cost,
             .costWithoutTemporaries = planned.costWithoutTemporaries};

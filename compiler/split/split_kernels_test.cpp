@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: the passes of a plan keep to the limits and write every output once; expensive values needed
-// twice are saved, cheap ones recomputed; planes are bundled if texture units run out.
+// twice are saved, cheap ones recomputed; planes are stacked if texture units run out.
 #include "split/passes.hpp"
 
 #include <catch2/catch.hpp>
@@ -107,7 +107,7 @@ TEST_CASE("outputs of unlike inputs go apart") {
   split(module);
   const Plan& plan = module.kernels[0].plans.at(0);
   CHECK(plan.passes.size() == 2);
-  CHECK(plan.bundles.empty());
+  CHECK(plan.stacks.empty());
   for (const Pass& pass : plan.passes) CHECK(pass.operands.size() == 11);
 }
 
@@ -126,9 +126,9 @@ TEST_CASE("planes share a unit where no division helps") {
   split(module);
   const Plan& plan = module.kernels[0].plans.at(0);
   CHECK(plan.passes.size() == 1);
-  REQUIRE(plan.bundles.size() == 1);
-  CHECK(plan.bundles[0].type == floatType);
-  CHECK(plan.bundles[0].layers.size() == 5);   // 20 planes, 5 of which share one unit
+  REQUIRE(plan.stacks.size() == 1);
+  CHECK(plan.stacks[0].type == floatType);
+  CHECK(plan.stacks[0].layers.size() == 5);   // 20 planes, 5 of which share one unit
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ using namespace ir;
 namespace {
 
 constexpr std::size_t mostParameters = 250;   // descriptors number them with 8 bits
-constexpr std::size_t mostPlanes = 250;       // and the planes of bundles
+constexpr std::size_t mostPlanes = 250;       // and the planes of stacks
 constexpr std::size_t mostReads = 120;        // far more than a pass reads on any device
 constexpr std::size_t promisedVectors = 200;  // of ES 3.0's 224; the programs' own uniforms take some
 

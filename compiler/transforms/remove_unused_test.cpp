@@ -131,7 +131,7 @@ TEST_CASE(
   kernel.params[r].held = pair;
   kernel.params[p].neededIf = std::move(condition);
   kernel.plans.push_back(
-      Plan{.limits = {}, .temporaries = {{"t", pair, 1, 1}}, .bundles = {{wide, {}}}, .passes = {}});
+      Plan{.limits = {}, .temporaries = {{"t", pair, 1, 1}}, .stacks = {{wide, {}}}, .passes = {}});
   run(module);
   REQUIRE(module.structs.size() == 2);
   const Kernel& after = module.kernels[0];
@@ -139,7 +139,7 @@ TEST_CASE(
   CHECK(after.params[p].held == Type::structType(0));
   CHECK(after.params[r].held == Type::structType(0));
   CHECK(after.plans[0].temporaries[0].type == Type::structType(0));
-  CHECK(after.plans[0].bundles[0].type == Type::structType(1));
+  CHECK(after.plans[0].stacks[0].type == Type::structType(1));
   REQUIRE(module.constants.size() == 1);
   CHECK(print(module, module.functions[0], *after.params[p].neededIf) == "mode == two");
 }

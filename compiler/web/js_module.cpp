@@ -21,6 +21,7 @@
 #include "program/elements.hpp"
 #include "program/schema.hpp"
 #include "program/stream_structs.hpp"
+#include "program/stub_parts.hpp"
 #include "support/text.hpp"
 #include "web/ahead_programs.hpp"
 #include "web/js_names.hpp"
@@ -85,6 +86,50 @@ class ScriptWriter {
 
  private:
   Json callable(const emit::Unit& unit) {
+    Json json = callableAlone(unit);
+    const ir::Kernel& kernel = module_.kernels[unit.id];
+    if (!kernel.bundles.empty() && !json.contains("whyNot")) json["bundles"] = bundlesOf(kernel);
+    return json;
+  }
+
+  /// The bundles among a kernel's arguments (BundleArgument in runtime/web/src/generated.ts).
+  Json bundlesOf(const ir::Kernel& kernel) const {
+    Json list = Json::array();
+    std::size_t at = 0, results = 0;
+    for (const auto& [param, bundle] : emit::cppParameters(kernel)) {
+      if (bundle != nullptr) {
+        Json reads = Json::array(), others = Json::array();
+        std::vector<std::string> paths;
+        memberPaths(bundle->type, "", paths);
+        const auto isRead = [&](const std::string& path) {
+          return std::ranges::count(kernel.params, bundle->name + "." + path, &ir::KernelParam::name) > 0;
+        };
+        for (const std::string& path : paths) (isRead(path) ? reads : others).push_back(path);
+        list.push_back({{"name", bundle->name},
+                        {"at", at},
+                        {"results", results},
+                        {"reads", std::move(reads)},
+                        {"others", std::move(others)}});
+      } else if (param->role == ir::ParamRole::Accumulator) {
+        ++results;
+      }
+      ++at;
+    }
+    return list;
+  }
+
+  /// The paths of a bundle's members, and of those of the bundles within it.
+  void memberPaths(std::uint32_t type, const std::string& prefix, std::vector<std::string>& paths) const {
+    for (const ir::BundleMember& member : module_.bundleTypes[type].members) {
+      if (member.bundle) {
+        memberPaths(*member.bundle, prefix + member.name + ".", paths);
+      } else {
+        paths.push_back(prefix + member.name);
+      }
+    }
+  }
+
+  Json callableAlone(const emit::Unit& unit) {
     if (const std::string why = whyNotOffered(module_, unit); !why.empty())
       return {{"name", unit.kernel.name}, {"whyNot", why}};
     const Forms forms(module_.kernels[unit.id].choices, unit.kernel.options);
@@ -223,12 +268,12 @@ class ScriptWriter {
   }
 
   Json planJson(const sk::program::Plan& plan, const sk::assemble::Profile& profile, bool views) {
-    Json temporaries = Json::array(), bundles = Json::array(), passes = Json::array();
+    Json temporaries = Json::array(), stacks = Json::array(), passes = Json::array();
     for (const Element* element : plan.temporaries) temporaries.push_back(indexOf(*element));
-    for (const sk::program::Bundle& bundle : plan.bundles) {
+    for (const sk::program::Stack& stack : plan.stacks) {
       Json layers = Json::array();
-      for (const auto& [argument, plane] : bundle.layers) layers.push_back({argument, plane});
-      bundles.push_back({nameOf(bundle.scalar), bundle.width, std::move(layers)});
+      for (const auto& [argument, plane] : stack.layers) layers.push_back({argument, plane});
+      stacks.push_back({nameOf(stack.scalar), stack.width, std::move(layers)});
     }
     for (const sk::program::Pass& pass : plan.passes) {
       Json kernel = kernelOf(pass.kernel), operands = Json::array();
@@ -238,7 +283,7 @@ class ScriptWriter {
       passes.push_back({{"kernel", std::move(kernel)}, {"operands", std::move(operands)}});
     }
     Json json = {{"temporaries", std::move(temporaries)}, {"passes", std::move(passes)}};
-    if (!bundles.empty()) json["bundles"] = std::move(bundles);
+    if (!stacks.empty()) json["stacks"] = std::move(stacks);
     return json;
   }
 
@@ -328,7 +373,7 @@ class ScriptWriter {
     if (!parameter.layers.empty()) {
       Json layers = Json::array();
       for (const sk::program::Layer& layer : parameter.layers)
-        layers.push_back({layer.bundle, layer.layer, layer.count});
+        layers.push_back({layer.stack, layer.layer, layer.count});
       json["layers"] = std::move(layers);
     }
     if (!parameter.neededIf.steps.empty()) {

@@ -13,7 +13,7 @@
 namespace skc::web {
 
 /// The version of what FILE.sk.js hands to the runtime, which refuses any other.
-inline constexpr int moduleSchema = 2;
+inline constexpr int moduleSchema = 3;
 
 struct JsModule {
   std::string script;  ///< FILE.sk.js

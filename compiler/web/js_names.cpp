@@ -97,6 +97,11 @@ JsNames::JsNames(const ir::Module& module) {
       scope.exports[known->second].units.push_back(number);
     }
   }
+  for (const ir::BundleType& bundle : module.bundleTypes) {
+    std::vector<std::string> path = bundle.scope;
+    path.push_back(bundle.name + bundle.arguments);
+    bundles_.push_back(interfaces.take(join(path, "_")));
+  }
   for (const std::uint32_t index : structs)
     structs_[index].arrays = interfaces.take(structs_[index].name + "Arrays");
 }

@@ -40,6 +40,9 @@ class JsNames {
   /// The name of the interface of arrays of its members.
   const std::string& arraysName(std::uint32_t index) const { return structs_.at(index).arrays; }
 
+  /// The name of a bundle's interface.
+  const std::string& bundleName(std::uint32_t index) const { return bundles_.at(index); }
+
  private:
   struct StructNames {
     std::string name, arrays;
@@ -47,6 +50,7 @@ class JsNames {
 
   std::vector<Scope> scopes_;
   std::map<std::uint32_t, StructNames> structs_;
+  std::vector<std::string> bundles_;
 };
 
 /// A parameter's name in a list of types.

@@ -8,6 +8,7 @@
 #include "assemble/append/append_passes.hpp"
 #include "ir/print.hpp"
 #include "program/stream_structs.hpp"
+#include "program/stub_parts.hpp"
 #include "support/text.hpp"
 #include "web/offered.hpp"
 
@@ -25,6 +26,7 @@ class TypesWriter {
     for (const std::uint32_t index : emit::usedStructs(module_)) {
       if (!module_.structs[index].isSynthesized) structure(index);
     }
+    for (std::uint32_t type = 0; type < module_.bundleTypes.size(); ++type) bundle(type);
     for (const Scope& scope : names_.scopes()) {
       if (!scope.name.empty()) text_ += fmt::format("\nexport declare const {}: {{\n", scope.name);
       for (const Export& one : scope.exports) {
@@ -54,6 +56,28 @@ class TypesWriter {
         name, members, arrays, print(module_, Type::structType(index)), names_.arraysName(index));
   }
 
+  /// An interface for a bundle: each call needs the members that its kernel reads.
+  void bundle(std::uint32_t type) {
+    std::string members;
+    for (const BundleMember& member : module_.bundleTypes[type].members) {
+      std::string given;
+      if (member.bundle) {
+        given = names_.bundleName(*member.bundle);
+      } else if (member.role == ParamRole::Gather) {
+        given = fmt::format("sk.Gather<{}, {}> | null", elementType(member.type), member.rank);
+      } else {
+        given = valueType(member.type);
+        if (member.role == ParamRole::Uniform && member.type.kind != Type::Kind::Array)
+          given += fmt::format(" | sk.Held<{}>", elementType(member.type));
+      }
+      members += fmt::format("  readonly {}?: {};\n", member.name, given);
+    }
+    text_ += fmt::format(
+        "\n/** Parameters that belong together. A call needs those which its kernel reads. */\nexport "
+        "interface {} {{\n{}}}\n",
+        names_.bundleName(type), members);
+  }
+
   std::string typeOf(const Export& one) const {
     std::vector<std::string> types;
     for (const std::size_t unit : one.units) types.push_back(callableType(program_.units()[unit]));
@@ -65,7 +89,13 @@ class TypesWriter {
       return fmt::format("sk.NotOffered<\"{}\">", why);
     }
     std::vector<std::string> all, taken, values;
-    for (const KernelParam& param : module_.kernels[unit.id].params) {
+    for (const auto& [own, bundle] : emit::cppParameters(module_.kernels[unit.id])) {
+      if (bundle != nullptr) {
+        all.push_back(fmt::format("{}: {}", jsParameterName(bundle->name), names_.bundleName(bundle->type)));
+        taken.push_back(all.back());
+        continue;
+      }
+      const KernelParam& param = *own;
       all.push_back(fmt::format("{}: {}", jsParameterName(param.name), parameterType(param)));
       if (param.role == ParamRole::Accumulator) {
         values.push_back(valueType(param.type));

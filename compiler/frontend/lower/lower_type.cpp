@@ -231,8 +231,8 @@ std::uint32_t ModuleLowering::bundleType(const clang::CXXRecordDecl* record) {
   bundle.name = structName(record);
   if (const auto* instance = llvm::dyn_cast<clang::ClassTemplateSpecializationDecl>(record)) {
     for (const clang::TemplateArgument& argument : instance->getTemplateArgs().asArray())
-      bundle.name += '_' + spelling(argument, record->getLocation());
-    std::ranges::replace(bundle.name, '-', 'm');
+      bundle.arguments += '_' + spelling(argument, record->getLocation());
+    std::ranges::replace(bundle.arguments, '-', 'm');
   }
   bundle.scope = scopeOf(record);
   bundle.loc = loc(record->getLocation());

@@ -134,11 +134,11 @@ struct Condition {
   std::string_view text = {};  ///< its source text, for messages
 };
 
-/// The location of a plane that shares a texture with others (Plan::bundles).
+/// The location of a plane that shares a texture with others (Plan::stacks).
 struct Layer {
-  std::int8_t bundle = -1;  ///< -1: the plane has its own texture
+  std::int8_t stack = -1;  ///< -1: the plane has its own texture
   std::uint8_t layer = 0;
-  std::uint8_t count = 1;  ///< planes in the bundle
+  std::uint8_t count = 1;  ///< planes in the stack
 };
 
 /// A number of elements: a constant plus multiples of the values of the kernel's Spec parameters, in their order.
@@ -190,7 +190,7 @@ struct Parameter {
   Condition neededIf = {};  ///< inputs, outputs, gathers: if false, the stream may be omitted
   std::uint8_t firstPlane = 0;  ///< outputs of a pass that writes only some planes: the first one,
   std::uint8_t planeCount = 0;  ///< and how many; 0 means all
-  std::span<const Layer> layers = {};  ///< one per plane; empty if no plane is in a bundle
+  std::span<const Layer> layers = {};  ///< one per plane; empty if no plane is in a stack
   /// Gathers of declared kernels: at least one for each dimension, x first. If Spec parameters count, there may be several,
   /// of which the farthest holds. Empty if nothing is known, as in code that an older skc has generated.
   std::span<const Reach> halo = {};
@@ -293,7 +293,7 @@ struct ArgumentPlane {
 
 /// Planes of one texel format that are copied to the layers of an array texture before the passes run; their
 /// programs read all of them through one texture unit.
-struct Bundle {
+struct Stack {
   Scalar scalar;
   std::uint8_t width;
   std::span<const ArgumentPlane> layers;
@@ -306,7 +306,7 @@ struct Plan {
   std::uint8_t drawBuffers;
   std::uint8_t textureUnits;
   std::span<const Element* const> temporaries;
-  std::span<const Bundle> bundles;
+  std::span<const Stack> stacks;
   std::span<const Pass> passes;
 };
 

@@ -206,11 +206,11 @@ struct Variant {
 std::string kernelProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant,
                           const program::Reduction* reduction = nullptr);
 
-/// The sampler's name for a plane of a parameter, in kernels and reductions. Planes in a bundle share its
+/// The sampler's name for a plane of a parameter, in kernels and reductions. Planes in a stack share its
 /// name.
 std::string samplerName(const program::Parameter& parameter, std::size_t plane);
-/// The name of the sampler (sampler2DArray) of a plan's bundle.
-std::string bundleName(std::size_t bundle);
+/// The name of the sampler (sampler2DArray) of a plan's stack.
+std::string stackName(std::size_t stack);
 
 /// The vertex program of a strip of four corners, those of the viewport, computed from gl_VertexID. It relays
 /// `relayed`.

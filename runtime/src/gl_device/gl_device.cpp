@@ -104,7 +104,7 @@ void GlDevice::finish() {
   throwPendingError();
 }
 
-// Lists of append outputs, bundles and temporaries of plans have the element types that the kernel declares.
+// Lists of append outputs, stacks and temporaries of plans have the element types that the kernel declares.
 // Other storages may exceed the device's limits: a vector of doubles may have more planes than one of floats.
 void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments,
                              const assemble::SpecValues& specs, const program::Plan* plan) const {

@@ -5,7 +5,7 @@ import { SkError } from './error.js';
 import type { Scalar } from './format.js';
 
 /** The version of this data that this runtime reads. */
-export const moduleSchema = 2;
+export const moduleSchema = 3;
 
 /** One plane of an element. */
 export interface Field {
@@ -50,8 +50,8 @@ export interface Parameter {
   /** Outputs of a pass that writes only some planes: the first one, and how many. */
   readonly firstPlane?: number;
   readonly planeCount?: number;
-  /** Of planes that share textures with others: a bundle or -1, the layer, and the number of planes in the bundle. */
-  readonly layers?: readonly (readonly [bundle: number, layer: number, count: number])[];
+  /** Of planes that share textures with others: a stack or -1, the layer, and the number of planes in the stack. */
+  readonly layers?: readonly(readonly [stack: number, layer: number, count: number])[];
   /**
    * Uniforms: what programs have, in place of the value's uniform and at the beginning of main(), if a stream holds it. Absent
    * for floats, ints, uints and their vectors, and if none may.
@@ -117,7 +117,7 @@ export interface Plan {
   /** Elements, by index. */
   readonly temporaries: readonly number[];
   /** Planes of arguments that are copied to the layers of a texture before the passes run. */
-  readonly bundles?: readonly (readonly [scalar: Scalar, width: number, layers: readonly (readonly [argument: number, plane: number])[]])[];
+  readonly stacks?: readonly (readonly [scalar: Scalar, width: number, layers: readonly (readonly [argument: number, plane: number])[]])[];
   readonly passes: readonly Pass[];
 }
 
@@ -161,12 +161,27 @@ export interface CallableReduction extends Reduction {
   readonly mapOperands?: readonly number[];
 }
 
+/** A bundle among the arguments of a call: an object whose members are arguments for parameters of the kernel. */
+export interface BundleArgument {
+  readonly name: string;
+  /** Its index among the arguments, and how many of those before it are results, which reduces to values do not take. */
+  readonly at: number;
+  readonly results: number;
+  /** The members that the kernel reads, in the order of its parameters: "view.eye"; and those that it does not read. */
+  readonly reads: readonly string[];
+  readonly others: readonly string[];
+}
+
+export interface WithBundles {
+  readonly bundles?: readonly BundleArgument[];
+}
+
 export interface LeftOut {
   readonly name: string;
   readonly whyNot: string;
 }
 
-export type Callable = CallableKernel | CallableReduction | LeftOut;
+export type Callable = (CallableKernel&WithBundles)|(CallableReduction&WithBundles)|LeftOut;
 
 export interface GeneratedFile {
   readonly schema: number;

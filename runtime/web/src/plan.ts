@@ -53,7 +53,11 @@ class PlanRunner implements PassRunner {
     const temporaries = this.plan.temporaries.map((element) =>
       elements[element]!.fields.map((field) => device.acquire(device.formatOf(field.scalar, field.width), domain.width, domain.height, 'a value saved between passes')),
     );
-    const bundles = (this.plan.bundles ?? []).map(([scalar, width, layers]) => copiedLayers(device, device.formatOf(scalar, width), layers.map(([argument, plane]) => call.streams[argument]?.planes[plane])));
+    const stacks = (this.plan.stacks ?? [])
+                       .map(
+                           ([scalar, width, layers]) => copiedLayers(
+                               device, device.formatOf(scalar, width),
+                               layers.map(([argument, plane]) => call.streams[argument]?.planes[plane])));
     const started = runs.flatMap(({ pass, own, program }) => {
       const drawn = this.drawnBy(pass, temporaries, planesOf);
       return drawn.length === 0 ? [] : [{ pass, own, drawn, program: program() }]; // a pass whose outputs are all omitted is none
@@ -62,14 +66,14 @@ class PlanRunner implements PassRunner {
       device.useProgram(program);
       const planes = pass.operands.map(([isTemporary, i]) => (isTemporary ? temporaries[i]! : call.streams[i]?.planes ?? []));
       bindOperands(device, program, own.values, planes, own.lies, elements, shape);
-      for (const [bundle, unit] of program.bundles) bindLayers(device, unit, bundles[bundle]!);
+      for (const [stack, unit] of program.stacks) bindLayers(device, unit, stacks[stack]!);
       program.domain.set(domain);
       device.framebufferOf(drawn);
       device.drawRects(domain.draws);
     }
     finish(targets);
     temporaries.forEach((planes) => device.release(planes));
-    for (const texture of bundles) device.context.deleteTexture(texture);
+    for (const texture of stacks) device.context.deleteTexture(texture);
   }
 
   /** Whole streams of the domain's shape. */

@@ -125,7 +125,7 @@ export interface Bound {
   readonly layout?: LayoutUniforms;
   readonly value?: ValueUniform;
   readonly step?: ValueUniform;
-  /** Of streams: the texture unit of each plane; negative: of a plan's bundle, ~unit. */
+  /** Of streams: the texture unit of each plane; negative: of a plan's stack, ~unit. */
   readonly units?: readonly number[];
 }
 
@@ -147,8 +147,8 @@ export class Program {
   values: Bound[] = [];
   /** Scatter outputs. */
   targets: Bound[] = [];
-  /** The texture unit of each of a plan's bundles. */
-  readonly bundles = new Map<number, number>();
+  /** The texture unit of each of a plan's stacks. */
+  readonly stacks = new Map<number, number>();
   domain!: LayoutUniforms;
   /** Texture units that its streams take. */
   units = 0;
@@ -181,7 +181,7 @@ export class Program {
     this.reads = [];
     this.values = [];
     this.targets = [];
-    this.bundles.clear();
+    this.stacks.clear();
     this.units = 0;
     this.integers.clear();
     const handle = gl.createProgram();
@@ -238,14 +238,16 @@ export class Program {
         this.values.push({ index, parameter, value: value('begin'), step: value('step'), layout: layout() });
       } else if (role === 'input' || role === 'gather' || role === 'uniform') {
         const units = element.fields.map((_, plane) => {
-          const bundle = parameter.layers?.[plane]?.[0] ?? -1;
-          const known = this.bundles.get(bundle);
+          const stack = parameter.layers?.[plane]?.[0] ?? -1;
+          const known = this.stacks.get(stack);
           if (known !== undefined) return ~known;
-          const name = bundle >= 0 ? `sk_bundle${bundle}` : element.fields.length === 1 ? `sk_tex_${symbol}` : `sk_tex${plane}_${symbol}`;
+          const name = stack >= 0 ? `sk_stack${stack}` :
+              element.fields.length === 1 ? `sk_tex_${symbol}` :
+                                            `sk_tex${plane}_${symbol}`;
           const unit = this.units++;
           gl.uniform1i(gl.getUniformLocation(handle, name), unit);
-          if (bundle < 0) return unit;
-          this.bundles.set(bundle, unit);
+          if (stack < 0) return unit;
+          this.stacks.set(stack, unit);
           return ~unit;
         });
         this.reads.push({ index, parameter, layout: layout(), units });

@@ -166,7 +166,7 @@ struct Layouts {
     shown("passes e", e);
   }
 
-  void bundles() {
+  void stacks() {
     const sk::Shape shape{16, 20};
     std::vector<sk::Stream<float>> f;
     for (std::uint32_t i = 0; i < 18; ++i) f.push_back(random(shape, 40 + i));
@@ -243,7 +243,7 @@ void callLayouts() {
   layouts.gathers();
   layouts.indices();
   layouts.records();
-  layouts.bundles();
+  layouts.stacks();
   layouts.values();
   layouts.dials();
 }

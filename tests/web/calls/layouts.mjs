@@ -174,7 +174,7 @@ export function layoutCases({ same, refused, filled, floats, integers, from, siz
       same('passes e', await e.read(), 2 ** 23, 1); // a sum on either side of an integer
     },
 
-    async bundles(device) {
+    async stacks(device) {
       const shape = [16, 20];
       const f = from(Array, 18, (i) => random(device, shape, 40 + i));
       const [i, j, s, r] = [numbers(device, shape, 60), numbers(device, shape, 61), device.stream('int', shape), device.stream('float', shape)];

@@ -142,11 +142,11 @@ std::string outputName(const Parameter& parameter, std::size_t plane) {
   return planeName("sk_out", parameter, plane);
 }
 
-/// In a bundle, the first layers of all planes precede their second layers.
+/// In a stack, the first layers of all planes precede their second layers.
 std::string placeOfPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
                          const Texel& texel) {
   const program::Layer& layer = layerOf(parameter, plane);
-  if (layer.bundle < 0) return place(program, texel);
+  if (layer.stack < 0) return place(program, texel);
   if (texel.shift.empty()) return fmt::format("ivec3({}, {})", texel.at, layer.layer);
   return fmt::format("{} * ivec3(1, 1, {}) + ivec3(0, 0, {})", place(program, texel), layer.count,
                      layer.layer);
@@ -261,7 +261,7 @@ std::string fetchWhole(ProgramText& program, const Parameter& parameter, std::si
                        const Texel& texel) {
   const std::string name = samplerName(parameter, plane);
   const std::string at = placeOfPlane(program, parameter, plane, texel);
-  const bool isArray = !texel.shift.empty() || layerOf(parameter, plane).bundle >= 0;
+  const bool isArray = !texel.shift.empty() || layerOf(parameter, plane).stack >= 0;
   return texel.filtered ? fmt::format("texelFetch({}, {}, 0)", name, at)
                         : texelIn(program, name, at, isArray);
 }
@@ -290,11 +290,11 @@ bool outputHasType(const Parameter& parameter) {
 
 }  // namespace
 
-std::string bundleName(std::size_t bundle) { return fmt::format("sk_bundle{}", bundle); }
+std::string stackName(std::size_t stack) { return fmt::format("sk_stack{}", stack); }
 
 std::string samplerName(const Parameter& parameter, std::size_t plane) {
   const program::Layer& layer = layerOf(parameter, plane);
-  if (layer.bundle >= 0) return bundleName(static_cast<std::size_t>(layer.bundle));
+  if (layer.stack >= 0) return stackName(static_cast<std::size_t>(layer.stack));
   return planeName("sk_tex", parameter, plane);
 }
 
@@ -322,7 +322,7 @@ std::string samplerType(std::string_view sampler, bool isArray) {
 void declareSamplers(ProgramText& program, const Parameter& parameter, bool layered) {
   for (std::size_t plane = 0; plane < heldBy(parameter).fields.size(); ++plane) {
     const std::string_view sampler = spelling(heldBy(parameter).fields[plane]).sampler;
-    const bool isArray = layered || layerOf(parameter, plane).bundle >= 0;
+    const bool isArray = layered || layerOf(parameter, plane).stack >= 0;
     program.uniform(samplerType(sampler, isArray), samplerName(parameter, plane));
   }
 }

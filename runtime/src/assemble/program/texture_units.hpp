@@ -28,12 +28,12 @@ struct OtherUnits {
 };
 
 /// The texture units of a program: one for each plane of an input or gather that the kernel needs with these values of its Spec
-/// parameters, except for planes in bundles, and one for each bundle.
+/// parameters, except for planes in stacks, and one for each stack.
 std::size_t textureUnits(const program::Kernel& kernel, const SpecValues& specs,
                          const OtherUnits& others = {});
 
-/// The bundles that a kernel of a plan reads, in order.
-std::vector<std::size_t> bundlesOf(const program::Kernel& kernel);
+/// The stacks that a kernel of a plan reads, in order.
+std::vector<std::size_t> stacksOf(const program::Kernel& kernel);
 
 /// The planes of a kernel's accumulators.
 std::size_t accumulatorPlanes(const program::Kernel& kernel);

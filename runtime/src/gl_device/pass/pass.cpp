@@ -48,14 +48,14 @@ void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTar
   }
 }
 
-/// Binds the planes of a parameter that are not in a bundle. Returns the next unit.
+/// Binds the planes of a parameter that are not in a stack. Returns the next unit.
 int bindOwnPlanes(GlDevice& device, const program::Parameter& parameter, std::span<RenderTarget> planes,
                   int unit) {
   if (parameter.layers.empty()) {
     return bindPlanes(device, planes, unit);
   }
   for (std::size_t plane = 0; plane < planes.size(); ++plane) {
-    if (parameter.layers[plane].bundle < 0) {
+    if (parameter.layers[plane].stack < 0) {
       unit = bindPlanes(device, planes.subspan(plane, 1), unit);
     }
   }
@@ -128,7 +128,7 @@ void selectLayer(gl::BoundState& bound, const DrawTarget& target, std::int32_t l
 }
 
 void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
-                  std::span<const Operand> operands, std::span<const gl::Texture> bundles) {
+                  std::span<const Operand> operands, std::span<const gl::Texture> stacks) {
   int unit = 0;
   for (KernelProgram::Read& read : program.reads) {
     const Operand& operand = operands[read.parameter];
@@ -140,8 +140,8 @@ void bindOperands(GlDevice& device, KernelProgram& program, const program::Kerne
     read.uniforms.set(device.bound(), operand.regionLayout);
     read.ratio.set(device.bound(), operand.ratio);
   }
-  for (const std::size_t bundle : program.bundles) {
-    device.bound().texture(unit, bundles[bundle].name(), true);
+  for (const std::size_t stack : program.stacks) {
+    device.bound().texture(unit, stacks[stack].name(), true);
     device.bound().sampler(unit++, 0);
   }
   for (KernelProgram::Table& table : program.tables) {
@@ -162,22 +162,22 @@ void bindOperands(GlDevice& device, KernelProgram& program, const program::Kerne
 
 void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
                const RegionLayout& domain, std::span<const Rect> rects,
-               std::span<RenderTarget* const> targets, std::span<const gl::Texture> bundles,
+               std::span<RenderTarget* const> targets, std::span<const gl::Texture> stacks,
                const assemble::Task& task) {
   KernelProgram& program = device.programs().selected().kernelProgram(kernel, operands, domain, task);
-  runKernel(device, preparedPass(device, program, targets), kernel, operands, domain, rects, targets, bundles,
+  runKernel(device, preparedPass(device, program, targets), kernel, operands, domain, rects, targets, stacks,
             task);
 }
 
 void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel& kernel,
                std::span<const Operand> operands, const RegionLayout& domain, std::span<const Rect> rects,
-               std::span<RenderTarget* const> targets, std::span<const gl::Texture> bundles,
+               std::span<RenderTarget* const> targets, std::span<const gl::Texture> stacks,
                const assemble::Task& task) {
   KernelProgram& program = pass.program;
   const PassScope traced(device, nameOf(kernel.name, stepOf(task), program), program, operands, rects,
                          texelBytesOf(targets));
   device.bound().program(program.program.name());
-  bindOperands(device, program, kernel, operands, bundles);
+  bindOperands(device, program, kernel, operands, stacks);
   program.domain.set(device.bound(), domain);
   if (task.work == assemble::Work::List) {
     program.target.set(device.bound(), operands[task.appendOutput].regionLayout);

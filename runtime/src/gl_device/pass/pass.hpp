@@ -56,23 +56,23 @@ void writeRects(GlDevice& device, const PreparedPass& pass, std::span<RenderTarg
                 std::span<const assemble::Rect> rects);
 
 /// Binds the planes that a kernel's program reads, and sets the uniforms of its parameters. The program must
-/// be bound. `operands` and `bundles` are those of runKernel().
+/// be bound. `operands` and `stacks` are those of runKernel().
 void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
-                  std::span<const Operand> operands, std::span<const gl::Texture> bundles = {});
+                  std::span<const Operand> operands, std::span<const gl::Texture> stacks = {});
 
 /// Runs a kernel on the rectangles `rects` of `targets`, which are planes of the same shape. There is one
 /// operand per parameter; the planes of output operands are ignored in favour of `targets`. No operand may
-/// read a target. `bundles` are the array textures of the plan that the kernel is a pass of. For Work::List,
+/// read a target. `stacks` are the array textures of the plan that the kernel is a pass of. For Work::List,
 /// the caller binds the pyramid. Throws sk::Error if the driver rejects the program or the targets.
 void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
                const assemble::RegionLayout& domain, std::span<const assemble::Rect> rects,
-               std::span<RenderTarget* const> targets, std::span<const gl::Texture> bundles = {},
+               std::span<RenderTarget* const> targets, std::span<const gl::Texture> stacks = {},
                const assemble::Task& task = {});
 /// Like the other runKernel(), for a prepared pass: the driver has accepted its program and its targets.
 void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel& kernel,
                std::span<const Operand> operands, const assemble::RegionLayout& domain,
                std::span<const assemble::Rect> rects, std::span<RenderTarget* const> targets,
-               std::span<const gl::Texture> bundles = {}, const assemble::Task& task = {});
+               std::span<const gl::Texture> stacks = {}, const assemble::Task& task = {});
 
 /// Compiles the programs that copyRegion() needs, so that it cannot fail later. `byKernel`: compiles them
 /// even if a blit is enough. Throws sk::Error if the driver rejects one.

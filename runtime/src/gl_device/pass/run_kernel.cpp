@@ -41,11 +41,11 @@ struct PlannedCall {
   std::span<const assemble::Rect> rects;
 };
 
-using program::Bundle;
 using program::Parameter;
 using program::Pass;
 using program::Plan;
 using program::Role;
+using program::Stack;
 
 /// Copies all layers of a plane (one if it is not layered) to the layers first, first + step, ... of a
 /// texture.
@@ -62,13 +62,13 @@ void copyLayers(GlDevice& device, RenderTarget& plane, gl::Texture& to, std::int
   }
 }
 
-/// Copies the planes of a bundle to one array texture: the first layers of all planes, then the second ones,
+/// Copies the planes of a stack to one array texture: the first layers of all planes, then the second ones,
 /// and so on.
-gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const Operand> operands) {
+gl::Texture copyStack(GlDevice& device, const Stack& stack, std::span<const Operand> operands) {
   std::vector<RenderTarget*> planes;   // null if a stream is omitted
-  const auto count = static_cast<std::int32_t>(bundle.layers.size());
+  const auto count = static_cast<std::int32_t>(stack.layers.size());
   gl::TextureSize shape{1, 1, 1};
-  for (const program::ArgumentPlane& place : bundle.layers) {
+  for (const program::ArgumentPlane& place : stack.layers) {
     const std::span<RenderTarget> renderTargets = operands[place.argument].planes;
     planes.push_back(renderTargets.empty() ? nullptr : &renderTargets[place.plane]);
     if (!renderTargets.empty()) {
@@ -79,7 +79,7 @@ gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const O
     }
   }
   shape.layers *= count;
-  gl::Texture texture(device.bound(), gl::formatOf(bundle.scalar, bundle.width), shape);
+  gl::Texture texture(device.bound(), gl::formatOf(stack.scalar, stack.width), shape);
   if (texture.name() == 0) {
     device.context().throwIfLost();
     throw Error(fmt::format("'{}' has no room for inputs that share a texture: {} layers of {} x {} texels",
@@ -103,8 +103,8 @@ class PlanExecution {
       temporaries_.emplace_back(device.memory())
           .add(*element, call.layout.texture, "a value saved between passes");
     }
-    for (const Bundle& bundle : plan.bundles) {
-      bundles_.push_back(copyBundle(device, bundle, call.operands));
+    for (const Stack& stack : plan.stacks) {
+      stacks_.push_back(copyStack(device, stack, call.operands));
     }
   }
   PlanExecution(const PlanExecution&) = delete;
@@ -130,7 +130,7 @@ class PlanExecution {
     if (targets_.empty()) {   // all of its outputs are omitted
       return;
     }
-    runKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, targets_, bundles_);
+    runKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, targets_, stacks_);
   }
 
  private:
@@ -169,7 +169,7 @@ class PlanExecution {
   GlDevice& device_;
   const PlannedCall& call_;
   std::deque<PlanesLease> temporaries_;
-  std::vector<gl::Texture> bundles_;
+  std::vector<gl::Texture> stacks_;
   std::vector<Operand> operands_;
   std::vector<RenderTarget*> targets_;
 };

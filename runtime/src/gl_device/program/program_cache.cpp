@@ -200,9 +200,9 @@ void ProgramCache::findParameters(KernelProgram& result, const program::Kernel& 
       bindSamplers(result.program, parameter, unit);
     }
   }
-  result.bundles = assemble::bundlesOf(kernel);
-  for (const std::size_t bundle : result.bundles) {
-    result.program.setSampler(assemble::bundleName(bundle), unit++);
+  result.stacks = assemble::stacksOf(kernel);
+  for (const std::size_t stack : result.stacks) {
+    result.program.setSampler(assemble::stackName(stack), unit++);
   }
   if (profile_.tables) {
     findTables(result, kernel, unit);
@@ -289,7 +289,7 @@ void KernelProgram::Pyramid::set(gl::BoundState& bound, const assemble::PyramidP
 void ProgramCache::bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit) {
   device_.bound().program(program.name());
   for (std::size_t plane = 0; plane < heldBy(parameter).fields.size(); ++plane) {
-    if (!parameter.layers.empty() && parameter.layers[plane].bundle >= 0) {
+    if (!parameter.layers.empty() && parameter.layers[plane].stack >= 0) {
       continue;
     }
     program.setSampler(assemble::samplerName(parameter, plane), unit++);

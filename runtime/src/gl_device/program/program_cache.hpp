@@ -119,12 +119,12 @@ struct KernelProgram {
   LayoutUniforms target;  ///< of the scatter output whose list it writes
   std::vector<Append> appends;
   Pyramid pyramid;  ///< its textures are on the units from `units` on
-  int units = 0;  ///< the number of units of reads, bundles and tables
+  int units = 0;  ///< the number of units of reads, stacks and tables
   std::vector<Value> values;
   std::vector<Double> doubles;
   std::vector<Value> steps;  ///< steps of iterators
   std::vector<Read> reads;  ///< their planes are on consecutive texture units from 0, in this order
-  std::vector<std::size_t> bundles;  ///< of the plan, on the next units
+  std::vector<std::size_t> stacks;  ///< of the plan, on the next units
   std::vector<Table> tables;  ///< of functions, on the next units
 };
 

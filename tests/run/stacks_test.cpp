@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Kernels whose inputs share array textures (bundles) against plain C++, on devices with guaranteed and with their own
+// Kernels whose inputs share array textures (stacks) against plain C++, on devices with guaranteed and with their own
 // limits. All results are exact.
-#include "bundles.sk.hpp"
+#include "stacks.sk.hpp"
 
 #include <array>
 #include <utility>
@@ -11,8 +11,8 @@
 #include "support/values.hpp"
 
 using namespace run_tests;
-using bundles::Narrow;
 using sk::float2;
+using stacks::Narrow;
 
 namespace {
 
@@ -74,8 +74,8 @@ TEST_CASE("narrow planes share textures") {
   const auto g = listsOf<Narrow>(15, count, narrowAt);
   onEveryLimit([&](sk::Device& device) {
     auto r = device.stream<int>({count}), s = device.stream<int>({count});
-    callWith<15>(bundles::narrow, device, {count}, g, rounds, r);
-    callWith<15>(bundles::inputs, device, {count}, g, s);
+    callWith<15>(stacks::narrow, device, {count}, g, rounds, r);
+    callWith<15>(stacks::inputs, device, {count}, g, s);
     CHECK(difference(r.read(), [&](std::size_t p) {
             int t = 0;
             for (int k = 0; k < rounds; ++k) {
@@ -119,7 +119,7 @@ TEST_CASE("rows of matrices share textures") {
     auto r = device.stream<int>({height, width});
     std::vector<sk::Stream<sk::float3x3>> inputs;
     for (const auto& list : n) inputs.push_back(streamOf<sk::float3x3>(device, {height, width}, list));
-    callWith<5>(bundles::matrices, device, {height, width}, m, inputs[0], inputs[1], inputs[2], inputs[3],
+    callWith<5>(stacks::matrices, device, {height, width}, m, inputs[0], inputs[1], inputs[2], inputs[3],
                 inputs[4], rounds, r);
     CHECK(difference(r.read(), [&](std::size_t i) {
             int t = 0;
@@ -148,7 +148,7 @@ TEST_CASE("doubles share textures") {
       10, count, [](int n, int i) { return sk::double3{0.5, n * 3.0 + i, i * 0x1p-20}; });
   onEveryLimit([&](sk::Device& device) {
     auto r = device.stream<double>({count});
-    callWith<10>(bundles::doubles, device, {count}, d, r);
+    callWith<10>(stacks::doubles, device, {count}, d, r);
     CHECK(difference(r.read(), [&](std::size_t p) {
             double sum = 0;
             for (const auto& list : d) {
@@ -172,7 +172,7 @@ TEST_CASE("gathers that share textures are interpolated without the device's fil
     // The device may filter the gathers that keep their own textures, with weights of at least 8 bits.
     const auto x = streamOf<float2>(device, where);
     auto r = device.stream<float>({count});
-    callWith<20>(bundles::sampled, device, {height, width}, a, x, r);
+    callWith<20>(stacks::sampled, device, {height, width}, a, x, r);
     const auto mirrored = [&](int i) {
       return i < static_cast<int>(width) ? i : 2 * static_cast<int>(width) - 1 - i;
     };
@@ -201,7 +201,7 @@ TEST_CASE("as many gathers as a kernel may have") {
   const auto g = listsOf<int>(120, count, [](int n, int i) { return n * 31 + i * i - 500; });
   onEveryLimit([&](sk::Device& device) {
     auto r = device.stream<int>({count});
-    callWith<120>(bundles::most, device, {count}, g, r);
+    callWith<120>(stacks::most, device, {count}, g, r);
     CHECK(difference(r.read(), [&](std::size_t p) {
             int t = 0;
             for (const auto& list : g) {
