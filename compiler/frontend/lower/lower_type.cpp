@@ -247,6 +247,9 @@ std::uint32_t ModuleLowering::bundleType(const clang::CXXRecordDecl* record) {
       member.rank = static_cast<std::uint8_t>(rank);
     } else {
       member.type = type(field->getType(), where);
+      const bool isEnum = field->getType()->isEnumeralType();  // an int in C++, as for other parameters
+      if (member.role == ir::ParamRole::Spec && isEnum && member.type.isNarrow())
+        member.type = member.type.arithmeticType();
     }
     bundle.members.push_back(std::move(member));
   }

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "frontend/tokens/bundle_editor.hpp"
 
-#include <algorithm>
-#include <utility>
-
 #include "frontend/prelude.hpp"
 
 namespace skc::frontend {
@@ -89,25 +86,15 @@ bool BundleEditor::editMember(TokenCursor& cursor, Tokens& out) {
 
 llvm::StringSet<> declaredInPlace(const TokenCursor& cursor) {
   llvm::StringSet<> names;
-  std::vector<bool> isNamespace;  // by open brace
-  bool isInNamespaces = true;  // and in no other braces
-  bool opensNamespace = false, declaresStreams = false;
-  int parentheses = 0;
+  int depth = 0;  // of braces and parentheses: C++ itself prefers the names of namespaces
+  bool declaresStreams = false;
   Token before = cursor.peek();
   for (std::size_t i = 0; cursor.peek(i).isNot(tok::eof); before = cursor.peek(i), ++i) {
     const Token& token = cursor.peek(i);
-    if (token.is(tok::kw_namespace)) opensNamespace = true;
-    if (before.isOneOf(tok::semi, tok::l_brace, tok::r_brace) || i == 0)
-      declaresStreams = isWord(token, "stream");
-    if (token.is(tok::l_paren)) ++parentheses;
-    if (token.is(tok::r_paren)) --parentheses;
-    if (token.is(tok::semi)) opensNamespace = false;
-    if (token.is(tok::l_brace)) isNamespace.push_back(std::exchange(opensNamespace, false));
-    if (token.is(tok::r_brace) && !isNamespace.empty()) isNamespace.pop_back();
-    if (token.isOneOf(tok::l_brace, tok::r_brace))
-      isInNamespaces = std::ranges::find(isNamespace, false) == isNamespace.end();
-    if (!isInNamespaces || parentheses > 0 || token.isNot(tok::identifier) || !isYielding(nameOf(token)))
-      continue;
+    if (token.isOneOf(tok::l_paren, tok::l_brace)) ++depth;
+    if (token.isOneOf(tok::r_paren, tok::r_brace)) --depth;
+    if (before.isOneOf(tok::semi, tok::r_brace) || i == 0) declaresStreams = isWord(token, "stream");
+    if (depth > 0 || token.isNot(tok::identifier) || !isYielding(nameOf(token))) continue;
     const bool isListed = cursor.at(i + 1, tok::less);  // `gather<float, 2>`, or the extents of a stream
     const bool isBehindType =
         startsType(before) && !before.isOneOf(tok::coloncolon, tok::kw_inline, tok::kw_static,

@@ -32,7 +32,7 @@ class BundleEditor {
   ParameterEditor& parameters_;
 };
 
-/// The names of the prelude which the program declares at file scope for itself (isYielding()).
+/// The names of the prelude which the program declares for itself, outside of any namespace (isYielding()).
 llvm::StringSet<> declaredInPlace(const TokenCursor& cursor);
 
 }  // namespace skc::frontend

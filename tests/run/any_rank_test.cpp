@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+//
+// Kernels of any rank against those that they stand for.
+#include "any_rank.sk.hpp"
+#include "support/devices.hpp"
+#include "support/values.hpp"
+
+using namespace run_tests;
+
+namespace {
+
+sk::Stream<float> numbered(sk::Device& device, const sk::Shape& shape) {
+  auto stream = device.stream<float>(shape);
+  std::vector<float> values;
+  for (int i = 0; i < stream.size(); ++i) values.push_back(float(i * i % 23));
+  stream.write(values);
+  return stream;
+}
+
+template <class Flat>
+void checkRelax(sk::Device& device, const sk::Shape& shape, const Flat& flat) {
+  INFO(sk::toString(shape));
+  const auto b = numbered(device, shape), u = numbered(device, shape);
+  auto v = device.stream<float>(shape), expected = device.stream<float>(shape);
+  any_rank::relax(b, u, v);
+  flat(b, u, expected);
+  CHECK(v.read() == expected.read());
+}
+
+template <class Call>
+std::string messageOf(const Call& call) {
+  try {
+    call();
+  } catch (const sk::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("the rank of a gather chooses the kernel", "[any_rank]") {
+  onSomeLayouts([](sk::Device& device) {
+    checkRelax(device, {13}, any_rank::flatRelax1);
+    checkRelax(device, {5, 7}, any_rank::flatRelax2);
+    checkRelax(device, {3, 4, 5}, any_rank::flatRelax3);
+  });
+}
+
+TEST_CASE("bundles and reduces of any rank", "[any_rank]") {
+  onGlAndNative([](sk::Device& device) {
+    auto u = device.stream<float>({1, 3}), v = device.stream<float>({1, 3});
+    u.write(std::vector<float>{1, 2, 4});
+    any_rank::scaled({.u = u, .scale = 0.5f}, v);  // outside is 2
+    CHECK(v.read() == std::vector<float>{0.5f * (2 + 2 + 4 - 4), 0.5f * (1 + 4 + 4 - 8), 0.5f * (2 + 2 + 4 - 16)});
+    auto u4 = device.stream<float>({1, 1, 1, 2}), v4 = device.stream<float>({1, 1, 1, 2});
+    u4.write(std::vector<float>{1, 3});
+    any_rank::scaled({.u = u4, .scale = 1}, v4);
+    CHECK(v4.read() == std::vector<float>{2 + 3 + 12 - 8, 1 + 2 + 12 - 24});
+
+    auto x = device.stream<float>({2, 2}), y = device.stream<float>({4});
+    x.write(std::vector<float>{1, 2, 3, 4});
+    y.write(std::vector<float>{1, 2, 3, 4});
+    CHECK(any_rank::energy(x, x) == 30.0f);
+    CHECK(any_rank::energy(y, y) == 30.0f);
+  });
+}
+
+TEST_CASE("overloads that differ in the rank of a gather", "[any_rank]") {
+  onGlAndNative([](sk::Device& device) {
+    auto r = device.stream<sk::int4>({1});
+    any_rank::total(numbered(device, {5}), r);
+    CHECK(r.read()[0].x == 5);
+    any_rank::total(numbered(device, {2, 3, 4}), r);
+    CHECK(r.read()[0].x == 40);
+    CHECK(r.read()[0].z == 20);
+    CHECK(messageOf([&] { any_rank::total(numbered(device, {2, 3}), r); }) ==
+          "total: 'a' has rank 2, but there are kernels for rank 1 or 3 alone; give such a stream, or instantiate the "
+          "template for rank 2");
+    CHECK(messageOf([&] {
+            auto v = device.stream<float>({1});
+            any_rank::scaled({.scale = 1}, v);
+          }) == "scaled: 'grid.u' is not given, and its rank chooses the kernel; give a stream of rank 2 or 4");
+  });
+}
+
+TEST_CASE("axes that elements choose, and a program's own names", "[any_rank]") {
+  onGlAndNative([](sk::Device& device) {
+    auto u = device.stream<float>({3}), v = device.stream<float>({3});
+    auto d = device.stream<int>({3});
+    u.write(std::vector<float>{1, 2, 4});
+    d.write(std::vector<int>{0, 1, 0});
+    any_rank::along(u, d, v);
+    CHECK(v.read() == std::vector<float>{2, 2, 4});
+    auto r = device.stream<float>({2});
+    own_names::gather(u, r);
+    CHECK(r.read() == std::vector<float>{-1, -4});
+  });
+}
