@@ -218,14 +218,14 @@ template <class T> struct stream_gather<T, 4> {
   gather_3d<T> operator[](int) const; gather_3d<T> operator[](uint) const;
   gather_3d<T> operator[](float) const; __sk_read<T> operator[](int4) const; __sk_read<T> operator[](float4) const;
 };
-template <class T, int rank> using gather = stream_gather<T, rank>;
+template <class T, int rank> requires (rank >= 1 && rank <= 4) using gather = stream_gather<T, rank>;
 template <int rank> struct __sk_index;
 template <> struct __sk_index<1> { using type = int; };
 template <> struct __sk_index<2> { using type = int2; };
 template <> struct __sk_index<3> { using type = int3; };
 template <> struct __sk_index<4> { using type = int4; };
-template <int rank> using index = typename __sk_index<rank>::type;
-template <int rank> typename __sk_index<rank>::type axis(int d);
+template <int rank> requires (rank >= 1 && rank <= 4) using index = typename __sk_index<rank>::type;
+template <int rank> requires (rank >= 1 && rank <= 4) typename __sk_index<rank>::type axis(int d);
 template <class T> __sk_read<T> neighbor(gather_1d<T> a, int dx);
 template <class T> __sk_read<T> neighbor(gather_2d<T> a, int dx, int dy = 0);
 template <class T> __sk_read<T> neighbor(gather_2d<T> a, int2 offset);

@@ -55,11 +55,17 @@ const clang::CXXRecordDecl* Bundles::bundle(clang::QualType type) {
   return record != nullptr && reasonFor(record) != nullptr ? record->getDefinition() : nullptr;
 }
 
+/// False for one that is wrongly declared as an element or an output.
+bool Bundles::isBundleParameter(const clang::ParmVarDecl* parameter) {
+  const ParamSyntax* syntax = syntax_.param(parameter->getLocation());
+  return isBundle(parameter->getType()) && (syntax == nullptr || syntax->role == ir::ParamRole::Uniform);
+}
+
 std::optional<Bundles::Place> Bundles::placeOf(const clang::Expr* e) {
   e = withoutCopies(e);
   if (const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(e)) {
     const auto* parameter = llvm::dyn_cast<clang::ParmVarDecl>(reference->getDecl());
-    if (parameter == nullptr || !isBundle(parameter->getType())) return std::nullopt;
+    if (parameter == nullptr || !isBundleParameter(parameter)) return std::nullopt;
     return Place{parameter, {}};
   }
   if (llvm::isa<clang::CXXThisExpr>(e)) {
@@ -82,13 +88,14 @@ std::optional<Bundles::Place> Bundles::placeOf(const clang::Expr* e) {
 
 std::vector<Bundles::Source> Bundles::parametersOf(const clang::FunctionDecl* definition) {
   std::vector<Source> sources;
-  const auto add = [&](const clang::ParmVarDecl* parameter, clang::QualType type) {
-    if (!isBundle(type)) return sources.push_back({parameter, {}});
+  const auto add = [&](const clang::ParmVarDecl* parameter, bool isBundle) {
+    if (!isBundle) return sources.push_back({parameter, {}});
     for (const Path& path : read(definition, parameter)) sources.push_back({parameter, path});
   };
   const auto* method = llvm::dyn_cast<clang::CXXMethodDecl>(definition);
-  if (method && method->isInstance()) add(nullptr, method->getFunctionObjectParameterType());
-  for (const clang::ParmVarDecl* parameter : definition->parameters()) add(parameter, parameter->getType());
+  if (method && method->isInstance()) add(nullptr, isBundle(method->getFunctionObjectParameterType()));
+  for (const clang::ParmVarDecl* parameter : definition->parameters())
+    add(parameter, isBundleParameter(parameter));
   return sources;
 }
 

@@ -71,6 +71,7 @@ class Bundles {
   std::vector<Source> parametersOf(const clang::FunctionDecl* definition);
 
  private:
+  bool isBundleParameter(const clang::ParmVarDecl* parameter);
   const std::vector<Path>& read(const clang::FunctionDecl* definition, const clang::ParmVarDecl* parameter);
   void findReads(const clang::FunctionDecl* definition);
   void findReads(const clang::Stmt* statement, const clang::FunctionDecl* reader);

@@ -305,6 +305,7 @@ std::optional<ir::VarId> FunctionLowering::streamVariable(const clang::Expr* e) 
 ir::VarId FunctionLowering::gatherVariable(const clang::Expr* e) {
   const auto stream = streamVariable(e);
   if (!stream || function_.variables[*stream].role != ir::VarRole::Gather) {
+    abandonIfUnknown(withoutCopies(e));
     module_.fail(Diag::NotAGather, e->getBeginLoc());
   }
   return *stream;

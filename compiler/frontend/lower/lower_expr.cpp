@@ -554,7 +554,7 @@ void FunctionLowering::abandonIfUnknown(const clang::Stmt* s) const {
   const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(expression);
   const auto* variable = reference ? llvm::dyn_cast<clang::VarDecl>(reference->getDecl()) : nullptr;
   if (!variable || !variable->isLocalVarDeclOrParm() || variables_.contains(variable)) return;
-  if (module_.bundles().isBundle(variable->getType())) return;
+  if (module_.bundles().placeOf(reference)) return;
   if (variable->isStaticLocal() && variable->getType().isConstQualified()) return;
   if (initialising_.contains(variable))
     module_.fail(Diag::OwnInitialValue, s->getBeginLoc(), {ModuleLowering::nameOf(variable)});

@@ -121,7 +121,11 @@ ir::Variable FunctionLowering::parameter(const clang::ValueDecl* declared, std::
   variable.name = std::move(name);
   variable.loc = module_.loc(where);
   const clang::QualType type = declared->getType();
+  const ParamSyntax* syntax = module_.syntax().param(where);
   if (const int rank = module_.gatherRank(type, where, variable.type)) {
+    const bool isGather =
+        !syntax || syntax->role == ir::ParamRole::Uniform || syntax->role == ir::ParamRole::Gather;
+    if (!isGather) module_.fail(Diag::GatherAsValue, where);
     variable.role = ir::VarRole::Gather;
     variable.rank = static_cast<std::uint8_t>(rank);
     variable.isConst = true;
@@ -134,7 +138,6 @@ ir::Variable FunctionLowering::parameter(const clang::ValueDecl* declared, std::
     return variable;
   }
   const clang::QualType value = type.getNonReferenceType();
-  const ParamSyntax* syntax = module_.syntax().param(where);
   const auto* ofFunction = llvm::dyn_cast<clang::ParmVarDecl>(declared);
   const clang::QualType written = ofFunction ? ofFunction->getOriginalType() : type;
   const auto* array = module_.context().getAsConstantArrayType(written);
