@@ -266,12 +266,23 @@ class Legalizer {
     }
   }
 
+  /// Whether the call is the third power of a variable, whose product is within the bound of pow().
+  static bool isCube(const IntrinsicCall& n) {
+    if (n.intrinsic != Intrinsic::Pow || !std::holds_alternative<VarRef>(n.args[0]->node)) return false;
+    const auto* exponent = std::get_if<Literal>(&n.args[1]->node);
+    return exponent != nullptr && n.args[1]->type.scalar == Scalar::Float && exponent->bits == 0x40400000U;
+  }
+
   void intrinsic(ExprPtr& slot, IntrinsicCall& n) {
     const Type argument = n.args[0]->type;
     if (lacks(argument)) {
       slot = doubleIntrinsic(polyfills_, n.intrinsic, std::move(n.args));
     } else if (n.intrinsic == Intrinsic::Abs && argument.scalar == Scalar::Int && !target_.comparesWithZero) {
       slot = polyfills_.call(polyfills_.magnitude(argument), std::move(n.args));
+    } else if (isCube(n)) {
+      ExprPtr& x = n.args[0];
+      ExprPtr square = ir::binary(BinaryOp::Mul, clone(*x), clone(*x), slot->loc);
+      slot = ir::binary(BinaryOp::Mul, std::move(square), std::move(x), slot->loc);
     } else if (!target_.hasIntrinsics) {
       compose(slot, n);
     }

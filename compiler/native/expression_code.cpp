@@ -350,7 +350,33 @@ Part FunctionCode::tableValue(llvm::Value* table, const Part& x) {
   return l.select(isNan, x, value[0]);
 }
 
+namespace {
+
+/// The exponent of a power of floats if it is a literal 3 or 4; else 0.
+int smallExponent(const IntrinsicCall& n) {
+  if (n.intrinsic != Intrinsic::Pow || n.args[0]->type.scalar != Scalar::Float) return 0;
+  const auto* literal = std::get_if<Literal>(&n.args[1]->node);
+  if (literal == nullptr || n.args[1]->type.scalar != Scalar::Float) return 0;
+  return literal->bits == 0x40400000U ? 3 : literal->bits == 0x40800000U ? 4 : 0;
+}
+
+}  // namespace
+
+/// A small power of floats: the product of doubles is rounded once to a float, and once, hardly, to a double.
+Parts FunctionCode::smallPower(const Parts& base, int exponent) {
+  Parts result;
+  for (const Part& part : base) {
+    const Part x = convert(l, Scalar::Float, Scalar::Double, {l.value(part)});
+    const Part square = binary(l, BinaryOp::Mul, Scalar::Double, x, x);
+    const Part power = binary(l, BinaryOp::Mul, Scalar::Double, square, exponent == 3 ? x : square);
+    result.push_back(convert(l, Scalar::Double, Scalar::Float, power));
+  }
+  return result;
+}
+
 Parts FunctionCode::parts(const Expr&, const IntrinsicCall& n) {
+  if (const int exponent = smallExponent(n); exponent != 0)
+    return smallPower(expression(*n.args[0]), exponent);
   std::vector<IntrinsicArgument> arguments;
   for (const ExprPtr& arg : n.args) arguments.push_back({arg->type, expression(*arg)});
   const llvm::IRBuilderBase::FastMathFlagGuard guard(b);

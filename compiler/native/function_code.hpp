@@ -145,6 +145,7 @@ class FunctionCode {
   Parts parts(const ir::Expr& expr, const ir::Index& n);
   Parts parts(const ir::Expr& expr, const ir::Call& n);
   Parts parts(const ir::Expr& expr, const ir::IntrinsicCall& n);
+  Parts smallPower(const Parts& base, int exponent);
   Parts parts(const ir::Expr& expr, const ir::GatherRead& n);
   Parts parts(const ir::Expr& expr, const ir::NeighborRead& n);
   Parts parts(const ir::Expr& expr, const ir::Sample& n);

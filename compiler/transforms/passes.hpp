@@ -25,6 +25,11 @@ namespace skc {
 /// whose argument is not an element has the domain's index.
 void specializeGathers(ir::Module& module, Diagnostics& diagnostics);
 
+/// expand-powers: computes squares as products, which are rounded correctly and take a tenth of the time.
+///
+///     v = pow(a - b, 2.0);         v = (a - b) * (a - b);
+void expandPowers(ir::Module& module, Diagnostics& diagnostics);
+
 /// tabulate: gives each table of a function, if some kernel may use it, a kernel that computes the function, from which the
 /// runtime fills the table. Calls are not changed: the assembler turns them into look-ups.
 void tabulate(ir::Module& module, Diagnostics& diagnostics);

@@ -40,6 +40,7 @@ void ifPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 //
 // * specialize-gathers is first: from then on a function belongs to one kernel, and later transforms may
 //   change it without looking at other callers.
+// * expand-powers precedes what recognises products, such as the terms of sums.
 // * tabulate precedes the variants for other precisions, which do not use tables.
 // * fold-constants precedes derive-combine, so that a branch that a literal disables does not hide the
 //   pattern of a fold; and guard-streams, because a removed branch needs no stream.
@@ -67,6 +68,7 @@ void ifPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 //   that no pass is planned for unused values.
 constexpr Transform transforms[] = {
     {"specialize-gathers", withoutOptions<specializeGathers>},
+    {"expand-powers", withoutOptions<expandPowers>},
     {"tabulate", withoutOptions<tabulate>},
     {"fold-constants", withoutOptions<foldConstants>},
     {"unroll-spec-loops", withoutOptions<unrollSpecLoops>},

@@ -179,3 +179,35 @@ TEST_CASE("an intrinsic of a constant is what the device computes") {
     }
   });
 }
+
+TEST_CASE("small powers are products") {
+  const std::vector<float> x = {0,           -0.0f,  1,     -1,     1.1f,  -1.7f,    3.3333f,
+                                -12345.678f, 1e-10f, 3e12f, -2e19f, 1e38f, INFINITY, -INFINITY};
+  const auto size = static_cast<std::int64_t>(x.size());
+  onGlAndNative([&](sk::Device& device) {
+    auto square = device.stream<float>({size}), moved = device.stream<float>({size}),
+         cube = device.stream<float>({size}), fourth = device.stream<float>({size});
+    auto both = device.stream<float2>({size});
+    intrinsics::powers(streamOf<float>(device, x), 0.3f, square, moved, cube, fourth, both);
+    const auto s = square.read(), m = moved.read(), c = cube.read(), f = fourth.read();
+    const auto b = both.read();
+    const bool isNative = &device == &run_tests::device("native");
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      INFO("x = " << x[i]);
+      const float difference = x[i] - 0.3f;
+      CHECK(s[i] == x[i] * x[i]);
+      CHECK(m[i] == difference * difference);
+      CHECK(b[i].x == s[i]);
+      CHECK(b[i].y == s[i]);
+      const double exact = double(x[i]) * x[i] * x[i];
+      if (isNative) {
+        CHECK(c[i] == float(exact));
+        CHECK(f[i] == float(exact * x[i]));
+      } else if (std::isfinite(float(exact))) {
+        CHECK(std::fabs(c[i] - exact) <= 1.5 * 0x1p-23 * std::fabs(exact) + 0x1p-126);
+      } else {
+        CHECK(c[i] == float(exact));
+      }
+    }
+  });
+}

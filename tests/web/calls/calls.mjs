@@ -188,6 +188,31 @@ const cases = {
     await refused('shape', 'in 48 steps, which are not whole', () => k.ramp({ begin: [0, 0], end: [8, 3] }, { begin: 0, end: 97 }, r));
   },
 
+  async bundles(device) {
+    const i = filled(device, 'int', [6, 8], from(Int32Array, 48, (k) => (k * 5) % 16));
+    const [color, height, r, line] = [random(device, [16], 31), random(device, [6, 8], 32), device.stream('float', [6, 8]), device.stream('float', [16])];
+    const ground = { height, level: 0.25 };
+    const scene = { color, ground, doubled: true, weights: [[0, 0], [0.5, 0]] };
+    k.shaded(i, scene, r);
+    same('bundle', await r.read(), 2, 4);
+    k.shaded(i, scene, r); // a repeated call
+    same('bundle', await r.read(), 2, 4);
+    same('bundle total', [await k.lifted(height, ground)], 64, 64);
+    const total = device.stream('float', [1, 1]);
+    k.lifted(height, total, ground);
+    same('bundle total', await total.read(), 64, 64);
+    k.around(height, r);
+    same('around 2', await r.read(), 4, 4);
+    k.around(color, line);
+    same('around 1', await line.read(), 4, 4);
+    await refused('misuse', "'scene.color' is null, but the kernel needs it", () => k.shaded(i, { ...scene, color: undefined }, r));
+    await refused('type', "'scene.ground.level' is declared as float", () => k.shaded(i, { ...scene, ground: { height } }, r));
+    await refused('misuse', "the bundle 'scene' has no member 'colour'; it has color, ground, doubled, weights, unread", () => k.shaded(i, { ...scene, colour: color }, r));
+    await refused('misuse', "the bundle 'scene.ground' has no member 'depth'", () => k.shaded(i, { ...scene, ground: { ...ground, depth: 1 } }, r));
+    await refused('type', "'scene' is a bundle, but 3 is given", () => k.shaded(i, 3, r));
+    await refused('misuse', '2 arguments are given, but 3 are declared', () => k.shaded(i, scene));
+  },
+
   async passes(device) {
     const shape = [24, 36];
     const y = filled(device, 'float3', shape, from(Float32Array, 3 * 24 * 36, (i) => random24(i, 22) / 16777216));

@@ -142,6 +142,27 @@ struct Calls : Streams {
     auto r = device.stream<float>({6, 8});
     ramp(sk::iter(sk::float2{0, 0}, sk::float2{8, 3}), sk::iter(0, 96), r);
     print("ramp", r.read());
+    bundles();
+  }
+
+  void bundles() {
+    auto i = device.stream<int>({6, 8});
+    std::vector<int> indices(48);
+    for (int k = 0; k < 48; ++k) indices[static_cast<std::size_t>(k)] = k * 5 % 16;
+    i.write(indices);
+    auto color = random({16}, 31), height = random({6, 8}, 32), r = device.stream<float>({6, 8});
+    auto line = device.stream<float>({16});
+    const Scene scene{.color = color,
+                      .ground = {.height = height, .level = 0.25F},
+                      .doubled = true,
+                      .weights = {sk::float2{0, 0}, sk::float2{0.5F, 0}}};
+    shaded(i, scene, r);
+    print("bundle", r.read());
+    print("bundle total", std::vector<float>{lifted(height, scene.ground)});
+    around(height, r);
+    print("around 2", r.read());
+    around(color, line);
+    print("around 1", line.read());
   }
 
   void passes() {

@@ -2,7 +2,7 @@
 //
 // What the types of calls.sk.d.ts allow, and what they reject: tsc reads this, and nothing runs it.
 import { Device, stretch, stride, type View } from 'streamkernel';
-import { Body, count, diffuse, field, heaviest, move, positive, sum } from './calls.sk.js';
+import { Body, around, count, diffuse, field, heaviest, move, positive, shaded, sum, type Scene } from './calls.sk.js';
 import { folds } from './reductions.sk.js';
 import { curve, held, mixed, Point, smooth, squares } from './layouts.sk.js';
 
@@ -22,6 +22,10 @@ export async function allowed(device: Device): Promise<number> {
   await counted;
   const many: number = pushed.shape[0];
   field.scale([1, 2], device.stream('float2', [4]), device.stream('float2', [4]));
+  const scene: Scene = { color: device.stream('float', [4]), doubled: true, weights: [[0, 1], [2, 3]] };
+  shaded(device.stream('int', [512, 512]), { ...scene, ground: { height: u, level: device.stream('float', [1]) } }, u);
+  around(u, u);
+  around(device.stream('float', [4]), device.stream('float', [4]));
   const rows = device.stream('float', [512, 1]);
   sum(u, rows);
   sum.with({ accumulate: 'exact' })(u, rows);
