@@ -60,7 +60,7 @@ endfunction()
 
 spellings(table compiler/ir/intrinsics.def "SKC_INTRINSIC\\([ \n]*[A-Za-z0-9]+,[ \n]*\"([A-Za-z0-9_]+)\"")
 spellings(written compiler/frontend/lower/lower_call.cpp "name == \"([a-zA-Z0-9]+)\"")
-set(ofStreams indexof extentof neighbor sample push)
+set(ofStreams indexof extentof neighbor sample axis push)
 set(intrinsics ${table} ${written})
 list(REMOVE_ITEM intrinsics ${ofStreams})
 expect(intrinsics 0 ${intrinsics})

@@ -292,6 +292,17 @@ std::optional<ir::VarId> FunctionLowering::variableNamed(const clang::Expr* e) c
   return found == members_.end() ? std::nullopt : std::optional(found->second);
 }
 
+/// The value of a variable, whose type in C++ is `type`.
+ExprPtr FunctionLowering::read(ir::VarId id, clang::QualType type, SourceLocation where) {
+  const ir::Variable& variable = function_.variables[id];
+  if (variable.role == ir::VarRole::Gather) module_.fail(Diag::GatherAsValue, where);
+  if (variable.role == ir::VarRole::AppendOutput) module_.fail(Diag::AppendRead, where, {variable.name});
+  if (const auto part = aliases_.find(id); part != aliases_.end()) return ir::clone(part->second);
+  ExprPtr read = make(variable.type, where, ir::VarRef{id});
+  if (!narrowSpecs_.contains(id)) return read;
+  return ir::convert(module_.type(type, where).scalar, std::move(read), module_.loc(where));
+}
+
 /// The Gather, Element or output variable that `e` names; nullopt for any other expression.
 std::optional<ir::VarId> FunctionLowering::streamVariable(const clang::Expr* e) const {
   const std::optional<ir::VarId> named = variableNamed(e);

@@ -92,17 +92,6 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
   return VisitExpr(e);
 }
 
-/// The value of a variable, whose type in C++ is `type`.
-ExprPtr FunctionLowering::read(ir::VarId id, clang::QualType type, SourceLocation where) {
-  const ir::Variable& variable = function_.variables[id];
-  if (variable.role == ir::VarRole::Gather) module_.fail(Diag::GatherAsValue, where);
-  if (variable.role == ir::VarRole::AppendOutput) module_.fail(Diag::AppendRead, where, {variable.name});
-  if (const auto part = aliases_.find(id); part != aliases_.end()) return ir::clone(part->second);
-  ExprPtr read = make(variable.type, where, ir::VarRef{id});
-  if (!narrowSpecs_.contains(id)) return read;
-  return ir::convert(module_.type(type, where).scalar, std::move(read), module_.loc(where));
-}
-
 ExprPtr FunctionLowering::VisitCXXThisExpr(const clang::CXXThisExpr* e) {
   if (module_.bundles().placeOf(e)) module_.refuseBundle(e->getType()->getPointeeType(), e->getLocation());
   if (const auto part = aliases_.find(*this_); part != aliases_.end()) return ir::clone(part->second);
