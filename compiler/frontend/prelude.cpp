@@ -226,6 +226,7 @@ template <> struct __sk_index<3> { using type = int3; };
 template <> struct __sk_index<4> { using type = int4; };
 template <int rank> requires (rank >= 1 && rank <= 4) using index = typename __sk_index<rank>::type;
 template <int rank> requires (rank >= 1 && rank <= 4) typename __sk_index<rank>::type axis(int d);
+template <int rank, class... A> requires (rank >= 1 && rank <= 4) typename __sk_index<rank>::type __sk_make_index(A...);
 template <class T> __sk_read<T> neighbor(gather_1d<T> a, int dx);
 template <class T> __sk_read<T> neighbor(gather_2d<T> a, int dx, int dy = 0);
 template <class T> __sk_read<T> neighbor(gather_2d<T> a, int2 offset);

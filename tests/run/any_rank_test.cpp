@@ -84,6 +84,17 @@ TEST_CASE("overloads that differ in the rank of a gather", "[any_rank]") {
   });
 }
 
+TEST_CASE("a gather of another rank than the domain chooses, too", "[any_rank]") {
+  onGlAndNative([](sk::Device& device) {
+    const auto a = numbered(device, {2, 3}), b = numbered(device, {2, 2, 2});
+    auto r = device.stream<float>({3}), s = device.stream<float>({2, 2});
+    any_rank::layer(a, 1, r);
+    CHECK(r.read() == std::vector<float>{9, 16, 25 - 23});
+    any_rank::layer(b, 1, s);
+    CHECK(s.read() == std::vector<float>{16, 25 - 23, 36 - 23, 49 - 46});
+  });
+}
+
 TEST_CASE("axes that elements choose, and a program's own names", "[any_rank]") {
   onGlAndNative([](sk::Device& device) {
     auto u = device.stream<float>({3}), v = device.stream<float>({3});

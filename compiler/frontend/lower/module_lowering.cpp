@@ -12,8 +12,6 @@
 #include <clang/Basic/SourceManager.h>
 #include <clang/Lex/Lexer.h>
 #include <clang/Sema/Sema.h>
-#include <llvm/ADT/SmallBitVector.h>
-#include <llvm/ADT/StringExtras.h>
 
 #include "frontend/clang_loc.hpp"
 #include "frontend/lower/function_lowering.hpp"
@@ -165,36 +163,6 @@ void ModuleLowering::kernelTemplate(const clang::FunctionTemplateDecl* declarati
     diagnostics_.report(Diag::KernelTemplateUnused, locOf(declaration->getLocation()),
                         {declaration->getNameAsString(), wordOf(kernelSyntax->kind)});
   }
-}
-
-/// If an instance's parameter types do not distinguish it in C++, appends the template's arguments to its
-/// name: blur<3> is blur_3.
-void ModuleLowering::nameInstance(const clang::FunctionDecl* instance, ir::Kernel& kernel) {
-  const SourceLocation where = instance->getLocation();
-  const clang::FunctionTemplateDecl* pattern = instance->getPrimaryTemplate();
-  const clang::TemplateParameterList* parameters = pattern->getTemplateParameters();
-  const clang::TemplateArgumentList* arguments = instance->getTemplateSpecializationArgs();
-  llvm::SmallBitVector deduced;
-  sema_.MarkDeducedTemplateParameters(pattern, deduced);
-  std::string explicitArgs;
-  for (unsigned i = 0; i < arguments->size(); ++i) {
-    const std::string argument = spelling(arguments->get(i), where);
-    explicitArgs +=
-        fmt::format("{}{} = {}", i == 0 ? "" : ", ", parameters->getParam(i)->getNameAsString(), argument);
-    if (deduced[i]) continue;
-    kernel.name += '_' + argument;
-    std::replace(kernel.name.begin(), kernel.name.end(), '-', 'm');
-  }
-  kernel.signature += fmt::format("  [{}]", explicitArgs);
-}
-
-/// "float", "3", "-1", "true".
-std::string ModuleLowering::spelling(const clang::TemplateArgument& argument, SourceLocation use) {
-  if (argument.getKind() == clang::TemplateArgument::Type) return spelling(type(argument.getAsType(), use));
-  if (argument.getKind() != clang::TemplateArgument::Integral) fail(Diag::TemplateArgumentKind, use);
-  if (argument.getIntegralType()->isBooleanType())
-    return argument.getAsIntegral().isZero() ? "false" : "true";
-  return llvm::toString(argument.getAsIntegral(), 10);
 }
 
 /// Adds the parameters of a kernel whose entry has been lowered.

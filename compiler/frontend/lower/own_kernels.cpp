@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// Decides which kernels a file's stubs offer: those that are written in it, not those of .sk files that it includes.
+// Decides which kernels a file's stubs offer: those that are written in it, not those of .sk files that it includes. Names the
+// instances of templates.
 #include <algorithm>
 #include <filesystem>
 
+#include <clang/AST/DeclTemplate.h>
+#include <clang/AST/Expr.h>
 #include <clang/Basic/SourceManager.h>
+#include <clang/Sema/Sema.h>
+#include <fmt/format.h>
+#include <llvm/ADT/SmallBitVector.h>
+#include <llvm/ADT/StringExtras.h>
 
 #include "frontend/lower/module_lowering.hpp"
 #include "support/header_files.hpp"
@@ -63,6 +70,64 @@ void ModuleLowering::keepOwnKernels() {
       kernel.reduction->combine = numbers[*kernel.reduction->combine];
   }
   module_.kernels = std::move(kernels);
+}
+
+namespace {
+
+/// Whether an expression names a template's parameter.
+bool namesParameter(const clang::Stmt* expression, unsigned index) {
+  if (expression == nullptr) return false;
+  if (const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(expression)) {
+    const auto* parameter = llvm::dyn_cast<clang::NonTypeTemplateParmDecl>(reference->getDecl());
+    if (parameter != nullptr && parameter->getIndex() == index) return true;
+  }
+  return std::ranges::any_of(expression->children(),
+                             [&](const clang::Stmt* part) { return namesParameter(part, index); });
+}
+
+/// Whether the rank of a gather, such as gather<T, N + 1>, depends on a template's parameter: then calls choose by rank.
+bool isOfRank(const clang::FunctionTemplateDecl* pattern, unsigned index) {
+  for (const clang::ParmVarDecl* parameter : pattern->getTemplatedDecl()->parameters()) {
+    const auto* type = parameter->getType()->getAs<clang::TemplateSpecializationType>();
+    const clang::TemplateDecl* made = type ? type->getTemplateName().getAsTemplateDecl() : nullptr;
+    if (made == nullptr || made->getName() != "gather" || type->template_arguments().size() != 2) continue;
+    const clang::TemplateArgument& rank = type->template_arguments()[1];
+    if (rank.getKind() == clang::TemplateArgument::Expression && namesParameter(rank.getAsExpr(), index))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+/// If an instance's parameter types do not distinguish it in C++, appends the template's arguments to its
+/// name: blur<3> is blur_3.
+void ModuleLowering::nameInstance(const clang::FunctionDecl* instance, ir::Kernel& kernel) {
+  const SourceLocation where = instance->getLocation();
+  const clang::FunctionTemplateDecl* pattern = instance->getPrimaryTemplate();
+  const clang::TemplateParameterList* parameters = pattern->getTemplateParameters();
+  const clang::TemplateArgumentList* arguments = instance->getTemplateSpecializationArgs();
+  llvm::SmallBitVector deduced;
+  sema_.MarkDeducedTemplateParameters(pattern, deduced);
+  std::string explicitArgs;
+  for (unsigned i = 0; i < arguments->size(); ++i) {
+    const std::string argument = spelling(arguments->get(i), where);
+    explicitArgs +=
+        fmt::format("{}{} = {}", i == 0 ? "" : ", ", parameters->getParam(i)->getNameAsString(), argument);
+    if (deduced[i] || isOfRank(pattern, i)) continue;
+    kernel.name += '_' + argument;
+    std::replace(kernel.name.begin(), kernel.name.end(), '-', 'm');
+  }
+  kernel.signature += fmt::format("  [{}]", explicitArgs);
+}
+
+/// "float", "3", "-1", "true".
+std::string ModuleLowering::spelling(const clang::TemplateArgument& argument, SourceLocation use) {
+  if (argument.getKind() == clang::TemplateArgument::Type) return spelling(type(argument.getAsType(), use));
+  if (argument.getKind() != clang::TemplateArgument::Integral) fail(Diag::TemplateArgumentKind, use);
+  if (argument.getIntegralType()->isBooleanType())
+    return argument.getAsIntegral().isZero() ? "false" : "true";
+  return llvm::toString(argument.getAsIntegral(), 10);
 }
 
 }  // namespace skc::frontend

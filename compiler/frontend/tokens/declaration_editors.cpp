@@ -133,6 +133,12 @@ void ConstructorEditor::copy(TokenCursor& cursor, Tokens& out) {
   const Token token = out.back();
   if (token.is(tok::semi)) noteAlias(out);
   noteBraces(out);
+  if (constructsIndices_ && isWord(token, "index") && cursor.at(tok::less)) {
+    const std::size_t end = cursor.endOfList(0);
+    if (end != 0 && cursor.at(end + 1, tok::l_paren))
+      out.back() = builder_.word(vectorConstructorName("index"), token.getLocation());
+    return;
+  }
   const bool isDeclarator = cursor.peek(1).is(tok::amp);  // `float4 (&w)[2]`
   if (token.is(tok::identifier) && cursor.at(tok::l_paren) && !isDeclarator) {
     const Name name = nameEndingAt(out, out.size());

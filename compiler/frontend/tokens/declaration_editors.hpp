@@ -14,6 +14,7 @@
 //   float2 a(3, 4), b(1);     float2 a = __sk_make_float2(3, 4), b = __sk_make_float2(1);
 //   using Color = float4;     using Color = float4;
 //   Color(1, 0, 0, 1)         __sk_make_float4(1, 0, 0, 1)        in the scope of the alias, or as ns::Color
+//   index<N>(p, 0)            __sk_make_index<N>(p, 0)
 //
 // Edits the attribute [[table(lo, hi, n, linear)]] in front of a helper function. Its arguments may be any
 // constant expressions; they become constants in front of the function.
@@ -62,6 +63,8 @@ class ConstructorEditor {
 
   /// Takes one token and appends its replacement.
   void copy(TokenCursor& cursor, std::vector<clang::Token>& out);
+  /// From here on, `index<...>(...)` is a function of the program.
+  void keepIndex() { constructsIndices_ = false; }
 
  private:
   using Tokens = std::vector<clang::Token>;
@@ -90,6 +93,7 @@ class ConstructorEditor {
   bool initialisesVariable(const TokenCursor& cursor, const Tokens& out) const;
 
   TokenBuilder builder_;
+  bool constructsIndices_ = true;
   std::vector<Alias> aliases_;
   std::vector<Brace> braces_;     ///< open ones
   int bracesSeen_ = 0;

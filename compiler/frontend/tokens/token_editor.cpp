@@ -135,6 +135,7 @@ class Editor {
       --at;
     }
     if (cursor_.at(at, tok::identifier)) templates_.insert(cursor_.peek(at).getIdentifierInfo());
+    if (isWord(cursor_.peek(at), "index")) constructors_.keepIndex();
   }
 
   /// Copies `requires Small<T> && (sizeof(T) == 4)`.
