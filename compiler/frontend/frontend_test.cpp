@@ -4,12 +4,15 @@
 // tests/diagnostics covers messages.
 #include "frontend/frontend.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include <unistd.h>
 #include <catch2/catch.hpp>
 
+#include "ir/intrinsics.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 
@@ -128,6 +131,18 @@ TEST_CASE("formulas of literals are double where they meet doubles", "[frontend]
   CHECK(inKernel("v = x * 1'0.0 + 0x1.8p1 + .5;") == "v = x * 10.0 + 3.0 + 0.5;\n");
   CHECK(inKernel("double d = x > 0 ? 0.1 : -0.2; v = d;") ==
         "double d = x > 0.0 ? 0.1d : -0.2d;\nv = float(d);\n");
+}
+
+TEST_CASE("names that kernels have are not explained as foreign ones", "[frontend]") {
+  for (const std::string_view name : {
+#define SKC_FOREIGN_NAME(known, advice) known,
+#define SKC_FOREIGN_WORD(known, ours) known,
+#include "frontend/foreign_names.def"
+       }) {
+    INFO(name);
+    CHECK(std::ranges::find(skc::ir::intrinsicRows(), name, &skc::ir::IntrinsicRow::spelling) ==
+          skc::ir::intrinsicRows().end());
+  }
 }
 
 TEST_CASE("dependencies are the main file and what it includes", "[frontend]") {

@@ -41,7 +41,7 @@ constexpr std::array<std::string_view, 4> normalized = {"unorm8", "snorm8", "uno
 
 /// True if arguments that match this letter of a signature help determine the result type.
 bool countsForResult(char letter) {
-  return std::string_view("FfVDdNnSQR").find(letter) != std::string_view::npos;
+  return std::string_view("FfVDdNnSZQR").find(letter) != std::string_view::npos;
 }
 
 /// The letters at each parameter position, over all signatures.
@@ -83,7 +83,8 @@ std::string declare(std::string_view name, const std::vector<std::string_view>& 
     case 'B':
     case 'C': type = fmt::format("__sk_B<{}>", deciding); break;
     case 'N':
-    case 'S': type = fmt::format("__sk_N<{}>", deciding); break;
+    case 'S':
+    case 'Z': type = fmt::format("__sk_N<{}>", deciding); break;
     case 'X': type = "A"; break;
     case 'f': type = positions[0] == "X" ? "float" : fmt::format("__sk_f<{}>", deciding); break;
     case 'b': type = "bool"; break;

@@ -83,7 +83,9 @@ std::string withTypes(std::string_view pattern, Type argument) {
       case 'T': text += glslSpelling(argument.scalar, argument.width); break;
       case 'I': text += glslSpelling(Scalar::Int, argument.width); break;
       case 'U': text += glslSpelling(Scalar::Uint, argument.width); break;
+      case 'F': text += glslSpelling(Scalar::Float, argument.width); break;
       case 'B': text += glslSpelling(Scalar::Bool, argument.width); break;
+      case 's': text += argument.scalar == Scalar::Int ? 'i' : 'u'; break;
       default: text += pattern[i]; continue;   // any other character, `$0` among them
     }
     ++i;

@@ -71,7 +71,7 @@ std::vector<ir::FunctionId> ownFunctionsOf(const ir::Module& module, const ir::K
 /// "sk_double3 a, sk_double b", with names from `first` on.
 std::string parameterList(const std::vector<ir::Type>& types, char first = 'a');
 
-/// Replaces $T $I $U $B in a pattern of intrinsics.def by the types of the argument's width.
+/// Replaces $T $I $U $F $B $s in a pattern of intrinsics.def by what that file says for this argument.
 std::string withTypes(std::string_view pattern, ir::Type argument);
 
 }  // namespace skc::emit

@@ -4,12 +4,13 @@
 // they call are declared, so it is compiled and run against <cmath>.
 //
 // Bounds: frexp, ldexp and modf are exact, so results are compared by their bits (NaN as NaN), all on random
-// bit patterns, denormals among them (the host keeps them).
+// bit patterns, denormals among them (the host keeps them). Functions of integers are exact, with GLSL 4.00's functions and without.
 #include "glsl/polyfills.hpp"
 
 #include <regex>
 #include <string>
 
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 
 #include "glsl/tool_folder.hpp"
@@ -28,6 +29,8 @@ constexpr std::string_view before = R"(
 #include <cstdio>
 #include <random>
 using uint = std::uint32_t;
+#undef __VERSION__
+#define __VERSION__ SK_GLSL
 using std::abs, std::clamp, std::floor, std::isinf, std::max, std::min, std::trunc;
 float intBitsToFloat(int i) { return std::bit_cast<float>(i); }
 float uintBitsToFloat(uint u) { return std::bit_cast<float>(u); }
@@ -35,6 +38,19 @@ int floatBitsToInt(float f) { return std::bit_cast<int>(f); }
 uint floatBitsToUint(float f) { return std::bit_cast<uint>(f); }
 float mix(float a, float b, bool c) { return c ? b : a; }
 float step(float edge, float x) { return x < edge ? 0 : 1; }
+int bitCount(uint x) { return std::popcount(x); }
+int findMSB(uint x) { return 31 - std::countl_zero(x); }
+int findLSB(uint x) { return x == 0 ? -1 : std::countr_zero(x); }
+void umulExtended(uint a, uint b, uint& high, uint& low) {
+  const std::uint64_t product = std::uint64_t(a) * b;
+  high = uint(product >> 32);
+  low = uint(product);
+}
+void imulExtended(int a, int b, int& high, int& low) {
+  const std::int64_t product = std::int64_t(a) * b;
+  high = int(product >> 32);
+  low = int(product);
+}
 #define sk_precise
 #define sk_keep(x) (x)
 )";
@@ -56,6 +72,19 @@ void check(float x, int e) {
   float whole = 0;
   same("modf", x, 0, sk_modf_fraction(x), std::modf(x, &whole));
 }
+void sameBits(const char* what, uint x, uint y, uint got, uint wanted) {
+  if (got != wanted && ++wrong < 20) std::printf("%s(%x, %x) = %x, not %x\n", what, x, y, got, wanted);
+}
+void checkBits(uint x, uint y) {
+  sameBits("popcount", x, 0, uint(sk_popcount(x)), uint(std::popcount(x)));
+  sameBits("popcount of int", x, 0, uint(sk_popcount(int(x))), uint(std::popcount(x)));
+  sameBits("clz", x, 0, uint(sk_clz(x)), uint(std::countl_zero(x)));
+  sameBits("clz of int", x, 0, uint(sk_clz(int(x))), uint(std::countl_zero(x)));
+  sameBits("ctz", x, 0, uint(sk_ctz(x)), uint(std::countr_zero(x)));
+  sameBits("ctz of int", x, 0, uint(sk_ctz(int(x))), uint(std::countr_zero(x)));
+  sameBits("mulhi", x, y, sk_mulhi(x, y), uint(std::uint64_t(x) * y >> 32));
+  sameBits("mulhi of int", x, y, uint(sk_mulhi(int(x), int(y))), uint(std::int64_t(int(x)) * int(y) >> 32));
+}
 void checkSum(float x, float y) {   // a double holds the sum of floats whose exponents are near
   const float sum = sk_rounded_sum(x, y);
   same("sum", x, y, sum, x + y);
@@ -68,6 +97,11 @@ void checkProduct(float x, float y) {   // a double holds the product of floats
 }
 int main() {
   std::mt19937 random(7);
+  const uint patterns[] = {0u, 1u, 2u, 3u, 0x7fffffffu, 0x80000000u, 0x80000001u, 0xfffffffeu, 0xffffffffu, 0x00ffffffu, 0x01ffffffu};
+  for (uint x : patterns) {
+    for (uint y : patterns) checkBits(x, y);
+  }
+  for (int i = 0; i < 1000000; ++i) checkBits(random() >> (i & 31), random() >> (i >> 5 & 31));
   std::uniform_real_distribution<float> number(-100000, 100000);
   for (int i = 0; i < 100000; ++i) checkSum(number(random), number(random));
   for (int i = 0; i < 100000; ++i) checkProduct(number(random), number(random));
@@ -90,17 +124,26 @@ TEST_CASE("polyfills compute what C++ computes") {
   std::string text(before);
   int count = 0;
   for (const IntrinsicRow& entry : intrinsicRows()) {
-    const std::string function = withTypes(entry.polyfill, floatType);
-    if (function.empty() || function.find("sk_exact_") != std::string::npos)
+    if (entry.polyfill.empty() || entry.polyfill.find("sk_exact_") != std::string::npos)
       continue;  // tests/numerics/sums and dots test vectors
-    text += std::regex_replace(function, std::regex(R"(\$[p()])"), "") + "\n";  // without marks of operations
-    ++count;
+    for (const IntrinsicOverload& overload : overloads(entry.id)) {
+      const Type argument = overload.arguments[0];
+      if (!argument.isScalar() || argument.isDouble()) continue;
+      const std::string function = withTypes(entry.polyfill, argument);
+      text +=
+          std::regex_replace(function, std::regex(R"(\$[p()])"), "") + "\n";  // without marks of operations
+      ++count;
+    }
   }
-  REQUIRE(count == 9);
+  REQUIRE(count == 17);
   const ToolFolder folder("polyfills");
   folder.write("polyfills.cpp", text + std::string(after));
-  CHECK(folder.complaints(std::string(SK_CXX_COMPILER) +
-                          " -std=c++20 -O1 polyfills.cpp -o polyfills && ./polyfills") == "");
+  for (const char* version : {"330", "430"}) {
+    INFO(version);
+    CHECK(folder.complaints(
+              fmt::format("{} -std=c++20 -O1 -DSK_GLSL={} polyfills.cpp -o polyfills && ./polyfills",
+                          SK_CXX_COMPILER, version)) == "");
+  }
 }
 
 }  // namespace

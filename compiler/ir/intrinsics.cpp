@@ -17,7 +17,7 @@ constexpr IntrinsicRow rows[] = {
 /// One assignment of types to the generic letters of a signature.
 struct Choice {
   int width;
-  Scalar generic;   ///< the type of N, S, Q and R, or of their components; n is this scalar
+  Scalar generic;   ///< the type of N, S, Z, Q and R, or of their components; n is this scalar
 };
 
 /// The type that a letter stands for; nullopt if the letter excludes the choice.
@@ -49,6 +49,7 @@ std::optional<Type> typeOf(char letter, Choice choice) {
     case 'S':
       return only(choice.generic == Float || choice.generic == Double || choice.generic == Int,
                   choice.generic, choice.width);
+    case 'Z': return only(choice.generic == Int || choice.generic == Uint, choice.generic, choice.width);
     case 'Q': return only(isVector && choice.generic != Bool, choice.generic, choice.width);
     case 'R': return only(isVector, choice.generic, choice.width);
     default: break;   // not a letter of the table

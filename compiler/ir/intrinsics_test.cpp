@@ -38,6 +38,10 @@ TEST_CASE("component types are the same throughout where the letter says so") {
   CHECK_FALSE(result(Intrinsic::Min, {i(), f()}));
   CHECK_FALSE(result(Intrinsic::Min, {b(), b()}));
   CHECK_FALSE(result(Intrinsic::Abs, {u()}));
+  CHECK(result(Intrinsic::Mulhi, {u(3), u(3)}) == u(3));
+  CHECK(result(Intrinsic::Popcount, {u(2)}) == i(2));
+  CHECK_FALSE(result(Intrinsic::Mulhi, {i(), u()}));
+  CHECK_FALSE(result(Intrinsic::Clz, {f()}));
 }
 
 TEST_CASE("results of another component type") {

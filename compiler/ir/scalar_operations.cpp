@@ -46,6 +46,18 @@ std::optional<double> ofIntegers(BinaryOp op, Scalar scalar, std::int64_t a, std
   return std::nullopt;
 }
 
+/// The 32 bits of an int or uint.
+std::uint32_t bitsOfInteger(double value) {
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+}
+
+/// The upper 32 bits of the product of two ints or uints.
+double highHalf(Scalar scalar, double x, double y) {
+  if (scalar == Scalar::Uint)
+    return static_cast<double>(std::uint64_t{bitsOfInteger(x)} * bitsOfInteger(y) >> 32U);
+  return static_cast<double>(static_cast<std::int64_t>(x) * static_cast<std::int64_t>(y) >> 32);
+}
+
 }  // namespace
 
 double wrapped(Scalar scalar, std::int64_t value) {
@@ -145,6 +157,10 @@ std::optional<double> computed(Intrinsic intrinsic, Scalar scalar, double x, dou
     case Intrinsic::EqualTo: return x == y;
     case Intrinsic::NotEqualTo: return x != y;
     case Intrinsic::MixBool: return z != 0 ? y : x;
+    case Intrinsic::Popcount: return std::popcount(bitsOfInteger(x));
+    case Intrinsic::Clz: return std::countl_zero(bitsOfInteger(x));
+    case Intrinsic::Ctz: return std::countr_zero(bitsOfInteger(x));
+    case Intrinsic::Mulhi: return highHalf(scalar, x, y);
     case Intrinsic::Isnan: return std::isnan(x);
     case Intrinsic::Isinf: return std::isinf(x);
     case Intrinsic::Isfinite: return std::isfinite(x);

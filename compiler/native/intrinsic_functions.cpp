@@ -192,6 +192,25 @@ Part ldexp(const ScalarBuilder& f, const Part& number, const Part& exponent) {
   return {l.b.CreateFPTrunc(product, x.value->getType())};
 }
 
+Part leadingZeros(const ScalarBuilder& f, const Part& x) {
+  return {f.l.b.CreateBinaryIntrinsic(llvm::Intrinsic::ctlz, x.value, f.l.b.getFalse())};
+}
+Part trailingZeros(const ScalarBuilder& f, const Part& x) {
+  return {f.l.b.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, x.value, f.l.b.getFalse())};
+}
+
+Part multiplyHigh(const ScalarBuilder& f, Scalar scalar, const Part& x, const Part& y) {
+  Lanes& l = f.l;
+  Part a = x, c = y;
+  l.unify(a, c);
+  llvm::Type* const wide = l.sameShape(a.value, l.int64());
+  const auto widened = [&](const Part& part) {
+    return scalar == Scalar::Int ? l.b.CreateSExt(part.value, wide) : l.b.CreateZExt(part.value, wide);
+  };
+  llvm::Value* const product = l.b.CreateMul(widened(a), widened(c));
+  return {l.b.CreateTrunc(l.b.CreateLShr(product, 32), a.value->getType())};
+}
+
 Part sumError(const ScalarBuilder& f, const Part& a, const Part& c) {
   const Part s = f.add(a, c);
   const Part d = f.sub(s, a);

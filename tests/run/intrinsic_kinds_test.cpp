@@ -314,6 +314,64 @@ TEST_CASE("integers have abs, sign, min, max and clamp") {
   });
 }
 
+namespace {
+
+/// Numbers with any number of zeros at either end, and those at the ends of their range.
+template <class Number>
+std::vector<sk::Vector4<Number>> numbersOfBits(unsigned seed) {
+  std::vector<sk::Vector4<Number>> numbers = {
+      {0, 1, Number(-1), Number(0x80000000u)}, {Number(0x7fffffff), 2, Number(-2), 0x00ffffff}, {0, 0, 0, 0}};
+  for (const uint4& v : values<uint4>(kindCount, seed)) {
+    const unsigned k = static_cast<unsigned>(numbers.size());
+    numbers.push_back(by4([&](unsigned bits) { return Number(bits << k % 32 >> k / 2 % 32); }, v));
+  }
+  return numbers;
+}
+
+template <class Number, class Kernel, class Wide>
+void checkBits(sk::Device& device, const Kernel& kernel, Wide) {
+  using Vector = sk::Vector4<Number>;
+  const auto x = numbersOfBits<Number>(10), y = numbersOfBits<Number>(11);
+  const auto size = static_cast<std::int64_t>(x.size());
+  auto a = device.stream<int4>({size}), b = device.stream<int4>({size}), c = device.stream<int4>({size});
+  auto d = device.stream<Vector>({size});
+  kernel(streamOf<Vector>(device, x), streamOf<Vector>(device, y), a, b, c, d);
+  const auto bits = [](Number n) { return static_cast<unsigned>(n); };
+  CHECK(difference(a.read(), [&](std::size_t i) {
+          return by4([&](Number n) { return std::popcount(bits(n)); }, x[i]);
+        }) == "");
+  CHECK(difference(b.read(), [&](std::size_t i) {
+          return by4([&](Number n) { return std::countl_zero(bits(n)); }, x[i]);
+        }) == "");
+  CHECK(difference(c.read(), [&](std::size_t i) {
+          return by4([&](Number n) { return std::countr_zero(bits(n)); }, x[i]);
+        }) == "");
+  CHECK(difference(d.read(), [&](std::size_t i) {
+          return by4([](Number p, Number q) { return Number(Wide{p} * q >> 32); }, x[i], y[i]);
+        }) == "");
+}
+
+}  // namespace
+
+// GLSL 4.30 has functions for these, which 3.30 and ES 3.00 lack.
+TEST_CASE("bits are counted, and products have an upper half") {
+  for (const char* profile : {"native", "glsl330", "glsl430", "essl300"}) {
+    INFO(profile);
+    sk::Device& one = device(profile);
+    checkBits<int>(one, intrinsics::intBits, std::int64_t{});
+    checkBits<unsigned>(one, intrinsics::uintBits, std::uint64_t{});
+
+    auto p = one.stream<int4>({2}), q = one.stream<int4>({2});
+    auto r = one.stream<uint4>({2});
+    intrinsics::mixedBits(streamOf<int>(one, {-1, 1 << 30}), streamOf<unsigned>(one, {3u, 0x80000000u}),
+                          streamOf<std::uint8_t>(one, {0, 200}), streamOf<bool>(one, {true, false}), p, q, r);
+    CHECK(p.read() == std::vector<int4>{{0, 1, 32, 32}, {3, 0, 24, 3}});
+    CHECK(q.read() == std::vector<int4>(2, {8, 32, 32, -1}));
+    CHECK(r.read() ==
+          std::vector<uint4>{{2, 2, 0xfffffffe, 0}, {1u << 29, 0x7fffffff, 0xfffffffe, 1u << 28}});
+  }
+}
+
 TEST_CASE("comparisons by name give bool vectors") {
   auto x = values<float3>(kindCount, 1), y = values<float3>(kindCount, 2);
   auto i = values<int3>(kindCount, 3), j = values<int3>(kindCount, 4);

@@ -204,6 +204,16 @@ bool isOfDoubles(const clang::Expr* e) {
   return (vector ? vector->getElementType() : type)->isSpecificBuiltinType(clang::BuiltinType::Double);
 }
 
+/// True if a version of the intrinsic takes floats.
+bool takesFloats(llvm::StringRef name) {
+  return llvm::any_of(ir::intrinsicRows(), [&](const ir::IntrinsicRow& row) {
+    if (row.spelling != std::string_view(name)) return false;
+    const std::vector<ir::IntrinsicOverload> overloads = ir::overloads(row.id);
+    return llvm::any_of(overloads,
+                        [](const ir::IntrinsicOverload& one) { return one.arguments[0].isFloat(); });
+  });
+}
+
 }  // namespace
 
 ExprPtr FunctionLowering::tableIntrinsic(const clang::CallExpr* e, llvm::StringRef name) {
@@ -219,8 +229,8 @@ ExprPtr FunctionLowering::tableIntrinsic(const clang::CallExpr* e, llvm::StringR
   if (!match) {
     std::string types;
     for (const ExprPtr& arg : args) types += (types.empty() ? "" : ", ") + module_.spelling(arg->type);
-    module_.fail(areDoubles ? Diag::DoubleIntrinsic : Diag::NoIntrinsic, e->getBeginLoc(),
-                 {std::string_view(name), types});
+    module_.fail(areDoubles && takesFloats(name) ? Diag::DoubleIntrinsic : Diag::NoIntrinsic,
+                 e->getBeginLoc(), {std::string_view(name), types});
   }
   for (std::size_t i = 0; i < args.size(); ++i) {
     const ir::Type wanted = match->overload.arguments[i];

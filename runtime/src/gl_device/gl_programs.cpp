@@ -28,6 +28,7 @@ assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capab
   profile.sharesTexels = traits.sharesTexels;
   profile.samples = traits.samplesTexels;
   profile.relaysUniforms = traits.relaysUniforms && profile.stage == assemble::Stage::Fragment;
+  profile.highProducts = !capabilities.isSoftware;
   return profile;
 }
 

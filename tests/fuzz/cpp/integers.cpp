@@ -83,9 +83,14 @@ Expr Body::integer(int depth) {
 Expr Body::intrinsic(int depth) {
   const TypeId type = Types::of(random_.chance(1, 2) ? Scalar::Int : Scalar::Uint);
   Expr a = value(type, depth - 1);
-  const std::size_t form = random_.below(4);
+  if (random_.chance(1, 4)) {
+    static const std::vector<std::string> counts = {"popcount($)", "clz($)", "ctz($)"};
+    return made(random_.pick(counts), Types::of(Scalar::Int), listOf(std::move(a)));
+  }
+  const std::size_t form = random_.below(5);
   if (form == 0 && type == Types::of(Scalar::Int)) return made("abs($)", type, listOf(std::move(a)));
   Expr b = value(type, depth - 1);
+  if (form == 4) return made("mulhi($, $)", type, listOf(std::move(a), std::move(b)));
   if (form < 3)
     return made(random_.chance(1, 2) ? "min($, $)" : "max($, $)", type, listOf(std::move(a), std::move(b)));
   Expr c = value(type, depth - 1);

@@ -85,6 +85,11 @@ template <class T>
 T abs(T x) {
   return x < 0 ? -x : x;
 }
+inline int popcount(uint x) { return __builtin_popcount(x); }
+inline int clz(uint x) { return x == 0 ? 32 : __builtin_clz(x); }
+inline int ctz(uint x) { return x == 0 ? 32 : __builtin_ctz(x); }
+inline int mulhi(int a, int b) { return static_cast<int>(static_cast<long long>(a) * b >> 32); }
+inline uint mulhi(uint a, uint b) { return static_cast<uint>(static_cast<unsigned long long>(a) * b >> 32); }
 inline float floor(float x) { return __builtin_floorf(x); }
 inline float ceil(float x) { return __builtin_ceilf(x); }
 inline float trunc(float x) { return __builtin_truncf(x); }

@@ -226,6 +226,11 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
                               (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
   if (hasExactFloats) program += exactExtensions(profile);
+  const auto multiplies = [](std::string_view text) {
+    return text.find("sk_mulhi(") != std::string_view::npos;
+  };
+  if (!profile.highProducts && (multiplies(body) || multiplies(declarations) || multiplies(more)))
+    program += "#define SK_WITHOUT_HIGH_PRODUCTS\n";
   if (profile.es) program += esPrecision;
   if (hasExactFloats) program += exactDefinitions(profile.barrier);
   if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles, barrierOfBodies(profile));

@@ -92,6 +92,21 @@ TEST_CASE("texels are sampled where that is faster, but for layers and filtered 
   CHECK(at({.addressing = Addressing::Plane, .filtered = true}).find("texelFetch(") != std::string::npos);
 }
 
+TEST_CASE("high products are not left to a device that cannot take them") {
+  sk::program::Kernel kernel = samples::saxpy;
+  kernel.body =
+      "void saxpy(float a, float x, float y, out float r) {\n  r = float(sk_mulhi(1u, uint(x)));\n}\n";
+  Profile software = glsl;
+  const auto isMarked = [&](const sk::program::Kernel& one) {
+    return kernelProgram(software, one, {.access = {{}, {}, {}, {}}})
+               .find("#define SK_WITHOUT_HIGH_PRODUCTS\n") != std::string::npos;
+  };
+  CHECK_FALSE(isMarked(kernel));
+  software.highProducts = false;
+  CHECK(isMarked(kernel));
+  CHECK_FALSE(isMarked(samples::saxpy));
+}
+
 TEST_CASE("a linearised element-wise kernel has none either") {
   const std::string plane = kernelProgram(glsl, samples::saxpy, {.access = {{}, {}, {}, {}}});
   const std::string linear =
