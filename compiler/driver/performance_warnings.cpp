@@ -21,8 +21,9 @@ using namespace ir;
 /// True for functions of doubles that are not a single instruction.
 bool isLibraryFunction(Intrinsic intrinsic) {
   using enum Intrinsic;
-  constexpr Intrinsic all[] = {Sin,   Cos,   Tan,   Asin, Acos, Atan, Atan2, Sinh,  Cosh, Tanh,
-                               Asinh, Acosh, Atanh, Exp,  Exp2, Log,  Log2,  Log10, Pow};
+  constexpr Intrinsic all[] = {Sin,  Cos,   Tan,   Asin,  Acos, Atan, Atan2, Sinh, Cosh,
+                               Tanh, Asinh, Acosh, Atanh, Exp,  Exp2, Log,   Log2, Log10,
+                               Pow,  Hypot, Log1p, Expm1, Cbrt, Erf,  Erfc};
   return std::ranges::find(all, intrinsic) != std::end(all);
 }
 

@@ -20,16 +20,18 @@ struct FloatIntrinsic {
 #define SKC_SYNONYM(Name, Other) \
   FloatIntrinsic { ir::Intrinsic::Name, Defined::Other, #Other }
 constexpr std::array floatIntrinsics = {
-    SKC_DEFINED(Sin),   SKC_DEFINED(Cos),        SKC_DEFINED(Tan),      SKC_DEFINED(Asin),
-    SKC_DEFINED(Acos),  SKC_DEFINED(Atan),       SKC_DEFINED(Atan2),    SKC_SYNONYM(AtanYX, Atan2),
-    SKC_DEFINED(Sinh),  SKC_DEFINED(Cosh),       SKC_DEFINED(Tanh),     SKC_DEFINED(Asinh),
-    SKC_DEFINED(Acosh), SKC_DEFINED(Atanh),      SKC_DEFINED(Exp),      SKC_DEFINED(Exp2),
-    SKC_DEFINED(Log),   SKC_DEFINED(Log2),       SKC_DEFINED(Log10),    SKC_DEFINED(Pow),
-    SKC_DEFINED(Min),   SKC_SYNONYM(Fmin, Min),  SKC_DEFINED(Max),      SKC_SYNONYM(Fmax, Max),
-    SKC_DEFINED(Clamp), SKC_DEFINED(Saturate),   SKC_DEFINED(Fract),    SKC_SYNONYM(Frac, Fract),
-    SKC_DEFINED(Mod),   SKC_DEFINED(Fmod),       SKC_DEFINED(Mix),      SKC_SYNONYM(Lerp, Mix),
-    SKC_DEFINED(Step),  SKC_DEFINED(Smoothstep), SKC_DEFINED(Sign),     SKC_DEFINED(Isnan),
-    SKC_DEFINED(Isinf), SKC_DEFINED(Length),     SKC_DEFINED(Distance), SKC_DEFINED(Normalize),
+    SKC_DEFINED(Sin),      SKC_DEFINED(Cos),         SKC_DEFINED(Tan),   SKC_DEFINED(Asin),
+    SKC_DEFINED(Acos),     SKC_DEFINED(Atan),        SKC_DEFINED(Atan2), SKC_SYNONYM(AtanYX, Atan2),
+    SKC_DEFINED(Sinh),     SKC_DEFINED(Cosh),        SKC_DEFINED(Tanh),  SKC_DEFINED(Asinh),
+    SKC_DEFINED(Acosh),    SKC_DEFINED(Atanh),       SKC_DEFINED(Exp),   SKC_DEFINED(Exp2),
+    SKC_DEFINED(Log),      SKC_DEFINED(Log2),        SKC_DEFINED(Log10), SKC_DEFINED(Pow),
+    SKC_DEFINED(Hypot),    SKC_DEFINED(Log1p),       SKC_DEFINED(Expm1), SKC_DEFINED(Cbrt),
+    SKC_DEFINED(Erf),      SKC_DEFINED(Erfc),        SKC_DEFINED(Min),   SKC_SYNONYM(Fmin, Min),
+    SKC_DEFINED(Max),      SKC_SYNONYM(Fmax, Max),   SKC_DEFINED(Clamp), SKC_DEFINED(Saturate),
+    SKC_DEFINED(Fract),    SKC_SYNONYM(Frac, Fract), SKC_DEFINED(Mod),   SKC_DEFINED(Fmod),
+    SKC_DEFINED(Mix),      SKC_SYNONYM(Lerp, Mix),   SKC_DEFINED(Step),  SKC_DEFINED(Smoothstep),
+    SKC_DEFINED(Sign),     SKC_DEFINED(Isnan),       SKC_DEFINED(Isinf), SKC_DEFINED(Length),
+    SKC_DEFINED(Distance), SKC_DEFINED(Normalize),
 };
 #undef SKC_DEFINED
 #undef SKC_SYNONYM

@@ -476,12 +476,13 @@ inline constexpr Enumeration<17> enumeration<p::ConditionOp> = {
     {"spec", "literal", "not", "and", "or", "bitAnd", "bitOr", "bitXor", "add", "sub", "mul", "less",
      "lessEqual", "greater", "greaterEqual", "equal", "notEqual"}};
 template <>
-inline constexpr Enumeration<35> enumeration<p::Intrinsic> = {
+inline constexpr Enumeration<41> enumeration<p::Intrinsic> = {
     "Intrinsic",
-    {"sin",  "cos",        "tan",   "asin",  "acos",     "atan",   "atan2",    "sinh",     "cosh",
-     "tanh", "asinh",      "acosh", "atanh", "exp",      "exp2",   "log",      "log2",     "log10",
-     "pow",  "min",        "max",   "clamp", "saturate", "fract",  "mod",      "fmod",     "mix",
-     "step", "smoothstep", "sign",  "isnan", "isinf",    "length", "distance", "normalize"}};
+    {"sin",   "cos",      "tan",    "asin",     "acos",     "atan", "atan2", "sinh",       "cosh",
+     "tanh",  "asinh",    "acosh",  "atanh",    "exp",      "exp2", "log",   "log2",       "log10",
+     "hypot", "log1p",    "expm1",  "cbrt",     "erf",      "erfc", "pow",   "min",        "max",
+     "clamp", "saturate", "fract",  "mod",      "fmod",     "mix",  "step",  "smoothstep", "sign",
+     "isnan", "isinf",    "length", "distance", "normalize"}};
 template <>
 inline constexpr Enumeration<2> enumeration<sk::Interpolation> = {"Interpolation", {"linear", "cubic"}};
 template <>

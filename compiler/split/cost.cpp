@@ -70,9 +70,10 @@ constexpr DefinedFunction definedFunctions[] = {
     {Intrinsic::Atan, 13},  {Intrinsic::Atan2, 24},  {Intrinsic::AtanYX, 24},  {Intrinsic::Sinh, 22},   {Intrinsic::Cosh, 14},
     {Intrinsic::Tanh, 23},  {Intrinsic::Asinh, 34},  {Intrinsic::Acosh, 28},   {Intrinsic::Atanh, 34},  {Intrinsic::Exp, 14},
     {Intrinsic::Exp2, 10},  {Intrinsic::Log, 21},    {Intrinsic::Log2, 21},    {Intrinsic::Log10, 22},  {Intrinsic::Pow, 56},
-    {Intrinsic::Min, 6},    {Intrinsic::Fmin, 6},    {Intrinsic::Max, 6},      {Intrinsic::Fmax, 6},    {Intrinsic::Clamp, 10},
-    {Intrinsic::Mod, 50},   {Intrinsic::Fmod, 40},   {Intrinsic::Mix, 3},      {Intrinsic::Lerp, 3},    {Intrinsic::Smoothstep, 3},
-    {Intrinsic::Length, 7}, {Intrinsic::Distance, 7}, {Intrinsic::Normalize, 7},
+    {Intrinsic::Hypot, 14}, {Intrinsic::Log1p, 27},  {Intrinsic::Expm1, 37},   {Intrinsic::Cbrt, 22},   {Intrinsic::Erf, 56},
+    {Intrinsic::Erfc, 58},  {Intrinsic::Min, 6},     {Intrinsic::Fmin, 6},     {Intrinsic::Max, 6},     {Intrinsic::Fmax, 6},
+    {Intrinsic::Clamp, 10}, {Intrinsic::Mod, 50},    {Intrinsic::Fmod, 40},    {Intrinsic::Mix, 3},     {Intrinsic::Lerp, 3},
+    {Intrinsic::Smoothstep, 3}, {Intrinsic::Length, 7}, {Intrinsic::Distance, 7}, {Intrinsic::Normalize, 7},
 };
 // clang-format on
 /// The same for an intrinsic of exact sums.

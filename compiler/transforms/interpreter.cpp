@@ -82,6 +82,12 @@ std::optional<double> inDouble(Intrinsic intrinsic, double x, double y, double z
     case Intrinsic::Atan2: return std::atan2(x, y);
     case Intrinsic::Mod: return x - y * std::floor(x / y);
     case Intrinsic::Fmod: return std::fmod(x, y);
+    case Intrinsic::Hypot: return std::hypot(x, y);
+    case Intrinsic::Log1p: return std::log1p(x);
+    case Intrinsic::Expm1: return std::expm1(x);
+    case Intrinsic::Cbrt: return std::cbrt(x);
+    case Intrinsic::Erf: return std::erf(x);
+    case Intrinsic::Erfc: return std::erfc(x);
     case Intrinsic::Fma: return x * y + z;
     default: return std::nullopt;
   }

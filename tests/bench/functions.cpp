@@ -79,6 +79,10 @@ void functions(sk::Device& device, int rounds, double sampleMilliseconds, Report
   f.measure("log2", run_log2, 0, 10);
   f.measure("log10", run_log10, 0, 10);
   f.measure("pow", run_pow, 0, 10);
+  f.measure("log1p", run_log1p, -1, 10);
+  f.measure("expm1", run_expm1, -80, 80);
+  f.measure("hypot", run_hypot, -10, 10);
+  f.measure("cbrt", run_cbrt, -10, 10);
   f.measure("min", run_min, -1, 1);
   f.measure("max", run_max, -1, 1);
   f.measure("clamp", run_clamp, -1, 1);

@@ -134,6 +134,11 @@ const Case cases[] = {
     WIDE(log, std::log(x), {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
     WIDE(log2, std::log2(x), {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
     WIDE(log10, std::log10(x), {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
+    WIDE(log1p, std::log1p(x), {-1, 10}, {-0.5, 0.5}, {-1, -0.999}, {-1e-3, 1e-3}),
+    WIDE(expm1, std::expm1(x), {-1, 1}, {-88, 88}, {-745, 710}, {-1e-3, 1e-3}),
+    WIDE(cbrt, std::cbrt(x), {-10, 10}, {0.5, 8}, {1e-20, 1e-18}, {-1e37, 1e37}),
+    WIDE(erf, std::erf(x), {-6, 6}, {-1, 1}, {0.74, 0.76}, {-1e-3, 1e-3}),
+    WIDE(erfc, std::erfc(x), {-6, 9}, {-1, 1}, {0.74, 0.76}, {8, 27}),
     WIDE(radians, x * (pi / 180), {-400, 400}),
     WIDE(degrees, x * (180 / pi), {-10, 10}),
 };
@@ -184,18 +189,24 @@ TEST_CASE("powers and angles") {
       const auto by = streamOf<double>(device, {side, side}, y);
       of_pow(in, by, r);
       of_atan2(in, by, a);
-      const std::vector<double> powers = r.read(), angles = a.read();
-      Worst power, angle;
+      auto l = device.stream<double>({side, side});
+      of_hypot(in, by, l);
+      const std::vector<double> powers = r.read(), angles = a.read(), lengths = l.read();
+      Worst power, angle, length;
       for (std::size_t i = 0; i < count; ++i) {
         const long double p = std::pow(static_cast<long double>(x[i]), static_cast<long double>(y[i]));
         power.add(errorOf(config, powers[i], p), powers[i], p, x[i], y[i]);
         const long double t = std::atan2(static_cast<long double>(x[i]), static_cast<long double>(y[i]));
         angle.add(errorOf(config, angles[i], t), angles[i], t, x[i], y[i]);
+        const long double h = std::hypot(static_cast<long double>(x[i]), static_cast<long double>(y[i]));
+        length.add(errorOf(config, lengths[i], h), lengths[i], h, x[i], y[i]);
       }
       INFO(told("pow", power));
       CHECK(power.error <= boundOf(config, "pow"));
       INFO(told("atan2", angle));
       CHECK(angle.error <= boundOf(config, "atan2"));
+      INFO(told("hypot", length));
+      CHECK(length.error <= boundOf(config, "hypot"));
     }
   });
 }
@@ -228,6 +239,8 @@ TEST_CASE("the special cases of C99, of doubles") {
     check("pow", [](double a, double b) { return std::pow(a, b); });
     of_atan2(in, streamOf<double>(device, y), r);
     check("atan2", [](double a, double b) { return std::atan2(a, b); });
+    of_hypot(in, streamOf<double>(device, y), r);
+    check("hypot", [](double a, double b) { return std::hypot(a, b); });
     of_atan(in, streamOf<double>(device, y), r);
     check("atan of two", [](double a, double b) { return std::atan2(a, b); });
     for (const Case& one : cases) {

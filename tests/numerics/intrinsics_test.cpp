@@ -138,6 +138,11 @@ const Case cases[] = {
     MEASURED(log, std::log(x), {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
     MEASURED(log2, std::log2(x), {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
     MEASURED(log10, std::log10(x), {0, 10}, {0.99, 1.01}, {0.9999, 1.0001}, {0.70, 0.72}),
+    MEASURED(log1p, std::log1p(x), {-1, 10}, {-0.5, 0.5}, {-1e-3, 1e-3}, {-1, -0.999}, {-0.3, -0.28}, {0.4, 0.43}),
+    MEASURED(expm1, std::expm1(x), {-1, 1}, {-104, 89}, {88.7, 88.73}, {-1e-3, 1e-3}, {28, 32}, {-0.4, 0.4}),
+    MEASURED(cbrt, std::cbrt(x), {-10, 10}, {0.49, 4.01}, {1e-39, 1e-37}, {-1e30, 1e30}),
+    MEASURED(erf, std::erf(x), {-4, 4}, {-0.6, 0.6}, {0.49, 0.51}, {-1e-3, 1e-3}),
+    MEASURED(erfc, std::erfc(x), {-4, 10}, {-0.6, 0.6}, {0.49, 0.51}, {9, 10.2}, {0.24, 0.26}),
     MEASURED(sqrt, std::sqrt(x), {0, 10}, {1e30, 3e38}),
     MEASURED(inversesqrt, 1 / std::sqrt(x), {0, 10}, {1e30, 3e38}),
     MEASURED(radians, x * 0.017453292519943295, {-400, 400}),
@@ -249,6 +254,10 @@ TEST_CASE("powers and angles, over all pairs of floats") {
           worst(device, of_atan2, [](double a, double b) { return std::atan2(a, b); }, one.x, one.y);
       INFO(one.name << ": atan2 " << angle.error << " ulp: " << angle.where);
       CHECK(angle.error <= boundOf("atan2", device));
+      const Worst length =
+          worst(device, of_hypot, [](double a, double b) { return std::hypot(a, b); }, one.x, one.y);
+      INFO(one.name << ": hypot " << length.error << " ulp: " << length.where);
+      CHECK(length.error <= boundOf("hypot", device));
       const Worst left =
           worst(device, of_fmod, [](double a, double b) { return std::fmod(a, b); }, one.x, one.y);
       INFO(one.name << ": fmod " << left.error << " ulp: " << left.where);
@@ -273,14 +282,17 @@ TEST_CASE("the special cases of C99") {
     auto angle = device.stream<float>({n});
     auto left = device.stream<float>({n});
     auto modulo = device.stream<float>({n});
+    auto length = device.stream<float>({n});
     of_pow(streamOf<float>(device, x), streamOf<float>(device, y), power);
     of_atan2(streamOf<float>(device, x), streamOf<float>(device, y), angle);
     of_fmod(streamOf<float>(device, x), streamOf<float>(device, y), left);
     of_mod(streamOf<float>(device, x), streamOf<float>(device, y), modulo);
+    of_hypot(streamOf<float>(device, x), streamOf<float>(device, y), length);
     const auto p = power.read();
     const auto a = angle.read();
     const auto l = left.read();
     const auto m = modulo.read();
+    const auto h = length.read();
     for (std::size_t i = 0; i < x.size(); ++i) {
       INFO(x[i] << ", " << y[i]);
       CHECK(ulps(p[i], std::pow(double{x[i]}, double{y[i]})) <= 1.5);
@@ -288,6 +300,7 @@ TEST_CASE("the special cases of C99") {
       CHECK(ulps(a[i], std::atan2(double{x[i]}, double{y[i]})) <= 2.3);
       if (!std::isnan(a[i])) CHECK(std::signbit(a[i]) == std::signbit(std::atan2(x[i], y[i])));
       CHECK(isSame(l[i], std::fmod(x[i], y[i])));
+      CHECK(ulps(h[i], std::hypot(double{x[i]}, double{y[i]})) <= boundOf("hypot", device));
       const float wanted = l[i] != 0 && (l[i] < 0) != (y[i] < 0) ? l[i] + y[i] : l[i];
       CHECK(isSame(m[i], wanted));
     }
@@ -310,7 +323,28 @@ TEST_CASE("zeros keep their sign") {
     CHECK(keepsSign(of_sinh));
     CHECK(keepsSign(of_tanh));
     CHECK(keepsSign(of_asinh));
+    CHECK(keepsSign(of_log1p));
+    CHECK(keepsSign(of_expm1));
+    CHECK(keepsSign(of_cbrt));
+    CHECK(keepsSign(of_erf));
     CHECK(keepsSign(of_atanh));
+  });
+}
+
+TEST_CASE("hypotenuses overflow only where they are beyond the largest float") {
+  const std::vector<float> x{3e38F, 3e38F, 2.4e38F, 1e-30F, 3e-38F, 1e30F, inf, -inf, nan, 3.4028235e38F};
+  const std::vector<float> y{3e38F, 1.5e38F, 2.4e38F, 1e-30F, -4e-38F, 1e-30F, nan, 1.0F, 1.0F, 1e30F};
+  onEveryTarget([&](sk::Device& device) {
+    const auto n = static_cast<std::int64_t>(x.size());
+    auto r = device.stream<float>({n});
+    of_hypot(streamOf<float>(device, x), streamOf<float>(device, y), r);
+    const std::vector<float> got = r.read();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      INFO(x[i] << ", " << y[i] << ": " << got[i]);
+      CHECK(ulps(got[i], std::hypot(double{x[i]}, double{y[i]})) <= boundOf("hypot", device));
+    }
+    CHECK(got[0] == inf);
+    CHECK(got[6] == inf);
   });
 }
 

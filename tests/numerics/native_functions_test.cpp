@@ -108,6 +108,11 @@ const UnaryCase<Real> unaryCases[] = {
     UNARY(log, 0.5F, 2),
     UNARY(log2, 0.5F, 2),
     UNARY(log10, 0.5F, 2),
+    UNARY(log1p, -1, 2),
+    UNARY(expm1, -2, 2),
+    UNARY(cbrt, 0.5F, 8),
+    UNARY(erf, -4, 4),
+    UNARY(erfc, -4, 28),
 };
 // clang-format on
 
@@ -198,14 +203,13 @@ template <class Real>
 const std::vector<BinaryCase<Real>> binaryCases = {};
 template <>
 const std::vector<BinaryCase<float>> binaryCases<float> = {
-    BINARY(float, pow, mpfr_pow),
-    BINARY(float, atan, mpfr_atan2),
-    BINARY(float, atan2, mpfr_atan2),
-    BINARY(float, fmod, mpfr_fmod),
-    BINARY(float, mod, numerics::floorModulo),
+    BINARY(float, hypot, mpfr_hypot), BINARY(float, pow, mpfr_pow),
+    BINARY(float, atan, mpfr_atan2),  BINARY(float, atan2, mpfr_atan2),
+    BINARY(float, fmod, mpfr_fmod),   BINARY(float, mod, numerics::floorModulo),
 };
 template <>
 const std::vector<BinaryCase<double>> binaryCases<double> = {
+    BINARY(double, hypot, mpfr_hypot),
     BINARY(double, pow, mpfr_pow),
     BINARY(double, atan, mpfr_atan2),
     BINARY(double, atan2, mpfr_atan2),

@@ -87,7 +87,9 @@ TEST_CASE("functions are right to half a unit of double") {
   check(17, [&](Quad v) { return one / sqrtq(v); });
   check(18, [](Quad v) { return v; });
   check(19, rintq);
-  check(20, [](Quad v) {
+  check(20, log1pq), check(21, expm1q), check(22, cbrtq), check(23, erfq), check(24, erfcq);
+  check(25, [](Quad v) { return hypotq(v, static_cast<Quad>(2)); });
+  check(26, [](Quad v) {
     return powq(v, static_cast<Quad>(1.5F)) + sqrtq(v * v + 4) + fmodq(v, static_cast<Quad>(0.3)) + v * 8;
   });
 }

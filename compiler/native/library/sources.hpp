@@ -8,7 +8,7 @@
 namespace skc::native {
 
 std::string_view floatFunctions();    ///< float_functions.sk
-std::string_view doubleFunctions();   ///< double_functions.sk
+std::string_view doubleFunctions();   ///< double_functions.sk and double_errors.sk
 std::string_view exactSums();         ///< exact_sums.sk
 
 }  // namespace skc::native

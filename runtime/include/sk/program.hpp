@@ -209,7 +209,7 @@ constexpr const Element& heldBy(const Parameter& parameter) {
 // clang-format off
 enum class Intrinsic : std::uint8_t {
   Sin, Cos, Tan, Asin, Acos, Atan, Atan2, Sinh, Cosh, Tanh, Asinh, Acosh, Atanh,
-  Exp, Exp2, Log, Log2, Log10, Pow,
+  Exp, Exp2, Log, Log2, Log10, Hypot, Log1p, Expm1, Cbrt, Erf, Erfc, Pow,
   Min, Max, Clamp, Saturate, Fract, Mod, Fmod, Mix, Step, Smoothstep, Sign, Isnan, Isinf,
   Length, Distance, Normalize,
 };

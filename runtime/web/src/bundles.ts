@@ -5,10 +5,10 @@ import { fail } from './arguments.js';
 import type { BundleArgument } from './generated.js';
 
 /** The arguments for the parameters of a kernel: the members of each bundle in its place. Throws SkError for what is no such bundle. */
-export function flattened(kernel: string, bundles: readonly BundleArgument[], results: number, declared: number, given: readonly unknown[]): readonly unknown[] {
-  const arguments_ = declared - bundles.reduce((count, { reads }) => count + reads.length - 1, 0);
-  const isToValues = results > 0 && given.length === arguments_ - results;
-  if (!isToValues && given.length !== arguments_) fail(kernel, `${given.length} arguments are given, but ${arguments_} are declared`);
+export function flattened(kernel: string, bundles: readonly BundleArgument[], results: number, parameters: number, given: readonly unknown[]): readonly unknown[] {
+  const declared = parameters - bundles.reduce((count, { reads }) => count + reads.length - 1, 0);
+  const isToValues = results > 0 && given.length === declared - results;
+  if (!isToValues && given.length !== declared) fail(kernel, `${given.length} arguments are given, but ${declared} are declared`);
   const flat: unknown[] = [];
   let next = 0;
   for (const bundle of bundles) {

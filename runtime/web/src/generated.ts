@@ -51,7 +51,7 @@ export interface Parameter {
   readonly firstPlane?: number;
   readonly planeCount?: number;
   /** Of planes that share textures with others: a stack or -1, the layer, and the number of planes in the stack. */
-  readonly layers?: readonly(readonly [stack: number, layer: number, count: number])[];
+  readonly layers?: readonly (readonly [stack: number, layer: number, count: number])[];
   /**
    * Uniforms: what programs have, in place of the value's uniform and at the beginning of main(), if a stream holds it. Absent
    * for floats, ints, uints and their vectors, and if none may.
@@ -181,7 +181,7 @@ export interface LeftOut {
   readonly whyNot: string;
 }
 
-export type Callable = (CallableKernel&WithBundles)|(CallableReduction&WithBundles)|LeftOut;
+export type Callable = (CallableKernel & WithBundles) | (CallableReduction & WithBundles) | LeftOut;
 
 export interface GeneratedFile {
   readonly schema: number;

@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: MIT
 //
 // The package streamkernel: devices and streams, and what FILE.sk.js needs.
-import {fail} from './arguments.js';
-import {flattened} from './bundles.js';
-import type {Device} from './device.js';
-import type {Features, FoldCaller, LoadedFile} from './features.js';
-import {Forms} from './forms.js';
-import {type Callable, checkSchema, type GeneratedFile, type Parameter, type WithBundles} from './generated.js';
-import {KernelCaller} from './kernel.js';
-import type {Program} from './program.js';
-import type {KernelOptions, ScanOptions, Struct} from './types.js';
+import { fail } from './arguments.js';
+import { flattened } from './bundles.js';
+import type { Device } from './device.js';
+import type { Features, FoldCaller, LoadedFile } from './features.js';
+import { Forms } from './forms.js';
+import { checkSchema, type Callable, type GeneratedFile, type Parameter, type WithBundles } from './generated.js';
+import { KernelCaller } from './kernel.js';
+import type { Program } from './program.js';
+import type { KernelOptions, ScanOptions, Struct } from './types.js';
 
-export type {Arithmetic, Canvas, DeviceInfo, DeviceOptions} from './abilities.js';
+export { Device } from './device.js';
+export type { Arithmetic, Canvas, DeviceInfo, DeviceOptions } from './abilities.js';
+export type { DrawOptions } from './draw.js';
+export { SkError } from './error.js';
+export type { ErrorKind } from './error.js';
+export { Stream, stretch, stride, type Fitted, type View } from './stream.js';
+export type {
+  ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Held, Input, Iterate, Kernel, KernelOptions, NotOffered, Output, Pushed, Reduce, Scan, ScanOptions,
+  Scattered, ShapeOf, Struct, Value, ValueOf,
+} from './types.js';
+
 // What FILE.sk.js hands to fileOf() if its kernels need it.
-export {lists} from './append.js';
-export {Device} from './device.js';
-export type {DrawOptions} from './draw.js';
-export {SkError} from './error.js';
-export type {ErrorKind} from './error.js';
-export {placed as views} from './placed.js';
-export {plans} from './plan.js';
-export {folds} from './reduction.js';
-export {planScan as scans} from './scan_plan.js';
-export {type Fitted, Stream, stretch, stride, type View} from './stream.js';
-export type {ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Held, Input, Iterate, Kernel, KernelOptions, NotOffered, Output, Pushed, Reduce, Scan, ScanOptions, Scattered, ShapeOf, Struct, Value, ValueOf,} from './types.js';
+export { lists } from './append.js';
+export { placed as views } from './placed.js';
+export { plans } from './plan.js';
+export { folds } from './reduction.js';
+export { planScan as scans } from './scan_plan.js';
 
 /** What FILE.sk.js exports under a name: a function, with what Device.compile() needs. */
 interface Exported {
@@ -80,22 +84,15 @@ function functionOf(callable: Callable, file: LoadedFile): Exported {
     const refuse = () => fail(callable.name, callable.whyNot, 'compile');
     return Object.assign(() => refuse(), { repeat: () => false, with: refuse, check: refuse, startPrograms: refuse });
   }
-  if ('fold' in callable)
-    return withBundles(
-        callable, callable.fold.parameters,
-        reduceFunction(callable.name, file.features.folds!(callable, file), {}));
-  return withBundles(
-      callable, callable.parameters,
-      kernelFunction(callable.name, new Forms(callable, file, (form) => new KernelCaller(form, file)), {}));
+  if ('fold' in callable) return withBundles(callable, callable.fold.parameters, reduceFunction(callable.name, file.features.folds!(callable, file), {}));
+  return withBundles(callable, callable.parameters, kernelFunction(callable.name, new Forms(callable, file, (form) => new KernelCaller(form, file)), {}));
 }
 
 /** A function whose arguments may be bundles, from one that takes their members. */
-function withBundles(
-    callable: WithBundles&{readonly name: string}, parameters: readonly Parameter[],
-    flat: Exported): Exported {
-  const {name, bundles} = callable;
+function withBundles(callable: WithBundles & { readonly name: string }, parameters: readonly Parameter[], flat: Exported): Exported {
+  const { name, bundles } = callable;
   if (bundles === undefined) return flat;
-  const results = parameters.filter(({role}) => role === 'accumulator').length;
+  const results = parameters.filter(({ role }) => role === 'accumulator').length;
   const flatten = (given: readonly unknown[]) => flattened(name, bundles, results, parameters.length, given);
   return Object.assign((...given: unknown[]) => flat(...flatten(given)), {
     repeat: (given: readonly unknown[]) => flat.repeat(flatten(given)),

@@ -78,8 +78,7 @@ export class ProgramSource {
     const planes = parameters
       .filter((parameter) => isBound(parameter) && isNeeded(parameter, specs))
       .flatMap(({ element, held: own, layers }) => this.file.elements[own ?? element]!.fields.map((_, plane) => layers?.[plane]?.[0] ?? -1));
-    const units =
-        planes.filter((stack) => stack < 0).length + new Set(planes.filter((stack) => stack >= 0)).size;
+    const units = planes.filter((stack) => stack < 0).length + new Set(planes.filter((stack) => stack >= 0)).size;
     if (units <= device.limits.textureUnits) return;
     fail(this.name, `a pass reads ${units} planes, with those of streams that stand for values, but this device reads ${device.limits.textureUnits}; give values`, 'device');
   }

@@ -53,11 +53,7 @@ class PlanRunner implements PassRunner {
     const temporaries = this.plan.temporaries.map((element) =>
       elements[element]!.fields.map((field) => device.acquire(device.formatOf(field.scalar, field.width), domain.width, domain.height, 'a value saved between passes')),
     );
-    const stacks = (this.plan.stacks ?? [])
-                       .map(
-                           ([scalar, width, layers]) => copiedLayers(
-                               device, device.formatOf(scalar, width),
-                               layers.map(([argument, plane]) => call.streams[argument]?.planes[plane])));
+    const stacks = (this.plan.stacks ?? []).map(([scalar, width, layers]) => copiedLayers(device, device.formatOf(scalar, width), layers.map(([argument, plane]) => call.streams[argument]?.planes[plane])));
     const started = runs.flatMap(({ pass, own, program }) => {
       const drawn = this.drawnBy(pass, temporaries, planesOf);
       return drawn.length === 0 ? [] : [{ pass, own, drawn, program: program() }]; // a pass whose outputs are all omitted is none

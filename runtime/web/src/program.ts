@@ -241,9 +241,7 @@ export class Program {
           const stack = parameter.layers?.[plane]?.[0] ?? -1;
           const known = this.stacks.get(stack);
           if (known !== undefined) return ~known;
-          const name = stack >= 0 ? `sk_stack${stack}` :
-              element.fields.length === 1 ? `sk_tex_${symbol}` :
-                                            `sk_tex${plane}_${symbol}`;
+          const name = stack >= 0 ? `sk_stack${stack}` : element.fields.length === 1 ? `sk_tex_${symbol}` : `sk_tex${plane}_${symbol}`;
           const unit = this.units++;
           gl.uniform1i(gl.getUniformLocation(handle, name), unit);
           if (stack < 0) return unit;

@@ -25,6 +25,8 @@ constexpr Function arcs[] = {{"asin", mpfr_asin}, {"acos", mpfr_acos}, {"atan", 
 constexpr Function hyperbolic[] = {{"sinh", mpfr_sinh}, {"cosh", mpfr_cosh}, {"tanh", mpfr_tanh}};
 constexpr Function areas[] = {{"asinh", mpfr_asinh}, {"acosh", mpfr_acosh}, {"atanh", mpfr_atanh}};
 constexpr Function exponentials[] = {{"exp", mpfr_exp}, {"exp2", mpfr_exp2}};
+constexpr Function near0[] = {{"log1p", mpfr_log1p}, {"expm1", mpfr_expm1}, {"cbrt", mpfr_cbrt}};
+constexpr Function errors[] = {{"erf", mpfr_erf}, {"erfc", mpfr_erfc}};
 constexpr Function logarithms[] = {{"log", mpfr_log}, {"log2", mpfr_log2}, {"log10", mpfr_log10}};
 
 /// C's reciprocal root: of -0, it is -infinity, where MPFR has infinity.
@@ -35,7 +37,7 @@ int reciprocalRoot(mpfr_t result, const mpfr_t x, mpfr_rnd_t rounding) {
   }
   return mpfr_rec_sqrt(result, x, rounding);
 }
-constexpr Function roots[] = {{"sqrt", mpfr_sqrt}, {"inversesqrt", reciprocalRoot}};
+constexpr Function roots[] = {{"sqrt", mpfr_sqrt}, {"inversesqrt", reciprocalRoot}, {"cbrt", mpfr_cbrt}};
 
 template <const auto& functions>
 bool acceptsFunctions(const Judge& judge, Arguments x, std::size_t output, double got) {
@@ -47,12 +49,14 @@ bool acceptsWide(const Judge& judge, Arguments x, std::size_t output, double got
 }
 
 bool acceptsPowers(const Judge& judge, Arguments x, std::size_t output, double got) {
-  return output == 0 ? judge.isFunction("pow", mpfr_pow, x[0], x[1], got)
-                     : judge.isFunction("atan2", mpfr_atan2, x[0], x[1], got);
+  return output == 0   ? judge.isFunction("pow", mpfr_pow, x[0], x[1], got)
+         : output == 1 ? judge.isFunction("atan2", mpfr_atan2, x[0], x[1], got)
+                       : judge.isFunction("hypot", mpfr_hypot, x[0], x[1], got);
 }
 bool acceptsWidePowers(const Judge& judge, Arguments x, std::size_t output, double got) {
-  return output == 0 ? judge.isWideFunction("pow", mpfr_pow, x[0], x[1], got)
-                     : judge.isWideFunction("atan2", mpfr_atan2, x[0], x[1], got);
+  return output == 0   ? judge.isWideFunction("pow", mpfr_pow, x[0], x[1], got)
+         : output == 1 ? judge.isWideFunction("atan2", mpfr_atan2, x[0], x[1], got)
+                       : judge.isWideFunction("hypot", mpfr_hypot, x[0], x[1], got);
 }
 
 bool acceptsRemainders(const Judge& judge, Arguments x, std::size_t output, double got) {
@@ -314,8 +318,10 @@ std::vector<Operation> mapOperations() {
       map<k::areas, One<float, Data::Fractions>, F3>("areas", acceptsFunctions<areas>),
       map<k::exponentials, One<float>, F2>("exponentials", acceptsFunctions<exponentials>),
       map<k::logarithms, One<float>, F3>("logarithms", acceptsFunctions<logarithms>),
-      map<k::roots, One<float>, F2>("roots", acceptsFunctions<roots>),
-      map<k::powers, Two<float>, F2>("powers", acceptsPowers),
+      map<k::near0, One<float>, F2>("near0", acceptsFunctions<near0>),
+      map<k::errors, One<float>, F2>("errors", acceptsFunctions<errors>),
+      map<k::roots, One<float>, F3>("roots", acceptsFunctions<roots>),
+      map<k::powers, Two<float>, F3>("powers", acceptsPowers),
       map<k::remainders, Two<float>, F2>("remainders", acceptsRemainders),
       map<k::lengths, One<sk::float3>, Outputs<float, sk::float3>>("lengths", acceptsLengths),
       map<k::wideCircular, One<double, Data::Angles>, D3>("wideCircular", acceptsWide<circular>),
@@ -324,7 +330,9 @@ std::vector<Operation> mapOperations() {
       map<k::wideAreas, One<double, Data::Fractions>, D3>("wideAreas", acceptsWide<areas>),
       map<k::wideExponentials, One<double>, D2>("wideExponentials", acceptsWide<exponentials>),
       map<k::wideLogarithms, One<double>, D3>("wideLogarithms", acceptsWide<logarithms>),
-      map<k::widePowers, Two<double>, D2>("widePowers", acceptsWidePowers),
+      map<k::wideNear0, One<double>, D3>("wideNear0", acceptsWide<near0>),
+      map<k::wideErrors, One<double>, D2>("wideErrors", acceptsWide<errors>),
+      map<k::widePowers, Two<double>, D3>("widePowers", acceptsWidePowers),
       map<k::operators, Two<float, Data::Terms>, F4>("operators", acceptsOperators),
       map<k::wideOperators, Two<double, Data::Terms>, Outputs<double, double, double, double>>(
           "wideOperators", acceptsWideOperators),

@@ -33,6 +33,11 @@
   CASE(exp2, std::exp2(x), -10, 10, 0, 1e-6)                    \
   CASE(log2, std::log2(x), 0.01, 100, 1e-6, 1e-6)               \
   CASE(log10, std::log10(x), 0.01, 100, 1e-6, 1e-6)             \
+  CASE(log1p, std::log1p(x), -0.9, 10, FEW_ULP)                 \
+  CASE(expm1, std::expm1(x), -5, 5, FEW_ULP)                    \
+  CASE(cbrt, std::cbrt(x), -10, 10, FEW_ULP)                    \
+  CASE(erf, std::erf(x), -4, 4, FEW_ULP)                        \
+  CASE(erfc, std::erfc(x), -4, 4, 1e-30, 7e-7)                  \
   CASE(sqrt, std::sqrt(x), 0, 100, FEW_ULP)                     \
   CASE(inversesqrt, 1 / std::sqrt(x), 0.01, 100, FEW_ULP)       \
   CASE(rsqrt, 1 / std::sqrt(x), 0.01, 100, FEW_ULP)             \
@@ -52,6 +57,7 @@
 #define BINARY_CASES(CASE)                           \
   CASE(atan, std::atan2(x, y), -10, 10, 1e-7, 4e-5)  \
   CASE(atan2, std::atan2(x, y), -10, 10, 1e-7, 4e-5) \
+  CASE(hypot, std::hypot(x, y), -10, 10, FEW_ULP)    \
   CASE(pow, std::pow(x, y), 0.1, 10, 0, 2e-5)        \
   CASE(fmod, x - y * std::trunc(x / y), -9, 9, 2e-6, 0)
 

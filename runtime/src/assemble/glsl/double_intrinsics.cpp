@@ -52,6 +52,19 @@ constexpr double atanCoefficients[] = {-0.3333333333333301,  0.19999999999809875
                                        0.11111107431917366,  -0.090907115707177022, 0.076861018543203777,
                                        -0.06552573663308453, 0.047297067497184535};
 
+// erf(x) / x for |x| <= 3/4, in x^2, and (a + 3) exp(a^2) erfc(a) for 3/4 <= a <= 27.3, in (a - 3) / (a + 3)
+constexpr double erfCoefficients[] = {
+    1.1283791670955126,     -0.37612638903183715,    0.11283791670952596,    -0.026866170644428485,
+    0.0052239776154205386,  -0.00085483261887597524, 0.00012055289567541706, -1.4924196305569617e-05,
+    1.6430684179741549e-06, -1.5940066854661717e-07, 1.1472499701094691e-08};
+constexpr double erfcCoefficients[] = {
+    1.0740069070883398,      -0.88339445316988374,    0.59022835710410182,    -0.31046726190054758,
+    0.11952776128728719,     -0.026827234625346214,   -0.0012124166268258853, 0.0030340620183166066,
+    -0.00054830970381621177, -0.00027677802855757182, 0.00010756166244996292, 3.0399291464730035e-05,
+    -1.7471963258409251e-05, -4.7533326821420759e-06, 2.7718270460712723e-06, 1.0070921519559962e-06,
+    -4.2518903987141428e-07, -2.3985135613298567e-07, 7.1077086500964285e-08, 4.6189584288969557e-08,
+    -1.669627716629178e-08};
+
 struct PieceRow {
   Pieces needs;
   Polynomial polynomial;  ///< precedes the text; may have no coefficients
@@ -69,6 +82,8 @@ constexpr std::array pieceRows = {
     PieceRow{{}, {}, library::reduceLarge},
     PieceRow{pieces(Piece::ReduceLarge), {"sk_wave_polynomial", 4, sinCoefficients, cosCoefficients}, library::wave},
     PieceRow{{}, {"sk_atan_polynomial", 4, atanCoefficients}, library::angle},
+    PieceRow{{}, {"sk_erf_polynomial", 8, erfCoefficients}, ""},
+    PieceRow{pieces(Piece::ExpReduced), {"sk_erfc_polynomial", 15, erfcCoefficients, {}, true}, library::errorTail},
 };
 // clang-format on
 
@@ -129,8 +144,10 @@ std::string pairText(const Polynomial& polynomial) {
     lines += fmt::format("  t = t * x.hi + {};\n", chosen(polynomial, i, floatText));
   lines += "  sk_double p = sk_to_double(t);\n";
   for (++i; i-- > 0;)
-    lines +=
-        fmt::format("  p = sk_step(p, x, {});\n", chosen(polynomial, i, pair, "sk_choose(other, {}, {})"));
+    lines += fmt::format(
+        "  p = {};\n",
+        fmt::format(fmt::runtime(polynomial.isUneven ? "sk_add(sk_mul(p, x), {})" : "sk_step(p, x, {})"),
+                    chosen(polynomial, i, pair, "sk_choose(other, {}, {})")));
   return lines + "  return p;\n";
 }
 
@@ -200,6 +217,12 @@ constexpr std::array rows = {
     Row{pieces(Piece::Log), library::log},
     Row{pieces(Piece::Log), library::log2},
     Row{pieces(Piece::Log), library::log10},
+    Row{{}, library::hypot},
+    Row{pieces(Piece::LogPlus), library::log1p},
+    Row{pieces(Piece::ExpReduced), library::expm1},
+    Row{{}, library::cbrt},
+    Row{pieces(Piece::ErrorNear0, Piece::ErrorTail), library::erf},
+    Row{pieces(Piece::ErrorNear0, Piece::ErrorTail), library::erfc},
     Row{pieces(Piece::Power), library::pow},
 };
 // clang-format on

@@ -160,6 +160,78 @@ sk_double sk_log10(sk_double x) {
   return sk_log_limited(x, sk_add(sk_mul(k, D(0.30102999554947019)), y));
 }
 
+//// hypot
+sk_double sk_hypot(sk_double x, sk_double y) {
+  if (sk_isinf(x) || sk_isinf(y)) return sk_infinity();
+  if (sk_isnan(x) || sk_isnan(y)) return sk_nan();
+  sk_double a = sk_ldexp(sk_abs(x), 0), b = sk_ldexp(sk_abs(y), 0), larger = sk_choose(sk_less(a, b), b, a);
+  if (sk_equal(larger, D(0.0))) return larger;
+  int e = sk_exponent(larger);
+  a = sk_ldexp(a, -e);
+  b = sk_ldexp(b, -e);
+  return sk_ldexp(sk_sqrt(sk_add(sk_mul(a, a), sk_mul(b, b))), e);
+}
+
+//// log1p
+sk_double sk_log1p(sk_double x) {
+  sk_double least = D(-1.0);
+  if (sk_isnan(x) || sk_less(x, least)) return sk_nan();
+  if (sk_equal(x, least)) return sk_neg(sk_infinity());
+  if (sk_isinf(x) || sk_less(sk_abs(x), D(1e-18))) return x;
+  return sk_log_plus(x, 0);
+}
+
+//// expm1
+sk_double sk_expm1(sk_double x) {
+  if (sk_isnan(x) || sk_less(sk_abs(x), D(1e-18))) return x;
+  float f = sk_to_float(x);
+  if (f > 800.0) return sk_infinity();
+  if (f < -60.0) return D(-1.0);
+  int n;
+  sk_double e = sk_exp_reduced(x, n), one = D(1.0);
+  if (f > 60.0) return sk_ldexp(sk_add(one, e), n);
+  return sk_add(sk_ldexp(e, n), sk_sub(sk_ldexp(one, n), one));
+}
+
+//// cbrt
+// x is m * 8^k with 1/2 < m < 6. Newton's steps need few bits of the quotients, as corrections are small.
+sk_double sk_cbrt(sk_double x) {
+  sk_double a = sk_ldexp(sk_abs(x), 0);
+  if (sk_isnan(x) || sk_isinf(x) || sk_equal(a, D(0.0))) return x;
+  int k = (sk_exponent(a) + 1500) / 3 - 500;
+  sk_double m = sk_ldexp(a, -3 * k);
+  float f = sk_to_float(m), g = exp2(log2(f) * 0.333333333);
+  g -= (g * g * g - f) / (3.0 * g * g);
+  sk_double y = sk_to_double(g);
+  y = sk_sub(y, sk_to_double(sk_to_float(sk_sub(sk_mul(sk_mul(y, y), y), m)) / (3.0 * g * g)));
+  y = sk_sub(y, sk_to_double(sk_to_float(sk_sub(sk_mul(sk_mul(y, y), y), m)) / (3.0 * g * g)));
+  return sk_toggle(sk_ldexp(y, k), x);
+}
+
+//// erf
+sk_double sk_erf(sk_double x) {
+  if (sk_isnan(x)) return x;
+  sk_double a = sk_abs(x), one = D(1.0);
+  float f = sk_to_float(a);
+  if (f > 6.0) return sk_toggle(one, x);
+  if (f < 0.75) return sk_mul(x, sk_erf_polynomial(sk_mul(x, x)));
+  return sk_toggle(sk_sub(one, sk_erfc_part(a)), x);
+}
+
+//// erfc
+sk_double sk_erfc(sk_double x) {
+  if (sk_isnan(x)) return x;
+  sk_double a = sk_abs(x), one = D(1.0), half_ = D(0.5), zero = D(0.0);
+  float f = sk_to_float(a);
+  bool below = sk_is_negative(x);
+  if (f < 0.75) {
+    sk_double error = sk_mul(x, sk_erf_polynomial(sk_mul(x, x)));
+    return f < 0.25 || below ? sk_sub(one, error) : sk_sub(half_, sk_sub(error, half_));
+  }
+  sk_double tail = f > 27.3 ? zero : sk_erfc_part(a);
+  return sk_choose(below, sk_sub(D(2.0), tail), tail);
+}
+
 //// pow
 sk_double sk_pow(sk_double x, sk_double y) {
   sk_double one = D(1.0), zero = D(0.0), a = sk_ldexp(sk_abs(x), 0);

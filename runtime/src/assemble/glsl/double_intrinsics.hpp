@@ -37,6 +37,8 @@ enum class Piece : std::uint8_t {
   ReduceLarge,
   Wave,
   Angle,
+  ErrorNear0,
+  ErrorTail,
 };
 using Pieces = std::uint32_t;
 template <class... P>
@@ -60,9 +62,10 @@ struct Polynomial {
   std::string_view name;
   std::size_t exact;
   std::span<const double> coefficients, others = {};
+  bool isUneven = false;  ///< a coefficient may be less than the sum of the higher terms
 };
 /// Its definition, by Horner's rule; for pairs with sk_step() (double_pieces.glsl), for which each coefficient
-/// must exceed the sum of the higher terms.
+/// must exceed the sum of the higher terms, unless it is uneven.
 std::string polynomialText(Doubles form, const Polynomial& polynomial);
 
 /// Whether a kernel calls any of them with a double.

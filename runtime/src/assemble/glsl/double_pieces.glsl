@@ -213,3 +213,14 @@ sk_double sk_angle(sk_double y, sk_double x) {
   if (t > 0.236) angle = sk_add(sk_choose(t > 0.72, D(0.78539816339744828), D(0.46364760900080609)), angle);
   return sk_choose(steep, sk_sub(D(1.5707963267948966), angle), angle);
 }
+
+//// errorTail
+// erfc(a) for 3/4 <= a <= 27.3. exp(-a^2) is that of the square of the upper bits of a, which is exact, and of what this lacks.
+sk_double sk_erfc_part(sk_double a) {
+  sk_double s = sk_div(D(1.0), sk_add(a, D(3.0))), t = sk_mul(sk_sub(a, D(3.0)), s);
+  sk_double h = sk_cut(a), rest = sk_exp_tail(sk_neg(sk_mul(sk_sub(a, h), sk_add(a, h))));
+  int n;
+  sk_double e = sk_exp_reduced(sk_neg(sk_mul(h, h)), n);
+  sk_double power = sk_add(D(1.0), sk_add(e, sk_add(rest, sk_mul(e, rest))));
+  return sk_ldexp(sk_mul(sk_mul(s, sk_erfc_polynomial(t)), power), n);
+}

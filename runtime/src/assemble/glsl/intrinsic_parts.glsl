@@ -323,3 +323,58 @@ float sk_length_scale(uint bits) {
   uint down = bits >= 0x6f000000u ? 0x1e800000u : 0x2e800000u;
   return uintBitsToFloat(bits >= 0x5e800000u ? down : bits < 0x2b800000u ? 0x6a800000u : 0x3f800000u);
 }
+
+//// errorPart
+// erf(x) / x - 1 of z = x^2, for |x| < 1/2.
+float sk_erf_near_0(float z) {
+  float p = 4.719082567e-3;
+  p = p * z - 2.675773274e-2;
+  p = p * z + 1.1282831428e-1;
+  p = p * z - 3.7612609007e-1;
+  return p * z + 1.2837916560e-1;
+}
+// erfc(a) for 1/2 <= a <= 10.1: exp(-a^2) times a polynomial of a, or from 2 on, of 1 / a^2, divided by a. exp(-a^2) is that of the
+// square of the upper bits of a, which is exact, and of what this lacks. The largest part is added last.
+float sk_erfc_part(float a) {
+  float p, most, rest;
+  if (a < 2.0) {
+    float u = a - 1.25;
+    p = 6.31804364e-05;
+    p = p * u - 0.00019245011;
+    p = p * u + 0.000468691283;
+    p = p * u - 0.00130869777;
+    p = p * u + 0.00355442579;
+    p = p * u - 0.00908588948;
+    p = p * u + 0.0220112312;
+    p = p * u - 0.0502178434;
+    p = p * u + 0.106795575;
+    p = p * u - 0.208821888;
+    most = 0.367822916;
+    rest = p * u;
+  } else {
+    float s = 1.0 / a, z = s * s;
+    p = 27.3203039;
+    p = p * z - 37.8468554;
+    p = p * z + 24.1344601;
+    p = p * z - 9.87072363;
+    p = p * z + 3.20260697;
+    p = p * z - 1.03358131;
+    p = p * z + 0.422444945;
+    p = p * z - 0.282084682;
+    p = p * z + 0.06418953;
+    most = 0.5 * s;
+    rest = s * p;
+  }
+  float h = sk_cut(a);
+  float square = h * h;
+  float n = roundEven(square * -1.44269504);
+  sk_precise float b = sk_keep(-square - n * 0.693359375);
+  float r = b + (n * 2.12194440e-4 - (a - h) * (a + h));
+  float e = 1.9875691500e-4;
+  e = e * r + 1.3981999507e-3;
+  e = e * r + 8.3334519073e-3;
+  e = e * r + 4.1665795894e-2;
+  e = e * r + 1.6666665459e-1;
+  e = e * r + 5.0000001201e-1;
+  return sk_scale(most + (rest + (most + rest) * (r + r * r * e)), int(n));
+}

@@ -48,8 +48,11 @@ constexpr std::array<PartRow, partCount> partRows = {{
     {{}, library::saturate},
     {parts(Part::Scale, Part::WithSign), library::fmod},
     {{}, library::lengthScale},
+    {parts(Part::Scale, Part::Cut), library::errorPart},
 }};
 // clang-format on
+
+bool keeps(std::string_view text) { return text.find("sk_keep") != std::string_view::npos; }
 
 }  // namespace
 
@@ -62,7 +65,7 @@ Parts withNeeded(Parts set) {
 
 bool useExactFloats(Parts set) {
   for (unsigned i = 0; i < partCount; ++i) {
-    if ((set >> i & 1u) && partRows[i].text.find("sk_keep") != std::string_view::npos) return true;
+    if ((set >> i & 1u) && keeps(partRows[i].text)) return true;
   }
   return false;
 }
@@ -74,7 +77,7 @@ namespace {
 using program::Intrinsic;
 using program::IntrinsicUse;
 
-/// `fast` is the device's own function of x, y and z, of type $T. `text` is ours, of one float; empty if it
+/// `fast` is the device's own function of x, y and z, of type $T; empty if it has none. `text` is ours, of one float; empty if it
 /// is a part.
 struct Row {
   std::string_view name;
@@ -104,6 +107,12 @@ constexpr std::array rows = {
     Row{"sk_log", 1, "log(x)", parts(Part::Log), ""},
     Row{"sk_log2", 1, "log2(x)", parts(Part::Mantissa, Part::LogLimit, Part::LogTail), library::log2},
     Row{"sk_log10", 1, "log2(x) * 0.30103", parts(Part::Mantissa, Part::LogLimit, Part::LogTail), library::log10},
+    Row{"sk_hypot", 2, "sqrt(x * x + y * y)", parts(Part::LengthScale), library::hypot},
+    Row{"sk_log1p", 1, "log(1.0 + x)", parts(Part::Mantissa, Part::LogLimit, Part::LogTail), library::log1p},
+    Row{"sk_expm1", 1, "exp(x) - 1.0", parts(Part::ExpScaled), library::expm1},
+    Row{"sk_cbrt", 1, "sign(x) * pow(abs(x), $T(1.0 / 3.0))", parts(Part::WithSign), library::cbrt},
+    Row{"sk_erf", 1, "", parts(Part::WithSign, Part::ErrorPart), library::erf},
+    Row{"sk_erfc", 1, "", parts(Part::ErrorPart), library::erfc},
     Row{"sk_pow", 2, "pow(x, y)", parts(Part::Power), library::pow},
     Row{"sk_min", 2, "min(x, y)", parts(Part::Min), ""},
     Row{"sk_max", 2, "max(x, y)", parts(Part::Max), ""},
@@ -159,8 +168,14 @@ std::string withType(std::string_view pattern, int width) {
   return text;
 }
 
-std::string fastDefinition(Intrinsic intrinsic, int width) {
-  return fmt::format("{} return {}; }}\n", head(intrinsic, width), withType(rowOf(intrinsic).fast, width));
+std::string fastDefinitions(const IntrinsicUse& use) {
+  std::string text;
+  for (int width = 1; width <= 4; ++width) {
+    if (use.widths >> (width - 1) & 1)
+      text += fmt::format("{} return {}; }}\n", head(use.intrinsic, width),
+                          withType(rowOf(use.intrinsic).fast, width));
+  }
+  return text;
 }
 
 /// Calls the function of one float for each component.
@@ -223,38 +238,29 @@ std::string accurateDefinition(const IntrinsicUse& use) {
   return text;
 }
 
-IntrinsicTexts fastTexts(std::span<const IntrinsicUse> uses) {
-  IntrinsicTexts texts{"\n"};
-  for (const IntrinsicUse& use : uses) {
-    for (int width = 1; width <= 4; ++width) {
-      if (use.widths >> (width - 1) & 1) texts.definitions += fastDefinition(use.intrinsic, width);
-    }
-  }
-  return texts;
-}
-
 }  // namespace
 
 std::string_view name(Intrinsic intrinsic) { return rowOf(intrinsic).name; }
 
 IntrinsicTexts intrinsicTexts(std::span<const IntrinsicUse> uses, bool accurate) {
   if (std::ranges::none_of(uses, &IntrinsicUse::widths)) return {};  // or only of doubles
-  if (!accurate) return fastTexts(uses);
+  const auto isOurs = [&](const IntrinsicUse& use) {
+    return use.widths != 0 && (accurate || rowOf(use.intrinsic).fast.empty());
+  };
   Parts used = 0;
-  IntrinsicTexts texts;
+  IntrinsicTexts texts{accurate ? "" : "\n"};
   for (const IntrinsicUse& use : uses) {
-    if (use.widths == 0) continue;
+    if (!isOurs(use)) continue;
     used |= rowOf(use.intrinsic).parts;
-    texts.useExactFloats = texts.useExactFloats || use.intrinsic == Intrinsic::Mix;
+    texts.useExactFloats = texts.useExactFloats || keeps(rowOf(use.intrinsic).text);
   }
   used = withNeeded(used);
   texts.useExactFloats = texts.useExactFloats || useExactFloats(used);
   for (unsigned i = 0; i < partCount; ++i) {
     if (used >> i & 1u) texts.definitions += text(static_cast<Part>(i));
   }
-  for (const IntrinsicUse& use : uses) {
-    if (use.widths != 0) texts.definitions += accurateDefinition(use);
-  }
+  for (const IntrinsicUse& use : uses)
+    texts.definitions += isOurs(use) ? accurateDefinition(use) : fastDefinitions(use);
   return texts;
 }
 

@@ -191,6 +191,86 @@ float sk_log10(float x) {
   return bits - 1u < 0x7f7fffffu ? y : sk_log_limit(x);
 }
 
+//// hypot
+float sk_hypot(float x, float y) {
+  uint a = floatBitsToUint(x) & 0x7fffffffu, b = floatBitsToUint(y) & 0x7fffffffu;
+  float scale = sk_length_scale(max(a, b));
+  float v = x * scale, w = y * scale;
+  float h = sqrt(v * v + w * w) * uintBitsToFloat(0x7f000000u - floatBitsToUint(scale));
+  return a == 0x7f800000u || b == 0x7f800000u ? uintBitsToFloat(0x7f800000u) : h;
+}
+
+//// log1p
+// The logarithm of u = 1 + x, and what u was rounded by.
+float sk_log1p(float x) {
+  sk_precise float u = sk_keep(1.0 + x);
+  sk_precise float v = sk_keep(u - 1.0);
+  sk_precise float lost = sk_keep(x - v);
+  uint bits = floatBitsToUint(u);
+  int e;
+  float f = sk_mantissa(bits, e) - 1.0;
+  float n = float(e);
+  f = e == 0 ? x : f;
+  float tail = sk_log_tail(f) - 0.5 * (f * f);
+  float y = (f + (tail + (lost / u - n * 2.12194440e-4))) + n * 0.693359375;
+  return bits - 1u < 0x7f7fffffu ? (e == 0 ? f + tail : y) : sk_log_limit(u);
+}
+
+//// expm1
+float sk_expm1(float x) {
+  if (x == 0.0) return x;
+  float n = roundEven(clamp(x, -30.0, 30.0) * 1.44269504);
+  sk_precise float a = sk_keep(x - n * 0.693359375);
+  sk_precise float r = sk_keep(a + n * 2.12194440e-4);
+  float p = 1.989128e-4;
+  p = p * r + 1.393391e-3;
+  p = p * r + 8.33331066e-3;
+  p = p * r + 4.16664626e-2;
+  p = p * r + 1.66666667e-1;
+  p = p * r + 5.0000000137e-1;
+  float t = intBitsToFloat((int(n) + 127) << 23);
+  float y = t * (r + r * r * p) + (t - 1.0);
+  float large = x > 90.0 ? uintBitsToFloat(0x7f800000u) : sk_exp_scaled(x, 0);
+  return x > 30.0 ? large : x < -30.0 ? -1.0 : y;
+}
+
+//// cbrt
+// |x| is m * 8^(k - 42) with 1/2 <= m < 4. A third of the bits of m, as a number, are nearly those of its root; then come a step of
+// Halley's method and one of Newton's.
+float sk_cbrt(float x) {
+  uint bits = floatBitsToUint(x) & 0x7fffffffu;
+  if (bits - 1u >= 0x7f7fffffu) return x;
+  bool below = bits < 0x00800000u;   // a multiple of 2^-149, whose double is one of 2^-150
+  if (below) bits = floatBitsToUint(2.0 * float(bits));
+  uint e = bits >> 23, k = e / 3u;
+  float m = uintBitsToFloat((bits & 0x7fffffu) | ((e - 3u * k + 126u) << 23));
+  float y = uintBitsToFloat(floatBitsToUint(m) / 3u + 0x2a514067u);
+  float cube = y * y * y;
+  y = y * ((cube + 2.0 * m) / (2.0 * cube + m));
+  y = y - (y * y * y - m) / (3.0 * (y * y));
+  return sk_with_sign(y * uintBitsToFloat((k + (below ? 35u : 85u)) << 23), x);
+}
+
+//// erf
+float sk_erf(float x) {
+  float a = abs(x);
+  float small = a < 1e-30 ? a * 1.12837917 : a + a * sk_erf_near_0(a * a);   // without a denormal number
+  float y = a > 4.0 ? 1.0 : 1.0 - sk_erfc_part(clamp(a, 0.5, 4.0));
+  if ((floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u) return x;
+  return sk_with_sign(a < 0.5 ? small : y, x);
+}
+
+//// erfc
+float sk_erfc(float x) {
+  float a = abs(x);
+  float more = x * sk_erf_near_0(x * x);
+  float small = a < 0.25 ? 1.0 - (x + more) : 0.5 - ((x - 0.5) + more);
+  float tail = sk_erfc_part(clamp(a, 0.5, 10.1));
+  float y = x < 0.0 ? 2.0 - tail : a > 10.1 ? 0.0 : tail;
+  if ((floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u) return x;
+  return a < 0.5 ? small : y;
+}
+
 //// pow
 float sk_pow(float x, float y) {
   uint bits = floatBitsToUint(x);

@@ -38,6 +38,7 @@ enum class Part : std::uint8_t {
   Saturate,
   Fmod,
   LengthScale,
+  ErrorPart,
 };
 
 /// A set of parts, one bit per part.
@@ -52,7 +53,7 @@ Parts withNeeded(Parts set);
 /// Whether any of them calls sk_keep().
 bool useExactFloats(Parts set);
 std::string_view text(Part part);
-inline constexpr unsigned partCount = static_cast<unsigned>(Part::LengthScale) + 1;
+inline constexpr unsigned partCount = static_cast<unsigned>(Part::ErrorPart) + 1;
 
 /// For example "sk_sin".
 std::string_view name(program::Intrinsic intrinsic);

@@ -48,11 +48,17 @@ double exp2(double x) { return std::exp2(x); }
 double log(double x) { return std::log(x); }
 double log2(double x) { return std::log2(x); }
 double log10(double x) { return std::log10(x); }
+double log1p(double x) { return std::log1p(x); }
+double expm1(double x) { return std::expm1(x); }
+double cbrt(double x) { return std::cbrt(x); }
+double erf(double x) { return std::erf(x); }
+double erfc(double x) { return std::erfc(x); }
 double sqrt(double x) { return std::sqrt(x); }
 double inversesqrt(double x) { return 1 / std::sqrt(x); }
 double fract(double x) { return x - std::floor(x); }
 double pow(double x, double y) { return std::pow(x, y); }
 double atan2(double y, double x) { return std::atan2(y, x); }
+double hypot(double x, double y) { return std::hypot(x, y); }
 double mod(double x, double y) { return x - y * std::floor(x / y); }
 }  // namespace reference
 

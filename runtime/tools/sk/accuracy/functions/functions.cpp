@@ -213,7 +213,7 @@ void FunctionOptions::addTo(CLI::App& command) {
   add("--precision", precision,
       "Of these functions: double and extended (pairs of floats) have too many arguments to try all, so that "
       "--draws of them are "
-      "drawn; so have pow and atan2 (default: single)",
+      "drawn; so have pow, atan2 and hypot (default: single)",
       "NAME")
       ->check(CLI::IsMember({"single", "double", "extended"}));
   add("--draws", draws, "How many arguments to draw (default: 2^24)", "N")
@@ -222,8 +222,9 @@ void FunctionOptions::addTo(CLI::App& command) {
 
 Json measureFunctions(const FunctionOptions& options, const std::string& deviceNames,
                       const std::string& profiles) {
-  const bool hasAllFloats =
-      options.precision == "single" && options.functions != "pow" && options.functions != "atan2";
+  const bool isOfTwo = std::ranges::find(binaryFunctions(), options.functions, &BinaryFunction::name) !=
+                       binaryFunctions().end();
+  const bool hasAllFloats = options.precision == "single" && !isOfTwo;
   chosenFunctions(options, hasAllFloats);  // before devices are opened
   std::vector<sk::Device> devices = chosenDevices(deviceNames, profiles);
   for (const sk::Device& device : devices) fmt::print("{}: {}\n", device.profile(), device.name());

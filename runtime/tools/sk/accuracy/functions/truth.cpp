@@ -50,26 +50,31 @@ double definedFrom(double low, double x, double value) { return x < low ? nan : 
 double definedIn(double x, double value) { return x < -1 || x > 1 ? nan : value; }
 
 // name, its value for x in double and in long double, and the range of most arguments that are drawn
-#define SK_TRUTHS                                                               \
-  SK_TRUTH(sin, ::sin(x), sinl(x), -10, 10)                                     \
-  SK_TRUTH(cos, ::cos(x), cosl(x), -10, 10)                                     \
-  SK_TRUTH(tan, ::tan(x), tanl(x), -10, 10)                                     \
-  SK_TRUTH(asin, definedIn(x, ::asin(within(x, -1, 1))), asinl(x), -1, 1)       \
-  SK_TRUTH(acos, definedIn(x, ::acos(within(x, -1, 1))), acosl(x), -1, 1)       \
-  SK_TRUTH(atan, ::atan(x), atanl(x), -4, 4)                                    \
-  SK_TRUTH(sinh, ::sinh(within(x, -700, 700)), sinhl(x), -30, 30)               \
-  SK_TRUTH(cosh, ::cosh(within(x, -700, 700)), coshl(x), -30, 30)               \
-  SK_TRUTH(tanh, ::tanh(within(x, -700, 700)), tanhl(x), -10, 10)               \
-  SK_TRUTH(asinh, ::asinh(x), asinhl(x), -4, 4)                                 \
-  SK_TRUTH(acosh, definedFrom(1, x, ::acosh(x < 1 ? 1 : x)), acoshl(x), 1, 4)   \
-  SK_TRUTH(atanh, definedIn(x, ::atanh(within(x, -1, 1))), atanhl(x), -1, 1)    \
-  SK_TRUTH(exp, ::exp(within(x, -700, 700)), expl(x), -87, 88)                  \
-  SK_TRUTH(exp2, ::exp2(within(x, -1000, 1000)), exp2l(x), -126, 128)           \
-  SK_TRUTH(log, definedFrom(0, x, ::log(x < 0 ? 1 : x)), logl(x), 0.5, 2)       \
-  SK_TRUTH(log2, definedFrom(0, x, ::log2(x < 0 ? 1 : x)), log2l(x), 0.5, 2)    \
-  SK_TRUTH(log10, definedFrom(0, x, ::log10(x < 0 ? 1 : x)), log10l(x), 0.5, 2) \
-  SK_TRUTH(sqrt, __builtin_sqrt(x), __builtin_sqrtl(x), 0, 4)                   \
-  SK_TRUTH(inversesqrt, 1 / __builtin_sqrt(x), 1 / __builtin_sqrtl(x), 0, 4)    \
+#define SK_TRUTHS                                                                \
+  SK_TRUTH(sin, ::sin(x), sinl(x), -10, 10)                                      \
+  SK_TRUTH(cos, ::cos(x), cosl(x), -10, 10)                                      \
+  SK_TRUTH(tan, ::tan(x), tanl(x), -10, 10)                                      \
+  SK_TRUTH(asin, definedIn(x, ::asin(within(x, -1, 1))), asinl(x), -1, 1)        \
+  SK_TRUTH(acos, definedIn(x, ::acos(within(x, -1, 1))), acosl(x), -1, 1)        \
+  SK_TRUTH(atan, ::atan(x), atanl(x), -4, 4)                                     \
+  SK_TRUTH(sinh, ::sinh(within(x, -700, 700)), sinhl(x), -30, 30)                \
+  SK_TRUTH(cosh, ::cosh(within(x, -700, 700)), coshl(x), -30, 30)                \
+  SK_TRUTH(tanh, ::tanh(within(x, -700, 700)), tanhl(x), -10, 10)                \
+  SK_TRUTH(asinh, ::asinh(x), asinhl(x), -4, 4)                                  \
+  SK_TRUTH(acosh, definedFrom(1, x, ::acosh(x < 1 ? 1 : x)), acoshl(x), 1, 4)    \
+  SK_TRUTH(atanh, definedIn(x, ::atanh(within(x, -1, 1))), atanhl(x), -1, 1)     \
+  SK_TRUTH(exp, ::exp(within(x, -700, 700)), expl(x), -87, 88)                   \
+  SK_TRUTH(exp2, ::exp2(within(x, -1000, 1000)), exp2l(x), -126, 128)            \
+  SK_TRUTH(log, definedFrom(0, x, ::log(x < 0 ? 1 : x)), logl(x), 0.5, 2)        \
+  SK_TRUTH(log2, definedFrom(0, x, ::log2(x < 0 ? 1 : x)), log2l(x), 0.5, 2)     \
+  SK_TRUTH(log10, definedFrom(0, x, ::log10(x < 0 ? 1 : x)), log10l(x), 0.5, 2)  \
+  SK_TRUTH(log1p, definedFrom(-1, x, ::log1p(x < -1 ? 0 : x)), log1pl(x), -1, 2) \
+  SK_TRUTH(expm1, ::expm1(within(x, -700, 700)), expm1l(x), -2, 88)              \
+  SK_TRUTH(cbrt, ::cbrt(x), cbrtl(x), 0.5, 8)                                    \
+  SK_TRUTH(erf, ::erf(x), erfl(x), -4, 4)                                        \
+  SK_TRUTH(erfc, ::erfc(within(x, -30, 26)), erfcl(x), -4, 26)                   \
+  SK_TRUTH(sqrt, __builtin_sqrt(x), __builtin_sqrtl(x), 0, 4)                    \
+  SK_TRUTH(inversesqrt, 1 / __builtin_sqrt(x), 1 / __builtin_sqrtl(x), 0, 4)     \
   SK_TRUTH(fract, x - __builtin_floor(x), x - __builtin_floorl(x), -100, 100)
 
 #define SK_TRUTH(name, inDouble, inLongDouble, low, high)                                  \
@@ -113,6 +118,14 @@ std::span<const BinaryFunction> binaryFunctions() {
         {1e-3, 1e3, -12, 12},
         {-1e-3, 1e-3, -10, 10},
         {-1, 1, -1e-3, 1e-3}}},
+      {"hypot",
+       f_hypot,
+       [](long double x, long double y) { return hypotl(x, y); },
+       {{-10, 10, -10, 10},
+        {-1, 1, 0.99, 1.01},
+        {1e-3, 1e3, -12, 12},
+        {-1e-3, 1e-3, -10, 10},
+        {1e-30, 2e-30, 1e-30, 2e-30}}},
   };
   return functions;
 }

@@ -36,7 +36,7 @@ struct BinaryFunction {
 
 /// All of info/functions.def that have one argument.
 std::span<const UnaryFunction> unaryFunctions();
-/// pow and atan2.
+/// pow, atan2 and hypot.
 std::span<const BinaryFunction> binaryFunctions();
 
 struct ErrorSummary {
