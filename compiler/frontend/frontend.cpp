@@ -118,7 +118,7 @@ class Frontend::Unit {
   std::vector<std::string> dependencies() const {
     std::vector<std::string> files{path_};
     for (const std::string& file : dependencyCollector_->getDependencies()) {
-      if (file != path_) files.push_back(file);
+      if (file != path_ && !llvm::StringRef(file).starts_with(ownHeaders)) files.push_back(file);
     }
     return files;
   }
@@ -212,9 +212,8 @@ class Frontend::Unit {
     compiler_.createSourceManager(compiler_.getFileManager());
     dependencyCollector_ = std::make_shared<clang::DependencyCollector>();
     compiler_.addDependencyCollector(dependencyCollector_);
-    compiler_.getPreprocessorOpts().addRemappedFile(
-        std::string(ownHeaders) + "/sk/types.hpp",
-        llvm::MemoryBuffer::getMemBufferCopy(typesHeaderText(), "sk/types.hpp").release());
+    addHeader("sk/types.hpp", typesHeaderText());
+    addHeader("sk/random.sk", randomHeaderText());
     compiler_.createPreprocessor(clang::TU_Complete);
     clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
     // Clang assigns an array, as a member of a struct, by __builtin_memcpy.
@@ -229,6 +228,13 @@ class Frontend::Unit {
     compiler_.getDiagnosticClient().BeginSourceFile(compiler_.getLangOpts(), &preprocessor);
     parsing_ = true;
     return compiler_.InitializeSourceManager(compiler_.getFrontendOpts().Inputs.front());
+  }
+
+  /// Lets programs include a header that is only in memory.
+  void addHeader(const std::string& name, std::string_view text) {
+    compiler_.getPreprocessorOpts().addRemappedFile(
+        std::string(ownHeaders) + "/" + name,
+        llvm::MemoryBuffer::getMemBufferCopy(llvm::StringRef(text), name).release());
   }
 
   /// The real file system, with the main file in memory over it; only the main file if it is isolated.

@@ -23,6 +23,9 @@ std::string preludeText();
 /// The text of <sk/types.hpp> for .sk files, which include it where C++ shares a header with them: the names of its types.
 std::string typesHeaderText();
 
+/// The text of <sk/random.sk>: library/random.sk.
+std::string_view randomHeaderText();
+
 /// True for type names whose `T(...)` takes components or rows: "float2" .. "unorm8x4", "float2x2" ...
 bool isVectorTypeName(std::string_view name);
 
