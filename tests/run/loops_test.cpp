@@ -217,7 +217,7 @@ TEST_CASE("a recording that is given up leaves nothing behind") {
   });
 }
 
-TEST_CASE("a stream that ends while calls are recorded is no longer looked at") {
+TEST_CASE("a stream that ends while calls are recorded returns where the recording is refused") {
   onEveryTarget([](sk::Device& device) {
     auto u = streamOf(device, wave(101)), v = streamOf(device, wave(101)), w = streamOf(device, wave(101));
     const auto assign = [&] {
@@ -228,6 +228,7 @@ TEST_CASE("a stream that ends while calls are recorded is no longer looked at") 
       });
     };
     CHECK_THAT(errorOf(assign), Contains("another stream was assigned to a stream"));
+    CHECK(u.read() == wave(101));
     loops::smooth(u, v);
     CHECK(v.read().size() == 101);
   });
@@ -247,8 +248,6 @@ TEST_CASE("a loop refuses a stream that has another shape, and a device that has
   CHECK_THAT(errorOf([&] { loop.repeat(1); }), Contains("its device has been destroyed"));
 }
 
-}  // namespace
-
 TEST_CASE("a recording that is given up has swapped no streams") {
   sk::Device device;
   auto a = device.stream<float>({2}), b = device.stream<float>({2}), c = device.stream<float>({3});
@@ -266,4 +265,86 @@ TEST_CASE("a recording that is given up has swapped no streams") {
   CHECK(c.read() == std::vector<float>{3, 3, 3});
 }
 
+/// Records calls that end with an exception.
+template <class Calls>
+void giveUp(sk::Device& device, Calls&& calls) {
+  const auto record = [&] {
+    device.record([&] {
+      calls();
+      throw std::runtime_error("no more");
+    });
+  };
+  CHECK_THROWS_AS(record(), std::runtime_error);
+}
+
+TEST_CASE("a recording that is given up has moved and destroyed no streams") {
+  onEveryTarget([](sk::Device& device) {
+    auto a = streamOf<float>(device, {1}), b = streamOf<float>(device, {2});
+    sk::Stream<float> other;
+    const auto areAsBefore = [&] {
+      CHECK(a.read() == std::vector<float>{1});
+      CHECK(b.read() == std::vector<float>{2});
+      CHECK(!other);
+    };
+    giveUp(device, [&] { other = std::move(a); });
+    areAsBefore();
+    giveUp(device, [&] {
+      loops::add(1, a, b);
+      other = std::move(a);
+      a = std::move(b);
+    });
+    areAsBefore();
+    giveUp(device, [&] { a = std::move(b); });
+    areAsBefore();
+    giveUp(device, [&] {
+      loops::add(1, a, b);
+      a = device.stream<float>({7});
+      loops::add(1, b, b);
+      std::swap(a, b);
+    });
+    areAsBefore();
+    giveUp(device, [&] { const auto consumed = std::move(a); });
+    areAsBefore();
+    std::optional<sk::Stream<float>> ended = std::move(a);
+    giveUp(device, [&] {
+      a = std::move(*ended);
+      ended.reset();
+    });
+    areAsBefore();
+  });
+}
+
+TEST_CASE("a stream that is moved to a handle without one is refused, and returns") {
+  onEveryTarget([](sk::Device& device) {
+    auto a = streamOf<float>(device, {1}), b = streamOf<float>(device, {2});
+    sk::Stream<float> other;
+    const auto move = [&] {
+      device.record([&] {
+        loops::add(1, a, b);
+        other = std::move(a);
+      });
+    };
+    CHECK_THAT(errorOf(move), Contains("record: a stream was moved to another handle"));
+    CHECK(a.read() == std::vector<float>{1});
+    CHECK(!other);
+    std::vector<sk::Stream<float>> grown;
+    grown.push_back(std::move(a));
+    sk::Loop loop = device.record([&] {  // other handles than before, and those do not exist any more
+      for (int i = 0; i < 10; ++i) grown.push_back(device.stream<float>({1}));
+      loops::add(1, grown[0], b);
+      loops::add(1, b, grown[0]);
+    });
+    loop.repeat(3);
+    CHECK(grown[0].read() == std::vector<float>{7});
+    loop = device.record([&] {
+      loops::add(1, b, b);
+      const auto consumed = std::move(grown[0]);
+    });
+    loop.repeat(2);
+    CHECK(!grown[0]);
+    CHECK(b.read() == std::vector<float>{8});
+  });
+}
+
+}  // namespace
 }  // namespace run_tests

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -268,6 +269,61 @@ TEST_CASE("a loop repeats operations with scalars") {
     CHECK(ratio.read() == quotient);
     CHECK(old.read() == first);
     CHECK(x.read() == values);
+  });
+}
+
+TEST_CASE("a loop swaps scalars that have just been computed") {
+  onEveryTarget([](sk::Device& device) {
+    auto a = device.scalar<float>(1);
+    sk::Scalar<float> b = a + 1;  // computed when the device begins to record
+    sk::Loop loop = device.record([&] {
+      a += 10;
+      std::swap(a, b);
+    });
+    CHECK(a.read() == 1);
+    CHECK(b.read() == 2);
+    loop.repeat(3);
+    CHECK(a.read() == 12);
+    CHECK(b.read() == 21);
+  });
+}
+
+TEST_CASE("a recording that is given up has swapped and computed no scalars") {
+  onEveryTarget([](sk::Device& device) {
+    auto a = device.scalar<float>(1), x = device.scalar<float>(5);
+    sk::Scalar<float> b = a + 1, none;
+    const auto giveUp = [&](auto&& calls) {
+      const auto record = [&] {
+        device.record([&] {
+          calls();
+          throw std::runtime_error("no more");
+        });
+      };
+      CHECK_THROWS_AS(record(), std::runtime_error);
+      CHECK(a.read() == 1);
+      CHECK(b.read() == 2);
+      CHECK(x.read() == 5);
+    };
+    giveUp([&] { std::swap(a, b); });
+    giveUp([&] {
+      a += 10;
+      std::swap(a, b);
+      std::swap(x, b);
+    });
+    giveUp([&] {
+      sk::Scalar<float> c = a * 3;
+      std::swap(a, c);
+    });
+    giveUp([&] {
+      sk::Scalar<float> c = a * 3;
+      scalars::weighted(c, x, x);  // carries out what has been computed
+      std::swap(a, c);
+      none = a + b;
+      static_cast<void>(none.region());
+    });
+    CHECK_THAT(errorOf([&] { static_cast<void>(none.read()); }), Contains("lost"));
+    a = b + x;
+    CHECK(a.read() == 7);
   });
 }
 

@@ -182,7 +182,8 @@ class Device {
   /// device, without running them. Code of the application between the calls runs now and never again: uniform
   /// arguments keep their values. Streams of this device that `calls` swaps (std::swap(u, v)) are swapped in each
   /// iteration; after record() they are where they were. Throws sk::Error if `calls` reads or writes a stream,
-  /// asks for a value, or pushes to a variable output, or if an argument does not match.
+  /// asks for a value, pushes to a variable output, or moves a stream without a swap, or if an argument does not match.
+  /// If it throws, or `calls` does, streams and scalars are as before, even those that `calls` has moved or destroyed.
   template <class Calls>
   Loop record(Calls&& calls) {
     detail::Recording recording(state());

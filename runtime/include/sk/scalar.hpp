@@ -69,16 +69,23 @@ class ScalarHandle {
   explicit ScalarHandle(StreamOwner stream) : stream_(std::move(stream)) {}
   /// At least one operand is a scalar.
   ScalarHandle(ScalarOp op, const program::Element& result, std::span<const ScalarTerm> operands);
-  ScalarHandle(ScalarHandle&&) noexcept = default;
+  ScalarHandle(ScalarHandle&& other) noexcept
+      : stream_(std::move(other.stream_)), pending_(std::move(other.pending_)) {
+    if (pending_) hold();
+  }
   ScalarHandle& operator=(ScalarHandle&& other);
   ~ScalarHandle() { end(); }
 
   void assign(const ScalarHandle& value, const program::Element& element);
   StreamRegion region() const;
   bool exists() const noexcept { return stream_ || pending_; }
+  /// Takes the stream of an operation that has been carried out. Returns false if that has failed.
+  bool takeStream() const noexcept;
 
  private:
   void takeResult() const;
+  /// Tells the operation that this handle has it.
+  void hold() noexcept;
   /// Carries out operations that read the stream, which is about to end.
   void end() noexcept;
 

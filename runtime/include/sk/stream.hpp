@@ -22,6 +22,7 @@
 namespace sk {
 
 class StreamState;  // the runtime's own
+class LoopState;  // the runtime's own
 class Device;
 namespace detail {
 struct TypedStreams;
@@ -82,9 +83,31 @@ struct StreamDeleter {
   void operator()(StreamState* state) const noexcept;
   static void moved(StreamState* state, Owner<StreamState, StreamDeleter>* holder) noexcept;
 };
-using StreamOwner = Owner<StreamState, StreamDeleter>;
+
+/// A handle of a stream. Device::record gives the handles of its device back what they held, however its function moves
+/// them, and therefore has to know which handles it has destroyed.
+class StreamOwner : public Owner<StreamState, StreamDeleter> {
+ public:
+  StreamOwner() = default;
+  explicit StreamOwner(StreamState* state) noexcept : Owner(state) {}
+  StreamOwner(StreamOwner&& other) noexcept : Owner(std::move(other)) {}
+  StreamOwner& operator=(StreamOwner&& other) noexcept {
+    Owner::operator=(std::move(other));
+    return *this;
+  }
+  ~StreamOwner() {
+    if (recording_ != nullptr) leaveRecording();
+  }
+
+ private:
+  friend class sk::LoopState;
+  void leaveRecording() noexcept;
+
+  LoopState* recording_ = nullptr;  ///< refers to this handle; or null
+};
 
 StreamRegion wholeRegion(StreamState* state);
+Shape shapeOf(StreamState* state);
 StreamRegion partOf(const StreamRegion& region, const Index& begin, const Index& end);
 StreamRegion strided(const StreamRegion& region, const Index& steps, const Index& offsets);
 StreamRegion reshaped(const StreamRegion& region, const Shape& shape);

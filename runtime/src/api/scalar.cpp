@@ -22,8 +22,10 @@ namespace sk {
 
 /// An operation as a scalar of the application holds it.
 struct detail::PendingScalar {
-  explicit PendingScalar(std::shared_ptr<ScalarNode> held) : node(std::move(held)) { node->isHeld = true; }
-  ~PendingScalar() { node->isHeld = false; }
+  PendingScalar(std::shared_ptr<ScalarNode> held, const ScalarHandle& holder) : node(std::move(held)) {
+    node->holder = &holder;
+  }
+  ~PendingScalar() { node->holder = nullptr; }
   PendingScalar(const PendingScalar&) = delete;
   PendingScalar& operator=(const PendingScalar&) = delete;
 
@@ -119,7 +121,10 @@ void runPass(DeviceState& device, std::span<const std::shared_ptr<ScalarNode>> n
     const TraceScope traced(device.trace.get(), "call", "scalars");
     call->run();
   }
-  for (const std::shared_ptr<ScalarNode>& node : nodes) node->state = ScalarNode::State::Done;
+  for (const std::shared_ptr<ScalarNode>& node : nodes) {
+    node->state = ScalarNode::State::Done;
+    if (node->holder != nullptr) node->holder->takeStream();  // a recording knows scalars by their streams
+  }
 }
 
 /// Marks operations as lost that an exception keeps from being done.
@@ -139,7 +144,7 @@ class LostUnlessDone {
 };
 
 bool isPending(const std::shared_ptr<ScalarNode>& node) {
-  return node->isHeld && node->state == ScalarNode::State::Pending;
+  return node->holder != nullptr && node->state == ScalarNode::State::Pending;
 }
 
 /// Whether an operation that is held reads the stream, itself or through its operands, which come before it.
@@ -222,13 +227,13 @@ ScalarHandle::ScalarHandle(ScalarOp op, const program::Element& result,
     }
     ++all.steps;
     all.nodes.push_back(node);
-    pending_ = Owner<PendingScalar, PendingScalarDeleter>(new PendingScalar(std::move(node)));
+    pending_ = Owner<PendingScalar, PendingScalarDeleter>(new PendingScalar(std::move(node), *this));
   });
 }
 
 ScalarHandle& ScalarHandle::operator=(ScalarHandle&& other) {
   if (this == &other) return *this;
-  if (stream_ && other.pending_ && !other.stream_) {
+  if (stream_ && stream_->device != nullptr && other.pending_ && !other.stream_) {
     assign(other, *other.pending_->node->element);
     other.pending_ = {};
     return *this;
@@ -236,22 +241,25 @@ ScalarHandle& ScalarHandle::operator=(ScalarHandle&& other) {
   end();
   stream_ = std::move(other.stream_);
   pending_ = std::move(other.pending_);
+  if (pending_) hold();
   return *this;
 }
+
+void ScalarHandle::hold() noexcept { pending_->node->holder = this; }
 
 void ScalarHandle::assign(const ScalarHandle& value, const program::Element& element) {
   if (!exists()) failWithoutValue();
   if (this == &value) return;
   if (!stream_) static_cast<void>(region());
+  if (stream_->device == nullptr) failForDevice();
   withHostMemory("a scalar", [&] {
-    if (stream_->device != nullptr) {
-      const Nodes& nodes = stream_->device->pendingScalars.nodes;
-      const auto isAssigned = [](const std::shared_ptr<ScalarNode>& node) {
-        return isPending(node) && node->target != nullptr;
-      };
-      if (std::ranges::count_if(nodes, isAssigned) == static_cast<std::ptrdiff_t>(mostScalarOutputs)) {
-        flushScalars(*stream_->device);
-      }
+    const auto isAssigned = [](const std::shared_ptr<ScalarNode>& node) {
+      return isPending(node) && node->target != nullptr;
+    };
+    DeviceState& device = *stream_->device;
+    if (std::ranges::count_if(device.pendingScalars.nodes, isAssigned) ==
+        static_cast<std::ptrdiff_t>(mostScalarOutputs)) {
+      flushScalars(device);
     }
     const ScalarTerm term{&value, nullptr, &element};
     ScalarHandle copy(ScalarOp::Copy, element, {&term, 1});
@@ -261,19 +269,26 @@ void ScalarHandle::assign(const ScalarHandle& value, const program::Element& ele
     }
     copy.pending_->node->target = stream_.get();
     pending_ = std::move(copy.pending_);
+    hold();
   });
+}
+
+bool ScalarHandle::takeStream() const noexcept {
+  if (!pending_ || pending_->node->state == ScalarNode::State::Pending) return true;
+  ScalarNode& node = *pending_->node;
+  // A recording that is given up has returned the stream that this handle held before the operation.
+  const bool isReturned = node.target == nullptr && stream_;
+  if (node.state == ScalarNode::State::Lost && !isReturned) return false;
+  if (node.result) stream_ = std::move(node.result);
+  pending_ = {};
+  return true;
 }
 
 /// Takes the result of an operation that has been carried out.
 void ScalarHandle::takeResult() const {
-  if (!pending_ || pending_->node->state == ScalarNode::State::Pending) return;
-  ScalarNode& node = *pending_->node;
-  if (node.state == ScalarNode::State::Lost) {
-    throw Error("a scalar: its value is lost, since what computed it has failed; make another",
-                Error::Kind::Lost);
-  }
-  if (node.result) stream_ = std::move(node.result);
-  pending_ = {};
+  if (takeStream()) return;
+  throw Error("a scalar: its value is lost, since what computed it has failed; make another",
+              Error::Kind::Lost);
 }
 
 StreamRegion ScalarHandle::region() const {

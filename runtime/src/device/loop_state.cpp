@@ -22,6 +22,7 @@ DeviceState::~DeviceState() {
 void detail::StreamDeleter::operator()(StreamState* state) const noexcept {
   state->holder = nullptr;
   if (state->device != nullptr) {
+    if (state->device->recording != nullptr && state->device->recording->keep(state)) return;
     for (LoopState* loop : state->device->loops) {
       if (loop->keep(state)) return;
     }
@@ -29,24 +30,26 @@ void detail::StreamDeleter::operator()(StreamState* state) const noexcept {
   delete state;
 }
 
-void detail::StreamDeleter::moved(StreamState* state, StreamOwner* holder) noexcept {
-  state->holder = holder;
+void detail::StreamDeleter::moved(StreamState* state, Owner<StreamState, StreamDeleter>* holder) noexcept {
+  state->holder = static_cast<StreamOwner*>(holder);
 }
+
+void detail::StreamOwner::leaveRecording() noexcept { recording_->forget(*this); }
 
 LoopState::LoopState(DeviceState& device) : device_(&device) {
   refuseInRecording(device, "record");
   for (StreamState* stream = device.firstStream(); stream != nullptr; stream = stream->next()) {
-    if (stream->holder != nullptr) held_.push_back({stream, stream->holder});
+    detail::StreamOwner* const handle = stream->holder;
+    if (handle != nullptr && handle->recording_ == nullptr) held_.push_back({stream, handle});
   }
+  kept_.reserve(held_.size());  // so that keep() never allocates
   device.loops.push_back(this);
+  for (const Held& held : held_) held.handle->recording_ = this;
   device.recording = this;
 }
 
 LoopState::~LoopState() {
-  if (isRecording()) {
-    dropScalars();
-    undoSwaps();
-  }
+  if (isRecording()) giveUp();
   endRecording();
   runner_.reset();  // before the streams whose elements it may hold
   if (device_ != nullptr) std::erase(device_->loops, this);
@@ -57,7 +60,14 @@ bool LoopState::isRecording() const { return device_ != nullptr && device_->reco
 
 void LoopState::endRecording() noexcept {
   if (isRecording()) device_->recording = nullptr;
+  for (const Held& held : held_) {
+    if (held.handle != nullptr) held.handle->recording_ = nullptr;
+  }
   held_.clear();
+}
+
+bool LoopState::isHeld(const StreamState* stream) const {
+  return std::ranges::any_of(held_, [&](const Held& held) { return held.stream == stream; });
 }
 
 bool LoopState::uses(const StreamState* stream) const {
@@ -76,14 +86,15 @@ void LoopState::use(const program::Kernel& kernel) {
 }
 
 bool LoopState::keep(StreamState* stream) noexcept {
-  if (uses(stream)) {
-    kept_.push_back(stream);
-    return true;
-  }
+  if (!uses(stream) && !isHeld(stream)) return false;
+  kept_.push_back(stream);
+  return true;
+}
+
+void LoopState::forget(const detail::StreamOwner& handle) noexcept {
   for (Held& held : held_) {
-    if (held.stream == stream) held.stream = nullptr;
+    if (held.handle == &handle) held.handle = nullptr;
   }
-  return false;
 }
 
 /// Drops the operations with scalars of a recording that is given up: scalars that they assign to keep their values, and
@@ -96,56 +107,77 @@ void LoopState::dropScalars() noexcept {
   }
 }
 
-LoopState::Moves LoopState::moves() const {
-  std::unordered_map<const detail::StreamOwner*, StreamState*> now;
-  for (StreamState* stream = device_->firstStream(); stream != nullptr; stream = stream->next()) {
-    if (stream->holder != nullptr) now.emplace(stream->holder, stream);
+/// Ends a recording without a loop: everything is as before it, except what it has computed for streams that it has created.
+void LoopState::giveUp() noexcept {
+  dropScalars();
+  returnStreams();
+  returnDestroyed();
+  for (const Used& used : used_) {
+    if (!isHeld(used.stream)) used.stream->markLost();
   }
-  Moves moved;
-  for (const Held& before : held_) {
-    const auto found = now.find(before.holder);
-    if (found != now.end() && found->second != before.stream)
-      moved.emplace_back(before.stream, found->second);
-  }
-  return moved;
 }
 
-void LoopState::undo(const Moves& moved) {
-  std::vector<std::pair<detail::StreamOwner*, StreamState*>> holders;
-  for (const auto& [before, after] : moved) holders.emplace_back(after->holder, before);
-  for (const auto& [holder, before] : holders) static_cast<void>(holder->release());
-  for (const auto& [holder, before] : holders) *holder = detail::StreamOwner(before);
+/// Returns the streams that have other handles now. Handles exchange what they hold, so that none of it is lost.
+void LoopState::returnStreams() noexcept {
+  for (const Held& held : held_) {
+    detail::StreamOwner* const now = held.stream->holder;
+    if (held.handle != nullptr && now != nullptr && now != held.handle) std::swap(*held.handle, *now);
+  }
 }
 
-/// Gives handles back what they held before a recording that is given up. Where its body has put other streams in them, or deleted
-/// streams, they keep what they hold.
-void LoopState::undoSwaps() noexcept try {
-  const Moves moved = moves();
-  std::vector<StreamState*> before, after;
-  for (const auto& [from, to] : moved) {
-    before.push_back(from);
-    after.push_back(to);
+/// Returns the streams that have been destroyed. A handle with a stream of another device keeps that one.
+void LoopState::returnDestroyed() noexcept {
+  for (const Held& held : held_) {
+    if (held.handle == nullptr || held.stream->holder != nullptr) continue;
+    if (*held.handle && held.handle->get()->device != device_) continue;
+    if (std::erase(kept_, held.stream) > 0) *held.handle = detail::StreamOwner(held.stream);
   }
-  if (std::ranges::is_permutation(before, after)) undo(moved);
-} catch (const std::bad_alloc&) {  // the handles keep what they hold
+}
+
+/// Deletes the streams that were destroyed during the recording, if no call of the loop uses them.
+void LoopState::deleteUnused() noexcept {
+  const auto unused = [&](const StreamState* stream) { return !uses(stream); };
+  for (auto found = std::ranges::find_if(kept_, unused); found != kept_.end();
+       found = std::ranges::find_if(kept_, unused)) {
+    StreamState* const stream = *found;
+    kept_.erase(found);
+    detail::StreamDeleter()(stream);  // another loop may use it
+  }
 }
 
 void LoopState::finish() {
   failIfLost();
   flushScalars(*device_);
-  const Moves moved = moves();
-  findExchanges(moved);
-  undo(moved);
-  runner_ = device_->makeLoopRunner();
+  findExchanges();
+  std::unique_ptr<LoopRunner> runner = device_->makeLoopRunner();
+  returnStreams();
+  runner_ = std::move(runner);
   endRecording();
+  deleteUnused();
 }
 
 /// Writes a permutation as exchanges of two: for the cycle s0, s1, s2, where the handle of s0 now holds s1, first
 /// s0 and s1, then s1 and s2.
-void LoopState::findExchanges(std::span<const std::pair<StreamState*, StreamState*>> moved) {
-  std::unordered_map<StreamState*, StreamState*> next(moved.begin(), moved.end());
-  for (const auto& [before, after] : moved) {
-    if (before == nullptr || !next.contains(after)) {
+void LoopState::findExchanges() {
+  std::unordered_map<StreamState*, StreamState*> next;  // what each handle held, and what it holds now
+  bool leavesEmpty = false;
+  for (const auto& [stream, handle] : held_) {
+    if (handle == nullptr || handle->get() == stream) continue;
+    if (*handle) {
+      next.emplace(stream, handle->get());
+    } else if (stream->holder != nullptr) {
+      leavesEmpty = true;
+    }
+  }
+  if (next.empty() && leavesEmpty) {
+    throw Error(
+        "record: a stream was moved to another handle, which leaves its own empty; only swaps of streams "
+        "that existed "
+        "before, as by std::swap(u, v), can be repeated",
+        Error::Kind::Misuse);
+  }
+  for (const auto& [before, after] : next) {
+    if (leavesEmpty || before->holder == nullptr || !next.contains(after)) {
       throw Error(
           "record: another stream was assigned to a stream; only swaps of streams that existed before, as by "
           "std::swap(u, v), can be repeated",

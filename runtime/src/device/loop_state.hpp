@@ -34,7 +34,8 @@ class LoopState {
   void use(const program::Kernel& kernel);
 
   /// Ends the recording. Streams that have been swapped return to the handles that held them before. Throws
-  /// sk::Error if streams have changed places that cannot exchange their elements.
+  /// sk::Error if streams have changed places that cannot exchange their elements. Unless the recording ends here, the destructor
+  /// returns all streams, also those that have been destroyed meanwhile.
   void finish();
 
   /// Throws sk::Error unless the calls can run now.
@@ -49,9 +50,10 @@ class LoopState {
   std::int64_t runAndAsk(const StreamRegion& done, std::int64_t every, std::int64_t most);
   static bool isTrue(const StreamRegion& done);
 
-  /// Keeps a stream that its owner has destroyed, if a call uses it or may have recorded it. Returns whether it
-  /// does; otherwise the loop forgets the stream.
+  /// Keeps a stream that its owner has destroyed, if a call uses it, or if the recording may have to return it.
   bool keep(StreamState* stream) noexcept;
+  /// A handle is about to end while the device records.
+  void forget(const detail::StreamOwner& handle) noexcept;
 
   /// The device is about to end, or has ended.
   void leave() noexcept {
@@ -71,19 +73,19 @@ class LoopState {
  private:
   /// A stream, and the handle that held it when recording began.
   struct Held {
-    StreamState* stream;  ///< null once it has ended
-    detail::StreamOwner* holder;
+    StreamState* stream;
+    detail::StreamOwner* handle;  ///< null once it has ended
   };
   void failIfLost() const;
   bool isRecording() const;
   void endRecording() noexcept;
+  void giveUp() noexcept;
   void dropScalars() noexcept;
-  /// What each handle held before the recording, and what it holds now, where that is something else.
-  using Moves = std::vector<std::pair<StreamState*, StreamState*>>;
-  Moves moves() const;
-  static void undo(const Moves& moved);
-  void undoSwaps() noexcept;
-  void findExchanges(std::span<const std::pair<StreamState*, StreamState*>> moved);
+  void returnStreams() noexcept;
+  void returnDestroyed() noexcept;
+  void deleteUnused() noexcept;
+  bool isHeld(const StreamState* stream) const;
+  void findExchanges();
 
   DeviceState* device_;  ///< null after the device has ended
   std::vector<Held> held_;  ///< all streams of the device, while it records

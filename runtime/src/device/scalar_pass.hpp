@@ -64,7 +64,7 @@ struct ScalarNode {
   const program::Element* element;  ///< of the result
   program::Scalar type;  ///< of the operands, except the condition of Select
   std::vector<Operand> operands;
-  bool isHeld = false;  ///< by a scalar of the application; otherwise only other operations need it
+  const detail::ScalarHandle* holder = nullptr;  ///< the application's; null: only other operations need it
   StreamState* target = nullptr;  ///< where the result goes; null: to `result`
   detail::StreamOwner result;
   enum class State : std::uint8_t { Pending, Done, Lost } state = State::Pending;
