@@ -46,9 +46,9 @@ class Rows {
     requires std::is_same_v<typename S::value_type, std::int32_t>
   explicit Rows(const S& starts) : state_(detail::makeRows(regionOfStarts(starts))) {}
 
-  /// The number of rows.
+  /// The number of rows, also after the device has ended.
   std::int64_t count() const;
-  /// The end of the last row: a stream in rows has at least as many elements.
+  /// The end of the last row: a stream in rows has at least as many elements. Also after the device has ended.
   std::int64_t end() const;
 
   /// A one-dimensional stream or view in these rows, for one call. Throws sk::Error if the rows were moved from; the

@@ -126,7 +126,8 @@ void fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t byteOffse
 }  // namespace detail
 
 /// Elements of a stream, by reference: it must not outlive the stream. A view can be an input or an output of a
-/// kernel wherever the stream can. A View<const T> cannot be written.
+/// kernel wherever the stream can. A View<const T> cannot be written. After its device has ended, a view still has its
+/// shape(), size() and region(); everything else throws sk::Error.
 template <class T>
 class View {
  public:
@@ -226,6 +227,7 @@ class View {
   /// another number of elements, or if the view's elements do not lie at regular distances in it.
   View reshape(const Shape& shape) const { return View(detail::reshaped(region_, shape)); }
 
+  /// The shape with which the view was made.
   const Shape& shape() const { return region_.shape; }
   std::int64_t size() const { return region_.shape.size(); }
   const StreamRegion& region() const { return region_; }
@@ -236,7 +238,8 @@ class View {
 
 /// Elements of type T on a device, undefined until they are written. Move-only. A stream that has outlived
 /// its device, is default-constructed or was moved from can only be destroyed or assigned to; everything else
-/// throws sk::Error.
+/// throws sk::Error, except operator bool, region() and handle(), which refer to a stream without using it, and size(),
+/// which is 0 if there is no stream.
 template <ElementType T>
 class Stream {
  public:
@@ -244,7 +247,7 @@ class Stream {
 
   /// Holds no stream: assign the result of Device::stream to it.
   Stream() = default;
-  /// False if default-constructed or moved from.
+  /// False if default-constructed or moved from. True if the device has ended.
   explicit operator bool() const noexcept { return state_.get() != nullptr; }
 
   /// Copies `elements`, row-major, to the stream. Throws sk::Error unless there are exactly size() elements.
@@ -309,9 +312,11 @@ class Stream {
   View<T> reshape(const Shape& shape) { return all().reshape(shape); }
   View<const T> reshape(const Shape& shape) const { return all().reshape(shape); }
 
-  /// After a kernel has pushed to the stream, the first call of one of these waits for that kernel.
-  Shape shape() const { return region().shape; }
-  std::int64_t size() const { return region().shape.size(); }
+  /// After a kernel has pushed to the stream, the first call of one of these waits for that kernel. If default-constructed or
+  /// moved from, the stream has size 0 and a shape of rank 0. Throws sk::Error if the device has ended.
+  Shape shape() const { return detail::shapeOf(state_.get()); }
+  std::int64_t size() const { return shape().size(); }
+  /// What the call that gets the region checks: this does not throw if there is no stream or no device.
   StreamRegion region() const { return detail::wholeRegion(state_.get()); }
 
   /// The stream without its shape, so that this does not wait for pushes.

@@ -95,13 +95,7 @@ void StreamState::leave() noexcept {
   device = nullptr;
 }
 
-StreamState& liveStream(const StreamRegion& region, std::string_view context) {
-  if (region.distributed != nullptr) {
-    throw Error(fmt::format(
-        "{}: this stream of shape {} is spread over the ranks of a sk::Domain, which run kernels and "
-        "reductions on it, and nothing else; use the stream's own functions, or gather it",
-        context, toString(region.shape)));
-  }
+void checkExists(const StreamRegion& region, std::string_view context) {
   if (region.stream == nullptr) {
     throw Error(fmt::format("{}: there is no stream: it was default-constructed or moved from; make one by "
                             "device.stream<T>(shape)",
@@ -115,6 +109,16 @@ StreamState& liveStream(const StreamRegion& region, std::string_view context) {
                     context, toString(region.stream->shape)),
         Error::Kind::Lost);
   }
+}
+
+StreamState& liveStream(const StreamRegion& region, std::string_view context) {
+  if (region.distributed != nullptr) {
+    throw Error(fmt::format(
+        "{}: this stream of shape {} is spread over the ranks of a sk::Domain, which run kernels and "
+        "reductions on it, and nothing else; use the stream's own functions, or gather it",
+        context, toString(region.shape)));
+  }
+  checkExists(region, context);
   region.stream->settle();
   if (region.shape.rank() > 0 && !isInside(region)) {
     const std::string from = isBox(region) ? fmt::format(" from {}", toString(region.begin)) : "";
@@ -152,6 +156,12 @@ StreamRegion detail::wholeRegion(StreamState* state) {
     withHostMemory("the size of a stream", [&] { state->settle(); });
   }
   return {state, Index::origin(state->shape.rank()), state->shape};
+}
+
+Shape detail::shapeOf(StreamState* state) {
+  if (state == nullptr) return {};
+  constexpr std::string_view what = "the shape of a stream";
+  return withHostMemory(what, [&] { return liveStream({state, {}, {}}, what).shape; });
 }
 
 void detail::write(const StreamRegion& region, const void* elements, std::size_t count) {

@@ -7,7 +7,6 @@
 #include <array>
 #include <cstddef>
 #include <numeric>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,14 +20,6 @@ namespace sk {
 namespace {
 
 std::size_t fromFastest(int rank, int dimension) { return static_cast<std::size_t>(rank - 1 - dimension); }
-
-void requireStream(const StreamRegion& region, std::string_view what) {
-  if (region.stream != nullptr) return;
-  throw Error(fmt::format("{}: there is no stream: it was default-constructed or moved from; make one by "
-                          "device.stream<T>(shape)",
-                          what),
-              Error::Kind::Lost);
-}
 
 /// The same elements as a box of the stream, if they are one; else as they were given.
 StreamRegion asBox(const StreamRegion& region) {
@@ -206,7 +197,7 @@ bool isInside(const StreamRegion& region) {
 }
 
 StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, const Index& end) {
-  requireStream(region, "domain");
+  checkExists(region, "domain");
   const int rank = region.shape.rank();
   bool isPart = begin.rank() == rank && end.rank() == rank;
   for (int d = 0; isPart && d < rank; ++d) {
@@ -234,7 +225,7 @@ StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, cons
 }
 
 StreamRegion detail::placed(const StreamRegion& region, const Placement& placement) {
-  requireStream(region, "placed");
+  checkExists(region, "placed");
   const Shape& whole = placement.whole;
   const int rank = region.shape.rank();
   if (whole.rank() != rank || placement.origin.rank() != rank) {
@@ -269,7 +260,7 @@ StreamRegion detail::placed(const StreamRegion& region, const Placement& placeme
 }
 
 StreamRegion detail::strided(const StreamRegion& region, const Index& steps, const Index& given) {
-  requireStream(region, "stride");
+  checkExists(region, "stride");
   const int rank = region.shape.rank();
   const Index offsets = given.rank() == 0 ? Index::origin(rank) : given;
   bool isPossible = steps.rank() == rank && offsets.rank() == rank;
@@ -297,7 +288,7 @@ StreamRegion detail::strided(const StreamRegion& region, const Index& steps, con
 }
 
 StreamRegion detail::reshaped(const StreamRegion& region, const Shape& shape) {
-  requireStream(region, "reshape");
+  checkExists(region, "reshape");
   if (shape == region.shape) return region;
   if (shape.rank() == 0 || shape.size() != region.shape.size()) {
     throw Error(fmt::format("reshape: {} has {} element(s), but shape {} has {}; give a shape of as many",

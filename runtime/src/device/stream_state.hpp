@@ -126,6 +126,9 @@ class StreamState {
   StreamState* next_ = nullptr;
 };
 
+/// Throws sk::Error, with `context` in front, if the stream of a region was moved from, or if its device has ended.
+void checkExists(const StreamRegion& region, std::string_view context);
+
 /// The settled stream of a region. Throws sk::Error, with `context` in front, if it was moved from, if its
 /// device has ended, or if a kernel has left it fewer elements than the region has.
 StreamState& liveStream(const StreamRegion& region, std::string_view context);
