@@ -73,12 +73,13 @@ Context::Context(Context&& other) noexcept
     : display_(other.display_),
       surface_(other.surface_),
       handle_(std::exchange(other.handle_, nullptr)),
-      getCurrent_(other.getCurrent_) {}
+      getCurrent_(other.getCurrent_),
+      process_(other.process_) {}
 
 // The display stays initialised: all of the process shares it, and EGL does not count users, so that
 // terminating it would destroy other devices' contexts and the application's own.
 Context::~Context() {
-  if (handle_ != nullptr && !isAdopted()) {
+  if (handle_ != nullptr && !isAdopted() && process_.isHere()) {
     release();
     eglDestroyContext(display_, handle_);
     if (surface_ != EGL_NO_SURFACE) {
@@ -93,7 +94,17 @@ void Context::release() const noexcept {
   }
 }
 
+void Context::failInChild() {
+  throw Error(
+      "the device belongs to the process that forked this one, and drivers of OpenGL do not work in the "
+      "child; use a native "
+      "device here (SK_DEVICE=native), fork before the first device is created, or let the child exec() a "
+      "program",
+      Error::Kind::Lost);
+}
+
 void Context::makeCurrent() const {
+  checkProcess();
   if (isAdopted()) {
     throw Error(
         "the context that the device adopted is not current on this thread; make it current before "

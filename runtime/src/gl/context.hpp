@@ -9,6 +9,8 @@
 
 #include <epoxy/egl.h>
 
+#include "gl/process_mark.hpp"
+
 namespace sk::gl {
 
 enum class Api { Gl, Es };
@@ -24,7 +26,11 @@ class Context {
   ~Context();
 
   bool isAdopted() const { return display_ == EGL_NO_DISPLAY; }
-  bool isCurrent() const { return getCurrent_() == handle_; }
+  bool isCurrent() const { return process_.isHere() && getCurrent_() == handle_; }
+  /// Throws sk::Error in the child of a fork that came after this context.
+  void checkProcess() const {
+    if (!process_.isHere()) failInChild();
+  }
   /// Makes the context current permanently. Throws like CurrentScope.
   void makeCurrent() const;
   /// Makes no context current if this one is.
@@ -33,6 +39,7 @@ class Context {
  private:
   friend class CurrentScope;
   Context() = default;
+  [[noreturn]] static void failInChild();
   bool becomeCurrent() const noexcept {
     return eglMakeCurrent(display_, surface_, surface_, handle_) == EGL_TRUE;
   }
@@ -41,15 +48,17 @@ class Context {
   EGLSurface surface_ = EGL_NO_SURFACE;
   void* handle_ = nullptr;
   void* (*getCurrent_)() = nullptr;
+  ProcessMark process_;
 };
 
 /// Makes a context current, and finally restores the previous one. If there was none, the context stays
 /// current, so that the next scope costs nothing.
 class CurrentScope {
  public:
-  /// Throws sk::Error if the context cannot be made current on this thread, or if it is an adopted context
-  /// that is not current.
+  /// Throws sk::Error if the context cannot be made current on this thread, if it is an adopted context
+  /// that is not current, or if it belongs to the process from which this one was forked.
   explicit CurrentScope(const Context& context) {
+    context.checkProcess();
     if (!context.isCurrent()) {
       enter(context);
     }

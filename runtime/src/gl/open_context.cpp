@@ -212,9 +212,27 @@ std::string whyUnfitSaved(const Capabilities& capabilities) {
   return whyUnfit(capabilities, bound);
 }
 
+/// Whether this process is the child of one that has used EGL before the fork. Drivers have threads and locks that the child
+/// lacks, so that even a new context would hang.
+bool isForked() {
+  static const ProcessMark firstUse;
+  return !firstUse.isHere();
+}
+
+[[noreturn]] void failAsForked() {
+  throw Error(
+      "no device with OpenGL can be opened in this process: the process that forked it had used OpenGL "
+      "before, whose drivers "
+      "do not work in the child; use a native device here (SK_DEVICE=native), fork before the first device "
+      "is created, or "
+      "let the child exec() a program",
+      Error::Kind::Device);
+}
+
 }  // namespace
 
 OpenedContext openContext(const OpenRequest& request) {
+  if (isForked()) failAsForked();
   Search search(request);
   std::optional<OpenedContext> found = search.find();
   if (!found) search.report();
@@ -222,6 +240,7 @@ OpenedContext openContext(const OpenRequest& request) {
 }
 
 std::optional<OpenedContext> findGpu() {
+  if (isForked()) return std::nullopt;
   const OpenRequest best;
   std::optional<OpenedContext> found = Search(best).find();
   if (found && found->capabilities.isSoftware) found.reset();
@@ -229,6 +248,7 @@ std::optional<OpenedContext> findGpu() {
 }
 
 OpenedContext adoptContext(std::optional<Api> api) {
+  if (isForked()) failAsForked();
   std::optional<Context> context = Context::current();
   if (!context) {
     throw Error("there is no context to adopt; make one current on this thread by EGL or GLX first",
