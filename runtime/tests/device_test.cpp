@@ -206,7 +206,8 @@ TEST_CASE("a stream for which there is no memory") {
   }
   const std::int64_t side = device.limits().textureSize;
   const std::string error = errorOf([&] { device.stream<float4>({side, side}); });
-  CHECK(error.find("'" + device.name() + "' has no memory for a stream of float4 of shape {") == 0);
+  CHECK(error.find("a new stream: '" + device.name() + "' has no memory for a stream of float4 of shape {") ==
+        0);
   CHECK(error.find("MiB") != std::string::npos);
   use(device);
 }

@@ -2,6 +2,7 @@
 //
 // Injects every fault. After each, the call has thrown the right kind of sk::Error or none; each stream has its elements
 // from before or after the call, or is marked as lost; the device still works; and no GL object is left over.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -103,6 +104,16 @@ class FaultTest {
     return inconsistent;
   }
 
+  /// Whether an error of exhausted memory begins with the operation, unless there is no memory for its text either.
+  bool namesOperation(const sk::Error& error) const {
+    if (error.kind() != ErrorKind::Memory) return true;
+    const std::string text = error.what();
+    const bool isOfHost = kind_ == Kind::Host || kind_ == Kind::HostOfAnyThread;
+    if (isOfHost && isLasting_ && text == "there is not enough host memory") return true;
+    return std::ranges::any_of(scenario_.operations,
+                               [&](const std::string& name) { return text.starts_with(name + ": "); });
+  }
+
   /// Tries the next fault. False if there is none.
   bool tryNext() {
     INFO(scenario_.name << ": " << nameOf(kind_) << " " << number_ << (isLasting_ ? " and all after" : ""));
@@ -126,6 +137,7 @@ class FaultTest {
     thrown += error ? 1 : 0;
     INFO((error ? error->what() : "no error"));
     CHECK((!error || mayThrow(kind_, error->kind())));
+    CHECK((!error || isLate || namesOperation(*error)));
     const Scene::Elements found = scene_->elements();
     CHECK(inconsistentStreams(found, error.has_value(), isLate) == "");
     for (const auto& stream : found) lost += stream ? 0 : 1;

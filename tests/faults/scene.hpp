@@ -38,6 +38,7 @@ class Scene {
 
 struct Scenario {
   std::string name;
+  std::vector<std::string> operations;  ///< the names by which errors of exhausted memory begin
   std::function<void(Scene&)> call;
   bool needsGl = false;
   bool moves = false;  ///< whether the call moves elements to another texture without changing them

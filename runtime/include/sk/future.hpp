@@ -48,7 +48,7 @@ class Future {
   void wait() const { detail::wait(transfer_); }
   /// Waits for the elements and returns them, row-major. Invalidates the future, even if it throws.
   std::vector<E> get() {
-    std::vector<E> elements = detail::hostVector<E>(size_);
+    std::vector<E> elements = detail::hostVector<E>(size_, "readAsync");
     detail::take(std::move(transfer_), elements.data());
     return elements;
   }

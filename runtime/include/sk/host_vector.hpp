@@ -10,17 +10,17 @@
 
 namespace sk::detail {
 
-[[noreturn]] void failForElements(std::size_t count, std::size_t elementBytes);
+[[noreturn]] void failForElements(std::size_t count, std::size_t elementBytes, const char* what);
 
-/// Allocates `count` elements. Throws sk::Error if the host is out of memory.
+/// Allocates `count` elements. Throws sk::Error, with the operation `what` in front, if the host is out of memory.
 template <class E>
-std::vector<E> hostVector(std::size_t count) {
+std::vector<E> hostVector(std::size_t count, const char* what = "") {
   try {
     return std::vector<E>(count);
   } catch (const std::bad_alloc&) {
-    failForElements(count, sizeof(E));
+    failForElements(count, sizeof(E), what);
   } catch (const std::length_error&) {
-    failForElements(count, sizeof(E));
+    failForElements(count, sizeof(E), what);
   }
 }
 

@@ -157,7 +157,7 @@ class View {
   void write(const std::vector<bool>& elements) const
     requires(isWritable && std::is_same_v<value_type, bool>)
   {
-    auto bytes = detail::hostVector<std::uint8_t>(elements.size());
+    auto bytes = detail::hostVector<std::uint8_t>(elements.size(), "write");
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = elements[i] ? 1 : 0;
     detail::write(region_, bytes.data(), bytes.size());
   }
@@ -177,7 +177,7 @@ class View {
 
   /// Returns the elements of the region, row-major (bool: bytes of 0 and 1). Waits for the device.
   std::vector<HostElement<value_type>> read() const {
-    auto elements = detail::hostVector<HostElement<value_type>>(static_cast<std::size_t>(size()));
+    auto elements = detail::hostVector<HostElement<value_type>>(static_cast<std::size_t>(size()), "read");
     detail::read(region_, elements.data(), elements.size());
     return elements;
   }

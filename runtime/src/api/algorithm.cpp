@@ -226,11 +226,12 @@ Permutation orderOf(const StreamRegion& keys, const SortOptions& options) {
 /// The numbers for which isFirst(number) is true, then the others. Sets `count` to how many come first.
 template <class IsFirst>
 Permutation firstOf(std::size_t size, std::int64_t& count, IsFirst&& isFirst) {
-  Permutation order, rest;
-  order.reserve(size);
-  for (std::size_t i = 0; i < size; ++i) (isFirst(i) ? order : rest).push_back(static_cast<std::int32_t>(i));
-  count = static_cast<std::int64_t>(order.size());
-  order.insert(order.end(), rest.begin(), rest.end());
+  auto order = detail::hostVector<std::int32_t>(size);
+  auto next = order.begin();
+  auto rest = order.end();  // grows to the front
+  for (std::size_t i = 0; i < size; ++i) *(isFirst(i) ? next++ : --rest) = static_cast<std::int32_t>(i);
+  count = next - order.begin();
+  std::reverse(rest, order.end());
   return order;
 }
 

@@ -43,7 +43,7 @@ detail::RowsOwner detail::makeRows(const StreamRegion& region) {
                               toString(region.shape)),
                   Error::Kind::Shape);
     }
-    std::vector<std::int32_t> starts(static_cast<std::size_t>(region.shape.size()));
+    auto starts = detail::hostVector<std::int32_t>(static_cast<std::size_t>(region.shape.size()));
     detail::read(region, starts.data(), starts.size());
     checkStarts(starts);
     return RowsOwner(new RowsState(*stream.device, std::move(starts)));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sk/host_vector.hpp"
 #include "sk/program.hpp"
 
 namespace sk {
@@ -23,15 +24,16 @@ void RowPieces::cutLongRows() {
     pieces += parts;
   }
   if (longRows_.empty()) return;
-  cut_.reserve(static_cast<std::size_t>(pieces) + 1);
+  cut_ = detail::hostVector<std::int32_t>(static_cast<std::size_t>(pieces) + 1);
+  auto next = cut_.begin();
   for (std::size_t row = 0; row + 1 < starts_.size(); ++row) {
-    cut_.push_back(starts_[row]);
+    *next++ = starts_[row];
     const std::int32_t end = starts_[row + 1];
     for (std::int32_t length = end - starts_[row]; length > program::longestRun;
-         length -= program::longestRun)
-      cut_.push_back(cut_.back() + program::longestRun);
+         length -= program::longestRun, ++next)
+      *next = next[-1] + program::longestRun;
   }
-  cut_.push_back(starts_.back());
+  *next = starts_.back();
 }
 
 void RowPieces::formGroups() {
@@ -58,7 +60,7 @@ void RowPieces::formBatches() {
 }
 
 std::vector<std::int32_t> RowPieces::firstPieces() const {
-  std::vector<std::int32_t> first(starts_.size());
+  auto first = detail::hostVector<std::int32_t>(starts_.size());
   auto next = longRows_.begin();
   std::int32_t more = 0;  // pieces beyond one for each row
   for (std::size_t row = 0; row < first.size(); ++row) {

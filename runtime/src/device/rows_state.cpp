@@ -7,6 +7,7 @@
 
 #include "device/device_state.hpp"
 #include "device/stream_state.hpp"
+#include "sk/host_vector.hpp"
 #include "sk/types.hpp"
 
 namespace sk {
@@ -53,10 +54,8 @@ void RowsState::makeTables(bool ofScans) const {
 
 void RowsState::makePieces(Level& level) const {
   const std::span<const std::int32_t> starts = level.pieces.pieceStarts();
-  std::vector<int2> pieces;
-  pieces.reserve(starts.size());
-  for (std::size_t i = 0; i + 1 < starts.size(); ++i)
-    pieces.push_back({starts[i], starts[i + 1] - starts[i]});
+  auto pieces = detail::hostVector<int2>(starts.size() - 1);
+  for (std::size_t i = 0; i < pieces.size(); ++i) pieces[i] = {starts[i], starts[i + 1] - starts[i]};
   level.table =
       streamOf(*anchor_.get()->device, ElementTraits<int2>::element(), pieces.size(), pieces.data());
 }
@@ -73,14 +72,13 @@ void RowsState::makeGroups(Level& level) const {
 void RowsState::makePlaces(Level& level) const {
   const std::span<const std::int32_t> starts = level.pieces.pieceStarts();
   const std::vector<std::int32_t> firstPieces = level.pieces.firstPieces();
-  std::vector<int2> places;
-  places.reserve(static_cast<std::size_t>(starts.back()));
+  auto places = detail::hostVector<int2>(static_cast<std::size_t>(starts.back()));
   for (std::size_t row = 0; row + 1 < firstPieces.size(); ++row) {
     for (std::int32_t piece = firstPieces[row]; piece < firstPieces[row + 1]; ++piece) {
       const std::int32_t carry = piece == firstPieces[row] ? -1 : piece - 1;
       const std::int32_t begin = starts[static_cast<std::size_t>(piece)];
       const std::int32_t end = starts[static_cast<std::size_t>(piece) + 1];
-      for (std::int32_t i = begin; i < end; ++i) places.push_back({i - begin, carry});
+      for (std::int32_t i = begin; i < end; ++i) places[static_cast<std::size_t>(i)] = {i - begin, carry};
     }
   }
   level.places =

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "sk/error.hpp"
+#include "support/checked_size.hpp"
 #include "support/host_limits.hpp"
 
 namespace sk {
@@ -61,10 +62,10 @@ void GlMemory::add(std::vector<RenderTarget>& planes, const program::Element& el
 void GlMemory::failForPlanes(const program::Element& element, const gl::Format& format,
                              const assemble::TextureShape& shape, std::string_view whatFor) {
   const std::int64_t texels = std::int64_t{shape.width} * shape.height * std::max(shape.layers, 1);
-  context_.failForMemory(fmt::format("{}: {} texture(s) of {} x {}{} texels, one of them of {} MiB", whatFor,
+  context_.failForMemory(fmt::format("{}: {} texture(s) of {} x {}{} texels, one of them of {}", whatFor,
                                      element.fields.size(), shape.width, shape.height,
                                      shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
-                                     (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20));
+                                     bytesText(texels * static_cast<std::int64_t>(format.texelBytes()))));
 }
 
 void GlMemory::release(std::vector<RenderTarget>& planes) noexcept {

@@ -3,6 +3,7 @@
 
 #include "call/check_call.hpp"
 #include "gl_device/pass/pass_trace.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 
@@ -23,7 +24,8 @@ void GlPasses::bind(PassBuffer which, std::size_t bytes, const program::Kernel& 
                     std::string_view whatFor) {
   if (bind(which, bytes)) return;
   context_.throwIfLost();
-  fail(Error::Kind::Memory, kernel, "'{}' has no memory for {}", context_.capabilities().renderer, whatFor);
+  fail(Error::Kind::Memory, kernel, "'{}' has no memory for {}: a buffer of {}",
+       context_.capabilities().renderer, whatFor, bytesText(static_cast<std::int64_t>(bytes)));
 }
 
 void GlPasses::startTrace(Trace& trace) { trace_ = std::make_unique<PassTrace>(context_, trace); }

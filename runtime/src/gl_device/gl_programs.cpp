@@ -14,6 +14,7 @@
 #include "probe/probe.hpp"
 #include "sk/error.hpp"
 #include "support/cache_folder.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 
@@ -183,8 +184,9 @@ GLuint GlPrograms::textureOf(const FunctionTable& table) {
     texture = gl::Texture(device_.bound(), gl::formatOf(program::Scalar::Float, width),
                           {assemble::tableWidth, rows});
     if (texture.name() == 0) {
-      device_.context().failForMemory(fmt::format("the table of '{}': {} KiB", table.report.function,
-                                                  texels.size() * sizeof(float) >> 10));
+      device_.context().failForMemory(
+          fmt::format("the table of '{}': {}", table.report.function,
+                      bytesText(static_cast<std::int64_t>(texels.size() * sizeof(float)))));
     }
     texture.write(device_.bound(), {0, 0, assemble::tableWidth, rows}, 0, texels.data());
   }

@@ -20,6 +20,7 @@
 #include "native/sum_floats.hpp"
 #include "sk/native/code.hpp"
 #include "sk/native/parallel.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 
@@ -257,7 +258,7 @@ class RowScan {
         parts_.push_back({begin, std::min(end - begin, step) + begin, isFirst ? -1 : carries_++});
       }
     }
-    states_.resize(static_cast<std::size_t>(carries_) * bytes_);
+    resizeChecked(states_, static_cast<std::size_t>(carries_) * bytes_);
   }
 
   std::byte* carryOf(const Part& part) {

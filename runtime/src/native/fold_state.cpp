@@ -9,6 +9,7 @@
 #include "native/memory.hpp"
 #include "native/scalars.hpp"
 #include "native/slot_arrays.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 
@@ -41,7 +42,7 @@ StateColumns::StateColumns(const StateShape& shape, std::int64_t most, std::pmr:
   };
   std::size_t total = cacheLine;
   for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) total += room(scalar);
-  bytes_.resize(total);  // zeroed, because code reads beyond the columns
+  resizeChecked(bytes_, total);  // zeroed, because code reads beyond the columns
   void* next = bytes_.data();
   next = std::align(cacheLine, total - cacheLine, next, total);
   for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {

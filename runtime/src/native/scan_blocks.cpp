@@ -9,6 +9,7 @@
 
 #include "native/piece_folder.hpp"
 #include "sk/native/parallel.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 
@@ -39,7 +40,7 @@ class PieceScan {
     const std::int64_t count = pieces_.count();
     const std::int64_t together =
         ofBlock_ == 1 ? count : piecesOfThread * native::threadsFor(count, pieces_.elementsOfOne());
-    states_.resize(ofBlock_ == 1 ? 0 : static_cast<std::size_t>(std::min(together, count)) * bytes_);
+    resizeChecked(states_, ofBlock_ == 1 ? 0 : static_cast<std::size_t>(std::min(together, count)) * bytes_);
     for (std::int64_t begin = 0; begin < count; begin += together) {
       const Range some{begin, std::min(begin + together, count)};
       if (ofBlock_ > 1) {

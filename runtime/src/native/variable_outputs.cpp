@@ -226,7 +226,7 @@ void Scatters::move(RecordFrame& records, Log& log) const {
 void Scatters::distribute(const RecordBuffer& records, const Target& target, Log& log,
                           std::span<const std::unique_ptr<RecordBuffer>> buckets) {
   const auto count = static_cast<std::size_t>(records.count());
-  if (log.places.size() < count) log.places.resize(count);
+  if (log.places.size() < count) resizeChecked(log.places, count);
   const std::span<Place> places(log.places.data(), count);
   const std::int64_t* const targets = records.records().targets;
   const std::int64_t first = target.first;

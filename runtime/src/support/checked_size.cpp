@@ -25,6 +25,11 @@ template <class Text>
 
 }  // namespace
 
+std::string bytesText(std::int64_t bytes) {
+  if (bytes < 1 << 14) return fmt::format("{} bytes", bytes);
+  return bytes < 1 << 24 ? fmt::format("{} KiB", bytes >> 10) : fmt::format("{} MiB", bytes >> 20);
+}
+
 void failForHostMemory(std::string_view what, const std::bad_alloc& error) {
   failWith([&] {
     const auto* known = dynamic_cast<const NoMemory*>(&error);
@@ -33,9 +38,18 @@ void failForHostMemory(std::string_view what, const std::bad_alloc& error) {
   });
 }
 
-void detail::failForElements(std::size_t count, std::size_t elementBytes) {
+void failNaming(std::string_view what, const Error& error) {
+  const std::string_view text = error.what();
+  const bool isNamed = text.starts_with(what) && text.substr(what.size()).starts_with(':');
+  if (error.kind() == Error::Kind::Memory && !isNamed)
+    failWith([&] { return fmt::format("{}: {}", what, text); });
+  throw Error(error);
+}
+
+void detail::failForElements(std::size_t count, std::size_t elementBytes, const char* what) {
   failWith([&] {
-    return fmt::format("there is no host memory for {} element(s) of {} byte(s) each", count, elementBytes);
+    return fmt::format("{}{}there is no host memory for {} element(s) of {} byte(s) each", what,
+                       *what == '\0' ? "" : ": ", count, elementBytes);
   });
 }
 

@@ -9,7 +9,10 @@
 #include <limits>
 #include <new>
 #include <optional>
+#include <string>
 #include <string_view>
+
+#include "sk/error.hpp"
 
 namespace sk {
 
@@ -38,16 +41,34 @@ inline std::size_t bytesOf(std::int64_t count, std::size_t elementBytes) {
   return static_cast<std::size_t>(*bytes);
 }
 
+/// Resizes a vector whose size a user chooses. Throws NoMemory.
+template <class Vector>
+void resizeChecked(Vector& vector, std::size_t count) {
+  try {
+    vector.resize(count);
+  } catch (const std::bad_alloc&) {
+    throw NoMemory(count * sizeof(typename Vector::value_type));
+  }
+}
+
+/// A number of bytes as in messages: "12 bytes", "48 KiB", "3 MiB".
+std::string bytesText(std::int64_t bytes);
+
 /// Throws sk::Error: the host is out of memory for `what`.
 [[noreturn]] void failForHostMemory(std::string_view what, const std::bad_alloc& error);
+/// Throws an error again. If it is one of exhausted memory, its text begins with `what` then.
+[[noreturn]] void failNaming(std::string_view what, const Error& error);
 
-/// Calls fn(). Throws sk::Error instead if it runs out of host memory.
+/// Calls fn(), the operation `what`. Throws sk::Error if it runs out of host memory. If memory of any kind is exhausted, the
+/// error names the operation.
 template <class Fn>
 decltype(auto) withHostMemory(std::string_view what, Fn&& fn) {
   try {
     return fn();
   } catch (const std::bad_alloc& error) {
     failForHostMemory(what, error);
+  } catch (const Error& error) {
+    failNaming(what, error);
   }
 }
 

@@ -3,6 +3,7 @@
 // Promises: no size overflows, and exhausted host memory is an sk::Error that reports the requested size.
 #include "support/checked_size.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -69,4 +70,17 @@ TEST_CASE("want of memory for what a call returns says how much it was") {
   CHECK_THAT(errorOf([] { withHostMemory("blur", [] { throw std::bad_alloc(); }); }),
              Contains("blur") && Contains("host memory"));
   CHECK(withHostMemory("blur", [] { return 7; }) == 7);
+  const auto failing = [](const char* text, Error::Kind kind) {
+    return [=] { withHostMemory("blur", [&] { throw Error(text, kind); }); };
+  };
+  CHECK(errorOf(failing("no memory", Error::Kind::Memory)) == "blur: no memory");
+  CHECK(errorOf(failing("blur: no memory", Error::Kind::Memory)) == "blur: no memory");
+  CHECK(errorOf(failing("blurred: no memory", Error::Kind::Memory)) == "blur: blurred: no memory");
+  CHECK(errorOf(failing("no shape", Error::Kind::Shape)) == "no shape");
+  std::vector<std::byte> bytes;
+  CHECK_THAT(errorOf([&] { withHostMemory("blur", [&] { resizeChecked(bytes, std::size_t{1} << 60); }); }),
+             Contains("blur: there is no host memory for 1152921504606846976 bytes"));
+  CHECK(bytesText(12) == "12 bytes");
+  CHECK(bytesText(48 << 10) == "48 KiB");
+  CHECK(bytesText(std::int64_t{3} << 30) == "3072 MiB");
 }

@@ -13,6 +13,7 @@
 #include "gl_device/memory/element_packing.hpp"
 #include "gl_device/transfer/transfer.hpp"
 #include "sk/error.hpp"
+#include "support/checked_size.hpp"
 #include "support/convert_elements.hpp"
 
 namespace sk {
@@ -28,7 +29,8 @@ constexpr std::size_t alignment = 16;
 std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1) / alignment * alignment; }
 
 [[noreturn]] void failForMemory(GlDevice& device, std::size_t bytes) {
-  device.context().failForMemory(fmt::format("a transfer of {} KiB", bytes >> 10));
+  device.context().failForMemory(
+      fmt::format("a transfer of {}", bytesText(static_cast<std::int64_t>(bytes))));
 }
 
 }  // namespace
@@ -87,7 +89,7 @@ void BufferedRead::unpack(const Part& part, const Block& block, const std::byte*
                           std::byte* elements) {
   std::vector<std::byte> narrowed;
   if (!(block.transfer == block.format->tight)) {
-    narrowed.resize(block.place.texels() * block.format->texelBytes());
+    resizeChecked(narrowed, block.place.texels() * block.format->texelBytes());
     narrowTexels(*block.format, texels, block.place.texels(), narrowed.data());
     texels = narrowed.data();
   }

@@ -13,6 +13,7 @@
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/pass/pass.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 
@@ -71,7 +72,7 @@ std::byte* GlStaging::room(std::size_t bytes) {
   const auto size = static_cast<std::int64_t>(bytes);
   if (size > device_.capabilities.storageBytes || !buffer_.reserve(device_.bound(), bytes)) {
     device_.context().failForMemory(fmt::format(
-        "{} KiB of halos; divide the domain over more ranks, or exchange them more often", bytes >> 10));
+        "{} of halos; divide the domain over more ranks, or exchange them more often", bytesText(size)));
   }
   return buffer_.bytes();
 }

@@ -9,6 +9,7 @@
 
 #include "gl_device/gl_device.hpp"
 #include "gl_device/memory/element_packing.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 
@@ -180,7 +181,7 @@ void download(GlDevice& device, const Element& element, std::span<RenderTarget> 
     const PlaneOfElements plane{element, element.fields[i], planes[i].texture.format(), region};
     const std::size_t texelBytes = plane.format.texelBytes();
     const auto readPart = [&](const CopyRegion& part) {
-      texels.resize(part.texels() * texelBytes);
+      resizeChecked(texels, part.texels() * texelBytes);
       readTight(device, staging, planes[i], part, texels.data());
       plane.unpack(part, texels.data(), elements);
     };
