@@ -108,6 +108,11 @@ bool hasFormula(Intrinsic intrinsic) {
          intrinsic == Intrinsic::Refract || intrinsic == Intrinsic::Faceforward;
 }
 
+bool isMatrixProduct(BinaryOp op, const Expr& lhs, const Expr& rhs) {
+  return op == BinaryOp::Mul && (lhs.type.isMatrix() || rhs.type.isMatrix()) && !lhs.type.isScalar() &&
+         !rhs.type.isScalar();
+}
+
 class GlslExpr {
  public:
   GlslExpr(const GlslContext& context, std::optional<FunctionId> function, bool isStored = false)
@@ -192,7 +197,7 @@ class GlslExpr {
   bool isComputed(const Expr& expr) const {
     if (!isFloats(expr.type)) return false;
     if (const auto* n = std::get_if<Binary>(&expr.node)) {
-      return row(n->op).precedence >= Precedence::Additive;
+      return row(n->op).precedence >= Precedence::Additive && !isMatrixProduct(n->op, *n->lhs, *n->rhs);
     }
     if (const auto* n = std::get_if<Convert>(&expr.node)) {  // to the same floats
       return isFloats(n->operand->type) && !expr.type.isNarrow() && isComputed(*n->operand);
@@ -261,8 +266,8 @@ class GlslExpr {
     const IntrinsicRow& entry = row(n.intrinsic);
     const auto defined = definedIntrinsic(n);
     const bool isOurs = defined || !entry.polyfill.empty();
-    const Scope scope(isStored_, isOurs ? !context_.marks || !function_ : isStored_);
     const bool isMarked = hasFormula(n.intrinsic) && context_.marks && function_;
+    const Scope scope(isStored_, isOurs || isMarked ? !context_.marks || !function_ : isStored_);
     return {
         fmt::format("{}{}{}", isMarked ? mark::function : "", defined ? functionName(*defined) : entry.glsl,
                     chooses(n.intrinsic) ? comparedList(n.args) : list(n.args)),
@@ -286,6 +291,7 @@ class GlslExpr {
 
   Text binary(Type type, BinaryOp op, const Expr& lhs, const Expr& rhs) const {
     if (isComparison(op)) return comparison(op, lhs, rhs);
+    if (isMatrixProduct(op, lhs, rhs) && context_.marks && function_) return matrixProduct(lhs, rhs);
     const Precedence precedence = row(op).precedence;
     const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
     const std::string second = operand(op, rhs, tighter, op == BinaryOp::Div);
@@ -295,6 +301,13 @@ class GlslExpr {
     if (isOperation && first == second && (op == BinaryOp::Sub || op == BinaryOp::Div) && context_.marks)
       first = fmt::format("{}{}{}", mark::known, first, mark::knownEnd);
     return {fmt::format("{} {} {}", first, spelling(op), second), precedence, isOperation};
+  }
+
+  /// The device's own product adds in an order of its own.
+  Text matrixProduct(const Expr& lhs, const Expr& rhs) const {
+    return {fmt::format("{}{}{}{}{}", mark::product, passedText(lhs, Precedence::Multiplicative), mark::times,
+                        passedText(rhs, Precedence::Unary), mark::productEnd),
+            Precedence::Multiplicative};
   }
 
   Text comparison(BinaryOp op, const Expr& lhs, const Expr& rhs) const {

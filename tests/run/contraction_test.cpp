@@ -178,6 +178,12 @@ struct Written {
     vectors::writtenOfVectors.with(options)(u, v, a, p, q, r, f);
     for (const auto* each : {&p, &q, &r}) vectors.push_back(each->read());
     floats.push_back(f.read());
+    auto w = device.stream<sk::float4>({count});
+    w.write(someVectors(10));
+    vectors::writtenOfMatrices.with(options)(u, v, w, p, q, r, s);
+    for (const auto* each : {&p, &q, &r, &s}) vectors.push_back(each->read());
+    vectors::writtenOfArguments.with(options)(u, v, a, p);
+    vectors.push_back(p.read());
     auto pushes = device.stream<float>({0});
     contraction::pushed.with(options)(a, pushes);
     floats.push_back(pushes.read());

@@ -29,6 +29,8 @@ inline constexpr std::string_view zero = "$0";
 /// In front of the name of GLSL's dot, cross, reflect, refract or faceforward: `sk_exact_`, which makes it the name of ours, or
 /// nothing.
 inline constexpr std::string_view function = "$f";
+/// `$m FACTOR $* FACTOR $#`: a product of matrices, or of a vector and a matrix: a call of ours, or GLSL's operator.
+inline constexpr std::string_view product = "$m", times = "$*", productEnd = "$#";
 /// Around a divisor that a compiler may know, so that it might multiply by its rounded reciprocal: a function that hides it where
 /// GLSL has no `precise`, or nothing.
 inline constexpr std::string_view divisor = "$/", divisorEnd = "$|";

@@ -79,6 +79,9 @@ class Resolver {
       case '>': result_ += isXor || isPrecise ? ")" : ""; break;
       case '0': result_ += isXor || isPrecise ? "sk_known(0.0)" : "0.0"; break;
       case 'f': result_ += isXor || isPrecise ? "sk_exact_" : ""; break;
+      case 'm': result_ += isXor || isPrecise ? "sk_exact_product(" : ""; break;
+      case '*': result_ += isXor || isPrecise ? ", " : " * "; break;
+      case '#': result_ += isXor || isPrecise ? ")" : ""; break;
       default: assert(false && "no such mark");
     }
     isBracketed_ = false;
@@ -157,13 +160,34 @@ constexpr std::string_view exactCross =
     "  return r;\n"
     "}\n";
 
+/// Products of matrices of one width. Rows are GLSL's columns, so that factors change order: the second one is on the left.
+std::string productDefinitions(int width) {
+  const std::string vector(vectorTypes[static_cast<std::size_t>(width - 1)]),
+      matrix = fmt::format("mat{}", width);
+  std::string rows, ofRows;
+  for (int row = 0; row < width; ++row) {
+    std::string sum = fmt::format("sk_keep(b[0] * a[{}].x)", row);
+    for (int c = 1; c < width; ++c)
+      sum = fmt::format("sk_keep({} + sk_keep(b[{}] * a[{}].{}))", sum, c, row, "xyzw"[c]);
+    rows += fmt::format("  sk_precise {} r{} = {};\n", vector, row, sum);
+    ofRows += fmt::format("{}r{}", row == 0 ? "" : ", ", row);
+  }
+  const std::string product =
+      fmt::format("{0} sk_exact_product({0} b, {0} a) {{\n{1}  return {0}({2});\n}}\n", matrix, rows, ofRows);
+  std::string sums;
+  for (int row = 0; row < width; ++row)
+    sums += fmt::format("{}sk_exact_dot(a[{}], v)", row == 0 ? "" : ", ", row);
+  return product +
+         fmt::format("{0} sk_exact_product({0} v, {1} a) {{ return {0}({2}); }}\n", vector, matrix, sums);
+}
+
 /// The functions that the text calls, for all widths.
 std::string geometryDefinitions(std::string_view text) {
   const auto calls = [&](std::string_view name) {
     return text.find(fmt::format("sk_exact_{}(", name)) != std::string_view::npos;
   };
   std::string definitions;
-  bool isNeeded = false;  // by functions below
+  bool isNeeded = calls("product");  // by functions below
   for (const Geometry& one : geometry) isNeeded = isNeeded || calls(one.name);
   for (const Geometry& one : geometry) {
     if (!calls(one.name) && !(isNeeded && one.name == "dot")) continue;
@@ -178,6 +202,7 @@ std::string geometryDefinitions(std::string_view text) {
       definitions += definition;
     }
   }
+  for (int width = 2; width <= 4 && calls("product"); ++width) definitions += productDefinitions(width);
   return definitions + std::string(calls("cross") ? exactCross : "");
 }
 
