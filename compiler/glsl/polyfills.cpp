@@ -2,6 +2,7 @@
 #include "glsl/polyfills.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <string_view>
 #include <utility>
 
@@ -33,6 +34,13 @@ std::string byComponent(std::string_view pattern, int width) {
   return join(items, ", ");
 }
 
+/// What a value in the range of a normalized type is rounded to.
+std::string fraction(Scalar narrow, std::string_view value) {
+  const float scale = normalizedScale(narrow);
+  return fmt::format("{}roundEven({} * {:.1f}){}{}{}", mark::fraction, value, scale, mark::fractionEnd,
+                     std::bit_width(static_cast<unsigned>(scale)), mark::fractionBitsEnd);
+}
+
 /// The function that rounds a value of the arithmetic type to a narrow scalar, as scalar_operations.hpp specifies.
 std::string quantizing(Scalar narrow) {
   switch (narrow) {
@@ -55,15 +63,15 @@ std::string quantizing(Scalar narrow) {
     case Scalar::Unorm16:
       return fmt::format(
           "float sk_{0}(float x) {{\n"
-          "  return x > 0.0 ? roundEven(min(x, 1.0) * {1:.1f}) / {2}{1:.1f}{3} : 0.0;\n}}\n",
-          spelling(narrow), normalizedScale(narrow), mark::divisor, mark::divisorEnd);
+          "  return x > 0.0 ? {1} : 0.0;\n}}\n",
+          spelling(narrow), fraction(narrow, "min(x, 1.0)"));
     case Scalar::Snorm8:
     case Scalar::Snorm16:
       return fmt::format(
           "float sk_{0}(float x) {{\n"
           "  float y = x > -1.0 ? min(x, 1.0) : x <= -1.0 ? -1.0 : 0.0;\n"
-          "  return roundEven(y * {1:.1f}) / {2}{1:.1f}{3};\n}}\n",
-          spelling(narrow), normalizedScale(narrow), mark::divisor, mark::divisorEnd);
+          "  return {1};\n}}\n",
+          spelling(narrow), fraction(narrow, "y"));
     case Scalar::Bool:
     case Scalar::Int:
     case Scalar::Uint:

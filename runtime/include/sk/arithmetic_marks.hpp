@@ -31,6 +31,9 @@ inline constexpr std::string_view zero = "$0";
 inline constexpr std::string_view function = "$f";
 /// `$m FACTOR $* FACTOR $#`: a product of matrices, or of a vector and a matrix: a call of ours, or GLSL's operator.
 inline constexpr std::string_view product = "$m", times = "$*", productEnd = "$#";
+/// Around an integer in a float, n / (2^b - 1) of a normalized type: a function of ours that rounds correctly, or GLSL's division, which
+/// some devices round otherwise. The bits follow, a digit or more, and `$`.
+inline constexpr std::string_view fraction = "$q", fractionEnd = "$Q", fractionBitsEnd = "$";
 /// Around a divisor that a compiler may know, so that it might multiply by its rounded reciprocal: a function that hides it where
 /// GLSL has no `precise`, or nothing.
 inline constexpr std::string_view divisor = "$/", divisorEnd = "$|";

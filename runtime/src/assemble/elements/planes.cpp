@@ -49,15 +49,15 @@ constexpr std::array<Spelling, 14> spellings = {{
     /* Short   */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
     /* Ushort  */ {"usampler2D", "uint", "uvec", "0u", "int", "ivec", "{1}({0})", "{1}({0})"},
     /* Unorm8  */
-    {"sampler2D", "float", "vec", "0.0", "float", "vec", "$(roundEven($({0} * 255.0$)) / $/255.0$|$)", ""},
+    {"sampler2D", "float", "vec", "0.0", "float", "vec", "$qroundEven($({0} * 255.0$))$Q8$", ""},
     /* Snorm8  */
-    {"isampler2D", "int", "ivec", "0", "float", "vec", "max($({1}({0}) / $/127.0$|$), -1.0)",
+    {"isampler2D", "int", "ivec", "0", "float", "vec", "max($q{1}({0})$Q7$, -1.0)",
      "{1}(roundEven($({0}$) * 127.0))"},
     /* Unorm16 */
-    {"usampler2D", "uint", "uvec", "0u", "float", "vec", "$({1}({0}) / $/65535.0$|$)",
+    {"usampler2D", "uint", "uvec", "0u", "float", "vec", "$q{1}({0})$Q16$",
      "{1}(roundEven($({0}$) * 65535.0))"},
     /* Snorm16 */
-    {"isampler2D", "int", "ivec", "0", "float", "vec", "max($({1}({0}) / $/32767.0$|$), -1.0)",
+    {"isampler2D", "int", "ivec", "0", "float", "vec", "max($q{1}({0})$Q15$, -1.0)",
      "{1}(roundEven($({0}$) * 32767.0))"},
 }};
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <charconv>
 #include <vector>
 
 #include <fmt/format.h>
@@ -79,6 +80,8 @@ class Resolver {
       case '>': result_ += isXor || isPrecise ? ")" : ""; break;
       case '0': result_ += isXor || isPrecise ? "sk_known(0.0)" : "0.0"; break;
       case 'f': result_ += isXor || isPrecise ? "sk_exact_" : ""; break;
+      case 'q': result_ += isXor || isPrecise ? "sk_exact_fraction(" : ""; break;
+      case 'Q': return fraction(body, at + 1);
       case 'm': result_ += isXor || isPrecise ? "sk_exact_product(" : ""; break;
       case '*': result_ += isXor || isPrecise ? ", " : " * "; break;
       case '#': result_ += isXor || isPrecise ? ")" : ""; break;
@@ -86,6 +89,18 @@ class Resolver {
     }
     isBracketed_ = false;
     return at + 1;
+  }
+
+  /// The end of a fraction, and its bits.
+  std::size_t fraction(std::string_view body, std::size_t at) {
+    const std::size_t end = body.find(first, at);
+    int bits = 0;
+    std::from_chars(body.data() + at, body.data() + end, bits);
+    const int scale = (1 << bits) - 1;
+    result_ += barrier_ == Barrier::None ? fmt::format(" / {}.0", scale)
+                                         : fmt::format(", {}, {})", 1.0F / static_cast<float>(scale + 1),
+                                                       1.0F / static_cast<float>(scale));
+    return end + 1;
   }
 
   /// "x += y", or "x = sk_keep(x + y)".
@@ -223,6 +238,23 @@ bool guardsOperations(const Profile& profile, std::string_view text) {
   if (barrierOfBodies(profile) == Barrier::None) return false;
   return has("sk_exact") || has("sk_known(") ||
          has(barrierOfBodies(profile) == Barrier::Xor ? "sk_keep(" : "precise ");
+}
+
+// n / (2^b - 1) is t + t / (2^b - 1), where t is n / 2^b. Of every integer of 7, 8, 15 and 16 bits, the rounded sum of t and its product
+// with the rounded reciprocal is the quotient rounded to nearest, with and without contraction.
+std::string fractionDefinitions(std::string_view text) {
+  std::string definitions;
+  if (text.find("sk_exact_fraction(") == std::string_view::npos) return definitions;
+  for (const std::string_view type : vectorTypes) {
+    definitions += fmt::format(
+        "{0} sk_exact_fraction({0} n, float unit, float inverse) {{\n"
+        "  sk_precise {0} t = n * unit;\n"
+        "  sk_precise {0} q = sk_keep(t + sk_keep(t * inverse));\n"
+        "  return q;\n"
+        "}}\n",
+        type);
+  }
+  return definitions;
 }
 
 std::string bodyDefinitions(const Profile& profile, std::string_view text) {

@@ -36,6 +36,9 @@ std::string unmarked(std::string_view body);
 /// exactDefinitions() does.
 bool guardsOperations(const Profile& profile, std::string_view text);
 
+/// Defines sk_exact_fraction() if `text`, a result of bodyText(), calls it.
+std::string fractionDefinitions(std::string_view text);
+
 /// Declares the variables and functions that `text`, a result of bodyText(), uses and exactDefinitions() does not define.
 std::string bodyDefinitions(const Profile& profile, std::string_view text);
 

@@ -236,6 +236,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles, barrierOfBodies(profile));
   program += doubleIntrinsicDefinitions(kernel.intrinsics, profile.doubles, profile.barrier);
   program += intrinsics.definitions;
+  program += fractionDefinitions(declarations + ours + body + more + main);
   addForeign(program, declarations);
   program += '\n';
   program += ours;
