@@ -108,6 +108,13 @@ bool hasFormula(Intrinsic intrinsic) {
          intrinsic == Intrinsic::Refract || intrinsic == Intrinsic::Faceforward;
 }
 
+/// True for a comparison that is false of NaN, as is the opposite one.
+bool ordersFloats(const Expr& expr) {
+  const auto* n = std::get_if<Binary>(&expr.node);
+  return n != nullptr && isComparison(n->op) && n->op != BinaryOp::Equal && n->op != BinaryOp::NotEqual &&
+         isFloats(n->lhs->type);
+}
+
 bool isMatrixProduct(BinaryOp op, const Expr& lhs, const Expr& rhs) {
   return op == BinaryOp::Mul && (lhs.type.isMatrix() || rhs.type.isMatrix()) && !lhs.type.isScalar() &&
          !rhs.type.isScalar();
@@ -222,6 +229,10 @@ class GlslExpr {
   Text print(const Expr&, const VarRef& n) const { return {context_.names.variable(*function_, n.var)}; }
   Text print(const Expr&, const ConstantRef& n) const { return {context_.types.constantUse(n.constant)}; }
   Text print(const Expr& expr, const Unary& n) const {
+    if (n.op == UnaryOp::LogicalNot && context_.marks && function_ && ordersFloats(*n.operand)) {
+      const std::string_view name = expr.type.isVector() ? mark::vectorNegation : mark::negation;
+      return {fmt::format("{}({})", name, text(*n.operand)), Precedence::Unary};
+    }
     if (n.op == UnaryOp::LogicalNot && expr.type.isVector()) return {"not(" + text(*n.operand) + ")"};
     return {std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary), Precedence::Unary};
   }

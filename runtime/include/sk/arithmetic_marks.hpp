@@ -31,6 +31,9 @@ inline constexpr std::string_view zero = "$0";
 inline constexpr std::string_view function = "$f";
 /// `$m FACTOR $* FACTOR $#`: a product of matrices, or of a vector and a matrix: a call of ours, or GLSL's operator.
 inline constexpr std::string_view product = "$m", times = "$*", productEnd = "$#";
+/// In front of the brackets around a comparison of floats that is negated: `!`, or a function of ours. NVIDIA's compiler for ES (580)
+/// takes `!(x < y)` for `x >= y`, which differs where there is NaN. The second one stands for GLSL's `not`, of vectors.
+inline constexpr std::string_view negation = "$!", vectorNegation = "$~";
 /// Around an integer in a float, n / (2^b - 1) of a normalized type: a function of ours that rounds correctly, or GLSL's division, which
 /// some devices round otherwise. The bits follow, a digit or more, and `$`.
 inline constexpr std::string_view fraction = "$q", fractionEnd = "$Q", fractionBitsEnd = "$";

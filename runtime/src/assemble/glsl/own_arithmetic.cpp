@@ -80,6 +80,8 @@ class Resolver {
       case '>': result_ += isXor || isPrecise ? ")" : ""; break;
       case '0': result_ += isXor || isPrecise ? "sk_known(0.0)" : "0.0"; break;
       case 'f': result_ += isXor || isPrecise ? "sk_exact_" : ""; break;
+      case '!': result_ += isXor ? "sk_not" : "!"; break;
+      case '~': result_ += isXor ? "sk_not" : "not"; break;
       case 'q': result_ += isXor || isPrecise ? "sk_exact_fraction(" : ""; break;
       case 'Q': return fraction(body, at + 1);
       case 'm': result_ += isXor || isPrecise ? "sk_exact_product(" : ""; break;
@@ -127,6 +129,13 @@ class Resolver {
 };
 
 constexpr std::array<std::string_view, 4> vectorTypes = {"float", "vec2", "vec3", "vec4"};
+
+/// No compiler can know that the negated comparison is what is computed.
+constexpr std::string_view negations =
+    "bool sk_not(bool c) { return c == (sk_zero != 0u); }\n"
+    "bvec2 sk_not(bvec2 c) { return equal(c, bvec2(sk_zero != 0u)); }\n"
+    "bvec3 sk_not(bvec3 c) { return equal(c, bvec3(sk_zero != 0u)); }\n"
+    "bvec4 sk_not(bvec4 c) { return equal(c, bvec4(sk_zero != 0u)); }\n";
 
 /// The sum of the components of `p`, from the first on.
 std::string sumOf(int width) {
@@ -236,7 +245,7 @@ std::string unmarked(std::string_view body) { return Resolver(Barrier::None).tex
 bool guardsOperations(const Profile& profile, std::string_view text) {
   const auto has = [&](std::string_view what) { return text.find(what) != std::string_view::npos; };
   if (barrierOfBodies(profile) == Barrier::None) return false;
-  return has("sk_exact") || has("sk_known(") ||
+  return has("sk_exact") || has("sk_known(") || has("sk_not(") ||
          has(barrierOfBodies(profile) == Barrier::Xor ? "sk_keep(" : "precise ");
 }
 
@@ -266,6 +275,7 @@ std::string bodyDefinitions(const Profile& profile, std::string_view text) {
         definitions += fmt::format("precise {} {};\n", variable.type, variable.name);
     }
   }
+  if (text.find("sk_not(") != std::string_view::npos) definitions += negations;
   if (text.find("sk_exact_") != std::string_view::npos) definitions += geometryDefinitions(text);
   return definitions;
 }

@@ -402,6 +402,7 @@ TEST_CASE("a kernel's own operations are guarded as the profile and the call say
       "  if ($v1$(p - x$)$; < $v1$[x + y$]$;) r = g($v1$fdot($v2$(x * y$)$;, p)$;);\n"
       "  $=r$,+$,$(p * x$)$.;\n"
       "  r = $($<float(1)$> * -$0$);\n"
+      "  if ($!(x < y)) r = any($~(lessThan(v, v))) ? $($<x$> + y$) : y;\n"
       "  r = $mv$*m$#.x + $qroundEven(x)$Q8$;\n"
       "}\n";
   kernel.body = marked;
@@ -419,6 +420,7 @@ TEST_CASE("a kernel's own operations are guarded as the profile and the call say
       "  if (p - x < (x + y)) r = g(dot(x * y, p));\n"
       "  r += p * x;\n"
       "  r = float(1) * -0.0;\n"
+      "  if (!(x < y)) r = any(not(lessThan(v, v))) ? x + y : y;\n"
       "  r = v * m.x + roundEven(x) / 255.0;\n"
       "}\n";
   CHECK(bodyOf(sk::Barrier::None, true) == plain);
@@ -432,6 +434,7 @@ TEST_CASE("a kernel's own operations are guarded as the profile and the call say
       "p)));\n"
       "  r += p * x;\n"
       "  r = sk_known(float(1)) * -sk_known(0.0);\n"
+      "  if (!(x < y)) r = any(not(lessThan(v, v))) ? sk_known(x) + y : y;\n"
       "  r = sk_exact_product(v, m).x + sk_exact_fraction(roundEven(x), 0.00390625, 0.003921569);\n"
       "}\n");
   CHECK(bodyOf(sk::Barrier::Xor, true) ==
@@ -440,6 +443,7 @@ TEST_CASE("a kernel's own operations are guarded as the profile and the call say
         "  if (sk_keep(p - x) < sk_keep(x + y)) r = g(sk_exact_dot(sk_keep(x * y), p));\n"
         "  r = sk_keep(r + sk_keep(p * x));\n"
         "  r = sk_keep(sk_known(float(1)) * -sk_known(0.0));\n"
+        "  if (sk_not(x < y)) r = any(sk_not(lessThan(v, v))) ? sk_keep(sk_known(x) + y) : y;\n"
         "  r = sk_exact_product(v, m).x + sk_exact_fraction(roundEven(x), 0.00390625, 0.003921569);\n"
         "}\n");
 }
