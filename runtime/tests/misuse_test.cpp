@@ -143,8 +143,8 @@ TEST_CASE("shapes that are none, or too large") {
         "an extent or position does not fit in 63 bits");
   CHECK(errorOf([&] { device.stream<float>(Shape()); }) == "a stream needs a shape of 1 to 4 dimensions");
   CHECK(errorOf([&] { device.stream<float>({huge}); }) ==
-        "a stream of float of shape {4611686018427387904} is too large: its elements would take 2^61 bytes "
-        "or more");
+        "a new stream: a stream of float of shape {4611686018427387904} is too large: its elements would "
+        "take 2^61 bytes or more");
   const std::string error = errorOf([&] { device.stream<float>({1 << 20, 1 << 20}); });
   CHECK(error.find(
             "a stream of shape {1048576, 1048576} has 1099511627776 elements, but a texture of this device "
