@@ -69,6 +69,14 @@ TEST_CASE("a polynomial has coefficients of pairs only where they matter") {
         "0.00000000)));\n"
         "  return p;\n"
         "}\n");
+  CHECK(polynomialText(Doubles::Pairs, {"sk_p", 1, one, {}, true}) ==
+        "sk_double sk_p(sk_double x) {\n"
+        "  float t = 0.125000000;\n"
+        "  t = t * x.hi + 0.250000000;\n"
+        "  sk_double p = sk_to_double(t);\n"
+        "  p = sk_add(sk_mul(p, x), sk_double(0.500000000, 0.00000000));\n"
+        "  return p;\n"
+        "}\n");
 }
 
 }  // namespace

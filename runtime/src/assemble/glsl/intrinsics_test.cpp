@@ -33,6 +33,15 @@ bvec3 sk_isnan(vec3 x) { return isnan(x); }
   CHECK_FALSE(texts.useExactFloats);
 }
 
+TEST_CASE("functions that devices lack are ours in fast calls, too") {
+  const std::array uses = {IntrinsicUse{Intrinsic::Erf, 0b10}, IntrinsicUse{Intrinsic::Exp, 1}};
+  const IntrinsicTexts texts = intrinsicTexts(uses, false);
+  CHECK(occurrences(texts.definitions, "float sk_erfc_part(float a) {") == 1);
+  CHECK(occurrences(texts.definitions, "vec2 sk_erf(vec2 x) {") == 1);
+  CHECK(occurrences(texts.definitions, "float sk_exp(float x) { return exp(x); }") == 1);
+  CHECK(texts.useExactFloats);
+}
+
 TEST_CASE("accurate functions come with what they need, once") {
   const std::array uses = {IntrinsicUse{Intrinsic::Log, 1}, IntrinsicUse{Intrinsic::Asinh, 0b1010}};
   const std::string text = intrinsicTexts(uses, true).definitions;
@@ -67,6 +76,7 @@ TEST_CASE("barriers are asked for where a text has them") {
   CHECK(needs(Intrinsic::Pow));
   CHECK(needs(Intrinsic::Sin));
   CHECK(needs(Intrinsic::Mix));
+  CHECK(needs(Intrinsic::Log1p));
   CHECK_FALSE(needs(Intrinsic::Min));
   CHECK_FALSE(needs(Intrinsic::Log));
 }
