@@ -84,6 +84,15 @@ std::vector<std::uint32_t> candidates(const Kernel& kernel, Scalar scalar) {
   return {values.begin(), values.end()};
 }
 
+/// Whether a condition mentions the Spec parameter of this number.
+bool isMentioned(const Kernel& kernel, std::size_t number) {
+  return std::ranges::any_of(kernel.parameters, [&](const Parameter& parameter) {
+    return std::ranges::any_of(parameter.neededIf.steps, [&](const sk::program::ConditionStep& step) {
+      return step.op == ConditionOp::Spec && step.value == number;
+    });
+  });
+}
+
 }  // namespace
 
 std::vector<Lie> liesOf(const Kernel& kernel) {
@@ -209,9 +218,12 @@ std::string keyOf(const Kernel& kernel, const sk::assemble::ReduceVariant& v) {
 
 std::vector<SpecValues> specChoices(const Kernel& kernel) {
   std::vector<SpecValues> choices(1);
-  std::size_t number = 0;
+  std::size_t next = 0;
   for (const Parameter& parameter : kernel.parameters) {
     if (parameter.role != Role::Spec) continue;
+    const std::size_t number = next++;
+    // The values of others change no condition, and would only use up the choices that are tried.
+    if (!isMentioned(kernel, number)) continue;
     std::vector<SpecValues> more;
     for (const SpecValues& choice : choices) {
       for (const std::uint32_t value : candidates(kernel, parameter.element->fields.front().scalar)) {
@@ -221,7 +233,6 @@ std::vector<SpecValues> specChoices(const Kernel& kernel) {
     }
     if (more.size() > mostSpecChoices) more.resize(mostSpecChoices);
     choices = std::move(more);
-    ++number;
   }
   std::set<std::vector<bool>> seen;
   std::erase_if(choices, [&](const SpecValues& specs) {
