@@ -4,6 +4,10 @@
 
 const kinds = { clay: 0, mirror: 1, glass: 2, metal: 3 };
 const lampRadius = 0.34;
+// Of hierarchy.sk and scattering.sk.
+const [watertight, stack] = [0, 0];
+const feature = { mirrors: 1, glass: 2, metals: 4, emitters: 16, sky: 128, lens: 1024, listed: 16384 };
+const features = Object.values(feature).reduce((a, b) => a | b);
 
 /** Colours are albedos, of metals the reflectance, of glass the tint. */
 const materials = [
@@ -69,7 +73,7 @@ function hierarchyOf(spheres) {
   return { nodes, order };
 }
 
-/** The scene as streams, and what followPaths() wants beside them. */
+/** The scene and its hierarchy, whose nodes have two children. */
 export function sceneOf(device, random) {
   const { nodes, order } = hierarchyOf(spheresFrom(random));
   const stream = (type, rows) => {
@@ -80,18 +84,37 @@ export function sceneOf(device, random) {
   };
   const lampAt = order.find((s) => s.material === lamp).centre;
   const share = 1 / (4 * Math.PI * lampRadius * lampRadius); // of the lamp's light, per area
-  return {
+  const nothing = stream('float4', [[0, 0, 0, 0]]);
+  const hierarchy = {
     nodes: stream('float4', nodes.flatMap(({ box, first, count }) => [[...box.map(([low]) => low), packed(first)], [...box.map(([, high]) => high), packed(count)]])),
     nodeCount: nodes.length,
-    shapes: stream('float4', order.flatMap(({ centre, radius, material }, id) => [[...centre, packed(id)], [radius, 0, 0, packed(material)], [0, 0, 0, packed(-1)]])),
-    firstPlane: order.length,
-    planes: stream('float4', [[0, 1, 0, 0], [0, 0, 0, packed(floor)]]),
-    materials: stream('float4', materials.flatMap(({ kind, colour, emission = [0, 0, 0], ior = 1.5, roughness = 0 }, i) => [
+    traversal: stack,
+    test: watertight,
+  };
+  const shapes = {
+    floats: stream('float4', order.flatMap(({ centre, radius, material }, id) => [[...centre, packed(id)], [radius, 0, 0, packed(material)], [0, 0, 0, packed(-1)]])),
+    halves: stream('half4', [[0, 0, 0, 0]]),
+    numbers: stream('int2', [[0, 0]]),
+    triangles: false,
+    spheres: true,
+    contracted: true,
+  };
+  const planes = { rows: stream('float4', [[0, 1, 0, 0], [0, 0, 0, packed(floor)]]), count: 1, firstId: order.length, exist: true };
+  const surfaces = {
+    rows: stream('float4', materials.flatMap(({ kind, colour, emission = [0, 0, 0], ior = 1.5, roughness = 0 }, i) => [
       [...colour, packed(kinds[kind])],
       [...emission, packed(-1)],
       [ior, roughness, i === lamp ? share : 0, 0],
     ])),
-    lights: stream('float4', [[...lampAt, packed(1)], [lampRadius, 0, 0, packed(0)], [0, 0, 0, 1], [...materials[lamp].emission, 1]]),
-    none: { float4: stream('float4', [[0, 0, 0, 0]]), int4: stream('int4', [[0, 0, 0, 0]]), int2: stream('int2', [[0, 0]]), int: stream('int', [[0]]), half4: stream('half4', [[0, 0, 0, 0]]) },
+    corners: nothing,
+    texels: nothing,
+    textures: stream('int4', [[0, 0, 0, 0]]),
   };
+  const lights = {
+    rows: stream('float4', [[...lampAt, packed(1)], [lampRadius, 0, 0, packed(0)], [0, 0, 0, 1], [...materials[lamp].emission, 1]]),
+    count: 1,
+    suns: 0,
+    sky: { colour: [0.15, 0.2, 0.29], image: nothing, size: [0, 0], choice: 0 },
+  };
+  return { scene: { shapes, planes, materials: surfaces, lights, features }, hierarchy };
 }

@@ -34,15 +34,10 @@ constexpr std::size_t batch = std::size_t{1} << 20;
 class PathRenderer : public PathsRenderer {
  public:
   PathRenderer(DeviceScene& scene, const Picture& picture)
-      : PathsRenderer(scene.device(), scene.model(), picture), scene_(scene) {}
+      : PathsRenderer(scene.shapes(), picture), scene_(scene) {}
 
   void pass(std::int64_t index) override {
-    const PathTables& t = tables_;
-    passBy([&](auto& radiance) {
-      scene_.call(kernels::followPaths, features(), static_cast<unsigned>(t.sampling), t.view, t.setting,
-                  static_cast<std::uint32_t>(index), t.seed, t.materials, t.corners, t.lights, t.sky,
-                  t.texels, t.textures, pixels(), radiance);
-    });
+    passBy([&](auto& radiance) { scene_.callWith(scene(), kernels::followPaths, sample(index), radiance); });
   }
 
  private:
@@ -86,7 +81,7 @@ class BvhEngine : public Engine {
 
   std::unique_ptr<Renderer> renderer(const Picture& picture) override {
     if (settings_.machine == PathMachine::Wavefront)
-      return makeMultipassRenderer(scene_.view(), tracer_, picture, Use::Paths);
+      return makeMultipassRenderer(scene_.shapes(), tracer_, picture, Use::Paths);
     return std::make_unique<PathRenderer>(scene_, picture);
   }
 

@@ -54,14 +54,33 @@ std::vector<std::uint32_t> ownOrder(const Model& model) {
 
 }  // namespace
 
-ShapeStreams::ShapeStreams(sk::Device& device, std::span<const std::uint32_t> order, const Model& model,
+DeviceShapes::DeviceShapes(sk::Device& onDevice, const Model& ofModel, std::span<const std::uint32_t> order,
                            VertexStorage storage)
-    : inHalves(storage == VertexStorage::Half) {
+    : device(onDevice),
+      model(ofModel),
+      inHalves(storage == VertexStorage::Half),
+      planes(streamOf(onDevice, planeLayout(ofModel))),
+      floats(streamOf(onDevice, inHalves ? std::vector<sk::float4>{} : shapeLayout(order, ofModel))) {
   HalfLayout layout;
-  if (inHalves) layout = halfLayout(order, model);
-  floats = streamOf(device, inHalves ? std::vector<sk::float4>{} : shapeLayout(order, model));
-  halves = streamOf(device, std::move(layout.rows));
-  numbers = streamOf(device, std::move(layout.numbers));
+  if (inHalves) layout = halfLayout(order, ofModel);
+  halves = streamOf(onDevice, std::move(layout.rows));
+  numbers = streamOf(onDevice, std::move(layout.numbers));
+}
+
+DeviceShapes::DeviceShapes(sk::Device& onDevice, const Model& ofModel)
+    : DeviceShapes(onDevice, ofModel, ownOrder(ofModel)) {}
+
+kernels::Scene DeviceShapes::scene() const {
+  return {.shapes = {.floats = floats,
+                     .halves = halves,
+                     .numbers = numbers,
+                     .triangles = hasTriangles(),
+                     .spheres = hasSpheres(),
+                     .contracted = !device.name().starts_with("native")},
+          .planes = {.rows = planes,
+                     .count = static_cast<int>(model.planes.size()),
+                     .firstId = model.planeId(0),
+                     .exist = !model.planes.empty()}};
 }
 
 std::string_view nameOf(HowToTraverse way) {
@@ -82,7 +101,6 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& given, const DeviceSet
   const examples::Stopwatch stopwatch;
   bvh_ = built(model, settings.bvh);
   milliseconds_ = stopwatch.milliseconds();
-  const bool isNative = device.name().starts_with("native");
   intersection_ = settings.intersection;
   precision_ = settings.precision;
   const TraversalDefault fastest = fastestOn(device);
@@ -91,14 +109,6 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& given, const DeviceSet
   const bool canBeWide = traversal_ != HowToTraverse::Skip && bvh_.nodes.size() <= mostWideNodes;
   width_ = settings.nodes.value_or(canBeWide ? fastest.nodes : 2);
   isChosen_ = !settings.traversal && !settings.nodes;
-  contracted_ = !isNative;
-  hasTriangles_ = !model.triangles.empty();
-  hasSpheres_ = !model.spheres.empty();
-  hasPlanes_ = !model.planes.empty();
-  nodeCount_ = static_cast<int>(bvh_.nodes.size());
-  planeCount_ = static_cast<int>(model.planes.size());
-  firstPlane_ = model.planeId(0);
-  planes_ = streamOf(device, planeLayout(model));
   WideBvh wide;
   std::vector<sk::float4> nodes;
   if (width_ == wideChildren)
@@ -108,7 +118,7 @@ DeviceScene::DeviceScene(sk::Device& device, const Model& given, const DeviceSet
   nodes_ = streamOf(device, std::move(nodes));
   wide_ = streamOf(device, std::move(wide.nodes));
   children_ = streamOf(device, std::move(wide.children));
-  shapes_.emplace(device, bvh_.order, model, settings.storage);
+  shapes_.emplace(device, model, bvh_.order, settings.storage);
 }
 
 void DeviceScene::explain(const sk::Error& error) const {
@@ -122,14 +132,14 @@ void DeviceScene::explain(const sk::Error& error) const {
                     device_->name()));
 }
 
-unsigned DeviceScene::kernelTest() const {
-  // shape_test.sk: both tests in floats, then both in halves.
-  return static_cast<unsigned>(intersection_) + (shapes_->inHalves ? 2u : 0u);
-}
-
-unsigned DeviceScene::kernelTraversal() const {
-  // shape_test.sk: Stack, Leaves, Skip, and the first two of them for nodes of eight.
-  return static_cast<unsigned>(traversal_) + (width_ == wideChildren ? 3u : 0u);
+kernels::Hierarchy DeviceScene::hierarchy() const {
+  // As in hierarchy.sk: Stack, Leaves, Skip, and the first two of them for nodes of eight; both tests in floats, then both in halves.
+  return {.nodes = nodes_,
+          .wide = wide_,
+          .children = children_,
+          .nodeCount = static_cast<int>(bvh_.nodes.size()),
+          .traversal = static_cast<unsigned>(traversal_) + (width_ == wideChildren ? 3u : 0u),
+          .test = static_cast<unsigned>(intersection_) + (shapes_->inHalves ? 2u : 0u)};
 }
 
 std::vector<std::string> DeviceScene::account() const {
@@ -157,17 +167,5 @@ std::vector<std::string> DeviceScene::warnings() const {
                   "\"single\" keeps them",
                   rounding_.collapsed, model_->triangles.size())};
 }
-
-DeviceShapes::DeviceShapes(sk::Device& onDevice, const Model& ofModel)
-    : device(onDevice),
-      model(ofModel),
-      contracted(!onDevice.name().starts_with("native")),
-      hasTriangles(!ofModel.triangles.empty()),
-      hasSpheres(!ofModel.spheres.empty()),
-      hasPlanes(!ofModel.planes.empty()),
-      planeCount(static_cast<int>(ofModel.planes.size())),
-      firstPlane(ofModel.planeId(0)),
-      planes(streamOf(onDevice, planeLayout(ofModel))),
-      shapes(onDevice, ownOrder(ofModel), ofModel) {}
 
 }  // namespace rays

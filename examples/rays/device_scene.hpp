@@ -55,25 +55,27 @@ sk::Stream<T> streamOf(sk::Device& device, std::vector<T> elements) {
   return stream;
 }
 
-/// Shapes on a device: either floats as `shapeLayout` has them, or rows of halves and numbers as `halfLayout` has them. Kernels read only
-/// the ones that `inHalves` names; the others have one element.
-struct ShapeStreams {
-  ShapeStreams(sk::Device& device, std::span<const std::uint32_t> order, const Model& model,
+/// The shapes and planes of a model on a device. Shapes are either floats as `shapeLayout` has them, or rows of halves and numbers as
+/// `halfLayout` has them; the streams of the other kind have one element.
+struct DeviceShapes {
+  /// `order` numbers the shapes as in Bvh::order. Device and model must outlive it.
+  DeviceShapes(sk::Device& onDevice, const Model& ofModel, std::span<const std::uint32_t> order,
                VertexStorage storage = VertexStorage::Single);
+  /// Triangles before spheres, in floats.
+  DeviceShapes(sk::Device& onDevice, const Model& ofModel);
 
-  bool inHalves;
-  sk::Stream<sk::float4> floats;
-  sk::Stream<sk::half4> halves;
-  sk::Stream<sk::int2> numbers;
-};
+  bool hasTriangles() const { return !model.triangles.empty(); }
+  bool hasSpheres() const { return !model.spheres.empty(); }
+  bool hasShapes() const { return hasTriangles() || hasSpheres(); }
+  /// What kernels read that shade nothing; PathTables adds the rest. Refers to the streams.
+  kernels::Scene scene() const;
 
-/// The shapes that shading reads, in the order in which hits number them. A view; the owner must outlive it.
-struct ShapeView {
   sk::Device& device;
   const Model& model;
-  bool hasTriangles, hasSpheres;
-  const sk::Stream<sk::float4>& planes;
-  const ShapeStreams& shapes;
+  bool inHalves;
+  sk::Stream<sk::float4> planes, floats;
+  sk::Stream<sk::half4> halves;
+  sk::Stream<sk::int2> numbers;
 };
 
 class DeviceScene {
@@ -81,14 +83,16 @@ class DeviceScene {
   /// The model must outlive it. A model in halves is rounded first.
   DeviceScene(sk::Device& device, const Model& model, const DeviceSettings& settings);
 
-  /// The arguments that all kernels begin with, up to the shapes, and then `more`.
+  /// Calls a kernel with the scene, the hierarchy, and then `more`.
   template <class Kernel, class... More>
   void call(const Kernel& kernel, More&&... more) {
+    callWith(shapes_->scene(), kernel, std::forward<More>(more)...);
+  }
+  /// The same with a scene of these shapes that has materials and lights, too.
+  template <class Kernel, class... More>
+  void callWith(const kernels::Scene& scene, const Kernel& kernel, More&&... more) {
     try {
-      kernel.with({.precision = precision_})(kernelTest(), kernelTraversal(), contracted_, hasTriangles_,
-                                             hasSpheres_, hasPlanes_, nodeCount_, planeCount_, firstPlane_,
-                                             planes_, nodes_, wide_, children_, shapes_->floats,
-                                             shapes_->halves, shapes_->numbers, std::forward<More>(more)...);
+      kernel.with({.precision = precision_})(scene, hierarchy(), std::forward<More>(more)...);
     } catch (const sk::Error& error) {
       explain(error);
       throw;
@@ -99,7 +103,8 @@ class DeviceScene {
   /// What is traced: the given model, or its copy that is rounded to halves.
   const Model& model() const { return *model_; }
   const Bvh& bvh() const { return bvh_; }
-  ShapeView view() const { return {*device_, *model_, hasTriangles_, hasSpheres_, planes_, *shapes_}; }
+  /// In the order in which hits number them.
+  const DeviceShapes& shapes() const { return *shapes_; }
   /// The number of nodes on the device: with two or eight children, and once per octant for links.
   std::int64_t nodeCount() const { return width_ == wideChildren ? wide_.size() / 4 : nodes_.size() / 2; }
   std::vector<std::string> account() const;
@@ -109,10 +114,8 @@ class DeviceScene {
  private:
   /// Throws std::runtime_error, with what a scene may say instead, if the device lacks the doubles that the scene asks for.
   void explain(const sk::Error& error) const;
-  /// kernels::ShapeTest.
-  unsigned kernelTest() const;
-  /// kernels::Traversal.
-  unsigned kernelTraversal() const;
+  /// Refers to the streams.
+  kernels::Hierarchy hierarchy() const;
 
   sk::Device* device_;
   std::unique_ptr<Model> rounded_;  ///< where shapes are in halves
@@ -125,29 +128,10 @@ class DeviceScene {
   HowToTraverse traversal_;
   int width_;  ///< children of a node
   bool isChosen_;  ///< both, because nothing was asked for
-  bool contracted_, hasTriangles_, hasSpheres_, hasPlanes_;
-  int nodeCount_, planeCount_, firstPlane_;
-  sk::Stream<sk::float4> planes_, nodes_;
-  std::optional<ShapeStreams> shapes_;
+  std::optional<DeviceShapes> shapes_;
+  sk::Stream<sk::float4> nodes_;
   sk::Stream<sk::int4> wide_;
   sk::Stream<std::int32_t> children_;
-};
-
-/// A model's shapes in the order of their numbers: triangles before spheres.
-struct DeviceShapes {
-  /// Both must outlive it.
-  DeviceShapes(sk::Device& onDevice, const Model& ofModel);
-
-  ShapeView view() const { return {device, model, hasTriangles, hasSpheres, planes, shapes}; }
-  bool hasShapes() const { return hasTriangles || hasSpheres; }
-
-  sk::Device& device;
-  const Model& model;
-  bool contracted;  ///< the device may contract products and sums
-  bool hasTriangles, hasSpheres, hasPlanes;
-  int planeCount, firstPlane;
-  sk::Stream<sk::float4> planes;
-  ShapeStreams shapes;
 };
 
 }  // namespace rays

@@ -18,7 +18,7 @@ void GridTracer::find(bool anyHit, const FloatStream& from, const FloatStream& a
                       sk::Stream<kernels::Found>& found) {
   if (from.size() == 0) return;
   if (settings_.machine == Machine::Multipass) return findByPasses(anyHit, from, along, found);
-  scene_.call(kernels::findInGrid, anyHit, from, along, found);
+  kernels::findInGrid(scene_.scene(), scene_.grid(), anyHit, from, along, found);
 }
 
 void GridTracer::findByPasses(bool anyHit, const FloatStream& allFrom, const FloatStream& allAlong,
@@ -29,17 +29,13 @@ void GridTracer::findByPasses(bool anyHit, const FloatStream& allFrom, const Flo
   auto travel = device.stream<kernels::Travel>(allFrom.shape());
   auto ray = device.stream<int>(allFrom.shape());
   kernels::numberRays(sk::iter(0, static_cast<int>(all)), ray);
-  metered(meter_, "begin", all, [&] {
-    kernels::beginTravel(s.hasShapes(), s.hasPlanes, anyHit, s.grid, s.planeCount, s.firstPlane, s.planes,
-                         s.cells, allFrom, allAlong, travel);
-  });
+  metered(meter_, "begin", all,
+          [&] { kernels::beginTravel(s.scene(), s.grid(), anyHit, allFrom, allAlong, travel); });
   FloatStream ownFrom, ownAlong;
   const FloatStream *from = &allFrom, *along = &allAlong;
   const auto deliver = [&] {
-    metered(meter_, "deliver", travel.size(), [&] {
-      kernels::deliver(s.hasSpheres && !anyHit, s.shapes.floats, s.shapes.halves, s.shapes.numbers, *from,
-                       *along, travel, ray, found);
-    });
+    metered(meter_, "deliver", travel.size(),
+            [&] { kernels::deliver(s.scene().shapes, anyHit, *from, *along, travel, ray, found); });
   };
   for (;;) {
     sk::int2 goOn;
@@ -69,12 +65,10 @@ void GridTracer::round(bool anyHit, const FloatStream& from, const FloatStream& 
                        sk::Stream<kernels::Travel>& travel) {
   GridScene& s = scene_;
   metered(meter_, "intersect", travel.size(), [&] {
-    kernels::intersectLists(static_cast<unsigned>(s.intersection), s.contracted, s.hasTriangles, s.hasSpheres,
-                            anyHit, settings_.tests, s.lists, s.shapes.floats, s.shapes.halves,
-                            s.shapes.numbers, from, along, travel, travel);
+    kernels::intersectLists(s.scene().shapes, s.grid(), anyHit, settings_.tests, from, along, travel, travel);
   });
   metered(meter_, "traverse", travel.size(),
-          [&] { kernels::traverseCells(s.grid, s.cells, from, along, travel, travel); });
+          [&] { kernels::traverseCells(s.grid(), from, along, travel, travel); });
 }
 
 GridScene::GridScene(sk::Device& onDevice, const Model& ofModel, const GridSettings& settings,
@@ -83,7 +77,7 @@ GridScene::GridScene(sk::Device& onDevice, const Model& ofModel, const GridSetti
   const examples::Stopwatch stopwatch;
   UniformGrid built = buildGrid(model, settings);
   const double milliseconds = stopwatch.milliseconds();
-  grid = {built.bounds.least, built.bounds.most, built.cell, built.size};
+  lattice = {built.bounds.least, built.bounds.most, built.cell, built.size};
   if (hasShapes()) {
     const auto all = double(built.starts.size()),
                number = double(model.triangles.size() + model.spheres.size());

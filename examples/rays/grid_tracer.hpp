@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 
 #include <sk/sk.hpp>
 
@@ -23,16 +22,16 @@ struct GridScene : DeviceShapes {
   GridScene(sk::Device& onDevice, const Model& ofModel, const GridSettings& settings,
             HowToIntersect howToIntersect);
 
-  /// The arguments that kernels with a whole way through the grid begin with, up to the shapes, and then `more`.
-  template <class Kernel, class... More>
-  void call(const Kernel& kernel, More&&... more) {
-    kernel(static_cast<unsigned>(intersection), contracted, hasTriangles, hasSpheres, hasPlanes, grid,
-           planeCount, firstPlane, planes, cells, lists, shapes.floats, shapes.halves, shapes.numbers,
-           std::forward<More>(more)...);
+  /// Refers to the streams.
+  kernels::Grid grid() const {
+    return {.lattice = lattice,
+            .cells = cells,
+            .lists = lists,
+            .intersection = static_cast<unsigned>(intersection)};
   }
 
   HowToIntersect intersection;
-  kernels::Grid grid{};
+  kernels::Lattice lattice{};
   sk::Stream<int> cells, lists;
   std::string size;  ///< for the report; empty where there are no shapes
 };

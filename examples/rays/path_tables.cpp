@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include "camera.hpp"
-#include "device_scene.hpp"
 #include "light_table.hpp"
 
 namespace rays {
@@ -127,25 +126,22 @@ kernels::View viewFor(const Camera& camera, const Picture& picture) {
           toFloat3(view.down),
           toFloat3(camera.lens * x),
           toFloat3(camera.lens * y),
-          static_cast<float>(camera.focus > 0 ? camera.focus : 1.0)};
+          static_cast<float>(camera.focus > 0 ? camera.focus : 1.0),
+          {picture.width, picture.height}};
 }
 
 }  // namespace
 
 PathTables::PathTables(sk::Device& device, const Model& model, const Picture& picture)
     : features(featuresOf(model) | strategyBits(picture.strategy)),
-      sampling(picture.sampling),
-      seed(picture.seed),
-      view(viewFor(model.camera, picture)) {
+      view(viewFor(model.camera, picture)),
+      sunCount(static_cast<int>(model.suns.size())),
+      skyColour(model.environment.colour),
+      skySize{model.environment.image.width, model.environment.image.height} {
   if (picture.everything) features |= everything;
   LightTable table = lightTable(model);
-  setting = {{picture.width, picture.height},
-             picture.depth,
-             table.count,
-             static_cast<int>(model.suns.size()),
-             model.environment.colour,
-             {model.environment.image.width, model.environment.image.height},
-             static_cast<float>(table.skyChoice)};
+  lightCount = table.count;
+  skyChoice = static_cast<float>(table.skyChoice);
   materials = streamOf(device, materialsOf(model, table.shares));
   corners = streamOf(device, cornersOf(model));
   lights = streamOf(device, std::move(table.lights));
@@ -167,6 +163,32 @@ std::string PathTables::account() const {
   return fmt::format("the scene has {}; its kernel is compiled without {}",
                      with.empty() ? "nothing but diffuse surfaces" : fmt::format("{}", fmt::join(with, ", ")),
                      without.empty() ? "nothing" : fmt::format("{}", fmt::join(without, ", ")));
+}
+
+kernels::Scene PathTables::scene(const DeviceShapes& shapes) const {
+  kernels::Scene scene = shapes.scene();
+  scene.materials = {.rows = materials, .corners = corners, .texels = texels, .textures = textures};
+  scene.lights = {.rows = lights,
+                  .count = lightCount,
+                  .suns = sunCount,
+                  .sky = {.colour = skyColour, .image = sky, .size = skySize, .choice = skyChoice}};
+  scene.features = features;
+  return scene;
+}
+
+kernels::Scene PathsRenderer::scene() const {
+  kernels::Scene scene = tables_.scene(shapes_);
+  if (exposure_.isSparse()) scene.features = tables_.features | listed;
+  return scene;
+}
+
+kernels::Picture PathsRenderer::sample(std::int64_t index) const {
+  return {.view = tables_.view,
+          .pixels = exposure_.isSparse() ? exposure_.pixels() : noPixels_,
+          .depth = picture_.depth,
+          .sampling = static_cast<unsigned>(picture_.sampling),
+          .sample = static_cast<std::uint32_t>(index),
+          .seed = picture_.seed};
 }
 
 void PathsRenderer::look(const Camera& camera) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The arguments of kernels that follow paths, apart from shapes: the scene's features, camera, materials, lights and textures, on a device.
+// What kernels that follow paths read beside shapes: the scene's features, camera, materials, lights and textures, on a device.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 
 #include <sk/sk.hpp>
 
+#include "device_scene.hpp"
 #include "engine.hpp"
 #include "exposure.hpp"
 #include "model.hpp"
@@ -22,11 +23,15 @@ struct PathTables {
   /// What is compiled, and what is left out.
   std::string account() const;
 
+  /// The scene of these shapes. Refers to the streams of both.
+  kernels::Scene scene(const DeviceShapes& shapes) const;
+
   int features;  ///< bits of Feature in scattering.sk
-  Sampling sampling;
-  std::uint32_t seed;
   kernels::View view;
-  kernels::Setting setting{};
+  int lightCount, sunCount;
+  sk::float3 skyColour;
+  sk::int2 skySize;
+  float skyChoice;
   sk::Stream<sk::float4> materials, corners, lights, sky, texels;
   sk::Stream<sk::int4> textures;
 };
@@ -34,21 +39,23 @@ struct PathTables {
 /// What renderers of paths share: all but the way of a pass.
 class PathsRenderer : public Renderer {
  public:
-  PathsRenderer(sk::Device& device, const Model& model, const Picture& picture)
-      : tables_(device, model, picture),
-        exposure_(device, picture),
+  /// The shapes must outlive it.
+  PathsRenderer(const DeviceShapes& shapes, const Picture& picture)
+      : shapes_(shapes),
+        tables_(shapes.device, shapes.model, picture),
+        exposure_(shapes.device, picture),
         picture_(picture),
-        noPixels_(device.stream<sk::int2>({1})) {}
+        noPixels_(shapes.device.stream<sk::int2>({1})) {}
 
   void look(const Camera& camera) override;
   Exposure& exposure() override { return exposure_; }
   std::vector<std::string> account() override { return {tables_.account()}; }
 
  protected:
-  /// The features of the tables, with a list of pixels where some have stopped.
-  int features() const { return tables_.features | (exposure_.isSparse() ? listed : 0); }
-  /// The list of active pixels; a stream of one element if all pixels are active, since kernels do not read it then.
-  const sk::Stream<sk::int2>& pixels() const { return exposure_.isSparse() ? exposure_.pixels() : noPixels_; }
+  /// The scene; if some pixels have stopped, kernels take the list of the others.
+  kernels::Scene scene() const;
+  /// Sample `index` of the active pixels.
+  kernels::Picture sample(std::int64_t index) const;
   /// Calls `follow(radiance)`, a kernel that makes a path of each element, for the active pixels, and adds the samples.
   template <class Follow>
   void passBy(Follow&& follow) {
@@ -61,6 +68,7 @@ class PathsRenderer : public Renderer {
     exposure_.add();
   }
 
+  const DeviceShapes& shapes_;
   PathTables tables_;
   Exposure exposure_;
 
@@ -68,7 +76,7 @@ class PathsRenderer : public Renderer {
   static constexpr int listed = 16384;  ///< as in scattering.sk
 
   Picture picture_;
-  sk::Stream<sk::int2> noPixels_;
+  sk::Stream<sk::int2> noPixels_;  ///< in place of a list; kernels do not read it
 };
 
 }  // namespace rays

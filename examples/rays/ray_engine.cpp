@@ -91,7 +91,7 @@ class OctreeEngine : public RayEngine, public StreamTracer {
   }
 
   std::unique_ptr<Renderer> renderer(const Picture& picture) override {
-    return makeMultipassRenderer(shapes_.view(), *this, picture, Use::Paths);
+    return makeMultipassRenderer(shapes_, *this, picture, Use::Paths);
   }
 
   const BucketCount& count() const override { return count_; }
@@ -166,12 +166,10 @@ class OctreeEngine : public RayEngine, public StreamTracer {
     Slot slot = takeSlot();
     slot.from.writeAsync(from);
     slot.along.writeAsync(along);
-    kernels::startBucket(shapes_.hasPlanes, shapes_.planeCount, shapes_.firstPlane, shapes_.planes, slot.from,
-                         slot.along, slot.found);
+    kernels::startBucket(shapes_.scene().planes, slot.from, slot.along, slot.found);
     test(octree_.shapesOf(bundle), slot);
-    if (shapes_.hasSpheres)
-      kernels::finishBucket(shapes_.shapes.floats, shapes_.shapes.halves, shapes_.shapes.numbers, slot.from,
-                            slot.along, slot.found, slot.found);
+    if (shapes_.hasSpheres())
+      kernels::finishBucket(shapes_.scene().shapes, slot.from, slot.along, slot.found, slot.found);
     count_.rays += static_cast<std::int64_t>(bucket.size());
     ++count_.buckets;
     sk::Future<kernels::Found> found = slot.found.readAsync();
@@ -184,10 +182,8 @@ class OctreeEngine : public RayEngine, public StreamTracer {
       const std::size_t count = std::min(perCall, shapes.size() - first);
       std::array<int, mostShapes> chosen{};
       std::copy_n(shapes.begin() + static_cast<std::ptrdiff_t>(first), count, chosen.begin());
-      kernels::testBucket(static_cast<unsigned>(settings_.test), shapes_.contracted, shapes_.hasTriangles,
-                          shapes_.hasSpheres, static_cast<int>(count), chosen, shapes_.shapes.floats,
-                          shapes_.shapes.halves, shapes_.shapes.numbers, normals_, slot.from, slot.along,
-                          slot.found, slot.found);
+      kernels::testBucket(static_cast<unsigned>(settings_.test), shapes_.scene().shapes, normals_,
+                          static_cast<int>(count), chosen, slot.from, slot.along, slot.found, slot.found);
       ++count_.calls;
     }
     count_.tests += static_cast<std::int64_t>(shapes.size()) * settings_.bucket;

@@ -161,9 +161,13 @@ LightSamples samplesOf(sk::Device& device, const Model& model, sk::float3 from) 
   sk::Stream<sk::float4> lights = streamOf(device, table.lights), sky = streamOf(device, table.sky);
   sk::Stream<sk::float4> directions = device.stream<sk::float4>({manySamples});
   sk::Stream<sk::float3> targets = device.stream<sk::float3>({manySamples});
-  kernels::lightMany(from, table.count, lights, sky,
-                     sk::int2{model.environment.image.width, model.environment.image.height}, 3u,
-                     sk::iter(0, manySamples), directions, targets);
+  kernels::lightMany(
+      from,
+      {.rows = lights,
+       .count = table.count,
+       .sky = {.image = sky,
+               .size = sk::int2{model.environment.image.width, model.environment.image.height}}},
+      3u, sk::iter(0, manySamples), directions, targets);
   return {directions.read(), targets.read()};
 }
 
@@ -297,7 +301,8 @@ TEST_CASE("a sky's image is sampled in proportion to its pixels, which are unifo
   sk::Stream<sk::float4> sky = streamOf(device, table.sky);
   sk::Stream<sk::float3> at = streamOf(device, directions);
   sk::Stream<float> density = device.stream<float>({manySamples});
-  kernels::skyDensityOf(sky, sk::int2{16, 8}, 1.0f, at, density);
+  kernels::skyDensityOf(
+      {.colour = sk::float3{1, 1, 1}, .image = sky, .size = sk::int2{16, 8}, .choice = 1.0f}, at, density);
   const std::vector<float> met = density.read();
   std::size_t differ = 0;
   for (std::size_t i = 0; i < met.size(); ++i) differ += std::abs(met[i] / s.directions[i].w - 1) > 1e-3;
@@ -311,7 +316,7 @@ TEST_CASE("rays of a lens begin anywhere on it, and meet in focus") {
   const PathTables tables(device, model, {.width = 4, .height = 4});
   sk::Stream<sk::float3> origins = device.stream<sk::float3>({manySamples}),
                          directions = device.stream<sk::float3>({manySamples});
-  kernels::cameraMany(tables.view, tables.setting, 9u, sk::iter(0, manySamples), origins, directions);
+  kernels::cameraMany(tables.view, 9u, sk::iter(0, manySamples), origins, directions);
   const std::vector<sk::float3> from = origins.read(), along = directions.read();
   SquareBins lens(16), pixel(16);
   const double half = std::tan(20 * pi / 180);

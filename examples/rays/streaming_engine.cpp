@@ -51,7 +51,7 @@ class StreamingEngine : public Engine {
 
   std::unique_ptr<Renderer> renderer(const Picture& picture) override {
     if (settings_.machine == Machine::Branching) return makeBranchingRenderer(scene_, picture, settings_.use);
-    return makeMultipassRenderer(scene_.view(), tracer_, picture, settings_.use);
+    return makeMultipassRenderer(scene_, tracer_, picture, settings_.use);
   }
 
   std::vector<std::string> account() override {

@@ -12,14 +12,12 @@ namespace {
 class BranchingRenderer : public PathsRenderer {
  public:
   BranchingRenderer(GridScene& scene, const Picture& picture, Use use)
-      : PathsRenderer(scene.device, scene.model, picture), scene_(scene), use_(use) {}
+      : PathsRenderer(scene, picture), scene_(scene), use_(use) {}
 
   void pass(std::int64_t index) override {
-    const PathTables& t = tables_;
     passBy([&](auto& radiance) {
-      scene_.call(kernels::followPathsInGrid, features(), static_cast<unsigned>(t.sampling),
-                  static_cast<unsigned>(use_), t.view, t.setting, static_cast<std::uint32_t>(index), t.seed,
-                  t.materials, t.corners, t.lights, t.sky, t.texels, t.textures, pixels(), radiance);
+      kernels::followPathsInGrid(scene(), scene_.grid(), static_cast<unsigned>(use_), sample(index),
+                                 radiance);
     });
   }
 
@@ -43,35 +41,27 @@ struct PathStreams {
 
 class MultipassRenderer : public PathsRenderer {
  public:
-  MultipassRenderer(const ShapeView& scene, StreamTracer& tracer, const Picture& picture, Use use,
+  MultipassRenderer(const DeviceShapes& shapes, StreamTracer& tracer, const Picture& picture, Use use,
                     PassMeter* meter)
-      : PathsRenderer(scene.device, scene.model, picture),
-        scene_(scene),
-        tracer_(tracer),
-        depth_(picture.depth),
-        use_(use),
-        meter_(meter) {
+      : PathsRenderer(shapes, picture), tracer_(tracer), depth_(picture.depth), use_(use), meter_(meter) {
     refuseDivided(picture, "a picture in several passes");
   }
 
   void pass(std::int64_t index) override {
-    const PathTables& t = tables_;
-    const auto sample = static_cast<std::uint32_t>(index);
     const std::int64_t count = exposure_.activePixels();
-    PathStreams paths(scene_.device, {count});
+    PathStreams paths(shapes_.device, {count});
     metered(meter_, "generate", count, [&] {
-      kernels::generatePaths(features(), static_cast<unsigned>(t.sampling), t.view, t.setting, sample, t.seed,
-                             pixels(), sk::iter(0, static_cast<int>(count)), paths.from, paths.along,
-                             paths.path, paths.pixel);
+      kernels::generatePaths(scene(), sample(index), sk::iter(0, static_cast<int>(count)), paths.from,
+                             paths.along, paths.path, paths.pixel);
     });
     for (int segment = 0; paths.path.size() > 0; ++segment) {
-      shade(sample, segment, paths);
-      auto kept = scene_.device.stream<int>({0});
+      shade(index, segment, paths);
+      auto kept = shapes_.device.stream<int>({0});
       metered(meter_, "end paths", paths.path.size(), [&] {
         kernels::deliverLight(paths.path, paths.along, paths.pixel, exposure_.radiance);
         kernels::keepPaths(paths.along, sk::iter(0, static_cast<int>(paths.path.size())), kept);
       });
-      PathStreams next(scene_.device, kept.shape());
+      PathStreams next(shapes_.device, kept.shape());
       if (kept.size() > 0) {
         metered(meter_, "move paths", kept.size(), [&] {
           kernels::movePaths(kept, paths.from, paths.along, paths.path, paths.pixel, next.from, next.along,
@@ -85,29 +75,28 @@ class MultipassRenderer : public PathsRenderer {
 
  private:
   /// Traces the rays of a segment, and those to lights.
-  void shade(std::uint32_t sample, int segment, PathStreams& paths) {
-    const PathTables& t = tables_;
-    sk::Device& device = scene_.device;
+  void shade(std::int64_t index, int segment, PathStreams& paths) {
+    sk::Device& device = shapes_.device;
     const sk::Shape shape = paths.from.shape();
     auto found = device.stream<kernels::Found>(shape);
     tracer_.find(false, paths.from, paths.along, found);
     auto shadowFrom = device.stream<sk::float4>(shape), shadowAlong = device.stream<sk::float4>(shape);
     auto shadowLight = device.stream<sk::float3>(shape);
     metered(meter_, "shade", paths.from.size(), [&] {
-      kernels::shadePaths(scene_.hasTriangles, scene_.hasSpheres, scene_.shapes.inHalves, scene_.planes,
-                          scene_.shapes.floats, scene_.shapes.halves, scene_.shapes.numbers, t.features,
-                          static_cast<unsigned>(t.sampling), static_cast<unsigned>(use_), t.setting, sample,
-                          t.seed, segment, t.materials, t.corners, t.lights, t.sky, t.texels, t.textures,
+      kernels::shadePaths({.scene = tables_.scene(shapes_),
+                           .picture = sample(index),
+                           .segment = segment,
+                           .use = static_cast<unsigned>(use_),
+                           .inHalves = shapes_.inHalves},
                           paths.from, paths.along, found, paths.pixel, paths.path, paths.from, paths.along,
                           paths.path, shadowFrom, shadowAlong, shadowLight);
     });
-    if (t.setting.lights == 0 || use_ == Use::RayCasting || segment + 1 == depth_) return;
+    if (tables_.lightCount == 0 || use_ == Use::RayCasting || segment + 1 == depth_) return;
     tracer_.find(true, shadowFrom, shadowAlong, found);
     metered(meter_, "add light", paths.from.size(),
             [&] { kernels::addLight(found, shadowLight, paths.path, paths.path); });
   }
 
-  ShapeView scene_;
   StreamTracer& tracer_;
   int depth_;
   Use use_;
@@ -120,9 +109,9 @@ std::unique_ptr<Renderer> makeBranchingRenderer(GridScene& scene, const Picture&
   return std::make_unique<BranchingRenderer>(scene, picture, use);
 }
 
-std::unique_ptr<Renderer> makeMultipassRenderer(const ShapeView& scene, StreamTracer& tracer,
+std::unique_ptr<Renderer> makeMultipassRenderer(const DeviceShapes& shapes, StreamTracer& tracer,
                                                 const Picture& picture, Use use, PassMeter* meter) {
-  return std::make_unique<MultipassRenderer>(scene, tracer, picture, use, meter);
+  return std::make_unique<MultipassRenderer>(shapes, tracer, picture, use, meter);
 }
 
 }  // namespace rays

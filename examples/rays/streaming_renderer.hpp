@@ -14,7 +14,7 @@ namespace rays {
 
 /// What they are given must outlive renderers.
 std::unique_ptr<Renderer> makeBranchingRenderer(GridScene& scene, const Picture& picture, Use use);
-std::unique_ptr<Renderer> makeMultipassRenderer(const ShapeView& scene, StreamTracer& tracer,
+std::unique_ptr<Renderer> makeMultipassRenderer(const DeviceShapes& shapes, StreamTracer& tracer,
                                                 const Picture& picture, Use use, PassMeter* meter = nullptr);
 
 }  // namespace rays

@@ -32,7 +32,7 @@ struct Steps {
 
 Steps stepsOf(GridScene& scene, const RayStreams& rays) {
   auto steps = scene.device.stream<sk::int2>(rays.from.shape());
-  scene.call(kernels::stepsInGrid, false, rays.from, rays.along, steps);
+  kernels::stepsInGrid(scene.scene(), scene.grid(), false, rays.from, rays.along, steps);
   Steps result;
   const std::vector<sk::int2> all = steps.read();
   for (const sk::int2& s : all) {
@@ -139,11 +139,11 @@ std::string tableOfUses(GridScene& scene, const Picture& picture, int runs) {
       const bool isBranching = machine == Machine::Branching;
       const std::unique_ptr<Renderer> renderer =
           isBranching ? makeBranchingRenderer(scene, picture, use)
-                      : makeMultipassRenderer(scene.view(), tracer, picture, use);
+                      : makeMultipassRenderer(scene, tracer, picture, use);
       if (isBranching)
         meter.measure("all", 0, [&] { renderer->pass(0); });
       else
-        makeMultipassRenderer(scene.view(), counted, picture, use, &meter)->pass(0);
+        makeMultipassRenderer(scene, counted, picture, use, &meter)->pass(0);
       const sk::PassCount count = sumOf(meter);
       const double best = bestMilliseconds(scene.device, runs, [&] { renderer->pass(0); });
       table.add({std::string(names[static_cast<std::size_t>(use)]), isBranching ? "branching" : "multipass",
@@ -159,7 +159,7 @@ std::string tableOfKernels(GridScene& scene, const Picture& picture) {
   PassMeter meter(scene.device);
   GridTracer tracer(scene, {.machine = Machine::Multipass}, &meter);
   const std::unique_ptr<Renderer> renderer =
-      makeMultipassRenderer(scene.view(), tracer, picture, Use::Paths, &meter);
+      makeMultipassRenderer(scene, tracer, picture, Use::Paths, &meter);
   renderer->pass(0);
   meter.forget();
   renderer->pass(0);

@@ -7,11 +7,7 @@ import { sceneOf } from '../rays_scene.js';
 import { collect } from '../sk/gallery/collect.sk.js';
 import { rays_kernels as rays } from '../sk/rays/path.sk.js';
 
-// Of shape_test.sk, scattering.sk and sampling.sk.
-const [watertight, stack] = [0, 0];
-const feature = { mirrors: 1, glass: 2, metals: 4, emitters: 16, sky: 128, lens: 1024, listed: 16384 };
-const features = Object.values(feature).reduce((a, b) => a | b);
-const sobol = 1;
+const sobol = 1; // of sampling.sk
 const enough = 4000; // samples of a pixel
 
 const add = (a, b, by = 1) => a.map((x, i) => x + by * b[i]);
@@ -20,7 +16,7 @@ const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b
 const unit = (a) => scaled(a, 1 / Math.hypot(...a));
 
 /** A camera that looks at `to` from a direction; see viewOf() in examples/rays/camera.cpp. */
-function viewOf({ turn, height, distance }, width, rows, lens) {
+function viewOf({ turn, height, distance }, [rows, width], lens) {
   const to = [0, 0.26, 0];
   const out = [Math.sin(turn) * Math.cos(height), Math.sin(height), Math.cos(turn) * Math.cos(height)];
   const origin = add(to, out, distance);
@@ -30,7 +26,7 @@ function viewOf({ turn, height, distance }, width, rows, lens) {
   const tall = 2 * Math.tan(0.3);
   const wide = (tall * width) / rows;
   const corner = add(add(forward, right, -0.5 * wide), up, 0.5 * tall);
-  return { origin, corner, across: scaled(right, wide), down: scaled(up, -tall), lensX: scaled(right, lens), lensY: scaled(up, -lens), focus: distance - 0.25 };
+  return { origin, corner, across: scaled(right, wide), down: scaled(up, -tall), lensX: scaled(right, lens), lensY: scaled(up, -lens), focus: distance - 0.25, size: [width, rows] };
 }
 
 /** The pixels of a picture, row by row. */
@@ -40,12 +36,9 @@ function pixelsOf(device, rows, columns) {
   return pixels;
 }
 
-/** One sample of every pixel of the list, in a picture of rows x columns. */
-function sampleInto(radiance, [rows, columns], pixels, scene, view, sample, depth) {
-  const setting = { size: [columns, rows], depth, lights: 1, suns: 0, sky: [0.15, 0.2, 0.29], skySize: [0, 0], skyChoice: 0 };
-  const { float4, int4, int, half4 } = scene.none;
-  rays.followPaths(watertight, stack, true, false, true, true, scene.nodeCount, 1, scene.firstPlane, scene.planes, scene.nodes, int4, int, scene.shapes, half4, scene.none.int2,
-    features, sobol, view, setting, sample, 1, scene.materials, float4, scene.lights, float4, float4, int4, pixels, radiance);
+/** One sample of every pixel of the list. */
+function sampleInto(radiance, pixels, { scene, hierarchy }, view, sample, depth) {
+  rays.followPaths(scene, hierarchy, { view, pixels, depth, sampling: sobol, sample, seed: 1 }, radiance);
 }
 
 function create({ device, canvas, controls, random, tell }) {
@@ -65,10 +58,10 @@ function create({ device, canvas, controls, random, tell }) {
     elements: radiance.size,
     radiance,
     scene,
-    view: () => viewOf(camera, canvas.width, canvas.height, controls.get('lens')),
+    viewOf: (shape) => viewOf(camera, shape, controls.get('lens')),
     step() {
       if (samples >= enough) return;
-      sampleInto(radiance, shape, pixels, scene, this.view(), samples++, controls.get('depth'));
+      sampleInto(radiance, pixels, scene, this.viewOf(shape), samples++, controls.get('depth'));
       collect.add(radiance, sum, sum);
     },
     draw() {
@@ -97,7 +90,7 @@ async function* measure({ device, simulation, time }) {
   const ways = [['float', collect.add], ['half', collect.addHalf], ['double', collect.addDouble]];
   const sums = ways.map(([type]) => device.stream(`${type}3`, shapes[0]));
   for (let i = 0; i < samples; ++i) {
-    sampleInto(sample, [rows, columns], pixels, simulation.scene, simulation.view(), i, 6);
+    sampleInto(sample, pixels, simulation.scene, simulation.viewOf([rows, columns]), i, 6);
     ways.forEach(([, addTo], k) => addTo(sample, sums[k], sums[k]));
     (await sample.read()).forEach((x, n) => (exact[n] += x));
   }
@@ -122,7 +115,7 @@ openPage({
     { name: 'lens', label: 'Radius of the lens', range: [0, 0.12, 0.005], value: 0.03, show: (x) => x.toFixed(3) },
     { name: 'depth', label: 'Segments of a path', range: [1, 12, 1], value: 8 },
   ],
-  sources: ['sk/rays/path.sk', 'sk/rays/segment.sk', 'sk/rays/traverse.sk', 'sk/rays/scattering.sk', 'sk/rays/sampling.sk', 'sk/gallery/collect.sk'],
+  sources: ['sk/rays/path.sk', 'sk/rays/scene.sk', 'sk/rays/segment.sk', 'sk/rays/traverse.sk', 'sk/rays/scattering.sk', 'sk/rays/sampling.sk', 'sk/gallery/collect.sk'],
   create,
   accuracy: {
     note: 'Sums of samples in three types, against the sum of the same samples in JavaScript’s doubles. Errors are relative to each sum; times are those of adding one sample ' +
