@@ -30,6 +30,17 @@ TEST_CASE("operations and intrinsics weigh by component, nodes one each") {
   CHECK(weigh(module, sine(), {.node = 1}, 3) == 3);
 }
 
+TEST_CASE("a read and a sample of a gather weigh once, whatever their width") {
+  Module module = testModule();
+  KernelBuilder k(module, "k");
+  const Type pair = Type::of(Scalar::Float, 2);
+  const VarId u = k.gather("u", pair, 1);
+  const Block read = block(returnStmt(gatherRead(pair, KernelBuilder::stream(u), literal(0))));
+  CHECK(weigh(module, read, {.gather = 5, .sample = 7}, 100) == 5);
+  const Block sampled = block(returnStmt(makeExpr(pair, Sample{KernelBuilder::stream(u), literal(0.0F)})));
+  CHECK(weigh(module, sampled, {.gather = 5, .sample = 7}, 100) == 7);
+}
+
 TEST_CASE("a function weighs at each of its calls, or once") {
   Module module = testModule();
   const FunctionId twice = addTwice(module);

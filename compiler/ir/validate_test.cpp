@@ -182,6 +182,14 @@ TEST_CASE("constants name earlier constants only") {
   CHECK(contains(validate(module, Stage::Lowered), "before it is declared"));
 }
 
+TEST_CASE("arrays have elements") {
+  Module module = testModule();
+  module.arrays.push_back({floatType, 1});
+  CHECK(validate(module, Stage::Lowered).empty());
+  module.arrays[0].length = 0;
+  CHECK(contains(validate(module, Stage::Lowered), "an array has no elements"));
+}
+
 TEST_CASE("constructors are given what they need") {
   Module module = testModule();
   module.structs.push_back({"Hit", {}, {{"t", floatType}, {"id", intType}}, {}});
@@ -221,6 +229,33 @@ TEST_CASE("kernels and their entries agree") {
   CHECK(contains(change([](Module& m) { m.kernels[0].entry = 9; }), "not in the table"));
   const FoldPattern ofElement{{{{0, {}, floatType, 1}, BinaryOp::Add, {}}}, true};
   CHECK(contains(change([&](Module& m) { m.kernels[0].reduction->pattern = ofElement; }), "no accumulator"));
+}
+
+TEST_CASE("a combining kernel takes its operands from parameters of the same role and type") {
+  const auto withOperand = [](std::uint32_t operand) {
+    Module module = testModule();
+    KernelBuilder k(module, "sum");
+    k.accumulator("total", floatType, literal(0.0F));
+    k.input("x", floatType);
+    k.uniform("scale", floatType);
+    k.uniform("n", intType);
+    k.spec("weight", floatType);
+    k.finish({});
+    KernelBuilder combine(module, "sum");
+    combine.input("total_part", floatType);
+    combine.accumulator("total", floatType);
+    combine.uniform("scale", floatType);
+    combine.finish({});
+    module.kernels[0].reduction->combine = 1;
+    module.kernels[0].reduction->operands = {0, 0, operand};
+    return validate(module, Stage::Lowered);
+  };
+  CHECK(withOperand(2) == "");
+  for (const std::uint32_t other : {1U, 3U, 4U, 5U}) {
+    INFO(other);
+    CHECK(
+        contains(withOperand(other), "an operand of the combining kernel is not there, or of another kind"));
+  }
 }
 
 TEST_CASE("after specialize-gathers, streams are parameters and functions have one owner") {
