@@ -58,6 +58,16 @@ TEST_CASE("branches, selections and short circuits guard") {
                             block(d.write(d.k.ref(d.x))), block(d.write(literal(0.0F)))))) == "!(n == 3)");
 }
 
+TEST_CASE("a condition may join others") {
+  GuardedKernel a, b;
+  const auto need = [](GuardedKernel& s, BinaryOp op) {
+    return s.need(block(s.write(s.k.ref(s.x)),
+                        ifStmt(binary(op, s.k.ref(s.flag), s.isN(2)), block(s.write(s.k.ref(s.y))))));
+  };
+  CHECK(need(a, BinaryOp::LogicalOr) == "flag || n == 2");
+  CHECK(need(b, BinaryOp::LogicalAnd) == "flag && n == 2");
+}
+
 TEST_CASE("several uses need the stream where any of them runs, nested guards where all hold") {
   GuardedKernel a, b;
   CHECK(a.need(block(a.write(literal(0.0F)), ifStmt(a.k.ref(a.flag), block(a.write(a.k.ref(a.y)))),

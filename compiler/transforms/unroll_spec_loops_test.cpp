@@ -68,6 +68,21 @@ TEST_CASE("each small value of a bound has a variant") {
   CHECK(s.textOf(s.module.kernels[kernel.unrolled[1].kernel]).find(" < n") == std::string::npos);
 }
 
+TEST_CASE("a value that starts a loop, or that it steps by, bounds it, too") {
+  SpecLoopKernel down, strides;
+  // for (int i = n; i > 0; --i)
+  const Kernel& counted = down.kernel(block(
+      forLoop(block(declare(down.i, down.k.ref(down.n))), binary(Greater, down.k.ref(down.i), literal(0)),
+              block(assign(down.k.ref(down.i), Sub, literal(1))), block(down.add(down.k.ref(down.i))), {})));
+  CHECK(counted.unrolled.size() == mostUnrolledValue);
+  // for (int i = 0; i < 8; i += n)
+  const Kernel& stepped = strides.kernel(
+      block(forLoop(block(declare(strides.i, literal(0))), binary(Less, strides.k.ref(strides.i), literal(8)),
+                    block(assign(strides.k.ref(strides.i), Add, strides.k.ref(strides.n))),
+                    block(strides.add(strides.k.ref(strides.i))), {})));
+  CHECK(stepped.unrolled.size() == mostUnrolledValue);
+}
+
 TEST_CASE("all variants together stay within the limit") {
   SpecLoopKernel s;
   // n * n rounds of about 8 expressions
