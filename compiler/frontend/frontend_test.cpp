@@ -97,6 +97,12 @@ TEST_CASE("vector comparisons are masks, and conditions see through them", "[fro
   CHECK(inKernel("bool4 m = bool4(w > 1); v = m.x;") == "bool4 m = w > float4{1.0};\nv = float(m.x);\n");
 }
 
+TEST_CASE("comparisons of integers stay integers", "[frontend]") {
+  CHECK(
+      inKernel("int2 a = int2(n), b = a + 1; v = any(lessThan(a, b)) ? 1 : 0;").find("any(lessThan(a, b))") !=
+      std::string::npos);
+}
+
 TEST_CASE("a member function takes a reference to an array of vectors", "[frontend]") {
   CHECK(inKernel("struct S { float k; float f(float2 (&q)[1]) const { return k * q[0].x; } };"
                  "float2 q[1] = {w.xy}; v = S{x}.f(q);")
@@ -117,6 +123,9 @@ TEST_CASE("a helper may repeat the boundary mode of a kernel's gather", "[fronte
 TEST_CASE("literals are rounded once", "[frontend]") {
   // 1 + 2^-24 + 2^-54: through double it would be a tie and round to 1
   CHECK(inKernel("v = 1.00000005960464483090177;") == "v = 1.0000001;\n");
+  // 1 + 3 * 2^-11 is a tie of halves: a number just below it and one just above it, of which it is the nearest float
+  CHECK(inKernel("half h = 1.001464843744; v = h;") == "half h = half(1.0009766);\nv = float(h);\n");
+  CHECK(inKernel("half h = 1.000488281256; v = h;") == "half h = half(1.0009766);\nv = float(h);\n");
   CHECK(inKernel("v = 0.1 + x;") == "v = 0.1 + x;\n");
   CHECK(inKernel("v = 1;") == "v = 1.0;\n");
 }

@@ -35,6 +35,7 @@ void addKernel(Module& module, std::string name, Type type, std::vector<std::str
 TEST_CASE("file names become names of types") {
   CHECK(pascalCase("gray_scott") == "GrayScott");
   CHECK(pascalCase("my-file.v2") == "MyFileV2");
+  CHECK(pascalCase("\xc3\x80_la") == "\xc3\x80La");   // a capital A with grave
   CHECK(pascalCase("2d heat") == "K2dHeat");
   CHECK(pascalCase("") == "K");
 }
