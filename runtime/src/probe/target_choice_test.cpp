@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the trial of one device is not used for another whose result could differ.
+// Promises: the trial of one device is not used for another whose result could differ, and kernels are of the class whose
+// programs they run.
 #include "probe/target_choice.hpp"
+
+#include <array>
 
 #include <catch2/catch.hpp>
 
@@ -20,4 +23,28 @@ TEST_CASE("trials are kept for a driver, its limits and, of software, the proces
   const std::string software = trialKey("a renderer", large, true);
   CHECK(software.find("threads") != std::string::npos);
   CHECK(software != trialKey("a renderer", large, false));
+}
+
+TEST_CASE("kernels with append outputs are of the class that orders what they write") {
+  using program::Role;
+  const program::Field field{"", program::Scalar::Int, 2, 0};
+  const program::Element pairs{"int2", "ivec2", 8, {&field, 1}};
+  const auto classIn = [&](const program::Parameter& output, Order order) {
+    const std::array parameters{output};
+    program::Kernel kernel;
+    kernel.parameters = parameters;
+    return classOf(kernel, order);
+  };
+  const program::Parameter pushed{
+      .name = "r", .symbol = "r", .role = Role::VariableOutput, .element = &pairs, .pushes = 1};
+  program::Parameter scattered{
+      .name = "r", .symbol = "r", .role = Role::Scatter, .element = &pairs, .rank = 1};
+  CHECK(classIn(pushed, Order::Kept) == KernelClass::Pushes);
+  CHECK(classIn(pushed, Order::Any) == KernelClass::Scatters);
+  for (const Order order : {Order::Kept, Order::Any}) {
+    scattered.scatter = program::ScatterOp::Store;
+    CHECK(classIn(scattered, order) == KernelClass::Scatters);
+    scattered.scatter = program::ScatterOp::Add;
+    CHECK(classIn(scattered, order) == KernelClass::OrderedScatters);
+  }
 }

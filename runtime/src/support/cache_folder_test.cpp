@@ -74,6 +74,14 @@ TEST_CASE("what is kept comes back, for its key alone") {
   CHECK(filesIn(folder.path) == 2);
 }
 
+TEST_CASE("a folder that is missing is made, with those above it") {
+  const Folder folder;
+  const CacheFolder cache(folder.path / "above" / "it");
+  cache.write("barrier", "a driver", "precise\n");
+  CHECK(cache.read("barrier", "a driver") == "precise\n");
+  CHECK(fs::status(folder.path / "above" / "it").permissions() == fs::perms::owner_all);
+}
+
 TEST_CASE("a file that is torn, changed or of somebody else's making is nothing") {
   const Folder folder;
   const CacheFolder cache(folder.path);

@@ -107,6 +107,27 @@ TEST_CASE("high products are not left to a device that cannot take them") {
   CHECK_FALSE(isMarked(samples::saxpy));
 }
 
+TEST_CASE("samplers filter clamped and repeated gathers of floats with one or two dimensions") {
+  const auto may = [](const Element& element, int rank, Boundary boundary, bool isAllowed = true) {
+    return mayFilter({.name = "a",
+                      .symbol = "a",
+                      .role = Role::Gather,
+                      .element = &element,
+                      .rank = static_cast<std::uint8_t>(rank),
+                      .boundary = boundary,
+                      .usesSample = true,
+                      .filter = isAllowed});
+  };
+  for (const int rank : {1, 2}) {
+    CHECK(may(samples::floatElement, rank, Boundary::Clamp));
+    CHECK(may(samples::float3Element, rank, Boundary::Wrap));
+    CHECK_FALSE(may(samples::floatElement, rank, Boundary::Border));
+    CHECK_FALSE(may(samples::intElement, rank, Boundary::Clamp));
+    CHECK_FALSE(may(samples::floatElement, rank, Boundary::Clamp, false));
+  }
+  CHECK_FALSE(may(samples::floatElement, 3, Boundary::Clamp));
+}
+
 TEST_CASE("a linearised element-wise kernel has none either") {
   const std::string plane = kernelProgram(glsl, samples::saxpy, {.access = {{}, {}, {}, {}}});
   const std::string linear =

@@ -3,9 +3,12 @@
 // Tests the text of reduction passes. reduce_plan_test tests the order in which they fold.
 #include "assemble/reduce/reduce_program.hpp"
 
+#include <array>
+
 #include <catch2/catch.hpp>
 
 #include "assemble/program/sample_kernels.hpp"
+#include "assemble/reduce/row_program.hpp"
 
 using namespace sk::assemble;
 
@@ -293,4 +296,26 @@ TEST_CASE("invocations beside the elements fold no part of a run") {
   variant.run = 0;
   CHECK(mainOfGroup().find("  if (sk_isInside) for (; sk_count >= 8; sk_count -= 8) {\n") !=
         std::string::npos);
+}
+
+TEST_CASE("work groups fold rows if all accumulators of a group have room in shared memory") {
+  using sk::program::Scalar;
+  const auto mayGroup = [](const std::vector<sk::program::Field>& fields, bool isSeeded = false) {
+    const sk::program::Element element{"T", "T", 0, fields};
+    const std::array parameters{sk::program::Parameter{
+        .name = "total", .symbol = "total", .role = sk::program::Role::Accumulator, .element = &element}};
+    sk::program::Reduction reduction{};
+    reduction.fold.parameters = reduction.combine.parameters = parameters;
+    reduction.seeded = isSeeded;
+    return mayGroupRows(reduction);
+  };
+  const sk::program::Field one{"a", Scalar::Float, 1, 0}, three{"a", Scalar::Float, 3, 0},
+      four{"a", Scalar::Float, 4, 0}, two{"a", Scalar::Double, 2, 0};
+  CHECK(mayGroup({four, four}));
+  CHECK(mayGroup({three, four}));   // three take the room of four
+  CHECK(mayGroup({two, two}));
+  CHECK_FALSE(mayGroup({four, four, one}));
+  CHECK_FALSE(mayGroup({three, three, one}));
+  CHECK_FALSE(mayGroup({two, two, one}));
+  CHECK_FALSE(mayGroup({one}, true));
 }
