@@ -55,6 +55,12 @@ TEST_CASE("options that one rank cannot have are refused by all, with its words"
   options = {.shape = {24, 8}};
   if (isLast()) options.device.device = "voodoo";
   CHECK_THAT(errorOf([&] { sk::Domain(MPI_COMM_WORLD, options); }), Contains(last()) && Contains("voodoo"));
+  const std::string name(10'000, 'v');  // longer than what a rank tells the others of its error
+  options = {.shape = {24, 8}};
+  if (isLast()) options.device.device = name;
+  const std::string words = errorOf([&] { sk::Domain(MPI_COMM_WORLD, options); });
+  CHECK_THAT(words, Contains(last()) && Contains(name.substr(0, 1000)));
+  if (!isLast()) CHECK(words.size() < name.size());
   options = {.shape = {24, 8}, .exchangeEvery = isLast() ? 2 : 1};
   CHECK_THAT(errorOf([&] { sk::Domain(MPI_COMM_WORLD, options); }),
              Contains("rank 0 has a domain of shape {24, 8}") && Contains("exchangeEvery 2"));
@@ -162,6 +168,21 @@ TEST_CASE("ranks agree on what they write") {
     return 2.0F;
   };
   CHECK_THAT(errorOf([&] { u.fill(start); }), Contains(last() + "fill: no start"));
+}
+
+TEST_CASE("calls have as many arguments as their kernels declare") {
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
+  auto u = domain.stream<float>(), v = domain.stream<float>();
+  const std::array parameters{sk::program::Parameter{.name = "r",
+                                                     .symbol = "r",
+                                                     .role = sk::program::Role::Output,
+                                                     .element = &sk::ElementTraits<float>::element()}};
+  sk::program::Kernel kernel;
+  kernel.name = "alone";
+  kernel.parameters = parameters;
+  const std::array arguments{sk::Argument{nullptr, regionOf(u)}, sk::Argument{nullptr, regionOf(v)}};
+  CHECK_THAT(errorOf([&] { sk::run(kernel, arguments); }),
+             Contains("alone: 2 arguments are given, but 1 are declared"));
   checkThatItWorks(u, v);
 }
 
