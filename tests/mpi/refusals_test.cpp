@@ -183,6 +183,15 @@ TEST_CASE("calls have as many arguments as their kernels declare") {
   const std::array arguments{sk::Argument{nullptr, regionOf(u)}, sk::Argument{nullptr, regionOf(v)}};
   CHECK_THAT(errorOf([&] { sk::run(kernel, arguments); }),
              Contains("alone: 2 arguments are given, but 1 are declared"));
+  std::array folded{parameters[0], parameters[0]};
+  folded[0].role = sk::program::Role::Input;
+  folded[1].role = sk::program::Role::Accumulator;
+  sk::program::Reduction reduction{};
+  reduction.fold = kernel;
+  reduction.fold.parameters = folded;
+  const std::array given{arguments[0], sk::Argument{}};
+  CHECK_THAT(errorOf([&] { sk::scan(reduction, std::span(given).first(1)); }),
+             Contains("alone: 1 arguments are given, but 2 are declared"));
   checkThatItWorks(u, v);
 }
 
