@@ -496,6 +496,30 @@ TEST_CASE("recorded calls with placed streams repeat, and read what they write a
   });
 }
 
+TEST_CASE("a part may be every second element of what holds it") {
+  onEveryTarget([](sk::Device& device) {
+    const sk::Shape held{12, 18};
+    const sk::Placement place{{10, 20}, {40, 60}};
+    auto u = device.stream<float>(held), r = device.stream<float>(held), s = device.stream<float>(held);
+    auto apart = device.stream<float>({12, 36});
+    u.write(valuesOf<float>(held));
+    apart.fill(-1000);
+    u.copyTo(sk::stride(apart, {1, 2}));
+    r.fill(0);
+    s.fill(0);
+    const auto step = stencil_wrap.with({.box = sk::Box{{13, 23}, {19, 35}}});
+    step(sk::placed(u, place), sk::placed(r, place));
+    step(sk::placed(sk::stride(apart, {1, 2}), place), sk::placed(s, place));
+    CHECK(s.read() == r.read());
+    auto by = device.stream<sk::int2>(held);
+    by.fill({2, -1});
+    const auto jump = anywhere_wrap.with({.box = sk::Box{{13, 23}, {19, 35}}});
+    jump(sk::placed(u, place), sk::placed(by, place), sk::placed(r, place));
+    jump(sk::placed(sk::stride(apart, {1, 2}), place), sk::placed(by, place), sk::placed(s, place));
+    CHECK(s.read() == r.read());
+  });
+}
+
 TEST_CASE("parts that hold too little, and calls that have no parts, are refused") {
   sk::Device& device = run_tests::device("native");
   auto u = device.stream<float>({8, 12}), r = device.stream<float>({8, 12});
