@@ -49,8 +49,8 @@ ResolvedCall resolveCall(const program::Kernel& kernel, std::span<const Argument
 /// The 32 bits of a Spec parameter's value, as assemble::SpecValues holds them.
 std::uint32_t specBits(const program::Parameter& parameter, const void* value);
 
-/// The values of the Spec parameters. Ignores all other arguments, which may be missing; values must not be
-/// null.
+/// The values of the Spec parameters. Ignores all other arguments, which may be missing. Throws sk::Error if a value is
+/// missing.
 assemble::SpecValues specsOf(const program::Kernel& kernel, std::span<const Argument> arguments);
 
 /// The shape of a kernel's domain: the shape of its outputs or, if it has only variable and scatter outputs,
