@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "frontend/prelude.hpp"
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 #include <map>
@@ -353,6 +354,12 @@ int gatherRank(const clang::CXXRecordDecl* record) {
 }
 
 bool isYielding(std::string_view name) { return name == "gather" || name == "index" || name == "axis"; }
+
+bool isYieldingToTemplates(std::string_view name) {
+  constexpr std::string_view names[] = {"cbrt",  "clz",   "ctz",   "erf",   "erfc",
+                                        "expm1", "hypot", "log1p", "mulhi", "popcount"};
+  return std::ranges::find(names, name) != std::end(names);
+}
 
 std::string appendTemplateName(int rank) {
   return rank == 0 ? "variable_output" : fmt::format("scatter_{}d", rank);

@@ -46,6 +46,8 @@ int gatherRank(const clang::CXXRecordDecl* record);
 
 /// Names of the prelude that programs may declare themselves, and then have no other meaning: "gather", "index", "axis".
 bool isYielding(std::string_view name);
+/// The same of intrinsics that came after programs had templates of these names, with which C++ could not choose.
+bool isYieldingToTemplates(std::string_view name);
 
 /// The class template of a scatter output with this rank, 1 to 4, or of a variable output for 0.
 std::string appendTemplateName(int rank);

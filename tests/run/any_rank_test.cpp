@@ -106,5 +106,7 @@ TEST_CASE("axes that elements choose, and a program's own names", "[any_rank]") 
     auto r = device.stream<float>({2});
     own_names::gather(u, r);
     CHECK(r.read() == std::vector<float>{-1, -4});
+    ownTemplate(u, v);
+    CHECK(v.read() == std::vector<float>{2, 3, 5});
   });
 }

@@ -87,19 +87,24 @@ bool BundleEditor::editMember(TokenCursor& cursor, Tokens& out) {
 llvm::StringSet<> declaredInPlace(const TokenCursor& cursor) {
   llvm::StringSet<> names;
   int depth = 0;  // of braces and parentheses: C++ itself prefers the names of namespaces
-  bool declaresStreams = false;
+  bool declaresStreams = false, declaresTemplate = false;
   Token before = cursor.peek();
   for (std::size_t i = 0; cursor.peek(i).isNot(tok::eof); before = cursor.peek(i), ++i) {
     const Token& token = cursor.peek(i);
     if (token.isOneOf(tok::l_paren, tok::l_brace)) ++depth;
     if (token.isOneOf(tok::r_paren, tok::r_brace)) --depth;
-    if (before.isOneOf(tok::semi, tok::r_brace) || i == 0) declaresStreams = isWord(token, "stream");
-    if (depth > 0 || token.isNot(tok::identifier) || !isYielding(nameOf(token))) continue;
+    if (before.isOneOf(tok::semi, tok::r_brace) || i == 0) {
+      declaresStreams = isWord(token, "stream");
+      declaresTemplate = token.is(tok::kw_template);
+    }
+    if (depth > 0 || token.isNot(tok::identifier)) continue;
+    const std::string name = nameOf(token);
+    if (!isYielding(name) && !(declaresTemplate && isYieldingToTemplates(name))) continue;
     const bool isListed = cursor.at(i + 1, tok::less);  // `gather<float, 2>`, or the extents of a stream
     const bool isBehindType =
         startsType(before) && !before.isOneOf(tok::coloncolon, tok::kw_inline, tok::kw_static,
                                               tok::kw_constexpr, tok::kw_const, tok::kw_typename);
-    if (declaresStreams ? isListed : isBehindType && !isListed) names.insert(nameOf(token));
+    if (declaresStreams ? isListed : isBehindType && !isListed) names.insert(name);
   }
   return names;
 }
