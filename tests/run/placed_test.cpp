@@ -520,6 +520,20 @@ TEST_CASE("a part may be every second element of what holds it") {
   });
 }
 
+TEST_CASE("a call does not test a promised halo unless SK_CHECK asks for it") {
+  onEveryTarget([](sk::Device& device) {
+    const sk::Shape held{12, 18};
+    const sk::Placement place{{10, 20}, {40, 60}};
+    auto u = device.stream<float>(held), r = device.stream<float>(held);
+    auto by = device.stream<sk::int2>(held);
+    u.write(valuesOf<float>(held));
+    by.fill({4, 0});  // farther than promised, but held
+    const auto jump = anywhere_wrap.with({.box = sk::Box{{14, 24}, {17, 33}}});
+    CHECK(errorOf([&] { jump(sk::placed(u, place), sk::placed(by, place), sk::placed(r, place)); }) ==
+          "no error");
+  });
+}
+
 TEST_CASE("parts that hold too little, and calls that have no parts, are refused") {
   sk::Device& device = run_tests::device("native");
   auto u = device.stream<float>({8, 12}), r = device.stream<float>({8, 12});
