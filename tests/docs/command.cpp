@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 // The script goes by a file, which needs no quoting.
 Outcome run(const std::string& command, const fs::path& folder) {
   const fs::path script = fs::path(SK_DOCS_WORK) / fmt::format("{}.command.sh", folder.filename().string());
+  fs::create_directories(script.parent_path());
   writeFile(script, fmt::format("cd '{}' || exit 1\nPATH='{}':$PATH\n{}\n", folder.string(),
                                 fs::path(SK_DOCS_SKC).parent_path().string(), command));
   FILE* pipe = popen(fmt::format("bash '{}' 2>&1 </dev/null", script.string()).c_str(), "r");
