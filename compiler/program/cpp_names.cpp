@@ -146,8 +146,18 @@ std::string cppName(const Module& module, const BundleType& bundle) {
     return other.name == bundle.name && other.scope == bundle.scope &&
            bundleMembers(module, other, {}) != bundleMembers(module, bundle, {});
   };
-  const std::string arguments = std::ranges::any_of(module.bundleTypes, isOther) ? bundle.arguments : "";
-  return Namer(bundle.scope.empty() ? isReservedForStruct : isMacro).take(bundle.name + arguments);
+  Namer names(bundle.scope.empty() ? isReservedForStruct : isMacro);
+  if (bundle.arguments.empty() || std::ranges::none_of(module.bundleTypes, isOther))
+    return names.take(bundle.name);
+  // Structs of the program may have the name of the instance.
+  const auto reserve = [&](const auto& type) {
+    if (type.scope == bundle.scope) names.reserve(type.name);
+  };
+  std::ranges::for_each(module.structs, reserve);
+  for (const BundleType& other : module.bundleTypes) {
+    if (other.arguments.empty()) reserve(other);
+  }
+  return names.take(bundle.name + bundle.arguments);
 }
 
 std::string cppName(const Kernel& kernel, const KernelParam& param) {
@@ -192,7 +202,7 @@ void reportAlike(const Module& module, const std::vector<const Kernel*>& overloa
   std::map<std::string, const Kernel*> taken;
   std::vector<const Kernel*> distinct;
   for (const SameFunction& function : sameFunctions(module, overloads)) {
-    const bool isChosen = function.chooser != nullptr;
+    const bool isChosen = !function.choosers.empty();
     distinct.insert(distinct.end(), function.kernels.begin(),
                     isChosen ? function.kernels.begin() + 1 : function.kernels.end());
   }
@@ -225,8 +235,9 @@ void reportCppNames(const Module& module, Diagnostics& diagnostics) {
   }
   for (const BundleType& bundle : module.bundleTypes) {
     const std::string name = cppName(module, bundle);
-    if (name != bundle.name + bundle.arguments)
-      reportName(diagnostics, bundle.loc, "bundle", bundle.name, name, bundle.scope.empty());
+    if (name != bundle.name)  // of an instance, with or without its arguments
+      reportName(diagnostics, bundle.loc, "bundle", bundle.name + bundle.arguments, name,
+                 bundle.scope.empty());
     for (const BundleMember& member : bundle.members) reportMacro(member.name, "member", bundle.loc);
   }
   for (const DeclaredStream& stream : module.streams) reportMacro(stream.name, "stream", stream.loc);

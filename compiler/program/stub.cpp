@@ -105,19 +105,29 @@ const KernelParam* gatherNamed(const Kernel& kernel, std::string_view name) {
   return found != kernel.params.end() && found->role == ParamRole::Gather ? &*found : nullptr;
 }
 
-/// The first gather of all kernels that has another rank in each.
-const KernelParam* chooserOf(const std::vector<const Kernel*>& kernels) {
-  for (const KernelParam& param : kernels.front()->params) {
-    unsigned ranks = 0;
-    const bool tells = std::ranges::all_of(kernels, [&](const Kernel* kernel) {
-      const KernelParam* gather = gatherNamed(*kernel, param.name);
-      const bool isNew = gather != nullptr && (ranks >> gather->rank & 1U) == 0;
-      if (isNew) ranks |= 1U << gather->rank;
-      return isNew;
-    });
-    if (tells && kernels.size() > 1) return &param;
+/// The ranks of a gather in each kernel; empty if one has no such gather, or if two have it in one rank.
+std::vector<int> ranksOf(const std::vector<const Kernel*>& kernels, std::string_view name) {
+  std::vector<int> ranks;
+  for (const Kernel* kernel : kernels) {
+    const KernelParam* gather = gatherNamed(*kernel, name);
+    if (gather == nullptr || std::ranges::count(ranks, gather->rank) > 0) return {};
+    ranks.push_back(gather->rank);
   }
-  return nullptr;
+  return ranks;
+}
+
+/// The first gather of all kernels that has another rank in each, and those that have its ranks.
+std::vector<const KernelParam*> choosersOf(const std::vector<const Kernel*>& kernels) {
+  std::vector<const KernelParam*> choosers;
+  std::vector<int> ranks;
+  if (kernels.size() < 2) return choosers;
+  for (const KernelParam& param : kernels.front()->params) {
+    const std::vector<int> own = ranksOf(kernels, param.name);
+    if (own.empty() || (!ranks.empty() && own != ranks)) continue;
+    ranks = own;
+    choosers.push_back(&param);
+  }
+  return choosers;
 }
 
 }  // namespace
@@ -131,7 +141,7 @@ std::vector<SameFunction> sameFunctions(const Module& module, const std::vector<
     if (isNew) functions.emplace_back();
     functions[at->second].kernels.push_back(kernel);
   }
-  for (SameFunction& function : functions) function.chooser = chooserOf(function.kernels);
+  for (SameFunction& function : functions) function.choosers = choosersOf(function.kernels);
   return functions;
 }
 

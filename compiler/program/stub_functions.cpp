@@ -2,6 +2,7 @@
 //
 // The callables' functions in FILE.sk.cpp, which pass their arguments to the runtime.
 #include <algorithm>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -43,12 +44,16 @@ class FunctionWriter {
     text_ += "\n" +
              wrapLine(head + parameterList(module_, kernel, form, uniforms, {}) + " {", 100, head.size()) +
              "\n";
-    same.chooser == nullptr ? call(kernel, form, uniforms) : choose(same, form, uniforms);
+    same.choosers.empty() ? call(kernel, form, uniforms) : choose(same, form, uniforms);
     text_ += "}\n";
   }
 
   void call(const Kernel& kernel, Form form, Uniforms uniforms) {
     const std::string& name = nameOf(kernel);
+    for (const BundleParam& bundle : kernel.bundles) {
+      if (bundle.count == 0)
+        text_ += fmt::format("  static_cast<void>({});  // nothing of it is read\n", bundle.name);
+    }
     switch (form) {
       case Form::Run: run(kernel, name, uniforms); break;
       case Form::ReduceToValue: reduceToValue(kernel, name, uniforms); break;
@@ -65,10 +70,13 @@ class FunctionWriter {
   void choose(const SameFunction& same, Form form, Uniforms uniforms) {
     const Kernel& first = *same.kernels.front();
     const std::string rank = localName(first, "rank");
-    text_ += fmt::format("  const int {} = sk::detail::rankOf({}.argument());\n", rank, same.chooser->name);
+    const std::string& chooser = same.choosers.front()->name;
+    text_ += fmt::format("  int {} = sk::detail::rankOf({}.argument());\n", rank, chooser);
+    for (const KernelParam* other : std::span(same.choosers).subspan(1))
+      text_ += fmt::format("  if ({0} == 0) {0} = sk::detail::rankOf({1}.argument());\n", rank, other->name);
     std::vector<std::string> ranks;
     for (const Kernel* kernel : same.kernels) {
-      const auto gather = std::ranges::find(kernel->params, same.chooser->name, &KernelParam::name);
+      const auto gather = std::ranges::find(kernel->params, chooser, &KernelParam::name);
       ranks.push_back(std::to_string(gather->rank));
       text_ += fmt::format("  if ({} == {}) {{\n", rank, ranks.back());
       const std::size_t begin = text_.size();
@@ -80,8 +88,8 @@ class FunctionWriter {
       if (form != Form::ReduceToValue) text_ += "    return;\n";
       text_ += "  }\n";
     }
-    text_ += fmt::format("  sk::detail::refuseRank(\"{}\", \"{}\", {}, \"{}\");\n", first.name,
-                         same.chooser->name, rank, join(ranks, " or "));
+    text_ += fmt::format("  sk::detail::refuseRank(\"{}\", \"{}\", {}, \"{}\");\n", first.name, chooser, rank,
+                         join(ranks, " or "));
   }
 
   void run(const Kernel& kernel, const std::string& name, Uniforms uniforms) {

@@ -180,8 +180,8 @@ class HeaderWriter {
       for (const Kernel* overload : same.kernels) {
         if (isOverloaded) text_ += comment(overload->signature, 2);
       }
-      if (same.chooser != nullptr)
-        text_ += fmt::format("  /// The rank of {} chooses.\n", same.chooser->name);
+      if (!same.choosers.empty())
+        text_ += fmt::format("  /// The rank of {} chooses.\n", same.choosers.front()->name);
       for (Form form : formsOf(kernel)) {
         text_ += purpose(kernel, form);
         const std::string head = fmt::format("  {} operator()(", resultType(module_, kernel, form, scope_));

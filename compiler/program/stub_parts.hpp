@@ -44,8 +44,9 @@ std::vector<Uniforms> uniformsOf(const ir::Kernel& kernel);
 /// Overloads that are one function in C++, since their parameters have the same types: it chooses by the rank of a gather.
 struct SameFunction {
   std::vector<const ir::Kernel*> kernels;
-  /// The gather of all kernels whose ranks differ; null if there is one kernel, or if no gather tells them apart.
-  const ir::KernelParam* chooser = nullptr;
+  /// The gathers of all kernels that have the same rank in each, and another one in each other; empty if there is one kernel,
+  /// or if no gather tells them apart. The first that is given chooses.
+  std::vector<const ir::KernelParam*> choosers = {};
 };
 /// Groups overloads, in the order of the first of each group.
 std::vector<SameFunction> sameFunctions(const ir::Module& module,

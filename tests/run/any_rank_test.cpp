@@ -2,6 +2,7 @@
 //
 // Kernels of any rank against those that they stand for.
 #include "any_rank.sk.hpp"
+#include "layers_of_ranks.sk.hpp"
 #include "support/devices.hpp"
 #include "support/values.hpp"
 
@@ -88,10 +89,21 @@ TEST_CASE("a gather of another rank than the domain chooses, too", "[any_rank]")
   onGlAndNative([](sk::Device& device) {
     const auto a = numbered(device, {2, 3}), b = numbered(device, {2, 2, 2});
     auto r = device.stream<float>({3}), s = device.stream<float>({2, 2});
-    any_rank::layer(a, 1, r);
+    layers::layer(a, 1, r);
     CHECK(r.read() == std::vector<float>{9, 16, 25 - 23});
-    any_rank::layer(b, 1, s);
+    layers::layer(b, 1, s);
     CHECK(s.read() == std::vector<float>{16, 25 - 23, 36 - 23, 49 - 46});
+  });
+}
+
+TEST_CASE("a gather that is switched off leaves the choice to others", "[any_rank]") {
+  onGlAndNative([](sk::Device& device) {
+    const auto line = numbered(device, {3}), plane = numbered(device, {2, 3});
+    auto r = device.stream<float>({2});
+    any_rank::picked({.first = false, .b = plane}, r);
+    CHECK(r.read() == std::vector<float>{0, 0});
+    any_rank::picked({.first = true, .a = line.domain({1}, {3})}, r);
+    CHECK(r.read() == std::vector<float>{1, 1});
   });
 }
 
@@ -106,6 +118,13 @@ TEST_CASE("axes that elements choose, and a program's own names", "[any_rank]") 
     auto r = device.stream<float>({2});
     own_names::gather(u, r);
     CHECK(r.read() == std::vector<float>{-1, -4});
+    auto a = device.stream<float>({5}), first = device.stream<float>({5});
+    a.write(std::vector<float>{1, 2, 3, 4, 5});
+    firsts_2(a, first);
+    CHECK(first.read() == std::vector<float>{1, 2, 0, 0, 0});
+    auto flags = device.stream<int>({5});
+    between(3, flags);
+    CHECK(flags.read() == std::vector<int>{1, 1, 1, 0, 0});
     ownTemplate(u, v);
     CHECK(v.read() == std::vector<float>{2, 3, 5});
   });

@@ -192,3 +192,38 @@ TEST_CASE("a member that a kernel reads must be given", "[bundles]") {
     CHECK(h.read()[3] == 10.0f);
   });
 }
+
+TEST_CASE("members take what parameters take", "[bundles]") {
+  onGlAndNative([](sk::Device& device) {
+    auto x = device.stream<float>({2}), r = device.stream<float>({2});
+    auto line = device.stream<sk::float2>({2}), plane = device.stream<sk::float2>({2, 2});
+    auto triples = device.stream<float3>({2});
+    line.fill({0, 0});
+    plane.fill({0, 0});
+    triples.fill({0, 0, 0});
+    x.fill(4);
+    const float weights[3] = {1, 2, 3};
+    const std::array<float, 3> same{1, 2, 3};
+    const float one[1] = {2}, two[2] = {1, 2};
+    const bundles::Grid_1 first{.u = line, .data = one};
+    const bundles::Grid_2_ second{.u = plane, .data = two};
+    const bundles::Grid_2 rows{.v = triples, .w = triples};
+    const float expected = 1 + 4 + 3 * 5 + 7 * 2 + 8 * 2 + 1 + 3;
+    bundles::Values values{
+        .direction = {0, 0, 1}, .span = {sk::int2{1, 2}, sk::int2{3, 4}}, .weights = weights, .count = 5};
+    bundles::valued(values, first, second, rows, x, r);
+    CHECK(r.read() == std::vector<float>{expected, expected});
+    values.weights = same;
+    values.direction = {2, 2, 2};
+    bundles::valued(values, first, second, rows, x, r);
+    CHECK(r.read()[0] == expected + 1);
+    values.weights = std::span<const float, 3>(weights);
+    values.weights = {1, 2, 4};
+    const auto count = device.scalar<int>(2);
+    values.count = count * 3;  // a temporary
+    bundles::valued(values, first, second, rows, x, r);
+    CHECK(r.read()[0] == expected + 1 + 4 * 6 - 3 * 5);
+    bundles::unread({}, x, r);
+    CHECK(r.read()[1] == 4);
+  });
+}

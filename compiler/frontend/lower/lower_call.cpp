@@ -362,7 +362,8 @@ ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) 
     module_.fail(Diag::NotAStream, where, {name});
   const std::optional<ir::VarId> found = variableNamed(argument);
   if (!found) throw Abandoned{};
-  const std::string& parameter = function_.variables[*found].name;
+  std::string parameter = function_.variables[*found].name;
+  if (place && !place->path.empty()) parameter = module_.textOf(argument);
   if (isIndex && role == ir::ParamRole::Gather)
     module_.fail(Diag::IndexOfGather, where, {parameter, elementBeside(declared)});
   const bool isAppendOutput = function_.variables[*found].role == ir::VarRole::AppendOutput;

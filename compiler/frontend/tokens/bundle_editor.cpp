@@ -20,11 +20,14 @@ bool isQualifierAt(const TokenCursor& cursor, std::size_t at) {
   return false;
 }
 
-/// The index of what follows the attributes from here on, before `end`.
-std::size_t behindAttributes(const TokenCursor& cursor, std::size_t end) {
+/// The index of what follows the attributes from here on.
+std::size_t behindAttributes(const TokenCursor& cursor) {
   std::size_t at = 0;
   while (cursor.at(at, tok::l_square) && cursor.at(at + 1, tok::l_square)) {
-    while (at < end && !(cursor.at(at, tok::r_square) && cursor.at(at + 1, tok::r_square))) ++at;
+    while (!cursor.peek(at).isOneOf(tok::semi, tok::eof) &&
+           !(cursor.at(at, tok::r_square) && cursor.at(at + 1, tok::r_square))) {
+      ++at;
+    }
     at += 2;
   }
   return at;
@@ -36,8 +39,8 @@ std::vector<Tokens> declaratorsOf(const Tokens& declared) {
   Tokens head;  // what precedes the first name
   int depth = 0;
   for (const Token& token : declared) {
-    if (token.isOneOf(tok::l_paren, tok::l_square, tok::less)) ++depth;
-    if (token.isOneOf(tok::r_paren, tok::r_square)) --depth;
+    if (token.isOneOf(tok::l_paren, tok::l_square, tok::l_brace, tok::less)) ++depth;
+    if (token.isOneOf(tok::r_paren, tok::r_square, tok::r_brace)) --depth;
     depth -= closedLists(token);
     if (token.isNot(tok::comma) || depth > 0) {
       members.back().push_back(token);
@@ -62,10 +65,10 @@ void BundleEditor::edit(TokenCursor& cursor, Tokens& out) {
 
 /// Edits `[[wrap]] float4 sky[][], ground[];` or `spec bool spheres;`; returns false for any other member.
 bool BundleEditor::editMember(TokenCursor& cursor, Tokens& out) {
-  std::size_t end = 0;
+  const std::size_t start = behindAttributes(cursor);
+  std::size_t end = start;
   while (!cursor.peek(end).isOneOf(tok::semi, tok::l_brace, tok::r_brace, tok::eof)) ++end;
   if (!cursor.at(end, tok::semi)) return false;
-  const std::size_t start = behindAttributes(cursor, end);
   bool isOurs = start > 0 || isQualifierAt(cursor, start);
   for (std::size_t i = start; i < end; ++i) {
     if (cursor.at(i, tok::l_paren)) return false;  // a function
@@ -80,6 +83,15 @@ bool BundleEditor::editMember(TokenCursor& cursor, Tokens& out) {
   for (const Tokens& member : declaratorsOf(declared)) {
     parameters_.editMember(member, out);
     out.push_back(semicolon);
+  }
+  return true;
+}
+
+bool hasListsOnly(const TokenCursor& cursor, llvm::StringRef name) {
+  for (std::size_t i = 0; cursor.peek(i).isNot(tok::eof); ++i) {
+    const bool isNamed = isWord(cursor.peek(i), name);
+    const bool isMember = i > 0 && cursor.peek(i - 1).isOneOf(tok::period, tok::arrow, tok::coloncolon);
+    if (isNamed && (isMember || !cursor.at(i + 1, tok::less))) return false;
   }
   return true;
 }

@@ -32,6 +32,9 @@ class BundleEditor {
   ParameterEditor& parameters_;
 };
 
+/// Whether `<` follows the name wherever the program has it, so that it can be no variable.
+bool hasListsOnly(const TokenCursor& cursor, llvm::StringRef name);
+
 /// The names of the prelude which the program declares for itself, outside of any namespace (isYielding()).
 llvm::StringSet<> declaredInPlace(const TokenCursor& cursor);
 

@@ -63,7 +63,7 @@ class ConstructorEditor {
 
   /// Takes one token and appends its replacement.
   void copy(TokenCursor& cursor, std::vector<clang::Token>& out);
-  /// From here on, `index<...>(...)` is a function of the program.
+  /// `index` may be a name of the program, and `index<...>(...)` a comparison.
   void keepIndex() { constructsIndices_ = false; }
 
  private:

@@ -44,6 +44,7 @@ class Editor {
       out_.push_back(cursor_.take());
     }
     const llvm::StringSet<> declared = declaredInPlace(cursor_);
+    if (!hasListsOnly(cursor_, "index")) constructors_.keepIndex();
     for (Token& token : out_) {
       if (token.isNot(tok::identifier) || !declared.contains(nameOf(token))) continue;
       token = TokenBuilder(preprocessor_).word("__sk_hidden_" + nameOf(token), token.getLocation());
@@ -135,7 +136,6 @@ class Editor {
       --at;
     }
     if (cursor_.at(at, tok::identifier)) templates_.insert(cursor_.peek(at).getIdentifierInfo());
-    if (isWord(cursor_.peek(at), "index")) constructors_.keepIndex();
   }
 
   /// Copies `requires Small<T> && (sizeof(T) == 4)`.
