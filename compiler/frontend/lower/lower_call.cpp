@@ -4,6 +4,9 @@
 // functions are in lower_user_call.cpp.
 #include <algorithm>
 #include <cassert>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <clang/AST/DeclCXX.h>
 #include <clang/AST/ExprCXX.h>
@@ -12,6 +15,7 @@
 #include "frontend/lower/locations.hpp"
 #include "frontend/prelude.hpp"
 #include "ir/build.hpp"
+#include "ir/evaluate.hpp"
 #include "ir/lvalue.hpp"
 
 namespace skc::frontend {
@@ -400,6 +404,22 @@ ExprPtr FunctionLowering::axis(const clang::CallExpr* e) {
   return ir::construct(ir::Type::of(Scalar::Int, rank), std::move(components), loc);
 }
 
+namespace {
+
+/// Writes an offset whose components are known with literals, by which later phases tell near elements: -axis<2>(1) is (0, -1).
+void foldOffset(const ir::Module& module, ExprPtr& offset) {
+  if (!offset->type.isVector() || std::holds_alternative<ir::Construct>(offset->node)) return;
+  std::vector<ExprPtr> components;
+  for (std::uint8_t i = 0; i < offset->type.width; ++i) {
+    const auto bits = ir::evaluate(module, *ir::componentOf(*offset, i), ir::Constants::LookThrough);
+    if (!bits) return;
+    components.push_back(ir::literal(static_cast<std::int32_t>(*bits), offset->loc));
+  }
+  offset = ir::construct(offset->type, std::move(components), offset->loc);
+}
+
+}  // namespace
+
 /// neighbor(a, dx), neighbor(a, dx, dy) ..., neighbor(a, int2) ...
 ExprPtr FunctionLowering::neighbor(const clang::CallExpr* e) {
   const SourceLocation where = e->getBeginLoc();
@@ -409,6 +429,7 @@ ExprPtr FunctionLowering::neighbor(const clang::CallExpr* e) {
   ExprPtr offset;
   if (offsets.size() == 1) {
     offset = std::move(offsets[0]);
+    foldOffset(module_.module(), offset);
   } else {
     offset = make(ir::Type::of(Scalar::Int, gather.rank), where, ir::Construct{std::move(offsets)});
   }
