@@ -104,10 +104,9 @@ class SplitDiagonals : public Matrix {
     if (stored() == 0) return Matrix::multiply(x, y, xy);
     forEachPass([&](std::size_t first) {
       if (first + inPass < offsets_.size()) return pass(first, x, y);
-      eightDiagonalsDot.with(foldOptions())(count(first), first > 0, offset(first), before(first, y),
-                                            values_[first], value(first + 1), value(first + 2),
-                                            value(first + 3), value(first + 4), value(first + 5),
-                                            value(first + 6), value(first + 7), x, x, y, xy);
+      eightDiagonalsDot.with(foldOptions())(
+          passFrom(first, x), before(first, y), values_[first], value(first + 1), value(first + 2),
+          value(first + 3), value(first + 4), value(first + 5), value(first + 6), value(first + 7), x, y, xy);
     });
   }
   std::string layout() const override { return "diagonals"; }
@@ -123,25 +122,27 @@ class SplitDiagonals : public Matrix {
     for (std::size_t first = 0; first < offsets_.size(); first += inPass) pass(first);
   }
   void pass(std::size_t first, const Vector& x, Vector& y) const {
-    eightDiagonals.with(options())(count(first), first > 0, offset(first), before(first, y), values_[first],
-                                   value(first + 1), value(first + 2), value(first + 3), value(first + 4),
-                                   value(first + 5), value(first + 6), value(first + 7), x, y);
+    eightDiagonals.with(options())(passFrom(first, x), before(first, y), values_[first], value(first + 1),
+                                   value(first + 2), value(first + 3), value(first + 4), value(first + 5),
+                                   value(first + 6), value(first + 7), y);
   }
 
   /// What the kernels take of a pass from diagonal `first` on.
-  int count(std::size_t first) const { return static_cast<int>(std::min(inPass, offsets_.size() - first)); }
+  Pass passFrom(std::size_t first, const Vector& x) const {
+    std::array<int, inPass> shortest{};
+    const std::size_t count = std::min(inPass, offsets_.size() - first);
+    for (std::size_t k = 0; k < count; ++k) shortest[k] = shorterWay(offsets_[first + k], rows_);
+    const auto& [a, b, c, d, e, f, g, h] = shortest;
+    return {.count = static_cast<int>(count),
+            .adds = first > 0,
+            .offset = Offsets{{a, b, c, d}, {e, f, g, h}},
+            .x = x};
+  }
   Diagonal value(std::size_t k) const {
     return k < values_.size() ? Diagonal(values_[k]) : Diagonal(sk::none);
   }
   static Diagonal before(std::size_t first, const Vector& y) {
     return first > 0 ? Diagonal(y) : Diagonal(sk::none);
-  }
-  Offsets offset(std::size_t first) const {
-    std::array<int, inPass> shortest{};
-    for (std::size_t k = 0; k < inPass && first + k < offsets_.size(); ++k)
-      shortest[k] = shorterWay(offsets_[first + k], rows_);
-    const auto& [a, b, c, d, e, f, g, h] = shortest;
-    return {{a, b, c, d}, {e, f, g, h}};
   }
 
   std::int64_t rows_;

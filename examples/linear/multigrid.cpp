@@ -67,8 +67,6 @@ struct Level {
         low(kernelEnds(a).low),
         high(kernelEnds(a).high) {}
 
-  bool isPlane() const { return stencil.grid.rank() == 2; }
-
   Space space;
   Stencil stencil;
   sk::float4 coefficients, low, high;
@@ -109,43 +107,29 @@ class StencilHierarchy : public Hierarchy {
       const int colour = (half + (isReversed ? 1 : 0)) & 1;
       if (isZero && half == 0)
         relaxZero.with(options_)(colour, level.coefficients, level.low, level.high, b, u);
-      else if (level.isPlane())
-        relax2.with(options_)(colour, level.coefficients, level.low, level.high, u, b, u);
       else
-        relax3.with(options_)(colour, level.coefficients, level.low, level.high, u, b, u);
+        relax.with(options_)(colour, level.coefficients, level.low, level.high, u, b, u);
     }
   }
 
   void residual(std::size_t at, const Vector& b, const Vector& u, Vector& r) override {
     const Level& level = levels_[at];
-    if (level.isPlane())
-      residual2.with(options_)(level.coefficients, level.low, level.high, u, b, r);
-    else
-      residual3.with(options_)(level.coefficients, level.low, level.high, u, b, r);
+    linear::residual.with(options_)(level.coefficients, level.low, level.high, u, b, r);
   }
 
   void restrictTo(std::size_t at, const Vector& fine, Vector& coarse) override {
     const Level& level = levels_[at];
-    if (level.isPlane())
-      restrict2.with(options_)(level.low, level.high, fine, coarse);
-    else
-      restrict3.with(options_)(level.low, level.high, fine, coarse);
+    restrict.with(options_)(level.low, level.high, fine, coarse);
   }
 
   void restrictLoad(std::size_t at, const Vector& fine, Vector& coarse) override {
     const Level& level = levels_[at];
-    if (level.isPlane())
-      loadOfCoarse2.with(options_)(level.low, level.high, fine, coarse);
-    else
-      loadOfCoarse3.with(options_)(level.low, level.high, fine, coarse);
+    loadOfCoarse.with(options_)(level.low, level.high, fine, coarse);
   }
 
   void correct(std::size_t at, const Vector& coarse, Vector& u) override {
     const Level& level = levels_[at];
-    if (level.isPlane())
-      correct2.with(options_)(level.low, level.high, coarse, u, u);
-    else
-      correct3.with(options_)(level.low, level.high, coarse, u, u);
+    linear::correct.with(options_)(level.low, level.high, coarse, u, u);
   }
 
   /// Cubic, along one dimension after the other, the fastest first, for the fewest elements.
@@ -159,10 +143,7 @@ class StencilHierarchy : public Hierarchy {
         return axis == 0 ? ends.x : axis == 1 ? ends.y : ends.z;
       };
       const float low = end(level.low), high = end(level.high);
-      if (level.isPlane())
-        cubic2.with(options_)(static_cast<int>(axis), low, high, *from, to);
-      else
-        cubic3.with(options_)(static_cast<int>(axis), low, high, *from, to);
+      cubic.with(options_)(static_cast<int>(axis), low, high, *from, to);
       from = &to;
     }
   }

@@ -71,31 +71,21 @@ class VaryingHierarchy : public Hierarchy {
     const std::size_t all = steps * static_cast<std::size_t>(sweeps);
     for (std::size_t k = 0; k < all; ++k) {
       const float omega = level.factors[(isReversed ? all - 1 - k : k) % steps];
-      if (isZero && k == 0 && level.isPlane())
-        relaxVaryingZero2.with(options_)(level.count, omega, level.entries, b, u);
-      else if (isZero && k == 0)
-        relaxVaryingZero3.with(options_)(level.count, omega, level.entries, b, u);
-      else if (level.isPlane())
-        relaxVarying2.with(options_)(level.count, omega, level.entries, u, b, u);
+      if (isZero && k == 0)
+        relaxVaryingZero.with(options_)(level.count, omega, level.entries, b, u);
       else
-        relaxVarying3.with(options_)(level.count, omega, level.entries, u, b, u);
+        relaxVarying.with(options_)(level.count, omega, level.entries, u, b, u);
     }
   }
 
   void residual(std::size_t at, const Vector& b, const Vector& u, Vector& r) override {
     const Level& level = levels_[at];
-    if (level.isPlane())
-      residualVarying2.with(options_)(level.count, level.entries, u, b, r);
-    else
-      residualVarying3.with(options_)(level.count, level.entries, u, b, r);
+    residualVarying.with(options_)(level.count, level.entries, u, b, r);
   }
 
   void restrictTo(std::size_t at, const Vector& fine, Vector& coarse) override {
     const Level& level = levels_[at];
-    if (level.isPlane())
-      restrictVarying2.with(options_)(level.share, level.first, level.step, level.weights, fine, coarse);
-    else
-      restrictVarying3.with(options_)(level.share, level.first, level.step, level.weights, fine, coarse);
+    restrictVarying.with(options_)(level.share, level.first, level.step, level.weights, fine, coarse);
   }
 
   /// Galerkin's equations are those of restricted ones.
@@ -105,10 +95,7 @@ class VaryingHierarchy : public Hierarchy {
 
   void correct(std::size_t at, const Vector& coarse, Vector& u) override {
     const Level& level = levels_[at];
-    if (level.isPlane())
-      correctVarying2.with(options_)(level.first, level.step, level.isPeriodic, level.weights, coarse, u, u);
-    else
-      correctVarying3.with(options_)(level.first, level.step, level.isPeriodic, level.weights, coarse, u, u);
+    correctVarying.with(options_)(level.first, level.step, level.isPeriodic, level.weights, coarse, u, u);
   }
 
   void interpolate(std::size_t at, const Vector& coarse, Vector& u) override {
@@ -132,8 +119,6 @@ class VaryingHierarchy : public Hierarchy {
     Vector weights;  ///< of the interpolation, {3^rank, coarse grid}
     sk::int4 first, step, isPeriodic;
     float share = 1.0f;
-
-    bool isPlane() const { return space.shape().rank() == 2; }
   };
 
   /// The coarsest grid is on every rank.

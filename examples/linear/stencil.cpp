@@ -39,32 +39,18 @@ class UnstoredMatrix : public Matrix {
 class DirichletMatrix : public UnstoredMatrix {
  public:
   using UnstoredMatrix::UnstoredMatrix;
-  void multiply(const Vector& x, Vector& y) override {
-    if (grid_.rank() == 2)
-      stencil2.with(options())(coefficients_, x, y);
-    else
-      stencil3.with(options())(coefficients_, x, y);
-  }
+  void multiply(const Vector& x, Vector& y) override { stencilProduct.with(options())(coefficients_, x, y); }
   void multiply(const Vector& x, Vector& y, Vector& xy) override {
-    if (grid_.rank() == 2)
-      stencil2Dot.with(foldOptions())(coefficients_, x, y, xy);
-    else
-      stencil3Dot.with(foldOptions())(coefficients_, x, y, xy);
+    stencilProductDot.with(foldOptions())(coefficients_, x, y, xy);
   }
   bool isFused() const override { return true; }
   void fusedDirection(const Vector& rr, const Vector& before, const Vector& r, Vector& p,
                       Vector& pq) override {
-    if (grid_.rank() == 2)
-      fusedDirection2.with(foldOptions())(coefficients_, rr, before, r, p, p, pq);
-    else
-      fusedDirection3.with(foldOptions())(coefficients_, rr, before, r, p, p, pq);
+    linear::fusedDirection.with(foldOptions())(coefficients_, rr, before, r, p, p, pq);
   }
   void fusedStep(const Vector& rr, const Vector& pq, const Vector& p, Vector& x, Vector& r,
                  Vector& next) override {
-    if (grid_.rank() == 2)
-      fusedStep2.with(foldOptions())(coefficients_, rr, pq, p, x, r, x, r, next);
-    else
-      fusedStep3.with(foldOptions())(coefficients_, rr, pq, p, x, r, x, r, next);
+    linear::fusedStep.with(foldOptions())(coefficients_, rr, pq, p, x, r, x, r, next);
   }
 };
 
@@ -75,10 +61,7 @@ class EndedMatrix : public UnstoredMatrix {
 
   using Matrix::multiply;
   void multiply(const Vector& x, Vector& y) override {
-    if (grid_.rank() == 2)
-      stencilEnds2.with(options())(coefficients_, ends_.low, ends_.high, x, y);
-    else
-      stencilEnds3.with(options())(coefficients_, ends_.low, ends_.high, x, y);
+    stencilEnds.with(options())(coefficients_, ends_.low, ends_.high, x, y);
   }
 
  private:

@@ -34,10 +34,7 @@ class VaryingMatrix : public Matrix {
 
   using Matrix::multiply;
   void multiply(const Vector& x, Vector& y) override {
-    if (grid_.rank() == 2)
-      productVarying2.with(options())(count_, entries_, x, y);
-    else
-      productVarying3.with(options())(count_, entries_, x, y);
+    productVarying.with(options())(count_, entries_, x, y);
   }
 
  private:
