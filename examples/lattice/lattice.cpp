@@ -27,7 +27,17 @@ sk::Storage storageFor(sk::Precision precision) {
   return sk::Storage::Single;
 }
 
-unsigned code(Edge edge) { return static_cast<unsigned>(edge); }
+lattice::Sides sidesOf(const Boundary& boundary) {
+  const auto code = [](Edge edge) { return static_cast<unsigned>(edge); };
+  const auto& [edges, t, closedZ] = boundary;
+  return {.left = code(edges[0]),
+          .right = code(edges[1]),
+          .bottom = code(edges[2]),
+          .top = code(edges[3]),
+          .closedZ = closedZ,
+          .walls = sk::float4{static_cast<float>(t[0]), static_cast<float>(t[1]), static_cast<float>(t[2]),
+                              static_cast<float>(t[3])}};
+}
 
 /// Floats and halves are summed exactly, wider numbers in their own precision.
 sk::CallOptions sumsIn(sk::Precision precision) {
@@ -119,14 +129,17 @@ void Lattice::stepTemperature(Fields& from, Fields& to) {
   GridStream<float>& warmed = warmed_ ? *warmed_ : after;
   GridStream<float>* current = &before;
   if (model_.flow) {
-    const auto& [edges, t, closedZ] = model_.boundary;
-    lattice::convect.with(options_)(code(edges[0]), code(edges[1]), code(edges[2]), code(edges[3]), walls(),
-                                    c_.spread, c_.carry, c_.stiffness, before, in(to, Field::VelocityX),
-                                    in(to, Field::VelocityY), in(from, Field::Pressure), warmed,
-                                    in(to, Field::Pressure));
+    lattice::convect.with(options_)(sidesOf(model_.boundary),
+                                    {.spread = c_.spread,
+                                     .carry = c_.carry,
+                                     .stiffness = c_.stiffness,
+                                     .t = before,
+                                     .vx = in(to, Field::VelocityX),
+                                     .vy = in(to, Field::VelocityY)},
+                                    in(from, Field::Pressure), warmed, in(to, Field::Pressure));
     current = &warmed;
   } else if (model_.diffusion) {
-    diffuse(before, warmed);
+    lattice::diffuse.with(options_)(sidesOf(model_.boundary), c_.spread, before, warmed);
     current = &warmed;
   }
   if (model_.buoyancy) {
@@ -136,44 +149,18 @@ void Lattice::stepTemperature(Fields& from, Fields& to) {
   if (model_.latentHeat) exchange(before, *current, after);
 }
 
-sk::float4 Lattice::walls() const {
-  const auto& t = model_.boundary.temperatures;
-  return {static_cast<float>(t[0]), static_cast<float>(t[1]), static_cast<float>(t[2]),
-          static_cast<float>(t[3])};
-}
-
-void Lattice::diffuse(GridStream<float>& from, GridStream<float>& to) {
-  const Boundary& b = model_.boundary;
-  const auto& edges = b.edges;
-  const sk::float4 at = walls();
-  if (model_.grid.isSpace()) {
-    lattice::diffuse3.with(options_)(b.closedX(), code(edges[2]), code(edges[3]), b.closedZ, {at.z, at.w},
-                                     c_.spread, from, to);
-  } else {
-    lattice::diffuse.with(options_)(code(edges[0]), code(edges[1]), code(edges[2]), code(edges[3]), at,
-                                    c_.spread, from, to);
-  }
-}
-
 void Lattice::rise(GridStream<float>& from, GridStream<float>& to) {
   const bool closed = model_.boundary.closedY();
   const auto density = static_cast<unsigned>(model_.buoyancy->density);
   const lattice::Boiling b{c_.point, c_.alpha, c_.sigma, c_.latent};
-  if (model_.grid.isSpace()) {
-    lattice::rise3.with(options_)(closed, density, b, from, to);
-  } else {
-    lattice::rise.with(options_)(closed, density, b, from, to);
-  }
+  lattice::rise.with(options_)(closed, density, b, from, to);
 }
 
 void Lattice::exchange(GridStream<float>& before, GridStream<float>& after, GridStream<float>& to) {
   const Boundary& b = model_.boundary;
   const lattice::Boiling boiling{c_.point, c_.alpha, c_.sigma, c_.latent};
-  if (model_.grid.isSpace()) {
-    lattice::exchange3.with(options_)(b.closedX(), b.closedY(), b.closedZ, boiling, before, after, to);
-  } else {
-    lattice::exchange.with(options_)(b.closedX(), b.closedY(), boiling, before, after, to);
-  }
+  lattice::exchange.with(options_)({.x = b.closedX(), .y = b.closedY(), .z = b.closedZ}, boiling, before,
+                                   after, to);
 }
 
 void Lattice::stepReaction(Fields& from, Fields& to) {

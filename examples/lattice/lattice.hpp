@@ -74,10 +74,8 @@ class Lattice {
   void stepFlow(Fields& from, Fields& to);
   void stepTemperature(Fields& from, Fields& to);
   void stepReaction(Fields& from, Fields& to);
-  void diffuse(GridStream<float>& from, GridStream<float>& to);
   void rise(GridStream<float>& from, GridStream<float>& to);
   void exchange(GridStream<float>& before, GridStream<float>& after, GridStream<float>& to);
-  sk::float4 walls() const;
 
   Space space_;
   Model model_;

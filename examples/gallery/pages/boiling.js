@@ -12,9 +12,10 @@ const fluid = { point: 10, alpha: 30, sigma: 0.015, latent: 0.1 };
 
 /** `warmed` is a field for what is between. */
 function stepOf(t, warmed, walls, spread, boiling) {
-  lattice.diffuse(edge.wrap, edge.wrap, edge.wall, edge.wall, walls, spread, t, warmed);
+  lattice.diffuse(
+      {left: edge.wrap, right: edge.wrap, bottom: edge.wall, top: edge.wall, walls}, spread, t, warmed);
   lattice.rise(true, computed, boiling, warmed, warmed);
-  lattice.exchange(false, true, boiling, t, warmed, t);
+  lattice.exchange({x: false, y: true}, boiling, t, warmed, t);
 }
 
 function create({ device, canvas, controls, random }) {

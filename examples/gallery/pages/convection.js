@@ -9,6 +9,13 @@ import { lattice as momentum } from '../sk/lattice/flow.sk.js';
 import { lattice as heat } from '../sk/lattice/heat.sk.js';
 
 const edge = { wrap: 0, wall: 2 };
+const sides = {
+  left: edge.wrap,
+  right: edge.wrap,
+  bottom: edge.wall,
+  top: edge.wall,
+  walls: [0, 0, 1, 0]
+};
 const prandtl = 0.71;
 const sound = 3;
 
@@ -32,7 +39,11 @@ export function coefficientsOf(rayleigh, rows) {
 
 export function stepOf({ t, vx, vy, p }, c) {
   momentum.push(false, true, false, c.fluid, vx, vy, p, t, vx, vy);
-  heat.convect(edge.wrap, edge.wrap, edge.wall, edge.wall, [0, 0, 1, 0], c.spread, c.carry, c.stiffness, t, vx, vy, p, t, p);
+  convect({t, vx, vy, p}, c);
+}
+
+function convect({t, vx, vy, p}, {spread, carry, stiffness}) {
+  heat.convect(sides, {spread, carry, stiffness, t, vx, vy}, p, t, p);
 }
 
 function fieldsOf(device, rows, columns) {
@@ -104,8 +115,6 @@ async function* measure({ device, simulation, time }) {
   let exact = first;
   for (let i = 0; i < steps; ++i) exact = referenceStep(exact, vx, vy, rows, columns, c);
 
-  const convect = ({ t, vx: x, vy: y, p }) =>
-    heat.convect(edge.wrap, edge.wrap, edge.wall, edge.wall, [0, 0, 1, 0], c.spread, c.carry, c.stiffness, t, x, y, p, t, p);
   const large = simulation.fields;
   const [wide, tall] = [large.t.shape[1], large.t.shape[0]];
   for (const [choice, isHalf] of [['floats', false], ['halves between steps', true]]) {
@@ -115,9 +124,9 @@ async function* measure({ device, simulation, time }) {
     small.vy.write(vy);
     const big = fieldsOf(device, tall, wide);
     const run = (fields, kept) => {
-      if (!isHalf) return () => convect(fields);
+      if (!isHalf) return () => convect(fields, c);
       const halves = new InHalves(device, kept);
-      return () => halves.step(() => convect(fields));
+      return () => halves.step(() => convect(fields, c));
     };
     const step = run(small, [small.t]);
     for (let i = 0; i < steps; ++i) step();
