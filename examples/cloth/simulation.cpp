@@ -36,6 +36,24 @@ sk::Optional<Parameter> given(const std::optional<Stream>& stream) {
   return *stream;
 }
 
+/// The same for a member of a bundle, which refers to the stream.
+template <class Stream>
+sk::GatherMember<typename Stream::value_type> member(const std::optional<Stream>& stream) {
+  if (!stream) return sk::none;
+  return *stream;
+}
+
+cloth::Net netOf(const Features& features, const LinkKinds& kinds, const LinkConstants& k,
+                 const GridStream<sk::float4>& p) {
+  return {.structural = kinds.structural,
+          .shear = kinds.shear,
+          .bend = kinds.bend,
+          .tearing = features.tearing,
+          .law = static_cast<unsigned>(features.law),
+          .links = linksOf(k),
+          .p = p};
+}
+
 // Bodies that touch nothing, for the model that has everything.
 constexpr float never = -1e30f;
 constexpr cloth::Sphere noSphere{{0, 0, 0}, never, {0, 0, 0}, 0};
@@ -131,43 +149,44 @@ void Simulation::place(const Moment& moment) {
 
 void Simulation::integrate(const Moment& moment) {
   if (carry_ && !moment.carry.empty()) carry_->writeAsync(moment.carry);
-  const LinkKinds& kinds = features_.springs;
-  cloth::integrate.with(options_)(
-      kinds.structural, kinds.shear, kinds.bend, features_.tearing, static_cast<unsigned>(features_.law),
-      features_.windy, features_.carried, static_cast<unsigned>(features_.verlet),
-      {constants_.gravity, constants_.keep}, linksOf(constants_.springs),
-      windOf(constants_.wind, moment.windPhase), p_, d_, given<sk::ElementIn<int>>(alive_),
-      given<sk::ElementIn<int>>(pin_), given<sk::In<sk::float3>>(carry_), p_, d_);
+  const cloth::Forces forces{.motion = cloth::Motion{constants_.gravity, constants_.keep},
+                             .windy = features_.windy,
+                             .air = windOf(constants_.wind, moment.windPhase)};
+  cloth::integrate.with(options_)(netOf(features_, features_.springs, constants_.springs, p_), forces,
+                                  {.carried = features_.carried, .carry = member(carry_)},
+                                  static_cast<unsigned>(features_.verlet), d_,
+                                  given<sk::ElementIn<int>>(alive_), given<sk::ElementIn<int>>(pin_), p_, d_);
 }
 
 void Simulation::relax() {
-  const LinkKinds& kinds = features_.relaxed;
   const auto verlet = static_cast<unsigned>(features_.verlet);
-  const auto law = static_cast<unsigned>(features_.law);
-  const cloth::Links links = linksOf(constants_.relaxed);
+  const cloth::Net net = netOf(features_, features_.relaxed, constants_.relaxed, p_);
   const auto alive = given<sk::ElementIn<int>>(alive_);
   const auto call = cloth::relax.with(options_);
-  if (features_.verlet == Verlet::Displacements) {
-    call(kinds.structural, kinds.shear, kinds.bend, features_.tearing, law, verlet, links, p_, d_, alive, p_,
-         d_);
-  } else {
-    call(kinds.structural, kinds.shear, kinds.bend, features_.tearing, law, verlet, links, p_, sk::none,
-         alive, p_, sk::none);
-  }
+  if (features_.verlet == Verlet::Displacements)
+    call(net, verlet, d_, alive, p_, d_);
+  else
+    call(net, verlet, sk::none, alive, p_, sk::none);
 }
 
 void Simulation::collide(const Moment& moment) {
   if (bodiesMove(scene_)) place(moment);
-  cloth::collide.with(options_)(
-      features_.spheres, features_.planes, features_.capsules, features_.boxes, constants_.thickness, p_, d_,
-      given<sk::In<cloth::Sphere>>(bodies_->spheres), given<sk::In<cloth::Plane>>(bodies_->planes),
-      given<sk::In<cloth::Capsule>>(bodies_->capsules), given<sk::In<cloth::Box>>(bodies_->boxes), p_, d_);
+  const cloth::Bodies bodies{.spheres = features_.spheres,
+                             .planes = features_.planes,
+                             .capsules = features_.capsules,
+                             .boxes = features_.boxes,
+                             .thickness = constants_.thickness,
+                             .sphere = member(bodies_->spheres),
+                             .plane = member(bodies_->planes),
+                             .capsule = member(bodies_->capsules),
+                             .box = member(bodies_->boxes)};
+  cloth::collide.with(options_)(bodies, p_, d_, p_, d_);
 }
 
 void Simulation::tear() {
-  const bool shear = features_.relaxed.shear || features_.springs.shear;
-  const bool bend = features_.relaxed.bend || features_.springs.bend;
-  cloth::tear.with(options_)(shear, bend, constants_.longest, linksOf(constants_.relaxed), p_, *alive_,
+  const LinkKinds both{.shear = features_.relaxed.shear || features_.springs.shear,
+                       .bend = features_.relaxed.bend || features_.springs.bend};
+  cloth::tear.with(options_)(netOf(features_, both, constants_.relaxed, p_), constants_.longest, *alive_,
                              *alive_);
 }
 
@@ -200,10 +219,14 @@ Census Simulation::census() const {
 Observation Simulation::observe() const {
   const bool springs = scene_.links.springs;
   const LinkConstants& k = springs ? constants_.springs : constants_.relaxed;
-  const cloth::Observed o = cloth::observe.with(options_)(
-      scene_.links.shear.has_value(), scene_.links.bend.has_value(), alive_.has_value(), springs,
-      static_cast<unsigned>(features_.verlet), constants_.gravity, linksOf(k), p_.whole(), p_.whole(),
-      d_.whole(), given<sk::ElementIn<int>>(alive_));
+  const cloth::Net net{.shear = scene_.links.shear.has_value(),
+                       .bend = scene_.links.bend.has_value(),
+                       .tearing = alive_.has_value(),
+                       .links = linksOf(k),
+                       .p = p_.whole()};
+  const cloth::Observed o =
+      cloth::observe.with(options_)(net, springs, static_cast<unsigned>(features_.verlet), constants_.gravity,
+                                    p_.whole(), d_.whole(), given<sk::ElementIn<int>>(alive_));
   const double joule = constants_.pointMass / (scene_.run.dt * scene_.run.dt);
   const double mass = std::max(1.0, static_cast<double>(o.energy.w));
   Observation result;

@@ -56,9 +56,12 @@ export async function* measure({ device, simulation, time }) {
 
   const links = { right: rest, down: rest, diagonal: rest, structural: factor, shear: 0, bend: 0 };
   const stepOf = (p, d, law, verlet) => () => {
-    cloth.integrate(false, false, false, false, law, false, false, verlet, { gravity, keep: 1 }, links, calm, p, d, null, null, null, p, d);
+    const loose = {structural: false, shear: false, bend: false, tearing: false, law, links, p};
+    cloth.integrate(
+        loose, {motion: {gravity, keep: 1}, windy: false, air: calm}, {carried: false}, verlet, d, null, null,
+        p, d);
     const [inD, outD] = verlet === 0 ? [d, d] : [null, null];
-    cloth.relax(true, false, false, false, law, verlet, links, p, inD, null, p, outD);
+    cloth.relax({...loose, structural: true}, verlet, inD, null, p, outD);
   };
   const ways = [['displacements, exact lengths', 0, 0], ['last positions, exact lengths', 0, 1], ['displacements, no square root', 1, 0]];
   for (const [choice, law, verlet] of ways) {

@@ -57,7 +57,6 @@ class Curtain {
     const right = wide / (this.columns - 1);
     const relaxation = 1.2 / (4 * (1 + 0.5 + 0.1)); // stiffnessAround() of these links
     this.links = { right, down: right, diagonal: Math.SQRT2 * right, structural: relaxation, shear: 0.5 * relaxation, bend: 0.1 * relaxation };
-    this.none = { ...this.links, structural: 0, shear: 0, bend: 0 };
     this.motion = { gravity: [0, -gravity * dt * dt, 0], keep: 1 - 0.4 * dt };
     this.air = (0.5 * 1.2 * right * right * this.elements) / 0.3; // density, area, and the mass of 0.3 kg
     this.time = 0;
@@ -78,15 +77,18 @@ class Curtain {
 
   step() {
     const { p, d, alive, links } = this;
+    const net = {structural: true, shear: true, bend: true, tearing: true, law: exact, links, p};
+    const loose = {...net, structural: false, shear: false, bend: false};
+    const forces = {motion: this.motion, windy: true, air: this.wind()};
     this.time += dt;
-    cloth.integrate(false, false, false, true, exact, true, false, displacements, this.motion, this.none, this.wind(), p, d, alive, null, null, p, d);
+    cloth.integrate(loose, forces, {carried: false}, displacements, d, alive, null, p, d);
     if (this.grip !== null) this.pull();
-    for (let round = 0; round < rounds; ++round) cloth.relax(true, true, true, true, exact, displacements, links, p, d, alive, p, d);
+    for (let round = 0; round < rounds; ++round) cloth.relax(net, displacements, d, alive, p, d);
     const ball = this.ballAt(this.time);
     const moved = ball.centre.map((x, c) => x - this.ball.centre[c]);
     this.ball = ball;
     if (this.controls.get('ball')) hand.touchBall({ ...ball, moved, friction: 0.3 }, thickness, p, d, p, d);
-    if (this.controls.get('tears')) cloth.tear(true, true, 1.9, links, p, alive, alive);
+    if (this.controls.get('tears')) cloth.tear(net, 1.9, alive, alive);
   }
 
   /** The hand follows the pointer, at 3 m/s at most. */
