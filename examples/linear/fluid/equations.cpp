@@ -29,10 +29,10 @@ class PressureMatrix : public linear::Matrix {
   sk::Shape domain() const override { return grid_.space.shape(); }
   linear::Space space(sk::Device&) const override { return grid_.space; }
   void multiply(const linear::Vector& x, linear::Vector& y) override {
-    pressureProduct.with(options())(grid_.bounds, grid_.isSpace, grid_.box, grid_.faces, x, y);
+    pressureProduct.with(options())(grid_.grid(), x, y);
   }
   void multiply(const linear::Vector& x, linear::Vector& y, linear::Vector& xy) override {
-    pressureProductDot.with(foldOptions())(grid_.bounds, grid_.isSpace, grid_.box, grid_.faces, x, y, xy);
+    pressureProductDot.with(foldOptions())(grid_.grid(), x, y, xy);
   }
   std::string layout() const override { return "stencil"; }
   std::int64_t stored() const override { return 0; }
@@ -108,6 +108,10 @@ GridArguments::GridArguments(const linear::Space& where, const Model& model)
   const std::vector<std::int8_t> cells = cellsOf(model);
   cell.write(cells);
   faces.write(facesOf(model, cells));
+}
+
+Grid GridArguments::grid() const {
+  return {.bounds = bounds, .isSpace = isSpace, .box = box, .cell = cell, .faces = faces};
 }
 
 std::unique_ptr<linear::Matrix> makePressureMatrix(const GridArguments& grid,
@@ -208,9 +212,7 @@ ViscousMatrix::ViscousMatrix(const GridArguments& grid, int axis, const linear::
 void ViscousMatrix::setCoefficient(double c) { c_.writeReals(std::array{c}); }
 
 void ViscousMatrix::multiply(const linear::Vector& x, linear::Vector& y) {
-  const auto product = [&](const auto& kernel) {
-    kernel.with(options())(grid_.bounds, grid_.isSpace, grid_.box, c_, grid_.cell, x, y);
-  };
+  const auto product = [&](const auto& kernel) { kernel.with(options())(grid_.grid(), c_, x, y); };
   if (axis_ == 0) product(viscousProduct_0);
   if (axis_ == 1) product(viscousProduct_1);
   if (axis_ == 2) product(viscousProduct_2);

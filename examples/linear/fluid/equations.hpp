@@ -22,14 +22,16 @@ struct GridArguments {
   /// In a space of the model's shape.
   GridArguments(const linear::Space& where, const Model& model);
 
+  /// Refers to the streams.
+  Grid grid() const;
+
   unsigned bounds;
   bool isSpace;
   Box box;
   linear::Space space;
   // Both streams have one element, which kernels do not read, if the model has no obstacles.
   examples::GridStream<std::int8_t> cell;
-  examples::GridStream<int>
-      faces;  ///< of fluid cells: two bits for the cell beyond each face, below and above along x, y and z
+  examples::GridStream<int> faces;
 };
 
 /// Minus the Laplacian of pressures times the square of the spacing. `grid` must outlive it.

@@ -297,20 +297,22 @@ void Flow::carryOne(int axis, double step, const linear::Vector& from, linear::V
   ends(0, c.low.x, c.high.x);
   ends(1, c.low.y, c.high.y);
   ends(2, c.low.z, c.high.z);
-  Carrier returning = c;
-  returning.step = -c.step;
+  Carrier back = c;
+  back.step = -c.step;
+  const auto along = [&](const Carrier& carrier) {
+    Paths paths{.carrier = carrier, .u = velocity_[0], .v = velocity_[1]};
+    if (model_.isSpace()) paths.w = velocity_[2];
+    return paths;
+  };
+  const Grid grid = grid_->grid();
   call([&](const auto& carry, const auto& correct) {
     if (model_.scheme == Scheme::SemiLagrangian) {
-      carry.with(options_)(grid_->bounds, grid_->isSpace, grid_->box, c, grid_->cell, velocity_[0],
-                           velocity_[1], along(2), from, to);
+      carry.with(options_)(grid, along(c), from, to);
       return;
     }
-    carry.with(options_)(grid_->bounds, grid_->isSpace, grid_->box, c, grid_->cell, velocity_[0],
-                         velocity_[1], along(2), from, *there_);
-    carry.with(options_)(grid_->bounds, grid_->isSpace, grid_->box, returning, grid_->cell, velocity_[0],
-                         velocity_[1], along(2), *there_, *back_);
-    correct.with(options_)(grid_->bounds, grid_->isSpace, model_.scheme == Scheme::Bfecc, grid_->box, c,
-                           grid_->cell, velocity_[0], velocity_[1], along(2), from, *there_, *back_, to);
+    carry.with(options_)(grid, along(c), from, *there_);
+    carry.with(options_)(grid, along(back), *there_, *back_);
+    correct.with(options_)(grid, along(c), model_.scheme == Scheme::Bfecc, from, *there_, *back_, to);
   });
 }
 
@@ -331,15 +333,17 @@ void Flow::accelerate(double dt, bool convects, double keep) {
     }
     if (isLaden && isUp) m.sink = static_cast<float>(dt * model_.buoyancy->sink);
     m.keep = static_cast<float>(keep);
-    const auto heat =
-        isHeated && isUp ? sk::Optional<sk::In<float>>(*heat_) : sk::Optional<sk::In<float>>(sk::none);
-    const auto smoke =
-        isLaden && isUp ? sk::Optional<sk::In<float>>(*smoke_) : sk::Optional<sk::In<float>>(sk::none);
+    Forces forces{.convects = convects,
+                  .isViscous = isViscous,
+                  .isHeated = isHeated && isUp,
+                  .isLaden = isLaden && isUp,
+                  .motion = m};
+    if (isHeated && isUp) forces.heat = *heat_;
+    if (isLaden && isUp) forces.smoke = *smoke_;
     const linear::Vector& base = keep != 0.0 ? begun_[at(axis)] : velocity_[at(axis)];
     const auto call = [&](const auto& kernel) {
-      kernel.with(options_)(grid_->bounds, grid_->isSpace, convects, isViscous, isHeated && isUp,
-                            isLaden && isUp, grid_->box, m, grid_->cell, velocity_[at(axis)],
-                            along((axis + 1) % 3), along((axis + 2) % 3), heat, smoke, base, next_[at(axis)]);
+      kernel.with(options_)(grid_->grid(), forces, velocity_[at(axis)], along((axis + 1) % 3),
+                            along((axis + 2) % 3), base, next_[at(axis)]);
     };
     forAxis(axis, call, accelerate_0, accelerate_1, accelerate_2);
   }
@@ -355,8 +359,9 @@ void Flow::diffuse(double dt, double speed) {
   for (int axis = 0; axis < model_.rank(); ++axis) {
     linear::Vector& v = velocity_[at(axis)];
     const auto call = [&](const auto& kernel) {
-      kernel.with(options_)(grid_->bounds, grid_->isSpace, false, true, false, false, grid_->box, m,
-                            grid_->cell, v, sk::none, sk::none, sk::none, sk::none, v, *change_);
+      const Forces forces{
+          .convects = false, .isViscous = true, .isHeated = false, .isLaden = false, .motion = m};
+      kernel.with(options_)(grid_->grid(), forces, v, sk::none, sk::none, v, *change_);
     };
     forAxis(axis, call, accelerate_0, accelerate_1, accelerate_2);
     linear::axpy.with(options_)(-1.0f, v, *change_, *change_);
@@ -370,16 +375,15 @@ void Flow::diffuse(double dt, double speed) {
 
 void Flow::subtract(const linear::Vector& q) {
   if (model_.isSpace())
-    subtractSlopes.with(options_)(grid_->bounds, true, grid_->box, grid_->cell, q, velocity_[0], velocity_[1],
-                                  velocity_[2], velocity_[0], velocity_[1], velocity_[2]);
+    subtractSlopes.with(options_)(grid_->grid(), q, velocity_[0], velocity_[1], velocity_[2], velocity_[0],
+                                  velocity_[1], velocity_[2]);
   else
-    subtractSlopes.with(options_)(grid_->bounds, false, grid_->box, grid_->cell, q, velocity_[0],
-                                  velocity_[1], sk::none, velocity_[0], velocity_[1], sk::none);
+    subtractSlopes.with(options_)(grid_->grid(), q, velocity_[0], velocity_[1], sk::none, velocity_[0],
+                                  velocity_[1], sk::none);
 }
 
 std::pair<double, double> Flow::measureInflows() {
-  inflows.with(options_)(grid_->bounds, grid_->isSpace, grid_->box, grid_->cell, velocity_[0], velocity_[1],
-                         along(2), inflow_);
+  inflows.with(options_)(grid_->grid(), velocity_[0], velocity_[1], along(2), inflow_);
   const auto [most, squares] = magnitudes.with(arithmetic_.foldOptions())(inflow_);
   return {most, squares};
 }
@@ -430,8 +434,7 @@ Projection Flow::project(std::size_t stage, double speed) {
 
 std::vector<double> Flow::exactDivergence() {
   linear::Vector exact = space().stream<float>(sk::Storage::Double);
-  inflows.with(inDouble)(grid_->bounds, grid_->isSpace, grid_->box, grid_->cell, velocity_[0], velocity_[1],
-                         along(2), exact);
+  inflows.with(inDouble)(grid_->grid(), velocity_[0], velocity_[1], along(2), exact);
   return exact.readReals();
 }
 
@@ -451,8 +454,7 @@ double Flow::kineticEnergy() const {
   double sum = 0.0;
   for (int axis = 0; axis < model_.rank(); ++axis) {
     const auto call = [&](const auto& reduce) {
-      sum +=
-          reduce.with(arithmetic_.foldOptions())(grid_->bounds, grid_->box, grid_->cell, velocity_[at(axis)]);
+      sum += reduce.with(arithmetic_.foldOptions())(grid_->grid(), velocity_[at(axis)]);
     };
     forAxis(axis, call, squares_0, squares_1, squares_2);
   }
