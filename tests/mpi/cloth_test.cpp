@@ -109,7 +109,7 @@ TEST_CASE("parts that are thinner than links are long are refused") {
   REQUIRE(scene.links.bend);
   const auto grid = examples::divideGrid("", examples::shapeOf(scene), examples::Ends::Open);
   Simulation cloth(examples::Space(*grid), scene, featuresOf(scene), sk::Precision::Single);
-  CHECK_THROWS_WITH(cloth.advance(1), Catch::Contains("'p' needs a halo of 2 element(s)"));
+  CHECK_THROWS_WITH(cloth.advance(1), Catch::Contains("'net.p' needs a halo of 2 element(s)"));
 }
 
 }  // namespace

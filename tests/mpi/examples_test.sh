@@ -55,7 +55,7 @@ on 3 0 "${torn[@]}" --csv three.csv --obj three.obj
 cmp one.csv three.csv
 cmp one.obj three.obj
 on 6 1 cloth "$cloths/torn.toml" --points 3 3 --steps 2
-says 1 "'p' needs a halo of 2 element(s)"
+says 1 "'net.p' needs a halo of 2 element(s)"
 cornell=(rays "$rays/cornell.toml" --size 20x15 --samples 2)
 "$binaries/${cornell[0]}" "${cornell[@]:1}" --output one.pfm --layers one >out.txt 2>err.txt
 on 3 0 "${cornell[@]}" --output three.pfm --layers three
