@@ -45,9 +45,9 @@ struct Hit {
 template <>
 struct sk::ElementTraits<Hit> {
   static constexpr sk::program::Field fields[] = {
-      {"t", sk::program::Scalar::Float, 1, offsetof(Hit, t)},
-      {"id", sk::program::Scalar::Int, 1, offsetof(Hit, id)}};
-  static constexpr sk::program::Element value{"Hit", "Hit", sizeof(Hit), fields};
+      {"t", sk::program::Scalar::Float, 1, offsetof(::Hit, t)},
+      {"id", sk::program::Scalar::Int, 1, offsetof(::Hit, id)}};
+  static constexpr sk::program::Element value{"Hit", "Hit", sizeof(::Hit), fields};
   static constexpr const sk::program::Element& element() { return value; }
 };
 
@@ -283,7 +283,7 @@ TEST_CASE("awkward names and nested structs") {
       "namespace geometry::pairs {\n\nstruct Pair {\n  geometry::Ray first;\n  unsigned count;\n};\n"));
   CHECK(contains(
       stub.header,
-      "{\"first.origin\", sk::program::Scalar::Float, 3, offsetof(geometry::pairs::Pair, first.origin)}"));
+      "{\"first.origin\", sk::program::Scalar::Float, 3, offsetof(::geometry::pairs::Pair, first.origin)}"));
   CHECK(contains(
       stub.header,
       "/// Called exp_ here, since C++ has another exp.\nstruct ExpKernel : sk::WithOptions<ExpKernel> {\n"));

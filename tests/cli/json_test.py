@@ -68,7 +68,7 @@ def undocumented():
 
 bad = list(undocumented())
 # The test can fail: a member too many, and one too few.
-sample = {name: [] for name in schema["properties"]} | {"schema": 3, "file": "a.sk"}
+sample = {name: [] for name in schema["properties"]} | {"schema": 4, "file": "a.sk"}
 assert not list(validator.iter_errors(sample))
 assert list(validator.iter_errors(sample | {"another": 1}))
 assert list(validator.iter_errors({name: value for name, value in sample.items() if name != "kernels"}))

@@ -229,7 +229,9 @@ float sk_expm1(float x) {
   p = p * r + 1.66666667e-1;
   p = p * r + 5.0000000137e-1;
   float t = intBitsToFloat((int(n) + 127) << 23);
-  float y = t * (r + r * r * p) + (t - 1.0);
+  sk_precise float fraction = sk_keep(r + r * r * p);   // not a part of t * (fraction + 1)
+  sk_precise float whole = sk_keep(t - 1.0);
+  float y = t * fraction + whole;
   float large = x > 90.0 ? uintBitsToFloat(0x7f800000u) : sk_exp_scaled(x, 0);
   return x > 30.0 ? large : x < -30.0 ? -1.0 : y;
 }
