@@ -231,7 +231,7 @@ float sk_expm1(float x) {
   float t = intBitsToFloat((int(n) + 127) << 23);
   sk_precise float fraction = sk_keep(r + r * r * p);   // not a part of t * (fraction + 1)
   sk_precise float whole = sk_keep(t - 1.0);
-  float y = t * fraction + whole;
+  float y = n == 0.0 ? fraction : t * fraction + whole;
   float large = x > 90.0 ? uintBitsToFloat(0x7f800000u) : sk_exp_scaled(x, 0);
   return x > 30.0 ? large : x < -30.0 ? -1.0 : y;
 }
