@@ -67,6 +67,16 @@ TEST_CASE("bundles and reduces of any rank", "[any_rank]") {
   });
 }
 
+TEST_CASE("aliases of gathers have attributes", "[any_rank]") {
+  onGlAndNative([](sk::Device& device) {
+    auto a = device.stream<float>({2, 3}), b = device.stream<float>({3}), r = device.stream<float>({2});
+    a.write(std::vector<float>{1, 2, 3, 10, 20, 30});
+    b.write(std::vector<float>{100, 200, 300});
+    any_rank::aliased(a, b, b, {.u = a, .w = b}, r);
+    CHECK(r.read() == std::vector<float>{3 + 200 - 1 + 10 + 100, 1 + 100 + 100 + 20 + 100});
+  });
+}
+
 TEST_CASE("overloads that differ in the rank of a gather", "[any_rank]") {
   onGlAndNative([](sk::Device& device) {
     auto r = device.stream<sk::int4>({1});

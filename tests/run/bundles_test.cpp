@@ -132,6 +132,18 @@ TEST_CASE("reduces, scans, folded outputs and pushes take bundles", "[bundles]")
   });
 }
 
+TEST_CASE("templates take bundles as arguments", "[bundles]") {
+  onGlAndNative([](sk::Device& device) {
+    auto a = device.stream<float>({1, 2}), b = device.stream<float>({1, 2}), r = device.stream<float>({1, 2});
+    a.write(std::vector<float>{5, 6});
+    b.write(std::vector<float>{1, 3});
+    bundles::height({.height = a, .level = 0.5f}, r);
+    CHECK(r.read() == std::vector<float>{5.5f, 6.5f});
+    bundles::heightsOfTwo({.first = {.height = a, .level = 1}, .second = {.height = b, .level = 0}}, r);
+    CHECK(r.read() == std::vector<float>{5, 4});
+  });
+}
+
 TEST_CASE("a recorded loop keeps a bundle", "[bundles]") {
   onGlAndNative([](sk::Device& device) {
     auto a = device.stream<float>({8}), b = device.stream<float>({8});

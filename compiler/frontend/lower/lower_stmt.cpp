@@ -137,6 +137,8 @@ ir::Variable FunctionLowering::parameter(const clang::ValueDecl* declared, std::
     variable.isConst = true;
     return variable;
   }
+  if (syntax && !syntax->attribute.empty())
+    module_.fail(Diag::BoundaryWithoutGather, where, {syntax->attribute, declared->getNameAsString()});
   const clang::QualType value = type.getNonReferenceType();
   const auto* ofFunction = llvm::dyn_cast<clang::ParmVarDecl>(declared);
   const clang::QualType written = ofFunction ? ofFunction->getOriginalType() : type;

@@ -123,6 +123,9 @@ void ModuleLowering::nameInstance(const clang::FunctionDecl* instance, ir::Kerne
 
 /// "float", "3", "-1", "true".
 std::string ModuleLowering::spelling(const clang::TemplateArgument& argument, SourceLocation use) {
+  const bool isType = argument.getKind() == clang::TemplateArgument::Type;
+  if (const clang::CXXRecordDecl* record = isType ? bundles_.bundle(argument.getAsType()) : nullptr)
+    return structName(record);
   if (argument.getKind() == clang::TemplateArgument::Type) return spelling(type(argument.getAsType(), use));
   if (argument.getKind() != clang::TemplateArgument::Integral) fail(Diag::TemplateArgumentKind, use);
   if (argument.getIntegralType()->isBooleanType())

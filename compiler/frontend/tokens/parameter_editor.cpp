@@ -81,24 +81,6 @@ std::size_t endOfArguments(const std::vector<Token>& parameter, std::size_t less
   return goesOn ? end : 0;
 }
 
-/// True for `gather<T, rank>`.
-bool isGatherType(const std::vector<Token>& type) {
-  return type.size() > 3 && isWord(type[0], "gather") && type[1].is(tok::less);
-}
-
-/// The type of a gather's elements: of `gather<T, rank>`, T.
-std::vector<Token> elementTypeOf(const std::vector<Token>& type) {
-  if (!isGatherType(type)) return type;
-  int depth = 0;
-  for (std::size_t i = 2; i < type.size(); ++i) {
-    if (type[i].is(tok::less)) ++depth;
-    depth -= closedLists(type[i]);
-    if (type[i].is(tok::comma) && depth == 0)
-      return {type.begin() + 2, type.begin() + static_cast<std::ptrdiff_t>(i)};
-  }
-  return type;
-}
-
 std::string repeated(std::string_view text, int times) {
   std::string result;
   for (int i = 0; i < times; ++i) result += text;
@@ -459,7 +441,8 @@ bool ParameterEditor::resolveRole(ParameterParts& parts, FunctionKind kind) {
   const bool isAppendOutput = qualifier == "vout" || (qualifier == "out" && parts.rank > 0);
   if (isAppendOutput) return resolveAppendOutput(parts, kind);
   if (parts.rank > 4) return fail(Diag::StreamRank, {name, std::to_string(parts.rank)});
-  const bool isGather = parts.rank > 0 || isGatherType(parts.type);
+  const bool isOfAlias = parts.border.empty() && !parts.isElement && mayBeAlias(parts.type);
+  const bool isGather = parts.rank > 0 || gatherIn(parts.type) || isOfAlias;
   if (parts.hasAttribute && (!isGather || !qualifier.empty())) {
     diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.attribute), {nameOf(parts.attribute), name});
     return false;
@@ -540,6 +523,7 @@ void ParameterEditor::print(const ParameterParts& parts, FunctionKind kind, Toke
   } else if (!parts.border.empty()) {
     syntax.border = generateConstant(elementTypeOf(parts.type), borderValue(parts.border), location);
   }
+  if (parts.hasAttribute) syntax.attribute = nameOf(parts.attribute);
   if (!parts.value.empty()) syntax.identity = generateConstant(parts.type, parts.value, location);
   if (syntax.rank > 0) indexed_.push_back({parts.name, syntax.rank});
   const clang::SourceLocation start = parts.type.front().getLocation();
@@ -583,7 +567,7 @@ void ParameterEditor::print(const ParameterParts& parts, FunctionKind kind, Toke
     out.insert(out.end(), parts.length.begin(), parts.length.end());
   }
   const bool isByIndex = syntax.role == ir::ParamRole::Gather || syntax.role == ir::ParamRole::Scatter ||
-                         syntax.role == ir::ParamRole::VariableOutput;
+                         syntax.role == ir::ParamRole::VariableOutput || parts.hasAttribute;
   if (kind != FunctionKind::Helper || isByIndex) {
     syntax_.add(location, std::move(syntax));
   }

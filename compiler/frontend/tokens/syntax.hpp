@@ -52,6 +52,7 @@ struct ParamSyntax {
   std::uint8_t rank = 0;
   ir::Boundary boundary = ir::Boundary::Clamp;
   bool filter = false;
+  std::string attribute;             ///< the last word in [[...]]
   std::vector<std::int32_t> halo;    ///< the numbers of [[halo(...)]], x first
   std::string border;                ///< name of the generated constant that holds [[border(v)]]
   std::string identity;              ///< name of the generated constant that holds `= identity`

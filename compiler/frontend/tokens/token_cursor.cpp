@@ -2,6 +2,7 @@
 #include "frontend/tokens/token_cursor.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include <clang/Lex/Preprocessor.h>
 
@@ -192,6 +193,35 @@ std::vector<std::vector<Token>> splitAtCommas(const std::vector<Token>& declared
   }
   if (parts.size() == 1 && parts.front().empty()) parts.clear();
   return parts;
+}
+
+std::optional<std::size_t> gatherIn(const std::vector<Token>& type) {
+  const std::size_t at = !type.empty() && type.front().is(tok::kw_const) ? 1 : 0;
+  const bool isGather = type.size() > at + 3 && isWord(type[at], "gather") && type[at + 1].is(tok::less);
+  return isGather ? std::optional(at) : std::nullopt;
+}
+
+bool mayBeAlias(const std::vector<Token>& type) {
+  const std::string name = nameOf(type.back());
+  constexpr std::string_view scalars[] = {"uint",   "half",   "uchar",   "ushort",
+                                          "unorm8", "snorm8", "unorm16", "snorm16"};
+  return type.back().is(tok::greater) || (type.back().is(tok::identifier) && !isVectorTypeName(name) &&
+                                          std::ranges::find(scalars, name) == std::end(scalars));
+}
+
+std::vector<Token> elementTypeOf(const std::vector<Token>& type) {
+  const std::optional<std::size_t> gather = gatherIn(type);
+  if (!gather) return type;
+  int depth = 0;
+  const std::size_t first = *gather + 2;
+  for (std::size_t i = first; i < type.size(); ++i) {
+    if (type[i].is(tok::less)) ++depth;
+    depth -= closedLists(type[i]);
+    if (type[i].is(tok::comma) && depth == 0)
+      return {type.begin() + static_cast<std::ptrdiff_t>(first),
+              type.begin() + static_cast<std::ptrdiff_t>(i)};
+  }
+  return type;
 }
 
 }  // namespace skc::frontend

@@ -4,6 +4,7 @@
 // not write.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,13 @@ std::size_t endOfList(const std::vector<clang::Token>& tokens, std::size_t less)
 
 /// The index of the name in `void f` or, with arguments of a template, `void f<Pair<float>>`; 0 if no name ends the tokens.
 std::size_t nameAtEnd(const std::vector<clang::Token>& tokens);
+
+/// The index of `gather` in `gather<T, rank>` and `const gather<T, rank>`; nullopt in other types.
+std::optional<std::size_t> gatherIn(const std::vector<clang::Token>& type);
+/// Whether a type may be another name of a gather's, which lowering will know.
+bool mayBeAlias(const std::vector<clang::Token>& type);
+/// The type of a gather's elements: of `gather<T, rank>`, T.
+std::vector<clang::Token> elementTypeOf(const std::vector<clang::Token>& type);
 
 class TokenCursor {
  public:
