@@ -362,7 +362,7 @@ int smallExponent(const IntrinsicCall& n) {
 
 }  // namespace
 
-/// A small power of floats: the product of doubles is rounded once to a float, and once, hardly, to a double.
+/// A small power of floats, by doubles: their products lose next to nothing, and the result is rounded to a float once.
 Parts FunctionCode::smallPower(const Parts& base, int exponent) {
   Parts result;
   for (const Part& part : base) {

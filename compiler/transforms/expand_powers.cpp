@@ -25,7 +25,7 @@ bool isTwo(const Module& module, const Expr& exponent) {
              evaluate(module, *literalOf(exponent.type, 2), Constants::Keep);
 }
 
-/// Whether compilers see that two copies of an expression are one value, and find so soon.
+/// Whether compilers notice, without much work, that two copies of an expression are one value.
 bool mayStandTwice(const Expr& expr) {
   constexpr int most = 16;
   int nodes = 0;

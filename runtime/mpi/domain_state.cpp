@@ -246,6 +246,7 @@ DomainState::DomainState(Start& start)
 }
 
 DomainState::~DomainState() {
+  endPending();
   agreement.leave(*this);
   for (DomainStreamState* stream : streams) stream->domain = nullptr;
 }

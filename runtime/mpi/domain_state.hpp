@@ -51,6 +51,7 @@ class RankReduction;
 
 /// A stream's elements of this rank, with a halo around them. All ranks keep
 /// the same account of what is valid.
+class PendingReduction;
 class DomainStreamState final : public detail::DistributedStream {
  public:
   DomainStreamState(DomainState& domain, const program::Element& element, Storage storage,
@@ -173,6 +174,7 @@ class DomainState final : public detail::Distribution, private mpi::Agreement::M
   std::int64_t streamCount = 0;  ///< of all that have been created
   detail::TransferOwner* later =
       nullptr;  ///< where the next reduction to a value is kept instead of awaited; or null
+  std::vector<PendingReduction*> pending;  ///< of futures that have not ended
   HaloStaging staging;  ///< ends before the device
   std::vector<std::vector<std::byte>> sendBuffers,
       receiveBuffers;  ///< one for each direction, kept
@@ -182,6 +184,8 @@ class DomainState final : public detail::Distribution, private mpi::Agreement::M
   static detail::DomainOwner finish(Start& start, MPI_Comm communicator);
   explicit DomainState(Start& start);
   void forget() noexcept override;
+  /// Waits for the messages of reductions whose futures have not ended.
+  void endPending() noexcept;
   void checkLater(const program::Reduction& reduction, std::span<void* const> results) const;
   void keepLater(const program::Reduction& reduction, std::span<void* const> results,
                  std::unique_ptr<mpi::RankReduction> part);
@@ -191,8 +195,14 @@ class DomainState final : public detail::Distribution, private mpi::Agreement::M
 
 template <class Write>
 void DomainStreamState::writeOwn(Write&& write) {
-  valid = {};
   const StreamRegion own = part(domain->own);
+  if (own.stream->device->recording != nullptr) {
+    throw Error(
+        "the elements of a sk::DomainStream cannot be written while calls are recorded, because a loop would "
+        "not end "
+        "its halo; write them outside of Device::record");
+  }
+  valid = {};
   WriteScope repair;
   if (own.stream->isLost()) {
     repair.add(own.stream);

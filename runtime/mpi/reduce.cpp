@@ -27,6 +27,44 @@ using program::Parameter;
 using program::Reduction;
 using program::Role;
 
+/// A reduction whose value is asked for later. It ends with its domain, whose communicator its messages need.
+class PendingReduction final : public TransferState {
+ public:
+  PendingReduction(DomainState& domain, std::unique_ptr<RankReduction> reduction)
+      : domain_(&domain), reduction_(std::move(reduction)) {
+    domain.pending.push_back(this);
+  }
+  ~PendingReduction() override {
+    if (domain_ != nullptr) std::erase(domain_->pending, this);
+  }
+
+  bool isReady() override { return reduction_ == nullptr || reduction_->isReady(); }
+  void wait() override {
+    if (reduction_ != nullptr) reduction_->wait();
+  }
+  void take(std::byte* value) override {
+    if (reduction_ == nullptr) {
+      throw Error(
+          "the sk::Domain of this future has ended, and its value with it; get() it before the domain ends",
+          Error::Kind::Lost);
+    }
+    void* const values[] = {value};
+    reduction_->take(values);
+  }
+  void endWithDomain() noexcept {
+    reduction_.reset();
+    domain_ = nullptr;
+  }
+
+ private:
+  DomainState* domain_;
+  std::unique_ptr<RankReduction> reduction_;
+};
+
+void DomainState::endPending() noexcept {
+  for (PendingReduction* one : pending) one->endWithDomain();
+}
+
 namespace {
 
 /// The arguments of accumulators, which are streams of one element, and values in host memory for them.
@@ -84,22 +122,6 @@ void storeOwnOutputs(DomainState& domain, const Reduction& reduction, std::span<
   call.options = resolvedOptions(call, others);
   storeOutputs(call);
 }
-
-/// A reduction whose value is asked for later.
-class PendingReduction final : public TransferState {
- public:
-  explicit PendingReduction(std::unique_ptr<RankReduction> reduction) : reduction_(std::move(reduction)) {}
-
-  bool isReady() override { return reduction_->isReady(); }
-  void wait() override { reduction_->wait(); }
-  void take(std::byte* value) override {
-    void* const values[] = {value};
-    reduction_->take(values);
-  }
-
- private:
-  std::unique_ptr<RankReduction> reduction_;
-};
 
 /// A call of a reduction or of a kernel with folded outputs.
 class Fold {
@@ -226,7 +248,7 @@ void DomainState::keepLater(const Reduction& reduction, std::span<void* const> r
                             std::unique_ptr<RankReduction> part) {
   const auto accumulator = std::ranges::find(reduction.fold.parameters, Role::Accumulator, &Parameter::role);
   std::memset(results[0], 0, accumulator->element->size);
-  *later = detail::TransferOwner(new PendingReduction(std::move(part)));
+  *later = detail::TransferOwner(new PendingReduction(*this, std::move(part)));
 }
 
 detail::TransferOwner detail::later(DomainState* domain, void (*call)(void*), void* context) {

@@ -126,6 +126,9 @@ std::uint64_t idOf(const Kernel& kernel, std::uint64_t object, const CallOptions
     id ^= id >> 32;
   };
   mix(object);
+  mix(static_cast<std::uint64_t>(options.intrinsics) << 24 |
+      static_cast<std::uint64_t>(options.tables) << 16 |
+      static_cast<std::uint64_t>(options.contraction) << 8 | static_cast<std::uint64_t>(options.order));
   mix(static_cast<std::uint64_t>(options.precision) << 32 |
       static_cast<std::uint64_t>(options.accumulate) << 16 | static_cast<std::uint64_t>(options.scan) << 8 |
       static_cast<std::uint64_t>(options.along.value_or(-1) + 1));
@@ -142,6 +145,10 @@ std::uint64_t hashOf(const Kernel& kernel, const CallOptions& options) {
   hash.add(static_cast<std::int64_t>(options.accumulate));
   hash.add(static_cast<std::int64_t>(options.scan));
   hash.add(options.along.value_or(-1));
+  hash.add(static_cast<std::int64_t>(options.intrinsics));
+  hash.add(static_cast<std::int64_t>(options.tables));
+  hash.add(static_cast<std::int64_t>(options.contraction));
+  hash.add(static_cast<std::int64_t>(options.order));
   return hash.value();
 }
 

@@ -217,6 +217,47 @@ TEST_CASE("what fails in later() on one rank is heard of by the others") {
   CHECK(first.get().front() == 2.0F * 24 * 8);
 }
 
+TEST_CASE("a future may outlive its domain, and says that its value has ended") {
+  sk::Future<float> kept, destroyed;
+  {
+    sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
+    auto u = domain.stream<float>();
+    u.fill(1.0F);
+    kept = domain.later(sum, u);
+    destroyed = domain.later(sum, u);
+  }
+  CHECK(kept.ready());
+  kept.wait();
+  CHECK_THAT(errorOf([&] { (void)kept.get(); }), Contains("the sk::Domain of this future has ended"));
+}
+
+TEST_CASE("a recording cannot write the elements of a domain") {
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
+  auto u = domain.stream<float>(), v = domain.stream<float>();
+  u.fill(1.0F);
+  v.fill(7.0F);
+  const auto messageOf = [&](const std::function<void()>& body) {
+    return errorOf([&] { (void)domain.device().record(body); });
+  };
+  CHECK_THAT(messageOf([&] { u.fill(5.0F); }), Contains("cannot be written while calls are recorded"));
+  CHECK_THAT(messageOf([&] { v.copyTo(u); }), Contains("cannot be written while calls are recorded"));
+  checkThatItWorks(u, v);
+}
+
+TEST_CASE("ranks compare all choices of a call") {
+  if (ranksOfWorld() == 1) return;
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
+  auto u = domain.stream<float>(), v = domain.stream<float>();
+  const sk::CallOptions choices[] = {{.intrinsics = sk::Intrinsics::Fast},
+                                     {.contraction = sk::Contraction::Fast},
+                                     {.tables = sk::Tables::On}};
+  for (const sk::CallOptions& choice : choices) {
+    u.fill([](const sk::Index&) { return 1.0F; });
+    CHECK(errorOf([&] { diffuse.with(isLast() ? choice : sk::CallOptions{})(0.125F, u, v); }) != "");
+    checkThatItWorks(u, v);
+  }
+}
+
 TEST_CASE("ranks that part later are told so at the next call that has messages") {
   if (ranksOfWorld() == 1) return;
   sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});

@@ -265,6 +265,7 @@ DeviceState& Device::state() const {
 detail::StreamOwner Device::createStream(const program::Element& element, const Shape& shape, Storage storage,
                                          std::string_view name) {
   return withHostMemory("a new stream", [&] {
+    if (shape.rank() == 0) throw Error("a stream needs a shape of 1 to 4 dimensions", Error::Kind::Shape);
     const bool holdsFloats = assemble::holdsFloats(element);
     if (storage == Storage::Default) {
       storage = holdsFloats ? state().configuration.storageOf(name) : Storage::Single;
