@@ -46,7 +46,7 @@ int gatherRank(const clang::CXXRecordDecl* record);
 
 /// Names of the prelude that programs may declare themselves, and then have no other meaning: "gather", "index", "axis".
 bool isYielding(std::string_view name);
-/// The same of intrinsics that came after programs had templates of these names, with which C++ could not choose.
+/// Names of intrinsics that a program's template with the same name replaces, since C++ could not choose between the two.
 bool isYieldingToTemplates(std::string_view name);
 
 /// The class template of a scatter output with this rank, 1 to 4, or of a variable output for 0.

@@ -91,9 +91,6 @@ void add(Hash& hash, const Index& index) {
 
 void KernelDetails::addTo(Call& call) const {
   Hash hash;
-  for (const auto option : {static_cast<int>(options_.intrinsics), static_cast<int>(options_.tables),
-                            static_cast<int>(options_.contraction), static_cast<int>(options_.order)})
-    hash.add(option);
   add(hash, options_.box.begin);
   add(hash, options_.box.end);
   for (std::size_t i = 0; i < arguments_.size() && i < kernel_.parameters.size(); ++i) {

@@ -32,8 +32,8 @@ class KernelDetails final : public Details {
                 const CallOptions& options)
       : domain_(domain), kernel_(kernel), arguments_(arguments), options_(options) {}
 
-  /// Adds to the hash what SK_CHECK=collectives compares beside the kernel: options, the box, shapes, streams, and the values of
-  /// uniforms.
+  /// Adds to the hash what SK_CHECK=collectives compares beside the kernel and its options: the box, shapes, streams, and the
+  /// values of uniforms.
   void addTo(Call& call) const;
   /// Lets details() name the halos that the call exchanges. The plan must outlive it.
   void setPlan(const CallPlan& plan) { plan_ = &plan; }

@@ -274,7 +274,7 @@ TEST_CASE("ranks that part later are told so at the next call that has messages"
   checkThatItWorks(u, v);
 }
 
-// Of messages with different lengths, MPI would end the run.
+// MPI would end the run if the messages had different lengths.
 TEST_CASE("ranks that fold differently are told so, however long their messages are", "[collectives]") {
   if (ranksOfWorld() == 1) return;
   sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});

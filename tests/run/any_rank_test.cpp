@@ -2,6 +2,7 @@
 //
 // Kernels of any rank against those that they stand for.
 #include "any_rank.sk.hpp"
+#include "error_of.hpp"
 #include "layers_of_ranks.sk.hpp"
 #include "support/devices.hpp"
 #include "support/values.hpp"
@@ -26,16 +27,6 @@ void checkRelax(sk::Device& device, const sk::Shape& shape, const Flat& flat) {
   any_rank::relax(b, u, v);
   flat(b, u, expected);
   CHECK(v.read() == expected.read());
-}
-
-template <class Call>
-std::string messageOf(const Call& call) {
-  try {
-    call();
-  } catch (const sk::Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace
@@ -85,10 +76,10 @@ TEST_CASE("overloads that differ in the rank of a gather", "[any_rank]") {
     any_rank::total(numbered(device, {2, 3, 4}), r);
     CHECK(r.read()[0].x == 40);
     CHECK(r.read()[0].z == 20);
-    CHECK(messageOf([&] { any_rank::total(numbered(device, {2, 3}), r); }) ==
+    CHECK(errorOf([&] { any_rank::total(numbered(device, {2, 3}), r); }) ==
           "total: 'a' has rank 2, but there are kernels for rank 1 or 3 alone; give such a stream, or instantiate the "
           "template for rank 2");
-    CHECK(messageOf([&] {
+    CHECK(errorOf([&] {
             auto v = device.stream<float>({1});
             any_rank::scaled({.scale = 1}, v);
           }) == "scaled: 'grid.u' is not given, and its rank chooses the kernel; give a stream of rank 2 or 4");

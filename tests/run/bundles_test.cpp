@@ -5,6 +5,7 @@
 #include <array>
 
 #include "bundles.sk.hpp"
+#include "error_of.hpp"
 #include "support/devices.hpp"
 #include "support/values.hpp"
 
@@ -168,12 +169,7 @@ TEST_CASE("a member that a kernel reads must be given", "[bundles]") {
   onGlAndNative([](sk::Device& device) {
     Streams streams(device);
     const auto messageOf = [&](const bundles::Scene& scene) {
-      try {
-        bundles::shade(scene, streams.hit, streams.colour);
-      } catch (const sk::Error& error) {
-        return std::string(error.what());
-      }
-      return std::string();
+      return errorOf([&] { bundles::shade(scene, streams.hit, streams.colour); });
     };
     bundles::Scene scene = streams.scene();
     scene.sky = sk::none;
