@@ -28,7 +28,7 @@ std::optional<Head> headOf(const Module& module, const Loop& loop) {
   const auto* tested = std::get_if<VarRef>(&test->lhs->node);
   const auto* stepped = std::get_if<VarRef>(&step->place->node);
   if (!isComparison(test->op) || tested == nullptr || stepped == nullptr || tested->var != init->var ||
-      stepped->var != init->var || assigns(loop.body, init->var))
+      stepped->var != init->var || assigns(module, loop.body, init->var))
     return std::nullopt;
   const auto from = evaluate(module, *init->init, Constants::LookThrough);
   const auto to = evaluate(module, *test->rhs, Constants::LookThrough);

@@ -217,44 +217,44 @@ std::optional<StaticLValue> staticLValue(const Expr& expr) {
   return lvalue;
 }
 
+void forEachAssigned(const Module& module, const Stmt& stmt, FunctionRef<void(VarId)> fn) {
+  if (const auto* n = std::get_if<Assign>(&stmt.node)) fn(rootOf(*n->place));
+  const auto* call = std::get_if<CallStmt>(&stmt.node);
+  if (call == nullptr) return;
+  if (call->result) fn(rootOf(*call->result));
+  const Function& callee = module.functions[call->callee];
+  for (std::size_t i = 0; i < call->args.size(); ++i) {
+    if (callee.variables[i].role == VarRole::InOut) fn(rootOf(*call->args[i]));
+  }
+}
+
 namespace {
 
 /// Calls fn for each variable that the block changes, perhaps more than once.
-template <class Fn>
-void forEachAssigned(const Block& block, Fn&& fn) {
-  walkStmts(block, [&](const Stmt& stmt) {
-    if (const auto* n = std::get_if<Assign>(&stmt.node)) fn(rootOf(*n->place));
-    const auto* call = std::get_if<CallStmt>(&stmt.node);
-    if (call == nullptr) return;
-    if (call->result) fn(rootOf(*call->result));
-    for (const ExprPtr& arg : call->args) {
-      walkExprs(*arg, [&](const Expr& expr) {
-        if (const auto* ref = std::get_if<VarRef>(&expr.node)) fn(ref->var);
-      });
-    }
-  });
+void forEachAssigned(const Module& module, const Block& block, FunctionRef<void(VarId)> fn) {
+  walkStmts(block, [&](const Stmt& stmt) { forEachAssigned(module, stmt, fn); });
 }
 
 }  // namespace
 
-bool assigns(const Block& block, VarId var) {
+bool assigns(const Module& module, const Block& block, VarId var) {
   bool found = false;
-  forEachAssigned(block, [&](VarId assigned) { found = found || assigned == var; });
+  forEachAssigned(module, block, [&](VarId assigned) { found = found || assigned == var; });
   return found;
 }
 
-std::vector<VarId> assignedIn(const Block& block) {
+std::vector<VarId> assignedIn(const Module& module, const Block& block) {
   std::vector<VarId> variables;
-  forEachAssigned(block, [&](VarId var) { variables.push_back(var); });
+  forEachAssigned(module, block, [&](VarId var) { variables.push_back(var); });
   std::ranges::sort(variables);
   const auto repeated = std::ranges::unique(variables);
   variables.erase(repeated.begin(), repeated.end());
   return variables;
 }
 
-std::vector<bool> assignedVariables(const Function& function) {
+std::vector<bool> assignedVariables(const Module& module, const Function& function) {
   std::vector<bool> assigned(function.variables.size(), false);
-  forEachAssigned(function.body, [&](VarId var) { assigned[var] = true; });
+  forEachAssigned(module, function.body, [&](VarId var) { assigned[var] = true; });
   return assigned;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ir/ir.hpp"
+#include "support/function_ref.hpp"
 
 namespace skc::ir {
 
@@ -49,15 +50,18 @@ struct StaticLValue {
 std::optional<StaticLValue> staticLValue(const Expr& expr);
 
 // Finds the variables that statements change after their declaration: by assignments, as results of calls,
-// and as arguments of CallStmts, whose parameters may be references.
+// and as arguments of InOut parameters.
+
+/// fn(var) for each variable that the statement itself changes, not in its blocks; perhaps more than once.
+void forEachAssigned(const Module& module, const Stmt& stmt, FunctionRef<void(VarId)> fn);
 
 /// True if a statement of the block changes the variable.
-bool assigns(const Block& block, VarId var);
+bool assigns(const Module& module, const Block& block, VarId var);
 
 /// The variables that the block's statements change, each once.
-std::vector<VarId> assignedIn(const Block& block);
+std::vector<VarId> assignedIn(const Module& module, const Block& block);
 
 /// For each variable of the function, whether any of its statements changes it.
-std::vector<bool> assignedVariables(const Function& function);
+std::vector<bool> assignedVariables(const Module& module, const Function& function);
 
 }  // namespace skc::ir

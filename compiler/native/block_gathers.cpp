@@ -73,7 +73,7 @@ class LoopGathers {
     if (stepped == nullptr || by == nullptr || by->bits != 1) return std::nullopt;
     const Type type = step->place->type;
     const bool isUniform = uniformity_.of(function_, *step->place) == Shape::Uniform;
-    if (!type.isScalar() || !type.isInteger() || !isUniform || assigns(loop_.body, stepped->var))
+    if (!type.isScalar() || !type.isInteger() || !isUniform || assigns(module_, loop_.body, stepped->var))
       return std::nullopt;
     return stepped->var;
   }
@@ -101,7 +101,8 @@ class LoopGathers {
       const auto* n = std::get_if<VarRef>(&slot->node);
       if (n == nullptr) return;
       const auto declared = declared_.find(n->var);
-      if (declared == declared_.end() || declared->second == nullptr || assigns(loop_.body, n->var)) return;
+      if (declared == declared_.end() || declared->second == nullptr || assigns(module_, loop_.body, n->var))
+        return;
       if (replaced_++ < mostExpressions) slot = beforeBody(*declared->second);
     });
     return result;
@@ -112,7 +113,7 @@ class LoopGathers {
     walkExprs(expr, [&](const Expr& inner) {
       const auto* n = std::get_if<VarRef>(&inner.node);
       if (n == nullptr) return;
-      is = is && n->var != counter_ && !declared_.contains(n->var) && !assigns(loop_.body, n->var);
+      is = is && n->var != counter_ && !declared_.contains(n->var) && !assigns(module_, loop_.body, n->var);
     });
     return is;
   }

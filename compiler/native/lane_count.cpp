@@ -25,21 +25,21 @@ namespace {
 constexpr std::size_t fewOperations = 4;
 
 /// The variable that a `for` loop's step changes by a constant, if the body does not assign it.
-std::optional<VarId> counterOf(const Loop& loop) {
+std::optional<VarId> counterOf(const Module& module, const Loop& loop) {
   if (loop.kind != LoopKind::For || loop.step.size() != 1) return std::nullopt;
   const auto* step = std::get_if<Assign>(&loop.step.front().node);
   if (step == nullptr || !step->op || !std::holds_alternative<Literal>(step->value->node))
     return std::nullopt;
   const VarId counter = rootOf(*step->place);
-  return assigns(loop.body, counter) ? std::nullopt : std::optional(counter);
+  return assigns(module, loop.body, counter) ? std::nullopt : std::optional(counter);
 }
 
 /// True if the loop's body assigns a variable in the expression.
-bool dependsOnEarlier(const Expr& expr, const Loop& loop) {
+bool dependsOnEarlier(const Module& module, const Expr& expr, const Loop& loop) {
   bool depends = false;
   walkExprs(expr, [&](const Expr& inner) {
     const auto* n = std::get_if<VarRef>(&inner.node);
-    depends = depends || (n != nullptr && assigns(loop.body, n->var));
+    depends = depends || (n != nullptr && assigns(module, loop.body, n->var));
   });
   return depends;
 }
@@ -47,10 +47,10 @@ bool dependsOnEarlier(const Expr& expr, const Loop& loop) {
 /// True if lanes have different trip counts and the loop does little but gather elements whose indices follow
 /// from its counter. One element at a time, its gathers overlap just as well, and none is for a lane that has
 /// left the loop.
-bool gathersAlone(const Uniformity& uniformity, FunctionId function, const Stmt& stmt) {
+bool gathersAlone(const Module& module, const Uniformity& uniformity, FunctionId function, const Stmt& stmt) {
   const auto* loop = std::get_if<Loop>(&stmt.node);
   if (loop == nullptr || !uniformity.diverges(function, stmt)) return false;
-  const std::optional<VarId> counter = counterOf(*loop);
+  const std::optional<VarId> counter = counterOf(module, *loop);
   if (!counter || uniformity.of(function, *std::get<Assign>(loop->step.front().node).place) != Shape::Varying)
     return false;
   std::size_t gathers = 0, operations = 0;
@@ -63,7 +63,7 @@ bool gathersAlone(const Uniformity& uniformity, FunctionId function, const Stmt&
     if (const auto* n = std::get_if<GatherRead>(&expr.node)) {
       const bool isScattered = uniformity.of(function, *n->index) == Shape::Varying;
       gathers += isScattered ? 1 : 0;
-      isSimple = isSimple && !dependsOnEarlier(*n->index, *loop);
+      isSimple = isSimple && !dependsOnEarlier(module, *n->index, *loop);
     }
     isSimple = isSimple && !std::holds_alternative<Call>(expr.node);
     const bool isOperation =
@@ -81,7 +81,7 @@ bool onlyGathers(const Module& module, const Kernel& kernel) {
   for (const FunctionId id : functionsOf(module, kernel)) {
     walkStmts(module.functions[id].body, [&](const Stmt& stmt) {
       if (!std::holds_alternative<Loop>(stmt.node)) return;
-      const bool is = gathersAlone(uniformity, id, stmt);
+      const bool is = gathersAlone(module, uniformity, id, stmt);
       some = some || is;
       all = all && is;
     });

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "ir/build.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/walk.hpp"
 #include "native/leaves.hpp"
 #include "support/overloaded.hpp"
@@ -23,18 +23,11 @@ bool isControl(const Stmt& stmt) {
          std::holds_alternative<Switch>(stmt.node) || std::holds_alternative<Scope>(stmt.node);
 }
 
-/// Calls visit(variable) for each variable that the statement itself assigns.
+/// Calls visit(variable) for each variable that the statement itself declares or changes.
 template <class Visit>
-void forEachAssigned(const Module& module, const Stmt& stmt, Visit&& visit) {
+void forEachSet(const Module& module, const Stmt& stmt, const Visit& visit) {
   if (const auto* n = std::get_if<Declare>(&stmt.node)) visit(n->var);
-  if (const auto* n = std::get_if<Assign>(&stmt.node)) visit(rootOf(*n->place));
-  const auto* n = std::get_if<CallStmt>(&stmt.node);
-  if (n == nullptr) return;
-  if (n->result) visit(rootOf(*n->result));
-  const Function& callee = module.functions[n->callee];
-  for (std::size_t i = 0; i < n->args.size(); ++i) {
-    if (callee.variables[i].role == VarRole::InOut) visit(rootOf(*n->args[i]));
-  }
+  forEachAssigned(module, stmt, visit);
 }
 
 /// Calls visit(loop) for each loop that all rows run through together, including inner ones.
@@ -77,13 +70,13 @@ void RowPlan::addAssigned(const Block& body, bool isDivergent) {
 }
 
 void RowPlan::addAssignedBy(const Stmt& stmt) {
-  forEachAssigned(module_, stmt, [&](VarId var) { perRow_.insert(var); });
+  forEachSet(module_, stmt, [&](VarId var) { perRow_.insert(var); });
 }
 
 bool RowPlan::isEmittedOnce(const Stmt& stmt) const {
   if (isControl(stmt)) return !rows_.diverges(kernel_.entry, stmt) && !rows_.skips(kernel_.entry, stmt);
   bool isEmittedOnce = true;
-  forEachAssigned(module_, stmt, [&](VarId var) { isEmittedOnce = isEmittedOnce && !isPerRow(var); });
+  forEachSet(module_, stmt, [&](VarId var) { isEmittedOnce = isEmittedOnce && !isPerRow(var); });
   return isEmittedOnce;
 }
 
@@ -115,7 +108,7 @@ std::uint32_t RowPlan::carried() const {
   forEachLoopEmittedOnce(*this, entry_.body, [&](const Stmt& loop) {
     walkStmts(std::get<Loop>(loop.node).body, [&](const Stmt& stmt) {
       if (const auto* n = std::get_if<Declare>(&stmt.node)) inner.insert(n->var);
-      forEachAssigned(module_, stmt, [&](VarId var) { assigned.insert(var); });
+      forEachSet(module_, stmt, [&](VarId var) { assigned.insert(var); });
     });
   });
   std::uint32_t scalars = 0;

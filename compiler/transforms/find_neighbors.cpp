@@ -30,7 +30,7 @@ class Finder {
  public:
   Finder(const Module& module, const Kernel& kernel, Function& function)
       : module_(module), kernel_(kernel), function_(function), values_(function.variables.size()) {
-    const std::vector<bool> assigned = assignedVariables(function);
+    const std::vector<bool> assigned = assignedVariables(module, function);
     walkStmts(function.body, [&](const Stmt& stmt) {
       const auto* n = std::get_if<Declare>(&stmt.node);
       if (n == nullptr || !n->init || assigned[n->var]) return;

@@ -162,7 +162,7 @@ class Propagation {
   Propagation(const Module& module, Function& function)
       : module_(module),
         function_(function),
-        assigned_(assignedVariables(function)),
+        assigned_(assignedVariables(module, function)),
         values_(function.variables.size()) {}
 
   void run() { block(function_.body); }

@@ -59,7 +59,10 @@ int uses(const Expr& expr, VarId var) {
 class Inliner {
  public:
   Inliner(const Module& module, const Kernel& kernel, Function& function)
-      : module_(module), kernel_(kernel), function_(function), assigned_(assignedVariables(function)) {}
+      : module_(module),
+        kernel_(kernel),
+        function_(function),
+        assigned_(assignedVariables(module, function)) {}
 
   /// Returns true if it changed anything.
   bool run() {
@@ -142,7 +145,7 @@ class Inliner {
         statements.pop_back();
       }
     }
-    const std::vector<bool> changed = assignedVariables(callee);
+    const std::vector<bool> changed = assignedVariables(module_, callee);
     const bool isShort = statements.size() == 1 && std::holds_alternative<Assign>(statements[0].node);
     Block all;
     Substitution values;
@@ -219,7 +222,7 @@ class Inliner {
     if (callee.table || callee.body.empty()) return nullptr;
     const auto* end = std::get_if<Return>(&callee.body.back().node);
     if (end == nullptr || !end->value) return nullptr;
-    const std::vector<bool> changed = assignedVariables(callee);
+    const std::vector<bool> changed = assignedVariables(module_, callee);
     if (std::ranges::find(changed, true) != changed.end()) return nullptr;
     Substitution values;
     Block declared;

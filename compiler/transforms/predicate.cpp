@@ -50,13 +50,12 @@ std::optional<VarId> counterOf(const Stmt& stmt) {
 }
 
 /// The literal that a variable holds after these statements; null if it may hold anything else.
-const Expr* literalAfter(std::span<const Stmt> statements, VarId var) {
+const Expr* literalAfter(const Module& module, std::span<const Stmt> statements, VarId var) {
   for (std::size_t i = statements.size(); i-- > 0;) {
     const Stmt& stmt = statements[i];
     const auto asLiteral = [](const Expr* value) {
       return value != nullptr && std::holds_alternative<Literal>(value->node) ? value : nullptr;
     };
-    if (std::holds_alternative<CallStmt>(stmt.node)) return nullptr;
     if (const auto* const n = std::get_if<Declare>(&stmt.node); n != nullptr && n->var == var)
       return asLiteral(n->init.get());
     if (const auto* const n = std::get_if<Assign>(&stmt.node); n != nullptr && rootOf(*n->place) == var) {
@@ -64,7 +63,8 @@ const Expr* literalAfter(std::span<const Stmt> statements, VarId var) {
       return isWhole ? asLiteral(n->value.get()) : nullptr;
     }
     bool isChanged = false;
-    forEachBlock(stmt, [&](const Block& inner) { isChanged = isChanged || assigns(inner, var); });
+    forEachAssigned(module, stmt, [&](VarId assigned) { isChanged = isChanged || assigned == var; });
+    forEachBlock(stmt, [&](const Block& inner) { isChanged = isChanged || assigns(module, inner, var); });
     if (isChanged) return nullptr;
   }
   return nullptr;
@@ -85,8 +85,9 @@ bool isDeclared(const Block& statements, VarId var) {
 
 class CounterSplitter {
  public:
-  CounterSplitter(Function& function, FunctionId id, const analysis::Uniformity& uniformity)
-      : function_(function), id_(id), uniformity_(uniformity) {}
+  CounterSplitter(const Module& module, Function& function, FunctionId id,
+                  const analysis::Uniformity& uniformity)
+      : module_(module), function_(function), id_(id), uniformity_(uniformity) {}
 
   /// From the last statement to the first: the analysis knows statements by address, and insertions move later ones.
   bool block(Block& statements) {
@@ -113,13 +114,14 @@ class CounterSplitter {
       const std::optional<VarId> counter = counterOf(changing[i]);
       if (!counter || isDeclared(loop.init, *counter)) continue;
       if (uniformity_.of(id_, *counter).front() == analysis::Shape::Uniform) continue;
-      const Expr* const start =
-          assigns(loop.init, *counter) ? literalAfter(loop.init, *counter) : literalAfter(before, *counter);
+      const Expr* const start = literalAfter(
+          module_, assigns(module_, loop.init, *counter) ? std::span<const Stmt>(loop.init) : before,
+          *counter);
       if (start == nullptr) continue;
       // the counter's only change is taken out to see what else the loop does with it
       Stmt change = std::move(changing[i]);
       const auto place = changing.erase(changing.begin() + static_cast<std::ptrdiff_t>(i));
-      const bool isOnly = !assigns(loop.body, *counter) && !assigns(loop.step, *counter);
+      const bool isOnly = !assigns(module_, loop.body, *counter) && !assigns(module_, loop.step, *counter);
       if (isOnly && isRead(loop, *counter)) {
         const Loc loc = change.loc;
         const VarId count =
@@ -155,6 +157,7 @@ class CounterSplitter {
     forEachRead(loop, from, [&](VarRef& ref) { ref.var = to; });
   }
 
+  const Module& module_;
   Function& function_;
   FunctionId id_;
   const analysis::Uniformity& uniformity_;
@@ -162,8 +165,9 @@ class CounterSplitter {
 
 /// Copies the varying counters of the function's divergent loops if they start from a literal. Returns true if it
 /// changed the function: `uniformity` does not describe it any more.
-bool splitCounters(Function& function, FunctionId id, const analysis::Uniformity& uniformity) {
-  return CounterSplitter(function, id, uniformity).block(function.body);
+bool splitCounters(const Module& module, Function& function, FunctionId id,
+                   const analysis::Uniformity& uniformity) {
+  return CounterSplitter(module, function, id, uniformity).block(function.body);
 }
 
 }  // namespace
@@ -236,7 +240,7 @@ void predicate(Module& module) {
     std::optional<analysis::Uniformity> known(std::in_place, module, kernel);
     bool isSplit = false;
     for (const FunctionId id : functions)
-      isSplit = splitCounters(module.functions[id], id, *known) || isSplit;
+      isSplit = splitCounters(module, module.functions[id], id, *known) || isSplit;
     if (isSplit) known.emplace(module, kernel);
     const analysis::Uniformity& uniformity = *known;
     const PredicateContext context{module, uniformity, maskedFunctions(module, kernel, uniformity, functions),

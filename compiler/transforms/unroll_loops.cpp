@@ -293,7 +293,7 @@ class Unroller {
       return "it does not count like 'for (int i = a; i < b; ++i)'";
     }
     const std::string& name = function_->variables[init->var].name;
-    if (assigns(loop.body, init->var)) return fmt::format("its body changes the counter '{}'", name);
+    if (assigns(module_, loop.body, init->var)) return fmt::format("its body changes the counter '{}'", name);
     return fmt::format("the bounds of its counter '{}' are not constants", name);
   }
 
@@ -437,7 +437,7 @@ std::optional<VarId> boundOfLoops(const Module& module, const Kernel& kernel) {
   for (VarId p = 0; p < kernel.params.size(); ++p) {
     const KernelParam& param = kernel.params[p];
     if (param.role != ParamRole::Spec || !param.type.isScalar() || !param.type.isInteger()) continue;
-    if (assigns(entry.body, p)) continue;
+    if (assigns(module, entry.body, p)) continue;
     bool bounds = false;
     walkStmts(entry.body, [&](const Stmt& stmt) {
       const auto* loop = std::get_if<Loop>(&stmt.node);

@@ -143,6 +143,23 @@ TEST_CASE("a loop of unknown bounds, a changed counter or too many iterations st
         }).starts_with("with the loops in it, it has 1000 iterations"));
 }
 
+TEST_CASE("a counter may be passed by value to a function, but not to be changed") {
+  const auto unrolled = [](VarRole role) {
+    LoopKernel s;
+    Function f;
+    f.name = "add";
+    f.result = Type::voidType();
+    addVariable(f, "n", intType, role);
+    f.parameterCount = 1;
+    const FunctionId add = addFunction(s.module, std::move(f), {});
+    Block body = block(s.add(s.near(s.k.ref(s.i))), callStmt(add, exprs(s.k.ref(s.i))));
+    const std::string text = s.unrolled(block(s.loop(s.i, 0, 2, std::move(body))));
+    return std::pair(text.find("for (int i") == std::string::npos, s.note().whyNot);
+  };
+  CHECK(unrolled(VarRole::In) == std::pair(true, std::string()));
+  CHECK(unrolled(VarRole::InOut) == std::pair(false, std::string("its body changes the counter 'i'")));
+}
+
 TEST_CASE("a nest is unrolled as a whole or not at all; a loop in one that stays, by itself") {
   LoopKernel s;
   const std::string text =

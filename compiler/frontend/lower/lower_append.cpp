@@ -149,7 +149,7 @@ void FunctionLowering::scatter(const ScatterTarget& target, ir::ScatterOp op, Ex
   ExprPtr index = indexFrom(target.subscripts, target.stream);
   out_ = outer;
   if (!effects.empty()) {
-    keepValue(value, ir::assignedIn(effects));
+    keepValue(value, ir::assignedIn(module_.module(), effects));
     append(std::move(effects));
   }
   emit(module_.loc(target.subscripts.where),

@@ -266,7 +266,7 @@ ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::
     ir::Block* outer = std::exchange(out_, &effects);
     targets.push_back(place(e->getArg(i)));
     out_ = outer;
-    const Variables changed = ir::assignedIn(effects);
+    const Variables changed = ir::assignedIn(module_.module(), effects);
     for (std::size_t k = 0; k + 1 < targets.size(); ++k) keepLocation(targets[k], changed);
     append(std::move(effects));
   }

@@ -157,7 +157,7 @@ FunctionLowering::Exprs FunctionLowering::valuesInOrder(llvm::ArrayRef<const cla
     ir::Block effects;
     ExprPtr result = valueInto(e, effects, (asDoubles >> i & 1U) != 0);
     if (!effects.empty()) {
-      const Variables changed = ir::assignedIn(effects);
+      const Variables changed = ir::assignedIn(module_.module(), effects);
       for (ExprPtr& earlier : values) keepValue(earlier, changed);
       append(std::move(effects));
     }
@@ -235,7 +235,7 @@ FunctionLowering::Sides FunctionLowering::sidesOf(const clang::Expr* left, ExprP
   ExprPtr target = place(left);
   out_ = outer;
   if (!effects.empty()) {
-    keepValue(right, ir::assignedIn(effects));
+    keepValue(right, ir::assignedIn(module_.module(), effects));
     append(std::move(effects));
   }
   return {std::move(target), std::move(right)};

@@ -71,7 +71,7 @@ void FunctionLowering::lowerArguments(std::vector<Argument>& arguments,
                                              : argument(arguments[i].source, parameters[i]);
     out_ = outer;
     if (effects.empty()) continue;
-    const Variables changed = ir::assignedIn(effects);
+    const Variables changed = ir::assignedIn(module_.module(), effects);
     for (std::size_t k = 0; k < arguments.size(); ++k) {
       if (k == i || !arguments[k].value) continue;
       const ir::VarRole role = parameters[k].role;

@@ -361,7 +361,7 @@ ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* i
   parts.push_back(valueInto(index, effects));
   if (!effects.empty()) {
     // the element is accessed after the index's effects; the array itself is not copied
-    keepLocation(parts[0], ir::assignedIn(effects));
+    keepLocation(parts[0], ir::assignedIn(module_.module(), effects));
     append(std::move(effects));
   }
   const ir::Type outer = parts[0]->type;
@@ -446,7 +446,7 @@ void FunctionLowering::fill(Exprs& elements, std::size_t length, FunctionRef<Exp
     if (effects.empty()) {
       while (elements.size() + 1 < length) elements.push_back(ir::clone(*added));
     } else {
-      const Variables changed = ir::assignedIn(effects);
+      const Variables changed = ir::assignedIn(module_.module(), effects);
       for (std::size_t i = first; i < elements.size(); ++i) keepValue(elements[i], changed);
       append(std::move(effects));
     }
@@ -559,7 +559,7 @@ ExprPtr FunctionLowering::defaultStruct(const clang::CXXConstructorDecl* constru
     ir::Block effects;
     const ir::Type member = module_.structAt(type.index).fields[i].type;
     ExprPtr given = inits[i] != nullptr ? valueInto(inits[i], effects) : zero(member, where);
-    const Variables changed = ir::assignedIn(effects);
+    const Variables changed = ir::assignedIn(module_.module(), effects);
     for (ExprPtr& earlier : args) keepValue(earlier, changed);
     append(std::move(effects));
     args.push_back(std::move(given));
