@@ -66,9 +66,6 @@ std::string keyOf(const sk::program::Kernel& kernel, const sk::assemble::Variant
 /// The key of a pass of a reduction: "rows run8 column packed".
 std::string keyOf(const sk::program::Kernel& kernel, const sk::assemble::ReduceVariant& variant);
 
-/// Values of Spec parameters for which a kernel needs different streams, one for each choice of streams.
-std::vector<sk::assemble::SpecValues> specChoices(const sk::program::Kernel& kernel);
-
 /// How streams of a call lie.
 struct Lie {
   sk::assemble::Domain domain;

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <iterator>
-#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "web/offered.hpp"
+#include "web/spec_choices.hpp"
 
 namespace skc::web {
 namespace {
@@ -19,14 +19,9 @@ using sk::assemble::SpecValues;
 using sk::assemble::StreamAccess;
 using sk::assemble::Variant;
 using sk::assemble::Work;
-using sk::program::ConditionOp;
 using sk::program::Kernel;
 using sk::program::Parameter;
 using sk::program::Role;
-using sk::program::Scalar;
-
-/// The most choices of values of Spec parameters that are tried for a kernel.
-constexpr std::size_t mostSpecChoices = 256;
 
 std::string_view nameOf(Addressing addressing) {
   switch (addressing) {
@@ -68,29 +63,6 @@ std::string accessKey(const Kernel& kernel, std::span<const StreamAccess> access
     }
   }
   return key;
-}
-
-/// Values of a Spec parameter that may differ in which streams they need: those that conditions mention, and their
-/// neighbours.
-std::vector<std::uint32_t> candidates(const Kernel& kernel, Scalar scalar) {
-  if (scalar == Scalar::Bool) return {0, 1};
-  std::set<std::uint32_t> values{0, 1};
-  for (const Parameter& parameter : kernel.parameters) {
-    for (const sk::program::ConditionStep& step : parameter.neededIf.steps) {
-      if (step.op != ConditionOp::Literal || step.scalar != scalar) continue;
-      values.insert({step.value - 1, step.value, step.value + 1});
-    }
-  }
-  return {values.begin(), values.end()};
-}
-
-/// Whether a condition mentions the Spec parameter of this number.
-bool isMentioned(const Kernel& kernel, std::size_t number) {
-  return std::ranges::any_of(kernel.parameters, [&](const Parameter& parameter) {
-    return std::ranges::any_of(parameter.neededIf.steps, [&](const sk::program::ConditionStep& step) {
-      return step.op == ConditionOp::Spec && step.value == number;
-    });
-  });
 }
 
 }  // namespace
@@ -214,34 +186,6 @@ std::string keyOf(const Kernel& kernel, const sk::assemble::ReduceVariant& v) {
     if (isAligned) access[i] = {};
   }
   return key + accessKey(kernel, access, v.specs);
-}
-
-std::vector<SpecValues> specChoices(const Kernel& kernel) {
-  std::vector<SpecValues> choices(1);
-  std::size_t next = 0;
-  for (const Parameter& parameter : kernel.parameters) {
-    if (parameter.role != Role::Spec) continue;
-    const std::size_t number = next++;
-    // The values of others change no condition, and would only use up the choices that are tried.
-    if (!isMentioned(kernel, number)) continue;
-    std::vector<SpecValues> more;
-    for (const SpecValues& choice : choices) {
-      for (const std::uint32_t value : candidates(kernel, parameter.element->fields.front().scalar)) {
-        more.push_back(choice);
-        more.back()[number] = value;
-      }
-    }
-    if (more.size() > mostSpecChoices) more.resize(mostSpecChoices);
-    choices = std::move(more);
-  }
-  std::set<std::vector<bool>> seen;
-  std::erase_if(choices, [&](const SpecValues& specs) {
-    std::vector<bool> needed;
-    for (const Parameter& parameter : kernel.parameters)
-      needed.push_back(sk::assemble::isNeeded(parameter, specs));
-    return !seen.insert(std::move(needed)).second;
-  });
-  return choices;
 }
 
 std::vector<std::vector<StreamAccess>> accessChoices(const Kernel& kernel, const Lie& lie,

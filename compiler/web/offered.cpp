@@ -9,6 +9,7 @@
 #include "assemble/program/texture_units.hpp"
 #include "program/stream_structs.hpp"
 #include "web/ahead_programs.hpp"
+#include "web/spec_choices.hpp"
 #include "web/sum_variants.hpp"
 
 namespace skc::web {
@@ -96,8 +97,22 @@ std::string whyNestsTooDeep(const ir::Module& module, const ir::Kernel& kernel) 
       levels, most);
 }
 
+namespace {
+
+std::string whyTooManyStreamSets(const Kernel& kernel) {
+  if (specChoices(kernel).size() <= mostStreamSets) return {};
+  return fmt::format(
+      "the values of its specialisation constants choose among more than {} sets of streams, each of which "
+      "would need a "
+      "program of its own; divide it, or let it read more of the streams in any case",
+      mostStreamSets);
+}
+
+}  // namespace
+
 std::string whyNotOffered(const ir::Module& module, const emit::Unit& unit) {
   const Kernel& kernel = unit.kernel;
+  if (std::string why = whyTooManyStreamSets(kernel); !why.empty()) return why;
   if (std::string why = whyNestsTooDeep(module, module.kernels[unit.id]); !why.empty()) return why;
   if (unit.reduction != nullptr) {
     if (std::string why = whyTooManyPlanes(*unit.reduction, unit.isScan); !why.empty()) return why;

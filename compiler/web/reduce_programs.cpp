@@ -9,6 +9,7 @@
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/reduce/scan_plan.hpp"
 #include "web/ahead_programs.hpp"
+#include "web/spec_choices.hpp"
 
 namespace skc::web {
 namespace {

@@ -9,6 +9,7 @@
 #include "assemble/reduce/reduce_plan.hpp"
 #include "web/ahead_programs.hpp"
 #include "web/offered.hpp"
+#include "web/spec_choices.hpp"
 
 namespace skc::web {
 namespace {

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "web/spec_choices.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+
+namespace skc::web {
+namespace {
+
+using sk::assemble::SpecValues;
+using sk::program::Condition;
+using sk::program::ConditionOp;
+using sk::program::ConditionStep;
+using sk::program::Kernel;
+using sk::program::Parameter;
+using sk::program::Role;
+using sk::program::Scalar;
+
+/// The most choices that are told apart before all conditions are known: those of several parameters may come to few sets.
+constexpr std::size_t mostPartialChoices = 4096;
+
+/// Whether a condition mentions the Spec parameter of this number.
+bool mentions(const Condition& condition, std::size_t number) {
+  return std::ranges::any_of(condition.steps, [&](const ConditionStep& step) {
+    return step.op == ConditionOp::Spec && step.value == number;
+  });
+}
+
+bool isMentioned(const Kernel& kernel, std::size_t number) {
+  return std::ranges::any_of(kernel.parameters, [&](const Parameter& parameter) {
+    return mentions(parameter.neededIf, number);
+  });
+}
+
+bool combinesBits(const Condition& condition) {
+  return std::ranges::any_of(condition.steps, [](const ConditionStep& step) {
+    return step.op == ConditionOp::BitAnd || step.op == ConditionOp::BitOr || step.op == ConditionOp::BitXor;
+  });
+}
+
+/// Adds the values that have bits of several of the given ones, as `flags & 1` and `flags & 4` tell apart.
+void addUnions(std::set<std::uint32_t>& values, const std::set<std::uint32_t>& given) {
+  for (const std::uint32_t bits : given) {
+    std::vector<std::uint32_t> more;
+    for (const std::uint32_t value : values) more.push_back(value | bits);
+    values.insert(more.begin(), more.end());
+    if (values.size() > mostPartialChoices) return;
+  }
+}
+
+/// Values of a Spec parameter that may differ in which streams they need: those that conditions mention, and their
+/// neighbours.
+std::set<std::uint32_t> candidates(const Kernel& kernel, Scalar scalar) {
+  std::set<std::uint32_t> values{0, 1}, masks;
+  if (scalar == Scalar::Bool) return values;
+  for (const Parameter& parameter : kernel.parameters) {
+    for (const ConditionStep& step : parameter.neededIf.steps) {
+      if (step.op != ConditionOp::Literal || step.scalar != scalar) continue;
+      values.insert({step.value - 1, step.value, step.value + 1});
+      if (combinesBits(parameter.neededIf)) masks.insert(step.value);
+    }
+  }
+  addUnions(values, masks);
+  return values;
+}
+
+/// What tells choices apart of which only the first `known` Spec parameters have a value: which of the conditions hold that
+/// mention no other, and the values that other conditions will ask for.
+std::vector<std::uint32_t> differences(const Kernel& kernel, const SpecValues& specs, std::size_t known) {
+  std::vector<std::uint32_t> result;
+  for (const Parameter& parameter : kernel.parameters) {
+    const Condition& condition = parameter.neededIf;
+    bool isOpen = false;
+    for (std::size_t number = known; number < specs.size(); ++number)
+      isOpen = isOpen || mentions(condition, number);
+    if (!isOpen) result.push_back(sk::assemble::isNeeded(parameter, specs) ? 1 : 0);
+    for (std::size_t number = 0; isOpen && number < known; ++number)
+      if (mentions(condition, number)) result.push_back(specs[number]);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<SpecValues> specChoices(const Kernel& kernel) {
+  std::vector<SpecValues> choices(1);
+  std::size_t next = 0;
+  for (const Parameter& parameter : kernel.parameters) {
+    if (parameter.role != Role::Spec) continue;
+    const std::size_t number = next++;
+    if (!isMentioned(kernel, number)) continue;
+    const std::set<std::uint32_t> values =
+        candidates(kernel, parameter.element->fields.front().scalar);
+    std::set<std::vector<std::uint32_t>> seen;
+    std::vector<SpecValues> more;
+    for (SpecValues choice : choices) {
+      for (const std::uint32_t value : values) {
+        choice[number] = value;
+        if (seen.insert(differences(kernel, choice, next)).second) more.push_back(choice);
+        if (more.size() > mostPartialChoices) return more;
+      }
+    }
+    choices = std::move(more);
+  }
+  return choices;
+}
+
+}  // namespace skc::web
