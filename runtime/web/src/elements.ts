@@ -29,10 +29,10 @@ function made(name: string): Element {
     const fields = Array.from({ length: n }, (_, part): Field => ({ scalar: 'float', width: n, offset: 4 * n * part, part }));
     return { name, size: 4 * n * n, fields };
   }
-  const parts = /^([a-z]+|[us]norm(?:8|16))([234]?)$/.exec(name);
+  const parts = /^([a-z]+)([234]?)$/.exec(name) ?? /^([us]norm(?:8|16))(?:x([234]))?$/.exec(name);
   const scalar = parts?.[1] as Scalar;
   if (parts === null || !(scalar in bytesOf)) {
-    throw new SkError(`'${name}' is no type of elements; name one like 'float', 'int2' or 'unorm8', or give a struct that a .sk.js file exports`, 'type');
+    throw new SkError(`'${name}' is no type of elements; name one like 'float', 'int2' or 'unorm8x4', or give a struct that a .sk.js file exports`, 'type');
   }
   const width = Number(parts[2] || 1);
   const bytes = bytesOf[scalar];

@@ -3,9 +3,8 @@
 // The types of what .sk files declare, as FILE.sk.d.ts uses them.
 import type { Fitted, Stream, View } from './stream.js';
 
-type Width = '' | '2' | '3' | '4';
-/** Scalars and vectors whose arrays have one type. */
-type Of<S extends string> = `${S}${Width}`;
+/** A scalar and its vectors, whose arrays have one type. */
+type Of<S extends string> = S extends `${string}norm${number}` ? S | `${S}x2` | `${S}x3` | `${S}x4` : S | `${S}2` | `${S}3` | `${S}4`;
 
 /** Elements that TypeScript has no need to declare: `float`, `int3`. */
 export type BuiltIn =
@@ -49,7 +48,7 @@ export type ArrayOf<T extends ElementType> = T extends Struct<string, unknown, i
 type One<T> = T extends `bool${string}` ? boolean : number;
 
 /** One value: a number or a boolean, components of a vector, or all components of a matrix, row by row. */
-export type Value<T extends BuiltIn> = T extends `${string}x${string}`
+export type Value<T extends BuiltIn> = T extends `float${number}x${number}`
   ? readonly number[]
   : T extends `${string}2`
   ? readonly [One<T>, One<T>]
