@@ -119,11 +119,16 @@ class Editor {
     copyToken();
     if (atKernel()) return editInstantiation();
     if (!cursor_.at(tok::less)) return copyDeclaration();  // `template struct Pair<float>;`
+    copyTemplateParameters();
+    isBehindTemplate_ = true;
+    if (atDeclarationWord("stream")) diagnostics_.report(Diag::StreamTemplate, locOf(cursor_.peek()));
+  }
+
+  /// Copies `<...> requires ...`.
+  void copyTemplateParameters() {
     copyTokens(cursor_.templateParameters(templates_));
     if (cursor_.at(tok::kw_requires)) copyConstraint();
     noteTemplate();
-    isBehindTemplate_ = true;
-    if (atDeclarationWord("stream")) diagnostics_.report(Diag::StreamTemplate, locOf(cursor_.peek()));
   }
 
   /// Remembers the name that a template declares.
@@ -335,28 +340,31 @@ class Editor {
 
   void copyDeclaration() { copyNamed(); }
 
-  /// Copies any other declaration, and edits the parameter list of a function, whose name it returns.
-  std::optional<Token> copyNamed() {
+  /// Copies any other declaration, and edits the parameter list of a function, whose name it returns. The `}` of a struct
+  /// ends a member, but is not a part of it.
+  std::optional<Token> copyNamed(bool isMember = false) {
     bool initializer = false;
     bool record = false;
     std::optional<Token> function;
+    std::vector<IndexedParameter> indexed;
     while (!cursor_.at(tok::eof)) {
+      if (isMember) checkInner();
       const Token& token = cursor_.peek();
       if (token.isOneOf(tok::semi, tok::r_brace)) {
-        copyToken();
+        if (!isMember || token.is(tok::semi)) copyToken();
         return function;
       }
-      initializer = initializer || token.is(tok::equal) || isValueAhead();
+      const bool isOperator = !out_.empty() && out_.back().is(tok::kw_operator);  // `operator=`
+      initializer = initializer || (token.is(tok::equal) && !isOperator) || isValueAhead();
       if (token.isOneOf(tok::kw_struct, tok::kw_class, tok::kw_union, tok::kw_enum)) record = true;
       if (token.is(tok::l_brace)) {
+        if (function) rejectCommaIndices(cursor_.peekBraced(), indexed, diagnostics_);
         record && !initializer && !function ? copyRecord() : copyBraces();
         if (!initializer && (function || !record)) return function;
         continue;
       }
-      const std::size_t name = token.is(tok::l_paren) && !initializer && !function ? nameAtEnd(out_) : 0;
-      if (name != 0) {
-        function = out_[name];
-        const std::vector<Token> declared = cursor_.takeParenthesized();
+      if (!initializer && !function && (function = functionAhead())) {
+        const std::vector<Token> declared = takeParameters();
         if (declared.empty()) {
           diagnostics_.report(Diag::UnclosedParameters, locOf(*function), {nameOf(*function)});
           return function;
@@ -364,13 +372,32 @@ class Editor {
         ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, out_);
         const std::vector<Token> edited = parameters.edit(declared, FunctionKind::Helper);
         out_.insert(out_.end(), edited.begin(), edited.end());
-        if (cursor_.at(tok::l_brace))
-          rejectCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
+        indexed = parameters.indexed();
         continue;
       }
       copyToken();
     }
     return function;
+  }
+
+  /// The name of the function whose parameters come next; of `operator+` and `operator()`, the last token.
+  std::optional<Token> functionAhead() const {
+    if (!cursor_.at(tok::l_paren)) return std::nullopt;
+    for (const std::size_t back : {2U, 3U}) {
+      if (out_.size() >= back && out_[out_.size() - back].is(tok::kw_operator)) return out_.back();
+    }
+    const std::size_t name = nameAtEnd(out_);
+    return name != 0 ? std::optional(out_[name]) : std::nullopt;
+  }
+
+  /// Takes `( ... )`, and edits the constructors in default arguments. Empty if nothing closes the parentheses.
+  std::vector<Token> takeParameters() {
+    std::vector<Token> declared = cursor_.takeParenthesized(), copied;
+    if (declared.empty()) return declared;
+    declared.push_back(TokenBuilder(preprocessor_).make(tok::eof, declared.back().getLocation()));
+    TokenCursor parameters(declared);
+    while (!parameters.at(tok::eof)) constructors_.copy(parameters, copied);
+    return copied;
   }
 
   /// True after `const float2 a`, if the constructor editor turned its parentheses into a value.
@@ -410,22 +437,28 @@ class Editor {
     } while (depth > 0 && !cursor_.at(tok::eof));
   }
 
-  /// Copies the `{ ... }` of a struct, and edits the members that make it a bundle.
+  /// Copies the `{ ... }` of a struct, and edits the members that make it a bundle and the parameters of its functions.
   void copyRecord() {
     std::vector<Token> constants;
     ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, constants);
     BundleEditor members(parameters);
-    int depth = 0;
-    do {
-      checkInner();
-      if (cursor_.at(tok::l_brace)) ++depth;
-      if (cursor_.at(tok::r_brace)) --depth;
-      const bool isBetween = cursor_.peek().isOneOf(tok::l_brace, tok::r_brace, tok::semi);
-      copyToken();
-      if (isBetween && depth > 0) members.edit(cursor_, out_);
-    } while (depth > 0 && !cursor_.at(tok::eof));
+    copyToken();
+    while (!cursor_.at(tok::r_brace) && !cursor_.at(tok::eof)) {
+      if (cursor_.peek().isOneOf(tok::kw_public, tok::kw_protected, tok::kw_private)) copyTokens(2);
+      members.edit(cursor_, out_);
+      copyMember();
+    }
+    if (cursor_.at(tok::r_brace)) copyToken();
     out_.insert(out_.begin() + static_cast<std::ptrdiff_t>(declarationBegin_), constants.begin(),
                 constants.end());
+  }
+
+  void copyMember() {
+    if (cursor_.at(tok::kw_template)) {
+      copyToken();
+      copyTemplateParameters();
+    }
+    copyNamed(/*isMember=*/true);
   }
 
   /// Reports `stream float a<n>` and Brook's `indexof a` in a body or a struct, and kernels there, which it skips.
