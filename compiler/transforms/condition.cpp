@@ -102,6 +102,16 @@ ExprPtr orOf(const Expr& a, const Expr& b) {
   return binary(BinaryOp::LogicalOr, clone(a), clone(b));
 }
 
+ExprPtr choiceOf(const Expr& condition, const Expr& yes, const Expr& no) {
+  if (isLiteral(condition, true) || isSame(yes, no)) return clone(yes);
+  if (isLiteral(condition, false)) return clone(no);
+  if (!yes.type.isBool()) return select(clone(condition), clone(yes), clone(no));
+  const ExprPtr opposite = notOf(condition);
+  if (isLiteral(yes, true)) return orOf(condition, no);
+  if (isLiteral(no, true)) return orOf(*opposite, yes);
+  return orOf(*andOf(condition, yes), *andOf(*opposite, no));
+}
+
 /// Drops conversions between int and uint for equality: they keep the bits.
 ExprPtr comparison(BinaryOp op, ExprPtr lhs, ExprPtr rhs) {
   auto* n = std::get_if<Convert>(&lhs->node);

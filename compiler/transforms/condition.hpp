@@ -23,6 +23,9 @@ ir::ExprPtr notOf(const ir::Expr& condition);
 ir::ExprPtr andOf(const ir::Expr& a, const ir::Expr& b);
 ir::ExprPtr orOf(const ir::Expr& a, const ir::Expr& b);
 
+/// `condition ? yes : no`. A choice of bools has no Select, so that it may be a condition.
+ir::ExprPtr choiceOf(const ir::Expr& condition, const ir::Expr& yes, const ir::Expr& no);
+
 /// Builds a comparison, dropping conversions that it does not need.
 ir::ExprPtr comparison(ir::BinaryOp op, ir::ExprPtr lhs, ir::ExprPtr rhs);
 

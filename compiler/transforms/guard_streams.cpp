@@ -6,6 +6,7 @@
 
 #include "ir/build.hpp"
 #include "ir/evaluate.hpp"
+#include "ir/lvalue.hpp"
 #include "ir/operators.hpp"
 #include "ir/walk.hpp"
 #include "support/overloaded.hpp"
@@ -41,20 +42,23 @@ bool leaves(const Block& block) {
          std::holds_alternative<Continue>(last);
 }
 
-/// Variables that may change after their declaration.
-std::vector<bool> changedVariables(const Module& module, const Function& function) {
-  std::vector<bool> changed(function.variables.size(), false);
-  walkStmts(function.body, [&](const Stmt& stmt) {
-    if (const auto* n = std::get_if<Assign>(&stmt.node)) changed[rootOf(*n->place)] = true;
-    if (const auto* n = std::get_if<CallStmt>(&stmt.node)) {
-      if (n->result) changed[rootOf(*n->result)] = true;
-      const Function& callee = module.functions[n->callee];
-      for (std::size_t i = 0; i < n->args.size(); ++i) {
-        if (callee.variables[i].role == VarRole::InOut) changed[rootOf(*n->args[i])] = true;
-      }
-    }
-  });
-  return changed;
+template <class T>
+std::size_t countOf(const Block& block) {
+  std::size_t count = 0;
+  walkStmts(block, [&](const Stmt& stmt) { count += std::holds_alternative<T>(stmt.node) ? 1 : 0; });
+  return count;
+}
+
+bool returnsWithin(const Stmt& stmt) {
+  bool found = std::holds_alternative<Return>(stmt.node);
+  forEachBlock(stmt, [&](const Block& inner) { found = found || countOf<Return>(inner) > 0; });
+  return found;
+}
+
+/// True if a case can only be left by its last statement, by a return, or by falling through.
+bool isLeftAtItsEnd(const Block& body) {
+  const bool breaks = !body.empty() && std::holds_alternative<Break>(body.back().node);
+  return countOf<Break>(body) == (breaks ? 1 : 0);
 }
 
 /// Analyses one kernel and collects, for each parameter, the conditions of its uses.
@@ -88,11 +92,17 @@ class UseAnalysis {
       for (AnyOf& use : uses_) use.add(*literal(true));
       return;
     }
-    Frame frame{function, id == kernel_.entry, changedVariables(module_, function), std::move(values)};
+    Frame frame = frameOf(id, std::move(values));
+    block(frame, function.body, guard);
+  }
+
+  Frame frameOf(FunctionId id, PassedValues values) const {
+    const Function& function = module_.functions[id];
+    Frame frame{function, id == kernel_.entry, assignedVariables(module_, function), std::move(values)};
     for (std::size_t i = 0; i < frame.values.size(); ++i) {
       if (frame.changed[i]) frame.values[i] = nullptr;
     }
-    block(frame, function.body, guard);
+    return frame;
   }
 
   // ---- statements -------------------------------------------------------------------------------
@@ -114,7 +124,7 @@ class UseAnalysis {
   void statement(Frame& frame, const Declare& n, const Expr& guard) {
     if (!n.init) return;
     expression(frame, *n.init, guard);
-    if (!frame.changed[n.var]) frame.values[n.var] = shortValue(frame, *n.init);
+    remember(frame, n);
   }
   void statement(Frame& frame, const Assign& n, const Expr& guard) {
     expression(frame, *n.place, guard);
@@ -164,18 +174,22 @@ class UseAnalysis {
   }
   void statement(Frame& frame, const Scope& n, const Expr& guard) { block(frame, n.body, guard); }
 
+  void remember(Frame& frame, const Declare& n) const {
+    if (n.init && !frame.changed[n.var]) frame.values[n.var] = shortValue(frame, *n.init);
+  }
+
   static std::size_t valuesOf(const Switch& choice) {
     std::size_t count = 0;
     for (const Case& one : choice.cases) count += one.values.size() + 1;
     return count;
   }
 
-  static ExprPtr entersCase(const Switch& choice, const Case& one, const Expr& chosen) {
+  ExprPtr entersCase(const Switch& choice, const Case& one, const Expr& chosen) const {
     const auto isOneOf = [&](const std::vector<std::int64_t>& values) {
       ExprPtr any = literal(false);
       for (const std::int64_t value : values) {
         ExprPtr wanted = makeExpr(chosen.type, Literal{static_cast<std::uint32_t>(value)});
-        any = orOf(*any, *comparison(BinaryOp::Equal, clone(chosen), std::move(wanted)));
+        any = orOf(*any, *combined(BinaryOp::Equal, clone(chosen), std::move(wanted)));
       }
       return any;
     };
@@ -228,9 +242,13 @@ class UseAnalysis {
   }
 
   void call(Frame& frame, FunctionId callee, const std::vector<ExprPtr>& args, const Expr& guard) {
+    analyse(callee, passed(frame, callee, args), guard);
+  }
+
+  PassedValues passed(const Frame& frame, FunctionId callee, const std::vector<ExprPtr>& args) const {
     PassedValues values(module_.functions[callee].variables.size());
     for (std::size_t i = 0; i < args.size(); ++i) values[i] = shortValue(frame, *args[i]);
-    analyse(callee, std::move(values), guard);
+    return values;
   }
 
   /// The value if it is short: one that stands for a variable may be repeated in the next.
@@ -253,6 +271,8 @@ class UseAnalysis {
       return operand ? notOf(*operand) : nullptr;
     }
     if (const auto* n = std::get_if<Convert>(&expr.node)) return converted(frame, expr.type, *n->operand);
+    if (const auto* n = std::get_if<Select>(&expr.node)) return selected(frame, *n);
+    if (const auto* n = std::get_if<Call>(&expr.node)) return returned(frame, *n);
     const auto* n = std::get_if<Binary>(&expr.node);
     if (n == nullptr || !isFollowed(n->op, n->lhs->type)) return nullptr;
     ExprPtr lhs = value(frame, *n->lhs);
@@ -260,23 +280,118 @@ class UseAnalysis {
     if (!lhs || !rhs) return nullptr;
     if (n->op == BinaryOp::LogicalAnd) return andOf(*lhs, *rhs);
     if (n->op == BinaryOp::LogicalOr) return orOf(*lhs, *rhs);
-    return comparison(n->op, std::move(lhs), std::move(rhs));
+    return combined(n->op, std::move(lhs), std::move(rhs));
+  }
+
+  /// The operator applied to each of the values that operands choose from.
+  ExprPtr combined(BinaryOp op, ExprPtr lhs, ExprPtr rhs) const {
+    if (const auto* n = std::get_if<Select>(&lhs->node)) {
+      return choiceOf(*n->cond, *combined(op, clone(*n->yes), clone(*rhs)),
+                      *combined(op, clone(*n->no), clone(*rhs)));
+    }
+    if (const auto* n = std::get_if<Select>(&rhs->node)) {
+      return choiceOf(*n->cond, *combined(op, clone(*lhs), clone(*n->yes)),
+                      *combined(op, clone(*lhs), clone(*n->no)));
+    }
+    ExprPtr result = comparison(op, std::move(lhs), std::move(rhs));
+    const auto bits = evaluate(module_, *result, Constants::LookThrough);
+    return bits ? makeExpr(result->type, Literal{*bits}) : std::move(result);
   }
 
   /// `if (n)` is `n != 0`; conversions between the other types, except float, keep the bits.
   ExprPtr converted(const Frame& frame, Type to, const Expr& operand) const {
     const bool rounds = to.isFloat() || to.isDouble() || to.isNarrow() || operand.type.isNarrow();
     ExprPtr from = rounds ? nullptr : value(frame, operand);
-    if (!from || (from->type.isFloat() && !to.isBool())) return nullptr;
-    if (!to.isBool()) return convert(to.scalar, std::move(from));
+    return from ? convertedTo(to, std::move(from)) : nullptr;
+  }
+
+  ExprPtr convertedTo(Type to, ExprPtr from) const {
     const Type type = from->type;
-    return binary(BinaryOp::NotEqual, std::move(from), makeExpr(type, Literal{0}));
+    if (type.isFloat() && !to.isBool()) return nullptr;
+    if (to.isBool()) return combined(BinaryOp::NotEqual, std::move(from), makeExpr(type, Literal{0}));
+    if (const auto* n = std::get_if<Select>(&from->node)) {
+      return choiceOf(*n->cond, *convertedTo(to, clone(*n->yes)), *convertedTo(to, clone(*n->no)));
+    }
+    ExprPtr result = convert(to.scalar, std::move(from));
+    const auto bits = evaluate(module_, *result, Constants::LookThrough);
+    return bits ? makeExpr(to, Literal{*bits}) : std::move(result);
+  }
+
+  ExprPtr selected(const Frame& frame, const Select& n) const {
+    const ExprPtr cond = value(frame, *n.cond), yes = value(frame, *n.yes), no = value(frame, *n.no);
+    return cond && yes && no ? choiceOf(*cond, *yes, *no) : nullptr;
+  }
+
+  // ---- what functions return ----------------------------------------------------------------------
+
+  /// A value that a function returns if the condition holds, and none of those before it.
+  struct Returned {
+    ExprPtr condition, value;
+  };
+
+  /// A table replaces its function by approximate values.
+  ExprPtr returned(const Frame& frame, const Call& n) const {
+    const Function& callee = module_.functions[n.callee];
+    if (callee.table || ++followedCalls_ > mostAnalysedCalls) return nullptr;
+    Frame inner = frameOf(n.callee, passed(frame, n.callee, n.args));
+    std::vector<Returned> all;
+    if (!addReturned(inner, callee.body, *literal(true), all)) return nullptr;
+    ExprPtr isReturned = literal(false), result;
+    for (const Returned& one : all) isReturned = orOf(*isReturned, *one.condition);
+    if (!skc::isLiteral(*isReturned, true)) return nullptr;
+    for (; !all.empty(); all.pop_back()) {
+      Returned& one = all.back();
+      if (result && isTooLong(*result)) return nullptr;
+      result = result ? choiceOf(*one.condition, *one.value, *result) : std::move(one.value);
+    }
+    return result;
+  }
+
+  /// Adds what the statements return; false if that depends on anything but Spec variables.
+  bool addReturned(Frame& frame, const Block& statements, const Expr& guard,
+                   std::vector<Returned>& all) const {
+    for (const Stmt& stmt : statements) {
+      if (const auto* n = std::get_if<Declare>(&stmt.node)) remember(frame, *n);
+      if (!returnsWithin(stmt)) continue;
+      if (const auto* n = std::get_if<Return>(&stmt.node)) {
+        ExprPtr result = n->value ? shortValue(frame, *n->value) : nullptr;
+        if (!result || isTooLong(guard)) return false;
+        all.push_back({clone(guard), std::move(result)});
+        return true;
+      }
+      if (!addReturnedWithin(frame, stmt, guard, all)) return false;
+    }
+    return true;
+  }
+
+  bool addReturnedWithin(Frame& frame, const Stmt& stmt, const Expr& guard,
+                         std::vector<Returned>& all) const {
+    if (const auto* n = std::get_if<Scope>(&stmt.node)) return addReturned(frame, n->body, guard, all);
+    if (const auto* n = std::get_if<Switch>(&stmt.node)) return addReturnedBy(frame, *n, guard, all);
+    const auto* n = std::get_if<If>(&stmt.node);
+    const ExprPtr cond = n == nullptr ? nullptr : value(frame, *n->cond);
+    return cond && addReturned(frame, n->then, *andOf(guard, *cond), all) &&
+           addReturned(frame, n->otherwise, *andOf(guard, *notOf(*cond)), all);
+  }
+
+  bool addReturnedBy(Frame& frame, const Switch& n, const Expr& guard, std::vector<Returned>& all) const {
+    const ExprPtr chosen = value(frame, *n.value);
+    if (!chosen || valuesOf(n) > mostCases) return false;
+    ExprPtr falling = literal(false);
+    for (const Case& one : n.cases) {
+      const ExprPtr entered = orOf(*entersCase(n, one, *chosen), *falling);
+      if (!isLeftAtItsEnd(one.body)) return false;
+      if (!addReturned(frame, one.body, *andOf(guard, *entered), all)) return false;
+      falling = leaves(one.body) ? literal(false) : clone(*entered);
+    }
+    return true;
   }
 
   const Module& module_;
   const Kernel& kernel_;
   std::vector<AnyOf> uses_;
   int calls_ = 0;
+  mutable int followedCalls_ = 0;  ///< limited, since functions that call others twice repeat all their work
 };
 
 bool mayBeOmitted(const KernelParam& param) {

@@ -120,6 +120,74 @@ TEST_CASE("locals and parameters of functions are looked through unless they cha
   CHECK(need(true) == "always");
 }
 
+/// A function of two parameters, `flag` and `n`.
+struct Chooser {
+  explicit Chooser(Type result) {
+    f.name = "choose";
+    f.result = result;
+    flag = addVariable(f, "flag", boolType, VarRole::In);
+    n = addVariable(f, "n", intType, VarRole::In);
+    f.parameterCount = 2;
+  }
+  Function f;
+  VarId flag, n;
+
+  ExprPtr isN(int value) { return binary(BinaryOp::Equal, varRef(f, n), literal(value)); }
+  /// The condition of a stream that is read if the kernel's flag and number make the function's result true, or 5.
+  std::string need(Block body) {
+    GuardedKernel s;
+    const bool isBool = f.result.isBool();
+    const FunctionId id = addFunction(s.module, std::move(f), std::move(body));
+    ExprPtr result = call(s.module, id, exprs(s.k.ref(s.flag), s.k.ref(s.n)));
+    ExprPtr isWanted = isBool ? std::move(result) : binary(BinaryOp::Equal, std::move(result), literal(5));
+    return s.need(block(s.write(s.k.ref(s.x)), ifStmt(std::move(isWanted), block(s.write(s.k.ref(s.y))))));
+  }
+};
+
+TEST_CASE("what functions return is looked through") {
+  Chooser formula(boolType), early(boolType), nested(boolType), number(intType), selected(intType);
+  CHECK(formula.need(block(returnStmt(binary(BinaryOp::LogicalAnd, varRef(formula.f, formula.flag),
+                                             formula.isN(3))))) == "flag && n == 3");
+  CHECK(early.need(block(ifStmt(varRef(early.f, early.flag), block(returnStmt(literal(false)))),
+                         returnStmt(early.isN(3)))) == "!flag && n == 3");
+  Block inner = block(ifStmt(nested.isN(1), block(returnStmt(literal(true)))));
+  CHECK(nested.need(block(ifStmt(varRef(nested.f, nested.flag), std::move(inner)),
+                          returnStmt(nested.isN(2)))) == "(flag && n == 1) || n == 2");
+  CHECK(number.need(block(ifStmt(varRef(number.f, number.flag), block(returnStmt(literal(5))),
+                                 block(returnStmt(varRef(number.f, number.n)))))) == "flag || n == 5");
+  CHECK(selected.need(block(returnStmt(select(varRef(selected.f, selected.flag), literal(5), literal(4))))) ==
+        "flag");
+}
+
+TEST_CASE("what functions return by a switch is looked through, unless it may leave a case in between") {
+  for (const bool isLeft : {false, true}) {
+    Chooser s(boolType);
+    Block first =
+        block(ifStmt(varRef(s.f, s.flag), isLeft ? block(breakStmt()) : block(returnStmt(literal(true)))));
+    first.push_back(returnStmt(literal(false)));
+    std::vector<Case> cases;
+    cases.push_back({{1}, false, {}, {}});
+    cases.push_back({{2}, false, std::move(first), {}});
+    cases.push_back({{3}, false, block(breakStmt()), {}});
+    cases.push_back({{}, true, block(returnStmt(literal(false))), {}});
+    const std::string need =
+        s.need(block(switchStmt(varRef(s.f, s.n), std::move(cases)), returnStmt(literal(true))));
+    CHECK(need ==
+          (isLeft ? "always"
+                  : "((n == 2 || n == 1) && flag) || (!(n == 2 || n == 1) && (n == 1 || n == 2 || n == 3))"));
+  }
+}
+
+TEST_CASE("a result that depends on more than spec parameters is unknown") {
+  Chooser changed(boolType), looped(boolType);
+  Block body = block(assign(varRef(changed.f, changed.flag), literal(true)));
+  body.push_back(returnStmt(varRef(changed.f, changed.flag)));
+  CHECK(changed.need(std::move(body)) == "always");
+  Block inner = block(returnStmt(varRef(looped.f, looped.flag)));
+  CHECK(looped.need(block(whileLoop(looped.isN(1), std::move(inner)), returnStmt(literal(false)))) ==
+        "always");
+}
+
 TEST_CASE("gathers in functions are needed as the calls are guarded") {
   GuardedKernel s;
   const VarId u = s.k.gather("u", floatType, 1);

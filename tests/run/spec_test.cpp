@@ -117,6 +117,36 @@ TEST_CASE("conditions go through functions, locals and early returns") {
   });
 }
 
+TEST_CASE("conditions go through what functions return") {
+  onGlAndNative([](sk::Device& device) {
+    auto a = streamOf<float>(device, {3}, {1, 2, 3});
+    auto b = streamOf<float>(device, {3}, {10, 20, 30});
+    auto c = streamOf<float>(device, {3}, {100, 200, 300});
+    auto r = device.stream<float>({3});
+    const auto first = [&] { return r.read()[0]; };
+    spec::viaResult({0, false}, sk::none, sk::none, sk::none, r);  // order 1
+    CHECK(first() == 1);
+    for (const int level : {1, 2}) {
+      spec::viaResult({level, false}, sk::none, b, sk::none, r);
+      CHECK(first() == 11);
+    }
+    for (const int level : {-1, 3, 7}) {
+      spec::viaResult({level, false}, a, b, c, r);
+      CHECK(first() == 112);
+      spec::viaResult({level, true}, sk::none, b, sk::none, r);
+      CHECK(first() == (level == 7 ? 11 : 1));
+    }
+    spec::viaResult({-2, false}, sk::none, b, c, r);
+    CHECK(first() == 111);
+    spec::viaResult({0, true}, sk::none, sk::none, sk::none, r);
+    CHECK(first() == 1);
+    CHECK_THROWS_WITH(spec::viaResult({3, false}, sk::none, b, c, r), Catch::Contains("'a' is sk::none"));
+    CHECK_THROWS_WITH(spec::viaResult({1, false}, sk::none, sk::none, sk::none, r),
+                      Catch::Contains("'b' is sk::none"));
+    CHECK_THROWS_WITH(spec::viaResult({-2, false}, a, b, sk::none, r), Catch::Contains("'c' is sk::none"));
+  });
+}
+
 TEST_CASE("several flags") {
   onGlAndNative([](sk::Device& device) {
     auto x = streamOf<float>(device, {1}, {1});
