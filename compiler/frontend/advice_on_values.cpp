@@ -27,6 +27,45 @@ namespace {
 /// The class of variable outputs, in the prelude.
 constexpr llvm::StringRef variableOutputClass = "variable_output";
 
+// ---- indices of any rank ----------------------------------------------------------------------------
+
+/// The position behind `word<...>` at the start of a text; 0 if it does not start like this.
+std::size_t behindList(llvm::StringRef text, llvm::StringRef word) {
+  if (!text.starts_with(word) || !text.drop_front(word.size()).starts_with("<")) return 0;
+  const std::size_t close = text.find('>');
+  return close == llvm::StringRef::npos ? 0 : close + 1;
+}
+
+/// True for `indexof<N>(v)` and its like.
+bool makesIndex(llvm::StringRef text) {
+  return std::ranges::any_of(std::array{"indexof", "extentof", "axis", "index"},
+                             [&](llvm::StringRef word) { return behindList(text, word) != 0; });
+}
+
+/// True if the last function in a text declares the name as `index<N> p`, or by `auto p = indexof<N>(v)`.
+bool declaresIndex(llvm::StringRef text, llvm::StringRef name) {
+  if (const std::size_t end = text.rfind("\n}"); end != llvm::StringRef::npos) text = text.drop_front(end);
+  for (std::size_t at = text.find(name); at != llvm::StringRef::npos; at = text.find(name, at + 1)) {
+    const llvm::StringRef before = text.take_front(at).rtrim(" &");
+    llvm::StringRef rest = text.drop_front(at);
+    if (nameAt(rest) != name) continue;
+    rest = rest.drop_front(name.size()).ltrim();
+    if (rest.consume_front("=") && makesIndex(rest.ltrim())) return true;
+    const std::size_t type = before.rfind("index<");
+    if (type != llvm::StringRef::npos && type + behindList(before.drop_front(type), "index") == before.size())
+      return true;
+  }
+  return false;
+}
+
+/// Advice on a component of an `index<1>`, in a template whose rank is 1.
+Advice adviceOnRankOne(const clang::Diagnostic& diagnostic, llvm::StringRef value) {
+  const llvm::StringRef name = nameAt(value);
+  const bool isIndex =
+      makesIndex(value) || (!name.empty() && name == value && declaresIndex(textBefore(diagnostic), name));
+  return {isIndex ? format(Diag::IndexOfRankOne, {value.str()}) : std::string()};
+}
+
 // ---- streams --------------------------------------------------------------------------------------
 
 /// The rank of the gather among the diagnostic's types; 0 if there is none.
@@ -73,6 +112,7 @@ const ParamSyntax* parameterNamed(const DeclarationSyntax& syntax, llvm::StringR
 Advice adviceOnIndex(const clang::Diagnostic& diagnostic, const DeclarationSyntax* syntax) {
   const llvm::StringRef base = textOf(diagnostic), name = nameAt(base);
   if (name.empty()) return {};
+  if (Advice advice = adviceOnRankOne(diagnostic, base); !advice.text.empty()) return advice;
   const std::size_t taken = base.count('[');
   const bool isIndexed = taken > 0 && base.drop_front(name.size()).ltrim().starts_with("[");
   if (!isIndexed || taken > 4) {
@@ -131,6 +171,7 @@ Advice adviceOnScalarMember(const clang::Diagnostic& diagnostic) {
   if (Advice advice = adviceOnMember(std::string_view(member)); !advice.text.empty()) return advice;
   const bool isComponent = !member.empty() && member.find_first_not_of("xyzwrgba") == llvm::StringRef::npos;
   if (!isComponent || value.empty()) return {};
+  if (Advice advice = adviceOnRankOne(diagnostic, value); !advice.text.empty()) return advice;
   return {format(Diag::ScalarMember, {value.str(), member.str()})};
 }
 

@@ -40,14 +40,24 @@ llvm::StringRef textOf(const clang::Diagnostic& diagnostic, unsigned range) {
                                      clang::LangOptions());
 }
 
-llvm::StringRef textAt(const clang::Diagnostic& diagnostic) {
+namespace {
+
+/// The file's text before a diagnostic's location and from there on.
+std::pair<llvm::StringRef, llvm::StringRef> textAround(const clang::Diagnostic& diagnostic) {
   const clang::SourceLocation location = diagnostic.getLocation();
   if (location.isInvalid() || location.isMacroID()) return {};
   const auto [file, offset] = diagnostic.getSourceManager().getDecomposedLoc(location);
   bool isInvalid = false;
   const llvm::StringRef text = diagnostic.getSourceManager().getBufferData(file, &isInvalid);
-  return isInvalid ? llvm::StringRef() : text.drop_front(offset);
+  if (isInvalid) return {};
+  return {text.take_front(offset), text.drop_front(offset)};
 }
+
+}  // namespace
+
+llvm::StringRef textAt(const clang::Diagnostic& diagnostic) { return textAround(diagnostic).second; }
+
+llvm::StringRef textBefore(const clang::Diagnostic& diagnostic) { return textAround(diagnostic).first; }
 
 llvm::StringRef nameAt(llvm::StringRef text) {
   return text.take_while([](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });

@@ -25,6 +25,9 @@ llvm::StringRef textOf(const clang::Diagnostic& diagnostic, unsigned range = 0);
 /// The source text from the diagnostic's location to the end of the file, without macros' expansions.
 llvm::StringRef textAt(const clang::Diagnostic& diagnostic);
 
+/// The source text from the start of the file to the diagnostic's location, without macros' expansions.
+llvm::StringRef textBefore(const clang::Diagnostic& diagnostic);
+
 /// The identifier at the start of a text.
 llvm::StringRef nameAt(llvm::StringRef text);
 
