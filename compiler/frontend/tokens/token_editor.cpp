@@ -444,7 +444,8 @@ class Editor {
     BundleEditor members(parameters);
     copyToken();
     while (!cursor_.at(tok::r_brace) && !cursor_.at(tok::eof)) {
-      if (cursor_.peek().isOneOf(tok::kw_public, tok::kw_protected, tok::kw_private)) copyTokens(2);
+      const bool isLabel = cursor_.peek().isOneOf(tok::kw_public, tok::kw_protected, tok::kw_private);
+      if (isLabel && cursor_.at(1, tok::colon)) copyTokens(2);
       members.edit(cursor_, out_);
       copyMember();
     }
