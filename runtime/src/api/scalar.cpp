@@ -208,6 +208,7 @@ ScalarHandle::ScalarHandle(ScalarOp op, const program::Element& result,
       }
       node->device = device;
     }
+    node->device->checkProcess();
     PendingScalars& all = node->device->pendingScalars;
     if (all.reads + operands.size() > mostScalarReads || all.steps == mostScalarSteps)
       flushScalars(*node->device);

@@ -132,6 +132,9 @@ class DeviceState {
   virtual void finish() = 0;
   virtual void release() = 0;
   virtual void makeCurrent() = 0;
+  /// Throws sk::Error in the child of a fork if the device works in the parent alone. Operations that are only collected
+  /// ask this, so that they do not fail later.
+  virtual void checkProcess() const {}
 
   /// The domain may be empty only if there are variable outputs: they become empty.
   virtual void run(const ResolvedCall& call) = 0;

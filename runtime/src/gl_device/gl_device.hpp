@@ -64,6 +64,7 @@ class GlDevice final : public DeviceState {
   void finish() override;
   void release() override { context_.handle().release(); }
   void makeCurrent() override;
+  void checkProcess() const override { context_.handle().checkProcess(); }
   void run(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   std::unique_ptr<LoopRunner> makeLoopRunner() override;
