@@ -26,10 +26,12 @@ struct VectorFamily {
 
 // In Clang, vectors of `bool` have no swizzles. Their components are therefore char32_t, which nothing else
 // uses and which has the size of the masks that vector comparisons give.
-constexpr std::array<VectorFamily, 10> families = {{{"float", "float", "float"},
+constexpr std::array<VectorFamily, 12> families = {{{"float", "float", "float"},
                                                     {"double", "double", "double"},
                                                     {"int", "int", "int"},
                                                     {"uint", "unsigned", "uint"},
+                                                    {"long", "long", "long"},
+                                                    {"ulong", "unsigned long", "ulong"},
                                                     {"bool", "char32_t", "bool"},
                                                     {"half", "__fp16", "float"},
                                                     {"char", "char", "int"},
@@ -95,8 +97,8 @@ std::string declare(std::string_view name, const std::vector<std::string_view>& 
 
 std::string vectorTypes() {
   std::string text =
-      "typedef unsigned uint; typedef __fp16 half; typedef unsigned char uchar; typedef unsigned short "
-      "ushort;\n";
+      "typedef unsigned uint; typedef unsigned long ulong; typedef __fp16 half; typedef unsigned char uchar; "
+      "typedef unsigned short ushort;\n";
   for (const VectorFamily& family : families) {
     for (int width = 2; width <= 4; ++width) {
       text += fmt::format(
@@ -186,6 +188,8 @@ std::string typeTraits() {
   text +=
       "template <> struct __sk_traits<char32_t> : __sk_traits<bool> {};\n"
       "template <> struct __sk_traits<signed char> : __sk_traits<char> {};\n"
+      "template <> struct __sk_traits<long long> : __sk_traits<long> {};\n"
+      "template <> struct __sk_traits<unsigned long long> : __sk_traits<ulong> {};\n"
       "template <class... A> using __sk_sum = __sk_traits<decltype((A() + ...))>;\n"
       "template <class... A> using __sk_F = typename __sk_sum<A...>::F;\n"
       "template <class... A> using __sk_f = decltype((typename __sk_traits<A>::f() + ...));\n"
@@ -207,17 +211,21 @@ template <class T> using gather_3d = stream_gather<T, 3>;
 template <class T> using gather_4d = stream_gather<T, 4>;
 template <class T> struct stream_gather<T, 1> {
   __sk_read<T> operator[](int) const; __sk_read<T> operator[](uint) const; __sk_read<T> operator[](float) const;
+  __sk_read<T> operator[](long) const; __sk_read<T> operator[](ulong) const;
 };
 template <class T> struct stream_gather<T, 2> {
   gather_1d<T> operator[](int) const; gather_1d<T> operator[](uint) const;
+  gather_1d<T> operator[](long) const; gather_1d<T> operator[](ulong) const;
   gather_1d<T> operator[](float) const; __sk_read<T> operator[](int2) const; __sk_read<T> operator[](float2) const;
 };
 template <class T> struct stream_gather<T, 3> {
   gather_2d<T> operator[](int) const; gather_2d<T> operator[](uint) const;
+  gather_2d<T> operator[](long) const; gather_2d<T> operator[](ulong) const;
   gather_2d<T> operator[](float) const; __sk_read<T> operator[](int3) const; __sk_read<T> operator[](float3) const;
 };
 template <class T> struct stream_gather<T, 4> {
   gather_3d<T> operator[](int) const; gather_3d<T> operator[](uint) const;
+  gather_3d<T> operator[](long) const; gather_3d<T> operator[](ulong) const;
   gather_3d<T> operator[](float) const; __sk_read<T> operator[](int4) const; __sk_read<T> operator[](float4) const;
 };
 template <class T, int rank> requires (rank >= 1 && rank <= 4) using gather = stream_gather<T, rank>;
@@ -251,17 +259,21 @@ template <int rank, class T> typename __sk_index<rank>::type indexof(const T& st
 template <int rank, class T> typename __sk_index<rank>::type extentof(const T& stream);
 template <class T> struct scatter_1d {
   T& operator[](int) const; T& operator[](uint) const; T& operator[](float) const;
+  T& operator[](long) const; T& operator[](ulong) const;
 };
 template <class T> struct scatter_2d {
   scatter_1d<T> operator[](int) const; scatter_1d<T> operator[](uint) const;
+  scatter_1d<T> operator[](long) const; scatter_1d<T> operator[](ulong) const;
   scatter_1d<T> operator[](float) const; T& operator[](int2) const; T& operator[](float2) const;
 };
 template <class T> struct scatter_3d {
   scatter_2d<T> operator[](int) const; scatter_2d<T> operator[](uint) const;
+  scatter_2d<T> operator[](long) const; scatter_2d<T> operator[](ulong) const;
   scatter_2d<T> operator[](float) const; T& operator[](int3) const; T& operator[](float3) const;
 };
 template <class T> struct scatter_4d {
   scatter_3d<T> operator[](int) const; scatter_3d<T> operator[](uint) const;
+  scatter_3d<T> operator[](long) const; scatter_3d<T> operator[](ulong) const;
   scatter_3d<T> operator[](float) const; T& operator[](int4) const; T& operator[](float4) const;
 };
 template <class T> struct variable_output { void operator=(const T&) = delete("variable_output"); };

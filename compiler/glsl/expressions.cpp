@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "analysis/stream_uses.hpp"
-#include "glsl/doubles.hpp"
+#include "glsl/wide_values.hpp"
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/known_values.hpp"
 #include "ir/build.hpp"
@@ -222,7 +222,7 @@ class GlslExpr {
     return match(expr.node, [&](const auto& node) { return print(expr, node); });
   }
   Text print(const Expr& expr, const Literal& n) const {
-    if (expr.type.isDouble()) return {doubleLiteral(n)};
+    if (expr.type.isWide()) return {wideText(expr.type.scalar, n)};
     const bool isMarkedZero = isFloats(expr.type) && isZero(n.bits) && !isCompared_ && needsBarrier(expr);
     return isMarkedZero ? markedZero(n.bits) : literalText(expr.type, n.bits);
   }

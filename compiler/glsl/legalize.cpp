@@ -5,7 +5,7 @@
 #include <ranges>
 #include <utility>
 
-#include "glsl/doubles.hpp"
+#include "glsl/wide_values.hpp"
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/known_values.hpp"
 #include "ir/build.hpp"
@@ -21,15 +21,15 @@ using namespace ir;
 
 bool isKnown(const Index& n) { return std::holds_alternative<Literal>(n.index->node); }
 
-bool isOfDoubles(const Index& n) { return n.base->type.isVector() && n.base->type.isDouble(); }
+bool isOfWide(const Index& n) { return n.base->type.isVector() && n.base->type.isWide(); }
 
-/// True if GLSL can assign to this lvalue. Vectors of doubles are structs: one known component is an lvalue, several or a
+/// True if GLSL can assign to this lvalue. Vectors of wide values are structs: one known component is an lvalue, several or a
 /// computed one are not.
 bool isAssignable(const Expr& lvalue) {
   if (const auto* n = std::get_if<Swizzle>(&lvalue.node))
-    return (!lvalue.type.isDouble() || lvalue.type.isScalar()) && isAssignable(*n->base);
+    return (!lvalue.type.isWide() || lvalue.type.isScalar()) && isAssignable(*n->base);
   if (const auto* n = std::get_if<Index>(&lvalue.node))
-    return (!isOfDoubles(*n) || isKnown(*n)) && isAssignable(*n->base);
+    return (!isOfWide(*n) || isKnown(*n)) && isAssignable(*n->base);
   if (const auto* n = std::get_if<Member>(&lvalue.node)) return isAssignable(*n->base);
   return true;
 }
@@ -50,7 +50,7 @@ class Legalizer {
   void block(Block& statements) {
     walkStmts(statements, [&](Stmt& stmt) {
       if (auto* n = std::get_if<CallStmt>(&stmt.node)) {
-        if (!n->result || target_.hasDoubles || isAssignable(*n->result)) return call(*n);
+        if (!n->result || target_.hasWideTypes || isAssignable(*n->result)) return call(*n);
         stmt.node = Assign{std::move(n->result), {}, ir::call(module_, n->callee, std::move(n->args))};
       }
       if (auto* n = std::get_if<Assign>(&stmt.node)) return assign(*n);
@@ -82,7 +82,7 @@ class Legalizer {
       n.op.reset();
     }
     value(n.value);
-    while (!target_.hasDoubles && !isAssignable(*n.place)) widen(n.place, n.value);
+    while (!target_.hasWideTypes && !isAssignable(*n.place)) widen(n.place, n.value);
     lvalue(n.place);
   }
 
@@ -96,11 +96,11 @@ class Legalizer {
     ExprPtr whole = clone(*place);
     value(whole);
     if (n != nullptr) {
-      part = doubleWith(polyfills_, n->components, std::move(whole), std::move(part));
+      part = wideWith(polyfills_, n->components, std::move(whole), std::move(part));
     } else {
       clamp(place->type, element->index);
       value(element->index);
-      part = doubleWithComponent(polyfills_, std::move(whole),
+      part = wideWithComponent(polyfills_, std::move(whole),
                                  convert(Scalar::Int, std::move(element->index)), std::move(part));
     }
   }
@@ -127,7 +127,7 @@ class Legalizer {
         slot->node, [](Literal&) {}, [](VarRef&) {}, [](ConstantRef&) {}, [](Member&) {}, [](Call&) {},
         [](GatherRead&) {}, [](NeighborRead&) {}, [](Sample&) {}, [](IndexOf&) {}, [](ExtentOf&) {},
         [&](Unary& n) {
-          if (lacks(type)) slot = doubleNegated(polyfills_, std::move(n.operand));
+          if (lacks(type)) slot = wideUnary(polyfills_, n.op, std::move(n.operand));
         },
         [&](Binary& n) { binary(slot, n); },
         [&](Select& n) {
@@ -140,12 +140,12 @@ class Legalizer {
         [&](Construct& n) {
           if (!lacks(type)) return;
           const bool isOperand = n.args.size() == 1 && n.args[0]->type == type;
-          slot = doubleVector(polyfills_, type, std::move(n.args));
+          slot = wideVector(polyfills_, type, std::move(n.args));
           if (isOperand) rewrite(slot);
         },
         [&](Swizzle& n) {
           if (lacks(type) && type.isVector())
-            slot = doubleSwizzle(polyfills_, n.components, std::move(n.base));
+            slot = wideSwizzle(polyfills_, n.components, std::move(n.base));
         },
         [&](Index& n) { index(slot, n); }, [&](IntrinsicCall& n) { intrinsic(slot, n); });
     slot->type = type;  // a narrow type is no function's
@@ -159,7 +159,7 @@ class Legalizer {
     return evaluateInFloat(module_, expr, Constants::Keep);
   }
 
-  bool lacks(Type type) const { return !target_.hasDoubles && type.isDouble(); }
+  bool lacks(Type type) const { return !target_.hasWideTypes && type.isWide(); }
 
   /// True if a compound assignment has no operator for these operands.
   bool isIllegal(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
@@ -186,7 +186,7 @@ class Legalizer {
     const Type lhs = n.lhs->type;
     const bool isLogical = n.op == BinaryOp::LogicalAnd || n.op == BinaryOp::LogicalOr;
     if (lacks(lhs)) {
-      slot = doubleBinary(polyfills_, n.op, std::move(n.lhs), std::move(n.rhs));
+      slot = wideBinary(polyfills_, n.op, std::move(n.lhs), std::move(n.rhs));
     } else if (!target_.comparesWithZero && comparesRoundedWithZero(n.op, *n.lhs, *n.rhs)) {
       const bool isEqual = n.op == BinaryOp::Equal;
       slot = polyfills_.call(polyfills_.nonzero(), exprs(std::move(isLiteralZero(*n.lhs) ? n.rhs : n.lhs)));
@@ -214,7 +214,7 @@ class Legalizer {
   void conversion(ExprPtr& slot, Convert& n) {
     const Type to = slot->type, from = n.operand->type;
     if (lacks(to) || lacks(from)) {
-      slot = doubleConverted(polyfills_, to, std::move(n.operand));
+      slot = wideConverted(polyfills_, to, std::move(n.operand));
     } else if (to.isNarrow() && !target_.hasNarrowTypes) {
       ExprPtr operand = convert(arithmeticScalar(to.scalar), std::move(n.operand), slot->loc);
       slot = polyfills_.call(polyfills_.quantize(to), exprs(std::move(operand)));
@@ -228,9 +228,9 @@ class Legalizer {
   void index(ExprPtr& slot, Index& n) {
     const Type base = n.base->type;
     const bool isComputed = base.isVector() && !isKnown(n);
-    if (!isComputed || base.isDouble() || target_.choosesByComponent) clamp(base, n.index);
+    if (!isComputed || base.isWide() || target_.choosesByComponent) clamp(base, n.index);
     if (isComputed && lacks(base)) {
-      slot = doubleComponent(polyfills_, std::move(n.base), convert(Scalar::Int, std::move(n.index)));
+      slot = wideComponent(polyfills_, std::move(n.base), convert(Scalar::Int, std::move(n.index)));
     } else if (isComputed && !target_.choosesByComponent) {
       const FunctionId function = polyfills_.component(base, n.index->type);
       slot = polyfills_.call(function, exprs(std::move(n.base), std::move(n.index)));
@@ -239,10 +239,10 @@ class Legalizer {
     }
   }
 
-  /// A known component of a vector of doubles is a member of a struct: `v[1]` becomes `v.y`.
+  /// A known component of a vector of wide values is a member of a struct: `v[1]` becomes `v.y`.
   void nameComponent(Expr& expr) const {
     auto& n = std::get<Index>(expr.node);
-    if (target_.hasDoubles || !isOfDoubles(n) || !isKnown(n)) return;
+    if (target_.hasWideTypes || !isOfWide(n) || !isKnown(n)) return;
     const auto component = static_cast<std::uint8_t>(std::get<Literal>(n.index->node).bits);
     expr.node = Swizzle{std::move(n.base), {component}};
   }
@@ -276,7 +276,7 @@ class Legalizer {
   void intrinsic(ExprPtr& slot, IntrinsicCall& n) {
     const Type argument = n.args[0]->type;
     if (lacks(argument)) {
-      slot = doubleIntrinsic(polyfills_, n.intrinsic, std::move(n.args));
+      slot = wideIntrinsic(polyfills_, n.intrinsic, std::move(n.args));
     } else if (n.intrinsic == Intrinsic::Abs && argument.scalar == Scalar::Int && !target_.comparesWithZero) {
       slot = polyfills_.call(polyfills_.magnitude(argument), std::move(n.args));
     } else if (isCube(n)) {

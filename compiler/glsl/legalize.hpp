@@ -23,7 +23,7 @@ struct Capabilities {
   bool convertsAnyFloat = false;  ///< to the nearest int or uint, NaN to 0
   bool hasNarrowTypes = false;
   bool hasIntrinsics = false;  ///< all of intrinsics.def, for scalars as for vectors
-  bool hasDoubles = false;
+  bool hasWideTypes = false;  ///< double, long and ulong, with their operators
   bool choosesByComponent = false;  ///< &&, || and ?: of vectors other than floats, and v[i]
   bool comparesWithZero =
       false;  ///< every driver compares rounded floats and magnitudes of ints with 0 as written

@@ -67,11 +67,15 @@ TypeNames::TypeNames(const Module& module) : module_(&module) {
 }
 
 std::string glslSpelling(Scalar scalar, int width) {
-  constexpr std::array<std::string_view, 5> scalars = {"bool", "int", "uint", "float", "sk_double"};
-  constexpr std::array<std::string_view, 5> vectors = {"bvec", "ivec", "uvec", "vec", "sk_double"};
+  constexpr std::array<std::string_view, 7> scalars = {"bool",  "int",       "uint",    "float",
+                                                     "sk_double", "sk_long", "sk_ulong"};
+  constexpr std::array<std::string_view, 7> vectors = {"bvec",  "ivec",       "uvec",    "vec",
+                                                     "sk_double", "sk_long", "sk_ulong"};
   const auto row = static_cast<std::size_t>(arithmeticScalar(scalar));
   return width == 1 ? std::string(scalars[row]) : std::string(vectors[row]) + std::to_string(width);
 }
+
+std::string glslSpelling(Type type) { return glslSpelling(type.scalar, type.width); }
 
 std::string TypeNames::glsl(Type type) const {
   switch (type.kind) {

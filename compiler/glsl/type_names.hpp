@@ -40,7 +40,9 @@ class TypeNames {
   std::set<std::string> structNames_, constantNames_;
 };
 
-/// "float", "bvec2"; a narrow scalar's arithmetic type; "sk_double", "sk_double2" (doubles.hpp).
+/// "float", "bvec2"; a narrow scalar's arithmetic type; "sk_double", "sk_long2" (wide_values.hpp).
 std::string glslSpelling(ir::Scalar scalar, int width);
+/// The same for a scalar or a vector.
+std::string glslSpelling(ir::Type type);
 
 }  // namespace skc::emit

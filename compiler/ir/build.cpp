@@ -23,9 +23,13 @@ ExprPtr literal(float value, Loc loc) {
   return makeExpr(Type::of(Scalar::Float), Literal{std::bit_cast<std::uint32_t>(value)}, loc);
 }
 ExprPtr literal(double value, Loc loc) {
-  const auto bits = std::bit_cast<std::uint64_t>(value);
-  const Literal halves{static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
-  return makeExpr(Type::of(Scalar::Double), halves, loc);
+  return makeExpr(Type::of(Scalar::Double), Literal::wide(std::bit_cast<std::uint64_t>(value)), loc);
+}
+ExprPtr literal(std::int64_t value, Loc loc) {
+  return makeExpr(Type::of(Scalar::Long), Literal::wide(static_cast<std::uint64_t>(value)), loc);
+}
+ExprPtr literal(std::uint64_t value, Loc loc) {
+  return makeExpr(Type::of(Scalar::Ulong), Literal::wide(value), loc);
 }
 ExprPtr literal(std::int32_t value, Loc loc) {
   return makeExpr(Type::of(Scalar::Int), Literal{static_cast<std::uint32_t>(value)}, loc);
@@ -54,6 +58,8 @@ ExprPtr literalOf(Type type, int value, Loc loc) {
   if (type.scalar == Scalar::Bool) return literal(value != 0, loc);
   if (type.scalar == Scalar::Uint) return literal(static_cast<std::uint32_t>(value), loc);
   if (type.scalar == Scalar::Double) return literal(static_cast<double>(value), loc);
+  if (type.scalar == Scalar::Long) return literal(std::int64_t{value}, loc);
+  if (type.scalar == Scalar::Ulong) return literal(static_cast<std::uint64_t>(value), loc);
   const bool isInt = arithmeticScalar(type.scalar) == Scalar::Int;
   ExprPtr result = isInt ? literal(std::int32_t{value}, loc) : literal(static_cast<float>(value), loc);
   result->type = type;

@@ -25,6 +25,8 @@ ExprPtr literal(float value, Loc loc = {});
 ExprPtr literal(double value, Loc loc = {});
 ExprPtr literal(std::int32_t value, Loc loc = {});
 ExprPtr literal(std::uint32_t value, Loc loc = {});
+ExprPtr literal(std::int64_t value, Loc loc = {});
+ExprPtr literal(std::uint64_t value, Loc loc = {});
 ExprPtr literal(bool value, Loc loc = {});
 /// A float literal whose source text stands for the double `text`, of which `value` is the nearest float. A wide variant of
 /// the kernel sees `text`, so that a text is rounded once in every precision.

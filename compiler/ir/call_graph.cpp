@@ -89,15 +89,31 @@ std::vector<FunctionId> tabulatedFunctionsOf(const Module& module, const Kernel&
 
 bool holdsDouble(const Module& module, Type type) { return holds(module, type, Scalar::Double); }
 
-bool usesDoubles(const Module& module, const Kernel& kernel) {
+namespace {
+
+/// True if a value in the kernel has a type for which `isOne` is true.
+template <class IsOne>
+bool usesType(const Module& module, const Kernel& kernel, IsOne isOne) {
   for (const FunctionId id : functionsOf(module, kernel)) {
     const Function& function = module.functions[id];
-    bool uses = holdsDouble(module, function.result);
-    for (const Variable& variable : function.variables) uses = uses || holdsDouble(module, variable.type);
-    walkExprs(function.body, [&](const Expr& expr) { uses = uses || holdsDouble(module, expr.type); });
+    bool uses = isOne(function.result);
+    for (const Variable& variable : function.variables) uses = uses || isOne(variable.type);
+    walkExprs(function.body, [&](const Expr& expr) { uses = uses || isOne(expr.type); });
     if (uses) return true;
   }
   return false;
+}
+
+}  // namespace
+
+bool usesDoubles(const Module& module, const Kernel& kernel) {
+  return usesType(module, kernel, [&](Type type) { return holdsDouble(module, type); });
+}
+
+bool usesLongs(const Module& module, const Kernel& kernel) {
+  return usesType(module, kernel, [&](Type type) {
+    return holds(module, type, Scalar::Long) || holds(module, type, Scalar::Ulong);
+  });
 }
 
 bool usesExactSums(const Module& module, const Kernel& kernel) {

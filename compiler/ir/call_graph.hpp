@@ -23,6 +23,8 @@ std::vector<FunctionId> tabulatedFunctionsOf(const Module& module, const Kernel&
 bool holdsDouble(const Module& module, Type type);
 /// True if a kernel's parameters or functions use doubles.
 bool usesDoubles(const Module& module, const Kernel& kernel);
+/// Likewise for integers of 64 bits.
+bool usesLongs(const Module& module, const Kernel& kernel);
 
 /// True if a kernel computes rounding errors of float additions.
 bool usesExactSums(const Module& module, const Kernel& kernel);

@@ -74,7 +74,17 @@ using ExprPtr = std::unique_ptr<Expr>;
 /// A scalar; vectors of literals are Constructs. `bits` holds bool 0/1, int32, uint32 or float32 bits, for a narrow scalar the
 /// bits of its arithmetic type, for a double the lower half. `high`: a double's upper half. `text`: the magnitude of the double nearest
 /// to a float's text, 0 where the float itself is meant; wideValue() reads it.
-struct Literal { std::uint32_t bits; std::uint32_t high = 0; double text = 0; };
+struct Literal {
+  std::uint32_t bits;
+  std::uint32_t high = 0;
+  double text = 0;
+
+  /// The literal of a type of 64 bits.
+  static Literal wide(std::uint64_t bits) {
+    return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
+  }
+  std::uint64_t wide() const { return std::uint64_t{high} << 32 | bits; }
+};
 struct VarRef { VarId var; };
 struct ConstantRef { ConstantId constant; };
 
@@ -82,7 +92,7 @@ enum class UnaryOp : std::uint8_t { Negate, BitNot, LogicalNot };
 struct Unary { UnaryOp op; ExprPtr operand; };   ///< LogicalNot of a bool vector is componentwise
 
 enum class BinaryOp : std::uint8_t {
-#define SKC_OPERATOR(Name, spelling, precedence, isAssociative, vectors, doubles, condition) Name,
+#define SKC_OPERATOR(Name, spelling, precedence, isAssociative, vectors, wide, condition) Name,
 #include "ir/operators.def"
 #undef SKC_OPERATOR
 };

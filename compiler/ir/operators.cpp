@@ -13,10 +13,10 @@ struct Vectors {
 };
 
 constexpr OperatorRow operatorRows[] = {
-#define SKC_OPERATOR(Name, spelling, precedence, isAssociative, vectors, doubles, condition) \
+#define SKC_OPERATOR(Name, spelling, precedence, isAssociative, vectors, wide, condition) \
   {spelling,      Precedence::precedence,                                                    \
    isAssociative, Vectors::vectors,                                                          \
-   doubles,       std::string_view(#condition) != "None"},
+   wide,          std::string_view(#condition) != "None"},
 #include "ir/operators.def"
 #undef SKC_OPERATOR
 };

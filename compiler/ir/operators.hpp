@@ -35,7 +35,7 @@ struct OperatorRow {
   Precedence precedence;
   bool isAssociative;
   std::optional<Intrinsic> vectors;
-  std::string_view doubles;
+  std::string_view wide;
   bool isInConditions;
 };
 const OperatorRow& row(BinaryOp op);

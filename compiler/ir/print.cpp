@@ -335,7 +335,12 @@ std::string literalText(Type type, std::uint32_t bits) {
 
 /// "0.1d": C++ has no suffix for doubles, and no other suffix uses this letter.
 std::string doubleText(const Literal& literal) {
-  return shortestDouble(std::bit_cast<double>(std::uint64_t{literal.high} << 32 | literal.bits)) + "d";
+  return shortestDouble(std::bit_cast<double>(literal.wide())) + "d";
+}
+
+std::string wideText(Type type, const Literal& literal) {
+  if (type.scalar == Scalar::Long) return std::to_string(static_cast<std::int64_t>(literal.wide())) + "l";
+  return type.isDouble() ? doubleText(literal) : std::to_string(literal.wide()) + "ul";
 }
 
 class ExprPrinter {
@@ -357,7 +362,7 @@ class ExprPrinter {
     return match(
         expr.node,
         [&](const Literal& n) {
-          return Text{expr.type.isDouble() ? doubleText(n) : literalText(expr.type, n.bits)};
+          return Text{expr.type.isWide() ? wideText(expr.type, n) : literalText(expr.type, n.bits)};
         },
         [&](const VarRef& n) { return Text{nameOf(function_, n.var)}; },
         [&](const ConstantRef& n) { return Text{module_.constants[n.constant].name}; },

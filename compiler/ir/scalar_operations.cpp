@@ -19,6 +19,22 @@ std::optional<double> ofReals(BinaryOp op, double a, double b) {
   return std::nullopt;
 }
 
+/// Operations on integers of 64 bits that are far below their limits: a result that a double may not represent is at least 2^53.
+std::optional<double> ofLongs(BinaryOp op, double a, double b) {
+  const auto x = static_cast<std::int64_t>(a), y = static_cast<std::int64_t>(b);
+  if (op == BinaryOp::Add) return a + b;
+  if (op == BinaryOp::Sub) return a - b;
+  if (op == BinaryOp::Mul) return a * b;
+  if (op == BinaryOp::Div) return static_cast<double>(y == 0 ? x : x / y);
+  if (op == BinaryOp::Rem) return static_cast<double>(y == 0 ? 0 : x % y);
+  if (op == BinaryOp::BitAnd) return static_cast<double>(x & y);
+  if (op == BinaryOp::BitOr) return static_cast<double>(x | y);
+  if (op == BinaryOp::BitXor) return static_cast<double>(x ^ y);
+  if (op == BinaryOp::ShiftLeft) return std::ldexp(a, static_cast<int>(y & 63));
+  if (op == BinaryOp::ShiftRight) return static_cast<double>(x >> (y & 63));
+  return std::nullopt;
+}
+
 /// The product and the left shift keep the low 64 bits, which are more than any integer has.
 std::optional<double> ofIntegers(BinaryOp op, Scalar scalar, std::int64_t a, std::int64_t b) {
   const auto low = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
@@ -67,8 +83,15 @@ double wrapped(Scalar scalar, std::int64_t value) {
     case Scalar::Short: return static_cast<std::int16_t>(value);
     case Scalar::Ushort: return static_cast<std::uint16_t>(value);
     case Scalar::Uint: return static_cast<std::uint32_t>(value);
+    case Scalar::Long:
+    case Scalar::Ulong: return static_cast<double>(value);
     default: return static_cast<std::int32_t>(value);
   }
+}
+
+bool isRepresentable(Scalar scalar, double value) {
+  if (scalar != Scalar::Long && scalar != Scalar::Ulong) return true;
+  return std::fabs(value) < 0x1p53 && (scalar == Scalar::Long || value >= 0);
 }
 
 double valueOf(Scalar scalar, const Literal& literal) {
@@ -76,7 +99,9 @@ double valueOf(Scalar scalar, const Literal& literal) {
     case Scalar::Bool: return literal.bits != 0;
     case Scalar::Int: return static_cast<std::int32_t>(literal.bits);
     case Scalar::Uint: return literal.bits;
-    case Scalar::Double: return std::bit_cast<double>(std::uint64_t{literal.high} << 32U | literal.bits);
+    case Scalar::Long: return static_cast<double>(static_cast<std::int64_t>(literal.wide()));
+    case Scalar::Ulong: return static_cast<double>(literal.wide());
+    case Scalar::Double: return std::bit_cast<double>(literal.wide());
     default: return std::bit_cast<float>(literal.bits);
   }
 }
@@ -87,7 +112,8 @@ double converted(Scalar from, Scalar to, double value) {
   if (isReal(arithmetic)) return value;
   if (isReal(arithmeticScalar(from))) {
     if (std::isnan(value)) return 0;
-    const bool isSigned = arithmetic == Scalar::Int;
+    const bool isSigned = arithmetic == Scalar::Int || arithmetic == Scalar::Long;
+    if (isWide(arithmetic)) return std::trunc(isSigned ? value : std::max(value, 0.0));
     value = isSigned ? std::clamp(value, -0x1p31, 0x1p31 - 1) : std::clamp(value, 0.0, 0x1p32 - 1);
   }
   return wrapped(to, static_cast<std::int64_t>(value));
@@ -126,10 +152,12 @@ std::optional<double> computed(BinaryOp op, Scalar scalar, double x, double y) {
     case BinaryOp::ShiftRight: break;
   }
   if (isReal(arithmeticScalar(scalar))) return ofReals(op, x, y);
+  if (isWide(scalar)) return ofLongs(op, x, y);
   return ofIntegers(op, scalar, static_cast<std::int64_t>(x), static_cast<std::int64_t>(y));
 }
 
 std::optional<double> computed(Intrinsic intrinsic, Scalar scalar, double x, double y, double z) {
+  if (intrinsic >= Intrinsic::Popcount && intrinsic <= Intrinsic::Mulhi && isWide(scalar)) return std::nullopt;
   switch (intrinsic) {
     case Intrinsic::Abs:
     case Intrinsic::Fabs:
@@ -227,7 +255,9 @@ std::uint32_t quantize(Scalar narrow, std::uint32_t bits) {
     case Scalar::Int:
     case Scalar::Uint:
     case Scalar::Float:
-    case Scalar::Double: break;
+    case Scalar::Double:
+    case Scalar::Long:
+    case Scalar::Ulong: break;
   }
   assert(!"not a narrow scalar");
   return bits;

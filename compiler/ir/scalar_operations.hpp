@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What operators, conversions and intrinsics compute of single scalars, as docs/language.md defines them, for everything that
-// interprets the IR. A scalar is a double here, which represents every bool (as 0 or 1), integer and float. Results of real
+// interprets the IR. A scalar is a double here, which represents every bool (as 0 or 1), int, uint and float; and those integers of 64 bits whose
+// magnitudes are below 2^53 (isRepresentable()). Results of real
 // numbers are not rounded to float: interpreters differ in that, and round as each of them has to.
 //
 // How a Convert to a narrow scalar (a storage type) rounds a value of its arithmetic type:
@@ -35,6 +36,9 @@ float normalizedScale(Scalar narrow);
 
 /// The integer whose bits are the low bits of `value`.
 double wrapped(Scalar scalar, std::int64_t value);
+
+/// False for an integer of 64 bits that may not be the value: it is not below 2^53, or negative and of type ulong.
+bool isRepresentable(Scalar scalar, double value);
 
 double valueOf(Scalar scalar, const Literal& literal);
 

@@ -37,6 +37,8 @@ inline constexpr ScalarRow scalarRows[] = {
 constexpr const ScalarRow& row(Scalar scalar) { return scalarRows[static_cast<std::size_t>(scalar)]; }
 
 constexpr bool isNarrow(Scalar scalar) { return scalar >= Scalar::Half; }
+/// Double, Long and Ulong: two words of a texel.
+constexpr bool isWide(Scalar scalar) { return row(scalar).bits == 64; }
 constexpr bool isReal(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Double; }
 
 /// The arithmetic type of a scalar: Int or Float for a narrow one, else the scalar itself.
@@ -65,11 +67,15 @@ struct Type {
   bool isMatrix() const { return kind == Kind::Matrix; }
   bool isArithmetic() const { return isScalar() || isVector(); }
   /// True for a scalar or vector that + - * / and comparisons take.
-  bool isNumber() const { return isArithmetic() && scalar >= Scalar::Int && scalar <= Scalar::Double; }
+  bool isNumber() const { return isArithmetic() && scalar >= Scalar::Int && !ir::isNarrow(scalar); }
   bool isNarrow() const { return isArithmetic() && ir::isNarrow(scalar); }
   bool isFloat() const { return isArithmetic() && scalar == Scalar::Float; }
   bool isDouble() const { return isArithmetic() && scalar == Scalar::Double; }
   bool isBool() const { return isArithmetic() && scalar == Scalar::Bool; }
+  /// Integers of 64 bits.
+  bool isLong() const { return isArithmetic() && (scalar == Scalar::Long || scalar == Scalar::Ulong); }
+  bool isWide() const { return isArithmetic() && ir::isWide(scalar); }
+  /// Integers of 32 bits, which alone are indices, counters and specialisation constants.
   bool isInteger() const { return isArithmetic() && (scalar == Scalar::Int || scalar == Scalar::Uint); }
   Type withScalar(Scalar s) const { return of(s, width); }
   Type component() const { return of(scalar); }
@@ -79,11 +85,11 @@ struct Type {
   bool operator==(const Type&) const = default;
 };
 
-/// The planes of a double or a vector of doubles; a texel holds two doubles.
-inline std::vector<Type> doublePlanes(Type type) {
+/// The planes of a wide scalar, or of a vector of these; a texel holds two wide scalars.
+inline std::vector<Type> widePlanes(Type type) {
   std::vector<Type> planes;
   for (int left = type.width; left > 0; left -= 2)
-    planes.push_back(Type::of(Scalar::Double, left > 1 ? 2 : 1));
+    planes.push_back(Type::of(type.scalar, left > 1 ? 2 : 1));
   return planes;
 }
 

@@ -14,7 +14,11 @@ using namespace ir;
 
 namespace {
 
-bool isSigned(Scalar scalar) { return scalar != Scalar::Uint && scalar != Scalar::Bool; }
+bool isSigned(Scalar scalar) {
+  return scalar != Scalar::Uint && scalar != Scalar::Ulong && scalar != Scalar::Bool;
+}
+
+bool isInteger(Scalar scalar) { return !isReal(scalar) && scalar != Scalar::Bool; }
 
 /// True if the result is consecutive: a uniform value is added to a consecutive one, or subtracted from it.
 bool staysConsecutive(BinaryOp op, const Lanes& lanes, const Part& lhs, const Part& rhs) {
@@ -35,7 +39,8 @@ llvm::Value* quotientByDoubles(Lanes& l, bool isSigned, llvm::Value* a, llvm::Va
 }
 
 llvm::Value* plainQuotient(Lanes& l, bool isSigned, llvm::Value* a, llvm::Value* c) {
-  if (l.isVector(a) && !llvm::isa<llvm::Constant>(c)) return quotientByDoubles(l, isSigned, a, c);
+  const bool fitsDouble = a->getType()->getScalarSizeInBits() == 32;
+  if (fitsDouble && l.isVector(a) && !llvm::isa<llvm::Constant>(c)) return quotientByDoubles(l, isSigned, a, c);
   return isSigned ? l.b.CreateSDiv(a, c) : l.b.CreateUDiv(a, c);
 }
 
@@ -62,8 +67,10 @@ Division divide(Lanes& l, bool isSigned, llvm::Value* a, llvm::Value* c) {
   return {quotient, remainder};
 }
 
-llvm::Value* shiftCount(Lanes& l, llvm::Value* count) {
-  return l.b.CreateAnd(count, l.integer(count->getType(), 31));
+/// The count modulo the width of `a`, as a value of its type.
+llvm::Value* shiftCount(Lanes& l, llvm::Value* a, llvm::Value* count) {
+  const std::int64_t last = a->getType()->getScalarSizeInBits() - 1;
+  return l.b.CreateZExt(l.b.CreateAnd(count, l.integer(count->getType(), last)), a->getType());
 }
 
 llvm::Value* realOperation(Lanes& l, BinaryOp op, llvm::Value* a, llvm::Value* c) {
@@ -102,9 +109,9 @@ llvm::Value* integerOperation(Lanes& l, BinaryOp op, bool isSigned, llvm::Value*
     case BinaryOp::LogicalOr:
     case BinaryOp::BitOr: return l.b.CreateOr(a, c);
     case BinaryOp::BitXor: return l.b.CreateXor(a, c);
-    case BinaryOp::ShiftLeft: return l.b.CreateShl(a, shiftCount(l, c));
+    case BinaryOp::ShiftLeft: return l.b.CreateShl(a, shiftCount(l, a, c));
     case BinaryOp::ShiftRight:
-      return isSigned ? l.b.CreateAShr(a, shiftCount(l, c)) : l.b.CreateLShr(a, shiftCount(l, c));
+      return isSigned ? l.b.CreateAShr(a, shiftCount(l, a, c)) : l.b.CreateLShr(a, shiftCount(l, a, c));
     case BinaryOp::Less: return isSigned ? l.b.CreateICmpSLT(a, c) : l.b.CreateICmpULT(a, c);
     case BinaryOp::LessEqual: return isSigned ? l.b.CreateICmpSLE(a, c) : l.b.CreateICmpULE(a, c);
     case BinaryOp::Greater: return isSigned ? l.b.CreateICmpSGT(a, c) : l.b.CreateICmpUGT(a, c);
@@ -239,20 +246,21 @@ Part convert(Lanes& l, Scalar from, Scalar to, const Part& operand) {
   if (isNarrow(from)) return convert(l, arithmeticScalar(from), to, fromNarrow(l, from, operand));
   if (to == Scalar::Half && from == Scalar::Double) return toNarrow(l, to, operand);
   if (isNarrow(to)) return toNarrow(l, to, convert(l, from, arithmeticScalar(to), operand));
-  const bool areWords =
-      (from == Scalar::Int || from == Scalar::Uint) && (to == Scalar::Int || to == Scalar::Uint);
-  if (areWords) return operand;
+  const bool areIntegers = isInteger(from) && isInteger(to);
+  if (areIntegers && isWide(from) == isWide(to)) return operand;
   llvm::Value* const x = l.value(operand);
   llvm::Type* const type = l.sameShape(x, l.type(to));
+  if (areIntegers && isWide(to)) return {isSigned(from) ? l.b.CreateSExt(x, type) : l.b.CreateZExt(x, type)};
+  if (areIntegers) return {l.b.CreateTrunc(x, type)};
   if (to == Scalar::Bool) {
     llvm::Value* const zero = llvm::Constant::getNullValue(x->getType());
     return {isReal(from) ? l.b.CreateFCmpUNE(x, zero) : l.b.CreateICmpNE(x, zero)};
   }
   if (from == Scalar::Bool) return {isReal(to) ? l.b.CreateUIToFP(x, type) : l.b.CreateZExt(x, type)};
   if (isReal(from) && isReal(to)) return {l.b.CreateFPCast(x, type)};
-  if (isReal(to)) return {from == Scalar::Int ? l.b.CreateSIToFP(x, type) : l.b.CreateUIToFP(x, type)};
+  if (isReal(to)) return {isSigned(from) ? l.b.CreateSIToFP(x, type) : l.b.CreateUIToFP(x, type)};
   if (to == Scalar::Int && l.isVector(x)) return {saturatedInts(l, x)};
-  const auto saturating = to == Scalar::Int ? llvm::Intrinsic::fptosi_sat : llvm::Intrinsic::fptoui_sat;
+  const auto saturating = isSigned(to) ? llvm::Intrinsic::fptosi_sat : llvm::Intrinsic::fptoui_sat;
   return {l.b.CreateIntrinsic(saturating, {type, x->getType()}, {x})};
 }
 

@@ -33,11 +33,13 @@ unsigned encodingOf(Scalar scalar) {
     case Scalar::Double:
     case Scalar::Half: return llvm::dwarf::DW_ATE_float;
     case Scalar::Int:
+    case Scalar::Long:
     case Scalar::Char:
     case Scalar::Short:
     case Scalar::Snorm8:
     case Scalar::Snorm16: return llvm::dwarf::DW_ATE_signed;
     case Scalar::Uint:
+    case Scalar::Ulong:
     case Scalar::Uchar:
     case Scalar::Ushort:
     case Scalar::Unorm8:

@@ -50,7 +50,7 @@ Parts FunctionCode::parts(const Expr& expr, const Literal& n) {
   switch (arithmeticScalar(scalar)) {
     case Scalar::Bool: return {{b.getInt1(n.bits != 0)}};
     case Scalar::Double: {
-      const auto value = std::bit_cast<double>(std::uint64_t{n.high} << 32 | n.bits);
+      const auto value = std::bit_cast<double>(n.wide());
       return {{l.number(l.type(scalar), value)}};
     }
     case Scalar::Float: {
@@ -58,6 +58,8 @@ Parts FunctionCode::parts(const Expr& expr, const Literal& n) {
       const Part value = {l.number(l.real(), isFloat ? double{std::bit_cast<float>(n.bits)} : wideValue(n))};
       return {convert(l, Scalar::Float, scalar, value)};
     }
+    case Scalar::Long:
+    case Scalar::Ulong: return {{b.getInt64(n.wide())}};
     default: return {convert(l, arithmeticScalar(scalar), scalar, {b.getInt32(n.bits)})};
   }
 }

@@ -15,7 +15,7 @@ namespace {
 
 Part extreme(const ScalarBuilder& f, bool isMin, Scalar scalar, const Part& x, const Part& y) {
   const BinaryOp before = isMin ? BinaryOp::Less : BinaryOp::Greater;
-  if (scalar == Scalar::Int || scalar == Scalar::Uint) {
+  if (!isReal(scalar)) {
     return f.select(binary(f.l, before, scalar, y, x), y, x);
   }
   Part a = x, c = y;
@@ -88,8 +88,8 @@ Part maximum(const ScalarBuilder& f, Scalar scalar, const Part& x, const Part& y
 }
 
 Part absolute(const ScalarBuilder& f, Scalar scalar, const Part& x) {
-  if (scalar != Scalar::Int) return f.abs(x);
-  const Part zero = {f.l.integer(f.l.int32(), 0)};
+  if (isReal(scalar)) return f.abs(x);
+  const Part zero = {f.l.constant(scalar, 0)};
   return f.select(binary(f.l, BinaryOp::Less, scalar, x, zero), unary(f.l, UnaryOp::Negate, scalar, x), x);
 }
 
@@ -192,23 +192,34 @@ Part ldexp(const ScalarBuilder& f, const Part& number, const Part& exponent) {
   return {l.b.CreateFPTrunc(product, x.value->getType())};
 }
 
+namespace {
+
+/// A number of bits as an int.
+Part asInt(Lanes& l, llvm::Value* bits) { return {l.b.CreateZExtOrTrunc(bits, l.sameShape(bits, l.int32()))}; }
+
+}  // namespace
+
+Part bitCount(const ScalarBuilder& f, const Part& x) {
+  return asInt(f.l, f.l.b.CreateUnaryIntrinsic(llvm::Intrinsic::ctpop, x.value));
+}
 Part leadingZeros(const ScalarBuilder& f, const Part& x) {
-  return {f.l.b.CreateBinaryIntrinsic(llvm::Intrinsic::ctlz, x.value, f.l.b.getFalse())};
+  return asInt(f.l, f.l.b.CreateBinaryIntrinsic(llvm::Intrinsic::ctlz, x.value, f.l.b.getFalse()));
 }
 Part trailingZeros(const ScalarBuilder& f, const Part& x) {
-  return {f.l.b.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, x.value, f.l.b.getFalse())};
+  return asInt(f.l, f.l.b.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, x.value, f.l.b.getFalse()));
 }
 
 Part multiplyHigh(const ScalarBuilder& f, Scalar scalar, const Part& x, const Part& y) {
   Lanes& l = f.l;
   Part a = x, c = y;
   l.unify(a, c);
-  llvm::Type* const wide = l.sameShape(a.value, l.int64());
+  const unsigned bits = row(scalar).bits;
+  llvm::Type* const wide = l.sameShape(a.value, l.b.getIntNTy(2 * bits));
   const auto widened = [&](const Part& part) {
-    return scalar == Scalar::Int ? l.b.CreateSExt(part.value, wide) : l.b.CreateZExt(part.value, wide);
+    return scalar == Scalar::Int || scalar == Scalar::Long ? l.b.CreateSExt(part.value, wide) : l.b.CreateZExt(part.value, wide);
   };
   llvm::Value* const product = l.b.CreateMul(widened(a), widened(c));
-  return {l.b.CreateTrunc(l.b.CreateLShr(product, 32), a.value->getType())};
+  return {l.b.CreateTrunc(l.b.CreateLShr(product, bits), a.value->getType())};
 }
 
 Part sumError(const ScalarBuilder& f, const Part& a, const Part& c) {

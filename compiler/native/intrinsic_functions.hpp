@@ -35,10 +35,12 @@ Part modfFraction(const ScalarBuilder& f, const Part& x);
 /// x * 2^e, rounded once.
 Part ldexp(const ScalarBuilder& f, const Part& number, const Part& exponent);
 
-/// The number of zeros in front of the highest bit that is set, or behind the lowest; 32 of 0.
+/// The number of bits that are set in an integer of 32 or 64 bits, as an int.
+Part bitCount(const ScalarBuilder& f, const Part& x);
+/// The number of zeros in front of the highest bit that is set, or behind the lowest; 32 or 64 of 0.
 Part leadingZeros(const ScalarBuilder& f, const Part& x);
 Part trailingZeros(const ScalarBuilder& f, const Part& x);
-/// The upper 32 bits of the product of two ints or uints.
+/// The upper half of the product of two integers of a type.
 Part multiplyHigh(const ScalarBuilder& f, ir::Scalar scalar, const Part& x, const Part& y);
 
 /// The rounding error of a sum (Knuth, TAOCP 2, 4.2.2).

@@ -39,7 +39,7 @@ ConditionOp opOf(BinaryOp op) {
   using enum ConditionOp;
   constexpr std::nullopt_t None = std::nullopt;
   constexpr std::optional<ConditionOp> ops[] = {
-#define SKC_OPERATOR(Name, spelling, precedence, isAssociative, vectors, doubles, condition) condition,
+#define SKC_OPERATOR(Name, spelling, precedence, isAssociative, vectors, wide, condition) condition,
 #include "ir/operators.def"
 #undef SKC_OPERATOR
   };
@@ -236,6 +236,7 @@ class Builder {
             .usesExtent = uses.domainExtent,
             .usesLoops = uses.loops,
             .usesDoubles = usesDoubles(module_, kernel),
+            .usesLongs = usesLongs(module_, kernel),
             .usesExactSums = usesExactSums(module_, kernel),
             .intrinsics = storage_.keep(std::move(text.intrinsics)),
             .tables = storage_.keep(std::move(tables)),
@@ -252,6 +253,7 @@ class Builder {
     if (&combine == &fold || !std::ranges::all_of(combine.params, isFolded) ||
         !tabulatedFunctionsOf(module_, combine).empty() ||
         (usesDoubles(module_, combine) && !usesDoubles(module_, fold)) ||
+        (usesLongs(module_, combine) && !usesLongs(module_, fold)) ||
         (usesExactSums(module_, combine) && !usesExactSums(module_, fold))) {
       return {};
     }

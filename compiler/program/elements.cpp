@@ -29,10 +29,10 @@ ElementLayout matrixLayout(Type type) {
   return layout;
 }
 
-/// Two doubles fill the four channels of a texel.
-ElementLayout doubleVectorLayout(Type type) {
+/// Two wide scalars fill the four channels of a texel.
+ElementLayout wideVectorLayout(Type type) {
   ElementLayout layout{{}, 8U * type.width, 8};
-  for (const Type plane : doublePlanes(type)) {
+  for (const Type plane : widePlanes(type)) {
     const auto number = static_cast<std::uint32_t>(layout.planes.size());
     layout.planes.push_back({"", number == 0 ? "x" : "z", plane, 16 * number, static_cast<int>(number)});
   }
@@ -60,7 +60,7 @@ ElementLayout arrayLayout(const Module& module, const TypeNames& types, const Ar
 
 ElementLayout elementLayout(const Module& module, const TypeNames& types, Type type) {
   if (type.isMatrix()) return matrixLayout(type);
-  if (type.isDouble() && type.width > 2) return doubleVectorLayout(type);
+  if (type.isWide() && type.width > 2) return wideVectorLayout(type);
   if (type.isArithmetic()) {
     const std::uint32_t component = bytesOf(type.scalar);
     return {{{"", "", type, 0}}, component * type.width, component};

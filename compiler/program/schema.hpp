@@ -296,6 +296,7 @@ struct Members<p::Kernel> {
       Option{"usesExtent", &p::Kernel::usesExtent},
       Option{"usesLoops", &p::Kernel::usesLoops},
       Option{"usesDoubles", &p::Kernel::usesDoubles},
+      Option{"usesLongs", &p::Kernel::usesLongs},
       Option{"usesExactSums", &p::Kernel::usesExactSums},
       Option{"intrinsics", &p::Kernel::intrinsics, Part::Intrinsics},
       CountedOption{"plans", &p::Kernel::plans, "planCount", &p::Kernel::planCount, Part::Plans},
@@ -455,9 +456,9 @@ static_assert(listsAll<p::Field> && listsAll<p::Element> && listsAll<p::Conditio
 
 // The first enumerator of an option is its default, which is printed as such.
 template <>
-inline constexpr Enumeration<14> enumeration<p::Scalar> = {
+inline constexpr Enumeration<16> enumeration<p::Scalar> = {
     "Scalar",
-    {"bool", "int", "uint", "float", "double", "half", "char", "uchar", "short", "ushort", "unorm8", "snorm8",
+    {"bool", "int", "uint", "float", "double", "long", "ulong", "half", "char", "uchar", "short", "ushort", "unorm8", "snorm8",
      "unorm16", "snorm16"}};
 template <>
 inline constexpr Enumeration<9> enumeration<p::Role> = {

@@ -19,6 +19,7 @@ using namespace ir;
 constexpr double unknownTripCount = 16;
 constexpr double intrinsicCost = 4;
 constexpr double doubleCost = 6;   // per operation: 2 in native GLSL doubles, 9 to 15 in pairs of floats
+constexpr double longCost = 4;   // per operation, of two words
 constexpr double addressCost = 4;
 
 void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
@@ -28,8 +29,8 @@ void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
     }
   } else if (type.isMatrix()) {
     planes.insert(planes.end(), type.width, type.indexed());
-  } else if (type.isDouble()) {
-    const std::vector<Type> own = doublePlanes(type);
+  } else if (type.isWide()) {
+    const std::vector<Type> own = widePlanes(type);
     planes.insert(planes.end(), own.begin(), own.end());
   } else {
     planes.push_back(type);
@@ -39,7 +40,7 @@ void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
 /// The cost of a node itself, without its operands.
 double nodeCost(const Module& module, const Expr& expr,
                 const std::unordered_map<FunctionId, double>& functions) {
-  const double width = expr.type.width * (expr.type.isDouble() ? doubleCost : 1);
+  const double width = expr.type.width * (expr.type.isDouble() ? doubleCost : expr.type.isLong() ? longCost : 1);
   return match(
       expr.node, [](const Literal&) { return 0.0; }, [](const VarRef&) { return 0.0; },
       [](const ConstantRef&) { return 0.0; }, [&](const Unary&) { return width; },
@@ -86,6 +87,7 @@ bool isOfExactSums(Intrinsic intrinsic) {
 /// The weight of a node without its operands.
 std::uint32_t weightOf(const Expr& expr) {
   if (isOperation(expr) && expr.type.isDouble()) return static_cast<std::uint32_t>(doubleCost);
+  if (isOperation(expr) && expr.type.isLong()) return static_cast<std::uint32_t>(longCost);
   const auto* call = std::get_if<IntrinsicCall>(&expr.node);
   if (call == nullptr) return 1;
   if (call->args[0]->type.isDouble()) return static_cast<std::uint32_t>(doubleCost);
@@ -115,7 +117,7 @@ std::vector<Type> planesOf(const Module& module, Type type) {
   return planes;
 }
 
-double planeCost(Type plane) { return componentCost * plane.width * (plane.isDouble() ? 2 : 1); }
+double planeCost(Type plane) { return componentCost * plane.width * (plane.isWide() ? 2 : 1); }
 
 double elementCost(const Module& module, Type type) {
   double cost = 0;

@@ -116,7 +116,7 @@ class FoldSplitter {
       return std::ranges::all_of(module_.structs[type.index].fields,
                                  [&](const StructField& field) { return keepsBits(field.type); });
     }
-    return !type.isNarrow() && !type.isDouble();
+    return !type.isNarrow() && !type.isWide();
   }
 
   double costOf(const Kernel& kernel, const Slice& slice) const {

@@ -56,7 +56,7 @@ bool isNonNegative(const IntrinsicCall& n) {
 bool isNonNegative(const Expr& expr) {
   if (expr.type.isArithmetic()) {
     const Scalar s = expr.type.scalar;
-    if (s == Scalar::Uint || s == Scalar::Uchar || s == Scalar::Ushort || s == Scalar::Unorm8 ||
+    if (s == Scalar::Uint || s == Scalar::Ulong || s == Scalar::Uchar || s == Scalar::Ushort || s == Scalar::Unorm8 ||
         s == Scalar::Unorm16 || s == Scalar::Bool) {
       return true;
     }

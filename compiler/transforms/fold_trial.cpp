@@ -108,7 +108,7 @@ bool isNormalized(Scalar scalar) {
 }
 
 bool isUnsigned(Scalar scalar) {
-  return scalar == Scalar::Uint || scalar == Scalar::Uchar || scalar == Scalar::Ushort ||
+  return scalar == Scalar::Uint || scalar == Scalar::Ulong || scalar == Scalar::Uchar || scalar == Scalar::Ushort ||
          scalar == Scalar::Unorm8 || scalar == Scalar::Unorm16;
 }
 

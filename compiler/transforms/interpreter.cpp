@@ -330,6 +330,13 @@ class Interpreter {
 
   Numbers of(Frame& frame, const Expr& expr) {
     tick();
+    Numbers result = node(frame, expr);
+    const auto isKnown = [&](double value) { return isRepresentable(expr.type.scalar, value); };
+    if (expr.type.isLong() && !std::ranges::all_of(result, isKnown)) throw CannotInterpret{};
+    return result;
+  }
+
+  Numbers node(Frame& frame, const Expr& expr) {
     if (const Expr* base = baseOf(expr)) return part(frame, expr, of(frame, *base));
     return match(
         expr.node, [&](const Literal& n) { return Numbers(lanes_.count, valueOf(expr.type.scalar, n)); },
@@ -407,7 +414,7 @@ class Interpreter {
     return each(std::max(a.size(), b.size()) / lanes_.count, [&](std::size_t lane, std::size_t i) {
       const std::optional<double> result =
           computed(op, left.scalar, component(a, lane, i), component(b, lane, i));
-      if (!result) throw CannotInterpret{};
+      if (!result || !isRepresentable(left.scalar, *result)) throw CannotInterpret{};
       return *result;
     });
   }

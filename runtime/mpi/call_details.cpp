@@ -36,6 +36,8 @@ std::string scalarText(Scalar scalar, const std::byte* from) {
     case Scalar::Uint: return numberText<std::uint32_t>(from);
     case Scalar::Float: return numberText<float>(from);
     case Scalar::Double: return numberText<double>(from);
+    case Scalar::Long: return numberText<std::int64_t>(from);
+    case Scalar::Ulong: return numberText<std::uint64_t>(from);
     case Scalar::Short:
     case Scalar::Snorm16: return numberText<std::int16_t>(from);
     case Scalar::Ushort:

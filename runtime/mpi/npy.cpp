@@ -28,11 +28,13 @@ std::string typeOf(Scalar scalar) {
   switch (scalar) {
     case Scalar::Bool: return typed('b');
     case Scalar::Int:
+    case Scalar::Long:
     case Scalar::Char:
     case Scalar::Short:
     case Scalar::Snorm8:
     case Scalar::Snorm16: return typed('i');
     case Scalar::Uint:
+    case Scalar::Ulong:
     case Scalar::Uchar:
     case Scalar::Ushort:
     case Scalar::Unorm8:
@@ -106,7 +108,7 @@ NpyArray npyArray(const Element& element, const Shape& shape, bool asDoubles) {
   }
   const Field& field = element.fields.front();
   const auto components = static_cast<std::int64_t>(componentCount(element));
-  if (components > 1 && field.part >= 0 && field.scalar != Scalar::Double) {
+  if (components > 1 && field.part >= 0 && !program::isWide(field.scalar)) {
     array.extents.push_back(static_cast<std::int64_t>(element.fields.size()));  // rows of a matrix
     array.extents.push_back(field.width);
   } else if (components > 1) {

@@ -99,6 +99,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void forStatement(const clang::ForStmt* statement);
   void whileStatement(const clang::WhileStmt* statement);
   void doStatement(const clang::DoStmt* statement);
+  void numberCases(ir::Switch& result, Loc loc);
   void switchStatement(const clang::SwitchStmt* statement);
   void returnStatement(const clang::ReturnStmt* statement);
   /// A loop's condition, and the variable that it declares, or null: `while (int left = n - i)`.
@@ -142,7 +143,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   // ---- values (lower_value.cpp, lower_literal.cpp) ----------------------------------------------
   ir::ExprPtr make(ir::Type type, clang::SourceLocation where, ir::Expr::Node node);
   ir::ExprPtr read(ir::VarId variable, clang::QualType type, clang::SourceLocation where);
-  ir::ExprPtr literal(ir::Type type, std::uint32_t bits, clang::SourceLocation where);
+  ir::ExprPtr literal(ir::Type type, std::uint64_t bits, clang::SourceLocation where);
   /// True for an expression of literals only (lower_literal.cpp), whose precision depends on its context.
   bool isLiterals(const clang::Expr* e) const;
   ir::ExprPtr literalsAsDouble(const clang::Expr* e);
@@ -158,6 +159,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr zero(ir::Type type, clang::SourceLocation where);
   ir::ExprPtr convert(ir::ExprPtr e, ir::Scalar scalar);
   ir::ExprPtr splat(ir::ExprPtr e, int width);
+  ir::ExprPtr shiftCount(ir::ExprPtr count);
   ir::ExprPtr mask(ir::ExprPtr boolVector);
   ir::ExprPtr toBool(ir::ExprPtr e);
   ir::ExprPtr vectorBitCast(const clang::CastExpr* e);
@@ -196,6 +198,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
     clang::SourceLocation where;
   };
   static Subscripts subscriptsOf(const clang::CXXOperatorCallExpr* e);
+  ir::ExprPtr intIndex(ir::ExprPtr index);
   ir::ExprPtr indexFrom(const Subscripts& subscripts, ir::VarId stream);
   ir::ExprPtr argument(const clang::Expr* e, const ir::Variable& parameter);
   /// True if a reference to `e` refers to an object of the caller, not to a temporary.

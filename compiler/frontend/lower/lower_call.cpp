@@ -166,8 +166,10 @@ int conversionCost(ir::Type from, ir::Type to) {
   if (to.scalar == Scalar::Double) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
   if (to.scalar == Scalar::Float) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
   if (to.scalar == Scalar::Bool)
-    return from.scalar == Scalar::Int && from.isVector() ? cost : impossible;  // int mask to bool vector
+    return (from.scalar == Scalar::Int || from.isLong()) && from.isVector() ? cost : impossible;  // mask to bools
   if (from.scalar == Scalar::Float) return impossible;
+  if (to.isLong()) return cost + (from.scalar == Scalar::Bool || from.isLong() ? 1 : 2);
+  if (from.isLong()) return impossible;
   if (to.scalar == Scalar::Uint) return cost + 2;
   return cost + (from.scalar == Scalar::Bool ? 1 : 3);
 }
@@ -474,6 +476,25 @@ FunctionLowering::Subscripts FunctionLowering::subscriptsOf(const clang::CXXOper
   return result;
 }
 
+/// An index as an int. One of 64 bits that no int is becomes the nearest int.
+ExprPtr FunctionLowering::intIndex(ExprPtr index) {
+  if (!index->type.isLong()) return convert(std::move(index), Scalar::Int);
+  const Loc loc = index->loc;
+  constexpr std::int64_t least = std::numeric_limits<std::int32_t>::min();
+  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+  const bool isSigned = index->type.scalar == Scalar::Long;
+  if (const auto* known = std::get_if<ir::Literal>(&index->node)) {
+    const std::uint64_t bits = known->wide();
+    const auto number = static_cast<std::int64_t>(isSigned ? bits : std::min<std::uint64_t>(bits, most));
+    return ir::literal(static_cast<std::int32_t>(std::clamp(number, least, most)), loc);
+  }
+  ExprPtr last = convert(ir::literal(most, loc), index->type.scalar);
+  if (isSigned)
+    index = ir::intrinsic(ir::Intrinsic::Max, ir::exprs(std::move(index), ir::literal(least, loc)), loc);
+  index = ir::intrinsic(ir::Intrinsic::Min, ir::exprs(std::move(index), std::move(last)), loc);
+  return convert(std::move(index), Scalar::Int);
+}
+
 /// An int index with x, the fastest dimension, first. A float index selects the nearest element.
 ExprPtr FunctionLowering::indexFrom(const Subscripts& subscripts, ir::VarId stream) {
   const ir::Variable variable = function_.variables[stream];
@@ -489,7 +510,7 @@ ExprPtr FunctionLowering::indexFrom(const Subscripts& subscripts, ir::VarId stre
       const ir::Type type = index->type.withScalar(Scalar::Int);
       index = ir::makeExpr(type, ir::IntrinsicCall{ir::Intrinsic::Nearest, ir::exprs(std::move(index))}, loc);
     }
-    index = convert(std::move(index), Scalar::Int);
+    index = intIndex(std::move(index));
   }
   ExprPtr index;
   if (values.size() == 1) {

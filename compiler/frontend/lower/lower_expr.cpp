@@ -55,6 +55,7 @@ std::optional<ir::BinaryOp> binaryOpOf(clang::BinaryOperatorKind kind) {
 }
 
 bool isArithmeticOp(ir::BinaryOp op) { return op <= ir::BinaryOp::Rem; }
+bool isShift(ir::BinaryOp op) { return op == ir::BinaryOp::ShiftLeft || op == ir::BinaryOp::ShiftRight; }
 
 /// The equivalent of an operator on two bool vectors; nullopt for arithmetic operators.
 std::optional<ir::BinaryOp> ofBools(ir::BinaryOp op) {
@@ -292,6 +293,7 @@ ExprPtr FunctionLowering::compoundAssign(const clang::CompoundAssignOperator* e,
       op == ir::BinaryOp::Rem && computed.scalar == ir::Scalar::Int;  // is a function in GLSL
   const bool isNumber = computed.isArithmetic() && !computed.isBool() && !computed.isNarrow();
   if (isNumber && computed.scalar == type.scalar && !isSignedRemainder) {
+    if (isShift(op)) sides.right = shiftCount(std::move(sides.right));
     if (isArithmeticOp(op)) sides.right = withoutSplat(std::move(sides.right));
     return store(std::move(sides), op, loc, wantValue);
   }
@@ -349,7 +351,7 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
         // what the text of a float has beyond the float belongs to its magnitude
         if (operand->type.arithmeticType().isFloat())
           return make(operand->type, where, ir::Literal{constant->bits ^ 0x80000000u, 0, constant->text});
-        return literal(operand->type, 0u - constant->bits, where);
+        return literal(operand->type, 0u - constant->wide(), where);
       }
       const ir::Type type = operand->type;
       if (type.isBool()) module_.fail(Diag::Statement, where, {"arithmetic of bool vectors"});
@@ -405,10 +407,16 @@ ExprPtr FunctionLowering::VisitCompoundAssignOperator(const clang::CompoundAssig
   return compoundAssign(e, true);
 }
 
+/// A count of 64 bits as an int: counts are taken modulo the width, which the low bits tell.
+ExprPtr FunctionLowering::shiftCount(ExprPtr count) {
+  return count->type.isLong() ? convert(std::move(count), ir::Scalar::Int) : std::move(count);
+}
+
 ExprPtr FunctionLowering::binary(ir::BinaryOp op, ExprPtr lhs, ExprPtr rhs, SourceLocation where) {
   assert(lhs->type.isArithmetic() && rhs->type.isArithmetic());  // otherwise Clang finds no operator
   lhs = convert(std::move(lhs), ir::arithmeticScalar(lhs->type.scalar));
   rhs = convert(std::move(rhs), ir::arithmeticScalar(rhs->type.scalar));
+  if (isShift(op)) rhs = shiftCount(std::move(rhs));
   if (isArithmeticOp(op) && lhs->type.isVector()) {
     // keep `2 * v` as written; two splats stay vectors
     ExprPtr bare = withoutSplat(std::move(rhs));

@@ -430,13 +430,34 @@ const clang::Stmt* withoutAttributes(const clang::Stmt* s) {
 
 }  // namespace
 
+/// Turns a switch over an integer of 64 bits, which GLSL lacks, into one over the number of the value's case.
+void FunctionLowering::numberCases(ir::Switch& result, Loc loc) {
+  const ir::Type type = result.value->type;
+  const ir::VarId value = temporary(type, loc), number = temporary(ir::Type::of(ir::Scalar::Int), loc);
+  emit(loc, ir::Declare{value, std::move(result.value)});
+  emit(loc, ir::Declare{number, ir::literal(std::int32_t{-1}, loc)});
+  std::int32_t count = 0;
+  for (ir::Case& one : result.cases) {
+    for (std::int64_t& label : one.values) {
+      ExprPtr wanted = ir::makeExpr(type, ir::Literal::wide(static_cast<std::uint64_t>(label)), loc);
+      ExprPtr isHere = ir::binary(ir::BinaryOp::Equal, ir::varRef(function_, value, loc), std::move(wanted), loc);
+      ir::Block found;
+      found.push_back(ir::assign(ir::varRef(function_, number, loc), ir::literal(count, loc), loc));
+      emit(loc, ir::If{std::move(isHere), std::move(found), {}});
+      label = count++;
+    }
+  }
+  result.value = ir::varRef(function_, number, loc);
+}
+
 void FunctionLowering::switchStatement(const clang::SwitchStmt* s) {
   ir::Block scope;
   ir::Block* outside = out_;
   const bool needsScope = head(s->getInit(), s->getConditionVariable(), scope);
   ir::Switch result;
   result.value = value(s->getCond());
-  if (!result.value->type.isInteger() || result.value->type.isNarrow())  // a bool, or a narrow enumeration
+  const bool isLong = result.value->type.isLong();
+  if (!isLong && !result.value->type.isInteger())  // a bool, or a narrow enumeration
     result.value = convert(std::move(result.value), ir::Scalar::Int);
   const auto* compound = llvm::dyn_cast<clang::CompoundStmt>(s->getBody());
   if (!compound) module_.fail(Diag::CaseInsideStatement, s->getBody()->getBeginLoc());
@@ -464,6 +485,7 @@ void FunctionLowering::switchStatement(const clang::SwitchStmt* s) {
     checkedStatement(inner);
     out_ = outer;
   }
+  if (isLong) numberCases(result, module_.loc(s->getBeginLoc()));
   emit(module_.loc(s->getBeginLoc()), std::move(result));
   if (!needsScope) return;
   out_ = outside;

@@ -36,6 +36,10 @@ std::optional<ir::Scalar> scalarOf(const clang::BuiltinType* builtin) {
     case clang::BuiltinType::UInt: return ir::Scalar::Uint;
     case clang::BuiltinType::Float: return ir::Scalar::Float;
     case clang::BuiltinType::Double: return ir::Scalar::Double;
+    case clang::BuiltinType::Long:
+    case clang::BuiltinType::LongLong: return ir::Scalar::Long;
+    case clang::BuiltinType::ULong:
+    case clang::BuiltinType::ULongLong: return ir::Scalar::Ulong;
     default: return std::nullopt;
   }
 }
@@ -51,25 +55,17 @@ ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
   }
   if (canonical->isReferenceType()) fail(Diag::ReferenceType, use, {qualified.getAsString()});
   if (const auto* enumeration = canonical->getAs<clang::EnumType>()) {
-    const clang::EnumDecl* declaration = enumeration->getDecl();
-    const clang::QualType integer = declaration->getIntegerType();
-    if (context().getIntWidth(integer) <= 32) return type(integer, use);
-    // 64 bits whose values fit 32
-    const bool isSigned = integer->isSignedIntegerType();
-    if (declaration->getNumNegativeBits() <= 32 && declaration->getNumPositiveBits() <= (isSigned ? 31 : 32))
-      return ir::Type::of(isSigned ? ir::Scalar::Int : ir::Scalar::Uint);
-    fail(Diag::EnumTooWide, use, {declaration->getNameAsString()});
+    return type(enumeration->getDecl()->getIntegerType(), use);
   }
   if (const auto* builtin = canonical->getAs<clang::BuiltinType>()) {
     if (const auto scalar = scalarOf(builtin)) return ir::Type::of(*scalar);
-    if (builtin->isInteger() && context().getIntWidth(canonical) > 32)
+    if (builtin->isInteger() && context().getIntWidth(canonical) > 64)
       fail(Diag::WideInteger, use, {qualified.getUnqualifiedType().getAsString()});
     fail(Diag::ScalarType, use, {qualified.getUnqualifiedType().getAsString()});
   }
   if (const auto* vector = canonical->getAs<clang::ExtVectorType>()) {
     const auto* element = vector->getElementType()->getAs<clang::BuiltinType>();
-    const bool isMask = element && element->getKind() == clang::BuiltinType::Long;  // from comparing doubles
-    const auto scalar = isMask ? ir::Scalar::Int : element ? scalarOf(element) : std::nullopt;
+    const auto scalar = element ? scalarOf(element) : std::nullopt;
     const unsigned width = vector->getNumElements();
     if (scalar && width >= 2 && width <= 4) return ir::Type::of(*scalar, static_cast<int>(width));
     fail(Diag::ScalarType, use, {qualified.getAsString()});

@@ -211,7 +211,7 @@ ExprPtr FunctionLowering::packed(Exprs indices, SourceLocation where) {
       ExprPtr most = ir::literal(std::uint32_t{0x7fffffff}, loc);
       index = ir::intrinsic(ir::Intrinsic::Min, ir::exprs(std::move(index), std::move(most)), loc);
     }
-    index = convert(std::move(index), ir::Scalar::Int);
+    index = intIndex(std::move(index));
   }
   if (indices.empty()) return ir::literal(0, loc);
   if (indices.size() == 1) return std::move(indices[0]);

@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 
 #include "frontend/clang_loc.hpp"
+#include "frontend/lower/convert_literal.hpp"
 #include "frontend/lower/function_lowering.hpp"
 #include "frontend/prelude.hpp"
 #include "ir/build.hpp"
 #include "ir/lvalue.hpp"
-#include "ir/scalar_operations.hpp"
 
 namespace skc::frontend {
 
@@ -25,8 +25,8 @@ ExprPtr FunctionLowering::make(ir::Type type, SourceLocation where, ir::Expr::No
   return ir::makeExpr(type, std::move(node), module_.loc(where));
 }
 
-ExprPtr FunctionLowering::literal(ir::Type type, std::uint32_t bits, SourceLocation where) {
-  return make(type, where, ir::Literal{bits});
+ExprPtr FunctionLowering::literal(ir::Type type, std::uint64_t bits, SourceLocation where) {
+  return make(type, where, type.isWide() ? ir::Literal::wide(bits) : ir::Literal{static_cast<std::uint32_t>(bits)});
 }
 
 // ---- wrappers -------------------------------------------------------------------------------------
@@ -60,9 +60,8 @@ ExprPtr FunctionLowering::VisitCXXDefaultInitExpr(const clang::CXXDefaultInitExp
 // ---- leaves ---------------------------------------------------------------------------------------
 
 ExprPtr FunctionLowering::VisitIntegerLiteral(const clang::IntegerLiteral* e) {
-  if (!e->getValue().isIntN(32)) module_.fail(Diag::WideLiteral, e->getLocation(), {module_.textOf(e)});
   const ir::Type type = module_.type(e->getType(), e->getLocation());
-  return literal(type, static_cast<std::uint32_t>(e->getValue().getZExtValue()), e->getLocation());
+  return literal(type, e->getValue().getLimitedValue(), e->getLocation());
 }
 
 ExprPtr FunctionLowering::VisitCXXBoolLiteralExpr(const clang::CXXBoolLiteralExpr* e) {
@@ -77,7 +76,7 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
   if (module_.bundles().placeOf(e)) module_.refuseBundle(declared->getType(), where);
   if (const auto* enumerator = llvm::dyn_cast<clang::EnumConstantDecl>(declared)) {
     const ir::Type type = module_.type(e->getType(), where);
-    return literal(type, static_cast<std::uint32_t>(enumerator->getInitVal().getExtValue()), where);
+    return literal(type, static_cast<std::uint64_t>(enumerator->getInitVal().getExtValue()), where);
   }
   if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declared)) {
     const bool isOutside = function_.name.empty();   // in a border or identity
@@ -120,15 +119,15 @@ bool isKernelInteger(clang::QualType type) {
 
 }  // namespace
 
-/// An integer constant of a type that kernels may not have, such as sizeof or 'a'; null if `e` is not one, or
-/// does not fit in 32 bits.
+/// An integer constant such as sizeof or 'a'; null if `e` is not one, or does not fit in `type`.
 ExprPtr FunctionLowering::integerConstant(const clang::Expr* e, ir::Type type) {
   clang::Expr::EvalResult result;
   if (e->isValueDependent() || !e->EvaluateAsInt(result, module_.context())) return nullptr;
   const llvm::APSInt& number = result.Val.getInt();
-  const bool fits = number.isNegative() ? number.isSignedIntN(32) : number.isIntN(32);
+  const unsigned bits = type.isWide() ? 64 : 32;
+  const bool fits = number.isNegative() ? number.isSignedIntN(bits) : number.isIntN(bits);
   if (!fits) return nullptr;
-  return literal(type, static_cast<std::uint32_t>(number.getExtValue()), e->getBeginLoc());
+  return literal(type, static_cast<std::uint64_t>(number.getExtValue()), e->getBeginLoc());
 }
 
 /// The value of an integer constant of any type that fits in an int or a uint.
@@ -168,7 +167,10 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
         if (number) return convert(ir::literal(*number, module_.loc(where)), to);
       }
       return convert(value(operand), module_.type(e->getType(), where).scalar);
-    case clang::CK_FloatingToIntegral:
+    case clang::CK_FloatingToIntegral: {
+      const ir::Type to = module_.type(e->getType(), where);  // floats have too few bits for an integer of 64
+      return convert(to.isLong() && isLiterals(operand) ? literalsAsDouble(operand) : value(operand), to.scalar);
+    }
     case clang::CK_IntegralToBoolean:
     case clang::CK_FloatingToBoolean:
     case clang::CK_BooleanToSignedIntegral:
@@ -208,22 +210,15 @@ ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
 
 namespace {
 
-/// -int4(b), the result of comparing vectors: 0 or -1 per component, possibly of a narrow type.
+/// -int4(b), the result of comparing vectors: 0 or -1 per component, possibly of a narrow or wide type.
 ExprPtr* maskedBool(ir::Expr& e) {
-  if (auto* kept = std::get_if<ir::Convert>(&e.node); kept && e.type.isNarrow())
+  if (auto* kept = std::get_if<ir::Convert>(&e.node); kept && (e.type.isNarrow() || e.type.isLong()))
     return maskedBool(*kept->operand);
   auto* negate = std::get_if<ir::Unary>(&e.node);
   if (!negate || negate->op != ir::UnaryOp::Negate) return nullptr;
   auto* conversion = std::get_if<ir::Convert>(&negate->operand->node);
   return conversion && conversion->operand->type.isBool() && e.type.isVector() ? &conversion->operand
                                                                                : nullptr;
-}
-
-/// A 32-bit literal as a double, which represents it exactly.
-ExprPtr widened(ir::Scalar from, std::uint32_t bits, Loc loc) {
-  if (from == ir::Scalar::Float) return ir::literal(double{std::bit_cast<float>(bits)}, loc);
-  if (from == ir::Scalar::Int) return ir::literal(static_cast<double>(static_cast<std::int32_t>(bits)), loc);
-  return ir::literal(static_cast<double>(bits), loc);
 }
 
 }  // namespace
@@ -242,8 +237,9 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
                                  {module_.spelling(ir::Type::of(scalar, e->type.width))});
   }
   // a double becomes a half in one step, which rounds once
-  const bool isNarrowed = e->type.isDouble() && ir::isNarrow(scalar) && scalar != ir::Scalar::Half;
-  if ((e->type.isNarrow() && scalar == ir::Scalar::Double) || isNarrowed) {
+  const bool isNarrowed =
+      e->type.isWide() && ir::isNarrow(scalar) && !(e->type.isDouble() && scalar == ir::Scalar::Half);
+  if ((e->type.isNarrow() && ir::isWide(scalar)) || isNarrowed) {
     const ir::Scalar arithmetic = ir::arithmeticScalar(e->type.isNarrow() ? e->type.scalar : scalar);
     return convert(convert(std::move(e), arithmetic), scalar);
   }
@@ -251,37 +247,11 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
       construct && e->type.isVector() && construct->args.size() == 1 && construct->args[0]->type.isScalar()) {
     return splat(convert(std::move(construct->args[0]), scalar), e->type.width);  // `2.0` with a vector
   }
-  if (auto* constant = std::get_if<ir::Literal>(&e->node)) {
-    const ir::Scalar arithmetic = ir::arithmeticScalar(scalar);
-    if (scalar == ir::Scalar::Double) return widened(e->type.scalar, constant->bits, loc);
-    if (e->type.isNarrow()) {  // has its arithmetic type's bits
-      e->type = e->type.arithmeticType();
-      return convert(std::move(e), scalar);
-    }
-    if (e->type.isDouble() && scalar == ir::Scalar::Half) {
-      const float odd =
-          ir::roundedToOdd(std::bit_cast<double>(std::uint64_t{constant->high} << 32 | constant->bits));
-      const std::uint32_t half = ir::quantize(scalar, std::bit_cast<std::uint32_t>(odd));
-      return ir::makeExpr(ir::Type::of(scalar), ir::Literal{half}, loc);
-    }
-    if (ir::isNarrow(scalar) && e->type.scalar != arithmetic) {
+  if (std::holds_alternative<ir::Literal>(e->node)) {
+    if (ExprPtr converted = convertLiteral(*e, scalar)) return converted;
+    const ir::Scalar arithmetic = ir::arithmeticScalar(ir::isNarrow(scalar) ? scalar : e->type.scalar);
+    if (e->type.scalar != arithmetic && scalar != arithmetic)
       return convert(convert(std::move(e), arithmetic), scalar);
-    }
-    if (ir::isNarrow(scalar)) {
-      *constant = {ir::quantize(scalar, *constant)};
-      e->type = ir::Type::of(scalar);
-      return e;
-    }
-    // `v = 1` reads better as 1.0 than as float(1); ints round as on the device
-    if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Float) {
-      const auto number = static_cast<std::int32_t>(constant->bits);
-      return ir::literal(static_cast<float>(number), static_cast<double>(number), loc);
-    }
-    if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Uint)
-      return ir::literal(constant->bits, loc);
-    if (e->type.scalar == ir::Scalar::Uint && scalar == ir::Scalar::Float) {
-      return ir::literal(static_cast<float>(constant->bits), static_cast<double>(constant->bits), loc);
-    }
   }
   return ir::convert(scalar, std::move(e), loc);
 }
@@ -371,7 +341,7 @@ ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* i
   const bool isArray = outer.kind == ir::Type::Kind::Array;
   const ir::Type type = isArray ? module_.arrayAt(outer.index).element : outer.indexed();
   const ir::Scalar arithmetic = ir::arithmeticScalar(parts[1]->type.scalar);
-  parts[1] = convert(std::move(parts[1]), arithmetic == ir::Scalar::Bool ? ir::Scalar::Int : arithmetic);
+  parts[1] = arithmetic == ir::Scalar::Uint ? convert(std::move(parts[1]), arithmetic) : intIndex(std::move(parts[1]));
   return make(type, where, ir::Index{std::move(parts[0]), std::move(parts[1])});
 }
 

@@ -198,11 +198,11 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ValueDecl* declaration,
   if (param.role != ir::ParamRole::Uniform) {
     checkElement(param.type, param.name, declaration->getLocation());
   }
-  if (param.role == ir::ParamRole::Iterator && (!param.type.isNumber() || param.type.isDouble())) {
+  if (param.role == ir::ParamRole::Iterator && (!param.type.isNumber() || param.type.isWide())) {
     fail(Diag::IteratorType, declaration->getLocation(), {param.name, spelling(param.type)});
   }
   if (param.role == ir::ParamRole::Spec &&
-      (!param.type.isScalar() || param.type.isNarrow() || param.type.isDouble())) {
+      (!param.type.isScalar() || param.type.isNarrow() || param.type.isWide())) {
     fail(Diag::SpecType, declaration->getLocation(), {param.name, spelling(param.type)});
   }
   if (syntax) {
@@ -416,7 +416,9 @@ ir::ExprPtr ModuleLowering::evaluated(const clang::APValue& value, ir::Type type
         type, ir::Literal{static_cast<std::uint32_t>(rounded.bitcastToAPInt().getZExtValue())}, loc);
   }
   if (value.isInt()) {
-    const auto bits = static_cast<std::uint32_t>(value.getInt().getExtValue());
+    const auto wide = static_cast<std::uint64_t>(value.getInt().getExtValue());
+    if (type.isLong()) return ir::makeExpr(type, ir::Literal::wide(wide), loc);
+    const auto bits = static_cast<std::uint32_t>(wide);
     return ir::makeExpr(type, ir::Literal{type.isBool() ? bits != 0 : bits}, loc);
   }
   std::vector<ir::ExprPtr> parts;

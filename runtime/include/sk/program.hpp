@@ -25,7 +25,8 @@
 //
 // Doubles have the types sk_double, sk_double2, sk_double3 and sk_double4, with members x, y, z and w. A body
 // computes with them through functions of one sk_double each, which the assembler defines for native doubles
-// or for pairs of floats: see assemble/glsl/double_intrinsics.hpp.
+// or for pairs of floats: see assemble/glsl/double_intrinsics.hpp. Integers of 64 bits likewise have the types sk_long to sk_long4 and
+// sk_ulong to sk_ulong4, and functions of one of them (assemble/glsl/longs.hpp).
 //
 // Every name that the assembler declares begins with `sk_`; users' names never do.
 #pragma once
@@ -55,6 +56,8 @@ enum class Scalar : std::uint8_t {
   Uint,
   Float,
   Double,
+  Long,
+  Ulong,
   Half,
   Char,
   Uchar,
@@ -260,6 +263,7 @@ struct Kernel {
   /// inputs might keep the loop from ending.
   bool usesLoops = false;
   bool usesDoubles = false;  ///< declarations or body use sk_double
+  bool usesLongs = false;  ///< declarations or body use sk_long or sk_ulong
   bool usesExactSums = false;  ///< the body has floats that no driver may simplify: sk_precise, sk_keep()
   std::span<const IntrinsicUse> intrinsics = {};  ///< the intrinsics that declarations or body call
   const Plan* plans = nullptr;  ///< for devices that cannot run it in one pass, least restrictive first

@@ -24,9 +24,14 @@ constexpr std::size_t hostBytes(Scalar scalar) {
     case Scalar::Int:
     case Scalar::Uint:
     case Scalar::Float: return 4;
-    case Scalar::Double: break;
+    case Scalar::Double:
+    case Scalar::Long:
+    case Scalar::Ulong: break;
   }
   return 8;
 }
+
+/// Whether a component takes two words, and two channels of a texel.
+constexpr bool isWide(Scalar scalar) { return hostBytes(scalar) == 8; }
 
 }  // namespace sk::program

@@ -59,6 +59,12 @@ using float4 = Vector4<float>;
 using double2 = Vector2<double>;
 using double3 = Vector3<double>;
 using double4 = Vector4<double>;
+using long2 = Vector2<std::int64_t>;
+using long3 = Vector3<std::int64_t>;
+using long4 = Vector4<std::int64_t>;
+using ulong2 = Vector2<std::uint64_t>;
+using ulong3 = Vector3<std::uint64_t>;
+using ulong4 = Vector4<std::uint64_t>;
 using half2 = Vector2<half>;
 using half3 = Vector3<half>;
 using half4 = Vector4<half>;
@@ -124,6 +130,10 @@ inline constexpr program::Scalar scalarOf<std::uint32_t> = program::Scalar::Uint
 template <>
 inline constexpr program::Scalar scalarOf<double> = program::Scalar::Double;
 template <>
+inline constexpr program::Scalar scalarOf<std::int64_t> = program::Scalar::Long;
+template <>
+inline constexpr program::Scalar scalarOf<std::uint64_t> = program::Scalar::Ulong;
+template <>
 inline constexpr program::Scalar scalarOf<half> = program::Scalar::Half;
 template <>
 inline constexpr program::Scalar scalarOf<std::int8_t> = program::Scalar::Char;
@@ -153,6 +163,9 @@ inline constexpr std::string_view uintGlsl[] = {"uint", "uvec2", "uvec3", "uvec4
 inline constexpr std::string_view floatGlsl[] = {"float", "vec2", "vec3", "vec4"};
 inline constexpr std::string_view doubleGlsl[] = {"sk_double", "sk_double2", "sk_double3", "sk_double4"};
 
+inline constexpr std::string_view longGlsl[] = {"sk_long", "sk_long2", "sk_long3", "sk_long4"};
+inline constexpr std::string_view ulongGlsl[] = {"sk_ulong", "sk_ulong2", "sk_ulong3", "sk_ulong4"};
+
 /// Indexed by program::Scalar.
 inline constexpr Spellings spellings[] = {
     {{"bool", "bool2", "bool3", "bool4"}, boolGlsl},
@@ -160,6 +173,8 @@ inline constexpr Spellings spellings[] = {
     {{"uint", "uint2", "uint3", "uint4"}, uintGlsl},
     {{"float", "float2", "float3", "float4"}, floatGlsl},
     {{"double", "double2", "double3", "double4"}, doubleGlsl},
+    {{"long", "long2", "long3", "long4"}, longGlsl},
+    {{"ulong", "ulong2", "ulong3", "ulong4"}, ulongGlsl},
     {{"half", "half2", "half3", "half4"}, floatGlsl},
     {{"char", "char2", "char3", "char4"}, intGlsl},
     {{"uchar", "uchar2", "uchar3", "uchar4"}, intGlsl},
@@ -194,13 +209,12 @@ constexpr std::array<program::Field, Count> partsOf(program::Scalar scalar, std:
   return parts;
 }
 
-/// A vector of three or four doubles has one field for its first two components and one for the rest.
-template <class T, std::uint8_t Width>
-struct DoubleVectorElement {
-  static_assert(sizeof(T) == sizeof(double) * Width, "StreamKernel: vectors are tightly packed");
-  static constexpr const Spellings& spelling = spellings[static_cast<std::size_t>(program::Scalar::Double)];
-  static constexpr program::Field fields[2] = {{"", program::Scalar::Double, 2, 0, 0},
-                                               {"", program::Scalar::Double, Width - 2, 16, 1}};
+/// A vector of three or four components of 64 bits has one field for the first two and one for the rest.
+template <class T, class C, std::uint8_t Width>
+struct WideVectorElement {
+  static_assert(sizeof(C) == 8 && sizeof(T) == sizeof(C) * Width, "StreamKernel: vectors are tightly packed");
+  static constexpr const Spellings& spelling = spellings[static_cast<std::size_t>(scalarOf<C>)];
+  static constexpr program::Field fields[2] = {{"", scalarOf<C>, 2, 0, 0}, {"", scalarOf<C>, Width - 2, 16, 1}};
   static constexpr program::Element value{spelling.names[Width - 1], spelling.glsl[Width - 1], sizeof(T),
                                           fields};
   static constexpr const program::Element& element() { return value; }
@@ -230,10 +244,12 @@ template <class C>
 struct ElementTraits<Vector3<C>> : detail::VectorElement<Vector3<C>, C, 3> {};
 template <class C>
 struct ElementTraits<Vector4<C>> : detail::VectorElement<Vector4<C>, C, 4> {};
-template <>
-struct ElementTraits<double3> : detail::DoubleVectorElement<double3, 3> {};
-template <>
-struct ElementTraits<double4> : detail::DoubleVectorElement<double4, 4> {};
+template <class C>
+  requires(sizeof(C) == 8)
+struct ElementTraits<Vector3<C>> : detail::WideVectorElement<Vector3<C>, C, 3> {};
+template <class C>
+  requires(sizeof(C) == 8)
+struct ElementTraits<Vector4<C>> : detail::WideVectorElement<Vector4<C>, C, 4> {};
 template <>
 struct ElementTraits<float2x2> : detail::MatrixElement<float2x2, 2> {};
 template <>

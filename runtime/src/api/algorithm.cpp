@@ -192,6 +192,8 @@ auto withKeys(const StreamRegion& keys, Use&& use) {
   if (scalar == program::Scalar::Int) return use(readAs<std::int32_t>(keys));
   if (scalar == program::Scalar::Uint) return use(readAs<std::uint32_t>(keys));
   if (scalar == program::Scalar::Double) return use(readAs<double>(keys));
+  if (scalar == program::Scalar::Long) return use(readAs<std::int64_t>(keys));
+  if (scalar == program::Scalar::Ulong) return use(readAs<std::uint64_t>(keys));
   if (!stream.device->isReference() && stream.storage < Storage::Extended) return use(readAs<float>(keys));
   auto values = detail::hostVector<double>(static_cast<std::size_t>(keys.shape.size()));
   const DenseRegion dense(keys, /*isRead=*/true);

@@ -16,6 +16,7 @@
 #include "device/region.hpp"
 #include "device/stream_state.hpp"
 #include "sk/limits.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace sk {
 
@@ -448,8 +449,7 @@ void checkUniforms(const Kernel& kernel, const DeviceState& device) {
   for (const Parameter& parameter : kernel.parameters) {
     if (parameter.role != Role::Uniform) continue;
     for (const program::Field& field : parameter.element->fields) {
-      const bool isDouble = field.scalar == program::Scalar::Double;  // two components of 32 bits
-      components += isDouble ? 2U * field.width : field.width;
+      components += program::isWide(field.scalar) ? 2U * field.width : field.width;
     }
   }
   if (components > static_cast<std::size_t>(device.limits.uniformComponents)) {

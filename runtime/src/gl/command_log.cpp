@@ -27,8 +27,8 @@ void CommandLog::note(FieldUniform& uniform, std::span<const std::byte> value) {
   note(CommandKind::Field, &uniform, value);
 }
 
-void CommandLog::note(DoubleUniform& uniform, double value) {
-  note(CommandKind::Double, &uniform, std::as_bytes(std::span(&value, 1)));
+void CommandLog::note(WideUniform& uniform, double value) {
+  note(CommandKind::Wide, &uniform, std::as_bytes(std::span(&value, 1)));
 }
 
 void CommandLog::note(CommandKind kind, void* uniform, std::span<const std::byte> value) {
@@ -62,10 +62,10 @@ void CommandLog::give(BoundState& bound, const Command& command, const IndirectC
     case CommandKind::Ints: return static_cast<IntUniform*>(command.uniform)->set(bound, numbers);
     case CommandKind::Field:
       return static_cast<FieldUniform*>(command.uniform)->setBytes(bytes_.data() + command.bytes);
-    case CommandKind::Double: {
+    case CommandKind::Wide: {
       double value;
       std::memcpy(&value, bytes_.data() + command.bytes, sizeof value);
-      return static_cast<DoubleUniform*>(command.uniform)->setValue(value);
+      return static_cast<WideUniform*>(command.uniform)->setValue(value);
     }
     case CommandKind::Draw:
       return counts == nullptr ? drawViewport(bound) : drawViewportIndirect(counts->draw);

@@ -17,7 +17,7 @@
 namespace sk::gl {
 
 class BoundState;
-class DoubleUniform;
+class WideUniform;
 class FieldUniform;
 class IntUniform;
 
@@ -35,7 +35,7 @@ struct Command {
     Viewport,
     Ints,
     Field,
-    Double,
+    Wide,
     Draw,  ///< of the viewport
     Dispatch,
     FinishDraws,
@@ -45,7 +45,7 @@ struct Command {
   GLuint name = 0;
   GLenum format = 0;  ///< of an image
   void* uniform = nullptr;
-  std::size_t bytes = 0, size = 0;  ///< Field, Double: where the value is in the log's bytes
+  std::size_t bytes = 0, size = 0;  ///< Field, Wide: where the value is in the log's bytes
   std::array<GLint, 4> numbers{};  ///< the rectangle, the value or the numbers of work groups
 };
 
@@ -66,7 +66,7 @@ class CommandLog {
 
   void note(const Command& command) { commands_.push_back(command); }
   void note(FieldUniform& uniform, std::span<const std::byte> value);
-  void note(DoubleUniform& uniform, double value);
+  void note(WideUniform& uniform, double value);
 
   /// Something has been done that the log does not hold.
   void spoil() noexcept { isSpoiled_ = true; }
@@ -106,7 +106,7 @@ class CommandLog {
 
   std::vector<Command> commands_;
   std::vector<Command> changes_;  ///< those of commands_ that do something in a cycle
-  std::vector<std::byte> bytes_;  ///< the values of Field and Double
+  std::vector<std::byte> bytes_;  ///< the values of Field and Wide
   bool isSpoiled_ = false;
   bool isStale_ = false;
 };

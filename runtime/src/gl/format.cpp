@@ -58,7 +58,9 @@ std::size_t familyOf(program::Scalar scalar) {
     case program::Scalar::Uchar: return 0;
     case program::Scalar::Int: return 1;
     case program::Scalar::Uint:
-    case program::Scalar::Double: return 2;
+    case program::Scalar::Double:
+    case program::Scalar::Long:
+    case program::Scalar::Ulong: return 2;
     case program::Scalar::Float: return 3;
     case program::Scalar::Half: return 4;
     case program::Scalar::Char:
@@ -75,7 +77,7 @@ std::size_t familyOf(program::Scalar scalar) {
 }  // namespace
 
 const Format& formatOf(program::Scalar scalar, int width) {
-  const int channels = scalar == program::Scalar::Double ? 2 * width : width;  // a double takes two channels
+  const int channels = program::isWide(scalar) ? 2 * width : width;
   return table[familyOf(scalar) * formatsPerFamily + rowOfWidth[channels - 1]];
 }
 

@@ -222,7 +222,9 @@ void sendField(GLint location, const Field& field, const std::byte* bytes) {
     case Scalar::Snorm8: return sendAsFloats<snorm8>(location, field, bytes);
     case Scalar::Unorm16: return sendAsFloats<unorm16>(location, field, bytes);
     case Scalar::Snorm16: return sendAsFloats<snorm16>(location, field, bytes);
-    case Scalar::Double: break;  // DoubleUniform sets them
+    case Scalar::Double:
+    case Scalar::Long:
+    case Scalar::Ulong: break;  // WideUniform sets them
   }
 }
 
@@ -264,14 +266,14 @@ void FieldUniform::setBytes(const std::byte* bytes) {
   }
 }
 
-void DoubleUniform::set(BoundState& bound, const void* value) {
+void WideUniform::set(BoundState& bound, const void* value) {
   double whole = 0;
   std::memcpy(&whole, static_cast<const std::byte*>(value) + offset_, sizeof whole);
   bound.note(*this, whole);
   setValue(whole);
 }
 
-void DoubleUniform::setValue(double whole) {
+void WideUniform::setValue(double whole) {
   if (isKnown_ && std::memcmp(&last_, &whole, sizeof whole) == 0) {
     return;
   }

@@ -112,17 +112,17 @@ class IntUniform {
 };
 
 /// A double in the value of a uniform parameter, sent as its bits or as a pair of floats.
-class DoubleUniform {
+class WideUniform {
  public:
-  static DoubleUniform bits(GLint bits, std::uint32_t offset) { return {bits, -1, -1, offset}; }
-  static DoubleUniform pair(GLint head, GLint tail, std::uint32_t offset) { return {-1, head, tail, offset}; }
+  static WideUniform bits(GLint bits, std::uint32_t offset) { return {bits, -1, -1, offset}; }
+  static WideUniform pair(GLint head, GLint tail, std::uint32_t offset) { return {-1, head, tail, offset}; }
 
   /// `value` is the whole parameter, with the double at byte `offset`.
   void set(BoundState& bound, const void* value);
   void setValue(double value);
 
  private:
-  DoubleUniform(GLint bits, GLint head, GLint tail, std::uint32_t offset)
+  WideUniform(GLint bits, GLint head, GLint tail, std::uint32_t offset)
       : bits_(bits), head_(head), tail_(tail), offset_(offset) {}
 
   GLint bits_, head_, tail_;

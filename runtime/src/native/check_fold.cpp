@@ -39,6 +39,8 @@ double numberOf(const ComponentType& type, const std::byte* bytes) {
       return type.storedBytes == 1   ? valueAt<std::uint8_t>(bytes)
              : type.storedBytes == 2 ? valueAt<std::uint16_t>(bytes)
                                      : valueAt<std::uint32_t>(bytes);
+    case program::Scalar::Long: return static_cast<double>(valueAt<std::int64_t>(bytes));
+    case program::Scalar::Ulong: return static_cast<double>(valueAt<std::uint64_t>(bytes));
     case program::Scalar::Int:
     case program::Scalar::Char:
     case program::Scalar::Short:

@@ -3,8 +3,10 @@
 // Operations with scalars on a native device: on the calling thread, with the arithmetic of native code.
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -59,8 +61,9 @@ T compute(ScalarOp op, T a, T b) {
   }
 }
 
-template <>
-std::uint32_t compute(ScalarOp op, std::uint32_t a, std::uint32_t b) {
+/// Wraps.
+template <std::unsigned_integral T>
+T computeUnsigned(ScalarOp op, T a, T b) {
   switch (op) {
     case ScalarOp::Negate: return 0 - a;
     case ScalarOp::Add: return a + b;
@@ -74,18 +77,35 @@ std::uint32_t compute(ScalarOp op, std::uint32_t a, std::uint32_t b) {
 }
 
 /// Wraps.
-template <>
-std::int32_t compute(ScalarOp op, std::int32_t a, std::int32_t b) {
+template <std::signed_integral T>
+T computeSigned(ScalarOp op, T a, T b) {
+  using Unsigned = std::make_unsigned_t<T>;
   switch (op) {
-    case ScalarOp::Absolute: return a < 0 ? static_cast<std::int32_t>(0 - static_cast<std::uint32_t>(a)) : a;
+    case ScalarOp::Absolute: return a < 0 ? static_cast<T>(0 - static_cast<Unsigned>(a)) : a;
     case ScalarOp::Minimum: return a < b ? a : b;
     case ScalarOp::Maximum: return a > b ? a : b;
     case ScalarOp::Divide:
-      return b == 0 || (b == -1 && a == std::numeric_limits<std::int32_t>::min()) ? a : a / b;
+      return b == 0 || (b == -1 && a == std::numeric_limits<T>::min()) ? a : a / b;
     default:
-      return static_cast<std::int32_t>(
-          compute(op, static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)));
+      return static_cast<T>(computeUnsigned(op, static_cast<Unsigned>(a), static_cast<Unsigned>(b)));
   }
+}
+
+template <>
+std::uint32_t compute(ScalarOp op, std::uint32_t a, std::uint32_t b) {
+  return computeUnsigned(op, a, b);
+}
+template <>
+std::uint64_t compute(ScalarOp op, std::uint64_t a, std::uint64_t b) {
+  return computeUnsigned(op, a, b);
+}
+template <>
+std::int32_t compute(ScalarOp op, std::int32_t a, std::int32_t b) {
+  return computeSigned(op, a, b);
+}
+template <>
+std::int64_t compute(ScalarOp op, std::int64_t a, std::int64_t b) {
+  return computeSigned(op, a, b);
 }
 
 template <>
@@ -178,6 +198,8 @@ class Evaluation {
       case program::Scalar::Double: return valueOf<Double>(step);
       case program::Scalar::Int: return valueOf<std::int32_t>(step);
       case program::Scalar::Uint: return valueOf<std::uint32_t>(step);
+      case program::Scalar::Long: return valueOf<std::int64_t>(step);
+      case program::Scalar::Ulong: return valueOf<std::uint64_t>(step);
       default: return valueOf<bool>(step);
     }
   }

@@ -8,6 +8,7 @@
 
 #include "assemble/append/histo_pyramid.hpp"
 #include "assemble/elements/planes.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -174,7 +175,7 @@ std::size_t bytesOf(const program::Element& element) {
   std::size_t bytes = 0;
   for (const Field& field : element.fields) {
     const int width = field.width == 3 ? 4 : field.width;
-    bytes += static_cast<std::size_t>(width) * (field.scalar == Scalar::Double ? 8 : 4);
+    bytes += static_cast<std::size_t>(width) * (program::isWide(field.scalar) ? 8 : 4);
   }
   return bytes;
 }
@@ -232,7 +233,7 @@ std::size_t imagesOf(const Parameter& appendOutput, Order order) {
 bool hasOwners(const Parameter& scatter, Order order) {
   if (scatter.role != Role::Scatter || scatter.scatter != ScatterOp::Store) return false;
   const Field* const field = scalarField(scatter);
-  return order != Order::Any || field == nullptr || field->scalar == Scalar::Double;
+  return order != Order::Any || field == nullptr || program::isWide(field->scalar);
 }
 
 }  // namespace sk::assemble

@@ -36,13 +36,15 @@ struct Spelling {
 
 // Normalized values are always recomputed from their integers, even if the device converts them, because that
 // is exact.
-constexpr std::array<Spelling, 14> spellings = {{
+constexpr std::array<Spelling, 16> spellings = {{
     /* Bool    */ {"usampler2D", "uint", "uvec", "0u", "bool", "bvec", "{1}({0})", "{1}({0})"},
     /* Int     */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
     /* Uint    */ {"usampler2D", "uint", "uvec", "0u", "uint", "uvec", "", ""},
     /* Float   */ {"sampler2D", "float", "vec", "0.0", "float", "vec", "", ""},
     /* Double  */
     {"usampler2D", "uint", "uvec", "0u", "sk_double", "sk_double", "sk_unpack({0})", "sk_pack({0})"},
+    /* Long    */ {"usampler2D", "uint", "uvec", "0u", "sk_long", "sk_long", "sk_long_of({0})", "sk_words_of({0})"},
+    /* Ulong   */ {"usampler2D", "uint", "uvec", "0u", "sk_ulong", "sk_ulong", "sk_ulong_of({0})", "sk_words_of({0})"},
     /* Half    */ {"sampler2D", "float", "vec", "0.0", "float", "vec", "", ""},
     /* Char    */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
     /* Uchar   */ {"usampler2D", "uint", "uvec", "0u", "int", "ivec", "{1}({0})", "{1}({0})"},
@@ -93,8 +95,8 @@ std::string converted(std::string_view pattern, std::string operand, const std::
   return fmt::format(fmt::runtime(pattern), operand, type);
 }
 
-/// Components of a texel. A double takes two.
-int texelWidth(const Field& field) { return field.scalar == Scalar::Double ? 2 * field.width : field.width; }
+/// Components of a texel. A wide scalar takes two.
+int texelWidth(const Field& field) { return program::isWide(field.scalar) ? 2 * field.width : field.width; }
 
 std::string memberOf(std::string_view variable, const Field& field) {
   std::string text(variable);
@@ -102,7 +104,7 @@ std::string memberOf(std::string_view variable, const Field& field) {
   return text;
 }
 
-/// The components in a part of a vector of doubles.
+/// The components in a part of a vector of wide scalars.
 char firstComponent(const Field& field) { return "xz"[field.part]; }
 char secondComponent(const Field& field) { return "yw"[field.part]; }
 
@@ -110,22 +112,23 @@ char secondComponent(const Field& field) { return "yw"[field.part]; }
 std::string valueOf(std::string_view variable, const Field& field) {
   const std::string member = memberOf(variable, field);
   if (field.part < 0) return member;
-  if (field.scalar != Scalar::Double) return fmt::format("{}[{}]", member, field.part);
+  if (!program::isWide(field.scalar)) return fmt::format("{}[{}]", member, field.part);
   if (field.width == 1) return fmt::format("{}.{}", member, firstComponent(field));
-  return fmt::format("sk_double2({0}.{1}, {0}.{2})", member, firstComponent(field), secondComponent(field));
+  return fmt::format("{3}({0}.{1}, {0}.{2})", member, firstComponent(field), secondComponent(field),
+                     valueType(field));
 }
 
 /// Adds statements that assign `value` to a field of the element in `variable`.
 void assignField(std::vector<std::string>& statements, std::string_view variable, const Field& field,
                  std::string_view value) {
-  if (field.scalar != Scalar::Double || field.part < 0 || field.width == 1) {
+  if (!program::isWide(field.scalar) || field.part < 0 || field.width == 1) {
     statements.push_back(fmt::format("{} = {};", valueOf(variable, field), value));
     return;
   }
   // a unique name, because a struct may have several such vectors
   const std::string two = fmt::format("sk_two{}", statements.size());
   const std::string member = memberOf(variable, field);
-  statements.push_back(fmt::format("sk_double2 {} = {};", two, value));
+  statements.push_back(fmt::format("{} {} = {};", valueType(field), two, value));
   statements.push_back(fmt::format("{}.{} = {}.x;", member, firstComponent(field), two));
   statements.push_back(fmt::format("{}.{} = {}.y;", member, secondComponent(field), two));
 }

@@ -11,6 +11,7 @@
 
 #include "assemble/glsl/double_intrinsics.hpp"
 #include "assemble/glsl/intrinsics.hpp"
+#include "assemble/glsl/longs.hpp"
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "assemble/glsl/tables.hpp"
 #include "glsl_text/functions.hpp"
@@ -234,6 +235,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   if (profile.es) program += esPrecision;
   if (hasExactFloats) program += exactDefinitions(profile.barrier);
   if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles, barrierOfBodies(profile));
+  if (kernel.usesLongs) program += longDefinitions(kernel.usesDoubles);
   program += doubleIntrinsicDefinitions(kernel.intrinsics, profile.doubles, profile.barrier);
   program += intrinsics.definitions;
   program += fractionDefinitions(declarations + ours + body + more + main);

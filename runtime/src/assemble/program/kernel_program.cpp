@@ -19,6 +19,7 @@
 #include "assemble/glsl/own_arithmetic.hpp"
 #include "assemble/glsl/program_text.hpp"
 #include "assemble/reduce/group_fold.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -343,7 +344,7 @@ Domain domainOf(const RegionLayout& output) {
 bool mayPack(const program::Element& held) {
   const program::Field& field = held.fields.front();
   return held.fields.size() == 1 && field.path.empty() && field.width == 1 &&
-         field.scalar != program::Scalar::Double;
+         !program::isWide(field.scalar);
 }
 
 namespace {

@@ -18,6 +18,7 @@
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/reduce/scan_program.hpp"
 #include "sk/types.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace sk::assemble {
 
@@ -327,7 +328,7 @@ bool mayGroupRows(const Reduction& reduction) {
     if (parameter.role != Role::Accumulator) continue;
     for (const program::Field& field : parameter.element->fields) {
       const std::size_t aligned = field.width == 3 ? 4 : field.width;
-      bytes += aligned * (field.scalar == program::Scalar::Double ? sizeof(double) : sizeof(float));
+      bytes += aligned * (program::isWide(field.scalar) ? sizeof(double) : sizeof(float));
     }
   }
   return bytes * rowGroupItems <= groupBytes;

@@ -152,7 +152,7 @@ void bindOperands(GlDevice& device, KernelProgram& program, const program::Kerne
   for (KernelProgram::Value& value : program.values) {
     value.uniform.set(device.bound(), operands[value.parameter].value);
   }
-  for (KernelProgram::Double& value : program.doubles) {
+  for (KernelProgram::Wide& value : program.wide) {
     value.uniform.set(device.bound(), operands[value.parameter].value);
   }
   for (KernelProgram::Value& step : program.steps) {

@@ -15,6 +15,7 @@
 #include "gl_device/gl_device.hpp"
 #include "gl_device/program/made_kernels.hpp"
 #include "sk/arithmetic_marks.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace sk {
 
@@ -46,7 +47,20 @@ constexpr std::string_view doubleHelpers =
     "sk_double sk_max(sk_double a, sk_double b) { return sk_less(a, b) || sk_isnan(a) ? b : a; }\n"
     "sk_double sk_min(sk_double a, sk_double b) { return sk_less(b, a) || sk_isnan(a) ? b : a; }\n";
 
-std::string_view patternOfDoubles(ScalarOp op) {
+constexpr std::string_view longHelpers =
+    "sk_long sk_abs(sk_long a) { return sk_choose(sk_less(a, sk_to_long(0)), sk_neg(a), a); }\n"
+    "sk_long sk_max(sk_long a, sk_long b) { return sk_choose(sk_less(a, b), b, a); }\n"
+    "sk_long sk_min(sk_long a, sk_long b) { return sk_choose(sk_less(b, a), b, a); }\n"
+    "sk_ulong sk_max(sk_ulong a, sk_ulong b) { return sk_choose(sk_less(a, b), b, a); }\n"
+    "sk_ulong sk_min(sk_ulong a, sk_ulong b) { return sk_choose(sk_less(b, a), b, a); }\n";
+
+/// Of doubles and of integers of 64 bits.
+std::string_view patternOfWide(ScalarOp op, program::Scalar type) {
+  if (type != program::Scalar::Double) {
+    if (op == ScalarOp::Less) return "sk_less({0}, {1})";
+    if (op == ScalarOp::LessEqual) return "!sk_less({1}, {0})";
+    if (op == ScalarOp::Equal) return "sk_equal({0}, {1})";
+  }
   switch (op) {
     case ScalarOp::Copy: return "{0}";
     case ScalarOp::Negate: return "sk_neg({0})";
@@ -61,7 +75,7 @@ std::string_view patternOfDoubles(ScalarOp op) {
     case ScalarOp::Less: return "sk_ordered({0}, {1}) && sk_less({0}, {1})";
     case ScalarOp::LessEqual: return "sk_ordered({0}, {1}) && sk_less_equal({0}, {1})";
     case ScalarOp::Equal: return "sk_ordered({0}, {1}) && sk_equal({0}, {1})";
-    case ScalarOp::Select: return "{0} ? {1} : {2}";
+    case ScalarOp::Select: return "sk_choose({0}, {1}, {2})";
     case ScalarOp::Not:
     case ScalarOp::And:
     case ScalarOp::Or: break;  // of bools only
@@ -70,7 +84,7 @@ std::string_view patternOfDoubles(ScalarOp op) {
 }
 
 std::string_view patternOf(ScalarOp op, program::Scalar type) {
-  if (type == program::Scalar::Double) return patternOfDoubles(op);
+  if (program::isWide(type)) return patternOfWide(op, type);
   if (type == program::Scalar::Float) {
     switch (op) {
       case ScalarOp::Less: return "sk_ordered({0}, {1}) && sk_key({0}) < sk_key({1})";
@@ -136,6 +150,7 @@ class KernelText {
                      .parameters = made_->parameters,
                      .sources = {},
                      .usesDoubles = usesDoubles_,
+                     .usesLongs = usesLongs_,
                      .intrinsics = intrinsics};
     return std::move(made_);
   }
@@ -147,7 +162,9 @@ class KernelText {
     const std::string_view name = made_->own(fmt::format("{}{}", prefix, number));
     made_->parameters.push_back(
         {.name = name, .symbol = name, .role = role, .element = &made_->own(element)});
-    usesDoubles_ = usesDoubles_ || element.fields.front().scalar == program::Scalar::Double;
+    const program::Scalar scalar = element.fields.front().scalar;
+    usesDoubles_ = usesDoubles_ || scalar == program::Scalar::Double;
+    usesLongs_ = usesLongs_ || scalar == program::Scalar::Long || scalar == program::Scalar::Ulong;
   }
 
   std::string text() const {
@@ -158,6 +175,7 @@ class KernelText {
     }
     std::string body(helpers);
     if (usesDoubles_) body += doubleHelpers;
+    if (usesLongs_) body += longHelpers;
     body += fmt::format("void scalars({}) {{\n", list);
     for (std::size_t i = 0; i < pass_.steps.size(); ++i) {
       const ScalarStep& step = pass_.steps[i];
@@ -188,7 +206,7 @@ class KernelText {
 
   const ScalarPass& pass_;
   std::shared_ptr<MadeKernel> made_ = std::make_shared<MadeKernel>();
-  bool usesDoubles_ = false;
+  bool usesDoubles_ = false, usesLongs_ = false;
 };
 
 /// A pass with its kernel.

@@ -14,6 +14,7 @@
 #include "gl_device/gl_device.hpp"
 #include "gl_device/program/shader_log.hpp"
 #include "sk/error.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace sk {
 
@@ -228,17 +229,17 @@ void ProgramCache::findValue(KernelProgram& result, std::size_t number, const pr
     const program::Field& first = parts.front();
     const bool isMember = !first.path.empty() && first.path.front() != '[';
     const std::string name = fmt::format("sk_arg_{}{}{}", parameter.symbol, isMember ? "." : "", first.path);
-    if (first.scalar == program::Scalar::Double) {
-      addDoubles(result, number, name, parts);
+    if (program::isWide(first.scalar)) {
+      addWide(result, number, name, parts);
     } else {
       result.values.push_back({number, gl::FieldUniform(result.program.location(name), parts)});
     }
   }
 }
 
-/// In GLSL, a double is a struct of its bits or of two floats, and a vector of doubles is a struct of
-/// doubles.
-void ProgramCache::addDoubles(KernelProgram& result, std::size_t number, const std::string& name,
+/// In GLSL, a double is a struct of its bits or of two floats, an integer of 64 bits one of its bits, and a vector of these is a
+/// struct of its components.
+void ProgramCache::addWide(KernelProgram& result, std::size_t number, const std::string& name,
                               std::span<const program::Field> parts) const {
   const auto location = [&](const std::string& member) { return result.program.location(member); };
   std::size_t width = 0;
@@ -246,10 +247,11 @@ void ProgramCache::addDoubles(KernelProgram& result, std::size_t number, const s
   for (std::size_t c = 0; c < width; ++c) {
     const std::string one = width == 1 ? name : fmt::format("{}.{}", name, "xyzw"[c]);
     const auto offset = static_cast<std::uint32_t>(parts.front().offset + c * sizeof(double));
-    const bool isNative = profile_.doubles == assemble::Doubles::Native;
-    result.doubles.push_back(
-        {number, isNative ? gl::DoubleUniform::bits(location(one + ".bits"), offset)
-                          : gl::DoubleUniform::pair(location(one + ".hi"), location(one + ".lo"), offset)});
+    const bool areBits = parts.front().scalar != program::Scalar::Double ||
+                         profile_.doubles == assemble::Doubles::Native;
+    result.wide.push_back(
+        {number, areBits ? gl::WideUniform::bits(location(one + ".bits"), offset)
+                          : gl::WideUniform::pair(location(one + ".hi"), location(one + ".lo"), offset)});
   }
 }
 

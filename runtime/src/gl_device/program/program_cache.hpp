@@ -73,9 +73,9 @@ struct KernelProgram {
     std::size_t parameter;
     gl::FieldUniform uniform;
   };
-  struct Double {
+  struct Wide {
     std::size_t parameter;
-    gl::DoubleUniform uniform;
+    gl::WideUniform uniform;
   };
   struct Read {
     std::size_t parameter;
@@ -121,7 +121,7 @@ struct KernelProgram {
   Pyramid pyramid;  ///< its textures are on the units from `units` on
   int units = 0;  ///< the number of units of reads, stacks and tables
   std::vector<Value> values;
-  std::vector<Double> doubles;
+  std::vector<Wide> wide;
   std::vector<Value> steps;  ///< steps of iterators
   std::vector<Read> reads;  ///< their planes are on consecutive texture units from 0, in this order
   std::vector<std::size_t> stacks;  ///< of the plan, on the next units
@@ -187,7 +187,7 @@ class ProgramCache {
                       std::span<const assemble::StreamAccess> access);
   void findTables(KernelProgram& result, const program::Kernel& kernel, int& unit);
   void findValue(KernelProgram& result, std::size_t number, const program::Parameter& parameter);
-  void addDoubles(KernelProgram& result, std::size_t number, const std::string& name,
+  void addWide(KernelProgram& result, std::size_t number, const std::string& name,
                   std::span<const program::Field> parts) const;
   void findAppendUniforms(KernelProgram& result, const program::Kernel& kernel);
   void findListUniforms(KernelProgram& result, const program::Parameter& appendOutput);

@@ -315,6 +315,8 @@ const Element& elementOf(program::Scalar scalar) {
     case program::Scalar::Bool: return ElementTraits<bool>::element();
     case program::Scalar::Uint:
     case program::Scalar::Double:
+    case program::Scalar::Long:
+    case program::Scalar::Ulong:
     case program::Scalar::Half:
     case program::Scalar::Char:
     case program::Scalar::Uchar:
@@ -332,6 +334,14 @@ const Element& elementOf(program::Scalar scalar) {
 
 const Kernel& wordKernel(program::Scalar keys, bool isDescending) {
   const std::string_view inverted = isDescending ? "~" : "";
+  if (hasTwoWords(keys) && keys != program::Scalar::Double) {
+    return kept(fmt::format("void sort_kernel(uvec2 k, out uint lower, out uint upper) {{\n"
+                            "  lower = {0}k.x;\n"
+                            "  upper = {0}(k.y{1});\n"
+                            "}}\n",
+                            inverted, keys == program::Scalar::Long ? " ^ 0x80000000u" : ""),
+                {input("k", sortWordPairs()), output("lower", sortWords()), output("upper", sortWords())});
+  }
   if (hasTwoWords(keys)) {
     return kept(fmt::format("void sort_kernel(uvec2 k, out uint lower, out uint upper) {{\n"
                             "  uint m = k.y & 0x7fffffffu;\n"
@@ -372,11 +382,11 @@ const Kernel& repeatKernel(program::Scalar keys) {
                 {input("k", sortWords()), gather("x", sortWords(), 1), output("r", sortWords())}, true);
   }
   return kept(
-      "void sort_kernel(uint k, uint l, out uint r) {\n"
-      "  int n = sk_index().x;\n"
-      "  bool isNan = (k & l) == 0xffffffffu;\n"
-      "  r = n > 0 && sk_at_x(n - 1) == k && sk_at_y(n - 1) == l && !isNan ? 1u : 0u;\n"
-      "}\n",
+      fmt::format("void sort_kernel(uint k, uint l, out uint r) {{\n"
+                  "  int n = sk_index().x;\n"
+                  "  r = n > 0 && sk_at_x(n - 1) == k && sk_at_y(n - 1) == l{} ? 1u : 0u;\n"
+                  "}}\n",
+                  isFloating ? " && (k & l) != 0xffffffffu" : ""),
       {input("k", sortWords()), gather("x", sortWords(), 1), input("l", sortWords()),
        gather("y", sortWords(), 1), output("r", sortWords())},
       true);

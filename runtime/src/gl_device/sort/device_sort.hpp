@@ -14,6 +14,7 @@
 #include "device/device_state.hpp"
 #include "gl_device/program/program_binaries.hpp"
 #include "sk/program.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace sk {
 
@@ -46,7 +47,7 @@ const program::Element& sortWords();
 const program::Element& sortWordPairs();
 
 /// Whether keys of this type have two words, a lower and an upper one.
-inline bool hasTwoWords(program::Scalar keys) { return keys == program::Scalar::Double; }
+inline bool hasTwoWords(program::Scalar keys) { return program::isWide(keys); }
 
 /// (key) -> word, or (key) -> lower word, upper word. Words compare as unsigned numbers. All NaNs have the largest word,
 /// also in descending order, and both zeros the same.

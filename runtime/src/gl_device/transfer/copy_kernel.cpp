@@ -15,12 +15,14 @@ namespace sk {
 namespace {
 
 constexpr int widths = 4;
-constexpr int scalars = 14;
+constexpr int scalars = 16;
 
 /// A field with the same texel format, so that the kernel copies bits instead of converting values.
 program::Field texelField(const program::Field& field) {
   switch (field.scalar) {
     case program::Scalar::Double:
+    case program::Scalar::Long:
+    case program::Scalar::Ulong:
       return {"", program::Scalar::Uint, static_cast<std::uint8_t>(2 * field.width), 0};
     case program::Scalar::Snorm8: return {"", program::Scalar::Char, field.width, 0};
     case program::Scalar::Snorm16: return {"", program::Scalar::Short, field.width, 0};

@@ -14,6 +14,7 @@
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "support/checked_size.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace sk {
 
@@ -35,7 +36,7 @@ constexpr std::array<BoxNames, assemble::stagedBoxes> names{{
 }};
 
 int channelsOf(const program::Field& field) {
-  return field.scalar == program::Scalar::Double ? 2 * field.width : field.width;
+  return program::isWide(field.scalar) ? 2 * field.width : field.width;
 }
 
 std::int32_t laneBits(const RegionLayout& box) { return box.packed ? log2OfLanes : 0; }
