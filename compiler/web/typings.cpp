@@ -153,6 +153,7 @@ class TypesWriter {
       const std::string element = valueType(module_.arrays[type.index].element);
       return fmt::format("readonly ({})[]", element);
     }
+    if (type.isScalar() && type.isLong()) return "bigint";
     if (type.isScalar()) return type.scalar == ir::Scalar::Bool ? "boolean" : "number";
     return fmt::format("sk.Value<'{}'>", print(module_, type));
   }

@@ -55,7 +55,7 @@ def program(types, arrays):
              "type Same<A, B> = (<T>() => T extends A ? 1 : 2) extends (<T>() => T extends B ? 1 : 2) ? true : false;",
              "export function use(device: sk.Device) {"]
     for name, scalar, count in types:
-        number = "boolean" if scalar == "bool" else "number"
+        number = {"bool": "boolean", "long": "bigint", "ulong": "bigint"}.get(scalar, "number")
         value = number if count == 1 else f"readonly [{', '.join([number] * count)}]"
         if re.fullmatch(r"float\dx\d", name):
             value = "readonly number[]"

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <llvm/ADT/APSInt.h>
+
 #include "ir/build.hpp"
 #include "ir/scalar_operations.hpp"
 
@@ -28,7 +30,8 @@ std::uint64_t truncated(double value, bool isSigned) {
 std::uint64_t longBits(Scalar from, const Literal& literal, bool isSigned) {
   if (from == Scalar::Int)
     return static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(literal.bits)});
-  return ir::isReal(from) ? truncated(ir::valueOf(from, literal), isSigned) : literal.wide();
+  if (from == Scalar::Float) return truncated(ir::wideValue(literal), isSigned);  // 1e18 is no float
+  return from == Scalar::Double ? truncated(ir::valueOf(from, literal), isSigned) : literal.wide();
 }
 
 /// A literal whose value is this integer.
@@ -64,6 +67,8 @@ ExprPtr ofArithmetic(Scalar from, const Literal& literal, Scalar to, Loc loc) {
 }
 
 }  // namespace
+
+std::uint64_t lowBits(const llvm::APSInt& number) { return number.extOrTrunc(64).getZExtValue(); }
 
 ExprPtr convertLiteral(const ir::Expr& e, Scalar to) {
   const auto& literal = std::get<Literal>(e.node);

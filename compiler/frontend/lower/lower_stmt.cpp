@@ -9,6 +9,7 @@
 #include <clang/AST/StmtCXX.h>
 #include <llvm/ADT/ScopeExit.h>
 
+#include "frontend/lower/convert_literal.hpp"
 #include "frontend/lower/function_lowering.hpp"
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
@@ -473,8 +474,8 @@ void FunctionLowering::switchStatement(const clang::SwitchStmt* s) {
         if (one->getRHS())
           module_.fail(Diag::Statement, one->getBeginLoc(),
                        {"a range of case values; write a 'case' for each"});
-        result.cases.back().values.push_back(
-            one->getLHS()->EvaluateKnownConstInt(module_.context()).getExtValue());
+        const llvm::APSInt label = one->getLHS()->EvaluateKnownConstInt(module_.context());
+        result.cases.back().values.push_back(static_cast<std::int64_t>(lowBits(label)));
       } else {
         result.cases.back().isDefault = true;
       }

@@ -76,7 +76,7 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
   if (module_.bundles().placeOf(e)) module_.refuseBundle(declared->getType(), where);
   if (const auto* enumerator = llvm::dyn_cast<clang::EnumConstantDecl>(declared)) {
     const ir::Type type = module_.type(e->getType(), where);
-    return literal(type, static_cast<std::uint64_t>(enumerator->getInitVal().getExtValue()), where);
+    return literal(type, lowBits(enumerator->getInitVal()), where);
   }
   if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declared)) {
     const bool isOutside = function_.name.empty();   // in a border or identity
@@ -127,7 +127,7 @@ ExprPtr FunctionLowering::integerConstant(const clang::Expr* e, ir::Type type) {
   const unsigned bits = type.isWide() ? 64 : 32;
   const bool fits = number.isNegative() ? number.isSignedIntN(bits) : number.isIntN(bits);
   if (!fits) return nullptr;
-  return literal(type, static_cast<std::uint64_t>(number.getExtValue()), e->getBeginLoc());
+  return literal(type, lowBits(number), e->getBeginLoc());
 }
 
 /// The value of an integer constant of any type that fits in an int or a uint.

@@ -14,6 +14,7 @@
 #include <clang/Sema/Sema.h>
 
 #include "frontend/clang_loc.hpp"
+#include "frontend/lower/convert_literal.hpp"
 #include "frontend/lower/function_lowering.hpp"
 #include "frontend/lower/lower_module.hpp"
 #include "frontend/prelude.hpp"
@@ -416,7 +417,7 @@ ir::ExprPtr ModuleLowering::evaluated(const clang::APValue& value, ir::Type type
         type, ir::Literal{static_cast<std::uint32_t>(rounded.bitcastToAPInt().getZExtValue())}, loc);
   }
   if (value.isInt()) {
-    const auto wide = static_cast<std::uint64_t>(value.getInt().getExtValue());
+    const auto wide = lowBits(value.getInt());
     if (type.isLong()) return ir::makeExpr(type, ir::Literal::wide(wide), loc);
     const auto bits = static_cast<std::uint32_t>(wide);
     return ir::makeExpr(type, ir::Literal{type.isBool() ? bits != 0 : bits}, loc);

@@ -52,7 +52,8 @@ struct TypedStreams {
 /// each other and come last.
 template <class S>
 concept SortKeys =
-    detail::AnyStream<S> && detail::isOneOf<detail::ElementOf<S>, std::int32_t, std::uint32_t, float, double>;
+    detail::AnyStream<S> && detail::isOneOf<detail::ElementOf<S>, std::int32_t, std::uint32_t, std::int64_t,
+                                            std::uint64_t, float, double>;
 
 /// Sorts the keys, ascending unless the options say otherwise.
 template <SortKeys Keys>

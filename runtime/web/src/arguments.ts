@@ -2,7 +2,8 @@
 //
 // Checks of arguments, with the messages of runtime/src/call.
 import type { Device } from './device.js';
-import { isSameElement, numbersOf, withArticle } from './elements.js';
+import { fractions, heldComponent, isSameElement, numbersOf, withArticle, type Component } from './elements.js';
+import { isWide } from './format.js';
 import { SkError, type ErrorKind } from './error.js';
 import { isNeeded, specBits, type Element, type Field, type KernelData, type Parameter } from './generated.js';
 import { decodedRank, shapeText, xFirst } from './layout.js';
@@ -21,7 +22,7 @@ export interface Checked {
   readonly views: readonly (View<any, number> | null)[];
   readonly fits: readonly (Fitted<any> | null)[];
   /** Components of uniforms that no stream holds; null for other parameters. Iterators have those of `begin`, then of `end`. */
-  readonly values: readonly (readonly number[] | null)[];
+  readonly values: readonly (readonly Component[] | null)[];
   /** The words of spec parameters, in order. */
   readonly specs: readonly number[];
 }
@@ -33,13 +34,13 @@ export function checkArguments(kernel: KernelData, elements: readonly Element[],
   const streams: (AnyStream | null)[] = [];
   const views: (View<any, number> | null)[] = [];
   const fits: (Fitted<any> | null)[] = [];
-  const values: (readonly number[] | null)[] = [];
+  const values: (readonly Component[] | null)[] = [];
   const specs: number[] = [];
   parameters.forEach((parameter, i) => {
     const fitted = given[i] instanceof Fitted ? (given[i] as Fitted<any>) : null;
     const argument = fitted?.view ?? given[i];
     let stream: AnyStream | null = null;
-    let value: readonly number[] | null = null;
+    let value: readonly Component[] | null = null;
     const isElements = argument instanceof Stream || argument instanceof View;
     switch (parameter.role) {
       case 'spec': specs.push(specOf(name, parameter, elements, argument)); break;
@@ -74,34 +75,31 @@ export function specOf(kernel: string, parameter: Parameter, elements: readonly 
 }
 
 /** The components of a uniform. Throws SkError if the value is none. */
-export function uniformOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly number[] {
+export function uniformOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly Component[] {
   const [{ scalar, width }] = element.fields as [Field];
   if (typeof value === 'number' && width === 1 && element.fields.length === 1 && fractions.includes(scalar)) return [value];
-  const numbers = typeof value === 'number' ? [value] : numbersOf(element, value);
+  const numbers = typeof value === 'number' || typeof value === 'bigint' ? [value] : numbersOf(element, value);
   const wanted = element.fields.reduce((count, field) => count + field.width, 0);
   if (numbers.length !== wanted || (typeof value !== 'object' && wanted > 1)) {
     fail(kernel, `'${parameter.name}' is declared as ${element.name}, ${wanted} number(s), but ${described(value)} is given`, 'type');
   }
-  checkWhole(kernel, parameter, element, numbers);
+  return heldComponents(kernel, parameter, element, numbers);
+}
+
+function heldComponents(kernel: string, parameter: Parameter, element: Element, numbers: Component[]): readonly Component[] {
+  let i = 0;
+  for (const { scalar, width } of element.fields) {
+    for (let c = 0; c < width; ++c, ++i) {
+      const held = heldComponent(scalar, numbers[i]!);
+      if (held !== undefined) numbers[i] = held;
+      else fail(kernel, `'${parameter.name}' is declared as ${element.name}, but ${described(numbers[i])} is ${isWide(scalar) ? 'no such integer' : 'no whole number'}`, 'type');
+    }
+  }
   return numbers;
 }
 
-const fractions = ['float', 'double', 'half', 'unorm8', 'snorm8', 'unorm16', 'snorm16'];
-
-/** WebGL makes integers of everything: of NaN 0. */
-function checkWhole(kernel: string, parameter: Parameter, element: Element, numbers: readonly number[]): void {
-  let i = 0;
-  for (const { scalar, width } of element.fields) {
-    for (let c = 0; c < width; ++c) {
-      const number = numbers[i++]!;
-      if (Number.isInteger(number) || fractions.includes(scalar)) continue;
-      fail(kernel, `'${parameter.name}' is declared as ${element.name}, but ${number} is no whole number`, 'type');
-    }
-  }
-}
-
 /** The components of an iterator's ends. Throws SkError if the value has none. */
-export function iteratorOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly number[] {
+export function iteratorOf(kernel: string, parameter: Parameter, element: Element, value: unknown): readonly Component[] {
   const ends = value as { begin: unknown; end: unknown } | null | undefined;
   if (typeof ends !== 'object' || ends === null || !('begin' in ends) || !('end' in ends)) {
     fail(kernel, `'${parameter.name}' is an iterator, but ${described(value)} is given; give { begin, end }`, 'type');
@@ -214,7 +212,8 @@ export function iterationOf(element: Element, shape: readonly number[]): 'linear
 }
 
 /** The first value of an iterator, and its step in each component. */
-export function stepsOf(kernel: string, parameter: Parameter, element: Element, ends: readonly number[], shape: readonly number[]): { begin: number[]; step: number[] } {
+export function stepsOf(kernel: string, parameter: Parameter, element: Element, given: readonly Component[], shape: readonly number[]): { begin: number[]; step: number[] } {
+  const ends = given as readonly number[]; // no iterator has 64 bits
   const { width, scalar } = element.fields[0]!;
   const counts = countsElements(element, shape.length);
   if (!counts && width !== shape.length) {

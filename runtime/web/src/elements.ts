@@ -2,12 +2,12 @@
 //
 // Elements that every file knows, and the arrays of their components on the host.
 import { SkError } from './error.js';
-import { formatOf, hostArrayOf, type HostArray, type Scalar } from './format.js';
+import { formatOf, hostArrayOf, isWide, type HostArray, type Scalar } from './format.js';
 import type { Element, Field, StructElement } from './generated.js';
 import type { Layout, Rect } from './layout.js';
 
 const bytesOf: Readonly<Record<Scalar, number>> = {
-  bool: 1, char: 1, uchar: 1, unorm8: 1, snorm8: 1, half: 2, short: 2, ushort: 2, unorm16: 2, snorm16: 2, int: 4, uint: 4, float: 4, double: 8,
+  bool: 1, char: 1, uchar: 1, unorm8: 1, snorm8: 1, half: 2, short: 2, ushort: 2, unorm16: 2, snorm16: 2, int: 4, uint: 4, float: 4, double: 8, long: 8, ulong: 8,
 };
 
 const builtIn = new Map<string, Element>();
@@ -36,7 +36,7 @@ function made(name: string): Element {
   }
   const width = Number(parts[2] || 1);
   const bytes = bytesOf[scalar];
-  if (scalar !== 'double' || width <= 2) return { name, size: bytes * width, fields: [{ scalar, width, offset: 0 }] };
+  if (!isWide(scalar) || width <= 2) return { name, size: bytes * width, fields: [{ scalar, width, offset: 0 }] };
   const halves = [2, width - 2].map((half, part): Field => ({ scalar, width: half, offset: 16 * part, part }));
   return { name, size: bytes * width, fields: halves };
 }
@@ -51,7 +51,7 @@ export function isSameElement(a: Element, b: Element): boolean {
 /** Whether four elements fit in a texel: one scalar of at most four bytes. */
 export function mayPackElement(element: Element): boolean {
   const field = element.fields[0]!;
-  return element.fields.length === 1 && field.path === undefined && field.width === 1 && field.scalar !== 'double';
+  return element.fields.length === 1 && field.path === undefined && field.width === 1 && !isWide(field.scalar);
 }
 
 function isStruct(element: Element): element is StructElement {
@@ -140,12 +140,16 @@ export function newArrays(element: Element, count: number): unknown {
   return members;
 }
 
+/** The array itself, or the words of components of 64 bits. */
+function wordsOf(array: HostArray, words: number): Exclude<HostArray, BigInt64Array | BigUint64Array> {
+  return words === 2 ? new Uint32Array(array.buffer, array.byteOffset, array.length * 2) : (array as Uint32Array);
+}
+
 /** The channels of a plane's texels, in the order of elements. */
 export function channelsOf(field: Field, from: PlaneArray, count: number): HostArray {
   const format = formatOf(field.scalar, field.width);
-  const isDouble = field.scalar === 'double';
-  const words = isDouble ? 2 : 1;
-  const source = isDouble ? new Uint32Array(from.array.buffer, from.array.byteOffset, from.array.length * 2) : from.array;
+  const words = isWide(field.scalar) ? 2 : 1;
+  const source = wordsOf(from.array, words);
   if (from.step === field.width && field.width * words === format.channels && field.scalar !== 'bool') return source;
   const channels = new format.channel(count * format.channels);
   for (let i = 0; i < count; ++i) {
@@ -160,22 +164,25 @@ export function channelsOf(field: Field, from: PlaneArray, count: number): HostA
 /** The reverse of channelsOf(). */
 export function takeChannels(field: Field, channels: HostArray, to: PlaneArray, count: number): void {
   const format = formatOf(field.scalar, field.width);
-  const words = field.scalar === 'double' ? 2 : 1;
-  const target = words === 2 ? new Uint32Array(to.array.buffer, to.array.byteOffset, to.array.length * 2) : to.array;
+  const words = isWide(field.scalar) ? 2 : 1;
+  const target = wordsOf(to.array, words);
   if (to.step === field.width && field.width * words === format.channels) {
     target.set(channels as never);
     return;
   }
   for (let i = 0; i < count; ++i) {
     for (let c = 0; c < field.width * words; ++c) {
-      target[(i * to.step + to.first) * words + c] = channels[i * format.channels + c]!;
+      target[(i * to.step + to.first) * words + c] = channels[i * format.channels + c] as number;
     }
   }
 }
 
-/** One value from numbers and booleans: components in the order of fields. */
-export function numbersOf(element: Element, value: unknown): number[] {
-  const numbers: number[] = [];
+/** A component of a value; an integer of 64 bits is a bigint. */
+export type Component = number | bigint;
+
+/** One value from numbers, bigints and booleans: components in the order of fields. */
+export function numbersOf(element: Element, value: unknown): Component[] {
+  const numbers: Component[] = [];
   if (!isStruct(element)) return addNumbers(value, numbers);
   element.fields.forEach((_, plane) => {
     if ((element.fields[plane]!.part ?? 0) > 0) return; // its first part has taken all
@@ -187,8 +194,10 @@ export function numbersOf(element: Element, value: unknown): number[] {
 }
 
 /** Appends the numbers of a value, of which there are none if it is no value at all. */
-function addNumbers(value: unknown, numbers: number[]): number[] {
-  if (typeof value === 'number' || typeof value === 'boolean') {
+function addNumbers(value: unknown, numbers: Component[]): Component[] {
+  if (typeof value === 'bigint') {
+    numbers.push(value);
+  } else if (typeof value === 'number' || typeof value === 'boolean') {
     numbers.push(Number(value));
   } else if (typeof value === 'object' && value !== null) {
     const members = (ArrayBuffer.isView(value) || Array.isArray(value) ? value : Object.values(value)) as ArrayLike<unknown>;
@@ -213,8 +222,27 @@ export function valueOf(element: Element, arrays: unknown): unknown {
   return value;
 }
 
+/**
+ * The component that a field holds for a given one; undefined if it holds no such number. WebGL makes integers of everything: of
+ * NaN 0.
+ */
+export function heldComponent(scalar: Scalar, given: Component): Component | undefined {
+  if (scalar === 'long' || scalar === 'ulong') {
+    if (typeof given === 'number' && !Number.isSafeInteger(given)) return undefined;
+    const whole = BigInt(given);
+    const held = scalar === 'long' ? BigInt.asIntN(64, whole) : BigInt.asUintN(64, whole);
+    return held === whole ? held : undefined;
+  }
+  if (typeof given === 'bigint') return undefined;
+  return Number.isInteger(given) || fractions.includes(scalar) ? given : undefined;
+}
+
+/** Components that have fractions. */
+export const fractions: readonly Scalar[] = ['float', 'double', 'half', 'unorm8', 'snorm8', 'unorm16', 'snorm16'];
+
 function scalarOrVector(scalar: Scalar, array: HostArray): unknown {
-  const values: unknown[] = scalar === 'bool' ? Array.from(array, (word) => word !== 0) : Array.from(array);
+  const components = Array.from(array as Iterable<Component>);
+  const values: unknown[] = scalar === 'bool' ? components.map((word) => word !== 0) : components;
   return values.length === 1 ? values[0] : values;
 }
 

@@ -4,11 +4,12 @@
 // components on the host.
 
 export type Scalar =
-  | 'bool' | 'int' | 'uint' | 'float' | 'double' | 'half' | 'char' | 'uchar' | 'short' | 'ushort'
+  | 'bool' | 'int' | 'uint' | 'float' | 'double' | 'long' | 'ulong' | 'half' | 'char' | 'uchar' | 'short' | 'ushort'
   | 'unorm8' | 'snorm8' | 'unorm16' | 'snorm16';
 
 export type HostArray =
-  | Int8Array | Uint8Array | Int16Array | Uint16Array | Int32Array | Uint32Array | Float32Array | Float64Array;
+  | Int8Array | Uint8Array | Int16Array | Uint16Array | Int32Array | Uint32Array | Float32Array | Float64Array
+  | BigInt64Array | BigUint64Array;
 type HostArrayType = { readonly BYTES_PER_ELEMENT: number; new (length: number): HostArray; new (buffer: ArrayBufferLike, offset?: number, length?: number): HostArray };
 
 export type SamplerKind = 'float' | 'int' | 'uint';
@@ -54,19 +55,24 @@ const ushorts: Family = { internal: [0x8234, 0x823a, 0x8d76], type: gl.UNSIGNED_
 const unorms: Family = { internal: [0x8229, 0x822b, 0x8058], type: gl.UNSIGNED_BYTE, isInteger: false, channel: Uint8Array, sampler: 'float' };
 
 const families: Readonly<Record<Scalar, Family>> = {
-  bool: bytes, uchar: bytes, int: ints, uint: uints, double: uints, float: floats, half: halves, char: chars, snorm8: chars,
+  bool: bytes, uchar: bytes, int: ints, uint: uints, double: uints, long: uints, ulong: uints, float: floats, half: halves, char: chars, snorm8: chars,
   short: shorts, snorm16: shorts, ushort: ushorts, unorm16: ushorts, unorm8: unorms,
 };
 
 const formats = new Map<string, Format>();
 
-/** The format of a plane of `width` components, 1 to 4. A double takes two channels. */
+/** Whether a component has 64 bits: two channels of a texel. */
+export function isWide(scalar: Scalar): boolean {
+  return scalar === 'double' || scalar === 'long' || scalar === 'ulong';
+}
+
+/** The format of a plane of `width` components, 1 to 4. */
 export function formatOf(scalar: Scalar, width: number): Format {
   const key = scalar + width;
   let format = formats.get(key);
   if (format === undefined) {
     const family = families[scalar];
-    const components = scalar === 'double' ? 2 * width : width;
+    const components = isWide(scalar) ? 2 * width : width;
     const row = components === 1 ? 0 : components === 2 ? 1 : 2;
     const layouts = family.isInteger ? [gl.RED_INTEGER, gl.RG_INTEGER, gl.RGBA_INTEGER] : [gl.RED, gl.RG, gl.RGBA];
     format = {
@@ -92,5 +98,7 @@ export function wideOf(format: Format): { format: number; type: number; array: H
 
 /** The type of the host's arrays of components. */
 export function hostArrayOf(scalar: Scalar): HostArrayType {
+  if (scalar === 'long') return BigInt64Array;
+  if (scalar === 'ulong') return BigUint64Array;
   return scalar === 'double' ? Float64Array : families[scalar].channel;
 }

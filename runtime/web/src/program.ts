@@ -3,6 +3,8 @@
 // One linked program: where its uniforms are, and what was last given to them.
 import type { Layout } from './layout.js';
 import type { Trace } from './trace.js';
+import type { Component } from './elements.js';
+import { isWide } from './format.js';
 import type { Element, Field, Parameter } from './generated.js';
 import { SkError } from './error.js';
 
@@ -83,6 +85,7 @@ class ValueUniform {
       const path = field.path ?? '';
       const full = path === '' || path.startsWith('[') ? name + path : `${name}.${path}`;
       if (field.scalar === 'double') this.addDoubles(gl, program, full, first, count);
+      else if (isWide(field.scalar)) this.addLongs(gl, program, full, first, count);
       else this.add(gl, program, full, field, first, count, rows);
       first += count;
       i += rows;
@@ -111,9 +114,21 @@ class ValueUniform {
     }
   }
 
-  set(numbers: readonly number[]): void {
+  /** An integer of 64 bits is a struct of its words. */
+  private addLongs(gl: WebGL2RenderingContext, program: WebGLProgram, name: string, first: number, count: number): void {
+    for (let c = 0; c < count; ++c) {
+      const bits = gl.getUniformLocation(program, `${count === 1 ? name : `${name}.${'xyzw'[c]}`}.bits`);
+      const set: Setter = ([value]) => {
+        const whole = BigInt(value!);
+        gl.uniform2ui(bits, Number(BigInt.asUintN(32, whole)), Number(BigInt.asUintN(32, whole >> 32n)));
+      };
+      this.setters.push({ set, first: first + c, count: 1 });
+    }
+  }
+
+  set(numbers: readonly Component[]): void {
     for (const { set, first, count } of this.setters) {
-      set(count === numbers.length ? numbers : numbers.slice(first, first + count));
+      set((count === numbers.length ? numbers : numbers.slice(first, first + count)) as readonly number[]);
     }
   }
 }

@@ -89,7 +89,7 @@ export class Pyramid {
     const { levels } = this.plan;
     const last = levels.length - 1;
     const sums = await this.device.readTexels(this.planes[last % 2]!, [{ x: 0, y: levels[last]!.row, width: 1, height: 1 }]);
-    return sums[3]!;
+    return sums[3] as number;
   }
 
   /** Binds the textures for the program of a list, which is current, from this unit on. */

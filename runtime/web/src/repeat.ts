@@ -5,6 +5,7 @@
 // search. It allocates next to nothing. What is not alike, and every mistake, goes the long way (kernel.ts).
 import { isRead, isWritten, iteratorOf, specOf, stepsOf, uniformOf, type AnyStream, type Checked } from './arguments.js';
 import type { Device } from './device.js';
+import type { Component } from './elements.js';
 import type { Element, KernelData, Parameter } from './generated.js';
 import type { Layout } from './layout.js';
 import type { Plane } from './memory.js';
@@ -89,10 +90,10 @@ export class Repeat {
   }
 
   /** The components of uniforms and iterators; null if spec parameters have other values, or if a stream holds one. */
-  private valuesOf(given: readonly unknown[]): (readonly number[] | null)[] | null {
+  private valuesOf(given: readonly unknown[]): (readonly Component[] | null)[] | null {
     const { elements, kernel } = this;
     const { shape } = this.choices;
-    const values: (readonly number[] | null)[] = [];
+    const values: (readonly Component[] | null)[] = [];
     let spec = 0;
     for (const i of this.values) {
       const parameter: Parameter = kernel.parameters[i]!;

@@ -5,9 +5,9 @@
 // sk/stream.hpp and sk/call.hpp.
 import { type Region, copyRegion } from './copy.js';
 import type { Device } from './device.js';
-import { channelsOf, isSameElement, mayPackElement, newArrays, numbersOf, planeArray, takeChannels, texelsBefore } from './elements.js';
+import { channelsOf, heldComponent, isSameElement, mayPackElement, newArrays, numbersOf, planeArray, takeChannels, texelsBefore } from './elements.js';
 import { SkError } from './error.js';
-import { formatOf, hostArrayOf } from './format.js';
+import { formatOf } from './format.js';
 import type { Element, Field } from './generated.js';
 import { type Index4, type Layout, lanes, shapeText, sizeOf, stridesOf, texelsOf, xFirst } from './layout.js';
 import type { Plane } from './memory.js';
@@ -499,11 +499,11 @@ function repeated(element: Element, value: unknown, count: number): unknown {
   let next = 0;
   element.fields.forEach(({ scalar, width }, plane) => {
     const { array, first, step } = planeArray(element, plane, arrays, count);
-    const isFraction = [Float32Array, Float64Array].includes(hostArrayOf(scalar) as never);
     for (let c = 0; c < width; ++c) {
-      const number = numbers[next++]!;
-      if (!isFraction && !Number.isInteger(number)) throw new SkError(`fill: ${number} is no whole number, as ${element.name} holds`, 'type');
-      for (let i = 0; i < count; ++i) array[i * step + first + c] = number;
+      const number = heldComponent(scalar, numbers[next]!);
+      if (number === undefined) throw new SkError(`fill: ${numbers[next]} is no whole number, as ${element.name} holds`, 'type');
+      ++next;
+      for (let i = 0; i < count; ++i) array[i * step + first + c] = number as never;
     }
   });
   return arrays;

@@ -8,7 +8,7 @@ type Of<S extends string> = S extends `${string}norm${number}` ? S | `${S}x2` | 
 
 /** Elements that TypeScript has no need to declare: `float`, `int3`. */
 export type BuiltIn =
-  | Of<'float'> | Of<'int'> | Of<'uint'> | Of<'bool'> | Of<'double'> | Of<'half'> | Of<'char'> | Of<'uchar'> | Of<'short'> | Of<'ushort'>
+  | Of<'float'> | Of<'int'> | Of<'uint'> | Of<'bool'> | Of<'double'> | Of<'long'> | Of<'ulong'> | Of<'half'> | Of<'char'> | Of<'uchar'> | Of<'short'> | Of<'ushort'>
   | Of<'unorm8'> | Of<'snorm8'> | Of<'unorm16'> | Of<'snorm16'>
   | 'float2x2' | 'float3x3' | 'float4x4';
 
@@ -37,6 +37,10 @@ export type ArrayOf<T extends ElementType> = T extends Struct<string, unknown, i
   ? Uint32Array
   : T extends Of<'double'>
   ? Float64Array
+  : T extends Of<'long'>
+  ? BigInt64Array
+  : T extends Of<'ulong'>
+  ? BigUint64Array
   : T extends Of<'char'> | Of<'snorm8'>
   ? Int8Array
   : T extends Of<'bool'> | Of<'uchar'> | Of<'unorm8'>
@@ -45,9 +49,9 @@ export type ArrayOf<T extends ElementType> = T extends Struct<string, unknown, i
   ? Int16Array
   : Uint16Array;
 
-type One<T> = T extends `bool${string}` ? boolean : number;
+type One<T> = T extends `bool${string}` ? boolean : T extends Of<'long'> | Of<'ulong'> ? bigint : number;
 
-/** One value: a number or a boolean, components of a vector, or all components of a matrix, row by row. */
+/** One value: a number, a bigint of 64 bits or a boolean, components of a vector, or all components of a matrix, row by row. */
 export type Value<T extends BuiltIn> = T extends `float${number}x${number}`
   ? readonly number[]
   : T extends `${string}2`
