@@ -378,9 +378,12 @@ Advice adviceOnWidths(const clang::Diagnostic& diagnostic) {
     return vector == nullptr ? clang::QualType() : vector->getElementType();
   };
   if (left == right && left > 1) {  // float3 and double3
-    const bool isLeftDouble = component(types[0])->isSpecificBuiltinType(clang::BuiltinType::Double);
-    return adviceOnWidth(types[isLeftDouble ? 1 : 0], types[isLeftDouble ? 0 : 1],
-                         textOf(diagnostic, isLeftDouble ? 1 : 0));
+    const clang::QualType first = component(types[0]);
+    const bool hasLeftMoreBits = first->isSpecificBuiltinType(clang::BuiltinType::Double) ||
+                                 first->isSpecificBuiltinType(clang::BuiltinType::Long) ||
+                                 first->isSpecificBuiltinType(clang::BuiltinType::ULong);
+    return adviceOnWidth(types[hasLeftMoreBits ? 1 : 0], types[hasLeftMoreBits ? 0 : 1],
+                         textOf(diagnostic, hasLeftMoreBits ? 1 : 0));
   }
   const bool isLeftWider = left > right;
   const llvm::StringRef text = textOf(diagnostic, isLeftWider ? 0 : 1);

@@ -62,7 +62,7 @@ std::string wideText(Scalar scalar, const Literal& literal) {
 }
 
 ExprPtr wideUnary(Polyfills& polyfills, UnaryOp op, ExprPtr operand) {
-  const std::string_view name = op == UnaryOp::Negate ? "sk_neg" : "sk_not";
+  const std::string_view name = op == UnaryOp::Negate ? "sk_neg" : "sk_inverse";
   const FunctionId function = polyfills.addByComponent(name, operand->type, {operand->type});
   return polyfills.call(function, exprs(std::move(operand)));
 }

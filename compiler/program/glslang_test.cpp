@@ -2,6 +2,7 @@
 //
 // Promise: glslang accepts what we emit as GLSL 3.30 and as ESSL 3.00: every overload of every intrinsic,
 // every kind of statement and expression, and whole programs as assembled by the runtime.
+#include <iterator>
 #include <limits>
 
 #include <fmt/format.h>
@@ -21,6 +22,9 @@ namespace {
 
 using namespace ir;
 using enum BinaryOp;
+
+constexpr Scalar arithmeticScalars[] = {Scalar::Bool,   Scalar::Int,  Scalar::Uint, Scalar::Float,
+                                        Scalar::Double, Scalar::Long, Scalar::Ulong};
 
 /// Writes the module's kernels and reduces as whole programs, with accurate intrinsics and the device's, and with both barriers,
 /// to a folder, and returns glslang's messages.
@@ -56,8 +60,8 @@ TEST_CASE("the sample file") { CHECK(glslangOn(sampleModule(), "sample") == "");
 TEST_CASE("every overload of every intrinsic") {
   Module module = testModule();
   KernelBuilder k(module, "all");
-  VarId values[5][5];
-  for (Scalar scalar : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float, Scalar::Double}) {
+  VarId values[std::size(arithmeticScalars)][5];
+  for (Scalar scalar : arithmeticScalars) {
     for (int width = 1; width <= 4; ++width) {
       values[static_cast<int>(scalar)][width] =
           k.uniform(spelling(scalar) + std::to_string(width), Type::of(scalar, width));
@@ -91,7 +95,7 @@ TEST_CASE("every operator on every type that has it") {
   Module module = testModule();
   KernelBuilder k(module, "operators");
   std::vector<std::pair<VarId, Type>> values;
-  for (Scalar scalar : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float, Scalar::Double}) {
+  for (Scalar scalar : arithmeticScalars) {
     for (int width = 1; width <= 4; ++width) {
       const Type type = Type::of(scalar, width);
       values.emplace_back(k.uniform(spelling(scalar) + std::to_string(width), type), type);
@@ -108,16 +112,17 @@ TEST_CASE("every operator on every type that has it") {
     std::vector<BinaryOp> ops = {Equal, NotEqual};
     if (type.isBool()) ops.insert(ops.end(), {LogicalAnd, LogicalOr});
     if (!type.isBool()) ops.insert(ops.end(), {Add, Sub, Mul, Div, Less, LessEqual, Greater, GreaterEqual});
-    if (type.isInteger()) ops.insert(ops.end(), {Rem, BitAnd, BitOr, BitXor, ShiftLeft, ShiftRight});
+    if (type.isInteger() || type.isLong()) ops.insert(ops.end(), {Rem, BitAnd, BitOr, BitXor});
+    if (type.isInteger()) ops.insert(ops.end(), {ShiftLeft, ShiftRight});
     for (BinaryOp op : ops) add(binary(op, self(), self()));
     if (!type.isBool()) add(unary(UnaryOp::Negate, self()));
-    if (type.isInteger()) add(unary(UnaryOp::BitNot, self()));
+    if (type.isInteger() || type.isLong()) add(unary(UnaryOp::BitNot, self()));
     if (type.isBool()) add(unary(UnaryOp::LogicalNot, self()));
-    if (type.isInteger()) add(binary(ShiftLeft, self(), literal(1U)));
+    if (type.isInteger() || type.isLong()) add(binary(ShiftLeft, self(), literal(1U)));
     if (!type.isBool()) add(binary(Mul, literalOf(type.component(), 2), self()));
     add(select(k.ref(values[type.width - 1U].first), self(), self()));
     add(select(literal(true), self(), self()));
-    for (Scalar to : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float, Scalar::Double}) {
+    for (Scalar to : arithmeticScalars) {
       if (to != type.scalar) add(convert(to, self()));
     }
   }

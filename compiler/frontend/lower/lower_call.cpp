@@ -228,7 +228,7 @@ ExprPtr FunctionLowering::tableIntrinsic(const clang::CallExpr* e, llvm::StringR
   Exprs args =
       valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), areDoubles ? doubles : 0);
   if ((name == "mod" || name == "fmod") &&
-      llvm::all_of(args, [](const ExprPtr& arg) { return arg->type.arithmeticType().isInteger(); })) {
+      llvm::all_of(args, [](const ExprPtr& arg) { return arg->type.arithmeticType().isInteger() || arg->type.isLong(); })) {
     module_.fail(Diag::IntegerRemainder, e->getBeginLoc(), {std::string_view(name)});
   }
   std::optional<Match> match = bestMatch(name, module_.type(e->getType(), e->getBeginLoc()), args);

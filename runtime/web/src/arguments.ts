@@ -91,8 +91,12 @@ function heldComponents(kernel: string, parameter: Parameter, element: Element, 
   for (const { scalar, width } of element.fields) {
     for (let c = 0; c < width; ++c, ++i) {
       const held = heldComponent(scalar, numbers[i]!);
-      if (held !== undefined) numbers[i] = held;
-      else fail(kernel, `'${parameter.name}' is declared as ${element.name}, but ${described(numbers[i])} is ${isWide(scalar) ? 'no such integer' : 'no whole number'}`, 'type');
+      if (held !== undefined) {
+        numbers[i] = held;
+        continue;
+      }
+      const what = isWide(scalar) ? 'no such integer' : typeof numbers[i] === 'bigint' ? 'no number' : 'no whole number';
+      fail(kernel, `'${parameter.name}' is declared as ${element.name}, but ${described(numbers[i])} is ${what}`, 'type');
     }
   }
   return numbers;

@@ -246,6 +246,29 @@ const cases = {
     same('doubles', await x.read(), 2 ** -20, 2); // pairs of floats: 2^-44 of numbers below 2
   },
 
+  async longs(device) {
+    const n = 60;
+    const a = -1234567890123456789n;
+    const x = from(BigInt64Array, 3 * n, (i) => BigInt.asIntN(64, BigInt(random24(i, 22)) ** 3n));
+    const y = from(BigUint64Array, n, (i) => BigInt.asUintN(64, BigInt(random24(i, 23)) ** 3n));
+    const [r, s] = [device.stream('long3', [n]), device.stream('ulong', [n])];
+    k.longs(a, filled(device, 'long3', [n], x), filled(device, 'ulong', [n], y), r, s);
+    const wanted = from(BigInt64Array, 3 * n, (i) => BigInt.asIntN(64, a * x[i] + x[i - (i % 3) + [2, 0, 1][i % 3]] / 3n));
+    expect('products and quotients of longs', String(await r.read()) === String(wanted), String(await r.read()));
+    const products = from(BigUint64Array, n, (i) => BigInt.asUintN(64, (y[i] >> 7n) * BigInt.asUintN(64, a)));
+    expect('products of ulongs', String(await s.read()) === String(products), String(await s.read()));
+    const total = await k.longSum(filled(device, 'long', [3 * n], x));
+    expect('a sum of longs', total === BigInt.asIntN(64, x.reduce((sum, value) => sum + value, 0n)), String(total));
+    const line = device.stream('long', [4]);
+    line.fill(-5);
+    line.domain([1], [2]).fill(1n << 62n);
+    expect('filled longs', String(await line.read()) === `-5,${1n << 62n},-5,-5`, String(await line.read()));
+    await refused('type', "'a' is declared as long, but number 0.5 is no such integer", () => k.longs(0.5, device.stream('long3', [n]), s, r, s));
+    await refused('type', "'a' is declared as long, but bigint 9223372036854775808 is no such integer", () => k.longs(1n << 63n, device.stream('long3', [n]), s, r, s));
+    await refused('type', "'a' is declared as float, but bigint 1 is no number", () => k.saxpy(1n, device.stream('float', [n]), device.stream('float', [n]), device.stream('float', [n])));
+    await refused('type', 'written from a BigInt64Array, but a Float64Array is given', () => line.write(new Float64Array(4)));
+  },
+
   async errors(device) {
     const [u, v] = [device.stream('float', [8, 8]), device.stream('float', [8, 12])];
     await refused('shape', "'u' is declared with 2 dimension(s)", () => k.diffuse(0.2, device.stream('float', [64]), u));

@@ -2,7 +2,7 @@
 //
 // What the types of calls.sk.d.ts allow, and what they reject: tsc reads this, and nothing runs it.
 import { Device, stretch, stride, type View } from 'streamkernel';
-import { Body, around, count, diffuse, field, heaviest, move, positive, shaded, sum, type Scene } from './calls.sk.js';
+import { Body, around, count, diffuse, field, heaviest, longSum, move, positive, shaded, sum, type Scene } from './calls.sk.js';
 import { folds } from './reductions.sk.js';
 import { curve, held, mixed, Point, smooth, squares } from './layouts.sk.js';
 
@@ -35,6 +35,11 @@ export async function allowed(device: Device): Promise<number> {
   const [total]: readonly number[] = await folds.weighted(cells);
   folds.prefix.with({ scan: 'exclusive', along: 0 })(cells, cells);
   void [alive, most, total];
+  const longs = device.stream('long', [4]);
+  longs.fill(5n);
+  const words: BigInt64Array = await longs.read();
+  const sumOfLongs: bigint = await longSum(longs);
+  void [words, sumOfLongs];
   u.fill(1);
   bodies.domain([0], [5]).fill({ spot: { at: [1, 2], heat: 3 }, kind: 4, color: [0, 0, 1] });
   u.domain([0, 0], [1, 512]).copyTo(u.domain([1, 0], [2, 512]));
@@ -47,6 +52,8 @@ export async function rejected(device: Device): Promise<void> {
   const ints = device.stream('int', [512, 512]);
   // @ts-expect-error: a vector for a number
   u.fill([1, 2]);
+  // @ts-expect-error: numbers are no integers of 64 bits
+  device.stream('long', [4]).fill(0.5);
   // @ts-expect-error: another type of elements
   u.copyTo(ints);
   // @ts-expect-error: another rank

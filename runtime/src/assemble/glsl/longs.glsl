@@ -143,7 +143,7 @@ float sk_to_float(sk_long a) {
 }
 
 sk_long sk_neg(sk_long a) { return sk_long(sk_opposite(a.bits)); }
-sk_long sk_not(sk_long a) { return sk_long(~a.bits); }
+sk_long sk_inverse(sk_long a) { return sk_long(~a.bits); }
 sk_long sk_add(sk_long a, sk_long b) { return sk_long(sk_sum_of(a.bits, b.bits)); }
 sk_long sk_sub(sk_long a, sk_long b) { return sk_long(sk_sum_of(a.bits, sk_opposite(b.bits))); }
 sk_long sk_mul(sk_long a, sk_long b) { return sk_long(sk_product_of(a.bits, b.bits)); }
@@ -178,7 +178,7 @@ sk_long sk_mulhi(sk_long a, sk_long b) {
 }
 
 sk_ulong sk_neg(sk_ulong a) { return sk_ulong(sk_opposite(a.bits)); }
-sk_ulong sk_not(sk_ulong a) { return sk_ulong(~a.bits); }
+sk_ulong sk_inverse(sk_ulong a) { return sk_ulong(~a.bits); }
 sk_ulong sk_add(sk_ulong a, sk_ulong b) { return sk_ulong(sk_sum_of(a.bits, b.bits)); }
 sk_ulong sk_sub(sk_ulong a, sk_ulong b) { return sk_ulong(sk_sum_of(a.bits, sk_opposite(b.bits))); }
 sk_ulong sk_mul(sk_ulong a, sk_ulong b) { return sk_ulong(sk_product_of(a.bits, b.bits)); }
