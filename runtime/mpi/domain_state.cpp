@@ -331,8 +331,11 @@ detail::Distribution& DomainStreamState::distribution() {
 
 detail::StreamOwner DomainStreamState::create() const {
   const Depth halo = domain->parts.haloOf(domain->rank, allocated);
-  return domain->device.createStream(element, domain::shapeOf(domain::grown(domain->own, halo)), storage_,
-                                     name_);
+  detail::StreamOwner created = domain->device.createStream(
+      element, domain::shapeOf(domain::grown(domain->own, halo)), storage_, name_);
+  // Other ranks' elements come and go unseen.
+  if (created->unwritten != nullptr) created->unwritten->countTogether();
+  return created;
 }
 
 StreamRegion DomainStreamState::placed(StreamState* state) const {
@@ -366,7 +369,7 @@ void DomainStreamState::deepen(const Depth& depth) {
     deeper = create();
     if (from.stream->isLost()) {
       deeper->markLost();
-    } else {
+    } else if (from.stream->unwritten == nullptr || !from.stream->unwritten->isAll()) {
       detail::copy(from, part(deeper.get(), kept));
     }
   } catch (...) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "agreement.hpp"
+#include "call/check_written.hpp"
 #include "call_details.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
@@ -140,6 +141,7 @@ void detail::copyToWhole(DomainStreamState* stream, const StreamRegion& whole) {
       from += mpi::bytesOf(part);
     }
     writes.commit();
+    noteWritten(whole);
   });
 }
 

@@ -151,6 +151,7 @@ detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const DeviceO
   state->memoryLimit = memoryLimitOf(options.memoryLimit);
   state->limits.memory = limited(state->limits.memory, state->memoryLimit);
   state->configuration = std::move(configuration);
+  state->runsCallByCall = checksWritten();
   const std::string trace = chosen({}, "SK_TRACE");
   if (!trace.empty()) state->startTrace(trace);
   return detail::DeviceOwner(state.release());
@@ -278,7 +279,7 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
     }
     detail::StreamOwner stream(state().createStream(element, shape, storage).release());
     if (!name.empty()) stream->setName(name);
-    stream->isUnwritten = checksWritten();
+    if (checksWritten()) trackWritten(*stream);
     return stream;
   });
 }

@@ -12,6 +12,7 @@
 #include "call/box.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
+#include "call/check_unwritten_reads.hpp"
 #include "call/check_written.hpp"
 #include "call/distribution.hpp"
 #include "call/placed.hpp"
@@ -111,10 +112,13 @@ class FoldCall {
     const TraceScope traced(call_.device.trace.get(), "call", call_.reduction.fold.name);
     traced.add("domain", call_.domain);
     traced.add("blocks", call_.blocks);
-    const DenseArguments dense(call_.reduction.fold, call_.arguments);
-    if (dense.areAsGiven()) return runParts();
-    FoldCall(*this, dense.get()).runParts();
-    dense.finish();
+    if (!checksWritten()) return runUnchecked();
+    const auto repeat = [&](std::span<const Argument> arguments, std::span<void* const>) {
+      FoldCall(*this, arguments).runUnchecked();
+    };
+    runChecked(
+        {.device = call_.device, .kernel = call_.reduction.fold, .arguments = call_.arguments, .run = repeat},
+        [&] { runUnchecked(); });
   }
 
  private:
@@ -124,6 +128,13 @@ class FoldCall {
         mapArguments_(argumentsOf(parts_.mapOperands, arguments)),
         hasMap_(given.hasMap_),
         call_(given.call_.of(given.call_.reduction, arguments, {})) {}
+
+  void runUnchecked() const {
+    const DenseArguments dense(call_.reduction.fold, call_.arguments);
+    if (dense.areAsGiven()) return runParts();
+    FoldCall(*this, dense.get()).runParts();
+    dense.finish();
+  }
 
   void runParts() const {
     if (call_.blocks.size() == 0) return map();
@@ -230,7 +241,6 @@ void checkAndFold(const Reduction& reduction, std::span<const Argument> argument
     return checkAndFold(reduction, boxed.arguments, others, boxed.placed);
   }
   const FoldCall call(reduction, arguments, options, placed);
-  noteWritten(reduction.fold, arguments);
   LoopState* const recording = call.device().recording;
   if (recording == nullptr) return call.run();
   recording->add(std::make_unique<RecordedFold>(reduction, arguments, options, placed));

@@ -11,6 +11,7 @@
 #include "call/box.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
+#include "call/check_unwritten_reads.hpp"
 #include "call/check_written.hpp"
 #include "call/distribution.hpp"
 #include "call/placed.hpp"
@@ -241,15 +242,28 @@ void reduceResolved(const ResolvedReduction& call) {
 
 namespace {
 
+void runUnchecked(const ResolvedReduction& call) {
+  const DenseArguments dense(call.reduction.fold, call.arguments);
+  if (dense.areAsGiven()) return reduceResolved(call);
+  reduceResolved(call.of(call.reduction, dense.get(), call.values));
+  dense.finish();
+}
+
 void runResolved(const ResolvedReduction& call) {
   const TraceScope traced(call.device.trace.get(), "call", call.reduction.fold.name);
   traced.add("domain", call.domain);
   if (!call.isToValues()) traced.add("blocks", call.blocks);
   if (call.blocks.size() == 0) return;
-  const DenseArguments dense(call.reduction.fold, call.arguments);
-  if (dense.areAsGiven()) return reduceResolved(call);
-  reduceResolved(call.of(call.reduction, dense.get(), call.values));
-  dense.finish();
+  if (!checksWritten()) return runUnchecked(call);
+  const auto repeat = [&](std::span<const Argument> arguments, std::span<void* const> values) {
+    runUnchecked(call.of(call.reduction, arguments, values));
+  };
+  runChecked({.device = call.device,
+              .kernel = call.reduction.fold,
+              .arguments = call.arguments,
+              .values = call.values,
+              .run = repeat},
+             [&] { runUnchecked(call); });
 }
 
 class RecordedReduction final : public RecordedCall {
@@ -281,7 +295,6 @@ void checkAndReduce(const Reduction& reduction, std::span<const Argument> argume
     return checkAndReduce(reduction, boxed.arguments, values, others, scan, boxed.placed);
   }
   ResolvedReduction call = checkReduction(reduction, arguments, values, scan, placed);
-  noteWritten(reduction.fold, arguments);
   call.options = resolvedOptions(call, options);
   if (call.device.recording == nullptr) return runResolved(call);
   if (call.isToValues()) {

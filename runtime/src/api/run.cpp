@@ -9,6 +9,7 @@
 #include "call/box.hpp"
 #include "call/check_call.hpp"
 #include "call/check_halos.hpp"
+#include "call/check_unwritten_reads.hpp"
 #include "call/check_written.hpp"
 #include "call/distribution.hpp"
 #include "call/placed.hpp"
@@ -24,10 +25,7 @@ using program::Kernel;
 
 namespace {
 
-/// Runs the call, as it was prepared unless `prepared` is null.
-void runResolved(DeviceState& device, const ResolvedCall& call, RecordedCall* prepared = nullptr) {
-  const TraceScope traced(device.trace.get(), "call", call.kernel.name);
-  traced.add("domain", call.domain);
+void runUnchecked(DeviceState& device, const ResolvedCall& call, RecordedCall* prepared) {
   if (prepared != nullptr) return prepared->run();
   const DenseArguments dense(call.kernel, call.arguments);
   if (dense.areAsGiven()) return device.run(call);
@@ -35,6 +33,30 @@ void runResolved(DeviceState& device, const ResolvedCall& call, RecordedCall* pr
   denseCall.arguments = dense.get();
   device.run(denseCall);
   dense.finish();
+}
+
+/// Runs the call with SK_CHECK=written.
+void runCheckingWritten(DeviceState& device, const ResolvedCall& call, RecordedCall* prepared) {
+  const auto repeat = [&](std::span<const Argument> arguments, std::span<void* const>) {
+    ResolvedCall other = call;
+    other.arguments = arguments;
+    runUnchecked(device, other, nullptr);
+  };
+  const bool isBoxOfWhole = call.place.whole.rank() == 0;
+  runChecked({.device = device,
+              .kernel = call.kernel,
+              .arguments = call.arguments,
+              .box = call.options.box,
+              .isBoxOfWhole = isBoxOfWhole,
+              .run = repeat},
+             [&] { runUnchecked(device, call, prepared); });
+}
+
+/// Runs the call, as it was prepared unless `prepared` is null.
+void runResolved(DeviceState& device, const ResolvedCall& call, RecordedCall* prepared = nullptr) {
+  const TraceScope traced(device.trace.get(), "call", call.kernel.name);
+  traced.add("domain", call.domain);
+  checksWritten() ? runCheckingWritten(device, call, prepared) : runUnchecked(device, call, prepared);
 }
 
 class RecordedKernel final : public RecordedCall {
@@ -110,7 +132,6 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   refuseScanOptions(kernel, options);
   std::optional<CheckedCall> checked = checkCall(kernel, arguments);
   if (!checked) return;
-  noteWritten(kernel, arguments);
   DeviceState& device = checked->device;
   checked->call.options = device.configuration.resolve(kernel, options);
   checkTables(kernel, checked->call.options);

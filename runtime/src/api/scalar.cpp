@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "call/check_written.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/scalar_pass.hpp"
@@ -95,8 +96,34 @@ class PassBuilder {
   std::vector<std::pair<const ScalarNode*, ScalarRef>> known_;
 };
 
+constexpr std::string_view aScalar = "a scalar";
+
 void checkPass(const ScalarPass& pass) {
-  for (const StreamRegion& read : pass.reads) checkElementsOf(read, false, "a scalar");
+  for (const StreamRegion& read : pass.reads) checkNotLost(read, false, aScalar);
+}
+
+/// A pass with SK_CHECK=written, which is checked each time that it runs.
+class CheckedScalars final : public RecordedCall {
+ public:
+  CheckedScalars(std::unique_ptr<RecordedCall> call, const ScalarPass& pass)
+      : call_(std::move(call)), reads_(pass.reads), outputs_(pass.outputs) {}
+
+  void run() override {
+    for (const StreamRegion& read : reads_) checkWritten(read, aScalar);
+    call_->run();
+    for (const ScalarPass::Output& output : outputs_) noteAllWritten(*output.stream);
+  }
+
+ private:
+  std::unique_ptr<RecordedCall> call_;
+  std::vector<StreamRegion> reads_;
+  std::vector<ScalarPass::Output> outputs_;
+};
+
+std::unique_ptr<RecordedCall> prepared(DeviceState& device, ScalarPass pass) {
+  if (!checksWritten()) return device.prepareScalars(std::move(pass));
+  std::unique_ptr<RecordedCall> call = device.prepareScalars(pass);
+  return std::make_unique<CheckedScalars>(std::move(call), pass);
 }
 
 void noteUses(const ScalarPass& pass, LoopState& loop) {
@@ -112,9 +139,8 @@ void runPass(DeviceState& device, std::span<const std::shared_ptr<ScalarNode>> n
   }
   PassBuilder builder(nodes);
   checkPass(builder.pass);
-  for (const ScalarPass::Output& output : builder.pass.outputs) output.stream->isUnwritten = false;
   if (device.recording != nullptr) noteUses(builder.pass, *device.recording);
-  std::unique_ptr<RecordedCall> call = device.prepareScalars(std::move(builder.pass));
+  std::unique_ptr<RecordedCall> call = prepared(device, std::move(builder.pass));
   if (device.recording != nullptr) {
     device.recording->add(std::move(call));
   } else {

@@ -133,12 +133,12 @@ StreamState& liveStream(const StreamRegion& region, std::string_view context) {
 }
 
 void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_view context) {
-  StreamState& stream = *region.stream;
-  if (isWritten) {
-    stream.isUnwritten = false;
-  } else {
-    checkWritten(stream, context);
-  }
+  checkNotLost(region, isWritten, context);
+  if (!isWritten) checkWritten(region, context);
+}
+
+void checkNotLost(const StreamRegion& region, bool isWritten, std::string_view context) {
+  const StreamState& stream = *region.stream;
   if (!stream.isLost() || (isWritten && isWhole(region))) return;
   throw Error(
       fmt::format(
@@ -171,6 +171,7 @@ void detail::write(const StreamRegion& region, const void* elements, std::size_t
       const DenseRegion dense(region, /*isRead=*/false);
       dense.get().stream->write(dense.get(), static_cast<const std::byte*>(elements));
       dense.finish();
+      noteWritten(region);
     }
   });
 }
@@ -214,6 +215,7 @@ void detail::writeAsync(const StreamRegion& region, const void* elements, std::s
       const DenseRegion dense(region, /*isRead=*/false);
       dense.get().stream->writeAsync(dense.get(), static_cast<const std::byte*>(elements));
       dense.finish();
+      noteWritten(region);
     }
   });
 }
@@ -274,6 +276,7 @@ void detail::writeReals(const StreamRegion& region, std::span<const double> valu
     const DenseRegion dense(region, /*isRead=*/false);
     dense.get().stream->writeReals(dense.get(), values.data());
     dense.finish();
+    noteWritten(region);
   });
 }
 
@@ -297,6 +300,7 @@ namespace {
 void runFill(const StreamRegion& region, const std::byte* element) {
   const TransferScope traced(*region.stream, "fill", region);
   region.stream->fill(region, element);
+  noteWritten(region);
 }
 
 class RecordedFill final : public RecordedCall {
@@ -352,8 +356,11 @@ void copyByHost(const StreamRegion& givenFrom, const StreamRegion& givenTo) {
 
 void runCopy(const StreamRegion& from, const StreamRegion& to) {
   const TransferScope traced(*to.stream, "copy", to);
+  checkSomeWritten(from, "copyTo");
+  const std::vector<std::int64_t> unwritten = unwrittenIn(from);
   const bool isDone = from.stream->device == to.stream->device && to.stream->copyFrom(from, to);
   if (!isDone) copyByHost(from, to);
+  noteCopied(to, unwritten);
 }
 
 class RecordedCopy final : public RecordedCall {
@@ -384,8 +391,8 @@ void detail::copy(const StreamRegion& from, const StreamRegion& to) {
                       toString(from.shape), toString(to.shape)),
           Error::Kind::Shape);
     }
-    checkElementsOf(from, false, "copyTo");
-    checkElementsOf(to, true, "copyTo");
+    checkNotLost(from, false, "copyTo");
+    checkNotLost(to, true, "copyTo");
     if (from.shape.size() == 0) return;
     if (source.device != target.device) {
       refuseInRecording(*source.device, "copyTo another device");
@@ -414,7 +421,7 @@ StreamTexture detail::textureOf(StreamState* state, int plane) {
   return withHostMemory("texture", [&] {
     StreamState& stream = liveStream({state, {}, {}}, "texture");
     refuseInRecording(*stream.device, "texture");
-    stream.isUnwritten = false;  // the application may draw to it
+    noteAllWritten(stream);  // the application may draw to it
     checkElementsOf({state, {}, {}}, false, "texture");
     checkPlane(stream, plane, "texture");
     return stream.texture(plane);
@@ -425,7 +432,7 @@ void detail::fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t b
   withHostMemory("fillBuffer", [&] {
     StreamState& stream = liveStream({state, {}, {}}, "fillBuffer");
     refuseInRecording(*stream.device, "fillBuffer");
-    checkElementsOf({state, {}, {}}, false, "fillBuffer");
+    checkElementsOf(wholeRegion(state), false, "fillBuffer");
     checkPlane(stream, plane, "fillBuffer");
     if (byteOffset < 0 || byteOffset % 4 != 0) {
       throw Error(fmt::format("fillBuffer: the offset is {}; give a multiple of 4, and not a negative one",

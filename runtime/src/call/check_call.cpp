@@ -9,7 +9,6 @@
 #include "assemble/append/append_passes.hpp"
 #include "assemble/program/texture_units.hpp"
 #include "call/check_reduction.hpp"
-#include "call/check_written.hpp"
 #include "call/iterator.hpp"
 #include "call/placed.hpp"
 #include "device/device_state.hpp"
@@ -318,7 +317,6 @@ StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const
          "the elements of '{}' are lost, since what wrote them has failed; write all of the stream first",
          parameter.name);
   }
-  checkWritten(kernel, parameter, stream);
   return stream;
 }
 

@@ -5,75 +5,103 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "assemble/condition.hpp"
-#include "call/check_call.hpp"
-#include "call/resolved_call.hpp"
+#include "device/region.hpp"
 #include "device/stream_state.hpp"
+#include "device/unwritten_elements.hpp"
 #include "sk/error.hpp"
 
 namespace sk {
 
 namespace {
 
-using program::Parameter;
-using program::Role;
-
-bool isNeverWritten(const StreamState& stream) { return stream.isUnwritten && stream.shape.size() > 0; }
-
-/// A scatter output that combines values with its elements reads these.
-bool isReadAs(const Parameter& parameter) {
-  switch (parameter.role) {
-    case Role::Input:
-    case Role::Gather:
-    case Role::Uniform: return true;
-    case Role::Scatter: return parameter.scatter != program::ScatterOp::Store;
-    case Role::Output:
-    case Role::VariableOutput:
-    case Role::Accumulator:
-    case Role::Iterator:
-    case Role::Spec: return false;
-  }
-  return false;
-}
-
-bool isWrittenAs(Role role) {
-  return role == Role::Output || role == Role::VariableOutput || role == Role::Scatter ||
-         role == Role::Accumulator;
+[[noreturn]] void failUnwritten(const StreamRegion& region, std::string_view context) {
+  throw Error(
+      fmt::format("{}: nothing has written this stream of shape {}; write() or fill() it first, or let a "
+                  "kernel write it (SK_CHECK=written)",
+                  context, toString(region.stream->shape)),
+      Error::Kind::Misuse);
 }
 
 }  // namespace
 
-void checkWritten(const program::Kernel& kernel, const Parameter& parameter, const StreamState& stream) {
-  if (!isReadAs(parameter) || !isNeverWritten(stream)) return;
-  fail(Error::Kind::Misuse, kernel,
-       "'{}' reads a stream of shape {} that nothing has written; write() or fill() it first, or let a "
-       "kernel write it "
-       "(SK_CHECK=written)",
-       parameter.name, toString(stream.shape));
+void trackWritten(StreamState& stream) {
+  if (stream.shape.size() > 0) stream.unwritten = std::make_unique<UnwrittenElements>(stream.shape.size());
 }
 
-void checkWritten(const StreamState& stream, std::string_view context) {
-  if (!isNeverWritten(stream)) return;
+std::vector<std::int64_t> unwrittenIn(const StreamRegion& region) {
+  if (region.stream->unwritten == nullptr || region.shape.size() == 0) return {};
+  return region.stream->unwritten->in(affine(region));
+}
+
+Index indexOf(const Shape& shape, std::int64_t number) {
+  Index index = Index::origin(shape.rank());
+  for (int d = shape.rank() - 1; d >= 0; --d) {
+    index[d] = number % shape[d];
+    number /= shape[d];
+  }
+  return index;
+}
+
+void checkWritten(const StreamRegion& region, std::string_view context) {
+  const std::vector<std::int64_t> unwritten = unwrittenIn(region);
+  if (unwritten.empty()) return;
+  if (region.stream->unwritten->isAll()) failUnwritten(region, context);
   throw Error(
-      fmt::format("{}: nothing has written this stream of shape {}; write() or fill() it first, or let a "
-                  "kernel write it (SK_CHECK=written)",
-                  context, toString(stream.shape)),
+      fmt::format(
+          "{}: nothing has written the element at {} of shape {}; write() or fill() it first, let a kernel "
+          "write it, or ask for a view without it (SK_CHECK=written)",
+          context, toString(indexOf(region.shape, unwritten.front())), toString(region.shape)),
       Error::Kind::Misuse);
 }
 
-void noteWritten(const program::Kernel& kernel, std::span<const Argument> arguments) {
-  const assemble::SpecValues specs = specsOf(kernel, arguments);
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    StreamState* const stream = arguments[i].region.stream;
-    if (stream == nullptr || !isWrittenAs(kernel.parameters[i].role)) continue;
-    if (assemble::isNeeded(kernel.parameters[i], specs)) stream->isUnwritten = false;
+void checkSomeWritten(const StreamRegion& region, std::string_view context) {
+  if (region.stream->unwritten == nullptr || region.shape.size() == 0) return;
+  const std::size_t count = unwrittenIn(region).size();
+  if (count < static_cast<std::size_t>(region.shape.size())) return;
+  checkWritten(region, context);
+}
+
+namespace {
+
+void dropIfWritten(StreamState& stream) {
+  if (stream.unwritten->isEmpty()) stream.unwritten.reset();
+}
+
+}  // namespace
+
+void noteWritten(const StreamRegion& region) {
+  StreamState& stream = *region.stream;
+  if (stream.unwritten == nullptr || region.shape.size() == 0) return;
+  if (isWhole(region)) return stream.unwritten.reset();
+  stream.unwritten->remove(affine(region));
+  dropIfWritten(stream);
+}
+
+void noteWritten(const StreamRegion& region, std::span<const std::int64_t> numbers) {
+  StreamState& stream = *region.stream;
+  if (stream.unwritten == nullptr || numbers.empty()) return;
+  stream.unwritten->remove(affine(region), numbers);
+  dropIfWritten(stream);
+}
+
+void noteAllWritten(StreamState& stream) { stream.unwritten.reset(); }
+
+void noteCopied(const StreamRegion& to, std::span<const std::int64_t> unwritten) {
+  StreamState& stream = *to.stream;
+  noteWritten(to);
+  if (unwritten.empty()) return;
+  if (stream.unwritten == nullptr) {
+    stream.unwritten = std::make_unique<UnwrittenElements>(stream.shape.size());
+    stream.unwritten->remove(affine({&stream, Index::origin(stream.shape.rank()), stream.shape}));
   }
+  stream.unwritten->add(affine(to), unwritten);
 }
 
 namespace {

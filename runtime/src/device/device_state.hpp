@@ -196,6 +196,8 @@ class DeviceState {
   FunctionTables tables;
   std::optional<PassCount> passCount;  ///< empty unless counting is on
   std::unique_ptr<Trace> trace;  ///< null unless SK_TRACE names a file
+  bool runsCallByCall = false;  ///< loops need no LoopRunner: SK_CHECK=written checks each of their calls
+  bool isChecking = false;  ///< a call runs that SK_CHECK=written checks; its steps are not checked
   LoopState* recording = nullptr;  ///< records calls instead of running them; or null
   std::vector<LoopState*> loops;  ///< that use the device's streams
   PendingScalars pendingScalars;
@@ -209,6 +211,19 @@ class DeviceState {
   friend class StreamState;
 
   StreamState* firstStream_ = nullptr;  ///< list of the streams to notify when the device ends
+};
+
+/// Leaves the passes of trials out of the user's count.
+class UncountedPasses {
+ public:
+  explicit UncountedPasses(std::optional<PassCount>& count) : count_(count), before_(count) {}
+  ~UncountedPasses() { count_ = before_; }
+  UncountedPasses(const UncountedPasses&) = delete;
+  UncountedPasses& operator=(const UncountedPasses&) = delete;
+
+ private:
+  std::optional<PassCount>& count_;
+  const std::optional<PassCount> before_;
 };
 
 }  // namespace sk

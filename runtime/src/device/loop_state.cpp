@@ -149,7 +149,7 @@ void LoopState::finish() {
   failIfLost();
   flushScalars(*device_);
   findExchanges();
-  std::unique_ptr<LoopRunner> runner = device_->makeLoopRunner();
+  std::unique_ptr<LoopRunner> runner = device_->runsCallByCall ? nullptr : device_->makeLoopRunner();
   returnStreams();
   runner_ = std::move(runner);
   endRecording();
@@ -230,7 +230,7 @@ void LoopState::checkBeforeRun() const {
                       toString(used.shape), toString(used.stream->shape)),
           Error::Kind::Shape);
     }
-    checkElementsOf({used.stream, {}, {}}, false, "a loop");
+    checkNotLost({used.stream, {}, {}}, false, "a loop");
   }
 }
 

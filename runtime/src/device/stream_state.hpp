@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "device/unwritten_elements.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
@@ -108,14 +109,14 @@ class StreamState {
   const Storage storage;
   Shape shape;  ///< valid once the stream is settled
   std::string name;  ///< may be empty
-  /// The application has created it, and nothing has written any of its elements. Set only with SK_CHECK=written.
-  bool isUnwritten = false;
+  /// With SK_CHECK=written, its elements that nothing has written since the application created it; null if there are none.
+  std::unique_ptr<UnwrittenElements> unwritten;
   detail::StreamOwner* holder = nullptr;  ///< the application's handle, or null
 
  protected:
   void exchangeMarks(StreamState& other) noexcept {
     std::swap(isLost_, other.isLost_);
-    std::swap(isUnwritten, other.isUnwritten);
+    std::swap(unwritten, other.unwritten);
   }
   /// Adds the stream to its device's list.
   StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as);
@@ -134,7 +135,10 @@ void checkExists(const StreamRegion& region, std::string_view context);
 StreamState& liveStream(const StreamRegion& region, std::string_view context);
 
 /// Throws sk::Error, with `context` in front, if the elements of a stream are lost, unless the operation
-/// writes (`isWritten`) all of them; and with SK_CHECK=written, if it reads what nothing has written.
+/// writes (`isWritten`) all of them.
+void checkNotLost(const StreamRegion& region, bool isWritten, std::string_view context);
+
+/// Likewise, and with SK_CHECK=written, if the operation reads elements that nothing has written.
 void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_view context);
 
 /// Whether a region is in bounds of its stream, which must be settled: a kernel that pushes changes the size.

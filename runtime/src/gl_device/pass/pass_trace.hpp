@@ -105,17 +105,4 @@ class PassScope {
   PassTrace* trace_;
 };
 
-/// Leaves the passes of trials out of the user's count.
-class UncountedPasses {
- public:
-  explicit UncountedPasses(std::optional<PassCount>& count) : count_(count), before_(count) {}
-  ~UncountedPasses() { count_ = before_; }
-  UncountedPasses(const UncountedPasses&) = delete;
-  UncountedPasses& operator=(const UncountedPasses&) = delete;
-
- private:
-  std::optional<PassCount>& count_;
-  const std::optional<PassCount> before_;
-};
-
 }  // namespace sk
