@@ -398,6 +398,23 @@ TEST_CASE("errors say what differs between two calls of one name", "[collectives
   checkThatItWorks(u, v);
 }
 
+TEST_CASE("with SK_CHECK=written, a part of which nothing has been written is not read", "[.][written]") {
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around, .exchangeEvery = 2});
+  auto u = domain.stream<float>(), v = domain.stream<float>();
+  auto whole = domain.device().stream<float>({24, 8});
+  CHECK_THAT(errorOf([&] { diffuse(0.1F, u, v); }), Contains("diffuse: ") && Contains("nothing has written"));
+  CHECK_THAT(errorOf([&] { static_cast<void>(v.gather()); }), Contains("nothing has written"));
+  CHECK_THAT(errorOf([&] { whole.read(); }), Contains("nothing has written"));
+  u.fill(1.0F);
+  for (int step = 0; step < 3; ++step) {
+    CHECK(errorOf([&] { diffuse(0.1F, u, v); }) == "no error");
+    CHECK(errorOf([&] { diffuse(0.1F, v, u); }) == "no error");
+  }
+  CHECK(errorOf([&] { static_cast<void>(sum(v)); }) == "no error");
+  u.copyTo(whole);
+  CHECK(errorOf([&] { whole.read(); }) == "no error");
+}
+
 TEST_CASE("with SK_CHECK=collectives, the ranks compare all that they call", "[.][collectives]") {
   sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
   auto u = domain.stream<float>(), v = domain.stream<float>(), w = domain.stream<float>();

@@ -295,6 +295,12 @@ TEST_CASE("loops are checked each time that they run", "[.written]") {
     total = 1.0F;
     CHECK(errorOf([&] { sumUp.repeat(2); }) == "no error");
     CHECK(total.read() == 3.0F);
+    sk::Scalar<bool> done = device.scalar<bool>();
+    sk::Loop untilDone = device.record([&] {
+      total = total + 1.0F;
+      done = total >= 5.0F;
+    });
+    CHECK(untilDone.until(done, {.every = 4}) == 2);  // whatever the device, the host asks each time
   });
 }
 

@@ -25,13 +25,14 @@ namespace {
 StreamState* checkTransfer(const StreamRegion& region, std::size_t count, bool isWritten, const char* what) {
   StreamState& stream = liveStream(region, what);
   refuseInRecording(*stream.device, what);
-  checkElementsOf(region, isWritten, what);
+  checkNotLost(region, isWritten, what);
   const std::int64_t size = region.shape.size();
   if (static_cast<std::size_t>(size) != count) {
     throw Error(fmt::format("{}: {} element(s) in host memory, but shape {} has {}; give exactly as many",
                             what, count, toString(region.shape), size),
                 Error::Kind::Shape);
   }
+  if (!isWritten) checkWritten(region, what);
   return size == 0 ? nullptr : &stream;
 }
 
@@ -264,7 +265,7 @@ void detail::writeReals(const StreamRegion& region, std::span<const double> valu
   withHostMemory("writeReals", [&] {
     StreamState& stream = liveStream(region, "writeReals");
     refuseInRecording(*stream.device, "writeReals");
-    checkElementsOf(region, true, "writeReals");
+    checkNotLost(region, true, "writeReals");
     const std::size_t components = realsIn(region, *stream.element, "writeReals");
     if (values.size() != components) {
       throw Error(fmt::format("writeReals: {} numbers are given for a stream of shape {} that has {}",
@@ -284,8 +285,9 @@ std::vector<double> detail::readReals(const StreamRegion& region) {
   return withHostMemory("readReals", [&] {
     StreamState& stream = liveStream(region, "readReals");
     refuseInRecording(*stream.device, "readReals");
-    checkElementsOf(region, false, "readReals");
+    checkNotLost(region, false, "readReals");
     std::vector<double> values = detail::hostVector<double>(realsIn(region, *stream.element, "readReals"));
+    checkWritten(region, "readReals");
     if (!values.empty()) {
       const TransferScope traced(stream, "readReals", region);
       const DenseRegion dense(region, /*isRead=*/true);
@@ -322,7 +324,7 @@ class RecordedFill final : public RecordedCall {
 void detail::fill(const StreamRegion& region, const void* element) {
   withHostMemory("fill", [&] {
     StreamState& stream = liveStream(region, "fill");
-    checkElementsOf(region, true, "fill");
+    checkNotLost(region, true, "fill");
     if (region.shape.size() == 0) return;
     const auto* const bytes = static_cast<const std::byte*>(element);
     if (LoopState* recording = stream.device->recording) {
@@ -421,10 +423,11 @@ StreamTexture detail::textureOf(StreamState* state, int plane) {
   return withHostMemory("texture", [&] {
     StreamState& stream = liveStream({state, {}, {}}, "texture");
     refuseInRecording(*stream.device, "texture");
-    noteAllWritten(stream);  // the application may draw to it
-    checkElementsOf({state, {}, {}}, false, "texture");
+    checkNotLost({state, {}, {}}, false, "texture");
     checkPlane(stream, plane, "texture");
-    return stream.texture(plane);
+    const StreamTexture texture = stream.texture(plane);
+    noteAllWritten(stream);  // the application may draw to it
+    return texture;
   });
 }
 

@@ -246,7 +246,7 @@ void LoopState::run(std::int64_t times) {
 
 std::int64_t LoopState::runUntil(const StreamRegion& done, const LoopEnd& end) {
   if (runner_) return runner_->runUntil(*this, done, end);
-  return runAndAsk(done, device_->hasQueue() ? end.every : 1, end.most);
+  return runAndAsk(done, device_->hasQueue() && !device_->runsCallByCall ? end.every : 1, end.most);
 }
 
 std::int64_t LoopState::runAndAsk(const StreamRegion& done, std::int64_t every, std::int64_t most) {
