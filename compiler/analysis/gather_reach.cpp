@@ -171,6 +171,9 @@ class FunctionWalk {
     of(*n.index);
     of(*n.value);
   }
+  void visit(const Print& n) {
+    for (const ExprPtr& value : n.values) of(*value);
+  }
 
   static IndexState unreachable() {
     IndexState state;

@@ -133,6 +133,7 @@ class DivergenceWalk {
   void visit(const ir::Stmt& stmt, const ir::Scope& n);
   void visit(const ir::Stmt&, const ir::Push&) {}
   void visit(const ir::Stmt&, const ir::Scatter&) {}
+  void visit(const ir::Stmt&, const ir::Print&) {}
 
   void calls(const ir::Expr& expr);
   void called(ir::FunctionId callee);

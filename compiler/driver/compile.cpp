@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "frontend/frontend.hpp"
 #include "ir/build.hpp"
 #include "ir/print.hpp"
+#include "ir/walk.hpp"
 #include "program/cpp_names.hpp"
 #include "program/descriptors.hpp"
 #include "program/json.hpp"
@@ -107,6 +109,7 @@ bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& m
     if (kernel.reduction && kernel.reduction->combine) {
       kernel.reduction->combine = numbers[*kernel.reduction->combine];
     }
+    if (kernel.assertions) kernel.assertions->check = numbers[kernel.assertions->check];
   }
   if (!module.kernels.empty()) return true;
   messages << fmt::format("skc: '{}' has no kernel '{}'; it has {}\n", module.file, wanted,
@@ -224,6 +227,20 @@ void printPredicated(const Job& job, const ir::Module& module) {
   job.output << "// after " << predicateName << "\n" << ir::print(copy) << "\n";
 }
 
+/// Warns of the first printf, and of the first assertion, that some of the programs leave out.
+void reportLeftOut(const Options& options, const ir::Module& module, Diagnostics& diagnostics) {
+  if (options.emit == Emit::Js && !module.assertions.empty())
+    diagnostics.report(Diag::AssertLeftOut, module.assertions.front().loc);
+  if (options.emit != Emit::Js && !options.fragmentTarget && !options.computeTarget) return;
+  for (const ir::Function& function : module.functions) {
+    std::optional<Loc> first;
+    ir::walkStmts(function.body, [&](const ir::Stmt& stmt) {
+      if (!first && std::holds_alternative<ir::Print>(stmt.node)) first = stmt.loc;
+    });
+    if (first) return diagnostics.report(Diag::PrintLeftOut, *first);
+  }
+}
+
 /// Runs everything before the emitters; returns nullopt after errors.
 std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend) {
   const Options& options = job.options;
@@ -245,6 +262,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   if (!frontend.diagnostics().hasErrors() && wantsPerformanceWarnings(options.warnings)) {
     warnOfPerformance(*module, frontend.diagnostics());
   }
+  if (!frontend.diagnostics().hasErrors()) reportLeftOut(options, *module, frontend.diagnostics());
   if (!frontend.diagnostics().hasErrors()) emit::reportOverloads(*module, frontend.diagnostics());
   if (options.emit == Emit::Stubs) emit::reportCppNames(*module, frontend.diagnostics());
   if (options.emit == Emit::Js) web::reportJsNames(*module, frontend.diagnostics());

@@ -35,7 +35,7 @@ class PlanPrinter {
     for (const Kernel& kernel : module_.kernels) {
       if (kernel.pass || kernel.isSynthesized) continue;
       text_ += fmt::format("\n{} {}{}: ", ir::wordOf(kernel), qualifier(kernel.scope), kernel.name);
-      if (kernel.isPart) text_ += "a part: ";
+      if (kernel.isPart) text_ += isCheck(kernel) ? "its assertions: " : "a part: ";
       if (kernel.parts) {
         text_ += fmt::format("natively 1 pass; on other targets its outputs, then {}\n",
                              kernel.parts->after ? "the reduce of these" : "the reduce without them");
@@ -50,6 +50,12 @@ class PlanPrinter {
   }
 
  private:
+  bool isCheck(const Kernel& part) const {
+    return std::ranges::any_of(module_.kernels, [&](const Kernel& kernel) {
+      return kernel.assertions && &module_.kernels[kernel.assertions->check] == &part;
+    });
+  }
+
   // ---- kernels ----------------------------------------------------------------------------------
 
   void printKernel(const Kernel& kernel) {

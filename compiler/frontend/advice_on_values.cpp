@@ -463,6 +463,7 @@ std::size_t argumentsIn(llvm::StringRef call) {
 Advice adviceOnCall(const clang::Diagnostic& diagnostic) {
   const std::string name = nameIn(diagnostic, 0);
   if (name == "push") return {format(Diag::PushForm, {})};
+  if (name == "assert") return {format(Diag::AssertForm, {})};
   if (name == "indexof" || name == "extentof") return {format(Diag::IndexOfWithout, {name, "r"}), {}, true};
   if (name == "neighbor") return {format(Diag::GatherArguments, {name, "an offset in each"})};
   if (name == "sample")

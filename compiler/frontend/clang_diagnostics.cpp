@@ -46,10 +46,12 @@ void ClangDiagnostics::report(Diag diag, Loc loc, std::initializer_list<std::str
   const clang::DiagnosticIDs::Level level = levelOf(entry.severity, engine_);
   if (level == clang::DiagnosticIDs::Ignored) return;
   reported_.insert(diag);
+  std::string text = format(diag, arguments);
+  if (loc.token != 0 && !messages_.emplace(diag, loc.token, text).second) return;
   // The text is passed as an argument, because `%` has a meaning in Clang's format strings.
   const unsigned id = engine_.getDiagnosticIDs()->getCustomDiagID(level, "%0");
   const clang::DiagnosticBuilder message = engine_.Report(clangLocation(loc), id);
-  message << format(diag, arguments);
+  message << text;
   for (const FixIt& fixIt : fixIts) message << hint(fixIt, engine_.getSourceManager());
 }
 

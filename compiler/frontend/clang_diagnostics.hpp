@@ -4,7 +4,10 @@
 // prints Clang's own, with our advice.
 #pragma once
 
+#include <cstdint>
 #include <set>
+#include <string>
+#include <tuple>
 
 #include <clang/Basic/Diagnostic.h>
 #include <clang/Basic/LangOptions.h>
@@ -33,6 +36,8 @@ class ClangDiagnostics : public Diagnostics {
 
  private:
   std::set<Diag> reported_;
+  /// With their locations, once each: a function may be lowered to several versions.
+  std::set<std::tuple<Diag, std::uint32_t, std::string>> messages_;
   clang::DiagnosticsEngine& engine_;
 };
 

@@ -61,6 +61,7 @@ std::vector<std::string> compilerArguments(const Options& options, const std::st
       "-Wfor-loop-analysis",   // a loop whose step is missing never ends
       "-Wuninitialized",   // a value of any kind, and another one on each device
       "-Wno-vla-cxx-extension",   // lowering refuses them
+      "-Werror=format",   // native code would read values that printf was not given
       // a bad -W or a long cascade must not bury the first message
       "-ferror-limit", "20", "-fmessage-length=0"};
   // Programs' headers ask for the macro where they differ; the folder comes before that of the runtime's own header.

@@ -279,6 +279,9 @@ template <class T> struct scatter_4d {
 template <class T> struct variable_output { void operator=(const T&) = delete("variable_output"); };
 template <class T> struct __sk_same { using type = T; };
 template <class T> void push(variable_output<T> r, typename __sk_same<T>::type value);
+void printf(const char*, ...) __attribute__((format(printf, 1, 2)));
+void __sk_failed();
+constexpr void assert(bool condition) { if (!condition) __sk_failed(); }
 template <class M, class A, class B> decltype(A() + B()) select(M condition, A yes, B no);
 template <class T> T select(bool condition, T yes, T no);
 template <class T> void sincos(T x, T& sine, T& cosine);

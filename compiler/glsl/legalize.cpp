@@ -341,12 +341,22 @@ class Legalizer {
 
 }  // namespace
 
+namespace {
+
+void removePrints(Block& block) {
+  std::erase_if(block, [](const Stmt& stmt) { return std::holds_alternative<Print>(stmt.node); });
+  for (Stmt& stmt : block) forEachBlock(stmt, [](Block& inner) { removePrints(inner); });
+}
+
+}  // namespace
+
 Polyfills legalize(Module& module, const Capabilities& target) {
   Polyfills polyfills(module);
   Legalizer legalizer(module, target, polyfills);
   const std::size_t count = module.functions.size();
   for (FunctionId id = 0; id < count; ++id) {
     Block body = std::move(module.functions[id].body);  // polyfills move the functions
+    if (!target.prints) removePrints(body);
     legalizer.block(body);
     module.functions[id].body = std::move(body);
   }

@@ -27,6 +27,7 @@ struct Capabilities {
   bool choosesByComponent = false;  ///< &&, || and ?: of vectors other than floats, and v[i]
   bool comparesWithZero =
       false;  ///< every driver compares rounded floats and magnitudes of ints with 0 as written
+  bool prints = false;
   bool hasRowsFirst =
       false;  ///< a matrix is a list of rows, and the matrix on the left of a vector multiplies it
 };

@@ -41,6 +41,7 @@ class SimplePrinter {
           return fmt::format("sk_put_{}({}, {})", context_.names.symbol(n.stream.id), expr(n.index),
                              expr(n.value));
         },
+        [](const Print&) -> MaybeText { return std::nullopt; },  // legalize has removed it
         [](const Break&) -> MaybeText { return "break"; },
         [](const Continue&) -> MaybeText { return "continue"; },
         [&](const Return& n) -> MaybeText { return n.value ? "return " + expr(n.value) : "return"; },

@@ -88,7 +88,8 @@ class Changes {
         if (role == VarRole::InOut) write(*call->args[i]);
         areLasting_ = areLasting_ || role == VarRole::AppendOutput;
       }
-    } else if (std::holds_alternative<Push>(stmt.node) || std::holds_alternative<Scatter>(stmt.node)) {
+    } else if (std::holds_alternative<Push>(stmt.node) || std::holds_alternative<Scatter>(stmt.node) ||
+               std::holds_alternative<Print>(stmt.node)) {
       areLasting_ = true;
     }
   }
@@ -157,8 +158,9 @@ class FunctionWriter {
     match(
         stmt.node, [&](const Declare&) { put(depth, stmt); }, [&](const Assign&) { put(depth, stmt); },
         [&](const CallStmt&) { put(depth, stmt); }, [&](const Push&) { put(depth, stmt); },
-        [&](const Scatter&) { put(depth, stmt); }, [&](const Break&) { put(depth, stmt); },
-        [&](const Continue&) { put(depth, stmt); }, [&](const Return&) { put(depth, stmt); },
+        [&](const Scatter&) { put(depth, stmt); }, [](const Print&) {},
+        [&](const Break&) { put(depth, stmt); }, [&](const Continue&) { put(depth, stmt); },
+        [&](const Return&) { put(depth, stmt); },
         [&](const If& n) {
           begin(depth, loc, ifHead(n));
           ifRest(n, depth, loc, next);

@@ -222,7 +222,8 @@ Stmt::Node cloneNode(const Stmt::Node& node) {
       [](const Push& n) -> N { return Push{n.stream, clone(n.value), clone(n.mask)}; },
       [](const Scatter& n) -> N {
         return Scatter{n.stream, n.op, clone(n.index), clone(n.value), clone(n.mask)};
-      });
+      },
+      [](const Print& n) -> N { return Print{n.format, cloneAll(n.values), clone(n.mask)}; });
 }
 
 }  // namespace
@@ -385,6 +386,7 @@ Kernel clone(const Kernel& kernel) {
               .isNativeOnly = kernel.isNativeOnly,
               .parts = kernel.parts,
               .isPart = kernel.isPart,
+              .assertions = kernel.assertions,
               .plans = kernel.plans,
               .pass = kernel.pass,
               .variants = kernel.variants,
@@ -412,6 +414,7 @@ Module clone(const Module& module) {
               .tables = module.tables,
               .kernels = {},
               .streams = module.streams,
+              .assertions = module.assertions,
               .bundleTypes = module.bundleTypes};
   for (const Constant& constant : module.constants) copy.constants.push_back(clone(constant));
   for (const Function& function : module.functions) copy.functions.push_back(ir::clone(function));

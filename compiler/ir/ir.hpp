@@ -109,7 +109,7 @@ struct Swizzle { ExprPtr base; std::vector<std::uint8_t> components; };   ///< b
 struct Member { ExprPtr base; std::uint32_t field; };
 /// base is an array, vector or matrix, index an int or uint. An index outside an array is clamped.
 struct Index { ExprPtr base, index; };
-struct Call { FunctionId callee; std::vector<ExprPtr> args; };   ///< no InOut parameters, not void
+struct Call { FunctionId callee; std::vector<ExprPtr> args; };   ///< no InOut parameters, not void, prints nothing
 struct IntrinsicCall { Intrinsic intrinsic; std::vector<ExprPtr> args; };
 
 /// A stream: a variable of this function (Gather, Element or AppendOutput role), or, after
@@ -171,9 +171,12 @@ enum class ScatterOp : std::uint8_t { Store, Add, Min, Max };
 /// `value`; an index outside has no effect. Order and mask are as in Push. Each output has one op.
 struct Scatter { StreamRef stream; ScatterOp op; ExprPtr index, value; ExprPtr mask = nullptr; };
 
+/// Prints values, which are ints, uints, floats or doubles, by a format of C's printf. Only native code prints. Mask as in Push.
+struct Print { std::string format; std::vector<ExprPtr> values; ExprPtr mask = nullptr; };
+
 struct Stmt {
   using Node = std::variant<Declare, Assign, CallStmt, If, Loop, Switch, Break, Continue, Return, Scope,
-                            Push, Scatter>;
+                            Push, Scatter, Print>;
   Loc loc;
   Node node;
 };
@@ -405,6 +408,20 @@ struct FoldParts {
   std::optional<KernelId> inDoubles = {};
 };
 
+/// A condition that `assert` states. Its text is that of the program.
+struct Assertion {
+  std::string text;
+  Loc loc;
+};
+
+/// What checks the assertions of a kernel, and of the functions that it calls. The kernel `check` has an int output besides
+/// what the conditions need: 0 for an element that keeps all of them, else the number of the first that failed, from 1 on, in
+/// Module::assertions. slice-assertions removes everything else from it.
+struct AssertionCheck {
+  KernelId check;
+  std::vector<std::uint32_t> operands;  ///< for each of its parameters except the last, the kernel's
+};
+
 /// Variants of a kernel for other precisions, with the same parameters: set by widen-floats and round-halves.
 struct PrecisionVariants {
   std::optional<KernelId> wide;  ///< computes in double wherever the kernel says float
@@ -509,7 +526,9 @@ struct Kernel {
   bool isSynthesized = false;  ///< synthesized by a transform: C++ cannot call it
   bool isNativeOnly = false;  ///< no GLSL program runs it
   std::optional<FoldParts> parts;  ///< of a kernel with outputs and accumulators
-  bool isPart = false;  ///< belongs to the FoldParts of another kernel: C++ cannot call it
+  bool isPart =
+      false;  ///< belongs to the FoldParts or the AssertionCheck of another kernel: C++ cannot call it
+  std::optional<AssertionCheck> assertions = {};  ///< of a declared kernel
   std::vector<Plan> plans;  ///< for targets whose limits it exceeds, the most generous first
   std::optional<PassOf> pass;
   PrecisionVariants variants;
@@ -560,6 +579,7 @@ struct Module {
   std::vector<Table> tables;
   std::vector<Kernel> kernels;
   std::vector<DeclaredStream> streams;
+  std::vector<Assertion> assertions = {};
   std::vector<BundleType> bundleTypes;  ///< an inner one before those that have it as a member
 };
 

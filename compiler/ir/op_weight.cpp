@@ -43,7 +43,8 @@ class Scale {
  private:
   void add(const Stmt& stmt) {
     if (std::holds_alternative<Loop>(stmt.node)) sum_ = limit_;
-    if (std::holds_alternative<Push>(stmt.node) || std::holds_alternative<Scatter>(stmt.node))
+    if (std::holds_alternative<Push>(stmt.node) || std::holds_alternative<Scatter>(stmt.node) ||
+        std::holds_alternative<Print>(stmt.node))
       sum_ += weights_.append;
     if (const auto* n = std::get_if<CallStmt>(&stmt.node)) addCalled(n->callee);
     forEachOperand(stmt, [&](const ExprPtr& operand) {

@@ -15,7 +15,7 @@ struct OpWeights {
   std::uint32_t node = 0;  ///< of every expression
   std::uint32_t operation = 0, intrinsic = 0;  ///< for each component
   std::uint32_t gather = 0, sample = 0;  ///< of one read
-  std::uint32_t append = 0;  ///< of a Push or Scatter
+  std::uint32_t append = 0;  ///< of a Push, Scatter or Print
   bool countsCalls = true;  ///< a function weighs at each of its calls; else once
 };
 

@@ -54,7 +54,27 @@ class StmtPrinter {
           return fmt::format("{}{}push({}, {});\n", indent, where(n.mask), print(function_, n.stream),
                              expr(n.value));
         },
-        [&](const Scatter& n) { return indent + where(n.mask) + scatter(n) + ";\n"; });
+        [&](const Scatter& n) { return indent + where(n.mask) + scatter(n) + ";\n"; },
+        [&](const Print& n) {
+          std::string values;
+          for (const ExprPtr& value : n.values) values += ", " + expr(value);
+          return fmt::format("{}{}printf({}{});\n", indent, where(n.mask), quoted(n.format), values);
+        });
+  }
+
+  /// The text of a C string literal for it.
+  static std::string quoted(std::string_view format) {
+    std::string text = "\"";
+    for (const char c : format) {
+      if (c == '\n') {
+        text += "\\n";
+      } else if (c == '"' || c == '\\') {
+        text += {'\\', c};
+      } else {
+        text += c;
+      }
+    }
+    return text + '"';
   }
 
   /// "where (mask) ": shorter than an If, and cannot be mistaken for one.
@@ -188,6 +208,8 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
     if (kernel.parts->after)
       text += fmt::format(" and folded after by @{}", module.kernels[*kernel.parts->after].entry);
   }
+  if (kernel.assertions)
+    text += fmt::format(", checked by @{}", module.kernels[kernel.assertions->check].entry);
   if (kernel.pass) text += fmt::format(", pass {} of {}", kernel.pass->number, kernel.pass->count);
   text += "\n";
   for (std::size_t i = 0; i < kernel.params.size(); ++i) {

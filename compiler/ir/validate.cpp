@@ -159,6 +159,14 @@ class FunctionChecker {
     require(n.op == ScatterOp::Store || isNumber, "something that is no number is combined");
     mask(n.mask);
   }
+  void rule(const Print& n) const {
+    for (const ExprPtr& value : n.values) {
+      checkExpr(context_, *value);
+      const Type type = value->type;
+      require(type.isScalar() && !type.isNarrow() && !type.isBool(), "a printed value is no number");
+    }
+    mask(n.mask);
+  }
   void mask(const ExprPtr& expr) const {
     if (!expr) return;
     require(context_.stage == Stage::Predicated, "there is a mask before predicate");
@@ -296,6 +304,23 @@ void checkParts(const Module& module, const Kernel& kernel) {
   if (kernel.parts->after) check(*kernel.parts->after, kernel.parts->afterOperands);
 }
 
+/// slice-assertions sets the operands.
+void checkAssertions(const Module& module, const Kernel& kernel) {
+  const AssertionCheck& assertions = *kernel.assertions;
+  require(assertions.check < module.kernels.size() && module.kernels[assertions.check].isPart,
+          "a check of assertions is not in the table");
+  const Kernel& check = module.kernels[assertions.check];
+  require(!check.params.empty() && check.params.back().role == ParamRole::Output &&
+              check.params.back().type == Type::of(Scalar::Int),
+          "a check of assertions has no output for their numbers");
+  for (std::size_t i = 0; i < assertions.operands.size(); ++i) {
+    require(assertions.operands.size() + 1 == check.params.size() &&
+                assertions.operands[i] < kernel.params.size() &&
+                kernel.params[assertions.operands[i]].type == check.params[i].type,
+            "an operand of a check of assertions is not there, or has another type");
+  }
+}
+
 void checkPlan(const Module& module, const Kernel& kernel, const Plan& plan) {
   for (const Pass& pass : plan.passes) {
     require(pass.kernel < module.kernels.size(), "a pass is not in the table");
@@ -339,6 +364,7 @@ void checkKernel(const Module& module, Stage stage, const Kernel& kernel) {
   require(hasAccumulator == kernel.reduction.has_value(), "a reduce and an accumulator go together");
   if (kernel.reduction) checkReduction(module, kernel);
   if (kernel.parts) checkParts(module, kernel);
+  if (kernel.assertions) checkAssertions(module, kernel);
   for (const Plan& plan : kernel.plans) checkPlan(module, kernel, plan);
 }
 

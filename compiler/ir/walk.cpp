@@ -49,7 +49,11 @@ void forEachOperand(S& stmt, Visit<S, ExprPtr> fn) {
       [&](Like<S, Return>& n) { optional(n.value); },
       [](const Scope&) {},
       [&](Like<S, Push>& n) { fn(n.value), optional(n.mask); },
-      [&](Like<S, Scatter>& n) { fn(n.index), fn(n.value), optional(n.mask); });
+      [&](Like<S, Scatter>& n) { fn(n.index), fn(n.value), optional(n.mask); },
+      [&](Like<S, Print>& n) {
+        for (auto& value : n.values) fn(value);
+        optional(n.mask);
+      });
 }
 
 template <MaybeConst<Stmt> S>
@@ -63,7 +67,7 @@ void forEachBlock(S& stmt, Visit<S, Block> fn) {
       },
       [](const Break&) {}, [](const Continue&) {}, [](const Return&) {},
       [&](Like<S, Scope>& n) { fn(n.body); },
-      [](const Push&) {}, [](const Scatter&) {});
+      [](const Push&) {}, [](const Scatter&) {}, [](const Print&) {});
 }
 
 namespace {
@@ -188,7 +192,7 @@ struct Visitor {
 
   void visit(Kernel& kernel) {
     auto& [name, scope, signature, entry, params, bundles, reduction, isScan, isSynthesized, isNativeOnly,
-           parts, isPart, plans, pass, variants, choices, loops, unrolled, loc] = kernel;
+           parts, isPart, assertions, plans, pass, variants, choices, loops, unrolled, loc] = kernel;
     for (KernelParam& param : params) visit(param);
     for (Plan& plan : plans) visit(plan);
   }
@@ -207,8 +211,8 @@ struct Visitor {
   }
 
   void visit(Module& module) {
-    auto& [file, sources, structs, arrays, constants, functions, tables, kernels, streams, bundleTypes] =
-        module;
+    auto& [file, sources, structs, arrays, constants, functions, tables, kernels, streams, assertions,
+           bundleTypes] = module;
     for (Constant& constant : constants) visit(constant);
     for (Function& function : functions) visit(function);
     for (Kernel& kernel : kernels) visit(kernel);

@@ -101,6 +101,16 @@ bool isLight(const Module& module, const Kernel& kernel) {
   return weigh(module, module.functions[kernel.entry].body, weights, limit) < limit;
 }
 
+/// True if elements print. That takes long, and an element must not be computed twice.
+bool prints(const Module& module, const Kernel& kernel) {
+  return std::ranges::any_of(functionsOf(module, kernel), [&](FunctionId id) {
+    bool found = false;
+    walkStmts(module.functions[id].body,
+              [&](const Stmt& stmt) { found = found || std::holds_alternative<Print>(stmt.node); });
+    return found;
+  });
+}
+
 // Runs LLVM's passes on a module of kernels. Their code consists of vectors already: no pass looks for loops
 // to vectorise.
 
@@ -241,7 +251,7 @@ class Compilation {
     CodeTable table{.symbol = request.symbol,
                     .entries = {},
                     .slots = slots.slots,
-                    .isUneven = analysis::streamUses(plain_, kernel).loops,
+                    .isUneven = analysis::streamUses(plain_, kernel).loops || prints(plain_, kernel),
                     .isReordered = isReordered(plain_, kernel),
                     .isLight = isLight(plain_, kernel)};
     for (const EntryKind kind : entriesOf(plain_, kernel, request.scans)) {
@@ -316,7 +326,7 @@ class Compilation {
   void addRows(CodeTable& table, const KernelRequest& request, const SlotPlan& slots) {
     const Module& module = ofFloats_.predicated;
     const Kernel& kernel = module.kernels[request.kernel];
-    if (request.isCold || !options_.optimizes || options_.lanes == 1) return;
+    if (request.isCold || !options_.optimizes || options_.lanes == 1 || prints(module, kernel)) return;
     const RowPlan plan(module, kernel);
     const std::set<std::uint32_t> shared = plan.sharedGathers(analysis::Uniformity(module, kernel));
     if (shared.empty()) return;

@@ -120,6 +120,7 @@ class FunctionCode {
   void write(const ir::Scope& n);
   void write(const ir::Push& n);
   void write(const ir::Scatter& n);
+  void write(const ir::Print& n);
   llvm::Value* maskOf(const ir::ExprPtr& mask);
   llvm::BasicBlock* newBlock(const char* name) const;
   void branch(llvm::BasicBlock* to);

@@ -255,8 +255,18 @@ class ConstantWriter {
   }
   /// The file's list of sources.
   std::string textOf(std::span<const std::string_view>, const std::string&, Word) { return "sources"; }
+  /// The kernels of a file share the list.
+  std::string textOf(std::span<const p::Assertion> values, const std::string& name, Word part) {
+    const auto [known, isNew] = printed_.try_emplace(values.data());
+    if (isNew) known->second = listOf(values, name, part);
+    return known->second;
+  }
   template <class T>
   std::string textOf(std::span<const T> values, const std::string& name, Word part) {
+    return listOf(values, name, part);
+  }
+  template <class T>
+  std::string listOf(std::span<const T> values, const std::string& name, Word part) {
     if (values.empty()) return "{}";
     const std::string list = with(name, part);
     std::vector<std::string> items;
@@ -274,7 +284,8 @@ class ConstantWriter {
   std::map<ir::KernelId, std::string> prefixes_;  ///< of the units
   std::map<const p::Table*, std::string> tables_;  ///< their prefixes
   std::map<ir::KernelId, std::string> kernels_;  ///< constants printed
-  std::map<const void*, std::string> printed_;  ///< constants of elements and tables
+  std::map<const void*, std::string>
+      printed_;  ///< constants of elements and tables, and the list of assertions
   std::size_t arrays_ = 0;  ///< elements of arrays printed
   std::string text_;
 };

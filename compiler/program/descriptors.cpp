@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -179,7 +180,22 @@ class Builder {
       made.whyNotWide = storage_.keep(declared.variants.whyNotWide);
     }
     if (!declared.reduction) addForms(declared, made);
+    if (declared.assertions) made.assertions = &assertionCheck(*declared.assertions);
     return storage_.kernels.emplace(id, made).first->second;
+  }
+
+  const sk::program::AssertionCheck& assertionCheck(const AssertionCheck& declared) {
+    if (assertions_.empty()) {
+      std::vector<sk::program::Assertion> list;
+      for (const Assertion& assertion : module_.assertions) {
+        list.push_back(
+            {storage_.keep(std::filesystem::path(module_.sources[assertion.loc.file]).filename().string()),
+             assertion.loc.line, storage_.keep(assertion.text)});
+      }
+      assertions_ = storage_.keep(std::move(list));
+    }
+    return storage_.keep(sk::program::AssertionCheck{kernel(declared.check),
+                                                     parameterNumbers(declared.operands), assertions_});
   }
 
   void addForms(const Kernel& declared, sk::program::Kernel& made) {
@@ -488,6 +504,7 @@ class Builder {
   const CodeOf& codeOf_;
   Storage& storage_;
   std::span<const std::string_view> sources_;
+  std::span<const sk::program::Assertion> assertions_;
 };
 
 }  // namespace

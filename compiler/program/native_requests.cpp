@@ -28,6 +28,12 @@ class RequestBuilder {
     add(id, name, inAnyReal(Speed::Best));
     for (const UnrolledVariant& variant : kernel.unrolled)
       add(variant.kernel, numbered(name, Part::Unrolled, variant.value), inFloats(Speed::Best));
+    if (kernel.assertions) {
+      const Kernel& check = module_.kernels[kernel.assertions->check];
+      const std::string checkName = name + Part::Check;
+      add(kernel.assertions->check, checkName, inAnyReal(Speed::Any));
+      if (check.variants.half) add(*check.variants.half, checkName + Part::Half, inFloats(Speed::Any));
+    }
     if (!kernel.reduction) {
       if (kernel.variants.half) add(*kernel.variants.half, name + Part::Half, inFloats(Speed::Any));
       return;

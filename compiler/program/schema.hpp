@@ -310,6 +310,27 @@ struct Members<p::Kernel> {
       Option{"drawn", &p::Kernel::drawn},
       Option{"dispatched", &p::Kernel::dispatched},
       CppOption{"code", &p::Kernel::code},  // an address
+      Option{"assertions", &p::Kernel::assertions, Part::Assertions},
+  };
+};
+
+template <>
+struct Members<p::Assertion> {
+  static constexpr std::string_view type = "Assertion";
+  static constexpr std::tuple list{
+      Member{"file", &p::Assertion::file},
+      Member{"line", &p::Assertion::line},
+      Member{"text", &p::Assertion::text},
+  };
+};
+
+template <>
+struct Members<p::AssertionCheck> {
+  static constexpr std::string_view type = "AssertionCheck";
+  static constexpr std::tuple list{
+      Member{"check", &p::AssertionCheck::check, Part::Check},
+      Member{"operands", &p::AssertionCheck::operands, Part::Operands},
+      Member{"assertions", &p::AssertionCheck::assertions, Part::Conditions},
   };
 };
 
@@ -446,8 +467,9 @@ static_assert(listsAll<p::Field> && listsAll<p::Element> && listsAll<p::Conditio
                   listsAll<p::Distance> && listsAll<p::Reach> && listsAll<p::IntrinsicUse> &&
                   listsAll<sk::TableRange> && listsAll<p::Table> && listsAll<p::TableUse> &&
                   listsAll<p::UnrolledKernel> && listsAll<sk::CallOptions> && listsAll<p::Kernel> &&
-                  listsAll<p::PassOperand> && listsAll<p::Pass> && listsAll<p::ArgumentPlane> &&
-                  listsAll<p::Stack> && listsAll<p::Plan> && listsAll<p::SumTerm> && listsAll<p::Reduction> &&
+                  listsAll<p::Assertion> && listsAll<p::AssertionCheck> && listsAll<p::PassOperand> &&
+                  listsAll<p::Pass> && listsAll<p::ArgumentPlane> && listsAll<p::Stack> &&
+                  listsAll<p::Plan> && listsAll<p::SumTerm> && listsAll<p::Reduction> &&
                   listsAll<p::FoldParts> && listsAll<p::WideReduction> && listsAll<p::CompensatedSum> &&
                   listsAll<p::CompensatedReduction> && listsAll<p::ExactSum>,
               "a descriptor has another member: list it, and document it in docs/json.md");

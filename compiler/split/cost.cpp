@@ -169,7 +169,8 @@ double CostModel::statement(const Stmt& stmt, const Slice* slice) const {
       },
       [&](const Break&) { return simple(); }, [&](const Continue&) { return simple(); },
       [&](const Return&) { return simple(); }, [&](const Scope& n) { return block(n.body, slice); },
-      [&](const Push&) { return simple(); }, [&](const Scatter&) { return simple(); });
+      [&](const Push&) { return simple(); }, [&](const Scatter&) { return simple(); },
+      [](const Print&) { return 0.0; });
 }
 
 double CostModel::expression(const Expr& expr) const {

@@ -26,6 +26,22 @@ namespace skc::split {
 /// Sets Kernel::parts. Reports outputs that depend on an accumulator.
 void splitFolds(ir::Module& module, Diagnostics& diagnostics);
 
+/// slice-assertions: leaves of each kernel that checks assertions only what their conditions need.
+///
+///   before   kernel f(float x<>, float y<>, out float r<>, out int failed<>) {
+///              failed = 0;
+///              if (failed == 0 && !(x >= 0)) failed = 1;
+///              r = sqrt(x) + y;
+///            }
+///   after    kernel f(float x<>, out int failed<>) {
+///              failed = 0;
+///              if (failed == 0 && !(x >= 0)) failed = 1;
+///            }
+///
+/// Sets AssertionCheck::operands. A scatter output whose extents count becomes a gather. Reports conditions that depend on an
+/// accumulator.
+void sliceAssertions(ir::Module& module, Diagnostics& diagnostics);
+
 /// split-kernels: plans passes for kernels that exceed the limits of a profile. If four planes can be
 /// written,
 ///

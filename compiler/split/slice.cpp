@@ -142,6 +142,7 @@ class Marker {
     read(*n.value);
     return true;
   }
+  bool step(const Print&, Jumps) { return false; }  // slices are for programs that do not print
 
   const Module& module_;
   const Function& function_;
@@ -212,6 +213,25 @@ Slice Slicer::slice(const VarSet& wanted, VarSet loadable) const {
 }
 
 Block Slicer::copy(const Slice& slice) const { return copyKept(function_.body, slice); }
+
+std::optional<Loc> firstRead(VarId var, const Slice& slice) {
+  std::optional<Loc> first;
+  const auto isEarlier = [&](Loc loc) { return loc.line != 0 && (!first || loc.line < first->line); };
+  for (const Stmt* stmt : slice.kept) {
+    forEachOperand(*stmt, [&](const ExprPtr& operand) {
+      if (const auto* n = std::get_if<VarRef>(&operand->node); n != nullptr && n->var == var) {
+        if (std::holds_alternative<Assign>(stmt->node) &&
+            operand.get() == std::get<Assign>(stmt->node).place.get())
+          return;
+      }
+      walkExprs(*operand, [&](const Expr& expr) {
+        const auto* n = std::get_if<VarRef>(&expr.node);
+        if (n != nullptr && n->var == var && isEarlier(expr.loc)) first = expr.loc;
+      });
+    });
+  }
+  return first;
+}
 
 namespace {
 

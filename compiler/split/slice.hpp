@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -49,6 +50,9 @@ class Slicer {
   const ir::Function& function_;
   std::vector<std::size_t> lastWrites_;
 };
+
+/// The location of the first value in the slice that uses the variable, without those that are assigned to it.
+std::optional<Loc> firstRead(ir::VarId var, const Slice& slice);
 
 /// Computes which parameters of a kernel a slice needs, and how many planes these have.
 class Demand {

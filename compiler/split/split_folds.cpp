@@ -71,26 +71,6 @@ class FoldSplitter {
     return false;
   }
 
-  /// The location of the first value in the slice that uses the variable, without those that are assigned to it.
-  std::optional<Loc> firstRead(VarId var, const Slice& slice) const {
-    std::optional<Loc> first;
-    const auto isEarlier = [&](Loc loc) { return loc.line != 0 && (!first || loc.line < first->line); };
-    for (const Stmt* stmt : slice.kept) {
-      forEachOperand(*stmt, [&](const ExprPtr& operand) {
-        if (const auto* n = std::get_if<VarRef>(&operand->node); n != nullptr && n->var == var) {
-          if (std::holds_alternative<Assign>(stmt->node) &&
-              operand.get() == std::get<Assign>(stmt->node).place.get())
-            return;
-        }
-        walkExprs(*operand, [&](const Expr& expr) {
-          const auto* n = std::get_if<VarRef>(&expr.node);
-          if (n != nullptr && n->var == var && isEarlier(expr.loc)) first = expr.loc;
-        });
-      });
-    }
-    return first;
-  }
-
   /// What computes the accumulators from outputs; nullopt if that is impossible, or costs no less than from
   /// the inputs alone. Outputs hold what was computed only if they keep all of its bits.
   std::optional<Slice> sliceAfter(const Kernel& kernel, const Slicer& slicer, const VarSet& outputs,

@@ -51,6 +51,7 @@ class PushCounter {
 
   Bound count(const Push& n) const { return n.stream.id == param_ ? 1 : 0; }
   Bound count(const Scatter& n) const { return n.stream.id == param_ ? 1 : 0; }
+  Bound count(const Print&) const { return 0; }
   Bound count(const CallStmt& n) { return function(n.callee); }
   Bound count(const If& n) { return larger(block(n.then), block(n.otherwise)); }
   Bound count(const Loop& n) {

@@ -167,6 +167,9 @@ class UseAnalysis {
     expression(frame, *n.index, guard);
     expression(frame, *n.value, guard);
   }
+  void statement(Frame& frame, const Print& n, const Expr& guard) {
+    for (const ExprPtr& one : n.values) expression(frame, *one, guard);
+  }
   void statement(Frame&, const Break&, const Expr&) {}
   void statement(Frame&, const Continue&, const Expr&) {}
   void statement(Frame& frame, const Return& n, const Expr& guard) {

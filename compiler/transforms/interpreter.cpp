@@ -186,7 +186,7 @@ class Interpreter {
           return Flow::Return;
         },
         [&](const Scope& n) { return block(frame, n.body); }, [&](const Push& n) { return push(frame, n); },
-        [](const Scatter&) -> Flow { throw CannotInterpret{}; });
+        [](const Scatter&) -> Flow { throw CannotInterpret{}; }, [](const Print&) { return Flow::Next; });
   }
 
   Flow callStatement(Frame& frame, const CallStmt& n) {

@@ -176,7 +176,9 @@ namespace {
 
 /// True if a statement would have side effects, or might not end, in inactive lanes.
 bool needsMask(const analysis::Uniformity& uniformity, FunctionId id, const Stmt& stmt) {
-  if (std::holds_alternative<Push>(stmt.node) || std::holds_alternative<Scatter>(stmt.node)) return true;
+  if (std::holds_alternative<Push>(stmt.node) || std::holds_alternative<Scatter>(stmt.node) ||
+      std::holds_alternative<Print>(stmt.node))
+    return true;
   return std::holds_alternative<Loop>(stmt.node) && uniformity.diverges(id, stmt);
 }
 

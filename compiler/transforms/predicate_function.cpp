@@ -445,6 +445,11 @@ class Predicator {
   void write(const Stmt& stmt, const Scatter& n, Block& out) {
     out.push_back({stmt.loc, Scatter{n.stream, n.op, value(n.index), value(n.value), mask(stmt.loc)}});
   }
+  void write(const Stmt& stmt, const Print& n, Block& out) {
+    Print print{n.format, {}, mask(stmt.loc)};
+    for (const ExprPtr& one : n.values) print.values.push_back(value(one));
+    out.push_back({stmt.loc, std::move(print)});
+  }
 
   ExprPtr value(const ExprPtr& expr) const { return expr ? value(*expr) : nullptr; }
   /// A copy whose calls pass on the mask.

@@ -44,6 +44,7 @@ void ifPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // * tabulate precedes the variants for other precisions, which do not use tables.
 // * fold-constants precedes derive-combine, so that a branch that a literal disables does not hide the
 //   pattern of a fold; and guard-streams, because a removed branch needs no stream.
+// * slice-assertions follows folding, which removes branches, and precedes all that treats its kernels like others.
 // * unroll-loops needs the constant bounds that folding finds, and folds what it creates. It precedes
 //   everything that inspects kernels: known iterations have known branches, constant offsets and named
 //   components.
@@ -71,6 +72,7 @@ constexpr Transform transforms[] = {
     {"expand-powers", withoutOptions<expandPowers>},
     {"tabulate", withoutOptions<tabulate>},
     {"fold-constants", withoutOptions<foldConstants>},
+    {"slice-assertions", withoutOptions<split::sliceAssertions>},
     {"unroll-spec-loops", withoutOptions<unrollSpecLoops>},
     {"unroll-loops", withoutOptions<unrollLoops>},
     {"find-neighbors", withoutOptions<findNeighbors>},

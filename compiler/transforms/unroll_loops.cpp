@@ -487,7 +487,7 @@ void addVariants(Module& module, KernelId id, VarId spec) {
 void unrollSpecLoops(Module& module, Diagnostics&) {
   forEachDeclaredKernel(module, [&](KernelId id) {
     const Kernel& kernel = module.kernels[id];
-    if (kernel.isSynthesized || kernel.reduction) return;
+    if (kernel.isSynthesized || kernel.isPart || kernel.reduction) return;
     if (const std::optional<VarId> spec = boundOfLoops(module, kernel)) addVariants(module, id, *spec);
   });
 }

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # A kernel that takes a bundle, and one of any rank, have the programs of kernels with the same parameters one by one: skc prints the
-# same GLSL and the same native code for both, but for the spelling of names.
+# same GLSL and the same native code for both, but for the spelling of names. A file with assertions has the programs of the file
+# without, and those of its checks, which only SK_CHECK=asserts runs.
 set -eu
 skc=$1
 folder=$(mktemp -d)
@@ -63,4 +64,47 @@ for kind in glsl asm; do
   done
   [ "$(wc -l < grouped.$kind)" -gt 100 ]
   diff grouped.$kind single.$kind
+done
+
+cat > asserting.sk <<'SK'
+bool isSmall(float x) { return x < 1e3; }
+float root(float x) {
+  assert(x >= 0);
+  return sqrt(x);
+}
+void halve(float& x) {
+  assert(isSmall(x) && x > -1);
+  x /= 2;
+}
+kernel void steps(float k, float u[][], float x<>, out float r<>, out int n<>) {
+  float s = root(x) + root(k);
+  n = 0;
+  for (int i = 0; i < n + 9 && root(s) > 1; ++i) {
+    assert(i < 100);
+    if (s > u[i][n]) break;
+    halve(s);
+    n += s > 3 && root(u[n][i]) < 5 ? 1 : 2;
+  }
+  r = s;
+  assert(isfinite(r));
+}
+kernel void kept(float x<>, vout float r<>) {
+  assert(x > 0);
+  if (root(x) > 2) push(r, x);
+}
+reduce void total(float x<>, reduce float t<> = 0) {
+  assert(x > 0);
+  t += root(x);
+}
+SK
+sed 's/^ *assert(.*);$//' asserting.sk > plain.sk
+for file in asserting plain; do
+  "$skc" --emit=glsl $file.sk | sed "s/$file\.sk//g" > $file.glsl
+  # the code of functions, but for those that check, whose numbers are part of labels
+  "$skc" --emit=asm $file.sk | awk '/\.type.*@function/ { is = !/Check/ } is { print } /\.size/ { is = 0 }' |
+    sed -e '/^ *[;#]/d; s/ *#.*//; s/sk_[0-9a-f]\{16\}/sk/g; s/\.L[A-Za-z_]*[0-9]*_*/.L/g' > $file.asm
+done
+for kind in glsl asm; do
+  [ "$(wc -l < plain.$kind)" -gt 100 ]
+  diff asserting.$kind plain.$kind
 done

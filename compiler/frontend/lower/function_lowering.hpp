@@ -38,7 +38,10 @@ class Level {
 
 class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::ExprPtr> {
  public:
-  explicit FunctionLowering(ModuleLowering& module) : module_(module) {}
+  /// `checks`: the version of a function that checks its assertions. It has one more parameter, an int that becomes the number of
+  /// the first assertion that fails, unless it has one already; and it writes no append outputs. All other versions are as if
+  /// the assertions were not there.
+  explicit FunctionLowering(ModuleLowering& module, bool checks = false) : module_(module), checks_(checks) {}
 
   /// `aliases`: the version for calls whose references name parts of one object.
   ir::Function function(const clang::FunctionDecl* declaration, const Aliases& aliases = {});
@@ -223,6 +226,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
     clang::SourceLocation where;
     ir::FunctionId id;
     std::optional<ir::VarId> result;
+    bool checks = false;  ///< it is the version that checks assertions
   };
   void emitCall(const UserCall& call, std::vector<Argument> arguments);
   void joinAliases(const Group& group, std::vector<Argument>& arguments, Aliases& aliases);
@@ -248,7 +252,20 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void scatter(const ScatterTarget& target, ir::ScatterOp op, ir::ExprPtr value);
   ir::ExprPtr combinedValue(const ScatterTarget& target, ir::ExprPtr value, clang::SourceLocation where);
 
+  // ---- printf (lower_print.cpp) -----------------------------------------------------------------
+  ir::ExprPtr print(const clang::CallExpr* e);
+  ir::ExprPtr printed(const clang::Expr* e, ir::ExprPtr value, std::string_view conversion);
+
+  // ---- assertions (lower_assert.cpp) ------------------------------------------------------------
+  ir::ExprPtr assertion(const clang::CallExpr* e);
+  /// Reports a condition that changes more than its own temporaries, those from `first` on.
+  void checkPure(const clang::Expr* condition, const ir::Block& effects, ir::VarId first);
+  void addFailed();
+
   ModuleLowering& module_;
+  const bool checks_;
+  std::optional<ir::VarId> failed_;  ///< the last parameter of a version that checks assertions
+  bool isInCondition_ = false;  ///< of an assertion
   ir::Function function_;
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
   std::map<Bundles::Place, ir::VarId> members_;  ///< of bundles

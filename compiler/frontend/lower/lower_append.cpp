@@ -30,7 +30,8 @@ ExprPtr FunctionLowering::push(const clang::CallExpr* e) {
   const Loc loc = module_.loc(e->getBeginLoc());
   const ir::VarId stream = appendVariable(e->getArg(0));
   ExprPtr pushed = value(e->getArg(1));
-  emit(loc, ir::Push{{ir::StreamRef::Space::Variable, stream}, std::move(pushed)});
+  if (!checks_ || isInCondition_)
+    emit(loc, ir::Push{{ir::StreamRef::Space::Variable, stream}, std::move(pushed)});
   return ir::literal(false, loc);   // never used: push is void
 }
 
@@ -152,6 +153,7 @@ void FunctionLowering::scatter(const ScatterTarget& target, ir::ScatterOp op, Ex
     keepValue(value, ir::assignedIn(module_.module(), effects));
     append(std::move(effects));
   }
+  if (checks_ && !isInCondition_) return;
   emit(module_.loc(target.subscripts.where),
        ir::Scatter{{ir::StreamRef::Space::Variable, target.stream}, op, std::move(index), std::move(value)});
 }

@@ -100,6 +100,8 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
   if (name == "neighbor") return neighbor(e);
   if (name == "sample") return sample(e);
   if (name == "push") return push(e);
+  if (name == "assert") return assertion(e);
+  if (name == "printf") return print(e);
   if (name == "sincos" || name == "modf" || name == "frexp") return outParameterIntrinsic(e, name);
   if (name == "select") {
     const ir::Type type = module_.type(e->getType(), e->getBeginLoc());

@@ -67,6 +67,7 @@ ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration, 
                                   : module_.type(declaration->getReturnType(), declaration->getLocation());
   parameters(declaration);
   aliasParameters(aliases);
+  if (checks_) addFailed();
   function_.parameterCount = static_cast<std::uint32_t>(function_.variables.size());
   ir::Block body;
   out_ = &body;

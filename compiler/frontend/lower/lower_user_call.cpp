@@ -280,29 +280,33 @@ void FunctionLowering::emitCall(const UserCall& call, std::vector<Argument> argu
   }
   Aliases aliases;
   for (const Group& group : aliasedGroups(arguments, call.id)) joinAliases(group, arguments, aliases);
-  const ir::FunctionId id = aliases.empty() ? call.id : module_.function(call.callee, call.where, aliases);
+  const ir::FunctionId id =
+      aliases.empty() ? call.id : module_.function(call.callee, call.where, aliases, call.checks);
   Exprs values;
   for (Argument& argument : arguments) values.push_back(std::move(argument.value));
+  if (call.checks) values.push_back(ir::varRef(function_, *failed_, loc));
   emit(loc,
        ir::CallStmt{id, std::move(values), call.result ? ir::varRef(function_, *call.result, loc) : nullptr});
 }
 
-/// Calls with reference parameters, or that may push or scatter, become statements; others stay expressions.
+/// Calls with reference parameters, or that may push, scatter or print, become statements; others stay expressions.
 ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
   for (const clang::Stmt* part : e->children()) abandonIfUnknown(part);
   const SourceLocation where = e->getBeginLoc();
-  const ir::FunctionId id = module_.function(callee, where);
+  const bool checks = checks_ && module_.hasCheckedVersion(callee);
+  const ir::FunctionId id = module_.function(callee, where, {}, checks);
+  std::vector<Argument> arguments = argumentsOf(e, callee);
   // copies: lowering an argument may add functions to the table
   const ir::Type resultType = module_.functionAt(id).result;
   const auto first = module_.functionAt(id).variables.begin();
-  const std::vector<ir::Variable> parameters(first, first + module_.functionAt(id).parameterCount);
+  const std::vector<ir::Variable> parameters(first, first + static_cast<std::ptrdiff_t>(arguments.size()));
 
-  std::vector<Argument> arguments = argumentsOf(e, callee);
   const auto* operation = llvm::dyn_cast<clang::CXXOperatorCallExpr>(e);
   lowerArguments(arguments, parameters, operation != nullptr && operation->isAssignmentOp());
   keepWritten(arguments, parameters);
   const bool hasEffects =
-      resultType.isVoid() || std::ranges::any_of(parameters, [](const ir::Variable& parameter) {
+      checks || resultType.isVoid() || module_.marksOf(callee).print != nullptr ||
+      std::ranges::any_of(parameters, [](const ir::Variable& parameter) {
         return parameter.role == ir::VarRole::InOut || parameter.role == ir::VarRole::AppendOutput;
       });
   if (!hasEffects) {
@@ -313,16 +317,16 @@ ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::Functi
   const Loc loc = module_.loc(where);
   if (returnsThis(callee)) {
     ExprPtr object = ir::clone(*arguments[0].value);
-    emitCall({callee, where, id, std::nullopt}, std::move(arguments));
+    emitCall({callee, where, id, std::nullopt, checks}, std::move(arguments));
     return object;
   }
   if (resultType.isVoid()) {
-    emitCall({callee, where, id, std::nullopt}, std::move(arguments));
+    emitCall({callee, where, id, std::nullopt, checks}, std::move(arguments));
     return ir::literal(false, loc);  // never used: the call is void
   }
   const ir::VarId result = temporary(resultType, loc);
   emit(loc, ir::Declare{result, nullptr});
-  emitCall({callee, where, id, result}, std::move(arguments));
+  emitCall({callee, where, id, result, checks}, std::move(arguments));
   return ir::varRef(function_, result, loc);
 }
 

@@ -56,6 +56,7 @@ ir::Module ModuleLowering::run(const std::string& file) {
   addAliases(context().getTranslationUnitDecl());
   if (!diagnostics_.hasErrors()) pairReductions();
   if (!diagnostics_.hasErrors()) keepOwnKernels();
+  if (!diagnostics_.hasErrors()) addAssertionChecks();
   return std::move(module_);
 }
 
@@ -95,6 +96,8 @@ void ModuleLowering::declarations(const clang::DeclContext* scope) {
           kernel(function, *kernelSyntax);
         } else {
           this->function(function, function->getLocation());
+          if (marksOf(function).assertion != nullptr)
+            this->function(function, function->getLocation(), {}, /*checks=*/true);
         }
       }
     } catch (const Abandoned&) {  // already reported; continue with the other declarations
@@ -135,6 +138,8 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   const bool folds = std::ranges::any_of(kernel.params, isAccumulator);
   if (isFold(syntax.kind) || folds) kernel.reduction.emplace();
   kernel.isScan = syntax.kind == FunctionKind::Scan;
+  if (const clang::CallExpr* print = marksOf(declaration).print; print != nullptr && kernel.reduction)
+    fail(Diag::PrintInFold, print->getBeginLoc(), {ir::wordOf(kernel), kernel.name});
   if (folds && !isFold(syntax.kind)) checkFoldedOutputs(kernel, syntax);
   checkKernelShape(kernel, where);
   if (const std::string_view kind = withoutVariants(kernel); kernel.choices.ahead != 0 && !kind.empty())
@@ -142,6 +147,9 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   const bool isInstance =
       declaration->getTemplateSpecializationKind() == clang::TSK_ExplicitInstantiationDefinition;
   isOwn_.push_back(isOwn(isInstance ? declaration->getPointOfInstantiation() : where));
+  kernelDeclarations_.push_back(declaration);
+  if (isOwn_.back() && marksOf(declaration).assertion != nullptr)
+    function(declaration, where, {}, /*checks=*/true);  // its mistakes come here, in the order of the file
   module_.kernels.push_back(std::move(kernel));
 }
 
@@ -448,10 +456,10 @@ ir::ExprPtr ModuleLowering::evaluated(const clang::APValue& value, ir::Type type
 // ---- functions ----------------------------------------------------------------------------------
 
 ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, SourceLocation use,
-                                        const Aliases& aliases) {
+                                        const Aliases& aliases, bool checks) {
   const clang::FunctionDecl* definition = declaration->getDefinition();
   if (!definition) fail(Diag::FunctionWithoutBody, use, {declaration->getNameAsString()});
-  const std::pair<const clang::Decl*, std::string> key{definition, aliases.key()};
+  const Version key{definition, aliases.key(), checks};
   const auto found = functions_.find(key);
   if (found != functions_.end()) {
     switch (found->second.progress) {
@@ -470,9 +478,9 @@ ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, 
   try {
     if (definition->isVariadic())
       fail(Diag::Variadic, definition->getLocation(), {definition->getNameAsString()});
-    FunctionLowering lowering(*this);
+    FunctionLowering lowering(*this, checks);
     ir::Function lowered = lowering.function(definition, aliases);
-    if (const TableSyntax* declared = syntax_.table(definition->getLocation())) {
+    if (const TableSyntax* declared = syntax_.table(definition->getLocation()); declared && !checks) {
       lowered.table = table(definition, *declared);
     }
     // lowering added its callees first, so the table is in order of definition before use

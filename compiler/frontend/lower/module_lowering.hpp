@@ -56,9 +56,21 @@ class ModuleLowering {
   [[noreturn]] void refuseBundle(clang::QualType type, clang::SourceLocation use);
 
   /// Lowers the definition of `declaration` at its first use. Reports recursion at `use`.
-  /// `aliases`: the version for calls whose references name parts of one object.
+  /// `aliases`: the version for calls whose references name parts of one object. `checks`: the version that checks its assertions.
   ir::FunctionId function(const clang::FunctionDecl* declaration, clang::SourceLocation use,
-                          const Aliases& aliases = {});
+                          const Aliases& aliases = {}, bool checks = false);
+  /// The first call of `assert`, and of `printf`, in a function and those that it calls; null if there is none.
+  struct Marks {
+    const clang::CallExpr* assertion = nullptr;
+    const clang::CallExpr* print = nullptr;
+  };
+  const Marks& marksOf(const clang::FunctionDecl* declaration);
+  /// Whether the check of a kernel calls another version of a function: one that asserts, prints, or may write append outputs.
+  bool hasCheckedVersion(const clang::FunctionDecl* declaration);
+  /// The whole condition of an assertion as the user wrote it, on one line.
+  std::string conditionText(const clang::Expr* condition) const;
+  /// The number of an assertion, from 1 on.
+  std::uint32_t numberOf(const clang::CallExpr* assertion);
   /// The reference is valid until another function is lowered.
   const ir::Function& functionAt(ir::FunctionId id) const { return module_.functions[id]; }
   const ir::Module& module() const { return module_; }
@@ -111,6 +123,8 @@ class ModuleLowering {
   void pairReductions();
   bool isOwn(clang::SourceLocation where) const;
   void keepOwnKernels();
+  void addMarks(const clang::Stmt* statement, Marks& marks);
+  void addAssertionChecks();
   void stream(const clang::VarDecl* declaration, const StreamSyntax& syntax);
   ir::TableId table(const clang::FunctionDecl* declaration, const TableSyntax& syntax);
   std::uint32_t generatedNumber(const std::string& name);
@@ -139,12 +153,18 @@ class ModuleLowering {
   std::unordered_map<const clang::Decl*, std::uint32_t> structs_, bundleTypes_;
   llvm::SmallPtrSet<const clang::CXXRecordDecl*, 4> refusedStructs_;  ///< reported, or in progress
   std::unordered_map<const clang::Decl*, ir::ConstantId> constants_;
-  std::map<std::pair<const clang::Decl*, std::string>, FunctionEntry> functions_;  ///< by Aliases::key, too
+  using Version =
+      std::tuple<const clang::Decl*, std::string, bool>;  ///< Aliases::key, and whether it checks assertions
+  std::map<Version, FunctionEntry> functions_;
+  std::map<const clang::Decl*, Marks> marks_;
+  std::map<std::pair<std::uint32_t, std::string>, std::uint32_t>
+      assertions_;  ///< numbers by location and text
   std::unordered_map<std::string, std::uint32_t> sourceIndex_;
   std::unordered_map<std::string, const clang::VarDecl*> generated_, generatedGlobals_;
   std::unordered_set<const clang::Decl*> failedConstants_, constantsInProgress_;
   bool inlineConstants_ = false;
   std::vector<bool> isOwn_;  ///< by kernel: the main file's stubs offer it
+  std::vector<const clang::FunctionDecl*> kernelDeclarations_;
 };
 
 }  // namespace skc::frontend

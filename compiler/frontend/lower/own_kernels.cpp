@@ -59,10 +59,12 @@ void ModuleLowering::keepOwnKernels() {
   }
   std::vector<ir::KernelId> numbers;
   std::vector<ir::Kernel> kernels;
+  std::vector<const clang::FunctionDecl*> declarations;
   for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
     numbers.push_back(static_cast<ir::KernelId>(kernels.size()));
     if (!stays[id]) continue;
     kernels.push_back(std::move(module_.kernels[id]));
+    declarations.push_back(kernelDeclarations_[id]);
     kernels.back().isSynthesized = !isOwn_[id];
   }
   for (ir::Kernel& kernel : kernels) {
@@ -70,6 +72,7 @@ void ModuleLowering::keepOwnKernels() {
       kernel.reduction->combine = numbers[*kernel.reduction->combine];
   }
   module_.kernels = std::move(kernels);
+  kernelDeclarations_ = std::move(declarations);
 }
 
 namespace {

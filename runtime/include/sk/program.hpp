@@ -225,6 +225,7 @@ struct IntrinsicUse {
 
 struct Plan;
 struct Kernel;
+struct AssertionCheck;
 
 /// A function of one float that a table may replace. Bodies call it `sk_table_NAME(x)`, which the assembler
 /// defines as the function or as a lookup (assemble/glsl/tables.hpp).
@@ -277,6 +278,23 @@ struct Kernel {
   bool drawn = true;  ///< fragment programs may run it; false if skc was asked for other targets only
   bool dispatched = true;  ///< compute programs may run it
   const native::Code* code = nullptr;  ///< its native code (sk/native/code.hpp); null if there is none
+  const AssertionCheck* assertions = nullptr;  ///< null if it asserts nothing
+};
+
+/// A condition that `assert` states in a kernel, or in a function that it calls.
+struct Assertion {
+  std::string_view file;  ///< the name of the .sk file, without its folders
+  std::uint32_t line;
+  std::string_view text;  ///< the condition as in the program, on one line
+};
+
+/// Finds the elements for which assertions of a kernel or a fold fail. The last parameter of `check` is an Output of one int,
+/// which becomes 0, or the number of the first assertion that fails, from 1 on.
+struct AssertionCheck {
+  Kernel check;
+  std::span<const std::uint8_t>
+      operands;  ///< for each of its other parameters, the one whose argument it gets
+  std::span<const Assertion> assertions;  ///< by number; a file's kernels share them
 };
 
 /// The operand of a parameter of a pass: an argument of the whole kernel, or a temporary.

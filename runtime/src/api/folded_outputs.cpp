@@ -10,6 +10,7 @@
 
 #include "api/resolved_reduce.hpp"
 #include "call/box.hpp"
+#include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_unwritten_reads.hpp"
@@ -232,18 +233,16 @@ class RecordedFold final : public RecordedCall {
   const FoldCall call_;
 };
 
-void checkAndFold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options,
-                  const FoldedBox& placed = {}) {
-  if (!placed.isPlaced() && (!options.box.isWhole() || hasPlaced(arguments))) {
-    CallOptions others = options;
-    others.box = {};
-    const BoxedArguments boxed = argumentsIn(reduction.fold, arguments, options.box);
-    return checkAndFold(reduction, boxed.arguments, others, boxed.placed);
-  }
-  const FoldCall call(reduction, arguments, options, placed);
+void checkAndFold(const Reduction& reduction, std::span<const Argument> given, const CallOptions& options) {
+  BoxedArguments folded{{given.begin(), given.end()}};
+  if (!options.box.isWhole() || hasPlaced(given)) folded = argumentsIn(reduction.fold, given, options.box);
+  CallOptions others = options;
+  others.box = {};
+  const FoldCall call(reduction, folded.arguments, others, folded.placed);
+  checkFoldAssertions(call.device(), reduction.fold, given, options.box, call.resolved().options);
   LoopState* const recording = call.device().recording;
   if (recording == nullptr) return call.run();
-  recording->add(std::make_unique<RecordedFold>(reduction, arguments, options, placed));
+  recording->add(std::make_unique<RecordedFold>(reduction, folded.arguments, others, folded.placed));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "api/resolved_reduce.hpp"
 #include "call/box.hpp"
+#include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_unwritten_reads.hpp"
@@ -282,20 +283,21 @@ class RecordedReduction final : public RecordedCall {
   ResolvedReduction call_;
 };
 
-void checkAndReduce(const Reduction& reduction, std::span<const Argument> arguments,
-                    std::span<void* const> values, const CallOptions& options,
-                    const std::optional<ScanOrder>& scan = {}, const FoldedBox& placed = {}) {
-  if (!placed.isPlaced() && (!options.box.isWhole() || hasPlaced(arguments))) {
-    if (scan)
-      fail(reduction.fold,
-           "a scan takes no box and no placed streams; scan a view of its input, domain(begin, end)");
-    CallOptions others = options;
-    others.box = {};
-    const BoxedArguments boxed = argumentsIn(reduction.fold, arguments, options.box);
-    return checkAndReduce(reduction, boxed.arguments, values, others, scan, boxed.placed);
-  }
-  ResolvedReduction call = checkReduction(reduction, arguments, values, scan, placed);
+/// A reduction of what is folded, and the arguments and the box that its caller gave.
+struct GivenReduction {
+  const Reduction& reduction;
+  const BoxedArguments& folded;
+  std::span<const Argument> arguments;
+  const Box& box;
+};
+
+void checkAndReduce(const GivenReduction& given, std::span<void* const> values, const CallOptions& options,
+                    const std::optional<ScanOrder>& scan) {
+  const Reduction& reduction = given.reduction;
+  const std::span<const Argument> arguments = given.folded.arguments;
+  ResolvedReduction call = checkReduction(reduction, arguments, values, scan, given.folded.placed);
   call.options = resolvedOptions(call, options);
+  checkFoldAssertions(call.device, reduction.fold, given.arguments, given.box, call.options);
   if (call.device.recording == nullptr) return runResolved(call);
   if (call.isToValues()) {
     fail(reduction.fold,
@@ -303,6 +305,21 @@ void checkAndReduce(const Reduction& reduction, std::span<const Argument> argume
          "result");
   }
   call.device.recording->add(std::make_unique<RecordedReduction>(call));
+}
+
+void checkAndReduce(const Reduction& reduction, std::span<const Argument> arguments,
+                    std::span<void* const> values, const CallOptions& options,
+                    const std::optional<ScanOrder>& scan = {}) {
+  if (options.box.isWhole() && !hasPlaced(arguments))
+    return checkAndReduce({reduction, {{arguments.begin(), arguments.end()}}, arguments, options.box}, values,
+                          options, scan);
+  if (scan)
+    fail(reduction.fold,
+         "a scan takes no box and no placed streams; scan a view of its input, domain(begin, end)");
+  CallOptions others = options;
+  others.box = {};
+  const BoxedArguments boxed = argumentsIn(reduction.fold, arguments, options.box);
+  checkAndReduce({reduction, boxed, arguments, options.box}, values, others, scan);
 }
 
 }  // namespace

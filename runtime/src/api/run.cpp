@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "call/box.hpp"
+#include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
 #include "call/check_halos.hpp"
 #include "call/check_unwritten_reads.hpp"
@@ -120,6 +121,7 @@ void runPlaced(DeviceState& device, const ResolvedCall& checked, const Box& give
   call.options.box = boxOrAll(given, call.domain);
   checkBoxedCall(call.kernel, call.arguments, call.options.box, call.domain);
   checkPlacedCall(call, call.options.box, device.limits.elements);
+  checkAssertions(device, call.kernel, call.arguments, call.domain, call.options);
   if (checksHalos() && device.recording == nullptr)
     checkPlacedHalos(device, call, [&](const ResolvedCall& part) { runInParts(device, part); });
   runInParts(device, call);
@@ -140,6 +142,7 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
     checkBoxedCall(kernel, arguments, options.box, checked->call.domain);
     if (isAll(options.box, checked->call.domain)) checked->call.options.box = {};
   }
+  checkAssertions(device, kernel, arguments, checked->call.domain, checked->call.options);
   const ResolvedCall call = checked->call.of(chosenVariant(device, checked->call), device.limits);
   if (device.recording != nullptr) return record(device, call);
   if (checksHalos()) {

@@ -106,11 +106,12 @@ void noteCopied(const StreamRegion& to, std::span<const std::int64_t> unwritten)
 
 namespace {
 
-enum class Check : std::uint8_t { None, Folds, Halos, Written, Collectives };
+enum class Check : std::uint8_t { None, Folds, Halos, Written, Asserts, Collectives };
 
-constexpr std::array<std::pair<std::string_view, Check>, 4> checks = {{{"folds", Check::Folds},
+constexpr std::array<std::pair<std::string_view, Check>, 5> checks = {{{"folds", Check::Folds},
                                                                        {"halos", Check::Halos},
                                                                        {"written", Check::Written},
+                                                                       {"asserts", Check::Asserts},
                                                                        {"collectives", Check::Collectives}}};
 
 Check checkNamed(std::string_view name) {
@@ -137,6 +138,7 @@ void requireKnownCheck() { static_cast<void>(chosenCheck()); }
 bool checksFolds() { return chosenCheck() == Check::Folds; }
 bool checksHalos() { return chosenCheck() == Check::Halos; }
 bool checksWritten() { return chosenCheck() == Check::Written; }
+bool checksAsserts() { return chosenCheck() == Check::Asserts; }
 bool checksCollectives() { return chosenCheck() == Check::Collectives; }
 
 }  // namespace sk

@@ -28,6 +28,8 @@ bool checksFolds();
 bool checksHalos();
 /// Whether SK_CHECK is `written`: reads of elements that nothing has written are errors.
 bool checksWritten();
+/// Whether SK_CHECK is `asserts`: kernels' assertions are evaluated (call/check_asserts.hpp).
+bool checksAsserts();
 /// Whether SK_CHECK is `collectives`: the ranks of a domain compare every call (mpi/agreement.hpp).
 bool checksCollectives();
 

@@ -175,7 +175,8 @@ struct Code {
   const Entry* entries;
   const Slot* slots;
   std::uint32_t slotCount;
-  /// Times of elements may differ widely, because loops have data-dependent trip counts.
+  /// Times of elements may differ widely, because loops have data-dependent trip counts; or elements print, so that none may be
+  /// computed twice.
   std::uint8_t isUneven;
   /// An element may have several records; if several elements are computed together, records carry element
   /// numbers.
