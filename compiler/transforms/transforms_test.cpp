@@ -46,9 +46,10 @@ TEST_CASE("nothing runs after an error") {
   runTransforms(module, log,
                 {.after = [&](std::string_view name, const Module&) { visited.emplace_back(name); }});
   CHECK(log.hasErrors());
-  CHECK(visited == std::vector<std::string>{"specialize-gathers", "expand-powers", "tabulate", "fold-constants",
-                                            "unroll-spec-loops", "unroll-loops", "find-neighbors",
-                                            "find-reach", "guard-streams", "bound-pushes", "inline-folds"});
+  CHECK(visited == std::vector<std::string>{"specialize-gathers", "expand-powers", "tabulate",
+                                            "fold-constants", "slice-assertions", "unroll-spec-loops",
+                                            "unroll-loops", "find-neighbors", "find-reach", "guard-streams",
+                                            "bound-pushes", "inline-folds"});
 }
 
 TEST_CASE("builds with tests check assertions and validate the IR", "[transforms]") {
