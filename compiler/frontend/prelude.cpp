@@ -257,6 +257,10 @@ template <class T> int4 indexof(const T& stream);
 template <class T> int4 extentof(const T& stream);
 template <int rank, class T> typename __sk_index<rank>::type indexof(const T& stream);
 template <int rank, class T> typename __sk_index<rank>::type extentof(const T& stream);
+int4 indexof();
+int4 extentof();
+template <int rank> typename __sk_index<rank>::type indexof();
+template <int rank> typename __sk_index<rank>::type extentof();
 template <class T> struct scatter_1d {
   T& operator[](int) const; T& operator[](uint) const; T& operator[](float) const;
   T& operator[](long) const; T& operator[](ulong) const;

@@ -256,10 +256,6 @@ std::vector<Type> typesOf(const Kernel& kernel, ParamRole role) {
 
 void checkReduction(const Module& module, const Kernel& kernel) {
   const std::vector<Type> accumulators = typesOf(kernel, ParamRole::Accumulator);
-  // the domain of a variant may be that of the outputs of the kernel that it is a variant of
-  require(foldsBesideOutputs(kernel) || kernel.isPart || kernel.isSynthesized ||
-              !typesOf(kernel, ParamRole::Input).empty(),
-          "a reduce has no input");
   for (const KernelParam& param : kernel.params) {
     require(param.role != ParamRole::VariableOutput && param.role != ParamRole::Scatter,
             "a reduce has an append output");

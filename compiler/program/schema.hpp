@@ -278,6 +278,7 @@ struct Members<sk::CallOptions> {
       Option{"scan", &sk::CallOptions::scan},
       OmittedMember{&sk::CallOptions::along},
       OmittedMember{&sk::CallOptions::box},
+      OmittedMember{&sk::CallOptions::over},
   };
 };
 

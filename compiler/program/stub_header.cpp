@@ -208,7 +208,8 @@ class HeaderWriter {
           "{}.\n",
           isOne ? to : "each of " + to, to, namesOf(kernel, ParamRole::Output));
     }
-    const std::string from = namesOf(kernel, ParamRole::Input);
+    const bool hasInputs = std::ranges::count(kernel.params, ParamRole::Input, &KernelParam::role) > 0;
+    const std::string from = hasInputs ? namesOf(kernel, ParamRole::Input) : "the given domain";
     switch (form) {
       case Form::Run: break;
       case Form::ReduceToValue:
@@ -225,7 +226,7 @@ class HeaderWriter {
         to);
   }
 
-  /// "x", "x and y", "x, y and z".
+  /// "x", "x and y", "x, y and z". There is at least one.
   static std::string namesOf(const Kernel& kernel, ParamRole role) {
     std::vector<std::string> names;
     for (const KernelParam& param : kernel.params) {

@@ -132,6 +132,7 @@ std::string linesOf(const DomainState& domain, const CallOptions& options, const
   for (const std::string& choice : choicesOf(options)) lines += choice + '\n';
   if (options.scan == Scan::Exclusive) lines += "exclusive\n";
   if (options.along) lines += fmt::format("along {}\n", *options.along);
+  if (options.over) lines += fmt::format("over {}\n", toString(options.over->shape));
   if (!box.isWhole()) lines += fmt::format("box from {} to {}\n", toString(box.begin), toString(box.end));
   return lines;
 }

@@ -84,4 +84,9 @@ std::vector<Argument> ownArguments(std::span<const Argument> arguments);
 /// Throws sk::Error if the device of the domain records calls.
 void refuseRecording(DomainState& domain, const program::Kernel& kernel);
 
+/// Throws sk::Error if the domain of the call, where over(), an iterator or an ordinary input says it, has another shape than that of
+/// the ranks.
+void checkDomain(const DomainState& domain, const program::Kernel& kernel,
+                 std::span<const Argument> arguments, const CallOptions& options);
+
 }  // namespace sk::mpi

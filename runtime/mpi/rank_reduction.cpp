@@ -56,10 +56,10 @@ std::vector<Bytes> valuesFor(const Reduction& reduction) {
 
 /// A reduction to values, of which checkReduction() only needs to know that there are some.
 ResolvedReduction checked(const Reduction& reduction, std::span<const Argument> arguments,
-                          std::vector<Bytes>& values, const FoldedBox& placed) {
+                          std::vector<Bytes>& values, const BoxedArguments& boxed) {
   std::vector<void*> targets;
   for (Bytes& value : values) targets.push_back(value.data());
-  ResolvedReduction call = checkReduction(reduction, arguments, targets, {}, placed);
+  ResolvedReduction call = checkReduction(reduction, arguments, targets, {}, boxed.placed, boxed.over);
   call.values = {};
   return call;
 }
@@ -81,7 +81,7 @@ RankReduction::RankReduction(DomainState& domain, const Reduction& reduction, co
       hasElements_(!domain::isEmpty(domain::intersection(domain.own, box))),
       arguments_(reduction.fold, arguments.arguments),
       values_(valuesFor(reduction)),
-      call_(checked(reduction, arguments_.get(), values_, arguments.placed)),
+      call_(checked(reduction, arguments_.get(), values_, arguments)),
       dense_(reduction.fold, arguments_.get()) {
   call_.arguments = dense_.get();
   call_.options = resolvedOptions(call_, options);

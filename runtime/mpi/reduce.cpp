@@ -105,7 +105,9 @@ std::unique_ptr<RankReduction> partOf(DomainState& domain, const Reduction& redu
   CallOptions others = options;
   others.box = {};
   const Box folded = domain::isEmpty(own) ? domain.own : own;
-  const BoxedArguments local = argumentsIn(reduction.fold, mpi::ownArguments(arguments), folded);
+  const BoxedArguments local =
+      argumentsIn(reduction.fold, mpi::ownArguments(arguments), folded, options.over);
+  others.over = local.over;
   return std::make_unique<RankReduction>(domain, reduction, local, others, box);
 }
 
@@ -116,9 +118,10 @@ void storeOwnOutputs(DomainState& domain, const Reduction& reduction, std::span<
   if (domain::isEmpty(own)) return;
   CallOptions others = options;
   others.box = {};
-  const BoxedArguments local = argumentsIn(reduction.fold, mpi::ownArguments(arguments), own);
+  const BoxedArguments local = argumentsIn(reduction.fold, mpi::ownArguments(arguments), own, options.over);
+  others.over = local.over;
   void* const toValues[] = {nullptr};
-  ResolvedReduction call = checkReduction(reduction, local.arguments, toValues, {}, local.placed);
+  ResolvedReduction call = checkReduction(reduction, local.arguments, toValues, {}, local.placed, local.over);
   call.options = resolvedOptions(call, others);
   storeOutputs(call);
 }
@@ -147,6 +150,7 @@ class Fold {
       mpi::refuseRecording(domain_, reduction_.fold);
       const std::vector<mpi::SpreadArgument> spread =
           mpi::spreadArguments(domain_, reduction_.fold, arguments_);
+      mpi::checkDomain(domain_, reduction_.fold, arguments_, options_);
       check();
       if (domain_.parts.ranks() == 1 || std::ranges::none_of(spread, &mpi::SpreadArgument::isGather)) return;
       plan.emplace(domain_, reduction_.fold, arguments_, options_);

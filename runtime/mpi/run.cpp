@@ -132,6 +132,8 @@ std::uint64_t idOf(const Kernel& kernel, std::uint64_t object, const CallOptions
   mix(static_cast<std::uint64_t>(options.precision) << 32 |
       static_cast<std::uint64_t>(options.accumulate) << 16 | static_cast<std::uint64_t>(options.scan) << 8 |
       static_cast<std::uint64_t>(options.along.value_or(-1) + 1));
+  for (int d = 0; options.over && d < options.over->shape.rank(); ++d)
+    mix(static_cast<std::uint64_t>(options.over->shape[d] + 1));
   return id | 1;
 }
 
@@ -149,6 +151,7 @@ std::uint64_t hashOf(const Kernel& kernel, const CallOptions& options) {
   hash.add(static_cast<std::int64_t>(options.tables));
   hash.add(static_cast<std::int64_t>(options.contraction));
   hash.add(static_cast<std::int64_t>(options.order));
+  for (int d = 0; options.over && d < options.over->shape.rank(); ++d) hash.add(options.over->shape[d]);
   return hash.value();
 }
 
@@ -193,11 +196,23 @@ void refuseRecording(DomainState& domain, const Kernel& kernel) {
   }
 }
 
+void checkDomain(const DomainState& domain, const Kernel& kernel, std::span<const Argument> arguments,
+                 const CallOptions& options) {
+  const Shape given = domainOf(kernel, ownArguments(arguments), specsOf(kernel, arguments), options.over);
+  if (given.rank() == 0 || given == domain.parts.whole()) return;
+  fail(Error::Kind::Shape, kernel,
+       "its domain has the shape {}, but its streams are divided over the ranks of a domain of shape {}; "
+       "call it "
+       "over that shape",
+       toString(given), toString(domain.parts.whole()));
+}
+
 CallPlan::CallPlan(DomainState& domain, const Kernel& kernel, std::span<const Argument> arguments,
                    const CallOptions& options)
     : domain_(domain), kernel_(kernel), options_(options), arguments_(arguments.begin(), arguments.end()) {
   refuseRecording(domain, kernel);
   spread_ = spreadArguments(domain, kernel, arguments);
+  checkDomain(domain, kernel, arguments, options);
   takeOthers();
   for (const SpreadArgument& one : spread_) reach_ = reach_.with(one.depth);
   const int every = others_.empty() ? domain.options.exchangeEvery : 1;

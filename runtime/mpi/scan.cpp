@@ -265,6 +265,7 @@ void DomainState::scan(const Reduction& reduction, std::span<const Argument> arg
   const mpi::Refusal refusal = mpi::caught(reduction.fold.name, [&] {
     mpi::refuseRecording(*this, reduction.fold);
     checkArguments(*this, reduction, arguments);
+    mpi::checkDomain(*this, reduction.fold, arguments, chosen);
     if (!chosen.box.isWhole())
       fail(reduction.fold,
            "a scan takes no box; scan all elements, or let a "

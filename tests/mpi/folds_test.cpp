@@ -87,6 +87,27 @@ TEST_CASE("indices, extents and ramps of folds are those of the whole") {
   });
 }
 
+TEST_CASE("a reduce without elements folds the domain of the ranks, which its call gives") {
+  const sk::CallOptions exact{.accumulate = sk::Accumulate::Exact};
+  sk::Device device("native");
+  auto x = device.stream<float>(shape);
+  x.write(valuesOf<float>(shape, small));
+  const float whole = curl.over(shape).with(exact)(x);
+  const sk::CallOptions boxed{.accumulate = sk::Accumulate::Exact, .box = {{2, 3}, {5, 9}}};
+  const float part = curl.over(shape).with(boxed)(x);
+  forEachSplit({.shape = shape, .periodic = {true, true}}, [&](sk::Domain& domain) {
+    auto v = domain.stream<float>();
+    v.fill(small);
+    auto value = domain.device().scalar<float>();
+    CHECK(isSame(curl.over(shape).with(exact)(v), whole));
+    curl.over(domain.device(), shape).with(exact)(v, value);
+    CHECK(isSame(value.read(), whole));
+    CHECK(isSame(curl.over(shape).with(boxed)(v), part));
+    CHECK_THAT(errorOf([&] { curl.over({3, 3})(v); }), Catch::Contains("its domain has the shape {3, 3}"));
+    CHECK_THAT(errorOf([&] { curl(v); }), Catch::Contains("curl.over({...})(...)"));
+  });
+}
+
 TEST_CASE("a fold whose halo is thicker than a part is refused") {
   if (ranksOfWorld() == 1) return;
   sk::Domain domain(MPI_COMM_WORLD, {.shape = {ranksOfWorld(), 5}, .split = {ranksOfWorld(), 1}});

@@ -190,6 +190,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr sample(const clang::CallExpr* e);
   std::string elementBeside(const clang::ValueDecl* parameter);
   ir::ExprPtr indexOrExtent(const clang::CallExpr* e, bool isIndex);
+  ir::StreamRef streamOfIndexOrExtent(const clang::CallExpr* e, bool isIndex);
   ir::ExprPtr axis(const clang::CallExpr* e);
   ir::ExprPtr gatherRead(const clang::CXXOperatorCallExpr* e);
   ir::ExprPtr classOperator(const clang::CXXOperatorCallExpr* e);

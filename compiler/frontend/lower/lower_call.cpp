@@ -352,11 +352,24 @@ std::string FunctionLowering::elementBeside(const clang::ValueDecl* parameter) {
       if (isElement) return "'" + other->getName().str() + "'";
     }
   }
-  return "an output 'out T r<>' or an input 'T x<>'";
+  return "the domain, 'indexof()'";
 }
 
-/// indexof(p) and extentof(p) of a stream parameter; an output or an iterator gives those of the domain.
+/// indexof(p) and extentof(p) of a stream parameter, and those of the domain, indexof() and extentof().
 ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) {
+  const SourceLocation where = e->getBeginLoc();
+  const ir::StreamRef stream = e->getNumArgs() == 0 ? ir::StreamRef{ir::StreamRef::Space::Domain, 0}
+                                                    : streamOfIndexOrExtent(e, isIndex);
+  const ir::Type type = ir::Type::of(Scalar::Int, 4);
+  ExprPtr all = isIndex ? make(type, where, ir::IndexOf{stream}) : make(type, where, ir::ExtentOf{stream});
+  const int rank = module_.type(e->getType(), where).width;  // of indexof<2>(r), 2
+  if (rank == type.width) return all;
+  return ir::swizzle(std::move(all), std::string_view("xyzw").substr(0, static_cast<std::size_t>(rank)),
+                     module_.loc(where));
+}
+
+/// The argument of indexof or extentof; an output, an iterator or an accumulator stands for the domain.
+ir::StreamRef FunctionLowering::streamOfIndexOrExtent(const clang::CallExpr* e, bool isIndex) {
   const clang::Expr* argument = withoutCopies(e->getArg(0));
   const SourceLocation where = argument->getBeginLoc();
   const std::string_view name = isIndex ? "indexof" : "extentof";
@@ -366,7 +379,7 @@ ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) 
   if (reference != nullptr) declared = reference->getDecl();
   if (place && !place->path.empty()) declared = place->path.back();
   const ir::ParamRole role = declared ? module_.roleOf(declared) : ir::ParamRole::Uniform;
-  if (role == ir::ParamRole::Uniform || role == ir::ParamRole::Spec || role == ir::ParamRole::Accumulator)
+  if (role == ir::ParamRole::Uniform || role == ir::ParamRole::Spec)
     module_.fail(Diag::NotAStream, where, {name});
   const std::optional<ir::VarId> found = variableNamed(argument);
   if (!found) throw Abandoned{};
@@ -378,15 +391,10 @@ ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) 
   if (isIndex && isAppendOutput)
     module_.fail(Diag::IndexOfAppendOutput, where, {parameter, elementBeside(declared)});
   if (role == ir::ParamRole::VariableOutput) module_.fail(Diag::ExtentOfAppendOutput, where, {parameter});
-  ir::StreamRef stream{ir::StreamRef::Space::Variable, *found};
-  if (role == ir::ParamRole::Output || role == ir::ParamRole::Iterator)
-    stream = {ir::StreamRef::Space::Domain, 0};
-  const ir::Type type = ir::Type::of(Scalar::Int, 4);
-  ExprPtr all = isIndex ? make(type, where, ir::IndexOf{stream}) : make(type, where, ir::ExtentOf{stream});
-  const int rank = module_.type(e->getType(), where).width;  // of indexof<2>(r), 2
-  if (rank == type.width) return all;
-  return ir::swizzle(std::move(all), std::string_view("xyzw").substr(0, static_cast<std::size_t>(rank)),
-                     module_.loc(where));
+  const bool isDomain =
+      role == ir::ParamRole::Output || role == ir::ParamRole::Iterator || role == ir::ParamRole::Accumulator;
+  if (isDomain) return {ir::StreamRef::Space::Domain, 0};
+  return {ir::StreamRef::Space::Variable, *found};
 }
 
 /// axis<3>(d): the offset of the next element in a dimension, x first.

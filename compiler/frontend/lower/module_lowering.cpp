@@ -41,6 +41,18 @@ std::string_view withoutVariants(const ir::Kernel& kernel) {
   return kernel.isScan ? "scans" : ir::foldsBesideOutputs(kernel) ? "kernels with folded outputs" : "reduces";
 }
 
+/// True if the place of an element in the domain decides what it does.
+bool asksWhere(const ir::Module& module, const ir::Kernel& kernel) {
+  bool asks = false;
+  for (const ir::FunctionId id : ir::functionsOf(module, kernel)) {
+    ir::walkExprs(module.functions[id].body, [&](const ir::Expr& expr) {
+      asks = asks || std::holds_alternative<ir::IndexOf>(expr.node) ||
+             std::holds_alternative<ir::NeighborRead>(expr.node);
+    });
+  }
+  return asks;
+}
+
 }  // namespace
 
 ir::Module lowerModule(clang::Sema& sema, const DeclarationSyntax& syntax, const std::string& file,
@@ -251,16 +263,15 @@ void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation w
     const bool hasAppendOutputs = count(ir::ParamRole::VariableOutput) + count(ir::ParamRole::Scatter) > 0;
     if (count(ir::ParamRole::Output) > 0) return;
     if (!hasAppendOutputs) fail(Diag::KernelWithoutOutput, where, {kernel.name});
-    if (count(ir::ParamRole::Input) + count(ir::ParamRole::Iterator) == 0)
-      fail(Diag::KernelWithoutDomain, where, {kernel.name});
+  } else if (ir::foldsBesideOutputs(kernel)) {
     return;
-  }
-  if (ir::foldsBesideOutputs(kernel)) return;
-  const bool readsOther = count(ir::ParamRole::Iterator) + count(ir::ParamRole::Gather) > 0;
-  if (readsOther && count(ir::ParamRole::Input) == 0 && count(ir::ParamRole::Accumulator) != 0)
-    fail(Diag::FoldWithoutDomain, where, {ir::wordOf(kernel), kernel.name});
-  if (count(ir::ParamRole::Input) == 0 || count(ir::ParamRole::Accumulator) == 0) {
+  } else if (count(ir::ParamRole::Accumulator) == 0) {
     fail(Diag::ReduceParameters, where, {kernel.name, ir::wordOf(kernel)});
+  }
+  const bool hasElements = count(ir::ParamRole::Input) + count(ir::ParamRole::Iterator) > 0;
+  if (!hasElements && !asksWhere(module_, kernel)) {
+    fail(Diag::SameForAllElements, where,
+         {ir::wordOf(kernel), kernel.name, kernel.reduction ? "'T x<>'" : "'T x<>' or 'out T r<>'"});
   }
 }
 
@@ -280,8 +291,6 @@ void ModuleLowering::checkFoldedOutputs(const ir::Kernel& kernel, const KernelSy
   };
   if (const auto* appended = first({ir::ParamRole::VariableOutput, ir::ParamRole::Scatter}))
     abandon(Diag::FoldBesideAppend, {kernel.name, folded.name, appended->name});
-  if (first({ir::ParamRole::Output, ir::ParamRole::Input}) == nullptr)
-    abandon(Diag::FoldWithoutDomain, {"kernel", kernel.name});
   if (first({ir::ParamRole::Output}) == nullptr) {
     abandon(Diag::FoldWithoutOutput, {kernel.name, folded.name},
             {FixIt::replace(locOf(syntax.keyword), std::string(wordOf(FunctionKind::Reduce)))});

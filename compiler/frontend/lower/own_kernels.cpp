@@ -33,15 +33,21 @@ bool ModuleLowering::isOwn(SourceLocation where) const {
 }
 
 /// Removes the kernels of included .sk files, which the stubs of those files offer. What combines partial results of this file's
-/// own kernels stays, as if synthesized.
+/// own kernels stays, as if synthesized. So does what combines results of a reduce without inputs: C++ could not tell a call of it from
+/// one of the reduce, whose only streams are results.
 void ModuleLowering::keepOwnKernels() {
   const auto fileOf = [&](const ir::Kernel& kernel) {
     return std::filesystem::path(module_.sources[kernel.loc.file]).lexically_normal().string();
   };
-  std::vector<bool> stays = isOwn_;
+  std::vector<bool> stays = isOwn_, isOffered = isOwn_;
   for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
     const ir::Kernel& kernel = module_.kernels[id];
-    if (isOwn_[id] && kernel.reduction && kernel.reduction->combine) stays[*kernel.reduction->combine] = true;
+    if (!isOwn_[id] || !kernel.reduction || !kernel.reduction->combine) continue;
+    stays[*kernel.reduction->combine] = true;
+    const bool hasElements = std::ranges::any_of(kernel.params, [](const ir::KernelParam& param) {
+      return param.role == ir::ParamRole::Input || param.role == ir::ParamRole::Output;
+    });
+    if (!hasElements) isOffered[*kernel.reduction->combine] = false;
   }
   const bool hasOwn = std::ranges::find(isOwn_, true) != isOwn_.end();
   if (!isOwn_.empty() && !hasOwn && module_.streams.empty()) {
@@ -65,7 +71,7 @@ void ModuleLowering::keepOwnKernels() {
     if (!stays[id]) continue;
     kernels.push_back(std::move(module_.kernels[id]));
     declarations.push_back(kernelDeclarations_[id]);
-    kernels.back().isSynthesized = !isOwn_[id];
+    kernels.back().isSynthesized = !isOffered[id];
   }
   for (ir::Kernel& kernel : kernels) {
     if (kernel.reduction && kernel.reduction->combine)

@@ -190,6 +190,13 @@ class VariableOut {
   StreamRegion region_;
 };
 
+namespace detail {
+
+/// Throws sk::Error if the device was moved from.
+DeviceState& deviceStateOf(const Device& device);
+
+}  // namespace detail
+
 /// Base of the callable objects of kernels and reductions. with(options) returns a copy in which `options`
 /// override the options chosen before, except where they are Default.
 template <class Derived>
@@ -201,14 +208,24 @@ struct WithOptions {
     made.options = options.with(chosen);
     return made;
   }
+
+  /// Returns a copy whose calls run over a domain of this shape, rows first. Nothing is allocated for it. Inputs repeat in
+  /// it as they do in the domain of an output. A call throws sk::Error if the shape has no dimension, if an element output or
+  /// an iterator has another shape, or if the device cannot number the elements. An empty domain is that of an empty stream.
+  constexpr Derived over(const Shape& shape) const { return with({.over = GivenDomain{.shape = shape}}); }
+
+  /// The same on this device, for calls without any stream. The device must exist when the copy is called.
+  Derived over(const Device& device, const Shape& shape) const {
+    return with({.over = GivenDomain{.shape = shape, .device = &detail::deviceStateOf(device)}});
+  }
 };
 
-/// Runs a kernel over the domain that its outputs define, or its inputs if all outputs are variable or
-/// scatter outputs. Throws sk::Error, which names the kernel and the parameter, if the arguments do not
-/// match, or if the kernel or the device does not support the options.
+/// Runs a kernel over the domain that its outputs define or, if all outputs are variable or scatter outputs,
+/// `options.over`, its inputs or its iterators. Throws sk::Error, which names the kernel and the parameter, if the
+/// arguments do not match, or if the kernel or the device does not support the options.
 void run(const program::Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options = {});
 
-/// Folds the inputs, whose common shape is the domain, to one value for each accumulator. The values are
+/// Folds the inputs, whose common shape is the domain unless `options.over` gives it, to one value for each accumulator. The values are
 /// written to `results` in order, laid out as the accumulators' Elements say. `arguments` has one entry for
 /// each parameter of the fold; entries of accumulators are ignored. For an empty domain, the result is the
 /// identity. Throws sk::Error if there is no identity, or if the arguments do not match.

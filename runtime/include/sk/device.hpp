@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sk/arithmetic.hpp"
+#include "sk/call.hpp"
 #include "sk/loop.hpp"
 #include "sk/owner.hpp"
 #include "sk/scalar.hpp"
@@ -236,6 +237,8 @@ class Device {
   void release();
 
  private:
+  friend DeviceState& detail::deviceStateOf(const Device& device);
+
   explicit Device(detail::DeviceOwner state);
   DeviceState& state() const;
 

@@ -19,6 +19,16 @@ struct Box {
   bool operator==(const Box&) const = default;
 };
 
+class DeviceState;  // the runtime's own
+
+/// A domain that a call is given, because it follows from no stream: WithOptions::over() (sk/call.hpp).
+struct GivenDomain {
+  Shape shape = {};
+  DeviceState* device = nullptr;  ///< null: the device of the call's streams
+
+  bool operator==(const GivenDomain&) const = default;
+};
+
 /// How a stream stores the floats of its elements. Kernels still read and write floats, rounded to nearest;
 /// kernels in extended or double precision read and write all bits of doubles.
 enum class Storage : std::uint8_t {
@@ -114,6 +124,7 @@ struct CallOptions {
   /// indexof, extentof, boundary modes and gathers are what they are without a box. All other elements of the outputs keep
   /// their values.
   Box box = {};
+  std::optional<GivenDomain> over = std::nullopt;  ///< the domain, if WithOptions::over() gives it
 
   bool operator==(const CallOptions&) const = default;
 
@@ -131,7 +142,8 @@ struct CallOptions {
             .order = chosen(order, later.order),
             .scan = chosen(scan, later.scan),
             .along = later.along ? later.along : along,
-            .box = later.box.isWhole() ? box : later.box};
+            .box = later.box.isWhole() ? box : later.box,
+            .over = later.over ? later.over : over};
   }
 };
 

@@ -256,6 +256,8 @@ Device Device::reference(Reference kind) {
   return Device(openNative(kind == Reference::Double ? RealType::Double : RealType::Quad));
 }
 
+DeviceState& detail::deviceStateOf(const Device& device) { return device.state(); }
+
 DeviceState& Device::state() const {
   if (!state_) {
     throw Error("the device was moved from", Error::Kind::Lost);

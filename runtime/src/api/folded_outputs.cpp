@@ -101,7 +101,7 @@ class FoldCall {
       : parts_(*reduction.parts),
         mapArguments_(argumentsOf(parts_.mapOperands, arguments)),
         hasMap_(checkCall(parts_.map, mapArguments_).has_value()),
-        call_(checkReduction(reduction, arguments, {}, {}, placed)) {
+        call_(checkReduction(reduction, arguments, {}, {}, placed, options.over)) {
     checkDisjoint(reduction.fold, arguments);
     call_.options = resolvedOptions(call_, options);
   }
@@ -234,10 +234,11 @@ class RecordedFold final : public RecordedCall {
 };
 
 void checkAndFold(const Reduction& reduction, std::span<const Argument> given, const CallOptions& options) {
-  BoxedArguments folded{{given.begin(), given.end()}};
-  if (!options.box.isWhole() || hasPlaced(given)) folded = argumentsIn(reduction.fold, given, options.box);
+  BoxedArguments folded{.arguments = {given.begin(), given.end()}, .over = options.over};
+  if (!options.box.isWhole() || hasPlaced(given)) folded = argumentsIn(reduction.fold, given, options.box, options.over);
   CallOptions others = options;
   others.box = {};
+  others.over = folded.over;
   const FoldCall call(reduction, folded.arguments, others, folded.placed);
   checkFoldAssertions(call.device(), reduction.fold, given, options.box, call.resolved().options);
   LoopState* const recording = call.device().recording;

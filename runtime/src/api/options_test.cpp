@@ -28,4 +28,9 @@ TEST_CASE("choices add up, and the last one of a kind holds") {
   STATIC_REQUIRE(boxed.box == Box{{1, 2}, {3, 4}});
   STATIC_REQUIRE(boxed.with({.order = Order::Kept}).box == boxed.box);
   STATIC_REQUIRE(all.box.isWhole());
+  constexpr Callable over = first.over({3, 4}).with({.order = Order::Any});
+  STATIC_REQUIRE(over.options.over == GivenDomain{.shape = {3, 4}});
+  STATIC_REQUIRE(over.options.accumulate == Accumulate::Exact);
+  STATIC_REQUIRE(over.over({5}).options.over->shape == Shape{5});
+  STATIC_REQUIRE(!all.over);
 }

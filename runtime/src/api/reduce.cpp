@@ -210,7 +210,7 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
   for (const Parameter& parameter : errorAccumulators(second)) all.push_back(errors.add(*parameter.element));
   std::vector<void*> values(call.values.begin(), call.values.end());
   values.insert(values.end(), errors.values.begin(), errors.values.end());
-  checkReduction(second.reduction, all, values, call.scan, call.placed);
+  checkReduction(second.reduction, all, values, call.scan, call.placed, call.options.over);
   WriteScope writes;
   addResults(writes, call);
   call.device.reduce(call.of(second.reduction, all, values));
@@ -295,7 +295,7 @@ void checkAndReduce(const GivenReduction& given, std::span<void* const> values, 
                     const std::optional<ScanOrder>& scan) {
   const Reduction& reduction = given.reduction;
   const std::span<const Argument> arguments = given.folded.arguments;
-  ResolvedReduction call = checkReduction(reduction, arguments, values, scan, given.folded.placed);
+  ResolvedReduction call = checkReduction(reduction, arguments, values, scan, given.folded.placed, given.folded.over);
   call.options = resolvedOptions(call, options);
   checkFoldAssertions(call.device, reduction.fold, given.arguments, given.box, call.options);
   if (call.device.recording == nullptr) return runResolved(call);
@@ -311,14 +311,18 @@ void checkAndReduce(const Reduction& reduction, std::span<const Argument> argume
                     std::span<void* const> values, const CallOptions& options,
                     const std::optional<ScanOrder>& scan = {}) {
   if (options.box.isWhole() && !hasPlaced(arguments))
-    return checkAndReduce({reduction, {{arguments.begin(), arguments.end()}}, arguments, options.box}, values,
-                          options, scan);
+    return checkAndReduce({reduction,
+                           {.arguments = {arguments.begin(), arguments.end()}, .over = options.over},
+                           arguments,
+                           options.box},
+                          values, options, scan);
   if (scan)
     fail(reduction.fold,
          "a scan takes no box and no placed streams; scan a view of its input, domain(begin, end)");
   CallOptions others = options;
   others.box = {};
-  const BoxedArguments boxed = argumentsIn(reduction.fold, arguments, options.box);
+  const BoxedArguments boxed = argumentsIn(reduction.fold, arguments, options.box, options.over);
+  others.over = boxed.over;
   checkAndReduce({reduction, boxed, arguments, options.box}, values, others, scan);
 }
 

@@ -132,7 +132,7 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
     fail(kernel, "it has no accumulator, since it is not a reduce; call it without Accumulate");
   }
   refuseScanOptions(kernel, options);
-  std::optional<CheckedCall> checked = checkCall(kernel, arguments);
+  std::optional<CheckedCall> checked = checkCall(kernel, arguments, options.over);
   if (!checked) return;
   DeviceState& device = checked->device;
   checked->call.options = device.configuration.resolve(kernel, options);

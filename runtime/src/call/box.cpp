@@ -160,17 +160,21 @@ bool asksPlace(const Kernel& fold) {
          });
 }
 
-BoxedArguments argumentsIn(const Kernel& fold, std::span<const Argument> arguments, const Box& given) {
-  BoxedArguments result{{arguments.begin(), arguments.end()}};
+BoxedArguments argumentsIn(const Kernel& fold, std::span<const Argument> arguments, const Box& given,
+                           const std::optional<GivenDomain>& over) {
+  BoxedArguments result{.arguments = {arguments.begin(), arguments.end()}, .over = over};
   if (arguments.size() != fold.parameters.size()) return result;  // checked later
   const assemble::SpecValues specs = specsOf(fold, arguments);
-  const Shape domain = domainOf(fold, arguments, specs);
+  const Shape domain = domainOf(fold, arguments, specs, over);
+  checkDomain(fold, {firstOutput(fold, specs), over ? &*over : nullptr}, domain);
   const Box box = boxOrAll(given, domain);
   checkBox(fold, box, domain);
   const bool isPlaced = asksPlace(fold);
   if (isPlaced) {
     checkPlacedCall({fold, arguments, {}, specs, domain, nullptr}, box, mostCounted(arguments));
     result.placed = {box, domain};
+  } else if (over) {
+    result.over->shape = domain::shapeOf(box);
   }
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const Parameter& parameter = fold.parameters[i];

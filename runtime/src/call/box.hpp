@@ -45,11 +45,14 @@ bool asksPlace(const program::Kernel& fold);
 struct BoxedArguments {
   std::vector<Argument> arguments;
   FoldedBox placed = {};  ///< if the fold asks where its elements are
+  std::optional<GivenDomain> over =
+      {};  ///< if the call has one: the whole if the box is placed in it, else the box
 };
 
-/// The arguments for folding the box alone, or all elements. Throws sk::Error if the box is not inside the inputs' common
-/// shape, or if placed arguments do not hold what is folded and gathered.
-BoxedArguments argumentsIn(const program::Kernel& fold, std::span<const Argument> arguments, const Box& box);
+/// The arguments for folding the box alone, or all elements. Throws sk::Error if the box is not inside the domain, which
+/// `over` gives or is the inputs' common shape, or if placed arguments do not hold what is folded and gathered.
+BoxedArguments argumentsIn(const program::Kernel& fold, std::span<const Argument> arguments, const Box& box,
+                           const std::optional<GivenDomain>& over);
 
 /// Returns the grids of blocks, in each dimension of `domain`, for a result of shape `result`: inserts
 /// extents of 1 into `result` in every possible way, up to the rank of `domain`, such that its extents divide

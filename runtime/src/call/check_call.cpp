@@ -160,7 +160,8 @@ std::size_t firstWritten(const Kernel& kernel, const assemble::SpecValues& specs
 
 }  // namespace
 
-std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argument> arguments) {
+std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argument> arguments,
+                                     const std::optional<GivenDomain>& over) {
   const std::span<const Parameter> parameters = kernel.parameters;
   if (arguments.size() != parameters.size()) {
     fail(kernel, "{} arguments are given, but {} are declared", arguments.size(), parameters.size());
@@ -174,13 +175,12 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
   checkGiven(kernel, parameters[first], arguments[first]);
   const StreamState& firstStream = checkStream(kernel, parameters[first], arguments[first].region);
   DeviceState& device = *firstStream.device;
-  const ResolvedCall call = resolveCall(kernel, arguments, device.limits);
+  const ResolvedCall call = resolveCall(kernel, arguments, device.limits, {.over = over});
   const Shape& domain = call.domain;
-  if (domain.rank() == 0) {
-    fail(Error::Kind::Shape, kernel,
-         "no input of the domain's own shape and no iterator with one says how many elements there are; "
-         "give one");
-  }
+  const DomainSource source{parameters[first].role == Role::Output ? &parameters[first] : nullptr,
+                            over ? &*over : nullptr};
+  checkDomain(kernel, source, domain);
+  checkGivenDevice(kernel, over, device);
   checkElements(kernel, device, domain, hasPlaced(arguments));
   std::size_t written = 0;
   AppendPlanes appendOutputs;
@@ -215,7 +215,7 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
         checkDisjoint(kernel, arguments, specs, i);
         break;
       case Role::Gather: checkGatherShape(kernel, parameter, seenShape(region), domain); break;
-      case Role::Input: checkInputShape(kernel, parameter, arguments[i], parameters[first], domain); break;
+      case Role::Input: checkInputShape(kernel, parameter, arguments[i], source, domain); break;
       case Role::Uniform:
         if (isPlaced(region)) refusePlaced(kernel, parameter);
         checkUniformShape(kernel, parameter, region.shape);
@@ -329,8 +329,41 @@ void checkSameDevice(const Kernel& kernel, const Parameter& a, const StreamState
   }
 }
 
+const Parameter* firstOutput(const Kernel& kernel, const assemble::SpecValues& specs) {
+  const auto found = std::ranges::find_if(kernel.parameters, [&](const Parameter& parameter) {
+    return parameter.role == Role::Output && isNeeded(parameter, specs);
+  });
+  return found == kernel.parameters.end() ? nullptr : &*found;
+}
+
+void checkDomain(const Kernel& kernel, const DomainSource& source, const Shape& domain) {
+  if (source.given != nullptr && source.given->shape.rank() == 0) {
+    fail(Error::Kind::Shape, kernel, "over() is given a shape without dimensions; give it 1 to 4 extents");
+  }
+  if (domain.rank() == 0) {
+    fail(Error::Kind::Shape, kernel,
+         "no input of the domain's own shape and no iterator with one says how many elements there are; give "
+         "one, or call it over a shape, {}.over({{...}})(...)",
+         kernel.name);
+  }
+  if (source.given != nullptr && source.given->shape != domain) {
+    fail(Error::Kind::Shape, kernel,
+         "over() gives the domain the shape {}, but the output '{}' has {}; give both the same, or call it "
+         "without over()",
+         toString(source.given->shape), source.output->name, toString(domain));
+  }
+}
+
+void checkGivenDevice(const Kernel& kernel, const std::optional<GivenDomain>& given,
+                      const DeviceState& device) {
+  if (!given || given->device == nullptr || given->device == &device) return;
+  fail(Error::Kind::Device, kernel,
+       "over() gives the call to '{}', but its streams are on '{}'; give both one device",
+       given->device->name(), device.name());
+}
+
 void checkInputShape(const Kernel& kernel, const Parameter& input, const Argument& argument,
-                     const Parameter& first, const Shape& domain) {
+                     const DomainSource& source, const Shape& domain) {
   const Shape& shape = seenShape(argument.region);
   if (argument.fit != Fit::Same && isPlaced(argument.region)) refusePlaced(kernel, input);
   if (fitsDomain(shape, argument.fit, domain)) {
@@ -340,7 +373,14 @@ void checkInputShape(const Kernel& kernel, const Parameter& input, const Argumen
     fail(Error::Kind::Shape, kernel, "'{}' has shape {}, and the domain {}; {}", input.name, toString(shape),
          toString(domain), requirementOf(argument.fit));
   }
-  if (first.role != Role::Output) {
+  if (source.output == nullptr && source.given != nullptr) {
+    fail(Error::Kind::Shape, kernel,
+         "'{}' has shape {}, but over() gives the domain the shape {}; give them the same shape, or extent 1 "
+         "where "
+         "'{}' repeats",
+         input.name, toString(shape), toString(domain), input.name);
+  }
+  if (source.output == nullptr) {
     fail(
         Error::Kind::Shape, kernel,
         "'{}' has shape {}, but the inputs together have {}; give them the same shape, or extent 1 where one "
@@ -350,7 +390,7 @@ void checkInputShape(const Kernel& kernel, const Parameter& input, const Argumen
   fail(Error::Kind::Shape, kernel,
        "'{}' has shape {}, but the output '{}' has {}; give them the same shape, or extent 1 where "
        "'{}' repeats",
-       input.name, toString(shape), first.name, toString(domain), input.name);
+       input.name, toString(shape), source.output->name, toString(domain), input.name);
 }
 
 void checkGatherShape(const Kernel& kernel, const Parameter& gather, const Shape& shape,

@@ -38,9 +38,24 @@ StreamState& checkStream(const program::Kernel& kernel, const program::Parameter
 void checkSameDevice(const program::Kernel& kernel, const program::Parameter& a, const StreamState& first,
                      const program::Parameter& b, const StreamState& second);
 
-/// `first` is the parameter that defines the domain: an output, or an input if there are no outputs.
+/// What says which domain a call has: an output, or else WithOptions::over(), or else the inputs together.
+struct DomainSource {
+  const program::Parameter* output = nullptr;
+  const GivenDomain* given = nullptr;
+};
+
+/// The first output that the spec parameters keep; null if there is none.
+const program::Parameter* firstOutput(const program::Kernel& kernel, const assemble::SpecValues& specs);
+
+/// Checks that something says the domain, which domainOf() has found, and that what is given agrees with the outputs.
+void checkDomain(const program::Kernel& kernel, const DomainSource& source, const Shape& domain);
+
+/// Checks that a given domain is for this device, the streams', or for any.
+void checkGivenDevice(const program::Kernel& kernel, const std::optional<GivenDomain>& given,
+                      const DeviceState& device);
+
 void checkInputShape(const program::Kernel& kernel, const program::Parameter& input, const Argument& argument,
-                     const program::Parameter& first, const Shape& domain);
+                     const DomainSource& source, const Shape& domain);
 
 void checkGatherShape(const program::Kernel& kernel, const program::Parameter& gather, const Shape& shape,
                       const Shape& domain);
@@ -80,9 +95,10 @@ struct CheckedCall {
 };
 
 /// Checks the arguments of a kernel: number, streams, device, element types, ranks, shapes, planes,
-/// overlapping outputs. Returns their device and the call, without options. Returns nullopt if there is
+/// overlapping outputs. Returns their device and the call, without options but `over`. Returns nullopt if there is
 /// nothing to do: there is no variable or scatter output, and either spec parameters switch off all element
 /// outputs or the domain is empty.
-std::optional<CheckedCall> checkCall(const program::Kernel& kernel, std::span<const Argument> arguments);
+std::optional<CheckedCall> checkCall(const program::Kernel& kernel, std::span<const Argument> arguments,
+                                     const std::optional<GivenDomain>& over = {});
 
 }  // namespace sk

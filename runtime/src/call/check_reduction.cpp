@@ -27,8 +27,9 @@ using program::Role;
 /// The streams that a reduction reads or writes.
 class Arguments {
  public:
-  Arguments(const Reduction& reduction, std::span<const Argument> arguments)
-      : reduction_(reduction), fold_(reduction.fold), arguments_(arguments) {
+  Arguments(const Reduction& reduction, std::span<const Argument> arguments,
+            const std::optional<GivenDomain>& over)
+      : reduction_(reduction), fold_(reduction.fold), arguments_(arguments), over_(over) {
     if (arguments.size() != fold_.parameters.size()) {
       fail(fold_, "{} arguments are given, but {} are declared", arguments.size(), fold_.parameters.size());
     }
@@ -47,21 +48,15 @@ class Arguments {
         checkLives(i);
       }
     }
-    const Shape seen = domainOf(fold_, arguments_, specs_);
-    if (seen.rank() == 0) {
-      fail(Error::Kind::Shape, fold_,
-           "no input and no iterator with a shape says how many elements there are; give one");
-    }
-    if (first_ == SIZE_MAX) {
-      fail(fold_, "no stream is given that says what device to fold on; give one");
-    }
+    const Shape seen = domainOf(fold_, arguments_, specs_, over_);
+    checkDomain(fold_, source(), seen);
+    DeviceState& device = checkedDevice();
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
       checkShape(i, seen);
     }
     const Shape domain = placed.isPlaced() ? domain::shapeOf(placed.box) : seen;
-    const StreamState& first = *arguments_[first_].region.stream;
     const RowsState* const rows = rowsOf(fold_, arguments_, specs_);
-    ResolvedReduction checked{*first.device, reduction_, arguments_, domain, oneBlock(domain), values};
+    ResolvedReduction checked{device, reduction_, arguments_, domain, oneBlock(domain), values};
     checked.placed = placed;
     checkElements(fold_, checked.device, seen, placed.isPlaced());
     checked.device.checkProgram(reduction_);
@@ -101,6 +96,22 @@ class Arguments {
     checkSameDevice(fold_, fold_.parameters[first_], *arguments_[first_].region.stream, parameter, stream);
   }
 
+  /// The device of the streams or, if there are none, of the given domain.
+  DeviceState& checkedDevice() const {
+    if (first_ == SIZE_MAX && (!over_ || over_->device == nullptr)) {
+      fail(fold_,
+           "no stream is given that says what device to fold on; give one, or call it over a shape on a "
+           "device, {}.over(device, {{...}})(...)",
+           fold_.name);
+    }
+    DeviceState& device = first_ == SIZE_MAX ? *over_->device : *arguments_[first_].region.stream->device;
+    checkGivenDevice(fold_, over_, device);
+    return device;
+  }
+
+  /// An output defines the domain of a kernel with folded outputs.
+  DomainSource source() const { return {firstOutput(fold_, specs_), over_ ? &*over_ : nullptr}; }
+
   void checkShape(std::size_t i, const Shape& domain) const {
     const Parameter& parameter = fold_.parameters[i];
     if (isValue(parameter, arguments_[i])) {
@@ -110,8 +121,7 @@ class Arguments {
     } else if (parameter.role == Role::Uniform) {
       checkUniformShape(fold_, parameter, arguments_[i].region.shape);
     } else if (parameter.role == Role::Input) {
-      const Parameter* const output = firstOutput();
-      checkInputShape(fold_, parameter, arguments_[i], output != nullptr ? *output : parameter, domain);
+      checkInputShape(fold_, parameter, arguments_[i], source(), domain);
     } else if (parameter.role == Role::Gather) {
       checkGatherShape(fold_, parameter, arguments_[i].region.shape, domain);
     }
@@ -170,14 +180,6 @@ class Arguments {
     return *std::ranges::find(fold_.parameters, Role::Accumulator, &Parameter::role);
   }
 
-  /// The output that defines the domain of a kernel with folded outputs; else null.
-  const Parameter* firstOutput() const {
-    const auto found = std::ranges::find_if(fold_.parameters, [&](const Parameter& parameter) {
-      return parameter.role == Role::Output && assemble::isNeeded(parameter, specs_);
-    });
-    return found == fold_.parameters.end() ? nullptr : &*found;
-  }
-
   /// Returns the common shape of the results.
   Shape resultShape() const {
     const Parameter* first = nullptr;
@@ -233,11 +235,12 @@ class Arguments {
 
   /// "'x' has shape" for one input, "the inputs together have" for several.
   std::string inputs() const {
-    if (const Parameter* const output = firstOutput()) return fmt::format("'{}' has shape", output->name);
+    if (const Parameter* const output = source().output) return fmt::format("'{}' has shape", output->name);
+    if (over_) return "over() gives the domain the shape";
     const auto isInput = [](const Parameter& parameter) { return parameter.role == Role::Input; };
-    if (std::ranges::count_if(fold_.parameters, isInput) > 1) {
-      return "the inputs together have shape";
-    }
+    const auto count = std::ranges::count_if(fold_.parameters, isInput);
+    if (count == 0) return "the iterators give the domain the shape";
+    if (count > 1) return "the inputs together have shape";
     return fmt::format("'{}' has shape", std::ranges::find_if(fold_.parameters, isInput)->name);
   }
 
@@ -253,6 +256,7 @@ class Arguments {
   const Reduction& reduction_;
   const Kernel& fold_;
   std::span<const Argument> arguments_;
+  const std::optional<GivenDomain>& over_;
   assemble::SpecValues specs_{};
   std::size_t first_ = SIZE_MAX;  ///< the argument that determines the device
 };
@@ -267,8 +271,8 @@ assemble::OtherUnits otherUnits(const Kernel& kernel, std::size_t uniforms, bool
 
 ResolvedReduction checkReduction(const Reduction& reduction, std::span<const Argument> arguments,
                                  std::span<void* const> values, const std::optional<ScanOrder>& scan,
-                                 const FoldedBox& placed) {
-  return Arguments(reduction, arguments).check(values, scan, placed);
+                                 const FoldedBox& placed, const std::optional<GivenDomain>& over) {
+  return Arguments(reduction, arguments, over).check(values, scan, placed);
 }
 
 namespace {

@@ -52,8 +52,9 @@ assemble::OtherUnits otherUnits(const program::Kernel& kernel, std::size_t unifo
 /// exist if the domain is empty; and, without `values`, that the shape of the results divides the inputs'
 /// shape in exactly one way. Of a scan, checks that the results have the shape of the inputs, and that identities
 /// exist if it is exclusive. The options of the returned reduction are the defaults. `placed` has passed argumentsIn().
+/// `over` is that of the call's options: the domain, and the device if there is no stream.
 ResolvedReduction checkReduction(const program::Reduction& reduction, std::span<const Argument> arguments,
                                  std::span<void* const> values, const std::optional<ScanOrder>& scan = {},
-                                 const FoldedBox& placed = {});
+                                 const FoldedBox& placed = {}, const std::optional<GivenDomain>& over = {});
 
 }  // namespace sk

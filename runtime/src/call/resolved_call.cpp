@@ -51,7 +51,8 @@ const Kernel& unrolledVariant(const Kernel& kernel, const assemble::SpecValues& 
   return kernel;
 }
 
-Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const assemble::SpecValues& specs) {
+Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const assemble::SpecValues& specs,
+               const std::optional<GivenDomain>& given) {
   Shape domain;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Role role = kernel.parameters[i].role;
@@ -62,6 +63,7 @@ Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const 
     if (role == Role::Output) {
       return shape;
     }
+    if (given) continue;  // for an output
     if ((role != Role::Input && role != Role::Iterator) || arguments[i].fit != program::Fit::Same) {
       continue;
     }
@@ -74,7 +76,7 @@ Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const 
       }
     }
   }
-  return domain;
+  return given ? given->shape : domain;
 }
 
 const program::Plan* planFor(const Kernel& kernel, const assemble::SpecValues& specs,
@@ -87,8 +89,8 @@ const program::Plan* planFor(const Kernel& kernel, const assemble::SpecValues& s
 ResolvedCall resolveCall(const Kernel& kernel, std::span<const Argument> arguments,
                          const DeviceLimits& limits, const CallOptions& options) {
   const assemble::SpecValues specs = specsOf(kernel, arguments);
-  return {
-      kernel, arguments, options, specs, domainOf(kernel, arguments, specs), planFor(kernel, specs, limits)};
+  const Shape domain = domainOf(kernel, arguments, specs, options.over);
+  return {kernel, arguments, options, specs, domain, planFor(kernel, specs, limits)};
 }
 
 ResolvedCall ResolvedCall::of(const Kernel& variant, const DeviceLimits& limits) const {

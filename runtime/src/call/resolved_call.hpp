@@ -53,10 +53,10 @@ std::uint32_t specBits(const program::Parameter& parameter, const void* value);
 /// missing.
 assemble::SpecValues specsOf(const program::Kernel& kernel, std::span<const Argument> arguments);
 
-/// The shape of a kernel's domain: the shape of its outputs or, if it has only variable and scatter outputs,
-/// of its inputs that are not broadcast and of iterators that have a shape.
+/// The shape of a kernel's domain: the shape of its outputs or, if it has only variable and scatter outputs, the given
+/// one or that of its inputs that are not broadcast and of iterators that have a shape. Its rank is 0 if nothing says it.
 Shape domainOf(const program::Kernel& kernel, std::span<const Argument> arguments,
-               const assemble::SpecValues& specs);
+               const assemble::SpecValues& specs, const std::optional<GivenDomain>& given);
 
 /// The plan for running a kernel with these values of its Spec parameters on a device with these limits; null if one
 /// pass is enough, or if no plan fits the limits.

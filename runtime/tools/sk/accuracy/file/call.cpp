@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "accuracy/file/call.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "native/native_stream.hpp"
@@ -69,7 +70,12 @@ void Call::run(const sk::CallOptions& options, int draw) {
     const std::size_t at = isSame ? 0 : static_cast<std::size_t>(draw);
     arguments.push_back({.value = inputs_.parameters[p].bytes.data() + at * parameter.element->size});
   }
-  subject_.call(arguments, options);
+  sk::CallOptions all = options;
+  const bool hasInputs = std::ranges::any_of(subject_.parameters(), [](const Parameter& parameter) {
+    return parameter.role == sk::program::Role::Input;
+  });
+  if (subject_.isReduce() && !hasInputs) all.over = sk::GivenDomain{.shape = inputs_.extent.domain};
+  subject_.call(arguments, all);
 }
 
 Results Call::results() const {
