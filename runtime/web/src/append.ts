@@ -10,6 +10,7 @@ import type { Features, LoadedFile, ListCaller } from './features.js';
 import { isNeeded, type CallableKernel, type List, type PointStep } from './generated.js';
 import { shapeText, sizeOf, stridesOf, type Layout } from './layout.js';
 import type { Plane } from './memory.js';
+import { checkOver, failWithoutDomain, type GivenDomain } from './over.js';
 import { bindOperands, isAlsoRead, liesOf, ProgramSource, targetOf } from './pass.js';
 import type { Program } from './program.js';
 import { mostPushes, Pyramid } from './pyramid.js';
@@ -58,7 +59,7 @@ class AppendCaller implements ListCaller {
   }
 
   /** Runs the kernel; promises that the streams have their elements if the number of pushes must be counted. */
-  call(given: Checked): void | Promise<void> {
+  call(given: Checked, over: GivenDomain | null): void | Promise<void> {
     const { name, parameters } = this.kernel;
     parameters.forEach((parameter, i) => {
       const isRead = parameter.role === 'input' || parameter.role === 'gather';
@@ -66,14 +67,14 @@ class AppendCaller implements ListCaller {
       if (parameter.role === 'uniform' && given.streams[i]) fail(name, `'${parameter.name}' of a kernel that pushes or scatters is a value; read the stream, and give its value`, 'type');
     });
     const { call, copies } = withoutViews(given); // lists have no programs for views
-    const done = this.callWhole(call);
+    const done = this.callWhole(call, over);
     for (const copy of copies) copy.dispose(); // the call holds their planes as long as it reads them
     return done;
   }
 
-  private callWhole(call: Checked): void | Promise<void> {
-    if (this.isCounted) return this.callCounted(call);
-    const begun = this.begin(call);
+  private callWhole(call: Checked, over: GivenDomain | null): void | Promise<void> {
+    if (this.isCounted) return this.callCounted(call, over);
+    const begun = this.begin(call, over);
     if (begun === null) return;
     try {
       this.finish(begun, new Map());
@@ -82,8 +83,8 @@ class AppendCaller implements ListCaller {
     }
   }
 
-  private async callCounted(call: Checked): Promise<void> {
-    const begun = this.begin(call);
+  private async callCounted(call: Checked, over: GivenDomain | null): Promise<void> {
+    const begun = this.begin(call, over);
     if (begun === null) return;
     const { device, pyramids } = begun;
     const written = this.lists.map(({ parameter }) => call.streams[parameter]!);
@@ -100,12 +101,12 @@ class AppendCaller implements ListCaller {
   }
 
   /** Draws the other outputs, and the counts. Returns null if there are no elements. */
-  private begin(call: Checked): Begun | null {
+  private begin(call: Checked, over: GivenDomain | null): Begun | null {
     const { kernel } = this;
     const { elements } = this.file;
-    const device = deviceOf(kernel, call.streams);
+    const device = deviceOf(kernel, call.streams, over);
     const outputs = kernel.parameters.flatMap((parameter, i) => (parameter.role === 'output' && isNeeded(parameter, call.specs) ? [i] : []));
-    const shape = this.checkShapes(call, device, outputs);
+    const shape = this.checkShapes(call, device, outputs, over);
     device.begin();
     if (sizeOf(shape) === 0) {
       this.lists.forEach((list) => list.op === undefined && call.streams[list.parameter]!.take([], device.layoutOf([0], false), [0]));
@@ -190,18 +191,18 @@ class AppendCaller implements ListCaller {
   }
 
   /** The shape of the domain. */
-  private checkShapes(call: Checked, device: Device, outputs: readonly number[]): readonly number[] {
+  private checkShapes(call: Checked, device: Device, outputs: readonly number[], over: GivenDomain | null): readonly number[] {
     const { kernel } = this;
     const { name, parameters } = kernel;
     const nameOf = (i: number) => parameters[i]!.name;
     const inputs = parameters.flatMap(({ role }, i) => (role === 'input' && isRead(kernel, i, call) ? [i] : []));
     const domains = [...outputs, ...inputs];
     const first = domains[0];
-    if (first === undefined) fail(name, 'no input and no output says how many elements there are; give one', 'shape');
-    const shape = call.streams[first]!.shape as readonly number[];
+    if (first !== undefined) checkOver(kernel, over, first, call.streams[first]!.shape as readonly number[]);
+    const shape = first === undefined ? (over ?? failWithoutDomain(name)).shape : (call.streams[first]!.shape as readonly number[]);
     for (const i of domains) {
       const other = call.streams[i]!.shape as readonly number[];
-      if (!isSameShape(other, shape)) fail(name, `'${nameOf(i)}' has shape ${shapeText(other)}, but '${nameOf(first)}' has ${shapeText(shape)}; give them the same shape`, 'shape');
+      if (!isSameShape(other, shape)) fail(name, `'${nameOf(i)}' has shape ${shapeText(other)}, but '${nameOf(first!)}' has ${shapeText(shape)}; give them the same shape`, 'shape');
     }
     const written = [...outputs, ...this.lists.map(({ parameter }) => parameter)];
     written.forEach((i, number) => {

@@ -7,6 +7,7 @@ import { isWide } from './format.js';
 import { SkError, type ErrorKind } from './error.js';
 import { isNeeded, specBits, type Element, type Field, type KernelData, type Parameter } from './generated.js';
 import { decodedRank, shapeText, xFirst } from './layout.js';
+import type { GivenDomain } from './over.js';
 import { Fitted, Stream, View } from './stream.js';
 
 export type AnyStream = Stream<any, number>;
@@ -185,19 +186,22 @@ export function withoutViews(call: Checked): { call: Checked; copies: readonly A
   return { call: { ...call, streams, views: call.views.map(() => null) }, copies };
 }
 
-/** The common device of the streams. Throws SkError if there are two. */
-export function deviceOf(kernel: KernelData, streams: readonly (AnyStream | null)[]): Device {
+/** The common device of the streams or, if there are none, the given one. Throws SkError if there are two, or none. */
+export function deviceOf({ name, parameters }: KernelData, streams: readonly (AnyStream | null)[], over: GivenDomain | null): Device {
   let first = -1;
   streams.forEach((stream, i) => {
     if (stream === null) return;
     if (first < 0) first = i;
     else if (stream.device !== streams[first]!.device) {
-      const [a, b] = [kernel.parameters[first]!.name, kernel.parameters[i]!.name];
-      fail(kernel.name, `'${a}' and '${b}' are streams of two devices; copy one of them through the host`, 'device');
+      const [a, b] = [parameters[first]!.name, parameters[i]!.name];
+      fail(name, `'${a}' and '${b}' are streams of two devices; copy one of them through the host`, 'device');
     }
   });
-  if (first < 0) fail(kernel.name, 'no stream is given that says what device to run on; give one');
-  return streams[first]!.device;
+  const given = over?.device;
+  if (first < 0 && !given) fail(name, `no stream is given that says what device to run on; give one, or call it over a shape on a device, ${name}.over(device, [...])(...)`);
+  const device = first < 0 ? given! : streams[first]!.device;
+  if (given && given !== device) fail(name, 'over() gives the call to another device than that of its streams; give both one device', 'device');
+  return device;
 }
 
 export function isSameShape(a: readonly number[], b: readonly number[]): boolean {

@@ -7,6 +7,7 @@ import type { Device } from './device.js';
 import type { CallableKernel, CallableReduction, GeneratedFile, KernelData, Plan } from './generated.js';
 import type { Layout } from './layout.js';
 import type { Plane } from './memory.js';
+import type { GivenDomain } from './over.js';
 import type { Program } from './program.js';
 import type { planScan } from './scan_plan.js';
 import type { ScanOptions } from './types.js';
@@ -38,7 +39,7 @@ export interface Starter {
 }
 
 export interface ListCaller extends Starter {
-  call(given: Checked): void | Promise<void>;
+  call(given: Checked, over: GivenDomain | null): void | Promise<void>;
 }
 
 export interface PassRunner extends Starter {
@@ -48,7 +49,7 @@ export interface PassRunner extends Starter {
 
 export interface FoldCaller {
   check(given: readonly unknown[]): void;
-  call(given: readonly unknown[], options: ScanOptions): Promise<unknown> | void;
+  call(given: readonly unknown[], options: ScanOptions, over: GivenDomain | null): Promise<unknown> | void;
   startPrograms(device: Device, options: ScanOptions): Program[];
 }
 

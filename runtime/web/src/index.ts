@@ -8,6 +8,7 @@ import type { Features, FoldCaller, LoadedFile } from './features.js';
 import { Forms } from './forms.js';
 import { checkSchema, type Callable, type GeneratedFile, type Parameter, type WithBundles } from './generated.js';
 import { KernelCaller } from './kernel.js';
+import { givenDomain, type GivenDomain } from './over.js';
 import type { Program } from './program.js';
 import type { KernelOptions, ScanOptions, Struct } from './types.js';
 
@@ -18,7 +19,7 @@ export { SkError } from './error.js';
 export type { ErrorKind } from './error.js';
 export { Stream, stretch, stride, type Fitted, type View } from './stream.js';
 export type {
-  ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Gather, Held, Input, Iterate, Kernel, KernelOptions, NotOffered, Output, Pushed, Reduce, Scan, ScanOptions,
+  ArrayOf, BuiltIn, CallOptions, CountingKernel, ElementType, Extents, Gather, Held, Input, Iterate, Kernel, KernelOptions, NotOffered, Output, Over, Pushed, Reduce, Scan, ScanOptions,
   Scattered, ShapeOf, Struct, Value, ValueOf,
 } from './types.js';
 
@@ -38,11 +39,12 @@ interface Exported {
   check(given: readonly unknown[]): void;
   startPrograms(device: Device): Program[];
   with?(options: ScanOptions): Exported;
+  over?(...given: readonly unknown[]): Exported;
 }
 
-/** Makes a call, which the tracer of the streams' device sees. */
-function traced<T>(name: string, given: readonly unknown[], call: () => T): T {
-  for (const argument of given) {
+/** Makes a call, which the tracer of the streams' device sees, or of the given one. */
+function traced<T>(name: string, given: readonly unknown[], over: GivenDomain | null, call: () => T): T {
+  for (const argument of [...given, over]) {
     const tracer = (argument as { device?: Device } | null | undefined)?.device?.tracer;
     if (tracer) return tracer.call(name, call);
   }
@@ -51,29 +53,31 @@ function traced<T>(name: string, given: readonly unknown[], call: () => T): T {
 
 interface Caller {
   repeat(given: readonly unknown[]): boolean;
-  call(given: readonly unknown[]): unknown;
+  call(given: readonly unknown[], over: GivenDomain | null): unknown;
   check(given: readonly unknown[]): void;
   startPrograms(device: Device): Program[];
 }
 
-function reduceFunction(name: string, caller: FoldCaller, options: ScanOptions): Exported {
-  const run = (...given: unknown[]) => traced(name, given, () => caller.call(given, options));
+function reduceFunction(name: string, caller: FoldCaller, options: ScanOptions, over: GivenDomain | null): Exported {
+  const run = (...given: unknown[]) => traced(name, given, over, () => caller.call(given, options, over));
   return Object.assign(run, {
     repeat: () => false,
-    with: (more: ScanOptions) => reduceFunction(name, caller, { ...options, ...more }),
+    with: (more: ScanOptions) => reduceFunction(name, caller, { ...options, ...more }, over),
+    over: (...given: readonly unknown[]) => reduceFunction(name, caller, options, givenDomain(name, given)),
     check: (given: readonly unknown[]) => caller.check(given),
     startPrograms: (device: Device) => caller.startPrograms(device, options),
   });
 }
 
-function kernelFunction(name: string, callers: { of(options: KernelOptions): Caller }, options: KernelOptions): Exported {
+function kernelFunction(name: string, callers: { of(options: KernelOptions): Caller }, options: KernelOptions, over: GivenDomain | null): Exported {
   let chosen: Caller | null = null; // when it is called: other overloads may have forms that this one lacks
   const caller = () => (chosen ??= callers.of(options));
-  const repeat = (given: readonly unknown[]) => chosen !== null && chosen.repeat(given);
-  const run = (...given: unknown[]) => (repeat(given) ? undefined : traced(name, given, () => caller().call(given)));
+  const repeat = (given: readonly unknown[]) => over === null && chosen !== null && chosen.repeat(given);
+  const run = (...given: unknown[]) => (repeat(given) ? undefined : traced(name, given, over, () => caller().call(given, over)));
   return Object.assign(run, {
     repeat,
-    with: (more: object) => kernelFunction(name, callers, { ...options, ...more }),
+    with: (more: object) => kernelFunction(name, callers, { ...options, ...more }, over),
+    over: (...given: readonly unknown[]) => kernelFunction(name, callers, options, givenDomain(name, given)),
     check: (given: readonly unknown[]) => caller().check(given),
     startPrograms: (device: Device) => caller().startPrograms(device),
   });
@@ -82,10 +86,10 @@ function kernelFunction(name: string, callers: { of(options: KernelOptions): Cal
 function functionOf(callable: Callable, file: LoadedFile): Exported {
   if ('whyNot' in callable) {
     const refuse = () => fail(callable.name, callable.whyNot, 'compile');
-    return Object.assign(() => refuse(), { repeat: () => false, with: refuse, check: refuse, startPrograms: refuse });
+    return Object.assign(() => refuse(), { repeat: () => false, with: refuse, over: refuse, check: refuse, startPrograms: refuse });
   }
-  if ('fold' in callable) return withBundles(callable, callable.fold.parameters, reduceFunction(callable.name, file.features.folds!(callable, file), {}));
-  return withBundles(callable, callable.parameters, kernelFunction(callable.name, new Forms(callable, file, (form) => new KernelCaller(form, file)), {}));
+  if ('fold' in callable) return withBundles(callable, callable.fold.parameters, reduceFunction(callable.name, file.features.folds!(callable, file), {}, null));
+  return withBundles(callable, callable.parameters, kernelFunction(callable.name, new Forms(callable, file, (form) => new KernelCaller(form, file)), {}, null));
 }
 
 /** A function whose arguments may be bundles, from one that takes their members. */
@@ -97,6 +101,7 @@ function withBundles(callable: WithBundles & { readonly name: string }, paramete
   return Object.assign((...given: unknown[]) => flat(...flatten(given)), {
     repeat: (given: readonly unknown[]) => flat.repeat(flatten(given)),
     with: (options: ScanOptions) => withBundles(callable, parameters, flat.with?.(options) ?? flat),
+    over: (...given: readonly unknown[]) => withBundles(callable, parameters, flat.over?.(...given) ?? flat),
     check: (given: readonly unknown[]) => flat.check(flatten(given)),
     startPrograms: (device: Device) => flat.startPrograms(device),
   });
@@ -119,6 +124,7 @@ function overloaded(functions: readonly Exported[]): Exported {
   return Object.assign((...given: unknown[]) => (repeat(given) ? undefined : chosen(given)(...given)), {
     repeat,
     with: (options: ScanOptions) => overloaded(functions.map((one) => one.with?.(options) ?? one)),
+    over: (...given: readonly unknown[]) => overloaded(functions.map((one) => one.over?.(...given) ?? one)),
     check: (given: readonly unknown[]) => chosen(given).check(given),
     startPrograms: (device: Device) => functions.flatMap((one) => one.startPrograms(device)),
   });

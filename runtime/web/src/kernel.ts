@@ -7,6 +7,7 @@ import type { ListCaller, LoadedFile, PassRunner } from './features.js';
 import { isNeeded, type CallableKernel } from './generated.js';
 import { mayPack, shapeText, type Layout } from './layout.js';
 import type { Plane } from './memory.js';
+import { checkOver, type GivenDomain } from './over.js';
 import { ProgramSource, drawDomain, isAlsoRead, liesOf, smallGather, targetOf } from './pass.js';
 import type { Program } from './program.js';
 import { Repeat, type Choices } from './repeat.js';
@@ -50,15 +51,16 @@ export class KernelCaller {
     return false;
   }
 
-  call(given: readonly unknown[]): void | Promise<void> {
+  call(given: readonly unknown[], over: GivenDomain | null = null): void | Promise<void> {
     const { kernel } = this;
     const { elements } = this.source.file;
     const call = checkArguments(kernel, elements, given);
-    if (this.lists !== null) return this.lists.call(call);
+    if (this.lists !== null) return this.lists.call(call, over);
     const outputs = this.hasConditions ? this.outputs.filter((i) => isNeeded(kernel.parameters[i]!, call.specs)) : this.outputs;
     if (outputs.length === 0) return; // the spec parameters leave nothing to write
-    const device = deviceOf(kernel, call.streams);
+    const device = deviceOf(kernel, call.streams, over);
     const { shape, reason } = this.checkShapes(call, outputs);
+    checkOver(kernel, over, outputs[0]!, shape);
     device.begin();
     if (shape.includes(0)) return;
 

@@ -42,6 +42,15 @@ export const lanes = 4;
 /** Elements of a stream, which are numbered with an int. */
 const mostElements = 2 ** 31 - 2 ** 16;
 
+/** The largest extent of a stream. */
+const mostExtent = 2 ** 30 - 1;
+
+/** Throws SkError unless these are the extents of a stream or a domain. */
+export function checkShape(shape: readonly number[]): void {
+  if (shape.length >= 1 && shape.length <= 4 && shape.every((n) => Number.isInteger(n) && n >= 0 && n <= mostExtent)) return;
+  throw new SkError(`${shapeText(shape)} is no shape: 1 to 4 extents, rows first, whole numbers from 0 to ${mostExtent}`, 'shape');
+}
+
 export function sizeOf(shape: readonly number[]): number {
   return shape.reduce((size, extent) => size * extent, 1);
 }

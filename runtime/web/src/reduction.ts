@@ -13,6 +13,7 @@ import { isNeeded, type CallableReduction, type Parameter, type SumVariant } fro
 import { KernelCaller } from './kernel.js';
 import { shapeText } from './layout.js';
 import type { Plane } from './memory.js';
+import { checkOver, failWithoutDomain, type GivenDomain } from './over.js';
 import { alignedProgram, drawAligned, ProgramSource } from './pass.js';
 import type { Program } from './program.js';
 import { valueLayout } from './reduce_plan.js';
@@ -96,11 +97,11 @@ class ReductionCaller implements FoldCaller {
   }
 
   /** Promises the values of the accumulators, or, if they are given, writes to streams. */
-  call(given: readonly unknown[], options: ScanOptions): Promise<unknown> | void {
+  call(given: readonly unknown[], options: ScanOptions, over: GivenDomain | null): Promise<unknown> | void {
     const { whole, copies, written } = this.withoutViews(given);
     const finish = () => written.forEach(([drawn, view]) => drawn.copyTo(view));
     const isToStreams = this.reduction.scans || given.length === this.fold.parameters.length;
-    const done = isToStreams ? this.toStreams(whole, options, finish) : this.toValues(whole, options, finish);
+    const done = isToStreams ? this.toStreams(whole, options, over, finish) : this.toValues(whole, options, over, finish);
     for (const copy of copies) copy.dispose(); // all passes have been drawn
     return done;
   }
@@ -141,12 +142,12 @@ class ReductionCaller implements FoldCaller {
   }
 
   /** If there are several accumulators, a list. */
-  private async toValues(given: readonly unknown[], options: ScanOptions, finish: () => void): Promise<unknown> {
+  private async toValues(given: readonly unknown[], options: ScanOptions, over: GivenDomain | null, finish: () => void): Promise<unknown> {
     const call = this.check(given);
-    const shape = this.domainOf(call);
+    const shape = this.domainOf(call, over);
     const goal: Goal = { shape, blocks: shape.map(() => 1), layout: valueLayout };
     this.checkIdentities(shape);
-    const device = deviceOf(this.fold, call.streams);
+    const device = deviceOf(this.fold, call.streams, over);
     const sums = this.chosen(options);
     device.begin();
     const planes = this.compute(device, call, goal, this.plain.accumulators.map((accumulator) => this.plain.formatsOf(device, accumulator)), sums);
@@ -156,10 +157,10 @@ class ReductionCaller implements FoldCaller {
     return values.length === 1 ? values[0] : values;
   }
 
-  private toStreams(given: readonly unknown[], options: ScanOptions, finish: () => void): void {
+  private toStreams(given: readonly unknown[], options: ScanOptions, over: GivenDomain | null, finish: () => void): void {
     const call = this.check(given);
-    const shape = this.domainOf(call);
-    const device = deviceOf(this.fold, call.streams);
+    const shape = this.domainOf(call, over);
+    const device = deviceOf(this.fold, call.streams, over);
     const sums = this.chosen(options);
     const goal = this.goalOf(device, call, shape, options);
     device.begin();
@@ -250,13 +251,14 @@ class ReductionCaller implements FoldCaller {
 
   // ---- shapes -------------------------------------------------------------------------------------
 
-  /** The common shape of the outputs and inputs. */
-  private domainOf(call: Checked): readonly number[] {
+  /** The common shape of the outputs and inputs; if there are none, the given one. */
+  private domainOf(call: Checked, over: GivenDomain | null): readonly number[] {
     const { parameters } = this.fold;
     const ofRole = (wanted: string) => parameters.flatMap((parameter, i) => (parameter.role === wanted && isNeeded(parameter, call.specs) ? [i] : []));
     const [first, ...others] = [...ofRole('output'), ...ofRole('input')];
-    if (first === undefined) this.fail('no input says how many elements there are; reductions in browsers need one', 'shape');
+    if (first === undefined) return (over ?? failWithoutDomain(this.reduction.name)).shape;
     const shape = call.streams[first]!.shape as readonly number[];
+    checkOver(this.fold, over, first, shape);
     for (const i of others) {
       const other = call.streams[i]!.shape;
       if (isSameShape(shape, other)) continue;
@@ -270,6 +272,7 @@ class ReductionCaller implements FoldCaller {
     const { parameters } = this.fold;
     const inputs = parameters.filter(({ role }) => role === 'input');
     const first = parameters.find(({ role }) => role === 'output') ?? (inputs.length === 1 ? inputs[0] : undefined);
+    if (first === undefined && inputs.length === 0) return `over() gives the domain the shape ${shapeText(domain)}`;
     return `${first === undefined ? 'the inputs together have' : `'${first.name}' has`} shape ${shapeText(domain)}`;
   }
 

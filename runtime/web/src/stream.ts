@@ -9,16 +9,13 @@ import { channelsOf, heldComponent, isSameElement, mayPackElement, newArrays, nu
 import { SkError } from './error.js';
 import { formatOf } from './format.js';
 import type { Element, Field } from './generated.js';
-import { type Index4, type Layout, lanes, shapeText, sizeOf, stridesOf, texelsOf, xFirst } from './layout.js';
+import { checkShape, type Index4, type Layout, lanes, shapeText, sizeOf, stridesOf, texelsOf, xFirst } from './layout.js';
 import type { Plane } from './memory.js';
 import { Program } from './program.js';
 import type { ArrayOf, ElementType, ShapeOf, ValueOf } from './types.js';
 
 type AnyStream = Stream<any, number>;
 type Elements = AnyStream | View<any, number>;
-
-/** The largest extent of a stream. */
-const mostExtent = 2 ** 30 - 1;
 
 export class Stream<T extends ElementType, R extends number> {
   /** For types alone: streams of different elements or ranks are different types. */
@@ -41,10 +38,7 @@ export class Stream<T extends ElementType, R extends number> {
   /** @internal */
   constructor(readonly device: Device, /** @internal */ readonly element: Element, shape: ShapeOf<R>) {
     const extents = shape as readonly number[];
-    const isShape = extents.length >= 1 && extents.length <= 4 && extents.every((n) => Number.isInteger(n) && n >= 0 && n <= mostExtent);
-    if (!isShape) {
-      throw new SkError(`${shapeText(extents)} is no shape: 1 to 4 extents, rows first, whole numbers from 0 to ${mostExtent}`, 'shape');
-    }
+    checkShape(extents);
     this.shape = shape;
     this.size = sizeOf(extents);
     this.layout = device.layoutOf(extents, this.mayPack());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The types of what .sk files declare, as FILE.sk.d.ts uses them.
+import type { Device } from './device.js';
 import type { Fitted, Stream, View } from './stream.js';
 
 /** A scalar and its vectors, whose arrays have one type. */
@@ -105,14 +106,23 @@ export interface ScanOptions extends CallOptions {
   readonly along?: number;
 }
 
+/** 1 to 4 extents, rows first. */
+export type Extents = readonly [number] | readonly [number, number] | readonly [number, number, number] | readonly [number, number, number, number];
+
+/** What has a domain that a call may be given: where no stream says it, and on a device, where no stream says that. */
+export interface Over<Called> {
+  over(shape: Extents): Called;
+  over(device: Device, shape: Extents): Called;
+}
+
 /** A kernel: a function that writes its outputs. It returns at once; the device computes meanwhile. */
-export interface Kernel<Arguments extends readonly unknown[]> {
+export interface Kernel<Arguments extends readonly unknown[]> extends Over<Kernel<Arguments>> {
   (...given: Arguments): void;
   with(options: KernelOptions): Kernel<Arguments>;
 }
 
 /** A kernel that pushes, or that scatters many values: how many is known when the promise resolves. */
-export interface CountingKernel<Arguments extends readonly unknown[]> {
+export interface CountingKernel<Arguments extends readonly unknown[]> extends Over<CountingKernel<Arguments>> {
   (...given: Arguments): Promise<void>;
 }
 
@@ -120,14 +130,14 @@ export interface CountingKernel<Arguments extends readonly unknown[]> {
  * A reduce, or a kernel with folded outputs: a function that promises the value. With streams for the results, `All`, it writes
  * to these instead, and returns at once: a smaller stream has one element for each block of the inputs.
  */
-export interface Reduce<Arguments extends readonly unknown[], Result, All extends readonly unknown[]> {
+export interface Reduce<Arguments extends readonly unknown[], Result, All extends readonly unknown[]> extends Over<Reduce<Arguments, Result, All>> {
   (...given: Arguments): Promise<Result>;
   (...given: All): void;
   with(options: CallOptions): Reduce<Arguments, Result, All>;
 }
 
 /** A scan: a function that writes one result for each element. */
-export interface Scan<Arguments extends readonly unknown[]> {
+export interface Scan<Arguments extends readonly unknown[]> extends Over<Scan<Arguments>> {
   (...given: Arguments): void;
   with(options: ScanOptions): Scan<Arguments>;
 }

@@ -124,6 +124,56 @@ export const appendCases = ({ same, refused, filled, random, random24, floats, i
     await refused('misuse', "the outputs 'twice' and 'odd' are one stream", () => k.sieve(1, device.stream('int', [4]), ints, ints, device.stream(k.Spot, [4])));
   },
 
+  // Domains that no stream has, of kernels and of reduces.
+  async domains(device) {
+    const near = (x) => Math.abs(x - Math.PI) < 1e-6; // terms within 2 ulp of 4, whose sum is compensated
+    expect('to a value', near(await k.quarters.over(device, [10000])(10000)));
+    const exact = k.quarters.with({ accumulate: 'exact' });
+    expect('options before and after', (await exact.over(device, [10000])(10000)) === (await k.quarters.over(device, [10000]).with({ accumulate: 'exact' })(10000)));
+    const area = device.stream('float', [1]);
+    k.quarters.over([10000])(10000, area);
+    expect('to a stream', near((await area.read())[0]));
+    for (const [shape, most] of [[[7], [706, 100, 100, 100]], [[60, 50], [5049, 6059, 100, 100]], [[3, 4, 5], [504, 403, 302, 100]]]) {
+      expect(`places of ${shape}`, String(await k.farthest.over(device, shape)()) === String(most));
+    }
+    const rows = device.stream('int4', [60, 1]);
+    k.farthest.over([60, 50])(rows);
+    expect('of each row', (await rows.read())[4 * 7 + 1] === 6007);
+    expect('of an iterator', (await k.rampOver.over(device, [10, 10])({ begin: 0, end: 100 })) === 4950);
+    const s = device.stream('int', [20, 30]);
+    k.triangles.over([20, 30])(s);
+    expect('of a scan', (await s.read())[599] === 20 * 465);
+
+    const p = device.stream('int2', [0]);
+    await k.wedge.over([2, 3])(p);
+    expect('pushed', String(await p.read()) === '1,0,2,0,2,0,1,1,2,1,2,1');
+    const bins = filled(device, 'int', [8], new Int32Array(8).fill(9));
+    k.dealt.over([2, 3])(bins);
+    expect('scattered', String(await bins.read()) === '0,0,0,1,1,1,9,9');
+    const r = device.stream('int', [3]);
+    k.numbered.over([3])(r);
+    k.numbered.over([3])(r);
+    expect('the same as an output', String(await r.read()) === '0,1,2');
+    await k.wedge.over([0, 4])(p);
+    expect('an empty domain', p.size === 0 && (await k.quarters.over(device, [0])(1)) === 0);
+
+    const other = await Device.create();
+    const table = [
+      ['shape', 'call it over a shape, dealt.over([...])(...)', () => k.dealt(bins)],
+      ['shape', 'call it over a shape, quarters.over([...])(...)', () => k.quarters(4, area)],
+      ['misuse', 'quarters.over(device, [...])(...)', () => k.quarters.over([4])(4)],
+      ['shape', "over() gives the domain the shape [4], but 'r' has [3]", () => k.numbered.over([4])(r)],
+      ['shape', 'over() gives the domain the shape [2]', () => k.triangles.over([2])(s)],
+      ['device', 'give both one device', () => k.dealt.over(other, [4])(bins)],
+      ['shape', 'divide it into several streams', () => k.quarters.over(device, [100000, 100000])(4)],
+      ...[[], [1, 2, 3, 4, 5], [-1], [1.5], [NaN], ['4']].map((shape) => ['shape', 'is no shape', () => k.dealt.over(shape)]),
+      ...[[], [4], [null], [device], [[4], [4]], [device, 4]].map((given) => ['type', 'over() takes a shape', () => k.dealt.over(...given)]),
+    ];
+    for (const [kind, text, call] of table) await refused(kind, text, call);
+    other.dispose();
+    await refused('lost', '', () => k.quarters.over(other, [4])(4));
+  },
+
   // Without blending of floats, plain stores are left.
   async unblended() {
     const context = document.createElement('canvas').getContext('webgl2');

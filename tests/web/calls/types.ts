@@ -2,7 +2,7 @@
 //
 // What the types of calls.sk.d.ts allow, and what they reject: tsc reads this, and nothing runs it.
 import { Device, stretch, stride, type View } from 'streamkernel';
-import { Body, around, count, diffuse, field, heaviest, longSum, move, positive, shaded, sum, type Scene } from './calls.sk.js';
+import { Body, around, count, diffuse, field, heaviest, longSum, move, positive, quarters, shaded, sum, wedge, type Scene } from './calls.sk.js';
 import { folds } from './reductions.sk.js';
 import { curve, held, mixed, Point, smooth, squares } from './layouts.sk.js';
 
@@ -40,6 +40,11 @@ export async function allowed(device: Device): Promise<number> {
   const words: BigInt64Array = await longs.read();
   const sumOfLongs: bigint = await longSum(longs);
   void [words, sumOfLongs];
+  const wedged: Promise<void> = wedge.over([4, 4])(device.stream('int2', [0]));
+  await wedged;
+  const area: number = await quarters.over(device, [100]).with({ accumulate: 'exact' })(100);
+  quarters.with({ accumulate: 'tree' }).over([100])(100, device.stream('float', [1]));
+  void area;
   u.fill(1);
   bodies.domain([0], [5]).fill({ spot: { at: [1, 2], heat: 3 }, kind: 4, color: [0, 0, 1] });
   u.domain([0, 0], [1, 512]).copyTo(u.domain([1, 0], [2, 512]));
@@ -58,6 +63,10 @@ export async function rejected(device: Device): Promise<void> {
   u.copyTo(ints);
   // @ts-expect-error: another rank
   u.copyTo(line);
+  // @ts-expect-error: a shape is an array
+  wedge.over(4);
+  // @ts-expect-error: of at most four dimensions
+  wedge.over([1, 2, 3, 4, 5]);
   // @ts-expect-error: the gather has two dimensions
   diffuse(0.2, line, u);
   // @ts-expect-error: of floats
