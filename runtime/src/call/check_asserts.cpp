@@ -141,7 +141,8 @@ void checkFoldAssertions(DeviceState& device, const Kernel& fold, std::span<cons
                          const Box& box, const CallOptions& options) {
   CallOptions boxed = options;
   boxed.box = box;
-  checkAssertions(device, fold, arguments, domainOf(fold, arguments, specsOf(fold, arguments)), boxed);
+  checkAssertions(device, fold, arguments, domainOf(fold, arguments, specsOf(fold, arguments), options.over),
+                  boxed);
 }
 
 }  // namespace sk
