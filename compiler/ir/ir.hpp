@@ -171,7 +171,7 @@ enum class ScatterOp : std::uint8_t { Store, Add, Min, Max };
 /// `value`; an index outside has no effect. Order and mask are as in Push. Each output has one op.
 struct Scatter { StreamRef stream; ScatterOp op; ExprPtr index, value; ExprPtr mask = nullptr; };
 
-/// Prints values, which are ints, uints, floats or doubles, by a format of C's printf. Only native code prints. Mask as in Push.
+/// Prints values, which are integers of 32 or 64 bits, floats or doubles, by a format of C's printf. Only native code prints. Mask as in Push.
 struct Print { std::string format; std::vector<ExprPtr> values; ExprPtr mask = nullptr; };
 
 struct Stmt {

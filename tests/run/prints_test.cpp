@@ -52,6 +52,15 @@ std::vector<int> numbers(int count) {
   return list;
 }
 
+TEST_CASE("integers of 64 bits are printed whole") {
+  sk::Device& device = run_tests::device("native");
+  auto x = device.stream<int>({3});
+  auto r = device.stream<std::int64_t>({3});
+  x.write(numbers(3));
+  CHECK(sorted(linesOf([&] { wide(x, r); })) ==
+        std::vector<std::string>{"-10000000000 10000000000", "-20000000000 20000000000", "0        0"});
+}
+
 TEST_CASE("lanes print in their order") {
   sk::Device& device = run_tests::device("native");
   auto x = device.stream<int>({21}), r = device.stream<int>({21});

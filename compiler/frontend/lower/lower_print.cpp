@@ -45,7 +45,11 @@ std::vector<std::string> conversionsOf(std::string_view format) {
 
 bool printsInteger(std::string_view conversion) {
   return conversion == "*" ||
-         (isOneOf(ofIntegers, conversion.back()) && conversion.find_first_of("lLqjzt") == conversion.npos);
+         (isOneOf(ofIntegers, conversion.back()) && conversion.find_first_of("Lqjzt") == conversion.npos);
+}
+/// True for "%ld": an integer of 64 bits.
+bool printsLong(std::string_view conversion) {
+  return printsInteger(conversion) && conversion.find('l') != conversion.npos;
 }
 bool printsFloat(std::string_view conversion) {
   return isOneOf(ofFloats, conversion.back()) && conversion.find_first_of("hLqjzt") == conversion.npos;
@@ -87,11 +91,14 @@ ExprPtr FunctionLowering::print(const clang::CallExpr* e) {
 ExprPtr FunctionLowering::printed(const clang::Expr* e, ExprPtr value, std::string_view conversion) {
   const ir::Type type = value->type;
   const ir::Type number = type.isArithmetic() && type.isScalar() ? type.arithmeticType() : type;
-  const bool isInteger = number.isScalar() && (number.isBool() || number.isInteger());
+  const bool isInteger =
+      number.isScalar() && (printsLong(conversion) ? number.isLong() : number.isBool() || number.isInteger());
   const bool isFloat = number.isScalar() && (number.isFloat() || number.isDouble());
   if (printsInteger(conversion) ? !isInteger : !isFloat) {
     module_.fail(Diag::PrintValue, e->getBeginLoc(),
-                 {conversion, printsInteger(conversion) ? "an integer" : "a float or a double",
+                 {conversion, printsLong(conversion)      ? "a long or a ulong"
+                  : printsInteger(conversion) ? "an integer"
+                                              : "a float or a double",
                   module_.textOf(e), module_.spelling(type)});
   }
   return convert(std::move(value), number.isBool() ? ir::Scalar::Int : number.scalar);
