@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <set>
 
 namespace skc::web {
@@ -33,9 +34,9 @@ bool isMentioned(const Kernel& kernel, std::size_t number) {
   });
 }
 
-bool combinesBits(const Condition& condition) {
-  return std::ranges::any_of(condition.steps, [](const ConditionStep& step) {
-    return step.op == ConditionOp::BitAnd || step.op == ConditionOp::BitOr || step.op == ConditionOp::BitXor;
+bool has(const Condition& condition, std::initializer_list<ConditionOp> operators) {
+  return std::ranges::any_of(condition.steps, [&](const ConditionStep& step) {
+    return std::ranges::find(operators, step.op) != operators.end();
   });
 }
 
@@ -49,17 +50,36 @@ void addUnions(std::set<std::uint32_t>& values, const std::set<std::uint32_t>& g
   }
 }
 
-/// Values of a Spec parameter that may differ in which streams they need: those that conditions mention, and their
-/// neighbours.
+/// Adds what arithmetic may need: of `n * 7 == 63` the quotient, of `n + 7 == 63` the difference.
+void addResults(std::set<std::uint32_t>& values, const std::vector<std::uint32_t>& literals) {
+  for (const std::uint32_t a : literals) {
+    for (const std::uint32_t b : literals) {
+      values.insert({a + b, a - b});
+      if (b != 0) values.insert({a / b, a / b + 1});
+    }
+  }
+}
+
+std::vector<std::uint32_t> literalsOf(const Condition& condition, Scalar scalar) {
+  std::vector<std::uint32_t> literals;
+  for (const ConditionStep& step : condition.steps) {
+    if (step.op == ConditionOp::Literal && step.scalar == scalar) literals.push_back(step.value);
+  }
+  return literals;
+}
+
+/// Values of a Spec parameter that may differ in which streams they need: those that conditions mention, their neighbours, and
+/// for conditions with operators on integers what these make of them. Products of parameters may have others.
 std::set<std::uint32_t> candidates(const Kernel& kernel, Scalar scalar) {
   std::set<std::uint32_t> values{0, 1}, masks;
   if (scalar == Scalar::Bool) return values;
   for (const Parameter& parameter : kernel.parameters) {
-    for (const ConditionStep& step : parameter.neededIf.steps) {
-      if (step.op != ConditionOp::Literal || step.scalar != scalar) continue;
-      values.insert({step.value - 1, step.value, step.value + 1});
-      if (combinesBits(parameter.neededIf)) masks.insert(step.value);
-    }
+    const Condition& condition = parameter.neededIf;
+    const std::vector<std::uint32_t> literals = literalsOf(condition, scalar);
+    for (const std::uint32_t value : literals) values.insert({value - 1, value, value + 1});
+    if (has(condition, {ConditionOp::BitAnd, ConditionOp::BitOr, ConditionOp::BitXor}))
+      masks.insert(literals.begin(), literals.end());
+    if (has(condition, {ConditionOp::Add, ConditionOp::Sub, ConditionOp::Mul})) addResults(values, literals);
   }
   addUnions(values, masks);
   return values;

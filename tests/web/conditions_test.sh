@@ -38,11 +38,16 @@ kernel void flagged(spec uint flags, float s[], float t[], float u[], out float 
   if ((flags & 4) != 0) r += t[0];
   if ((flags & 32) != 0) r += u[0];
 }
+kernel void counted(spec int n, spec uint m, float v[], float w[], out float r<>) {
+  r = 0;
+  if (n * 7 == 63) r += v[0];
+  if (m + 40 == 17) r += w[0];
+}
 SK
 "$skc" --emit=js many.sk
 count() { grep -oE "\"linear1; [^\"]*($1)[^\"]*\":" many.sk.js | sort -u | wc -l; }
-[ "$(count 'w:linear|no w')" = 32 ] || { echo "$(count 'w:linear|no w') of 32 sets of five streams"; exit 1; }
-[ "$(count 'u:linear|no u')" = 40 ] || { echo "$(count 'u:linear|no u') of 32 and 8 sets"; exit 1; }
+[ "$(count 'u:linear|no u')" = 40 ] || { echo "not 32 sets of five streams and 8 of three"; exit 1; }
+[ "$(count 'w:linear|no w')" = 36 ] || { echo "not 32 sets of five streams and 4 of two"; exit 1; }
 
 # A kernel with too many sets of streams is refused.
 cat >refused.sk <<'SK'

@@ -90,10 +90,10 @@ export class KernelCaller {
     const { kernel, source } = this;
     const { elements } = source.file;
     const { views } = source.file.features;
-    if (views === undefined) return source.refuse(reason);
+    if (views === undefined) return source.refuse(reason, kernel.parameters, call.specs);
     const { domain, lies, begin, finish } = views(device, kernel, call, outputs, shape, elements, true);
     const key = viewsKey(kernel.parameters, elements, lies, domain, call.specs);
-    if (!source.has(key)) source.refuse(reason);
+    if (!source.has(key)) source.refuse(reason, kernel.parameters, call.specs);
     const program = source.program(device, key, kernel, call.specs, (i) => call.streams[i] !== null);
     const drawn = begin();
     this.draw(device, program, call, domain, lies, shape, drawn);

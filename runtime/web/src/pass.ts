@@ -39,7 +39,7 @@ export class ProgramSource {
 
   private text(key: string, parameters: readonly Parameter[], specs: readonly number[], held: readonly Parameter[]): string {
     const index = this.indices[key];
-    if (index === undefined) this.refuse(`'${key}'`);
+    if (index === undefined) this.refuse(`'${key}'`, parameters, specs);
     let number = 0;
     let text = this.file.texts[index]!;
     for (const parameter of parameters) {
@@ -67,9 +67,14 @@ export class ProgramSource {
     return text;
   }
 
-  /** Throws SkError, as there is no program for a call. */
-  refuse(which: string): never {
+  /** Throws SkError, as there is no program for a call, or for no call with these values of spec parameters. */
+  refuse(which: string, parameters: readonly Parameter[] = [], specs: readonly number[] = []): never {
     const { name } = this.file;
+    const unneeded = parameters.flatMap((parameter) => (isNeeded(parameter, specs) ? [] : [`no ${parameter.name}`])).join();
+    const isKnown = (key: string) => key.split('; ').filter((part) => part.startsWith('no ')).join() === unneeded;
+    if (parameters.length > 0 && !Object.keys(this.indices).some(isKnown)) {
+      fail(this.name, `${name}.js has no program for the streams that it needs with these values of its specialisation constants; compare them with numbers in ${name}, as in 'n == 9'`, 'compile');
+    }
     fail(this.name, `${name}.js has no program for this call, ${which}; write [[variants(views)]] before '${this.name}' in ${name}, or give whole streams that have the shape of the output, and gathers at least as large`, 'compile');
   }
 

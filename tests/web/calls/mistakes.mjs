@@ -69,6 +69,7 @@ export const mistakeCases = ({ refused, filled, expect }) => ({
       ['device', 'belongs to another device', () => device.draw(foreign, document.getElementById('picture'))],
       // Programs that skc has not assembled.
       ['compile', "no program for this call, where a gather is smaller", () => k.edges(make('float', [1, 8]), u, u, make('float', [8]), u)],
+      ['compile', "squared: calls.sk.js has no program for the streams that it needs with these values", () => k.squared(9, u, line, u)],
       ['type', 'only kernels and reduces', () => device.compile([k.saxpy, {}])],
       ['type', 'only kernels and reduces', () => device.compile([undefined])],
       // Pictures and devices.
