@@ -103,8 +103,8 @@ std::string whyTooManyStreamSets(const Kernel& kernel) {
   if (specChoices(kernel).size() <= mostStreamSets) return {};
   return fmt::format(
       "the values of its specialisation constants choose among more than {} sets of streams, each of which "
-      "would need a "
-      "program of its own; divide it, or let it read more of the streams in any case",
+      "would "
+      "need a program of its own; divide it, or let it read more of the streams in any case",
       mostStreamSets);
 }
 

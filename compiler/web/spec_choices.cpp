@@ -18,7 +18,7 @@ using sk::program::Parameter;
 using sk::program::Role;
 using sk::program::Scalar;
 
-/// The most choices that are told apart before all conditions are known: those of several parameters may come to few sets.
+/// The most choices to keep while some conditions are undecided: many choices may lead to few sets.
 constexpr std::size_t mostPartialChoices = 4096;
 
 /// Whether a condition mentions the Spec parameter of this number.
@@ -29,9 +29,8 @@ bool mentions(const Condition& condition, std::size_t number) {
 }
 
 bool isMentioned(const Kernel& kernel, std::size_t number) {
-  return std::ranges::any_of(kernel.parameters, [&](const Parameter& parameter) {
-    return mentions(parameter.neededIf, number);
-  });
+  return std::ranges::any_of(
+      kernel.parameters, [&](const Parameter& parameter) { return mentions(parameter.neededIf, number); });
 }
 
 bool has(const Condition& condition, std::initializer_list<ConditionOp> operators) {
@@ -40,7 +39,7 @@ bool has(const Condition& condition, std::initializer_list<ConditionOp> operator
   });
 }
 
-/// Adds the values that have bits of several of the given ones, as `flags & 1` and `flags & 4` tell apart.
+/// Adds all unions of the given bits: `flags & 1` and `flags & 4` may both hold.
 void addUnions(std::set<std::uint32_t>& values, const std::set<std::uint32_t>& given) {
   for (const std::uint32_t bits : given) {
     std::vector<std::uint32_t> more;
@@ -50,7 +49,7 @@ void addUnions(std::set<std::uint32_t>& values, const std::set<std::uint32_t>& g
   }
 }
 
-/// Adds what arithmetic may need: of `n * 7 == 63` the quotient, of `n + 7 == 63` the difference.
+/// Adds the values that decide arithmetic on literals: the quotient for `n * 7 == 63`, the difference for `n + 7 == 63`.
 void addResults(std::set<std::uint32_t>& values, const std::vector<std::uint32_t>& literals) {
   for (const std::uint32_t a : literals) {
     for (const std::uint32_t b : literals) {
@@ -68,8 +67,8 @@ std::vector<std::uint32_t> literalsOf(const Condition& condition, Scalar scalar)
   return literals;
 }
 
-/// Values of a Spec parameter that may differ in which streams they need: those that conditions mention, their neighbours, and
-/// for conditions with operators on integers what these make of them. Products of parameters may have others.
+/// Values of a Spec parameter that may decide a condition differently: the literals of all conditions, their neighbours, and
+/// combinations of them for conditions with operators. Products of parameters may need others.
 std::set<std::uint32_t> candidates(const Kernel& kernel, Scalar scalar) {
   std::set<std::uint32_t> values{0, 1}, masks;
   if (scalar == Scalar::Bool) return values;
@@ -85,9 +84,9 @@ std::set<std::uint32_t> candidates(const Kernel& kernel, Scalar scalar) {
   return values;
 }
 
-/// What tells choices apart of which only the first `known` Spec parameters have a value: which of the conditions hold that
-/// mention no other, and the values that other conditions will ask for.
-std::vector<std::uint32_t> differences(const Kernel& kernel, const SpecValues& specs, std::size_t known) {
+/// What further choices depend on once the first `known` Spec parameters have values: the results of the conditions that
+/// mention no others, and the values that undecided conditions mention.
+std::vector<std::uint32_t> stateOf(const Kernel& kernel, const SpecValues& specs, std::size_t known) {
   std::vector<std::uint32_t> result;
   for (const Parameter& parameter : kernel.parameters) {
     const Condition& condition = parameter.neededIf;
@@ -110,14 +109,13 @@ std::vector<SpecValues> specChoices(const Kernel& kernel) {
     if (parameter.role != Role::Spec) continue;
     const std::size_t number = next++;
     if (!isMentioned(kernel, number)) continue;
-    const std::set<std::uint32_t> values =
-        candidates(kernel, parameter.element->fields.front().scalar);
+    const std::set<std::uint32_t> values = candidates(kernel, parameter.element->fields.front().scalar);
     std::set<std::vector<std::uint32_t>> seen;
     std::vector<SpecValues> more;
     for (SpecValues choice : choices) {
       for (const std::uint32_t value : values) {
         choice[number] = value;
-        if (seen.insert(differences(kernel, choice, next)).second) more.push_back(choice);
+        if (seen.insert(stateOf(kernel, choice, next)).second) more.push_back(choice);
         if (more.size() > mostPartialChoices) return more;
       }
     }

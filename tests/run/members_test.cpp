@@ -18,8 +18,10 @@ TEST_CASE("member functions have outputs and gathers") {
     auto r = device.stream<float>({5});
     members::ranges(a, x, r);
     CHECK(difference(r.read(), [&](std::size_t i) {
-            const float reach = static_cast<float>(i) + 2;  // the range grows by 2 to [-reach, reach], and is split at 1
-            return std::clamp(numbers[i], -reach, 1.0F) + 100 * std::clamp(numbers[0], 1.0F, reach) + 2000 * reach;
+            const float reach =
+                static_cast<float>(i) + 2;  // the range grows by 2 to [-reach, reach], and is split at 1
+            return std::clamp(numbers[i], -reach, 1.0F) + 100 * std::clamp(numbers[0], 1.0F, reach) +
+                   2000 * reach;
           }) == "");
   });
 }

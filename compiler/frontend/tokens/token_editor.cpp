@@ -375,7 +375,9 @@ class Editor {
         indexed = parameters.indexed();
         continue;
       }
-      copyToken();
+      // `static_assert(f(a[0]))` names no function that is declared here
+      const bool isBeforeName = !initializer && !function && cursor_.at(tok::l_paren);
+      isBeforeName ? copyParentheses() : copyToken();
     }
     return function;
   }

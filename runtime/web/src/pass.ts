@@ -67,7 +67,7 @@ export class ProgramSource {
     return text;
   }
 
-  /** Throws SkError, as there is no program for a call, or for no call with these values of spec parameters. */
+  /** Throws SkError: no program fits the call, or none fits any call with these values of spec parameters. */
   refuse(which: string, parameters: readonly Parameter[] = [], specs: readonly number[] = []): never {
     const { name } = this.file;
     const unneeded = parameters.flatMap((parameter) => (isNeeded(parameter, specs) ? [] : [`no ${parameter.name}`])).join();
