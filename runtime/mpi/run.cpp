@@ -202,8 +202,7 @@ void checkDomain(const DomainState& domain, const Kernel& kernel, std::span<cons
   if (given.rank() == 0 || given == domain.parts.whole()) return;
   fail(Error::Kind::Shape, kernel,
        "its domain has the shape {}, but its streams are divided over the ranks of a domain of shape {}; "
-       "call it "
-       "over that shape",
+       "call it over that shape",
        toString(given), toString(domain.parts.whole()));
 }
 

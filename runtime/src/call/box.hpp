@@ -45,8 +45,8 @@ bool asksPlace(const program::Kernel& fold);
 struct BoxedArguments {
   std::vector<Argument> arguments;
   FoldedBox placed = {};  ///< if the fold asks where its elements are
-  std::optional<GivenDomain> over =
-      {};  ///< if the call has one: the whole if the box is placed in it, else the box
+  /// If the call has one: the whole if the box is placed in it, else the box.
+  std::optional<GivenDomain> over = {};
 };
 
 /// The arguments for folding the box alone, or all elements. Throws sk::Error if the box is not inside the domain, which

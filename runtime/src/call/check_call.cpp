@@ -376,8 +376,7 @@ void checkInputShape(const Kernel& kernel, const Parameter& input, const Argumen
   if (source.output == nullptr && source.given != nullptr) {
     fail(Error::Kind::Shape, kernel,
          "'{}' has shape {}, but over() gives the domain the shape {}; give them the same shape, or extent 1 "
-         "where "
-         "'{}' repeats",
+         "where '{}' repeats",
          input.name, toString(shape), toString(domain), input.name);
   }
   if (source.output == nullptr) {
