@@ -101,7 +101,7 @@ ExprPtr FunctionLowering::assertion(const clang::CallExpr* e) {
 }
 
 void FunctionLowering::checkPure(const clang::Expr* condition, const ir::Block& effects, ir::VarId first) {
-  const Variables changed = ir::assignedIn(effects);
+  const Variables changed = ir::assignedIn(module_.module(), effects);
   const bool changesOther =
       std::ranges::any_of(changed, [&](ir::VarId var) { return var < first && var != *failed_; });
   if (changesOther || writesStreams(effects, function_))
