@@ -3,8 +3,8 @@
 // SK_CHECK=written for kernels and reductions: whether a result depends on an element that nothing has written. Only a kernel
 // itself knows which elements it reads, and which of them it uses, so the call runs several times beforehand, each time with other
 // values in the place of all elements that nothing has written, and with outputs of its own. Results that differ show
-// a read; a search by halves, over the elements whose values are changed, finds one. Likewise, what two runs find and leave in a
-// scatter output tells which of its elements the call writes. A call whose arguments have been written as a whole runs just once.
+// a read, and a binary search over the changed elements finds one on which a result depends. Two runs with other old elements
+// in a scatter output show which of them the call writes. A call whose arguments have been written as a whole runs just once.
 // Must not depend on the kind of device.
 #pragma once
 

@@ -45,8 +45,8 @@ std::vector<std::int64_t> unwrittenIn(const StreamRegion& region);
 /// Throws sk::Error if nothing has written one of the region's elements; `context` names the operation that reads them.
 void checkWritten(const StreamRegion& region, std::string_view context);
 
-/// Throws sk::Error if nothing has written any of the region's elements, which are to be copied. If some have been written, so will
-/// be their copies (noteCopied).
+/// Throws sk::Error if nothing has written any of the region's elements, which are to be copied. Copies of a region that is written
+/// in part are written in part (noteCopied).
 void checkSomeWritten(const StreamRegion& region, std::string_view context);
 
 /// Notes that an operation has written all elements of a region.
