@@ -40,6 +40,8 @@ void putScalar(program::Scalar scalar, Storage storage, int number, std::byte* t
     case program::Scalar::Bool: return put<std::uint8_t>(boolValues[i], to);
     case program::Scalar::Int: return put<std::int32_t>(intValues[i], to);
     case program::Scalar::Uint: return put<std::uint32_t>(uintValues[i], to);
+    case program::Scalar::Long: return put<std::int64_t>(intValues[i], to);
+    case program::Scalar::Ulong: return put<std::uint64_t>(uintValues[i], to);
     case program::Scalar::Float:
       return put<float>((storage == Storage::Half ? halfValues : floatValues)[i], to);
     case program::Scalar::Double: return put<double>(floatValues[i], to);
@@ -74,6 +76,8 @@ void putNeutral(program::Scalar scalar, ScatterOp op, std::byte* to) {
     case program::Scalar::Float: return putNeutral<float>(op, to);
     case program::Scalar::Double: return putNeutral<double>(op, to);
     case program::Scalar::Bool:
+    case program::Scalar::Long:
+    case program::Scalar::Ulong:
     case program::Scalar::Half:
     case program::Scalar::Char:
     case program::Scalar::Uchar:

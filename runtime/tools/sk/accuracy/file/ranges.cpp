@@ -154,6 +154,8 @@ auto withType(Scalar scalar, Visit&& visit) {
     case Scalar::Int: return visit(std::int32_t());
     case Scalar::Uint: return visit(std::uint32_t());
     case Scalar::Double: return visit(double());
+    case Scalar::Long: return visit(std::int64_t());
+    case Scalar::Ulong: return visit(std::uint64_t());
     case Scalar::Half: return visit(sk::half(0.0F));
     case Scalar::Char: return visit(std::int8_t());
     case Scalar::Uchar: return visit(std::uint8_t());
@@ -172,7 +174,10 @@ template <class T>
 T nearest(double value) {
   if constexpr (std::is_integral_v<T>) {
     using Limits = std::numeric_limits<T>;
-    return static_cast<T>(std::clamp(std::round(value), double{Limits::min()}, double{Limits::max()}));
+    const double whole = std::round(value);
+    const double past = std::ldexp(1.0, Limits::digits);  // a double has no room for the largest integer of 64 bits
+    if (whole >= past) return Limits::max();
+    return static_cast<T>(std::max(whole, static_cast<double>(Limits::min())));
   } else if constexpr (std::is_same_v<T, double>) {
     return value;
   } else {
@@ -204,7 +209,7 @@ double stepOf(Scalar scalar) {
 std::vector<ScalarPlace> scalarsOf(const sk::program::Element& element) {
   std::vector<ScalarPlace> places;
   for (const sk::program::Field& field : element.fields) {
-    const bool isVectorPart = field.part >= 0 && field.scalar == Scalar::Double;
+    const bool isVectorPart = field.part >= 0 && sk::program::isWide(field.scalar);
     const bool isRow = field.part >= 0 && !isVectorPart;
     const std::string member = field.path.empty() || field.path.front() == '['
                                    ? std::string(field.path)
