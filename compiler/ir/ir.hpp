@@ -526,8 +526,7 @@ struct Kernel {
   bool isSynthesized = false;  ///< synthesized by a transform: C++ cannot call it
   bool isNativeOnly = false;  ///< no GLSL program runs it
   std::optional<FoldParts> parts;  ///< of a kernel with outputs and accumulators
-  bool isPart =
-      false;  ///< belongs to the FoldParts or the AssertionCheck of another kernel: C++ cannot call it
+  bool isPart = false;  ///< of the FoldParts or AssertionCheck of another kernel: C++ cannot call it
   std::optional<AssertionCheck> assertions = {};  ///< of a declared kernel
   std::vector<Plan> plans;  ///< for targets whose limits it exceeds, the most generous first
   std::optional<PassOf> pass;

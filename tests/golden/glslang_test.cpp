@@ -32,6 +32,21 @@ std::vector<fs::path> kernelFiles() {
   return files;
 }
 
+/// What skc reports but for its warning that these programs leave out printf, which has two lines of the file below it.
+std::string mistakesIn(const std::string& errors) {
+  std::istringstream lines(errors);
+  std::string rest;
+  int skipped = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("warning: printf prints on native devices alone") != std::string::npos) skipped = 3;
+    if (skipped > 0)
+      --skipped;
+    else
+      rest += line + "\n";
+  }
+  return rest;
+}
+
 /// Prints the programs of all files by one run of skc, which does not validate the IR: the build of their programs does.
 std::vector<std::string> programsOf(const std::vector<fs::path>& files, const std::string& profile,
                                     const std::string& options = "") {
@@ -39,7 +54,7 @@ std::vector<std::string> programsOf(const std::vector<fs::path>& files, const st
   for (const fs::path& file : files) command += " '" + file.string() + "'";
   const Outcome outcome = run(SK_SOURCE_FOLDER, command);
   INFO(outcome.errors);
-  CHECK(outcome.errors == "");
+  CHECK(mistakesIn(outcome.errors) == "");
   REQUIRE(outcome.status == 0);
   return glslang::programsOf(outcome.output);
 }
