@@ -149,6 +149,10 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
     case clang::CK_LValueToRValue:
     case clang::CK_UserDefinedConversion:
     case clang::CK_ConstructorConversion: return value(operand);
+    case clang::CK_PointerToBoolean:  // assert(x > 0 && "why")
+      if (isInCondition_ && llvm::isa<clang::StringLiteral>(operand->IgnoreParenImpCasts()))
+        return ir::literal(true, module_.loc(where));
+      module_.fail(Diag::Pointer, where, {e->getType().getAsString()});
     case clang::CK_FloatingCast: {
       const ir::Scalar to = module_.type(e->getType(), where).scalar;
       return to == ir::Scalar::Double ? doubleValue(operand) : convert(value(operand), to);
