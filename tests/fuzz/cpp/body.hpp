@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cpp/sample_values.hpp"
 #include "cpp/unit.hpp"
 
 namespace fuzz::cpp {
@@ -70,6 +71,9 @@ std::vector<Expr> listOf(Parts... parts) {
   return list;
 }
 
+/// The limits of Body for functions.
+constexpr int functionCost = 200, functionSize = 120;
+
 class Body {
  public:
   /// `limit` bounds how many expressions a call evaluates, and `sizeLimit` how many there are.
@@ -86,6 +90,10 @@ class Body {
   /// The method's object is `*this`: its members are variables.
   void declareObject(TypeId type, bool isMutable);
   void mayReturnObject() { returnsObject_ = true; }
+  /// The function is a template over the rank N.
+  void beOfAnyRank() { isOfAnyRank_ = true; }
+  /// The function is a kernel with an output r0, which has an index.
+  void beKernel() { isKernel_ = true; }
 
   /// A block's statements, with a return at the end if the function has a result.
   NodePtr statements(int count);
@@ -100,6 +108,10 @@ class Body {
   /// where that is defined.
   Expr initialiser(TypeId type, int depth);
   Expr braces(TypeId type, int depth);
+  Expr literal(TypeId type);
+  void declareConstants();
+  /// Adds the function, whose body is complete, to those that can be called.
+  void finish(Function function);
   /// Only literals and constants from here on.
   void stayConstant() { isConstant_ = true; }
 
@@ -109,7 +121,7 @@ class Body {
 
  private:
   struct Step {
-    enum class Kind : std::uint8_t { Field, Index, Component } kind;
+    enum class Kind : std::uint8_t { Field, Index, Component, Element } kind;
     int field = 0;
   };
   struct Place {
@@ -142,7 +154,6 @@ class Body {
 
   // All types (expressions.cpp)
   Expr made(std::string text, TypeId type, std::vector<Expr> parts, bool isGuard = false);
-  Expr literal(TypeId type);
   Expr choice(TypeId type, int depth);
   /// A value instead of an lvalue that is a component of a vector.
   Expr noComponent(Expr expr);
@@ -163,6 +174,7 @@ class Body {
   Expr integer(int depth);
   Expr integerBinary(int depth);
   Expr intrinsic(int depth);
+  TypeId pickInteger();
   std::optional<Expr> integerAssignment(int depth);
   /// Float, or sometimes Double.
   TypeId pickFloating();
@@ -175,16 +187,35 @@ class Body {
   Expr floatBinary(TypeId type, int depth);
   Expr floatIntrinsic(TypeId type, int depth);
   Expr limited(Expr expr, int bits);
+  /// A function that rounds, of which a few bits are looked at.
+  Expr roundingFunction(TypeId type, int depth);
   std::optional<Expr> floatAssignment(TypeId type, int depth);
   Scalar pickVectorScalar();
   Expr vectorOf(TypeId type, int depth);
   Expr vectorBinary(TypeId type, int depth);
   Expr mask(Scalar scalar, int count, int depth);
   Expr vectorParts(TypeId type, int depth);
+  Expr vectorIntrinsic(TypeId type, int depth);
   std::optional<Expr> swizzleAssignment(int depth);
+
+  // Streams (streams.cpp)
+  /// Makes the text of a gather that of one of its elements.
+  void access(std::string& text, std::vector<Expr>& parts, int rank, int depth);
+  Expr gatherIndex(int depth);
+  Expr gatherOffset(int depth);
+  Expr floatIndex(int width, int depth);
+  std::optional<Expr> gather(const Accepts& accepts);
+  /// The number of a dimension.
+  std::string axis();
+  Expr ofAnyRank(int depth);
+  Expr offsetOfAnyRank(int depth);
+  std::optional<Expr> streamInteger(int depth);
+  std::optional<Expr> sampled(int depth);
 
   // Calls (calls.cpp)
   bool canCall(const Function& function) const;
+  std::optional<int> rankFor(const Function& function);
+  bool hasPlaceOf(TypeId type);
   std::optional<Expr> call(const Accepts& acceptsResult, int depth);
   std::optional<Expr> callOf(const Function& function, int depth);
   std::optional<Expr> callStatement(int depth);
@@ -197,6 +228,7 @@ class Body {
   NodePtr effect();
   NodePtr branch();
   NodePtr loop();
+  NodePtr loopOverAxes();
   NodePtr selection();
   NodePtr jump();
   NodePtr returning();
@@ -222,7 +254,7 @@ class Body {
   Types& types_;
   TypeId result_;
   int limit_, sizeLimit_;
-  bool isConstant_ = false, returnsObject_ = false;
+  bool isConstant_ = false, returnsObject_ = false, isOfAnyRank_ = false, isKernel_ = false;
   std::vector<Variable> variables_;
   std::set<std::size_t> callees_;
   int bits_ = 0;

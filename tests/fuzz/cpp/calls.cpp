@@ -8,8 +8,36 @@
 
 namespace fuzz::cpp {
 
+void Body::finish(Function function) {
+  function.cost = cost_ + 1;
+  function.size = size_ + 1;
+  function.callees = callees_;
+  unit_.functions.push_back(std::move(function));
+}
+
 bool Body::canCall(const Function& function) const {
   return !isConstant_ && cost_ + multiplier_ * function.cost <= limit_ && size_ + function.size <= sizeLimit_;
+}
+
+bool Body::hasPlaceOf(TypeId type) {
+  return !places([&](TypeId id) { return id == type; }, false).empty();
+}
+
+/// The rank of a template over N, at which there is something for each of its gathers and bundles.
+std::optional<int> Body::rankFor(const Function& function) {
+  std::vector<int> ranks;
+  for (int rank = isOfAnyRank_ ? anyRank : 1; rank <= highestRank; ++rank) {
+    const auto has = [&](TypeId type) {
+      return !types_.isOfStreams(type) || hasPlaceOf(types_.atRank(type, rank));
+    };
+    if (function.isOfAnyRank || rank <= 1) {
+      bool hasAll = function.owner < 0 || has(function.owner);
+      for (const Parameter& parameter : function.parameters) hasAll = hasAll && has(parameter.type);
+      if (hasAll) ranks.push_back(rank);
+    }
+  }
+  if (ranks.empty()) return std::nullopt;
+  return random_.pick(ranks);
 }
 
 std::optional<Expr> Body::call(const Accepts& acceptsResult, int depth) {
@@ -32,6 +60,9 @@ std::optional<Expr> Body::callStatement(int depth) {
 }
 
 std::optional<Expr> Body::callOf(const Function& function, int depth) {
+  const std::optional<int> rank = rankFor(function);
+  if (!rank) return std::nullopt;
+  const auto typeOf = [&](std::size_t p) { return types_.atRank(function.parameters[p].type, *rank); };
   // References first: they need variables of their own.
   const std::size_t count = function.parameters.size();
   std::vector<std::optional<Place>> bound(count + 1);  // the last: the object of a method
@@ -74,9 +105,17 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
     if (function.parameters[p].passing == Passing::Reference && !bind(p, function.parameters[p].type))
       return std::nullopt;
   }
+  // Gathers and bundles have no other expressions.
+  const auto bindStreams = [&](std::size_t p, TypeId type) {
+    std::vector<Place> all = places([&](TypeId id) { return id == type; }, false);
+    bound[p] = std::move(all[random_.below(all.size())]);
+  };
+  const bool isOfBundle = function.owner >= 0 && types_.isBundle(function.owner);
+  if (isOfBundle) bindStreams(count, types_.atRank(function.owner, *rank));
   // Arrays that do not change: a copy in .sk, where C++ passes a pointer.
   for (std::size_t p = 0; p < count; ++p) {
     const Parameter& parameter = function.parameters[p];
+    if (types_.isOfStreams(parameter.type)) bindStreams(p, typeOf(p));
     if (types_[parameter.type].kind != Type::Kind::Array || parameter.passing == Passing::Reference) continue;
     const bool mayShare = parameter.passing == Passing::ConstReference && unit_.has("aliasing");
     std::vector<Place> all = places([&](TypeId id) { return id == parameter.type; }, !parameter.takesConst);
@@ -127,6 +166,10 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
         text = begin;
         addTarget(count);
       }
+    } else if (isOfBundle) {
+      const bool isOwn = variableOf(*bound[count]).name == "this" && bound[count]->path.empty();
+      text = isOwn ? function.name + "(" : begin;
+      if (!isOwn) parts.push_back(target(*bound[count], 0));
     } else {
       Expr object = value(function.owner, depth - 1);
       if (!unit_.has("constrefs")) heldByConst |= object.effects.reads;
@@ -136,7 +179,14 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
   } else if (function.isInfix) {
     text = "(";
   } else {
-    text = function.name + "(";
+    text = function.name;
+    // Deduced, or given.
+    const bool isDeduced = std::ranges::any_of(function.parameters, [&](const Parameter& parameter) {
+      return types_.isOfStreams(parameter.type) && types_.isOfAnyRank(parameter.type);
+    });
+    if (function.isOfAnyRank && (!isDeduced || random_.chance(1, 3)))
+      text += *rank == anyRank ? "<N>" : "<" + std::to_string(*rank) + ">";
+    text += "(";
   }
   const auto addArguments = [&] {
     for (std::size_t p = 0; p < count; ++p) {
@@ -150,19 +200,20 @@ std::optional<Expr> Body::callOf(const Function& function, int depth) {
       }
       if (bound[p]) {
         Expr array = target(*bound[p], 0);
-        const bool isHeld = parameter.passing == Passing::Value || !unit_.has("constrefs");
+        const bool isHeld = !types_.isOfStreams(parameter.type) &&
+                            (parameter.passing == Passing::Value || !unit_.has("constrefs"));
         if (isHeld) heldByConst |= array.effects.reads;
         parts.push_back(std::move(array));
         continue;
       }
       Expr argument = function.isExact || parameter.passing == Passing::ConstReference
-                          ? value(parameter.type, depth - 1)
-                          : convertible(parameter.type, depth - 1);
+                          ? value(typeOf(p), depth - 1)
+                          : convertible(typeOf(p), depth - 1);
       argument = limited(std::move(argument), 0);
       if (parameter.passing == Passing::ConstReference) {
         // What a const reference shows must not change, unless C++ and skc agree about it.
         const bool isShared = (argument.effects.reads & taken) != 0;
-        if (isShared && !unit_.has("aliasing")) argument = literal(parameter.type);
+        if (isShared && !unit_.has("aliasing")) argument = literal(typeOf(p));
         if (!unit_.has("constrefs")) heldByConst |= argument.effects.reads;
         argument = noComponent(std::move(argument));
         argument.node->isGuard = true;  // else the reducer may leave a component

@@ -20,33 +20,6 @@ Expr Body::made(std::string text, TypeId type, std::vector<Expr> parts, bool isG
 }
 
 Expr Body::literal(TypeId type) {
-  static const std::vector<std::string> ints = {"0",
-                                                "1",
-                                                "2",
-                                                "3",
-                                                "5",
-                                                "7",
-                                                "8",
-                                                "10",
-                                                "31",
-                                                "100",
-                                                "127",
-                                                "128",
-                                                "255",
-                                                "256",
-                                                "0x7fff",
-                                                "65535",
-                                                "123456789",
-                                                "2147483647",
-                                                "(-2147483647 - 1)",
-                                                "(-1)",
-                                                "(-2)",
-                                                "(-7)",
-                                                "(-100)",
-                                                "0x55aa"};
-  static const std::vector<std::string> uints = {
-      "0u",   "1u",   "2u",    "3u",     "7u",          "9u",          "16u",
-      "255u", "256u", "1000u", "65535u", "0x80000000u", "4294967295u", "4294967290u"};
   static const std::vector<std::pair<std::string, Range>> floats = {
       {"0.0f", {0, 0}},    {"1.0f", {0, 0}},     {"2.0f", {1, 0}}, {"3.0f", {2, 0}},
       {"0.5f", {0, 1}},    {"0.25f", {0, 2}},    {"4.0f", {2, 0}}, {"7.5f", {3, 1}},
@@ -56,26 +29,26 @@ Expr Body::literal(TypeId type) {
     case Type::Kind::Enum: return made(random_.pick(info.enumerators), type, {});
     case Type::Kind::Scalar: break;
     case Type::Kind::Matrix: return matrixOf(type, 0);
+    case Type::Kind::Index:
+      return made(random_.chance(1, 2) ? "axis<N>(" + axis() + ")"
+                                       : "index<N>(" + std::to_string(random_.between(-3, 5)) + ")",
+                  type, {});
     default: return made(types_.simplest(type), type, {});
   }
-  switch (info.scalar) {
-    case Scalar::Bool: return made(random_.chance(1, 2) ? "true" : "false", type, {});
-    case Scalar::Int: return made(random_.pick(ints), type, {});
-    case Scalar::Uint: return made(random_.pick(uints), type, {});
-    case Scalar::Float:
-    case Scalar::Double: {
-      const auto& [single, range] = random_.pick(floats);
-      // In .sk, a literal alone is a float.
-      const std::string number = single.substr(0, single.rfind('f'));
-      const std::string text = info.scalar == Scalar::Float ? single
-                               : number.front() == '('      ? "double" + number + ")"
-                                                            : "double(" + number + ")";
-      Expr result = made(text, type, {});
-      result.range = range;
-      return result;
-    }
-    default: return made(types_.spell(type) + "(" + random_.pick(ints) + ")", type, {});
+  const ScalarFacts& facts = factsOf(info.scalar);
+  if (types_.isFloating(type)) {
+    const auto& [single, range] = random_.pick(floats);
+    // In .sk, a literal alone is a float.
+    const std::string number = single.substr(0, single.rfind('f'));
+    const std::string text = info.scalar == Scalar::Float ? single
+                             : number.front() == '('      ? "double" + number + ")"
+                                                          : "double(" + number + ")";
+    Expr result = made(text, type, {});
+    result.range = range;
+    return result;
   }
+  const std::string& text = random_.pick(facts.literals);
+  return made(types_.isNarrow(type) ? types_.spell(type) + "(" + text + ")" : text, type, {});
 }
 
 Expr Body::unsequenced(const Expr& first, Expr second) {
@@ -101,7 +74,7 @@ Expr Body::converted(Expr expr, TypeId type, bool mayStayImplicit) {
         range.fraction <= singlePrecision.fraction && range.magnitude <= singlePrecision.stored;
     if (isNarrower && !isFine) mayStayImplicit = false;
   } else if (toFloat) {  // only few bits
-    const bool isSmall = from.scalar != Scalar::Int && from.scalar != Scalar::Uint;
+    const bool isSmall = factsOf(from.scalar).bits < 32;
     range = {isSmall ? (from.scalar == Scalar::Short || from.scalar == Scalar::Ushort ? 16 : 8) : 7, 0};
     if (from.kind == Type::Kind::Enum || !isSmall || range.magnitude > 8) {
       const TypeId promoted = types_.promoted(expr.type);
@@ -165,7 +138,8 @@ Expr Body::value(TypeId type, int depth) {
           return std::move(*found);
         break;
       case 2:
-        if (kind != Type::Kind::Vector || unit_.has("vector_choices")) return choice(type, depth);
+        if ((kind != Type::Kind::Vector && kind != Type::Kind::Index) || unit_.has("vector_choices"))
+          return choice(type, depth);
         break;
       case 3:
         if (std::optional<Expr> found = assignment(type, depth)) return std::move(*found);
@@ -186,6 +160,9 @@ Expr Body::value(TypeId type, int depth) {
     case Type::Kind::Enum: return enumOf(type, depth);
     case Type::Kind::Matrix: return matrixOf(type, depth);
     case Type::Kind::Array: return braces(type, depth);
+    case Type::Kind::Index: return ofAnyRank(depth);
+    case Type::Kind::Gather:  // these are no values
+    case Type::Kind::Bundle:
     case Type::Kind::Scalar: break;
   }
   if (types_.isFloating(type)) return floating(type, depth);

@@ -83,7 +83,60 @@ Expr Body::floatBinary(TypeId type, int depth) {
   return result;
 }
 
+namespace {
+
+/// Functions of the arguments x and y, which `some` makes: multiples of 1/4 from -4 to 3.75. None of their values is closer to a step
+/// of `near` than all rounding can bring it.
+const std::vector<std::string> functionsOfOne = {
+    "atan($)",  "cbrt($)",         "cos($)",        "erf($)",           "erfc($)", "exp($)",       "exp2($)",
+    "expm1($)", "log(abs($) + O)", "log1p(abs($))", "log2(abs($) + O)", "sin($)",  "sqrt(abs($))", "tanh($)"};
+const std::vector<std::string> functionsOfTwo = {"atan2($, $)", "hypot($, $)"};
+const std::vector<std::string> exponents = {"0",   "1",   "2",    "3",    "4",     "0.5",
+                                            "1.5", "2.5", "(-1)", "(-2)", "(-0.5)"};
+
+}  // namespace
+
+Expr Body::roundingFunction(TypeId type, int depth) {
+  const bool isDouble = types_[type].scalar == Scalar::Double;
+  const int count = types_[type].count;
+  const std::string name = types_.spell(type), some = isDouble ? "someDouble($)" : "some($)";
+  std::vector<Expr> parts;
+  const auto argument = [&] {
+    std::string text = count == 1 ? some : name + "(";
+    for (int i = 0; i < count; ++i) {
+      parts.push_back(value(Types::of(Scalar::Int), depth - 1));
+      if (count > 1) text += (i == 0 ? "" : ", ") + some;
+    }
+    return count == 1 ? text : text + ")";
+  };
+  const std::string one = isDouble ? name + "(1)" : count == 1 ? "1.0f" : name + "(1.0f)";
+  std::string text;
+  const std::size_t form = random_.below(4);
+  if (form == 0) {
+    const std::string exponent = random_.pick(exponents);
+    text = "pow(abs(" + argument() + ")" + (exponent.front() == '(' ? " + " + one : "") + ", " +
+           (count == 1 ? exponent : name + "(" + exponent + ")") + ")";
+  } else {
+    for (const char c : random_.pick(form == 1 ? functionsOfTwo : functionsOfOne)) {
+      if (c == '$') {
+        text += argument();
+      } else if (c == 'O') {
+        text += one;
+      } else {
+        text += c;
+      }
+    }
+  }
+  Expr result = made("near(" + text + ")", type, std::move(parts), true);
+  result.range = {9, 6};
+  return result;
+}
+
 Expr Body::floatIntrinsic(TypeId type, int depth) {
+  if (unit_.with("functions", 1, 3)) return roundingFunction(type, depth);
+  if (type == Types::of(Scalar::Float) && random_.chance(1, 3)) {
+    if (std::optional<Expr> found = sampled(depth)) return std::move(*found);
+  }
   Expr a = floating(type, depth - 1);
   Range range = a.range;
   static const std::vector<std::string> steps = {"floor", "ceil", "trunc", "round"};

@@ -49,12 +49,13 @@ fuzz::cpp::Program programOf(const Options& options, std::uint64_t number) {
   return fuzz::cpp::generate(options.seed, number, setOf(options.without));
 }
 
-/// Without the kernels that no browser takes, which their modules say.
+/// Without the kernels that no browser takes, which their modules say, and those with parameters of their own, which pages are not given.
 std::vector<Outputs> inBrowsers(const skc::ir::Module& module, std::vector<Outputs> outputs) {
   std::erase_if(outputs, [&](const Outputs& one) {
-    return std::ranges::any_of(module.kernels, [&](const skc::ir::Kernel& kernel) {
-      return kernel.name == one.kernel && !skc::web::whyNestsTooDeep(module, kernel).empty();
-    });
+    return fuzz::cpp::nameOf(one).hasOwnParameters ||
+           std::ranges::any_of(module.kernels, [&](const skc::ir::Kernel& kernel) {
+             return kernel.name == one.kernel && !skc::web::whyNestsTooDeep(module, kernel).empty();
+           });
   });
   return outputs;
 }

@@ -4,23 +4,42 @@
 #include <algorithm>
 
 #include "cpp/body.hpp"
+#include "cpp/kernel_generator.hpp"
 #include "cpp/samples.hpp"
+#include "cpp/stream_types.hpp"
 
 namespace fuzz::cpp {
 
-const std::vector<std::string> constructs = {
-    "aliasing",      "arrays",         "auto",           "bindings",    "braces",         "comma",
-    "conditions",    "constants",      "constrefs",      "defaults",    "designators",    "doubles",
-    "enums",         "floats",         "inits",          "intrinsics",  "jumps",          "likely",
-    "loops",         "lvalue_choices", "masks",          "matrices",    "methods",        "namespaces",
-    "narrow",        "narrow_enums",   "narrow_vectors", "nested",      "objects",        "operators",
-    "order",         "overloads",      "parts",          "references",  "static_members", "structs",
-    "switch",        "templates",      "temporaries",    "vector_bits", "vector_choices", "vectors",
-    "whole_objects", "wide_enums"};
+const std::vector<std::string> constructs = {"aliasing",       "any_rank",
+                                             "arrays",         "auto",
+                                             "bindings",       "braces",
+                                             "bundles",        "comma",
+                                             "conditions",     "constants",
+                                             "constrefs",      "defaults",
+                                             "designators",    "doubles",
+                                             "enums",          "floats",
+                                             "functions",      "gathers",
+                                             "inits",          "inner_kernels",
+                                             "intrinsics",     "jumps",
+                                             "likely",         "longs",
+                                             "loops",          "lvalue_choices",
+                                             "masks",          "matrices",
+                                             "methods",        "namespaces",
+                                             "narrow",         "narrow_enums",
+                                             "narrow_vectors", "nested",
+                                             "objects",        "operators",
+                                             "order",          "out",
+                                             "overloads",      "parts",
+                                             "references",     "specs",
+                                             "static_members", "structs",
+                                             "switch",         "templates",
+                                             "temporaries",    "uniforms",
+                                             "vector_bits",    "vector_choices",
+                                             "vectors",        "whole_objects",
+                                             "wide_enums"};
 
 namespace {
 
-constexpr int functionCost = 200, functionSize = 120, kernelCost = 3000, kernelSize = 600;
 
 /// `lim` maps any float that has been computed exactly to a multiple of 1/4 below 64.
 const char* const prologue =
@@ -28,6 +47,26 @@ const char* const prologue =
     "float2 lim(float2 v) { return float2(lim(v.x), lim(v.y)); }\n"
     "float3 lim(float3 v) { return float3(lim(v.x), lim(v.y), lim(v.z)); }\n"
     "float4 lim(float4 v) { return float4(lim(v.x), lim(v.y), lim(v.z), lim(v.w)); }";
+
+/// `near` leaves the bits of a number that all roundings agree in; `some` makes an argument of an integer.
+const char* const prologueOfFunctions =
+    "float near(float y) { return floor(y * 64.0f + 0.53125f) * 0.015625f; }\n"
+    "float2 near(float2 v) { return float2(near(v.x), near(v.y)); }\n"
+    "float3 near(float3 v) { return float3(near(v.x), near(v.y), near(v.z)); }\n"
+    "float4 near(float4 v) { return float4(near(v.x), near(v.y), near(v.z), near(v.w)); }\n"
+    "float some(int k) { return float(k & 31) * 0.25f - 4.0f; }";
+const char* const prologueOfDoubleFunctions =
+    "double near(double y) { return floor(y * 64.0 + 0.53125) * 0.015625; }\n"
+    "double2 near(double2 v) { return double2(near(v.x), near(v.y)); }\n"
+    "double3 near(double3 v) { return double3(near(v.x), near(v.y), near(v.z)); }\n"
+    "double4 near(double4 v) { return double4(near(v.x), near(v.y), near(v.z), near(v.w)); }\n"
+    "double someDouble(int k) { return double(k & 31) * 0.25 - 4.0; }";
+const char* const prologueOfAnyRank =
+    "template <int N>\n"
+    "int at(index<N> p, int d) {\n"
+    "if constexpr (N == 1) return p;\n"
+    "else return p[d];\n"
+    "}";
 
 /// The parameters of templates.
 struct Templated {
@@ -53,21 +92,38 @@ class Generator {
   Program generate() {
     add(makeStatement(prologue), "");
     if (unit_.has("doubles")) add(makeStatement(prologueOfDoubles), "");
+    if (unit_.has("functions")) add(makeStatement(prologueOfFunctions), "");
+    if (unit_.has("functions") && unit_.has("doubles")) add(makeStatement(prologueOfDoubleFunctions), "");
+    if (unit_.hasAnyRank()) add(makeStatement(prologueOfAnyRank), "");
+    if (unit_.has("gathers")) {
+      streams_.elements.push_back(Types::of(Scalar::Int));
+      if (unit_.has("floats")) streams_.elements.push_back(Types::of(Scalar::Float));
+      addElement(unit_, streams_);
+    }
     for (int i = 0; i < 2; ++i) types_.array(pickElement(), random_.between(2, 5));
     const int count = random_.between(16, 32);
     for (int i = 0; i < count; ++i) {
-      const std::size_t chosen = random_.below(12);
+      const std::size_t chosen = random_.below(14);
       if (chosen < 2 && unit_.has("structs")) {
         addStruct();
       } else if (chosen < 3 && unit_.has("enums")) {
         addEnum();
       } else if (chosen < 4 && unit_.has("constants")) {
         addConstant();
+      } else if (chosen < 6 && unit_.has("gathers")) {
+        if (unit_.with("inner_kernels", 1, 4)) {
+          KernelGenerator(unit_, streams_, program_).addInnerKernel();
+        } else if (unit_.has("bundles")) {
+          addBundle();
+        } else {
+          addElement(unit_, streams_);
+        }
       } else {
         addFunction();
       }
     }
-    for (int i = 0; i < 3 || (i < 10 && !areAllReached()); ++i) addKernel(i);
+    KernelGenerator kernels(unit_, streams_, program_);
+    for (int i = 0; i < 3 || (i < 10 && !areAllReached()); ++i) kernels.addKernel(i);
     program_.functions += static_cast<int>(std::ranges::count_if(unit_.functions, &Function::isReached));
     return std::move(program_);
   }
@@ -221,6 +277,41 @@ class Generator {
     unit_.constants.push_back({.name = owner + "::" + name, .type = type, .isReferable = false});
   }
 
+  /// A struct of parameters of kernels. The first is a gather, without which it might be a value.
+  void addBundle() {
+    const std::string space = newSpace(), name = unit_.newName("B");
+    const bool isTemplate = unit_.hasAnyRank() && random_.chance(1, 2);
+    Type type{.kind = Type::Kind::Bundle, .count = anyRank, .name = qualified(space, name)};
+    if (isTemplate) {
+      type.name += "<N>";
+      type.family = types_.size();  // itself
+    }
+    NodePtr members = makeList();
+    const int count = random_.between(1, 4);
+    for (int i = 0; i < count; ++i) {
+      const Member kind = i == 0 || random_.chance(1, 3) ? Member::Gather
+                          : unit_.with("specs", 1, 4)    ? Member::Spec
+                          : random_.chance(1, 3)         ? Member::Bundle
+                                                         : Member::Uniform;
+      std::optional<Field> field = pickMember(unit_, streams_, kind, isTemplate);
+      if (!field) continue;
+      field->name = std::string("m") + static_cast<char>('a' + i);
+      members->children.push_back(makeStatement(declared(unit_, *field, true) + ";"));
+      type.fields.push_back(std::move(*field));
+    }
+    if (isTemplate) type.family = types_.size();  // arrays and gathers may have been added
+    const TypeId id = types_.add(type);
+    streams_.bundles.push_back(id);
+    NodePtr methods = makeList();
+    if (unit_.has("methods")) {
+      const int methodCount = random_.between(0, 2);
+      for (int i = 0; i < methodCount; ++i) methods->children.push_back(method(id));
+    }
+    add(makeStatement((isTemplate ? "template <int N>\nstruct " : "struct ") + name + " {\n$$};",
+                      std::move(members), std::move(methods)),
+        space);
+  }
+
   TypeId pickArray() {
     std::vector<TypeId> arrays;
     for (TypeId id = 0; id < types_.size(); ++id) {
@@ -236,12 +327,23 @@ class Generator {
     const TypeId templated = template_.type;
     for (int i = 0; i < count; ++i) {
       Parameter parameter{.type = i == 0 && first >= 0 ? first : pickElement()};
-      if (!(i == 0 && first >= 0) && !function.isInfix && unit_.with("arrays", 1, 6))
-        parameter.type = pickArray();
+      if (!(i == 0 && first >= 0) && !function.isInfix) {
+        if (function.isOfAnyRank && (i == 0 || random_.chance(1, 3))) {
+          parameter.type = pickStream(unit_, streams_, true);
+        } else if (unit_.with("gathers", 1, 5)) {
+          parameter.type = pickStream(unit_, streams_, false);
+        } else if (unit_.with("arrays", 1, 6)) {
+          parameter.type = pickArray();
+        }
+      }
+      if (types_.isOfStreams(parameter.type)) {
+        text += (i == 0 ? "" : ", ") + streamParameter(body, function, parameter.type, i);
+        continue;
+      }
       const bool isArray = types_[parameter.type].kind == Type::Kind::Array;
       const std::size_t chosen = random_.below(5);
       if (unit_.has("references")) {
-        if (chosen < 2) parameter.passing = Passing::Reference;
+        if (chosen < 2 && !types_.isIndex(parameter.type)) parameter.passing = Passing::Reference;
         if (chosen == 2) parameter.passing = Passing::ConstReference;
       }
       // Templates deduce nothing from pointers, whose conversions would make overloads ambiguous; methods take references alone.
@@ -254,12 +356,16 @@ class Generator {
       text += i == 0 ? "" : ", ";
       const bool isConstValue = parameter.passing == Passing::Value && random_.chance(1, isArray ? 2 : 8);
       parameter.takesConst = isConstValue || parameter.passing == Passing::ConstReference;
-      std::string declared = parameter.passing == Passing::Value
+      const bool isOut =
+          parameter.passing == Passing::Reference && !function.isInfix && unit_.with("out", 1, 3);
+      std::string declared = isOut ? types_.declare(parameter.type, name)
+                             : parameter.passing == Passing::Value
                                  ? types_.declare(parameter.type, name)
                                  : types_.declareReference(parameter.type, name);
       const TypeId element = isArray ? types_[parameter.type].element : parameter.type;
       if (element == templated) declared.replace(0, types_.spell(element).size(), "T");
       if (i == 0 && template_.hasLength) declared.replace(declared.rfind('['), std::string::npos, "[N]");
+      if (isOut) text += random_.chance(1, 2) ? "out " : "inout ";
       text += (parameter.passing == Passing::ConstReference || isConstValue ? "const " : "") + declared;
       if (parameter.hasDefault) text += " = " + types_.simplest(parameter.type);
       if (parameter.hasDefault && types_.simplest(parameter.type).empty()) {
@@ -274,21 +380,22 @@ class Generator {
     return text;
   }
 
-  void declareConstants(Body& body) {
-    for (const Variable& constant : unit_.constants)
-      body.declare(constant.name, constant.type, false).isReferable = false;
-  }
-
-  void finish(Function function, const Body& body) {
-    function.cost = body.cost() + 1;
-    function.size = body.size() + 1;
-    function.callees = body.callees();
-    unit_.functions.push_back(std::move(function));
+  /// A gather, or a bundle, which may be a constant reference.
+  std::string streamParameter(Body& body, Function& function, TypeId type, int number) {
+    Field field{.name = "p" + std::to_string(number), .type = type};
+    std::string text = declared(unit_, field, true);
+    if (types_.isBundle(type) && random_.chance(1, 2))
+      text = "const " + types_.declareReference(type, field.name);
+    body.declare(field.name, type, false).isReferable = false;
+    function.parameters.push_back({.type = type});
+    return text;
   }
 
   NodePtr method(TypeId owner) {
     Function function{.name = unit_.newName("f"), .owner = owner};
-    function.isConst = random_.chance(1, 3);
+    const bool isOfBundle = types_.isBundle(owner);
+    function.isConst = isOfBundle || random_.chance(1, 3);
+    function.isOfAnyRank = types_.isOfAnyRank(owner);
     const bool isInfix = !function.isConst && unit_.with("operators", 1, 4) && unit_.has("objects");
     function.returnsObject = !function.isConst && (isInfix || unit_.with("objects", 1, 3));
     if (!function.returnsObject && random_.chance(2, 3)) function.result = pickElement();
@@ -310,7 +417,8 @@ class Generator {
     }
     Body body(unit_, function.result, functionCost, functionSize);
     body.declareObject(owner, !function.isConst);
-    declareConstants(body);
+    if (function.isOfAnyRank) body.beOfAnyRank();
+    body.declareConstants();
     if (function.returnsObject) body.mayReturnObject();
     const std::string parameters =
         declareParameters(body, function, isInfix || function.name == "[]" ? 1 : random_.between(0, 2));
@@ -318,7 +426,7 @@ class Generator {
     if (function.returnsObject) function.result = -1;
     const std::string end = function.isConst ? ") const {\n$\n}" : ") {\n$\n}";
     NodePtr node = makeStatement(resultText + " " + name + "(" + parameters + end, std::move(statements));
-    finish(std::move(function), body);
+    body.finish(std::move(function));
     return node;
   }
 
@@ -329,7 +437,7 @@ class Generator {
                       .isInfix = true,
                       .isExact = true};
     Body body(unit_, function.result, functionCost, functionSize);
-    declareConstants(body);
+    body.declareConstants();
     const std::string spelled = types_.spell(operand);
     const bool isReference = unit_.has("references") && random_.chance(1, 2);
     const Parameter first{operand, isReference ? Passing::ConstReference : Passing::Value},
@@ -341,7 +449,7 @@ class Generator {
                              (isReference ? "const " + spelled + "&" : spelled) + " p0, " + spelled +
                              " p1) {\n$\n}";
     NodePtr node = makeStatement(head, body.statements(random_.between(1, 3)));
-    finish(std::move(function), body);
+    body.finish(std::move(function));
     add(std::move(node), space);
   }
 
@@ -375,7 +483,10 @@ class Generator {
     Templated template_;
     std::string head, arguments;
     TypeId numberType = -1;
-    if (unit_.with("templates", 1, 6)) {
+    if (unit_.hasAnyRank() && random_.chance(1, 6)) {
+      function.isOfAnyRank = function.isExact = true;
+      head = "template <int N>\n";
+    } else if (unit_.with("templates", 1, 6)) {
       function.isExact = true;
       const bool hasType = random_.chance(1, 2), hasNumber = !hasType || random_.chance(1, 4);
       const bool isOfArray = unit_.with("arrays", 1, 3);
@@ -400,13 +511,13 @@ class Generator {
     } else if (unit_.with("overloads", 1, 5)) {
       std::vector<Function*> others;
       for (Function& other : unit_.functions) {
-        if (other.owner >= 0 || other.isInfix || other.parameters.empty() ||
+        if (other.owner >= 0 || other.isInfix || other.isOfAnyRank || other.parameters.empty() ||
             other.name.find('<') != std::string::npos || templates_.count(other.name) != 0)
           continue;
         const auto isUnsuitable = [&](const Parameter& parameter) {
           const bool isPointer =
               types_[parameter.type].kind == Type::Kind::Array && parameter.passing == Passing::Value;
-          return parameter.hasDefault || isPointer;
+          return parameter.hasDefault || isPointer || types_.isOfStreams(parameter.type);
         };
         if (std::ranges::none_of(other.parameters, isUnsuitable)) others.push_back(&other);
       }
@@ -428,10 +539,11 @@ class Generator {
     }
     function.name = qualified(space, name);
     Body body(unit_, function.result, functionCost, functionSize);
-    declareConstants(body);
+    body.declareConstants();
+    if (function.isOfAnyRank) body.beOfAnyRank();
     if (numberType >= 0) body.declare("N", numberType, false).isReferable = false;
-    const std::string parameters =
-        declareParameters(body, function, random_.between(first >= 0 ? 1 : 0, 4), first, template_);
+    const std::string parameters = declareParameters(
+        body, function, random_.between(first >= 0 || function.isOfAnyRank ? 1 : 0, 4), first, template_);
     if (function.isExact) {
       for (Parameter& parameter : function.parameters) parameter.hasDefault = false;
     }
@@ -441,33 +553,12 @@ class Generator {
     head += prefix + (function.result < 0 ? "void" : types_.spell(function.result)) + " " + name + "(" +
             parameters + ") {\n$\n}";
     NodePtr node = makeStatement(head, body.statements(random_.between(1, 6)));
-    finish(std::move(function), body);
+    body.finish(std::move(function));
     add(std::move(node), space);
   }
 
-  void addKernel(int number) {
-    Body body(unit_, -1, kernelCost, kernelSize);
-    declareConstants(body);
-    body.declare("a", Types::of(Scalar::Int), false);
-    body.declare("b", Types::of(Scalar::Uint), false);
-    body.declare("c", Types::of(Scalar::Float), false);
-    body.declare("r0", Types::of(Scalar::Int), true);
-    body.declare("r1", Types::of(Scalar::Uint), true);
-    body.declare("r2", Types::of(Scalar::Float), true);
-    NodePtr statements = body.statements(random_.between(2, 6));
-    NodePtr list = std::move(statements->children[0]);
-    unit_.reach(body.callees());
-    for (std::size_t f = unit_.functions.size(); f-- > 0;) {  // later functions call earlier ones
-      if (!unit_.functions[f].isReached && body.addCall(*list, unit_.functions[f]))
-        unit_.reach(body.callees());
-    }
-    body.foldInto(*list);
-    const std::string head = "kernel void k" + std::to_string(number) + std::string(kernelParameters);
-    add(makeStatement(head + " {\nr0 = 0;\nr1 = 0u;\nr2 = 0.0f;\n$}", std::move(list)), "");
-    ++program_.functions;
-  }
-
   Unit unit_;
+  StreamTypes streams_;
   Random& random_;
   Types& types_;
   Program program_{.root = makeList()};

@@ -11,10 +11,10 @@ Expr Body::integer(int depth) {
     if (random_.chance(3, 4)) {
       if (std::optional<Expr> found = read(isInteger, 0)) return std::move(*found);
     }
-    return literal(random_.chance(2, 3) ? Types::of(Scalar::Int) : Types::of(Scalar::Uint));
+    return literal(pickInteger());
   }
-  switch (random_.below(17)) {
-    case 0: return literal(random_.chance(2, 3) ? Types::of(Scalar::Int) : Types::of(Scalar::Uint));
+  switch (random_.below(19)) {
+    case 0: return literal(pickInteger());
     case 1:
     case 2:
       if (std::optional<Expr> found = read(isInteger, depth)) return std::move(*found);
@@ -44,7 +44,9 @@ Expr Body::integer(int depth) {
       return integerBinary(depth);
     case 11: {
       const auto to = static_cast<TypeId>(random_.below(unit_.has("narrow") ? 7 : 1));
-      const TypeId type = unit_.has("narrow") ? to : Types::of(Scalar::Uint);
+      const TypeId type = random_.chance(1, 3)  ? pickInteger()
+                          : unit_.has("narrow") ? to
+                                                : Types::of(Scalar::Uint);
       if (hasFloating() && random_.chance(1, 4)) return converted(floating(depth - 1), type, false);
       return converted(integer(depth - 1), type, false);
     }
@@ -76,8 +78,19 @@ Expr Body::integer(int depth) {
     case 15:
       if (unit_.has("intrinsics")) return intrinsic(depth);
       return integerBinary(depth);
+    case 16:
+    case 17:
+      if (std::optional<Expr> found = streamInteger(depth)) return std::move(*found);
+      return integerBinary(depth);
     default: return integerBinary(depth);
   }
+}
+
+/// Int or Uint, or sometimes one of 64 bits.
+TypeId Body::pickInteger() {
+  const TypeId wide = Types::of(random_.chance(1, 2) ? Scalar::Long : Scalar::Ulong);
+  if (unit_.mayHave(wide) && random_.chance(1, 3)) return wide;
+  return Types::of(random_.chance(2, 3) ? Scalar::Int : Scalar::Uint);
 }
 
 Expr Body::intrinsic(int depth) {
@@ -103,16 +116,17 @@ Expr Body::integerBinary(int depth) {
   if (random_.chance(1, 5)) {  // E1 << E2 evaluates E1 first
     Expr b = integer(depth - 1);
     const TypeId count = types_.promoted(b.type), type = types_.promoted(a.type);
-    Expr masked = made("($ & 31)", count, listOf(std::move(b)), true);
+    Expr masked = made("($ & " + types_.shiftMask(type) + ")", count, listOf(std::move(b)), true);
     return made(random_.chance(1, 2) ? "($ << $)" : "($ >> $)", type,
                 listOf(std::move(a), std::move(masked)));
   }
   Expr b = unsequenced(a, integer(depth - 1));
   if (random_.chance(1, 5)) {
     const TypeId divisor = types_.promoted(b.type), type = types_.common(a.type, b.type);
-    Expr positive =
-        made("(($ & " + std::to_string(random_.pick(std::vector<int>{7, 15, 255, 65535})) + ") + 1)", divisor,
-             listOf(std::move(b)), true);
+    std::vector<std::string> masks = {"7", "15", "255", "65535"};
+    if (types_.isWideInteger(divisor))
+      masks.insert(masks.end(), 3, "(" + types_.spell(divisor) + "(1) << 62)");
+    Expr positive = made("(($ & " + random_.pick(masks) + ") + 1)", divisor, listOf(std::move(b)), true);
     return made(random_.chance(1, 2) ? "($ / $)" : "($ % $)", type,
                 listOf(std::move(a), std::move(positive)));
   }
@@ -144,7 +158,9 @@ std::optional<Expr> Body::integerAssignment(int depth) {
   if (isBool) chosen = 3 + random_.below(3);
   Expr right = integer(depth - 1);
   const TypeId promoted = types_.promoted(right.type);
-  if (chosen == 6 || chosen == 7) right = made("($ & 31)", promoted, listOf(std::move(right)), true);
+  if (chosen == 6 || chosen == 7)
+    right = made("($ & " + types_.shiftMask(types_.promoted(type)) + ")", promoted, listOf(std::move(right)),
+                 true);
   if (chosen >= 8) right = made("(($ & 63) + 1)", promoted, listOf(std::move(right)), true);
   Expr left = target(*found, depth - 1);
   return written(made("($ " + operators[chosen] + " $)", type, listOf(std::move(left), std::move(right))));

@@ -12,13 +12,18 @@ Variable& Body::declare(std::string name, TypeId type, bool isMutable) {
 
 void Body::declareObject(TypeId type, bool isMutable) { declare("this", type, isMutable); }
 
+void Body::declareConstants() {
+  for (const Variable& constant : unit_.constants)
+    declare(constant.name, constant.type, false).isReferable = false;
+}
+
 void Body::addPlaces(std::size_t variable, const Accepts& accepts, bool onlyReferable,
                      std::vector<Place>& places) {
   std::vector<Step> path;
   const std::function<void(TypeId, bool)> visit = [&](TypeId id, bool isReferable) {
     if (onlyReferable && !isReferable) return;
     if (accepts(id)) places.push_back({variable, path, id, isReferable});
-    if (path.size() == 4) return;
+    if (path.size() == (types_.isBundle(variables_[variable].type) ? 6 : 4)) return;
     const Type& type = types_[id];
     const auto follow = [&](Step step, TypeId next, bool mayRefer) {
       path.push_back(step);
@@ -27,11 +32,13 @@ void Body::addPlaces(std::size_t variable, const Accepts& accepts, bool onlyRefe
     };
     switch (type.kind) {
       case Type::Kind::Struct:
+      case Type::Kind::Bundle:
         for (std::size_t i = 0; i < type.fields.size(); ++i)
           follow({Step::Kind::Field, static_cast<int>(i)}, types_[id].fields[i].type, true);
         break;
       case Type::Kind::Array: follow({Step::Kind::Index}, type.element, true); break;
       case Type::Kind::Matrix: follow({Step::Kind::Index}, type.element, false); break;
+      case Type::Kind::Gather: follow({Step::Kind::Element}, type.element, false); break;
       case Type::Kind::Vector: follow({Step::Kind::Component}, type.element, false); break;
       default: break;
     }
@@ -92,6 +99,11 @@ Expr Body::spelled(const Place& place, int depth) {
       continue;
     }
     const TypeId element = type.element;
+    if (step.kind == Step::Kind::Element) {
+      access(text, parts, type.count, depth);
+      id = element;
+      continue;
+    }
     if (step.kind == Step::Kind::Component && random_.chance(1, 2)) {
       text += std::string(".") +
               (random_.chance(1, 4) ? "rgba" : "xyzw")[random_.below(static_cast<std::size_t>(type.count))];

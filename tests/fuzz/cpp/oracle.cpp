@@ -27,28 +27,56 @@ std::string firstError(const std::string& file) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
     const std::size_t at = line.find("error: ");
-    if (at != std::string::npos) return line.substr(at);
+    if (at == std::string::npos) continue;
+    std::string source;
+    std::getline(in, source);
+    return line.substr(at) + "\n" + source;
   }
   return "no message";
 }
 
-/// The program as C++: parameters of kernels are declared as in C++, references to arrays of vectors avoid macros, and kernels can be called from outside.
-std::string asCpp(std::string text, std::vector<std::string>& kernels) {
-  constexpr std::string_view begin = "kernel void ";
+/// Parameters of kernels, gathers and references as C++ declares them. Names stay.
+std::string withDeclarationsOfCpp(const std::string& text) {
+  const std::string type = "[A-Za-z_][\\w:]*(?:<[^<>()]*>)?";
+  const std::string name = " (\\w+)", declaration = "(" + type + ")" + name;
+  static const std::pair<std::regex, const char*> edits[] = {
+      {std::regex("\\bkernel void "), "void "},
+      {std::regex("\\bspec (?=\\w)"), ""},
+      {std::regex("\\bout " + declaration + "<>"), "$1& $2"},
+      {std::regex(declaration + "<>"), "const $1 $2"},
+      {std::regex(declaration + "\\[\\]\\[\\]\\[\\]\\[\\]"), "gather<$1, 4> $2"},
+      {std::regex(declaration + "\\[\\]\\[\\]\\[\\]"), "gather<$1, 3> $2"},
+      {std::regex(declaration + "\\[\\]\\[\\]"), "gather<$1, 2> $2"},
+      {std::regex(declaration + "\\[\\]"), "gather<$1, 1> $2"},
+      {std::regex("\\b(?:in)?out " + declaration + "((?:\\[\\w+\\])+)"), "$1 (&$2)$3"},
+      {std::regex("\\b(?:in)?out " + declaration), "$1& $2"},
+      {std::regex("\\bindex<([^<>]*)>\\("), "make_index<$1>("},
+      // `int2 (&w)[3]` is no call of the macro int2.
+      {std::regex("\\b((?:u?char|u?short|u?int|u?long|float|double)[234]) \\(&"), "$1_t (&"},
+  };
+  std::string result = text;
+  for (const auto& [pattern, replacement] : edits) result = std::regex_replace(result, pattern, replacement);
+  return result;
+}
+
+/// The program as C++. Kernels can be called from outside: those with parameters of their own have a function for it in the text.
+std::string asCpp(const std::string& text, std::vector<std::string>& kernels) {
+  constexpr std::string_view begin = "kernel void ", beginOfRun = "void run_";
   std::string callable;
-  for (std::size_t at = 0; (at = text.find(begin, at)) != std::string::npos;) {
+  for (std::size_t at = 0; (at = text.find(begin, at)) != std::string::npos; ++at) {
     const std::size_t name = at + begin.size(), parameters = text.find('(', name);
+    if (text.compare(parameters, kernelParameters.size(), kernelParameters) != 0) continue;
     kernels.push_back(text.substr(name, parameters - name));
-    callable += "SK_KERNEL(" + kernels.back() + ")\n";
-    if (text.compare(parameters, kernelParameters.size(), kernelParameters) != 0)
-      throw std::runtime_error("the parameters of a kernel are not " + std::string(kernelParameters));
-    text.replace(parameters, kernelParameters.size(),
-                 "(const int a, const uint b, const float c, int& r0, uint& r1, float& r2)");
-    text.replace(at, begin.size(), "void ");
+    if (text.find(std::string(beginOfRun) + kernels.back() + "_rank") != std::string::npos)
+      kernels.pop_back();
+    else
+      callable += "SK_KERNEL(" + kernels.back() + ")\n";
   }
-  // `int2 (&w)[3]` is no call of the macro int2.
-  static const std::regex arrays("\\b((?:u?char|u?short|u?int|float|double)[234]) \\(&");
-  return std::regex_replace(text, arrays, "$1_t (&") + callable;
+  for (std::size_t at = 0; (at = text.find(beginOfRun, at)) != std::string::npos; ++at) {
+    const std::size_t name = at + beginOfRun.size();
+    kernels.push_back(text.substr(name, text.find('(', name) - name));
+  }
+  return withDeclarationsOfCpp(text) + callable;
 }
 
 }  // namespace
@@ -79,15 +107,15 @@ Oracle::Oracle(const std::string& text, const std::string& object, const std::ve
 }
 
 std::vector<Outputs> Oracle::run() const {
-  using Run = void(const std::int32_t*, const std::uint32_t*, const float*, std::int32_t*, std::uint32_t*,
-                   float*, int);
+  using Run =
+      void(const std::int32_t*, const std::uint32_t*, const float*, std::int32_t*, std::uint32_t*, float*);
   std::vector<Outputs> all;
   for (const std::string& kernel : kernels_) {
     Outputs& outputs = all.emplace_back(Outputs{.kernel = kernel});
     auto* const run = reinterpret_cast<Run*>(dlsym(library_, ("run_" + kernel).c_str()));
     if (run == nullptr) throw std::runtime_error("there is no kernel " + kernel);
     run(inputs().a.data(), inputs().b.data(), inputs().c.data(), outputs.r0.data(), outputs.r1.data(),
-        outputs.r2.data(), sampleCount);
+        outputs.r2.data());
   }
   return all;
 }

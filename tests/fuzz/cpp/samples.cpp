@@ -32,6 +32,12 @@ const Inputs& inputs() {
   return made;
 }
 
+KernelName nameOf(const Outputs& outputs) {
+  const std::size_t at = outputs.kernel.rfind("_rank");
+  if (at == std::string::npos) return {outputs.kernel};
+  return {outputs.kernel.substr(0, at), outputs.kernel.back() - '0', true};
+}
+
 std::string difference(const Outputs& got, const Outputs& wanted) {
   for (std::size_t i = 0; i < sampleCount; ++i) {
     const Inputs& in = inputs();

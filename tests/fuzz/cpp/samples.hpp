@@ -27,11 +27,20 @@ struct Inputs {
 const Inputs& inputs();
 
 struct Outputs {
-  std::string kernel;
+  std::string
+      kernel;  ///< its name, and "_rank2" if its domain has two dimensions and it has parameters beside the common ones
   std::vector<std::int32_t> r0 = std::vector<std::int32_t>(sampleCount);
   std::vector<std::uint32_t> r1 = std::vector<std::uint32_t>(sampleCount);
   std::vector<float> r2 = std::vector<float>(sampleCount);
 };
+
+/// The name of a kernel in .sk, and the rank of its domain.
+struct KernelName {
+  std::string name;
+  int rank = 1;
+  bool hasOwnParameters = false;
+};
+KernelName nameOf(const Outputs& outputs);
 
 /// The first difference, or "". The two zeros of a float are equal.
 std::string difference(const Outputs& got, const Outputs& wanted);

@@ -6,6 +6,7 @@
 using uint = unsigned;
 using uchar = unsigned char;
 using ushort = unsigned short;
+using ulong = unsigned long;
 
 #define SK_VECTOR(name, element, width)                                \
   typedef element name##width __attribute__((ext_vector_type(width))); \
@@ -20,6 +21,8 @@ SK_VECTORS(char, char)
 SK_VECTORS(uchar, unsigned char)
 SK_VECTORS(short, short)
 SK_VECTORS(ushort, unsigned short)
+SK_VECTORS(long, long)
+SK_VECTORS(ulong, unsigned long)
 
 template <class V>
 inline constexpr int width_of = 1;
@@ -98,9 +101,69 @@ inline double floor(double x) { return __builtin_floor(x); }
 inline double ceil(double x) { return __builtin_ceil(x); }
 inline double trunc(double x) { return __builtin_trunc(x); }
 inline double round(double x) { return __builtin_rint(x); }
-template <class T>
-T fract(T x) {
+
+// Functions that round: programs look at a few bits of their results only.
+#define SK_FUNCTION(name)                                      \
+  inline double name(double x) { return __builtin_##name(x); } \
+  inline float name(float x) { return static_cast<float>(__builtin_##name(double(x))); }
+#define SK_FUNCTION_OF_TWO(name)                                            \
+  inline double name(double x, double y) { return __builtin_##name(x, y); } \
+  inline float name(float x, float y) { return static_cast<float>(__builtin_##name(double(x), double(y))); }
+SK_FUNCTION(atan)
+SK_FUNCTION(cbrt)
+SK_FUNCTION(cos)
+SK_FUNCTION(erf)
+SK_FUNCTION(erfc) SK_FUNCTION(exp) SK_FUNCTION(exp2) SK_FUNCTION(expm1) SK_FUNCTION(log) SK_FUNCTION(log1p)
+    SK_FUNCTION(log2) SK_FUNCTION(sin) SK_FUNCTION(sqrt) SK_FUNCTION(tanh) SK_FUNCTION_OF_TWO(atan2)
+        SK_FUNCTION_OF_TWO(hypot) SK_FUNCTION_OF_TWO(pow)
+    /// A literal exponent is a float beside a float.
+    template <class F, class E>
+  requires(__is_same(F, float))
+float pow(F x, E y) {
+  return pow(x, static_cast<float>(y));
+}
+
+/// The vector type with this component.
+template <class T, int n>
+using vector_of = T __attribute__((ext_vector_type(n)));
+/// Calls a function for each component of its vectors.
+template <class Function, class V, class... Others>
+auto by_component(Function function, V first, Others... others) {
+  vector_of<decltype(function(first[0], others[0]...)), width_of<V>> result;
+  for (int i = 0; i < width_of<V>; ++i) result[i] = function(first[i], others[i]...);
+  return result;
+}
+#define SK_OF_VECTORS(name)                                 \
+  template <class V>                                        \
+    requires(width_of<V> > 1)                               \
+  auto name(V v) {                                          \
+    return by_component([](auto x) { return name(x); }, v); \
+  }
+#define SK_OF_TWO_VECTORS(name)                                           \
+  template <class V>                                                      \
+    requires(width_of<V> > 1)                                             \
+  auto name(V v, V w) {                                                   \
+    return by_component([](auto x, auto y) { return name(x, y); }, v, w); \
+  }
+SK_OF_VECTORS(popcount)
+SK_OF_VECTORS(clz)
+SK_OF_VECTORS(ctz)
+SK_OF_VECTORS(floor)
+SK_OF_VECTORS(ceil) SK_OF_VECTORS(trunc) SK_OF_VECTORS(round) SK_OF_VECTORS(atan) SK_OF_VECTORS(cbrt)
+    SK_OF_VECTORS(cos) SK_OF_VECTORS(erf) SK_OF_VECTORS(erfc) SK_OF_VECTORS(exp) SK_OF_VECTORS(exp2)
+        SK_OF_VECTORS(expm1) SK_OF_VECTORS(log) SK_OF_VECTORS(log1p) SK_OF_VECTORS(log2) SK_OF_VECTORS(sin)
+            SK_OF_VECTORS(sqrt) SK_OF_VECTORS(tanh) SK_OF_TWO_VECTORS(mulhi) SK_OF_TWO_VECTORS(atan2)
+                SK_OF_TWO_VECTORS(hypot) SK_OF_TWO_VECTORS(pow)
+
+                    template <class T>
+                    T fract(T x) {
   return x - floor(x);
+}
+template <class V>
+auto dot(V a, V b) {
+  auto sum = a[0] * b[0];
+  for (int i = 1; i < width_of<V>; ++i) sum += a[i] * b[i];
+  return sum;
 }
 
 /// What is done with a mask.
@@ -122,12 +185,11 @@ bool all(Mask mask) {
   return result;
 }
 
-/// Makes a kernel callable for many elements.
-#define SK_KERNEL(name)                                                                                 \
-  extern "C" void run_##name(const int* a, const uint* b, const float* c, int* r0, uint* r1, float* r2, \
-                             int n) {                                                                   \
-    for (int i = 0; i < n; ++i) name(a[i], b[i], c[i], r0[i], r1[i], r2[i]);                            \
-  }
+#include "streams_as_cpp.hpp"
+
+/// Makes a kernel without parameters of its own callable for many elements.
+#define SK_KERNEL(name) \
+  extern "C" void run_##name(SK_RUN_PARAMETERS) { SK_RUN(1, name(a[i], b[i], c[i], r0[i], r1[i], r2[i])) }
 
 // Macros without an argument list leave the types alone.
 #define int2(...) make<int2>(__VA_ARGS__)
@@ -154,3 +216,9 @@ bool all(Mask mask) {
 #define ushort2(...) make<ushort2>(__VA_ARGS__)
 #define ushort3(...) make<ushort3>(__VA_ARGS__)
 #define ushort4(...) make<ushort4>(__VA_ARGS__)
+#define long2(...) make<long2>(__VA_ARGS__)
+#define long3(...) make<long3>(__VA_ARGS__)
+#define long4(...) make<long4>(__VA_ARGS__)
+#define ulong2(...) make<ulong2>(__VA_ARGS__)
+#define ulong3(...) make<ulong3>(__VA_ARGS__)
+#define ulong4(...) make<ulong4>(__VA_ARGS__)

@@ -6,6 +6,7 @@
 namespace fuzz::cpp {
 
 TypeId Body::pickType(bool mayBeArray) {
+  if (isOfAnyRank_ && random_.chance(1, 6)) return Types::indexOfAnyRank();
   for (;;) {
     const auto id = static_cast<TypeId>(random_.below(static_cast<std::size_t>(types_.size())));
     const Type& type = types_[id];
@@ -118,7 +119,7 @@ NodePtr Body::declaration() {
     }
   }
   if (!node) {
-    const std::size_t form = random_.below(4);
+    const std::size_t form = kind == Type::Kind::Index ? 4 : random_.below(4);
     if (isArray || form == 0) {
       Expr value = initialiser(type, 2);
       node = makeStatement(prefix + types_.declare(type, name) + " = $;", std::move(value.node));
@@ -211,9 +212,29 @@ NodePtr Body::branch() {
   return node;
 }
 
+/// `for (int d = 0; d < N; ++d)`
+NodePtr Body::loopOverAxes() {
+  const std::size_t outer = variables_.size();
+  const std::string name = unit_.newName("d");
+  constexpr int trips = highestRank;
+  variables_.push_back(
+      {.name = name, .type = Types::of(Scalar::Int), .isAxis = true, .bit = bits_++ % 64, .below = trips});
+  multiplier_ *= trips;
+  ++loops_;
+  ++breakables_;
+  NodePtr node =
+      makeStatement("for (int " + name + " = 0; " + name + " < N; ++" + name + ") {\n$}", block(pickCount()));
+  --breakables_;
+  --loops_;
+  multiplier_ /= trips;
+  leave(outer);
+  return node;
+}
+
 NodePtr Body::loop() {
   const int trips = random_.between(1, 6);
   if (cost_ + multiplier_ * trips * 20 > limit_ || loops_ >= 3) return effect();
+  if (isOfAnyRank_ && random_.chance(1, 2)) return loopOverAxes();
   const std::string name = unit_.newName("i");
   const std::string count = std::to_string(trips);
   const std::size_t outer = variables_.size();
@@ -312,8 +333,8 @@ NodePtr Body::selection() {
     chosen = value(type, 2);
   } else {
     chosen = integer(2);
-    const bool isUint = types_.promoted(chosen.type) == Types::of(Scalar::Uint);
     const TypeId type = types_.promoted(chosen.type);
+    const bool isUint = !factsOf(types_[type].scalar).isSigned;
     if (random_.chance(3, 4)) {
       chosen = made("($ & 7)", type, listOf(std::move(chosen)));
     } else if (random_.chance(1, 2)) {
@@ -378,7 +399,9 @@ NodePtr Body::variable(TypeId type) {
 
 bool Body::addCall(Node& list, const Function& function) {
   if (!canCall(function)) return false;
-  if (function.owner >= 0) list.children.push_back(variable(function.owner));
+  if (!rankFor(function)) return false;
+  if (function.owner >= 0 && !types_.isBundle(function.owner))
+    list.children.push_back(variable(function.owner));
   for (const Parameter& parameter : function.parameters) {
     const bool isArray = types_[parameter.type].kind == Type::Kind::Array;
     if (parameter.passing == Passing::Reference || isArray) list.children.push_back(variable(parameter.type));
@@ -400,6 +423,10 @@ NodePtr Body::foldOf(const std::string& text, TypeId type) {
   if (type == Types::of(Scalar::Float)) return makeStatement("r2 = lim(r2 * 0.5f + lim(" + text + "));");
   if (type == Types::of(Scalar::Double))
     return makeStatement("r0 = r0 * 31 + int(" + text + ") + int(lim(" + text + ") * 4096.0);");
+  if (types_.isWideInteger(type))
+    return makeStatement("r0 = r0 * 31 + int(" + text + ") + 7 * int(" + text + " >> 32);");
+  if (types_.isIndex(type))
+    return makeStatement("r0 = r0 * 31 + at<N>(" + text + ", 0) + 7 * at<N>(" + text + ", N - 1);");
   if (type == Types::of(Scalar::Uint)) return makeStatement("r1 = r1 * 31u + " + text + ";");
   return makeStatement("r0 = r0 * 31 + int(" + text + ");");
 }

@@ -35,6 +35,7 @@ struct Function {
   bool isConst = false;  ///< a method that does not change its object
   bool returnsObject = false;  ///< a method that returns its object by reference
   bool isInfix = false;  ///< `name` stands between its operands
+  bool isOfAnyRank = false;  ///< a template over N, or a method of one
   bool isExact = false;  ///< arguments must have the types of the parameters
   int cost = 0;  ///< how many expressions a call evaluates at most, roughly
   int size = 0;  ///< how many expressions it has, with those of the functions that it calls
@@ -49,6 +50,7 @@ struct Variable {
   bool isMutable = false;
   bool isReferable = true;  ///< can be bound to a reference
   bool isPointer = false;  ///< an array that C++ passes as a pointer
+  bool isAxis = false;  ///< from 0 to N, exclusive
   int bit = 0;  ///< its bit in Effects
   int below = 0;  ///< if not 0: an integer from 0 to this, exclusive
 };
@@ -58,6 +60,7 @@ struct Unit {
       : random(seed, number), without(without) {}
 
   bool has(const char* construct) const { return without.count(construct) == 0; }
+  bool hasAnyRank() const { return has("gathers") && has("any_rank"); }
   /// True with probability `count` / `of`, if the construct is not left out.
   bool with(const char* construct, std::size_t count, std::size_t of) {
     return random.chance(count, of) && has(construct);
@@ -65,6 +68,8 @@ struct Unit {
   /// Chooses among the types that are not left out, some more seldom than others.
   bool mayHave(TypeId id) {
     const Type& type = types[id];
+    if (types.isOfStreams(id) || types.isIndex(id)) return false;
+    if (types.isWideInteger(id) && !(hasLongs && has("longs"))) return false;
     if (type.kind == Type::Kind::Struct || type.kind == Type::Kind::Enum || type.kind == Type::Kind::Array)
       return true;
     const bool isVector = type.kind == Type::Kind::Vector;

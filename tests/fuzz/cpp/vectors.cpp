@@ -25,6 +25,7 @@ Scalar Body::pickVectorScalar() {
     const auto scalar = static_cast<Scalar>(random_.between(1, scalarCount - 1));
     const bool isNarrow = scalar < Scalar::Int;
     if (isNarrow && (!unit_.has("narrow_vectors") || random_.chance(1, 2))) continue;
+    if (types_.isWideInteger(Types::of(scalar)) && !unit_.mayHave(Types::of(scalar))) continue;
     if (scalar == Scalar::Float && !unit_.has("floats")) continue;
     if (scalar == Scalar::Double && !unit_.has("doubles")) continue;
     return scalar;
@@ -34,9 +35,12 @@ Scalar Body::pickVectorScalar() {
 Expr Body::vectorOf(TypeId type, int depth) {
   if (depth <= 0 || isFull()) return vectorParts(type, 0);
   const Type info = types_[type];
-  switch (random_.below(8)) {
+  switch (random_.below(9)) {
     case 0:
     case 1: return vectorBinary(type, depth);
+    case 8:
+      if (unit_.has("intrinsics") && !isConstant_) return vectorIntrinsic(type, depth);
+      return vectorParts(type, depth);
     case 2: {  // components of another vector
       const int width = random_.between(2, 4);
       Expr whole = value(Types::vector(info.scalar, width), depth - 1);
@@ -87,8 +91,9 @@ Expr Body::mask(Scalar scalar, int count, int depth) {
   const TypeId type = Types::vector(scalar, count);
   Expr a = value(type, depth - 1);
   Expr b = unsequenced(a, value(type, depth - 1));
-  const TypeId result =
-      scalar == Scalar::Float || scalar == Scalar::Uint ? Types::vector(Scalar::Int, count) : type;
+  const TypeId result = scalar == Scalar::Float || scalar == Scalar::Uint ? Types::vector(Scalar::Int, count)
+                        : scalar == Scalar::Ulong                         ? Types::vector(Scalar::Long, count)
+                                                                          : type;
   Expr test = made("($ " + random_.pick(operators) + " $)", result, listOf(std::move(a), std::move(b)), true);
   if (types_[result].scalar != Scalar::Int) test.node->simple.clear();
   return test;
@@ -105,8 +110,7 @@ Expr Body::vectorBinary(TypeId type, int depth) {
   Expr b = random_.chance(1, 3) ? value(info.element, depth - 1) : value(type, depth - 1);
   b = unsequenced(a, std::move(b));
   if (hasBits && random_.chance(1, 6) && !(types_.isNarrow(type) && types_.isScalar(b.type))) {
-    const bool isByte = info.scalar == Scalar::Char || info.scalar == Scalar::Uchar;
-    const std::string most = isByte ? "7" : types_.isNarrow(type) ? "15" : "31";
+    const std::string most = std::to_string(factsOf(info.scalar).bits - 1);
     const std::string mask = types_.isScalar(b.type) ? most : types_.spell(type) + "(" + most + ")";
     const TypeId count = b.type;
     Expr masked = made(
@@ -124,6 +128,39 @@ Expr Body::vectorBinary(TypeId type, int depth) {
                               std::max(a.range.fraction, b.range.fraction)};
   }
   Expr result = made("($ " + op + " $)", type, listOf(std::move(a), std::move(b)));
+  result.range = range;
+  return result;
+}
+
+/// A function of whole vectors, which are int, uint or float: others have none, or not all.
+Expr Body::vectorIntrinsic(TypeId type, int depth) {
+  const Type info = types_[type];
+  if (info.scalar == Scalar::Float || info.scalar == Scalar::Double) {
+    if (unit_.with("functions", 1, 3)) return roundingFunction(type, depth);
+    if (random_.chance(1, 2)) {
+      Expr a = limited(value(type, depth - 1), 7);
+      const Range range = a.range;
+      Expr result = made(random_.chance(1, 2) ? "floor($)" : "abs($)", type, listOf(std::move(a)), true);
+      result.range = {range.magnitude + 1, range.fraction};
+      return result;
+    }
+  } else if (info.scalar != Scalar::Int && info.scalar != Scalar::Uint) {
+    return vectorParts(type, depth);
+  } else if (random_.chance(1, 2)) {
+    static const std::vector<std::string> ofBits = {"popcount($)", "clz($)", "ctz($)"};
+    if (info.scalar == Scalar::Int && random_.chance(1, 2)) {
+      const Scalar argument = random_.chance(1, 2) ? Scalar::Int : Scalar::Uint;
+      Expr a = value(Types::vector(argument, info.count), depth - 1);
+      return made(random_.pick(ofBits), type, listOf(std::move(a)), true);
+    }
+    Expr a = value(type, depth - 1), b = value(type, depth - 1);
+    return made("mulhi($, $)", type, listOf(std::move(a), std::move(b)), true);
+  }
+  Expr a = value(type, depth - 1), b = value(type, depth - 1);
+  const Range range = {std::max(a.range.magnitude, b.range.magnitude),
+                       std::max(a.range.fraction, b.range.fraction)};
+  Expr result =
+      made(random_.chance(1, 2) ? "min($, $)" : "max($, $)", type, listOf(std::move(a), std::move(b)), true);
   result.range = range;
   return result;
 }
