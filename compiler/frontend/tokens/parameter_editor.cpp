@@ -532,7 +532,11 @@ void ParameterEditor::print(const ParameterParts& parts, FunctionKind kind, Toke
       // The three tokens need distinct locations: Clang finds a template's name by its location
       out.push_back(builder_.word(gatherTemplateName(syntax.rank), location));
       out.push_back(builder_.make(tok::less, parts.open.getLocation()));
-      out.insert(out.end(), parts.type.begin(), parts.type.end());
+      for (const Token& token : parts.type) {
+        // Nobody writes to elements: `const float a[]` is the same gather.
+        const bool isAtEnd = &token == &parts.type.front() || &token == &parts.type.back();
+        if (!isAtEnd || token.isNot(tok::kw_const)) out.push_back(token);
+      }
       out.push_back(builder_.make(tok::greater, parts.close.getLocation()));
       break;
     case ir::ParamRole::VariableOutput:
