@@ -206,10 +206,16 @@ inline void set(unsigned& x, unsigned bits) { x = sampleUint(bits); }
 inline void set(float& x, unsigned bits) { x = sampleFloat(bits); }
 inline void set(double& x, unsigned bits) { x = sampleDouble(bits); }
 inline void set(bool& x, unsigned bits) { x = sampleBool(bits); }
-/// Integers of 8 and 16 bits, and enumerations: their low bits.
+/// The low bits of an integer of 8 or 16 bits. An enumeration is the integer that holds it.
 template <class T>
 void set(T& x, unsigned bits) {
-  x = static_cast<T>(static_cast<unsigned>(sampleInt(bits)));
+  if constexpr (__is_enum(T)) {
+    __underlying_type(T) number;
+    set(number, bits);
+    x = static_cast<T>(number);
+  } else {
+    x = static_cast<T>(static_cast<unsigned>(sampleInt(bits)));
+  }
 }
 
 template <class T>
