@@ -159,13 +159,6 @@ SK_OF_VECTORS(ceil) SK_OF_VECTORS(trunc) SK_OF_VECTORS(round) SK_OF_VECTORS(atan
                     T fract(T x) {
   return x - floor(x);
 }
-template <class V>
-auto dot(V a, V b) {
-  auto sum = a[0] * b[0];
-  for (int i = 1; i < width_of<V>; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 /// What is done with a mask.
 template <class Mask, class V>
 V select(Mask mask, V yes, V no) {

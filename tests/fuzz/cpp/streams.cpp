@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // Reads of gathers, and what gives them indices: in every spelling, inside and outside, at a rank that is known or is a template's N.
-#include <algorithm>
-
 #include "cpp/body.hpp"
 
 namespace fuzz::cpp {
