@@ -12,10 +12,6 @@ namespace fuzz::cpp {
 enum class Scalar : std::uint8_t { Bool, Char, Uchar, Short, Ushort, Int, Uint, Long, Ulong, Float, Double };
 constexpr int scalarCount = 11;
 
-/// Whether programs have integers of 64 bits, which `.sk` does not have yet. Parameters of kernels then still lack them
-/// (Types::isUniform()), since descriptors do not know them.
-constexpr bool hasLongs = false;
-
 /// What is known of a scalar type.
 struct ScalarFacts {
   const char* name;

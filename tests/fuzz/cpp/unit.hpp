@@ -69,7 +69,7 @@ struct Unit {
   bool mayHave(TypeId id) {
     const Type& type = types[id];
     if (types.isOfStreams(id) || types.isIndex(id)) return false;
-    if (types.isWideInteger(id) && !(hasLongs && has("longs"))) return false;
+    if (types.isWideInteger(id) && !has("longs")) return false;
     if (type.kind == Type::Kind::Struct || type.kind == Type::Kind::Enum || type.kind == Type::Kind::Array)
       return true;
     const bool isVector = type.kind == Type::Kind::Vector;
