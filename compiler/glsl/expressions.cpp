@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 
 #include "analysis/stream_uses.hpp"
-#include "glsl/wide_values.hpp"
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/known_values.hpp"
+#include "glsl/wide_values.hpp"
 #include "ir/build.hpp"
 #include "ir/operators.hpp"
 #include "ir/print.hpp"

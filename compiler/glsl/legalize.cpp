@@ -5,9 +5,9 @@
 #include <ranges>
 #include <utility>
 
-#include "glsl/wide_values.hpp"
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/known_values.hpp"
+#include "glsl/wide_values.hpp"
 #include "ir/build.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/operators.hpp"
@@ -100,8 +100,8 @@ class Legalizer {
     } else {
       clamp(place->type, element->index);
       value(element->index);
-      part = wideWithComponent(polyfills_, std::move(whole),
-                                 convert(Scalar::Int, std::move(element->index)), std::move(part));
+      part = wideWithComponent(polyfills_, std::move(whole), convert(Scalar::Int, std::move(element->index)),
+                               std::move(part));
     }
   }
 
@@ -144,8 +144,7 @@ class Legalizer {
           if (isOperand) rewrite(slot);
         },
         [&](Swizzle& n) {
-          if (lacks(type) && type.isVector())
-            slot = wideSwizzle(polyfills_, n.components, std::move(n.base));
+          if (lacks(type) && type.isVector()) slot = wideSwizzle(polyfills_, n.components, std::move(n.base));
         },
         [&](Index& n) { index(slot, n); }, [&](IntrinsicCall& n) { intrinsic(slot, n); });
     slot->type = type;  // a narrow type is no function's

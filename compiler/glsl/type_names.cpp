@@ -67,10 +67,10 @@ TypeNames::TypeNames(const Module& module) : module_(&module) {
 }
 
 std::string glslSpelling(Scalar scalar, int width) {
-  constexpr std::array<std::string_view, 7> scalars = {"bool",  "int",       "uint",    "float",
-                                                     "sk_double", "sk_long", "sk_ulong"};
-  constexpr std::array<std::string_view, 7> vectors = {"bvec",  "ivec",       "uvec",    "vec",
-                                                     "sk_double", "sk_long", "sk_ulong"};
+  constexpr std::array<std::string_view, 7> scalars = {"bool",      "int",     "uint",    "float",
+                                                       "sk_double", "sk_long", "sk_ulong"};
+  constexpr std::array<std::string_view, 7> vectors = {"bvec",      "ivec",    "uvec",    "vec",
+                                                       "sk_double", "sk_long", "sk_ulong"};
   const auto row = static_cast<std::size_t>(arithmeticScalar(scalar));
   return width == 1 ? std::string(scalars[row]) : std::string(vectors[row]) + std::to_string(width);
 }

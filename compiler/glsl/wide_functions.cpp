@@ -55,7 +55,9 @@ FunctionId byComponent(Polyfills& polyfills, std::span<const Row> rows, Intrinsi
   for (const Type type : types) components.push_back(type.component());
   std::string text;
   if (!found->body.empty())
-    text = wrapLine(fmt::format("{} {{ {} }}", head(result.component(), found->function, components), found->body)) + "\n";
+    text = wrapLine(fmt::format("{} {{ {} }}", head(result.component(), found->function, components),
+                                found->body)) +
+           "\n";
   return polyfills.addByComponent(found->function, result, types, {std::move(text)});
 }
 
@@ -176,7 +178,9 @@ class DoubleFunctions {
                            "  sk_double k = sk_sub(one, sk_mul(sk_mul(c, c), sk_sub(one, sk_mul(d, d))));\n"
                            "  if (sk_less(k, sk_to_double(0.0))) return {};\n"
                            "  return sk_sub(sk_mul(a, c), sk_mul(b, sk_add(sk_mul(c, d), sk_sqrt(k))));\n",
-                           type_.isScalar() ? zero : fmt::format("{}({})", glslSpelling(type_), join(std::vector(type_.width, zero), ", "))),
+                           type_.isScalar() ? zero
+                                            : fmt::format("{}({})", glslSpelling(type_),
+                                                          join(std::vector(type_.width, zero), ", "))),
                {dot(), difference(), product()});
   }
 

@@ -11,6 +11,7 @@
 namespace skc::emit {
 
 /// The function for arguments of these types, whose first one is wide.
-ir::FunctionId wideFunction(Polyfills& polyfills, ir::Intrinsic intrinsic, const std::vector<ir::Type>& types);
+ir::FunctionId wideFunction(Polyfills& polyfills, ir::Intrinsic intrinsic,
+                            const std::vector<ir::Type>& types);
 
 }  // namespace skc::emit

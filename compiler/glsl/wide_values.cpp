@@ -123,9 +123,10 @@ ExprPtr wideSwizzle(Polyfills& polyfills, const std::vector<std::uint8_t>& compo
   const Type base = vector->type, result = ofWidth(base, components.size());
   Texts items;
   for (const std::uint8_t component : components) items.push_back(fmt::format("v.{}", letters[component]));
-  const FunctionId id = polyfills.add(function, result, {base},
-                                      {fmt::format("{} {}({} v) {{ return {}; }}\n", glslSpelling(result), function,
-                                                   glslSpelling(base), callText(glslSpelling(result), items))});
+  const FunctionId id =
+      polyfills.add(function, result, {base},
+                    {fmt::format("{} {}({} v) {{ return {}; }}\n", glslSpelling(result), function,
+                                 glslSpelling(base), callText(glslSpelling(result), items))});
   return polyfills.call(id, exprs(std::move(vector)));
 }
 
@@ -134,18 +135,19 @@ ExprPtr wideComponent(Polyfills& polyfills, ExprPtr vector, ExprPtr index) {
   std::string choice = fmt::format("v.{}", letters[base.width - 1U]);
   for (int c = base.width - 2; c >= 0; --c)
     choice = fmt::format("sk_choose(i == {}, v.{}, {})", c, letters[static_cast<std::size_t>(c)], choice);
-  const FunctionId id = polyfills.add(
-      "sk_component", base.component(), {base, Type::of(Scalar::Int)},
-      {fmt::format("{} sk_component({} v, int i) {{ return {}; }}\n", glslSpelling(base.component()), glslSpelling(base),
-                   choice)});
+  const FunctionId id =
+      polyfills.add("sk_component", base.component(), {base, Type::of(Scalar::Int)},
+                    {fmt::format("{} sk_component({} v, int i) {{ return {}; }}\n",
+                                 glslSpelling(base.component()), glslSpelling(base), choice)});
   return polyfills.call(id, exprs(std::move(vector), std::move(index)));
 }
 
 ExprPtr wideWith(Polyfills& polyfills, const std::vector<std::uint8_t>& components, ExprPtr vector,
-                   ExprPtr value) {
+                 ExprPtr value) {
   const std::string names = namesOf(components), function = "sk_with_" + names;
   const Type base = vector->type, part = ofWidth(base, names.size());
-  std::string text = fmt::format("{0} {1}({0} v, {2} s) {{\n ", glslSpelling(base), function, glslSpelling(part));
+  std::string text =
+      fmt::format("{0} {1}({0} v, {2} s) {{\n ", glslSpelling(base), function, glslSpelling(part));
   for (std::size_t i = 0; i < names.size(); ++i)
     text += names.size() == 1 ? fmt::format(" v.{} = s;", names[i])
                               : fmt::format(" v.{} = s.{};", names[i], letters[i]);
@@ -155,11 +157,12 @@ ExprPtr wideWith(Polyfills& polyfills, const std::vector<std::uint8_t>& componen
 
 ExprPtr wideWithComponent(Polyfills& polyfills, ExprPtr vector, ExprPtr index, ExprPtr value) {
   const Type base = vector->type;
-  std::string text = fmt::format("{0} sk_with({0} v, int i, {1} s) {{\n", glslSpelling(base), glslSpelling(base.component()));
+  std::string text = fmt::format("{0} sk_with({0} v, int i, {1} s) {{\n", glslSpelling(base),
+                                 glslSpelling(base.component()));
   for (int c = 0; c < base.width; ++c)
     text += fmt::format("  if (i == {}) v.{} = s;\n", c, letters[static_cast<std::size_t>(c)]);
-  const FunctionId id =
-      polyfills.add("sk_with", base, {base, Type::of(Scalar::Int), base.component()}, {text + "  return v;\n}\n"});
+  const FunctionId id = polyfills.add("sk_with", base, {base, Type::of(Scalar::Int), base.component()},
+                                      {text + "  return v;\n}\n"});
   return polyfills.call(id, exprs(std::move(vector), std::move(index), std::move(value)));
 }
 

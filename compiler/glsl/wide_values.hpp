@@ -29,13 +29,12 @@ ir::ExprPtr wideIntrinsic(Polyfills& polyfills, ir::Intrinsic intrinsic, std::ve
 
 /// Several components of a vector.
 ir::ExprPtr wideSwizzle(Polyfills& polyfills, const std::vector<std::uint8_t>& components,
-                          ir::ExprPtr vector);
+                        ir::ExprPtr vector);
 /// The component at a computed index: an int of a component of the vector.
 ir::ExprPtr wideComponent(Polyfills& polyfills, ir::ExprPtr vector, ir::ExprPtr index);
 /// `vector` with these components, or the one at a computed index, replaced by `value`.
 ir::ExprPtr wideWith(Polyfills& polyfills, const std::vector<std::uint8_t>& components, ir::ExprPtr vector,
-                       ir::ExprPtr value);
-ir::ExprPtr wideWithComponent(Polyfills& polyfills, ir::ExprPtr vector, ir::ExprPtr index,
-                                ir::ExprPtr value);
+                     ir::ExprPtr value);
+ir::ExprPtr wideWithComponent(Polyfills& polyfills, ir::ExprPtr vector, ir::ExprPtr index, ir::ExprPtr value);
 
 }  // namespace skc::emit

@@ -47,10 +47,9 @@ std::optional<Type> typeOf(char letter, Choice choice) {
     case 'N': return only(choice.generic != Bool, choice.generic, choice.width);
     case 'n': return only(choice.generic != Bool, choice.generic, 1);
     case 'S':
-      return only(choice.generic != Bool && choice.generic != Uint && choice.generic != Ulong,
-                  choice.generic, choice.width);
-    case 'Z':
-      return only(choice.generic != Bool && !isReal(choice.generic), choice.generic, choice.width);
+      return only(choice.generic != Bool && choice.generic != Uint && choice.generic != Ulong, choice.generic,
+                  choice.width);
+    case 'Z': return only(choice.generic != Bool && !isReal(choice.generic), choice.generic, choice.width);
     case 'Q': return only(isVector && choice.generic != Bool, choice.generic, choice.width);
     case 'R': return only(isVector, choice.generic, choice.width);
     default: break;   // not a letter of the table
@@ -87,7 +86,8 @@ std::vector<IntrinsicOverload> overloads(Intrinsic intrinsic) {
   while (!signatures.empty()) {
     const std::string_view signature = signatures.substr(0, signatures.find(' '));
     signatures.remove_prefix(std::min(signatures.size(), signature.size() + 1));
-    for (Scalar generic : {Scalar::Float, Scalar::Int, Scalar::Uint, Scalar::Double, Scalar::Long, Scalar::Ulong, Scalar::Bool}) {
+    for (Scalar generic : {Scalar::Float, Scalar::Int, Scalar::Uint, Scalar::Double, Scalar::Long,
+                           Scalar::Ulong, Scalar::Bool}) {
       for (int width = 1; width <= 4; ++width) {
         std::optional<IntrinsicOverload> one = resolve(signature, {width, generic});
         if (one && std::find(all.begin(), all.end(), *one) == all.end()) all.push_back(std::move(*one));

@@ -14,8 +14,8 @@ struct Vectors {
 
 constexpr OperatorRow operatorRows[] = {
 #define SKC_OPERATOR(Name, spelling, precedence, isAssociative, vectors, wide, condition) \
-  {spelling,      Precedence::precedence,                                                    \
-   isAssociative, Vectors::vectors,                                                          \
+  {spelling,      Precedence::precedence,                                                 \
+   isAssociative, Vectors::vectors,                                                       \
    wide,          std::string_view(#condition) != "None"},
 #include "ir/operators.def"
 #undef SKC_OPERATOR

@@ -157,7 +157,8 @@ std::optional<double> computed(BinaryOp op, Scalar scalar, double x, double y) {
 }
 
 std::optional<double> computed(Intrinsic intrinsic, Scalar scalar, double x, double y, double z) {
-  if (intrinsic >= Intrinsic::Popcount && intrinsic <= Intrinsic::Mulhi && isWide(scalar)) return std::nullopt;
+  if (intrinsic >= Intrinsic::Popcount && intrinsic <= Intrinsic::Mulhi && isWide(scalar))
+    return std::nullopt;
   switch (intrinsic) {
     case Intrinsic::Abs:
     case Intrinsic::Fabs:

@@ -88,8 +88,7 @@ struct Type {
 /// The planes of a wide scalar, or of a vector of these; a texel holds two wide scalars.
 inline std::vector<Type> widePlanes(Type type) {
   std::vector<Type> planes;
-  for (int left = type.width; left > 0; left -= 2)
-    planes.push_back(Type::of(type.scalar, left > 1 ? 2 : 1));
+  for (int left = type.width; left > 0; left -= 2) planes.push_back(Type::of(type.scalar, left > 1 ? 2 : 1));
   return planes;
 }
 

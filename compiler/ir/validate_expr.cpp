@@ -100,7 +100,8 @@ class ExprChecker {
     switch (n.op) {
       case UnaryOp::Negate:
         return require(type.isNumber() || type.isMatrix(), "'-' of something that is no number");
-      case UnaryOp::BitNot: return require(type.isInteger() || type.isLong(), "'~' of something that is no integer");
+      case UnaryOp::BitNot:
+        return require(type.isInteger() || type.isLong(), "'~' of something that is no integer");
       case UnaryOp::LogicalNot: return require(type.isBool(), "'!' of something that is no bool");
     }
   }
@@ -314,7 +315,8 @@ void checkBinary(BinaryOp op, Type lhs, Type rhs, Type result) {
       return require(fitTogether(lhs, rhs), where + " has operands of different types");
     case BinaryOp::ShiftLeft:
     case BinaryOp::ShiftRight:
-      require((lhs.isInteger() || lhs.isLong()) && rhs.isInteger(), where + " of something that is no integer");
+      require((lhs.isInteger() || lhs.isLong()) && rhs.isInteger(),
+              where + " of something that is no integer");
       return require(rhs.isScalar() || rhs.width == lhs.width, where + " has a count of another width");
     case BinaryOp::Less:
     case BinaryOp::LessEqual:

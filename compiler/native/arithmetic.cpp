@@ -40,7 +40,8 @@ llvm::Value* quotientByDoubles(Lanes& l, bool isSigned, llvm::Value* a, llvm::Va
 
 llvm::Value* plainQuotient(Lanes& l, bool isSigned, llvm::Value* a, llvm::Value* c) {
   const bool fitsDouble = a->getType()->getScalarSizeInBits() == 32;
-  if (fitsDouble && l.isVector(a) && !llvm::isa<llvm::Constant>(c)) return quotientByDoubles(l, isSigned, a, c);
+  if (fitsDouble && l.isVector(a) && !llvm::isa<llvm::Constant>(c))
+    return quotientByDoubles(l, isSigned, a, c);
   return isSigned ? l.b.CreateSDiv(a, c) : l.b.CreateUDiv(a, c);
 }
 

@@ -195,7 +195,9 @@ Part ldexp(const ScalarBuilder& f, const Part& number, const Part& exponent) {
 namespace {
 
 /// A number of bits as an int.
-Part asInt(Lanes& l, llvm::Value* bits) { return {l.b.CreateZExtOrTrunc(bits, l.sameShape(bits, l.int32()))}; }
+Part asInt(Lanes& l, llvm::Value* bits) {
+  return {l.b.CreateZExtOrTrunc(bits, l.sameShape(bits, l.int32()))};
+}
 
 }  // namespace
 
@@ -216,7 +218,8 @@ Part multiplyHigh(const ScalarBuilder& f, Scalar scalar, const Part& x, const Pa
   const unsigned bits = row(scalar).bits;
   llvm::Type* const wide = l.sameShape(a.value, l.b.getIntNTy(2 * bits));
   const auto widened = [&](const Part& part) {
-    return scalar == Scalar::Int || scalar == Scalar::Long ? l.b.CreateSExt(part.value, wide) : l.b.CreateZExt(part.value, wide);
+    return scalar == Scalar::Int || scalar == Scalar::Long ? l.b.CreateSExt(part.value, wide)
+                                                           : l.b.CreateZExt(part.value, wide);
   };
   llvm::Value* const product = l.b.CreateMul(widened(a), widened(c));
   return {l.b.CreateTrunc(l.b.CreateLShr(product, bits), a.value->getType())};

@@ -481,8 +481,8 @@ static_assert(listsAll<p::Field> && listsAll<p::Element> && listsAll<p::Conditio
 template <>
 inline constexpr Enumeration<16> enumeration<p::Scalar> = {
     "Scalar",
-    {"bool", "int", "uint", "float", "double", "long", "ulong", "half", "char", "uchar", "short", "ushort", "unorm8", "snorm8",
-     "unorm16", "snorm16"}};
+    {"bool", "int", "uint", "float", "double", "long", "ulong", "half", "char", "uchar", "short", "ushort",
+     "unorm8", "snorm8", "unorm16", "snorm16"}};
 template <>
 inline constexpr Enumeration<9> enumeration<p::Role> = {
     "Role",

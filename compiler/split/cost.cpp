@@ -40,7 +40,9 @@ void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
 /// The cost of a node itself, without its operands.
 double nodeCost(const Module& module, const Expr& expr,
                 const std::unordered_map<FunctionId, double>& functions) {
-  const double width = expr.type.width * (expr.type.isDouble() ? doubleCost : expr.type.isLong() ? longCost : 1);
+  const double width = expr.type.width * (expr.type.isDouble() ? doubleCost
+                                          : expr.type.isLong() ? longCost
+                                                               : 1);
   return match(
       expr.node, [](const Literal&) { return 0.0; }, [](const VarRef&) { return 0.0; },
       [](const ConstantRef&) { return 0.0; }, [&](const Unary&) { return width; },

@@ -56,8 +56,8 @@ bool isNonNegative(const IntrinsicCall& n) {
 bool isNonNegative(const Expr& expr) {
   if (expr.type.isArithmetic()) {
     const Scalar s = expr.type.scalar;
-    if (s == Scalar::Uint || s == Scalar::Ulong || s == Scalar::Uchar || s == Scalar::Ushort || s == Scalar::Unorm8 ||
-        s == Scalar::Unorm16 || s == Scalar::Bool) {
+    if (s == Scalar::Uint || s == Scalar::Ulong || s == Scalar::Uchar || s == Scalar::Ushort ||
+        s == Scalar::Unorm8 || s == Scalar::Unorm16 || s == Scalar::Bool) {
       return true;
     }
   }

@@ -257,7 +257,8 @@ ExprPtr extreme(Scalar scalar, bool largest) {
     case Scalar::Int: return literal(largest ? Int::max() : Int::min());
     case Scalar::Uint: return literal(largest ? 0xffffffffU : 0U);
     case Scalar::Long:
-      return literal(largest ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min());
+      return literal(largest ? std::numeric_limits<std::int64_t>::max()
+                             : std::numeric_limits<std::int64_t>::min());
     case Scalar::Ulong: return literal(largest ? ~std::uint64_t{0} : std::uint64_t{0});
     case Scalar::Char: return integer(-128, 127);
     case Scalar::Uchar: return integer(0, 255);

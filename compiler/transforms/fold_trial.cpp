@@ -108,8 +108,8 @@ bool isNormalized(Scalar scalar) {
 }
 
 bool isUnsigned(Scalar scalar) {
-  return scalar == Scalar::Uint || scalar == Scalar::Ulong || scalar == Scalar::Uchar || scalar == Scalar::Ushort ||
-         scalar == Scalar::Unorm8 || scalar == Scalar::Unorm16;
+  return scalar == Scalar::Uint || scalar == Scalar::Ulong || scalar == Scalar::Uchar ||
+         scalar == Scalar::Ushort || scalar == Scalar::Unorm8 || scalar == Scalar::Unorm16;
 }
 
 /// A number that neither overflows nor vanishes. Sums and products of a few such numbers are exact.

@@ -91,7 +91,8 @@ std::string whyNestsTooDeep(const ir::Module& module, const ir::Kernel& kernel) 
   const int levels = emit::structLevels(module, kernel);
   if (levels <= most) return {};
   return fmt::format(
-      "its structs are nested {} levels deep, but WebGL takes {}; a double or a long is a struct there, too; put "
+      "its structs are nested {} levels deep, but WebGL takes {}; a double or a long is a struct there, too; "
+      "put "
       "members of the "
       "inner structs into the outer ones",
       levels, most);

@@ -38,7 +38,7 @@ runtime/src/gl_device/memory sk gl gl_device/memory device/region.hpp assemble
 runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_bytes.hpp assemble
 runtime/src/assemble/glsl     sk/program.hpp sk/arithmetic.hpp sk/limits.hpp ASSEMBLE assemble/glsl
 runtime/src/assemble/elements sk/program.hpp sk/arithmetic_marks.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements
-runtime/src/assemble/append   sk/program.hpp ASSEMBLE assemble/glsl assemble/elements assemble/append
+runtime/src/assemble/append   sk/program.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/append
 runtime/src/assemble/reduce   sk/program.hpp sk/exact_digits.hpp sk/types.hpp sk/limits.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/reduce assemble/program/sample_kernels.hpp
 runtime/mpi           sk support device call api native gl assemble
 runtime/tools         sk support/cache_folder.hpp native probe/probe.hpp assemble/nearest_word.hpp

@@ -27,7 +27,8 @@ std::vector<Long> extremes() {
   std::vector<Long> list = {0, 7, -7, 1'000'000'007, -6'700'417, 0x123456789abcdef0, 0x7edcba9876543210};
   for (const int bit : {0, 1, 8, 24, 31, 32, 33, 53, 62, 63}) {
     const Ulong power = Ulong{1} << bit;
-    for (const Ulong near : {power - 1, power, power + 1, 0 - power, 1 - power}) list.push_back(static_cast<Long>(near));
+    for (const Ulong near : {power - 1, power, power + 1, 0 - power, 1 - power})
+      list.push_back(static_cast<Long>(near));
   }
   return list;
 }
@@ -123,7 +124,8 @@ TEST_CASE("longs shift by counts modulo 64") {
   onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto r = streams<Long>(device, 2, static_cast<std::int64_t>(a.size()));
     auto u = streams<Ulong>(device, 2, static_cast<std::int64_t>(a.size()));
-    longs::shifts(streamOf<Long>(device, a), streamOf<Ulong>(device, asUnsigned(a)), streamOf<int>(device, n), r[0], r[1], u[0], u[1]);
+    longs::shifts(streamOf<Long>(device, a), streamOf<Ulong>(device, asUnsigned(a)), streamOf<int>(device, n),
+                  r[0], r[1], u[0], u[1]);
     const auto left = r[0].read(), right = r[1].read();
     const auto uLeft = u[0].read(), uRight = u[1].read();
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -151,7 +153,8 @@ TEST_CASE("longs are negated, stepped and compared") {
     auto bits = streams<int>(device, 2, pairs.size());
     longs::comparisons(a, b, bits[0], bits[1]);
     checkEach(bits[0].read(), pairs, [](Long x, Long y) {
-      return (x < y) + 2 * (x <= y) + 4 * (x > y) + 8 * (x >= y) + 16 * (x == y) + 32 * (x != y) + 64 * (x != 0) + 128 * (y == 0);
+      return (x < y) + 2 * (x <= y) + 4 * (x > y) + 8 * (x >= y) + 16 * (x == y) + 32 * (x != y) +
+             64 * (x != 0) + 128 * (y == 0);
     });
     checkEach(bits[1].read(), pairs, [](Ulong x, Ulong y) {
       return (x < y) + 2 * (x <= y) + 4 * (x > y) + 8 * (x >= y) + 16 * (x == y) + 32 * (x != 0 && y != 0);
@@ -170,7 +173,8 @@ TEST_CASE("functions of longs") {
     checkEach(r[0].read(), pairs, [](Long x, Long y) { return std::min(x, y); });
     checkEach(r[1].read(), pairs, [](Long x, Long y) { return std::max(x, y); });
     checkEach(r[2].read(), pairs, [](Long x, Long) { return std::clamp(x, -square, square); });
-    checkEach(r[3].read(), pairs, [](Long x, Long) { return x < 0 ? wrapped(0 - static_cast<Ulong>(x)) : x; });
+    checkEach(r[3].read(), pairs,
+              [](Long x, Long) { return x < 0 ? wrapped(0 - static_cast<Ulong>(x)) : x; });
     checkEach(r[4].read(), pairs, [](Long x, Long) { return Long{x > 0} - Long{x < 0}; });
     const auto words = counts.read();
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -194,7 +198,8 @@ TEST_CASE("longs become the nearest floats and doubles, and the low bits of narr
     const int shift = static_cast<int>(i % 50);
     a.push_back(wrapped(random >> shift));
     const int cut = i % 2 == 0 ? 39 : 10;
-    for (const Ulong near : {0, 1, 2}) a.push_back(wrapped(((random >> cut << cut) | Ulong{1} << (cut)) - 1 + near));
+    for (const Ulong near : {0, 1, 2})
+      a.push_back(wrapped(((random >> cut << cut) | Ulong{1} << (cut)) - 1 + near));
   }
   onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     const auto size = static_cast<std::int64_t>(a.size());
@@ -226,14 +231,18 @@ TEST_CASE("longs become the nearest floats and doubles, and the low bits of narr
 
 TEST_CASE("floats and doubles truncate to longs and saturate") {
   const float infinity = std::numeric_limits<float>::infinity();
-  std::vector<float> f = {0, -0.0F, 0.75F, -0.75F, 1, -1.5F, 0x1p24F + 2, -0x1p31F, 0x1p40F, 0x1.fffffep62F, 0x1p63F, -0x1p63F,
-                          -0x1.8p63F, 0x1.fffffep63F, 0x1p64F, 1e30F, -1e30F, infinity, -infinity, NAN, 1e-40F};
+  std::vector<float> f = {0,        -0.0F,   0.75F,          -0.75F,   1,         -1.5F,      0x1p24F + 2,
+                          -0x1p31F, 0x1p40F, 0x1.fffffep62F, 0x1p63F,  -0x1p63F,  -0x1.8p63F, 0x1.fffffep63F,
+                          0x1p64F,  1e30F,   -1e30F,         infinity, -infinity, NAN,        1e-40F};
   for (std::uint32_t i = 0; i < 200; ++i) {
     const float x = std::ldexp(static_cast<float>(hashed(i)) / 0x1p32F + 0.5F, static_cast<int>(i % 66));
     f.push_back(i % 3 == 0 ? -x : x);
   }
   const auto toLong = [](double x) -> Long {
-    return std::isnan(x) ? 0 : x >= 0x1p63 ? std::numeric_limits<Long>::max() : x < -0x1p63 ? least : static_cast<Long>(x);
+    return std::isnan(x) ? 0
+           : x >= 0x1p63 ? std::numeric_limits<Long>::max()
+           : x < -0x1p63 ? least
+                         : static_cast<Long>(x);
   };
   const auto toUlong = [](double x) -> Ulong {
     return !(x > 0) ? 0 : x >= 0x1p64 ? std::numeric_limits<Ulong>::max() : static_cast<Ulong>(x);
@@ -264,8 +273,9 @@ TEST_CASE("narrower integers become longs") {
     const std::vector<sk::half> h = {sk::half(1.5F), sk::half(-2.5F), sk::half(65504.0F), sk::half(0.0F)};
     auto r = streams<Long>(device, 4, 4);
     auto b = device.stream<Ulong>({4});
-    longs::fromIntegers(streamOf<int>(device, i), streamOf<std::uint32_t>(device, u), streamOf<std::int16_t>(device, s),
-                 streamOf<sk::half>(device, h), r[0], b, r[1], r[2], r[3]);
+    longs::fromIntegers(streamOf<int>(device, i), streamOf<std::uint32_t>(device, u),
+                        streamOf<std::int16_t>(device, s), streamOf<sk::half>(device, h), r[0], b, r[1], r[2],
+                        r[3]);
     CHECK(r[0].read() == std::vector<Long>(i.begin(), i.end()));
     CHECK(b.read() == std::vector<Ulong>{0, ~Ulong{0}, 2147483647, 0xffffffff80000000});
     CHECK(r[1].read() == std::vector<Long>(u.begin(), u.end()));
@@ -283,7 +293,8 @@ TEST_CASE("literals and constants of 64 bits") {
     longs::literals(streamOf<int>(device, {0, 1, 2, 3}), a, b, d, f);
     const Ulong powers[] = {1, Ulong{1} << 20, Ulong{1} << 40, Ulong{1} << 63};
     for (std::size_t i = 0; i < 4; ++i) {
-      CHECK((a.read()[i] == sk::long4{std::numeric_limits<Long>::max(), least, 1'000'000'000'000'000'000, 1'000'000'000'000}));
+      CHECK((a.read()[i] == sk::long4{std::numeric_limits<Long>::max(), least, 1'000'000'000'000'000'000,
+                                      1'000'000'000'000}));
       CHECK((b.read()[i] == sk::ulong4{~Ulong{0}, powers[i], 16, 3'000'000'000}));
       if (config.isNative()) CHECK(d.read()[i] == 9007199254740992.0);
       CHECK(f.read()[i] == 16777216.0F);
@@ -306,7 +317,8 @@ TEST_CASE("vectors of longs") {
     auto r = device.stream<sk::long3>({static_cast<std::int64_t>(count)});
     auto masks = device.stream<sk::long3>({static_cast<std::int64_t>(count)});
     auto counts = device.stream<sk::int3>({static_cast<std::int64_t>(count)});
-    longs::vectors(streamOf<sk::long3>(device, v), streamOf<sk::long3>(device, w), streamOf<int>(device, n), Long{s}, r, masks, counts);
+    longs::vectors(streamOf<sk::long3>(device, v), streamOf<sk::long3>(device, w), streamOf<int>(device, n),
+                   Long{s}, r, masks, counts);
     const auto actual = r.read(), actualMasks = masks.read();
     const auto actualCounts = counts.read();
     for (std::size_t i = 0; i < count; ++i) {
@@ -330,7 +342,8 @@ TEST_CASE("vectors of longs") {
       CHECK((actualMasks[i] == sk::long3{-Long{less[0]}, -Long{less[1]}, -Long{less[2]}}));
       int c[3];
       for (int k = 0; k < 3; ++k) {
-        c[k] = std::popcount(static_cast<Ulong>(x[k])) + std::countl_zero(static_cast<Ulong>(std::max(x[k], y[k]))) +
+        c[k] = std::popcount(static_cast<Ulong>(x[k])) +
+               std::countl_zero(static_cast<Ulong>(std::max(x[k], y[k]))) +
                (less[0] || less[1] || less[2] ? 100 : 0) + (x[k] == y[k] ? 1000 : 0);
       }
       CHECK((actualCounts[i] == sk::int3{c[0], c[1], c[2]}));
@@ -350,7 +363,8 @@ TEST_CASE("longs in structs, arrays, gathers and uniforms, and as indices") {
   onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto r = device.stream<longs::Entry>({8});
     auto picked = device.stream<Ulong>({8});
-    longs::structs(streamOf<longs::Entry>(device, x), y, streamOf<sk::ulong2>(device, table), streamOf<Long>(device, n), r, picked);
+    longs::structs(streamOf<longs::Entry>(device, x), y, streamOf<sk::ulong2>(device, table),
+                   streamOf<Long>(device, n), r, picked);
     const auto entries = r.read();
     const auto sums = picked.read();
     for (std::size_t i = 0; i < n.size(); ++i) {
@@ -365,7 +379,8 @@ TEST_CASE("longs in structs, arrays, gathers and uniforms, and as indices") {
 }
 
 TEST_CASE("a switch over a long, and a loop that counts with one") {
-  const std::vector<Long> a = {10'000'000'000, -10'000'000'000, 5, 10'000'000'000 - (Long{1} << 32), 0, 1'410'065'408};
+  const std::vector<Long> a = {10'000'000'000, -10'000'000'000, 5, 10'000'000'000 - (Long{1} << 32), 0,
+                               1'410'065'408};
   onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto r = device.stream<int>({6});
     auto sum = device.stream<Long>({6});
@@ -389,8 +404,10 @@ TEST_CASE("longs are scattered, pushed and gathered") {
     longs::positive(streamOf<Long>(device, a), list);
     CHECK(list.read() == std::vector<Long>{a[0], a[1], 6});
     auto sums = device.stream<Long>({5});
-    longs::gathered(streamOf<Long>(device, a), streamOf<int>(device, {-3, 1, 2, 3, 99}), streamOf<Long>(device, a), sums);
-    CHECK(sums.read() == std::vector<Long>{a[0] + a[1], a[1] + a[2], wrapped(static_cast<Ulong>(a[2]) + static_cast<Ulong>(a[3])),
+    longs::gathered(streamOf<Long>(device, a), streamOf<int>(device, {-3, 1, 2, 3, 99}),
+                    streamOf<Long>(device, a), sums);
+    CHECK(sums.read() == std::vector<Long>{a[0] + a[1], a[1] + a[2],
+                                           wrapped(static_cast<Ulong>(a[2]) + static_cast<Ulong>(a[3])),
                                            wrapped(static_cast<Ulong>(a[3]) + 6), 6 + a[0]});
   });
 }

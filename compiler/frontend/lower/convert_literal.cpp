@@ -21,7 +21,8 @@ using ir::Scalar;
 std::uint64_t truncated(double value, bool isSigned) {
   value = std::trunc(value);
   if (std::isnan(value)) return 0;
-  if (!isSigned) return value <= 0 ? 0 : value < 0x1p64 ? static_cast<std::uint64_t>(value) : ~std::uint64_t{0};
+  if (!isSigned)
+    return value <= 0 ? 0 : value < 0x1p64 ? static_cast<std::uint64_t>(value) : ~std::uint64_t{0};
   if (std::fabs(value) < 0x1p63) return static_cast<std::uint64_t>(static_cast<std::int64_t>(value));
   return value < 0 ? std::uint64_t{1} << 63U : ~std::uint64_t{0} >> 1U;
 }
@@ -61,7 +62,8 @@ ExprPtr ofArithmetic(Scalar from, const Literal& literal, Scalar to, Loc loc) {
     case Scalar::Ulong: return ofInteger(literal.wide(), to, loc);
     case Scalar::Float:
       return to == Scalar::Double ? ir::literal(double{std::bit_cast<float>(literal.bits)}, loc) : nullptr;
-    case Scalar::Bool: return to == Scalar::Double ? ir::literal(literal.bits != 0 ? 1.0 : 0.0, loc) : nullptr;
+    case Scalar::Bool:
+      return to == Scalar::Double ? ir::literal(literal.bits != 0 ? 1.0 : 0.0, loc) : nullptr;
     default: return nullptr;
   }
 }
@@ -76,7 +78,8 @@ ExprPtr convertLiteral(const ir::Expr& e, Scalar to) {
   const Scalar arithmetic = ir::arithmeticScalar(to);
   if (from == Scalar::Double && to == Scalar::Half) {
     const float odd = ir::roundedToOdd(ir::valueOf(from, literal));
-    return ir::makeExpr(ir::Type::of(to), Literal{ir::quantize(to, std::bit_cast<std::uint32_t>(odd))}, e.loc);
+    return ir::makeExpr(ir::Type::of(to), Literal{ir::quantize(to, std::bit_cast<std::uint32_t>(odd))},
+                        e.loc);
   }
   ExprPtr result = from == arithmetic ? ir::makeExpr(ir::Type::of(from), literal, e.loc)
                                       : ofArithmetic(from, literal, arithmetic, e.loc);

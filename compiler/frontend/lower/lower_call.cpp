@@ -168,7 +168,8 @@ int conversionCost(ir::Type from, ir::Type to) {
   if (to.scalar == Scalar::Double) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
   if (to.scalar == Scalar::Float) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
   if (to.scalar == Scalar::Bool)
-    return (from.scalar == Scalar::Int || from.isLong()) && from.isVector() ? cost : impossible;  // mask to bools
+    return (from.scalar == Scalar::Int || from.isLong()) && from.isVector() ? cost
+                                                                            : impossible;  // mask to bools
   if (from.scalar == Scalar::Float) return impossible;
   if (to.isLong()) return cost + (from.scalar == Scalar::Bool || from.isLong() ? 1 : 2);
   if (from.isLong()) return impossible;
@@ -229,8 +230,9 @@ ExprPtr FunctionLowering::tableIntrinsic(const clang::CallExpr* e, llvm::StringR
   const unsigned doubles = name == "ldexp" ? 1U : allArguments;  // its exponent is an integer
   Exprs args =
       valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), areDoubles ? doubles : 0);
-  if ((name == "mod" || name == "fmod") &&
-      llvm::all_of(args, [](const ExprPtr& arg) { return arg->type.arithmeticType().isInteger() || arg->type.isLong(); })) {
+  if ((name == "mod" || name == "fmod") && llvm::all_of(args, [](const ExprPtr& arg) {
+        return arg->type.arithmeticType().isInteger() || arg->type.isLong();
+      })) {
     module_.fail(Diag::IntegerRemainder, e->getBeginLoc(), {std::string_view(name)});
   }
   std::optional<Match> match = bestMatch(name, module_.type(e->getType(), e->getBeginLoc()), args);

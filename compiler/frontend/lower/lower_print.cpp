@@ -96,7 +96,8 @@ ExprPtr FunctionLowering::printed(const clang::Expr* e, ExprPtr value, std::stri
   const bool isFloat = number.isScalar() && (number.isFloat() || number.isDouble());
   if (printsInteger(conversion) ? !isInteger : !isFloat) {
     module_.fail(Diag::PrintValue, e->getBeginLoc(),
-                 {conversion, printsLong(conversion)      ? "a long or a ulong"
+                 {conversion,
+                  printsLong(conversion)      ? "a long or a ulong"
                   : printsInteger(conversion) ? "an integer"
                                               : "a float or a double",
                   module_.textOf(e), module_.spelling(type)});

@@ -442,7 +442,8 @@ void FunctionLowering::numberCases(ir::Switch& result, Loc loc) {
   for (ir::Case& one : result.cases) {
     for (std::int64_t& label : one.values) {
       ExprPtr wanted = ir::makeExpr(type, ir::Literal::wide(static_cast<std::uint64_t>(label)), loc);
-      ExprPtr isHere = ir::binary(ir::BinaryOp::Equal, ir::varRef(function_, value, loc), std::move(wanted), loc);
+      ExprPtr isHere =
+          ir::binary(ir::BinaryOp::Equal, ir::varRef(function_, value, loc), std::move(wanted), loc);
       ir::Block found;
       found.push_back(ir::assign(ir::varRef(function_, number, loc), ir::literal(count, loc), loc));
       emit(loc, ir::If{std::move(isHere), std::move(found), {}});

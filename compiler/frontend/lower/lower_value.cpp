@@ -26,7 +26,8 @@ ExprPtr FunctionLowering::make(ir::Type type, SourceLocation where, ir::Expr::No
 }
 
 ExprPtr FunctionLowering::literal(ir::Type type, std::uint64_t bits, SourceLocation where) {
-  return make(type, where, type.isWide() ? ir::Literal::wide(bits) : ir::Literal{static_cast<std::uint32_t>(bits)});
+  return make(type, where,
+              type.isWide() ? ir::Literal::wide(bits) : ir::Literal{static_cast<std::uint32_t>(bits)});
 }
 
 // ---- wrappers -------------------------------------------------------------------------------------
@@ -173,7 +174,8 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
       return convert(value(operand), module_.type(e->getType(), where).scalar);
     case clang::CK_FloatingToIntegral: {
       const ir::Type to = module_.type(e->getType(), where);  // floats have too few bits for an integer of 64
-      return convert(to.isLong() && isLiterals(operand) ? literalsAsDouble(operand) : value(operand), to.scalar);
+      return convert(to.isLong() && isLiterals(operand) ? literalsAsDouble(operand) : value(operand),
+                     to.scalar);
     }
     case clang::CK_IntegralToBoolean:
     case clang::CK_FloatingToBoolean:
@@ -345,7 +347,8 @@ ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* i
   const bool isArray = outer.kind == ir::Type::Kind::Array;
   const ir::Type type = isArray ? module_.arrayAt(outer.index).element : outer.indexed();
   const ir::Scalar arithmetic = ir::arithmeticScalar(parts[1]->type.scalar);
-  parts[1] = arithmetic == ir::Scalar::Uint ? convert(std::move(parts[1]), arithmetic) : intIndex(std::move(parts[1]));
+  parts[1] = arithmetic == ir::Scalar::Uint ? convert(std::move(parts[1]), arithmetic)
+                                            : intIndex(std::move(parts[1]));
   return make(type, where, ir::Index{std::move(parts[0]), std::move(parts[1])});
 }
 

@@ -51,9 +51,8 @@ struct TypedStreams {
 /// A stream or view of int, uint, float or double. -0 equals +0, so that they keep their order; NaNs are equal to
 /// each other and come last.
 template <class S>
-concept SortKeys =
-    detail::AnyStream<S> && detail::isOneOf<detail::ElementOf<S>, std::int32_t, std::uint32_t, std::int64_t,
-                                            std::uint64_t, float, double>;
+concept SortKeys = detail::AnyStream<S> && detail::isOneOf<detail::ElementOf<S>, std::int32_t, std::uint32_t,
+                                                           std::int64_t, std::uint64_t, float, double>;
 
 /// Sorts the keys, ascending unless the options say otherwise.
 template <SortKeys Keys>

@@ -19,9 +19,8 @@ namespace sk {
 
 /// The types that scalars compute with.
 template <class T>
-concept ScalarNumber =
-    std::same_as<T, int> || std::same_as<T, unsigned> || std::same_as<T, std::int64_t> ||
-    std::same_as<T, std::uint64_t> || std::same_as<T, float> || std::same_as<T, double>;
+concept ScalarNumber = std::same_as<T, int> || std::same_as<T, unsigned> || std::same_as<T, std::int64_t> ||
+                       std::same_as<T, std::uint64_t> || std::same_as<T, float> || std::same_as<T, double>;
 
 template <ElementType T>
 class Scalar;

@@ -214,7 +214,8 @@ template <class T, class C, std::uint8_t Width>
 struct WideVectorElement {
   static_assert(sizeof(C) == 8 && sizeof(T) == sizeof(C) * Width, "StreamKernel: vectors are tightly packed");
   static constexpr const Spellings& spelling = spellings[static_cast<std::size_t>(scalarOf<C>)];
-  static constexpr program::Field fields[2] = {{"", scalarOf<C>, 2, 0, 0}, {"", scalarOf<C>, Width - 2, 16, 1}};
+  static constexpr program::Field fields[2] = {{"", scalarOf<C>, 2, 0, 0},
+                                               {"", scalarOf<C>, Width - 2, 16, 1}};
   static constexpr program::Element value{spelling.names[Width - 1], spelling.glsl[Width - 1], sizeof(T),
                                           fields};
   static constexpr const program::Element& element() { return value; }

@@ -235,7 +235,8 @@ class RecordedFold final : public RecordedCall {
 
 void checkAndFold(const Reduction& reduction, std::span<const Argument> given, const CallOptions& options) {
   BoxedArguments folded{.arguments = {given.begin(), given.end()}, .over = options.over};
-  if (!options.box.isWhole() || hasPlaced(given)) folded = argumentsIn(reduction.fold, given, options.box, options.over);
+  if (!options.box.isWhole() || hasPlaced(given))
+    folded = argumentsIn(reduction.fold, given, options.box, options.over);
   CallOptions others = options;
   others.box = {};
   others.over = folded.over;

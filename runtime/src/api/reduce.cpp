@@ -295,7 +295,8 @@ void checkAndReduce(const GivenReduction& given, std::span<void* const> values, 
                     const std::optional<ScanOrder>& scan) {
   const Reduction& reduction = given.reduction;
   const std::span<const Argument> arguments = given.folded.arguments;
-  ResolvedReduction call = checkReduction(reduction, arguments, values, scan, given.folded.placed, given.folded.over);
+  ResolvedReduction call =
+      checkReduction(reduction, arguments, values, scan, given.folded.placed, given.folded.over);
   call.options = resolvedOptions(call, options);
   checkFoldAssertions(call.device, reduction.fold, given.arguments, given.box, call.options);
   if (call.device.recording == nullptr) return runResolved(call);

@@ -84,10 +84,8 @@ T computeSigned(ScalarOp op, T a, T b) {
     case ScalarOp::Absolute: return a < 0 ? static_cast<T>(0 - static_cast<Unsigned>(a)) : a;
     case ScalarOp::Minimum: return a < b ? a : b;
     case ScalarOp::Maximum: return a > b ? a : b;
-    case ScalarOp::Divide:
-      return b == 0 || (b == -1 && a == std::numeric_limits<T>::min()) ? a : a / b;
-    default:
-      return static_cast<T>(computeUnsigned(op, static_cast<Unsigned>(a), static_cast<Unsigned>(b)));
+    case ScalarOp::Divide: return b == 0 || (b == -1 && a == std::numeric_limits<T>::min()) ? a : a / b;
+    default: return static_cast<T>(computeUnsigned(op, static_cast<Unsigned>(a), static_cast<Unsigned>(b)));
   }
 }
 

@@ -43,8 +43,10 @@ constexpr std::array<Spelling, 16> spellings = {{
     /* Float   */ {"sampler2D", "float", "vec", "0.0", "float", "vec", "", ""},
     /* Double  */
     {"usampler2D", "uint", "uvec", "0u", "sk_double", "sk_double", "sk_unpack({0})", "sk_pack({0})"},
-    /* Long    */ {"usampler2D", "uint", "uvec", "0u", "sk_long", "sk_long", "sk_long_of({0})", "sk_words_of({0})"},
-    /* Ulong   */ {"usampler2D", "uint", "uvec", "0u", "sk_ulong", "sk_ulong", "sk_ulong_of({0})", "sk_words_of({0})"},
+    /* Long    */
+    {"usampler2D", "uint", "uvec", "0u", "sk_long", "sk_long", "sk_long_of({0})", "sk_words_of({0})"},
+    /* Ulong   */
+    {"usampler2D", "uint", "uvec", "0u", "sk_ulong", "sk_ulong", "sk_ulong_of({0})", "sk_words_of({0})"},
     /* Half    */ {"sampler2D", "float", "vec", "0.0", "float", "vec", "", ""},
     /* Char    */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
     /* Uchar   */ {"usampler2D", "uint", "uvec", "0u", "int", "ivec", "{1}({0})", "{1}({0})"},

@@ -17,8 +17,8 @@
 #include "assemble/reduce/fold_text.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/reduce/scan_program.hpp"
-#include "sk/types.hpp"
 #include "sk/scalar_bytes.hpp"
+#include "sk/types.hpp"
 
 namespace sk::assemble {
 

@@ -240,18 +240,18 @@ void ProgramCache::findValue(KernelProgram& result, std::size_t number, const pr
 /// In GLSL, a double is a struct of its bits or of two floats, an integer of 64 bits one of its bits, and a vector of these is a
 /// struct of its components.
 void ProgramCache::addWide(KernelProgram& result, std::size_t number, const std::string& name,
-                              std::span<const program::Field> parts) const {
+                           std::span<const program::Field> parts) const {
   const auto location = [&](const std::string& member) { return result.program.location(member); };
   std::size_t width = 0;
   for (const program::Field& part : parts) width += part.width;
   for (std::size_t c = 0; c < width; ++c) {
     const std::string one = width == 1 ? name : fmt::format("{}.{}", name, "xyzw"[c]);
     const auto offset = static_cast<std::uint32_t>(parts.front().offset + c * sizeof(double));
-    const bool areBits = parts.front().scalar != program::Scalar::Double ||
-                         profile_.doubles == assemble::Doubles::Native;
+    const bool areBits =
+        parts.front().scalar != program::Scalar::Double || profile_.doubles == assemble::Doubles::Native;
     result.wide.push_back(
         {number, areBits ? gl::WideUniform::bits(location(one + ".bits"), offset)
-                          : gl::WideUniform::pair(location(one + ".hi"), location(one + ".lo"), offset)});
+                         : gl::WideUniform::pair(location(one + ".hi"), location(one + ".lo"), offset)});
   }
 }
 

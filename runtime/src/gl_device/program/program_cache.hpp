@@ -188,7 +188,7 @@ class ProgramCache {
   void findTables(KernelProgram& result, const program::Kernel& kernel, int& unit);
   void findValue(KernelProgram& result, std::size_t number, const program::Parameter& parameter);
   void addWide(KernelProgram& result, std::size_t number, const std::string& name,
-                  std::span<const program::Field> parts) const;
+               std::span<const program::Field> parts) const;
   void findAppendUniforms(KernelProgram& result, const program::Kernel& kernel);
   void findListUniforms(KernelProgram& result, const program::Parameter& appendOutput);
   bool isCompute() const { return profile_.stage == assemble::Stage::Compute; }

@@ -381,15 +381,14 @@ const Kernel& repeatKernel(program::Scalar keys) {
                             isNumber),
                 {input("k", sortWords()), gather("x", sortWords(), 1), output("r", sortWords())}, true);
   }
-  return kept(
-      fmt::format("void sort_kernel(uint k, uint l, out uint r) {{\n"
-                  "  int n = sk_index().x;\n"
-                  "  r = n > 0 && sk_at_x(n - 1) == k && sk_at_y(n - 1) == l{} ? 1u : 0u;\n"
-                  "}}\n",
-                  isFloating ? " && (k & l) != 0xffffffffu" : ""),
-      {input("k", sortWords()), gather("x", sortWords(), 1), input("l", sortWords()),
-       gather("y", sortWords(), 1), output("r", sortWords())},
-      true);
+  return kept(fmt::format("void sort_kernel(uint k, uint l, out uint r) {{\n"
+                          "  int n = sk_index().x;\n"
+                          "  r = n > 0 && sk_at_x(n - 1) == k && sk_at_y(n - 1) == l{} ? 1u : 0u;\n"
+                          "}}\n",
+                          isFloating ? " && (k & l) != 0xffffffffu" : ""),
+              {input("k", sortWords()), gather("x", sortWords(), 1), input("l", sortWords()),
+               gather("y", sortWords(), 1), output("r", sortWords())},
+              true);
 }
 
 const Kernel& flagKernel(program::Scalar flags) {

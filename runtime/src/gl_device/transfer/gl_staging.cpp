@@ -13,8 +13,8 @@
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/pass/pass.hpp"
-#include "support/checked_size.hpp"
 #include "sk/scalar_bytes.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 

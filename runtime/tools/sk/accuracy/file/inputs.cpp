@@ -46,8 +46,8 @@ double drawReal(const std::optional<Range>& range, Numbers& numbers) {
 
 double drawScalar(Scalar scalar, const std::optional<Range>& range, Numbers& numbers) {
   if (isReal(scalar)) return drawReal(range, numbers);
-  const bool isSigned = scalar == Scalar::Int || scalar == Scalar::Long || scalar == Scalar::Char ||
-                        scalar == Scalar::Short;
+  const bool isSigned =
+      scalar == Scalar::Int || scalar == Scalar::Long || scalar == Scalar::Char || scalar == Scalar::Short;
   const double most = scalar == Scalar::Bool ? 1 : integerMost;
   const Range from = range.value_or(Range{isSigned ? -most : 0, most});
   return std::min(from.low + std::floor(numbers.unit() * (from.high - from.low + 1)), from.high);

@@ -175,7 +175,8 @@ T nearest(double value) {
   if constexpr (std::is_integral_v<T>) {
     using Limits = std::numeric_limits<T>;
     const double whole = std::round(value);
-    const double past = std::ldexp(1.0, Limits::digits);  // a double has no room for the largest integer of 64 bits
+    const double past =
+        std::ldexp(1.0, Limits::digits);  // a double has no room for the largest integer of 64 bits
     if (whole >= past) return Limits::max();
     return static_cast<T>(std::max(whole, static_cast<double>(Limits::min())));
   } else if constexpr (std::is_same_v<T, double>) {
