@@ -27,7 +27,9 @@ std::uint32_t quantized(Scalar scalar, std::uint32_t bits) {
     case Scalar::Int:
     case Scalar::Uint:
     case Scalar::Float:
-    case Scalar::Double: return bits;
+    case Scalar::Double:
+    case Scalar::Long:
+    case Scalar::Ulong: return bits;
     case Scalar::Half: return asFloat(through<sk::half>);
     case Scalar::Char: return wrapped<std::int8_t>(bits);
     case Scalar::Uchar: return wrapped<std::uint8_t>(bits);
