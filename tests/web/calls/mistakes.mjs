@@ -35,7 +35,7 @@ export const mistakeCases = ({ refused, filled, expect }) => ({
       ['type', 'in kind, but a Float32Array is given', () => bodies.write({ ...arrays(), kind: new Float32Array(4) })],
       ['shape', '12 number(s) in color, but the array has 4', () => bodies.write({ ...arrays(), color: new Float32Array(4) })],
       // Values.
-      ...['1', null, undefined, [1, 2], [], {}, 1n, () => 1, ['1']].map((a) => ['type', "'a' is declared as float, 1 number(s)", () => k.saxpy(a, u, u, u)]),
+      ...['1', null, undefined, [1, 2], [], {}, () => 1, ['1']].map((a) => ['type', "'a' is declared as float, 1 number(s)", () => k.saxpy(a, u, u, u)]),
       ...[NaN, Infinity, 0.5].map((key) => ['type', 'is no whole number', () => k.mix_bits(key, ints, ints, ints)]),
       ['type', "'axis' is declared as float3, 3 number(s)", () => k.turn([1, 2], true, u, u, u)],
       ['type', "'axis' is declared as float3, 3 number(s)", () => k.turn(1, true, u, u, u)],
