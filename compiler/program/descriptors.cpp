@@ -469,7 +469,11 @@ class Builder {
 
   sk::program::Condition condition(const GlslContext& context, const KernelParam& param) {
     if (!param.neededIf) return {};
-    const Function& entry = module_.functions[context.kernel.entry];
+    Function entry;
+    entry.variables = module_.functions[context.kernel.entry].variables;
+    // the program knows members of bundles by their paths
+    for (std::size_t i = 0; i < context.kernel.params.size(); ++i)
+      entry.variables[i].name = context.kernel.params[i].name;
     return {.steps = storage_.keep(conditionSteps(context.kernel, *param.neededIf)),
             .text = storage_.keep(print(module_, entry, *param.neededIf))};
   }

@@ -136,5 +136,21 @@ TEST_CASE("borders and identities are constant expressions, with their constants
   CHECK(kernel.body.find("outside") == std::string::npos);
 }
 
+TEST_CASE("a condition names members of bundles by their paths") {
+  Module module = testModule();
+  KernelBuilder k(module, "f");
+  const VarId on = k.spec("g_on", Type::of(Scalar::Bool));
+  const VarId u = k.gather("g_u", floatType, 1);
+  const VarId r = k.output("r", floatType);
+  const StreamRef stream{StreamRef::Space::KernelParameter, u};
+  ExprPtr condition = k.ref(on);
+  const KernelId id = k.finish(
+      block(assign(k.ref(r), select(k.ref(on), gatherRead(floatType, stream, literal(0)), literal(0.0F)))));
+  module.kernels[id].params[on].name = "g.on";
+  module.kernels[id].params[u].neededIf = std::move(condition);
+  const Program program(module);
+  CHECK(program.units()[0].kernel.parameters[u].neededIf.text == "g.on");
+}
+
 }  // namespace
 }  // namespace skc::emit
