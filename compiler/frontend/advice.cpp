@@ -51,6 +51,29 @@ Advice adviceOnReturn(const clang::Diagnostic& diagnostic, const DeclarationSynt
                                        isFold(kernel->kind) ? "the accumulator" : "an output, 'out T r<>'"})};
 }
 
+/// Advice on kernels that differ in brackets alone: C++'s overloads do not see those of elements and accumulators.
+Advice adviceOnRedefinition(const clang::Diagnostic& diagnostic, const DeclarationSyntax* syntax) {
+  const KernelSyntax* kernel = syntax == nullptr ? nullptr : syntax->kernel(diagnostic.getLocation());
+  if (kernel == nullptr) return {};
+  constexpr std::string_view wayOut = "give one of them another name";
+  return {
+      .text = format(
+          Diag::KernelRedefined,
+          {wordOf(kernel->kind), std::string_view(nameAt(textAt(diagnostic))),
+           isFold(kernel->kind)
+               ? fmt::format("{}, or let the overload that folds accumulators take the uniform, too", wayOut)
+               : std::string(wayOut)}),
+      .keepsNotes = true};
+}
+
+/// Advice on `gather<float, 5>` and `index<5>`.
+Advice adviceOnRank(const clang::Diagnostic& diagnostic) {
+  const clang::NamedDecl* named = declarationIn(diagnostic);
+  const std::string alias = named == nullptr ? "" : named->getNameAsString();
+  if (alias != "gather" && alias != "index") return {};
+  return {format(Diag::TemplateRank, {alias}), {}, true};
+}
+
 /// Advice on calling a member function that is not const for an object that is.
 Advice adviceOnMethod(const clang::Diagnostic& diagnostic) {
   const std::string name = nameIn(diagnostic, 0);
@@ -89,6 +112,8 @@ Advice adviceOn(const clang::Diagnostic& diagnostic, const DeclarationSyntax* sy
     case clang::diag::err_constexpr_var_requires_const_init: return adviceOnConstexpr(diagnostic);
     case clang::diag::err_member_function_call_bad_cvr: return adviceOnMethod(diagnostic);
     case clang::diag::ext_return_has_expr: return adviceOnReturn(diagnostic, syntax);
+    case clang::diag::err_redefinition: return adviceOnRedefinition(diagnostic, syntax);
+    case clang::diag::err_template_arg_list_constraints_not_satisfied: return adviceOnRank(diagnostic);
     case clang::diag::warn_unsigned_always_true_comparison: return adviceOnUnsigned(diagnostic);
     // what C++ leaves undefined, and kernels do not
     case clang::diag::warn_remainder_division_by_zero: return {format(Diag::DivisionByZero, {})};
@@ -146,9 +171,11 @@ Advice adviceOnMemberOf(const clang::Diagnostic& diagnostic, const std::string& 
   rest = rest.ltrim();
   if (!rest.consume_front("::") && !rest.consume_front(".")) return {};
   const llvm::StringRef member = nameAt(rest.ltrim());
-  const std::optional<Instead> instead = insteadOf(std::string_view(member));
+  const std::string name = scope + "::" + member.str();
+  std::optional<Instead> instead = insteadOf(name);
+  if (!instead) instead = insteadOf(std::string_view(member));
   if (!instead) return {};
-  return {format(Diag::ForeignName, {scope + "::" + member.str(), instead->advice}), {}, true};
+  return {format(Diag::ForeignName, {name, instead->advice}), {}, true};
 }
 
 /// Advice on a name from another language, even if Clang suggests a similar name.
@@ -183,6 +210,7 @@ Advice adviceOnLaterFunction(const clang::Diagnostic& diagnostic) {
 
 /// Advice on an undeclared name.
 Advice adviceOnName(const clang::Diagnostic& diagnostic) {
+  if (nameIn(diagnostic, 0) == "vout") return {format(Diag::VariableOutputBrackets, {"r"}), {}, true};
   if (Advice advice = adviceOnForeignName(diagnostic); !advice.text.empty()) return advice;
   if (Advice advice = adviceOnLaterFunction(diagnostic); !advice.text.empty()) return advice;
   const std::string name = nameIn(diagnostic, 0);

@@ -20,6 +20,7 @@ struct Advice {
   std::vector<clang::FixItHint> fixIts = {};
   bool explainsLine = false;  ///< what Clang reports later on the same line follows from this
   bool isOfMainFile = false;  ///< shown at the inclusion in the main file that leads there
+  bool keepsNotes = false;    ///< Clang's notes follow, such as where the other declaration is
 };
 
 /// `syntax` is null until the file's declarations are known.

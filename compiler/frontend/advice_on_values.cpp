@@ -207,6 +207,32 @@ bool isMask(clang::QualType type) {
   return vector != nullptr && vector->getElementType()->isIntegerType();
 }
 
+/// True for an intrinsic that works by component, and for a type, whose vectors are as wide as their operand.
+bool keepsWidth(llvm::StringRef callee) {
+  if (callee.empty()) return true;  // parentheses
+  const std::string name = callee.rtrim("234").str();
+  constexpr std::string_view types[] = {"bool", "int", "uint", "long", "ulong", "float", "double", "half"};
+  if (std::ranges::find(types, name) != std::end(types)) return true;
+  return std::ranges::any_of(ir::intrinsicRows(), [&](const ir::IntrinsicRow& row) {
+    return callee == llvm::StringRef(row.spelling);
+  });
+}
+
+/// True if the place in a text is in the arguments of a function whose result has a width of its own.
+bool isArgument(llvm::StringRef text, std::size_t at) {
+  int depth = 0;
+  for (std::size_t i = at; i-- > 0;) {
+    if (text[i] == ')') ++depth;
+    if (text[i] != '(' || --depth >= 0) continue;
+    depth = 0;
+    const llvm::StringRef before = text.take_front(i).rtrim();
+    const std::size_t start =
+        before.find_last_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
+    if (!keepsWidth(before.drop_front(start == llvm::StringRef::npos ? 0 : start + 1))) return true;
+  }
+  return false;
+}
+
 /// `indexof(r)` or `extentof(a)` in a text, without a component behind it.
 llvm::StringRef positionIn(llvm::StringRef text) {
   for (const llvm::StringRef word : {"indexof", "extentof"}) {
@@ -214,7 +240,8 @@ llvm::StringRef positionIn(llvm::StringRef text) {
       const llvm::StringRef arguments = bracketedAt(text.drop_front(at + word.size()));
       const llvm::StringRef call = text.substr(at, word.size() + arguments.size());
       const llvm::StringRef rest = text.drop_front(at + call.size()).ltrim();
-      if (!arguments.empty() && !rest.starts_with(".") && !rest.starts_with("[")) return call;
+      const bool isWhole = !arguments.empty() && !rest.starts_with(".") && !rest.starts_with("[");
+      if (isWhole && !isArgument(text, at)) return call;
     }
   }
   return {};
@@ -224,9 +251,10 @@ llvm::StringRef positionIn(llvm::StringRef text) {
 bool isPrimary(llvm::StringRef text) {
   while (!text.empty()) {
     const llvm::StringRef brackets = bracketedAt(text);
-    const std::size_t taken = !brackets.empty()       ? brackets.size()
-                              : text.starts_with(".") ? 1
-                                                      : nameAt(text).size();
+    const std::size_t taken = !brackets.empty()        ? brackets.size()
+                              : text.starts_with(".")  ? 1
+                              : text.starts_with("::") ? 2
+                                                       : nameAt(text).size();
     if (taken == 0) return false;
     text = text.drop_front(taken);
   }

@@ -99,7 +99,7 @@ void DiagnosticPrinter::HandleDiagnostic(DiagnosticsEngine::Level level,
   if (level == DiagnosticsEngine::Warning && isNarrowing(diagnostic)) level = DiagnosticsEngine::Error;
   const Advice advice = level == DiagnosticsEngine::Note ? Advice() : adviceOn(diagnostic, syntax_);
   if (advice.text.empty()) return TextDiagnosticPrinter::HandleDiagnostic(level, diagnostic);
-  isDropping_ = true;  // also drops the list of candidates
+  isDropping_ = !advice.keepsNotes;  // also drops the list of candidates
   if (advice.explainsLine) explained_ = diagnostic.getLocation();
   print(level, diagnostic, advice);
 }
