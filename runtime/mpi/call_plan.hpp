@@ -46,6 +46,9 @@ class CallPlan {
  private:
   void takeOthers();
   void checkInputs() const;
+  bool readsOwn(const SpreadArgument& one) const;
+  DeviceState& device() const;
+  void evaluateAssertions() const;
   void startExchanges();
   void finishOthers();
   void makeRoom();

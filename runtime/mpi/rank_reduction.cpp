@@ -7,6 +7,7 @@
 #include "accumulators.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
+#include "call/check_written.hpp"
 #include "call/resolved_call.hpp"
 #include "call_details.hpp"
 #include "native/exact_accumulator.hpp"
@@ -357,6 +358,7 @@ void RankReduction::store(std::span<const StreamRegion> results) {
   for (const StreamRegion& region : results) arguments.push_back({.region = region});
   // Its results are doubles for streams that hold floats, which calls of an application do not pass.
   call_.device.run(resolveCall(wide->finish, arguments, call_.device.limits, call_.options));
+  for (const StreamRegion& region : results) noteWritten(region);
 }
 
 void RankReduction::finish(std::span<void* const> results) {

@@ -11,10 +11,12 @@
 #include "call/box.hpp"
 #include "call/check_call.hpp"
 #include "call/check_reduction.hpp"
+#include "call/check_written.hpp"
 #include "call/placed.hpp"
 #include "call/resolved_call.hpp"
 #include "call_details.hpp"
 #include "call_plan.hpp"
+#include "device/device_state.hpp"
 #include "device/stream_state.hpp"
 #include "rank_reduction.hpp"
 
@@ -126,6 +128,70 @@ void storeOwnOutputs(DomainState& domain, const Reduction& reduction, std::span<
   storeOutputs(call);
 }
 
+/// Notes what storeOwnOutputs() has written, or a fold that stores outputs.
+void noteOwnWritten(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments,
+                    const CallOptions& options) {
+  const Box own = domain::intersection(domain.own, boxOrAll(options.box, domain.parts.whole()));
+  for (std::size_t i = 0; i < arguments.size() && !domain::isEmpty(own); ++i) {
+    if (reduction.fold.parameters[i].role != Role::Output) continue;
+    if (DomainStreamState* const stream = domainStream(arguments[i].region)) noteWritten(stream->part(own));
+  }
+}
+
+/// The results of a call that runs for its checks alone.
+class RehearsedResults {
+ public:
+  /// `own`: the elements that it computes.
+  RehearsedResults(DeviceState& device, const Box& own, const Shape& whole)
+      : device_(device), own_(own), whole_(whole) {}
+
+  /// A part of the whole, like an output.
+  StreamRegion part(const StreamRegion& like) {
+    StreamRegion region = create(*like.stream->element, domain::shapeOf(own_), like.stream->storage);
+    region.placement = {own_.begin, whole_};
+    return region;
+  }
+  StreamRegion value(const program::Element& element) { return create(element, Shape{1}, Storage::Single); }
+
+ private:
+  StreamRegion create(const program::Element& element, const Shape& shape, Storage storage) {
+    streams_.push_back(device_.createStream(element, shape, storage));
+    return {streams_.back().get(), Index::origin(shape.rank()), shape};
+  }
+
+  DeviceState& device_;
+  const Box own_;
+  const Shape whole_;
+  std::vector<std::unique_ptr<StreamState>> streams_;
+};
+
+/// With SK_CHECK=asserts and SK_CHECK=written, which find something before a call writes: calls it for this rank's part as on one
+/// device, with results of our own. Throws sk::Error for what they find.
+void rehearse(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments,
+              const CallOptions& options) {
+  if (!checksAsserts() && !checksWritten()) return;
+  CallOptions part = options;
+  part.box = domain::intersection(domain.own, boxOrAll(options.box, domain.parts.whole()));
+  if (domain::isEmpty(part.box)) return;
+  DeviceState& device = *domain.streams.front()->placed().stream->device;
+  const UncountedPasses uncounted(device.passCount);
+  RehearsedResults results(device, part.box, domain.parts.whole());
+  std::vector<Argument> mine = mpi::ownArguments(arguments);
+  std::vector<Bytes> bytes;
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    const Parameter& parameter = reduction.fold.parameters[i];
+    if (parameter.role == Role::Output && mine[i].region.stream != nullptr)
+      mine[i].region = results.part(mine[i].region);
+    if (parameter.role != Role::Accumulator) continue;
+    mine[i].region = reduction.parts != nullptr ? results.value(*parameter.element) : StreamRegion{};
+    bytes.emplace_back(parameter.element->size);
+  }
+  if (reduction.parts != nullptr) return sk::fold(reduction, mine, part);
+  std::vector<void*> values;
+  for (Bytes& one : bytes) values.push_back(one.data());
+  sk::reduce(reduction, mine, values, part);
+}
+
 /// A call of a reduction or of a kernel with folded outputs.
 class Fold {
  public:
@@ -173,6 +239,7 @@ class Fold {
     if (!refusal_) {
       refusal_ = mpi::caught(name(), [&] {
         part = partOf(domain_, reduction_, arguments, options_);
+        rehearse(domain_, reduction_, arguments_, options_);
         part->fold();
         if (domain_.agreement.isAlways()) part->setDetails(details_.details());
       });
@@ -307,6 +374,7 @@ void DomainState::fold(const Reduction& reduction, std::span<const Argument> arg
     forgetHalos();
     all->finish();
     if (!isTogether) storeOwnOutputs(*this, reduction, arguments, chosen);
+    noteOwnWritten(*this, reduction, arguments, chosen);
     all->store(targets->regions);
   });
 }

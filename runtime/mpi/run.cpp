@@ -11,7 +11,10 @@
 
 #include "agreement.hpp"
 #include "call/box.hpp"
+#include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
+#include "call/check_written.hpp"
+#include "call/placed.hpp"
 #include "call_details.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
@@ -399,8 +402,44 @@ std::vector<domain::Piece> CallPlan::piecesOf(const Box& box) const {
 /// Refuses what the call would refuse after the first messages, which nobody would receive then.
 void CallPlan::checkInputs() const {
   for (const SpreadArgument& one : spread_) {
-    if (!one.isWritten) checkElementsOf(one.stream->placed(), false, kernel_.name);
+    if (one.isWritten) continue;
+    const StreamRegion own = one.stream->part(domain_.own);
+    checkNotLost(own, false, kernel_.name);
+    if (unwrittenIn(own).empty() || !readsOwn(one)) continue;
+    fail(kernel_,
+         "'{}' reads a stream of shape {}, of which nothing has written the part of this rank; write() or "
+         "fill() it first, or let a kernel write it (SK_CHECK=written)",
+         kernel_.parameters[one.index].name, toString(domain_.parts.whole()));
   }
+}
+
+/// Whether the elements of the call's box, on any rank, read this rank's part of a stream.
+bool CallPlan::readsOwn(const SpreadArgument& one) const {
+  if (options_.box.isWhole()) return true;
+  Box read = options_.box;
+  for (int d = 0; d < read.begin.rank(); ++d) {
+    const auto k = static_cast<std::size_t>(d);
+    read.begin[d] -= one.depth.below[k];
+    read.end[d] += one.depth.above[k];
+    if (domain_.parts.isPeriodic(d)) continue;
+    read.begin[d] = std::max<std::int64_t>(read.begin[d], 0);
+    read.end[d] = std::min(read.end[d], domain_.parts.whole()[d]);
+  }
+  return std::ranges::any_of(domain::piecesInside(read, domain_.parts.whole()),
+                             [&](const domain::Piece& piece) {
+                               return !domain::isEmpty(domain::intersection(domain_.own, piece.box));
+                             });
+}
+
+DeviceState& CallPlan::device() const { return *spread_.front().stream->placed().stream->device; }
+
+/// Those of all elements of this rank, before any is computed. Elements of its halo, which it may compute, too, are those of others.
+void CallPlan::evaluateAssertions() const {
+  if (kernel_.assertions == nullptr || !checksAsserts()) return;
+  CallOptions options = device().configuration.resolve(kernel_, options_);
+  options.box = domain::intersection(domain_.own, boxOrAll(options_.box, domain_.parts.whole()));
+  if (!domain::isEmpty(options.box))
+    checkAssertions(device(), kernel_, arguments_, domain_.parts.whole(), options);
 }
 
 void CallPlan::exchangeHalos() {
@@ -426,6 +465,7 @@ void CallPlan::run(const Compute& compute) {
     written->setWritten();
   }
   CallOptions part = options_;
+  std::optional<AssertionsEvaluated> evaluated;
   const auto computeBox = [&](const Box& box) {
     for (const domain::Piece& piece : piecesOf(box)) {
       std::vector<Argument> moved = arguments_;
@@ -438,14 +478,22 @@ void CallPlan::run(const Compute& compute) {
       writes.begin();  // until the other boxes are there, too
     }
   };
+  const auto evaluate = [&] {
+    evaluateAssertions();
+    evaluated.emplace(device());
+  };
   if (!exchange_) {
+    evaluate();
     computeBox(box_);
   } else {
     const Box inner =
         domain::shrunk(domain_.own, domain_.parts.haloOf(domain_.rank, roundedUp(reach_, unit_)));
-    const bool overlaps = domain_.options.overlap && !isOneBox() && !domain::isEmpty(inner);
+    // assertions of the border read the halo, and must hold before the interior is stored
+    const bool overlaps =
+        domain_.options.overlap && !isOneBox() && !domain::isEmpty(inner) && !checksAsserts();
     if (overlaps) computeBox(inner);
     exchange_->finish();
+    evaluate();
     for (const Box& box : overlaps ? domain::difference(box_, inner) : std::vector{box_}) computeBox(box);
   }
   writes.commit();

@@ -10,6 +10,7 @@
 
 #include "accumulators.hpp"
 #include "call/box.hpp"
+#include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
 #include "call_details.hpp"
 #include "call_plan.hpp"
@@ -30,7 +31,11 @@ class RankScan {
  public:
   RankScan(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments,
            const CallOptions& options)
-      : domain_(domain), reduction_(reduction), options_(options), dimension_(scannedDimension()) {
+      : domain_(domain),
+        reduction_(reduction),
+        given_(mpi::ownArguments(arguments)),
+        options_(options),
+        dimension_(scannedDimension()) {
     for (const Argument& argument : arguments) {
       local_.push_back(argument);
       DomainStreamState* const stream = domainStream(argument.region);
@@ -52,6 +57,8 @@ class RankScan {
            "without Accumulate::Exact, or do not divide that dimension",
            dimension_, domain_.parts.split()[dimension_]);
     }
+    evaluateAssertions();
+    const AssertionsEvaluated evaluated(device());
     const Shape own = domain::shapeOf(domain_.own);
     results_.emplace(accumulators(own.size()));
     sk::scan(reduction_, withResults(*results_, own), options_);
@@ -71,6 +78,8 @@ class RankScan {
 
   /// Combines the totals before this rank with its results, and stores these.
   void store() {
+    if (!hasMessages()) evaluateAssertions();
+    const AssertionsEvaluated evaluated(device());
     if (!hasMessages()) return sk::scan(reduction_, local_, options_);
     const Shape own = domain::shapeOf(domain_.own);
     if (const std::optional<Accumulators> before = totalsBefore()) {
@@ -85,6 +94,14 @@ class RankScan {
   }
 
  private:
+  DeviceState& device() const { return *resultRegion().stream->device; }
+
+  /// Assertions may speak of places in the whole, which what the ranks scan does not know.
+  void evaluateAssertions() const {
+    const CallOptions options = device().configuration.resolve(reduction_.fold, options_);
+    checkFoldAssertions(device(), reduction_.fold, given_, domain_.own, options);
+  }
+
   bool isResult(std::size_t i) const { return reduction_.fold.parameters[i].role == Role::Accumulator; }
 
   /// The dimension that is scanned; of a scan over all elements, the only one in which these are divided.
@@ -125,9 +142,8 @@ class RankScan {
   }
 
   bool isExact() const {
-    const DeviceState& device = *resultRegion().stream->device;
     return !reduction_.exact.empty() &&
-           device.configuration.resolve(reduction_.fold, options_).accumulate == Accumulate::Exact;
+           device().configuration.resolve(reduction_.fold, options_).accumulate == Accumulate::Exact;
   }
 
   /// Native code keeps doubles if a result does.
@@ -141,7 +157,7 @@ class RankScan {
   }
 
   Accumulators accumulators(std::int64_t count) const {
-    return {*resultRegion().stream->device, reduction_, Shape{count}, isInDoubles()};
+    return {device(), reduction_, Shape{count}, isInDoubles()};
   }
 
   std::vector<Argument> withResults(const Accumulators& results, const Shape& shape) const {
@@ -218,6 +234,7 @@ class RankScan {
 
   DomainState& domain_;
   const Reduction& reduction_;
+  std::vector<Argument> given_;  ///< placed in the whole
   CallOptions options_;
   int dimension_;
   std::vector<Argument> local_;

@@ -415,6 +415,69 @@ TEST_CASE("with SK_CHECK=written, a part of which nothing has been written is no
   CHECK(errorOf([&] { whole.read(); }) == "no error");
 }
 
+TEST_CASE("with SK_CHECK=written, reductions and folded outputs do not read a part that nothing has written",
+          "[.][written]") {
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around, .split = {ranksOfWorld(), 1}});
+  auto u = domain.stream<float>(), v = domain.stream<float>(), w = domain.stream<float>();
+  sk::Scalar<float> total = domain.device().scalar<float>();
+  const sk::Box upper{{0, 0}, {12, 8}};
+  w.fill(1.0F);
+  boundedCopy.with({.box = upper})(w, u, total);  // all of rank 0 and nothing of rank 1
+  const auto finds = [&](const auto& call) {
+    CHECK_THAT(errorOf(call), Contains(last()) && Contains("nothing has written"));
+  };
+  finds([&] { static_cast<void>(sum(u)); });
+  finds([&] { static_cast<void>(sum.with({.accumulate = sk::Accumulate::Exact})(u)); });
+  finds([&] { static_cast<void>(domain.later(sum, u).get()); });
+  finds([&] { boundedCopy(u, v, total); });
+  finds([&] { static_cast<void>(boundedNeighbors.over({24, 8})(u)); });
+  finds([&] { bounded.with({.box = upper})(u, v); });  // reads the first row of rank 1
+  const auto passes = [&](const auto& call) {
+    CHECK(errorOf([&] {
+            call();
+            static_cast<void>(sum(w));
+          }) == "no error");
+  };
+  passes([&] { static_cast<void>(sum.with({.box = upper})(u)); });
+  passes([&] { scaled.with({.box = upper})(1.0F, u, u, v); });
+  passes([&] { boundedCopy(w, u, total); });
+  passes([&] { static_cast<void>(sum(u)); });
+}
+
+TEST_CASE("with SK_CHECK=asserts, a rank evaluates all assertions of its part before it writes",
+          "[.][asserts]") {
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around, .split = {ranksOfWorld(), 1}});
+  auto u = domain.stream<float>(), v = domain.stream<float>(), w = domain.stream<float>();
+  sk::Scalar<float> total = domain.device().scalar<float>();
+  w.fill(1.0F);
+  u.fill([](sk::Index at) { return at == sk::Index{18, 3} || at == sk::Index{12, 5} ? 200.0F : 1.0F; });
+  const auto finds = [&](const auto& call) {
+    v.fill(-1.0F);
+    CHECK_THAT(errorOf([&] {
+                 call();
+                 static_cast<void>(sum(w));
+               }),
+               Contains(isLast() ? "" : last()) && Contains("failed in") && Contains("[12][5]"));
+    if (isLast()) CHECK(v.read() == std::vector<float>(v.read().size(), -1.0F));
+  };
+  finds([&] { static_cast<void>(boundedSum(u)); });
+  finds([&] { static_cast<void>(boundedSum.with({.accumulate = sk::Accumulate::Exact})(u)); });
+  finds([&] { boundedSum(u, total); });
+  finds([&] { static_cast<void>(domain.later(boundedSum, u).get()); });
+  finds([&] { static_cast<void>(boundedNeighbors.over({24, 8})(u)); });
+  finds([&] { boundedCopy(u, v, total); });
+  bounded(w, v);
+  finds([&] { bounded(u, v); });  // row 12 is at the border of rank 1, row 18 in its interior
+  CHECK(errorOf([&] { static_cast<void>(boundedSum.with({.box = {{0, 0}, {12, 8}}})(u)); }) == "no error");
+  u.fill([](sk::Index at) { return static_cast<float>(at[0]); });
+  CHECK(errorOf([&] { numbered.with({.along = 0})(u, v); }) == "no error");
+  CHECK(errorOf([&] { numbered.with({.along = 1})(u, v); }) == "no error");
+  u.fill([](sk::Index at) { return static_cast<float>(at[0] + (at == sk::Index{12, 5} ? 1 : 0)); });
+  finds([&] { numbered.with({.along = 0})(u, v); });
+  finds([&] { numbered.with({.along = 1})(u, v); });
+  CHECK(errorOf([&] { static_cast<void>(sum(w)); }) == "no error");
+}
+
 TEST_CASE("with SK_CHECK=collectives, the ranks compare all that they call", "[.][collectives]") {
   sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
   auto u = domain.stream<float>(), v = domain.stream<float>(), w = domain.stream<float>();

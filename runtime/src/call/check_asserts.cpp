@@ -112,9 +112,15 @@ Box checkedBox(std::span<const Argument> arguments, const Shape& domain, const C
 
 }  // namespace
 
+AssertionsEvaluated::AssertionsEvaluated(DeviceState& device) : device_(device), before_(device.isChecking) {
+  if (checksAsserts()) device.isChecking = true;
+}
+
+AssertionsEvaluated::~AssertionsEvaluated() { device_.isChecking = before_; }
+
 void checkAssertions(DeviceState& device, const Kernel& kernel, std::span<const Argument> arguments,
                      const Shape& domain, const CallOptions& options) {
-  if (kernel.assertions == nullptr || !checksAsserts()) return;
+  if (kernel.assertions == nullptr || !checksAsserts() || device.isChecking) return;
   const Box box = checkedBox(arguments, domain, options);
   for (int d = 0; d < domain.rank(); ++d) {
     if (box.begin[d] == box.end[d]) return;

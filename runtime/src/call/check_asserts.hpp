@@ -14,6 +14,20 @@ namespace sk {
 
 class DeviceState;
 
+/// While it lives, calls on the device evaluate no assertions, since those of the call whose parts they are have been evaluated. Does
+/// nothing unless SK_CHECK asks for assertions.
+class AssertionsEvaluated {
+ public:
+  explicit AssertionsEvaluated(DeviceState& device);
+  ~AssertionsEvaluated();
+  AssertionsEvaluated(const AssertionsEvaluated&) = delete;
+  AssertionsEvaluated& operator=(const AssertionsEvaluated&) = delete;
+
+ private:
+  DeviceState& device_;
+  const bool before_;
+};
+
 /// Throws sk::Error if an assertion fails for an element of the domain, or of the box of it in the options, and names the first
 /// such element in row-major order. Does nothing unless SK_CHECK asks for it. If the device records, the loop checks it
 /// each time that it comes here. The arguments have passed the checks of the call; the options are resolved.

@@ -271,7 +271,7 @@ class UnwrittenReads {
       fail(call_.kernel,
            "'{}' reads a stream of shape {} that nothing has written; write() or fill() it first, or let a "
            "kernel write it (SK_CHECK=written)",
-           parameter(i).name, toString(region(i).stream->shape));
+           parameter(i).name, toString(isPlaced(region(i)) ? seenShape(region(i)) : region(i).stream->shape));
     }
     Index at = indexOf(region(i).shape, number);
     for (int d = 0; d < at.rank(); ++d) at[d] += originOf(region(i), d);
