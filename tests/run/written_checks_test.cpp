@@ -85,6 +85,12 @@ TEST_CASE("a read of a stream that nothing has written is an error", "[.written]
     CHECK(errorOf([&] { device.record([&] { doubled(u, r); }).repeat(1); }) == unread("doubled", "x"));
     sk::Scalar<float> factor = device.scalar<float>();
     CHECK(errorOf([&] { scaled(factor, x, r); }).find("scaled: 'factor' reads a stream of shape {1}") == 0);
+    sk::Scalar<float> known = device.scalar<float>();
+    known = 2.0F;
+    sk::Scalar<float> twice = known * 2.0F;
+    CHECK(errorOf([&] { known += factor; }).find("a scalar: nothing has written") == 0);
+    CHECK(known.read() == 2.0F);  // as is what is pending beside it
+    CHECK(twice.read() == 4.0F);
   });
 }
 

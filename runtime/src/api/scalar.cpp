@@ -235,6 +235,12 @@ ScalarHandle::ScalarHandle(ScalarOp op, const program::Element& result,
       node->device = device;
     }
     node->device->checkProcess();
+    // now, lest others that are pending with it are lost
+    for (const ScalarTerm& term : operands) {
+      if (!checksWritten() || node->device->recording != nullptr) break;
+      if (term.scalar != nullptr && !term.scalar->pending_)
+        checkWritten(wholeRegion(term.scalar->stream_.get()), aScalar);
+    }
     PendingScalars& all = node->device->pendingScalars;
     if (all.reads + operands.size() > mostScalarReads || all.steps == mostScalarSteps)
       flushScalars(*node->device);
