@@ -148,6 +148,9 @@ std::string matrixTypes() {
     text += fmt::format(
         "struct {0} {{\n  {0}() = default; constexpr {0}({2}) {{}} constexpr {0}({3}) {{}}\n"
         "  float{1}& operator[](int); float{1} operator[](int) const;\n"
+        "  float{1}& operator[](uint); float{1} operator[](uint) const;\n"
+        "  float{1}& operator[](long); float{1} operator[](long) const;\n"
+        "  float{1}& operator[](ulong); float{1} operator[](ulong) const;\n"
         "  void operator+=({0}); void operator-=({0}); void operator*=({0}); void operator*=(float);\n"
         "  void operator/=(float);\n}};\n",
         m, size, list(row, size), list("float", size * size));

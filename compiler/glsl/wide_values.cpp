@@ -5,6 +5,8 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -67,7 +69,25 @@ ExprPtr wideUnary(Polyfills& polyfills, UnaryOp op, ExprPtr operand) {
   return polyfills.call(function, exprs(std::move(operand)));
 }
 
+namespace {
+
+/// The divisor, if it is a literal that the assembler divides by without a loop, which takes drivers long to compile.
+std::optional<std::uint32_t> smallDivisor(BinaryOp op, const Expr& b) {
+  const auto* divisor = std::get_if<Literal>(&b.node);
+  const bool divides = op == BinaryOp::Div || op == BinaryOp::Rem;
+  if (!divides || divisor == nullptr || !b.type.isLong()) return std::nullopt;
+  const std::uint64_t value = divisor->wide();
+  return value > 0 && value < 1U << 24U ? std::optional(divisor->bits) : std::nullopt;
+}
+
+}  // namespace
+
 ExprPtr wideBinary(Polyfills& polyfills, BinaryOp op, ExprPtr a, ExprPtr b) {
+  if (const auto divisor = smallDivisor(op, *b)) {
+    const std::string_view name = op == BinaryOp::Div ? "sk_div_by" : "sk_rem_by";
+    const FunctionId function = polyfills.addByComponent(name, a->type, {a->type, Type::of(Scalar::Uint)});
+    return polyfills.call(function, exprs(std::move(a), literal(*divisor)));
+  }
   const OperatorRow& entry = row(op);
   if (entry.wide.empty())
     return wideIntrinsic(polyfills, entry.vectors.value(), exprs(std::move(a), std::move(b)));

@@ -112,6 +112,40 @@ TEST_CASE("ulongs are computed as in C++, and wrap") {
   });
 }
 
+TEST_CASE("longs are divided by literals") {
+  std::vector<Long> a = extremes();
+  for (std::uint32_t i = 0; i < 200; ++i) a.push_back(wrapped(Ulong{hashed(i)} << 32 | hashed(i + 500)));
+  const auto size = static_cast<std::int64_t>(a.size());
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
+    auto r = streams<sk::long2>(device, 3, size);
+    auto u = streams<sk::ulong2>(device, 2, size);
+    longs::byLiterals(streamOf<Long>(device, a), streamOf<Ulong>(device, asUnsigned(a)), r[0], r[1], r[2],
+                      u[0], u[1]);
+    const auto seven = r[0].read(), large = r[1].read(), negative = r[2].read();
+    const auto day = u[0].read(), most = u[1].read();
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      INFO(a[i]);
+      const auto bits = static_cast<Ulong>(a[i]);
+      CHECK((seven[i] == sk::long2{a[i] / 7, a[i] % 7}));
+      CHECK((large[i] == sk::long2{a[i] / 16777216, (a[i] >> 3) / 16777216 + a[i] % 16777217}));
+      CHECK((negative[i] == sk::long2{a[i] / -10, a[i] % -10}));
+      CHECK((day[i] == sk::ulong2{bits / 86400, bits % 86400}));
+      CHECK((most[i] == sk::ulong2{bits / 16777215, bits % 16777215}));
+    }
+  });
+}
+
+TEST_CASE("offsets of neighbors and rows of matrices saturate to the nearest one") {
+  const std::vector<Long> by = {1, Long{1} << 32, -(Long{1} << 32), Long{1} << 31, 0, -1};
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
+    auto r = device.stream<float>({6}), row = device.stream<float>({6});
+    longs::offsets(streamOf<Long>(device, by), sk::float2x2{{{1, 2}, {3, 4}}},
+                   streamOf<float>(device, {0, 1, 2, 3, 4, 5}), r, row);
+    CHECK(r.read() == std::vector<float>{1, 5, 0, 5, 4, 4});
+    CHECK(row.read() == std::vector<float>{4, 4, 2, 4, 2, 2});
+  });
+}
+
 TEST_CASE("longs shift by counts modulo 64") {
   std::vector<Long> a;
   std::vector<int> n;

@@ -10,6 +10,8 @@
 //   while (next(i))     ->     while (true) { bool t; t = next(i); if (!t) break; ... }
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -202,7 +204,8 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
     clang::SourceLocation where;
   };
   static Subscripts subscriptsOf(const clang::CXXOperatorCallExpr* e);
-  ir::ExprPtr intIndex(ir::ExprPtr index);
+  ir::ExprPtr intIndex(ir::ExprPtr index, std::int64_t least = std::numeric_limits<std::int32_t>::min(),
+                       std::int64_t most = std::numeric_limits<std::int32_t>::max());
   ir::ExprPtr indexFrom(const Subscripts& subscripts, ir::VarId stream);
   ir::ExprPtr argument(const clang::Expr* e, const ir::Variable& parameter);
   /// True if a reference to `e` refers to an object of the caller, not to a temporary.

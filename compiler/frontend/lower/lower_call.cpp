@@ -434,12 +434,34 @@ void foldOffset(const ir::Module& module, ExprPtr& offset) {
 
 }  // namespace
 
+namespace {
+
+/// The operand of a conversion from an integer of 64 bits, which would cut its upper word off.
+const clang::Expr* withoutLoss(const clang::Expr* e) {
+  const auto* cast = llvm::dyn_cast<clang::ImplicitCastExpr>(e);
+  if (cast == nullptr || cast->getCastKind() != clang::CK_IntegralCast) return e;
+  const auto* from = cast->getSubExpr()->getType()->getAs<clang::BuiltinType>();
+  if (from == nullptr) return e;
+  const auto kind = from->getKind();
+  const bool isLong = kind == clang::BuiltinType::Long || kind == clang::BuiltinType::LongLong ||
+                      kind == clang::BuiltinType::ULong || kind == clang::BuiltinType::ULongLong;
+  return isLong ? cast->getSubExpr() : e;
+}
+
+}  // namespace
+
 /// neighbor(a, dx), neighbor(a, dx, dy) ..., neighbor(a, int2) ...
 ExprPtr FunctionLowering::neighbor(const clang::CallExpr* e) {
   const SourceLocation where = e->getBeginLoc();
   const ir::VarId stream = gatherVariable(e->getArg(0));
   const ir::Variable gather = function_.variables[stream];
-  Exprs offsets = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin() + 1, e->arg_end()));
+  constexpr std::int64_t farthest = 1 << 30;  // its sum with an index is an int
+  std::vector<const clang::Expr*> given(e->arg_begin() + 1, e->arg_end());
+  std::ranges::transform(given, given.begin(), withoutLoss);
+  Exprs offsets = valuesInOrder(given);
+  for (ExprPtr& offset : offsets) {
+    if (offset->type.isLong()) offset = intIndex(std::move(offset), -farthest, farthest);
+  }
   ExprPtr offset;
   if (offsets.size() == 1) {
     offset = std::move(offsets[0]);
@@ -488,16 +510,15 @@ FunctionLowering::Subscripts FunctionLowering::subscriptsOf(const clang::CXXOper
   return result;
 }
 
-/// An index as an int. One of 64 bits that no int is becomes the nearest int.
-ExprPtr FunctionLowering::intIndex(ExprPtr index) {
+/// An index as an int. One of 64 bits becomes the nearest number from `least` to `most`.
+ExprPtr FunctionLowering::intIndex(ExprPtr index, std::int64_t least, std::int64_t most) {
   if (!index->type.isLong()) return convert(std::move(index), Scalar::Int);
   const Loc loc = index->loc;
-  constexpr std::int64_t least = std::numeric_limits<std::int32_t>::min();
-  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
   const bool isSigned = index->type.scalar == Scalar::Long;
   if (const auto* known = std::get_if<ir::Literal>(&index->node)) {
     const std::uint64_t bits = known->wide();
-    const auto number = static_cast<std::int64_t>(isSigned ? bits : std::min<std::uint64_t>(bits, most));
+    const auto number =
+        static_cast<std::int64_t>(isSigned ? bits : std::min(bits, static_cast<std::uint64_t>(most)));
     return ir::literal(static_cast<std::int32_t>(std::clamp(number, least, most)), loc);
   }
   ExprPtr last = convert(ir::literal(most, loc), index->type.scalar);

@@ -48,7 +48,7 @@ struct TypedStreams {
 
 }  // namespace detail
 
-/// A stream or view of int, uint, float or double. -0 equals +0, so that they keep their order; NaNs are equal to
+/// A stream or view of integers of 32 or 64 bits, floats or doubles. -0 equals +0, so that they keep their order; NaNs are equal to
 /// each other and come last.
 template <class S>
 concept SortKeys = detail::AnyStream<S> && detail::isOneOf<detail::ElementOf<S>, std::int32_t, std::uint32_t,

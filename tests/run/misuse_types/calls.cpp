@@ -20,7 +20,7 @@ void call(sk::Stream<float>& f, const sk::Stream<float>& constant, sk::Scalar<fl
   std::vector<float> memory(3);
   misuse::diffuse(1, memory, f);
 #elif WRONG == 5
-  auto numbers = device.stream<long>({3});
+  auto numbers = device.stream<long long>({3});
 #endif
   a = 2.0f;  // right
   static_cast<void>(device);

@@ -2,7 +2,7 @@
 //
 // Integers of 64 bits: two words, the lower one first, as streams hold them. GLSL has no such type that all devices know.
 //
-//   quotient            long division, one bit after the other, unless both operands have one word
+//   quotient            long division, one bit after the other, unless both operands have one word or the divisor is a small literal
 //   nearest float       the 24 upper bits, rounded to even by what is below them: the device's own conversions may round
 //                       otherwise, and know 32 bits
 //
@@ -64,21 +64,33 @@ uvec2 sk_right(uvec2 a, uint n, uint sign) {
 bool sk_below(uvec2 a, uvec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); }
 uint sk_sign_of(uvec2 a) { return 0u - (a.y >> 31); }
 uvec2 sk_magnitude_of(uvec2 a) { return (a.y >> 31) != 0u ? sk_opposite(a) : a; }
-// The quotient and the remainder; those by 1 if b is 0.
+// The quotient and the remainder; those by 1 if b is 0. One exit: compilers put what follows each other one into a branch.
 uvec4 sk_divided(uvec2 a, uvec2 b) {
-  if ((b.x | b.y) == 0u) return uvec4(a, 0u, 0u);
-  if ((a.y | b.y) == 0u) return uvec4(a.x / b.x, 0u, a.x % b.x, 0u);
-  uvec2 rest = uvec2(0u);
-  for (int i = 0; i < 64; ++i) {
+  bool isShort = (a.y | b.y) == 0u && b.x != 0u;
+  uint word = isShort ? b.x : 1u;
+  uvec2 rest = uvec2(isShort ? a.x % word : 0u, 0u);
+  if (isShort) a.x /= word;
+  int bits = isShort || (b.x | b.y) == 0u ? 0 : 64;
+  for (int i = 0; i < bits; ++i) {
     uint carry = rest.y >> 31;
     rest = uvec2((rest.x << 1) | (a.y >> 31), (rest.y << 1) | (rest.x >> 31));
     a = uvec2(a.x << 1, (a.y << 1) | (a.x >> 31));
-    if (carry != 0u || !sk_below(rest, b)) {
-      rest = sk_sum_of(rest, sk_opposite(b));
-      a.x |= 1u;
-    }
+    uint goes = carry | uint(!sk_below(rest, b));
+    rest = sk_sum_of(rest, goes != 0u ? sk_opposite(b) : uvec2(0u));
+    a.x |= goes;
   }
   return uvec4(a, rest);
+}
+// The quotient and the remainder by a divisor below 2^24: bytes of the dividend one after the other, without a loop.
+uvec3 sk_divided_by(uvec2 a, uint d) {
+  uint high = a.y / d, rest = a.y % d, n = (rest << 8) | (a.x >> 24);
+  uint low = n / d;
+  n = ((n % d) << 8) | ((a.x >> 16) & 255u);
+  low = (low << 8) | (n / d);
+  n = ((n % d) << 8) | ((a.x >> 8) & 255u);
+  low = (low << 8) | (n / d);
+  n = ((n % d) << 8) | (a.x & 255u);
+  return uvec3((low << 8) | (n / d), high, n % d);
 }
 int sk_bits_set(uint n) {
   n -= (n >> 1) & 0x55555555u;
@@ -157,6 +169,14 @@ sk_long sk_rem(sk_long a, sk_long b) {
   uvec2 r = sk_divided(sk_magnitude_of(a.bits), sk_magnitude_of(b.bits)).zw;
   return sk_long((a.bits.y >> 31) != 0u ? sk_opposite(r) : r);
 }
+sk_long sk_div_by(sk_long a, uint d) {
+  uvec2 q = sk_divided_by(sk_magnitude_of(a.bits), d).xy;
+  return sk_long((a.bits.y >> 31) != 0u ? sk_opposite(q) : q);
+}
+sk_long sk_rem_by(sk_long a, uint d) {
+  uvec2 r = uvec2(sk_divided_by(sk_magnitude_of(a.bits), d).z, 0u);
+  return sk_long((a.bits.y >> 31) != 0u ? sk_opposite(r) : r);
+}
 sk_long sk_and(sk_long a, sk_long b) { return sk_long(a.bits & b.bits); }
 sk_long sk_or(sk_long a, sk_long b) { return sk_long(a.bits | b.bits); }
 sk_long sk_xor(sk_long a, sk_long b) { return sk_long(a.bits ^ b.bits); }
@@ -184,6 +204,8 @@ sk_ulong sk_sub(sk_ulong a, sk_ulong b) { return sk_ulong(sk_sum_of(a.bits, sk_o
 sk_ulong sk_mul(sk_ulong a, sk_ulong b) { return sk_ulong(sk_product_of(a.bits, b.bits)); }
 sk_ulong sk_div(sk_ulong a, sk_ulong b) { return sk_ulong(sk_divided(a.bits, b.bits).xy); }
 sk_ulong sk_rem(sk_ulong a, sk_ulong b) { return sk_ulong(sk_divided(a.bits, b.bits).zw); }
+sk_ulong sk_div_by(sk_ulong a, uint d) { return sk_ulong(sk_divided_by(a.bits, d).xy); }
+sk_ulong sk_rem_by(sk_ulong a, uint d) { return sk_ulong(uvec2(sk_divided_by(a.bits, d).z, 0u)); }
 sk_ulong sk_and(sk_ulong a, sk_ulong b) { return sk_ulong(a.bits & b.bits); }
 sk_ulong sk_or(sk_ulong a, sk_ulong b) { return sk_ulong(a.bits | b.bits); }
 sk_ulong sk_xor(sk_ulong a, sk_ulong b) { return sk_ulong(a.bits ^ b.bits); }

@@ -5,6 +5,7 @@
 //
 //   sk_long sk_to_long(int | uint | float | sk_double | sk_ulong)    int sk_to_int(x)  uint sk_to_uint(x)  float sk_to_float(x)
 //   sk_long sk_neg(x)  sk_inverse(x)  sk_add(x, y)  sk_sub  sk_mul  sk_div  sk_rem  sk_and  sk_or  sk_xor  sk_mulhi
+//   sk_long sk_div_by(x, uint below 2^24)  sk_rem_by
 //   sk_long sk_shl(x, int | uint)  sk_shr                            bool sk_less(x, y)  sk_equal
 //   int sk_popcount(x)  sk_clz  sk_ctz                               sk_long sk_choose(bool, x, y)
 #pragma once
