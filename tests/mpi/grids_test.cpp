@@ -278,6 +278,7 @@ TEST_CASE("reductions and folded outputs read grids of other sizes") {
     auto f = started(large, fineShape), v = started(small, coarseShape), s = started(small, coarseShape);
     CHECK(exact(energy)(v, f) == total);
     CHECK(energy.with(inBox)(v, f) == part);
+    CHECK(exact(energyOf).over(coarseShape)(f, v) == total);  // the shape decides, not the first gather
     auto sumOfAll = small.device().stream<float>({1});
     exact(coarsenAndSum)(f, v, s, sumOfAll);
     CHECK(sumOfAll.read() == sum.read());

@@ -256,7 +256,7 @@ void storeOutputs(const ResolvedReduction& call) {
 }
 
 void fold(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
-  if (detail::Distribution* all = distributionOf(reduction.fold, arguments))
+  if (detail::Distribution* all = distributionOf(reduction.fold, arguments, options.over))
     return all->fold(reduction, arguments, options);
   withHostMemory(reduction.fold.name, [&] { checkAndFold(reduction, arguments, options); });
 }

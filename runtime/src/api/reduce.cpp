@@ -331,19 +331,19 @@ void checkAndReduce(const Reduction& reduction, std::span<const Argument> argume
 
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
             const CallOptions& options) {
-  if (detail::Distribution* all = distributionOf(reduction.fold, arguments))
+  if (detail::Distribution* all = distributionOf(reduction.fold, arguments, options.over))
     return all->reduce(reduction, arguments, results, options);
   withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, results, options); });
 }
 
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
-  if (detail::Distribution* all = distributionOf(reduction.fold, arguments))
+  if (detail::Distribution* all = distributionOf(reduction.fold, arguments, options.over))
     return all->reduce(reduction, arguments, {}, options);
   withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, {}, options); });
 }
 
 void scan(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
-  if (detail::Distribution* all = distributionOf(reduction.fold, arguments))
+  if (detail::Distribution* all = distributionOf(reduction.fold, arguments, options.over))
     return all->scan(reduction, arguments, options);
   const ScanOrder order{options.along, options.scan == Scan::Exclusive};
   withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, {}, options, order); });

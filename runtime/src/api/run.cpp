@@ -166,7 +166,7 @@ void detail::refuseRank(const char* kernel, const char* gather, int rank, const 
 }
 
 void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
-  if (detail::Distribution* all = distributionOf(kernel, arguments))
+  if (detail::Distribution* all = distributionOf(kernel, arguments, options.over))
     return all->run(kernel, arguments, options);
   withHostMemory(kernel.name, [&] { checkAndRun(kernel, arguments, options); });
 }

@@ -3,6 +3,7 @@
 // Calls with streams that several processes share are not run here: their Distribution runs them.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "sk/call.hpp"
@@ -11,16 +12,19 @@
 namespace sk {
 
 /// Whoever runs a call with these arguments in place of the runtime; null if all streams are of this process alone. Streams of
-/// several Distributions may meet in one call: outputs decide before element inputs, and these before others.
+/// several Distributions may meet in one call: outputs decide before element inputs, these before others of the shape that over()
+/// gives, and these before all others.
 inline detail::Distribution* distributionOf(const program::Kernel& kernel,
-                                            std::span<const Argument> arguments) {
+                                            std::span<const Argument> arguments,
+                                            const std::optional<GivenDomain>& over) {
   detail::DistributedStream* decides = nullptr;
-  int least = 3;
+  int least = 4;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i].region.distributed == nullptr) continue;
     const program::Role role =
         i < kernel.parameters.size() ? kernel.parameters[i].role : program::Role::Gather;
-    const int order = role == program::Role::Output ? 0 : role == program::Role::Input ? 1 : 2;
+    const bool isGiven = over && arguments[i].region.shape == over->shape;
+    const int order = role == program::Role::Output ? 0 : role == program::Role::Input ? 1 : isGiven ? 2 : 3;
     if (order >= least) continue;
     least = order;
     decides = arguments[i].region.distributed;
