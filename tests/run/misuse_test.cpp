@@ -89,8 +89,8 @@ TEST_CASE("streams of two devices, and streams that are gone") {
   auto& essl = device("essl300");
   auto u = glsl.stream<float>({3}), v = essl.stream<float>({3});
   CHECK(errorOf([&] { misuse::diffuse(1, u, v); }) ==
-        "misuse::diffuse: 'v' and 'u' are streams of two devices ('" + essl.name() + "' and '" + glsl.name() +
-            "'); copy one of them through host memory");
+        "misuse::diffuse: 'v' and 'u' are streams of two devices, two sk::Device of '" + glsl.name() +
+            "'; create both by one of them, or copy one stream through host memory");
   CHECK_THAT(errorOf([&] { misuse::sum(u, v); }),
              Contains("misuse::sum: 'x' and 'total' are streams of two devices"));
   const auto moved = std::move(u);

@@ -322,7 +322,14 @@ StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const
 
 void checkSameDevice(const Kernel& kernel, const Parameter& a, const StreamState& first, const Parameter& b,
                      const StreamState& second) {
-  if (first.device != second.device) {
+  if (first.device == second.device) return;
+  if (first.device->name() == second.device->name()) {
+    fail(Error::Kind::Device, kernel,
+         "'{}' and '{}' are streams of two devices, two sk::Device of '{}'; create both by one of them, or "
+         "copy one stream "
+         "through host memory",
+         a.name, b.name, first.device->name());
+  } else {
     fail(Error::Kind::Device, kernel,
          "'{}' and '{}' are streams of two devices ('{}' and '{}'); copy one of them through host memory",
          a.name, b.name, first.device->name(), second.device->name());
