@@ -109,16 +109,27 @@ inline double round(double x) { return __builtin_rint(x); }
 #define SK_FUNCTION_OF_TWO(name)                                            \
   inline double name(double x, double y) { return __builtin_##name(x, y); } \
   inline float name(float x, float y) { return static_cast<float>(__builtin_##name(double(x), double(y))); }
+// clang-format off
 SK_FUNCTION(atan)
 SK_FUNCTION(cbrt)
 SK_FUNCTION(cos)
 SK_FUNCTION(erf)
 SK_FUNCTION(erfc)
-SK_FUNCTION(exp) SK_FUNCTION(exp2) SK_FUNCTION(expm1) SK_FUNCTION(log) SK_FUNCTION(log1p) SK_FUNCTION(log2)
-    SK_FUNCTION(sin) SK_FUNCTION(sqrt) SK_FUNCTION(tanh) SK_FUNCTION_OF_TWO(atan2) SK_FUNCTION_OF_TWO(hypot)
-        SK_FUNCTION_OF_TWO(pow)
-    /// A literal exponent is a float beside a float.
-    template <class F, class E>
+SK_FUNCTION(exp)
+SK_FUNCTION(exp2)
+SK_FUNCTION(expm1)
+SK_FUNCTION(log)
+SK_FUNCTION(log1p)
+SK_FUNCTION(log2)
+SK_FUNCTION(sin)
+SK_FUNCTION(sqrt)
+SK_FUNCTION(tanh)
+SK_FUNCTION_OF_TWO(atan2)
+SK_FUNCTION_OF_TWO(hypot)
+SK_FUNCTION_OF_TWO(pow)
+// clang-format on
+/// A literal exponent is a float beside a float.
+template <class F, class E>
   requires(__is_same(F, float))
 float pow(F x, E y) {
   return pow(x, static_cast<float>(y));
@@ -146,19 +157,36 @@ auto by_component(Function function, V first, Others... others) {
   auto name(V v, V w) {                                                   \
     return by_component([](auto x, auto y) { return name(x, y); }, v, w); \
   }
+// clang-format off
 SK_OF_VECTORS(popcount)
 SK_OF_VECTORS(clz)
 SK_OF_VECTORS(ctz)
 SK_OF_VECTORS(floor)
 SK_OF_VECTORS(ceil)
-SK_OF_VECTORS(trunc) SK_OF_VECTORS(round) SK_OF_VECTORS(atan) SK_OF_VECTORS(cbrt) SK_OF_VECTORS(cos)
-    SK_OF_VECTORS(erf) SK_OF_VECTORS(erfc) SK_OF_VECTORS(exp) SK_OF_VECTORS(exp2) SK_OF_VECTORS(expm1)
-        SK_OF_VECTORS(log) SK_OF_VECTORS(log1p) SK_OF_VECTORS(log2) SK_OF_VECTORS(sin) SK_OF_VECTORS(sqrt)
-            SK_OF_VECTORS(tanh) SK_OF_TWO_VECTORS(mulhi) SK_OF_TWO_VECTORS(atan2) SK_OF_TWO_VECTORS(hypot)
-                SK_OF_TWO_VECTORS(pow)
+SK_OF_VECTORS(trunc)
+SK_OF_VECTORS(round)
+SK_OF_VECTORS(atan)
+SK_OF_VECTORS(cbrt)
+SK_OF_VECTORS(cos)
+SK_OF_VECTORS(erf)
+SK_OF_VECTORS(erfc)
+SK_OF_VECTORS(exp)
+SK_OF_VECTORS(exp2)
+SK_OF_VECTORS(expm1)
+SK_OF_VECTORS(log)
+SK_OF_VECTORS(log1p)
+SK_OF_VECTORS(log2)
+SK_OF_VECTORS(sin)
+SK_OF_VECTORS(sqrt)
+SK_OF_VECTORS(tanh)
+SK_OF_TWO_VECTORS(mulhi)
+SK_OF_TWO_VECTORS(atan2)
+SK_OF_TWO_VECTORS(hypot)
+SK_OF_TWO_VECTORS(pow)
+// clang-format on
 
-                    template <class T>
-                    T fract(T x) {
+template <class T>
+T fract(T x) {
   return x - floor(x);
 }
 /// What is done with a mask.
