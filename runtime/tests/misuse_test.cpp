@@ -82,9 +82,9 @@ TEST_CASE("streams of two devices, moved streams, streams after their device") {
   const float k = 1;
   auto u = first.stream<float>(3);
   auto v = second.stream<float>(3);
-  CHECK(errorOf([&] { diffuse()(k, u, v); }) == "heat::diffuse: 'v' and 'u' are streams of two devices ('" +
-                                                    second.name() + "' and '" + first.name() +
-                                                    "'); copy one of them through host memory");
+  CHECK(errorOf([&] { diffuse()(k, u, v); }) ==
+        "heat::diffuse: 'v' and 'u' are streams of two devices, two sk::Device of '" + first.name() +
+            "'; create both by one of them, or copy one stream through host memory");
   auto moved = std::move(u);
   CHECK(errorOf([&] { diffuse()(k, u, v); }) ==
         "heat::diffuse: 'u' holds no stream: it was default-constructed or moved from; make one by "
