@@ -155,9 +155,9 @@ class Device {
   auto stream(const Shape&, Storage = Storage::Default, std::string_view = {}) {
     static_assert(
         ElementType<T>,
-        "StreamKernel: a stream holds bool, float, double, std::int32_t, std::uint32_t, 8 and 16 bits of "
-        "integers, sk::half, vectors such as sk::float4, or a struct of a .sk file, whose header has "
-        "to be included; for long and std::size_t take std::int32_t");
+        "StreamKernel: a stream holds bool, float, double, integers of 8 to 64 bits such as std::int32_t, "
+        "sk::half, vectors such as sk::float4, or a struct of a .sk file, whose header has to be included; "
+        "for long long take std::int64_t");
   }
 
   /// Creates a scalar: a value on the device, undefined until something writes it, or `value`. Throws sk::Error if the
