@@ -54,7 +54,7 @@ constexpr std::string_view longHelpers =
     "sk_ulong sk_max(sk_ulong a, sk_ulong b) { return sk_choose(sk_less(a, b), b, a); }\n"
     "sk_ulong sk_min(sk_ulong a, sk_ulong b) { return sk_choose(sk_less(b, a), b, a); }\n";
 
-/// Of doubles and of integers of 64 bits.
+/// The GLSL of an operation on doubles or on integers of 64 bits, which are structs there.
 std::string_view patternOfWide(ScalarOp op, program::Scalar type) {
   if (type != program::Scalar::Double) {
     if (op == ScalarOp::Less) return "sk_less({0}, {1})";
