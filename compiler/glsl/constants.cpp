@@ -16,7 +16,7 @@ using namespace ir;
 
 /// True if the node itself prints as a function call.
 bool isCall(const Expr& expr, const std::vector<bool>& isFunction) {
-  if (expr.type.isWide()) return true;
+  if (expr.type.is64Bit()) return true;
   if (const auto* n = std::get_if<Literal>(&expr.node))
     return expr.type.arithmeticType().isFloat() && !std::isfinite(std::bit_cast<float>(n->bits));
   if (const auto* n = std::get_if<ConstantRef>(&expr.node)) return isFunction[n->constant];

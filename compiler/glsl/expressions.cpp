@@ -222,7 +222,7 @@ class GlslExpr {
     return match(expr.node, [&](const auto& node) { return print(expr, node); });
   }
   Text print(const Expr& expr, const Literal& n) const {
-    if (expr.type.isWide()) return {wideText(expr.type.scalar, n)};
+    if (expr.type.is64Bit()) return {wideText(expr.type.scalar, n)};
     const bool isMarkedZero = isFloats(expr.type) && isZero(n.bits) && !isCompared_ && needsBarrier(expr);
     return isMarkedZero ? markedZero(n.bits) : literalText(expr.type, n.bits);
   }

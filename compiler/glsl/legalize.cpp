@@ -21,13 +21,13 @@ using namespace ir;
 
 bool isKnown(const Index& n) { return std::holds_alternative<Literal>(n.index->node); }
 
-bool isOfWide(const Index& n) { return n.base->type.isVector() && n.base->type.isWide(); }
+bool isOfWide(const Index& n) { return n.base->type.isVector() && n.base->type.is64Bit(); }
 
 /// True if GLSL can assign to this lvalue. Vectors of wide values are structs: one known component is an lvalue, several or a
 /// computed one are not.
 bool isAssignable(const Expr& lvalue) {
   if (const auto* n = std::get_if<Swizzle>(&lvalue.node))
-    return (!lvalue.type.isWide() || lvalue.type.isScalar()) && isAssignable(*n->base);
+    return (!lvalue.type.is64Bit() || lvalue.type.isScalar()) && isAssignable(*n->base);
   if (const auto* n = std::get_if<Index>(&lvalue.node))
     return (!isOfWide(*n) || isKnown(*n)) && isAssignable(*n->base);
   if (const auto* n = std::get_if<Member>(&lvalue.node)) return isAssignable(*n->base);
@@ -158,7 +158,7 @@ class Legalizer {
     return evaluateInFloat(module_, expr, Constants::Keep);
   }
 
-  bool lacks(Type type) const { return !target_.hasWideTypes && type.isWide(); }
+  bool lacks(Type type) const { return !target_.hasWideTypes && type.is64Bit(); }
 
   /// True if a compound assignment has no operator for these operands.
   bool isIllegal(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
@@ -227,7 +227,7 @@ class Legalizer {
   void index(ExprPtr& slot, Index& n) {
     const Type base = n.base->type;
     const bool isComputed = base.isVector() && !isKnown(n);
-    if (!isComputed || base.isWide() || target_.choosesByComponent) clamp(base, n.index);
+    if (!isComputed || base.is64Bit() || target_.choosesByComponent) clamp(base, n.index);
     if (isComputed && lacks(base)) {
       slot = wideComponent(polyfills_, std::move(n.base), convert(Scalar::Int, std::move(n.index)));
     } else if (isComputed && !target_.choosesByComponent) {

@@ -141,7 +141,7 @@ FunctionId Polyfills::addByComponent(std::string_view name, Type result, const s
   }
   const FunctionId one = add(name, result.component(), components, std::move(scalar));
   if (width == 1) return one;
-  const bool isConversion = parameters.size() == 1 && !parameters[0].isWide() && !result.isWide();
+  const bool isConversion = parameters.size() == 1 && !parameters[0].is64Bit() && !result.is64Bit();
   char first = isConversion ? 'x' : 'a';
   const std::string list = parameterList(parameters, first);
   std::vector<std::string> args;
@@ -212,7 +212,7 @@ FunctionId Polyfills::select(Type type) {
   return add("sk_select", type, {cond, type, type},
              {fmt::format("{0} sk_select(bvec{1} c, {0} yes, {0} no) {{\n  return {0}({2});\n}}\n",
                           glslSpelling(type.scalar, type.width), type.width,
-                          byComponent(type.isWide() ? "sk_choose(c.@, yes.@, no.@)" : "c.@ ? yes.@ : no.@",
+                          byComponent(type.is64Bit() ? "sk_choose(c.@, yes.@, no.@)" : "c.@ ? yes.@ : no.@",
                                       type.width))});
 }
 

@@ -105,7 +105,7 @@ ExprPtr wideConverted(Polyfills& polyfills, Type to, ExprPtr operand) {
     const FunctionId toOdd = polyfills.addByComponent("sk_to_odd", to.arithmeticType(), {from});
     return polyfills.call(polyfills.quantize(to), exprs(polyfills.call(toOdd, exprs(std::move(operand)))));
   }
-  const std::string function = "sk_to_" + glslSpelling(to.scalar, 1).substr(to.isWide() ? 3 : 0);
+  const std::string function = "sk_to_" + glslSpelling(to.scalar, 1).substr(to.is64Bit() ? 3 : 0);
   return polyfills.call(polyfills.addByComponent(function, to, {from}), exprs(std::move(operand)));
 }
 

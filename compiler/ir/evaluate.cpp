@@ -97,7 +97,7 @@ class Evaluator {
 
  private:
   Value value(const Expr& expr) const {
-    if (!expr.type.isScalar() || expr.type.isWide()) return std::nullopt;
+    if (!expr.type.isScalar() || expr.type.is64Bit()) return std::nullopt;
     if (const auto* n = std::get_if<Literal>(&expr.node)) return literal(expr.type.scalar, *n);
     if (const auto* n = std::get_if<ConstantRef>(&expr.node)) {
       if (constants_ == Constants::Keep) return std::nullopt;

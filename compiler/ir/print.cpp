@@ -384,7 +384,7 @@ class ExprPrinter {
     return match(
         expr.node,
         [&](const Literal& n) {
-          return Text{expr.type.isWide() ? wideText(expr.type, n) : literalText(expr.type, n.bits)};
+          return Text{expr.type.is64Bit() ? wideText(expr.type, n) : literalText(expr.type, n.bits)};
         },
         [&](const VarRef& n) { return Text{nameOf(function_, n.var)}; },
         [&](const ConstantRef& n) { return Text{module_.constants[n.constant].name}; },

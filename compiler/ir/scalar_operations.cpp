@@ -113,7 +113,7 @@ double converted(Scalar from, Scalar to, double value) {
   if (isReal(arithmeticScalar(from))) {
     if (std::isnan(value)) return 0;
     const bool isSigned = arithmetic == Scalar::Int || arithmetic == Scalar::Long;
-    if (isWide(arithmetic)) return std::trunc(isSigned ? value : std::max(value, 0.0));
+    if (is64Bit(arithmetic)) return std::trunc(isSigned ? value : std::max(value, 0.0));
     value = isSigned ? std::clamp(value, -0x1p31, 0x1p31 - 1) : std::clamp(value, 0.0, 0x1p32 - 1);
   }
   return wrapped(to, static_cast<std::int64_t>(value));
@@ -152,12 +152,12 @@ std::optional<double> computed(BinaryOp op, Scalar scalar, double x, double y) {
     case BinaryOp::ShiftRight: break;
   }
   if (isReal(arithmeticScalar(scalar))) return ofReals(op, x, y);
-  if (isWide(scalar)) return ofLongs(op, x, y);
+  if (is64Bit(scalar)) return ofLongs(op, x, y);
   return ofIntegers(op, scalar, static_cast<std::int64_t>(x), static_cast<std::int64_t>(y));
 }
 
 std::optional<double> computed(Intrinsic intrinsic, Scalar scalar, double x, double y, double z) {
-  if (intrinsic >= Intrinsic::Popcount && intrinsic <= Intrinsic::Mulhi && isWide(scalar))
+  if (intrinsic >= Intrinsic::Popcount && intrinsic <= Intrinsic::Mulhi && is64Bit(scalar))
     return std::nullopt;
   switch (intrinsic) {
     case Intrinsic::Abs:

@@ -38,7 +38,7 @@ constexpr const ScalarRow& row(Scalar scalar) { return scalarRows[static_cast<st
 
 constexpr bool isNarrow(Scalar scalar) { return scalar >= Scalar::Half; }
 /// Double, Long and Ulong: two words of a texel.
-constexpr bool isWide(Scalar scalar) { return row(scalar).bits == 64; }
+constexpr bool is64Bit(Scalar scalar) { return row(scalar).bits == 64; }
 constexpr bool isReal(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Double; }
 
 /// The arithmetic type of a scalar: Int or Float for a narrow one, else the scalar itself.
@@ -74,7 +74,7 @@ struct Type {
   bool isBool() const { return isArithmetic() && scalar == Scalar::Bool; }
   /// Integers of 64 bits.
   bool isLong() const { return isArithmetic() && (scalar == Scalar::Long || scalar == Scalar::Ulong); }
-  bool isWide() const { return isArithmetic() && ir::isWide(scalar); }
+  bool is64Bit() const { return isArithmetic() && ir::is64Bit(scalar); }
   /// Integers of 32 bits, which alone are indices, counters and specialisation constants.
   bool isInteger() const { return isArithmetic() && (scalar == Scalar::Int || scalar == Scalar::Uint); }
   Type withScalar(Scalar s) const { return of(s, width); }

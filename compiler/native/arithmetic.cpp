@@ -248,10 +248,10 @@ Part convert(Lanes& l, Scalar from, Scalar to, const Part& operand) {
   if (to == Scalar::Half && from == Scalar::Double) return toNarrow(l, to, operand);
   if (isNarrow(to)) return toNarrow(l, to, convert(l, from, arithmeticScalar(to), operand));
   const bool areIntegers = isInteger(from) && isInteger(to);
-  if (areIntegers && isWide(from) == isWide(to)) return operand;
+  if (areIntegers && is64Bit(from) == is64Bit(to)) return operand;
   llvm::Value* const x = l.value(operand);
   llvm::Type* const type = l.sameShape(x, l.type(to));
-  if (areIntegers && isWide(to)) return {isSigned(from) ? l.b.CreateSExt(x, type) : l.b.CreateZExt(x, type)};
+  if (areIntegers && is64Bit(to)) return {isSigned(from) ? l.b.CreateSExt(x, type) : l.b.CreateZExt(x, type)};
   if (areIntegers) return {l.b.CreateTrunc(x, type)};
   if (to == Scalar::Bool) {
     llvm::Value* const zero = llvm::Constant::getNullValue(x->getType());

@@ -150,7 +150,7 @@ std::uint32_t lanesBesideOutputs(const Module& module, const Kernel& kernel, std
   std::uint32_t bytes = 0;  // of a column
   for (const KernelParam& param : kernel.params) {
     if (param.role != ParamRole::Accumulator) continue;
-    for (const Scalar scalar : scalarsOf(module, param.type)) bytes += isWide(scalar) ? 8 : floatBytes;
+    for (const Scalar scalar : scalarsOf(module, param.type)) bytes += is64Bit(scalar) ? 8 : floatBytes;
   }
   const std::uint32_t columns = std::bit_floor(std::clamp(256 / bytes, 16U, 64U));
   const auto registers = [&](std::uint32_t lanes) { return lanes * bytes * 8 / level.vectorBits; };

@@ -60,7 +60,7 @@ ElementLayout arrayLayout(const Module& module, const TypeNames& types, const Ar
 
 ElementLayout elementLayout(const Module& module, const TypeNames& types, Type type) {
   if (type.isMatrix()) return matrixLayout(type);
-  if (type.isWide() && type.width > 2) return wideVectorLayout(type);
+  if (type.is64Bit() && type.width > 2) return wideVectorLayout(type);
   if (type.isArithmetic()) {
     const std::uint32_t component = bytesOf(type.scalar);
     return {{{"", "", type, 0}}, component * type.width, component};

@@ -127,7 +127,7 @@ class Levels {
 
   int of(Type type) {
     if (type.kind == Type::Kind::Array) return of(module_.arrays[type.index].element);
-    if (type.kind != Type::Kind::Struct) return !type.isWide() ? 0 : type.isScalar() ? 1 : 2;
+    if (type.kind != Type::Kind::Struct) return !type.is64Bit() ? 0 : type.isScalar() ? 1 : 2;
     int& levels = ofStructs_[type.index];
     if (levels > 0) return levels;
     int inner = 0;

@@ -29,7 +29,7 @@ void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
     }
   } else if (type.isMatrix()) {
     planes.insert(planes.end(), type.width, type.indexed());
-  } else if (type.isWide()) {
+  } else if (type.is64Bit()) {
     const std::vector<Type> own = widePlanes(type);
     planes.insert(planes.end(), own.begin(), own.end());
   } else {
@@ -119,7 +119,7 @@ std::vector<Type> planesOf(const Module& module, Type type) {
   return planes;
 }
 
-double planeCost(Type plane) { return componentCost * plane.width * (plane.isWide() ? 2 : 1); }
+double planeCost(Type plane) { return componentCost * plane.width * (plane.is64Bit() ? 2 : 1); }
 
 double elementCost(const Module& module, Type type) {
   double cost = 0;

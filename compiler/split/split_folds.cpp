@@ -96,7 +96,7 @@ class FoldSplitter {
       return std::ranges::all_of(module_.structs[type.index].fields,
                                  [&](const StructField& field) { return keepsBits(field.type); });
     }
-    return !type.isNarrow() && !type.isWide();
+    return !type.isNarrow() && !type.is64Bit();
   }
 
   double costOf(const Kernel& kernel, const Slice& slice) const {

@@ -30,7 +30,7 @@ std::size_t vectorsOf(const Module& module, Type type) {
     return array.length * vectorsOf(module, array.element);
   }
   if (type.isMatrix()) return type.width;
-  if (type.isWide()) return (type.width + 1U) / 2;
+  if (type.is64Bit()) return (type.width + 1U) / 2;
   if (type.kind != Type::Kind::Struct) return 1;
   std::size_t vectors = 0;
   for (const StructField& field : module.structs[type.index].fields) vectors += vectorsOf(module, field.type);

@@ -117,7 +117,8 @@ ExprPtr comparison(BinaryOp op, ExprPtr lhs, ExprPtr rhs) {
   auto* n = std::get_if<Convert>(&lhs->node);
   auto* value = std::get_if<Literal>(&rhs->node);
   const bool isEquality = op == BinaryOp::Equal || op == BinaryOp::NotEqual;
-  if (isEquality && n != nullptr && value != nullptr && n->operand->type.isInteger() && !rhs->type.isWide()) {
+  if (isEquality && n != nullptr && value != nullptr && n->operand->type.isInteger() &&
+      !rhs->type.is64Bit()) {
     ExprPtr operand = std::move(n->operand);
     rhs = makeExpr(operand->type, Literal{value->bits});
     lhs = std::move(operand);

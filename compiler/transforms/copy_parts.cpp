@@ -24,11 +24,11 @@ const ExprPtr* wholeOf(const Expr& expr) {
 /// True if GLSL names the value without a function, so that there is nothing to expand.
 bool isNamed(const Expr& expr) {
   if (std::holds_alternative<VarRef>(expr.node)) return true;
-  if (std::holds_alternative<Literal>(expr.node)) return !expr.type.isWide();
+  if (std::holds_alternative<Literal>(expr.node)) return !expr.type.is64Bit();
   const auto* index = std::get_if<Index>(&expr.node);
   if (index != nullptr && !std::holds_alternative<Literal>(index->index->node)) return false;
   const ExprPtr* whole = wholeOf(expr);
-  return whole != nullptr && !expr.type.isWide() && isNamed(**whole);
+  return whole != nullptr && !expr.type.is64Bit() && isNamed(**whole);
 }
 
 bool isPartOfPart(const Expr& place) {

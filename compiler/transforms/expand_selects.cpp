@@ -11,7 +11,7 @@ namespace {
 
 /// Whether values of the type are structs or arrays in GLSL.
 bool isAggregate(Type type) {
-  return type.kind == Type::Kind::Struct || type.kind == Type::Kind::Array || type.isWide();
+  return type.kind == Type::Kind::Struct || type.kind == Type::Kind::Array || type.is64Bit();
 }
 
 bool isForbidden(const Expr& expr) {

@@ -29,7 +29,7 @@ constexpr std::size_t mostCases = 60;
 
 bool isFollowed(BinaryOp op, Type operands) {
   const bool givesBool = isComparison(op) || op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr;
-  return row(op).isInConditions && (givesBool ? !operands.isWide() : operands.isInteger());
+  return row(op).isInConditions && (givesBool ? !operands.is64Bit() : operands.isInteger());
 }
 
 /// True if control never reaches the end of a block.
@@ -303,7 +303,7 @@ class UseAnalysis {
 
   /// `if (n)` is `n != 0`; conversions between the other types, except float, keep the bits.
   ExprPtr converted(const Frame& frame, Type to, const Expr& operand) const {
-    const bool rounds = to.isFloat() || to.isWide() || to.isNarrow() || operand.type.isNarrow();
+    const bool rounds = to.isFloat() || to.is64Bit() || to.isNarrow() || operand.type.isNarrow();
     ExprPtr from = rounds ? nullptr : value(frame, operand);
     return from ? convertedTo(to, std::move(from)) : nullptr;
   }

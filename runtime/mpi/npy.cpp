@@ -108,7 +108,7 @@ NpyArray npyArray(const Element& element, const Shape& shape, bool asDoubles) {
   }
   const Field& field = element.fields.front();
   const auto components = static_cast<std::int64_t>(componentCount(element));
-  if (components > 1 && field.part >= 0 && !program::isWide(field.scalar)) {
+  if (components > 1 && field.part >= 0 && !program::is64Bit(field.scalar)) {
     array.extents.push_back(static_cast<std::int64_t>(element.fields.size()));  // rows of a matrix
     array.extents.push_back(field.width);
   } else if (components > 1) {

@@ -134,7 +134,7 @@ void FunctionLowering::scatterCompound(const ScatterTarget& target, const clang:
 ExprPtr FunctionLowering::combinedValue(const ScatterTarget& target, ExprPtr value, SourceLocation where) {
   const ir::Variable& appendOutput = function_.variables[target.stream];
   const ir::Type type = appendOutput.type;
-  if (type.isWide()) module_.fail(Diag::WideScatter, where, {appendOutput.name, module_.spelling(type)});
+  if (type.is64Bit()) module_.fail(Diag::WideScatter, where, {appendOutput.name, module_.spelling(type)});
   const bool isNumber = type.isFloat() || type.isInteger();
   if (!isNumber || !value->type.isArithmetic() || value->type.scalar != type.scalar ||
       (value->type.width != 1 && value->type.width != type.width)) {

@@ -27,7 +27,7 @@ ExprPtr FunctionLowering::make(ir::Type type, SourceLocation where, ir::Expr::No
 
 ExprPtr FunctionLowering::literal(ir::Type type, std::uint64_t bits, SourceLocation where) {
   return make(type, where,
-              type.isWide() ? ir::Literal::wide(bits) : ir::Literal{static_cast<std::uint32_t>(bits)});
+              type.is64Bit() ? ir::Literal::wide(bits) : ir::Literal{static_cast<std::uint32_t>(bits)});
 }
 
 // ---- wrappers -------------------------------------------------------------------------------------
@@ -125,7 +125,7 @@ ExprPtr FunctionLowering::integerConstant(const clang::Expr* e, ir::Type type) {
   clang::Expr::EvalResult result;
   if (e->isValueDependent() || !e->EvaluateAsInt(result, module_.context())) return nullptr;
   const llvm::APSInt& number = result.Val.getInt();
-  const unsigned bits = type.isWide() ? 64 : 32;
+  const unsigned bits = type.is64Bit() ? 64 : 32;
   const bool fits = number.isNegative() ? number.isSignedIntN(bits) : number.isIntN(bits);
   if (!fits) return nullptr;
   return literal(type, lowBits(number), e->getBeginLoc());
@@ -244,8 +244,8 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
   }
   // a double becomes a half in one step, which rounds once
   const bool isNarrowed =
-      e->type.isWide() && ir::isNarrow(scalar) && !(e->type.isDouble() && scalar == ir::Scalar::Half);
-  if ((e->type.isNarrow() && ir::isWide(scalar)) || isNarrowed) {
+      e->type.is64Bit() && ir::isNarrow(scalar) && !(e->type.isDouble() && scalar == ir::Scalar::Half);
+  if ((e->type.isNarrow() && ir::is64Bit(scalar)) || isNarrowed) {
     const ir::Scalar arithmetic = ir::arithmeticScalar(e->type.isNarrow() ? e->type.scalar : scalar);
     return convert(convert(std::move(e), arithmetic), scalar);
   }

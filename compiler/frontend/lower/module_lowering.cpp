@@ -219,11 +219,11 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ValueDecl* declaration,
   if (param.role != ir::ParamRole::Uniform) {
     checkElement(param.type, param.name, declaration->getLocation());
   }
-  if (param.role == ir::ParamRole::Iterator && (!param.type.isNumber() || param.type.isWide())) {
+  if (param.role == ir::ParamRole::Iterator && (!param.type.isNumber() || param.type.is64Bit())) {
     fail(Diag::IteratorType, declaration->getLocation(), {param.name, spelling(param.type)});
   }
   if (param.role == ir::ParamRole::Spec &&
-      (!param.type.isScalar() || param.type.isNarrow() || param.type.isWide())) {
+      (!param.type.isScalar() || param.type.isNarrow() || param.type.is64Bit())) {
     fail(Diag::SpecType, declaration->getLocation(), {param.name, spelling(param.type)});
   }
   if (syntax) {

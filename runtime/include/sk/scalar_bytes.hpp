@@ -32,6 +32,6 @@ constexpr std::size_t hostBytes(Scalar scalar) {
 }
 
 /// Whether a component takes two words, and two channels of a texel.
-constexpr bool isWide(Scalar scalar) { return hostBytes(scalar) == 8; }
+constexpr bool is64Bit(Scalar scalar) { return hostBytes(scalar) == 8; }
 
 }  // namespace sk::program

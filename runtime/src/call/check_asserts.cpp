@@ -112,12 +112,6 @@ Box checkedBox(std::span<const Argument> arguments, const Shape& domain, const C
 
 }  // namespace
 
-AssertionsEvaluated::AssertionsEvaluated(DeviceState& device) : device_(device), before_(device.isChecking) {
-  if (checksAsserts()) device.isChecking = true;
-}
-
-AssertionsEvaluated::~AssertionsEvaluated() { device_.isChecking = before_; }
-
 void checkAssertions(DeviceState& device, const Kernel& kernel, std::span<const Argument> arguments,
                      const Shape& domain, const CallOptions& options) {
   if (kernel.assertions == nullptr || !checksAsserts() || device.isChecking) return;

@@ -4,28 +4,27 @@
 // writes for each element the number of the first assertion that fails. Must not depend on the kind of device.
 #pragma once
 
+#include <optional>
 #include <span>
 
+#include "call/check_written.hpp"
+#include "device/device_state.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
 
 namespace sk {
 
-class DeviceState;
-
 /// While it lives, calls on the device evaluate no assertions, since those of the call whose parts they are have been evaluated. Does
 /// nothing unless SK_CHECK asks for assertions.
 class AssertionsEvaluated {
  public:
-  explicit AssertionsEvaluated(DeviceState& device);
-  ~AssertionsEvaluated();
-  AssertionsEvaluated(const AssertionsEvaluated&) = delete;
-  AssertionsEvaluated& operator=(const AssertionsEvaluated&) = delete;
+  explicit AssertionsEvaluated(DeviceState& device) {
+    if (checksAsserts()) steps_.emplace(device);
+  }
 
  private:
-  DeviceState& device_;
-  const bool before_;
+  std::optional<UncheckedSteps> steps_;
 };
 
 /// Throws sk::Error if an assertion fails for an element of the domain, or of the box of it in the options, and names the first

@@ -493,7 +493,7 @@ void checkUniforms(const Kernel& kernel, const DeviceState& device) {
   for (const Parameter& parameter : kernel.parameters) {
     if (parameter.role != Role::Uniform) continue;
     for (const program::Field& field : parameter.element->fields) {
-      components += program::isWide(field.scalar) ? 2U * field.width : field.width;
+      components += program::is64Bit(field.scalar) ? 2U * field.width : field.width;
     }
   }
   if (components > static_cast<std::size_t>(device.limits.uniformComponents)) {

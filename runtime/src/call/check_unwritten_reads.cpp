@@ -317,24 +317,12 @@ class UnwrittenReads {
   std::vector<Scattered> scattered_;
 };
 
-/// The steps of a call are not checked.
-class CheckScope {
- public:
-  explicit CheckScope(DeviceState& device) : device_(device) { device_.isChecking = true; }
-  ~CheckScope() { device_.isChecking = false; }
-  CheckScope(const CheckScope&) = delete;
-  CheckScope& operator=(const CheckScope&) = delete;
-
- private:
-  DeviceState& device_;
-};
-
 }  // namespace
 
 void runChecked(const RepeatableCall& call, const std::function<void()>& run) {
   if (call.device.isChecking) return run();
   UnwrittenReads reads(call);
-  const CheckScope scope(call.device);
+  const UncheckedSteps steps(call.device);
   reads.check();
   run();
   reads.noteResults();

@@ -214,6 +214,21 @@ class DeviceState {
   StreamState* firstStream_ = nullptr;  ///< list of the streams to notify when the device ends
 };
 
+/// While it lives, calls on the device are steps of one that is checked, and are not checked themselves.
+class UncheckedSteps {
+ public:
+  explicit UncheckedSteps(DeviceState& device) : device_(device), before_(device.isChecking) {
+    device.isChecking = true;
+  }
+  ~UncheckedSteps() { device_.isChecking = before_; }
+  UncheckedSteps(const UncheckedSteps&) = delete;
+  UncheckedSteps& operator=(const UncheckedSteps&) = delete;
+
+ private:
+  DeviceState& device_;
+  const bool before_;
+};
+
 /// Leaves the passes of trials out of the user's count.
 class UncountedPasses {
  public:

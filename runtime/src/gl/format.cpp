@@ -77,7 +77,7 @@ std::size_t familyOf(program::Scalar scalar) {
 }  // namespace
 
 const Format& formatOf(program::Scalar scalar, int width) {
-  const int channels = program::isWide(scalar) ? 2 * width : width;
+  const int channels = program::is64Bit(scalar) ? 2 * width : width;
   return table[familyOf(scalar) * formatsPerFamily + rowOfWidth[channels - 1]];
 }
 

@@ -39,9 +39,9 @@ bool isNegative(F x) {
   return x < 0 || (x == 0 && 1 / x < 0);
 }
 
-/// Operations with floats of any width, or with integers; comparisons are compare().
+/// Of floats of any width.
 template <class T>
-T compute(ScalarOp op, T a, T b) {
+T computeReal(ScalarOp op, T a, T b) {
   switch (op) {
     case ScalarOp::Copy: return a;
     case ScalarOp::Negate: return -a;
@@ -89,30 +89,26 @@ T computeSigned(ScalarOp op, T a, T b) {
   }
 }
 
-template <>
-std::uint32_t compute(ScalarOp op, std::uint32_t a, std::uint32_t b) {
-  return computeUnsigned(op, a, b);
-}
-template <>
-std::uint64_t compute(ScalarOp op, std::uint64_t a, std::uint64_t b) {
-  return computeUnsigned(op, a, b);
-}
-template <>
-std::int32_t compute(ScalarOp op, std::int32_t a, std::int32_t b) {
-  return computeSigned(op, a, b);
-}
-template <>
-std::int64_t compute(ScalarOp op, std::int64_t a, std::int64_t b) {
-  return computeSigned(op, a, b);
-}
-
-template <>
-bool compute(ScalarOp op, bool a, bool b) {
+bool computeBool(ScalarOp op, bool a, bool b) {
   switch (op) {
     case ScalarOp::Not: return !a;
     case ScalarOp::And: return a && b;
     case ScalarOp::Or: return a || b;
     default: return a;
+  }
+}
+
+/// Operations with scalars; comparisons are compare().
+template <class T>
+T compute(ScalarOp op, T a, T b) {
+  if constexpr (std::same_as<T, bool>) {
+    return computeBool(op, a, b);
+  } else if constexpr (std::unsigned_integral<T>) {
+    return computeUnsigned(op, a, b);
+  } else if constexpr (std::signed_integral<T>) {
+    return computeSigned(op, a, b);
+  } else {
+    return computeReal(op, a, b);
   }
 }
 

@@ -3,7 +3,7 @@
 // Checks of arguments, with the messages of runtime/src/call.
 import type { Device } from './device.js';
 import { fractions, heldComponent, isSameElement, numbersOf, withArticle, type Component } from './elements.js';
-import { isWide } from './format.js';
+import { is64Bit } from './format.js';
 import { SkError, type ErrorKind } from './error.js';
 import { isNeeded, specBits, type Element, type Field, type KernelData, type Parameter } from './generated.js';
 import { decodedRank, shapeText, xFirst } from './layout.js';
@@ -96,7 +96,7 @@ function heldComponents(kernel: string, parameter: Parameter, element: Element, 
         numbers[i] = held;
         continue;
       }
-      const what = isWide(scalar) ? 'no such integer' : typeof numbers[i] === 'bigint' ? 'no number' : 'no whole number';
+      const what = is64Bit(scalar) ? 'no such integer' : typeof numbers[i] === 'bigint' ? 'no number' : 'no whole number';
       fail(kernel, `'${parameter.name}' is declared as ${element.name}, but ${described(numbers[i])} is ${what}`, 'type');
     }
   }

@@ -5,7 +5,7 @@ import { colourMaps, type ColourMap } from './colour_maps.js';
 import type { Canvas } from './abilities.js';
 import type { Context } from './context.js';
 import { SkError } from './error.js';
-import { formatOf, isWide } from './format.js';
+import { formatOf, is64Bit } from './format.js';
 import { lanes, shapeText } from './layout.js';
 import type { Program } from './program.js';
 import { Stream } from './stream.js';
@@ -76,7 +76,7 @@ export function drawStream(device: Context, stream: Stream<any, number>, canvas:
   const shape = stream.shape as readonly number[];
   const [field] = stream.element.fields;
   if (shape.length > 2 || stream.size === 0) throw new SkError(`a stream of shape ${shapeText(shape)} is no picture: draw one of two dimensions`, 'shape');
-  if (stream.element.fields.length > 1 || isWide(field!.scalar)) {
+  if (stream.element.fields.length > 1 || is64Bit(field!.scalar)) {
     throw new SkError(`elements of ${stream.element.name} are no colours; draw numbers, or vectors of floats`, 'type');
   }
   if (vectors !== 'length' && vectors !== 'direction') throw new SkError(`vectors are shown by 'length' or 'direction', not by '${String(vectors)}'`);

@@ -2,7 +2,7 @@
 //
 // Elements that every file knows, and the arrays of their components on the host.
 import { SkError } from './error.js';
-import { formatOf, hostArrayOf, isWide, type HostArray, type Scalar } from './format.js';
+import { formatOf, hostArrayOf, is64Bit, type HostArray, type Scalar } from './format.js';
 import type { Element, Field, StructElement } from './generated.js';
 import type { Layout, Rect } from './layout.js';
 
@@ -36,7 +36,7 @@ function made(name: string): Element {
   }
   const width = Number(parts[2] || 1);
   const bytes = bytesOf[scalar];
-  if (!isWide(scalar) || width <= 2) return { name, size: bytes * width, fields: [{ scalar, width, offset: 0 }] };
+  if (!is64Bit(scalar) || width <= 2) return { name, size: bytes * width, fields: [{ scalar, width, offset: 0 }] };
   const halves = [2, width - 2].map((half, part): Field => ({ scalar, width: half, offset: 16 * part, part }));
   return { name, size: bytes * width, fields: halves };
 }
@@ -51,7 +51,7 @@ export function isSameElement(a: Element, b: Element): boolean {
 /** Whether four elements fit in a texel: one scalar of at most four bytes. */
 export function mayPackElement(element: Element): boolean {
   const field = element.fields[0]!;
-  return element.fields.length === 1 && field.path === undefined && field.width === 1 && !isWide(field.scalar);
+  return element.fields.length === 1 && field.path === undefined && field.width === 1 && !is64Bit(field.scalar);
 }
 
 function isStruct(element: Element): element is StructElement {
@@ -148,7 +148,7 @@ function wordsOf(array: HostArray, words: number): Exclude<HostArray, BigInt64Ar
 /** The channels of a plane's texels, in the order of elements. */
 export function channelsOf(field: Field, from: PlaneArray, count: number): HostArray {
   const format = formatOf(field.scalar, field.width);
-  const words = isWide(field.scalar) ? 2 : 1;
+  const words = is64Bit(field.scalar) ? 2 : 1;
   const source = wordsOf(from.array, words);
   if (from.step === field.width && field.width * words === format.channels && field.scalar !== 'bool') return source;
   const channels = new format.channel(count * format.channels);
@@ -164,7 +164,7 @@ export function channelsOf(field: Field, from: PlaneArray, count: number): HostA
 /** The reverse of channelsOf(). */
 export function takeChannels(field: Field, channels: HostArray, to: PlaneArray, count: number): void {
   const format = formatOf(field.scalar, field.width);
-  const words = isWide(field.scalar) ? 2 : 1;
+  const words = is64Bit(field.scalar) ? 2 : 1;
   const target = wordsOf(to.array, words);
   if (to.step === field.width && field.width * words === format.channels) {
     target.set(channels as never);

@@ -62,7 +62,7 @@ const families: Readonly<Record<Scalar, Family>> = {
 const formats = new Map<string, Format>();
 
 /** Whether a component has 64 bits: two channels of a texel. */
-export function isWide(scalar: Scalar): boolean {
+export function is64Bit(scalar: Scalar): boolean {
   return scalar === 'double' || scalar === 'long' || scalar === 'ulong';
 }
 
@@ -72,7 +72,7 @@ export function formatOf(scalar: Scalar, width: number): Format {
   let format = formats.get(key);
   if (format === undefined) {
     const family = families[scalar];
-    const components = isWide(scalar) ? 2 * width : width;
+    const components = is64Bit(scalar) ? 2 * width : width;
     const row = components === 1 ? 0 : components === 2 ? 1 : 2;
     const layouts = family.isInteger ? [gl.RED_INTEGER, gl.RG_INTEGER, gl.RGBA_INTEGER] : [gl.RED, gl.RG, gl.RGBA];
     format = {

@@ -4,7 +4,7 @@
 import type { Layout } from './layout.js';
 import type { Trace } from './trace.js';
 import type { Component } from './elements.js';
-import { isWide } from './format.js';
+import { is64Bit } from './format.js';
 import type { Element, Field, Parameter } from './generated.js';
 import { SkError } from './error.js';
 
@@ -85,7 +85,7 @@ class ValueUniform {
       const path = field.path ?? '';
       const full = path === '' || path.startsWith('[') ? name + path : `${name}.${path}`;
       if (field.scalar === 'double') this.addDoubles(gl, program, full, first, count);
-      else if (isWide(field.scalar)) this.addLongs(gl, program, full, first, count);
+      else if (is64Bit(field.scalar)) this.addLongs(gl, program, full, first, count);
       else this.add(gl, program, full, field, first, count, rows);
       first += count;
       i += rows;

@@ -175,7 +175,7 @@ std::size_t bytesOf(const program::Element& element) {
   std::size_t bytes = 0;
   for (const Field& field : element.fields) {
     const int width = field.width == 3 ? 4 : field.width;
-    bytes += static_cast<std::size_t>(width) * (program::isWide(field.scalar) ? 8 : 4);
+    bytes += static_cast<std::size_t>(width) * (program::is64Bit(field.scalar) ? 8 : 4);
   }
   return bytes;
 }
@@ -233,7 +233,7 @@ std::size_t imagesOf(const Parameter& appendOutput, Order order) {
 bool hasOwners(const Parameter& scatter, Order order) {
   if (scatter.role != Role::Scatter || scatter.scatter != ScatterOp::Store) return false;
   const Field* const field = scalarField(scatter);
-  return order != Order::Any || field == nullptr || program::isWide(field->scalar);
+  return order != Order::Any || field == nullptr || program::is64Bit(field->scalar);
 }
 
 }  // namespace sk::assemble

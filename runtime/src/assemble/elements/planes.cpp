@@ -98,7 +98,7 @@ std::string converted(std::string_view pattern, std::string operand, const std::
 }
 
 /// Components of a texel. A wide scalar takes two.
-int texelWidth(const Field& field) { return program::isWide(field.scalar) ? 2 * field.width : field.width; }
+int texelWidth(const Field& field) { return program::is64Bit(field.scalar) ? 2 * field.width : field.width; }
 
 std::string memberOf(std::string_view variable, const Field& field) {
   std::string text(variable);
@@ -114,7 +114,7 @@ char secondComponent(const Field& field) { return "yw"[field.part]; }
 std::string valueOf(std::string_view variable, const Field& field) {
   const std::string member = memberOf(variable, field);
   if (field.part < 0) return member;
-  if (!program::isWide(field.scalar)) return fmt::format("{}[{}]", member, field.part);
+  if (!program::is64Bit(field.scalar)) return fmt::format("{}[{}]", member, field.part);
   if (field.width == 1) return fmt::format("{}.{}", member, firstComponent(field));
   return fmt::format("{3}({0}.{1}, {0}.{2})", member, firstComponent(field), secondComponent(field),
                      valueType(field));
@@ -123,7 +123,7 @@ std::string valueOf(std::string_view variable, const Field& field) {
 /// Adds statements that assign `value` to a field of the element in `variable`.
 void assignField(std::vector<std::string>& statements, std::string_view variable, const Field& field,
                  std::string_view value) {
-  if (!program::isWide(field.scalar) || field.part < 0 || field.width == 1) {
+  if (!program::is64Bit(field.scalar) || field.part < 0 || field.width == 1) {
     statements.push_back(fmt::format("{} = {};", valueOf(variable, field), value));
     return;
   }

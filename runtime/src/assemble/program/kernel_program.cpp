@@ -343,7 +343,7 @@ Domain domainOf(const RegionLayout& output) {
 
 bool mayPack(const program::Element& held) {
   const program::Field& field = held.fields.front();
-  return held.fields.size() == 1 && field.path.empty() && field.width == 1 && !program::isWide(field.scalar);
+  return held.fields.size() == 1 && field.path.empty() && field.width == 1 && !program::is64Bit(field.scalar);
 }
 
 namespace {

@@ -328,7 +328,7 @@ bool mayGroupRows(const Reduction& reduction) {
     if (parameter.role != Role::Accumulator) continue;
     for (const program::Field& field : parameter.element->fields) {
       const std::size_t aligned = field.width == 3 ? 4 : field.width;
-      bytes += aligned * (program::isWide(field.scalar) ? sizeof(double) : sizeof(float));
+      bytes += aligned * (program::is64Bit(field.scalar) ? sizeof(double) : sizeof(float));
     }
   }
   return bytes * rowGroupItems <= groupBytes;

@@ -238,7 +238,7 @@ namespace {
 std::size_t sharedBytes(const program::Element& element) {
   std::size_t bytes = 0;
   for (const program::Field& field : element.fields) {
-    const std::size_t scalar = program::isWide(field.scalar) ? 8 : 4;
+    const std::size_t scalar = program::is64Bit(field.scalar) ? 8 : 4;
     bytes += scalar * std::bit_ceil(std::size_t{field.width});
   }
   return bytes;

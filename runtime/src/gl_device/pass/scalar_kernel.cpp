@@ -84,7 +84,7 @@ std::string_view patternOfWide(ScalarOp op, program::Scalar type) {
 }
 
 std::string_view patternOf(ScalarOp op, program::Scalar type) {
-  if (program::isWide(type)) return patternOfWide(op, type);
+  if (program::is64Bit(type)) return patternOfWide(op, type);
   if (type == program::Scalar::Float) {
     switch (op) {
       case ScalarOp::Less: return "sk_ordered({0}, {1}) && sk_key({0}) < sk_key({1})";

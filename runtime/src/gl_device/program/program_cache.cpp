@@ -229,7 +229,7 @@ void ProgramCache::findValue(KernelProgram& result, std::size_t number, const pr
     const program::Field& first = parts.front();
     const bool isMember = !first.path.empty() && first.path.front() != '[';
     const std::string name = fmt::format("sk_arg_{}{}{}", parameter.symbol, isMember ? "." : "", first.path);
-    if (program::isWide(first.scalar)) {
+    if (program::is64Bit(first.scalar)) {
       addWide(result, number, name, parts);
     } else {
       result.values.push_back({number, gl::FieldUniform(result.program.location(name), parts)});

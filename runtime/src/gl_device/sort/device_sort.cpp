@@ -68,12 +68,12 @@ class StreamSort {
   bool isKeys(const StreamRegion& region) const { return region.stream == reordering_.keys.stream; }
   bool isHalf() const { return reordering_.keys.stream->storage == Storage::Half; }
   /// Whether sorted words give the keys back.
-  bool restoresKeys() const { return !reordering_.choosesFirst() && !hasTwoWords(scalar_) && !isHalf(); }
+  bool restoresKeys() const { return !reordering_.choosesFirst() && !program::is64Bit(scalar_) && !isHalf(); }
   bool needsPlaces() const {
     const auto isWithout = [&](const StreamRegion& region) {
       return isKeys(region) && restoresKeys() && scalar_ != program::Scalar::Float;
     };
-    return reordering_.places != nullptr || hasTwoWords(scalar_) ||
+    return reordering_.places != nullptr || program::is64Bit(scalar_) ||
            !std::ranges::all_of(reordering_.moved, isWithout);
   }
 
@@ -91,7 +91,7 @@ class StreamSort {
   }
 
   void sortKeys(WordSort& sort) {
-    if (!hasTwoWords(scalar_)) {
+    if (!program::is64Bit(scalar_)) {
       makeWords(wordKernel(scalar_, isDescending()), {&*sort.keys});
       return sort.sort();
     }
@@ -107,7 +107,7 @@ class StreamSort {
 
   void findRepeats(WordSort& sort) {
     WordTexture lower(device_, count_);
-    if (!hasTwoWords(scalar_)) {
+    if (!program::is64Bit(scalar_)) {
       makeWords(wordKernel(scalar_, false), {&lower});
       const Operand operands[] = {operandOf(lower), operandOf(lower), {}};
       return runOver(repeatKernel(scalar_), operands, *sort.keys);
@@ -233,7 +233,7 @@ bool maySortByDispatches(const GlDevice& device, const Reordering& reordering) {
   const StreamState& keys = *reordering.keys.stream;
   const bool isStoredSo =
       keys.storage == Storage::Single ||
-      (keys.storage == Storage::Half && !hasTwoWords(keys.element->fields.front().scalar));
+      (keys.storage == Storage::Half && !program::is64Bit(keys.element->fields.front().scalar));
   return isStoredSo && WordSort::isPossible(device, reordering.keys.shape.size());
 }
 
@@ -334,7 +334,7 @@ const Element& elementOf(program::Scalar scalar) {
 
 const Kernel& wordKernel(program::Scalar keys, bool isDescending) {
   const std::string_view inverted = isDescending ? "~" : "";
-  if (hasTwoWords(keys) && keys != program::Scalar::Double) {
+  if (program::is64Bit(keys) && keys != program::Scalar::Double) {
     return kept(fmt::format("void sort_kernel(uvec2 k, out uint lower, out uint upper) {{\n"
                             "  lower = {0}k.x;\n"
                             "  upper = {0}(k.y{1});\n"
@@ -342,7 +342,7 @@ const Kernel& wordKernel(program::Scalar keys, bool isDescending) {
                             inverted, keys == program::Scalar::Long ? " ^ 0x80000000u" : ""),
                 {input("k", sortWordPairs()), output("lower", sortWords()), output("upper", sortWords())});
   }
-  if (hasTwoWords(keys)) {
+  if (program::is64Bit(keys)) {
     return kept(fmt::format("void sort_kernel(uvec2 k, out uint lower, out uint upper) {{\n"
                             "  uint m = k.y & 0x7fffffffu;\n"
                             "  if ((m | k.x) == 0u) k = uvec2(0u);\n"
@@ -373,7 +373,7 @@ const Kernel& wordKernel(program::Scalar keys, bool isDescending) {
 const Kernel& repeatKernel(program::Scalar keys) {
   const bool isFloating = keys == program::Scalar::Float || keys == program::Scalar::Double;
   const std::string_view isNumber = isFloating ? " && k != 0xffffffffu" : "";
-  if (!hasTwoWords(keys)) {
+  if (!program::is64Bit(keys)) {
     return kept(fmt::format("void sort_kernel(uint k, out uint r) {{\n"
                             "  int n = sk_index().x;\n"
                             "  r = n > 0 && sk_at_x(n - 1) == k{} ? 1u : 0u;\n"

@@ -46,9 +46,6 @@ std::int64_t sortByDispatches(GlDevice& device, const Reordering& reordering);
 const program::Element& sortWords();
 const program::Element& sortWordPairs();
 
-/// Whether keys of this type have two words, a lower and an upper one.
-inline bool hasTwoWords(program::Scalar keys) { return program::isWide(keys); }
-
 /// (key) -> word, or (key) -> lower word, upper word. Words compare as unsigned numbers. All NaNs have the largest word,
 /// also in descending order, and both zeros the same.
 const program::Kernel& wordKernel(program::Scalar keys, bool isDescending);

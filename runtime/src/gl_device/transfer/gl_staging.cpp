@@ -36,7 +36,7 @@ constexpr std::array<BoxNames, assemble::stagedBoxes> names{{
 }};
 
 int channelsOf(const program::Field& field) {
-  return program::isWide(field.scalar) ? 2 * field.width : field.width;
+  return program::is64Bit(field.scalar) ? 2 * field.width : field.width;
 }
 
 std::int32_t laneBits(const RegionLayout& box) { return box.packed ? log2OfLanes : 0; }

@@ -210,7 +210,7 @@ double stepOf(Scalar scalar) {
 std::vector<ScalarPlace> scalarsOf(const sk::program::Element& element) {
   std::vector<ScalarPlace> places;
   for (const sk::program::Field& field : element.fields) {
-    const bool isVectorPart = field.part >= 0 && sk::program::isWide(field.scalar);
+    const bool isVectorPart = field.part >= 0 && sk::program::is64Bit(field.scalar);
     const bool isRow = field.part >= 0 && !isVectorPart;
     const std::string member = field.path.empty() || field.path.front() == '['
                                    ? std::string(field.path)
