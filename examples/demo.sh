@@ -72,18 +72,18 @@ example edges --size "$size" --low 0.01 --high 0.05 --style ink edges_input.png 
 example gray_scott --pattern theta --size "$size" --steps "$steps" --frames 4
 example gray_scott --pattern pi --size "$((size / 2))" --steps "$steps" --colours lagoon
 example gray_scott --pattern mu --size "$((size / 2))" --steps "$steps" --colours dusk
-example cloth "$examples/cloth/scenes/drape.toml" --points "$((size / 6 + 1))" "$((size / 6 + 1))" --steps "$((steps * 3 / 2))" --frames 1 -o cloth_drape.png
-example cloth "$examples/cloth/scenes/torn.toml" --points "$((size / 6 + 1))" "$((size / 8 + 1))" --steps "$steps" --frames 1 -o cloth_torn.png
+example cloth "$examples/applications/cloth/scenes/drape.toml" --points "$((size / 6 + 1))" "$((size / 6 + 1))" --steps "$((steps * 3 / 2))" --frames 1 -o cloth_drape.png
+example cloth "$examples/applications/cloth/scenes/torn.toml" --points "$((size / 6 + 1))" "$((size / 8 + 1))" --steps "$steps" --frames 1 -o cloth_torn.png
 example stats --made weather.csv
-example lattice "$examples/lattice/scenes/boiling.toml" --size "${size}x$((size * 5 / 8))" --steps "$((steps / 2))"
-example lattice "$examples/lattice/scenes/boiling_3d.toml" --size "$((size * 3 / 16))x$((size / 6))x$((size * 3 / 16))"
-example lattice "$examples/lattice/scenes/stirred.toml" --size "${size}x$((size * 3 / 8))" --steps "$steps" --csv stirred.csv
-example lattice "$examples/lattice/scenes/rolls.toml" --size "${size}x$((size / 8))" --steps "$steps"
-example rays "$examples/rays/scenes/rings.toml" --size "$((size * 5 / 8))x$((size * 3 / 8))" --samples "$((steps / 40 + 1))" --error 0.1 --output rays_rings.png
-example smooth "$examples/linear/smooth/scenes/sphere.toml" -o smooth_sphere.png
+example lattice "$examples/applications/lattice/scenes/boiling.toml" --size "${size}x$((size * 5 / 8))" --steps "$((steps / 2))"
+example lattice "$examples/applications/lattice/scenes/boiling_3d.toml" --size "$((size * 3 / 16))x$((size / 6))x$((size * 3 / 16))"
+example lattice "$examples/applications/lattice/scenes/stirred.toml" --size "${size}x$((size * 3 / 8))" --steps "$steps" --csv stirred.csv
+example lattice "$examples/applications/lattice/scenes/rolls.toml" --size "${size}x$((size / 8))" --steps "$steps"
+example rays "$examples/applications/rays/scenes/rings.toml" --size "$((size * 5 / 8))x$((size * 3 / 8))" --samples "$((steps / 40 + 1))" --error 0.1 --output rays_rings.png
+example smooth "$examples/applications/smooth/scenes/sphere.toml" -o smooth_sphere.png
 example solve "poisson:${size}x${size}" --preconditioner multigrid --every 1
-example fluid "$examples/linear/fluid/scenes/plume.toml" --size "$((size * 3 / 16))x$((size / 4))" --steps "$((steps / 40))"
-example waves "$examples/linear/waves/scenes/drops.toml" --size "$((size / 4))x$((size * 7 / 36))" --steps 28 --pixels "${size}x$((size * 5 / 8))"
+example fluid "$examples/applications/fluid/scenes/plume.toml" --size "$((size * 3 / 16))x$((size / 4))" --steps "$((steps / 40))"
+example waves "$examples/applications/waves/scenes/drops.toml" --size "$((size / 4))x$((size * 7 / 36))" --steps 28 --pixels "${size}x$((size * 5 / 8))"
 
 echo
 awk -F '\t' '

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A net that falls and hangs, in doubles, and by the kernels of examples/cloth in the forms that they offer.
+// A net that falls and hangs, in doubles, and by the kernels of examples/applications/cloth in the forms that they offer.
 import { cloth } from './sk/cloth/cloth.sk.js';
 
 const [columns, rows] = [12, 9];

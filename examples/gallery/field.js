@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What pages with fields of numbers share: pictures by examples/lattice/view.sk, and strokes of a finger. Row 0 of a field is the
+// What pages with fields of numbers share: pictures by examples/applications/lattice/view.sk, and strokes of a finger. Row 0 of a field is the
 // bottom of its picture.
 import { brush } from './sk/gallery/brush.sk.js';
 import { lattice as view } from './sk/lattice/view.sk.js';

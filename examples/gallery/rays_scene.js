@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Spheres on a floor under a lamp, as the tables of examples/rays: path_tables.cpp, light_table.cpp and bvh.cpp say what each row holds.
+// Spheres on a floor under a lamp, as the tables of examples/applications/rays: path_tables.cpp, light_table.cpp and bvh.cpp say what each row holds.
 
 const kinds = { clay: 0, mirror: 1, glass: 2, metal: 3 };
 const lampRadius = 0.34;

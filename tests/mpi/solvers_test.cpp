@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the solvers of examples/linear find the same solutions, in the same number of iterations, on any number of ranks as on one
+// Promises: the solvers of examples/applications/linear find the same solutions, in the same number of iterations, on any number of ranks as on one
 // device, to the bit, if their scalar products are exact; what cannot be divided is refused.
 #include <string>
 #include <string_view>

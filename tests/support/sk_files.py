@@ -5,7 +5,7 @@ import os
 import sys
 
 # Options that the build gives to skc, too.
-include_folders = ["compiler/native/library", "examples/linear", "tests/run/shared"]
+include_folders = ["compiler/native/library", "examples/applications/linear", "tests/run/shared"]
 
 # Mistakes on purpose, and the library of native code.
 left_out = ("tests/diagnostics/", "compiler/native/library/")

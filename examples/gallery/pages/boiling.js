@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Boiling on a hot plate after T. Yanagita (1992), by the kernels of examples/lattice: diffusion, buoyancy, latent heat.
+// Boiling on a hot plate after T. Yanagita (1992), by the kernels of examples/applications/lattice: diffusion, buoyancy, latent heat.
 import { relativeError } from '../accuracy.js';
 import { InHalves, Painter, stroke } from '../field.js';
 import { openPage } from '../page.js';

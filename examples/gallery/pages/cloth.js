@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A curtain by the kernels of examples/cloth, in metres and seconds. Its hand and its ball are in kernels/grab.sk.
+// A curtain by the kernels of examples/applications/cloth, in metres and seconds. Its hand and its ball are in kernels/grab.sk.
 import { measure } from '../cloth_accuracy.js';
 import { MeshView } from '../mesh_view.js';
 import { openPage } from '../page.js';
@@ -14,7 +14,7 @@ const gravity = 9.81;
 const [exact, displacements] = [0, 0]; // Law and Verlet of the .sk files
 const thickness = 0.014;
 
-/** The bits of a point's links; see linksAt() in examples/cloth/model.cpp. */
+/** The bits of a point's links; see linksAt() in examples/applications/cloth/model.cpp. */
 const directions = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, -1], [-1, 1], [1, -1], [2, 0], [-2, 0], [0, 2], [0, -2]];
 const linksAt = (x, y, columns, rows) =>
   directions.reduce((bits, [dx, dy], k) => (x + dx >= 0 && x + dx < columns && y + dy >= 0 && y + dy < rows ? bits | (1 << k) : bits), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Convection between plates in the Boussinesq approximation, by the kernels of examples/lattice, in units of the height, the difference of
+// Convection between plates in the Boussinesq approximation, by the kernels of examples/applications/lattice, in units of the height, the difference of
 // temperatures and the time of a free fall.
 import { relativeError } from '../accuracy.js';
 import { InHalves, Painter, stroke } from '../field.js';
@@ -19,7 +19,7 @@ const sides = {
 const prandtl = 0.71;
 const sound = 3;
 
-/** What kernels are called with; see coefficientsOf() in examples/lattice/model.cpp. */
+/** What kernels are called with; see coefficientsOf() in examples/applications/lattice/model.cpp. */
 export function coefficientsOf(rayleigh, rows) {
   const h = 1 / rows;
   const viscosity = Math.sqrt(prandtl / rayleigh);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Canny's edges by the kernels of examples/edges, of a drawing, a picture of the visitor's, or the camera.
+// Canny's edges by the kernels of examples/applications/edges, of a drawing, a picture of the visitor's, or the camera.
 import { relativeError } from '../accuracy.js';
 import { hueWheel } from '../colours.js';
 import { RoundToHalves } from '../field.js';
@@ -58,8 +58,8 @@ class Detector {
 
   slopes() {
     edges.luminance(this.pixels, this.linear, this.grey);
-    edges.blur([1, 0], this.radius, this.weights, this.grey, this.half);
-    edges.blur([0, 1], this.radius, this.weights, this.half, this.blurred);
+    edges.blur(false, this.radius, this.weights, this.grey, this.half);
+    edges.blur(true, this.radius, this.weights, this.half, this.blurred);
     edges.sobel(this.blurred, this.slope, this.steepness);
   }
 
@@ -228,9 +228,9 @@ async function* measure({ device, simulation, time }) {
       return () => {
         edges.luminance(detector.pixels, detector.linear, detector.grey);
         rounded.pass(detector.grey);
-        edges.blur([1, 0], detector.radius, detector.weights, detector.grey, detector.half);
+        edges.blur(false, detector.radius, detector.weights, detector.grey, detector.half);
         rounded.pass(detector.half);
-        edges.blur([0, 1], detector.radius, detector.weights, detector.half, detector.blurred);
+        edges.blur(true, detector.radius, detector.weights, detector.half, detector.blurred);
         rounded.pass(detector.blurred);
         edges.sobel(detector.blurred, detector.slope, detector.steepness);
       };

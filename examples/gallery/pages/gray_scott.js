@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The reaction of Gray and Scott, by the kernels of examples/lattice.
+// The reaction of Gray and Scott, by the kernels of examples/applications/lattice.
 import { relativeError } from '../accuracy.js';
 import { InHalves, Painter, stroke, sumRows } from '../field.js';
 import { openPage } from '../page.js';

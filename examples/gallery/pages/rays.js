@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Path tracing by the kernel of examples/rays: one sample for every pixel in a step, and the sum of all since the view has changed. The
+// Path tracing by the kernel of examples/applications/rays: one sample for every pixel in a step, and the sum of all since the view has changed. The
 // module has the program for a list of pixels; the list here has all of them.
 import { openPage } from '../page.js';
 import { sceneOf } from '../rays_scene.js';
@@ -15,7 +15,7 @@ const scaled = (a, by) => a.map((x) => x * by);
 const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
 const unit = (a) => scaled(a, 1 / Math.hypot(...a));
 
-/** A camera that looks at `to` from a direction; see viewOf() in examples/rays/camera.cpp. */
+/** A camera that looks at `to` from a direction; see viewOf() in examples/applications/rays/camera.cpp. */
 function viewOf({ turn, height, distance }, [rows, width], lens) {
   const to = [0, 0.26, 0];
   const out = [Math.sin(turn) * Math.cos(height), Math.sin(height), Math.cos(turn) * Math.cos(height)];

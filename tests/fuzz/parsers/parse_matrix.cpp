@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The matrices that examples/linear reads, in the Matrix Market format.
+// The matrices that examples/applications/linear reads, in the Matrix Market format.
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The meshes that examples/rays reads: PLY files begin with their name, all others are read as OBJ. The folder of their materials does
+// The meshes that examples/applications/rays reads: PLY files begin with their name, all others are read as OBJ. The folder of their materials does
 // not exist.
 #include <cstdlib>
 #include <stdexcept>

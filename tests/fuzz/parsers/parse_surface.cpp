@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The surfaces that examples/linear/smooth reads, in OBJ files, and what it inspects of them before it computes.
+// The surfaces that examples/applications/smooth reads, in OBJ files, and what it inspects of them before it computes.
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>

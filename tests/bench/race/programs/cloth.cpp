@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// One step of the cloth of examples/cloth: gravity, two rounds of relaxation of twelve links to a point, a ball and a floor.
+// One step of the cloth of examples/applications/cloth: gravity, two rounds of relaxation of twelve links to a point, a ball and a floor.
 // floats: x, y, z and inverse mass of each point in turn, then x, y, z of what each moved by in the last step; as in the
 // result.
 #include <algorithm>

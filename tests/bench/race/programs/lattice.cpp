@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// One step of the coupled map lattices of examples/lattice, from a state to the next one. Sides wrap, and the bottom and
+// One step of the coupled map lattices of examples/applications/lattice, from a state to the next one. Sides wrap, and the bottom and
 // the top are walls. boiling: floats are the temperature; convection: the velocities vx and vy, pressure and temperature, as are
 // the results, one field after the other; reaction: u and v.
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The nearest hits of rays through hierarchies of boxes, as examples/rays has them: rays of a camera, side by side, and diffuse rays from what
+// The nearest hits of rays through hierarchies of boxes, as examples/applications/rays has them: rays of a camera, side by side, and diffuse rays from what
 // those hit, in a furnished hall and about a closed mesh. rays_layout.hpp says what the arrays of the problem are. The result: the triangle of
 // each ray, or -1, and then the distance of each ray's hit, or -1.
 #include <algorithm>
@@ -15,12 +15,12 @@
 #include "bvh.sk.hpp"
 #include "our_task.hpp"
 #include "programs/all.hpp"
-#include "rays/bvh.hpp"
-#include "rays/bvh_engine.hpp"
-#include "rays/camera.hpp"
-#include "rays/device_scene.hpp"
-#include "rays/reference.hpp"
-#include "rays/study.hpp"
+#include "applications/rays/bvh.hpp"
+#include "applications/rays/bvh_engine.hpp"
+#include "applications/rays/camera.hpp"
+#include "applications/rays/device_scene.hpp"
+#include "applications/rays/reference.hpp"
+#include "applications/rays/study.hpp"
 #include "rays_layout.hpp"
 
 namespace race {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Products with, and solvers of, the matrices of grids, as examples/linear has them. They choose their own targets: natively they are raced, and
+// Products with, and solvers of, the matrices of grids, as examples/applications/linear has them. They choose their own targets: natively they are raced, and
 // once on a GPU, as "compute".
 //
 // * diagonals: a 5-point matrix with numbers of its own in each row, times a vector. ints and floats as in sparse.cpp.

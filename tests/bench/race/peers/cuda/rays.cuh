@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Rays through hierarchies of boxes, as one writes them in CUDA: the algorithms of examples/rays, with the watertight test of Woop, Benthin and
+// Rays through hierarchies of boxes, as one writes them in CUDA: the algorithms of examples/applications/rays, with the watertight test of Woop, Benthin and
 // Wald (2013) in each. Two children to a node, or eight whose boxes are bytes.
 #pragma once
 
