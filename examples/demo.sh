@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# demo.sh [--small] BUILD_DIR OUT_DIR: runs every example on input that it makes itself, then shows what each
+# demo.sh [--small] BUILD_DIR OUT_DIR: runs the classics, then every application on input that it makes itself. Shows what each
 # did, how far it was from double precision, and where the pictures are. Works without a terminal.
-# Exit status 1 where an example failed or missed its bound. --small is for tests: seconds, not half a minute.
+# The exit status is 1 if an example failed or missed its bound. --small is for tests: it takes seconds, not minutes.
 set -uo pipefail
 
 size=512 steps=4000 elements=4000000
+classics=usual
 if [[ ${1:-} == --small ]]; then
-  size=96 steps=200 elements=10000
+  size=96 steps=200 elements=10000 classics=small
   shift
 fi
 if (($# != 2)); then
@@ -42,6 +43,41 @@ example() {
   fi
 }
 
+# classics SIZE_COLUMN: runs the classics, each at the size in that column of their list (- for their own), then shows one row for each.
+classics() {
+  local name small paper size row rows=$out/classics.txt
+  : >"$rows"
+  while read -r name small; do
+    size=
+    [[ $1 != small ]] || size=$small
+    printf '\n> classics/%s%s\n' "$name" "${size:+ $size}"
+    "$programs/classics/$name" ${size:+"$size"} | tee "$name.txt"
+    if ((PIPESTATUS[0])); then
+      failed=1
+      [[ $(tail -n 1 "$name.txt") == '| '* ]] || printf '| %s | | | | FAILED | |\n' "$name" >>"$rows"
+    fi
+    grep '^| ' "$name.txt" >>"$rows" || true
+    rm "$name.txt"
+  done <"$examples/classics/list.txt"
+  printf '\nthe classics, against plain loops in double precision:\n\n'
+  awk -F ' *[|] *' '
+    BEGIN { split("|name|paper|device|time|largest error|picture", head, "|") }
+    NR == 1 { for (i = 2; i <= 7; ++i) width[i] = length(head[i]) }
+    { for (i = 2; i <= 7; ++i) { cell[NR, i] = $i; if (length($i) > width[i]) width[i] = length($i) } }
+    function line(row,   i, text) {
+      for (i = 2; i <= 6; ++i) text = text sprintf("%-*s  ", width[i], row ? cell[row, i] : head[i])
+      print text (row ? cell[row, 7] : head[7])
+      return length(text)
+    }
+    END {
+      rule = sprintf("%*s", line(0) + width[7], "")
+      gsub(/ /, "-", rule)
+      print rule
+      for (r = 1; r <= NR; ++r) line(r)
+    }' "$rows"
+  rm "$rows"
+}
+
 # everywhere NAME ARGUMENTS...: runs an example on each device that there is, and shows what it took there.
 everywhere() {
   local name=$1 device said all=$out/devices.tsv
@@ -65,13 +101,11 @@ programs=$(cd "$programs" 2>/dev/null && pwd) || {
 }
 examples=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd) || exit 1
 cd "$out" || exit 1
+classics "$classics"
 example saxpy --size "$elements"
 everywhere saxpy --size "$elements"
 example edges --size "$size" --output edges.png
 example edges --size "$size" --low 0.01 --high 0.05 --style ink edges_input.png edges_linked.png
-example gray_scott --pattern theta --size "$size" --steps "$steps" --frames 4
-example gray_scott --pattern pi --size "$((size / 2))" --steps "$steps" --colours lagoon
-example gray_scott --pattern mu --size "$((size / 2))" --steps "$steps" --colours dusk
 example cloth "$examples/applications/cloth/scenes/drape.toml" --points "$((size / 6 + 1))" "$((size / 6 + 1))" --steps "$((steps * 3 / 2))" --frames 1 -o cloth_drape.png
 example cloth "$examples/applications/cloth/scenes/torn.toml" --points "$((size / 6 + 1))" "$((size / 8 + 1))" --steps "$steps" --frames 1 -o cloth_torn.png
 example stats --made weather.csv

@@ -20,7 +20,7 @@ for name in "${names[@]}"; do
   size=$(sed -n "s/^<!-- $device \([0-9]*\) *-->$/\1/p" "$readme")
   if [[ -n ${RUN_FROM:-} ]]; then
     output=$(cat "$RUN_FROM/$name.txt")
-  elif ! output=$(cd "$work" && "$programs/$name" ${size:+"$size"} "$device"); then
+  elif ! output=$(cd "$work" && SK_DEVICE=$device "$programs/$name" ${size:+"$size"}); then
     printf '%s\nfigures.sh: %s failed\n' "$output" "$name" >&2
     exit 1
   fi

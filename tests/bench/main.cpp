@@ -100,10 +100,12 @@ void compileTimes(const Settings& settings, bench::Report& report) {
     const char* name;
     std::optional<double> bar;
   };
-  for (const auto& [name, bar] : {File{"saxpy", 120.0}, File{"stats", {}}, File{"gray_scott", {}},
-                                  File{"edges", {}}, File{"cloth", 3000.0}}) {
-    const std::filesystem::path file = settings.sources / name / (std::string(name) + ".sk");
-    report.add({fmt::format("skc {}.sk", name),
+  for (const auto& [name, bar] :
+       {File{"applications/saxpy/saxpy.sk", 120.0}, File{"applications/stats/stats.sk", {}},
+        File{"classics/reaction/reaction.sk", {}}, File{"applications/edges/edges.sk", {}},
+        File{"applications/cloth/cloth.sk", 3000.0}}) {
+    const std::filesystem::path file = settings.sources / name;
+    report.add({fmt::format("skc {}", file.filename().string()),
                 "ms",
                 bench::compileTime(settings.skc, file, folder, std::min(settings.rounds, 9)),
                 bar,

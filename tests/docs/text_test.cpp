@@ -193,7 +193,6 @@ TEST_CASE("commands in sh blocks exist", "[text]") {
                                        "./app",
                                        "./saxpy",
                                        "./edges",
-                                       "./gray_scott",
                                        "./stats",
                                        "apt-get",
                                        "cd",

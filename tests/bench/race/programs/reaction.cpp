@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "constants.hpp"
-#include "gray_scott.sk.hpp"
+#include "reaction.sk.hpp"
 #include "our_task.hpp"
 #include "programs/all.hpp"
 
@@ -15,7 +15,7 @@ class Reaction final : public OurTask {
  public:
   Reaction(sk::Device& device, const sk::CallOptions& options, const Problem& p)
       : OurTask(device),
-        advance_(gray_scott::advance.with(options)),
+        advance_(reaction::advance.with(options)),
         start_(filled<sk::float2>({p.rows, p.columns}, pairsOf(p.floats[0]))),
         field_(device.stream<sk::float2>({p.rows, p.columns})) {}
 
@@ -23,12 +23,12 @@ class Reaction final : public OurTask {
 
  private:
   void once() override {
-    const gray_scott::Medium medium{reactionFeed, reactionKill, reactionSpreadU, reactionSpreadV, 1};
+    const reaction::Medium medium{reactionFeed, reactionKill, reactionSpreadU, reactionSpreadV, 1};
     advance_(medium, start_, field_);
     for (int step = 1; step < reactionSteps; ++step) advance_(medium, field_, field_);
   }
 
-  gray_scott::AdvanceKernel advance_;
+  reaction::AdvanceKernel advance_;
   sk::Stream<sk::float2> start_, field_;
 };
 
