@@ -43,21 +43,21 @@ example() {
   fi
 }
 
-# classics SIZE_COLUMN: runs the classics, each at the size in that column of their list (- for their own), then shows one row for each.
+# classics usual|small: runs the classics, each at its usual size or at the small one in their list, then shows one row for each.
 classics() {
-  local name small paper size row rows=$out/classics.txt
+  local name small size rows=$out/classics/rows.txt printed=$out/classics/printed.txt
+  mkdir -p classics
   : >"$rows"
   while read -r name small; do
     size=
     [[ $1 != small ]] || size=$small
     printf '\n> classics/%s%s\n' "$name" "${size:+ $size}"
-    "$programs/classics/$name" ${size:+"$size"} | tee "$name.txt"
+    (cd classics && "$programs/classics/$name" ${size:+"$size"}) | tee "$printed"
     if ((PIPESTATUS[0])); then
       failed=1
-      [[ $(tail -n 1 "$name.txt") == '| '* ]] || printf '| %s | | | | FAILED | |\n' "$name" >>"$rows"
+      [[ $(tail -n 1 "$printed") == '| '* ]] || printf '| %s | | | | FAILED | |\n' "$name" >>"$rows"
     fi
-    grep '^| ' "$name.txt" >>"$rows" || true
-    rm "$name.txt"
+    grep '^| ' "$printed" >>"$rows" || true
   done <"$examples/classics/list.txt"
   printf '\nthe classics, against plain loops in double precision:\n\n'
   awk -F ' *[|] *' '
@@ -75,7 +75,7 @@ classics() {
       print rule
       for (r = 1; r <= NR; ++r) line(r)
     }' "$rows"
-  rm "$rows"
+  rm "$rows" "$printed"
 }
 
 # everywhere NAME ARGUMENTS...: runs an example on each device that there is, and shows what it took there.
@@ -138,5 +138,5 @@ awk -F '\t' '
   }' "$summary"
 
 printf '\npictures in %s:\n' "$out"
-printf '  %s\n' *.png
+printf '  %s\n' classics/*.png *.png
 exit "$failed"
