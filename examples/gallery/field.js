@@ -23,20 +23,23 @@ export class Painter {
   }
 }
 
-/** Strokes along the way of a pointer: value and share for each field. */
+/** An event for fields whose row 0 is the top of their picture. */
+export const downwards = (event) => ({ ...event, y: 1 - event.y, lastY: 1 - event.lastY });
+
+/** Strokes along the way of a pointer: value and share for each field, both with a number for each component. */
 export function stroke(event, radius, ...fields) {
   for (const [field, value, share] of fields) {
-    const [rows, columns] = field.shape;
+    const [rows, columns] = field.shape.slice(-2);
     const place = (x, y) => [x * columns, (1 - y) * rows];
     brush.stroke(place(event.lastX, event.lastY), place(event.x, event.y), radius, value, share, field, field);
   }
 }
 
-/** A step of fields that are kept in halves in between: each is widened before, and rounded after. */
+/** A step of fields that are kept in halves in between, `half`, `half2` or `half3`: each is widened before, and rounded after. */
 export class InHalves {
-  constructor(device, fields) {
+  constructor(device, fields, type = 'half') {
     this.fields = fields;
-    this.halves = fields.map((field) => device.stream('half', field.shape));
+    this.halves = fields.map((field) => device.stream(type, field.shape));
     this.store();
   }
 

@@ -25,12 +25,12 @@ chosen = [name for name in sys.argv[2:] if name != "--update"]
 most_difference = 1.5  # mean over the picture, in codes of 256
 pages = {
     "heat": "size=96&frames=4&steps=4",
-    "gray_scott": "size=96&frames=3&steps=8",
     "convection": "size=96&frames=3&steps=8",
     "boiling": "size=96&frames=3&steps=4",
     "cloth": "size=160&frames=2&steps=4",
     "edges": "size=160&frames=1",
     "rays": "size=96&frames=2&steps=2",
+    "reaction": "size=96&frames=3&steps=8",
 }
 mistakes = []
 
