@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 
 set(packageFolder "${CMAKE_INSTALL_LIBDIR}/cmake/StreamKernel")
 
-foreach(library runtime gl assemble toml)
+foreach(library runtime gl assemble toml text linear)
   install(TARGETS sk_${library} EXPORT StreamKernelTargets)
   set_target_properties(sk_${library} PROPERTIES EXPORT_NAME ${library})
 endforeach()
@@ -17,7 +17,7 @@ if(TARGET sk_mpi)   # targets of their own: they need an MPI where they are used
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/mpi/include/sk" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 endif()
 install(EXPORT StreamKernelTargets NAMESPACE sk:: DESTINATION "${packageFolder}")
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/sk" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/sk" "${PROJECT_SOURCE_DIR}/runtime/linear/include/sk" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
         FILES_MATCHING PATTERN "*.hpp" PATTERN "*.def")
 
 if(SK_BUILD_COMPILER)

@@ -9,13 +9,14 @@
 
 #include <sk/sk.hpp>
 
+#include "text/memory.hpp"
+
 namespace examples {
+
+using sk::text::requireMemory;
 
 /// Bytes that the process can still take: limits of control groups and SK_MEMORY_LIMIT count. nullopt where nobody tells.
 std::optional<std::int64_t> availableMemory();
-
-/// Throws std::runtime_error, "WHAT takes about N bytes of memory, and M are available", if it is known to be more than there is.
-void requireMemory(std::string_view what, double bytes);
 
 /// What a run on a grid takes for each cell, in bytes: on the device, and on the host beside it.
 struct BytesPerCell {

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Whole files in memory.
+// Whole files in memory, as sk::linear reads and writes them.
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <string_view>
+#include "text/text_file.hpp"
 
 namespace examples {
 
-/// The bytes of a file. Throws std::runtime_error, "`what` 'FILE' does not exist or cannot be read", as in "the mesh 'a.obj' ...".
-std::string bytesOf(const std::filesystem::path& file, std::string_view what);
-/// Writes a file, and the folder that it goes to where there is none. Throws std::runtime_error, "cannot write 'FILE'".
-void writeFile(const std::filesystem::path& file, std::string_view bytes);
+using sk::text::bytesOf;
+using sk::text::writeFile;
 
 }  // namespace examples

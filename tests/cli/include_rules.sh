@@ -41,9 +41,11 @@ runtime/src/assemble/elements sk/program.hpp sk/arithmetic_marks.hpp sk/scalar_b
 runtime/src/assemble/append   sk/program.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/append
 runtime/src/assemble/reduce   sk/program.hpp sk/exact_digits.hpp sk/types.hpp sk/limits.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/reduce assemble/program/sample_kernels.hpp
 runtime/mpi           sk support device call api native gl assemble
+runtime/text          sk text
+runtime/linear        sk text
 runtime/tools         sk support/cache_folder.hpp native probe/probe.hpp assemble/nearest_word.hpp
 runtime/tests         sk support trace device call gl gl_device native assemble epoxy
-examples              sk toml epoxy
+examples              sk toml text linear/grid_stream.hpp epoxy
 tests                 sk
 tests/bench           sk epoxy support/named.hpp
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
@@ -54,7 +56,7 @@ tests/fuzz            sk ir program driver analysis transforms native/native.hpp
 '
 # What all rooms of the assembler share.
 rules=${rules//ASSEMBLE/assemble/assemble.hpp assemble/condition.hpp assemble/region_layout.hpp assemble/relayed_values.hpp}
-guarded='support|ir|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|api|probe|gl|toml|gl_device|assemble|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+guarded='support|ir|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|api|probe|gl|toml|text|linear|gl_device|assemble|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)

@@ -20,9 +20,10 @@ namespace fs = std::filesystem;
 using docs::Block;
 
 std::string compilerCommand() {
-  return SK_DOCS_COMPILER +
-         fmt::format(" -O0 -I '{0}/runtime/include' -I '{0}/runtime/src' -I '{0}/compiler' -I .",
-                     SK_DOCS_SOURCE);
+  return SK_DOCS_COMPILER + fmt::format(
+                                " -O0 -I '{0}/runtime/include' -I '{0}/runtime/linear/include' -I "
+                                "'{0}/runtime/src' -I '{0}/compiler' -I .",
+                                SK_DOCS_SOURCE);
 }
 
 /// compilerCommand() in kernelFolder(), with precompiled headers.
@@ -158,7 +159,8 @@ TEST_CASE("the programs of the documentation run", "[cpp]") {
     ++programs;
     INFO(block->place());
     docs::writeFile(folder / "main.cpp", block->text);
-    build(folder, fmt::format("{0}.cpp.o {0}.o", block->value("kernels")));
+    const std::string kernels = block->value("kernels");
+    build(folder, kernels.empty() ? "" : fmt::format("{0}.cpp.o {0}.o", kernels));
     const docs::Outcome ran = docs::run("./program", folder);
     INFO(ran.output);
     CHECK(ran.status == 0);

@@ -83,9 +83,11 @@ TEST_CASE("docs/api.md lists what the public headers declare", "[text]") {
   // Types, and members of the classes that programs use: at most two spaces in, and in no inner namespace.
   static const std::regex declared(
       R"re(^(?:(?:class|struct|enum class) (\w+)|  (?:[\w:<>&*]+ )+(\w+)\([^()]*\)(?: const| noexcept)*(?:;| \{.*)).*$)re");
-  for (const char* header : {"algorithm", "arithmetic", "call", "device", "error", "future", "iter", "loop",
-                             "narrow", "options", "rows", "scalar", "shape", "stream", "table"}) {
-    const std::string file = fmt::format("runtime/include/sk/{}.hpp", header);
+  for (const char* header :
+       {"algorithm", "arithmetic", "call", "device", "error", "future", "iter", "loop", "narrow", "options",
+        "rows", "scalar", "shape", "stream", "table", "linear", "sparse_matrix"}) {
+    const bool isLinear = header == std::string_view("linear") || header == std::string_view("sparse_matrix");
+    const std::string file = fmt::format("runtime/{}include/sk/{}.hpp", isLinear ? "linear/" : "", header);
     std::string space = "sk";
     bool isPrivate = false;
     for (const std::string& line : docs::linesOf(docs::readFile(fs::path(SK_DOCS_SOURCE) / file))) {

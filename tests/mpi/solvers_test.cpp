@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the solvers of examples/applications/linear find the same solutions, in the same number of iterations, on any number of ranks as on one
+// Promises: the solvers of sk::linear find the same solutions, in the same number of iterations, on any number of ranks as on one
 // device, to the bit, if their scalar products are exact; what cannot be divided is refused.
 #include <string>
 #include <string_view>
@@ -19,37 +19,38 @@
 
 namespace {
 
-using linear::Solution;
+using sk::linear::Solution;
 
 struct Choice {
   std::string_view system, solver, preconditioner;
 };
 
-const linear::Arithmetic exactSums{.accumulate = sk::Accumulate::Exact};
+const sk::linear::Arithmetic exactSums{.accumulate = sk::Accumulate::Exact};
 
-Solution solved(const linear::System& system, const linear::Space& space, const Choice& choice) {
-  const linear::Operator& a = system.matrix();
-  const auto matrix = system.makeMatrix(space, "auto", exactSums, nullptr);
+Solution solved(const linear::System& system, const sk::linear::Space& space, const Choice& choice) {
+  const sk::linear::Operator& a = system.matrix();
+  const auto matrix = sk::linear::makeMatrix(space, a, "auto", exactSums);
   const auto preconditioner =
-      examples::rowNamed(linear::preconditionerKinds(), choice.preconditioner, "preconditioner")
+      examples::rowNamed(sk::linear::preconditionerKinds(), choice.preconditioner, "preconditioner")
           .make(space.device(), *matrix, a, exactSums);
-  const auto method = examples::rowNamed(linear::methodKinds(), choice.solver, "solver")
+  const auto method = examples::rowNamed(sk::linear::methodKinds(), choice.solver, "solver")
                           .make(space.device(), *matrix, preconditioner.get(), exactSums, {.a = &a});
-  return linear::solve(*method, a, system.rightHandSide(), exactSums, {.tolerance = 1e-8, .most = 150});
+  return sk::linear::solve(*method, a, system.rightHandSide(), exactSums, {.tolerance = 1e-8, .most = 150});
 }
 
 /// The first rank, which has the solution, compares it with that of one device.
 void compare(const Choice& choice) {
   INFO(choice.system << ", " << choice.solver << ", " << choice.preconditioner);
   const linear::System system(std::string(choice.system), "");
-  const auto grid = examples::divideGrid("", system.shape(), examples::Ends::Joined);
-  const Solution ranks = solved(system, linear::Space(*grid), choice);
+  const auto grid = examples::divideGrid("", sk::linear::shapeOf(system.matrix()), examples::Ends::Joined);
+  const Solution ranks = solved(system, sk::linear::Space(*grid), choice);
   if (rankOfWorld() != 0) {
     CHECK(ranks.x.empty());
     return;
   }
   sk::Device device;
-  const Solution plain = solved(system, linear::Space(device, system.shape()), choice);
+  const Solution plain =
+      solved(system, sk::linear::Space(device, sk::linear::shapeOf(system.matrix())), choice);
   CHECK(ranks.outcome == plain.outcome);
   CHECK(ranks.iterations == plain.iterations);
   CHECK(ranks.iterations > 0);
@@ -107,11 +108,11 @@ TEST_CASE("parts that are thinner than multigrid takes are solved on every rank"
 TEST_CASE("layouts of rows are refused") {
   if (ranksOfWorld() == 1) return;
   const linear::System system("poisson:31x23", "");
-  const auto grid = examples::divideGrid("", system.shape(), examples::Ends::Joined);
-  CHECK_THROWS_WITH(system.makeMatrix(linear::Space(*grid), "slices", exactSums, nullptr),
+  const auto grid = examples::divideGrid("", sk::linear::shapeOf(system.matrix()), examples::Ends::Joined);
+  CHECK_THROWS_WITH(sk::linear::makeMatrix(sk::linear::Space(*grid), system.matrix(), "slices", exactSums),
                     Catch::Contains("the layout 'slices' is for one process"));
   const linear::System compact("poisson:31x23:compact", "");
-  CHECK_THROWS_WITH(solved(compact, linear::Space(*grid), {"", "sor", "none"}),
+  CHECK_THROWS_WITH(solved(compact, sk::linear::Space(*grid), {"", "sor", "none"}),
                     Catch::Contains("grids without entries for corners"));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The two systems of equations of a step, as matrices for the solvers of examples/applications/linear: neither is stored.
+// The two systems of equations of a step, as matrices for the solvers of sk::linear: neither is stored.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,9 @@
 #include "operator.hpp"
 #include "preconditioner.hpp"
 #include "pressure.sk.hpp"
+#include "support/grid_stream.hpp"
+
+namespace linear = sk::linear;
 
 namespace fluid {
 

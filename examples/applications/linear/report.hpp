@@ -15,6 +15,8 @@
 
 namespace linear {
 
+using namespace sk::linear;
+
 struct Account {
   std::string system;
   std::int64_t unknowns = 0;

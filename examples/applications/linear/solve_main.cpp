@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 #include <sk/sk.hpp>
 
+#include "checks.hpp"
 #include "layout.hpp"
-#include "matrix_market.hpp"
 #include "memory.hpp"
 #include "method.hpp"
 #include "preconditioner.hpp"
@@ -139,37 +139,6 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--chart", s.svg, "draw the residual over the iterations to this file, as SVG");
 }
 
-/// Before anything is copied to a device.
-void checkPreconditioner(const linear::MethodKind& method, const linear::PreconditionerKind& preconditioner,
-                         const std::vector<int>& sweeps) {
-  if (method.needsSymmetry && !preconditioner.isSymmetric)
-    throw std::runtime_error(
-        fmt::format("the solver '{}' needs a symmetric preconditioner, which '{}' is not; take --solver {}",
-                    method.name, preconditioner.name,
-                    preconditioner.name == "ilu0" || preconditioner.name == "sor" ? "gmres" : "stationary"));
-  if (method.needsSymmetry && sweeps[0] != sweeps[1])
-    throw std::runtime_error(
-        fmt::format("the solver '{}' needs as many sweeps after the correction as before it, not {} and {}; "
-                    "take --solver stationary",
-                    method.name, sweeps[1], sweeps[0]));
-  if (sweeps[0] + sweeps[1] == 0) throw std::runtime_error("multigrid needs a sweep; take --sweeps 1,1");
-}
-
-void checkSymmetry(sk::Device& device, linear::Matrix& matrix, const linear::Arithmetic& arithmetic,
-                   const linear::MethodKind& method, const linear::PreconditionerKind& preconditioner,
-                   const linear::Operator& a) {
-  if (!method.needsSymmetry && !preconditioner.needsSymmetry) return;
-  const std::string asymmetry = linear::asymmetryOnDevice(device, matrix, a, arithmetic);
-  if (asymmetry.empty()) return;
-  if (method.needsSymmetry)
-    throw std::runtime_error(
-        fmt::format("the solver '{}' needs a symmetric matrix: {}; take --solver gmres or bicgstab",
-                    method.name, asymmetry));
-  throw std::runtime_error(
-      fmt::format("the preconditioner '{}' needs a symmetric matrix: {}; take --preconditioner ilu0",
-                  preconditioner.name, asymmetry));
-}
-
 /// Several processes divide a grid.
 void checkDivisible(const examples::Ranks& ranks, const linear::Operator& a,
                     const linear::PreconditionerKind& preconditioner) {
@@ -220,7 +189,7 @@ std::string adviceFor(const linear::MethodKind& method, const linear::Preconditi
 }
 
 void writeFiles(const Settings& s, const linear::Account& account, const linear::Solution& solution) {
-  if (!s.solution.empty()) linear::writeMarketVector(s.solution, solution.x);
+  if (!s.solution.empty()) linear::writeMatrixMarketVector(s.solution, solution.x);
   if (!s.svg.empty())
     examples::writeFile(s.svg, linear::svgChart(solution.history, s.solve.tolerance, account.system));
   if (!s.json.empty()) examples::writeFile(s.json, linear::jsonOf(account, solution));
@@ -238,7 +207,7 @@ void solveSystem(examples::Application& app, Settings& s) {
 
   const linear::System system(s.matrix, s.rightHandSide);
   const linear::Operator& a = system.matrix();
-  checkPreconditioner(methodKind, preconditionerKind, s.sweeps);
+  linear::checkChoice(methodKind, preconditionerKind, s.sweeps[0], s.sweeps[1]);
   if (system.duplicates() > 0)
     fmt::print(stderr, "solve: warning: {} entries are given several times, and were added up\n",
                system.duplicates());
@@ -246,7 +215,7 @@ void solveSystem(examples::Application& app, Settings& s) {
   const bool isStudy = s.studyOption->count() > 0;
   if (isStudy) app.ranks().refuseSeveral("--study", "start it without mpirun");
   checkDivisible(app.ranks(), a, preconditionerKind);
-  const examples::OwnedSpace owned(app.ranks(), app.device(), system.shape(), examples::Ends::Joined);
+  const examples::OwnedSpace owned(app.ranks(), app.device(), linear::shapeOf(a), examples::Ends::Joined);
   const examples::Space& space = owned.get();
   sk::Device& device = space.device();
   if (isStudy && a.size > 0) {
@@ -260,16 +229,16 @@ void solveSystem(examples::Application& app, Settings& s) {
   linear::Account account;
   account.system = system.description();
   account.unknowns = a.size;
-  account.entries = system.entries();
+  account.entries = linear::entriesOf(a);
   account.device = device.name();
   linear::Solution solution;
   if (a.size > 0) {
     linear::checkMemory(
-        device, system,
+        device, a, system.description(),
         {methodKind, preconditionerKind, s.layout, arithmetic, s.restart, app.ranks().count()});
     const std::unique_ptr<linear::Matrix> matrix =
-        system.makeMatrix(space, s.layout, arithmetic, &account.costs);
-    checkSymmetry(device, *matrix, arithmetic, methodKind, preconditionerKind, a);
+        linear::makeMatrix(space, a, s.layout, arithmetic, &account.costs);
+    linear::checkSymmetry(device, *matrix, arithmetic, methodKind, preconditionerKind, a);
     const std::unique_ptr<linear::Preconditioner> preconditioner = preconditionerKind.make(
         device, *matrix, a, arithmetic,
         {.omega = s.omega, .ordering = s.ordering, .before = s.sweeps[0], .after = s.sweeps[1]});

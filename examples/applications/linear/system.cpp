@@ -8,10 +8,10 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <sk/sparse_matrix.hpp>
 
+#include "checks.hpp"
 #include "compact.hpp"
-#include "matrix_market.hpp"
-#include "support/host_memory.hpp"
 #include "support/named.hpp"
 #include "varying.hpp"
 
@@ -93,18 +93,6 @@ std::vector<Ends> endsNamed(std::string_view text, int rank) {
   return ends;
 }
 
-/// `entries` of a row are stored, in coordinates, compressed rows and by the grid; none of a stencil.
-void checkSize(const Stencil& a, int entries) {
-  constexpr std::int64_t most = 0x7fffffff;
-  if (a.size() > most)
-    throw std::runtime_error(
-        fmt::format("a grid of {} elements is too large; at most {} can be solved", a.size(), most));
-  constexpr int vectors =
-      6;  // the diagonal, squares of rows, sums, the right-hand side, and two while it is scaled
-  examples::requireMemory(fmt::format("a grid of {} elements", a.size()),
-                          (8.0 * vectors + 56.0 * entries) * static_cast<double>(a.size()));
-}
-
 constexpr std::string_view filePrefix = "coefficients=";
 
 /// The coefficients that "PATTERN=RATIO" names.
@@ -159,10 +147,10 @@ GridEquation equationOf(std::string_view text) {
   }
   const bool isStored = isCompact || !file.empty() || !pattern.empty();
   const int neighbours = isCompact ? (a.grid.rank() == 2 ? 9 : 27) : 2 * a.grid.rank() + 1;
-  checkSize(a, isStored ? neighbours : 0);
+  checkGridSize(a.grid, isStored ? neighbours : 0);
   if (isCompact && (!file.empty() || !pattern.empty()))
     throw std::runtime_error("compact discretisations need constant coefficients");
-  if (!file.empty()) return {a, readMarketVector(std::filesystem::path(file)), false};
+  if (!file.empty()) return {a, readMatrixMarketVector(std::filesystem::path(file)), false};
   return {a, pattern.empty() ? std::vector<double>() : patternOf(a, pattern), isCompact};
 }
 
@@ -191,59 +179,14 @@ System::System(const std::string& matrix, const std::filesystem::path& rightHand
       operator_.varying = &*varying_;
     }
   } else {
-    MarketFile file = readMarket(matrix);
-    sparse_ = std::move(file.matrix);
-    duplicates_ = file.duplicates;
+    sparse_ = readMatrixMarket(matrix, &duplicates_);
     operator_ = operatorOf(sparse_);
   }
   const auto n = static_cast<std::size_t>(operator_.size);
   const bool isSingularGrid = operator_.isGrid() && operator_.hasConstantKernel;
   b_ = !rightHandSide.empty()
-           ? readMarketVector(rightHandSide)
+           ? readMatrixMarketVector(rightHandSide)
            : operator_.multiply(isSingularGrid ? uniformNoise(n) : std::vector<double>(n, 1.0));
-}
-
-std::int64_t System::entries() const {
-  if (!stencil_) return sparse_.entries();
-  return stencil_->size() * (2 * stencil_->grid.rank() + 1);
-}
-
-std::int64_t System::matrixBytes(std::string_view layout, std::int64_t entryBytes) const {
-  const bool isOfGrid = layout == "stencil" || (operator_.isGrid() && layout == "auto");
-  if (isOfGrid) return varying_ ? entryBytes * static_cast<std::int64_t>(varying_->value.size()) : 0;
-  return bytesOf(stencil_ ? assemble(*stencil_) : sparse_, layout, entryBytes);
-}
-
-sk::Shape System::shape() const {
-  if (stencil_) return stencil_->grid;
-  return varying_ ? varying_->grid : sk::Shape{operator_.size};
-}
-
-std::unique_ptr<Matrix> System::makeMatrix(sk::Device& device, std::string_view layout,
-                                           const Arithmetic& arithmetic,
-                                           std::vector<LayoutCost>* costs) const {
-  return makeMatrix(Space(device, shape()), layout, arithmetic, costs);
-}
-
-std::unique_ptr<Matrix> System::makeMatrix(const Space& space, std::string_view layout,
-                                           const Arithmetic& arithmetic,
-                                           std::vector<LayoutCost>* costs) const {
-  const bool wantsStencil = layout == "stencil";
-  if (stencil_ && (wantsStencil || layout == "auto"))
-    return linear::makeMatrix(space, scaled(*stencil_, operator_.scale), arithmetic);
-  if (varying_ && (wantsStencil || layout == "auto"))
-    return linear::makeMatrix(space, scaled(*varying_, operator_.scale), arithmetic);
-  if (wantsStencil)
-    throw std::runtime_error(
-        "the layout 'stencil' is for matrices of grids, as 'poisson:512x512'; a file has other layouts");
-  if (space.isDivided())
-    throw std::runtime_error(
-        fmt::format("the layout '{}' is for one process, because rows read any element of a vector; take "
-                    "--layout stencil for "
-                    "a grid, or start it without mpirun",
-                    layout));
-  const SparseMatrix sparse = scaled(stencil_ ? assemble(*stencil_) : sparse_, operator_.scale);
-  return linear::makeMatrix(space.device(), sparse, layout, arithmetic, costs);
 }
 
 }  // namespace linear

@@ -9,11 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "layout.hpp"
-#include "operator.hpp"
+#include "operator_matrix.hpp"
 #include "varying.hpp"
 
 namespace linear {
+
+using namespace sk::linear;
 
 class System {
  public:
@@ -30,20 +31,7 @@ class System {
   const std::vector<double>& rightHandSide() const { return b_; }
   /// Entries of the matrix that were given several times, and added up.
   std::int64_t duplicates() const { return duplicates_; }
-  std::int64_t entries() const;
   std::string description() const { return description_; }
-
-  /// Bytes that makeMatrix() takes of a device for the layout; 0 for a stencil of constant coefficients. Throws std::runtime_error for an unknown layout.
-  std::int64_t matrixBytes(std::string_view layout, std::int64_t entryBytes) const;
-
-  /// Copies the scaled matrix to a device: a stencil where "auto" or "stencil" asks for a grid's layout.
-  std::unique_ptr<Matrix> makeMatrix(sk::Device& device, std::string_view layout,
-                                     const Arithmetic& arithmetic, std::vector<LayoutCost>* costs) const;
-  /// The same for vectors in a space, whose shape is the grid's if it is divided over ranks. Throws std::runtime_error if the matrix cannot be divided.
-  std::unique_ptr<Matrix> makeMatrix(const Space& space, std::string_view layout,
-                                     const Arithmetic& arithmetic, std::vector<LayoutCost>* costs) const;
-  /// The shape of vectors: the grid's, or {unknowns}.
-  sk::Shape shape() const;
 
  private:
   std::optional<Stencil> stencil_;

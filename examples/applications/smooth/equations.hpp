@@ -13,6 +13,8 @@
 #include "sparse.hpp"
 #include "surface.hpp"
 
+namespace linear = sk::linear;
+
 namespace smooth {
 
 class Equations {

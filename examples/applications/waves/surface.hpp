@@ -13,6 +13,9 @@
 #include <sk/sk.hpp>
 
 #include "method.hpp"
+#include "support/grid_stream.hpp"
+
+namespace linear = sk::linear;
 
 namespace waves {
 

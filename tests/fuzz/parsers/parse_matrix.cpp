@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The matrices that examples/applications/linear reads, in the Matrix Market format.
+// The matrices that sk::linear reads, in the Matrix Market format.
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
@@ -12,7 +12,7 @@
 namespace {
 
 /// Rows in order, columns ascending and inside, entries finite.
-bool isWhole(const linear::SparseMatrix& a) {
+bool isWhole(const sk::linear::SparseMatrix& a) {
   if (a.starts.size() != static_cast<std::size_t>(a.rows) + 1 || a.column.size() != a.value.size())
     return false;
   if (a.starts.front() != 0 || a.starts.back() != static_cast<std::int64_t>(a.column.size())) return false;
@@ -32,8 +32,8 @@ bool isWhole(const linear::SparseMatrix& a) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    const linear::MarketFile file =
-        linear::parseMarket({reinterpret_cast<const char*>(data), size}, "input.mtx");
+    const sk::linear::MarketFile file =
+        sk::linear::parseMarket({reinterpret_cast<const char*>(data), size}, "input.mtx");
     if (!isWhole(file.matrix)) std::abort();
   } catch (const std::runtime_error&) {
     return 0;

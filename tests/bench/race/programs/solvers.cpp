@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Products with, and solvers of, the matrices of grids, as examples/applications/linear has them. They choose their own targets: natively they are raced, and
+// Products with, and solvers of, the matrices of grids, as sk::linear has them. They choose their own targets: natively they are raced, and
 // once on a GPU, as "compute".
 //
 // * diagonals: a 5-point matrix with numbers of its own in each row, times a vector. ints and floats as in sparse.cpp.
@@ -35,7 +35,7 @@ namespace {
 constexpr std::int64_t nestedCycles = 2;
 constexpr std::int64_t cycledExtent = 150;
 /// Plain sums, as the peers' are.
-const linear::Arithmetic plainSums{.accumulate = sk::Accumulate::Tree};
+const sk::linear::Arithmetic plainSums{.accumulate = sk::Accumulate::Tree};
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
@@ -51,7 +51,7 @@ class Diagonals final : public OurTask {
  public:
   Diagonals(sk::Device& device, const Problem& p)
       : OurTask(device),
-        matrix_(linear::makeMatrix(device, matrixOf(p), "diagonals", plainSums)),
+        matrix_(sk::linear::makeMatrix(device, matrixOf(p), "diagonals", plainSums)),
         x_(filled<float>({p.size()}, p.floats[1])),
         y_(device.stream<float>({p.size()})) {}
 
@@ -60,8 +60,8 @@ class Diagonals final : public OurTask {
  private:
   void once() override { matrix_->multiply(x_, y_); }
 
-  static linear::SparseMatrix matrixOf(const Problem& p) {
-    linear::SparseMatrix a;
+  static sk::linear::SparseMatrix matrixOf(const Problem& p) {
+    sk::linear::SparseMatrix a;
     a.rows = a.columns = p.size();
     a.starts.assign(p.ints[0].begin(), p.ints[0].end());
     a.column = p.ints[1];
@@ -69,8 +69,8 @@ class Diagonals final : public OurTask {
     return a;
   }
 
-  std::unique_ptr<linear::Matrix> matrix_;
-  linear::Vector x_, y_;
+  std::unique_ptr<sk::linear::Matrix> matrix_;
+  sk::linear::Vector x_, y_;
 };
 
 class Gradients final : public OurTask {
@@ -78,8 +78,8 @@ class Gradients final : public OurTask {
   Gradients(sk::Device& device, const Problem& p)
       : OurTask(device),
         steps_(gradientSteps(static_cast<double>(p.size()))),
-        matrix_(linear::makeMatrix(linear::poisson({p.rows, p.columns}), plainSums)),
-        method_(examples::rowNamed(linear::methodKinds(), "cg", "solver")
+        matrix_(sk::linear::makeMatrix(sk::linear::poisson({p.rows, p.columns}), plainSums)),
+        method_(examples::rowNamed(sk::linear::methodKinds(), "cg", "solver")
                     .make(device, *matrix_, nullptr, plainSums)),
         b_(filled<float>(matrix_->domain(), p.floats[0])) {}
 
@@ -96,9 +96,9 @@ class Gradients final : public OurTask {
   }
 
   std::int64_t steps_;
-  std::unique_ptr<linear::Matrix> matrix_;
-  std::unique_ptr<linear::Method> method_;
-  linear::Vector b_;
+  std::unique_ptr<sk::linear::Matrix> matrix_;
+  std::unique_ptr<sk::linear::Method> method_;
+  sk::linear::Vector b_;
 };
 
 /// The elements along each side of the cube.
@@ -126,11 +126,11 @@ class Nested final : public OurTask {
  public:
   Nested(sk::Device& device, const Problem& p)
       : OurTask(device),
-        stencil_(linear::poisson({sideOf(p), sideOf(p), sideOf(p)})),
-        matrix_(linear::makeMatrix(stencil_, plainSums)),
-        multigrid_(linear::makeMultigrid(device, stencil_, plainSums,
-                                         {.cycle = linear::Cycle::Full, .isSymmetric = false})),
-        method_(examples::rowNamed(linear::methodKinds(), "stationary", "solver")
+        stencil_(sk::linear::poisson({sideOf(p), sideOf(p), sideOf(p)})),
+        matrix_(sk::linear::makeMatrix(stencil_, plainSums)),
+        multigrid_(sk::linear::makeMultigrid(device, stencil_, plainSums,
+                                             {.cycle = sk::linear::Cycle::Full, .isSymmetric = false})),
+        method_(examples::rowNamed(sk::linear::methodKinds(), "stationary", "solver")
                     .make(device, *matrix_, multigrid_.get(), plainSums)),
         b_(filled<float>(matrix_->domain(), p.floats[0])) {}
 
@@ -145,11 +145,11 @@ class Nested final : public OurTask {
     method_->run(nestedCycles, nestedCycles);
   }
 
-  linear::Stencil stencil_;
-  std::unique_ptr<linear::Matrix> matrix_;
-  std::unique_ptr<linear::Preconditioner> multigrid_;
-  std::unique_ptr<linear::Method> method_;
-  linear::Vector b_;
+  sk::linear::Stencil stencil_;
+  std::unique_ptr<sk::linear::Matrix> matrix_;
+  std::unique_ptr<sk::linear::Preconditioner> multigrid_;
+  std::unique_ptr<sk::linear::Method> method_;
+  sk::linear::Vector b_;
 };
 
 class Cycled final : public OurTask {
@@ -158,27 +158,27 @@ class Cycled final : public OurTask {
       : OurTask(device),
         system_(fmt::format("poisson:{0}x{0}x{0}", cycledExtent), {}),
         matrix_(system_.makeMatrix(device, "stencil", plainSums, nullptr)),
-        preconditioner_(examples::rowNamed(linear::preconditionerKinds(), "multigrid", "preconditioner")
+        preconditioner_(examples::rowNamed(sk::linear::preconditionerKinds(), "multigrid", "preconditioner")
                             .make(device, *matrix_, system_.matrix(), plainSums)),
-        method_(examples::rowNamed(linear::methodKinds(), "cg", "solver")
+        method_(examples::rowNamed(sk::linear::methodKinds(), "cg", "solver")
                     .make(device, *matrix_, preconditioner_.get(), plainSums)) {}
 
   std::vector<float> result() override { return {solution_.x.begin(), solution_.x.end()}; }
 
  private:
   void once() override {
-    solution_ = linear::solve(*method_, system_.matrix(), system_.rightHandSide(), plainSums,
-                              {.tolerance = 1e-8, .every = 1});
-    if (solution_.outcome != linear::Outcome::Converged)
-      throw std::runtime_error(fmt::format("{}, with a residual of {:.2g}", linear::nameOf(solution_.outcome),
-                                           solution_.residualTrue));
+    solution_ = sk::linear::solve(*method_, system_.matrix(), system_.rightHandSide(), plainSums,
+                                  {.tolerance = 1e-8, .every = 1});
+    if (solution_.outcome != sk::linear::Outcome::Converged)
+      throw std::runtime_error(fmt::format("{}, with a residual of {:.2g}",
+                                           sk::linear::nameOf(solution_.outcome), solution_.residualTrue));
   }
 
-  linear::System system_;
-  std::unique_ptr<linear::Matrix> matrix_;
-  std::unique_ptr<linear::Preconditioner> preconditioner_;
-  std::unique_ptr<linear::Method> method_;
-  linear::Solution solution_;
+  sk::linear::System system_;
+  std::unique_ptr<sk::linear::Matrix> matrix_;
+  std::unique_ptr<sk::linear::Preconditioner> preconditioner_;
+  std::unique_ptr<sk::linear::Method> method_;
+  sk::linear::Solution solution_;
 };
 
 }  // namespace
@@ -219,7 +219,7 @@ Problem gradientsProblem(int log2) {
 
 /// As many iterations in double precision. A hundredth, since Eigen's sums of 2^24 floats are 0.5 % off; ours and those of OpenMP keep to a thousandth.
 Check gradientsCheck(const Problem& p) {
-  const linear::Stencil a = linear::poisson({p.rows, p.columns});
+  const sk::linear::Stencil a = sk::linear::poisson({p.rows, p.columns});
   const std::size_t n = at(p.size());
   std::vector<double> x(n), r(p.floats[0].begin(), p.floats[0].end()), direction = r;
   const auto dot = [n](const std::vector<double>& u, const std::vector<double>& v) {
@@ -229,7 +229,7 @@ Check gradientsCheck(const Problem& p) {
   };
   double rr = dot(r, r);
   for (int step = 0; step < gradientSteps(static_cast<double>(n)); ++step) {
-    const std::vector<double> q = linear::multiply(a, direction);
+    const std::vector<double> q = sk::linear::multiply(a, direction);
     const double alpha = rr / dot(direction, q);
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += alpha * direction[i];
