@@ -221,7 +221,7 @@ TEST_CASE("What cannot be solved is refused with what is wrong and the way out")
   CHECK(errorOf([&] { Solver(device, VaryingStencil{.grid = {3, 3}, .offsets = {{0, 0, 0}}, .value = b}); },
                 sk::Error::Kind::Shape)
             .starts_with("the offsets of a stencil that varies are those of diffusion()"));
-  sk::Device small(sk::DeviceOptions{.device = "native", .memoryLimit = 1000});
+  sk::Device small(sk::DeviceOptions{.device = "native", .memoryLimit = 100});
   CHECK(errorOf([&] { Solver(small, a); }, sk::Error::Kind::Memory)
             .starts_with("a matrix of 9 unknowns needs about "));
 }
