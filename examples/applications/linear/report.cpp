@@ -98,6 +98,11 @@ std::string jsonOf(const Account& account, const Solution& solution) {
   json["layout"] = account.layout;
   if (!account.offsetBits.empty()) json["offset_bits"] = account.offsetBits;
   json["fill"] = account.fill();
+  if (!account.factors.empty()) {
+    json["factors"] = account.factors;
+    json["factor_entries"] = account.factorEntries;
+  }
+  if (account.distance) json["distance_to_direct"] = *account.distance;
   json["device"] = account.device;
   const double iterations = static_cast<double>(std::max<std::int64_t>(1, solution.iterations));
   json["rates"]["per_iteration"] = std::pow(solution.residualTrue, 1.0 / iterations);

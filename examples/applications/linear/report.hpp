@@ -28,6 +28,9 @@ struct Account {
   std::vector<LayoutCost> costs;  ///< of the automatic choice
   std::vector<LevelRate> rates;  ///< of multigrid on its grids, where they were measured
   std::optional<HierarchyAccount> hierarchy;  ///< of the preconditioner
+  std::string factors;  ///< of a direct solution, "L D L^T" or "L U"; "" if there was none
+  std::int64_t factorEntries = 0;  ///< theirs
+  std::optional<double> distance;  ///< ||x - y|| / ||y|| from the direct solution y
 
   /// Stored entries for each entry of the matrix; 0 if none is stored.
   double fill() const {
@@ -39,7 +42,7 @@ std::string textOf(const Account& account, const Solution& solution);
 /// An object with outcome, iterations, restarts, residual_true, residual_error (a bound of the error of residual_true, in its unit), residual_recurred, backward_error, removed_mean, seconds, layout, fill, device and rates: the mean
 /// reduction of the residual `per_iteration`, and for each of multigrid's grids its extents, the fastest first, and the rate of a cycle. Numbers that are not
 /// finite are null. For a preconditioner that has built levels, also hierarchy: levels (unknowns, entries and layout of each), operator_complexity and
-/// setup_seconds; for a layout with offsets, offset_bits.
+/// setup_seconds; for a layout with offsets, offset_bits; for a direct solution, factors and factor_entries, and distance_to_direct of the iterative one.
 std::string jsonOf(const Account& account, const Solution& solution);
 
 /// A chart for the terminal. Lines of text, each ended; "" if there are fewer than two points.

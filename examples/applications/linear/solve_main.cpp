@@ -14,9 +14,11 @@
 #include <sk/sk.hpp>
 
 #include "checks.hpp"
+#include "direct.hpp"
 #include "layout.hpp"
 #include "memory.hpp"
 #include "method.hpp"
+#include "precise.hpp"
 #include "preconditioner.hpp"
 #include "report.hpp"
 #include "residual.hpp"
@@ -42,6 +44,7 @@ struct Settings {
   double omega = 1.0;
   std::vector<int> sweeps{1, 1};
   linear::SolveSettings solve;
+  bool isDirect = false, isJudged = false;
   std::string study;
   CLI::Option* studyOption = nullptr;  ///< may have been given without a name
 };
@@ -128,6 +131,8 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30))
       ->capture_default_str();
   cli.add_flag("!--no-refinement", s.solve.refines, "run the method once, in its own precision");
+  cli.add_flag("--direct", s.isDirect, "solve by sparse factors on the host in place of iterations");
+  cli.add_flag("--judge", s.isJudged, "print the distance from the direct solution, too");
   s.studyOption =
       cli.add_option("--study", s.study,
                      examples::listed("print tables: with a matrix, what each precision, storage and "
@@ -195,6 +200,67 @@ void writeFiles(const Settings& s, const linear::Account& account, const linear:
   if (!s.json.empty()) examples::writeFile(s.json, linear::jsonOf(account, solution));
 }
 
+/// ||x - y|| / ||y||; 2-norms.
+double distance(std::span<const double> x, std::span<const double> y) {
+  std::vector<double> difference(x.begin(), x.end());
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= y[i];
+  const double norm = linear::normsOf(y).two;
+  return norm > 0.0 ? linear::normsOf(difference).two / norm : linear::normsOf(difference).two;
+}
+
+/// The direct solution, as iterations report theirs.
+linear::Solution solvedDirectly(const linear::System& system, double tolerance, linear::Account& account) {
+  const linear::Operator& a = system.matrix();
+  const std::span<const double> b = system.rightHandSide();
+  linear::DirectSolution direct = linear::solveDirectly(a, b);
+  account.factors = direct.factors;
+  account.factorEntries = direct.entries;
+  linear::Solution solution;
+  const linear::Norms normB = linear::normsOf(b);
+  if (normB.two > 0.0) {
+    const linear::Norms left = linear::preciseResidual(a, 1.0, direct.x, b).norms;
+    const linear::Norms x = linear::normsOf(direct.x);
+    solution.residualTrue = solution.residualRecurred = left.two / normB.two;
+    solution.residualError = left.error / normB.two;
+    solution.backwardError = left.infinity / (a.infinityNorm * x.infinity + normB.infinity);
+  }
+  solution.outcome =
+      solution.residualTrue <= tolerance ? linear::Outcome::Converged : linear::Outcome::Stagnated;
+  solution.x = std::move(direct.x);
+  solution.seconds = direct.seconds;
+  return solution;
+}
+
+void verify(examples::Application& app, const Settings& s, const linear::Solution& solution) {
+  examples::Verification verification("||b - A x|| / ||b|| in double precision", s.solve.tolerance,
+                                      "--tolerance");
+  verification.note(0, solution.residualTrue);
+  app.verified(verification);
+}
+
+void solveDirectly(examples::Application& app, const Settings& s, const linear::System& system,
+                   linear::Account& account) {
+  account.device = "host";
+  const linear::Solution solution = solvedDirectly(system, s.solve.tolerance, account);
+  app.report(fmt::format("{}, {} unknowns, solved directly", account.system, account.unknowns),
+             account.device, solution.seconds * 1000.0);
+  fmt::print("{} with {} entries for {}\nresidual {:.3g} (known to {:.1g}), backward error {:.3g}\n",
+             account.factors, account.factorEntries, account.entries, solution.residualTrue,
+             solution.residualError, solution.backwardError);
+  writeFiles(s, account, solution);
+  verify(app, s, solution);
+}
+
+/// The direct solution beside that of iterations.
+void judge(const linear::System& system, const linear::Solution& solution, linear::Account& account) {
+  const linear::DirectSolution direct = linear::solveDirectly(system.matrix(), system.rightHandSide());
+  account.factors = direct.factors;
+  account.factorEntries = direct.entries;
+  account.distance = distance(solution.x, direct.x);
+  fmt::print("distance {:.3g} from the direct solution ({} with {} entries, {:.3g} ms)\n", *account.distance,
+             account.factors, account.factorEntries, direct.seconds * 1000.0);
+}
+
 void solveSystem(examples::Application& app, Settings& s) {
   const linear::Arithmetic arithmetic{
       .precision = chosen(precisions, s.precision, "precision"),
@@ -213,7 +279,15 @@ void solveSystem(examples::Application& app, Settings& s) {
                system.duplicates());
 
   const bool isStudy = s.studyOption->count() > 0;
+  if (s.isDirect || s.isJudged)
+    app.ranks().refuseSeveral("a direct solution",
+                              "leave out --direct and --judge, or start it without mpirun");
   if (isStudy) app.ranks().refuseSeveral("--study", "start it without mpirun");
+  linear::Account account;
+  account.system = system.description();
+  account.unknowns = a.size;
+  account.entries = linear::entriesOf(a);
+  if (s.isDirect && !isStudy) return solveDirectly(app, s, system, account);
   checkDivisible(app.ranks(), a, preconditionerKind);
   const examples::OwnedSpace owned(app.ranks(), app.device(), linear::shapeOf(a), examples::Ends::Joined);
   const examples::Space& space = owned.get();
@@ -226,10 +300,6 @@ void solveSystem(examples::Application& app, Settings& s) {
     fmt::print("\n{}", table);
     return;
   }
-  linear::Account account;
-  account.system = system.description();
-  account.unknowns = a.size;
-  account.entries = linear::entriesOf(a);
   account.device = device.name();
   linear::Solution solution;
   if (a.size > 0) {
@@ -266,11 +336,9 @@ void solveSystem(examples::Application& app, Settings& s) {
   if (const std::string advice = adviceFor(methodKind, preconditionerKind, arithmetic, solution);
       !advice.empty())
     fmt::print("{}\n", advice);
+  if (s.isJudged) judge(system, solution, account);
   if (space.isFirst()) writeFiles(s, account, solution);
-  examples::Verification verification("||b - A x|| / ||b|| in double precision", s.solve.tolerance,
-                                      "--tolerance");
-  verification.note(0, solution.residualTrue);
-  app.verified(verification);
+  verify(app, s, solution);
 }
 
 void study(examples::Application& app, std::string_view name) {
