@@ -121,7 +121,7 @@ TEST_CASE(
   CHECK(colours(a).groups() == 2);
   CHECK(levels(a).groups() == 11);  // the diagonals of the grid
   for (const Ordering& o : {colours(a), levels(a)}) {
-    const SparseMatrix p = permuted(a, o);
+    const SparseMatrix p = permuted(a, o.order);
     for (std::size_t g = 0; g + 1 < o.starts.size(); ++g)
       for (std::int64_t i = o.starts[g]; i < o.starts[g + 1]; ++i)
         for (auto k = static_cast<std::size_t>(p.starts[static_cast<std::size_t>(i)]);

@@ -98,7 +98,7 @@ Operator operatorOf(const Stencil& a) {
 }
 
 std::string findAsymmetry(const Operator& a) {
-  return a.asymmetry.empty() && a.sparse != nullptr ? asymmetry(*a.sparse) : a.asymmetry;
+  return a.asymmetry.empty() && a.sparse != nullptr ? asymmetry(*a.sparse, a.order) : a.asymmetry;
 }
 
 SparseMatrix sparseOf(const Operator& a) { return a.sparse != nullptr ? *a.sparse : assemble(*a.stencil); }

@@ -37,6 +37,13 @@ struct Operator {
   /// A power of two: the matrix on the device is this times A, so that its largest row sum is from 1/2 to 1.
   double scale = 1.0;
 
+  /// If the unknowns are reordered, the row that each row was before: messages count as the matrix that was given.
+  std::span<const std::int32_t> order = {};
+
+  /// The number of a row in messages, from 1.
+  std::int64_t numberOf(std::int64_t row) const {
+    return (order.empty() ? row : order[static_cast<std::size_t>(row)]) + 1;
+  }
   bool isGrid() const { return stencil.has_value() || varying != nullptr; }
 };
 

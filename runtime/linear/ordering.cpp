@@ -68,10 +68,10 @@ Ordering orderingNamed(std::string_view name, const SparseMatrix& a) {
   throw sk::Error(fmt::format("no ordering is called '{}'; there are colours, levels", name));
 }
 
-SparseMatrix permuted(const SparseMatrix& a, const Ordering& ordering) {
-  std::vector<std::int64_t> place(ordering.order.size());
+SparseMatrix permuted(const SparseMatrix& a, std::span<const std::int32_t> order) {
+  std::vector<std::int64_t> place(order.size());
   for (std::size_t i = 0; i < place.size(); ++i)
-    place[static_cast<std::size_t>(ordering.order[i])] = static_cast<std::int64_t>(i);
+    place[static_cast<std::size_t>(order[i])] = static_cast<std::int64_t>(i);
   std::vector<Entry> entries;
   entries.reserve(a.value.size());
   for (std::size_t i = 0; i < place.size(); ++i)

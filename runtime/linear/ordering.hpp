@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -29,10 +30,20 @@ Ordering levels(const SparseMatrix& a);
 Ordering orderingNamed(std::string_view name, const SparseMatrix& a);
 
 /// The matrix with rows and columns in another order.
-SparseMatrix permuted(const SparseMatrix& a, const Ordering& ordering);
+SparseMatrix permuted(const SparseMatrix& a, std::span<const std::int32_t> order);
 
 /// The incomplete factors of a matrix on its own pattern (J. Meijerink and H. van der Vorst, 1977): L below the diagonal, whose own is 1, and U. Returns the
 /// row whose pivot is 0, or, if `needsPositive`, not above 0; -1 if there is none.
 std::int64_t factorise(SparseMatrix& a, bool needsPositive);
+
+/// What incomplete factors with a dual threshold keep.
+struct Threshold {
+  double drop = 1e-3;  ///< of L, factors of this magnitude; of U, this part of the 2-norm of the matrix's row
+  std::int64_t fill = 20;  ///< the largest entries of a row of L, and of a row of U beside the diagonal
+};
+
+/// ILUT (Y. Saad, "ILUT: a dual threshold incomplete LU factorization", 1994), in the order of the rows. `factors` becomes L below the diagonal, whose own is 1, and U. Returns the row whose pivot
+/// is 0 or not finite; -1 if there is none.
+std::int64_t factoriseByThreshold(const SparseMatrix& a, const Threshold& threshold, SparseMatrix& factors);
 
 }  // namespace sk::linear

@@ -121,6 +121,8 @@ constexpr PreconditionerKind preconditioners[] = {
      6.0, 1.0, false},
     {"ilu0", "incomplete LU factors on the matrix's own pattern", false, false, makeIncompleteLu, 6.0, 1.0,
      false},
+    {"ilut", "incomplete LU factors with the largest entries of each row (Saad 1994)", false, false,
+     makeThresholdLu, 6.0, 4.0, false},
     {"aggregation", "a V-cycle of algebraic multigrid by smoothed aggregation, for symmetric matrices", true,
      true, makeAggregation, 6.0, 0.8, false},
     {"multigrid", "a V-cycle of geometric multigrid, for grids", true, false, makeGeometric<Cycle::V>, 4.0,

@@ -56,8 +56,10 @@ class Preconditioner {
 
 struct PreconditionerSettings {
   double omega = 1.0;  ///< relaxation factor of sor and ssor, between 0 and 2
-  /// The order of rows in sor, ssor, ic0 and ilu0: "colours" needs few calls, "levels" fewer iterations (ordering.hpp).
+  /// The order of rows in sor, ssor, ic0, ilu0 and ilut: "colours" needs few calls, "levels" fewer iterations (ordering.hpp).
   std::string_view ordering = "colours";
+  double drop = 1e-3;  ///< of ilut (ordering.hpp)
+  int fill = 20;  ///< likewise: entries that a row of a factor keeps
   int before = 1, after = 1;  ///< sweeps of multigrid before and after the correction by the coarser grid
 };
 

@@ -200,7 +200,7 @@ std::unique_ptr<Preconditioner> makeRelaxing(const PreconditionerParts& parts, b
   checkDiagonal(parts.a, isSymmetric ? "the preconditioner 'ssor'" : "the preconditioner 'sor'");
   const SparseMatrix a = scaledMatrix(parts.a);
   const Ordering ordering = orderingNamed(parts.settings.ordering, a);
-  SparseMatrix p = permuted(a, ordering);
+  SparseMatrix p = permuted(a, ordering.order);
   const std::vector<double> d = diagonal(p);
   std::vector<double> inverse(d.size());
   std::ranges::transform(d, inverse.begin(), [&](double v) { return omega / v; });
@@ -219,36 +219,63 @@ std::unique_ptr<Preconditioner> makeRelaxing(const PreconditionerParts& parts, b
                                             std::move(lower), std::move(upper), parts.arithmetic);
 }
 
+/// With L below the diagonal of the factors, whose own is 1, and U. They are in the order.
+std::unique_ptr<Preconditioner> makeSolves(const PreconditionerParts& parts, const SparseMatrix& factors,
+                                           const Ordering& ordering) {
+  GroupedRows lower(parts.device, factors, ordering, Part::Lower,
+                    std::vector<double>(static_cast<std::size_t>(factors.rows), 1.0), parts.arithmetic);
+  std::vector<GroupedRows> upper;
+  upper.emplace_back(parts.device, factors, ordering, Part::Upper, RowsRelaxer::inverses(factors),
+                     parts.arithmetic);
+  return std::make_unique<TriangularSolves>(parts.device, Permutation(parts.device, ordering),
+                                            std::move(lower), std::move(upper), parts.arithmetic);
+}
+
 std::unique_ptr<Preconditioner> makeIncomplete(const PreconditionerParts& parts, bool isCholesky) {
   const SparseMatrix a = scaledMatrix(parts.a);
   const Ordering ordering = orderingNamed(parts.settings.ordering, a);
-  const SparseMatrix p = permuted(a, ordering);
+  const SparseMatrix p = permuted(a, ordering.order);
   SparseMatrix factors = p;
   std::int64_t failed = factorise(factors, isCholesky);
   if (failed >= 0 && !isCholesky)
     throw sk::Error(
         fmt::format("the preconditioner 'ilu0' has a pivot of 0 in row {}; take the preconditioner 'none'",
-                    ordering.order[static_cast<std::size_t>(failed)] + 1));
+                    parts.a.numberOf(ordering.order[static_cast<std::size_t>(failed)])));
   // T. Manteuffel, "An incomplete factorization technique for positive definite linear systems" (1980): a larger diagonal has pivots above 0.
   for (double shift = 1e-3; failed >= 0; shift *= 4.0) {
     if (shift > 1.0)
       throw sk::Error(fmt::format(
           "the preconditioner 'ic0' has no positive pivot in row {}, even with a diagonal of twice the size: "
           "the matrix is not positive definite; take the solver 'minres' and the preconditioner 'none'",
-          ordering.order[static_cast<std::size_t>(failed)] + 1));
+          parts.a.numberOf(ordering.order[static_cast<std::size_t>(failed)])));
     factors = p;
     for (std::size_t i = 0; i < static_cast<std::size_t>(p.rows); ++i)
       for (auto k = static_cast<std::size_t>(p.starts[i]); k < static_cast<std::size_t>(p.starts[i + 1]); ++k)
         if (p.column[k] == static_cast<std::int32_t>(i)) factors.value[k] *= 1.0 + shift;
     failed = factorise(factors, true);
   }
-  GroupedRows lower(parts.device, factors, ordering, Part::Lower,
-                    std::vector<double>(static_cast<std::size_t>(a.rows), 1.0), parts.arithmetic);
-  std::vector<GroupedRows> upper;
-  upper.emplace_back(parts.device, factors, ordering, Part::Upper, RowsRelaxer::inverses(factors),
-                     parts.arithmetic);
-  return std::make_unique<TriangularSolves>(parts.device, Permutation(parts.device, ordering),
-                                            std::move(lower), std::move(upper), parts.arithmetic);
+  return makeSolves(parts, factors, ordering);
+}
+
+/// Rows depend on others by the fill, too: groups of rows that a device computes at once are the levels of the factors themselves.
+std::unique_ptr<Preconditioner> makeByThreshold(const PreconditionerParts& parts) {
+  const PreconditionerSettings& settings = parts.settings;
+  if (!(settings.drop >= 0.0 && settings.drop < 1.0))
+    throw sk::Error(fmt::format("the drop tolerance {} is not from 0 to below 1", settings.drop));
+  if (settings.fill < 0) throw sk::Error(fmt::format("the fill {} is below 0", settings.fill));
+  const SparseMatrix a = scaledMatrix(parts.a);
+  const Ordering first = orderingNamed(settings.ordering, a);
+  SparseMatrix factors;
+  const std::int64_t failed =
+      factoriseByThreshold(permuted(a, first.order), {.drop = settings.drop, .fill = settings.fill}, factors);
+  if (failed >= 0)
+    throw sk::Error(
+        fmt::format("the preconditioner 'ilut' has a pivot of 0 in row {}; take the preconditioner 'none'",
+                    parts.a.numberOf(first.order[static_cast<std::size_t>(failed)])));
+  Ordering ordering = levels(factors);
+  factors = permuted(factors, ordering.order);
+  for (std::int32_t& row : ordering.order) row = first.order[static_cast<std::size_t>(row)];
+  return makeSolves(parts, factors, ordering);
 }
 
 }  // namespace
@@ -266,14 +293,14 @@ std::unique_ptr<Relaxer> makeRelaxer(sk::Device& device, Matrix& matrix, const O
         "colours; take another solver, or one process");
   const SparseMatrix scaledA = scaledMatrix(a);
   const Ordering ordering = colours(scaledA);
-  return std::make_unique<RowsRelaxer>(device, permuted(scaledA, ordering), ordering, arithmetic);
+  return std::make_unique<RowsRelaxer>(device, permuted(scaledA, ordering.order), ordering, arithmetic);
 }
 
 void checkDiagonal(const Operator& a, std::string_view what, std::string_view instead) {
   const auto zero = std::ranges::find(a.diagonal, 0.0);
   if (zero != a.diagonal.end())
     throw sk::Error(fmt::format("row {} has no diagonal entry, or 0, and {} divides by it; take {}",
-                                zero - a.diagonal.begin() + 1, what, instead));
+                                a.numberOf(zero - a.diagonal.begin()), what, instead));
 }
 
 std::unique_ptr<Preconditioner> makeSor(const PreconditionerParts& parts) {
@@ -284,6 +311,9 @@ std::unique_ptr<Preconditioner> makeSsor(const PreconditionerParts& parts) {
 }
 std::unique_ptr<Preconditioner> makeIncompleteCholesky(const PreconditionerParts& parts) {
   return makeIncomplete(parts, true);
+}
+std::unique_ptr<Preconditioner> makeThresholdLu(const PreconditionerParts& parts) {
+  return makeByThreshold(parts);
 }
 std::unique_ptr<Preconditioner> makeIncompleteLu(const PreconditionerParts& parts) {
   return makeIncomplete(parts, false);

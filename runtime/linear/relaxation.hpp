@@ -40,5 +40,6 @@ std::unique_ptr<Preconditioner> makeSor(const PreconditionerParts& parts);
 std::unique_ptr<Preconditioner> makeSsor(const PreconditionerParts& parts);
 std::unique_ptr<Preconditioner> makeIncompleteCholesky(const PreconditionerParts& parts);
 std::unique_ptr<Preconditioner> makeIncompleteLu(const PreconditionerParts& parts);
+std::unique_ptr<Preconditioner> makeThresholdLu(const PreconditionerParts& parts);
 
 }  // namespace sk::linear

@@ -193,6 +193,13 @@ std::string_view nameOf(Outcome outcome) {
   return "";
 }
 
+void checkFinite(std::span<const double> b) {
+  const auto wrong = std::ranges::find_if(b, [](double v) { return !std::isfinite(v); });
+  if (wrong != b.end())
+    throw sk::Error(fmt::format("element {} of the right-hand side is {}, which is not finite",
+                                wrong - b.begin() + 1, *wrong));
+}
+
 Solution solve(Method& method, const Operator& a, std::span<const double> b, const Arithmetic& arithmetic,
                const SolveSettings& settings) {
   const std::unique_ptr<Residual> residual = makeResidual(method.device(), method.matrix(), a, arithmetic);
@@ -205,10 +212,7 @@ Solution solve(Method& method, Residual& residual, const Operator& a, std::span<
     throw sk::Error(
         fmt::format("the right-hand side has {} elements, and the matrix {} rows", b.size(), a.size),
         sk::Error::Kind::Shape);
-  const auto wrong = std::ranges::find_if(b, [](double v) { return !std::isfinite(v); });
-  if (wrong != b.end())
-    throw sk::Error(fmt::format("element {} of the right-hand side is {}, which is not finite",
-                                wrong - b.begin() + 1, *wrong));
+  checkFinite(b);
   return Refinement(method, residual, a, b, arithmetic, settings).run();
 }
 

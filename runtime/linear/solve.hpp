@@ -30,6 +30,9 @@ struct SolveSettings {
   std::function<void(std::int64_t, double)> progress = {};
 };
 
+/// Throws sk::Error, with its place, if an element of a right-hand side is not finite.
+void checkFinite(std::span<const double> b);
+
 class Residual;
 
 /// `method` belongs to a matrix that is a.scale * A. Throws sk::Error if b has another size than A or is not finite.

@@ -12,6 +12,8 @@
 #include "checks.hpp"
 #include "memory.hpp"
 #include "operator_matrix.hpp"
+#include "ordering.hpp"
+#include "reordering.hpp"
 #include "residual.hpp"
 #include "solve.hpp"
 #include "text/named.hpp"
@@ -29,6 +31,9 @@ void checkOptions(const Options& o) {
   require(o.most >= 0, "most", o.most, "0 or more iterations");
   require(o.restart >= 1 && o.restart <= 1000, "restart", o.restart, "from 1 to 1000 steps");
   require(o.omega > 0.0 && o.omega < 2.0, "omega", o.omega, "between 0 and 2");
+  require(o.drop >= 0.0 && o.drop < 1.0, "drop", o.drop, "from 0 to below 1");
+  require(o.fill >= 0 && o.fill <= 100000, "fill", o.fill, "from 0 to 100000 entries");
+  require(o.reorder == "none" || o.reorder == "rcm", "reorder", o.reorder, "none or rcm");
   require(o.sweepsBefore >= 0 && o.sweepsBefore <= 100, "sweepsBefore", o.sweepsBefore, "from 0 to 100");
   require(o.sweepsAfter >= 0 && o.sweepsAfter <= 100, "sweepsAfter", o.sweepsAfter, "from 0 to 100");
   require(o.ordering == "colours" || o.ordering == "levels", "ordering", o.ordering, "colours or levels");
@@ -41,6 +46,12 @@ decltype(auto) withinMemory(std::string_view what, Fn&& fn) {
   } catch (const std::bad_alloc&) {
     throw sk::Error(fmt::format("the host has not enough memory for {}", what), sk::Error::Kind::Memory);
   }
+}
+
+void requireOwnOrder(const Options& o) {
+  if (o.reorder != "none")
+    throw sk::Error(
+        "a grid keeps the order of its elements; leave out 'reorder', or give its entries by assemble()");
 }
 
 template <class Rows>
@@ -86,6 +97,8 @@ struct Solver::Parts {
     applied = preconditioner.make(device, *matrix, a, arithmetic,
                                   {.omega = options.omega,
                                    .ordering = options.ordering,
+                                   .drop = options.drop,
+                                   .fill = options.fill,
                                    .before = options.sweepsBefore,
                                    .after = options.sweepsAfter});
     iterations = method.make(device, *matrix, applied.get(), arithmetic,
@@ -99,6 +112,12 @@ struct Solver::Parts {
                                  .most = options.most,
                                  .refines = options.refines,
                                  .progress = options.progress};
+    if (a.size > 0 && static_cast<std::int64_t>(b.size()) == a.size && !order.empty()) {
+      checkFinite(b);
+      Solution s = linear::solve(*iterations, *residual, a, inOrder(b, order), arithmetic, settings);
+      s.x = inFormerOrder(s.x, order);
+      return s;
+    }
     if (a.size > 0) return linear::solve(*iterations, *residual, a, b, arithmetic, settings);
     if (!b.empty())
       throw sk::Error(fmt::format("the right-hand side has {} elements, and the matrix 0 rows", b.size()),
@@ -113,16 +132,21 @@ struct Solver::Parts {
       throw sk::Error(
           "an update takes other values of a sparse matrix, and this one is of a grid; make another solver");
     checkStructure(values);
-    if (values.rows != sparse.rows || values.columns != sparse.columns || values.starts != sparse.starts ||
-        values.column != sparse.column)
+    const SparseMatrix& former = order.empty() ? sparse : pattern;
+    if (values.rows != former.rows || values.columns != former.columns || values.starts != former.starts ||
+        values.column != former.column)
       throw sk::Error(
           "an update has its entries where the solver's matrix has them; make another solver for other "
           "places",
           sk::Error::Kind::Shape);
     if (a.size == 0) return;
     isBroken = true;
-    sparse.value = values.value;
+    if (order.empty())
+      sparse.value = values.value;
+    else
+      sparse = permuted(values, order);
     a = operatorOf(sparse);
+    a.order = order;
     matrix->update(scaled(sparse, a.scale));
     const bool followsMatrix = method.isUpdatable && (applied == nullptr || applied->isUpdatable());
     if (followsMatrix && iterations != nullptr) {
@@ -141,6 +165,8 @@ struct Solver::Parts {
   const PreconditionerKind& preconditioner;
   Arithmetic arithmetic;
   SparseMatrix sparse;  ///< of grids, only if the coefficients vary
+  std::vector<std::int32_t> order;  ///< of the unknowns; empty: their own
+  SparseMatrix pattern;  ///< before it was reordered, without values
   VaryingStencil varying;
   Operator a;
   std::unique_ptr<Matrix> matrix;
@@ -155,8 +181,14 @@ Solver::Solver(sk::Device& device, SparseMatrix a, const Options& options)
     : parts_(std::make_unique<Parts>(device, options)) {
   withinMemory("a solver of sparse equations", [&] {
     checkStructure(a);
-    parts_->sparse = std::move(a);
+    if (a.rows == a.columns) parts_->order = reorderingNamed(options.reorder, a);
+    parts_->sparse = parts_->order.empty() ? std::move(a) : permuted(a, parts_->order);
+    if (!parts_->order.empty()) {
+      parts_->pattern = std::move(a);
+      parts_->pattern.value.clear();
+    }
     parts_->a = operatorOf(parts_->sparse);
+    parts_->a.order = parts_->order;
     parts_->makeAll();
   });
 }
@@ -165,6 +197,7 @@ Solver::Solver(sk::Device& device, const Stencil& a, const Options& options)
     : parts_(std::make_unique<Parts>(device, options)) {
   withinMemory("a solver on a grid", [&] {
     checkGrid(a);
+    requireOwnOrder(options);
     parts_->isOfGrid = true;
     parts_->a = operatorOf(a);
     parts_->makeAll();
@@ -175,6 +208,7 @@ Solver::Solver(sk::Device& device, VaryingStencil a, const Options& options)
     : parts_(std::make_unique<Parts>(device, options)) {
   withinMemory("a solver on a grid", [&] {
     checkGrid(a);
+    requireOwnOrder(options);
     parts_->isOfGrid = true;
     parts_->varying = std::move(a);
     parts_->sparse = assemble(parts_->varying);

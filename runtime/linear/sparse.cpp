@@ -151,7 +151,10 @@ std::vector<double> diagonal(const SparseMatrix& a) {
   return d;
 }
 
-std::string asymmetry(const SparseMatrix& a) {
+std::string asymmetry(const SparseMatrix& a, std::span<const std::int32_t> order) {
+  const auto numberOf = [&](std::size_t i) {
+    return (order.empty() ? static_cast<std::int64_t>(i) : order[i]) + 1;
+  };
   if (a.rows != a.columns) return fmt::format("it has {} rows and {} columns", a.rows, a.columns);
   const SparseMatrix t = transpose(a);
   for (std::size_t i = 0; i < static_cast<std::size_t>(a.rows); ++i) {
@@ -164,9 +167,10 @@ std::string asymmetry(const SparseMatrix& a) {
       const std::int32_t column = std::min(inA, inT);
       const double here = inA == column ? a.value[k++] : 0.0;
       const double there = inT == column ? t.value[m++] : 0.0;
-      if (here != there)
-        return fmt::format("entry ({}, {}) is {}, and ({}, {}) is {}", i + 1, column + 1, here, column + 1,
-                           i + 1, there);
+      if (here != there) {
+        const std::int64_t row = numberOf(i), other = numberOf(static_cast<std::size_t>(column));
+        return fmt::format("entry ({}, {}) is {}, and ({}, {}) is {}", row, other, here, other, row, there);
+      }
     }
   }
   return "";

@@ -20,8 +20,8 @@ double infinityNorm(const SparseMatrix& a);
 /// The diagonal; 0 where there is no entry.
 std::vector<double> diagonal(const SparseMatrix& a);
 
-/// A place where a matrix differs from its transpose, counted from 1 as in files, for messages; "" if it is symmetric.
-std::string asymmetry(const SparseMatrix& a);
+/// A place where a matrix differs from its transpose, counted from 1 as in files, for messages; "" if it is symmetric. Row i is called order[i], if there is an order.
+std::string asymmetry(const SparseMatrix& a, std::span<const std::int32_t> order = {});
 /// "row 17", counted from 0, of the first row whose diagonal entry is 0 or missing; "" if there is none.
 std::string zeroDiagonal(const SparseMatrix& a);
 

@@ -65,6 +65,9 @@ std::string textOf(const Account& account, const Solution& solution) {
   for (std::size_t i = 0; i < account.costs.size(); ++i)
     fmt::format_to(out, "{}{} {:.3g} KB", i == 0 ? "; estimated cost of a product: " : ", ",
                    account.costs[i].layout, account.costs[i].bytes / 1000.0);
+  if (account.bandwidths)
+    fmt::format_to(out, "\nentries at most {} from the diagonal, {} before the unknowns were reordered",
+                   account.bandwidths->after, account.bandwidths->before);
   if (account.hierarchy) {
     std::string sizes;
     for (const HierarchyAccount::Level& level : account.hierarchy->levels)
@@ -98,6 +101,8 @@ std::string jsonOf(const Account& account, const Solution& solution) {
   json["layout"] = account.layout;
   if (!account.offsetBits.empty()) json["offset_bits"] = account.offsetBits;
   json["fill"] = account.fill();
+  if (account.bandwidths)
+    json["bandwidth"] = {{"before", account.bandwidths->before}, {"after", account.bandwidths->after}};
   if (!account.factors.empty()) {
     json["factors"] = account.factors;
     json["factor_entries"] = account.factorEntries;

@@ -39,7 +39,9 @@ struct Settings {
   std::filesystem::path rightHandSide, solution, json, svg;
   std::string solver = "cg", preconditioner = "jacobi", layout = "auto";
   std::string precision = "single", storage = "single", entries, accumulate = "compensated";
-  std::string ordering = "colours";
+  std::string ordering = "colours", reorder = "none";
+  double drop = 1e-3;
+  int fill = 20;
   int restart = 30;
   double omega = 1.0;
   std::vector<int> sweeps{1, 1};
@@ -102,9 +104,21 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->capture_default_str();
   cli.add_option(
          "--ordering", s.ordering,
-         "of the rows for sor, ssor, ic0 and ilu0:\n  colours     few groups of rows, each of which is "
+         "of the rows for sor, ssor, ic0, ilu0 and ilut:\n  colours     few groups of rows, each of which is "
          "a call\n  levels      the order of the matrix, which needs fewer iterations")
       ->check(CLI::IsMember({"colours", "levels"}))
+      ->capture_default_str();
+  cli.add_option(
+         "--reorder", s.reorder,
+         "of the unknowns of a file:\n  none        as they are\n  rcm         reverse Cuthill-McKee, which "
+         "brings entries near the diagonal")
+      ->check(CLI::IsMember({"none", "rcm"}))
+      ->capture_default_str();
+  cli.add_option("--drop", s.drop,
+                 "of ilut: factors below this, and entries below this part of the norm of a row, are dropped")
+      ->capture_default_str();
+  cli.add_option("--fill", s.fill, "of ilut: the most entries that a row of each factor keeps")
+      ->check(CLI::Range(0, 100000))
       ->capture_default_str();
   cli.add_option(
          "--layout", s.layout,
@@ -193,8 +207,9 @@ std::string adviceFor(const linear::MethodKind& method, const linear::Preconditi
   return "";
 }
 
-void writeFiles(const Settings& s, const linear::Account& account, const linear::Solution& solution) {
-  if (!s.solution.empty()) linear::writeMatrixMarketVector(s.solution, solution.x);
+void writeFiles(const Settings& s, const linear::System& system, const linear::Account& account,
+                const linear::Solution& solution) {
+  if (!s.solution.empty()) linear::writeMatrixMarketVector(s.solution, system.inOwnOrder(solution.x));
   if (!s.svg.empty())
     examples::writeFile(s.svg, linear::svgChart(solution.history, s.solve.tolerance, account.system));
   if (!s.json.empty()) examples::writeFile(s.json, linear::jsonOf(account, solution));
@@ -247,7 +262,7 @@ void solveDirectly(examples::Application& app, const Settings& s, const linear::
   fmt::print("{} with {} entries for {}\nresidual {:.3g} (known to {:.1g}), backward error {:.3g}\n",
              account.factors, account.factorEntries, account.entries, solution.residualTrue,
              solution.residualError, solution.backwardError);
-  writeFiles(s, account, solution);
+  writeFiles(s, system, account, solution);
   verify(app, s, solution);
 }
 
@@ -271,7 +286,8 @@ void solveSystem(examples::Application& app, Settings& s) {
   const linear::PreconditionerKind& preconditionerKind =
       examples::rowNamed(linear::preconditionerKinds(), s.preconditioner, "preconditioner");
 
-  const linear::System system(s.matrix, s.rightHandSide);
+  linear::System system(s.matrix, s.rightHandSide);
+  system.reorder(s.reorder);
   const linear::Operator& a = system.matrix();
   linear::checkChoice(methodKind, preconditionerKind, s.sweeps[0], s.sweeps[1]);
   if (system.duplicates() > 0)
@@ -287,6 +303,7 @@ void solveSystem(examples::Application& app, Settings& s) {
   account.system = system.description();
   account.unknowns = a.size;
   account.entries = linear::entriesOf(a);
+  account.bandwidths = system.bandwidths();
   if (s.isDirect && !isStudy) return solveDirectly(app, s, system, account);
   checkDivisible(app.ranks(), a, preconditionerKind);
   const examples::OwnedSpace owned(app.ranks(), app.device(), linear::shapeOf(a), examples::Ends::Joined);
@@ -309,9 +326,14 @@ void solveSystem(examples::Application& app, Settings& s) {
     const std::unique_ptr<linear::Matrix> matrix =
         linear::makeMatrix(space, a, s.layout, arithmetic, &account.costs);
     linear::checkSymmetry(device, *matrix, arithmetic, methodKind, preconditionerKind, a);
-    const std::unique_ptr<linear::Preconditioner> preconditioner = preconditionerKind.make(
-        device, *matrix, a, arithmetic,
-        {.omega = s.omega, .ordering = s.ordering, .before = s.sweeps[0], .after = s.sweeps[1]});
+    const std::unique_ptr<linear::Preconditioner> preconditioner =
+        preconditionerKind.make(device, *matrix, a, arithmetic,
+                                {.omega = s.omega,
+                                 .ordering = s.ordering,
+                                 .drop = s.drop,
+                                 .fill = s.fill,
+                                 .before = s.sweeps[0],
+                                 .after = s.sweeps[1]});
     const std::unique_ptr<linear::Method> method = methodKind.make(
         device, *matrix, preconditioner.get(), arithmetic, {.restart = s.restart, .omega = s.omega, .a = &a});
     if (preconditioner && preconditioner->hierarchy() != nullptr)
@@ -337,7 +359,7 @@ void solveSystem(examples::Application& app, Settings& s) {
       !advice.empty())
     fmt::print("{}\n", advice);
   if (s.isJudged) judge(system, solution, account);
-  if (space.isFirst()) writeFiles(s, account, solution);
+  if (space.isFirst()) writeFiles(s, system, account, solution);
   verify(app, s, solution);
 }
 

@@ -12,6 +12,7 @@
 
 #include "checks.hpp"
 #include "compact.hpp"
+#include "ordering.hpp"
 #include "support/named.hpp"
 #include "varying.hpp"
 
@@ -187,6 +188,19 @@ System::System(const std::string& matrix, const std::filesystem::path& rightHand
   b_ = !rightHandSide.empty()
            ? readMatrixMarketVector(rightHandSide)
            : operator_.multiply(isSingularGrid ? uniformNoise(n) : std::vector<double>(n, 1.0));
+}
+
+void System::reorder(std::string_view name) {
+  if (name == "none") return;
+  if (operator_.isGrid())
+    throw sk::Error("a grid keeps the order of its elements; --reorder is for matrices of files");
+  order_ = reorderingNamed(name, sparse_);
+  bandwidths_ = {.before = bandwidth(sparse_), .after = 0};
+  sparse_ = permuted(sparse_, order_);
+  bandwidths_->after = bandwidth(sparse_);
+  operator_ = operatorOf(sparse_);
+  operator_.order = order_;
+  if (b_.size() == order_.size()) b_ = inOrder(b_, order_);
 }
 
 }  // namespace linear

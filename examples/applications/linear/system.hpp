@@ -6,10 +6,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "operator_matrix.hpp"
+#include "reordering.hpp"
 #include "varying.hpp"
 
 namespace linear {
@@ -33,10 +36,22 @@ class System {
   std::int64_t duplicates() const { return duplicates_; }
   std::string description() const { return description_; }
 
+  /// Changes the order of the unknowns: "none" or "rcm" (reordering.hpp). Throws sk::Error for a grid, whose order is its own.
+  void reorder(std::string_view name);
+  /// A vector of the system in the order of its file.
+  std::vector<double> inOwnOrder(std::span<const double> x) const { return inFormerOrder(x, order_); }
+  /// The largest distance of an entry from the diagonal before reorder(), and after it; nothing without it.
+  struct Bandwidths {
+    std::int64_t before = 0, after = 0;
+  };
+  const std::optional<Bandwidths>& bandwidths() const { return bandwidths_; }
+
  private:
   std::optional<Stencil> stencil_;
   std::optional<VaryingStencil> varying_;
   SparseMatrix sparse_;
+  std::vector<std::int32_t> order_;
+  std::optional<Bandwidths> bandwidths_;
   Operator operator_;
   std::vector<double> b_;
   std::int64_t duplicates_ = 0;
