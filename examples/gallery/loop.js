@@ -7,7 +7,7 @@ const budget = 12; // ms of the device in a frame
 const measuredEvery = 24;
 
 export class Loop {
-  /** `wanted`: steps in a frame where there is time for them. `frames`: ends after so many, without adapting; null goes on. */
+  /** `step` and `draw` may return promises. `wanted`: steps in a frame where there is time for them. `frames`: ends after so many, without adapting; null goes on. */
   constructor({ step, draw, fence, show, fail, wanted, frames }) {
     Object.assign(this, { step, draw, fence, show, fail, wanted, frames });
     this.steps = frames === null ? Math.min(wanted, 2) : wanted;
@@ -52,12 +52,12 @@ export class Loop {
     const isMeasured = this.count % measuredEvery === 3;
     const { steps } = this;
     const begin = performance.now();
-    for (let i = 0; i < steps; ++i) this.step();
+    for (let i = 0; i < steps; ++i) await this.step();
     if (isMeasured) {
       await this.fence();
       this.adapt((performance.now() - begin) / steps);
     }
-    this.draw();
+    await this.draw();
     await this.fence();
     ++this.count;
     const now = performance.now();

@@ -74,6 +74,7 @@ class Page {
     this.device.onrestored = () => this.restartAll(); // streams are empty then
     at('device').textContent = `Running on ${this.device.info().renderer}`;
     this.fenceStream = this.device.stream('float', [1]);
+    this.prepared = await this.spec.prepare?.(this.device, this.settings.size ?? this.spec.width);
     this.makeSimulation();
     this.loop = new Loop({
       step: () => this.simulation.step(),
@@ -108,6 +109,7 @@ class Page {
       device: this.device,
       canvas,
       page: this,
+      prepared: this.prepared,
       controls: this.controls,
       random: randomFrom(settings.seed ?? 1),
       tell: this.tell,
@@ -121,9 +123,10 @@ class Page {
     if (this.loop !== undefined && !this.loop.isPlaying) this.guard(() => this.simulation.draw());
   }
 
+  /** For work that may return a promise. */
   guard(work) {
     try {
-      work();
+      Promise.resolve(work()).catch((error) => this.fail(error));
     } catch (error) {
       this.fail(error);
     }

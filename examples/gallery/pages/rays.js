@@ -6,14 +6,10 @@ import { openPage } from '../page.js';
 import { sceneOf } from '../rays_scene.js';
 import { collect } from '../sk/gallery/collect.sk.js';
 import { rays_kernels as rays } from '../sk/rays/path.sk.js';
+import { add, cross, scaled, unit } from '../vectors.js';
 
 const sobol = 1; // of sampling.sk
 const enough = 4000; // samples of a pixel
-
-const add = (a, b, by = 1) => a.map((x, i) => x + by * b[i]);
-const scaled = (a, by) => a.map((x) => x * by);
-const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
-const unit = (a) => scaled(a, 1 / Math.hypot(...a));
 
 /** A camera that looks at `to` from a direction; see viewOf() in examples/applications/rays/camera.cpp. */
 function viewOf({ turn, height, distance }, [rows, width], lens) {
