@@ -18,8 +18,8 @@
 #include "call_details.hpp"
 #include "device/stream_state.hpp"
 #include "domain_state.hpp"
-#include "npy.hpp"
 #include "sk/error.hpp"
+#include "support/npy_header.hpp"
 
 namespace sk {
 
@@ -162,7 +162,8 @@ class SharedFile {
       const std::size_t begin = std::min(piece * most, count);
       const int wanted = static_cast<int>(std::min(most, count - begin));
       MPI_Status status;
-      const int result = transfer(handle_, bytes + begin * elementBytes, wanted, view->element(), &status);
+      const int result =
+          transfer(handle_, bytes + begin * elementBytes, wanted, view->element(), &status);
       int done = 0;
       if (result == MPI_SUCCESS) MPI_Get_count(&status, view->element(), &done);
       if (refusal) continue;
@@ -249,28 +250,28 @@ void finish(const std::string& partial, const std::string& file, std::size_t byt
 
 /// Why the elements of a file cannot be those of the stream; empty if they can.
 /// `bytes` are those of all elements; sets the `offset` at which they begin.
-std::string mismatch(const std::string& file, const mpi::NpyArray& wanted, std::size_t bytes,
+std::string mismatch(const std::string& file, const npy::NpyArray& wanted, std::size_t bytes,
                      std::size_t& offset) {
   std::ifstream in(file, std::ios::binary);
   if (!in) return fmt::format("cannot read '{}': {}", file, std::strerror(errno));
-  std::string header(mpi::npyPrefix, '\0');
+  std::string header(npy::npyPrefix, '\0');
   in.read(header.data(), static_cast<std::streamsize>(header.size()));
-  offset = mpi::npyHeaderLength(header.substr(0, static_cast<std::size_t>(in.gcount())));
+  offset = npy::npyHeaderLength(header.substr(0, static_cast<std::size_t>(in.gcount())));
   constexpr std::size_t longest = 1 << 20;
-  if (offset <= mpi::npyPrefix || offset > longest)
+  if (offset <= npy::npyPrefix || offset > longest)
     return fmt::format("'{}' is no .npy file; DomainStream::save writes one", file);
   header.resize(offset);
-  in.read(header.data() + mpi::npyPrefix, static_cast<std::streamsize>(offset - mpi::npyPrefix));
+  in.read(header.data() + npy::npyPrefix, static_cast<std::streamsize>(offset - npy::npyPrefix));
   if (!in) return fmt::format("'{}' ends in its header", file);
-  mpi::NpyArray array;
-  if (const std::string wrong = mpi::parseNpyHeader(header, array); !wrong.empty())
+  npy::NpyArray array;
+  if (const std::string wrong = npy::parseNpyHeader(header, array); !wrong.empty())
     return fmt::format("'{}': {}", file, wrong);
   if (array.type != wanted.type)
     return fmt::format("'{}' has elements of type {}, but the stream's are {}", file, array.type,
                        wanted.type);
   if (array.extents != wanted.extents) {
-    return fmt::format("'{}' has shape {}, but the stream has {}", file, mpi::npyShape(array.extents),
-                       mpi::npyShape(wanted.extents));
+    return fmt::format("'{}' has shape {}, but the stream has {}", file, npy::npyShape(array.extents),
+                       npy::npyShape(wanted.extents));
   }
   in.seekg(0, std::ios::end);
   const auto held = static_cast<std::uint64_t>(in.tellg());
@@ -292,8 +293,8 @@ void detail::save(DomainStreamState* stream, const std::string& file) {
   std::vector<std::byte> bytes;
   agreement.count();
   agreement.together(mpi::StreamCall("save", *stream).with("file", file).call(), [&] {
-    size = mpi::elementBytes(stream->element, hasDoubles(own));
-    header = mpi::npyHeader(mpi::npyArray(stream->element, domain.parts.whole(), hasDoubles(own)));
+    size = npy::elementBytes(stream->element, hasDoubles(own));
+    header = npy::npyHeader(npy::npyArray(stream->element, domain.parts.whole(), hasDoubles(own)));
     bytes = bytesOfOwn(own, size);
     partial = file + ".partial";
   });
@@ -325,8 +326,8 @@ void detail::load(DomainStreamState* stream, const std::string& file) {
   std::vector<double> values;
   agreement.count();
   agreement.together(mpi::StreamCall("load", *stream).with("file", file).call(), [&] {
-    size = mpi::elementBytes(stream->element, hasDoubles(own));
-    const mpi::NpyArray wanted = mpi::npyArray(stream->element, domain.parts.whole(), hasDoubles(own));
+    size = npy::elementBytes(stream->element, hasDoubles(own));
+    const npy::NpyArray wanted = npy::npyArray(stream->element, domain.parts.whole(), hasDoubles(own));
     if (domain.rank == 0) {
       const std::string wrong = mismatch(file, wanted, sizeOf(domain.parts.whole()) * size, offset);
       if (!wrong.empty()) failForFile(wrong);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "npy.hpp"
+#include "support/npy_header.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -9,7 +9,7 @@
 #include "sk/error.hpp"
 #include "sk/scalar_bytes.hpp"
 
-namespace sk::mpi {
+namespace sk::npy {
 
 namespace {
 
@@ -174,4 +174,4 @@ std::string parseNpyHeader(std::string_view header, NpyArray& array) {
   return {};
 }
 
-}  // namespace sk::mpi
+}  // namespace sk::npy

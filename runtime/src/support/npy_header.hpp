@@ -11,7 +11,7 @@
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
 
-namespace sk::mpi {
+namespace sk::npy {
 
 /// An array as a header describes it.
 struct NpyArray {
@@ -41,4 +41,4 @@ std::string parseNpyHeader(std::string_view header, NpyArray& array);
 /// "(512, 512)", as NumPy writes it.
 std::string npyShape(const std::vector<std::int64_t>& extents);
 
-}  // namespace sk::mpi
+}  // namespace sk::npy
