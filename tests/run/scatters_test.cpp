@@ -255,6 +255,23 @@ TEST_CASE("as many scatters as an element says") {
   });
 }
 
+TEST_CASE("as many scatters as the outputs are long") {
+  onDrawnLayouts([](sk::Device& device) {
+    auto rows = device.stream<int>({3});
+    auto picture = device.stream<std::uint32_t>({5, 37});
+    auto columns = device.stream<int>({11});
+    rows.write(std::vector<int>{0, 2, 4});
+    picture.fill(7);
+    columns.fill(1);
+    fillRow(rows, picture, columns);
+    std::vector<std::uint32_t> expected(5 * 37, 7);
+    for (const std::size_t row : {0, 2, 4})
+      std::fill_n(expected.begin() + static_cast<std::ptrdiff_t>(row * 37), 37, 8u);
+    CHECK(picture.read() == expected);
+    CHECK(columns.read() == std::vector<int>(11, 1 + 3 * 5));
+  });
+}
+
 TEST_CASE("reading and writing one stream, and nothing at all") {
   onDrawnLayouts([](sk::Device& device) {
     for (const std::int64_t size : sizes) {

@@ -125,6 +125,7 @@ class AppendCaller implements ListCaller {
       const program = this.counting.program(device, key, kernel, call.specs);
       device.useProgram(program);
       bindOperands(device, program, call.values, planes, lies, elements, shape);
+      setTargets(program, call);
       program.domain.set(domain);
       device.framebufferOf(drawn);
       device.drawRects(domain.draws);
@@ -171,7 +172,7 @@ class AppendCaller implements ListCaller {
     const program = this.sources.get(list)!.program(device, key, kernel, call.specs);
     device.useProgram(program);
     bindOperands(device, program, call.values, begun.planes, lies, elements, shape);
-    for (const { index, layout: uniforms } of program.targets) uniforms!.set(call.streams[index]!.layout);
+    setTargets(program, call);
     begun.pyramids.get(list)?.bind(program, program.units);
     program.domain.set({ ...layout, extent: domain.extent, stride: stridesOf(domain.extent) });
     device.framebufferOf(planes);
@@ -234,6 +235,11 @@ class AppendCaller implements ListCaller {
 }
 
 export const lists: Features['lists'] = (kernel, file) => new AppendCaller(kernel, file);
+
+/** Gives a program the layouts of scatter outputs: their shapes are what extentof() says. */
+function setTargets(program: Program, call: Checked): void {
+  for (const { index, layout } of program.targets) layout!.set(call.streams[index]!.layout);
+}
 
 /** Rows of a list's texture. Few heights occur, so that lists of many lengths share textures. */
 function roomFor(height: number, device: Device): number {

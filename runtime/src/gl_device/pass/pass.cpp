@@ -179,9 +179,8 @@ void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel
   device.bound().program(program.program.name());
   bindOperands(device, program, kernel, operands, stacks);
   program.domain.set(device.bound(), domain);
-  if (task.work == assemble::Work::List) {
-    program.target.set(device.bound(), operands[task.appendOutput].regionLayout);
-  }
+  for (KernelProgram::Target& target : program.targets)
+    target.uniforms.set(device.bound(), operands[target.parameter].regionLayout);
   const Rect elements{0, 0, domain.extent[0], domain.extent[1]};
   const bool runsByElement =
       program.stage == assemble::Stage::Compute && assemble::domainOf(domain) == assemble::Domain::Strided;

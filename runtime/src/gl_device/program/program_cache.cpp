@@ -164,8 +164,10 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
     read.sampler =
         isFiltered ? device_.passes().samplers().linear(kernel.parameters[read.parameter].boundary) : 0;
   }
+  if (variant.task.work == assemble::Work::Counts || variant.task.work == assemble::Work::List)
+    findTargetUniforms(*result, kernel);
   if (variant.task.work == assemble::Work::List) {
-    findListUniforms(*result, kernel.parameters[variant.task.appendOutput]);
+    findListUniforms(*result);
   } else if (variant.task.work == assemble::Work::Groups || variant.task.work == assemble::Work::Owners) {
     findAppendUniforms(*result, kernel);
   } else if (variant.task.work == assemble::Work::Folds) {
@@ -268,8 +270,15 @@ void ProgramCache::findAppendUniforms(KernelProgram& result, const program::Kern
   }
 }
 
-void ProgramCache::findListUniforms(KernelProgram& result, const program::Parameter& appendOutput) {
-  result.target = LayoutUniforms(result.program, fmt::format("sk_*_{}", appendOutput.symbol));
+void ProgramCache::findTargetUniforms(KernelProgram& result, const program::Kernel& kernel) {
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const program::Parameter& parameter = kernel.parameters[i];
+    if (parameter.role != program::Role::Scatter) continue;
+    result.targets.push_back({i, LayoutUniforms(result.program, fmt::format("sk_*_{}", parameter.symbol))});
+  }
+}
+
+void ProgramCache::findListUniforms(KernelProgram& result) {
   result.pyramid.shift = {result.program.location("sk_tree_shift"), false};
   result.pyramid.levels = {result.program.location("sk_levels"), false};
   for (std::size_t level = 0; level < result.pyramid.rows.size(); ++level) {

@@ -84,6 +84,12 @@ struct KernelProgram {
     GLuint sampler = 0;  ///< a linear sampler for its only plane; 0: the nearest one
   };
 
+  /// A scatter output: its shape is what extentof() says, and the list's program needs its layout.
+  struct Target {
+    std::size_t parameter;
+    LayoutUniforms uniforms;
+  };
+
   struct Table {
     GLuint texture;
     gl::FieldUniform range;
@@ -116,7 +122,7 @@ struct KernelProgram {
   bool isPacked = false;  ///< a texel of the domain holds assemble::lanes elements
   LayoutUniforms domain;
   gl::IntUniform domainRow;  ///< layered domains: the first row of the drawn layer
-  LayoutUniforms target;  ///< of the scatter output whose list it writes
+  std::vector<Target> targets;  ///< of fragment programs that count or list what a kernel scatters
   std::vector<Append> appends;
   Pyramid pyramid;  ///< its textures are on the units from `units` on
   int units = 0;  ///< the number of units of reads, stacks and tables
@@ -190,7 +196,8 @@ class ProgramCache {
   void addWide(KernelProgram& result, std::size_t number, const std::string& name,
                std::span<const program::Field> parts) const;
   void findAppendUniforms(KernelProgram& result, const program::Kernel& kernel);
-  void findListUniforms(KernelProgram& result, const program::Parameter& appendOutput);
+  void findTargetUniforms(KernelProgram& result, const program::Kernel& kernel);
+  void findListUniforms(KernelProgram& result);
   bool isCompute() const { return profile_.stage == assemble::Stage::Compute; }
   ProgramBuild begin(const program::Kernel& kernel, const assemble::Variant& variant,
                      const program::Reduction* reduction = nullptr);
