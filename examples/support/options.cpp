@@ -56,6 +56,8 @@ const std::filesystem::path& SceneOptions::apply(SceneOverrides& overrides) cons
 RecordOptions::RecordOptions(CLI::App& cli, std::string_view columns) {
   cli.add_option("--output", output_, "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
   cli.add_option("--frames", frames_, "pictures, evenly spaced in steps")->check(CLI::Range(1, 99999));
+  cli.add_option("--fields", fields_,
+                 "fields of each frame for other programs: .vti (VTK), .npy (NumPy) or .raw (floats)");
   cli.add_option("--csv", csv_, fmt::format("a file for {}", columns));
 }
 
@@ -63,6 +65,7 @@ void RecordOptions::apply(Record& record) const {
   if (output_) record.output = *output_;
   if (frames_) record.frames = *frames_;
   if (!csv_.empty()) record.csv = csv_;
+  if (!fields_.empty()) record.fields = fields_;
 }
 
 StudyOptions::StudyOptions(Application& app, std::string_view purpose, std::span<const Study> studies)

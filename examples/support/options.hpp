@@ -63,7 +63,7 @@ class SceneOptions {
   std::optional<std::int64_t> steps_;
 };
 
-/// The options --output, --frames and --csv, which take precedence over the scene.
+/// The options --output, --frames, --fields and --csv, which take precedence over the scene.
 class RecordOptions {
  public:
   /// `columns` describes the file of --csv.
@@ -74,6 +74,7 @@ class RecordOptions {
   std::optional<std::filesystem::path> output_;
   std::optional<int> frames_;
   std::filesystem::path csv_;
+  std::filesystem::path fields_;
 };
 
 /// The options --study and --small of a program, and the study that they select.

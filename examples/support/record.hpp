@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "support/field_file.hpp"
 #include "support/film.hpp"
 #include "support/image.hpp"
 #include "support/scene_file.hpp"
@@ -23,32 +24,36 @@ struct Record {
   int frames = 1;  ///< 1: the end of the run; more: evenly spaced from its start to its end
   int framesPerSecond = 25;  ///< of a film
   std::filesystem::path csv{};  ///< empty: no numbers
+  std::filesystem::path
+      fields{};  ///< for saveGrid(), of each frame; FILE_0000.vti and so on if there are several; empty: none
 };
 
-/// Reads output, frames, frames_per_second and csv of the table [record]. `name` is the scene's; its picture is NAME.png by default.
+/// Reads output, frames, frames_per_second, csv and fields of the table [record]. `name` is the scene's; its picture is NAME.png by default.
 Record readRecord(const std::optional<SceneTable>& table, std::string_view name);
 
-/// The pictures of a run, in one PNG file or a film. A run that throws keeps the pictures that were added, in a complete file.
-class Pictures {
+/// The frames of a run: pictures in one PNG file or a film, and files of fields. A run that throws keeps the frames that were added, in
+/// complete files.
+class Frames {
  public:
-  /// Creates the film. Throws std::runtime_error if the file cannot be written. If `writes` is false, pictures are counted and
+  /// Creates the film. Throws std::runtime_error if a file cannot be written or has a wrong name. If `writes` is false, frames are counted and
   /// dropped, because another process writes them.
-  explicit Pictures(const Record& record, bool writes = true);
-  ~Pictures();
-  Pictures(const Pictures&) = delete;
-  Pictures& operator=(const Pictures&) = delete;
+  explicit Frames(const Record& record, bool writes = true);
+  ~Frames();
+  Frames(const Frames&) = delete;
+  Frames& operator=(const Frames&) = delete;
 
-  /// False if the record has no output; nothing may be added then.
-  bool isWanted() const { return !record_.output.empty(); }
-  /// Whether all pictures go to one film, or to numbered files.
-  bool isFilm() const { return film_ != nullptr; }
+  /// False if the record has neither an output nor fields; nothing may be added then.
+  bool isWanted() const { return !record_.output.empty() || !record_.fields.empty(); }
   /// Whether the start of the run is the first frame.
   bool wantsStart() const { return isWanted() && record_.frames > 1; }
   /// The step that the next frame shows, in a run of `steps` steps; `steps` after the last frame.
   std::int64_t nextStep(std::int64_t steps) const;
   /// Whether a frame is due after `step` of `steps` steps.
   bool isDue(std::int64_t step, std::int64_t steps) const;
-  void add(const Image& image);
+  /// Whether all pictures go to one film.
+  bool isFilm() const { return film_ != nullptr; }
+  /// Adds what the record wants: a picture, fields, or both. The functions are called for these alone.
+  void add(const std::function<Image()>& picture, const std::function<GridFile()>& fields);
   /// Completes the film. Throws std::runtime_error if that fails.
   void finish();
   int count() const { return count_; }
@@ -87,12 +92,13 @@ struct RecordedRun {
   std::function<void(std::int64_t)> step;  ///< takes the number of the step, from 1 on
   std::function<std::string()> row;  ///< numbers after a step
   std::function<Image()> picture;
+  std::function<GridFile()> fields;
 };
 
-/// Runs all steps. Returns the number of pictures. Throws what the functions throw; the files are complete then.
+/// Runs all steps. Returns the number of frames. Throws what the functions throw; the files are complete then.
 int runRecorded(const RecordedRun& run);
 
 /// Prints which files a run wrote.
-void printWritten(const Record& record, int pictures);
+void printWritten(const Record& record, int frames);
 
 }  // namespace examples

@@ -20,17 +20,18 @@ namespace {
 using namespace examples;
 namespace fs = std::filesystem;
 
-const Image picture = plainImage(4, 2, {1, 0, 0});
+Image picture() { return plainImage(4, 2, {1, 0, 0}); }
+GridFile noFields() { throw std::logic_error("no fields are wanted"); }
 
 /// The steps after which a run of `steps` steps adds its pictures; 0 is the start.
 std::vector<std::int64_t> framesOf(int frames, std::int64_t steps) {
   const fs::path output = frames > 1 ? "recorded.apng" : "recorded.png";
   std::vector<std::int64_t> added;
   {
-    Pictures pictures({.output = output, .frames = frames});
+    Frames pictures({.output = output, .frames = frames});
     for (std::int64_t step = 0; step <= steps; ++step) {
       if (step == 0 ? !pictures.wantsStart() : !pictures.isDue(step, steps)) continue;
-      pictures.add(picture);
+      pictures.add(picture, noFields);
       added.push_back(step);
     }
     pictures.finish();
@@ -52,7 +53,7 @@ TEST_CASE("frames are evenly spaced from the start of a run to its end") {
 }
 
 TEST_CASE("without an output no frame is due") {
-  const Pictures pictures({.output = "", .frames = 3});
+  const Frames pictures({.output = "", .frames = 3});
   CHECK_FALSE(pictures.wantsStart());
   CHECK_FALSE(pictures.isDue(5, 5));
 }
@@ -60,9 +61,9 @@ TEST_CASE("without an output no frame is due") {
 TEST_CASE("pictures that were made before an error are a complete file") {
   fs::remove("early.apng");
   CHECK_THROWS_AS(([] {
-                    Pictures pictures({.output = "early.apng", .frames = 100});
-                    pictures.add(picture);
-                    pictures.add(picture);
+                    Frames pictures({.output = "early.apng", .frames = 100});
+                    pictures.add(picture, noFields);
+                    pictures.add(picture, noFields);
                     throw std::runtime_error("step 2");
                   }()),
                   std::runtime_error);

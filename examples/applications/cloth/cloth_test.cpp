@@ -306,7 +306,7 @@ TEST_CASE("an OBJ file has the same floats and no torn faces", "[cloth]") {
       {0.1f, 1e-30f, 3.4028235e38f, 1}, {1, 0, 0, 1}, {0, 1.0f / 3, 0, 1}, {1, 1, -0.7f, 1}};
   const std::vector<sk::float4> normals = {{0, 0, 1, 1}, {0, 0, 1, 0}, {0, 0, 1, 0}, {0.6f, 0, 0.8f, 0}};
   const auto file = std::filesystem::temp_directory_path() / "sk_cloth_test.obj";
-  saveObj(file, 2, 2, positions, normals);
+  saveMesh(file, 2, 2, positions, normals);
   std::ifstream in(file);
   std::vector<sk::float3> read;
   int faces = 0, textures = 0, directions = 0;

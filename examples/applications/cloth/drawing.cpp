@@ -87,7 +87,7 @@ Filming::Filming(sk::Device& device, const Scene& scene, const Look& look, const
       look_(look),
       where_(fmt::format("{} precision on {}", precision, device.name())),
       drawing_(device, scene),
-      pictures_(drawable(scene).record) {}
+      frames_(drawable(scene).record) {}
 
 Image Filming::frameOf(Simulation& simulation) {
   const Stopwatch stopwatch;
@@ -103,19 +103,19 @@ Image Filming::frameOf(Simulation& simulation) {
 }
 
 void Filming::add(Simulation& simulation) {
-  if (pictures_.isFilm()) pictures_.add(frameOf(simulation));
+  if (frames_.isFilm()) frames_.add([&] { return frameOf(simulation); }, {});
 }
 
 void Filming::finish(Simulation& simulation) {
-  if (!pictures_.isFilm()) pictures_.add(frameOf(simulation));
-  pictures_.finish();
+  if (!frames_.isFilm()) frames_.add([&] { return frameOf(simulation); }, {});
+  frames_.finish();
 }
 
 std::string Filming::report() const {
   return fmt::format(
       "wrote {}, {} frame{} of {} x {}, {:.3g} ms each; positions went {}", scene_.record.output.string(),
-      pictures_.count(), pictures_.count() == 1 ? "" : "s", look_.size.width, look_.size.height,
-      milliseconds_ / std::max(1, pictures_.count()),
+      frames_.count(), frames_.count() == 1 ? "" : "s", look_.size.width, look_.size.height,
+      milliseconds_ / std::max(1, frames_.count()),
       drawing_.isDirect() ? "from stream to vertex buffer on the device" : "up from host memory");
 }
 

@@ -79,7 +79,7 @@ class Filming {
   Look look_;
   std::string where_;
   Drawing drawing_;
-  Pictures pictures_;
+  Frames frames_;
   double milliseconds_ = 0;
 };
 

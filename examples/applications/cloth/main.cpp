@@ -67,7 +67,7 @@ void addOptions(CLI::App& cli, Settings& s) {
       "--window", s.window,
       "show it live: drag to turn, wheel to come nearer, space to stop, W for wind, R to begin anew");
   cli.add_option("--csv", s.csv, "file for energies, strain and height at each frame");
-  cli.add_option("--obj", s.obj, "file for the cloth at the end");
+  cli.add_option("--obj", s.obj, "file for the cloth at the end: .obj, or .vtp (VTK)");
   cli.add_option("--check", s.checkedSteps,
                  "steps to compare with double loops (default: 100, fewer of large cloths)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40));
@@ -77,7 +77,8 @@ void addOptions(CLI::App& cli, Settings& s) {
 
 examples::Scene sceneOf(const Settings& s) {
   if (s.scene.empty())
-    throw std::runtime_error("which scene? Name a file, one of examples/applications/cloth/scenes for instance");
+    throw std::runtime_error(
+        "which scene? Name a file, one of examples/applications/cloth/scenes for instance");
   std::optional<examples::Points> points;
   if (!s.points.empty()) points = examples::Points{s.points[0], s.points[1]};
   examples::Scene scene = examples::readScene(s.scene, points);
@@ -188,8 +189,8 @@ void runScene(examples::Application& app, const Settings& s) {
   if (filming) filming->finish(*last);
   if (!scene.record.obj.empty()) {
     last->dress();
-    examples::saveObj(scene.record.obj, scene.cloth.columns, scene.cloth.rows,
-                      last->dressedPositions().read(), last->dressedNormals().read());
+    examples::saveMesh(scene.record.obj, scene.cloth.columns, scene.cloth.rows,
+                       last->dressedPositions().read(), last->dressedNormals().read());
   }
   app.report(fmt::format("{}, {} x {} points, {} steps in {} precision", scene.title, scene.cloth.columns,
                          scene.cloth.rows, outcome.steps, s.precision),

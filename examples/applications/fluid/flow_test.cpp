@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include <sk/npy.hpp>
+
 #include "scene.hpp"
 #include "support/testing.hpp"
 #include "vortices.hpp"
@@ -324,6 +326,23 @@ TEST_CASE("a number that is not finite is named with its step and cell") {
 }
 
 void read(const std::string& text) { readScene(examples::WrittenFile(text, "written_flow.toml").path(), {}); }
+
+TEST_CASE("obstacles come from masks, and smoke from files") {
+  std::vector<double> values(16 * 16, 0.0);
+  values[3 * 16 + 5] = 1.0;
+  sk::writeNpy("written_mask.npy", std::vector<std::int64_t>{16, 16}, values);
+  const examples::WrittenFile file(
+      "[grid]\nsize = [16, 16]\n[[obstacle]]\nmask = \"written_mask.npy\"\n"
+      "[initial]\nsmoke_file = \"written_mask.npy\"\n",
+      "written_flow.toml");
+  const Scene scene = readScene(file.path(), {});
+  const std::vector<std::int8_t> cells = cellsOf(scene.model);
+  CHECK(cells[static_cast<std::size_t>(scene.model.index({6, 4, 0}))] == Solid);
+  CHECK(fluidCells(cells) == 16 * 16 - 1);
+  CHECK(scene.model.hasSmoke);
+  CHECK(scene.initial.smoke[3 * 16 + 5] == 1.0);
+  std::filesystem::remove("written_mask.npy");
+}
 
 TEST_CASE("the command line has precedence over a scene, also over what it leaves out") {
   for (const std::string run : {"", "[run]\nsteps = 3\nprecision = \"single\"\n"}) {

@@ -141,8 +141,18 @@ std::int64_t Model::index(const Place& at) const {
   return at[0] + n[0] * (at[1] + n[1] * at[2]);
 }
 
+bool Model::isMasked(const Place& at) const {
+  if (mask.empty()) return false;
+  Place inner{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    inner[d] = d < static_cast<std::size_t>(rank()) ? at[d] - 1 : 0;
+    if (inner[d] < 0 || inner[d] >= cells[d]) return false;
+  }
+  return mask[static_cast<std::size_t>(inner[0] + cells[0] * (inner[1] + cells[1] * inner[2]))];
+}
+
 Bounds Model::bounds() const {
-  if (!obstacles.empty()) return Anywhere;
+  if (hasObstacles()) return Anywhere;
   for (int d = 0; d < rank(); ++d)
     if (!isPeriodic(d)) return Around;
   return Nowhere;
@@ -190,6 +200,7 @@ std::vector<std::int8_t> cellsOf(const Model& m) {
     const Triple p = m.centre(at);
     for (const Shape& obstacle : m.obstacles)
       if (obstacle.distance(p, m.isSpace()) < 0.0) cells[i] = m.obstaclesSlip ? Slip : Solid;
+    if (m.isMasked(at)) cells[i] = m.obstaclesSlip ? Slip : Solid;
   });
   return cells;
 }
@@ -198,6 +209,7 @@ std::vector<double> coverageOf(const Model& m) {
   std::vector<double> covered(static_cast<std::size_t>(m.shape().size()), 0.0);
   visitCells(m, [&](std::size_t i, const Place& at) {
     const Triple p = m.centre(at);
+    if (m.isMasked(at)) covered[i] = 1.0;
     for (const Shape& obstacle : m.obstacles) {
       const double depth = 0.5 - obstacle.distance(p, m.isSpace()) / (3.0 * m.spacing);
       covered[i] = std::max(covered[i], std::clamp(depth, 0.0, 1.0));

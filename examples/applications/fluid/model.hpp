@@ -71,6 +71,8 @@ struct Model {
   std::array<Side, 6> sides{};  ///< left, right, bottom, top, back, front
   std::array<Triple, 6> sideVelocity{};  ///< of moving walls, and of inflows
   std::vector<Shape> obstacles;
+  std::vector<bool>
+      mask;  ///< cells that obstacles from files cover, x fastest, without the layer; empty: none
   bool obstaclesSlip = false;
   std::vector<Source> sources;
   std::optional<Viscosity> viscosity;
@@ -95,6 +97,9 @@ struct Model {
   Triple centre(const std::array<std::int64_t, 3>& at) const;
   std::int64_t index(const std::array<std::int64_t, 3>& at) const;
   Bounds bounds() const;
+  bool hasObstacles() const { return !obstacles.empty() || !mask.empty(); }
+  /// Whether the mask covers a cell that is counted with the layer.
+  bool isMasked(const std::array<std::int64_t, 3>& at) const;
   bool carriesHeat() const { return hasHeat; }
 };
 

@@ -30,10 +30,9 @@ Painter::Painter(sk::Device& device, const Scene& scene)
       scene_(scene),
       colours_(examples::colormap(scene.view.colours, 256)),
       palette_(device.stream<sk::float3>({256})),
-      covered_(
-          device.stream<float>(scene.model.obstacles.empty() ? sk::Shape{1, 1, 1} : scene.model.shape())) {
+      covered_(device.stream<float>(scene.model.hasObstacles() ? scene.model.shape() : sk::Shape{1, 1, 1})) {
   palette_.write(colours_);
-  if (!scene.model.obstacles.empty()) covered_.writeReals(coverageOf(scene.model));
+  if (scene.model.hasObstacles()) covered_.writeReals(coverageOf(scene.model));
 }
 
 examples::Image Painter::plane(Flow& flow) {
@@ -65,10 +64,10 @@ examples::Image Painter::plane(Flow& flow) {
   const int zoom = examples::zoomFor(scene_.view, m.cells[0], m.cells[1]);
   auto colour = device_.stream<sk::float3>({m.cells[1] * zoom, m.cells[0] * zoom});
   const auto draw = [&](const auto& covered) {
-    fluid::paint(!m.obstacles.empty(), palette_, static_cast<float>(values_.low),
+    fluid::paint(m.hasObstacles(), palette_, static_cast<float>(values_.low),
                  static_cast<float>(values_.high), 1.0f / static_cast<float>(zoom), field, covered, colour);
   };
-  if (m.obstacles.empty())
+  if (!m.hasObstacles())
     draw(sk::none);
   else
     draw(inner(covered_, m).reshape({m.cells[1], m.cells[0]}));
@@ -81,7 +80,7 @@ examples::Image Painter::space(Flow& flow) {
   const Model& m = scene_.model;
   const examples::BoxView view = examples::boxView(m.cells, scene_.view.turn, scene_.view.tilt, 720L * finer);
   const Camera camera = {view.middle, view.right, view.up, view.ahead};
-  const bool hasObstacles = !m.obstacles.empty(), glows = scene_.view.glows;
+  const bool hasObstacles = m.hasObstacles(), glows = scene_.view.glows;
   Air air{};
   const Triple sun = {-0.45, 1.0, -0.35};
   const double norm = std::sqrt(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]);

@@ -57,6 +57,50 @@ void write(Flow& flow, const State& state) {
   if (flow.model().hasHeat) flow.write(Scalar::Heat, state.heat);
 }
 
+/// What is in the middle of the cells, without the layer around the grid: velocities as means of two faces. Empty on ranks other than the first.
+examples::GridFile gridFileOf(Flow& flow) {
+  const Model& m = flow.model();
+  const State state = stateOf(flow);
+  examples::GridFile file{{m.cells[0], m.cells[1], m.isSpace() ? m.cells[2] : 1}, m.spacing, {}};
+  if (state.velocity.front().empty()) return file;
+  examples::FileField velocity{"velocity", 3, {}}, smoke{"smoke", 1, {}}, heat{"temperature", 1, {}};
+  for (std::int64_t z = 1; z <= file.cells[2]; ++z) {
+    for (std::int64_t y = 1; y <= file.cells[1]; ++y) {
+      for (std::int64_t x = 1; x <= file.cells[0]; ++x) {
+        const std::array<std::int64_t, 3> cell = {x, y, m.isSpace() ? z : 0};
+        const auto here = static_cast<std::size_t>(m.index(cell));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          if (axis >= state.velocity.size()) {
+            velocity.values.push_back(0.0);
+            continue;
+          }
+          std::array<std::int64_t, 3> next = cell;
+          ++next[axis];
+          const std::vector<double>& u = state.velocity[axis];
+          velocity.values.push_back(0.5 * (u[here] + u[static_cast<std::size_t>(m.index(next))]));
+        }
+        if (m.hasSmoke) smoke.values.push_back(state.smoke[here]);
+        if (m.hasHeat) heat.values.push_back(state.heat[here]);
+      }
+    }
+  }
+  file.fields.push_back(std::move(velocity));
+  if (m.hasSmoke) file.fields.push_back(std::move(smoke));
+  if (m.hasHeat) file.fields.push_back(std::move(heat));
+  return file;
+}
+
+/// Numbers for the cells of the grid, and 0 in the layer around it, as streams have them.
+std::vector<double> withLayer(const Model& m, const std::vector<double>& inner) {
+  std::vector<double> all(static_cast<std::size_t>(m.shape().size()), 0.0);
+  std::size_t i = 0;
+  for (std::int64_t z = 0; z < (m.isSpace() ? m.cells[2] : 1); ++z)
+    for (std::int64_t y = 0; y < m.cells[1]; ++y)
+      for (std::int64_t x = 0; x < m.cells[0]; ++x)
+        all[static_cast<std::size_t>(m.index({x + 1, y + 1, m.isSpace() ? z + 1 : 0}))] = inner[i++];
+  return all;
+}
+
 double rootMeanSquare(const std::vector<double>& a, const std::vector<double>& b) {
   return examples::distance(a, b) / std::sqrt(static_cast<double>(a.size()));
 }
@@ -124,6 +168,8 @@ Flow begin(const linear::Space& space, const Scene& scene) {
       flow.writeVelocity(axis, values);
     }
   }
+  if (!scene.initial.smoke.empty()) flow.write(Scalar::Smoke, withLayer(scene.model, scene.initial.smoke));
+  if (!scene.initial.heat.empty()) flow.write(Scalar::Heat, withLayer(scene.model, scene.initial.heat));
   flow.project();
   return flow;
 }
@@ -174,7 +220,8 @@ Outcome run(const linear::Space& space, const Scene& scene) {
   };
   outcome.pictures = examples::runRecorded({scene.name, scene.steps, scene.record, isFirst, csvHeads, step,
                                             [&] { return rowOf(outcome.last, flow); },
-                                            [&] { return painter->paint(flow, captionOf(flow)); }});
+                                            [&] { return painter->paint(flow, captionOf(flow)); },
+                                            [&] { return gridFileOf(flow); }});
   outcome.steps = flow.steps();
   outcome.time = flow.time();
 

@@ -192,11 +192,22 @@ void readView(const SceneTable& table, Scene& scene) {
   if (v.glows && !model.hasHeat) table.refuse("glows", "is of heat, and no source has a temperature");
 }
 
-Initial readInitial(const SceneTable& table) {
+/// What is lighter than the middle grey of a picture, or more than 1/2 in an array, is an obstacle.
+void readMask(const SceneTable& table, const std::filesystem::path& folder, Model& model) {
+  const std::vector<double> values = examples::readField(table, "mask", folder, model.cells);
+  model.mask.resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) model.mask[i] = model.mask[i] || values[i] > 0.5;
+}
+
+Initial readInitial(const SceneTable& table, const std::filesystem::path& folder, Model& model) {
   Initial i;
   i.velocity = triple(table, "velocity").value_or(i.velocity);
   table.read("noise", i.noise, fromZero);
   table.read("random", i.random, Range{0, 4294967295.0});
+  i.smoke = examples::readField(table, "smoke_file", folder, model.cells);
+  i.heat = examples::readField(table, "temperature_file", folder, model.cells);
+  model.hasSmoke |= !i.smoke.empty();
+  model.hasHeat |= !i.heat.empty();
   return i;
 }
 
@@ -217,8 +228,15 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   if (const auto t = table.table("convection")) t->read("scheme", model.scheme, schemeNames);
   model.scheme = overrides.scheme.value_or(model.scheme);
   if (const auto t = table.table("boundary")) readBoundary(*t, model);
-  for (const SceneTable& t : table.tables("obstacle")) model.obstacles.push_back(readShape(t));
+  const std::filesystem::path folder = file.parent_path();
+  for (const SceneTable& t : table.tables("obstacle")) {
+    if (t.has("mask"))
+      readMask(t, folder, model);
+    else
+      model.obstacles.push_back(readShape(t));
+  }
   readSources(table, model);
+  if (const auto t = table.table("initial")) scene.initial = readInitial(*t, folder, model);
   if (const auto t = table.table("viscosity")) readViscosity(*t, model);
   if (const auto t = table.table("buoyancy")) readBuoyancy(*t, model);
   if (const auto t = table.table("force")) model.force = triple(*t, "acceleration").value_or(model.force);
@@ -226,7 +244,6 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   scene.steps = overrides.steps.value_or(scene.steps);
   model.precision = overrides.precision.value_or(model.precision);
   model.projector = overrides.projector.value_or(model.projector);
-  if (const auto t = table.table("initial")) scene.initial = readInitial(*t);
   scene.record = examples::readRecord(table.table("record"), scene.name);
   scene.view.shown = model.hasSmoke ? Shown::Smoke : Shown::Speed;
   if (const auto t = table.table("view")) readView(*t, scene);

@@ -20,6 +20,7 @@ struct Initial {
   Triple velocity{};
   double noise = 0.0;  ///< largest random part of each component
   std::uint32_t random = 1;
+  std::vector<double> smoke, heat;  ///< from files, x fastest, without the layer; empty: none
 };
 
 enum class Shown { Smoke, Temperature, Vorticity, Speed };

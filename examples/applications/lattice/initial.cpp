@@ -111,6 +111,12 @@ void writeInitial(const Model& model, const Initial& initial, Lattice& lattice) 
     lattice.write(Field::Temperature,
                   isFirst ? firstTemperature(model, initial, noise) : std::vector<double>());
   if (model.reaction) writeSeeds(model, initial, noise, lattice);
+  const auto writeFile = [&](Field field, const std::vector<double>& values) {
+    if (!values.empty()) lattice.write(field, isFirst ? values : std::vector<double>());
+  };
+  writeFile(Field::Temperature, initial.temperatureField);
+  writeFile(Field::U, initial.uField);
+  writeFile(Field::V, initial.vField);
 }
 
 }  // namespace examples

@@ -64,6 +64,14 @@ std::string captionOf(const Model& model, std::int64_t step) {
   return text + fmt::format("   step {}", step);
 }
 
+GridFile gridFileOf(Lattice& lattice) {
+  const Grid& g = lattice.model().grid;
+  GridFile file{{g.width, g.height, g.depth}, g.spacing, {}};
+  for (const Field field : fieldsOf(lattice.model()))
+    file.fields.push_back({std::string(nameOf(field)), 1, lattice.read(field)});
+  return file;
+}
+
 /// The next multiple of `every` after `step`; never, where it is 0.
 std::int64_t nextOf(std::int64_t step, std::int64_t every, std::int64_t never) {
   return every > 0 ? (step / every + 1) * every : never;
@@ -97,12 +105,13 @@ Outcome runScene(const Scene& scene, Lattice& lattice) {
       scene.csvInterval > 0 ? scene.csvInterval : std::max<std::int64_t>(1, steps / 100);
   const bool isFirst = lattice.space().isFirst();
   Painter painter(device, scene);
-  Pictures pictures(scene.record, isFirst);
+  Frames pictures(scene.record, isFirst);
   Numbers numbers(scene.record.csv, scene.model, isFirst);
   numbers.add(0, lattice);
   Progress progress(scene.name, steps);
   const auto addPicture = [&](std::int64_t step) {
-    pictures.add(painter.paint(lattice, captionOf(scene.model, step)));
+    pictures.add([&] { return painter.paint(lattice, captionOf(scene.model, step)); },
+                 [&] { return gridFileOf(lattice); });
   };
   requireFinite(lattice, 0);
   if (pictures.wantsStart()) addPicture(0);

@@ -145,7 +145,7 @@ void readFlow(const SceneTable& table, Model& model) {
   setConvection(model, *rayleigh, prandtl, sound, slip);
 }
 
-Initial readInitial(const SceneTable& table) {
+Initial readInitial(const SceneTable& table, const Model& model, const std::filesystem::path& folder) {
   Initial i;
   table.read("profile", i.profile, profileNames);
   table.read("temperature", i.temperature, anything);
@@ -159,6 +159,14 @@ Initial readInitial(const SceneTable& table) {
   table.read("u", i.u, anything);
   table.read("v", i.v, anything);
   table.read("random", i.random, Range{0, 4294967295.0});
+  const std::array<std::int64_t, 3> cells = {model.grid.width, model.grid.height, model.grid.depth};
+  i.temperatureField = readField(table, "temperature_file", folder, cells);
+  i.uField = readField(table, "u_file", folder, cells);
+  i.vField = readField(table, "v_file", folder, cells);
+  if (!i.temperatureField.empty() && !model.hasTemperature())
+    table.refuse("temperature_file", "is for a scene with a temperature");
+  if (!model.reaction && !i.uField.empty()) table.refuse("u_file", "is for a scene with a [reaction]");
+  if (!model.reaction && !i.vField.empty()) table.refuse("v_file", "is for a scene with a [reaction]");
   return i;
 }
 
@@ -257,7 +265,7 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   }
   refuseUnstable(*run, model);
 
-  if (const auto t = table.table("initial")) scene.initial = readInitial(*t);
+  if (const auto t = table.table("initial")) scene.initial = readInitial(*t, model, file.parent_path());
   const auto record = table.table("record");
   scene.record = readRecord(record, scene.name);
   if (record) record->read("every", scene.csvInterval, Range{1, 1e12});

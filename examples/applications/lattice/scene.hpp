@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "model.hpp"
 #include "support/field_view.hpp"
@@ -29,6 +30,8 @@ struct Initial {
   int seedSide = 20;
   double u = 0.5, v = 0.25;  ///< in the squares
   std::uint32_t random = 1;
+  /// From files, in place of what the other numbers say; empty: none.
+  std::vector<double> temperatureField, uField, vField;
 };
 
 /// The run ends early when no field changes by more than `tolerance` in a step, asked every `every` steps.

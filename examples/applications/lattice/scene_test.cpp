@@ -4,6 +4,9 @@
 #include <catch2/catch.hpp>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include <sk/npy.hpp>
 
 #include "support/testing.hpp"
 
@@ -24,6 +27,24 @@ TEST_CASE("a table switches its operator on, and nothing else is there") {
   CHECK(fieldsOf(scene.model) == std::vector<Field>{Field::U, Field::V});
   CHECK(scene.steps == 5);
   CHECK(scene.record.output == "written_scene.png");
+}
+
+TEST_CASE("fields begin with files") {
+  std::vector<double> values(16 * 32);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i) / 512;
+  sk::writeNpy("written_field.npy", std::vector<std::int64_t>{16, 32}, values);
+  const std::string heat = plane + "[diffusion]\nepsilon = 0.5\n[initial]\n";
+  const Scene scene =
+      read(heat + "temperature_file = \"written_field.npy\"\ntemperature_file_range = [1, 3]\n");
+  CHECK(scene.initial.temperatureField[256] == 2.0);
+  CHECK_THROWS_WITH(read(heat + "u_file = \"written_field.npy\"\n"),
+                    Catch::Contains("'u_file' is for a scene with a [reaction]"));
+  CHECK_THROWS_WITH(
+      read(heat + "temperature_file = \"none.npy\"\n"),
+      Catch::Contains("'temperature_file' cannot be used: 'none.npy': the file does not exist"));
+  CHECK_THROWS_WITH(read(heat + "temperature_file_range = [1, 3]\n"),
+                    Catch::Contains("belongs to temperature_file, which is missing"));
+  std::filesystem::remove("written_field.npy");
 }
 
 TEST_CASE("the command line goes before the file") {

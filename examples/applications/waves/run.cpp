@@ -26,6 +26,13 @@ examples::Image pictureOf(Painter& painter, const Scene& scene, const Surface& s
   return surface.space().isFirst() ? examples::figure(water, {scene.title, "", moment}) : water;
 }
 
+examples::GridFile gridFileOf(const Surface& surface) {
+  const Model& m = surface.model();
+  return {{m.width, m.height, 1},
+          m.spacing,
+          {{"height", 1, surface.heights()}, {"velocity", 1, surface.velocities()}}};
+}
+
 /// The energy between drops, each of which begins a stretch of its own.
 class Energies {
  public:
@@ -82,6 +89,7 @@ Outcome run(const linear::Space& space, const Scene& scene) {
   const bool isFirst = space.isFirst();
   Outcome outcome;
   Surface surface(space, m);
+  if (!scene.heights.empty()) surface.writeHeights(isFirst ? scene.heights : std::vector<double>());
   Energies energies(surface);
   std::optional<Painter> painter;
   if (!scene.record.output.empty()) painter.emplace(device, scene);
@@ -116,9 +124,9 @@ Outcome run(const linear::Space& space, const Scene& scene) {
                        last.residual, surface.energy());
   };
   dropWhatIsDue();  // so that the first picture has what falls at the start
-  outcome.pictures = examples::runRecorded({scene.name, scene.steps, scene.record, isFirst,
-                                            "step,time,iterations,residual,energy", step, row,
-                                            [&] { return pictureOf(*painter, scene, surface); }});
+  outcome.pictures = examples::runRecorded(
+      {scene.name, scene.steps, scene.record, isFirst, "step,time,iterations,residual,energy", step, row,
+       [&] { return pictureOf(*painter, scene, surface); }, [&] { return gridFileOf(surface); }});
   energies.end();
   outcome.steps = surface.steps();
   outcome.time = surface.time();

@@ -96,7 +96,10 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
   m.precision = overrides.precision.value_or(m.precision);
   scene.steps = overrides.steps.value_or(scene.steps);
   for (const SceneTable& t : table.tables("drop")) scene.drops.push_back(readDrop(t));
-  if (scene.drops.empty()) table.refuse("drop", "is missing: without a [[drop]] the water stays flat");
+  if (const auto t = table.table("initial"))
+    scene.heights = examples::readField(*t, "height_file", file.parent_path(), {m.width, m.height, 1});
+  if (scene.drops.empty() && scene.heights.empty())
+    table.refuse("drop", "is missing: without a [[drop]] the water stays flat");
   std::ranges::stable_sort(scene.drops, {}, &Drop::time);
   scene.record = examples::readRecord(table.table("record"), scene.name);
   if (const auto t = table.table("view")) readView(*t, scene.view);

@@ -35,6 +35,7 @@ struct Scene {
   std::string name, title;
   Model model;
   std::vector<Drop> drops;  ///< by their times
+  std::vector<double> heights;  ///< at the start, row-major, from a file; empty: flat
   std::int64_t steps = 200;
   examples::Record record;
   View view;
