@@ -31,6 +31,7 @@ pages = {
     "edges": "size=160&frames=1",
     "rays": "size=96&frames=2&steps=2",
     "reaction": "size=96&frames=3&steps=8",
+    "classic_boiling": "size=80&frames=2&steps=4",
 }
 mistakes = []
 
