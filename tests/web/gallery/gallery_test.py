@@ -33,6 +33,7 @@ pages = {
     "reaction": "size=96&frames=3&steps=8",
     "classic_boiling": "size=80&frames=2&steps=4",
     "classic_convection": "size=72&frames=2&steps=4",
+    "classic_cloth": "size=64&frames=2&steps=4",
 }
 mistakes = []
 
