@@ -34,6 +34,7 @@ pages = {
     "classic_boiling": "size=80&frames=2&steps=4",
     "classic_convection": "size=72&frames=2&steps=4",
     "classic_cloth": "size=64&frames=2&steps=4",
+    "reduction": "size=72&frames=2&steps=1",
 }
 mistakes = []
 
