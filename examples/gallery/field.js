@@ -56,8 +56,8 @@ export class InHalves {
 
 /** What streams of halves between passes would do to fields of a shape. */
 export class RoundToHalves {
-  constructor(device, shape) {
-    this.half = device.stream('half', shape);
+  constructor(device, shape, type = 'half') {
+    this.half = device.stream(type, shape);
   }
 
   pass(field) {

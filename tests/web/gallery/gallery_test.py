@@ -35,6 +35,7 @@ pages = {
     "classic_convection": "size=72&frames=2&steps=4",
     "classic_cloth": "size=64&frames=2&steps=4",
     "reduction": "size=72&frames=2&steps=1",
+    "one_source": "size=64&frames=2&steps=1",
 }
 mistakes = []
 
