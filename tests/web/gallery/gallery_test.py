@@ -36,6 +36,7 @@ pages = {
     "classic_cloth": "size=64&frames=2&steps=4",
     "reduction": "size=72&frames=2&steps=1",
     "one_source": "size=64&frames=2&steps=1",
+    "streaming_rays": "size=32&frames=1&steps=1",
 }
 mistakes = []
 
