@@ -37,6 +37,7 @@ pages = {
     "reduction": "size=72&frames=2&steps=1",
     "one_source": "size=64&frames=2&steps=1",
     "streaming_rays": "size=32&frames=1&steps=1",
+    "banded": "size=96&frames=1&steps=2",
 }
 mistakes = []
 
