@@ -38,6 +38,7 @@ pages = {
     "one_source": "size=64&frames=2&steps=1",
     "streaming_rays": "size=32&frames=1&steps=1",
     "banded": "size=96&frames=1&steps=2",
+    "points": "size=96&frames=2&steps=1",
 }
 mistakes = []
 
