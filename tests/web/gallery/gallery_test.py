@@ -39,6 +39,7 @@ pages = {
     "streaming_rays": "size=32&frames=1&steps=1",
     "banded": "size=96&frames=1&steps=2",
     "points": "size=96&frames=2&steps=1",
+    "multigrid": "size=48&frames=2&steps=2",
 }
 mistakes = []
 
