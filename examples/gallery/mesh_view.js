@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Draws a cloth and a ball in a canvas with a WebGL2 context of its own: positions and normals come from the host, as the runtime does not
+// Draws a cloth and a ball, or another surface, in a canvas with a WebGL2 context of its own: positions and normals come from the host, as the runtime does not
 // hand out textures.
 
 const vertexText = `#version 300 es
@@ -24,7 +24,7 @@ precision highp float;
 in vec3 at, normal;
 in vec2 place;
 uniform vec3 eye;
-uniform bool isBall;
+uniform bool isBall, isPlain;
 out vec4 colour;
 float stripes(float x) {
   float w = max(fwidth(x), 1e-4);
@@ -37,7 +37,9 @@ void main() {
   vec3 sun = normalize(vec3(-0.45, 0.75, 0.6));
   float facing = dot(n, sun);
   vec3 body = vec3(0.86, 0.55, 0.16);
-  if (!isBall) {
+  if (isPlain) {
+    body = vec3(0.16, 0.5, 0.55);
+  } else if (!isBall) {
     body = mix(vec3(0.05, 0.36, 0.42), vec3(0.93, 0.88, 0.78), stripes(6.0 * place.x));
     if (place.y > 0.94) body = vec3(0.78, 0.28, 0.2);
     if (isBack) body *= 0.8;
@@ -46,7 +48,7 @@ void main() {
   float sky = 0.5 + 0.5 * n.y;
   vec3 light = vec3(1.08, 1.02, 0.92) * (max(facing, 0.0) + through) + mix(vec3(0.20, 0.18, 0.18), vec3(0.42, 0.47, 0.55), sky);
   vec3 halfway = normalize(sun + view);
-  float gleam = isBall ? 0.35 * pow(max(dot(n, halfway), 0.0), 60.0) : 0.06 * pow(max(dot(n, halfway), 0.0), 12.0);
+  float gleam = isBall || isPlain ? 0.35 * pow(max(dot(n, halfway), 0.0), 60.0) : 0.06 * pow(max(dot(n, halfway), 0.0), 12.0);
   colour = vec4(pow(body * body * light + gleam, vec3(0.5)), 1);
 }
 `;
@@ -165,7 +167,8 @@ export class MeshView {
     return [this.eye[0] + (x - 0.5) * wide, this.eye[1] + (0.5 - y) * high, this.eye[2] - distance];
   }
 
-  draw(cloth, ball) {
+  /** Without a ball, the surface has one colour. */
+  draw(surface, ball = null) {
     const { gl, canvas } = this;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.disable(gl.DEPTH_TEST);
@@ -178,7 +181,9 @@ export class MeshView {
     gl.useProgram(this.program);
     gl.uniformMatrix4fv(this.at('camera'), false, this.camera());
     gl.uniform3fv(this.at('eye'), this.eye);
-    for (const [mesh, moved] of [[this.ball, [...ball.centre, ball.radius]], [cloth, [0, 0, 0, 0]]]) {
+    gl.uniform1i(this.at('isPlain'), Number(ball === null));
+    const balls = ball === null ? [] : [[this.ball, [...ball.centre, ball.radius]]];
+    for (const [mesh, moved] of [...balls, [surface, [0, 0, 0, 0]]]) {
       gl.bindVertexArray(mesh.array);
       gl.uniform4fv(this.at('moved'), moved);
       gl.uniform1i(this.at('isBall'), Number(mesh === this.ball));

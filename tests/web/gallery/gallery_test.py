@@ -40,6 +40,7 @@ pages = {
     "banded": "size=96&frames=1&steps=2",
     "points": "size=96&frames=2&steps=1",
     "multigrid": "size=48&frames=2&steps=2",
+    "sparse": "size=96&frames=1&steps=1",
 }
 mistakes = []
 
