@@ -4,6 +4,7 @@
 // picture has the web, and the matrix beside it; both are drawn as points, too.
 import { relativeError } from '../accuracy.js';
 import { RoundToHalves } from '../field.js';
+import { oneAtATime } from '../one_at_a_time.js';
 import { openPage } from '../page.js';
 import { points } from '../sk/classics/points.sk.js';
 import { arraysOf, growWeb, pointsOf } from '../web_of_pages.js';
@@ -35,7 +36,6 @@ function create({ device, canvas, controls, random, tell }) {
   points.drawEntries(n, pixels, vertices, entries);
   points.paintEntries(entries, web);
   web.copyTo(picture.domain([0, pixels], [pixels, 2 * pixels]));
-  let isDrawing = false;
   return {
     elements: vertices.size,
     vertices,
@@ -45,24 +45,18 @@ function create({ device, canvas, controls, random, tell }) {
       multiply(vertices, rank, y);
       points.surf(controls.get('follows'), n, y, rank, rank, change);
     },
-    async draw() {
-      if (isDrawing) return;
-      isDrawing = true;
-      try {
-        const [ranks, [moved]] = [await rank.read(), await change.read()];
-        const least = ranks.slice().sort().at(-1 - best);
-        lines.fill(0);
-        discs.fill(0);
-        await points.drawLinks(side, pixels, least, vertices, rank, lines);
-        await points.drawPages(side, pixels, rank, discs);
-        points.paintWeb(lines, discs, web);
-        web.copyTo(picture.domain([0, 0], [pixels, pixels]));
-        device.draw(picture, canvas);
-        tell(`${links.length.toLocaleString('en')} links of ${n.toLocaleString('en')} pages. The last step has moved ${(100 * moved).toPrecision(2)} % of the surfers.`);
-      } finally {
-        isDrawing = false;
-      }
-    },
+    draw: oneAtATime(async () => {
+      const [ranks, [moved]] = [await rank.read(), await change.read()];
+      const least = ranks.slice().sort().at(-1 - best);
+      lines.fill(0);
+      discs.fill(0);
+      await points.drawLinks(side, pixels, least, vertices, rank, lines);
+      await points.drawPages(side, pixels, rank, discs);
+      points.paintWeb(lines, discs, web);
+      web.copyTo(picture.domain([0, 0], [pixels, pixels]));
+      device.draw(picture, canvas);
+      tell(`${links.length.toLocaleString('en')} links of ${n.toLocaleString('en')} pages. The last step has moved ${(100 * moved).toPrecision(2)} % of the surfers.`);
+    }),
     /** All surfers begin at the page that is pressed, in the web or by its row in the matrix. */
     point({ kind, x, y }) {
       if (kind === 'up') return;

@@ -5,6 +5,7 @@
 import { relativeError } from '../accuracy.js';
 import { matrixOf, meshOf } from '../knot.js';
 import { MeshView } from '../mesh_view.js';
+import { oneAtATime } from '../one_at_a_time.js';
 import { openPage } from '../page.js';
 import { sparse } from '../sk/classics/sparse.sk.js';
 
@@ -40,7 +41,7 @@ function create({ device, canvas, controls, tell, prepared: matrix }) {
   const v = vectorsOf(device, matrix);
   const view = (canvas.view ??= new MeshView(canvas, [0, 0, 3.1], 0.66));
   const camera = { turn: 0.3, tilt: 0.2 };
-  let [steps, left, isDrawing] = [0, 0, false];
+  let [steps, left] = [0, 0];
   const roughen = () => {
     steps = 0;
     sparse.knot(matrix.around, matrix.vertex, v.x);
@@ -57,18 +58,12 @@ function create({ device, canvas, controls, tell, prepared: matrix }) {
       await assemble(matrix, v, controls.get('dt'));
       left = await solve(matrix, v, controls.get('iterations'));
     },
-    async draw() {
-      if (isDrawing) return;
-      isDrawing = true;
-      try {
-        const { positions, normals } = meshOf(await v.x.read(), matrix, camera.turn, camera.tilt);
-        view.fill(mesh, positions, normals);
-        view.draw(mesh);
-        tell(`${matrix.vertex.size.toLocaleString('en')} rows with ${matrix.Ca.size.toLocaleString('en')} entries off the diagonal. Step ${steps} leaves ${left.toExponential(1)} of its right-hand side.`);
-      } finally {
-        isDrawing = false;
-      }
-    },
+    draw: oneAtATime(async () => {
+      const { positions, normals } = meshOf(await v.x.read(), matrix, camera.turn, camera.tilt);
+      view.fill(mesh, positions, normals);
+      view.draw(mesh);
+      tell(`${matrix.vertex.size.toLocaleString('en')} rows with ${matrix.Ca.size.toLocaleString('en')} entries off the diagonal. Step ${steps} leaves ${left.toExponential(1)} of its right-hand side.`);
+    }),
     changed: (name) => name === 'rough' && roughen(),
     point({ kind, x, y, lastX, lastY }) {
       if (kind !== 'move') return;
