@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "classics/support/classic.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -44,6 +46,8 @@ double medianOf(std::vector<double> values) {
 
 Run::Run(const Classic& classic, int size, const std::string& device)
     : classic_(classic), size_(size), device_(device.empty() ? sk::Device() : sk::Device(device)) {
+  if (::access(".", W_OK) != 0)
+    throw std::runtime_error("pictures go to the current folder, which is not writable");
   say("{}: {}, {} {}, on {}", classic.name, classic.paper, size, classic.sizeIs, device_.name());
 }
 
@@ -64,16 +68,16 @@ double Run::timed(const std::function<void()>& body) {
 
 double Run::ratio(std::string_view what, const std::function<void()>& slow, const std::function<void()>& fast,
                   int rounds) {
-  std::vector<double> ratios, slowTimes, fastTimes;
+  std::vector<double> slowTimes, fastTimes;
   for (int round = -1; round < rounds; ++round) {
     const double slowTime = milliseconds(slow), fastTime = milliseconds(fast);
-    if (round < 0) continue;   // programs are compiled, and memory is touched
-    ratios.push_back(slowTime / fastTime);
+    if (round < 0) continue;  // programs are compiled, and memory is touched
     slowTimes.push_back(slowTime);
     fastTimes.push_back(fastTime);
   }
-  const double ratio = medianOf(ratios);
-  say("{}: {:.2f} times ({:.3g} ms, {:.3g} ms)", what, ratio, medianOf(slowTimes), medianOf(fastTimes));
+  const double slowMedian = medianOf(slowTimes), fastMedian = medianOf(fastTimes),
+               ratio = slowMedian / fastMedian;
+  say("{}: {:.2f} times ({:.3g} ms, {:.3g} ms)", what, ratio, slowMedian, fastMedian);
   return ratio;
 }
 
@@ -100,8 +104,12 @@ int Run::finish() {
   say("| {} | {} | {} | {:.3g} ms | {} | {} |", classic_.name, classic_.paper, device_.name(), milliseconds_,
       error_ < 0 ? std::string("nothing was checked") : fmt::format("{:.2g}, allowed {:.2g}", error_, bound_),
       failed_ ? "FAILED" : picture_);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw std::runtime_error("what is printed cannot be written");
   return failed_ ? 1 : 0;
 }
+
+double larger(double worst, double error) { return worst >= error || std::isnan(worst) ? worst : error; }
 
 double largestDifference(std::span<const float> got, std::span<const double> expected) {
   if (got.size() != expected.size()) throw std::runtime_error("two results have different lengths");
@@ -118,7 +126,7 @@ double largestDifference(std::span<const float> got, std::span<const double> exp
 
 double largestOf(std::span<const double> values) {
   double largest = 0;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
+  for (const double value : values) largest = larger(largest, std::abs(value));
   return largest;
 }
 

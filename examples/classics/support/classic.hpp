@@ -47,7 +47,7 @@ class Run {
   double milliseconds(const std::function<void()>& body);
   /// The same, for what the row of the table gives as the classic's time; the times of several calls add up.
   double timed(const std::function<void()>& body);
-  /// The median over `rounds` of the time of `slow` divided by the time of `fast`, each called in turn, after one round that is not
+  /// The median time of `slow` divided by that of `fast`, each called in turn `rounds` times, after one round that is not
   /// counted. Prints it with both medians: "WHAT: 1.83 times (12.1 ms, 6.6 ms)". Results depend on the device, so READMEs quote
   /// it with the device's name.
   double ratio(std::string_view what, const std::function<void()>& slow, const std::function<void()>& fast,
@@ -75,9 +75,11 @@ class Run {
   std::string picture_;
 };
 
+/// The larger of two errors; NaN if one of them is NaN, which std::max would lose.
+double larger(double worst, double error);
 /// The largest of |got[i] - expected[i]|, infinite if a value is NaN where the other is not. Both have the same length.
 double largestDifference(std::span<const float> got, std::span<const double> expected);
-/// The largest of |values[i]|.
+/// The largest of |values[i]|; NaN if a value is NaN.
 double largestOf(std::span<const double> values);
 
 /// A field of rows x columns values as a picture: each value's place between low and high chooses a colour of a map (colormap.hpp), and each

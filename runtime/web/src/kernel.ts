@@ -70,8 +70,10 @@ export class KernelCaller {
     const { domain, lies, program } = choices;
     const drawn = outputs.map((i) => targetOf(call.streams[i]!, isAlsoRead(kernel, i, call), domain));
     this.draw(device, program, call, domain, lies, shape, drawn);
+    // A stream that the call reads and leaves in another layout is not what the program reads a second time.
+    const isSettled = outputs.every((i) => call.streams[i]!.layout === domain || !isAlsoRead(kernel, i, call));
     outputs.forEach((i, n) => call.streams[i]!.exchange(drawn[n]!, domain));
-    if (this.mayRepeat(given, choices)) this.remember(call, choices);
+    if (isSettled && this.mayRepeat(given, choices)) this.remember(call, choices);
   }
 
   /** Repeats take streams as they are, and no streams for values. */

@@ -150,7 +150,7 @@ export const appendCases = ({ same, refused, filled, random, random24, floats, i
     const bins = filled(device, 'int', [8], new Int32Array(8).fill(9));
     k.dealt.over([2, 3])(bins);
     expect('scattered', String(await bins.read()) === '0,0,0,1,1,1,9,9');
-    k.filledUp(filled(device, 'int', [2], new Int32Array([1, 2])), bins);
+    await k.filledUp(filled(device, 'int', [2], new Int32Array([1, 2])), bins);
     expect('as often as the output is long', String(await bins.read()) === '3,3,3,4,4,4,12,12');
     const r = device.stream('int', [3]);
     k.numbered.over([3])(r);

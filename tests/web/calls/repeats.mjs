@@ -29,6 +29,12 @@ export const repeatCases = ({ refused, filled, expect }) => ({
     k.saxpy(1, small, small, small);
     expect('several shapes are repeated', k.saxpy.repeat([1, small, small, small]) && k.saxpy.repeat([1, y, y, y]));
     await holds('each as it lies', small, 4);
+    // A call that leaves a stream in another layout than it has read.
+    const [wind, heat] = [filled(device, 'float2', [12, 12], new Float32Array(288)), ofOnes([12, 12], 7)];
+    for (let i = 0; i < 3; ++i) k.carried(wind, heat, wind, heat);
+    await holds('in place, where the layout changes', heat, 7);
+    expect('and once it does not', k.carried.repeat([wind, heat, wind, heat]));
+    await holds('in place, where it has changed', heat, 7);
     // What differs.
     expect('a stream of another shape is no repeat', !k.saxpy.repeat([1, small, y, y]));
     expect('a view is none', !k.saxpy.repeat([1, y.domain([0, 0], [8, 8]), y, y]));
