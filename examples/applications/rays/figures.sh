@@ -9,6 +9,6 @@ set -euo pipefail
 program=$(realpath "$1") device=${2:-native}
 shift "$(($# > 1 ? 2 : 1))"
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
-(($# > 0)) || set -- leaks needles light convergence precision sums speed wavefront streaming stopping ray_engine engines
+(($# > 0)) || set -- leaks needles light metals convergence precision sums speed wavefront streaming stopping ray_engine engines
 export OMP_NUM_THREADS=1  # rates are those of one core
 exec ../../support/figures.sh rays "$program" "$device" README.md,../../../docs/rays.md "$@"

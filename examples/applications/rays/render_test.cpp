@@ -91,8 +91,8 @@ TEST_CASE("a white furnace stays white, whatever it is made of") {
   }
 }
 
-TEST_CASE("rough materials do not make light, and lose little where they are smooth") {
-  for (const char* type : {"metal", "frosted"}) {
+TEST_CASE("rough metals keep all light, and frosted glass loses little where it is smooth") {
+  for (const std::string type : {"metal", "frosted"}) {
     double before = 1.0;
     for (const double roughness : {0.01, 0.3, 1.0}) {
       INFO(type << ' ' << roughness);
@@ -102,11 +102,11 @@ TEST_CASE("rough materials do not make light, and lose little where they are smo
                                      "[[material]]\nname = \"m\"\ntype = \"{}\"\ncolour = [1, 1, "
                                      "1]\nroughness = {}\n[[sphere]]\nmaterial = \"m\"\n",
                                      type, roughness));
-      CHECK(e.mean <= before + 4 * e.error + 1e-5);
+      // What facets of metals send to each other is fitted to 0.25 % (scattering.sk).
+      if (type == "metal") CHECK(std::abs(e.mean - 1) <= 0.0025 + 4 * e.error);
+      if (type == "frosted") CHECK(e.mean <= before + 4 * e.error + 1e-5);
       before = e.mean;
       if (roughness == 0.01) CHECK(e.mean > 0.98);
-      // Seen from above, half of the normals reflect into the surface, and Smith's function takes its part of the others.
-      if (roughness == 1.0 && type == std::string("metal")) checkMean(e, 1 - std::numbers::ln2);
     }
   }
 }

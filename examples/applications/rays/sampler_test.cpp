@@ -10,6 +10,7 @@
 #include "chi_square_test.hpp"
 #include "device_scene.hpp"
 #include "light_table.hpp"
+#include "microfacets.hpp"
 #include "path_tables.hpp"
 #include "sampler_test.sk.hpp"
 
@@ -114,6 +115,61 @@ TEST_CASE("directions that materials scatter have the density that they say") {
     // The mean of f / density is the integral of f.
     CHECK(weight == Approx(f).epsilon(0.01));
   }
+}
+
+constexpr double fitted = 0.0025;  ///< bound of the fit in scattering.sk, of 1 / albedo
+
+TEST_CASE("facets of metals make up for what they lose, as well as the fit says") {
+  sk::Device device = sk::Device::native();
+  std::vector<double> cosines;
+  for (double c = 1e-3; c < 1; c *= 1.45) cosines.push_back(c);
+  for (const double c : {0.85, 0.95, 0.99, 1.0}) cosines.push_back(c);
+  std::vector<sk::float3> directions;
+  for (const double c : cosines) directions.push_back(viewerOf(c));
+  const sk::Stream<sk::float3> viewers = streamOf(device, directions);
+  sk::Stream<float> factors = device.stream<float>({static_cast<std::int64_t>(cosines.size())});
+  for (const double alpha : {0.001, 0.01, 0.04, 0.1, 0.17, 0.25, 0.36, 0.5, 0.64, 0.78, 0.9, 1.0}) {
+    kernels::compensationOf(float(alpha), viewers, factors);
+    const std::vector<float> factor = factors.read();
+    for (std::size_t i = 0; i < cosines.size(); ++i) {
+      INFO("roughness " << alpha << ", cosine " << cosines[i]);
+      // The quadrature is within 1e-4 itself.
+      CHECK(std::abs(factor[i] * reflectedOnce(cosines[i], alpha) - 1) < fitted + 1e-4);
+      CHECK(factor[i] >= 1);
+      // Where the surface is smooth nothing is lost, and nothing changes.
+      if (alpha == 0.001 && cosines[i] > 0.2) CHECK(factor[i] < 1 + 2e-5);
+    }
+  }
+}
+
+TEST_CASE("rough metals that absorb nothing scatter all light, and coloured ones what is left of it") {
+  sk::Device device = sk::Device::native();
+  sk::Stream<sk::float4> directions = device.stream<sk::float4>({manySamples}),
+                         weights = device.stream<sk::float4>({manySamples});
+  // Beside the fit, four standard errors, of which one mean in 16,000 is farther by chance.
+  const auto check = [](double sum, double squares, double expected) {
+    const double mean = sum / manySamples;
+    const double error = std::sqrt(std::max(squares / manySamples - mean * mean, 0.0) / manySamples);
+    CHECK(std::abs(mean - expected) <= fitted * expected + 4 * error);
+  };
+  for (const double alpha : {0.001, 0.05, 0.15, 0.3, 0.5, 0.75, 1.0}) {
+    for (const double cosine : {1.0, 0.8, 0.5, 0.2, 0.05}) {
+      INFO("roughness " << alpha << ", cosine " << cosine);
+      kernels::scatterMany(Metal, 1.5f, float(alpha), viewerOf(cosine), 17u, sk::iter(0, manySamples),
+                           directions, weights);
+      double white = 0.0, whites = 0.0, half = 0.0, halves = 0.0;
+      for (const sk::float4& w : weights.read()) {
+        white += w.y;
+        whites += double(w.y) * w.y;
+        half += w.z;
+        halves += double(w.z) * w.z;
+      }
+      check(white, whites, 1.0);
+      check(half, halves, reflectedInAll(cosine, alpha, 0.5));
+    }
+  }
+  // What is made up for is not small: facets of roughness 1 reflect this part once.
+  CHECK(reflectedOnce(1.0, 1.0) == Approx(1 - std::numbers::ln2).epsilon(1e-3));
 }
 
 TEST_CASE("glass reflects the part that Fresnel's formulas have, and mirrors all") {

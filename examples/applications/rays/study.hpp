@@ -25,6 +25,7 @@ Findings studyNeedles(sk::Device& device, bool isSmall);
 /// Every scene by every mode on every device; the given one does not matter.
 Findings studyAlike(sk::Device& device, bool isSmall);
 Findings studyLight(sk::Device& device, bool isSmall);
+Findings studyMetals(sk::Device& device, bool isSmall);
 Findings studyConvergence(sk::Device& device, bool isSmall);
 Findings studyPrecision(sk::Device& device, bool isSmall);
 Findings studySums(sk::Device& device, bool isSmall);
@@ -38,12 +39,13 @@ Findings studyRayEngine(sk::Device& device, bool isSmall);
 /// Embree on the same rays, where the program was built with it; throws std::runtime_error elsewhere.
 Findings studyEmbree(sk::Device& device, bool isSmall);
 
-inline constexpr std::array<Study, 14> studies = {{
+inline constexpr std::array<Study, 15> studies = {{
     {"leaks", "what tests of triangles miss at edges and vertices, and how exact their distances are",
      studyLeaks},
     {"needles", "how the errors of distances grow with the aspect ratio of triangles", studyNeedles},
     {"alike", "how far apart pictures are by every mode, on fragment, compute and native", studyAlike},
     {"light", "means of pictures that are known, by each way to reach lights", studyLight},
+    {"metals", "what rough metals reflect in a white furnace, by facets once and in all", studyMetals},
     {"convergence", "how fast errors fall with independent samples and with Sobol's", studyConvergence},
     {"precision", "what tests of triangles in halves, floats and doubles miss, and what they cost",
      studyPrecision},
