@@ -98,9 +98,9 @@ void surfWeb(classics::Run& run) {
     for (const auto& array : vertexArrays) clMatVec4(array, rank, y);
   };
   const auto byRows = [&](sk::Accumulate sums) { clRow.with({.accumulate = sums})(rows(entries), rank, y); };
-  run.ratio("points in order, to points in any order", inOrder, inAnyOrder);
-  run.ratio("points in order, to arrays of points", inOrder, byArrays);
-  run.ratio("points in order, to rows", inOrder, [&] { byRows(sk::Accumulate::Tree); });
+  run.ratio("points in order / points in any order", inOrder, inAnyOrder);
+  run.ratio("points in order / arrays of points", inOrder, byArrays);
+  run.ratio("points in order / rows", inOrder, [&] { byRows(sk::Accumulate::Tree); });
 
   const auto ranks = rank.readReals();
   std::vector<double> exact(n, 0), first;
@@ -118,8 +118,7 @@ void surfWeb(classics::Run& run) {
     if (first.empty()) first = got;
     double error = 0, differing = 0;
     for (int i = 0; i < n; ++i) {
-      const double e = std::abs(got[i] - exact[i]) / std::max(exact[i], 1e-30);
-      if (!(e <= error)) error = e;
+      error = classics::larger(error, std::abs(got[i] - exact[i]) / std::max(exact[i], 1e-30));
       differing += got[i] != first[i];
     }
     run.check(fmt::format("{} ({:.0f} elements differ)", way, differing), error, roundings * 0x1p-24, reason);

@@ -6,11 +6,10 @@
 #include "ray_engine.sk.hpp"
 #include "support/vec.hpp"
 
-namespace {
-
 using namespace ray_engine;
-using host::Node, host::Ray;
+using classics::larger, host::Node, host::Ray;
 constexpr int bucketSize = 256, leafSize = 32, triangleCount = 6402, codeBits = 60;
+constexpr sk::float2 miss = {1e30f, -1};
 
 /// Appends the octree of triangles first to last - 1, whose sorted codes agree in the bits above `shift`.
 void grow(const std::vector<std::uint64_t>& codes, int first, int last, int shift, std::vector<Node>& nodes) {
@@ -79,7 +78,7 @@ struct Engine {
     const int all = int(h.candidates.size());
     d.candidates.domain({0}, {all}).writeAsync(h.candidates.read());
     d.rays.writeAsync(h.rays.read());
-    d.hits.fill({1e30f, -1});
+    d.hits.fill(miss);
     for (int first = 0; first < all; first += way.perPass, ++passes)
       intersect(d.triangles, d.candidates, first, std::min(all, first + way.perPass), d.rays, d.hits, d.hits);
     flights.emplace_back(std::move(bucket), d.hits.readAsync());
@@ -106,7 +105,9 @@ double errorOf(const Engine& engine, double bound) {
   const auto vec = examples::vecOf<double>;
   const std::vector<Triangle> triangles = engine.h.triangles.read();
   double error = 0;
-  for (const auto& [ray, hit] : engine.sample)
+  for (const auto& [ray, hit] : engine.sample) {
+    const bool isHit = hit.x > 0 && hit.y >= 0 && hit.y < triangleCount && hit.y == std::floor(hit.y);
+    if (!isHit && hit != miss) return HUGE_VAL;
     for (int id = 0; id < triangleCount; ++id) {
       const auto& [a, b, ab, ac, cb, n] = triangles[id];
       const auto d = vec(ray.direction), ao = vec(ray.origin) - vec(a), bo = vec(ray.origin) - vec(b);
@@ -117,13 +118,12 @@ double errorOf(const Engine& engine, double bound) {
       const double size = (length(vec(ab)) + length(vec(ac))) * (length(ao) + length(bo));
       const double t = -dot(vec(n), ao) / dot(vec(n), d);
       const double scale = std::abs(dot(vec(n), d)) / length(vec(n)) / (length(ao) + std::abs(t));
-      if (id == hit.y) error = std::max({error, -inside / size, std::abs(hit.x - t) * scale});
-      if (inside > bound * size && t * scale > bound) error = std::max(error, (hit.x - t) * scale);
+      if (inside > bound * size && t * scale > bound) error = larger(error, (hit.x - t) * scale);
+      if (id == hit.y) error = larger(larger(error, -inside / size), std::abs(hit.x - t) * scale);
     }
+  }
   return error;
 }
-
-}  // namespace
 
 int main(int argc, char** argv) {
   const classics::Classic about{"ray_engine", "Carr, Hall, Hart 2002", "pixels along a side", 400, 16, 1024};

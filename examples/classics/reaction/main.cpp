@@ -14,6 +14,7 @@
 
 namespace {
 
+using classics::larger;
 using Field = std::vector<sk::float2>;
 
 constexpr classics::Classic about{
@@ -66,7 +67,7 @@ double errorOfStep(const reaction::Medium& m, int n, const Field& before, const 
       const double nextU = u(y, x) + m.dt * (m.spreadU * lapU - made + m.feed * (1 - u(y, x)));
       const double nextV = v(y, x) + m.dt * (m.spreadV * lapV + made - (double{m.feed} + m.kill) * v(y, x));
       const sk::float2 got = after[index(y, x)];
-      largest = std::max({largest, std::abs(got.x - nextU), std::abs(got.y - nextV)});
+      largest = larger(larger(largest, std::abs(got.x - nextU)), std::abs(got.y - nextV));
     }
   }
   return largest;
@@ -85,6 +86,7 @@ void reactions(classics::Run& run) {
           2 / (8 * spreadU + patterns.back().feed));
 
   double error = 0, outside = 0;
+  int wrongRanges = 0;
   for (int i = 0; i < 4; ++i) {
     const Pattern& p = patterns[static_cast<std::size_t>(i)];
     const reaction::Medium medium{p.feed, p.kill, spreadU, spreadV, dt};
@@ -94,13 +96,20 @@ void reactions(classics::Run& run) {
     run.say("F = {:.3f}, k = {:.3f}: {:17} {} steps in {:.0f} ms, {:.0f} million cells a second", p.feed,
             p.kill, p.looks, steps, took, 1e-3 * steps * n * n / took);
 
+    const Field last = c.read();
+    sk::float2 least = last[0], most = last[0];
+    for (const sk::float2 cell : last) {
+      least = {std::min(least.x, cell.x), std::min(least.y, cell.y)};
+      most = {std::max(most.x, cell.x), std::max(most.y, cell.y)};
+      for (const float part : {cell.x, cell.y}) outside = larger(outside, std::max(-part, part - 1));
+    }
     const auto [low, high] = reaction::range(c);
-    outside = std::max<double>({outside, -low.x, -low.y, high.x - 1});
+    wrongRanges += low != least || high != most;
     const int above = i / 2 * (n + gap), left = i % 2 * (n + gap);
     palette.write(examples::colormap(p.colours, 256));
     reaction::paint(palette, high.y, c, picture.domain({above, left}, {above + n, left + n}));
     reaction::advance(medium, c, next);
-    error = std::max(error, errorOfStep(medium, n, c.read(), next.read()));
+    error = larger(error, errorOfStep(medium, n, last, next.read()));
   }
   run.picture("reaction.png", examples::imageOf(2 * n + gap, 2 * n + gap, picture.read()));
 
@@ -117,9 +126,8 @@ void reactions(classics::Run& run) {
     for (int i = 0; i < some; ++i) reaction::advance(medium, c, c);
   };
   const auto recorded = [&] { step.repeat(some); };
-  run.ratio("200 steps that copy their result back, to steps that read and write one stream", copying,
-            feedback);
-  run.ratio("200 steps that read and write one stream, to the same in a recorded loop", feedback, recorded);
+  run.ratio("200 steps: copying / in place", copying, feedback);
+  run.ratio("200 steps in place: called / in a recorded loop", feedback, recorded);
 
   const auto after = [&](const std::function<void()>& body) {
     c.write(first);
@@ -129,6 +137,7 @@ void reactions(classics::Run& run) {
   const Field copied = after(copying), fed = after(feedback), looped = after(recorded);
   run.check("one step from each last state", error, 0x1p-21, "8 roundings of numbers up to 1");
   run.check("concentrations outside of [0, 1]", outside, 0x1p-21, "stable steps leave it only by rounding");
+  run.check("ranges that are not those of the cells", wrongRanges, 0, "no operation rounds");
   run.check("results of the three ways that differ", (fed != copied) + (looped != copied), 0,
             "the same operations");
 }

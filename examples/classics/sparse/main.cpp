@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// The geometric flow of Bolz, Farmer, Grinspun and Schroeder 2003: sparse.sk has the paper, and the kernels.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,13 +7,11 @@
 #include "sparse.sk.hpp"
 #include "support/vec.hpp"
 
-namespace {
-
 using examples::Vector;
 using Reals = std::vector<double>;
-
 constexpr float tolerance = 1e-6F;  // of conjugate gradients, relative to the right-hand side
 constexpr double u = 0x1p-24;  // a rounding of floats
+double norm(const Reals& v) { return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0)); }
 
 /// Texels whose rows have one length.
 struct Rectangle {
@@ -38,7 +34,6 @@ std::vector<Rectangle> packed(const std::vector<int>& count, int n, int width) {
 struct Matrix {
   std::vector<int> count, Rx, Ca;
   Reals Ax, Aa;
-
   Reals residual(const Reals& x, Reals b) const {  // b - A x
     for (std::size_t k = 0; k < x.size(); ++k) {
       b[k] -= Ax[k / 3] * x[k];
@@ -47,8 +42,6 @@ struct Matrix {
     return b;
   }
 };
-
-double norm(const Reals& v) { return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0)); }
 
 /// A step of the flow in double, solved by damped Jacobi iterations.
 Reals flowed(Matrix a, Reals x, double dt) {
@@ -71,16 +64,26 @@ Reals flowed(Matrix a, Reals x, double dt) {
   return x;
 }
 
-}  // namespace
+/// Entries have equal twins across the diagonal, as each edge's triangles are those of both of its ends.
+double asymmetryOf(const Matrix& a) {
+  double largest = 0;
+  for (int i = 0; i < std::ssize(a.count); ++i)
+    for (int j = a.Rx[i]; j < a.Rx[i] + a.count[i]; ++j) {
+      const int k = a.Ca[j];
+      const auto row = a.Ca.begin() + a.Rx[k], end = row + a.count[k], twin = std::find(row, end, i);
+      if (twin == end) return HUGE_VAL;
+      largest = classics::larger(largest, std::abs(a.Aa[j] - a.Aa[twin - a.Ca.begin()]));
+    }
+  return largest;
+}
 
 int main(int argc, char** argv) {
-  constexpr classics::Classic about{
-      "sparse", "Bolz, Farmer, Grinspun, Schroeder 2003", "vertices around a tube", 72, 24, 256};
+  constexpr classics::Classic about{"sparse", "Bolz and others 2003", "vertices around a tube", 72, 24, 256};
   return classics::run(argc, argv, about, [](classics::Run& run) {
     using namespace sparse;
-    const int around = run.size(), n = 8 * around * around;
-    const int width = 4 * std::ceil(std::sqrt(n) / 4), height = (n + width - 1) / width;
-    SparseStreams s(run.device(), height, width, 0, n);
+    const int around = run.size(), n = 8 * around * around, pixels = 480;
+    const int width = 4 * int(std::ceil(std::sqrt(n) / 4)), height = (n + width - 1) / width;
+    SparseStreams s(run.device(), height, width, 0, n, pixels);
     measure(around, s.lengths);
     s.vertex.fill(-1);
     sk::order(s.lengths).copyTo(s.vertex.reshape({height * width}).domain({0}, {n}));
@@ -106,9 +109,8 @@ int main(int argc, char** argv) {
     const auto picture = [&] {
       s.nearest.fill(~0U);
       draw(s.count, s.Rx, s.Ca, s.x, s.x, s.nearest);
-      std::vector<float> shades;
-      for (const unsigned pixel : s.nearest.read()) shades.push_back(pixel & 255);
-      return classics::fieldPicture(shades, 480, 480, 0, 255, "dusk");
+      shadeOf(s.nearest, s.shade);
+      return classics::fieldPicture(s.shade.read(), pixels, pixels, 0, 255, "dusk");
     };
     const float dt = 10.0F / (around * around);  // about the square of an edge's length
     knot(around, s.vertex, s.x);
@@ -122,27 +124,25 @@ int main(int argc, char** argv) {
     };
     auto iterations = step();  // compiles the programs, too
     run.timed([&] { step(), step(), iterations = step(); });
-    run.say("{} rows in {} rectangles; the last of 4 steps took {} iterations", n, rectangles.size(),
-            iterations);
+    run.say("{} rows in {} rectangles; the last step took {} iterations", n, rectangles.size(), iterations);
     a.Ax = s.Ax.readReals(), a.Aa = s.Aa.readReals();
     const Reals x = s.x.readReals(), b = s.b.readReals();
     product(s.x);
-    const double scale = 2 * classics::largestOf(a.Ax) * norm(x);
-    run.check("A x", norm(a.residual(x, s.q.readReals())) / scale, 9 * u, "9 roundings of |A| |x|");
-    run.check("b - A x", norm(a.residual(x, b)) / norm(b), tolerance + 4 * u * scale / norm(b),
-              "the tolerance, and 4 roundings of |A| |x|");
+    const double largest = classics::largestOf(a.Ax), rounding = 2 * u * largest * norm(x);  // of |A| |x|
+    run.check("entries of a row, less 6", std::abs(double(a.Ca.size()) / n - 6), 0, "so it is on any torus");
+    run.check("symmetry of A", asymmetryOf(a) / largest, 32 * u, "32 roundings");
+    run.check("A x", norm(a.residual(x, s.q.readReals())), 9 * rounding, "9 roundings of |A| |x|");
+    run.check("b - A x", norm(a.residual(x, b)), tolerance * norm(b) + 4 * rounding, "tolerance, roundings");
     for (int k = 0; k < 4; ++k) expected = flowed(a, expected, dt);
     for (std::size_t k = 0; k < x.size(); ++k) expected[k] -= x[k];
-    run.check("x after 4 steps", norm(expected) / norm(x), 4 * 8 * tolerance,
-              "4 tolerances, and areas that differ 8-fold");
+    run.check("x after 4 steps", norm(expected) / norm(x), 4 * 8 * tolerance, "tolerance, areas' ratio");
     sk::Loop all = run.device().record([&] { multiplyAny(s.count, s.Ax, s.Rx, s.Aa, s.Ca, s.x, s.x, s.q); });
     sk::Loop each = run.device().record([&] { product(s.x); });
-    const auto recorded = [&] { each.repeat(20); };
     const auto called = [&] {
       for (int k = 0; k < 20; ++k) product(s.x);
     };
-    run.ratio("one draw for all rows, against one for each rectangle", [&] { all.repeat(20); }, recorded);
-    run.ratio("draws of rectangles call by call, against a recorded loop", called, recorded);
+    run.ratio("all rows at once / rectangles", [&] { all.repeat(20); }, [&] { each.repeat(20); });
+    run.ratio("rectangles call by call / in a recorded loop", called, [&] { each.repeat(20); });
     const std::vector<float> lengths(a.count.begin(), a.count.end());
     const auto parts = classics::fieldPicture(lengths, height, width, 3, 9, "dusk", std::max(1, 400 / width));
     run.picture("sparse.png", classics::sideBySide(std::vector{rough, picture(), parts}));

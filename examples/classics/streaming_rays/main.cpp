@@ -91,12 +91,13 @@ int main(int argc, char** argv) {
     auto list = run.device().stream<int>({std::ssize(lists)});
     list.write(lists);
     s.cell.write(cell);
-    Scene scene{toFloat3(eye), toFloat3(sun), low, size, s.cell, list, s.triangle, 0u, 0u};
+    Scene scene{toFloat3(eye), toFloat3(sun), low, size, s.cell, list, s.triangle};
+    int passes = 0, different = 0, checked = 0, grazing = 0;
     const auto multipass = [&] {
       generate(scene, s.ray, s.walk);
-      for (int passes = 1;; ++passes) {
+      for (passes = 1;; ++passes) {
         const auto [traversing, intersecting, shading] = count(s.walk);
-        if (traversing + intersecting + shading == 0) return passes;
+        if (traversing + intersecting + shading == 0) return;
         if (traversing + intersecting == 0)
           shade(scene, s.ray, s.walk, s.ray, s.walk);
         else if (4 * intersecting >= traversing)  // a fifth of those on their way
@@ -107,14 +108,13 @@ int main(int argc, char** argv) {
     };
     const auto branching = [&] { trace(scene, s.sum, s.sum); };
     std::vector<examples::Image> pictures;
-    int passes = 0, different = 0, checked = 0, grazing = 0;
     for (const Use use : {RayCasting, ShadowCasting, Whitted, PathTracing}) {
       scene.use = use;
+      scene.sample = 0u;
       s.sum.fill({0, 0, 0});
       branching();
       const std::vector<sk::float3> colour = s.sum.read();
-      run.ratio(
-          fmt::format("{}, multipass / branching", uses[use]), [&] { passes = multipass(); }, branching, 3);
+      run.ratio(fmt::format("{}, multipass / branching", uses[use]), multipass, branching, 3);
       colourOf(s.ray, s.colour);
       different += colour != s.colour.read();
       const std::vector<Walk> walk = s.walk.read();
@@ -127,8 +127,8 @@ int main(int argc, char** argv) {
         ++(grazes ? grazing : checked);
         if (grazes) continue;
         const double fromPlane = std::abs((walk[i].h.x - t) * dot(normalized(cross(edge1, edge2)), rd));
-        ofHits = std::max(ofHits, walk[i].h.w == float(id) ? fromPlane : 1.0);
-        ofColours = std::max(ofColours, length(vecOf<double>(colour[i]) - expected));
+        ofHits = classics::larger(ofHits, walk[i].h.w == float(id) ? fromPlane : 1.0);
+        ofColours = classics::larger(ofColours, length(vecOf<double>(colour[i]) - expected));
       }
       if (use == RayCasting) run.check("nearest hits", ofHits, 0x1p-18, "16 roundings at distances up to 4");
       run.check(fmt::format("{} in {} passes", uses[use], passes), ofColours, 0x1p-18, "64 roundings");
