@@ -39,7 +39,7 @@ struct clMatrix {
     }
   }
 
-  /// y = A x: one diagonal in a pass, or four where so many are left.
+  /// Computes y = A x, adding one or up to four diagonals in each pass.
   void multiply(const clVector& x, clVector& y, bool four = true) const {
     const auto* i = offsets.data();
     const auto *d = diagonals.data(), *end = d + diagonals.size();

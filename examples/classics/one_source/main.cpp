@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Shades one ball on every profile of this machine, and compares the results bit by bit.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -9,7 +10,6 @@
 
 using namespace one_source;
 using examples::Vector;
-
 constexpr sk::float3 eye = {0, 0, 1};
 constexpr std::array<Lamp, 2> lamps = {
     {{{-0.6f, 0.64f, 0.48f}, {1.5f, 1.375f, 1.25f}}, {{0.8f, 0.36f, 0.48f}, {0.375f, 0.5f, 0.75f}}}};

@@ -44,7 +44,7 @@ struct Hit {
   Vector edge1, edge2;
 };
 
-/// Of all triangles, one by one, in double. The ray grazes an edge if rounding (below 2^-16) may decide about a hit.
+/// Finds the nearest hit among all triangles in double. A ray grazes an edge if rounding below 2^-16 could change the result.
 Hit nearest(const Mesh& mesh, Vector ro, Vector rd, bool& grazes) {
   Hit hit{0x1p100, -1, {}, {}};
   for (const Triangle& m : mesh) {

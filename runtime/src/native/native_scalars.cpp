@@ -39,7 +39,7 @@ bool isNegative(F x) {
   return x < 0 || (x == 0 && 1 / x < 0);
 }
 
-/// Of floats of any width.
+/// Computes an operation on floats or doubles.
 template <class T>
 T computeReal(ScalarOp op, T a, T b) {
   switch (op) {

@@ -35,14 +35,14 @@ struct Options {
   bool refines = true;
   int restart = 30;  ///< steps after which gmres begins anew, from 1 to 1000
   double omega = 1.0;  ///< the relaxation factor of sor and ssor, between 0 and 2
-  /// Of rows in sor, ssor, ic0, ilu0 and ilut: "colours" needs few calls, "levels" fewer iterations.
+  /// The order in which sor, ssor, ic0, ilu0 and ilut process rows: "colours" needs few calls, "levels" needs fewer iterations.
   std::string ordering = "colours";
-  /// Of unknowns: "rcm" brings entries near the diagonal; x and b keep their order.
+  /// How unknowns are renumbered internally: "rcm" moves entries closer to the diagonal. x and b keep their order.
   std::string reorder = "none";
-  /// Of ilut: factors below it are dropped, and entries below this part of the norm of their row.
+  /// Threshold of ilut: it drops multipliers below this value, and entries below this fraction of their row's norm.
   double drop = 1e-3;
-  int fill = 20;  ///< of ilut: entries that a row of each factor keeps, at most
-  /// Of multigrid, before and after the correction by the coarser grid.
+  int fill = 20;  ///< ilut keeps at most this many entries in each row of each factor
+  /// Smoothing sweeps of multigrid before and after the coarse-grid correction.
   int sweepsBefore = 1, sweepsAfter = 1;
   /// Called now and then with the iterations so far, and the residual that the method computes, as a part of ||b||.
   std::function<void(std::int64_t, double)> progress = {};
