@@ -36,7 +36,7 @@ function create({ device, canvas, controls, tell }) {
     },
     draw() {
       painter.draw(t, 9.4, 10.4);
-      if (frames++ % 20 === 0) boiling.vapor(water, t).then((cells) => tell(`${((100 * cells) / t.size).toFixed(1)} % of the cells boil`), () => {});
+      if (frames++ % 20 === 0) boiling.vapour(water, t).then((cells) => tell(`${((100 * cells) / t.size).toFixed(1)} % of the cells boil`), () => {});
     },
     point(event) {
       if (event.kind !== 'up') stroke(event, rows / 14, [t, event.isErasing ? 9.4 : 10.6, 0.8]);
