@@ -19,6 +19,7 @@
 #include "gl_device/gl_device.hpp"
 #include "native/native_device.hpp"
 #include "probe/probe.hpp"
+#include "shadow/shadow_device.hpp"
 #include "sk/error.hpp"
 #include "sk/linked_file.hpp"
 #include "support/checked_size.hpp"
@@ -145,7 +146,7 @@ Configuration configurationOf(const DeviceOptions& options) {
   return configuration;
 }
 
-/// Gives a device its configuration, and the memory limit and the trace that are named, if any.
+/// Gives a device its configuration, and the memory limit, the trace and the shadow that are named, if any.
 detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const DeviceOptions& options,
                                Configuration configuration) {
   state->memoryLimit = memoryLimitOf(options.memoryLimit);
@@ -154,7 +155,7 @@ detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const DeviceO
   state->runsCallByCall = checksWritten();
   const std::string trace = chosen({}, "SK_TRACE");
   if (!trace.empty()) state->startTrace(trace);
-  return detail::DeviceOwner(state.release());
+  return detail::DeviceOwner(withShadow(std::move(state)).release());
 }
 
 constexpr std::array<std::pair<std::string_view, RealType>, 3> nativeDevices = {
@@ -307,7 +308,7 @@ std::vector<TargetTrial> Device::trialTargets() {
   return withHostMemory("trialTargets", [&] { return state().trialTargets(); });
 }
 std::vector<TableReport> Device::tables() const {
-  return withHostMemory("tables", [&] { return state().tables.reports(); });
+  return withHostMemory("tables", [&] { return state().underlying().tables.reports(); });
 }
 void Device::finish() {
   withHostMemory("finish", [&] {
@@ -321,11 +322,12 @@ void Device::makeCurrent() {
 }
 
 void Device::countPasses(bool on) {
-  state().passCount = on ? std::optional<PassCount>(PassCount{}) : std::nullopt;
+  state().underlying().passCount = on ? std::optional<PassCount>(PassCount{}) : std::nullopt;
 }
 PassCount Device::passCount() const {
-  if (!state().passCount) throw Error("nobody counts the device's passes; call countPasses(true) first");
-  return *state().passCount;
+  const std::optional<PassCount>& count = state().underlying().passCount;
+  if (!count) throw Error("nobody counts the device's passes; call countPasses(true) first");
+  return *count;
 }
 
 }  // namespace sk

@@ -96,6 +96,8 @@ class DeviceState {
   DeviceState(const DeviceState&) = delete;
   DeviceState& operator=(const DeviceState&) = delete;
 
+  /// The device that runs the calls: another one if this device stands in front of it (shadow/shadow_device.hpp).
+  virtual DeviceState& underlying() { return *this; }
   virtual const std::string& name() const = 0;
   virtual const std::string& driver() const = 0;
   virtual const std::string& shadingLanguage() const = 0;
@@ -190,6 +192,8 @@ class DeviceState {
   /// Bytes of memory for streams that are free now; nullopt if nobody tells.
   virtual std::optional<std::int64_t> availableMemory() = 0;
 
+  /// Makes the calls with this device's streams in place of the runtime; or null.
+  detail::Distribution* interposed = nullptr;
   DeviceLimits limits;
   std::int64_t memoryLimit = 0;  ///< the most bytes of memory that it reports; 0: all
   Configuration configuration;

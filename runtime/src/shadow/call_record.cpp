@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: MIT
+//
+// Compares the outputs of a call and records the difference: errors, exceptional values, decisions.
+#include "shadow/call_record.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "device/configuration.hpp"
+#include "device/region.hpp"
+#include "shadow/copies.hpp"
+#include "sk/scalar_bytes.hpp"
+
+namespace sk {
+
+using program::Role;
+using shadow::ElementRecord;
+using shadow::ExceptionRecord;
+using shadow::KernelRecord;
+using shadow::OutputErrors;
+using shadow::Recorder;
+using shadow::Report;
+using Kind = shadow::ExceptionRecord::Kind;
+
+void recordTimes(Recorder& recorder, int kernel, const CallTimes& times) {
+  Recorder::Access report(recorder);
+  report->kernels[static_cast<std::size_t>(kernel)].seconds += times.device;
+  report->deviceSeconds += times.device;
+  report->referenceSeconds += times.reference;
+  report->comparisonSeconds += times.comparison;
+}
+
+std::string choicesText(const DeviceState& device, const ShadowedCall& call) {
+  std::vector<std::string> choices = choicesOf(device.configuration.resolve(call.kernel, call.options));
+  std::erase(choices, "precision single");
+  return fmt::format("{}", fmt::join(choices, ", "));
+}
+
+namespace {
+
+KernelRecord& recordOf(Report& report, int kernel) { return report.kernels[static_cast<std::size_t>(kernel)]; }
+
+bool isRealType(program::Scalar scalar) {
+  switch (scalar) {
+    case program::Scalar::Float:
+    case program::Scalar::Double:
+    case program::Scalar::Half:
+    case program::Scalar::Unorm8:
+    case program::Scalar::Snorm8:
+    case program::Scalar::Unorm16:
+    case program::Scalar::Snorm16: return true;
+    default: return false;
+  }
+}
+
+/// ".y", ".t", or nothing for the only component of an element.
+std::string componentName(const program::Element& element, int component) {
+  int number = 0;
+  for (const program::Field& field : element.fields) {
+    for (int c = 0; c < field.width; ++c, ++number) {
+      if (number != component) continue;
+      const std::string member = field.path.empty() ? "" : fmt::format(".{}", field.path);
+      return field.width == 1 ? member : fmt::format("{}.{}", member, "xyzw"[c]);
+    }
+  }
+  return {};
+}
+
+program::Scalar scalarOf(const program::Element& element, int component) {
+  for (const program::Field& field : element.fields) {
+    if (component < field.width) return field.scalar;
+    component -= field.width;
+  }
+  return program::Scalar::Float;
+}
+
+/// The index, rows first, of a row-major number.
+std::vector<std::int64_t> indexIn(const Shape& shape, std::int64_t number) {
+  std::vector<std::int64_t> index(static_cast<std::size_t>(shape.rank()));
+  for (int d = shape.rank() - 1; d >= 0; --d) {
+    index[static_cast<std::size_t>(d)] = number % shape[d];
+    number /= shape[d];
+  }
+  return index;
+}
+
+/// The element of an input that belongs to element `number` of `domain`; -1 if the shapes do not say.
+std::int64_t numberIn(const Shape& input, const Shape& domain, std::int64_t number) {
+  if (input == domain) return number;
+  if (input.size() == 1) return 0;
+  if (input.rank() != domain.rank()) return -1;
+  const std::vector<std::int64_t> index = indexIn(domain, number);
+  std::int64_t result = 0;
+  for (int d = 0; d < input.rank(); ++d) {
+    if (input[d] != domain[d] && input[d] != 1) return -1;
+    result = result * input[d] + (input[d] == 1 ? 0 : index[static_cast<std::size_t>(d)]);
+  }
+  return result;
+}
+
+double hostValue(const std::byte* bytes, program::Scalar scalar) {
+  const auto as = [&]<class T>(T value) {
+    std::memcpy(&value, bytes, sizeof value);
+    return static_cast<double>(value);
+  };
+  switch (scalar) {
+    case program::Scalar::Float: return as(float{});
+    case program::Scalar::Double: return as(double{});
+    case program::Scalar::Int: return as(std::int32_t{});
+    case program::Scalar::Uint: return as(std::uint32_t{});
+    case program::Scalar::Long: return as(std::int64_t{});
+    case program::Scalar::Ulong: return as(std::uint64_t{});
+    case program::Scalar::Bool:
+    case program::Scalar::Uchar: return as(std::uint8_t{});
+    default: return as(std::int8_t{});
+  }
+}
+
+void addUniform(std::vector<shadow::Input>& inputs, const program::Parameter& parameter, const void* value) {
+  int component = 0;
+  for (const program::Field& field : parameter.element->fields) {
+    for (std::uint32_t c = 0; c < field.width; ++c, ++component) {
+      const auto* const at =
+          static_cast<const std::byte*>(value) + field.offset + c * program::hostBytes(field.scalar);
+      inputs.push_back({std::string(parameter.name) + componentName(*parameter.element, component),
+                        hostValue(at, field.scalar), isRealType(field.scalar)});
+    }
+  }
+}
+
+/// An element that is far off, in an output that is right elsewhere: another branch was taken there. `value` is the reference's.
+bool isJump(const OutputErrors& errors, double value) {
+  constexpr double far = 1e-3, share = 0.5;
+  constexpr std::int64_t many = 64;
+  return errors.reals >= many && errors.own.error > far * std::max(errors.scale(), std::fabs(value)) &&
+         errors.own.error * errors.own.error > share * errors.own2;
+}
+
+}  // namespace
+
+void CallFollower::compareAll() {
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    for (Written& written : written_) compareOutput(written);
+    Recorder::Access report(device_.recorder());
+    KernelRecord& record = recordOf(*report, kernel_);
+    if (amplification_ > 0) record.amplification.add(amplification_);
+    ++record.followed;
+    ++report->followed;
+  } catch (const std::exception& error) {
+    device_.recorder().note(fmt::format("call {} of {} was not compared: {}", number_, call_.kernel.name, error.what()));
+  }
+  comparisonSeconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void CallFollower::compareOutput(Written& written) {
+  TemporaryStreams& temporaries = device_.temporaries();
+  std::unique_ptr<NativeStream> copied;
+  NativeStream* reference = written.total.get();
+  if (written.stream == nullptr) {
+    written.device = temporaries.take(*parameterOf(written).element, Shape{1});
+    const auto accumulators = std::ranges::count_if(
+        written_.begin(), written_.begin() + (&written - written_.data()),
+        [](const Written& before) { return before.stream == nullptr; });
+    written.device->write(detail::wholeRegion(written.device.get()),
+                          static_cast<const std::byte*>(call_.results[static_cast<std::size_t>(accumulators)]));
+  } else {
+    const StreamRegion region = regionOf(written);
+    reference = written.stream->held();
+    if (reference->shape.size() != written.stream->shape.size()) {  // another number of elements was pushed
+      OutputErrors errors;
+      reference_ = nullptr;
+      errors.integers = 1;
+      errors.decisions.add(0, 0);
+      if (hasOwn_ && written.own->shape.size() != written.stream->shape.size()) errors.ownDecisions.add(0, 0);
+      recordErrors(written, errors, hasOwn_);
+      written.stream->goStale(true);
+      return;
+    }
+    if (region.shape.size() == 0) return;
+    written.device = temporaries.take(*written.stream->element, region.shape);
+    copyElements(written.stream->innerOf(region), detail::wholeRegion(written.device.get()));
+    StreamRegion there = region;
+    there.stream = reference;
+    if (!isAllInOrder(there)) {
+      copied = temporaries.take(*written.stream->element, region.shape);
+      copyElements(there, detail::wholeRegion(copied.get()));
+      reference = copied.get();
+    }
+  }
+  const bool hasOwn = hasOwn_ && written.own->shape.size() == written.device->shape.size();
+  const OutputErrors errors = shadow::compare(*written.device, hasOwn ? written.own.get() : nullptr, *reference);
+  reference_ = reference;
+  recordErrors(written, errors, hasOwn);
+  if (device_.recorder().options().followsDecisions && written.stream != nullptr && errors.decisions.count > 0)
+    written.stream->takeIntegers(regionOf(written), *written.device);
+  temporaries.giveBack(std::move(copied));
+}
+
+void CallFollower::recordErrors(const Written& written, const OutputErrors& errors, bool hasOwn) {
+  const program::Parameter& parameter = parameterOf(written);
+  Recorder::Access report(device_.recorder());
+  KernelRecord& record = recordOf(*report, kernel_);
+  const StreamErrors after = errorsAfter(written, errors, kernel_);
+  if (errors.reals > 0) {
+    if (hasOwn) record.own.add(errors.relativeOwn());
+    record.inherited.add(errors.relativeInherited());
+    record.total.add(errors.relativeTotal());
+    double inputs = 0;
+    for (const Read& read : read_) inputs = std::max(inputs, read.errors.relative);
+    if (hasOwn && inputs > 0 && std::isfinite(inputs))
+      amplification_ = std::max(amplification_, errors.relativeInherited() / inputs);
+    const std::size_t output = Recorder::output(record, parameter.name, parameter.element->name);
+    record.outputs[output].points.add(
+        {number_, hasOwn ? errors.relativeOwn() : 0, errors.relativeInherited(), errors.relativeTotal()});
+    const double scale = errors.scale();
+    const double worst = hasOwn ? errors.own.error / (scale > 0 ? scale : 1) : 0;
+    if (errors.own.element >= 0 && worst > record.worstError) {
+      record.worstError = worst;
+      record.worst = elementOf(written, errors.own.element, errors.own.component);
+    }
+  } else {
+    Recorder::output(record, parameter.name, parameter.element->name);
+  }
+  if (written.stream != nullptr) written.stream->errors = after;
+  if (hasOwn) {
+    recordExceptions(written, errors, kernel_, *report);
+    recordDecisions(written, errors, kernel_, *report);
+  }
+  if (written.stream == nullptr) {
+    const bool isOnly = call_.results.size() == 1;
+    const std::string name(call_.kernel.name);
+    shadow::ResultRecord& result = report->results[Recorder::result(
+        *report, isOnly ? name : fmt::format("{} of {}", parameter.name, name), true)];
+    ++result.reads;
+    result.elements = 1;
+    result.last = after.relative;
+    result.largest = std::max(result.largest, after.relative);
+    result.differs += errors.decisions.count;
+    result.notFinite = errors.newNans.count + errors.newInfinities.count;
+    result.shares = after.shares;
+  }
+}
+
+/// What is known of the elements of an output now. The error consists of what the call has added, and of what its inputs had.
+StreamErrors CallFollower::errorsAfter(const Written& written, const OutputErrors& errors, int kernel) const {
+  StreamErrors after;
+  double own = errors.ownShare();
+  after.relative = errors.relativeTotal();
+  if (errors.relativeIntegers() > after.relative) {
+    after.relative = errors.relativeIntegers();
+    own = std::min(1.0, static_cast<double>(errors.ownDecisions.count) / static_cast<double>(errors.decisions.count));
+  }
+  after.hasNan = errors.nans.count > 0;
+  after.hasInfinity = errors.infinities.count > 0;
+  if (after.relative > 0) {
+    after.shares.add(kernel, own);
+    double inputs = 0;
+    for (const Read& read : read_) inputs += read.errors.relative;
+    for (const Read& read : read_) {
+      if (inputs > 0) after.shares.add(read.errors.shares, (1 - own) * read.errors.relative / inputs);
+    }
+    const double missing = 1 - after.shares.sum();
+    if (missing > 1e-6 && own < 1 - 1e-6) after.shares.add(shadow::writtenByHost, missing);
+  }
+  // Elements outside of the region have the errors that they had.
+  if (written.stream != nullptr && written.stream->shape.size() > regionOf(written).shape.size()) {
+    const StreamErrors& before = written.stream->errors;
+    const double part = static_cast<double>(regionOf(written).shape.size()) / static_cast<double>(written.stream->shape.size());
+    const double here = after.relative * after.relative * part, there = before.relative * before.relative * (1 - part);
+    shadow::Shares shares;
+    shares.add(after.shares, here);
+    shares.add(before.shares, there);
+    after.shares = shares;
+    after.relative = std::sqrt(here + there);
+    after.hasNan = after.hasNan || before.hasNan;
+    after.hasInfinity = after.hasInfinity || before.hasInfinity;
+  }
+  after.shares.normalize();
+  return after;
+}
+
+ElementRecord CallFollower::elementOf(const Written& written, std::int64_t element, int component) const {
+  const program::Parameter& parameter = parameterOf(written);
+  const program::Element& type = written.stream != nullptr ? *written.stream->element : *parameter.element;
+  ElementRecord record;
+  record.call = number_;
+  record.output = std::string(parameter.name) + componentName(type, component);
+  record.isReal = isRealType(scalarOf(type, component));
+  if (written.device == nullptr) return record;
+  const Shape& shape = written.device->shape;
+  record.device = shadow::valueAt(*written.device, component, element);
+  record.reference = written.own != nullptr && written.own->shape.size() == shape.size() && hasOwn_
+                         ? shadow::valueAt(*written.own, component, element)
+                         : NAN;
+  if (written.stream == nullptr) return record;
+  record.index = indexIn(shape, element);
+  const StreamRegion region = regionOf(written);
+  if (isBox(region)) {
+    for (int d = 0; d < shape.rank(); ++d) record.index[static_cast<std::size_t>(d)] += region.begin[d];
+  }
+  for (std::size_t i = 0; i < call_.arguments.size() && i < call_.kernel.parameters.size(); ++i) {
+    const program::Parameter& given = call_.kernel.parameters[i];
+    const bool isValue = given.role == Role::Uniform || given.role == Role::Spec;
+    if (isValue && call_.arguments[i].value != nullptr) addUniform(record.inputs, given, call_.arguments[i].value);
+    const auto read = std::ranges::find(read_, i, &Read::argument);
+    if (read == read_.end() || read->device == nullptr) continue;
+    const std::int64_t number = numberIn(read->device->shape, shape, element);
+    if (number < 0) continue;
+    for (std::size_t c = 0; c < read->device->components.types().size(); ++c) {
+      const int of = static_cast<int>(c);
+      record.inputs.push_back({std::string(given.name) + componentName(*read->stream->element, of),
+                               shadow::valueAt(*read->device, of, number),
+                               isRealType(read->device->components.types()[c].scalar)});
+    }
+  }
+  return record;
+}
+
+void CallFollower::recordExceptions(const Written& written, const OutputErrors& errors, int kernel, Report& report) {
+  constexpr std::size_t most = 256, longestPath = 32;
+  KernelRecord& record = recordOf(report, kernel);
+  record.nans += errors.nans.count;
+  record.infinities += errors.infinities.count;
+  record.flushed += errors.flushed.count;
+  StreamErrors* const stream = written.stream != nullptr ? &written.stream->errors : nullptr;
+  const auto found = [&](Kind kind, const shadow::Found& all, const shadow::Found& added, bool wasThere) {
+    if (all.count == 0) return;
+    const shadow::Found& shown = added.count > 0 ? added : all;
+    for (const Read& read : read_) {
+      if (read.errors.exception < 0 || added.count > 0) continue;
+      auto& path = report.exceptions[static_cast<std::size_t>(read.errors.exception)].path;
+      const bool isKnown = std::ranges::any_of(path, [&](const shadow::Path& step) {
+        return step.kernel == kernel && step.output == parameterOf(written).name;
+      });
+      if (!isKnown && path.size() < longestPath)
+        path.push_back({number_, kernel, std::string(parameterOf(written).name), all.count});
+      if (stream != nullptr) stream->exception = read.errors.exception;
+    }
+    if (wasThere && added.count == 0) return;
+    const bool isKnown = std::ranges::any_of(report.exceptions, [&](const ExceptionRecord& each) {
+      return each.kernel == kernel && each.kind == kind && each.isInReference == (added.count == 0);
+    });
+    if (isKnown || report.exceptions.size() >= most || (added.count == 0 && areRead(kind))) return;
+    report.exceptions.push_back({kind, kernel, shown.count, added.count == 0,
+                                 elementOf(written, shown.first, shown.component), {}});
+    if (stream != nullptr) stream->exception = static_cast<int>(report.exceptions.size() - 1);
+  };
+  const bool hadNan = std::ranges::any_of(read_, [](const Read& read) { return read.errors.hasNan; });
+  const bool hadInfinity = std::ranges::any_of(read_, [](const Read& read) { return read.errors.hasInfinity; });
+  found(Kind::Nan, errors.nans, errors.newNans, hadNan);
+  found(Kind::Infinity, errors.infinities, errors.newInfinities, hadInfinity);
+  found(Kind::Flush, errors.flushed, errors.flushed, false);
+}
+
+/// Whether the call has read such a value, which the host may have written.
+bool CallFollower::areRead(ExceptionRecord::Kind kind) const {
+  for (const Read& read : read_) {
+    if (read.device == nullptr || kind == Kind::Flush) continue;
+    for (std::size_t c = 0; c < read.device->components.types().size(); ++c) {
+      for (std::int64_t i = 0; i < read.device->shape.size(); ++i) {
+        const double value = shadow::valueAt(*read.device, static_cast<int>(c), i);
+        if (kind == Kind::Nan ? std::isnan(value) : std::isinf(value)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+void CallFollower::recordDecisions(const Written& written, const OutputErrors& errors, int kernel, Report& report) {
+  constexpr std::size_t most = 256;
+  KernelRecord& record = recordOf(report, kernel);
+  const auto add = [&](std::int64_t elements, std::int64_t first, int component, bool isInherited) {
+    record.decisions += elements;
+    const bool isKnown = std::ranges::any_of(report.decisions, [&](const shadow::DecisionRecord& each) {
+      return each.kernel == kernel && each.isInherited == isInherited;
+    });
+    if (isKnown || report.decisions.size() >= most) return;
+    report.decisions.push_back({kernel, elements, isInherited, elementOf(written, first, component)});
+    if (isInherited && reference_ != nullptr)  // with the same inputs, the reference decides as the device does
+      report.decisions.back().first.reference = shadow::valueAt(*reference_, component, first);
+  };
+  if (errors.ownDecisions.count > 0) {
+    add(errors.ownDecisions.count, errors.ownDecisions.first, errors.ownDecisions.component, false);
+  } else if (errors.decisions.count > 0) {
+    add(errors.decisions.count, errors.decisions.first, errors.decisions.component, true);
+  }
+  if (errors.own.element < 0 || written.own == nullptr) return;
+  if (isJump(errors, shadow::valueAt(*written.own, errors.own.component, errors.own.element)))
+    add(1, errors.own.element, errors.own.component, false);
+}
+
+}  // namespace sk

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+//
+// Copies elements between a device and native streams, without a loss.
+#pragma once
+
+#include "native/native_stream.hpp"
+
+namespace sk {
+
+/// Whether a region has all elements of its stream, in order.
+bool isAllInOrder(const StreamRegion& region);
+
+/// Copies the elements of a region, on any device, to a region of the same size of a native stream of the same element type.
+void copyElements(const StreamRegion& from, const StreamRegion& to);
+
+}  // namespace sk

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+//
+// How far an output of a call is from the reference. Three arrays of each component are compared: what the device computed
+// (d), what the reference computes with the device's inputs (o), and what it computes with its own (r). Then d - o is the own
+// error of the call, o - r the inherited one, and d - r the total.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "native/native_stream.hpp"
+
+namespace sk::shadow {
+
+/// Elements with a property, and the first one.
+struct Found {
+  std::int64_t count = 0;
+  std::int64_t first = -1;  ///< row-major number of the element
+  int component = 0;  ///< of the first one
+
+  void add(std::int64_t element, int at) {
+    if (count++ == 0 || element < first) {
+      first = element;
+      component = at;
+    }
+  }
+  void add(const Found& other) {
+    if (other.count == 0) return;
+    if (count == 0 || other.first < first) {
+      first = other.first;
+      component = other.component;
+    }
+    count += other.count;
+  }
+};
+
+/// The largest difference, and its element.
+struct Worst {
+  double error = 0;
+  std::int64_t element = -1;
+  int component = 0;
+
+  void add(double candidate, std::int64_t at, int of) {
+    if (!(candidate > error)) return;
+    *this = {candidate, at, of};
+  }
+  void add(const Worst& other) { add(other.error, other.element, other.component); }
+};
+
+/// Sums over the components of real numbers that are finite in all three arrays, and counts of others.
+struct OutputErrors {
+  std::int64_t reals = 0;  ///< compared
+  double reference2 = 0;  ///< sum of r * r
+  double own2 = 0;  ///< sum of (d - o)^2
+  double inherited2 = 0;  ///< sum of (o - r)^2
+  double total2 = 0;  ///< sum of (d - r)^2
+  double ownInTotal = 0;  ///< sum of (d - o)(d - r): what the own error contributes to the total
+  Worst own, total;
+  Found nans, infinities;  ///< of the device
+  Found newNans, newInfinities;  ///< of the device where the reference is finite with the device's inputs
+  Found hidden;  ///< elements that the device has finite, and the reference not, with the device's inputs
+  Found flushed;  ///< zeros of the device where the reference has a number below the smallest normal float
+  std::int64_t integers = 0;  ///< components of integers and booleans
+  Found ownDecisions, decisions;  ///< integers that differ from o, from r
+  double integerReference2 = 0;  ///< sum of r * r over integers
+  double integerTotal2 = 0;  ///< sum of (d - r)^2 over integers
+
+  void add(const OutputErrors& other);
+
+  /// Relative to the root mean square of the reference's components; 0 if there is no error.
+  double relativeOwn() const { return relative(own2); }
+  double relativeInherited() const { return relative(inherited2); }
+  double relativeTotal() const { return relative(total2); }
+  /// The same of integers, as numbers, but no more than their share that differs allows: some are numbers of things.
+  double relativeIntegers() const;
+  /// The share of the total error that the call added itself, by projection on the total: 0 to 1.
+  double ownShare() const;
+  double scale() const;  ///< the root mean square of the reference's components
+
+ private:
+  double relative(double squares) const;
+};
+
+/// Compares dense streams of one shape on native devices. Without `own`, the own error counts as the total one.
+OutputErrors compare(const NativeStream& device, const NativeStream* own, const NativeStream& reference);
+
+/// A component of an element, as a double; integers beyond 2^53 are rounded.
+double valueAt(const NativeStream& stream, int component, std::int64_t element);
+
+}  // namespace sk::shadow

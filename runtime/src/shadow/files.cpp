@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "shadow/files.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "shadow/report_page.hpp"
+
+namespace sk::shadow {
+
+std::string fileMark(const std::string& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return {};
+  return fmt::format("{} {} {} {}.{}", status.st_dev, status.st_ino, status.st_size, status.st_mtim.tv_sec,
+                     status.st_mtim.tv_nsec);
+}
+
+std::string replaceFile(const std::string& file, std::string_view text) {
+  const std::string temporary = fmt::format("{}.{}", file, ::getpid());
+  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) return fmt::format("cannot write '{}': {}", file, std::strerror(errno));
+  int error = 0;
+  while (!text.empty() && error == 0) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno != EINTR) error = errno;
+    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (::close(descriptor) != 0 && error == 0) error = errno;
+  if (error == 0 && std::rename(temporary.c_str(), file.c_str()) != 0) error = errno;
+  if (error == 0) return {};
+  ::unlink(temporary.c_str());
+  return fmt::format("cannot write '{}': {}", file, std::strerror(error));
+}
+
+std::string pageOf(std::string_view json) {
+  constexpr std::string_view marker = "/*REPORT*/null";
+  const std::string_view page = reportPage();
+  const std::size_t at = page.find(marker);
+  std::string text(page.substr(0, at));
+  for (const char c : json) {
+    // so that no text of the program ends the script
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  text += page.substr(at + marker.size());
+  return text;
+}
+
+std::string otherName(const std::string& file) {
+  const std::size_t dot = file.rfind('.');
+  for (int number = 2;; ++number) {
+    const std::string other = fmt::format("{}-{}{}", file.substr(0, dot), number, file.substr(dot));
+    if (fileMark(other).empty()) return other;
+  }
+}
+
+}  // namespace sk::shadow

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "shadow/options.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "assemble/nearest_word.hpp"
+#include "sk/error.hpp"
+
+namespace sk::shadow {
+
+namespace {
+
+[[noreturn]] void refuse(std::string_view option, std::string_view value, std::string_view wanted) {
+  throw Error(fmt::format("SK_SHADOW: {} is '{}'; give {}", option, value, wanted));
+}
+
+std::int64_t positive(std::string_view option, std::string_view value, std::string_view wanted) {
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  if (error != std::errc() || end != value.data() + value.size() || number < 1) refuse(option, value, wanted);
+  return number;
+}
+
+/// A number of bytes, with a K, M or G for powers of 1024.
+std::int64_t bytes(std::string_view value) {
+  constexpr std::string_view wanted = "a number of bytes such as 512M or 8G";
+  std::int64_t unit = 1;
+  std::string_view digits = value;
+  if (!digits.empty()) {
+    const auto at = std::string_view("KMG").find(digits.back());
+    if (at != std::string_view::npos) {
+      unit = std::int64_t{1024} << (10 * at);
+      digits.remove_suffix(1);
+    }
+  }
+  const std::int64_t number = positive("memory", digits, wanted);
+  if (number > INT64_MAX / unit) refuse("memory", value, wanted);
+  return number * unit;
+}
+
+void set(Options& options, std::string_view name, std::string_view value) {
+  if (name == "every") {
+    options.every = positive(name, value, "a number of calls from 1 on");
+  } else if (name == "kernels" || name == "quad") {
+    if (value.empty()) refuse(name, value, "the name of a kernel such as heat::diffuse, or heat::*");
+    (name == "quad" ? options.quad : options.kernels).emplace_back(value);
+  } else if (name == "decisions") {
+    if (value != "own" && value != "follow") refuse(name, value, "own or follow");
+    options.followsDecisions = value == "follow";
+  } else if (name == "memory") {
+    options.memory = bytes(value);
+  } else if (name == "inputs") {
+    if (!value.ends_with(".npz")) refuse(name, value, "a file whose name ends in .npz");
+    options.inputs = value;
+  } else {
+    const std::vector<std::string> known = {"every", "kernels", "decisions", "memory", "quad", "inputs"};
+    const std::string_view near = assemble::nearestWord(name, known);
+    throw Error(fmt::format("SK_SHADOW: there is no option '{}'{}; choose one of {}", name,
+                            near.empty() ? "" : fmt::format("; did you mean '{}'?", near),
+                            fmt::join(known, ", ")));
+  }
+}
+
+}  // namespace
+
+std::string Options::json() const {
+  const std::size_t dot = report.rfind('.'), slash = report.rfind('/');
+  const bool hasEnding = dot != std::string::npos && (slash == std::string::npos || dot > slash);
+  return (hasEnding ? report.substr(0, dot) : report) + ".json";
+}
+
+Options parseOptions(std::string_view text) {
+  Options options;
+  const auto next = [&] {
+    const std::size_t comma = text.find(',');
+    const std::string_view part = text.substr(0, comma);
+    text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+    return part;
+  };
+  options.report = next();
+  if (!options.report.ends_with(".html") && !options.report.ends_with(".json")) {
+    throw Error(fmt::format("SK_SHADOW: the report is '{}'; give a file whose name ends in .html, "
+                            "SK_SHADOW=report.html",
+                            options.report));
+  }
+  while (!text.empty()) {
+    const std::string_view part = next();
+    const std::size_t equals = part.find('=');
+    set(options, part.substr(0, equals),
+        equals == std::string_view::npos ? std::string_view{} : part.substr(equals + 1));
+  }
+  return options;
+}
+
+namespace {
+
+bool matches(std::string_view pattern, std::string_view name) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return pattern == name;
+  if (!name.starts_with(pattern.substr(0, star))) return false;
+  pattern.remove_prefix(star + 1);
+  for (std::size_t at = star; at <= name.size(); ++at) {
+    if (matches(pattern, name.substr(at))) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool matchesAny(const std::vector<std::string>& patterns, std::string_view name) {
+  return std::ranges::any_of(patterns, [&](const std::string& pattern) { return matches(pattern, name); });
+}
+
+}  // namespace sk::shadow

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// What the environment variable SK_SHADOW asks for (docs/accuracy.md): a report, and what it follows.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sk::shadow {
+
+/// SK_SHADOW=report.html,every=16,kernels=heat::*,kernels=other,decisions=follow,memory=8G,quad=heat::residual,inputs=recorded.npz
+struct Options {
+  std::string report;  ///< the page; the report as JSON lies beside it
+  std::int64_t every = 1;  ///< compares every n-th call of a kernel; the reference runs all of them
+  std::vector<std::string> kernels;  ///< compares these alone; empty: all
+  bool followsDecisions = false;  ///< the reference takes over integers and booleans of the device
+  std::int64_t memory = 0;  ///< the most bytes for the reference's streams; 0: half of the memory that is free
+  std::vector<std::string> quad;  ///< kernels whose own error is measured in __float128
+  std::string inputs;  ///< a .npz file for the inputs of each kernel's worst call; empty: none
+
+  /// Where the report goes as JSON: the same name with the ending .json.
+  std::string json() const;
+};
+
+/// Reads the value of SK_SHADOW. Throws sk::Error, which names the option and the valid ones.
+Options parseOptions(std::string_view text);
+
+/// Whether a name matches one of several patterns, in which `*` stands for any characters.
+bool matchesAny(const std::vector<std::string>& patterns, std::string_view name);
+
+}  // namespace sk::shadow

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+#include "shadow/recorder.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <new>
+
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "shadow/files.hpp"
+#include "sk/error.hpp"
+
+namespace sk::shadow {
+
+namespace {
+
+// One report for all devices of a process, so that this is a fact of the process. It lives until the process ends.
+constinit std::mutex processMutex;
+constinit Recorder* ofThisProcess = nullptr;
+constinit bool hasFailed = false;
+
+void say(const std::string& text) { std::fprintf(stderr, "SK_SHADOW: %s\n", text.c_str()); }
+
+/// The program and its arguments, separated by spaces.
+std::string commandLine() {
+  std::ifstream in("/proc/self/cmdline");
+  std::string line(std::istreambuf_iterator<char>(in), {});
+  while (!line.empty() && line.back() == '\0') line.pop_back();
+  std::ranges::replace(line, '\0', ' ');
+  const std::size_t slash = line.substr(0, line.find(' ')).rfind('/');
+  return slash == std::string::npos ? line : line.substr(slash + 1);
+}
+
+void writeReportAtExit() {
+  if (ofThisProcess != nullptr) ofThisProcess->writeAtExit();
+}
+
+}  // namespace
+
+Recorder* Recorder::ofProcess(std::string_view option, const std::string& device) {
+  const std::lock_guard lock(processMutex);
+  if (ofThisProcess != nullptr || hasFailed) return ofThisProcess;
+  hasFailed = true;
+  try {
+    Options options = parseOptions(option);
+    auto* const made = new Recorder(std::move(options), device);
+    const std::string problem = replaceFile(made->options().report, "");
+    if (!problem.empty()) {
+      say(problem + "; the program runs without a shadow");
+      delete made;
+      return nullptr;
+    }
+    made->write(false);
+    std::atexit(writeReportAtExit);
+    hasFailed = false;
+    ofThisProcess = made;
+  } catch (const Error& error) {
+    std::string_view text = error.what();
+    constexpr std::string_view prefix = "SK_SHADOW: ";
+    if (text.starts_with(prefix)) text.remove_prefix(prefix.size());
+    say(fmt::format("{}; the program runs without a shadow", text));
+  }
+  return ofThisProcess;
+}
+
+Recorder::Recorder(Options options, const std::string& device) : process_(::getpid()) {
+  report_.options = std::move(options);
+  report_.program = commandLine();
+  report_.device = device;
+}
+
+bool Recorder::isInOwnProcess() const { return ::getpid() == process_; }
+
+int Recorder::kernel(Report& report, std::string_view name) {
+  const auto found = std::ranges::find(report.kernels, name, &KernelRecord::name);
+  if (found != report.kernels.end()) return static_cast<int>(found - report.kernels.begin());
+  report.kernels.emplace_back().name = name;
+  return static_cast<int>(report.kernels.size() - 1);
+}
+
+std::size_t Recorder::output(KernelRecord& kernel, std::string_view name, std::string_view type) {
+  const auto found = std::ranges::find(kernel.outputs, name, &OutputRecord::name);
+  if (found != kernel.outputs.end()) return static_cast<std::size_t>(found - kernel.outputs.begin());
+  OutputRecord& record = kernel.outputs.emplace_back();
+  record.name = name;
+  record.type = type;
+  return kernel.outputs.size() - 1;
+}
+
+std::size_t Recorder::result(Report& report, const std::string& name, bool isValue) {
+  for (std::size_t i = 0; i < report.results.size(); ++i) {
+    if (report.results[i].name == name && report.results[i].isValue == isValue) return i;
+  }
+  ResultRecord& record = report.results.emplace_back();
+  record.name = name;
+  record.isValue = isValue;
+  return report.results.size() - 1;
+}
+
+std::string Recorder::nameOfKernel(int kernel) {
+  const std::lock_guard lock(mutex_);
+  return std::string(report_.nameOf(kernel));
+}
+
+void Recorder::note(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  constexpr std::size_t most = 100;
+  std::vector<std::string>& notes = report_.notes;
+  if (notes.size() >= most || std::ranges::find(notes, text) != notes.end()) return;
+  notes.push_back(notes.size() + 1 == most ? "further notes are left out" : text);
+}
+
+void Recorder::writeSometimes() {
+  // the report costs little beside the interval
+  constexpr std::chrono::seconds interval(10);
+  const auto now = std::chrono::steady_clock::now();
+  {
+    const std::lock_guard lock(mutex_);
+    if (now - lastWrite_ < interval) return;
+    lastWrite_ = now;
+  }
+  write(false);
+}
+
+void Recorder::write(bool hasEnded) {
+  if (!isInOwnProcess()) return;
+  const std::lock_guard lock(mutex_);
+  try {
+    Report report = report_;
+    report.programSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    report.ended = hasEnded ? "normally" : fmt::format("early: the program had not ended after {} calls", report.calls);
+    conclude(report);
+    writeFiles(report);
+  } catch (const std::exception& error) {
+    say(fmt::format("the report could not be written: {}", error.what()));
+  }
+}
+
+void Recorder::writeFiles(const Report& report) {
+  const std::string json = toJson(report);
+  const auto replace = [&](std::string& file, std::string& mark, std::string_view text) {
+    const std::string now = fileMark(file);
+    if (!mark.empty() && !now.empty() && now != mark) {
+      const std::string other = otherName(file);
+      say(fmt::format("the program has written '{}' itself; the report goes to '{}'", file, other));
+      file = other;
+    }
+    const std::string problem = replaceFile(file, text);
+    if (!problem.empty()) say(problem);
+    mark = fileMark(file);
+  };
+  if (jsonFile_.empty()) jsonFile_ = report_.options.json();
+  if (report_.options.report != jsonFile_) replace(report_.options.report, lastPage_, pageOf(json));
+  replace(jsonFile_, lastJson_, json);
+}
+
+/// A program that ends by exit() leaves its devices as they are.
+void Recorder::writeAtExit() {
+  bool hasDevices = false;
+  {
+    const std::lock_guard lock(mutex_);
+    hasDevices = devices_ > 0;
+  }
+  if (hasDevices) write(true);
+}
+
+void Recorder::deviceEnds() {
+  bool isLast = false;
+  {
+    const std::lock_guard lock(mutex_);
+    isLast = --devices_ == 0;
+  }
+  if (isLast) write(true);
+}
+
+}  // namespace sk::shadow

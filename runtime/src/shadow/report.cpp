@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+//
+// Concludes from the records of a program which kernel is to blame for what.
+#include "shadow/report.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace sk::shadow {
+
+void Series::add(const Point& point) {
+  constexpr std::size_t most = 1024;
+  if (inLast_ > 0 && inLast_ < step_) {
+    Point& last = points_.back();
+    last = {point.call, std::fmax(last.own, point.own), std::fmax(last.inherited, point.inherited),
+            std::fmax(last.total, point.total)};
+    ++inLast_;
+    return;
+  }
+  if (points_.size() == most) {
+    for (std::size_t i = 0; i < most / 2; ++i) {
+      const Point &a = points_[2 * i], &b = points_[2 * i + 1];
+      points_[i] = {b.call, std::fmax(a.own, b.own), std::fmax(a.inherited, b.inherited),
+                    std::fmax(a.total, b.total)};
+    }
+    points_.resize(most / 2);
+    step_ *= 2;
+  }
+  points_.push_back(point);
+  inLast_ = 1;
+}
+
+std::string_view Report::nameOf(int kernel) const {
+  if (kernel < 0) return "(written by the host)";
+  return kernels[static_cast<std::size_t>(kernel)].name;
+}
+
+namespace {
+
+std::string digitsOf(double error) {
+  if (!(error > 0)) return "all digits";
+  const double digits = std::clamp(-std::log10(error), 0.0, 16.0);
+  return fmt::format("{:.1f} digits", digits);
+}
+
+std::string where(const std::vector<std::int64_t>& index) {
+  std::string text;
+  for (const std::int64_t i : index) text += fmt::format("[{}]", i);
+  return text;
+}
+
+const ResultRecord* worstResult(const Report& report) {
+  const auto worst = std::ranges::max_element(report.results, {}, &ResultRecord::largest);
+  return worst == report.results.end() ? nullptr : &*worst;
+}
+
+/// The kernels' shares of the errors of all results: a result counts as much as its error.
+void shareErrors(Report& report) {
+  double all = 0;
+  const auto weightOf = [](const ResultRecord& result) { return std::fmin(1, result.last); };
+  for (const ResultRecord& result : report.results) all += weightOf(result);
+  for (const ResultRecord& result : report.results) {
+    if (!(all > 0)) break;
+    for (const auto& [kernel, share] : result.shares.all()) {
+      if (kernel >= 0) report.kernels[static_cast<std::size_t>(kernel)].share += share * weightOf(result) / all;
+    }
+  }
+}
+
+void addExceptions(Report& report, bool areInReference) {
+  using Kind = ExceptionRecord::Kind;
+  for (const ExceptionRecord& each : report.exceptions) {
+    if (each.isInReference != areInReference || each.kind == Kind::Flush) continue;
+    if (areInReference && each.kind == Kind::Infinity) continue;  // programs mean those
+    const bool isNan = each.kind == Kind::Nan;
+    const std::string kernel(report.nameOf(each.kernel));
+    report.verdicts.push_back(
+        {isNan ? "nan" : "infinity", kernel,
+         fmt::format("{} computes the first {} in call {}, at {}{}, {}", kernel, isNan ? "NaN" : "infinity",
+                     each.first.call, each.first.output, where(each.first.index),
+                     areInReference ? "and does so in double as well"
+                                    : fmt::format("where double gives {:.6g}", each.first.reference)),
+         each.first.call});
+  }
+}
+
+/// Whether the results are worse than rounding explains.
+bool isGrave(const ResultRecord* result, double limit) {
+  return result != nullptr && (result->largest > limit || result->differs > 0);
+}
+
+void addDecisions(Report& report) {
+  for (const DecisionRecord& each : report.decisions) {
+    if (each.isInherited) continue;
+    const std::string kernel(report.nameOf(each.kernel));
+    const std::string elements =
+        each.elements == 1 ? "one element" : fmt::format("{} elements", each.elements);
+    report.verdicts.push_back(
+        {"decision", kernel,
+         fmt::format("{} decides differently than in double for {} in call {}: {}{} is {:.9g}, not {:.9g}",
+                     kernel, elements, each.first.call, each.first.output, where(each.first.index),
+                     each.first.device, each.first.reference),
+         each.first.call});
+  }
+}
+
+/// The factor by which an error grows with each call if it grows exponentially, not as rounding errors add up; else 1. A growth
+/// that has ended because nothing is right any more counts up to there.
+double growthOf(const Series& series) {
+  constexpr double lost = 0.05, much = 100, steady = 0.75;
+  std::vector<Series::Point> points;
+  for (const Series::Point& point : series.points()) {
+    if (point.total > lost) break;
+    if (point.total > 0) points.push_back(point);
+  }
+  constexpr std::size_t least = 24, quarters = 4;
+  if (points.size() < least) return 1;
+  double logarithms[quarters + 1], steps[quarters];
+  for (std::size_t q = 0; q <= quarters; ++q)
+    logarithms[q] = std::log(points[(points.size() - 1) * q / quarters].total);
+  for (std::size_t q = 0; q < quarters; ++q) steps[q] = logarithms[q + 1] - logarithms[q];
+  // sums of rounding errors grow by a factor of 2 or less from the second quarter to the fourth
+  const double grown = steps[1] + steps[2] + steps[3];
+  if (grown < std::log(much) || steps[2] < steady * steps[1] || steps[3] < steady * steps[2]) return 1;
+  const auto calls = static_cast<double>(points.back().call - points[(points.size() - 1) / quarters].call);
+  return std::exp(grown / calls);
+}
+
+/// An instability shows in most of what the program computes over and over again.
+void addUnstable(Report& report) {
+  constexpr std::int64_t often = 24;
+  const KernelRecord* worst = nullptr;
+  double fastest = 1;
+  int growing = 0, steady = 0;
+  for (const KernelRecord& kernel : report.kernels) {
+    if (kernel.amplification.count() < often) continue;
+    for (const OutputRecord& output : kernel.outputs) {
+      if (output.points.points().empty()) continue;
+      const double growth = growthOf(output.points);
+      (growth > 1 ? growing : steady) += 1;
+      if (growth <= fastest) continue;
+      fastest = growth;
+      worst = &kernel;
+    }
+  }
+  if (worst == nullptr || growing < steady) return;
+  const double perCall = std::pow(fastest, static_cast<double>(report.calls) / static_cast<double>(worst->calls));
+  report.verdicts.push_back(
+      {"unstable", worst->name,
+       fmt::format("unstable time step: the error grows by a factor of {:.4g} with each call of {}, for {} calls; or the "
+                   "model is chaotic",
+                   perCall, worst->name, worst->calls),
+       0});
+}
+
+const KernelRecord* worstByShare(const Report& report) {
+  const auto worst = std::ranges::max_element(report.kernels, {}, &KernelRecord::share);
+  return worst == report.kernels.end() || !(worst->share > 0) ? nullptr : &*worst;
+}
+
+void addShares(Report& report, const ResultRecord* result) {
+  const KernelRecord* worst = worstByShare(report);
+  if (worst == nullptr || result == nullptr || !(result->largest > 0)) return;
+  const std::string choices = worst->choices.empty() ? "" : fmt::format(" ({})", worst->choices);
+  report.verdicts.push_back(
+      {"error", worst->name,
+       fmt::format("{}{} adds {:.0f} % of the error of what the program reads: {} of '{}' survive", worst->name,
+                   choices, 100 * worst->share, digitsOf(result->largest), result->name),
+       worst->worst ? worst->worst->call : 0});
+}
+
+void addFlushes(Report& report) {
+  for (const ExceptionRecord& each : report.exceptions) {
+    if (each.kind != ExceptionRecord::Kind::Flush) continue;
+    const std::string kernel(report.nameOf(each.kernel));
+    report.verdicts.push_back(
+        {"flush", kernel,
+         fmt::format("{} flushes numbers below 1.2e-38 to zero, first in call {} at {}{}, where double gives {:.3g}",
+                     kernel, each.first.call, each.first.output, where(each.first.index), each.first.reference),
+         each.first.call});
+  }
+}
+
+void addRest(Report& report, const ResultRecord* result) {
+  if (report.calls == 0) {
+    report.verdicts.push_back({"nothing", "", "the program has called no kernel", 0});
+  } else if (report.followed == 0) {
+    report.verdicts.push_back({"nothing", "", "no call was compared; the notes say why", 0});
+  } else if (report.results.empty()) {
+    report.verdicts.push_back({"nothing", "", "the program has read no result", 0});
+  } else if (!isGrave(result, 1e-5) && report.verdicts.empty()) {
+    report.verdicts.push_back(
+        {"fine", "", fmt::format("every result is right: at least {} survive", digitsOf(result->largest)), 0});
+  }
+}
+
+}  // namespace
+
+void conclude(Report& report) {
+  shareErrors(report);
+  const ResultRecord* result = worstResult(report);
+  addExceptions(report, false);
+  const bool hasDecided = isGrave(result, 1e-4);
+  if (hasDecided) addDecisions(report);
+  addUnstable(report);
+  addExceptions(report, true);
+  if (isGrave(result, 2e-7)) addShares(report, result);
+  if (!hasDecided) addDecisions(report);
+  addFlushes(report);
+  addRest(report, result);
+}
+
+}  // namespace sk::shadow

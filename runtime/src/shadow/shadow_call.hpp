@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+//
+// A call of the program on a shadowed device. It runs three times: on the device, as ever; on the reference with the device's own
+// inputs, which shows the error that the call adds; and on the reference with the reference's inputs, which shows what has
+// reached its outputs in all.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/loop_runner.hpp"
+#include "native/native_stream.hpp"
+#include "shadow/errors.hpp"
+#include "shadow/shadow_device.hpp"
+#include "shadow/shadow_stream.hpp"
+#include "sk/call.hpp"
+
+namespace sk {
+
+/// A call as the program made it.
+struct ShadowedCall {
+  enum class Kind : std::uint8_t { Kernel, Reduce, Fold, Scan } kind;
+  const program::Kernel& kernel;  ///< has the parameters of the arguments
+  const program::Reduction* reduction;  ///< null for Kernel
+  std::span<const Argument> arguments;
+  std::span<void* const> results;  ///< of a reduction to values; else empty
+  CallOptions options;
+
+  /// Makes the same call with other arguments, which may be on another device.
+  void run(std::span<const Argument> others, std::span<void* const> values, const CallOptions& with) const;
+};
+
+/// Runs a call on a shadowed device and its reference, and records their difference. Throws what the call on the device throws.
+class CallFollower {
+ public:
+  CallFollower(ShadowDevice& device, const ShadowedCall& call);
+  ~CallFollower();
+  CallFollower(const CallFollower&) = delete;
+  CallFollower& operator=(const CallFollower&) = delete;
+
+  void run();
+
+ private:
+  struct Written {
+    std::size_t argument;
+    ShadowStream* stream;  ///< null: a value
+    bool isPart;  ///< other elements of the region keep their values
+    std::unique_ptr<NativeStream> own = {}, total = {}, device = {};  ///< temporaries; `total` of values alone
+  };
+  struct Read {
+    std::size_t argument;
+    ShadowStream* stream;
+    StreamErrors errors;  ///< before the call
+    std::unique_ptr<NativeStream> device = {};
+  };
+
+  bool isWritten(std::size_t argument) const;
+  bool prepare();
+  void prepareOwn();
+  void runOnDevice();
+  bool runOnReference();
+  bool runOwn();
+  void compareAll();
+  void compareOutput(Written& written);
+  void recordErrors(const Written& written, const shadow::OutputErrors& errors, bool hasOwn);
+  shadow::ElementRecord elementOf(const Written& written, std::int64_t element, int component) const;
+  void recordExceptions(const Written& written, const shadow::OutputErrors& errors, int kernel, shadow::Report& report);
+  void recordDecisions(const Written& written, const shadow::OutputErrors& errors, int kernel, shadow::Report& report);
+  bool areRead(shadow::ExceptionRecord::Kind kind) const;
+  StreamErrors errorsAfter(const Written& written, const shadow::OutputErrors& errors, int kernel) const;
+  void loseOutputs(bool isCounted);
+  void giveBack();
+  StreamRegion regionOf(const Written& written) const;
+  const program::Parameter& parameterOf(const Written& written) const {
+    return call_.kernel.parameters[written.argument];
+  }
+
+  ShadowDevice& device_;
+  const ShadowedCall& call_;
+  NativeDevice& ownReference_;
+  std::int64_t number_ = 0;
+  int kernel_ = 0;  ///< its number in the report
+  bool isMeasured_ = false, hasOwn_ = false;
+  const NativeStream* reference_ = nullptr;  ///< what the output that is recorded is compared with
+  double amplification_ = 0;
+  double seconds_ = 0, referenceSeconds_ = 0, comparisonSeconds_ = 0;
+  std::vector<Read> read_;
+  std::vector<Written> written_;
+};
+
+/// The choices of a reference: double or wider everywhere, and every function computed.
+CallOptions referenceOptions(const CallOptions& options, NativeDevice& device);
+
+/// The call, to be run again by a loop. Throws sk::Error as recording it on the device does.
+std::unique_ptr<RecordedCall> recordShadowed(ShadowDevice& device, const ShadowedCall& call);
+
+/// Operations with scalars on a shadowed device.
+std::unique_ptr<RecordedCall> prepareShadowedScalars(ShadowDevice& device, ScalarPass pass);
+
+}  // namespace sk

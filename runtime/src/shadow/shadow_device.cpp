@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "shadow/shadow_device.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "call/check_written.hpp"
+#include "call/resolved_call.hpp"
+#include "device/loop_state.hpp"
+#include "device/rows_state.hpp"
+#include "native/entries.hpp"
+#include "shadow/results.hpp"
+#include "shadow/shadow_call.hpp"
+#include "shadow/shadow_staging.hpp"
+#include "sk/error.hpp"
+#include "sk/types.hpp"
+
+namespace sk {
+
+std::unique_ptr<NativeStream> TemporaryStreams::take(const program::Element& element, const Shape& shape) {
+  const auto found = std::ranges::find_if(free_, [&](const std::unique_ptr<NativeStream>& stream) {
+    return stream->element == &element && stream->shape == shape;
+  });
+  if (found == free_.end()) return std::make_unique<NativeStream>(device_, element, shape, Storage::Single);
+  std::unique_ptr<NativeStream> stream = std::move(*found);
+  free_.erase(found);
+  return stream;
+}
+
+void TemporaryStreams::giveBack(std::unique_ptr<NativeStream> stream) {
+  if (stream == nullptr) return;
+  constexpr std::size_t most = 24;
+  if (free_.size() == most) free_.erase(free_.begin());  // the one that nobody has taken for longest
+  free_.push_back(std::move(stream));
+}
+
+struct ShadowDevice::RowsCopy {
+  RowsCopy(const RowsState& given, DeviceState& on)
+      : original(&given), shared(&given), device(&on),
+        copy(new RowsState(on, {given.pieces().starts().begin(), given.pieces().starts().end()})) {}
+  ~RowsCopy() { copy->leave(); }
+  RowsCopy(const RowsCopy&) = delete;
+  RowsCopy& operator=(const RowsCopy&) = delete;
+
+  const RowsState* original;
+  SharedRows shared;  ///< so that no other rows get the address
+  DeviceState* device;
+  RowsState* copy;
+};
+
+ShadowDevice::ShadowDevice(std::unique_ptr<DeviceState> primary, shadow::Recorder& recorder)
+    : primary_(std::move(primary)),
+      recorder_(recorder),
+      reference_(std::make_unique<NativeDevice>(RealType::Double)),
+      temporaries_(*reference_) {
+  interposed = this;
+  limits = primary_->limits;
+  memoryLimit = primary_->memoryLimit;
+  configuration = primary_->configuration;
+  runsCallByCall = true;
+  primary_->runsCallByCall = true;
+  memoryLimit_ = recorder_.options().memory;
+  if (memoryLimit_ == 0) memoryLimit_ = reference_->availableMemory().value_or(INT64_MAX) / 2;
+  recorder_.deviceBegins();
+}
+
+ShadowDevice::~ShadowDevice() {
+  while (firstStream() != nullptr) {
+    auto& stream = static_cast<ShadowStream&>(*firstStream());
+    stream.endWrite();
+    stream.leave();
+    stream.empty();
+  }
+  rows_.clear();
+  recorder_.deviceEnds();
+}
+
+std::int64_t ShadowDevice::nextCall() {
+  shadow::Recorder::Access report(recorder_);
+  return report->calls + 1;
+}
+
+bool ShadowDevice::takeMemory(std::int64_t bytes) {
+  if (memory_ + bytes > memoryLimit_) return false;
+  memory_ += bytes;
+  return true;
+}
+
+NativeDevice& ShadowDevice::ownReference(const program::Kernel& kernel) {
+  const bool isQuad = shadow::matchesAny(recorder_.options().quad, kernel.name) && kernel.code != nullptr &&
+                      hasCodeFor(*kernel.code, RealType::Quad);
+  if (!isQuad) {
+    if (shadow::matchesAny(recorder_.options().quad, kernel.name))
+      recorder_.note(fmt::format("{} has no code in __float128 (skc --quad), and is compared with doubles", kernel.name));
+    return *reference_;
+  }
+  if (!quad_) {
+    quad_ = std::make_unique<NativeDevice>(RealType::Quad);
+    quadTemporaries_ = std::make_unique<TemporaryStreams>(*quad_);
+  }
+  return *quad_;
+}
+
+TemporaryStreams& ShadowDevice::ownTemporaries(const program::Kernel& kernel) {
+  return &ownReference(kernel) == reference_.get() ? temporaries_ : *quadTemporaries_;
+}
+
+const RowsState* ShadowDevice::rowsOn(DeviceState& device, const RowsState* rows) {
+  if (rows == nullptr) return nullptr;
+  const auto known = std::ranges::find_if(rows_, [&](const std::unique_ptr<RowsCopy>& each) {
+    return each->original == rows && each->device == &device;
+  });
+  if (known != rows_.end()) return (*known)->copy;
+  constexpr std::size_t most = 64;
+  if (rows_.size() == most) rows_.erase(rows_.begin());
+  return rows_.emplace_back(std::make_unique<RowsCopy>(*rows, device))->copy;
+}
+
+bool ShadowDevice::isChosen(const program::Kernel& kernel) const {
+  const std::vector<std::string>& chosen = recorder_.options().kernels;
+  return chosen.empty() || shadow::matchesAny(chosen, kernel.name);
+}
+
+void ShadowDevice::giveUp(const program::Kernel& kernel, const std::string& why) {
+  if (!givenUp_.emplace(&kernel, why).second) return;
+  recorder_.note(fmt::format("{} is not followed: {}", kernel.name, why));
+}
+
+namespace {
+
+void followOrRecord(ShadowDevice& device, const ShadowedCall& call) {
+  if (device.recording != nullptr) return device.recording->add(recordShadowed(device, call));
+  CallFollower(device, call).run();
+}
+
+}  // namespace
+
+void ShadowDevice::run(const program::Kernel& kernel, std::span<const Argument> arguments,
+                       const CallOptions& options) {
+  followOrRecord(*this, {ShadowedCall::Kind::Kernel, kernel, nullptr, arguments, {}, options});
+}
+
+void ShadowDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
+                          std::span<void* const> results, const CallOptions& options) {
+  followOrRecord(*this, {ShadowedCall::Kind::Reduce, reduction.fold, &reduction, arguments, results, options});
+}
+
+void ShadowDevice::fold(const program::Reduction& reduction, std::span<const Argument> arguments,
+                        const CallOptions& options) {
+  followOrRecord(*this, {ShadowedCall::Kind::Fold, reduction.fold, &reduction, arguments, {}, options});
+}
+
+void ShadowDevice::scan(const program::Reduction& reduction, std::span<const Argument> arguments,
+                        const CallOptions& options) {
+  followOrRecord(*this, {ShadowedCall::Kind::Scan, reduction.fold, &reduction, arguments, {}, options});
+}
+
+void ShadowDevice::run(const ResolvedCall& call) { run(call.kernel, call.arguments, call.options); }
+
+void ShadowDevice::reduce(const ResolvedReduction& call) {
+  reduce(call.reduction, call.arguments, call.values, call.options);
+}
+
+std::unique_ptr<StreamState> ShadowDevice::createStream(const program::Element& element, const Shape& shape,
+                                                        Storage storage) {
+  return std::make_unique<ShadowStream>(*this, primary_->createStream(element, shape, storage));
+}
+
+std::unique_ptr<RecordedCall> ShadowDevice::prepareScalars(ScalarPass pass) {
+  return prepareShadowedScalars(*this, std::move(pass));
+}
+
+std::unique_ptr<Staging> ShadowDevice::makeStaging(Staging::Way way) {
+  return std::make_unique<ShadowStaging>(*this, way);
+}
+
+// The device may reorder its elements itself, and says then where each came from; the reference's follow.
+std::optional<std::int64_t> ShadowDevice::reorder(const Reordering& order) {
+  ShadowStream& keys = shadowStream(order.keys);
+  const bool isSort = order.by == Reordering::By::Keys;
+  if (isSort) sortedKeys_ = &keys;
+  std::vector<StreamRegion> moved;
+  for (const StreamRegion& region : order.moved) moved.push_back(shadowStream(region).innerOf(region));
+  const Shape& shape = order.keys.shape;
+  std::unique_ptr<StreamState> own;
+  StreamRegion places;
+  if (order.places != nullptr) {
+    places = shadowStream(*order.places).innerOf(*order.places);
+  } else {
+    own = primary_->createStream(ElementTraits<std::int32_t>::element(), shape, Storage::Single);
+    places = detail::wholeRegion(own.get());
+  }
+  Reordering inner{.by = order.by, .keys = keys.innerOf(order.keys), .moved = moved, .places = &places};
+  const std::optional<std::int64_t> first = primary_->reorder(inner);
+  if (!first) return std::nullopt;
+  std::vector<std::int32_t> sources(static_cast<std::size_t>(shape.size()));
+  detail::read(places, sources.data(), sources.size());
+  for (const StreamRegion& region : order.moved) {
+    ShadowStream& stream = shadowStream(region);
+    stream.mirrorMarks();
+    if (NativeStream* const held = stream.isStale() ? nullptr : stream.reference()) {
+      StreamRegion there = region;
+      there.stream = held;
+      held->permute(there, sources);
+      if (isSort && &stream == &keys) recordOrder(stream, there);
+    }
+  }
+  if (order.places != nullptr) shadowStream(*order.places).goStale(false);
+  return first;
+}
+
+std::unique_ptr<DeviceState> withShadow(std::unique_ptr<DeviceState> device) {
+  const char* const option = std::getenv("SK_SHADOW");
+  if (option == nullptr || *option == '\0' || device->isReference()) return device;
+  shadow::Recorder* const recorder = shadow::Recorder::ofProcess(option, device->name());
+  if (recorder == nullptr || !recorder->isInOwnProcess()) return device;
+  if (checksWritten()) {
+    recorder->note("nothing is followed: SK_CHECK=written runs calls several times; unset it");
+    return device;
+  }
+  return std::make_unique<ShadowDevice>(std::move(device), *recorder);
+}
+
+}  // namespace sk

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+#include "shadow/shadow_stream.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "call/placed.hpp"
+#include "device/region.hpp"
+#include "shadow/copies.hpp"
+#include "shadow/results.hpp"
+#include "shadow/shadow_device.hpp"
+#include "sk/error.hpp"
+#include "sk/host_vector.hpp"
+#include "support/checked_size.hpp"
+
+namespace sk {
+
+namespace {
+
+/// The bytes of a stream's elements on a reference device.
+std::int64_t referenceBytes(const program::Element& element, std::int64_t count) {
+  std::int64_t bytes = 0;
+  for (const ComponentType& component : componentsOf(element, RealType::Double))
+    bytes += static_cast<std::int64_t>(component.storedBytes);
+  return bytes * count;
+}
+
+StreamRegion on(const StreamRegion& region, StreamState& stream) {
+  StreamRegion other = region;
+  other.stream = &stream;
+  return other;
+}
+
+}  // namespace
+
+ShadowStream::ShadowStream(ShadowDevice& on, std::unique_ptr<StreamState> inner)
+    : StreamState(on, *inner->element, inner->shape, inner->storage),
+      inner_(std::move(inner)),
+      number_(on.nextStream()) {}
+
+ShadowStream::~ShadowStream() {
+  if (device == nullptr) return;
+  endWrite();
+  owner().freeMemory(bytes_);
+  if (owner().sortedKeys() == this) owner().setSortedKeys(nullptr);
+}
+
+ShadowDevice& ShadowStream::owner() const { return static_cast<ShadowDevice&>(*device); }
+
+StreamRegion ShadowStream::innerOf(const StreamRegion& region) const { return on(region, *inner_); }
+
+NativeStream* ShadowStream::room() {
+  if (!owner().isFollowing() || isRefused_) return nullptr;
+  if (reference_ && reference_->shape == shape) return reference_.get();
+  reference_.reset();
+  owner().freeMemory(std::exchange(bytes_, 0));
+  const std::int64_t bytes = referenceBytes(*element, shape.size());
+  try {
+    if (owner().takeMemory(bytes)) {
+      bytes_ = bytes;
+      reference_ = std::make_unique<NativeStream>(owner().reference(), *element, shape, Storage::Single);
+      return reference_.get();
+    }
+  } catch (const Error&) {
+    owner().freeMemory(std::exchange(bytes_, 0));
+  }
+  isRefused_ = true;
+  owner().recorder().note(fmt::format(
+      "{} is not followed: its reference takes {} bytes, and there is no memory for them (SK_SHADOW=...,memory=8G allows more)",
+      describe(), bytes));
+  return nullptr;
+}
+
+NativeStream* ShadowStream::reference() {
+  settle();
+  NativeStream* const held = room();
+  if (held == nullptr) return nullptr;
+  if (!isStale_) return held;
+  if (!inner_->isLost()) copyElements(detail::wholeRegion(inner_.get()), detail::wholeRegion(held));
+  isStale_ = false;
+  return held;
+}
+
+void ShadowStream::goStale(bool isCounted) {
+  if (isCounted && !isStale_) ++resyncs;
+  isStale_ = true;
+  errors = {};
+}
+
+void ShadowStream::takeIntegers(const StreamRegion& region, const NativeStream& device) {
+  const auto isReal = [](const ComponentType& type) {
+    return type.scalar == program::Scalar::Float || type.scalar == program::Scalar::Double;
+  };
+  const std::span<const ComponentType> types = reference_->components.types();
+  if (std::ranges::none_of(types, isReal)) {
+    StreamState& elements = const_cast<NativeStream&>(device);
+    return copyElements(detail::wholeRegion(&elements), on(region, *reference_));
+  }
+  if (!isAllInOrder(on(region, *reference_))) return goStale(true);
+  for (std::size_t c = 0; c < types.size(); ++c) {
+    if (isReal(types[c])) continue;
+    std::memcpy(reference_->components.arrays()[c], device.components.arrays()[c],
+                static_cast<std::size_t>(shape.size()) * types[c].storedBytes);
+  }
+}
+
+void ShadowStream::settle() {
+  inner_->settle();
+  shape = inner_->shape;
+}
+
+void ShadowStream::mirrorMarks() noexcept {
+  inner_->isLost() ? markLost() : setWritten();
+}
+
+/// Makes a change by the host to the device's elements, then to the reference's.
+template <class Change>
+void ShadowStream::change(const StreamRegion& region, Change&& change) {
+  const bool isAll = isWhole(region);
+  NativeStream* const held = isAll ? room() : reference();
+  endWrite();
+  try {
+    change(innerOf(region));
+  } catch (...) {
+    mirrorMarks();
+    goStale(false);
+    throw;
+  }
+  mirrorMarks();
+  last = {.elements = region.shape.size()};
+  if (held == nullptr) return;
+  change(on(region, *held));
+  isStale_ = false;
+  if (isAll) errors = {};
+}
+
+void ShadowStream::write(const StreamRegion& region, const std::byte* elements) {
+  change(region, [&](const StreamRegion& target) {
+    detail::write(target, elements, static_cast<std::size_t>(target.shape.size()));
+  });
+}
+
+void ShadowStream::writeAsync(const StreamRegion& region, const std::byte* elements) {
+  change(region, [&](const StreamRegion& target) {
+    detail::writeAsync(target, elements, static_cast<std::size_t>(target.shape.size()));
+  });
+}
+
+void ShadowStream::writeReals(const StreamRegion& region, const double* values) {
+  std::size_t width = 0;
+  for (const program::Field& field : element->fields) width += field.width;
+  change(region, [&](const StreamRegion& target) {
+    detail::writeReals(target, {values, static_cast<std::size_t>(target.shape.size()) * width});
+  });
+}
+
+void ShadowStream::fill(const StreamRegion& region, const std::byte* value) {
+  change(region, [&](const StreamRegion& target) { detail::fill(target, value); });
+}
+
+void ShadowStream::read(const StreamRegion& region, std::byte* elements) {
+  detail::read(innerOf(region), elements, static_cast<std::size_t>(region.shape.size()));
+  recordRead(*this, region);
+}
+
+std::unique_ptr<TransferState> ShadowStream::readAsync(const StreamRegion& region) {
+  recordRead(*this, region);
+  const DenseRegion dense(innerOf(region), /*isRead=*/true);
+  return dense.get().stream->readAsync(dense.get());
+}
+
+void ShadowStream::readReals(const StreamRegion& region, double* values) {
+  std::ranges::copy(detail::readReals(innerOf(region)), values);
+  recordRead(*this, region);
+}
+
+bool ShadowStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
+  ShadowStream& source = shadowStream(from);
+  NativeStream* const read = source.reference();
+  const bool isAll = isWhole(to) && &source != this;
+  NativeStream* const written = read == nullptr ? nullptr : isAll ? room() : reference();
+  endWrite();
+  try {
+    detail::copy(source.innerOf(from), innerOf(to));
+  } catch (...) {
+    mirrorMarks();
+    goStale(false);
+    throw;
+  }
+  mirrorMarks();
+  source.noteRead(from);
+  last = {.kernel = source.last.kernel, .output = source.last.output, .elements = to.shape.size()};
+  if (written == nullptr) {
+    goStale(false);
+    return true;
+  }
+  written->copyFrom(on(from, *read), on(to, *written));
+  isStale_ = false;
+  if (isAll || source.errors.relative > errors.relative) errors = source.errors;
+  return true;
+}
+
+void ShadowStream::exchangeElements(StreamState& other) noexcept {
+  auto& with = static_cast<ShadowStream&>(other);
+  inner_->exchangeElements(*with.inner_);
+  // references may differ in what they hold, but not in their type: the streams exchange them whole
+  std::swap(reference_, with.reference_);
+  std::swap(isStale_, with.isStale_);
+  std::swap(isRefused_, with.isRefused_);
+  std::swap(bytes_, with.bytes_);
+  std::swap(errors, with.errors);
+  std::swap(last, with.last);
+  exchangeMarks(other);
+}
+
+void ShadowStream::permute(const StreamRegion& region, std::span<const std::int32_t> sources) {
+  NativeStream* const held = reference();
+  endWrite();
+  try {
+    const DenseRegion dense(innerOf(region), /*isRead=*/true);
+    dense.get().stream->permute(dense.get(), sources);
+    dense.finish();
+  } catch (...) {
+    mirrorMarks();
+    goStale(false);
+    throw;
+  }
+  mirrorMarks();
+  last = {.elements = region.shape.size()};
+  if (held == nullptr) return;
+  held->permute(on(region, *held), sources);
+  if (owner().sortedKeys() == this) recordOrder(*this, on(region, *held));
+}
+
+StreamTexture ShadowStream::texture(int plane) {
+  noteRead(detail::wholeRegion(this));
+  owner().recorder().note(fmt::format(
+      "the program has asked for a texture of {}: what it draws into it is not known to the reference", describe()));
+  return inner_->texture(plane);
+}
+
+void ShadowStream::fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) {
+  recordRead(*this, detail::wholeRegion(this));
+  inner_->fillBuffer(buffer, byteOffset, plane);
+}
+
+void ShadowStream::setName(std::string_view given) {
+  StreamState::setName(given);
+  inner_->setName(given);
+}
+
+std::string ShadowStream::describe() const {
+  if (!name.empty()) return name;
+  if (device != nullptr && last.kernel >= 0)
+    return fmt::format("{} of {}", last.output, owner().recorder().nameOfKernel(last.kernel));
+  return fmt::format("stream {}", number_);
+}
+
+void ShadowStream::noteRead(const StreamRegion& region) {
+  if (last.isReadWhole) return;
+  if (!isBox(region) || isWhole(region)) {
+    last.isRead = last.isReadWhole = true;
+    return;
+  }
+  const int rank = region.shape.rank();
+  if (!last.isRead) last.readBegin = last.readEnd = region.begin;
+  for (int d = 0; d < rank; ++d) {
+    last.readBegin[d] = std::min(last.readBegin[d], region.begin[d]);
+    last.readEnd[d] = std::max(last.readEnd[d], region.begin[d] + region.shape[d]);
+  }
+  last.isRead = true;
+}
+
+void ShadowStream::endWrite() {
+  if (device == nullptr || last.elements == 0) return;
+  recordLifetime(*this);
+  last = {};
+}
+
+void ShadowStream::empty() noexcept {
+  inner_.reset();
+  reference_.reset();
+}
+
+}  // namespace sk

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// A stream of a shadowed device: the elements of the device that runs the program, and the same on the reference device.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "device/stream_state.hpp"
+#include "native/native_stream.hpp"
+#include "shadow/shares.hpp"
+
+namespace sk {
+
+class ShadowDevice;
+
+/// What is known of the elements of a stream.
+struct StreamErrors {
+  double relative = 0;  ///< their error, relative to the root mean square of the reference's
+  shadow::Shares shares;  ///< whose error it is
+  bool hasNan = false, hasInfinity = false;  ///< on the device
+  int exception = -1;  ///< number of the record of the NaN or infinity that they come from
+};
+
+/// Who wrote the elements last, and how many of them have been read since.
+struct LastWrite {
+  int kernel = shadow::writtenByHost;
+  std::string output = {};
+  double seconds = 0;
+  std::int64_t elements = 0;
+  bool isRead = false, isReadWhole = false;
+  Index readBegin = {}, readEnd = {};  ///< a box around what was read
+};
+
+class ShadowStream final : public StreamState {
+ public:
+  ShadowStream(ShadowDevice& device, std::unique_ptr<StreamState> inner);
+  ~ShadowStream() override;
+
+  StreamState& inner() const { return *inner_; }
+  /// A region of this stream, as a region of the device's own.
+  StreamRegion innerOf(const StreamRegion& region) const;
+
+  /// The reference's elements; null if there is no memory for them. Holds the device's elements if it held none.
+  NativeStream* reference();
+  /// The reference's elements are no longer those that the program would have in double: it takes over the device's when it is
+  /// needed next. `isCounted`: the report counts it.
+  void goStale(bool isCounted);
+  bool isStale() const { return isStale_; }
+  /// Takes over the integers and booleans of the device's elements in a region.
+  void takeIntegers(const StreamRegion& region, const NativeStream& device);
+  /// All elements are about to be written: stale ones need not be replaced before.
+  void becomeFresh() { isStale_ = false; }
+  NativeStream* held() const { return reference_.get(); }
+  /// Makes room for the reference without elements; null if there is no memory.
+  NativeStream* room();
+
+  void settle() override;
+  void write(const StreamRegion& region, const std::byte* elements) override;
+  void writeAsync(const StreamRegion& region, const std::byte* elements) override;
+  void read(const StreamRegion& region, std::byte* elements) override;
+  std::unique_ptr<TransferState> readAsync(const StreamRegion& region) override;
+  void readReals(const StreamRegion& region, double* values) override;
+  void writeReals(const StreamRegion& region, const double* values) override;
+  void fill(const StreamRegion& region, const std::byte* value) override;
+  bool copyFrom(const StreamRegion& from, const StreamRegion& to) override;
+  void exchangeElements(StreamState& other) noexcept override;
+  void permute(const StreamRegion& region, std::span<const std::int32_t> sources) override;
+  StreamTexture texture(int plane) override;
+  void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
+  void setName(std::string_view given) override;
+
+  /// Takes over from the inner stream whether the elements are lost.
+  void mirrorMarks() noexcept;
+  /// Elements were read; the region is in bounds.
+  void noteRead(const StreamRegion& region);
+  /// Elements are about to be replaced by others: counts those that nothing has read.
+  void endWrite();
+  /// Frees everything: its device ends.
+  void empty() noexcept;
+
+  /// For the report: the name, or what wrote it last, or its number.
+  std::string describe() const;
+
+  StreamErrors errors;
+  LastWrite last;
+  std::int64_t resyncs = 0;
+
+ private:
+  ShadowDevice& owner() const;
+  template <class Change>
+  void change(const StreamRegion& region, Change&& change);
+
+  std::unique_ptr<StreamState> inner_;
+  std::unique_ptr<NativeStream> reference_;
+  bool isStale_ = true;  ///< at first, both have undefined elements, which need not be equal
+  bool isRefused_ = false;  ///< there was no memory for the reference
+  std::int64_t bytes_ = 0;
+  const std::int64_t number_;
+};
+
+inline ShadowStream& shadowStream(const StreamRegion& region) {
+  return static_cast<ShadowStream&>(*region.stream);
+}
+
+}  // namespace sk
