@@ -7,11 +7,13 @@
 #include <fstream>
 #include <iterator>
 #include <new>
+#include <utility>
 
 #include <unistd.h>
 
 #include <fmt/format.h>
 
+#include "shadow/archive.hpp"
 #include "shadow/files.hpp"
 #include "sk/error.hpp"
 
@@ -49,7 +51,9 @@ Recorder* Recorder::ofProcess(std::string_view option, const std::string& device
   try {
     Options options = parseOptions(option);
     auto* const made = new Recorder(std::move(options), device);
-    const std::string problem = replaceFile(made->options().report, "");
+    const bool isFirst = made->report_.rank == 0;
+    if (isFirst) ::unlink((made->options().json() + ".ranks").c_str());  // of a run that was cut off
+    const std::string problem = isFirst ? replaceFile(made->options().report, "") : "";
     if (!problem.empty()) {
       say(problem + "; the program runs without a shadow");
       delete made;
@@ -72,6 +76,9 @@ Recorder::Recorder(Options options, const std::string& device) : process_(::getp
   report_.options = std::move(options);
   report_.program = commandLine();
   report_.device = device;
+  const RankOfProcess process = rankOfProcess();
+  report_.rank = process.rank;
+  report_.ranks = process.ranks;
 }
 
 bool Recorder::isInOwnProcess() const { return ::getpid() == process_; }
@@ -134,6 +141,20 @@ void Recorder::write(bool hasEnded) {
     Report report = report_;
     report.programSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     report.ended = hasEnded ? "normally" : fmt::format("early: the program had not ended after {} calls", report.calls);
+    if (report.ranks > 1) {
+      if (!hasEnded) return;
+      addToRanks(report.options.json() + ".ranks", report, [&](std::vector<Report> reports) {
+        const std::size_t count = reports.size();
+        Report all = merged(std::move(reports));
+        all.options = report.options;
+        all.ended = count == static_cast<std::size_t>(report.ranks)
+                        ? "normally"
+                        : fmt::format("early: {} of {} ranks have ended", count, report.ranks);
+        conclude(all);
+        writeFiles(all);
+      });
+      return;
+    }
     conclude(report);
     writeFiles(report);
   } catch (const std::exception& error) {

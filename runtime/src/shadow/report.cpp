@@ -32,6 +32,16 @@ void Series::add(const Point& point) {
   inLast_ = 1;
 }
 
+void Series::raise(const Series& other) {
+  for (std::size_t i = 0; i < std::min(points_.size(), other.points_.size()); ++i) {
+    Point& point = points_[i];
+    const Point& from = other.points_[i];
+    point.own = std::fmax(point.own, from.own);
+    point.inherited = std::fmax(point.inherited, from.inherited);
+    point.total = std::fmax(point.total, from.total);
+  }
+}
+
 std::string_view Report::nameOf(int kernel) const {
   if (kernel < 0) return "(written by the host)";
   return kernels[static_cast<std::size_t>(kernel)].name;

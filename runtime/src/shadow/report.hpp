@@ -75,7 +75,13 @@ class Series {
     double own, inherited, total;
   };
   void add(const Point& point);
+  /// Takes the larger errors of both, point by point.
+  void raise(const Series& other);
   const std::vector<Point>& points() const { return points_; }
+  template <class Archive>
+  void visitMembers(Archive& archive) {
+    archive(points_, step_, inLast_);
+  }
 
  private:
   std::vector<Point> points_;

@@ -97,9 +97,9 @@ std::string stream(const StreamRecord& record) {
 }
 
 std::string result(const Report& report, const ResultRecord& record) {
-  const std::string shares = list(record.shares.all(), [&](const auto& share) {
-    return fmt::format(R"({{"kernel":{},"share":{}}})", jsonString(report.nameOf(share.first)),
-                       number(share.second));
+  const std::string shares = list(record.shares.all(), [&](const Share& share) {
+    return fmt::format(R"({{"kernel":{},"share":{}}})", jsonString(report.nameOf(share.kernel)),
+                       number(share.share));
   });
   return fmt::format(
       R"({{"name":{},"kind":"{}","reads":{},"elements":{},"error":{{"largest":{},"last":{}}},"digits":{:.2f},)"

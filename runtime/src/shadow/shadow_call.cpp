@@ -42,8 +42,10 @@ ShadowStream* shadowedOf(const ShadowDevice& device, const StreamRegion& region)
   return static_cast<ShadowStream*>(region.stream);
 }
 
-CallOptions on(DeviceState& device, CallOptions options) {
-  if (options.over && options.over->device != nullptr) options.over->device = &device;
+/// The options on a device that belongs to the shadowed one; a domain that is given for another device stays so.
+CallOptions on(const ShadowDevice& shadowed, DeviceState& device, CallOptions options) {
+  if (options.over && options.over->device != nullptr)
+    options.over->device = options.over->device == &shadowed ? &device : &options.over->device->underlying();
   return options;
 }
 
@@ -80,8 +82,11 @@ void ShadowedCall::run(std::span<const Argument> others, std::span<void* const> 
   sk::reduce(*reduction, others, values, with);
 }
 
-CallOptions referenceOptions(const CallOptions& options, NativeDevice& device) {
-  CallOptions reference = on(device, options);
+namespace {
+
+/// The choices of a reference: double or wider everywhere, and every function computed.
+CallOptions referenceOptions(const ShadowDevice& shadowed, NativeDevice& device, const CallOptions& options) {
+  CallOptions reference = on(shadowed, device, options);
   reference.accumulate = Accumulate::Default;
   reference.precision = Precision::Single;  // a reference computes in its own
   reference.intrinsics = Intrinsics::Accurate;
@@ -90,6 +95,8 @@ CallOptions referenceOptions(const CallOptions& options, NativeDevice& device) {
   reference.contraction = Contraction::Exact;
   return reference;
 }
+
+}  // namespace
 
 CallFollower::CallFollower(ShadowDevice& device, const ShadowedCall& call)
     : device_(device), call_(call), ownReference_(device.ownReference(call.kernel)) {}
@@ -201,7 +208,7 @@ void CallFollower::runOnDevice() {
   const std::vector<Argument> arguments = onPrimary(device_, call_);
   try {
     const Stopwatch watch(seconds_);
-    call_.run(arguments, call_.results, on(device_.primary(), call_.options));
+    call_.run(arguments, call_.results, on(device_, device_.primary(), call_.options));
     if (device_.primary().hasQueue()) device_.primary().finish();
   } catch (...) {
     loseOutputs(true);
@@ -229,7 +236,7 @@ bool CallFollower::runOnReference() {
       written.total = device_.temporaries().take(*parameterOf(written).element, Shape{1});
       arguments[written.argument].region = detail::wholeRegion(written.total.get());
     }
-    call_.run(arguments, {}, referenceOptions(call_.options, reference));
+    call_.run(arguments, {}, referenceOptions(device_, reference, call_.options));
   } catch (const std::exception& error) {
     device_.giveUp(call_.kernel, error.what());
     return false;
@@ -252,7 +259,7 @@ bool CallFollower::runOwn() {
       arguments[written.argument].region =
           isResized ? StreamRegion{written.own.get()} : inPlaceOf(call_.arguments[written.argument].region, *written.own);
     }
-    call_.run(arguments, {}, referenceOptions(call_.options, ownReference_));
+    call_.run(arguments, {}, referenceOptions(device_, ownReference_, call_.options));
     return true;
   } catch (const std::exception& error) {
     device_.recorder().note(fmt::format("the own error of {} is not known: {}", call_.kernel.name, error.what()));
@@ -305,7 +312,7 @@ class RecordedShadowedCall final : public RecordedCall {
 std::unique_ptr<RecordedCall> recordShadowed(ShadowDevice& device, const ShadowedCall& call) {
   // The device records the call and forgets it: so it checks what it checks of recorded calls.
   LoopState checks(device.primary());
-  call.run(onPrimary(device, call), call.results, on(device.primary(), call.options));
+  call.run(onPrimary(device, call), call.results, on(device, device.primary(), call.options));
   checks.finish();
   return std::make_unique<RecordedShadowedCall>(device, call);
 }

@@ -92,9 +92,6 @@ class CallFollower {
   std::vector<Written> written_;
 };
 
-/// The choices of a reference: double or wider everywhere, and every function computed.
-CallOptions referenceOptions(const CallOptions& options, NativeDevice& device);
-
 /// The call, to be run again by a loop. Throws sk::Error as recording it on the device does.
 std::unique_ptr<RecordedCall> recordShadowed(ShadowDevice& device, const ShadowedCall& call);
 

@@ -109,7 +109,7 @@ TemporaryStreams& ShadowDevice::ownTemporaries(const program::Kernel& kernel) {
 }
 
 const RowsState* ShadowDevice::rowsOn(DeviceState& device, const RowsState* rows) {
-  if (rows == nullptr) return nullptr;
+  if (rows == nullptr || rows->device() != this) return rows;  // calls refuse those of another device
   const auto known = std::ranges::find_if(rows_, [&](const std::unique_ptr<RowsCopy>& each) {
     return each->original == rows && each->device == &device;
   });

@@ -53,7 +53,7 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   /// The reference device of a kernel whose own error is measured in __float128; else the usual one.
   NativeDevice& ownReference(const program::Kernel& kernel);
   TemporaryStreams& ownTemporaries(const program::Kernel& kernel);
-  /// The same rows on another device.
+  /// The same rows on another device, if they are on this one.
   const RowsState* rowsOn(DeviceState& device, const RowsState* rows);
   /// Whether the kernel is among those that are compared.
   bool isChosen(const program::Kernel& kernel) const;

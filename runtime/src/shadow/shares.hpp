@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 namespace sk::shadow {
@@ -14,36 +13,52 @@ namespace sk::shadow {
 /// The number of a kernel in the report; values that the application wrote have a number of their own.
 inline constexpr int writtenByHost = -1;
 
+struct Share {
+  int kernel;
+  double share;
+};
+
 class Shares {
  public:
   void add(int kernel, double share) {
     if (!(share > 0)) return;
-    const auto found = std::ranges::find(all_, kernel, &std::pair<int, double>::first);
+    const auto found = std::ranges::find(all_, kernel, &Share::kernel);
     if (found == all_.end()) {
-      all_.emplace_back(kernel, share);
+      all_.push_back({kernel, share});
     } else {
-      found->second += share;
+      found->share += share;
     }
   }
   void add(const Shares& other, double factor) {
     for (const auto& [kernel, share] : other.all_) add(kernel, share * factor);
   }
+  /// The same for other numbers of kernels.
+  template <class NumberOf>
+  Shares renumbered(NumberOf&& numberOf) const {
+    Shares others;
+    for (const Share& each : all_) others.add(numberOf(each.kernel), each.share);
+    return others;
+  }
   double sum() const {
     double sum = 0;
-    for (const auto& each : all_) sum += each.second;
+    for (const Share& each : all_) sum += each.share;
     return sum;
   }
   /// Makes them add up to 1, without those that are next to nothing.
   void normalize() {
     const double whole = sum();
     if (whole <= 0) return all_.clear();
-    for (auto& each : all_) each.second /= whole;
-    std::erase_if(all_, [](const auto& each) { return each.second < 1e-9; });
+    for (Share& each : all_) each.share /= whole;
+    std::erase_if(all_, [](const Share& each) { return each.share < 1e-9; });
   }
-  const std::vector<std::pair<int, double>>& all() const { return all_; }
+  const std::vector<Share>& all() const { return all_; }
+  template <class Archive>
+  void visitMembers(Archive& archive) {
+    archive(all_);
+  }
 
  private:
-  std::vector<std::pair<int, double>> all_;
+  std::vector<Share> all_;
 };
 
 }  // namespace sk::shadow
