@@ -218,7 +218,8 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
       amplification_ = std::max(amplification_, errors.relativeInherited() / inputs);
     const std::size_t output = Recorder::output(record, parameter.name, parameter.element->name);
     record.outputs[output].points.add(
-        {number_, hasOwn ? errors.relativeOwn() : 0, errors.relativeInherited(), errors.relativeTotal()});
+        {number_, hasOwn ? errors.relativeOwn() : 0, errors.relativeInherited(), errors.relativeTotal(),
+         std::sqrt(errors.total2 / static_cast<double>(errors.reals))});
     const double scale = errors.scale();
     const double worst = hasOwn ? errors.own.error / (scale > 0 ? scale : 1) : 0;
     if (errors.own.element >= 0 && worst > record.worstError) {

@@ -10,20 +10,27 @@
 
 namespace sk::shadow {
 
+namespace {
+
+/// The larger errors of two calls, of which the second comes later.
+Series::Point largest(const Series::Point& a, const Series::Point& b) {
+  return {b.call, std::fmax(a.own, b.own), std::fmax(a.inherited, b.inherited), std::fmax(a.total, b.total),
+          std::fmax(a.absolute, b.absolute)};
+}
+
+}  // namespace
+
 void Series::add(const Point& point) {
   constexpr std::size_t most = 1024;
   if (inLast_ > 0 && inLast_ < step_) {
     Point& last = points_.back();
-    last = {point.call, std::fmax(last.own, point.own), std::fmax(last.inherited, point.inherited),
-            std::fmax(last.total, point.total)};
+    last = largest(last, point);
     ++inLast_;
     return;
   }
   if (points_.size() == most) {
     for (std::size_t i = 0; i < most / 2; ++i) {
-      const Point &a = points_[2 * i], &b = points_[2 * i + 1];
-      points_[i] = {b.call, std::fmax(a.own, b.own), std::fmax(a.inherited, b.inherited),
-                    std::fmax(a.total, b.total)};
+      points_[i] = largest(points_[2 * i], points_[2 * i + 1]);
     }
     points_.resize(most / 2);
     step_ *= 2;
@@ -34,11 +41,7 @@ void Series::add(const Point& point) {
 
 void Series::raise(const Series& other) {
   for (std::size_t i = 0; i < std::min(points_.size(), other.points_.size()); ++i) {
-    Point& point = points_[i];
-    const Point& from = other.points_[i];
-    point.own = std::fmax(point.own, from.own);
-    point.inherited = std::fmax(point.inherited, from.inherited);
-    point.total = std::fmax(point.total, from.total);
+    points_[i] = largest(other.points_[i], points_[i]);
   }
 }
 
@@ -116,20 +119,21 @@ void addDecisions(Report& report) {
   }
 }
 
-/// The factor by which an error grows with each call if it grows exponentially, not as rounding errors add up; else 1. A growth
-/// that has ended because nothing is right any more counts up to there.
+/// The factor by which an error grows with each call if it grows exponentially, not as rounding errors add up; else 1. It is the
+/// absolute error: where a step is unstable, the exact values grow, too. A growth that has ended because nothing is right any
+/// more counts up to there.
 double growthOf(const Series& series) {
   constexpr double lost = 0.05, much = 100, steady = 0.75;
   std::vector<Series::Point> points;
   for (const Series::Point& point : series.points()) {
-    if (point.total > lost) break;
-    if (point.total > 0) points.push_back(point);
+    if (point.total > lost || !std::isfinite(point.absolute)) break;
+    if (point.absolute > 0) points.push_back(point);
   }
   constexpr std::size_t least = 24, quarters = 4;
   if (points.size() < least) return 1;
   double logarithms[quarters + 1], steps[quarters];
   for (std::size_t q = 0; q <= quarters; ++q)
-    logarithms[q] = std::log(points[(points.size() - 1) * q / quarters].total);
+    logarithms[q] = std::log(points[(points.size() - 1) * q / quarters].absolute);
   for (std::size_t q = 0; q < quarters; ++q) steps[q] = logarithms[q + 1] - logarithms[q];
   // sums of rounding errors grow by a factor of 2 or less from the second quarter to the fourth
   const double grown = steps[1] + steps[2] + steps[3];

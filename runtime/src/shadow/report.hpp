@@ -73,6 +73,7 @@ class Series {
   struct Point {
     std::int64_t call;
     double own, inherited, total;
+    double absolute = 0;  ///< the root mean square of the total error
   };
   void add(const Point& point);
   /// Takes the larger errors of both, point by point.

@@ -103,7 +103,7 @@ void recordLifetime(ShadowStream& stream) {
       found = report->streams.end() - 1;
     }
     found->resyncs += std::exchange(stream.resyncs, 0);
-    found->points.add({report->calls, 0, 0, stream.errors.relative});
+    found->points.add({report->calls, 0, 0, stream.errors.relative, 0});
     if (last.kernel < 0) return;
     found->written += static_cast<double>(last.elements);
     if (!last.isRead) return;

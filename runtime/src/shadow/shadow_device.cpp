@@ -219,6 +219,7 @@ std::unique_ptr<DeviceState> withShadow(std::unique_ptr<DeviceState> device) {
   if (recorder == nullptr || !recorder->isInOwnProcess()) return device;
   if (checksWritten()) {
     recorder->note("nothing is followed: SK_CHECK=written runs calls several times; unset it");
+    recorder->write(true);
     return device;
   }
   return std::make_unique<ShadowDevice>(std::move(device), *recorder);

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT
+//
+// Programs for the tests of shadows, by name: those with one bad kernel, one that makes calls of every kind and prints all
+// results, one that computes the own errors of its calls itself, and those that end in odd ways.
+#include <sk/algorithm.hpp>
+#include <sk/sk.hpp>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "everything.sk.hpp"
+#include "faults.sk.hpp"
+
+namespace {
+
+constexpr int size = 1000;
+
+using Field = sk::Stream<float>;
+
+struct Plate {
+  sk::Device device;
+  Field u = device.stream<float>({size}, sk::Storage::Default, "u");
+  Field v = device.stream<float>({size}, sk::Storage::Default, "v");
+  Field w = device.stream<float>({size}, sk::Storage::Default, "w");
+
+  explicit Plate(float low = 0.5F, float high = 1.5F) { faults::ramp(low, high, u); }
+
+  /// Healthy kernels before and after what makes v of u.
+  template <class Fault>
+  void around(Fault&& fault) {
+    faults::gain(1.25F, u, w);
+    faults::smooth(w, u);
+    fault();
+    faults::smooth(v, w);
+    faults::gain(0.75F, w, u);
+    std::printf("%a\n", static_cast<double>(faults::total(u)));
+    u.read();
+  }
+};
+
+void runHalf() {
+  Plate plate;
+  plate.around([&] { faults::advance.with({.precision = sk::Precision::Half})(0.01F, plate.u, plate.v); });
+}
+
+void runStored() {
+  Plate plate;
+  plate.v = plate.device.stream<float>({size}, sk::Storage::Half, "v");
+  plate.around([&] { faults::advance(0.01F, plate.u, plate.v); });
+}
+
+void runNan() {
+  Plate plate;
+  for (int i = 0; i < 1200; ++i) {
+    faults::root(999.5F, static_cast<float>(i), plate.u, plate.v);
+    faults::smooth(plate.v, plate.w);
+    faults::gain(0.01F, plate.w, plate.u);
+  }
+  plate.u.read();
+}
+
+void runFloatNan() {
+  Plate plate(0.1F, 9);
+  plate.around([&] { faults::angle(plate.u, plate.v); });
+}
+
+void runInfinity() {
+  Plate plate(1e18F, 3e19F);
+  plate.around([&] { faults::square(plate.u, plate.v); });
+}
+
+void runFlush() {
+  Plate plate;
+  plate.around([&] { faults::vanish(plate.u, plate.v); });
+}
+
+/// The cube, in floats, of an element near the middle that rounding makes larger.
+float limitIn(const Field& field) {
+  const std::vector<float> values = field.read();
+  for (std::size_t i = values.size() / 2; i < values.size(); ++i) {
+    volatile float square = values[i] * values[i], cube = square * values[i];
+    const double x = values[i];
+    if (static_cast<double>(cube) > x * x * x) return cube;
+  }
+  return 0;
+}
+
+void runFlip() {
+  Plate plate;
+  plate.around([&] { faults::flip(limitIn(plate.u), plate.u, plate.v); });
+}
+
+void runCell() {
+  Plate plate;
+  auto cells = plate.device.stream<int>({size});
+  faults::gain(1, plate.u, plate.w);
+  faults::cell(limitIn(plate.w), plate.w, cells);
+  faults::count(cells, plate.v);
+  plate.v.read();
+}
+
+void runTable() {
+  Plate plate(-3, 3);
+  plate.around([&] { faults::response(plate.u, plate.v); });
+}
+
+void runCancel() {
+  Plate plate;
+  plate.around([&] { faults::spread(plate.u, plate.v); });
+}
+
+void runUnstable() {
+  Plate plate;
+  for (int i = 0; i < 40; ++i) {
+    faults::diffuse(0.6F, plate.u, plate.v);
+    faults::gain(1, plate.v, plate.w);
+    std::swap(plate.u, plate.w);
+  }
+  plate.u.read();
+}
+
+void runNearest() {
+  Plate plate(0.299F, 0.301F);
+  auto measured = plate.device.stream<faults::Nearest>({size});
+  auto best = plate.device.stream<faults::Nearest>({1});
+  faults::gain(1, plate.u, plate.w);
+  faults::gain(1, plate.u, plate.v);
+  faults::measure(plate.u, measured);
+  faults::nearest(measured, best);
+  std::printf("%d\n", best.read()[0].id);
+}
+
+void runSum() {
+  sk::Device device;
+  auto values = device.stream<float>({1 << 20}, sk::Storage::Default, "values");
+  faults::ramp(1e6F, -0.9999F * 1e6F, values);
+  std::printf("%a\n", static_cast<double>(faults::total.with({.accumulate = sk::Accumulate::Tree})(values)));
+}
+
+void runPush() {
+  Plate plate;
+  auto kept = plate.device.stream<float>({size});
+  faults::gain(1, plate.u, plate.w);
+  faults::keep(limitIn(plate.w), plate.w, kept);
+  std::printf("%zu\n", kept.read().size());
+}
+
+void print(const char* name, const std::vector<float>& values) {
+  std::printf("%s", name);
+  for (const float value : values) std::printf(" %a", static_cast<double>(value));
+  std::printf("\n");
+}
+
+void runEverything() {
+  namespace e = everything;
+  sk::Device device;
+  auto particles = device.stream<e::Particle>({97});
+  auto weight = device.stream<float>({97}), x = device.stream<float>({97}), kept = device.stream<float>({97});
+  auto cell = device.stream<int>({97});
+  auto histogram = device.stream<float>({9});
+  e::start({0.3F, 0.7F}, particles, weight);
+  e::split(particles, x, cell);
+  histogram.fill(0);
+  e::spread(cell, weight, histogram);
+  print("histogram", histogram.read());
+  e::positive(x, kept);
+  print("kept", kept.read());
+  sk::sort(x, cell);
+  print("sorted", x.read());
+  for (const int c : cell.read()) std::printf(" %d", c);
+  e::prefix(x, x);
+  print("\nprefix", x.read());
+
+  auto u = device.stream<float>({20, 31}), v = device.stream<float>({20, 31}), d = device.stream<float>({20, 31});
+  std::vector<float> first(u.size());
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] = std::sin(0.1F * static_cast<float>(i * i % 97));
+  u.write(first);
+  auto largest = device.scalar<float>();
+  auto done = device.scalar<bool>();
+  sk::Loop loop = device.record([&] {
+    e::relax(u, 0.2F, v);
+    e::change(v, u, d, largest);
+    done = largest < 0.05F;
+    std::swap(u, v);
+  });
+  std::printf("steps %lld\n", static_cast<long long>(loop.until(done, {.every = 4, .most = 100})));
+  print("relaxed", u.read());
+  e::relax(u.domain({2, 3}, {12, 20}), 0.1F, v.domain({5, 5}, {15, 22}));
+  e::relax.with({.box = {{1, 1}, {4, 9}}})(u, 0.2F, d);
+  v.domain({0, 0}, {1, 31}).copyTo(d.domain({19, 0}, {20, 31}));
+  print("views", d.read());
+  auto twice = largest * 2.F + 1.F;
+  std::printf("scalar %a\n", static_cast<double>(twice.read()));
+  auto byte = device.stream<sk::unorm8>({97});
+  auto half = device.stream<sk::half>({97});
+  e::narrow(x, byte, half);
+  std::printf("narrow");
+  for (const sk::half h : half.read()) std::printf(" %a", static_cast<double>(static_cast<float>(h)));
+  std::vector<int> starts{0, 3, 3, 40, 97};
+  auto from = device.stream<int>({5});
+  from.write(starts);
+  const sk::Rows rows(from);
+  auto sums = device.stream<float>({4});
+  e::sum(rows(weight), sums);
+  print("\nrows", sums.read());
+  std::printf("sum %a\n", static_cast<double>(e::sum.with({.accumulate = sk::Accumulate::Exact})(weight)));
+}
+
+/// Prints the own error of each call, relative to the norm of the exact results.
+void runReplay() {
+  sk::Device device;
+  Field u = device.stream<float>({size}, sk::Storage::Default, "u"), v = device.stream<float>({size}, sk::Storage::Default, "v");
+  faults::ramp(0.1F, 0.9F, u);
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<float> before = u.read();
+    faults::advance(0.01F, u, v);
+    const std::vector<float> after = v.read();
+    double squares = 0, norm = 0;
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      const double x = before[k], exact = x + static_cast<double>(0.01F) * (x * (1 - x));
+      squares += (after[k] - exact) * (after[k] - exact);
+      norm += exact * exact;
+    }
+    std::printf("%.12g\n", std::sqrt(squares / norm));
+    std::swap(u, v);
+  }
+}
+
+void runFine() {
+  Plate plate;
+  plate.around([&] { faults::advance(0.01F, plate.u, plate.v); });
+}
+
+void runExit() {
+  static Plate* plate = new Plate;
+  plate->around([&] { faults::advance(0.01F, plate->u, plate->v); });
+  std::exit(3);
+}
+
+void runAbort() {
+  Plate plate;
+  plate.around([&] { faults::advance(0.01F, plate.u, plate.v); });
+  std::abort();
+}
+
+void runFork() {
+  Plate plate;
+  faults::advance(0.01F, plate.u, plate.v);
+  if (fork() == 0) {
+    faults::advance(0.01F, plate.v, plate.u);
+    std::printf("%a\n", static_cast<double>(faults::total(plate.u)));
+    std::exit(0);
+  }
+  int status = 0;
+  wait(&status);
+  std::printf("%d\n", status);
+  plate.v.read();
+}
+
+/// Writes to the report's own file.
+void runWrite() {
+  Plate plate;
+  faults::advance(0.01F, plate.u, plate.v);
+  std::ofstream("report.html") << "the program's own\n";
+  plate.v.read();
+}
+
+void runNothing() {
+  sk::Device device;
+  std::printf("%d\n", device.stream<float>({4}).shape().rank());
+}
+
+void runDevices() {
+  Plate first;
+  first.around([&] { faults::advance(0.01F, first.u, first.v); });
+  Plate second(1e18F, 3e19F);
+  second.around([&] { faults::square(second.u, second.v); });
+}
+
+const std::map<std::string, std::function<void()>> programs = {
+    {"half", runHalf},       {"stored", runStored},     {"nan", runNan},         {"floatnan", runFloatNan},
+    {"infinity", runInfinity}, {"flush", runFlush},     {"flip", runFlip},       {"cell", runCell},
+    {"table", runTable},     {"cancel", runCancel},     {"unstable", runUnstable}, {"nearest", runNearest},
+    {"sum", runSum},         {"push", runPush},         {"everything", runEverything}, {"replay", runReplay},
+    {"fine", runFine},       {"exit", runExit},         {"abort", runAbort},     {"fork", runFork},
+    {"write", runWrite},     {"nothing", runNothing},   {"devices", runDevices}};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto found = programs.find(argc > 1 ? argv[1] : "");
+  if (found == programs.end()) return 2;
+  try {
+    found->second();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

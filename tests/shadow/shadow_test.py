@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+#
+# shadow_test.py PROGRAM DEVICE SOURCE: runs programs with one bad kernel under a shadow, whose first line must name the kernel;
+# and programs that end in odd ways, whose own results must not change.
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+program, device, source = os.path.realpath(sys.argv[1]), sys.argv[2], os.path.realpath(sys.argv[3])
+folder = tempfile.TemporaryDirectory()
+failures = []
+
+
+def check(holds, text):
+    if not holds:
+        failures.append(text)
+        print(f"FAILED: {text}")
+
+
+def run(name, shadow="report.html", **variables):
+    """The finished process of a program, and its report; None if there is none."""
+    environment = {**os.environ, "SK_DEVICE": device, **variables}
+    environment.pop("SK_SHADOW", None)
+    if shadow:
+        environment["SK_SHADOW"] = shadow
+    report = os.path.join(folder.name, "report.json")
+    for file in (report, os.path.join(folder.name, "report.html")):
+        if os.path.exists(file):
+            os.remove(file)
+    done = subprocess.run([program, name], capture_output=True, text=True, cwd=folder.name, env=environment)
+    if not os.path.exists(report):
+        return done, None
+    with open(report) as file:
+        return done, json.load(file)
+
+
+def first(report):
+    return report["verdicts"][0] if report["verdicts"] else {"kind": "none", "kernel": "", "text": "no verdict"}
+
+
+# One bad kernel each, and what the first line of the report says.
+faults = {
+    "half": ("error", "faults::advance"),
+    "stored": ("error", "faults::advance"),
+    "nan": ("nan", "faults::root"),
+    "floatnan": ("nan", "faults::angle"),
+    "infinity": ("infinity", "faults::square"),
+    "flush": ("flush", "faults::vanish"),
+    "flip": ("decision", "faults::flip"),
+    "cell": ("decision", "faults::cell"),
+    "table": ("error", "faults::response"),
+    "cancel": ("error", "faults::spread"),
+    "unstable": ("unstable", "faults::diffuse"),
+    "nearest": ("error", "faults::measure"),
+    "sum": ("error", "faults::total"),
+    "push": ("decision", "faults::keep"),
+}
+for name, (kind, kernel) in faults.items():
+    plain, _ = run(name, shadow=None)
+    done, report = run(name)
+    check((done.returncode, done.stdout, done.stderr) == (plain.returncode, plain.stdout, plain.stderr),
+          f"{name}: the program's own output changes: {done.stdout[:200]} {done.stderr[:200]} / {plain.stdout[:200]}")
+    verdict = first(report)
+    check(verdict["kind"] == kind and verdict["kernel"] == kernel and (kernel in verdict["text"]),
+          f"{name}: the first line is {verdict}, not {kind} of {kernel}; all: {report['verdicts']}")
+    if name == "nan":
+        check(verdict["call"] == 3002, f"nan: in call {verdict['call']}")  # ramp, then 1,000 steps of three calls
+
+done, report = run("fine")
+check(first(report)["kind"] == "fine", f"fine: {report['verdicts']}")
+check(not report["notes"], f"fine: {report['notes']}")
+
+# Every kind of call: the same bits, and all of them are followed.
+plain, _ = run("everything", shadow=None)
+done, report = run("everything")
+check(plain.returncode == 0 and plain.stdout == done.stdout and done.stderr == "",
+      f"everything: {plain.stderr}{done.stderr}")
+check(report["calls"] == report["followed"] and not report["notes"],
+      f"everything: {report['followed']} of {report['calls']} calls are followed; {report['notes']}")
+worst = max((result["error"]["largest"] for result in report["results"]), default=1)
+check(worst < 2e-3, f"everything: {report['results']}")  # halves
+
+# The own error of each call is what the program finds by itself.
+done, report = run("replay")
+expected = [float(line) for line in done.stdout.split()]
+kernel = next(k for k in report["kernels"] if k["name"] == "faults::advance")
+found = [point[1] for point in kernel["outputs"][0]["points"]]
+check(len(found) == len(expected), f"replay: {len(found)} points for {len(expected)} calls")
+for call, (a, b) in enumerate(zip(found, expected)):
+    check(math.isclose(a, b, rel_tol=1e-6), f"replay: the own error of call {call} is {a}, not {b}")
+
+# Ways to end.
+for name, status in {"exit": 3, "abort": -6, "fork": 0}.items():
+    plain, _ = run(name, shadow=None)
+    done, report = run(name)
+    check(done.returncode == status and done.stdout == plain.stdout and done.stderr == plain.stderr,
+          f"{name}: {done.returncode} {done.stderr}")
+    check(report is not None and (report["ended"] == "normally") == (name != "abort"),
+          f"{name}: {report and report['ended']}")
+done, report = run("nothing")
+check(done.stdout == "1\n" and first(report)["text"] == "the program has called no kernel", f"nothing: {first(report)}")
+done, report = run("devices")
+check(first(report)["kernel"] == "faults::square", f"devices: {first(report)}")
+done, report = run("write")
+own, other = (os.path.join(folder.name, name) for name in ("report.html", "report-2.html"))
+with open(own) as file:
+    check(file.read() == "the program's own\n", "write: the program's own file was replaced")
+check(os.path.exists(other) and "report-2.html" in done.stderr, f"write: {done.stderr}")
+
+# What cannot be followed is said, and changes nothing.
+plain, _ = run("fine", shadow=None)
+for shadow, text in {
+    "report.txt": "SK_SHADOW: the report is 'report.txt'; give a file whose name ends in .html",
+    "nowhere/report.html": "SK_SHADOW: cannot write 'nowhere/report.html'",
+    "report.html,evry=2": "SK_SHADOW: there is no option 'evry'; did you mean 'every'?",
+    "report.html,every=0": "SK_SHADOW: every is '0'; give a number of calls from 1 on",
+    "report.html,memory=8Q": "SK_SHADOW: memory is '8Q'",
+    "report.html,decisions=mine": "SK_SHADOW: decisions is 'mine'; give own or follow",
+}.items():
+    done, report = run("fine", shadow=shadow)
+    check(done.returncode == 0 and done.stdout == plain.stdout and done.stderr.startswith(text),
+          f"{shadow}: {done.stderr}")
+    check("the program runs without a shadow" in done.stderr, f"{shadow}: {done.stderr}")
+done, report = run("fine", shadow="report.html,memory=1K")
+check(done.stdout == plain.stdout and any("memory" in note for note in report["notes"]), f"memory: {report['notes']}")
+check(first(report)["kind"] == "nothing", f"memory: {report['verdicts']}")
+done, report = run("fine", shadow="report.html,kernels=faults::adv*,every=2")
+check([k["followed"] for k in report["kernels"] if k["name"] == "faults::advance"] == [1], "kernels=: not followed")
+check(all(k["followed"] == 0 for k in report["kernels"] if k["name"] != "faults::advance"), "kernels=: others are followed")
+done, report = run("cell", shadow="report.html,decisions=follow")
+check(all(result["error"]["largest"] < 1e-6 for result in report["results"]), f"follow: {report['results']}")
+done, report = run("fine", SK_CHECK="written")
+check(done.stdout == plain.stdout and "SK_CHECK=written" in report["notes"][0], f"written: {report['notes']}")
+
+sys.exit(1 if failures else 0)
