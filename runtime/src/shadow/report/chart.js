@@ -64,7 +64,7 @@ function rangeOf(charts) {
     }
   }
   range.high = range.high > 0 ? Math.ceil(Math.log10(range.high)) : 0;
-  range.low = Number.isFinite(range.low) ? Math.max(Math.floor(Math.log10(range.low)), range.high - 30) : range.high - 3;
+  range.low = Number.isFinite(range.low) ? Math.max(Math.floor(Math.log10(0.9 * range.low)), range.high - 30) : range.high - 3;
   if (range.high - range.low < 2) range.low = range.high - 2;
   return range;
 }
@@ -155,7 +155,7 @@ function lineOf({ key, points }, scales) {
 function marksOf(marks, scales) {
   const ends = [-Infinity, -Infinity];
   return [...marks].sort((a, b) => a.call - b.call).filter(({ call }) => call >= scales.low && call <= scales.high).map(({ call, kind, text }) => {
-    const at = scales.x(call), width = 6.4 * text.length;
+    const at = scales.x(call), width = 7.4 * text.length;
     const isLeft = at + width > scales.right;
     const start = isLeft ? at - width : at;
     const row = ends[0] + 6 < start ? 0 : 1;
@@ -275,7 +275,7 @@ function hideTip() {
   document.getElementById("tip").hidden = true;
 }
 
-/** The legend of all charts. */
-function legend(keys) {
-  return make("p", { class: "legend" }, lineKinds.filter(({ key }) => keys.includes(key)).map(({ key, label }) => make("span", {}, make("i", { class: `key ${key}` }), label)));
+/** The legend of the charts of outputs. */
+function legend() {
+  return make("p", { class: "legend" }, lineKinds.map(({ key, label }) => make("span", {}, make("i", { class: `key ${key}` }), label)));
 }

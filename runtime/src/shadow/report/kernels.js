@@ -108,7 +108,7 @@ function picturesSection() {
   const draw = () => {
     const found = state.filter ? state.kind.charts.filter(({ name }) => name.toLowerCase().includes(state.filter)) : state.kind.charts;
     grid.show(found.slice(0, state.shown));
-    keys.replaceChildren(legend(state.kind.noun === "stream" ? ["total"] : ["total", "inherited", "own"]));
+    keys.replaceChildren(...(state.kind.noun === "stream" ? [] : [legend()]));
     const left = found.length - state.shown;
     foot.replaceChildren(...(left > 0 ? [make("button", { type: "button", onclick: () => { state.shown += 24; draw(); } }, `Show ${Math.min(24, left)} more of ${counted(found.length, state.kind.noun)}`)] : []),
       found.length ? "" : `No ${state.kind.noun} contains \u201c${state.filter}\u201d.`);
@@ -158,7 +158,7 @@ function kernelDetails(kernel) {
       make("div", {}, make("h4", {}, "Error of its calls"), errorsTable(kernel),
         missingCalls > 0 && make("p", { class: "note" }, `${countText(kernel.followed)} of ${counted(kernel.calls, "call")} ran beside the reference.`)),
       make("div", {}, make("h4", {}, "Its worst element"), worstElement(kernel))),
-    charts.length > 0 && [make("h4", {}, "Error over its calls"), legend(["total", "inherited", "own"]), chartGrid(charts.slice(0, few), settings)],
+    charts.length > 0 && [make("h4", {}, "Error over its calls"), legend(), chartGrid(charts.slice(0, few), settings)],
     charts.length > few && make("p", { class: "note" }, `${counted(charts.length - few, "other output")} in \u201cError over calls\u201d.`));
 }
 

@@ -173,7 +173,7 @@ function runSection() {
   const isAll = kernels.length === 1 && kernels[0] === "*";
   const rows = [
     ["Device", report.device], ["Reference", `${report.reference} precision on the cores`],
-    ["Followed", `${every > 1 ? `every ${every}th call` : "every call"} of ${isAll ? "all kernels" : kernels.join(", ")}: ${callsText()}`],
+    ["Followed", `${every > 1 ? `one of ${every} calls` : "every call"} of ${isAll ? "all kernels" : kernels.join(", ")}: ${callsText()}`],
     ["Decisions", decisions === "follow" ? "the reference takes the device\u2019s" : "the reference makes its own"],
     ["Ended", report.ended],
   ];
