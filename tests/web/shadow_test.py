@@ -66,7 +66,7 @@ def exceptional(page, folder):
     assert page.evaluate("document.querySelector('#kernels .chart .mark text').textContent") == "NaN"
     for kind in ("own", "inherited", "total"):
         assert page.evaluate(number_of(f"#kernels .chart path.{kind}")) > 0, kind
-    page.evaluate("document.querySelector('#kernels .chart svg').focus()")
+    page.evaluate("document.querySelector('#kernels .chart svg').focus({ preventScroll: true })")
     page.press("End", 35)
     told = page.evaluate(text_of("#tip"))
     assert told.split("\n")[0] == "call 1\u202f200" and "total NaN" in told, told

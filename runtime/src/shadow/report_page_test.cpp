@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shadow/report_page.hpp"
 
-#include <catch2/catch_test_macros.hpp>
+#include <catch2/catch.hpp>
 
 namespace {
 

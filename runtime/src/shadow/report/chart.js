@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A chart of errors over calls: lines on a logarithmic scale, drawn as SVG for the width that there is. Errors of 0 and errors that are
-// not finite have bands of their own, below and above the scale.
+// A chart of errors over calls, drawn as SVG for the width that there is, which tells its numbers to the pointer and to arrow keys.
 "use strict";
-
-const chartHeight = 272;
-const margin = { left: 58, right: 16, top: 40, bottom: 42 };
-const bandHeight = 20;  // for what is not finite
-const zeroHeight = 28;  // for zeros
 
 /** The lines that a point may have, in the order in which they are drawn. */
 const lineKinds = [
@@ -16,99 +10,11 @@ const lineKinds = [
   { key: "own", label: "own" },
 ];
 
-/** The rounding unit of an element's type: the largest relative error of one rounding. */
-function unitOf(type) {
-  const scalar = String(type ?? "").replace(/\d+(x\d+)?$/, "");
-  return { half: 11, float: 24, double: 53 }[scalar] ?? null;
-}
-
-/** Splits points [call, value] into runs of one kind: positive, zero, notFinite. */
-function runsOf(points) {
-  const runs = [];
-  for (const [call, value] of points) {
-    const kind = !Number.isFinite(value) ? "notFinite" : value > 0 ? "positive" : "zero";
-    if (runs.at(-1)?.kind !== kind) runs.push({ kind, points: [] });
-    runs.at(-1).points.push([call, value]);
-  }
-  return runs;
-}
-
-/** At most four points for each pixel: the first, the least, the largest and the last. */
-function thinned(pixels) {
-  const kept = [];
-  for (let from = 0; from < pixels.length;) {
-    let to = from, least = from, largest = from;
-    for (; to < pixels.length && Math.floor(pixels[to][0]) === Math.floor(pixels[from][0]); ++to) {
-      if (pixels[to][1] < pixels[least][1]) least = to;
-      if (pixels[to][1] > pixels[largest][1]) largest = to;
-    }
-    for (const i of [...new Set([from, least, largest, to - 1])].sort((a, b) => a - b)) kept.push(pixels[i]);
-    from = to;
-  }
-  return kept;
-}
-
-/** The range of all errors in these charts, as powers of ten, and whether there are zeros and values that are not finite. */
-function rangeOf(charts) {
-  const range = { low: Infinity, high: -Infinity, hasZero: false, hasNotFinite: false };
-  for (const { lines } of charts) {
-    for (const { points } of lines) {
-      for (const [, value] of points) {
-        if (!Number.isFinite(value)) range.hasNotFinite = true;
-        else if (value <= 0) range.hasZero = true;
-        else {
-          range.low = Math.min(range.low, value);
-          range.high = Math.max(range.high, value);
-        }
-      }
-    }
-  }
-  range.high = range.high > 0 ? Math.ceil(Math.log10(range.high)) : 0;
-  range.low = Number.isFinite(range.low) ? Math.max(Math.floor(Math.log10(0.9 * range.low)), range.high - 30) : range.high - 3;
-  if (range.high - range.low < 2) range.low = range.high - 2;
-  return range;
-}
-
-/** Round numbers between two calls. */
-function callTicks(low, high, isLog, count) {
-  const ticks = [];
-  if (isLog) {
-    const factors = high / low > 200 ? [1] : [1, 2, 5];
-    for (let power = 10 ** Math.floor(Math.log10(low)); power <= high; power *= 10) {
-      for (const factor of factors) if (power * factor >= low && power * factor <= high) ticks.push(power * factor);
-    }
-    const every = Math.ceil(ticks.length / count);
-    return ticks.filter((_, i) => i % every === 0);
-  }
-  const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw || 1));
-  const step = Math.max(1, [1, 2, 5, 10].map((factor) => factor * power).find((one) => one >= raw) ?? 1);
-  for (let tick = Math.ceil(low / step) * step; tick <= high; tick += step) ticks.push(tick);
-  return ticks;
-}
-
-/** Where calls and errors are in a chart of some width. */
-function scalesOf(width, calls, range, isLog) {
-  const right = width - margin.right, bottom = chartHeight - margin.bottom;
-  const low = isLog ? Math.max(1, calls.low) : calls.low, high = Math.max(calls.high, low + 1);
-  const place = isLog ? (call) => Math.log(Math.max(call, low)) : (call) => call;
-  const top = margin.top + (range.hasNotFinite ? bandHeight + 8 : 0);
-  const floor = bottom - (range.hasZero ? zeroHeight : 0);
-  return {
-    low, high, right, bottom, top, floor,
-    x: (call) => margin.left + ((place(call) - place(low)) / (place(high) - place(low))) * (right - margin.left),
-    y(value) {
-      if (!Number.isFinite(value)) return margin.top + bandHeight / 2;
-      if (value <= 0) return bottom - zeroHeight / 2;
-      const at = Math.min(1, Math.max(0, (Math.log10(value) - range.low) / (range.high - range.low)));
-      return floor - at * (floor - top);
-    },
-  };
-}
-
 function axesOf(scales, range, isLog, unit) {
   const { right, bottom, top, floor, x, y } = scales;
   const parts = [];
-  const label = (at, up, text, anchor, kind) => parts.push(makeSvg("text", { x: at, y: up, "text-anchor": anchor, class: kind ?? "tick" }, text));
+  const label = (at, up, text, anchor, kind) =>
+    parts.push(makeSvg("text", { x: at, y: up, "text-anchor": anchor, class: kind ?? "tick" }, text));
   const line = (x1, y1, x2, y2, kind) => parts.push(makeSvg("line", { x1, y1, x2, y2, class: kind }));
   const step = Math.max(1, Math.ceil((range.high - range.low) / 6));
   for (let power = range.high; power >= range.low; power -= step) {
@@ -116,11 +22,13 @@ function axesOf(scales, range, isLog, unit) {
     label(margin.left - 8, y(10 ** power) + 4, power === 0 ? "1" : powerOfTen(power), "end");
   }
   if (range.hasZero) {
-    if (floor - y(10 ** range.low) < 1 && (range.high - range.low) % step) line(margin.left, floor, right, floor, "grid");
+    if ((range.high - range.low) % step) line(margin.left, floor, right, floor, "grid");
     label(margin.left - 8, bottom - zeroHeight / 2 + 4, "0", "end");
   }
   if (range.hasNotFinite) {
-    parts.unshift(makeSvg("rect", { x: margin.left, y: margin.top, width: right - margin.left, height: bandHeight, class: "band" }));
+    parts.unshift(
+      makeSvg("rect", { x: margin.left, y: margin.top, width: right - margin.left, height: bandHeight, class: "band" }),
+    );
     label(margin.left - 8, margin.top + bandHeight / 2 + 4, "NaN, \u221e", "end");
   }
   const unitError = unit === null ? 0 : 2 ** -unit;
@@ -145,7 +53,10 @@ function lineOf({ key, points }, scales) {
     const path = pixels.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
     if (pixels.length > 1) parts.push(makeSvg("path", { d: path, class: `line ${key} ${kind}` }));
     if (pixels.length === 1 || (points.length <= 30 && kind !== "notFinite")) {
-      for (const [cx, cy] of pixels) parts.push(makeSvg("circle", { cx: cx.toFixed(1), cy: cy.toFixed(1), r: key === "total" ? 3.2 : 2.2, class: `dot ${key}` }));
+      for (const [cx, cy] of pixels)
+        parts.push(
+          makeSvg("circle", { cx: cx.toFixed(1), cy: cy.toFixed(1), r: key === "total" ? 3.2 : 2.2, class: `dot ${key}` }),
+        );
     }
   }
   return parts;
@@ -154,31 +65,43 @@ function lineOf({ key, points }, scales) {
 /** Vertical lines where something happened first; their texts take two rows if they are close. */
 function marksOf(marks, scales) {
   const ends = [-Infinity, -Infinity];
-  return [...marks].sort((a, b) => a.call - b.call).filter(({ call }) => call >= scales.low && call <= scales.high).map(({ call, kind, text }) => {
-    const at = scales.x(call), width = 7.4 * text.length;
-    const isLeft = at + width > scales.right;
-    const start = isLeft ? at - width : at;
-    const row = ends[0] + 6 < start ? 0 : 1;
-    ends[row] = Math.max(ends[row], start + width);
-    const up = row === 0 ? margin.top - 8 : margin.top - 24;
-    return makeSvg("g", { class: `mark ${kind}` },
-      makeSvg("line", { x1: at, x2: at, y1: up - 6, y2: scales.bottom }),
-      makeSvg("text", { x: isLeft ? at - 4 : at + 4, y: up, "text-anchor": isLeft ? "end" : "start" }, text));
-  });
+  return [...marks]
+    .sort((a, b) => a.call - b.call)
+    .filter(({ call }) => call >= scales.low && call <= scales.high)
+    .map(({ call, kind, text }) => {
+      const at = scales.x(call),
+        width = 7.4 * text.length;
+      const isLeft = at + width > scales.right;
+      const start = isLeft ? at - width : at;
+      const row = ends[0] + 6 < start ? 0 : 1;
+      ends[row] = Math.max(ends[row], start + width);
+      const up = row === 0 ? margin.top - 8 : margin.top - 24;
+      return makeSvg(
+        "g",
+        { class: `mark ${kind}` },
+        makeSvg("line", { x1: at, x2: at, y1: up - 6, y2: scales.bottom }),
+        makeSvg("text", { x: isLeft ? at - 4 : at + 4, y: up, "text-anchor": isLeft ? "end" : "start" }, text),
+      );
+    });
 }
 
 /** What a chart says to those who do not see it. */
 function summaryOf(chart) {
-  const told = chart.lines.filter(({ points }) => points.length).map(({ label, points }) => {
-    const worst = points.reduce((a, b) => (severity(b[1]) > severity(a[1]) ? b : a));
-    return `${label} error ${errorText(points[0][1])} in call ${points[0][0]}, ${errorText(points.at(-1)[1])} in call ${points.at(-1)[0]}, at most ${errorText(worst[1])} in call ${worst[0]}`;
-  });
-  return [`${chart.name}, error over calls`, ...told, ...chart.marks.map(({ call, text }) => `${text} in call ${call}`)].join("; ");
+  const told = chart.lines
+    .filter(({ points }) => points.length)
+    .map(({ label, points }) => {
+      const worst = points.reduce((a, b) => (severity(b[1]) > severity(a[1]) ? b : a));
+      return `${label} error ${errorText(points[0][1])} in call ${points[0][0]}, ${errorText(points.at(-1)[1])} in call ${points.at(-1)[0]}, at most ${errorText(worst[1])} in call ${worst[0]}`;
+    });
+  return [`${chart.name}, error over calls`, ...told, ...chart.marks.map(({ call, text }) => `${text} in call ${call}`)].join(
+    "; ",
+  );
 }
 
 /** The index of the point that is nearest to a place on a monotonic scale, of points in the order of calls. */
 function nearestPoint(points, scale, goal) {
-  let low = 0, high = points.length - 1;
+  let low = 0,
+    high = points.length - 1;
   while (low < high) {
     const middle = (low + high) >> 1;
     if (scale(points[middle][0]) < goal) low = middle + 1;
@@ -197,11 +120,38 @@ function numbersOf(chart) {
     const step = Math.ceil(points.length / most);
     const rows = points.map((_, i) => i).filter((i) => i % step === 0 || i === points.length - 1);
     details.append(
-      make("div", { class: "scroll" },
-        make("table", {},
-          make("thead", {}, make("tr", {}, make("th", { scope: "col", class: "number" }, "call"), chart.lines.map(({ label }) => make("th", { scope: "col", class: "number" }, label)))),
-          make("tbody", {}, rows.map((i) => make("tr", {}, make("td", { class: "number" }, countText(points[i][0])), chart.lines.map((line) => make("td", { class: "number" }, errorText(line.points[i]?.[1]))))))),
-        step > 1 && make("p", { class: "note" }, `Every ${step}th of ${countText(points.length)} points.`)));
+      make(
+        "div",
+        { class: "scroll" },
+        make(
+          "table",
+          {},
+          make(
+            "thead",
+            {},
+            make(
+              "tr",
+              {},
+              make("th", { scope: "col", class: "number" }, "call"),
+              chart.lines.map(({ label }) => make("th", { scope: "col", class: "number" }, label)),
+            ),
+          ),
+          make(
+            "tbody",
+            {},
+            rows.map((i) =>
+              make(
+                "tr",
+                {},
+                make("td", { class: "number" }, countText(points[i][0])),
+                chart.lines.map((line) => make("td", { class: "number" }, errorText(line.points[i]?.[1]))),
+              ),
+            ),
+          ),
+        ),
+        step > 1 && make("p", { class: "note" }, `Every ${step}th of ${countText(points.length)} points.`),
+      ),
+    );
   });
   return details;
 }
@@ -212,16 +162,37 @@ function numbersOf(chart) {
  */
 function chartFigure(chart) {
   const holder = make("div", { class: "plot" });
-  const figure = make("figure", { class: "chart" },
-    make("figcaption", {}, make("span", { class: "code" }, nameText(chart.name)), chart.note && make("span", { class: "note" }, ` ${chart.note}`)),
-    holder, numbersOf(chart));
+  const figure = make(
+    "figure",
+    { class: "chart" },
+    make(
+      "figcaption",
+      {},
+      make("span", { class: "code" }, nameText(chart.name)),
+      chart.note && make("span", { class: "note" }, ` ${chart.note}`),
+    ),
+    holder,
+    numbersOf(chart),
+  );
   figure.draw = (settings) => {
     const width = Math.max(240, holder.clientWidth || 480);
     const range = settings.range ?? rangeOf([chart]);
     const scales = scalesOf(width, settings.calls, range, settings.isLog);
     const cursor = makeSvg("g", { class: "cursor" });
-    const drawing = makeSvg("svg", { viewBox: `0 0 ${width} ${chartHeight}`, role: "img", tabindex: 0, "aria-label": summaryOf(chart), class: chart.lines.length === 1 && "single" },
-      axesOf(scales, range, settings.isLog, unitOf(chart.type)), marksOf(chart.marks, scales), chart.lines.map((line) => lineOf(line, scales)), cursor);
+    const drawing = makeSvg(
+      "svg",
+      {
+        viewBox: `0 0 ${width} ${chartHeight}`,
+        role: "img",
+        tabindex: 0,
+        "aria-label": summaryOf(chart),
+        class: chart.lines.length === 1 && "single",
+      },
+      axesOf(scales, range, settings.isLog, unitOf(chart.type)),
+      marksOf(chart.marks, scales),
+      chart.lines.map((line) => lineOf(line, scales)),
+      cursor,
+    );
     follow(drawing, cursor, chart, scales, width);
     holder.replaceChildren(drawing);
   };
@@ -235,17 +206,29 @@ function follow(drawing, cursor, chart, scales, width) {
   let chosen = 0;
   const show = (index) => {
     chosen = Math.max(0, Math.min(points.length - 1, index));
-    const call = points[chosen][0], at = scales.x(call);
-    cursor.replaceChildren(makeSvg("line", { x1: at, x2: at, y1: margin.top, y2: scales.bottom }),
-      ...chart.lines.map(({ key, points: all }) => makeSvg("circle", { cx: at, cy: scales.y(all[chosen][1]), r: 3.5, class: `dot ${key}` })));
-    const box = drawing.getBoundingClientRect();
-    showTip([make("b", {}, `call ${countText(call)}`), chart.lines.map(({ key, label, points: all }) =>
-      make("div", {}, make("i", { class: `key ${key}` }), `${label} ${errorText(all[chosen][1])}`)),
-      chart.marks.filter((mark) => mark.call === call).map((mark) => make("div", {}, mark.text))], box.left + (at / width) * box.width, box.top + margin.top);
+    const call = points[chosen][0];
+    const at = scales.x(call);
+    cursor.replaceChildren(
+      makeSvg("line", { x1: at, x2: at, y1: margin.top, y2: scales.bottom }),
+      ...chart.lines.map(({ key, points: all }) =>
+        makeSvg("circle", { cx: at, cy: scales.y(all[chosen][1]), r: 3.5, class: `dot ${key}` }),
+      ),
+    );
+    showTip(
+      drawing,
+      [
+        make("b", {}, `call ${countText(call)}`),
+        chart.lines.map(({ key, label, points: all }) =>
+          make("div", {}, make("i", { class: `key ${key}` }), `${label} ${errorText(all[chosen][1])}`),
+        ),
+        chart.marks.filter((mark) => mark.call === call).map((mark) => make("div", {}, mark.text)),
+      ],
+      (at / width) * drawing.clientWidth,
+    );
   };
   const hide = () => {
     cursor.replaceChildren();
-    hideTip();
+    tip.remove();
   };
   drawing.addEventListener("pointermove", (event) => {
     const box = drawing.getBoundingClientRect();
@@ -262,20 +245,24 @@ function follow(drawing, cursor, chart, scales, width) {
   });
 }
 
-function showTip(children, left, top) {
-  const tip = document.getElementById("tip");
-  tip.replaceChildren(...children.flat(Infinity));
-  tip.hidden = false;
-  const { width, height } = tip.getBoundingClientRect();
-  tip.style.left = `${Math.max(8, Math.min(left + 14, innerWidth - width - 8))}px`;
-  tip.style.top = `${Math.max(8, Math.min(top, innerHeight - height - 8))}px`;
-}
+/** The numbers of the point that is chosen; one chart has it at a time. */
+const tip = make("div", { id: "tip" });
 
-function hideTip() {
-  document.getElementById("tip").hidden = true;
+/** Shows numbers beside a place of a chart, within it. */
+function showTip(drawing, children, left) {
+  const plot = drawing.parentElement;
+  tip.replaceChildren(...children.flat(Infinity));
+  plot.append(tip);
+  const space = plot.clientWidth - tip.offsetWidth;
+  tip.style.left = `${left + 14 <= space ? left + 14 : Math.max(0, left - 14 - tip.offsetWidth)}px`;
+  tip.style.top = `${margin.top + 4}px`;
 }
 
 /** The legend of the charts of outputs. */
 function legend() {
-  return make("p", { class: "legend" }, lineKinds.map(({ key, label }) => make("span", {}, make("i", { class: `key ${key}` }), label)));
+  return make(
+    "p",
+    { class: "legend" },
+    lineKinds.map(({ key, label }) => make("span", {}, make("i", { class: `key ${key}` }), label)),
+  );
 }

@@ -39,7 +39,9 @@ function severity(value) {
 }
 
 function superscript(integer) {
-  return String(integer).replace(/[-0-9]/g, (sign) => (sign === "-" ? "\u207b" : "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"[sign]));
+  return String(integer).replace(/[-0-9]/g, (sign) =>
+    sign === "-" ? "\u207b" : "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"[sign],
+  );
 }
 
 const powerOfTen = (exponent) => `10${superscript(exponent)}`;
@@ -117,15 +119,30 @@ function valueOf(sample) {
 
 /** How often each kind of exceptional value occurs: "3 NaN, 1 flushed". */
 function exceptionsText(kernel) {
-  const parts = [[kernel.nans, "NaN"], [kernel.infinities, "\u221e"], [kernel.flushed, "flushed"]].filter(([count]) => count);
+  const parts = [
+    [kernel.nans, "NaN"],
+    [kernel.infinities, "\u221e"],
+    [kernel.flushed, "flushed"],
+  ].filter(([count]) => count);
   return parts.map(([count, what]) => `${countText(count)} ${what}`).join(", ") || "0";
 }
 
-const kindNames = { nan: "NaN", infinity: "Infinity", flush: "Flush to zero", decision: "Decision", unstable: "Unstable", error: "Error",
-  storage: "Storage", fine: "Fine", nothing: "Nothing followed" };
+const kindNames = {
+  nan: "NaN",
+  infinity: "Infinity",
+  flush: "Flush to zero",
+  decision: "Decision",
+  unstable: "Unstable",
+  error: "Error",
+  storage: "Storage",
+  fine: "Fine",
+  nothing: "Nothing followed",
+};
 const nameOfKind = (kind) => kindNames[kind] ?? kind;
 
 /** Wraps long qualified names after their colons. */
 function nameText(name) {
-  return String(name ?? "").split(/(?<=::)/).flatMap((part, i) => (i ? [make("wbr"), part] : [part]));
+  return String(name ?? "")
+    .split(/(?<=::)/)
+    .flatMap((part, i) => (i ? [make("wbr"), part] : [part]));
 }
