@@ -84,12 +84,14 @@ import json
 report = json.load(open("exceptional.json"))
 report["kernels"] = [dict(report["kernels"][1], name=f"many::k{i}", share=1 / (i + 1)) for i in range(500)]
 report["exceptions"][0]["path"] *= 100
+report["notes"] = ["a\x1b[2Jb"]
 json.dump(report, open("many.json", "w"))
 PY
 run 0 many.json
 matches '^  many::k19 '
 prints 'and 480 more; --all shows them'
 prints '... 191 more calls'
+prints 'a [2Jb'
 [[ $out != *many::k20\ * ]] || broken 'more than 20 kernels'
 run 0 many.json --all
 matches '^  many::k499 '

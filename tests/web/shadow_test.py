@@ -91,6 +91,11 @@ def others(page, folder):
     for name, text in (("unknown", "version 1"), ("none", "empty page")):
         opened(page, folder, name)
         assert text in page.evaluate(text_of("#main")), name
+    # A part that is damaged leaves the others as they are.
+    page.open(f"file://{folder}/damaged.html")
+    page.wait(f"({ready}) && document.querySelector('#run') !== null")
+    assert "is damaged" in page.evaluate(text_of("#run")) and "3 NaN" in page.evaluate(text_of("#kernels"))
+    assert len(page.messages) == 1 and "TypeError" in page.messages.pop(), page.messages
 
 
 def large(page, folder):
@@ -129,7 +134,9 @@ def write_pages(folder):
     with open(f"{folder}/empty.html") as file:
         page = file.read()
     start, end = page.index("const report = ") + len("const report = "), page.index(";</script>")
-    for name, report in (("unknown", '{"format": "streamkernel-shadow", "version": 9}'), ("none", "null")):
+    with open(f"{samples}/exceptional.json") as file:
+        damaged = json.dumps(json.load(file) | {"options": {"kernels": 5}})
+    for name, report in (("unknown", '{"format": "streamkernel-shadow", "version": 9, "results": 5}'), ("none", "null"), ("damaged", damaged)):
         with open(f"{folder}/{name}.html", "w") as file:
             file.write(page[:start] + report + page[end:])
 

@@ -3,6 +3,9 @@
 // Elements of the page, and numbers as text. Text from the report only ever becomes a text node, never HTML.
 "use strict";
 
+/** This page shows reports of this version alone. */
+const isReadable = report?.format === "streamkernel-shadow" && report.version === 1;
+
 /** An element with attributes and children; false, null and undefined children are left out. */
 function make(name, attributes, ...children) {
   return fill(document.createElement(name), attributes, children);

@@ -102,7 +102,13 @@ function kernelDetails(kernel) {
 /** The table by kernel. */
 function kernelsSection() {
   const kernels = report.kernels ?? [];
-  if (!kernels.length) return section("kernels", "Kernels", null, make("p", {}, "The program called no kernel."));
+  if (!kernels.length)
+    return section(
+      "kernels",
+      "Kernels",
+      null,
+      make("p", {}, report.calls > 0 ? "No call was followed." : "The program called no kernel."),
+    );
   const digitsScale = Math.max(finest, ...kernels.map(({ digits }) => toNumber(digits)).filter(Number.isFinite));
   const number = (name, title, key, of) => ({ name, title, isNumber: true, key, of });
   const exceptional = (kernel) => (kernel.nans ?? 0) + (kernel.infinities ?? 0) + (kernel.flushed ?? 0);

@@ -15,7 +15,8 @@ function section(id, title, lead, ...content) {
 
 /** A sentence of the report, with the kernel's name as a link. */
 function sentence(text, kernel) {
-  const at = kernel ? text.indexOf(kernel) : -1;
+  const name = (kernel ?? "").replace(/[^\w:]/g, "\\$&");
+  const at = name ? text.search(new RegExp(`(?<![\\w:])${name}(?!\\w|::)`)) : -1; // not within another word
   return at < 0 ? text : [text.slice(0, at), kernelLink(kernel), text.slice(at + kernel.length)];
 }
 
@@ -87,7 +88,13 @@ function resultsSection() {
       "results",
       "What the program read",
       null,
-      make("p", {}, "The program read no result back, so there is nothing that an error could reach."),
+      make(
+        "p",
+        {},
+        report.calls > 0 && !report.followed
+          ? "No call was followed, so that the errors of results are not known."
+          : "The program read no result back, so there is nothing that an error could reach.",
+      ),
     );
   const digitsScale = Math.max(finest, ...results.map(({ digits }) => toNumber(digits)).filter(Number.isFinite));
   const columns = [

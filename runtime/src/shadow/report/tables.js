@@ -6,7 +6,7 @@
 /** Colours of the kernels whose errors are the largest part of the results'; all others are grey. */
 const colourOf = (() => {
   const colours = new Map();
-  const largest = (report?.results ?? []).flatMap((result) => result.shares ?? []);
+  const largest = ((isReadable && report.results) || []).flatMap((result) => result.shares ?? []);
   const sums = new Map();
   for (const { kernel, share } of largest) if (Number.isFinite(share)) sums.set(kernel, (sums.get(kernel) ?? 0) + share);
   [...sums]
@@ -70,7 +70,7 @@ function kernelLink(name) {
     ? make("span", { class: "code" }, nameText(name))
     : make("a", { href: `#kernel-${index}`, class: "code" }, nameText(name));
 }
-const kernelIndex = new Map((report?.kernels ?? []).map(({ name }, i) => [name, i]));
+const kernelIndex = new Map(((isReadable && report.kernels) || []).map(({ name }, i) => [name, i]));
 
 /**
  * A table. `columns` are {name, title, of, key, isNumber}: `of` gives a cell's content, `key` a number or a text to sort by. `options`:

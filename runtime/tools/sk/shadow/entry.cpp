@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shadow/entry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -47,15 +48,18 @@ bool Entry::flag() const {
 
 std::string Entry::text() const {
   if (!value_->is_string()) fail("is no text");
-  return value_->get<std::string>();
+  std::string text = value_->get<std::string>();
+  std::ranges::replace_if(text, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+  return text;
 }
 
-std::string Entry::asWritten() const {
+std::string Entry::asWritten(int deepest) const {
   if (value_->is_string()) return text();
   if (value_->is_number_float()) return fmt::format("{}", value_->get<double>());
   if (value_->is_number() || value_->is_boolean()) return value_->dump();
+  if (deepest == 0) fail("is no value");
   std::string all;
-  for (std::size_t i = 0; i < size(); ++i) all += (i > 0 ? ", " : "") + at(i).asWritten();
+  for (std::size_t i = 0; i < size(); ++i) all += (i > 0 ? ", " : "") + at(i).asWritten(deepest - 1);
   return "(" + all + ")";
 }
 

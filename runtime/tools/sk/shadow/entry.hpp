@@ -30,9 +30,10 @@ class Entry {
   double number() const;
   long long integer() const;
   bool flag() const;
+  /// A text in one line: control characters, which could write anywhere on a terminal, are spaces.
   std::string text() const;
-  /// A number, a text or a list of them, in one line: 1.5, nan, (1, 2).
-  std::string asWritten() const;
+  /// A number, a text, a list or a list of lists, in one line: 1.5, nan, (1, 2).
+  std::string asWritten(int deepest = 2) const;
 
  private:
   Entry(const nlohmann::ordered_json& value, std::string place) : value_(&value), place_(std::move(place)) {}

@@ -159,8 +159,8 @@ std::string kernelsOf(const Entry& report, std::size_t most) {
                std::to_string(kernel["calls"].integer()), secondsText(kernel["seconds"].number()),
                exceptionsText(kernel), std::to_string(kernel["decisions"].integer())});
   }
-  return part("kernels, by their share of the results' errors",
-              table.isEmpty() ? "  none were called\n" : table.text(most));
+  const char* nothing = report["calls"].integer() > 0 ? "  no call was followed\n" : "  none were called\n";
+  return part("kernels, by their share of the results' errors", table.isEmpty() ? nothing : table.text(most));
 }
 
 std::string exceptionText(const Entry& event) {

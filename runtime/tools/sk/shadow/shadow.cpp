@@ -67,10 +67,10 @@ void checkFormat(const nlohmann::ordered_json& report, const std::string& file) 
         "'{}' is no report of SK_SHADOW, which begins with \"format\": \"{}\"", file, shadowFormat));
   const auto version = report.find("version");
   if (version == report.end() || *version != shadowVersion) {
-    throw std::runtime_error(
-        fmt::format("'{}' has version {} of the report, and this sk reads version {}; use the sk of the "
-                    "StreamKernel that the program was built with",
-                    file, version == report.end() ? "?" : version->dump(), shadowVersion));
+    throw std::runtime_error(fmt::format(
+        "'{}' has version {} of the report, and this sk reads version {}; use the sk of the "
+        "StreamKernel that the program was built with",
+        file, version != report.end() && version->is_number() ? version->dump() : "?", shadowVersion));
   }
 }
 
