@@ -115,7 +115,7 @@ function runSection() {
   const isAll = kernels.length === 1 && kernels[0] === "*";
   const rows = [
     ["Device", report.device],
-    ["Reference", `${report.reference} precision on the cores`],
+    ["Reference", `${report.reference}, on the cores`],
     [
       "Followed",
       `${every > 1 ? `one of ${every} calls` : "every call"} of ${isAll ? "all kernels" : kernels.join(", ")}: ${callsText()}`,
@@ -146,14 +146,14 @@ function runSection() {
         ranks,
         { most: 16, noun: "rank", caption: "Ranks" },
       ),
-    make("h3", {}, "Notes"),
-    notes.length
-      ? make(
-          "ul",
-          { class: "prose" },
-          notes.slice(0, few).map((note) => make("li", {}, note)),
-        )
-      : make("p", { class: "note" }, "Nothing was left out."),
+    notes.length > 0 && [
+      make("h3", {}, "Notes"),
+      make(
+        "ul",
+        { class: "prose" },
+        notes.slice(0, few).map((note) => make("li", {}, note)),
+      ),
+    ],
     notes.length > few &&
       make(
         "details",

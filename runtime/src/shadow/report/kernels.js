@@ -201,7 +201,7 @@ function kernelsSection() {
   return section(
     "kernels",
     "Kernels",
-    "A call\u2019s own error is what it adds to exact inputs; what its inputs bring is inherited. A row opens to the kernel\u2019s worst element and its charts.",
+    "A call\u2019s own error is what it adds to the inputs that it gets; the error of these inputs is inherited. A row opens to the kernel\u2019s worst element and its charts.",
     list,
   );
 }

@@ -24,8 +24,10 @@ function sentence(text, kernel) {
 function verdicts() {
   const all = report.verdicts ?? [];
   const badge = ({ kind }) => make("span", { class: `badge ${kind}` }, nameOfKind(kind));
-  const where = ({ call, kernel }) =>
-    kernel && typeof call === "number" ? make("span", { class: "note" }, ` call ${countText(call)}`) : null;
+  const where = ({ kind, call }) =>
+    kind !== "fine" && kind !== "nothing" && typeof call === "number"
+      ? make("span", { class: "note" }, ` call ${countText(call)}`)
+      : null;
   if (!all.length) return make("p", { class: "verdict" }, "The report has no verdict.");
   const [first, ...others] = all;
   const few = 8;
@@ -67,7 +69,7 @@ function pageHead() {
       { class: "meta" },
       [
         `on ${report.device}`,
-        `beside ${report.reference} precision`,
+        `beside a reference in ${report.reference}`,
         callsText(),
         report.ranks > 1 && counted(report.ranks, "rank"),
       ]
