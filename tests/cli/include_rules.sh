@@ -33,6 +33,7 @@ runtime/src/native    sk support trace device call native assemble probe/copy_ba
 runtime/src/probe     sk support trace device call gl gl_device probe assemble
 runtime/src/gl        sk gl epoxy EGL GL GLES3
 runtime/src/toml      toml
+runtime/src/shadow    sk shadow shadow_text
 runtime/src/gl_device sk support trace device call probe gl gl_device assemble
 runtime/src/gl_device/memory sk gl gl_device/memory device/region.hpp assemble
 runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_bytes.hpp assemble
@@ -43,7 +44,7 @@ runtime/src/assemble/reduce   sk/program.hpp sk/exact_digits.hpp sk/types.hpp sk
 runtime/mpi           sk support device call api native gl assemble
 runtime/text          sk text
 runtime/linear        sk text
-runtime/tools         sk support/cache_folder.hpp native probe/probe.hpp assemble/nearest_word.hpp
+runtime/tools         sk support/cache_folder.hpp native probe/probe.hpp assemble/nearest_word.hpp shadow
 runtime/tests         sk support trace device call gl gl_device native assemble epoxy
 examples              sk toml text linear/grid_stream.hpp epoxy
 tests                 sk
@@ -56,7 +57,7 @@ tests/fuzz            sk ir program driver analysis transforms native/native.hpp
 '
 # What all rooms of the assembler share.
 rules=${rules//ASSEMBLE/assemble/assemble.hpp assemble/condition.hpp assemble/region_layout.hpp assemble/relayed_values.hpp}
-guarded='support|ir|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|api|probe|gl|toml|text|linear|gl_device|assemble|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+guarded='support|ir|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|api|probe|gl|toml|text|linear|gl_device|assemble|shadow|shadow_text|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)

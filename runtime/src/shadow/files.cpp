@@ -11,8 +11,6 @@
 
 #include <fmt/format.h>
 
-#include "shadow/report_page.hpp"
-
 namespace sk::shadow {
 
 std::string fileMark(const std::string& file) {
@@ -37,23 +35,6 @@ std::string replaceFile(const std::string& file, std::string_view text) {
   if (error == 0) return {};
   ::unlink(temporary.c_str());
   return fmt::format("cannot write '{}': {}", file, std::strerror(error));
-}
-
-std::string pageOf(std::string_view json) {
-  constexpr std::string_view marker = "/*REPORT*/null";
-  const std::string_view page = reportPage();
-  const std::size_t at = page.find(marker);
-  std::string text(page.substr(0, at));
-  for (const char c : json) {
-    // so that no text of the program ends the script
-    if (c == '<') {
-      text += "\\u003c";
-    } else {
-      text += c;
-    }
-  }
-  text += page.substr(at + marker.size());
-  return text;
 }
 
 std::string otherName(const std::string& file) {

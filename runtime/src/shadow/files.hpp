@@ -15,9 +15,6 @@ std::string fileMark(const std::string& file);
 /// Replaces a file. Returns what went wrong; empty if nothing did.
 std::string replaceFile(const std::string& file, std::string_view text);
 
-/// The page that shows a report, from its JSON.
-std::string pageOf(std::string_view json);
-
 /// Another name for a file: report-2.html, the first that does not exist.
 std::string otherName(const std::string& file);
 

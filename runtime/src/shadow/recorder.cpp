@@ -15,6 +15,7 @@
 
 #include "shadow/archive.hpp"
 #include "shadow/files.hpp"
+#include "shadow/report_page.hpp"
 #include "sk/error.hpp"
 
 namespace sk::shadow {
@@ -176,7 +177,7 @@ void Recorder::writeFiles(const Report& report) {
     mark = fileMark(file);
   };
   if (jsonFile_.empty()) jsonFile_ = report_.options.json();
-  if (report_.options.report != jsonFile_) replace(report_.options.report, lastPage_, pageOf(json));
+  if (report_.options.report != jsonFile_) replace(report_.options.report, lastPage_, reportPage(json));
   replace(jsonFile_, lastJson_, json);
 }
 

@@ -24,4 +24,7 @@ void addScale(CLI::App& app);
 /// alone.
 void addServe(CLI::App& app);
 
+/// `sk shadow`: prints the report of a program that ran beside its reference (SK_SHADOW), and writes its page again.
+void addShadow(CLI::App& app);
+
 }  // namespace sk_tool

@@ -7,20 +7,13 @@
 #include <fmt/format.h>
 
 #include "accuracy/child_process.hpp"
+#include "seconds_text.hpp"
 
 namespace sk_tool {
 
 namespace {
 
 std::string extentsText(const Extents& extents) { return fmt::format("{}", fmt::join(extents, " x ")); }
-
-/// Seconds with three digits in the unit that suits them.
-std::string secondsText(double seconds) {
-  if (seconds == 0) return "0";
-  if (seconds < 1e-6) return fmt::format("{:.3g} ns", seconds * 1e9);
-  if (seconds < 1e-3) return fmt::format("{:.3g} us", seconds * 1e6);
-  return seconds < 1 ? fmt::format("{:.3g} ms", seconds * 1e3) : fmt::format("{:.3g} s", seconds);
-}
 
 std::string bytesText(double bytes) {
   constexpr std::array<const char*, 6> units = {"B", "kB", "MB", "GB", "TB", "PB"};
