@@ -142,15 +142,26 @@ void runNearest() {
 void runSum() {
   sk::Device device;
   auto values = device.stream<float>({1 << 20}, sk::Storage::Default, "values");
-  faults::ramp(1e6F, -0.9999F * 1e6F, values);
-  std::printf("%a\n", static_cast<double>(faults::total.with({.accumulate = sk::Accumulate::Tree})(values)));
+  std::vector<float> numbers(values.size());
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < numbers.size(); ++i) {
+    numbers[i] = static_cast<float>(i * 7919 % 1000003) * (i % 2 == 0 ? 1.234F : -1.234F);
+    sum += numbers[i];
+  }
+  numbers.back() = static_cast<float>(1 - sum);
+  values.write(numbers);
+  for (int count = 1 << 19; count >= 1; count /= 2) {
+    Field sums = device.stream<float>({count});
+    faults::pairs(values, sums);
+    values = std::move(sums);
+  }
+  std::printf("%a\n", static_cast<double>(values.read()[0]));
 }
 
 void runPush() {
   Plate plate;
-  auto kept = plate.device.stream<float>({size});
-  faults::gain(1, plate.u, plate.w);
-  faults::keep(limitIn(plate.w), plate.w, kept);
+  Field kept = plate.device.stream<float>({size});
+  faults::keep(limitIn(plate.u), plate.u, kept);
   std::printf("%zu\n", kept.read().size());
 }
 

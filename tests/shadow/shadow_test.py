@@ -55,7 +55,7 @@ faults = {
     "cancel": ("error", "faults::spread"),
     "unstable": ("unstable", "faults::diffuse"),
     "nearest": ("error", "faults::measure"),
-    "sum": ("error", "faults::total"),
+    "sum": ("error", "faults::pairs"),
     "push": ("decision", "faults::keep"),
 }
 for name, (kind, kernel) in faults.items():

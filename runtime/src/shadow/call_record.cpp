@@ -327,8 +327,8 @@ ElementRecord CallFollower::elementOf(const Written& written, std::int64_t eleme
 void CallFollower::recordExceptions(const Written& written, const OutputErrors& errors, int kernel, Report& report) {
   constexpr std::size_t most = 256, longestPath = 32;
   KernelRecord& record = recordOf(report, kernel);
-  record.nans += errors.nans.count;
-  record.infinities += errors.infinities.count;
+  record.nans += errors.newNans.count;
+  record.infinities += errors.newInfinities.count;
   record.flushed += errors.flushed.count;
   StreamErrors* const stream = written.stream != nullptr ? &written.stream->errors : nullptr;
   const auto found = [&](Kind kind, const shadow::Found& all, const shadow::Found& added, bool wasThere) {

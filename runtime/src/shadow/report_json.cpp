@@ -62,7 +62,6 @@ std::string element(const ElementRecord& record) {
 }
 
 std::string spread(const Spread& errors) {
-  if (errors.isEmpty()) return "null";
   return fmt::format(R"({{"largest":{},"typical":{}}})", number(errors.largest()), number(errors.typical()));
 }
 
@@ -82,8 +81,8 @@ std::string kernel(const KernelRecord& record) {
       R"("total":{},"amplification":{},"digits":{:.2f},"share":{},"worst":{},"nans":{},"infinities":{},)"
       R"("flushed":{},"decisions":{},"outputs":{}}})",
       jsonString(record.name), record.calls, record.followed, record.seconds, jsonString(record.choices),
-      spread(record.own), spread(record.storage), spread(record.inherited), spread(record.total),
-      spread(record.amplification), survivingDigits(record.total.largest()), number(record.share),
+      spread(record.own), record.storage.isEmpty() ? "null" : spread(record.storage), spread(record.inherited),
+      spread(record.total), record.amplification.isEmpty() ? "null" : spread(record.amplification), survivingDigits(record.total.largest()), number(record.share),
       record.worst ? "{" + element(*record.worst) + "}" : "null", record.nans, record.infinities,
       record.flushed, record.decisions, outputs);
 }

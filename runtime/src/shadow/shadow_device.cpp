@@ -158,10 +158,81 @@ void ShadowDevice::scan(const program::Reduction& reduction, std::span<const Arg
   followOrRecord(*this, {ShadowedCall::Kind::Scan, reduction.fold, &reduction, arguments, {}, options});
 }
 
-void ShadowDevice::run(const ResolvedCall& call) { run(call.kernel, call.arguments, call.options); }
+std::vector<Argument> ShadowDevice::onPrimary(std::span<const Argument> arguments) const {
+  std::vector<Argument> inner(arguments.begin(), arguments.end());
+  for (Argument& argument : inner) {
+    if (argument.region.stream != nullptr) argument.region.stream = &shadowStream(argument.region).inner();
+  }
+  return inner;
+}
+
+void ShadowDevice::takeOver(const program::Kernel& kernel, std::span<const Argument> arguments) const {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const program::Role role = kernel.parameters[i].role;
+    if (arguments[i].region.stream == nullptr || (role != program::Role::Output && role != program::Role::Accumulator))
+      continue;
+    ShadowStream& stream = shadowStream(arguments[i].region);
+    stream.mirrorMarks();
+    stream.goStale(false);
+  }
+}
+
+void ShadowDevice::run(const ResolvedCall& call) {
+  const std::vector<Argument> arguments = onPrimary(call.arguments);
+  ResolvedCall inner = call;
+  inner.arguments = arguments;
+  primary_->run(inner);
+  takeOver(call.kernel, call.arguments);
+}
+
+namespace {
+
+ResolvedReduction onDevice(DeviceState& device, const ResolvedReduction& call, std::span<const Argument> arguments,
+                           const RowsState* rows) {
+  return {device,      call.reduction, arguments, call.domain, call.blocks,
+          call.values, call.options,   call.scan, rows,        call.placed};
+}
+
+std::vector<StreamRegion> innerRegions(std::span<const StreamRegion> regions) {
+  std::vector<StreamRegion> inner;
+  for (const StreamRegion& region : regions) inner.push_back(shadowStream(region).innerOf(region));
+  return inner;
+}
+
+}  // namespace
 
 void ShadowDevice::reduce(const ResolvedReduction& call) {
-  reduce(call.reduction, call.arguments, call.values, call.options);
+  const std::vector<Argument> arguments = onPrimary(call.arguments);
+  primary_->reduce(onDevice(*primary_, call, arguments, rowsOn(*primary_, call.rows)));
+  takeOver(call.reduction.fold, call.arguments);
+}
+
+bool ShadowDevice::combine(const ResolvedReduction& call, std::span<const StreamRegion> parts,
+                           std::span<const StreamRegion> results) {
+  const std::vector<Argument> arguments = onPrimary(call.arguments);
+  const std::vector<StreamRegion> from = innerRegions(parts), to = innerRegions(results);
+  if (!primary_->combine(onDevice(*primary_, call, arguments, rowsOn(*primary_, call.rows)), from, to)) return false;
+  for (const StreamRegion& region : results) {
+    shadowStream(region).mirrorMarks();
+    shadowStream(region).goStale(false);
+  }
+  return true;
+}
+
+bool ShadowDevice::foldsBesideOutputs(const ResolvedReduction& call) {
+  const std::vector<Argument> arguments = onPrimary(call.arguments);
+  return primary_->foldsBesideOutputs(onDevice(*primary_, call, arguments, nullptr));
+}
+
+bool ShadowDevice::sumsExactly(const ResolvedReduction& call) const {
+  const std::vector<Argument> arguments = onPrimary(call.arguments);
+  return primary_->sumsExactly(onDevice(*primary_, call, arguments, nullptr));
+}
+
+std::vector<std::int64_t> ShadowDevice::exactWords(const ResolvedReduction& call, const program::ExactSum& sum,
+                                                   bool isFirst) {
+  const std::vector<Argument> arguments = onPrimary(call.arguments);
+  return primary_->exactWords(onDevice(*primary_, call, arguments, rowsOn(*primary_, call.rows)), sum, isFirst);
 }
 
 std::unique_ptr<StreamState> ShadowDevice::createStream(const program::Element& element, const Shape& shape,

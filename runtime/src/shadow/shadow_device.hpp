@@ -104,13 +104,21 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   std::unique_ptr<Staging> makeStaging(Staging::Way way) override;
   bool needsDense(const StreamRegion&) override { return false; }
 
-  // calls reach a device only after the interposed functions above have taken them
+  // Steps of calls: those of reductions over several ranks alone, since the functions above take all others. They run on the
+  // device, and the reference takes over what they have written.
   void run(const ResolvedCall& call) override;
   void reduce(const ResolvedReduction& call) override;
+  bool combine(const ResolvedReduction& call, std::span<const StreamRegion> parts,
+               std::span<const StreamRegion> results) override;
+  bool foldsBesideOutputs(const ResolvedReduction& call) override;
+  bool sumsExactly(const ResolvedReduction& call) const override;
+  std::vector<std::int64_t> exactWords(const ResolvedReduction& call, const program::ExactSum& sum,
+                                       bool isFirst) override;
   bool needsDense(const program::Kernel&, std::span<const Argument>, std::size_t) override { return false; }
 
  private:
-  void follow(struct ShadowedCall call);
+  std::vector<Argument> onPrimary(std::span<const Argument> arguments) const;
+  void takeOver(const program::Kernel& kernel, std::span<const Argument> arguments) const;
 
   std::unique_ptr<DeviceState> primary_;
   shadow::Recorder& recorder_;
