@@ -65,6 +65,21 @@ ResolvedReduction checked(const Reduction& reduction, std::span<const Argument> 
   return call;
 }
 
+/// The arguments of a device that stands in front of another one, as those of that one.
+std::vector<Argument> underlying(std::span<const Argument> given) {
+  std::vector<Argument> arguments(given.begin(), given.end());
+  for (Argument& argument : arguments) {
+    if (argument.region.stream != nullptr) argument.region.stream = &argument.region.stream->underlying();
+  }
+  return arguments;
+}
+
+BoxedArguments underlying(const BoxedArguments& given) {
+  BoxedArguments boxed = given;
+  if (boxed.over && boxed.over->device != nullptr) boxed.over->device = &boxed.over->device->underlying();
+  return boxed;
+}
+
 int lastDivided(const domain::Decomposition& parts) {
   int last = 0;
   for (int d = 0; d < parts.split().rank(); ++d) {
@@ -80,9 +95,9 @@ RankReduction::RankReduction(DomainState& domain, const Reduction& reduction, co
     : domain_(domain),
       box_(box),
       hasElements_(!domain::isEmpty(domain::intersection(domain.own, box))),
-      arguments_(reduction.fold, arguments.arguments),
+      arguments_(reduction.fold, underlying(arguments.arguments)),
       values_(valuesFor(reduction)),
-      call_(checked(reduction, arguments_.get(), values_, arguments)),
+      call_(checked(reduction, arguments_.get(), values_, underlying(arguments))),
       dense_(reduction.fold, arguments_.get()) {
   call_.arguments = dense_.get();
   call_.options = resolvedOptions(call_, options);
@@ -340,7 +355,15 @@ void RankReduction::finish() {
   finishWords();
 }
 
-void RankReduction::store(std::span<const StreamRegion> results) {
+void RankReduction::store(std::span<const StreamRegion> given) {
+  std::vector<StreamRegion> results(given.begin(), given.end());
+  for (StreamRegion& region : results) region.stream = &region.stream->underlying();
+  storeUnderlying(results);
+  for (const StreamRegion& region : given) region.stream->noteUnderlyingWritten();
+  for (const StreamRegion& region : given) noteWritten(region);
+}
+
+void RankReduction::storeUnderlying(std::span<const StreamRegion> results) {
   if (!doubles_) {
     for (std::size_t k = 0; k < values_.size(); ++k) detail::write(results[k], values_[k].data(), 1);
     return;
@@ -358,7 +381,6 @@ void RankReduction::store(std::span<const StreamRegion> results) {
   for (const StreamRegion& region : results) arguments.push_back({.region = region});
   // Its results are doubles for streams that hold floats, which calls of an application do not pass.
   call_.device.run(resolveCall(wide->finish, arguments, call_.device.limits, call_.options));
-  for (const StreamRegion& region : results) noteWritten(region);
 }
 
 void RankReduction::finish(std::span<void* const> results) {

@@ -71,6 +71,7 @@ class RankReduction final : private Details {
     Bytes own;  ///< of this rank's parts
   };
 
+  void storeUnderlying(std::span<const StreamRegion> results);
   std::string details() const override;
   bool isInterleaved() const;
   Shape partsOf(int rank) const;

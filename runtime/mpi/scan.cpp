@@ -41,6 +41,13 @@ class RankScan {
       DomainStreamState* const stream = domainStream(argument.region);
       if (stream != nullptr) local_.back().region = stream->part(domain.own);
     }
+    // ranks exchange what the devices hold, whatever stands in front of these
+    scanned_ = local_;
+    for (std::vector<Argument>* all : {&local_, &given_}) {
+      for (Argument& argument : *all) {
+        if (argument.region.stream != nullptr) argument.region.stream = &argument.region.stream->underlying();
+      }
+    }
   }
 
   int dimension() const { return dimension_; }
@@ -78,6 +85,14 @@ class RankScan {
 
   /// Combines the totals before this rank with its results, and stores these.
   void store() {
+    storeUnderlying();
+    for (std::size_t i = 0; i < scanned_.size(); ++i) {
+      if (isResult(i)) scanned_[i].region.stream->noteUnderlyingWritten();
+    }
+  }
+
+ private:
+  void storeUnderlying() {
     if (!hasMessages()) evaluateAssertions();
     const AssertionsEvaluated evaluated(device());
     if (!hasMessages()) return sk::scan(reduction_, local_, options_);
@@ -93,7 +108,6 @@ class RankScan {
     }
   }
 
- private:
   DeviceState& device() const { return *resultRegion().stream->device; }
 
   /// Assertions may speak of places in the whole, which what the ranks scan does not know.
@@ -237,7 +251,8 @@ class RankScan {
   std::vector<Argument> given_;  ///< placed in the whole
   CallOptions options_;
   int dimension_;
-  std::vector<Argument> local_;
+  std::vector<Argument> scanned_;  ///< of this rank
+  std::vector<Argument> local_;  ///< the same, on the device that computes
   std::optional<Accumulators> results_;
   std::size_t lineBytes_ = 0;
   Bytes own_, all_;  ///< totals: of this rank, and of all along the dimension

@@ -28,12 +28,12 @@ runtime/src/trace     sk trace
 runtime/src/device    sk toml trace device gl/known_devices.hpp call/resolved_call.hpp call/row_pieces.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp assemble/nearest_word.hpp
 runtime/src/call      sk support device call assemble
 runtime/src/domain    sk domain
-runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp
+runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp shadow/shadow_device.hpp
 runtime/src/native    sk support trace device call native assemble probe/copy_bandwidth.hpp
 runtime/src/probe     sk support trace device call gl gl_device probe assemble
 runtime/src/gl        sk gl epoxy EGL GL GLES3
 runtime/src/toml      toml
-runtime/src/shadow    sk shadow shadow_text
+runtime/src/shadow    sk support trace device call native shadow shadow_text assemble/nearest_word.hpp
 runtime/src/gl_device sk support trace device call probe gl gl_device assemble
 runtime/src/gl_device/memory sk gl gl_device/memory device/region.hpp assemble
 runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_bytes.hpp assemble

@@ -191,7 +191,8 @@ void runEverything() {
   e::prefix(x, x);
   print("\nprefix", x.read());
 
-  auto u = device.stream<float>({20, 31}), v = device.stream<float>({20, 31}), d = device.stream<float>({20, 31});
+  auto u = device.stream<float>({20, 31}), v = device.stream<float>({20, 31}),
+       d = device.stream<float>({20, 31});
   std::vector<float> first(u.size());
   for (std::size_t i = 0; i < first.size(); ++i) first[i] = std::sin(0.1F * static_cast<float>(i * i % 97));
   u.write(first);
@@ -229,7 +230,8 @@ void runEverything() {
 /// Prints the own error of each call, relative to the norm of the exact results.
 void runReplay() {
   sk::Device device;
-  Field u = device.stream<float>({size}, sk::Storage::Default, "u"), v = device.stream<float>({size}, sk::Storage::Default, "v");
+  Field u = device.stream<float>({size}, sk::Storage::Default, "u"),
+        v = device.stream<float>({size}, sk::Storage::Default, "v");
   faults::ramp(0.1F, 0.9F, u);
   for (int i = 0; i < 20; ++i) {
     const std::vector<float> before = u.read();
@@ -298,12 +300,14 @@ void runDevices() {
 }
 
 const std::map<std::string, std::function<void()>> programs = {
-    {"half", runHalf},       {"stored", runStored},     {"nan", runNan},         {"floatnan", runFloatNan},
-    {"infinity", runInfinity}, {"flush", runFlush},     {"flip", runFlip},       {"cell", runCell},
-    {"table", runTable},     {"cancel", runCancel},     {"unstable", runUnstable}, {"nearest", runNearest},
-    {"sum", runSum},         {"push", runPush},         {"everything", runEverything}, {"replay", runReplay},
-    {"fine", runFine},       {"exit", runExit},         {"abort", runAbort},     {"fork", runFork},
-    {"write", runWrite},     {"nothing", runNothing},   {"devices", runDevices}};
+    {"half", runHalf},         {"stored", runStored},     {"nan", runNan},
+    {"floatnan", runFloatNan}, {"infinity", runInfinity}, {"flush", runFlush},
+    {"flip", runFlip},         {"cell", runCell},         {"table", runTable},
+    {"cancel", runCancel},     {"unstable", runUnstable}, {"nearest", runNearest},
+    {"sum", runSum},           {"push", runPush},         {"everything", runEverything},
+    {"replay", runReplay},     {"fine", runFine},         {"exit", runExit},
+    {"abort", runAbort},       {"fork", runFork},         {"write", runWrite},
+    {"nothing", runNothing},   {"devices", runDevices}};
 
 }  // namespace
 

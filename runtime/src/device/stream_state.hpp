@@ -58,6 +58,10 @@ class StreamState {
   StreamState(const StreamState&) = delete;
   StreamState& operator=(const StreamState&) = delete;
 
+  /// The stream that calls of the device's underlying() one use.
+  virtual StreamState& underlying() { return *this; }
+  /// Somebody has written the underlying stream.
+  virtual void noteUnderlyingWritten() {}
   /// Determines the number of elements if it is not known, which waits for the device. No scope of the device
   /// may be open.
   virtual void settle() = 0;

@@ -128,8 +128,9 @@ void visit(Archive& archive, OutputRecord& it) {
 }
 template <class Archive>
 void visit(Archive& archive, KernelRecord& it) {
-  archive(it.name, it.calls, it.followed, it.seconds, it.own, it.storage, it.inherited, it.total, it.amplification, it.worst,
-          it.worstError, it.nans, it.infinities, it.flushed, it.decisions, it.choices, it.outputs);
+  archive(it.name, it.calls, it.followed, it.seconds, it.own, it.storage, it.inherited, it.total,
+          it.amplification, it.worst, it.worstError, it.nans, it.infinities, it.flushed, it.decisions,
+          it.choices, it.outputs);
 }
 template <class Archive>
 void visit(Archive& archive, StreamRecord& it) {
@@ -137,7 +138,8 @@ void visit(Archive& archive, StreamRecord& it) {
 }
 template <class Archive>
 void visit(Archive& archive, ResultRecord& it) {
-  archive(it.name, it.isValue, it.reads, it.elements, it.largest, it.last, it.differs, it.notFinite, it.shares);
+  archive(it.name, it.isValue, it.reads, it.elements, it.largest, it.last, it.differs, it.notFinite,
+          it.shares);
 }
 template <class Archive>
 void visit(Archive& archive, Path& it) {
@@ -153,8 +155,9 @@ void visit(Archive& archive, DecisionRecord& it) {
 }
 template <class Archive>
 void visit(Archive& archive, Report& it) {
-  archive(it.program, it.device, it.rank, it.programSeconds, it.deviceSeconds, it.referenceSeconds, it.comparisonSeconds,
-          it.calls, it.followed, it.kernels, it.streams, it.results, it.exceptions, it.decisions, it.notes);
+  archive(it.program, it.device, it.rank, it.programSeconds, it.deviceSeconds, it.referenceSeconds,
+          it.comparisonSeconds, it.calls, it.followed, it.kernels, it.streams, it.results, it.exceptions,
+          it.decisions, it.notes);
 }
 
 /// A file that no other process uses while this object lives.
@@ -210,7 +213,8 @@ RankOfProcess rankOfProcess() {
   return {};
 }
 
-void addToRanks(const std::string& file, const Report& report, const std::function<void(std::vector<Report>)>& use) {
+void addToRanks(const std::string& file, const Report& report,
+                const std::function<void(std::vector<Report>)>& use) {
   const LockedFile locked(file);
   Writer writer;
   writer(report);
@@ -250,8 +254,8 @@ void add(KernelRecord& to, const KernelRecord& from) {
   to.calls += from.calls;
   to.followed += from.followed;
   to.seconds += from.seconds;
-  for (auto spread : {&KernelRecord::own, &KernelRecord::storage, &KernelRecord::inherited, &KernelRecord::total,
-                      &KernelRecord::amplification})
+  for (auto spread : {&KernelRecord::own, &KernelRecord::storage, &KernelRecord::inherited,
+                      &KernelRecord::total, &KernelRecord::amplification})
     (to.*spread).add(from.*spread);
   if (from.worstError > to.worstError) {
     to.worstError = from.worstError;
@@ -307,7 +311,9 @@ Report merged(std::vector<Report> reports) {
       numbers.push_back(static_cast<int>(std::ranges::find(all.kernels, kernel.name, &KernelRecord::name) -
                                          all.kernels.begin()));
     }
-    const auto numberOf = [&](int kernel) { return kernel < 0 ? kernel : numbers[static_cast<std::size_t>(kernel)]; };
+    const auto numberOf = [&](int kernel) {
+      return kernel < 0 ? kernel : numbers[static_cast<std::size_t>(kernel)];
+    };
     for (ResultRecord& result : report.results) {
       result.shares = result.shares.renumbered(numberOf);
       add(recordNamed(all.results, result), result);

@@ -19,7 +19,8 @@ RankOfProcess rankOfProcess();
 
 /// Adds a report to those of other ranks in `file`, which is removed once all are there. Calls use(reports) with those that are
 /// there, while no other rank does so. Throws sk::Error if the file cannot be read or written.
-void addToRanks(const std::string& file, const Report& report, const std::function<void(std::vector<Report>)>& use);
+void addToRanks(const std::string& file, const Report& report,
+                const std::function<void(std::vector<Report>)>& use);
 
 /// One report of all ranks: kernels, streams and results of one name are one.
 Report merged(std::vector<Report> reports);

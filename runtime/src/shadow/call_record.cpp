@@ -44,7 +44,9 @@ std::string choicesText(const DeviceState& device, const ShadowedCall& call) {
 
 namespace {
 
-KernelRecord& recordOf(Report& report, int kernel) { return report.kernels[static_cast<std::size_t>(kernel)]; }
+KernelRecord& recordOf(Report& report, int kernel) {
+  return report.kernels[static_cast<std::size_t>(kernel)];
+}
 
 bool isRealType(program::Scalar scalar) {
   switch (scalar) {
@@ -154,7 +156,8 @@ void CallFollower::compareAll() {
     ++record.followed;
     ++report->followed;
   } catch (const std::exception& error) {
-    device_.recorder().note(fmt::format("call {} of {} was not compared: {}", number_, call_.kernel.name, error.what()));
+    device_.recorder().note(
+        fmt::format("call {} of {} was not compared: {}", number_, call_.kernel.name, error.what()));
   }
   comparisonSeconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -165,11 +168,12 @@ void CallFollower::compareOutput(Written& written) {
   NativeStream* reference = written.total.get();
   if (written.stream == nullptr) {
     written.device = temporaries.take(*parameterOf(written).element, Shape{1});
-    const auto accumulators = std::ranges::count_if(
-        written_.begin(), written_.begin() + (&written - written_.data()),
-        [](const Written& before) { return before.stream == nullptr; });
-    written.device->write(detail::wholeRegion(written.device.get()),
-                          static_cast<const std::byte*>(call_.results[static_cast<std::size_t>(accumulators)]));
+    const auto accumulators =
+        std::ranges::count_if(written_.begin(), written_.begin() + (&written - written_.data()),
+                              [](const Written& before) { return before.stream == nullptr; });
+    written.device->write(
+        detail::wholeRegion(written.device.get()),
+        static_cast<const std::byte*>(call_.results[static_cast<std::size_t>(accumulators)]));
   } else {
     const StreamRegion region = regionOf(written);
     reference = written.stream->held();
@@ -195,10 +199,12 @@ void CallFollower::compareOutput(Written& written) {
     }
   }
   const bool hasOwn = hasOwn_ && written.own->shape.size() == written.device->shape.size();
-  const OutputErrors errors = shadow::compare(*written.device, hasOwn ? written.own.get() : nullptr, *reference);
+  const OutputErrors errors =
+      shadow::compare(*written.device, hasOwn ? written.own.get() : nullptr, *reference);
   reference_ = reference;
   recordErrors(written, errors, hasOwn);
-  if (device_.recorder().options().followsDecisions && written.stream != nullptr && errors.decisions.count > 0)
+  if (device_.recorder().options().followsDecisions && written.stream != nullptr &&
+      errors.decisions.count > 0)
     written.stream->takeIntegers(regionOf(written), *written.device);
   temporaries.giveBack(std::move(copied));
 }
@@ -217,9 +223,9 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
     if (hasOwn && inputs > 0 && std::isfinite(inputs))
       amplification_ = std::max(amplification_, errors.relativeInherited() / inputs);
     const std::size_t output = Recorder::output(record, parameter.name, parameter.element->name);
-    record.outputs[output].points.add(
-        {number_, hasOwn ? errors.relativeOwn() : 0, errors.relativeInherited(), errors.relativeTotal(),
-         std::sqrt(errors.total2 / static_cast<double>(errors.reals))});
+    record.outputs[output].points.add({number_, hasOwn ? errors.relativeOwn() : 0, errors.relativeInherited(),
+                                       errors.relativeTotal(),
+                                       std::sqrt(errors.total2 / static_cast<double>(errors.reals))});
     const double scale = errors.scale();
     const double worst = hasOwn ? errors.own.error / (scale > 0 ? scale : 1) : 0;
     if (errors.own.element >= 0 && worst > record.worstError) {
@@ -256,7 +262,8 @@ StreamErrors CallFollower::errorsAfter(const Written& written, const OutputError
   after.relative = errors.relativeTotal();
   if (errors.relativeIntegers() > after.relative) {
     after.relative = errors.relativeIntegers();
-    own = std::min(1.0, static_cast<double>(errors.ownDecisions.count) / static_cast<double>(errors.decisions.count));
+    own = std::min(
+        1.0, static_cast<double>(errors.ownDecisions.count) / static_cast<double>(errors.decisions.count));
   }
   after.hasNan = errors.nans.count > 0;
   after.hasInfinity = errors.infinities.count > 0;
@@ -273,8 +280,10 @@ StreamErrors CallFollower::errorsAfter(const Written& written, const OutputError
   // Elements outside of the region have the errors that they had.
   if (written.stream != nullptr && written.stream->shape.size() > regionOf(written).shape.size()) {
     const StreamErrors& before = written.stream->errors;
-    const double part = static_cast<double>(regionOf(written).shape.size()) / static_cast<double>(written.stream->shape.size());
-    const double here = after.relative * after.relative * part, there = before.relative * before.relative * (1 - part);
+    const double part = static_cast<double>(regionOf(written).shape.size()) /
+                        static_cast<double>(written.stream->shape.size());
+    const double here = after.relative * after.relative * part,
+                 there = before.relative * before.relative * (1 - part);
     shadow::Shares shares;
     shares.add(after.shares, here);
     shares.add(before.shares, there);
@@ -309,7 +318,8 @@ ElementRecord CallFollower::elementOf(const Written& written, std::int64_t eleme
   for (std::size_t i = 0; i < call_.arguments.size() && i < call_.kernel.parameters.size(); ++i) {
     const program::Parameter& given = call_.kernel.parameters[i];
     const bool isValue = given.role == Role::Uniform || given.role == Role::Spec;
-    if (isValue && call_.arguments[i].value != nullptr) addUniform(record.inputs, given, call_.arguments[i].value);
+    if (isValue && call_.arguments[i].value != nullptr)
+      addUniform(record.inputs, given, call_.arguments[i].value);
     const auto read = std::ranges::find(read_, i, &Read::argument);
     if (read == read_.end() || read->device == nullptr) continue;
     const std::int64_t number = numberIn(read->device->shape, shape, element);
@@ -324,7 +334,8 @@ ElementRecord CallFollower::elementOf(const Written& written, std::int64_t eleme
   return record;
 }
 
-void CallFollower::recordExceptions(const Written& written, const OutputErrors& errors, int kernel, Report& report) {
+void CallFollower::recordExceptions(const Written& written, const OutputErrors& errors, int kernel,
+                                    Report& report) {
   constexpr std::size_t most = 256, longestPath = 32;
   KernelRecord& record = recordOf(report, kernel);
   record.nans += errors.newNans.count;
@@ -349,12 +360,13 @@ void CallFollower::recordExceptions(const Written& written, const OutputErrors& 
       return each.kernel == kernel && each.kind == kind && each.isInReference == (added.count == 0);
     });
     if (isKnown || report.exceptions.size() >= most || (added.count == 0 && areRead(kind))) return;
-    report.exceptions.push_back({kind, kernel, shown.count, added.count == 0,
-                                 elementOf(written, shown.first, shown.component), {}});
+    report.exceptions.push_back(
+        {kind, kernel, shown.count, added.count == 0, elementOf(written, shown.first, shown.component), {}});
     if (stream != nullptr) stream->exception = static_cast<int>(report.exceptions.size() - 1);
   };
   const bool hadNan = std::ranges::any_of(read_, [](const Read& read) { return read.errors.hasNan; });
-  const bool hadInfinity = std::ranges::any_of(read_, [](const Read& read) { return read.errors.hasInfinity; });
+  const bool hadInfinity =
+      std::ranges::any_of(read_, [](const Read& read) { return read.errors.hasInfinity; });
   found(Kind::Nan, errors.nans, errors.newNans, hadNan);
   found(Kind::Infinity, errors.infinities, errors.newInfinities, hadInfinity);
   found(Kind::Flush, errors.flushed, errors.flushed, false);
@@ -374,7 +386,8 @@ bool CallFollower::areRead(ExceptionRecord::Kind kind) const {
   return false;
 }
 
-void CallFollower::recordDecisions(const Written& written, const OutputErrors& errors, int kernel, Report& report) {
+void CallFollower::recordDecisions(const Written& written, const OutputErrors& errors, int kernel,
+                                   Report& report) {
   constexpr std::size_t most = 256;
   KernelRecord& record = recordOf(report, kernel);
   const auto add = [&](std::int64_t elements, std::int64_t first, int component, bool isInherited) {
@@ -384,7 +397,8 @@ void CallFollower::recordDecisions(const Written& written, const OutputErrors& e
     });
     if (isKnown || report.decisions.size() >= most) return;
     report.decisions.push_back({kernel, elements, isInherited, elementOf(written, first, component)});
-    if (isInherited && reference_ != nullptr)  // with the same inputs, the reference decides as the device does
+    if (isInherited &&
+        reference_ != nullptr)  // with the same inputs, the reference decides as the device does
       report.decisions.back().first.reference = shadow::valueAt(*reference_, component, first);
   };
   if (errors.ownDecisions.count > 0) {

@@ -14,7 +14,8 @@ namespace sk {
 namespace {
 
 /// Elements of two native streams, run by run, on several threads. The first may hold floats and the second doubles.
-void copyNative(const NativeStream& source, const AffineRegion& from, NativeStream& target, const AffineRegion& to) {
+void copyNative(const NativeStream& source, const AffineRegion& from, NativeStream& target,
+                const AffineRegion& to) {
   constexpr std::int64_t longest = 1 << 15;
   const std::int64_t columns = from.extent[0], pieces = (columns + longest - 1) / longest;
   const std::int64_t rows = from.extent[1] * from.extent[2] * from.extent[3];
@@ -24,13 +25,14 @@ void copyNative(const NativeStream& source, const AffineRegion& from, NativeStre
     return Run{region.first + y * region.stride[1] + z * region.stride[2] + w * region.stride[3], columns,
                region.stride[0]};
   };
-  native::inParallel(rows * pieces, std::min(columns, longest), native::Deal::Evenly, [&](native::Range range) {
-    for (std::int64_t i = range.begin; i < range.end; ++i) {
-      const std::int64_t begin = i % pieces * longest, end = std::min(columns, begin + longest);
-      target.components.copy(source.components, runOf(from, i / pieces).part(begin, end),
-                             runOf(to, i / pieces).part(begin, end));
-    }
-  });
+  native::inParallel(
+      rows * pieces, std::min(columns, longest), native::Deal::Evenly, [&](native::Range range) {
+        for (std::int64_t i = range.begin; i < range.end; ++i) {
+          const std::int64_t begin = i % pieces * longest, end = std::min(columns, begin + longest);
+          target.components.copy(source.components, runOf(from, i / pieces).part(begin, end),
+                                 runOf(to, i / pieces).part(begin, end));
+        }
+      });
 }
 
 /// Elements in order from number `first` on, with the extents of a region.
@@ -46,9 +48,8 @@ AffineRegion denseLike(const AffineRegion& shape, std::int64_t first) {
 }
 
 bool holdsOnlyFloats(const program::Element& element) {
-  return std::ranges::all_of(element.fields, [](const program::Field& field) {
-    return field.scalar == program::Scalar::Float;
-  });
+  return std::ranges::all_of(
+      element.fields, [](const program::Field& field) { return field.scalar == program::Scalar::Float; });
 }
 
 }  // namespace
@@ -60,6 +61,16 @@ bool isAllInOrder(const StreamRegion& region) {
     if (all.extent[d] > 1 && all.stride[d] != dense.stride[d]) return false;
   }
   return true;
+}
+
+void copyToDevice(NativeStream& from, const StreamRegion& to) {
+  const StreamRegion all = detail::wholeRegion(&from);
+  if (to.shape.size() == 0) return;
+  if (dynamic_cast<const NativeStream*>(to.stream) != nullptr) return copyElements(all, to);
+  if (holdsOnlyFloats(*from.element)) return detail::writeReals(to, detail::readReals(all));
+  auto elements = detail::hostVector<std::byte>(bytesOf(to.shape.size(), from.element->size));
+  detail::read(all, elements.data(), static_cast<std::size_t>(to.shape.size()));
+  detail::write(to, elements.data(), static_cast<std::size_t>(to.shape.size()));
 }
 
 void copyElements(const StreamRegion& from, const StreamRegion& to) {

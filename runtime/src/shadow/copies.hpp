@@ -10,6 +10,9 @@ namespace sk {
 /// Whether a region has all elements of its stream, in order.
 bool isAllInOrder(const StreamRegion& region);
 
+/// Copies all elements of a native stream to a region of the same size on any device.
+void copyToDevice(NativeStream& from, const StreamRegion& to);
+
 /// Copies the elements of a region, on any device, to a region of the same size of a native stream of the same element type.
 void copyElements(const StreamRegion& from, const StreamRegion& to);
 

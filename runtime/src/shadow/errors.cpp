@@ -44,9 +44,7 @@ double OutputErrors::relativeIntegers() const {
   return std::sqrt(std::min(share, asNumbers));
 }
 
-double OutputErrors::ownShare() const {
-  return total2 > 0 ? std::clamp(ownInTotal / total2, 0.0, 1.0) : 0;
-}
+double OutputErrors::ownShare() const { return total2 > 0 ? std::clamp(ownInTotal / total2, 0.0, 1.0) : 0; }
 
 double OutputErrors::scale() const {
   return reals > 0 ? std::sqrt(reference2 / static_cast<double>(reals)) : 0;
@@ -174,8 +172,8 @@ constexpr double leastNormal = std::numeric_limits<float>::min();
 
 void addReals(const Triple& block, OutputErrors& errors) {
   constexpr std::int64_t lanes = 4;
-  double reference[lanes] = {}, own2[lanes] = {}, inherited2[lanes] = {}, total2[lanes] = {}, cross[lanes] = {},
-         worstOwn[lanes] = {}, worstTotal[lanes] = {};
+  double reference[lanes] = {}, own2[lanes] = {}, inherited2[lanes] = {}, total2[lanes] = {},
+         cross[lanes] = {}, worstOwn[lanes] = {}, worstTotal[lanes] = {};
   std::int64_t zeros = 0;
   const std::int64_t whole = block.count - block.count % lanes;
   for (std::int64_t i = 0; i < whole; i += lanes) {
@@ -192,7 +190,9 @@ void addReals(const Triple& block, OutputErrors& errors) {
       zeros += d == 0 ? 1 : 0;
     }
   }
-  const auto sum = [](const double (&values)[lanes]) { return (values[0] + values[1]) + (values[2] + values[3]); };
+  const auto sum = [](const double(&values)[lanes]) {
+    return (values[0] + values[1]) + (values[2] + values[3]);
+  };
   const double all = sum(reference) + sum(own2) + sum(inherited2) + sum(total2);
   if (!std::isfinite(all)) {
     for (std::int64_t i = 0; i < whole; ++i) addCarefully(block, i, errors);
@@ -227,7 +227,8 @@ bool differ(const Column& a, const Column& b, std::int64_t i) {
   return std::fabs(x - y) > rounding * std::max(std::fabs(x), std::fabs(y));
 }
 
-void addIntegers(const Column& d, const Column& o, const Column& r, const Triple& block, OutputErrors& errors) {
+void addIntegers(const Column& d, const Column& o, const Column& r, const Triple& block,
+                 OutputErrors& errors) {
   const auto at = [&](const Column& column, std::int64_t i) {
     return static_cast<const std::byte*>(column.array) + i * static_cast<std::int64_t>(column.bytes);
   };
@@ -249,8 +250,8 @@ void addIntegers(const Column& d, const Column& o, const Column& r, const Triple
   }
 }
 
-OutputErrors compareComponent(const NativeStream& device, const NativeStream& own, const NativeStream& reference,
-                              int component) {
+OutputErrors compareComponent(const NativeStream& device, const NativeStream& own,
+                              const NativeStream& reference, int component) {
   const auto number = static_cast<std::size_t>(component);
   const Column d(device, number), o(own, number), r(reference, number);
   OutputErrors all;

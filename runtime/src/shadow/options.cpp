@@ -83,9 +83,10 @@ Options parseOptions(std::string_view text) {
   };
   options.report = next();
   if (!options.report.ends_with(".html") && !options.report.ends_with(".json")) {
-    throw Error(fmt::format("SK_SHADOW: the report is '{}'; give a file whose name ends in .html, "
-                            "SK_SHADOW=report.html",
-                            options.report));
+    throw Error(
+        fmt::format("SK_SHADOW: the report is '{}'; give a file whose name ends in .html, "
+                    "SK_SHADOW=report.html",
+                    options.report));
   }
   while (!text.empty()) {
     const std::string_view part = next();

@@ -17,7 +17,8 @@ struct Options {
   std::int64_t every = 1;  ///< compares every n-th call of a kernel; the reference runs all of them
   std::vector<std::string> kernels;  ///< compares these alone; empty: all
   bool followsDecisions = false;  ///< the reference takes over integers and booleans of the device
-  std::int64_t memory = 0;  ///< the most bytes for the reference's streams; 0: half of the memory that is free
+  std::int64_t memory =
+      0;  ///< the most bytes for the reference's streams; 0: half of the memory that is free
   std::vector<std::string> quad;  ///< kernels whose own error is measured in __float128
   std::string inputs;  ///< a .npz file for the inputs of each kernel's worst call; empty: none
 

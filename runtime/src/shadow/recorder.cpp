@@ -141,7 +141,8 @@ void Recorder::write(bool hasEnded) {
   try {
     Report report = report_;
     report.programSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    report.ended = hasEnded ? "normally" : fmt::format("early: the program had not ended after {} calls", report.calls);
+    report.ended =
+        hasEnded ? "normally" : fmt::format("early: the program had not ended after {} calls", report.calls);
     if (report.ranks > 1) {
       if (!hasEnded) return;
       addToRanks(report.options.json() + ".ranks", report, [&](std::vector<Report> reports) {
@@ -167,7 +168,8 @@ void Recorder::writeFiles(const Report& report) {
   const std::string json = toJson(report);
   const auto replace = [&](std::string& file, std::string& mark, std::string_view text) {
     const std::string now = fileMark(file);
-    if (!mark.empty() && !now.empty() && now != mark) {
+    const bool isOfOthers = report.ranks == 1 && !mark.empty() && !now.empty() && now != mark;
+    if (isOfOthers) {
       const std::string other = otherName(file);
       say(fmt::format("the program has written '{}' itself; the report goes to '{}'", file, other));
       file = other;
@@ -181,21 +183,21 @@ void Recorder::writeFiles(const Report& report) {
   replace(jsonFile_, lastJson_, json);
 }
 
-/// A program that ends by exit() leaves its devices as they are.
+/// A program that ends by exit() leaves its devices as they are; and each rank adds its report to those of the others once.
 void Recorder::writeAtExit() {
-  bool hasDevices = false;
+  bool isDue = false;
   {
     const std::lock_guard lock(mutex_);
-    hasDevices = devices_ > 0;
+    isDue = devices_ > 0 || report_.ranks > 1;
   }
-  if (hasDevices) write(true);
+  if (isDue) write(true);
 }
 
 void Recorder::deviceEnds() {
   bool isLast = false;
   {
     const std::lock_guard lock(mutex_);
-    isLast = --devices_ == 0;
+    isLast = --devices_ == 0 && report_.ranks == 1;
   }
   if (isLast) write(true);
 }

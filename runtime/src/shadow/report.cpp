@@ -77,7 +77,8 @@ void shareErrors(Report& report) {
   for (const ResultRecord& result : report.results) {
     if (!(all > 0)) break;
     for (const auto& [kernel, share] : result.shares.all()) {
-      if (kernel >= 0) report.kernels[static_cast<std::size_t>(kernel)].share += share * weightOf(result) / all;
+      if (kernel >= 0)
+        report.kernels[static_cast<std::size_t>(kernel)].share += share * weightOf(result) / all;
     }
   }
 }
@@ -160,13 +161,14 @@ void addUnstable(Report& report) {
     }
   }
   if (worst == nullptr || growing < steady) return;
-  const double perCall = std::pow(fastest, static_cast<double>(report.calls) / static_cast<double>(worst->calls));
-  report.verdicts.push_back(
-      {"unstable", worst->name,
-       fmt::format("unstable time step: the error grows by a factor of {:.4g} with each call of {}, for {} calls; or the "
-                   "model is chaotic",
-                   perCall, worst->name, worst->calls),
-       0});
+  const double perCall =
+      std::pow(fastest, static_cast<double>(report.calls) / static_cast<double>(worst->calls));
+  report.verdicts.push_back({"unstable", worst->name,
+                             fmt::format("unstable time step: the error grows by a factor of {:.4g} with "
+                                         "each call of {}, for {} calls; or the "
+                                         "model is chaotic",
+                                         perCall, worst->name, worst->calls),
+                             0});
 }
 
 const KernelRecord* worstByShare(const Report& report) {
@@ -180,8 +182,8 @@ void addShares(Report& report, const ResultRecord* result) {
   const std::string choices = worst->choices.empty() ? "" : fmt::format(" ({})", worst->choices);
   report.verdicts.push_back(
       {"error", worst->name,
-       fmt::format("{}{} adds {:.0f} % of the error of what the program reads: {} of '{}' survive", worst->name,
-                   choices, 100 * worst->share, digitsOf(result->largest), result->name),
+       fmt::format("{}{} adds {:.0f} % of the error of what the program reads: {} of '{}' survive",
+                   worst->name, choices, 100 * worst->share, digitsOf(result->largest), result->name),
        worst->worst ? worst->worst->call : 0});
 }
 
@@ -191,8 +193,9 @@ void addFlushes(Report& report) {
     const std::string kernel(report.nameOf(each.kernel));
     report.verdicts.push_back(
         {"flush", kernel,
-         fmt::format("{} flushes numbers below 1.2e-38 to zero, first in call {} at {}{}, where double gives {:.3g}",
-                     kernel, each.first.call, each.first.output, where(each.first.index), each.first.reference),
+         fmt::format(
+             "{} flushes numbers below 1.2e-38 to zero, first in call {} at {}{}, where double gives {:.3g}",
+             kernel, each.first.call, each.first.output, where(each.first.index), each.first.reference),
          each.first.call});
   }
 }
@@ -206,7 +209,8 @@ void addRest(Report& report, const ResultRecord* result) {
     report.verdicts.push_back({"nothing", "", "the program has read no result", 0});
   } else if (!isGrave(result, 1e-5) && report.verdicts.empty()) {
     report.verdicts.push_back(
-        {"fine", "", fmt::format("every result is right: at least {} survive", digitsOf(result->largest)), 0});
+        {"fine", "", fmt::format("every result is right: at least {} survive", digitsOf(result->largest)),
+         0});
   }
 }
 

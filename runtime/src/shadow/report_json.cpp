@@ -56,16 +56,19 @@ std::string inputs(const std::vector<Input>& all) {
 
 /// The members of an element, without braces.
 std::string element(const ElementRecord& record) {
-  return fmt::format(R"("call":{},"output":{},"element":{},"device":{},"reference":{},"inputs":{})", record.call,
-                     jsonString(record.output), indexText(record.index), value(record.device, record.isReal),
-                     value(record.reference, record.isReal), inputs(record.inputs));
+  return fmt::format(R"("call":{},"output":{},"element":{},"device":{},"reference":{},"inputs":{})",
+                     record.call, jsonString(record.output), indexText(record.index),
+                     value(record.device, record.isReal), value(record.reference, record.isReal),
+                     inputs(record.inputs));
 }
 
 std::string spread(const Spread& errors) {
   return fmt::format(R"({{"largest":{},"typical":{}}})", number(errors.largest()), number(errors.typical()));
 }
 
-double survivingDigits(double error) { return error > 0 ? std::fmin(16, std::fmax(0, -std::log10(error))) : 16; }
+double survivingDigits(double error) {
+  return error > 0 ? std::fmin(16, std::fmax(0, -std::log10(error))) : 16;
+}
 
 std::string kernel(const KernelRecord& record) {
   const std::string outputs = list(record.outputs, [](const OutputRecord& output) {
@@ -81,8 +84,10 @@ std::string kernel(const KernelRecord& record) {
       R"("total":{},"amplification":{},"digits":{:.2f},"share":{},"worst":{},"nans":{},"infinities":{},)"
       R"("flushed":{},"decisions":{},"outputs":{}}})",
       jsonString(record.name), record.calls, record.followed, record.seconds, jsonString(record.choices),
-      spread(record.own), record.storage.isEmpty() ? "null" : spread(record.storage), spread(record.inherited),
-      spread(record.total), record.amplification.isEmpty() ? "null" : spread(record.amplification), survivingDigits(record.total.largest()), number(record.share),
+      spread(record.own), record.storage.isEmpty() ? "null" : spread(record.storage),
+      spread(record.inherited), spread(record.total),
+      record.amplification.isEmpty() ? "null" : spread(record.amplification),
+      survivingDigits(record.total.largest()), number(record.share),
       record.worst ? "{" + element(*record.worst) + "}" : "null", record.nans, record.infinities,
       record.flushed, record.decisions, outputs);
 }
@@ -91,8 +96,9 @@ std::string stream(const StreamRecord& record) {
   const std::string points = list(record.points.points(), [](const Series::Point& point) {
     return fmt::format("[{},{}]", point.call, number(point.total));
   });
-  return fmt::format(R"({{"name":{},"type":{},"shape":{},"resyncs":{},"points":{}}})", jsonString(record.name),
-                     jsonString(record.type), indexText(record.shape), record.resyncs, points);
+  return fmt::format(R"({{"name":{},"type":{},"shape":{},"resyncs":{},"points":{}}})",
+                     jsonString(record.name), jsonString(record.type), indexText(record.shape),
+                     record.resyncs, points);
 }
 
 std::string result(const Report& report, const ResultRecord& record) {
@@ -104,8 +110,8 @@ std::string result(const Report& report, const ResultRecord& record) {
       R"({{"name":{},"kind":"{}","reads":{},"elements":{},"error":{{"largest":{},"last":{}}},"digits":{:.2f},)"
       R"("differs":{},"notFinite":{},"shares":{}}})",
       jsonString(record.name), record.isValue ? "value" : "read", record.reads, record.elements,
-      number(record.largest), number(record.last), survivingDigits(record.largest), record.differs, record.notFinite,
-      shares);
+      number(record.largest), number(record.last), survivingDigits(record.largest), record.differs,
+      record.notFinite, shares);
 }
 
 std::string_view kindOf(ExceptionRecord::Kind kind) {
@@ -171,12 +177,12 @@ std::string account(const Report& report) {
                        number(1 - each->unread / each->written), each->unreadSeconds);
   });
   const std::string precision = list(precise, [](const KernelRecord* each) {
-    return fmt::format(
-        R"({{"kernel":{},"share":{},"seconds":{:.6f},"text":{}}})", jsonString(each->name),
-        number(each->share), each->seconds,
-        jsonString(fmt::format("its errors are {:.2g} of those of the results: sk tune tells what less precision "
-                               "or storage would save",
-                               each->share)));
+    return fmt::format(R"({{"kernel":{},"share":{},"seconds":{:.6f},"text":{}}})", jsonString(each->name),
+                       number(each->share), each->seconds,
+                       jsonString(fmt::format(
+                           "its errors are {:.2g} of those of the results: sk tune tells what less precision "
+                           "or storage would save",
+                           each->share)));
   });
   return fmt::format(R"({{"unread":{},"partly":{},"precision":{}}})", outputs, regions, precision);
 }

@@ -55,9 +55,9 @@ void recordResult(ShadowStream& stream, const StreamRegion& region) {
   result.differs += errors.decisions.count;
   result.notFinite = errors.newNans.count + errors.newInfinities.count;
   result.shares = stream.errors.shares;
-  if (result.last > 0 && result.shares.all().empty())
-    result.shares.add(stream.last.kernel, 1);
-  report->comparisonSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (result.last > 0 && result.shares.all().empty()) result.shares.add(stream.last.kernel, 1);
+  report->comparisonSeconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -69,7 +69,8 @@ void recordRead(ShadowStream& stream, const StreamRegion& region) {
   try {
     recordResult(stream, region);
   } catch (const std::exception& error) {
-    device.recorder().note(fmt::format("what the program read of {} was not compared: {}", stream.describe(), error.what()));
+    device.recorder().note(
+        fmt::format("what the program read of {} was not compared: {}", stream.describe(), error.what()));
   }
 }
 
@@ -78,7 +79,8 @@ void recordLifetime(ShadowStream& stream) {
   double unread = last.isReadWhole ? 0 : static_cast<double>(last.elements);
   if (last.isRead && !last.isReadWhole) {
     double inside = 1;
-    for (int d = 0; d < stream.shape.rank(); ++d) inside *= static_cast<double>(last.readEnd[d] - last.readBegin[d]);
+    for (int d = 0; d < stream.shape.rank(); ++d)
+      inside *= static_cast<double>(last.readEnd[d] - last.readBegin[d]);
     unread = std::max(0.0, static_cast<double>(last.elements) - inside);
   }
   try {
@@ -86,7 +88,8 @@ void recordLifetime(ShadowStream& stream) {
     Recorder::Access report(deviceOf(stream).recorder());
     if (last.kernel >= 0 && !last.isRead) {
       shadow::KernelRecord& kernel = report->kernels[static_cast<std::size_t>(last.kernel)];
-      shadow::OutputRecord& output = kernel.outputs[Recorder::output(kernel, last.output, stream.element->name)];
+      shadow::OutputRecord& output =
+          kernel.outputs[Recorder::output(kernel, last.output, stream.element->name)];
       ++output.unreadCalls;
       output.unreadSeconds += last.seconds;
     }
@@ -128,7 +131,8 @@ void recordOrder(ShadowStream& stream, const StreamRegion& keys) {
   Recorder::Access report(deviceOf(stream).recorder());
   const int kernel = Recorder::kernel(*report, "sk::sort");
   report->kernels[static_cast<std::size_t>(kernel)].decisions += count;
-  const bool isKnown = std::ranges::any_of(report->decisions, [&](const auto& each) { return each.kernel == kernel; });
+  const bool isKnown =
+      std::ranges::any_of(report->decisions, [&](const auto& each) { return each.kernel == kernel; });
   if (isKnown) return;
   shadow::ElementRecord element;
   element.call = report->calls;

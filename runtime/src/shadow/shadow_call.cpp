@@ -105,7 +105,8 @@ CallFollower::~CallFollower() { giveBack(); }
 
 bool CallFollower::isWritten(std::size_t argument) const {
   const Role role = call_.kernel.parameters[argument].role;
-  return role == Role::Output || role == Role::Accumulator || role == Role::VariableOutput || role == Role::Scatter;
+  return role == Role::Output || role == Role::Accumulator || role == Role::VariableOutput ||
+         role == Role::Scatter;
 }
 
 void CallFollower::run() {
@@ -198,8 +199,9 @@ void CallFollower::prepareOwn() {
         written.stream != nullptr ? *written.stream->element : *parameterOf(written).element;
     const StreamRegion& region = call_.arguments[written.argument].region;
     const bool isResized = parameterOf(written).role == Role::VariableOutput;
-    written.own =
-        temporaries.take(element, isResized ? Shape{0} : written.stream != nullptr ? region.shape : Shape{1});
+    written.own = temporaries.take(element, isResized                   ? Shape{0}
+                                            : written.stream != nullptr ? region.shape
+                                                                        : Shape{1});
     if (written.isPart) copyElements(written.stream->innerOf(region), detail::wholeRegion(written.own.get()));
   }
 }
@@ -257,12 +259,14 @@ bool CallFollower::runOwn() {
     for (const Written& written : written_) {
       const bool isResized = parameterOf(written).role == Role::VariableOutput;
       arguments[written.argument].region =
-          isResized ? StreamRegion{written.own.get()} : inPlaceOf(call_.arguments[written.argument].region, *written.own);
+          isResized ? StreamRegion{written.own.get()}
+                    : inPlaceOf(call_.arguments[written.argument].region, *written.own);
     }
     call_.run(arguments, {}, referenceOptions(device_, ownReference_, call_.options));
     return true;
   } catch (const std::exception& error) {
-    device_.recorder().note(fmt::format("the own error of {} is not known: {}", call_.kernel.name, error.what()));
+    device_.recorder().note(
+        fmt::format("the own error of {} is not known: {}", call_.kernel.name, error.what()));
     return false;
   }
 }
@@ -294,7 +298,8 @@ class RecordedShadowedCall final : public RecordedCall {
   RecordedShadowedCall(ShadowDevice& device, const ShadowedCall& call)
       : device_(device), arguments_(call.kernel, call.arguments), call_(call) {
     call_.arguments = arguments_.get();
-    for (const Argument& argument : call_.arguments) rows_.push_back(std::make_unique<SharedRows>(argument.rows));
+    for (const Argument& argument : call_.arguments)
+      rows_.push_back(std::make_unique<SharedRows>(argument.rows));
     arguments_.noteUses(*device.recording);
   }
 

@@ -49,7 +49,8 @@ class CallFollower {
     std::size_t argument;
     ShadowStream* stream;  ///< null: a value
     bool isPart;  ///< other elements of the region keep their values
-    std::unique_ptr<NativeStream> own = {}, total = {}, device = {};  ///< temporaries; `total` of values alone
+    std::unique_ptr<NativeStream> own = {}, total = {},
+                                  device = {};  ///< temporaries; `total` of values alone
   };
   struct Read {
     std::size_t argument;
@@ -68,8 +69,10 @@ class CallFollower {
   void compareOutput(Written& written);
   void recordErrors(const Written& written, const shadow::OutputErrors& errors, bool hasOwn);
   shadow::ElementRecord elementOf(const Written& written, std::int64_t element, int component) const;
-  void recordExceptions(const Written& written, const shadow::OutputErrors& errors, int kernel, shadow::Report& report);
-  void recordDecisions(const Written& written, const shadow::OutputErrors& errors, int kernel, shadow::Report& report);
+  void recordExceptions(const Written& written, const shadow::OutputErrors& errors, int kernel,
+                        shadow::Report& report);
+  void recordDecisions(const Written& written, const shadow::OutputErrors& errors, int kernel,
+                       shadow::Report& report);
   bool areRead(shadow::ExceptionRecord::Kind kind) const;
   StreamErrors errorsAfter(const Written& written, const shadow::OutputErrors& errors, int kernel) const;
   void loseOutputs(bool isCounted);

@@ -39,7 +39,9 @@ void TemporaryStreams::giveBack(std::unique_ptr<NativeStream> stream) {
 
 struct ShadowDevice::RowsCopy {
   RowsCopy(const RowsState& given, DeviceState& on)
-      : original(&given), shared(&given), device(&on),
+      : original(&given),
+        shared(&given),
+        device(&on),
         copy(new RowsState(on, {given.pieces().starts().begin(), given.pieces().starts().end()})) {}
   ~RowsCopy() { copy->leave(); }
   RowsCopy(const RowsCopy&) = delete;
@@ -94,7 +96,8 @@ NativeDevice& ShadowDevice::ownReference(const program::Kernel& kernel) {
                       hasCodeFor(*kernel.code, RealType::Quad);
   if (!isQuad) {
     if (shadow::matchesAny(recorder_.options().quad, kernel.name))
-      recorder_.note(fmt::format("{} has no code in __float128 (skc --quad), and is compared with doubles", kernel.name));
+      recorder_.note(fmt::format("{} has no code in __float128 (skc --quad), and is compared with doubles",
+                                 kernel.name));
     return *reference_;
   }
   if (!quad_) {
@@ -131,6 +134,11 @@ void ShadowDevice::giveUp(const program::Kernel& kernel, const std::string& why)
 
 namespace {
 
+/// A fault of the runtime: the functions of Distribution take all calls.
+[[noreturn]] void failForStep(const program::Kernel& kernel) {
+  throw Error(fmt::format("{}: a step of a call has reached a shadowed device", kernel.name));
+}
+
 void followOrRecord(ShadowDevice& device, const ShadowedCall& call) {
   if (device.recording != nullptr) return device.recording->add(recordShadowed(device, call));
   CallFollower(device, call).run();
@@ -145,7 +153,8 @@ void ShadowDevice::run(const program::Kernel& kernel, std::span<const Argument> 
 
 void ShadowDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
                           std::span<void* const> results, const CallOptions& options) {
-  followOrRecord(*this, {ShadowedCall::Kind::Reduce, reduction.fold, &reduction, arguments, results, options});
+  followOrRecord(*this,
+                 {ShadowedCall::Kind::Reduce, reduction.fold, &reduction, arguments, results, options});
 }
 
 void ShadowDevice::fold(const program::Reduction& reduction, std::span<const Argument> arguments,
@@ -158,82 +167,9 @@ void ShadowDevice::scan(const program::Reduction& reduction, std::span<const Arg
   followOrRecord(*this, {ShadowedCall::Kind::Scan, reduction.fold, &reduction, arguments, {}, options});
 }
 
-std::vector<Argument> ShadowDevice::onPrimary(std::span<const Argument> arguments) const {
-  std::vector<Argument> inner(arguments.begin(), arguments.end());
-  for (Argument& argument : inner) {
-    if (argument.region.stream != nullptr) argument.region.stream = &shadowStream(argument.region).inner();
-  }
-  return inner;
-}
+void ShadowDevice::run(const ResolvedCall& call) { failForStep(call.kernel); }
 
-void ShadowDevice::takeOver(const program::Kernel& kernel, std::span<const Argument> arguments) const {
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const program::Role role = kernel.parameters[i].role;
-    if (arguments[i].region.stream == nullptr || (role != program::Role::Output && role != program::Role::Accumulator))
-      continue;
-    ShadowStream& stream = shadowStream(arguments[i].region);
-    stream.mirrorMarks();
-    stream.goStale(false);
-  }
-}
-
-void ShadowDevice::run(const ResolvedCall& call) {
-  const std::vector<Argument> arguments = onPrimary(call.arguments);
-  ResolvedCall inner = call;
-  inner.arguments = arguments;
-  primary_->run(inner);
-  takeOver(call.kernel, call.arguments);
-}
-
-namespace {
-
-ResolvedReduction onDevice(DeviceState& device, const ResolvedReduction& call, std::span<const Argument> arguments,
-                           const RowsState* rows) {
-  return {device,      call.reduction, arguments, call.domain, call.blocks,
-          call.values, call.options,   call.scan, rows,        call.placed};
-}
-
-std::vector<StreamRegion> innerRegions(std::span<const StreamRegion> regions) {
-  std::vector<StreamRegion> inner;
-  for (const StreamRegion& region : regions) inner.push_back(shadowStream(region).innerOf(region));
-  return inner;
-}
-
-}  // namespace
-
-void ShadowDevice::reduce(const ResolvedReduction& call) {
-  const std::vector<Argument> arguments = onPrimary(call.arguments);
-  primary_->reduce(onDevice(*primary_, call, arguments, rowsOn(*primary_, call.rows)));
-  takeOver(call.reduction.fold, call.arguments);
-}
-
-bool ShadowDevice::combine(const ResolvedReduction& call, std::span<const StreamRegion> parts,
-                           std::span<const StreamRegion> results) {
-  const std::vector<Argument> arguments = onPrimary(call.arguments);
-  const std::vector<StreamRegion> from = innerRegions(parts), to = innerRegions(results);
-  if (!primary_->combine(onDevice(*primary_, call, arguments, rowsOn(*primary_, call.rows)), from, to)) return false;
-  for (const StreamRegion& region : results) {
-    shadowStream(region).mirrorMarks();
-    shadowStream(region).goStale(false);
-  }
-  return true;
-}
-
-bool ShadowDevice::foldsBesideOutputs(const ResolvedReduction& call) {
-  const std::vector<Argument> arguments = onPrimary(call.arguments);
-  return primary_->foldsBesideOutputs(onDevice(*primary_, call, arguments, nullptr));
-}
-
-bool ShadowDevice::sumsExactly(const ResolvedReduction& call) const {
-  const std::vector<Argument> arguments = onPrimary(call.arguments);
-  return primary_->sumsExactly(onDevice(*primary_, call, arguments, nullptr));
-}
-
-std::vector<std::int64_t> ShadowDevice::exactWords(const ResolvedReduction& call, const program::ExactSum& sum,
-                                                   bool isFirst) {
-  const std::vector<Argument> arguments = onPrimary(call.arguments);
-  return primary_->exactWords(onDevice(*primary_, call, arguments, rowsOn(*primary_, call.rows)), sum, isFirst);
-}
+void ShadowDevice::reduce(const ResolvedReduction& call) { failForStep(call.reduction.fold); }
 
 std::unique_ptr<StreamState> ShadowDevice::createStream(const program::Element& element, const Shape& shape,
                                                         Storage storage) {

@@ -65,7 +65,8 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   ShadowStream* sortedKeys() const { return sortedKeys_; }
 
   // the calls of the program
-  void run(const program::Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) override;
+  void run(const program::Kernel& kernel, std::span<const Argument> arguments,
+           const CallOptions& options) override;
   void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
               std::span<void* const> results, const CallOptions& options) override;
   void fold(const program::Reduction& reduction, std::span<const Argument> arguments,
@@ -104,22 +105,12 @@ class ShadowDevice final : public DeviceState, public detail::Distribution {
   std::unique_ptr<Staging> makeStaging(Staging::Way way) override;
   bool needsDense(const StreamRegion&) override { return false; }
 
-  // Steps of calls: those of reductions over several ranks alone, since the functions above take all others. They run on the
-  // device, and the reference takes over what they have written.
+  // steps of calls, none of which comes here
   void run(const ResolvedCall& call) override;
   void reduce(const ResolvedReduction& call) override;
-  bool combine(const ResolvedReduction& call, std::span<const StreamRegion> parts,
-               std::span<const StreamRegion> results) override;
-  bool foldsBesideOutputs(const ResolvedReduction& call) override;
-  bool sumsExactly(const ResolvedReduction& call) const override;
-  std::vector<std::int64_t> exactWords(const ResolvedReduction& call, const program::ExactSum& sum,
-                                       bool isFirst) override;
   bool needsDense(const program::Kernel&, std::span<const Argument>, std::size_t) override { return false; }
 
  private:
-  std::vector<Argument> onPrimary(std::span<const Argument> arguments) const;
-  void takeOver(const program::Kernel& kernel, std::span<const Argument> arguments) const;
-
   std::unique_ptr<DeviceState> primary_;
   shadow::Recorder& recorder_;
   std::unique_ptr<NativeDevice> reference_;

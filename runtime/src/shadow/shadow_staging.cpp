@@ -14,17 +14,34 @@ namespace {
 
 std::size_t wholeWords(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
 
-std::size_t deviceBytes(const StreamRegion& box) {
-  return wholeWords(static_cast<std::size_t>(box.shape.size()) * box.stream->element->size);
+/// Copies the arrays of a stream to memory, one after the other. Returns the end.
+std::byte* pack(const NativeStream& stream, std::byte* to) {
+  for (std::size_t c = 0; c < stream.components.types().size(); ++c) {
+    const std::size_t bytes =
+        static_cast<std::size_t>(stream.shape.size()) * stream.components.types()[c].storedBytes;
+    std::memcpy(to, stream.components.arrays()[c], bytes);
+    to += wholeWords(bytes);
+  }
+  return to;
+}
+
+const std::byte* unpack(const std::byte* from, NativeStream& stream) {
+  for (std::size_t c = 0; c < stream.components.types().size(); ++c) {
+    const std::size_t bytes =
+        static_cast<std::size_t>(stream.shape.size()) * stream.components.types()[c].storedBytes;
+    std::memcpy(stream.components.arrays()[c], from, bytes);
+    from += wholeWords(bytes);
+  }
+  return from;
 }
 
 }  // namespace
 
-/// The device's elements as in host memory, then the reference's, component by component.
+/// The device's elements, then the reference's, both in the types that the reference holds: a device may hold doubles for floats.
 std::size_t ShadowStaging::bytesOf(const StreamRegion& box) const {
-  std::size_t bytes = deviceBytes(box);
+  std::size_t bytes = 0;
   for (const ComponentType& component : componentsOf(*box.stream->element, RealType::Double))
-    bytes += wholeWords(static_cast<std::size_t>(box.shape.size()) * component.storedBytes);
+    bytes += 2 * wholeWords(static_cast<std::size_t>(box.shape.size()) * component.storedBytes);
   return bytes;
 }
 
@@ -42,41 +59,27 @@ void ShadowStaging::flush() {
 
 void ShadowStaging::take(const Copy& copy) {
   ShadowStream& stream = shadowStream(copy.box);
-  const auto count = static_cast<std::size_t>(copy.box.shape.size());
-  std::byte* to = memory_.data() + copy.offset;
-  detail::read(stream.innerOf(copy.box), to, count);
   stream.noteRead(copy.box);
-  to += deviceBytes(copy.box);
+  StreamRegion reference = copy.box;
+  reference.stream = stream.reference();
   std::unique_ptr<NativeStream> dense = device_.temporaries().take(*stream.element, copy.box.shape);
-  StreamRegion from = copy.box;
-  from.stream = stream.reference();
-  copyElements(from.stream != nullptr ? from : stream.innerOf(copy.box), detail::wholeRegion(dense.get()));
-  for (std::size_t c = 0; c < dense->components.types().size(); ++c) {
-    const std::size_t bytes = count * dense->components.types()[c].storedBytes;
-    std::memcpy(to, dense->components.arrays()[c], bytes);
-    to += wholeWords(bytes);
-  }
+  copyElements(stream.innerOf(copy.box), detail::wholeRegion(dense.get()));
+  std::byte* const next = pack(*dense, memory_.data() + copy.offset);
+  if (reference.stream != nullptr) copyElements(reference, detail::wholeRegion(dense.get()));
+  pack(*dense, next);
   device_.temporaries().giveBack(std::move(dense));
 }
 
 void ShadowStaging::bring(const Copy& copy) {
   ShadowStream& stream = shadowStream(copy.box);
-  const auto count = static_cast<std::size_t>(copy.box.shape.size());
-  NativeStream* const reference = stream.reference();
-  const std::byte* from = memory_.data() + copy.offset;
-  detail::write(stream.innerOf(copy.box), from, count);
-  stream.mirrorMarks();
-  if (reference == nullptr) return;
-  from += deviceBytes(copy.box);
+  StreamRegion reference = copy.box;
+  reference.stream = stream.reference();
   std::unique_ptr<NativeStream> dense = device_.temporaries().take(*stream.element, copy.box.shape);
-  for (std::size_t c = 0; c < dense->components.types().size(); ++c) {
-    const std::size_t bytes = count * dense->components.types()[c].storedBytes;
-    std::memcpy(dense->components.arrays()[c], from, bytes);
-    from += wholeWords(bytes);
-  }
-  StreamRegion to = copy.box;
-  to.stream = reference;
-  copyElements(detail::wholeRegion(dense.get()), to);
+  const std::byte* const next = unpack(memory_.data() + copy.offset, *dense);
+  copyToDevice(*dense, stream.innerOf(copy.box));
+  stream.mirrorMarks();
+  unpack(next, *dense);
+  if (reference.stream != nullptr) copyElements(detail::wholeRegion(dense.get()), reference);
   device_.temporaries().giveBack(std::move(dense));
 }
 

@@ -70,9 +70,10 @@ NativeStream* ShadowStream::room() {
     owner().freeMemory(std::exchange(bytes_, 0));
   }
   isRefused_ = true;
-  owner().recorder().note(fmt::format(
-      "{} is not followed: its reference takes {} bytes, and there is no memory for them (SK_SHADOW=...,memory=8G allows more)",
-      describe(), bytes));
+  owner().recorder().note(
+      fmt::format("{} is not followed: its reference takes {} bytes, and there is no memory for them "
+                  "(SK_SHADOW=...,memory=8G allows more)",
+                  describe(), bytes));
   return nullptr;
 }
 
@@ -114,9 +115,7 @@ void ShadowStream::settle() {
   shape = inner_->shape;
 }
 
-void ShadowStream::mirrorMarks() noexcept {
-  inner_->isLost() ? markLost() : setWritten();
-}
+void ShadowStream::mirrorMarks() noexcept { inner_->isLost() ? markLost() : setWritten(); }
 
 /// Makes a change by the host to the device's elements, then to the reference's.
 template <class Change>
@@ -240,7 +239,8 @@ void ShadowStream::permute(const StreamRegion& region, std::span<const std::int3
 StreamTexture ShadowStream::texture(int plane) {
   noteRead(detail::wholeRegion(this));
   owner().recorder().note(fmt::format(
-      "the program has asked for a texture of {}: what it draws into it is not known to the reference", describe()));
+      "the program has asked for a texture of {}: what it draws into it is not known to the reference",
+      describe()));
   return inner_->texture(plane);
 }
 

@@ -56,6 +56,11 @@ class ShadowStream final : public StreamState {
   /// Makes room for the reference without elements; null if there is no memory.
   NativeStream* room();
 
+  StreamState& underlying() override { return *inner_; }
+  void noteUnderlyingWritten() override {
+    mirrorMarks();
+    goStale(false);
+  }
   void settle() override;
   void write(const StreamRegion& region, const std::byte* elements) override;
   void writeAsync(const StreamRegion& region, const std::byte* elements) override;
