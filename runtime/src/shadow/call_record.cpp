@@ -202,6 +202,11 @@ void CallFollower::compareOutput(Written& written) {
   const OutputErrors errors =
       shadow::compare(*written.device, hasOwn ? written.own.get() : nullptr, *reference);
   reference_ = reference;
+  if (hasOwn && written.stream != nullptr && written.stream->storage == Storage::Half && errors.reference2 > 0) {
+    const double stored = std::sqrt(shadow::squaresOfHalfRounding(*written.own) / errors.reference2);
+    Recorder::Access report(device_.recorder());
+    recordOf(*report, kernel_).storage.add(stored);
+  }
   recordErrors(written, errors, hasOwn);
   if (device_.recorder().options().followsDecisions && written.stream != nullptr &&
       errors.decisions.count > 0)

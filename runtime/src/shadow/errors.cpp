@@ -12,6 +12,7 @@
 #include "sk/native/parallel.hpp"
 #include "sk/native/quad_type.hpp"
 #include "sk/types.hpp"
+#include "support/convert_elements.hpp"
 
 namespace sk::shadow {
 
@@ -284,6 +285,19 @@ OutputErrors compare(const NativeStream& device, const NativeStream* own, const 
   for (std::size_t c = 0; c < device.components.types().size(); ++c)
     errors.add(compareComponent(device, own != nullptr ? *own : reference, reference, static_cast<int>(c)));
   return errors;
+}
+
+double squaresOfHalfRounding(const NativeStream& stream) {
+  double squares = 0;
+  for (std::size_t c = 0; c < stream.components.types().size(); ++c) {
+    const Column column(stream, c);
+    if (column.scalar != Scalar::Float) continue;
+    for (std::int64_t i = 0; i < stream.shape.size(); ++i) {
+      const double value = column.at(i), change = static_cast<float>(half(roundedToOdd(value))) - value;
+      if (std::isfinite(change)) squares += change * change;
+    }
+  }
+  return squares;
 }
 
 double valueAt(const NativeStream& stream, int component, std::int64_t element) {

@@ -84,6 +84,9 @@ struct OutputErrors {
 /// Compares dense streams of one shape on native devices. Without `own`, the own error counts as the total one.
 OutputErrors compare(const NativeStream& device, const NativeStream* own, const NativeStream& reference);
 
+/// Sum over all floats of the square of what rounding to half changes.
+double squaresOfHalfRounding(const NativeStream& stream);
+
 /// A component of an element, as a double; integers beyond 2^53 are rounded.
 double valueAt(const NativeStream& stream, int component, std::int64_t element);
 

@@ -220,6 +220,7 @@ void CallFollower::runOnDevice() {
     if (written.stream == nullptr) continue;
     written.stream->settle();
     written.stream->mirrorMarks();
+    written.stream->refreshExposure();
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -81,6 +82,10 @@ NativeStream* ShadowStream::reference() {
   settle();
   NativeStream* const held = room();
   if (held == nullptr) return nullptr;
+  if (exposed_ && hash() != *exposed_) {
+    goStale(true);
+    refreshExposure();
+  }
   if (!isStale_) return held;
   if (!inner_->isLost()) copyElements(detail::wholeRegion(inner_.get()), detail::wholeRegion(held));
   isStale_ = false;
@@ -117,6 +122,16 @@ void ShadowStream::settle() {
 
 void ShadowStream::mirrorMarks() noexcept { inner_->isLost() ? markLost() : setWritten(); }
 
+std::size_t ShadowStream::hash() {
+  auto elements = detail::hostVector<std::byte>(bytesOf(shape.size(), element->size));
+  detail::read(detail::wholeRegion(inner_.get()), elements.data(), static_cast<std::size_t>(shape.size()));
+  return std::hash<std::string_view>()({reinterpret_cast<const char*>(elements.data()), elements.size()});
+}
+
+void ShadowStream::refreshExposure() {
+  if (exposed_ && !inner_->isLost()) exposed_ = hash();
+}
+
 /// Makes a change by the host to the device's elements, then to the reference's.
 template <class Change>
 void ShadowStream::change(const StreamRegion& region, Change&& change) {
@@ -131,6 +146,7 @@ void ShadowStream::change(const StreamRegion& region, Change&& change) {
     throw;
   }
   mirrorMarks();
+  refreshExposure();
   last = {.elements = region.shape.size()};
   if (held == nullptr) return;
   change(on(region, *held));
@@ -193,6 +209,7 @@ bool ShadowStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   }
   mirrorMarks();
   source.noteRead(from);
+  refreshExposure();
   last = {.kernel = source.last.kernel, .output = source.last.output, .elements = to.shape.size()};
   if (written == nullptr) {
     goStale(false);
@@ -212,6 +229,7 @@ void ShadowStream::exchangeElements(StreamState& other) noexcept {
   std::swap(isStale_, with.isStale_);
   std::swap(isRefused_, with.isRefused_);
   std::swap(bytes_, with.bytes_);
+  std::swap(exposed_, with.exposed_);
   std::swap(errors, with.errors);
   std::swap(last, with.last);
   exchangeMarks(other);
@@ -236,12 +254,12 @@ void ShadowStream::permute(const StreamRegion& region, std::span<const std::int3
   if (owner().sortedKeys() == this) recordOrder(*this, on(region, *held));
 }
 
+// The application may draw to the texture. What it has drawn is found when the elements are needed next.
 StreamTexture ShadowStream::texture(int plane) {
   noteRead(detail::wholeRegion(this));
-  owner().recorder().note(fmt::format(
-      "the program has asked for a texture of {}: what it draws into it is not known to the reference",
-      describe()));
-  return inner_->texture(plane);
+  const StreamTexture texture = inner_->texture(plane);
+  if (owner().isFollowing()) exposed_ = hash();
+  return texture;
 }
 
 void ShadowStream::fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "device/stream_state.hpp"
@@ -78,6 +79,8 @@ class ShadowStream final : public StreamState {
 
   /// Takes over from the inner stream whether the elements are lost.
   void mirrorMarks() noexcept;
+  /// The device has written elements of a stream whose texture the application has: what differs from them later, it has drawn.
+  void refreshExposure();
   /// Elements were read; the region is in bounds.
   void noteRead(const StreamRegion& region);
   /// Elements are about to be replaced by others: counts those that nothing has read.
@@ -94,6 +97,7 @@ class ShadowStream final : public StreamState {
 
  private:
   ShadowDevice& owner() const;
+  std::size_t hash();
   template <class Change>
   void change(const StreamRegion& region, Change&& change);
 
@@ -101,6 +105,7 @@ class ShadowStream final : public StreamState {
   std::unique_ptr<NativeStream> reference_;
   bool isStale_ = true;  ///< at first, both have undefined elements, which need not be equal
   bool isRefused_ = false;  ///< there was no memory for the reference
+  std::optional<std::size_t> exposed_;  ///< hash of the elements, if the application has a texture of them
   std::int64_t bytes_ = 0;
   const std::int64_t number_;
 };
