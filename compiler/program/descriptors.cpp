@@ -452,7 +452,13 @@ class Builder {
             .firstPlane = static_cast<std::uint8_t>(param.firstPlane),
             .planeCount = static_cast<std::uint8_t>(param.planeCount),
             .halo = reachOf(param),
-            .haloShapes = param.reachShapes};
+            .haloShapes = param.reachShapes,
+            .range = rangeOf(param)};
+  }
+
+  static std::optional<sk::program::ValueRange> rangeOf(const KernelParam& param) {
+    if (!param.range) return std::nullopt;
+    return sk::program::ValueRange{param.range->low, param.range->high};
   }
 
   std::span<const sk::program::Reach> reachOf(const KernelParam& param) {
