@@ -223,8 +223,8 @@ class Rehearsal {
       default: return region;
     }
     const Box box = boxOrAll(call_.box, seenShape(region));
-    if (!isPlaced(region)) return partIn(region, box);
-    StreamRegion part = partOfWhole(call_.kernel, parameter(i), region, box);
+    StreamRegion part =
+        isPlaced(region) ? partOfWhole(call_.kernel, parameter(i), region, box) : partIn(region, box);
     part.placement = {box.begin, seenShape(region)};
     return part;
   }
