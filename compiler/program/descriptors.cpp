@@ -453,11 +453,12 @@ class Builder {
             .planeCount = static_cast<std::uint8_t>(param.planeCount),
             .halo = reachOf(param),
             .haloShapes = param.reachShapes,
-            .range = rangeOf(param)};
+            .range = rangeOf(context.kernel, param)};
   }
 
-  static std::optional<sk::program::ValueRange> rangeOf(const KernelParam& param) {
-    if (!param.range) return std::nullopt;
+  /// Of declared kernels: what others take in between need not be in any range.
+  static std::optional<sk::program::ValueRange> rangeOf(const Kernel& kernel, const KernelParam& param) {
+    if (!param.range || !isUnit(kernel)) return std::nullopt;
     return sk::program::ValueRange{param.range->low, param.range->high};
   }
 

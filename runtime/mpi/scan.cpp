@@ -12,6 +12,8 @@
 #include "call/box.hpp"
 #include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
+#include "call/check_ranges.hpp"
+#include "call/check_written.hpp"
 #include "call_details.hpp"
 #include "call_plan.hpp"
 #include "domain_state.hpp"
@@ -34,6 +36,7 @@ class RankScan {
       : domain_(domain),
         reduction_(reduction),
         given_(mpi::ownArguments(arguments)),
+        ownParts_(mpi::ownParts(arguments)),
         options_(options),
         dimension_(scannedDimension()) {
     for (const Argument& argument : arguments) {
@@ -58,6 +61,7 @@ class RankScan {
            dimension_, domain_.parts.split()[dimension_]);
     }
     evaluateAssertions();
+    if (checksRanges()) checkRangesRead(reduction_.fold, ownParts_);
     const AssertionsEvaluated evaluated(device());
     const Shape own = domain::shapeOf(domain_.own);
     results_.emplace(accumulators(own.size()));
@@ -78,7 +82,10 @@ class RankScan {
 
   /// Combines the totals before this rank with its results, and stores these.
   void store() {
-    if (!hasMessages()) evaluateAssertions();
+    if (!hasMessages()) {
+      evaluateAssertions();
+      checkOwnRanges();
+    }
     const AssertionsEvaluated evaluated(device());
     if (!hasMessages()) return sk::scan(reduction_, local_, options_);
     const Shape own = domain::shapeOf(domain_.own);
@@ -87,6 +94,7 @@ class RankScan {
           *results_->regions.front().stream->device, reduction_, local_, own, own, {}, options_};
       mpi::combineEach(domain_, call, *before, *results_, lines());
     }
+    if (checksRanges()) checkResults();
     std::size_t next = 0;
     for (std::size_t i = 0; i < local_.size(); ++i) {
       if (isResult(i)) detail::copy(detail::reshaped(results_->regions[next++], own), local_[i].region);
@@ -100,6 +108,30 @@ class RankScan {
   void evaluateAssertions() const {
     const CallOptions options = device().configuration.resolve(reduction_.fold, options_);
     checkFoldAssertions(device(), reduction_.fold, given_, domain_.own, options);
+  }
+
+  void checkOwnRanges() const {
+    if (!checksRanges()) return;
+    checkRangesRead(reduction_.fold, ownParts_);
+    checkRangesWritten({.device = device(),
+                        .kernel = reduction_.fold,
+                        .arguments = ownParts_,
+                        .run = [this](std::span<const Argument> others, std::span<void* const>) {
+                          std::vector<Argument> local(others.begin(), others.end());
+                          for (Argument& argument : local) argument.region.placement = {};
+                          sk::scan(reduction_, local, options_);
+                        }});
+  }
+
+  /// Checks the ranges of results that are not stored yet.
+  void checkResults() const {
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < local_.size(); ++i) {
+      if (!isResult(i)) continue;
+      StreamRegion result = detail::reshaped(results_->regions[next++], domain::shapeOf(domain_.own));
+      result.placement = ownParts_[i].region.placement;
+      checkResultRange(reduction_.fold, reduction_.fold.parameters[i], result);
+    }
   }
 
   bool isResult(std::size_t i) const { return reduction_.fold.parameters[i].role == Role::Accumulator; }
@@ -235,6 +267,7 @@ class RankScan {
   DomainState& domain_;
   const Reduction& reduction_;
   std::vector<Argument> given_;  ///< placed in the whole
+  std::vector<Argument> ownParts_;  ///< the rank's own elements, placed in the whole
   CallOptions options_;
   int dimension_;
   std::vector<Argument> local_;

@@ -209,7 +209,7 @@ struct Parameter {
   std::span<const Reach> halo = {};
   /// Bit p is set if what `halo` says without a promise holds only for calls that give parameter p the domain's extents.
   std::uint64_t haloShapes = 0;
-  std::optional<ValueRange> range = {};  ///< of every number of an element
+  std::optional<ValueRange> range = {};  ///< declared kernels: of every number of an element
 };
 
 /// The element type of a parameter's stream.
