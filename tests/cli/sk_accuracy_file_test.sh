@@ -48,6 +48,9 @@ kernel void pull(float g, spec bool far, Body b<>, [[wrap]] float w[][], out Bod
 kernel void ramp(iter float t<>, float c[2], out float r<>) { r = c[0] + c[1] * t; }
 reduce void sum(float x<>, reduce float total<> = 0) { total += x; }
 reduce void largest(float x<>, reduce float most<>) { most = max(most, x); }
+kernel void promised([[range(0.25, 4)]] float x<>, [[range(0, 1.0 / 0.0)]] float y<>, [[range(3, 5)]] spec int n, out float r<>) {
+  r = x > 4 || !(y >= 0) ? x * y * 1e38 * 10 / 1e38 : x * sqrt(y) * n;
+}
 kernel void parity(int n<>, out bool odd<>) { odd = (n & 1) == 1; }
 kernel void keep(float x<>, vout float r<>) { if (x > 0) push(r, x); }
 EOF
@@ -134,6 +137,18 @@ assert kernels['sum', 'exact']['metrics']['max ulp'] <= 0.5
 assert 'no sum of floats' in kernels['largest', 'exact']['refused']
 assert kernels['largest', 'tree']['metrics']['rel err'] == 0
 for record in all['records']: assert 'refused' in record or record['extremes']['tried'] > 100, record"
+
+# Declared ranges are drawn from, and no extremes outside of them; --range is for what is outside, too.
+run 0 kernels.sk "${small[@]}" --device native --kernel promised --json all.json
+matches '^promised, drawn: 4096 elements; x in \[0.25, 4\] as declared, y in \[0, inf\] as declared, n in \[3, 5\] as declared$'
+json "
+single = kernels['promised', 'single']
+inputs = single['worst']['inputs']
+assert 0.25 <= inputs['x']['value'] <= 4 and inputs['y']['value'] >= 0 and inputs['n']['value'] == 3, inputs
+assert single['extremes']['tried'] > 100 and single['extremes']['other_class'] == 0, single['extremes']"
+run 0 kernels.sk "${small[@]}" --device native --kernel promised --range x=1:8 --json all.json
+matches '^promised, drawn: 4096 elements; x in \[1, 8\], y in'
+json "assert kernels['promised', 'single']['extremes']['other_class'] > 0"
 
 # Extremes stand apart: of ordinary numbers nothing overflows.
 run 0 kernels.sk "${small[@]}" --device native --kernel pull --json all.json

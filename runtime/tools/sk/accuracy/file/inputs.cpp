@@ -34,7 +34,7 @@ double drawReal(const std::optional<Range>& range, Numbers& numbers) {
     const double magnitude = logarithmic(wideLeast, wideMost);
     return numbers.unit() < 0.5 ? -magnitude : magnitude;
   }
-  const auto [low, high] = *range;
+  const double low = range->low, high = range->high;
   if (isLinear || low == high) return linear(low, high);
   const bool isNegative = high <= 0 || (low < 0 && numbers.unit() < 0.5);
   const double most = isNegative ? -low : high;
@@ -78,6 +78,9 @@ std::vector<double> extremesOf(Scalar scalar, const std::optional<Range>& range)
                                range->high - ulpOf(scalar, range->high)}) {
       values.push_back(value);
     }
+    if (range->promise)
+      std::erase_if(values,
+                    [&](double v) { return !(v >= range->promise->low && v <= range->promise->high); });
   }
   return values;
 }

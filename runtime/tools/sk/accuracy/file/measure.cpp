@@ -336,7 +336,7 @@ class Measured {
 
   std::string about() const {
     std::string text = fmt::format("{} elements", size_);
-    if (const std::string ranges = measurement_.ranges.text(); !ranges.empty()) text += "; " + ranges;
+    if (const std::string ranges = measurement_.ranges.text(subject_); !ranges.empty()) text += "; " + ranges;
     return text;
   }
 
