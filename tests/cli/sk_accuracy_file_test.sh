@@ -180,7 +180,7 @@ assert single['worst']['inputs']['x']['value'] == 0.5 and 'extremes' not in sing
 
 # What makes no sense, and what is missing.
 run 1 kernels.sk "${small[@]}" --kernel nosuch
-says "the file has no kernel 'nosuch'; it has math::cancel, math::roots, math::pole, math::overflow, pull, look, ramp, parity, keep, sum, largest"
+says "the file has no kernel 'nosuch'; it has math::cancel, math::roots, math::pole, math::overflow, pull, look, ramp, promised, parity, keep, sum, largest"
 run 1 kernels.sk "${small[@]}" --kernel parity
 says "parity: there are no floats in its results"
 run 1 kernels.sk "${small[@]}" --kernel keep
