@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -98,6 +99,10 @@ TEST_CASE("npz files keep names, types, shapes and elements") {
   CHECK(all.contains("leer/ä"));
   NpzWriter(folder.file()).finish();
   CHECK(readNpz(folder.file()).empty());
+}
+
+TEST_CASE("tests/cli/npz_test.py reads this file", "[.npz_file]") {
+  writeTwo(std::getenv("SK_NPZ_FILE"));
 }
 
 TEST_CASE("a writer that does not finish leaves no file, and names are taken once") {
