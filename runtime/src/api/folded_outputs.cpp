@@ -247,8 +247,8 @@ void checkAndFold(const Reduction& reduction, std::span<const Argument> given, c
                .kernel = reduction.fold,
                .arguments = given,
                .box = options.box,
-               .run = [&reduction, options](std::span<const Argument> others, std::span<void* const>) {
-                 sk::fold(reduction, others, options);
+               .run = [&reduction, options](std::span<const Argument> own, std::span<void* const>) {
+                 sk::fold(reduction, own, options);
                }});
   LoopState* const recording = call.device().recording;
   if (recording == nullptr) return call.run();

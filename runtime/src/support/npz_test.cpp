@@ -101,9 +101,7 @@ TEST_CASE("npz files keep names, types, shapes and elements") {
   CHECK(readNpz(folder.file()).empty());
 }
 
-TEST_CASE("tests/cli/npz_test.py reads this file", "[.npz_file]") {
-  writeTwo(std::getenv("SK_NPZ_FILE"));
-}
+TEST_CASE("tests/cli/npz_test.py reads this file", "[.npz_file]") { writeTwo(std::getenv("SK_NPZ_FILE")); }
 
 TEST_CASE("a writer that does not finish leaves no file, and names are taken once") {
   const NpzFolder folder;
