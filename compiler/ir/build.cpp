@@ -319,6 +319,7 @@ KernelParam clone(const KernelParam& param) {
   copy.pushes = param.pushes;
   copy.neededIf = clone(param.neededIf);
   copy.promise = param.promise;
+  copy.range = param.range;
   return copy;
 }
 

@@ -260,6 +260,12 @@ struct Reach {
   bool operator==(const Reach&) const = default;
 };
 
+/// The values that the author promises: from `low` to `high`, either of which may be infinite. NaN is none of them.
+struct ValueRange {
+  double low, high;
+  bool operator==(const ValueRange&) const = default;
+};
+
 struct KernelParam {
   std::string name;
   ParamRole role;
@@ -286,6 +292,8 @@ struct KernelParam {
   std::uint64_t reachShapes = 0;
   /// Gathers: [[halo(...)]], the distance for each dimension, x first, that no read exceeds; empty if nothing is promised.
   std::vector<std::int32_t> promise = {};
+  /// [[range(lo, hi)]]: the range of every number of an element, before its ends are rounded to the type.
+  std::optional<ValueRange> range = {};
 };
 
 /// A struct of parameters that belong together. C++ passes it as one argument; the IR's kernels have a parameter for each

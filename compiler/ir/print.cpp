@@ -164,6 +164,7 @@ std::string printParam(const Module& module, const Function& entry, const Kernel
   if (param.pushes >= 0) text += fmt::format(" at most {}", param.pushes);
   if (param.border) text += "(" + constant(param.border) + ")";
   if (param.identity) text += " = " + constant(param.identity);
+  if (param.range) text += fmt::format(" in [{}, {}]", param.range->low, param.range->high);
   if (param.neededIf) text += " if " + print(module, entry, *param.neededIf);
   if (param.planeCount != 0) {
     text += fmt::format(" planes {} to {}", param.firstPlane, param.firstPlane + param.planeCount - 1);

@@ -170,7 +170,7 @@ struct Visitor {
 
   void visit(KernelParam& param) {
     auto& [name, role, type, held, rank, boundary, border, filter, identity, firstPlane, planeCount, loc,
-           scatter, pushes, neededIf, reach, reachShapes, promise] = param;
+           scatter, pushes, neededIf, reach, reachShapes, promise, range] = param;
     onType(type);
     if (held) onType(*held);
     expression(border);

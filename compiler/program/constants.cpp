@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -221,6 +222,11 @@ class ConstantWriter {
   }
   std::string textOf(bool value, const std::string&, Word) { return value ? "true" : "false"; }
   std::string textOf(float value, const std::string&, Word) { return floatLiteral(value); }
+  /// Of a range, whose ends may be infinite.
+  std::string textOf(double value, const std::string&, Word) {
+    if (std::isinf(value)) return value < 0 ? "-ValueRange::infinity" : "ValueRange::infinity";
+    return doubleLiteral(value);
+  }
   template <std::integral T>
   std::string textOf(T value, const std::string&, Word) {
     return fmt::format("{}{}", value, std::cmp_greater(value, INT32_MAX) && std::is_unsigned_v<T> ? "u" : "");
@@ -244,6 +250,10 @@ class ConstantWriter {
   std::string textOf(const T& value, const std::string& name, Word part) {
     if constexpr (hasOwnConstants<T>) return constantOf(value, with(name, part));
     return "{" + join(membersOf(value, with(name, part)), ", ") + "}";
+  }
+  template <class T>
+  std::string textOf(const std::optional<T>& value, const std::string& name, Word part) {
+    return value ? typeName<T>() + textOf(*value, name, part) : "{}";
   }
   template <class T>
   std::string textOf(const T* value, const std::string& name, Word part) {

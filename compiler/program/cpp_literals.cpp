@@ -27,6 +27,8 @@ std::string rawString(std::string_view text) {
 
 std::string floatLiteral(float value) { return fmt::format("{:#}F", value); }
 
+std::string doubleLiteral(double value) { return fmt::format("{:#}", value); }
+
 std::string quoted(std::string_view text) {
   std::string result = "\"";
   for (char c : text) {

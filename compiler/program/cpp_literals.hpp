@@ -18,4 +18,7 @@ std::string quoted(std::string_view text);
 /// A float literal that keeps the exact value.
 std::string floatLiteral(float value);
 
+/// A double literal that keeps the exact value, which is finite.
+std::string doubleLiteral(double value);
+
 }  // namespace skc::emit

@@ -452,7 +452,14 @@ class Builder {
             .firstPlane = static_cast<std::uint8_t>(param.firstPlane),
             .planeCount = static_cast<std::uint8_t>(param.planeCount),
             .halo = reachOf(param),
-            .haloShapes = param.reachShapes};
+            .haloShapes = param.reachShapes,
+            .range = rangeOf(context.kernel, param)};
+  }
+
+  /// Of declared kernels: what others take in between need not be in any range.
+  static std::optional<sk::program::ValueRange> rangeOf(const Kernel& kernel, const KernelParam& param) {
+    if (!param.range || !isUnit(kernel)) return std::nullopt;
+    return sk::program::ValueRange{param.range->low, param.range->high};
   }
 
   std::span<const sk::program::Reach> reachOf(const KernelParam& param) {

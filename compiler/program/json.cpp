@@ -5,9 +5,11 @@
 #include "program/json.hpp"
 
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -147,6 +149,12 @@ class Writer {
     requires std::is_enum_v<E>
   Json value(E enumerator) {
     return nameOf(enumerator);
+  }
+  /// JSON has no infinity, which is what no number stands for.
+  Json value(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+  template <class T>
+  Json value(const std::optional<T>& descriptor) {
+    return descriptor ? value(*descriptor) : Json(nullptr);
   }
   template <Described T>
   Json value(const T& descriptor) {

@@ -211,6 +211,16 @@ struct Members<p::Parameter> {
       Option{"layers", &p::Parameter::layers, Part::Layers},
       Option{"halo", &p::Parameter::halo, Part::Halo},
       Option{"haloShapes", &p::Parameter::haloShapes},
+      Option{"range", &p::Parameter::range},
+  };
+};
+
+template <>
+struct Members<p::ValueRange> {
+  static constexpr std::string_view type = "ValueRange";
+  static constexpr std::tuple list{
+      Member{"low", &p::ValueRange::low},
+      Member{"high", &p::ValueRange::high},
   };
 };
 
@@ -465,12 +475,12 @@ struct Members<p::ExactSum> {
 
 static_assert(listsAll<p::Field> && listsAll<p::Element> && listsAll<p::ConditionStep> &&
                   listsAll<p::Condition> && listsAll<p::Layer> && listsAll<p::Parameter> &&
-                  listsAll<p::Distance> && listsAll<p::Reach> && listsAll<p::IntrinsicUse> &&
-                  listsAll<sk::TableRange> && listsAll<p::Table> && listsAll<p::TableUse> &&
-                  listsAll<p::UnrolledKernel> && listsAll<sk::CallOptions> && listsAll<p::Kernel> &&
-                  listsAll<p::Assertion> && listsAll<p::AssertionCheck> && listsAll<p::PassOperand> &&
-                  listsAll<p::Pass> && listsAll<p::ArgumentPlane> && listsAll<p::Stack> &&
-                  listsAll<p::Plan> && listsAll<p::SumTerm> && listsAll<p::Reduction> &&
+                  listsAll<p::Distance> && listsAll<p::Reach> && listsAll<p::ValueRange> &&
+                  listsAll<p::IntrinsicUse> && listsAll<sk::TableRange> && listsAll<p::Table> &&
+                  listsAll<p::TableUse> && listsAll<p::UnrolledKernel> && listsAll<sk::CallOptions> &&
+                  listsAll<p::Kernel> && listsAll<p::Assertion> && listsAll<p::AssertionCheck> &&
+                  listsAll<p::PassOperand> && listsAll<p::Pass> && listsAll<p::ArgumentPlane> &&
+                  listsAll<p::Stack> && listsAll<p::Plan> && listsAll<p::SumTerm> && listsAll<p::Reduction> &&
                   listsAll<p::FoldParts> && listsAll<p::WideReduction> && listsAll<p::CompensatedSum> &&
                   listsAll<p::CompensatedReduction> && listsAll<p::ExactSum>,
               "a descriptor has another member: list it, and document it in docs/json.md");

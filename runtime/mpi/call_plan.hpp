@@ -49,6 +49,7 @@ class CallPlan {
   bool readsOwn(const SpreadArgument& one) const;
   DeviceState& device() const;
   void evaluateAssertions() const;
+  void checkOwnRanges() const;
   void startExchanges();
   void finishOthers();
   void makeRoom();
@@ -83,6 +84,11 @@ Call beginCall(DomainState& domain, const program::Kernel& kernel, const CallOpt
 
 /// The arguments, with this rank's placed streams for those of the domain.
 std::vector<Argument> ownArguments(std::span<const Argument> arguments);
+
+/// This rank's own elements of a stream, placed in the whole.
+StreamRegion ownPart(const DomainStreamState& stream);
+/// The arguments, with these for the streams of a domain.
+std::vector<Argument> ownParts(std::span<const Argument> arguments);
 
 /// Throws sk::Error if the device of the domain records calls.
 void refuseRecording(DomainState& domain, const program::Kernel& kernel);

@@ -6,6 +6,7 @@
 
 #include "accumulators.hpp"
 #include "call/check_call.hpp"
+#include "call/check_ranges.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_written.hpp"
 #include "call/resolved_call.hpp"
@@ -353,6 +354,15 @@ void RankReduction::finish() {
   takePosted();
   for (std::size_t k = 0; k < steps_.size(); ++k) finishStep(k);
   finishWords();
+  if (checksRanges()) checkResults();
+}
+
+void RankReduction::checkResults() const {
+  std::size_t k = 0;
+  for (const Parameter& parameter : call_.reduction.fold.parameters) {
+    if (parameter.role == Role::Accumulator)
+      checkResultRange(call_.reduction.fold, parameter, values_[k++].data());
+  }
 }
 
 void RankReduction::store(std::span<const StreamRegion> given) {

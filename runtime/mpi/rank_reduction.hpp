@@ -79,6 +79,7 @@ class RankReduction final : private Details {
   bool isFirst() const;
   bool sumsEverything() const;
   std::byte* valueOf(std::size_t accumulator);
+  void checkResults() const;
   ResolvedReduction partOf(const Step& step) const;
   void startStep(const Variant& variant, const program::ExactSum* digits,
                  std::span<const Argument> arguments);

@@ -10,6 +10,7 @@
 
 #include "call/box.hpp"
 #include "call/check_call.hpp"
+#include "call/check_ranges.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_written.hpp"
 #include "call/placed.hpp"
@@ -192,6 +193,30 @@ void rehearse(DomainState& domain, const Reduction& reduction, std::span<const A
   sk::reduce(reduction, mine, values, part);
 }
 
+/// With SK_CHECK=ranges: checks what this rank's own elements hold, and what a fold would store to them. The totals are those of all
+/// ranks, and come later.
+void checkOwnRanges(DomainState& domain, const Reduction& reduction, std::span<const Argument> arguments,
+                    const CallOptions& options) {
+  if (!checksRanges()) return;
+  checkRangesRead(reduction.fold, mpi::ownParts(arguments));
+  CallOptions part = options;
+  part.box = domain::intersection(domain.own, boxOrAll(options.box, domain.parts.whole()));
+  if (reduction.parts == nullptr || domain::isEmpty(part.box)) return;
+  std::vector<Argument> mine = mpi::ownArguments(arguments);
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    if (reduction.fold.parameters[i].role == Role::Accumulator)  // one element in any rank
+      mine[i].region = detail::reshaped(mine[i].region, Shape{1});
+  }
+  checkRangesWritten({.device = *domain.streams.front()->placed().stream->device,
+                      .kernel = reduction.fold,
+                      .arguments = mine,
+                      .box = part.box,
+                      .checksFolded = false,
+                      .run = [&](std::span<const Argument> others, std::span<void* const>) {
+                        sk::fold(reduction, others, part);
+                      }});
+}
+
 /// A call of a reduction or of a kernel with folded outputs.
 class Fold {
  public:
@@ -240,6 +265,7 @@ class Fold {
       refusal_ = mpi::caught(name(), [&] {
         part = partOf(domain_, reduction_, arguments, options_);
         rehearse(domain_, reduction_, arguments_, options_);
+        checkOwnRanges(domain_, reduction_, arguments_, options_);
         part->fold();
         if (domain_.agreement.isAlways()) part->setDetails(details_.details());
       });
@@ -346,8 +372,9 @@ void DomainState::fold(const Reduction& reduction, std::span<const Argument> arg
   Fold call(*this, reduction, arguments, chosen);
   std::optional<StreamResults> targets;
   // Native code stores elements while it folds. Otherwise, values are not stored yet, so that the kernel may overwrite what is folded.
+  // So that SK_CHECK=ranges can judge the totals before anything is stored, it never does then.
   const bool isTogether = device.profile() == "native" && chosen.accumulate != Accumulate::Exact &&
-                          !needsPrecisionVariant(chosen);
+                          !needsPrecisionVariant(chosen) && !checksRanges();
   std::vector<Argument> inputs;
   call.prepare([&] {
     targets.emplace(reduction, arguments);

@@ -13,6 +13,7 @@
 #include "call/box.hpp"
 #include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
+#include "call/check_ranges.hpp"
 #include "call/check_written.hpp"
 #include "call/placed.hpp"
 #include "call_details.hpp"
@@ -184,6 +185,21 @@ std::vector<Argument> ownArguments(std::span<const Argument> arguments) {
   for (Argument& argument : own) {
     if (const DomainStreamState* const stream = domainStream(argument.region))
       argument.region = stream->placed();
+  }
+  return own;
+}
+
+StreamRegion ownPart(const DomainStreamState& stream) {
+  StreamRegion part = stream.part(stream.domain->own);
+  part.placement = {stream.domain->own.begin, stream.domain->parts.whole()};
+  return part;
+}
+
+std::vector<Argument> ownParts(std::span<const Argument> arguments) {
+  std::vector<Argument> own(arguments.begin(), arguments.end());
+  for (Argument& argument : own) {
+    if (const DomainStreamState* const stream = domainStream(argument.region))
+      argument.region = ownPart(*stream);
   }
   return own;
 }
@@ -442,6 +458,26 @@ void CallPlan::evaluateAssertions() const {
     checkAssertions(device(), kernel_, arguments_, domain_.parts.whole(), options);
 }
 
+/// What this rank's own elements hold, and what the call would write to them.
+void CallPlan::checkOwnRanges() const {
+  if (!checksRanges()) return;
+  std::vector<Argument> own = arguments_;
+  for (const std::vector<SpreadArgument>& arguments : {std::cref(spread_), std::cref(others_)}) {
+    for (const SpreadArgument& one : arguments) own[one.index].region = ownPart(*one.stream);
+  }
+  checkRangesRead(kernel_, own);
+  CallOptions part = options_;
+  part.box = domain::intersection(domain_.own, boxOrAll(options_.box, domain_.parts.whole()));
+  if (domain::isEmpty(part.box)) return;
+  checkRangesWritten({.device = device(),
+                      .kernel = kernel_,
+                      .arguments = arguments_,
+                      .box = part.box,
+                      .run = [&](std::span<const Argument> others, std::span<void* const>) {
+                        sk::run(kernel_, others, part);
+                      }});
+}
+
 void CallPlan::exchangeHalos() {
   startExchanges();
   finishOthers();
@@ -480,6 +516,7 @@ void CallPlan::run(const Compute& compute) {
   };
   const auto evaluate = [&] {
     evaluateAssertions();
+    checkOwnRanges();
     evaluated.emplace(device());
   };
   if (!exchange_) {
@@ -488,9 +525,9 @@ void CallPlan::run(const Compute& compute) {
   } else {
     const Box inner =
         domain::shrunk(domain_.own, domain_.parts.haloOf(domain_.rank, roundedUp(reach_, unit_)));
-    // assertions of the border read the halo, and must hold before the interior is stored
-    const bool overlaps =
-        domain_.options.overlap && !isOneBox() && !domain::isEmpty(inner) && !checksAsserts();
+    // assertions and ranges of the border depend on the halo, and must hold before the interior is stored
+    const bool overlaps = domain_.options.overlap && !isOneBox() && !domain::isEmpty(inner) &&
+                          !checksAsserts() && !checksRanges();
     if (overlaps) computeBox(inner);
     exchange_->finish();
     evaluate();

@@ -12,6 +12,8 @@
 #include "call/box.hpp"
 #include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
+#include "call/check_ranges.hpp"
+#include "call/check_written.hpp"
 #include "call_details.hpp"
 #include "call_plan.hpp"
 #include "domain_state.hpp"
@@ -34,6 +36,7 @@ class RankScan {
       : domain_(domain),
         reduction_(reduction),
         given_(mpi::ownArguments(arguments)),
+        ownParts_(mpi::ownParts(arguments)),
         options_(options),
         dimension_(scannedDimension()) {
     for (const Argument& argument : arguments) {
@@ -43,7 +46,7 @@ class RankScan {
     }
     // ranks exchange what the devices hold, whatever stands in front of these
     scanned_ = local_;
-    for (std::vector<Argument>* all : {&local_, &given_}) {
+    for (std::vector<Argument>* all : {&local_, &given_, &ownParts_}) {
       for (Argument& argument : *all) {
         if (argument.region.stream != nullptr) argument.region.stream = &argument.region.stream->underlying();
       }
@@ -65,6 +68,7 @@ class RankScan {
            dimension_, domain_.parts.split()[dimension_]);
     }
     evaluateAssertions();
+    if (checksRanges()) checkRangesRead(reduction_.fold, ownParts_);
     const AssertionsEvaluated evaluated(device());
     const Shape own = domain::shapeOf(domain_.own);
     results_.emplace(accumulators(own.size()));
@@ -93,7 +97,10 @@ class RankScan {
 
  private:
   void storeUnderlying() {
-    if (!hasMessages()) evaluateAssertions();
+    if (!hasMessages()) {
+      evaluateAssertions();
+      checkOwnRanges();
+    }
     const AssertionsEvaluated evaluated(device());
     if (!hasMessages()) return sk::scan(reduction_, local_, options_);
     const Shape own = domain::shapeOf(domain_.own);
@@ -102,6 +109,7 @@ class RankScan {
           *results_->regions.front().stream->device, reduction_, local_, own, own, {}, options_};
       mpi::combineEach(domain_, call, *before, *results_, lines());
     }
+    if (checksRanges()) checkResults();
     std::size_t next = 0;
     for (std::size_t i = 0; i < local_.size(); ++i) {
       if (isResult(i)) detail::copy(detail::reshaped(results_->regions[next++], own), local_[i].region);
@@ -114,6 +122,30 @@ class RankScan {
   void evaluateAssertions() const {
     const CallOptions options = device().configuration.resolve(reduction_.fold, options_);
     checkFoldAssertions(device(), reduction_.fold, given_, domain_.own, options);
+  }
+
+  void checkOwnRanges() const {
+    if (!checksRanges()) return;
+    checkRangesRead(reduction_.fold, ownParts_);
+    checkRangesWritten({.device = device(),
+                        .kernel = reduction_.fold,
+                        .arguments = ownParts_,
+                        .run = [this](std::span<const Argument> others, std::span<void* const>) {
+                          std::vector<Argument> local(others.begin(), others.end());
+                          for (Argument& argument : local) argument.region.placement = {};
+                          sk::scan(reduction_, local, options_);
+                        }});
+  }
+
+  /// Checks the ranges of results that are not stored yet.
+  void checkResults() const {
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < local_.size(); ++i) {
+      if (!isResult(i)) continue;
+      StreamRegion result = detail::reshaped(results_->regions[next++], domain::shapeOf(domain_.own));
+      result.placement = ownParts_[i].region.placement;
+      checkResultRange(reduction_.fold, reduction_.fold.parameters[i], result);
+    }
   }
 
   bool isResult(std::size_t i) const { return reduction_.fold.parameters[i].role == Role::Accumulator; }
@@ -249,6 +281,7 @@ class RankScan {
   DomainState& domain_;
   const Reduction& reduction_;
   std::vector<Argument> given_;  ///< placed in the whole
+  std::vector<Argument> ownParts_;  ///< the rank's own elements, placed in the whole
   CallOptions options_;
   int dimension_;
   std::vector<Argument> scanned_;  ///< of this rank

@@ -48,6 +48,9 @@ kernel void pull(float g, spec bool far, Body b<>, [[wrap]] float w[][], out Bod
 kernel void ramp(iter float t<>, float c[2], out float r<>) { r = c[0] + c[1] * t; }
 reduce void sum(float x<>, reduce float total<> = 0) { total += x; }
 reduce void largest(float x<>, reduce float most<>) { most = max(most, x); }
+kernel void promised([[range(0.25, 4)]] float x<>, [[range(0, 1.0 / 0.0)]] float y<>, [[range(3, 5)]] spec int n, out float r<>) {
+  r = x > 4 || !(y >= 0) ? x * y * 1e38 * 10 / 1e38 : x * sqrt(y) * n;
+}
 kernel void parity(int n<>, out bool odd<>) { odd = (n & 1) == 1; }
 kernel void keep(float x<>, vout float r<>) { if (x > 0) push(r, x); }
 EOF
@@ -58,7 +61,7 @@ small=("${few[@]}" --size 4096)
 
 # What --help has.
 run 0 --help
-for option in --kernel --range --set --no-extremes -I -D --skc; do prints "  $option"; done
+for option in --kernel --range --set --inputs --no-extremes -I -D --skc; do prints "  $option"; done
 
 # The worst inputs of cancellations, on native code and on the best device.
 for device in native ''; do
@@ -135,6 +138,104 @@ assert 'no sum of floats' in kernels['largest', 'exact']['refused']
 assert kernels['largest', 'tree']['metrics']['rel err'] == 0
 for record in all['records']: assert 'refused' in record or record['extremes']['tried'] > 100, record"
 
+# Declared ranges are drawn from, and no extremes outside of them; --range is for what is outside, too.
+run 0 kernels.sk "${small[@]}" --device native --kernel promised --json all.json
+matches '^promised, drawn: 4096 elements; x in \[0.25, 4\] as declared, y in \[0, inf\] as declared, n in \[3, 5\] as declared$'
+json "
+single = kernels['promised', 'single']
+inputs = single['worst']['inputs']
+assert 0.25 <= inputs['x']['value'] <= 4 and inputs['y']['value'] >= 0 and inputs['n']['value'] == 3, inputs
+assert single['extremes']['tried'] > 100 and single['extremes']['other_class'] == 0, single['extremes']"
+run 0 kernels.sk "${small[@]}" --device native --kernel promised --range x=1:8 --json all.json
+matches '^promised, drawn: 4096 elements; x in \[1, 8\], y in'
+json "assert kernels['promised', 'single']['extremes']['other_class'] > 0"
+
+# Recorded inputs take the place of drawn ones: their elements, their shape.
+# record FILE ARRAYS: writes a .npz file, as numpy.savez does; ARRAYS are lines of NAME: TYPE, SHAPE, VALUES.
+record() {
+  python3 -c "
+import struct, sys, zipfile
+codes = {'<f4': 'f', '<f8': 'd', '<i4': 'i', '<i8': 'q', '|b1': '?', '<u4': 'I'}
+with zipfile.ZipFile(sys.argv[1], 'w', zipfile.ZIP_DEFLATED if 'deflated' in sys.argv[1] else zipfile.ZIP_STORED) as file:
+    for line in sys.argv[2].strip().splitlines():
+        name, array = line.strip().split(': ', 1)
+        type, shape, values = eval(array)
+        count = 1
+        for extent in shape: count *= extent
+        values = [values(i) for i in range(count)] if callable(values) else values
+        assert len(values) == count, line
+        text = str({'descr': type, 'fortran_order': False, 'shape': tuple(shape)})
+        text += ' ' * (63 - (10 + len(text)) % 64) + chr(10)
+        head = b'\\x93NUMPY' + bytes([1, 0]) + struct.pack('<H', len(text)) + text.encode()
+        with file.open(name + '.npy', 'w', force_zip64=True) as entry:
+            entry.write(head + struct.pack('<%d%s' % (count, codes[type]), *values))" "$1" "$2"
+}
+roots="math::roots/x: ('<f4', (6, 50), lambda i: 1000 + i)
+math::roots/r.shape: ('<i8', (2,), [6, 50])"
+pull="pull/g: ('<f4', (), [2])
+pull/far: ('|b1', (), [True])
+pull/b.at: ('<f4', (4, 5, 2), lambda i: 1 + i % 7)
+pull/b.kind: ('<i4', (4, 5), lambda i: i)
+pull/w: ('<f4', (4, 5), lambda i: 0.5)
+pull/n.shape: ('<i8', (2,), [4, 5])
+pull/e.shape: ('<i8', (2,), [4, 5])"
+others="ramp/t: ('<f4', (2,), [0, 8])
+ramp/c: ('<f4', (2,), [3, 4])
+ramp/r.shape: ('<i8', (1,), [16])
+sum/x: ('<f4', (300,), lambda i: 0.1)"
+record all.npz "$roots
+$pull
+$others
+another::file/u: ('<f4', (1,), [1])"
+run 0 kernels.sk "${few[@]}" --device native --inputs all.npz --json all.json
+matches '^math::roots, recorded: 300 elements of all\.npz$'
+matches '^pull, recorded: 20 elements of all\.npz$'
+matches '^ramp, recorded: 16 elements'
+matches '^sum, recorded: 300 elements'
+prints "'all.npz' has no inputs of 'largest'"
+json "
+assert all['records'][0]['data'] == 'recorded'
+worst = kernels['math::roots', 'single']['worst']
+row, column = (int(i) for i in worst['index'].split(', '))
+assert worst['inputs']['x']['value'] == 1000 + 50 * row + column, worst
+x = worst['inputs']['x']['value']
+assert abs(worst['wanted']['value'] - 1 / (math.sqrt(x + 1) + math.sqrt(x))) < 1e-12, worst
+inputs = kernels['pull', 'single']['worst']['inputs']
+assert inputs['g']['value'] == 2 and inputs['far']['hex'] == 'true' and inputs['b.at.x']['value'] >= 1, inputs
+number = int(inputs['b.kind']['value'])
+assert [inputs['b.at.' + c]['value'] for c in 'xy'] == [1 + (2 * number + k) % 7 for k in (0, 1)], inputs
+assert kernels['sum', 'tree']['metrics']['rel err'] < 1e-6 and 'extremes' not in kernels['sum', 'tree'], kernels['sum', 'tree']"
+# A row that all rows of the domain read.
+record some.npz "$(sed '1s/(6, 50)/(1, 50)/' <<<"$roots")"
+run 0 kernels.sk "${few[@]}" --device native --inputs some.npz --kernel math::roots --json all.json
+matches '^math::roots, recorded: 300 elements'
+json "
+worst = kernels['math::roots', 'single']['worst']
+assert worst['inputs']['x']['value'] == 1000 + int(worst['index'].split(', ')[1]), worst"
+# What is not there, or is something else, is told.
+# refuses ARRAYS EDIT MESSAGE [OPTION]...: of the arrays, after an edit by sed.
+refuses() {
+  record some.npz "$(sed "$2" <<<"$1")"
+  run 1 kernels.sk "${few[@]}" --device native --inputs some.npz "${@:4}"
+  says "$3"
+}
+refuses "$roots" 's/roots/rots/' "'some.npz' has no inputs of 'math::roots'; did you mean 'math::rots'?" --kernel math::roots
+refuses "$roots" 's|/x|/y|' "'math::roots/y' is of no parameter; did you mean 'x'?"
+refuses "$roots" '/shape/d' "'math::roots/r.shape' is missing"
+refuses "$roots" 's/<f4/<f8/' "'math::roots/x' has elements of type '<f8', but 'float x' needs '<f4'"
+refuses "$pull" "/w:/s/(4, 5)/(20,)/" "'pull/w' has shape (20,), but 'float w' needs 2 dimension(s)"
+refuses "$pull" 's/(4, 5, 2)/(4, 10)/' "'pull/b.at' has shape (4, 10), but 'Body b' needs 1 to 4 dimension(s), and then (2,)"
+refuses "$pull" '/kind/s/(4, 5)/(4, 4)/' "'pull/b.kind' is for streams of another shape than the members before it, (4, 5)"
+refuses "$pull" '/g:/s/()/(1,)/' "'pull/g' has shape (1,), but 'float g' needs ()"
+refuses "$roots" 's|.*/||' "'r.shape' is not named KERNEL/PARAMETER, such as 'heat::diffuse/u'"
+record deflated.npz "$roots"
+run 1 kernels.sk "${few[@]}" --inputs deflated.npz
+says "'math::roots/x.npy' is compressed, and only arrays as they are can be read; save it by numpy.savez"
+run 1 kernels.sk "${few[@]}" --inputs none.npz
+says "'none.npz': it cannot be read"
+run 1 kernels.sk "${few[@]}" --inputs all.npz --range x=0:1
+says "--inputs has the elements, the values and the shapes; leave out --range, --set and --size"
+
 # Extremes stand apart: of ordinary numbers nothing overflows.
 run 0 kernels.sk "${small[@]}" --device native --kernel pull --json all.json
 matches '^  of [0-9]+ results of extreme inputs$'
@@ -165,7 +266,7 @@ assert single['worst']['inputs']['x']['value'] == 0.5 and 'extremes' not in sing
 
 # What makes no sense, and what is missing.
 run 1 kernels.sk "${small[@]}" --kernel nosuch
-says "the file has no kernel 'nosuch'; it has math::cancel, math::roots, math::pole, math::overflow, pull, look, ramp, parity, keep, sum, largest"
+says "the file has no kernel 'nosuch'; it has math::cancel, math::roots, math::pole, math::overflow, pull, look, ramp, promised, parity, keep, sum, largest"
 run 1 kernels.sk "${small[@]}" --kernel parity
 says "parity: there are no floats in its results"
 run 1 kernels.sk "${small[@]}" --kernel keep

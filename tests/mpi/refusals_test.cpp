@@ -478,6 +478,62 @@ TEST_CASE("with SK_CHECK=asserts, a rank evaluates all assertions of its part be
   CHECK(errorOf([&] { static_cast<void>(sum(w)); }) == "no error");
 }
 
+TEST_CASE(
+    "with SK_CHECK=ranges, a rank checks its own elements, and all ranks the totals, before anything is "
+    "written",
+    "[.][ranges]") {
+  sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around, .split = {ranksOfWorld(), 1}});
+  auto u = domain.stream<float>(), v = domain.stream<float>(), w = domain.stream<float>();
+  sk::Scalar<float> total = domain.device().scalar<float>();
+  w.fill(1.0F);
+  total = 7.0F;
+  // what one rank finds alone, the others hear of in their next call that has messages
+  const auto finds = [&](const char* message, const auto& call) {
+    v.fill(-1.0F);
+    CHECK_THAT(errorOf([&] {
+                 call();
+                 static_cast<void>(sum(w));
+               }),
+               Contains(message));
+    if (isLast()) CHECK(v.read() == std::vector<float>(v.read().size(), -1.0F));
+    CHECK(total.read() == 7.0F);
+  };
+  const auto fillWith = [&](float value) {
+    u.fill([&](sk::Index at) { return at == sk::Index{12, 5} ? value : 1.0F; });
+  };
+  fillWith(120);
+  finds("'u' is 120 at {12, 5}", [&] { ranged(u, v); });
+  finds("'x' is 120 at {12, 5}", [&] { static_cast<void>(rangedSum(u)); });
+  finds("'x' is 120 at {12, 5}", [&] { rangedCopy(u, v, total); });
+  finds("'x' is 120 at {12, 5}", [&] { rangedScan.with({.along = 0})(u, v); });
+  finds("'x' is 120 at {12, 5}", [&] { rangedScan.with({.along = 1})(u, v); });
+  fillWith(-99);
+  finds("'u' is -99 at {12, 5}", [&] { ranged(u, v); });
+  finds("'r' would be -198 at {12, 5}", [&] { rangedCopy(u, v, total); });
+  fillWith(99);
+  finds("'s' would be 104 at {12, 5}", [&] { rangedScan.with({.along = 1})(u, v); });
+  finds("'s' would be 111 at {12, 5}", [&] { rangedScan.with({.along = 0})(u, v); });
+  fillWith(100);
+  finds("'v' would be 99.5 at {12, 5}", [&] { ranged(u, v); });
+  fillWith(50);
+  CHECK(errorOf([&] { ranged(u, v); }) == "no error");
+  CHECK(errorOf([&] { ranged(w, v); }) == "no error");
+  // no rank's own total is out of range, and no rank's own total counts
+  u.fill([](sk::Index at) { return at[0] < 12 ? -1.0F : 2.0F; });
+  CHECK(errorOf([&] { CHECK(rangedSum(u) == 96); }) == "no error");
+  CHECK(errorOf([&] { rangedCopy(u, v, total); }) == "no error");
+  CHECK(total.read() == 96.0F);
+  total = 7.0F;
+  u.fill(3.0F);
+  finds("'total' would be 576", [&] { static_cast<void>(rangedSum(u)); });
+  finds("'total' would be 576",
+        [&] { static_cast<void>(rangedSum.with({.accumulate = sk::Accumulate::Exact})(u)); });
+  finds("'total' would be 576", [&] { rangedSum(u, total); });
+  finds("'total' would be 576", [&] { static_cast<void>(domain.later(rangedSum, u).get()); });
+  finds("'total' would be 576", [&] { rangedCopy(u, v, total); });
+  CHECK(errorOf([&] { static_cast<void>(sum(w)); }) == "no error");
+}
+
 TEST_CASE("with SK_CHECK=collectives, the ranks compare all that they call", "[.][collectives]") {
   sk::Domain domain(MPI_COMM_WORLD, {.shape = {24, 8}, .periodic = around});
   auto u = domain.stream<float>(), v = domain.stream<float>(), w = domain.stream<float>();

@@ -197,6 +197,8 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
     if (field->getName().empty())
       fail(Diag::StructNotPlain, field->getLocation(), {name, "this member has no name"});
     if (field->isMutable()) fail(Diag::MutableMember, field->getLocation(), {field->getNameAsString()});
+    if (const ParamSyntax* syntax = syntax_.param(field->getLocation()); syntax != nullptr && syntax->range)
+      fail(Diag::RangeOfMember, field->getLocation(), {field->getNameAsString(), name});
     entry.fields.push_back({field->getNameAsString(), type(field->getType(), field->getLocation())});
   }
   const auto index = static_cast<std::uint32_t>(module_.structs.size());

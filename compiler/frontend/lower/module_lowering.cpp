@@ -237,6 +237,7 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ValueDecl* declaration,
     }
     if (!syntax->border.empty()) param.border = generatedConstant(syntax->border);
     if (!syntax->identity.empty()) param.identity = generatedConstant(syntax->identity);
+    if (syntax->range) param.range = range(*syntax->range, param, declaration->getLocation());
   }
   return param;
 }
@@ -348,13 +349,17 @@ void ModuleLowering::pairReductions() {
   }
 }
 
-ir::ExprPtr ModuleLowering::generatedConstant(const std::string& name) {
+const clang::VarDecl* ModuleLowering::generatedVariable(const std::string& name) {
   const clang::VarDecl* found = nullptr;
   for (const auto* constants : {&generated_, &generatedGlobals_}) {
     if (const auto at = constants->find(name); at != constants->end() && found == nullptr) found = at->second;
   }
   if (found == nullptr) throw Abandoned{};
-  return constantValue(found, /*inlined=*/true);
+  return found;
+}
+
+ir::ExprPtr ModuleLowering::generatedConstant(const std::string& name) {
+  return constantValue(generatedVariable(name), /*inlined=*/true);
 }
 
 // ---- constants ----------------------------------------------------------------------------------
@@ -419,7 +424,8 @@ ir::ExprPtr ModuleLowering::evaluated(const clang::VarDecl* declaration) {
   const ir::Type wanted = type(declaration->getType(), init->getBeginLoc());
   // in the functions called, Clang has read literals as floats
   if (ir::holdsDouble(module_, wanted)) {
-    fail(Diag::DoubleConstant, init->getBeginLoc(), {declaration->getNameAsString()});
+    const std::string name = isGenerated(declaration) ? textOf(init) : declaration->getNameAsString();
+    fail(Diag::DoubleConstant, init->getBeginLoc(), {name});
   }
   return evaluated(*value, wanted, loc(init->getBeginLoc()));
 }

@@ -130,6 +130,10 @@ class ModuleLowering {
   std::uint32_t generatedNumber(const std::string& name);
   ir::DeclaredExtent streamExtent(const ExtentSyntax& syntax, const clang::VarDecl* stream);
   const clang::ValueDecl* visibleValue(const clang::VarDecl* stream, const clang::IdentifierInfo* name);
+  ir::ValueRange range(const RangeSyntax& syntax, const ir::KernelParam& param, clang::SourceLocation where);
+  ir::Scalar scalarInRange(const ir::KernelParam& param, clang::SourceLocation where);
+  double rangeEnd(const std::string& constant, const ir::KernelParam& param, ir::Scalar scalar);
+  const clang::VarDecl* generatedVariable(const std::string& name);
   ir::ExprPtr generatedConstant(const std::string& name);
   ir::ExprPtr constantValue(const clang::VarDecl* declaration, bool inlined);
   ir::ExprPtr evaluated(const clang::VarDecl* declaration);

@@ -2,7 +2,6 @@
 #include "frontend/tokens/parameter_editor.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -12,6 +11,7 @@
 
 #include "frontend/clang_loc.hpp"
 #include "frontend/prelude.hpp"
+#include "frontend/tokens/parameter_parts.hpp"
 #include "frontend/tokens/token_cursor.hpp"
 
 namespace skc::frontend {
@@ -19,32 +19,7 @@ namespace skc::frontend {
 using clang::Token;
 namespace tok = clang::tok;
 
-/// The parts of one parameter's declaration.
-struct ParameterEditor::ParameterParts {
-  Token qualifier;                 ///< `out`, `reduce`, `iter` ..., or unset
-  bool hasQualifier = false;
-  Tokens type;
-  Token name;
-  bool isElement = false;          ///< `<>`
-  int rank = 0;                    ///< number of empty bracket pairs
-  Token open, close;               ///< the first and last bracket of either kind
-  Tokens length;                   ///< `[9]` of a uniform array, with brackets
-  int lengths = 0;                 ///< more than one is an error: an array of arrays
-  bool isArrayReference = false;   ///< `T (&w)[9]`
-  Tokens value;                    ///< after `=`
-  Token attribute;                 ///< the last word in [[...]]
-  bool hasAttribute = false;
-  bool hasBoundary = false;
-  Tokens border;                   ///< the argument of border(...)
-  Tokens rest;                     ///< of an ordinary parameter, after its name
-  ParamSyntax syntax;
-};
-
 namespace {
-
-bool isKind(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind kind) {
-  return at < tokens.size() && tokens[at].is(kind);
-}
 
 /// `({0, 1})` without its parentheses, which C++ does not allow there; any other value unchanged.
 std::vector<Token> borderValue(const std::vector<Token>& parenthesized) {
@@ -136,7 +111,7 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
     diagnostics_.report(Diag::ScalarType, locOf(parts.type.back()), {"void"});
     return;
   }
-  if (!resolveRole(parts, kind)) return;
+  if (!resolveRole(parts, kind) || !allowsRange(parts, kind)) return;
   print(parts, kind, out);
 }
 
@@ -169,96 +144,6 @@ void ParameterEditor::editMember(const Tokens& declared, Tokens& out) {
   } else if (resolveRole(parts, FunctionKind::Kernel)) {
     print(parts, FunctionKind::Kernel, out, /*isMember=*/true);
   }
-}
-
-/// [[clamp]] [[wrap]] [[mirror]] [[border(v)]] [[filter]] [[halo(2)]] [[wrap, filter]]
-bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
-  while (isKind(parameter, at, tok::l_square) && isKind(parameter, at + 1, tok::l_square)) {
-    ++at;
-    do {
-      if (!takeAttribute(parameter, ++at, parts)) return false;
-    } while (isKind(parameter, at, tok::comma));
-    if (!isKind(parameter, at, tok::r_square) || !isKind(parameter, at + 1, tok::r_square)) {
-      diagnostics_.report(Diag::AttributeEnd,
-                          locOf(at < parameter.size() ? parameter[at] : parameter.back()));
-      return false;
-    }
-    at += 2;
-  }
-  return true;
-}
-
-/// Takes one name between the brackets.
-bool ParameterEditor::takeAttribute(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
-  if (at >= parameter.size()) {
-    diagnostics_.report(Diag::ParameterAttribute, locOf(parameter.back()), {""});
-    return false;
-  }
-  const Token& name = parameter[at++];
-  parts.attribute = name;
-  parts.hasAttribute = true;
-  if (isWord(name, "filter")) {
-    parts.syntax.filter = true;
-    return true;
-  }
-  if (isWord(name, "halo")) return takeHalo(parameter, at, parts);
-  if (isWord(name, "clamp")) {
-    parts.syntax.boundary = ir::Boundary::Clamp;
-  } else if (isWord(name, "wrap")) {
-    parts.syntax.boundary = ir::Boundary::Wrap;
-  } else if (isWord(name, "mirror")) {
-    parts.syntax.boundary = ir::Boundary::Mirror;
-  } else if (isWord(name, "border")) {
-    parts.syntax.boundary = ir::Boundary::Border;
-  } else {
-    diagnostics_.report(Diag::ParameterAttribute, locOf(name), {preprocessor_.getSpelling(name)});
-    return false;
-  }
-  if (std::exchange(parts.hasBoundary, true)) {
-    diagnostics_.report(Diag::BoundaryTwice, locOf(name), {nameOf(name)});
-    return false;
-  }
-  return parts.syntax.boundary != ir::Boundary::Border || takeBorder(parameter, at, parts);
-}
-
-bool ParameterEditor::takeBorder(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
-  int depth = 0;
-  if (isKind(parameter, at, tok::l_paren)) {
-    do {
-      if (parameter[at].is(tok::l_paren)) ++depth;
-      if (parameter[at].is(tok::r_paren)) --depth;
-      parts.border.push_back(parameter[at++]);
-    } while (depth > 0 && at < parameter.size());
-  }
-  if (depth != 0 || parts.border.size() < 3) {
-    diagnostics_.report(Diag::BorderValue, locOf(parts.attribute));
-    return false;
-  }
-  return true;
-}
-
-/// Takes the numbers of [[halo(...)]]: literals, which macros may stand for.
-bool ParameterEditor::takeHalo(const Tokens& parameter, std::size_t& at, ParameterParts& parts) {
-  constexpr long farthest = 1 << 20;
-  if (!parts.syntax.halo.empty()) {
-    diagnostics_.report(Diag::HaloTwice, locOf(parts.attribute));
-    return false;
-  }
-  bool isWellFormed = isKind(parameter, at, tok::l_paren);
-  do {
-    const bool isNumber = isWellFormed && isKind(parameter, ++at, tok::numeric_constant);
-    const std::string text = isNumber ? preprocessor_.getSpelling(parameter[at++]) : "";
-    char* end = nullptr;
-    const long number = std::strtol(text.c_str(), &end, 0);
-    isWellFormed = isNumber && *end == '\0' && number <= farthest;
-    if (isWellFormed) parts.syntax.halo.push_back(static_cast<std::int32_t>(number));
-  } while (isWellFormed && isKind(parameter, at, tok::comma));
-  if (!isWellFormed || !isKind(parameter, at, tok::r_paren)) {
-    diagnostics_.report(Diag::HaloForm, locOf(parts.attribute));
-    return false;
-  }
-  ++at;
-  return true;
 }
 
 /// Takes a qualifier, which must precede a type and a name: `out x<>` declares a stream of type `out`.
@@ -490,6 +375,16 @@ bool ParameterEditor::resolveRole(ParameterParts& parts, FunctionKind kind) {
   return true;
 }
 
+/// Reports a [[range]] where nothing checks it.
+bool ParameterEditor::allowsRange(const ParameterParts& parts, FunctionKind kind) {
+  const bool isIterator = parts.syntax.role == ir::ParamRole::Iterator;
+  if (parts.ends.empty() || (kind != FunctionKind::Helper && !isIterator)) return true;
+  diagnostics_.report(Diag::RangePlace, locOf(parts.range),
+                      {nameOf(parts.name),
+                       isIterator ? "an iterator, whose ends each call gives" : "a parameter of a function"});
+  return false;
+}
+
 /// `vout T r<>` and `out T r[]`, in kernels and in the functions to which they pass theirs.
 bool ParameterEditor::resolveAppendOutput(ParameterParts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
@@ -524,6 +419,13 @@ void ParameterEditor::print(const ParameterParts& parts, FunctionKind kind, Toke
     syntax.border = generateConstant(elementTypeOf(parts.type), borderValue(parts.border), location);
   }
   if (parts.hasAttribute) syntax.attribute = nameOf(parts.attribute);
+  if (!parts.ends.empty()) {
+    // 1e-300 is no float, and 1.5 no int, which is for lowering to say
+    const bool isDouble = nameOf(elementTypeOf(parts.type).back()).starts_with("double");
+    const Tokens type{builder_.word(isDouble ? "double" : "auto", location)};
+    syntax.range = {generateConstant(type, parts.ends.front(), parts.ends.front().front().getLocation()),
+                    generateConstant(type, parts.ends.back(), parts.ends.back().front().getLocation())};
+  }
   if (!parts.value.empty()) syntax.identity = generateConstant(parts.type, parts.value, location);
   if (syntax.rank > 0) indexed_.push_back({parts.name, syntax.rank});
   const clang::SourceLocation start = parts.type.front().getLocation();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Edits one parameter list: determines each parameter's role, removes Brook's syntax from its tokens and
-// records what it meant. The expressions of [[border(v)]] and of a reduce's identity move into generated
+// records what it meant. The expressions of [[border(v)]], [[range(lo, hi)]] and a reduce's identity move into generated
 // constants, where Clang checks them like any other.
 #pragma once
 
@@ -58,6 +58,7 @@ class ParameterEditor {
   bool takeAttribute(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
   bool takeBorder(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
   bool takeHalo(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
+  bool takeRange(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
   void takeQualifier(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
   bool takeDeclarator(const Tokens& parameter, std::size_t& at, ParameterParts& parts);
   bool hasSecondQualifier(const ParameterParts& parts);
@@ -68,6 +69,7 @@ class ParameterEditor {
   static std::vector<FixIt> asAccumulator(const ParameterParts& parts, std::string_view word);
   bool resolveRole(ParameterParts& parts, FunctionKind kind);
   bool resolveAppendOutput(ParameterParts& parts, FunctionKind kind);
+  bool allowsRange(const ParameterParts& parts, FunctionKind kind);
   std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation location);
   void print(const ParameterParts& parts, FunctionKind kind, Tokens& out, bool isMember = false);
 

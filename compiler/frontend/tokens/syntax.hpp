@@ -47,6 +47,11 @@ struct KernelSyntax {
   std::string signature;             ///< the declaration on one line, as written
 };
 
+/// [[range(lo, hi)]]: the generated constants that hold the ends.
+struct RangeSyntax {
+  std::string low, high;
+};
+
 struct ParamSyntax {
   ir::ParamRole role = ir::ParamRole::Uniform;
   std::uint8_t rank = 0;
@@ -56,6 +61,7 @@ struct ParamSyntax {
   std::vector<std::int32_t> halo;    ///< the numbers of [[halo(...)]], x first
   std::string border;                ///< name of the generated constant that holds [[border(v)]]
   std::string identity;              ///< name of the generated constant that holds `= identity`
+  std::optional<RangeSyntax> range;
 };
 
 /// An extent of a `stream` declaration: a name, or the generated constant that holds the extent.

@@ -34,6 +34,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -167,6 +169,14 @@ struct Reach {
   bool isPromised = false;
 };
 
+/// The values that an author promises by [[range(lo, hi)]]: from `low` to `high`, either of which may be infinite. NaN is none of
+/// them. The ends are those of the text; whoever compares them with a value rounds them to its type first.
+struct ValueRange {
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  double low, high;
+  constexpr bool operator==(const ValueRange&) const = default;
+};
+
 struct Parameter {
   std::string_view name;  ///< as declared, for messages
   /// Suffix of the names that the assembler declares for it: a GLSL-safe name that begins with a letter,
@@ -199,6 +209,7 @@ struct Parameter {
   std::span<const Reach> halo = {};
   /// Bit p is set if what `halo` says without a promise holds only for calls that give parameter p the domain's extents.
   std::uint64_t haloShapes = 0;
+  std::optional<ValueRange> range = {};  ///< declared kernels: of every number of an element
 };
 
 /// The element type of a parameter's stream.
@@ -254,8 +265,10 @@ struct Kernel {
   std::string_view entry;  ///< name of the entry function in `body`
   /// Structs, and the constants that Parameter::border and identity use, with #line directives; may be empty.
   std::string_view declarations;
-  std::string_view body;  ///< other constants, and functions, with #line directives and marks (sk/arithmetic_marks.hpp)
-  std::uint32_t weight = 0;  ///< operations to compile, in the body and in the library functions that it calls
+  std::string_view
+      body;  ///< other constants, and functions, with #line directives and marks (sk/arithmetic_marks.hpp)
+  std::uint32_t weight =
+      0;  ///< operations to compile, in the body and in the library functions that it calls
   std::span<const Parameter> parameters;  ///< in order of declaration
   std::span<const std::string_view> sources;  ///< source file of string number i + 1 in #line
   bool usesIndex = false;  ///< the body calls sk_index()

@@ -152,7 +152,7 @@ detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const DeviceO
   state->memoryLimit = memoryLimitOf(options.memoryLimit);
   state->limits.memory = limited(state->limits.memory, state->memoryLimit);
   state->configuration = std::move(configuration);
-  state->runsCallByCall = checksWritten();
+  state->runsCallByCall = checksWritten() || checksRanges();
   const std::string trace = chosen({}, "SK_TRACE");
   if (!trace.empty()) state->startTrace(trace);
   return detail::DeviceOwner(withShadow(std::move(state)).release());

@@ -12,6 +12,7 @@
 #include "call/box.hpp"
 #include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
+#include "call/check_ranges.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_unwritten_reads.hpp"
 #include "call/check_written.hpp"
@@ -242,6 +243,13 @@ void checkAndFold(const Reduction& reduction, std::span<const Argument> given, c
   others.over = folded.over;
   const FoldCall call(reduction, folded.arguments, others, folded.placed);
   checkFoldAssertions(call.device(), reduction.fold, given, options.box, call.resolved().options);
+  checkRanges({.device = call.device(),
+               .kernel = reduction.fold,
+               .arguments = given,
+               .box = options.box,
+               .run = [&reduction, options](std::span<const Argument> own, std::span<void* const>) {
+                 sk::fold(reduction, own, options);
+               }});
   LoopState* const recording = call.device().recording;
   if (recording == nullptr) return call.run();
   recording->add(std::make_unique<RecordedFold>(reduction, folded.arguments, others, folded.placed));

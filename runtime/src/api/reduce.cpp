@@ -11,6 +11,7 @@
 #include "call/box.hpp"
 #include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
+#include "call/check_ranges.hpp"
 #include "call/check_reduction.hpp"
 #include "call/check_unwritten_reads.hpp"
 #include "call/check_written.hpp"
@@ -283,13 +284,29 @@ class RecordedReduction final : public RecordedCall {
   ResolvedReduction call_;
 };
 
-/// A reduction of what is folded, and the arguments and the box that its caller gave.
+/// A reduction of what is folded, and the arguments and the options that its caller gave.
 struct GivenReduction {
   const Reduction& reduction;
   const BoxedArguments& folded;
   std::span<const Argument> arguments;
-  const Box& box;
+  const CallOptions& options;
 };
+
+void checkReducedRanges(DeviceState& device, const GivenReduction& given, std::span<void* const> values,
+                        const std::optional<ScanOrder>& scan) {
+  const auto repeat = [&reduction = given.reduction, options = given.options, isScan = scan.has_value()](
+                          std::span<const Argument> others, std::span<void* const> results) {
+    if (isScan) return sk::scan(reduction, others, options);
+    if (results.empty()) return sk::reduce(reduction, others, options);
+    sk::reduce(reduction, others, results, options);
+  };
+  checkRanges({.device = device,
+               .kernel = given.reduction.fold,
+               .arguments = given.arguments,
+               .box = given.options.box,
+               .values = values,
+               .run = repeat});
+}
 
 void checkAndReduce(const GivenReduction& given, std::span<void* const> values, const CallOptions& options,
                     const std::optional<ScanOrder>& scan) {
@@ -298,7 +315,8 @@ void checkAndReduce(const GivenReduction& given, std::span<void* const> values, 
   ResolvedReduction call =
       checkReduction(reduction, arguments, values, scan, given.folded.placed, given.folded.over);
   call.options = resolvedOptions(call, options);
-  checkFoldAssertions(call.device, reduction.fold, given.arguments, given.box, call.options);
+  checkFoldAssertions(call.device, reduction.fold, given.arguments, given.options.box, call.options);
+  checkReducedRanges(call.device, given, values, scan);
   if (call.device.recording == nullptr) return runResolved(call);
   if (call.isToValues()) {
     fail(reduction.fold,
@@ -315,7 +333,7 @@ void checkAndReduce(const Reduction& reduction, std::span<const Argument> argume
     return checkAndReduce({reduction,
                            {.arguments = {arguments.begin(), arguments.end()}, .over = options.over},
                            arguments,
-                           options.box},
+                           options},
                           values, options, scan);
   if (scan)
     fail(reduction.fold,
@@ -324,7 +342,7 @@ void checkAndReduce(const Reduction& reduction, std::span<const Argument> argume
   others.box = {};
   const BoxedArguments boxed = argumentsIn(reduction.fold, arguments, options.box, options.over);
   others.over = boxed.over;
-  checkAndReduce({reduction, boxed, arguments, options.box}, values, others, scan);
+  checkAndReduce({reduction, boxed, arguments, options}, values, others, scan);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "call/check_asserts.hpp"
 #include "call/check_call.hpp"
 #include "call/check_halos.hpp"
+#include "call/check_ranges.hpp"
 #include "call/check_unwritten_reads.hpp"
 #include "call/check_written.hpp"
 #include "call/distribution.hpp"
@@ -116,12 +117,22 @@ void runInParts(DeviceState& device, const ResolvedCall& given) {
   device.recording != nullptr ? record(device, chosen) : runResolved(device, chosen);
 }
 
-void runPlaced(DeviceState& device, const ResolvedCall& checked, const Box& given) {
+/// `given`: the call as the application made it.
+void checkRangesOf(DeviceState& device, const Kernel& kernel, std::span<const Argument> arguments,
+                   const CallOptions& given) {
+  const auto repeat = [&kernel, given](std::span<const Argument> others, std::span<void* const>) {
+    sk::run(kernel, others, given);
+  };
+  checkRanges({.device = device, .kernel = kernel, .arguments = arguments, .box = given.box, .run = repeat});
+}
+
+void runPlaced(DeviceState& device, const ResolvedCall& checked, const CallOptions& given) {
   ResolvedCall call = checked;
-  call.options.box = boxOrAll(given, call.domain);
+  call.options.box = boxOrAll(given.box, call.domain);
   checkBoxedCall(call.kernel, call.arguments, call.options.box, call.domain);
   checkPlacedCall(call, call.options.box, device.limits.elements);
   checkAssertions(device, call.kernel, call.arguments, call.domain, call.options);
+  checkRangesOf(device, call.kernel, call.arguments, given);
   if (checksHalos() && device.recording == nullptr)
     checkPlacedHalos(device, call, [&](const ResolvedCall& part) { runInParts(device, part); });
   runInParts(device, call);
@@ -137,12 +148,13 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   DeviceState& device = checked->device;
   checked->call.options = device.configuration.resolve(kernel, options);
   checkTables(kernel, checked->call.options);
-  if (hasPlaced(arguments)) return runPlaced(device, checked->call, options.box);
+  if (hasPlaced(arguments)) return runPlaced(device, checked->call, options);
   if (!options.box.isWhole()) {
     checkBoxedCall(kernel, arguments, options.box, checked->call.domain);
     if (isAll(options.box, checked->call.domain)) checked->call.options.box = {};
   }
   checkAssertions(device, kernel, arguments, checked->call.domain, checked->call.options);
+  checkRangesOf(device, kernel, arguments, options);
   const ResolvedCall call = checked->call.of(chosenVariant(device, checked->call), device.limits);
   if (device.recording != nullptr) return record(device, call);
   if (checksHalos()) {

@@ -15,12 +15,12 @@
 
 namespace sk {
 
-/// While it lives, calls on the device evaluate no assertions, since those of the call whose parts they are have been evaluated. Does
-/// nothing unless SK_CHECK asks for assertions.
+/// While it lives, calls on the device evaluate no assertions and check no ranges, since those of the call whose parts they are have been
+/// checked. Does nothing unless SK_CHECK asks for assertions or ranges.
 class AssertionsEvaluated {
  public:
   explicit AssertionsEvaluated(DeviceState& device) {
-    if (checksAsserts()) steps_.emplace(device);
+    if (checksAsserts() || checksRanges()) steps_.emplace(device);
   }
 
  private:

@@ -106,13 +106,14 @@ void noteCopied(const StreamRegion& to, std::span<const std::int64_t> unwritten)
 
 namespace {
 
-enum class Check : std::uint8_t { None, Folds, Halos, Written, Asserts, Collectives };
+enum class Check : std::uint8_t { None, Folds, Halos, Written, Asserts, Collectives, Ranges };
 
-constexpr std::array<std::pair<std::string_view, Check>, 5> checks = {{{"folds", Check::Folds},
+constexpr std::array<std::pair<std::string_view, Check>, 6> checks = {{{"folds", Check::Folds},
                                                                        {"halos", Check::Halos},
                                                                        {"written", Check::Written},
                                                                        {"asserts", Check::Asserts},
-                                                                       {"collectives", Check::Collectives}}};
+                                                                       {"collectives", Check::Collectives},
+                                                                       {"ranges", Check::Ranges}}};
 
 Check checkNamed(std::string_view name) {
   if (name.empty()) return Check::None;
@@ -139,6 +140,7 @@ bool checksFolds() { return chosenCheck() == Check::Folds; }
 bool checksHalos() { return chosenCheck() == Check::Halos; }
 bool checksWritten() { return chosenCheck() == Check::Written; }
 bool checksAsserts() { return chosenCheck() == Check::Asserts; }
+bool checksRanges() { return chosenCheck() == Check::Ranges; }
 bool checksCollectives() { return chosenCheck() == Check::Collectives; }
 
 }  // namespace sk

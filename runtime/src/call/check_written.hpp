@@ -30,6 +30,8 @@ bool checksHalos();
 bool checksWritten();
 /// Whether SK_CHECK is `asserts`: kernels' assertions are evaluated (call/check_asserts.hpp).
 bool checksAsserts();
+/// Whether SK_CHECK is `ranges`: arguments and results are compared with their ranges (call/check_ranges.hpp).
+bool checksRanges();
 /// Whether SK_CHECK is `collectives`: the ranks of a domain compare every call (mpi/agreement.hpp).
 bool checksCollectives();
 

@@ -200,9 +200,10 @@ class DeviceState {
   FunctionTables tables;
   std::optional<PassCount> passCount;  ///< empty unless counting is on
   std::unique_ptr<Trace> trace;  ///< null unless SK_TRACE names a file
-  bool runsCallByCall = false;  ///< loops need no LoopRunner: SK_CHECK=written checks each of their calls
+  bool runsCallByCall =
+      false;  ///< loops need no LoopRunner: SK_CHECK=written or ranges checks each of their calls
   bool isChecking =
-      false;  ///< a call runs that SK_CHECK=written or asserts checks; its steps are not checked
+      false;  ///< a call runs that SK_CHECK=written, asserts or ranges checks; its steps are not checked
   LoopState* recording = nullptr;  ///< records calls instead of running them; or null
   std::vector<LoopState*> loops;  ///< that use the device's streams
   PendingScalars pendingScalars;

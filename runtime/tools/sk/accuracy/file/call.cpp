@@ -50,7 +50,7 @@ Call::Call(sk::Device& device, const Subject& subject, const Inputs& inputs)
     const Parameter& parameter = subject.parameters()[p];
     const ParameterInput& input = inputs.parameters[p];
     sk::detail::StreamOwner& stream = streams_.emplace_back();
-    if (isValue(parameter)) continue;
+    if (isValue(parameter) || input.isAbsent) continue;
     stream = device.createStream(*parameter.element, input.shape);
     if (isResult(parameter)) continue;
     sk::detail::write(sk::detail::wholeRegion(stream.get()), input.bytes.data(),
@@ -62,6 +62,10 @@ void Call::run(const sk::CallOptions& options, int draw) {
   std::vector<sk::Argument> arguments;
   for (std::size_t p = 0; p < streams_.size(); ++p) {
     const Parameter& parameter = subject_.parameters()[p];
+    if (inputs_.parameters[p].isAbsent) {
+      arguments.push_back({.isNone = true});
+      continue;
+    }
     if (!isValue(parameter)) {
       arguments.push_back({.region = sk::detail::wholeRegion(streams_[p].get())});
       continue;

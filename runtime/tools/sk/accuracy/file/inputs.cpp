@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -34,7 +35,7 @@ double drawReal(const std::optional<Range>& range, Numbers& numbers) {
     const double magnitude = logarithmic(wideLeast, wideMost);
     return numbers.unit() < 0.5 ? -magnitude : magnitude;
   }
-  const auto [low, high] = *range;
+  const double low = range->low, high = range->high;
   if (isLinear || low == high) return linear(low, high);
   const bool isNegative = high <= 0 || (low < 0 && numbers.unit() < 0.5);
   const double most = isNegative ? -low : high;
@@ -78,6 +79,9 @@ std::vector<double> extremesOf(Scalar scalar, const std::optional<Range>& range)
                                range->high - ulpOf(scalar, range->high)}) {
       values.push_back(value);
     }
+    if (range->promise)
+      std::erase_if(values,
+                    [&](double v) { return !(v >= range->promise->low && v <= range->promise->high); });
   }
   return values;
 }
@@ -98,14 +102,18 @@ Range endsOf(const Parameter& parameter, Scalar scalar, const std::optional<Rang
   return {range->low, range->low + stride * steps};
 }
 
+std::int64_t identifyingElement(const Extent& extent, std::int64_t result) {
+  const std::int64_t block = extent.domain.size() / std::max<std::int64_t>(extent.results.size(), 1);
+  return result * block + (block > 1 ? result * 7 % block : 0);
+}
+
 class Drawing {
  public:
   Drawing(const Subject& subject, const Ranges& ranges, const Extent& extent, Extremes extremes)
       : subject_(subject), ranges_(ranges), extent_(extent), extremes_(extremes), numbers_(inputSeed) {}
 
   Inputs draw() {
-    Inputs inputs{.extent = extent_, .parameters = {}, .elements = {}};
-    for (std::int64_t i = 0; i < extent_.results.size(); ++i) inputs.elements.push_back(elementOf(i));
+    Inputs inputs{.extent = extent_, .parameters = {}, .elements = identifyingElements(extent_)};
     places_ = extremeScalars(subject_, ranges_, extremes_);
     for (const Parameter& parameter : subject_.parameters())
       inputs.parameters.push_back(drawParameter(parameter));
@@ -113,12 +121,6 @@ class Drawing {
   }
 
  private:
-  /// The element that identifies a result: one of its block, at a position that varies with the result.
-  std::int64_t elementOf(std::int64_t result) const {
-    const std::int64_t block = extent_.domain.size() / std::max<std::int64_t>(extent_.results.size(), 1);
-    return result * block + (block > 1 ? result * 7 % block : 0);
-  }
-
   ParameterInput drawParameter(const Parameter& parameter) {
     if (isResult(parameter)) return {.shape = extent_.results, .bytes = {}};
     if (parameter.role == Role::Iterator) return iterator(parameter);
@@ -192,7 +194,7 @@ class Drawing {
   bool identifiesResult(std::size_t element) const {
     if (extremes_ == Extremes::InValues || block() == 1) return true;
     const auto at = static_cast<std::int64_t>(element);
-    return at / block() < extent_.results.size() && elementOf(at / block()) == at;
+    return at / block() < extent_.results.size() && identifyingElement(extent_, at / block()) == at;
   }
   std::size_t numberOf(std::size_t element) const {
     return extremes_ == Extremes::InValues ? element : element / static_cast<std::size_t>(block());
@@ -220,6 +222,21 @@ class Drawing {
   std::size_t place_ = 0;  ///< number of the next one
 };
 
+/// The number in a stream of the element that an element of the domain reads; nullopt if the stream is fitted to the domain in
+/// another way than by repeating extents of 1.
+std::optional<std::int64_t> numberIn(const sk::Shape& shape, const sk::Shape& domain, std::int64_t element) {
+  if (shape == domain) return element;
+  if (shape.rank() != domain.rank()) return std::nullopt;
+  std::int64_t number = 0, factor = 1;
+  for (int d = domain.rank() - 1; d >= 0; --d) {
+    if (shape[d] != domain[d] && shape[d] != 1) return std::nullopt;
+    number += (shape[d] == 1 ? 0 : element % domain[d]) * factor;
+    factor *= shape[d];
+    element /= domain[d];
+  }
+  return number;
+}
+
 /// The index of an element as text, rows first: "3, 5".
 std::string indexText(const sk::Shape& shape, std::int64_t element) {
   std::vector<std::int64_t> index(static_cast<std::size_t>(shape.rank()));
@@ -231,6 +248,20 @@ std::string indexText(const sk::Shape& shape, std::int64_t element) {
 }
 
 }  // namespace
+
+std::vector<std::int64_t> identifyingElements(const Extent& extent) {
+  std::vector<std::int64_t> elements;
+  for (std::int64_t i = 0; i < extent.results.size(); ++i) elements.push_back(identifyingElement(extent, i));
+  return elements;
+}
+
+bool areAligned(const Subject& subject, const Inputs& inputs) {
+  for (std::size_t p = 0; p < inputs.parameters.size(); ++p) {
+    if (subject.parameters()[p].role == Role::Input && inputs.parameters[p].shape != inputs.extent.domain)
+      return false;
+  }
+  return true;
+}
 
 Inputs drawInputs(const Subject& subject, const Ranges& ranges, const Extent& extent, Extremes extremes) {
   return Drawing(subject, ranges, extent, extremes).draw();
@@ -417,7 +448,7 @@ Json inputsOf(const Subject& subject, const Inputs& inputs, int draw, std::size_
   for (std::size_t p = 0; p < inputs.parameters.size(); ++p) {
     const Parameter& parameter = subject.parameters()[p];
     const ParameterInput& input = inputs.parameters[p];
-    if (isResult(parameter)) continue;
+    if (isResult(parameter) || input.isAbsent) continue;
     std::string name(parameter.name);
     if (parameter.role == Role::Iterator) {
       json[name] = {{"index", indexText(inputs.extent.domain, element)}};
@@ -427,8 +458,10 @@ Json inputsOf(const Subject& subject, const Inputs& inputs, int draw, std::size_
       if (input.shape != inputs.extent.domain) continue;
       name += fmt::format("[{}]", indexText(input.shape, element));
     }
-    const std::size_t at =
-        isValue(parameter) ? static_cast<std::size_t>(draw) : static_cast<std::size_t>(element);
+    const std::optional<std::int64_t> number =
+        isValue(parameter) ? draw : numberIn(input.shape, inputs.extent.domain, element);
+    if (!number) continue;
+    const auto at = static_cast<std::size_t>(*number);
     const std::byte* bytes = input.bytes.data() + at * parameter.element->size;
     for (const ScalarPlace& place : scalarsOf(*parameter.element)) {
       json[name + place.member + place.component] =

@@ -30,6 +30,7 @@ struct ParameterInput {
   sk::Shape shape = {};  ///< of a stream
   /// The elements, row-major; for a host value, one per draw.
   std::vector<std::byte> bytes = {};
+  bool isAbsent = false;  ///< a stream that the spec parameters switch off
 };
 
 struct Inputs {
@@ -37,6 +38,11 @@ struct Inputs {
   std::vector<ParameterInput> parameters;  ///< for results, only shapes
   std::vector<std::int64_t> elements;  ///< for each result, the domain element that identifies it
 };
+
+/// For each result, the element that identifies it: one of its block, at a position that varies with the result.
+std::vector<std::int64_t> identifyingElements(const Extent& extent);
+/// Whether each result of an elementwise subject depends on the elements of its own index.
+bool areAligned(const Subject& subject, const Inputs& inputs);
 
 Inputs drawInputs(const Subject& subject, const Ranges& ranges, const Extent& extent, Extremes extremes);
 

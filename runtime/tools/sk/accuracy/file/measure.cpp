@@ -10,6 +10,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -20,6 +21,7 @@
 #include "accuracy/experiment.hpp"
 #include "accuracy/file/call.hpp"
 #include "accuracy/file/errors.hpp"
+#include "accuracy/file/recorded.hpp"
 #include "accuracy/progress.hpp"
 #include "sk/error.hpp"
 #include "sk/native/code.hpp"
@@ -207,13 +209,18 @@ struct References {
 class Measured {
  public:
   Measured(sk::Device& device, References& references, const Subject& subject,
-           const FileMeasurement& measurement)
+           const FileMeasurement& measurement, const RecordedInputs* recorded)
       : device_(device),
         references_(references),
         subject_(subject),
         measurement_(measurement),
+        isRecorded_(recorded != nullptr),
         scalars_(resultScalars(subject)),
         progress_(subject.name()) {
+    if (recorded != nullptr) {
+      addRecorded(*recorded);
+      return;
+    }
     const sk::Shape domain = domainOf();
     size_ = domain.size();
     add(ordinaryExtent(subject, domain, 1), Extremes::None);
@@ -231,7 +238,10 @@ class Measured {
   }
 
   Experiment experiment() {
-    Experiment experiment{.program = subject_.name(), .data = "drawn", .about = about(), .bounded = ""};
+    Experiment experiment{.program = subject_.name(),
+                          .data = isRecorded_ ? "recorded" : "drawn",
+                          .about = about(),
+                          .bounded = ""};
     std::vector<Mode> modes;
     const std::vector<CallMode> all = modesOf(subject_, device_);
     for (std::size_t m = 0; m < all.size(); ++m) {
@@ -243,7 +253,8 @@ class Measured {
                        }});
     }
     experiment.rows = compareModes(device_, modes, measurement_.rounds);
-    experiment.isReferenceChecked = references_.precise != nullptr && isElementwise(subject_);
+    experiment.isReferenceChecked = references_.precise != nullptr && isElementwise(subject_) &&
+                                    areAligned(subject_, sets_.front()->inputs);
     return experiment;
   }
 
@@ -258,6 +269,12 @@ class Measured {
     sets_.push_back(std::make_unique<Set>(device_, references_.quad, subject_,
                                           drawInputs(subject_, measurement_.ranges, extent, extremes),
                                           extremes));
+  }
+
+  void addRecorded(const RecordedInputs& recorded) {
+    sets_.push_back(
+        std::make_unique<Set>(device_, references_.quad, subject_, recorded.of(subject_), Extremes::None));
+    size_ = sets_.front()->inputs.extent.domain.size();
   }
 
   /// Adds inputs that were looked for, and their errors.
@@ -336,7 +353,8 @@ class Measured {
 
   std::string about() const {
     std::string text = fmt::format("{} elements", size_);
-    if (const std::string ranges = measurement_.ranges.text(); !ranges.empty()) text += "; " + ranges;
+    if (isRecorded_) return fmt::format("{} of {}", text, measurement_.inputs);
+    if (const std::string ranges = measurement_.ranges.text(subject_); !ranges.empty()) text += "; " + ranges;
     return text;
   }
 
@@ -357,7 +375,7 @@ class Measured {
         }
       }
     }
-    if (isElementwise(subject_) &&
+    if (!isRecorded_ && isElementwise(subject_) &&
         !drawnReals(subject_, measurement_.ranges, sets_.front()->inputs).empty()) {
       searchJumps(options, sizes);
       searchNearWorst(options, sizes);
@@ -407,7 +425,9 @@ class Measured {
 
   /// The right result by MPFR; nullopt if there is none here.
   std::optional<double> preciselyAt(const ErrorPlace& place) const {
-    if (references_.precise == nullptr || !isElementwise(subject_)) return std::nullopt;
+    if (references_.precise == nullptr || !isElementwise(subject_) ||
+        !areAligned(subject_, sets_[place.inputs]->inputs))
+      return std::nullopt;
     const auto isIt = [&](const sk::program::Kernel* kernel) {
       return kernel->name == subject_.signature().name;
     };
@@ -433,6 +453,7 @@ class Measured {
   References& references_;
   const Subject& subject_;
   const FileMeasurement& measurement_;
+  const bool isRecorded_;
   std::vector<ResultScalar> scalars_;
   std::int64_t size_ = 0;
   std::vector<std::unique_ptr<Set>> sets_;  ///< the first one is timed
@@ -447,11 +468,23 @@ FileResults measureFile(sk::Device& device, const sk::program::Library& library,
   FileResults results;
   const std::vector<Subject> subjects = chosenSubjects(library, measurement.kernel, results.skipped);
   measurement.ranges.check(subjects);
+  std::optional<RecordedInputs> recorded;
+  if (!measurement.inputs.empty()) recorded.emplace(measurement.inputs).check(subjects);
   References references{.precise = precise};
   for (const Subject& subject : subjects) {
+    if (recorded && !recorded->has(subject.name())) {
+      results.skipped.push_back(recorded->lackOf(subject.name()));
+      continue;
+    }
     try {
-      results.experiments.push_back(Measured(device, references, subject, measurement).experiment());
+      results.experiments.push_back(
+          Measured(device, references, subject, measurement, recorded ? &*recorded : nullptr).experiment());
     } catch (const sk::Error& error) {  // even the plainest mode fails
+      results.skipped.emplace_back(error.what());
+      continue;
+    } catch (const std::runtime_error& error) {  // an overload of the recorded kernel
+      const auto hasName = [&](const Subject& other) { return other.name() == subject.name(); };
+      if (!recorded || std::ranges::count_if(subjects, hasName) == 1) throw;
       results.skipped.emplace_back(error.what());
       continue;
     }
@@ -476,6 +509,9 @@ void FileOptions::addTo(CLI::App& command) {
   add("--set", values, "Give a parameter, or a member, this value (default of spec parameters: 1)",
       "PARAM=V[,V...]")
       ->allow_extra_args(false);
+  add("--inputs", inputs,
+      "Measure kernels on the inputs that a program has recorded in this .npz file, instead of drawn ones",
+      "FILE");
   command
       .add_flag(
           "--no-extremes", hasNoExtremes,
@@ -488,8 +524,15 @@ void FileOptions::addTo(CLI::App& command) {
 }
 
 FileMeasurement FileOptions::measurement(const std::vector<std::int64_t>& extents, int rounds) const {
-  FileMeasurement measurement{
-      .kernel = kernel, .extents = extents, .rounds = rounds, .hasExtremes = !hasNoExtremes};
+  if (!inputs.empty() && !(ranges.empty() && values.empty() && extents.empty()))
+    throw std::runtime_error(
+        "--inputs has the elements, the values and the shapes; leave out --range, --set and --size");
+  FileMeasurement measurement{.kernel = kernel,
+                              .extents = extents,
+                              .rounds = rounds,
+                              .hasExtremes = !hasNoExtremes,
+                              .ranges = {},
+                              .inputs = inputs};
   for (const std::string& range : ranges) measurement.ranges.addRange(range);
   for (const std::string& value : values) measurement.ranges.addValues(value);
   return measurement;
@@ -499,6 +542,7 @@ std::string_view FileOptions::used() const {
   if (!kernel.empty()) return "--kernel";
   if (!ranges.empty()) return "--range";
   if (!values.empty()) return "--set";
+  if (!inputs.empty()) return "--inputs";
   if (hasNoExtremes) return "--no-extremes";
   if (!build.includes.empty()) return "-I";
   if (!build.definitions.empty()) return "-D";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// `sk accuracy FILE.sk`: measures each kernel and reduction of a file in every mode, with drawn inputs, against the
+// `sk accuracy FILE.sk`: measures each kernel and reduction of a file in every mode, with drawn or recorded inputs, against the
 // reference, and has the options that do not apply to built-in programs.
 #pragma once
 
@@ -24,6 +24,8 @@ struct FileMeasurement {
   int rounds = 0;
   bool hasExtremes = true;
   Ranges ranges = {};
+  std::string inputs =
+      {};  ///< a .npz file with recorded inputs, which take the place of drawn ones; empty: none
 };
 
 /// The results of a file, and for each kernel that was not measured a line that says why.
@@ -49,6 +51,7 @@ namespace sk_tool {
 struct FileOptions {
   std::string kernel = {};
   std::vector<std::string> ranges = {}, values = {};
+  std::string inputs = {};
   bool hasNoExtremes = false;
   BuildOptions build = {};
 

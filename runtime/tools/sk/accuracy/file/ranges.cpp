@@ -73,7 +73,7 @@ void Ranges::addRange(const std::string& text) {
   const auto low = numberIn(text.substr(equals + 1, colon - equals - 1));
   const auto high = numberIn(text.substr(colon + 1));
   if (!low || !high || *low > *high) refuse("--range", text, wanted);
-  byName_[text.substr(0, equals)] = {{*low, *high}};
+  byName_[text.substr(0, equals)] = {Range{*low, *high}};
 }
 
 void Ranges::addValues(const std::string& text) {
@@ -85,7 +85,7 @@ void Ranges::addValues(const std::string& text) {
   for (std::string word; std::getline(list, word, ',');) {
     const auto value = numberIn(word);
     if (!value) refuse("--set", text, wanted);
-    values.push_back({*value, *value});
+    values.push_back(Range{*value, *value});
   }
   if (values.empty()) refuse("--set", text, wanted);
   byName_[text.substr(0, equals)] = values;
@@ -122,12 +122,13 @@ std::vector<std::optional<Range>> Ranges::of(const Parameter& parameter) const {
       if (!isNamed(parameter, place, name)) continue;
       range = given.size() == 1 ? given.front() : given[std::min(next[name]++, given.size() - 1)];
     }
+    if (!range) range = declaredRange(parameter, place.scalar);
     ranges.push_back(range);
   }
   return ranges;
 }
 
-std::string Ranges::text() const {
+std::string Ranges::text(const Subject& subject) const {
   std::string text;
   for (const auto& [name, ranges] : byName_) {
     text += fmt::format("{}{} ", text.empty() ? "" : ", ", name);
@@ -138,6 +139,11 @@ std::string Ranges::text() const {
     text += "= ";
     for (const Range& value : ranges)
       text += fmt::format("{}{:g}", &value == &ranges.front() ? "" : ", ", value.low);
+  }
+  for (const Parameter& parameter : subject.parameters()) {
+    if (!parameter.range || isResult(parameter) || byName_.contains(std::string(parameter.name))) continue;
+    text += fmt::format("{}{} in [{:g}, {:g}] as declared", text.empty() ? "" : ", ", parameter.name,
+                        parameter.range->low, parameter.range->high);
   }
   return text;
 }
@@ -197,6 +203,13 @@ FloatFormat formatOf(Scalar scalar) {
   return {24, -126};
 }
 
+/// The largest number that is drawn: differences of two must be finite.
+double largestOf(Scalar scalar) {
+  if (scalar == Scalar::Half) return 65504;
+  if (scalar == Scalar::Float) return std::numeric_limits<float>::max();
+  return std::numeric_limits<double>::max() / 4;
+}
+
 /// The distance between values of a fixed-point type from -1 or 0 to 1; 0 for floating-point types.
 double stepOf(Scalar scalar) {
   if (scalar == Scalar::Unorm8) return 1.0 / 255;
@@ -228,6 +241,23 @@ std::vector<ScalarPlace> scalarsOf(const sk::program::Element& element) {
 
 bool isReal(Scalar scalar) {
   return scalar == Scalar::Float || scalar == Scalar::Double || scalar == Scalar::Half || stepOf(scalar) > 0;
+}
+
+std::optional<Range> declaredRange(const Parameter& parameter, Scalar scalar) {
+  if (!parameter.range) return std::nullopt;
+  const sk::program::ValueRange promise = *parameter.range;
+  if (parameter.role == sk::program::Role::Spec) {
+    const double value = std::clamp(1.0, promise.low, promise.high);
+    return Range{value, value, promise};
+  }
+  const double most = largestOf(scalar), far = isReal(scalar) ? 1e4 : 8;
+  double low = std::max(promise.low, -most), high = std::min(promise.high, most);
+  if (std::isinf(promise.low) && std::isinf(promise.high)) return std::nullopt;
+  if (std::isinf(promise.high))
+    high = std::min(isReal(scalar) && low > 0 ? low * far : std::max(low, 0.0) + far, most);
+  if (std::isinf(promise.low))
+    low = std::max(isReal(scalar) && high < 0 ? high * far : std::min(high, 0.0) - far, -most);
+  return Range{low, high, promise};
 }
 
 double load(Scalar scalar, const std::byte* from) {

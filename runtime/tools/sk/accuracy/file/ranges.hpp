@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The options --range and --set: the range of a parameter's scalars, or their values.
+// The range of a parameter's scalars, or their values: from the options --range and --set, else what the parameter declares.
 //
 // Access to the scalars of elements whose type is known only at run time. A double can represent each of
 // them.
@@ -49,9 +49,15 @@ Json jsonOf(sk::program::Scalar scalar, double value);
 
 struct Range {
   double low = 0, high = 0;
+  /// The parameter declares it: extremes outside are none.
+  std::optional<sk::program::ValueRange> promise = {};
 
   bool isValue() const { return low == high; }
 };
+
+/// What to draw from for a declared range: numbers of the type, up to where an infinite range would begin to be all extremes. Of a spec
+/// parameter, the one value next to 1.
+std::optional<Range> declaredRange(const sk::program::Parameter& parameter, sk::program::Scalar scalar);
 
 class Ranges {
  public:
@@ -64,11 +70,11 @@ class Ranges {
   /// scalars differs from the number of values.
   void check(std::span<const Subject> subjects) const;
 
-  /// The range of each scalar of the parameter's element, in order; nullopt where no option applies.
+  /// The range of each scalar of the parameter's element, in order; nullopt where no option applies and none is declared.
   std::vector<std::optional<Range>> of(const sk::program::Parameter& parameter) const;
 
-  /// The options as given.
-  std::string text() const;
+  /// The options as given, and what the subject's other parameters declare.
+  std::string text(const Subject& subject) const;
 
  private:
   std::map<std::string, std::vector<Range>> byName_;  ///< one for all scalars, or one for each
