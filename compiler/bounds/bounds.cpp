@@ -184,7 +184,9 @@ class Analysis {
   KernelGraph all_;
 };
 
-KernelBounds boundsOfKernel(const Module& module, const Kernel& kernel, const Options& options) {
+}  // namespace
+
+KernelBounds boundsOf(const Module& module, const Kernel& kernel, const Options& options) {
   KernelBounds result{qualifier(kernel.scope) + kernel.name, std::string(wordOf(kernel)), {}, kernel.loc, {}};
   try {
     result.numbers = Analysis(module, kernel, options, graphOf(module, kernel, options)).run();
@@ -196,13 +198,11 @@ KernelBounds boundsOfKernel(const Module& module, const Kernel& kernel, const Op
   return result;
 }
 
-}  // namespace
-
 std::vector<KernelBounds> boundsOf(const Module& module, const Options& options) {
   std::vector<KernelBounds> all;
   for (const Kernel& kernel : module.kernels) {
     if (kernel.pass || kernel.isSynthesized || kernel.isPart) continue;
-    all.push_back(boundsOfKernel(module, kernel, options));
+    all.push_back(boundsOf(module, kernel, options));
   }
   return all;
 }

@@ -57,6 +57,8 @@ struct KernelBounds {
 
 /// Bounds all kernels that the program declares. The module has passed all transforms.
 std::vector<KernelBounds> boundsOf(const ir::Module& module, const Options& options);
+/// Bounds one of them.
+KernelBounds boundsOf(const ir::Module& module, const ir::Kernel& kernel, const Options& options);
 
 /// For people.
 std::string listing(const std::vector<KernelBounds>& kernels, const Options& options);

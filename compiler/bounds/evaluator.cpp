@@ -310,7 +310,11 @@ double Evaluator::roundingOf(const Node& node, Interval unrounded) const {
     const double above = roundedUp(magnitude * (1 + 2 * format.unit));
     error = 2 * rounding.amount * format.unit * powerBelow(std::max(above, format.smallest));
   } else {
-    error = format.unit * powerBelow(std::max(magnitude, format.smallest));
+    // Up to a power of 2, numbers are twice as close as above it, and no farther from it than they are above it.
+    const double power = powerBelow(std::max(magnitude, format.smallest));
+    const double above = magnitude > power ? roundedUp(magnitude - power) : 0;
+    error = power == format.smallest ? format.unit * power
+                                     : std::max(format.unit * power / 2, std::min(above, format.unit * power));
     if (node.op == Op::Add || node.op == Op::Subtract) {
       const Interval x = slots_[node.operands[0]].between, y = slots_[node.operands[1]].between;
       // Either operand is a candidate for the nearest number.
