@@ -34,7 +34,7 @@ struct Options {
   Target target = Target::Native;
   Precision precision = Precision::Single;
   double elements = 0;  ///< that a reduce or scan folds; 0 if unknown
-  std::size_t effort = 3'000'000;  ///< operations that the search may evaluate, about, for each bound
+  std::size_t effort = 20'000'000;  ///< operations that the search may evaluate, about, for each bound
 
   // For comparisons with tools that take inputs and literals for real numbers, which the program rounds first.
   bool inputsAreReal = false;
