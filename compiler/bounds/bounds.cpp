@@ -61,11 +61,24 @@ class Analysis {
     return {.boxes = static_cast<std::size_t>(std::clamp(boxes, 200.0, 200'000.0))};
   }
 
+  /// What a node is in the program, with the names of streams.
   std::string textOf(NodeId node) const {
     const KernelGraph::Origin origin =
         node < all_.origins.size() ? all_.origins[node] : KernelGraph::Origin{};
-    if (origin.expr == nullptr) return {};
-    return print(module_, module_.functions[origin.function], *origin.expr);
+    const Function& function = module_.functions[origin.function];
+    std::string text;
+    if (origin.expr != nullptr) text = print(module_, function, *origin.expr);
+    if (origin.assignment != nullptr) {
+      text =
+          fmt::format("{} {}= {}", print(module_, function, *origin.assignment->place),
+                      spelling(*origin.assignment->op), print(module_, function, *origin.assignment->value));
+    }
+    for (std::size_t p = kernel_.params.size(); p-- > 0;) {
+      const std::string number = fmt::format("${}", p);
+      for (std::size_t at = text.find(number); at != std::string::npos; at = text.find(number, at))
+        text.replace(at, number.size(), kernel_.params[p].name);
+    }
+    return text;
   }
 
   /// Throws unless all inputs of the number have ranges.

@@ -42,6 +42,9 @@ struct BoxResult {
   NodeId culprit = noNode;  ///< where
 };
 
+/// The result of Floor and the like.
+Interval stepped(Op op, Interval x);
+
 class Evaluator {
  public:
   Evaluator(const Graph& graph, NodeId output);
@@ -90,6 +93,8 @@ class Evaluator {
   void visitSelect(const Node& node, Slot& slot);
   void visitCall(const Node& node, Slot& slot);
   void finish(NodeId id, const Node& node, Slot& slot);
+  Interval extremeOf(const Node& node) const;
+  double directErrorOf(const Node& node, const Slot& slot, double propagated) const;
   double roundingOf(const Node& node, Interval unrounded) const;
   Interval computedOf(const Node& node, const Slot& slot) const;
   void backward();

@@ -30,10 +30,12 @@ struct KernelGraph {
   std::vector<OutputNumber> outputs;
   /// The inputs without a range, by number of Graph::inputs().
   std::vector<bool> lacksRange;
-  /// The expression that each node comes from, by NodeId; null for nodes that no single one stands for.
+  /// The expression, or the compound assignment, that each node comes from, by NodeId. Both are null for nodes that no single one stands
+  /// for.
   struct Origin {
     const ir::Expr* expr = nullptr;
     ir::FunctionId function = 0;
+    const ir::Assign* assignment = nullptr;
   };
   std::vector<Origin> origins;
 };

@@ -65,6 +65,7 @@ class Executor {
   Exits statement(Frame& frame, const ir::Stmt& stmt, Path path);
   Exits branch(Frame& frame, const ir::If& branch, Path path);
   Exits loop(Frame& frame, const ir::Loop& loop, Path path, Loc loc);
+  [[noreturn]] void refuseLoop(NodeId condition, Loc loc);
   Exits choice(Frame& frame, const ir::Switch& choice, Path path);
   void callStatement(Frame& frame, const ir::CallStmt& call, Path& path, Loc loc);
   Slots slots(Frame& frame, const Path& path, const ir::Expr& place);
@@ -73,6 +74,7 @@ class Executor {
   // expressions: expressions.cpp
   Numbers of(Frame& frame, const Path& path, const ir::Expr& expr);
   Numbers node(Frame& frame, const Path& path, const ir::Expr& expr);
+  void noteOrigin(const KernelGraph::Origin& origin);
   NodeId conditionOf(Frame& frame, const Path& path, const ir::Expr& expr);
   Numbers part(Frame& frame, const Path& path, const ir::Expr& expr, const Numbers& all);
   Numbers binaryOf(Frame& frame, const Path& path, const ir::Binary& binary);

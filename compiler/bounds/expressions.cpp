@@ -14,17 +14,17 @@ namespace skc::bounds {
 
 using namespace ir;
 
-/// A value, noting for each new node which expression it comes from.
+/// Notes for each node that has none yet what it comes from.
+void Executor::noteOrigin(const KernelGraph::Origin& origin) {
+  for (std::size_t id = origins_.size(); id < graph_.size(); ++id) origins_.push_back(origin);
+}
+
 Numbers Executor::of(Frame& frame, const Path& path, const Expr& expr) {
   tick(expr.loc);
-  const std::size_t before = graph_.size();
   const Loc outer = arithmetic_.loc();
   Numbers value = node(frame, path, expr);
   arithmetic_.at(outer);
-  origins_.resize(graph_.size());
-  for (std::size_t id = before; id < graph_.size(); ++id) {
-    if (origins_[id].expr == nullptr) origins_[id] = {&expr, frame.id};
-  }
+  noteOrigin({&expr, frame.id});  // operands have noted theirs
   return value;
 }
 

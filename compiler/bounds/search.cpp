@@ -32,7 +32,12 @@ class Search {
     root.decisions.assign(evaluator_.comparisons().size(), Decision::Open);
     result_.found = -infinity;
     add(std::move(root));
-    while (!queue_.empty() && result_.boxes < options_.boxes && !isClose(queue_.front().bound)) split(take());
+    // Where a tenth of the budget leaves no bound, more will not.
+    std::size_t unbounded = 0;
+    while (!queue_.empty() && result_.boxes < options_.boxes && !isClose(queue_.front().bound)) {
+      if (!(queue_.front().bound < infinity) && ++unbounded > options_.boxes / 20) break;
+      split(take());
+    }
     finish(!queue_.empty() && !(queue_.front().bound < final_.bound) ? queue_.front() : final_);
     return std::move(result_);
   }
