@@ -106,6 +106,7 @@ NodeId Graph::add(Node node) {
     node.rounding.isScaling =
         scales(node.operands[1]) || (node.op == Op::Multiply && scales(node.operands[0]));
   }
+  if (node.op == Op::Add && node.operands[0] == node.operands[1]) node.rounding.isScaling = true;
   const bool commutes = node.op == Op::Add || node.op == Op::Multiply || node.op == Op::Min ||
                         node.op == Op::Max || node.op == Op::Equal;
   if (commutes && node.operands[0] > node.operands[1]) std::swap(node.operands[0], node.operands[1]);
