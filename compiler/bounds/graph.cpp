@@ -8,7 +8,7 @@
 namespace skc::bounds {
 namespace {
 
-bool isPowerOf2(double x) {
+bool isScale(double x) {
   int exponent;
   return x != 0 && std::isfinite(x) && std::fabs(std::frexp(x, &exponent)) == 0.5;
 }
@@ -102,7 +102,7 @@ NodeId Graph::constant(double value, Rounding rounding, Integer integer) {
 NodeId Graph::add(Node node) {
   if (const NodeId known = simplified(node); known != noNode) return known;
   if (node.op == Op::Multiply || node.op == Op::Divide) {
-    const auto scales = [&](NodeId id) { return isExact(id) && isPowerOf2(nodes_[id].value); };
+    const auto scales = [&](NodeId id) { return isExact(id) && isScale(nodes_[id].value); };
     node.rounding.isScaling =
         scales(node.operands[1]) || (node.op == Op::Multiply && scales(node.operands[0]));
   }

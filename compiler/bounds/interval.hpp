@@ -24,16 +24,35 @@ inline double roundedDown(double x, double relative = 0x1p-52) {
 /// At least it; infinity for NaN.
 inline double roundedUp(double x, double relative = 0x1p-52) { return -roundedDown(-x, relative); }
 
+/// True for a power of 2: there, the errors of operations double, and an end that is exact must not move past it.
+inline bool isPowerOf2(double x) { return (std::bit_cast<std::uint64_t>(x) & 0xfffffffffffffu) == 0; }
+
 // A sum that is 0 is exact, and so is a product with 0: an end of 0 keeps its sign.
 inline double sumDown(double x, double y) {
   const double sum = x + y;
-  return sum == 0 ? 0 : roundedDown(sum);
+  if (sum == 0) return 0;
+  if (isPowerOf2(sum)) {
+    const double part = sum - x;
+    if ((x - (sum - part)) + (y - part) == 0) return sum;
+  }
+  return roundedDown(sum);
 }
 inline double sumUp(double x, double y) { return -sumDown(-x, -y); }
-inline double productDown(double x, double y) { return x == 0 || y == 0 ? 0 : roundedDown(x * y); }
-inline double productUp(double x, double y) { return x == 0 || y == 0 ? 0 : roundedUp(x * y); }
-inline double quotientDown(double x, double y) { return x == 0 ? 0 : roundedDown(x / y); }
-inline double quotientUp(double x, double y) { return x == 0 ? 0 : roundedUp(x / y); }
+inline double productDown(double x, double y) {
+  if (x == 0 || y == 0) return 0;
+  const double product = x * y;
+  if (isPowerOf2(product) && std::fabs(product) > 0x1p-900 && std::fma(x, y, -product) == 0) return product;
+  return roundedDown(product);
+}
+inline double productUp(double x, double y) { return -productDown(-x, y); }
+inline double quotientDown(double x, double y) {
+  if (x == 0) return 0;
+  const double quotient = x / y;
+  if (isPowerOf2(quotient) && std::fabs(quotient) > 0x1p-900 && std::fma(quotient, y, -x) == 0)
+    return quotient;
+  return roundedDown(quotient);
+}
+inline double quotientUp(double x, double y) { return -quotientDown(-x, y); }
 
 struct Interval {
   double low = 0, high = 0;
