@@ -96,6 +96,7 @@ class Evaluator {
   Interval extremeOf(const Node& node) const;
   double directErrorOf(const Node& node, const Slot& slot, double propagated) const;
   double roundingOf(const Node& node, Interval unrounded) const;
+  Interval withSigns(Interval range, const Node& node) const;
   Interval computedOf(const Node& node, const Slot& slot) const;
   void backward();
   bool isTurned(NodeId id) const;

@@ -108,6 +108,19 @@ double Evaluator::roundingOf(const Node& node, Interval unrounded) const {
   return std::max(lost, error);
 }
 
+/// The range of computed values of an operation whose error is a part of the result: it changes no sign.
+Interval Evaluator::withSigns(Interval range, const Node& node) const {
+  const Interval x = slots_[node.operands[0]].computed, y = slots_[node.operands[1]].computed;
+  const Interval result = node.op == Op::Add                     ? x + y
+                          : node.op == Op::Subtract              ? x - y
+                          : node.op == Op::Divide                ? x / y
+                          : node.operands[0] == node.operands[1] ? square(x)
+                                                                 : x * y;
+  if (result.low >= 0) range.low = std::max(range.low, 0.0);
+  if (result.high <= 0) range.high = std::min(range.high, 0.0);
+  return range;
+}
+
 /// The range of computed values, which rounding to nearest keeps from leaving a range of numbers of the format: a square is never negative.
 Interval Evaluator::computedOf(const Node& node, const Slot& slot) const {
   const auto operand = [&](std::size_t k) { return slots_[node.operands[k]].computed; };
@@ -127,7 +140,8 @@ Interval Evaluator::computedOf(const Node& node, const Slot& slot) const {
     case Op::Multiply:
     case Op::Divide: {
       const Rounding& rounding = node.rounding;
-      if (rounding.kind != Rounding::Kind::Nearest || rounding.format.isRelative) return range;
+      if (rounding.kind != Rounding::Kind::Nearest || rounding.format.isRelative)
+        return withSigns(range, node);
       const bool isDouble = rounding.format.unit == doubleFormat.unit;
       Interval result;
       if (isDouble) {

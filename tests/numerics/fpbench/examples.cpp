@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "fpbench/examples.hpp"
 
+#include <fstream>
+#include <sstream>
+
 #include <quadmath.h>
 
 #include "fpbench.sk.hpp"
@@ -243,6 +246,13 @@ std::vector<Example> makeExamples() {
 const std::vector<Example>& examples() {
   static const std::vector<Example> all = makeExamples();
   return all;
+}
+
+std::string contents(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
 }
 
 }  // namespace fpbench_tests

@@ -33,4 +33,7 @@ struct Example {
 
 const std::vector<Example>& examples();
 
+/// A file's text.
+std::string contents(const std::string& path);
+
 }  // namespace fpbench_tests

@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <random>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
@@ -21,13 +19,6 @@
 
 namespace fpbench_tests {
 namespace {
-
-std::string contents(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 const skc::ir::Module& program() {
   static const skc::driver::Translation translation = [] {
