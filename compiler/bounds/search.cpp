@@ -173,20 +173,27 @@ class Search {
       Box trial = box;
       trial.sides[inputs[k]] = Interval::point(side.middle());
       const double bound = box.bound == 0 ? 1 : std::fabs(box.bound);
-      box.impacts[k] = evaluate(trial) ? std::max((box.bound - trial.bound) / bound, 0.0) : 1;
+      // A plane through the middle may have nothing of what counts, such as a threshold.
+      box.impacts[k] = evaluate(trial) ? std::max((box.bound - trial.bound) / bound, 0.0)
+                                       : side.width() / graph_.inputs()[inputs[k]].range.width();
     }
   }
 
   void halve(Box box) {
     const std::vector<std::uint32_t>& inputs = evaluator_.inputs();
+    const auto share = [&](std::size_t k) {
+      return box.sides[inputs[k]].width() / graph_.inputs()[inputs[k]].range.width();
+    };
+    double widest = 0;
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+      if (isDivisible(inputs[k], box.sides[inputs[k]])) widest = std::max(widest, share(k));
+    }
     std::size_t best = inputs.size();
     double most = -1;
     for (std::size_t k = 0; k < inputs.size(); ++k) {
       if (!isDivisible(inputs[k], box.sides[inputs[k]])) continue;
-      // Sides without impact count by their width, so that none stays whole.
-      const double whole = graph_.inputs()[inputs[k]].range.width();
-      const double impact = box.impacts.empty() ? 0 : box.impacts[k];
-      const double weight = impact > 0 ? 1 + impact : box.sides[inputs[k]].width() / whole;
+      // Wide sides count without impact, too: several may have to shrink before the bound does.
+      const double weight = (box.impacts.empty() ? 0 : box.impacts[k]) + 0.05 * share(k) / widest;
       if (weight > most) {
         most = weight;
         best = k;
