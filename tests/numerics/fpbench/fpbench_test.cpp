@@ -9,6 +9,7 @@
 #include <iostream>
 #include <map>
 #include <random>
+#include <utility>
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
@@ -130,6 +131,36 @@ TEST_CASE("no error exceeds its bound, and bounds are near the best published on
   const double mean = std::exp(logarithms / compared);
   if (std::getenv("SK_FPBENCH_TABLE") != nullptr) std::cout << table << "geometric mean " << mean << "\n";
   CHECK(mean <= 1.1);
+}
+
+/// The cells of the table's row for an example, without spaces.
+std::vector<std::string> cellsOf(const std::string& document, const std::string& name) {
+  const std::size_t at = document.find("\n| `" + name + "` |");
+  std::vector<std::string> cells;
+  if (at == std::string::npos) return cells;
+  std::string cell;
+  for (std::size_t i = at + 2; i < document.size() && document[i] != '\n'; ++i) {
+    if (document[i] == '|') {
+      cells.push_back(std::exchange(cell, {}));
+    } else if (document[i] != ' ') {
+      cell += document[i];
+    }
+  }
+  return cells;
+}
+
+TEST_CASE("docs/accuracy.md has these bounds") {
+  const std::string document = contents(SK_ACCURACY);
+  for (const Example& example : examples()) {
+    INFO(example.name);
+    const std::vector<std::string> cells = cellsOf(document, example.name);
+    REQUIRE(cells.size() == 5);
+    const double measured = std::stod(cells[1]), bound = std::stod(cells[2]);
+    CHECK(boundOf(example, {}).absolute == Approx(bound).epsilon(0.02).scale(0));
+    CHECK(measured <= 1.05 * bound);  // two digits
+    if (example.published != 0)
+      CHECK(std::stod(cells[4]) == Approx(example.published).epsilon(0.01).scale(0));
+  }
 }
 
 }  // namespace
