@@ -99,14 +99,24 @@ NodeId Graph::constant(double value, Rounding rounding, Integer integer) {
   return unique(node);
 }
 
+/// Sees operations that multiply by a power of 2.
+void Graph::noteScaling(Node& node) const {
+  const NodeId a = node.operands[0], b = node.operands[1];
+  const auto scales = [&](NodeId id) { return isExact(id) && isScale(nodes_[id].value); };
+  if (node.op == Op::Add && a == b) {
+    node.rounding.isScaling = node.rounding.isGrowing = true;
+  } else if (node.op == Op::Divide && scales(b)) {
+    node.rounding.isScaling = true;
+    node.rounding.isGrowing = std::fabs(nodes_[b].value) <= 1;
+  } else if (node.op == Op::Multiply && (scales(a) || scales(b))) {
+    node.rounding.isScaling = true;
+    node.rounding.isGrowing = std::fabs(nodes_[scales(a) ? a : b].value) >= 1;
+  }
+}
+
 NodeId Graph::add(Node node) {
   if (const NodeId known = simplified(node); known != noNode) return known;
-  if (node.op == Op::Multiply || node.op == Op::Divide) {
-    const auto scales = [&](NodeId id) { return isExact(id) && isScale(nodes_[id].value); };
-    node.rounding.isScaling =
-        scales(node.operands[1]) || (node.op == Op::Multiply && scales(node.operands[0]));
-  }
-  if (node.op == Op::Add && node.operands[0] == node.operands[1]) node.rounding.isScaling = true;
+  if (node.rounding.kind == Rounding::Kind::Nearest) noteScaling(node);
   const bool commutes = node.op == Op::Add || node.op == Op::Multiply || node.op == Op::Min ||
                         node.op == Op::Max || node.op == Op::Equal;
   if (commutes && node.operands[0] > node.operands[1]) std::swap(node.operands[0], node.operands[1]);

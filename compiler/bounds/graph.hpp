@@ -79,6 +79,7 @@ struct Rounding {
   Format format = doubleFormat;
   double amount = 0;
   bool isScaling = false;  ///< the operation multiplies by a power of 2: exact unless the result is denormal
+  bool isGrowing = false;  ///< the power is not below 1: exact
   bool operator==(const Rounding&) const = default;
 };
 
@@ -142,6 +143,7 @@ class Graph {
   std::vector<NodeId> neededBy(const std::vector<NodeId>& roots) const;
 
  private:
+  void noteScaling(Node& node) const;
   NodeId simplified(const Node& node);
   NodeId unique(const Node& node);
 

@@ -82,6 +82,7 @@ double Evaluator::roundingOf(const Node& node, Interval unrounded) const {
   const double lost =
       format.flushes && unrounded.smallest() < format.smallest ? std::min(magnitude, format.smallest) : 0;
   if (rounding.isScaling && rounding.kind == Rounding::Kind::Nearest) {
+    if (rounding.isGrowing) return lost;
     if (unrounded.smallest() >= format.smallest) return 0;
     return std::max(lost, format.unit * format.smallest);
   }

@@ -49,7 +49,7 @@ runtime/tests         sk support trace device call gl gl_device native assemble 
 examples              sk toml text linear/grid_stream.hpp epoxy
 tests                 sk
 tests/bench           sk epoxy support/named.hpp
-tests/numerics/fpbench sk bounds driver ir
+tests/numerics/fpbench sk bounds driver ir support/devices.hpp
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 tests/faults          sk epoxy
