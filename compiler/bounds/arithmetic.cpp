@@ -143,7 +143,11 @@ NodeId Arithmetic::absolute(Scalar type, NodeId x) {
 }
 
 NodeId Arithmetic::multiplyAdd(Scalar type, NodeId x, NodeId y, NodeId z) {
-  return add({.op = Op::MultiplyAdd, .operands = {x, y, z}, .rounding = nearest(type)});
+  // In halves, it is rounded to a float first.
+  const bool isHalf = type == Scalar::Float && options_.precision == Precision::Half;
+  return add({.op = Op::MultiplyAdd,
+              .operands = {x, y, z},
+              .rounding = isHalf ? units(type, 0.501) : nearest(type)});
 }
 
 NodeId Arithmetic::minimum(Scalar type, NodeId x, NodeId y) {
@@ -215,10 +219,18 @@ NodeId Arithmetic::number(Scalar type, double value) { return graph_.constant(va
 
 NodeId Arithmetic::read(Scalar type, std::string name, Interval range) {
   const bool isInteger = !ir::isReal(type);
-  if (range.isPoint() && !options_.inputsAreReal) return number(type, range.low);
+  const bool isHalf = type == Scalar::Float && options_.precision == Precision::Half;
+  if (range.isPoint() && !options_.inputsAreReal) {
+    // The device gets a float.
+    const double given =
+        type == Scalar::Float ? static_cast<double>(static_cast<float>(range.low)) : range.low;
+    const double error = isHalf ? std::fabs(halfOf(given) - given) : 0;
+    if (error > 0)
+      return graph_.constant(given, {.kind = Rounding::Kind::Absolute, .amount = roundedUp(error)});
+    return number(type, given);
+  }
   Rounding rounding;
   if (!isInteger) {
-    const bool isHalf = type == Scalar::Float && options_.precision == Precision::Half;
     if (isHalf || options_.inputsAreReal) {
       rounding = nearest(type);
     } else if (!isNative()) {

@@ -12,6 +12,7 @@
 #include "bounds/rewrites.hpp"
 #include "bounds/search.hpp"
 #include "ir/print.hpp"
+#include "sk/options.hpp"
 
 namespace skc::bounds {
 namespace {
@@ -197,12 +198,27 @@ class Analysis {
   KernelGraph all_;
 };
 
+/// [[precision(extended)]]
+std::optional<Precision> declaredPrecision(const Kernel& kernel) {
+  switch (static_cast<sk::Precision>(kernel.choices.precision)) {
+    case sk::Precision::Default: return std::nullopt;
+    case sk::Precision::Half: return Precision::Half;
+    case sk::Precision::Single: return Precision::Single;
+    case sk::Precision::Extended: return Precision::Extended;
+    case sk::Precision::Double: return Precision::Double;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 KernelBounds boundsOf(const Module& module, const Kernel& kernel, const Options& options) {
-  KernelBounds result{qualifier(kernel.scope) + kernel.name, std::string(wordOf(kernel)), {}, kernel.loc, {}};
+  Options own = options;
+  if (!options.isPrecisionGiven) own.precision = declaredPrecision(kernel).value_or(options.precision);
+  KernelBounds result{
+      qualifier(kernel.scope) + kernel.name, std::string(wordOf(kernel)), own.precision, {}, kernel.loc, {}};
   try {
-    result.numbers = Analysis(module, kernel, options, graphOf(module, kernel, options)).run();
+    result.numbers = Analysis(module, kernel, own, graphOf(module, kernel, own)).run();
     if (result.numbers.empty()) result.notBounded = "it writes no floating-point number";
   } catch (const NotBounded& reason) {
     result.notBounded = reason.what();

@@ -50,6 +50,7 @@ struct NumberBound {
 struct KernelBounds {
   std::string name;  ///< with its namespaces
   std::string word;  ///< "kernel", "reduce", "scan"
+  Precision precision = Precision::Single;
   std::string notBounded = {};
   Loc loc = {};
   std::vector<NumberBound> numbers = {};

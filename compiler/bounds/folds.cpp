@@ -132,6 +132,7 @@ FoldBound boundOfFold(const FoldFacts& facts, const ir::Kernel& kernel, const Op
   const double absolute = roundedUp(n * facts.error + own, 0x1p-48);
   const Interval count = Interval::point(n);
   FoldBound bound{facts.range * count, absolute, std::nullopt};
+  if (kernel.isScan) bound.range = hull(bound.range, facts.range);  // sums of the first elements
   if (!bound.range.contains(0)) bound.relative = roundedUp(absolute / bound.range.smallest());
   return bound;
 }

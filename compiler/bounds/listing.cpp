@@ -45,6 +45,8 @@ class Writer {
                         nameOf(options_.precision), nameOf(options_.target));
     for (const KernelBounds& kernel : kernels) {
       text_ += fmt::format("\n{} {}", kernel.word, kernel.name);
+      if (kernel.precision != options_.precision)
+        text_ += fmt::format(", {} precision", nameOf(kernel.precision));
       if (!kernel.notBounded.empty()) {
         text_ += fmt::format(": not bounded: {}{}\n", kernel.notBounded, line(kernel.loc));
         continue;
@@ -133,6 +135,7 @@ std::string json(const std::vector<KernelBounds>& kernels, const Options& option
   for (const KernelBounds& kernel : kernels) {
     nlohmann::ordered_json one;
     one["name"] = kernel.name;
+    one["precision"] = nameOf(kernel.precision);
     if (!kernel.notBounded.empty()) {
       one["not_bounded"] = kernel.notBounded;
       one["line"] = kernel.loc.line;

@@ -33,6 +33,7 @@ struct Options {
   std::vector<NamedRange> ranges = {};
   Target target = Target::Native;
   Precision precision = Precision::Single;
+  bool isPrecisionGiven = false;  ///< else a kernel's declaration chooses before `precision` does
   double elements = 0;  ///< that a reduce or scan folds; 0 if unknown
   std::size_t effort = 20'000'000;  ///< operations that the search may evaluate, about, for each bound
 

@@ -219,6 +219,12 @@ TEST_CASE("precision and target choose the errors of operations") {
   options.precision = bounds::Precision::Double;
   CHECK(ofBody("r = x * y;", units, options).absolute == Approx(2 * u).epsilon(0.02));  // a float is written
   CHECK(ofBody("r = (x * y - x) * 0x1p-20f;", units, options).absolute < 0x1p-40);
+  const char* const declared = "[[precision(half)]] kernel void f(float x<>, out float r<>) { r = x * x; }";
+  CHECK(boundOf(declared, {"x=1:2"}).absolute > 2 * 0x1p-11);
+  options.precision = bounds::Precision::Single;
+  options.isPrecisionGiven = true;
+  CHECK(boundOf(declared, {"x=1:2"}, options).absolute < 3 * u);
+  CHECK(boundOf(declared, {"x=0.1"}, options).range.low == Approx(double(0.1F) * 0.1F).epsilon(1e-12));
   bounds::Options fragment;
   fragment.target = bounds::Target::Fragment;
   CHECK(ofBody("r = x / y;", units, fragment).absolute > 4 * ofBody("r = x / y;", units).absolute);

@@ -211,6 +211,7 @@ std::string setBounds(Words& words) {
   options.bounds.target = words.targets.size() == 1 && words.targets[0] == "fragment"
                               ? bounds::Target::Fragment
                               : bounds::Target::Native;
+  options.bounds.isPrecisionGiven = !options.precision.empty();
   options.bounds.precision = options.precision == "half"       ? bounds::Precision::Half
                              : options.precision == "extended" ? bounds::Precision::Extended
                              : options.precision == "double"   ? bounds::Precision::Double

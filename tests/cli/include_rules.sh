@@ -14,7 +14,7 @@ compiler/support      support
 compiler/ir           support ir
 compiler/analysis     support ir analysis
 compiler/split        support ir split
-compiler/bounds       support ir bounds sk/error_bounds.hpp sk/sum_bounds.hpp
+compiler/bounds       support ir bounds sk/error_bounds.hpp sk/options.hpp sk/sum_bounds.hpp
 compiler/transforms   support ir analysis transforms split sk/exact_digits.hpp
 compiler/native       support ir analysis transforms native llvm sk/native/code.hpp sk/native/table.hpp
 compiler/native/library support ir transforms native

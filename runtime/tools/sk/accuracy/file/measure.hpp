@@ -24,6 +24,8 @@ struct FileMeasurement {
   int rounds = 0;
   bool hasExtremes = true;
   Ranges ranges = {};
+  /// Called with each experiment before it is reported; may be empty.
+  std::function<void(Experiment&, const Subject&)> addBounds = {};
 };
 
 /// The results of a file, and for each kernel that was not measured a line that says why.
