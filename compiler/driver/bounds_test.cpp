@@ -75,9 +75,7 @@ TEST_CASE("a number without a range is named") {
   CHECK(boundOf(vectors, {"v.x=1:2", "v=0:1"}).absolute == Approx(u).epsilon(0.02));
 }
 
-TEST_CASE(
-    "branches: the side that a number takes counts, and where rounding may turn the condition is told "
-    "apart") {
+TEST_CASE("branches: the side taken counts, and conditions that rounding turns stand apart") {
   const NumberBound sides = ofBody("if (x < 1.5f) r = x * y; else r = x;", units);
   CHECK(sides.absolute == Approx(2 * u).epsilon(0.02));  // below 1.5 * 2
   CHECK(sides.jumps.empty());  // an input has no error
