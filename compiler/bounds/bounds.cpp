@@ -36,14 +36,37 @@ class Analysis {
         number.notBounded = reason.what();
         number.loc = reason.loc;
       }
-      numbers.push_back(std::move(number));
+      const auto same = std::ranges::find(numbers, number.name, &NumberBound::name);
+      same == numbers.end() ? numbers.push_back(std::move(number)) : join(*same, std::move(number));
     }
     return numbers;
   }
 
  private:
+  /// One statement that pushes several numbers, as in a loop that was unrolled: what holds for all of them.
+  static void join(NumberBound& into, NumberBound other) {
+    if (!into.notBounded.empty()) return;
+    const bool isLarger = other.absolute > into.absolute || !other.notBounded.empty();
+    const Interval range = hull(into.range, other.range);
+    std::optional<double> relative;
+    if (into.relative && other.relative && !range.contains(0))
+      relative = std::max(*into.relative, *other.relative);
+    std::vector<Jump> jumps = std::move(into.jumps);
+    for (Jump& jump : other.jumps) {
+      const auto same = std::ranges::find(jumps, jump.text, &Jump::text);
+      if (same == jumps.end())
+        jumps.push_back(std::move(jump));
+      else
+        same->change = std::max(same->change, jump.change);
+    }
+    if (isLarger) into = std::move(other);
+    into.range = range;
+    into.relative = relative;
+    into.jumps = std::move(jumps);
+  }
+
   void boundNumber(const OutputNumber& output, NumberBound& number) {
-    if (!output.isAccumulator) return bound(output.node, number);
+    if (!output.isAccumulator) return bound(output.node, number, output.condition);
     number.isFold = true;
     const FoldTerm term = foldTerm(all_.graph, output.node, output.before, kernel_.loc);
     bound(term.node, number);
@@ -98,8 +121,8 @@ class Analysis {
     }
   }
 
-  void bound(NodeId output, NumberBound& number) {
-    Evaluator evaluator(all_.graph, output);
+  void bound(NodeId output, NumberBound& number, NodeId condition = noNode) {
+    Evaluator evaluator(all_.graph, output, condition);
     requireRanges(evaluator);
     const SearchResult error = maximise(evaluator, all_.graph, Objective::Error, search(evaluator, 0.4));
     if (!(error.bound < infinity))
@@ -115,7 +138,7 @@ class Analysis {
     }
     if (!error.worst.empty()) addContributions(evaluator, error, number);
     addJumps(evaluator, number);
-    addRewrites(output, number);
+    addRewrites(output, number, condition);
   }
 
   static NodeId culpritOf(const SearchResult& result, NodeId output) {
@@ -180,11 +203,11 @@ class Analysis {
   }
 
   /// Keeps rewrites that at least halve the bound.
-  void addRewrites(NodeId output, NumberBound& number) {
+  void addRewrites(NodeId output, NumberBound& number, NodeId condition) {
     if (number.absolute == 0) return;
     for (const Candidate& candidate : candidates(all_.graph, output, options_)) {
       all_.origins.resize(all_.graph.size());
-      Evaluator evaluator(all_.graph, candidate.output);
+      Evaluator evaluator(all_.graph, candidate.output, condition);
       const SearchResult error = maximise(evaluator, all_.graph, Objective::Error, search(evaluator, 0.1));
       if (error.bound <= number.absolute / 2)
         number.rewrites.push_back({candidate.from, candidate.to, std::max(error.bound, 0.0)});

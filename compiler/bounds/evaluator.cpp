@@ -16,10 +16,11 @@ bool mayFail(const Node& node) {
 
 }  // namespace
 
-Evaluator::Evaluator(const Graph& graph, NodeId output)
+Evaluator::Evaluator(const Graph& graph, NodeId output, NodeId assumed)
     : graph_(graph),
       output_(output),
-      order_(graph.neededBy({output})),
+      assumed_(assumed),
+      order_(graph.neededBy(assumed == noNode ? std::vector{output} : std::vector{output, assumed})),
       comparisonNumber_(graph.size(), 0),
       tracks_(graph.size(), false),
       slots_(graph.size()),
@@ -51,6 +52,7 @@ void Evaluator::backward() {
   }
   slots_[output_].adjoint = Interval::point(1);
   slots_[output_].isLive = true;
+  if (assumed_ != noNode && truthOf(assumed_) == Decision::Open) slots_[assumed_].isLive = true;
   for (auto it = order_.rbegin(); it != order_.rend(); ++it) {
     const Slot& slot = slots_[*it];
     if (!slot.isLive) continue;
@@ -99,6 +101,7 @@ BoxResult Evaluator::evaluate(std::span<const Interval> box, std::span<const Dec
       if (!limitByDecisions(decisions)) return result.isImpossible = true, result;
     }
   }
+  if (assumed_ != noNode && truthOf(assumed_) == Decision::No) return result.isImpossible = true, result;
   backward();
   const Slot& output = slots_[output_];
   result.value = output.exact;

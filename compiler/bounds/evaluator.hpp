@@ -47,7 +47,8 @@ Interval stepped(Op op, Interval x);
 
 class Evaluator {
  public:
-  Evaluator(const Graph& graph, NodeId output);
+  /// `assumed`: a condition that holds for all inputs that count.
+  Evaluator(const Graph& graph, NodeId output, NodeId assumed = noNode);
 
   /// Comparisons, in the order of the decisions of a box.
   const std::vector<NodeId>& comparisons() const { return comparisons_; }
@@ -100,9 +101,10 @@ class Evaluator {
   Interval computedOf(const Node& node, const Slot& slot) const;
   void backward();
   bool isTurned(NodeId id) const;
+  Decision truthOf(NodeId condition) const;
 
   const Graph& graph_;
-  NodeId output_;
+  NodeId output_, assumed_;
   std::vector<NodeId> order_;
   std::vector<NodeId> comparisons_, turns_;
   std::vector<std::uint32_t> inputs_;

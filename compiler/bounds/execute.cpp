@@ -160,8 +160,15 @@ Executor::Exits Executor::statement(Frame& frame, const Stmt& stmt, Path path) {
         return exits;
       },
       [&](const Scope& n) { return block(frame, n.body, std::move(path)); },
-      [&](const Push&) -> Exits { throw NotBounded("a pushed value", stmt.loc); },
-      [&](const Scatter&) -> Exits { throw NotBounded("a scattered value", stmt.loc); },
+      [&](const Push& n) {
+        append(path, n.stream, of(frame, path, *n.value), "pushed", stmt.loc);
+        return next();
+      },
+      [&](const Scatter& n) {
+        append(path, n.stream, of(frame, path, *n.value), n.op == ScatterOp::Add ? "added" : "scattered",
+               stmt.loc);
+        return next();
+      },
       [&](const Print&) { return next(); });
 }
 
@@ -289,6 +296,27 @@ Executor::Exits Executor::choice(Frame& frame, const Switch& n, Path path) {
   return all;
 }
 
+/// Notes an element of a variable or scatter output, under the condition that leads here.
+void Executor::append(const Path& path, const StreamRef& stream, const Numbers& value, std::string_view how,
+                      Loc loc) {
+  if (stream.space != StreamRef::Space::KernelParameter && !callers_.empty())
+    throw NotBounded("a value that a function pushes to a stream of its own", loc);
+  NodeId condition = path.condition;
+  for (const NodeId caller : callers_) condition = graph_.conjunction(caller, condition);
+  const KernelParam& param = kernel_.params.at(stream.id);
+  std::vector<std::pair<std::string, Scalar>> names;
+  nameNumbers(param.name, param.type, names);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& [name, type] = names[i];
+    if (!isReal(arithmeticScalar(type))) continue;
+    const NodeId node = value.size() == 1 ? value[0] : value.at(i);
+    OutputNumber number{fmt::format("{} {} in line {}", name, how, loc.line), stream.id, type,
+                        isNarrow(type) ? node : arithmetic_.stored(type, node)};
+    if (!graph_.isConstant(condition)) number.condition = condition;
+    appended_.push_back(std::move(number));
+  }
+}
+
 void Executor::callStatement(Frame& frame, const CallStmt& n, Path& path, Loc loc) {
   const Function& callee = module_.functions[n.callee];
   std::vector<Numbers> arguments;
@@ -296,16 +324,19 @@ void Executor::callStatement(Frame& frame, const CallStmt& n, Path& path, Loc lo
   std::vector<std::pair<std::size_t, Slots>> places;  // before the call changes what their indices are
   for (std::size_t i = 0; i < n.args.size(); ++i) {
     const VarRole role = callee.variables[i].role;
-    if (role == VarRole::AppendOutput) throw NotBounded("a pushed value", loc);
     const auto* variable = std::get_if<VarRef>(&n.args[i]->node);
-    const bool isStream = role == VarRole::Gather || role == VarRole::Element;
+    const bool isStream =
+        role == VarRole::Gather || role == VarRole::Element || role == VarRole::AppendOutput;
     streams.push_back(isStream && variable != nullptr && variable->var < frame.streams.size()
                           ? frame.streams[variable->var]
                           : std::nullopt);
-    arguments.push_back(role == VarRole::Gather ? Numbers{} : of(frame, path, *n.args[i]));
+    const bool hasValue = role != VarRole::Gather && role != VarRole::AppendOutput;
+    arguments.push_back(hasValue ? of(frame, path, *n.args[i]) : Numbers{});
     if (role == VarRole::InOut) places.emplace_back(i, slots(frame, path, *n.args[i]));
   }
+  callers_.push_back(path.condition);
   const Path end = call(n.callee, std::move(arguments), std::move(streams), loc);
+  callers_.pop_back();
   for (const auto& [i, place] : places) store(path, place, end.variables[i]);
   if (n.result) store(path, slots(frame, path, *n.result), end.result);
 }

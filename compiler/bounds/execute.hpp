@@ -22,6 +22,7 @@ struct OutputNumber {
   NodeId node;  ///< of its arithmetic type
   bool isAccumulator = false;
   NodeId before = noNode;  ///< an accumulator's value before the element
+  NodeId condition = noNode;  ///< under which the number is pushed or scattered; noNode: always
 };
 
 /// A kernel as a graph.

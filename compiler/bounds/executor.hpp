@@ -67,6 +67,8 @@ class Executor {
   Exits loop(Frame& frame, const ir::Loop& loop, Path path, Loc loc);
   [[noreturn]] void refuseLoop(NodeId condition, Loc loc);
   Exits choice(Frame& frame, const ir::Switch& choice, Path path);
+  void append(const Path& path, const ir::StreamRef& stream, const Numbers& value, std::string_view how,
+              Loc loc);
   void callStatement(Frame& frame, const ir::CallStmt& call, Path& path, Loc loc);
   Slots slots(Frame& frame, const Path& path, const ir::Expr& place);
   void store(Path& path, const Slots& slots, const Numbers& value);
@@ -107,6 +109,8 @@ class Executor {
   std::vector<KernelGraph::Origin> origins_;
   std::map<std::pair<std::uint32_t, Numbers>, Numbers> reads_;  ///< of gathers, by parameter and index
   std::map<std::string, NodeId> named_;
+  std::vector<OutputNumber> appended_;  ///< what has been pushed and scattered
+  std::vector<NodeId> callers_;  ///< the conditions under which the current function has been called
   int steps_ = 0;
   int depth_ = 0;
 };

@@ -218,15 +218,16 @@ void Evaluator::finish(NodeId id, const Node& node, Slot& slot) {
 
 // ---- conditions -----------------------------------------------------------------------------------
 
+Decision Evaluator::truthOf(NodeId condition) const {
+  const Node& node = graph_[condition];
+  if (node.op == Op::Constant) return node.value != 0 ? Decision::Yes : Decision::No;
+  return slots_[condition].truth;
+}
+
 void Evaluator::visitCondition(NodeId id, std::span<const Decision> decisions) {
   const Node& node = graph_[id];
   Slot& slot = slots_[id];
   slot.isLive = false;
-  const auto truthOf = [&](NodeId operand) {
-    const Node& one = graph_[operand];
-    if (one.op == Op::Constant) return one.value != 0 ? Decision::Yes : Decision::No;
-    return slots_[operand].truth;
-  };
   if (isComparison(node.op)) {
     const bool isTurnedHere = std::ranges::binary_search(turned_, id);
     const Decision decision = decisions[comparisonNumber_[id]];

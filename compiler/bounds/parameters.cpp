@@ -134,6 +134,7 @@ KernelGraph Executor::run() {
   for (std::uint32_t p = 0; p < kernel_.params.size(); ++p) streams.emplace_back(p);
   const Path end = call(kernel_.entry, before, std::move(streams), kernel_.loc);
   addOutputs(result, before, end.variables);
+  for (OutputNumber& number : appended_) result.outputs.push_back(std::move(number));
   result.graph = std::move(graph_);
   result.lacksRange = std::move(lacksRange_);
   result.lacksRange.resize(result.graph.inputs().size(), false);

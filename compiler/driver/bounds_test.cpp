@@ -4,6 +4,7 @@
 // tests/numerics/fpbench and tests/numerics/bounds compare bounds with the errors of devices.
 #include "bounds/bounds.hpp"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -174,6 +175,26 @@ TEST_CASE("reduces: sums by their known bound, and extremes by that of an elemen
   const char* const product = "reduce void times(float x<>, reduce float s<>) { s *= x; }";
   CHECK(boundOf(product, {"x=1:2"}, options).notBounded ==
         "the fold neither adds its elements nor takes the smallest or largest of them");
+}
+
+TEST_CASE("pushed and scattered numbers, where they are pushed") {
+  const std::vector<KernelBounds> pushed = boundsOf(
+      "kernel void f(float x<>, vout float r<>) {\n"
+      "  if (x > 1) push(r, log(x - 1 + 0.5f));\n"
+      "  for (int i = 0; i < 3; ++i)\n"
+      "    if (x < 0.5f) push(r, x * i);\n"
+      "}",
+      {}, {"x=0:2"});
+  REQUIRE(pushed.at(0).numbers.size() == 2);
+  CHECK(pushed[0].numbers[0].name == "r pushed in line 2");
+  CHECK(pushed[0].numbers[0].notBounded == "");  // below 0.5 the logarithm has no value
+  CHECK(pushed[0].numbers[0].range.low == Approx(std::log(0.5)).epsilon(0.01));
+  CHECK(pushed[0].numbers[1].name == "r pushed in line 4");
+  CHECK(pushed[0].numbers[1].range.high == Approx(1).epsilon(0.01));
+  const NumberBound added =
+      boundOf("kernel void f(int at<>, float x<>, out float r[]) { r[at] += x * x; }", {"x=1:2"});
+  CHECK(added.name == "r added in line 1");
+  CHECK(added.absolute == Approx(2 * u).epsilon(0.02));
 }
 
 TEST_CASE("formulas that cancel: what to write instead, with its bound") {
