@@ -194,6 +194,19 @@ TEST_CASE("a root near 0 has a bound, a quotient by 0 and an overflow have none"
         Problem::Undefined);
 }
 
+TEST_CASE("roots and clamps of what rounding leaves nothing of") {
+  Graph graph;
+  const NodeId x = inputOf(graph, 0, 1), one = graph.constant(1);
+  const NodeId lost = operation(graph, Op::Subtract, operation(graph, Op::Add, x, one), one);
+  const double root = boundOf(graph, call(graph, UnaryFunction::Sqrt, lost));
+  CHECK(root >= 0x1p-12);  // of 2^-24, which is lost
+  CHECK(root < 0x1p-11);
+  const NodeId large = graph.constant(0x1p30);
+  const NodeId gone = operation(graph, Op::Subtract, operation(graph, Op::Add, x, large), large);
+  const NodeId clamped = operation(graph, Op::Min, operation(graph, Op::Max, gone, graph.constant(0)), one);
+  CHECK(boundOf(graph, clamped) == Approx(1));
+}
+
 TEST_CASE("a branch guards what is undefined elsewhere") {
   Graph graph;
   const NodeId x = inputOf(graph, -1, 1);
