@@ -20,7 +20,9 @@ std::string bound(double value) {
   return text;
 }
 
-std::string end(double value) {
+/// An end of a range, of which `largest` is the larger magnitude: what the arithmetic of intervals leaves of 0 is 0.
+std::string end(double value, double largest) {
+  if (std::fabs(value) < 1e-12 * largest) value = 0;
   return std::isfinite(value) ? fmt::format("{:.6g}", value)
                               : std::string(value < 0 ? "-infinity" : "infinity");
 }
@@ -65,8 +67,9 @@ class Writer {
   void writeNumber(const NumberBound& number) {
     if (!number.notBounded.empty())
       return add(fmt::format("  {}: not bounded: {}{}", number.name, number.notBounded, line(number.loc)));
-    std::string text = fmt::format("  {}: {} to {}, error at most {}", number.name, end(number.range.low),
-                                   end(number.range.high), bound(number.absolute));
+    std::string text = fmt::format("  {}: {} to {}, error at most {}", number.name,
+                                   end(number.range.low, number.range.magnitude()),
+                                   end(number.range.high, number.range.magnitude()), bound(number.absolute));
     if (number.relative) text += fmt::format(", relative {}", bound(*number.relative));
     if (number.isFold && options_.elements > 0) text += fmt::format(", of {} elements", options_.elements);
     add(text);
