@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "assemble/assemble.hpp"
+#include "bounds/bounds.hpp"
 #include "driver/listings.hpp"
 #include "driver/native_library.hpp"
 #include "driver/performance_warnings.hpp"
@@ -68,7 +69,9 @@ TransformOptions transformOptions(const Options& options, std::ostream& output) 
   result.expandsSelects = sk::assemble::findProfile(options.profile)->webgl;
   for (const MeasuredDevice& device : options.devices) result.limits.push_back(device.limits);
   const bool isWhole = options.emit == Emit::Stubs || options.emit == Emit::Js || options.emit == Emit::Json;
-  result.precisions = options.precision.empty() ? isWhole : options.precision != "single";
+  // Bounds follow from the kernels as declared, in every precision.
+  const bool isBounds = options.emit == Emit::Bounds;
+  result.precisions = options.precision.empty() ? isWhole : options.precision != "single" && !isBounds;
   if (!options.printAfter.empty()) {
     result.after = [&output, wanted = options.printAfter](std::string_view name, const ir::Module& module) {
       if (wanted == "all" || wanted == name)
@@ -171,6 +174,12 @@ std::string planListings(const Options& options, const ir::Module& module) {
     text += (text.empty() ? "" : "\n") + planListing(module, device.name, device.limits);
   }
   return text;
+}
+
+std::string boundsText(const Options& options, const ir::Module& module) {
+  const std::vector<bounds::KernelBounds> kernels = bounds::boundsOf(module, options.bounds);
+  return options.boundsAsJson ? bounds::json(kernels, options.bounds)
+                              : bounds::listing(kernels, options.bounds);
 }
 
 web::JsModule jsModuleOf(const ir::Module& module) {
@@ -294,6 +303,7 @@ std::string emitText(const Options& options, const ir::Module& module) {
     case Emit::Ir: return ir::print(module);
     case Emit::Glsl: return glslListing(module, options.profile, options.precision);
     case Emit::Plan: return planListings(options, module);
+    case Emit::Bounds: return boundsText(options, module);
     case Emit::Json:
       return emit::jsonText(module, emit::Program(module, targetsOf(options)), fileName(module));
     case Emit::Stubs: {

@@ -26,9 +26,9 @@ namespace skc::driver {
 namespace {
 
 const std::map<std::string, Emit> emits = {
-    {"stubs", Emit::Stubs},  {"glsl", Emit::Glsl}, {"ir", Emit::Ir},
-    {"plan", Emit::Plan},    {"ast", Emit::Ast},   {"llvm", Emit::Llvm},
-    {"asm", Emit::Assembly}, {"json", Emit::Json}, {"js", Emit::Js}};
+    {"stubs", Emit::Stubs}, {"glsl", Emit::Glsl},    {"ir", Emit::Ir},        {"plan", Emit::Plan},
+    {"ast", Emit::Ast},     {"llvm", Emit::Llvm},    {"asm", Emit::Assembly}, {"json", Emit::Json},
+    {"js", Emit::Js},       {"bounds", Emit::Bounds}};
 
 std::string profileNames() {
   std::string names;
@@ -49,7 +49,7 @@ std::string transformList() {
 /// An error message if the value is not allowed, or "".
 std::string checkEmit(const std::string& value) {
   if (emits.contains(value)) return {};
-  return fmt::format("'{}' is none of stubs, js, glsl, ir, plan, ast, llvm, asm, json", value);
+  return fmt::format("'{}' is none of stubs, js, glsl, ir, plan, bounds, ast, llvm, asm, json", value);
 }
 
 std::string checkProfile(const std::string& value) {
@@ -86,7 +86,7 @@ std::string checkStems(const std::vector<std::string>& files) {
 struct Words {
   Options options;
   std::string emit = "stubs", color = "auto";
-  std::vector<std::string> targets;
+  std::vector<std::string> targets, ranges;
   std::string deviceFile;
   int optimization = 2;
 };
@@ -97,7 +97,7 @@ void addOutputOptions(CLI::App& app, Words& words) {
       ->type_name("DIR");
   app.add_option("--emit", words.emit,
                  "Write stubs and objects (stubs, the default) or a module for browsers (js), or print one "
-                 "of glsl, ir, plan, ast, llvm, "
+                 "of glsl, ir, plan, bounds, ast, llvm, "
                  "asm, json")
       ->check(checkEmit, "")
       ->type_name("KIND");
@@ -186,6 +186,44 @@ void addNativeOptions(CLI::App& app, Words& words) {
       "it link libquadmath");
 }
 
+void addBoundsOptions(CLI::App& app, Words& words) {
+  app.add_option("--range", words.ranges,
+                 "--emit=bounds: the numbers that a parameter, a member or a component has, such as x=0:1, "
+                 "v.x=-1:1 or n=8")
+      ->allow_extra_args(false)
+      ->type_name("NAME=LOW:HIGH");
+  app.add_option("--elements", words.options.bounds.elements,
+                 "--emit=bounds: how many elements reduces and scans fold")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  app.add_flag("--json", words.options.boundsAsJson, "--emit=bounds: print JSON");
+}
+
+/// Fills in what --emit=bounds needs. Returns an error message, or "".
+std::string setBounds(Words& words) {
+  Options& options = words.options;
+  if (options.emit != Emit::Bounds) {
+    const bool isGiven = !words.ranges.empty() || options.bounds.elements > 0 || options.boundsAsJson;
+    return isGiven ? "--range, --elements and --json are for --emit=bounds" : "";
+  }
+  if (words.targets.size() > 1 || (words.targets.size() == 1 && words.targets[0] == "compute"))
+    return "--emit=bounds takes one target, native or fragment";
+  options.bounds.target = words.targets.size() == 1 && words.targets[0] == "fragment"
+                              ? bounds::Target::Fragment
+                              : bounds::Target::Native;
+  options.bounds.isPrecisionGiven = !options.precision.empty();
+  options.bounds.precision = options.precision == "half"       ? bounds::Precision::Half
+                             : options.precision == "extended" ? bounds::Precision::Extended
+                             : options.precision == "double"   ? bounds::Precision::Double
+                                                               : bounds::Precision::Single;
+  try {
+    for (const std::string& range : words.ranges) options.bounds.ranges.push_back(bounds::parseRange(range));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
 /// Sets the options that depend on several arguments. Returns an error message if they conflict, or "".
 std::string checkTogether(Words& words) {
   Options& options = words.options;
@@ -200,6 +238,7 @@ std::string checkTogether(Words& words) {
   options.native.optimizes = words.optimization != 0;
   options.color = words.color == "always" || (words.color == "auto" && isatty(STDERR_FILENO));
   const bool printsNative = options.emit == Emit::Llvm || options.emit == Emit::Assembly;
+  if (const std::string mistake = setBounds(words); !mistake.empty()) return mistake;
   if (options.isolated && !options.includeDirectories.empty())
     return "--isolated reads no included file; leave out -I";
   if (printsNative && !options.nativeTarget)
@@ -241,6 +280,7 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   addSourceOptions(app, words);
   addTargetOptions(app, words);
   addNativeOptions(app, words);
+  addBoundsOptions(app, words);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "bounds/options.hpp"
 #include "ir/ir.hpp"
 #include "native/native.hpp"
 
@@ -23,7 +24,7 @@ struct MeasuredDevice {
 /// The devices of a file that draw; native ones have no limits. Throws std::runtime_error for a bad file.
 std::vector<MeasuredDevice> readDevices(const std::string& file);
 
-enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Plan, Ast, Llvm, Assembly, Json, Js };
+enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Plan, Ast, Llvm, Assembly, Json, Js, Bounds };
 
 struct Options {
   std::vector<std::string> files;
@@ -45,6 +46,8 @@ struct Options {
   bool color = false;
   bool fixIts = false;  ///< also print fix-its for tools
   bool isolated = false;  ///< read no file but those to compile
+  bounds::Options bounds;  ///< for --emit=bounds; precision and target are those above
+  bool boundsAsJson = false;
 };
 
 /// The options, or the exit status if there is nothing to compile: 0 after --help and --version, 1 after an

@@ -14,6 +14,7 @@ compiler/support      support
 compiler/ir           support ir
 compiler/analysis     support ir analysis
 compiler/split        support ir split
+compiler/bounds       support ir bounds sk/error_bounds.hpp sk/options.hpp sk/sum_bounds.hpp
 compiler/transforms   support ir analysis transforms split sk/exact_digits.hpp
 compiler/native       support ir analysis transforms native llvm sk/native/code.hpp sk/native/table.hpp
 compiler/native/library support ir transforms native
@@ -21,7 +22,7 @@ compiler/glsl         support ir analysis glsl sk/program.hpp sk/arithmetic_mark
 compiler/program      support ir analysis native/kernel_request.hpp split/cost.hpp glsl program assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/web          support ir glsl program assemble web sk/program.hpp
 compiler/frontend     support ir frontend clang llvm
-compiler/driver       support ir analysis split transforms native/native.hpp native/library/link_library.hpp glsl program web frontend driver assemble sk/program.hpp
+compiler/driver       support ir bounds analysis split transforms native/native.hpp native/library/link_library.hpp glsl program web frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
 runtime/src/support   sk support
 runtime/src/trace     sk trace
@@ -49,6 +50,7 @@ runtime/tests         sk support trace device call gl gl_device native assemble 
 examples              sk toml text linear/grid_stream.hpp epoxy
 tests                 sk
 tests/bench           sk epoxy support/named.hpp
+tests/numerics/fpbench sk bounds driver ir support/devices.hpp
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 tests/faults          sk epoxy
@@ -57,7 +59,7 @@ tests/fuzz            sk ir program driver analysis transforms native/native.hpp
 '
 # What all rooms of the assembler share.
 rules=${rules//ASSEMBLE/assemble/assemble.hpp assemble/condition.hpp assemble/region_layout.hpp assemble/relayed_values.hpp}
-guarded='support|ir|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|api|probe|gl|toml|text|linear|gl_device|assemble|shadow|shadow_text|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+guarded='support|ir|bounds|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|api|probe|gl|toml|text|linear|gl_device|assemble|shadow|shadow_text|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)

@@ -81,7 +81,16 @@ run 0 kernels.sk "${small[@]}" --device native --kernel math::roots --range x=0:
 json "
 assert kernels['math::roots', 'single']['worst']['inputs']['x']['value'] > 1e4
 assert kernels['math::roots', 'single']['metrics']['rel err'] > 1e-4
-assert kernels['math::roots', 'double']['metrics']['rel err'] < 1e-7"
+assert kernels['math::roots', 'double']['metrics']['rel err'] < 1e-7
+# Every mode is within its bound, and near it.
+for mode in 'single', 'extended', 'double', 'half':
+    one = kernels['math::roots', mode]
+    if mode == 'half':   # 1e6 is infinite
+        assert 'bound' not in one, one
+        continue
+    assert one['bounded'] == 'abs err' and one['within_bound'], one
+    assert one['bound'] / 5 < one['metrics']['abs err'] <= one['bound'], one"
+matches 'wrong class +bound  ok$'
 
 # Near the worst of the drawn numbers there are worse ones, which are found; the errors of each result stand apart.
 run 0 kernels.sk "${small[@]}" --device native --kernel pole --range x=1:2 --json all.json
@@ -89,6 +98,7 @@ matches '^  of each result$'
 matches '^    single +s +0 +0 +0 +0 +0$'
 json "
 single = kernels['math::pole', 'single']
+assert 'bound' not in single, single   # 1 / 0 is between 1 and 2
 assert single['metrics']['rel err'] > 0.02, single['metrics']   # 6e-4 is the largest error of 4,096 numbers
 assert abs(single['worst']['inputs']['x']['value'] - 2 ** 0.5) < 1e-6, single['worst']
 r, s = (single['outputs'][name]['metrics'] for name in 'rs')

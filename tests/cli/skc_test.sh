@@ -178,6 +178,18 @@ run 0 --device=devices.json large.sk
 run 0 --emit=plan --profile=essl300 large.sk
 prints 'essl300: 4 draw buffers'
 refuses "'nowhere.json' cannot be read" --device=nowhere.json large.sk
+
+# Bounds of rounding errors.
+echo 'kernel void product(float2 v<>, out float r<>) { r = v.x * v.y; }' >product.sk
+run 0 --emit=bounds product.sk
+prints 'not bounded: give v.x a range: --range v.x=LOW:HIGH, or --range v=LOW:HIGH'
+run 0 --emit=bounds --range v=0:1 --range v.y=2 product.sk
+prints 'r: 0 to 2, error at most 0'
+run 0 --emit=bounds --range v=1:2 --json --target=fragment product.sk
+prints '"target": "fragment"'
+refuses "'v' is not a range; write NAME=LOW:HIGH" --emit=bounds --range v product.sk
+refuses '--range, --elements and --json are for --emit=bounds' --range v=0:1 product.sk
+refuses '--emit=bounds takes one target, native or fragment' --emit=bounds --target=fragment,native product.sk
 echo '{"devices": 3' >broken.json
 refuses "'broken.json' is not what sk info --json=broken.json writes" --device=broken.json large.sk
 for buffers in 0 -1 3 4.5 1e300 9223372036854775808; do

@@ -23,6 +23,7 @@
 #include "accuracy/chart.hpp"
 #include "accuracy/child_process.hpp"
 #include "accuracy/experiment.hpp"
+#include "accuracy/file/bounds.hpp"
 #include "accuracy/file/measure.hpp"
 #include "accuracy/functions/functions.hpp"
 #include "accuracy/programs.hpp"
@@ -283,11 +284,15 @@ void runFile(const Options& options) {
   }
   if (options.measurement.data)
     throw std::runtime_error("--data is of the built-in sums; draw from --range here");
-  const FileMeasurement measurement =
-      options.file.measurement(extentsIn(options.size), options.measurement.rounds);
+  FileMeasurement measurement = options.file.measurement(extentsIn(options.size), options.measurement.rounds);
   const KernelLibrary library(options.programs.front(), options.file.build);  // must outlive the device
   sk::Device device(sk::DeviceOptions{.device = options.device, .profile = options.profile});
   printHead(options, device);
+  const FileBounds bounds(options.programs.front(), options.file.build, measurement.ranges,
+                          device.shadingLanguage().empty());
+  measurement.addBounds = [&](Experiment& experiment, const Subject& subject) {
+    bounds.addTo(experiment, subject);
+  };
   const auto [all, skipped] =
       measureFile(device, library.list(), library.precise(), measurement, [&](const Experiment& experiment) {
         fmt::print("{}", tableOf(experiment, true, options.tolerance));

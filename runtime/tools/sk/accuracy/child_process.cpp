@@ -14,7 +14,7 @@
 
 namespace sk_tool {
 
-std::optional<int> runProgram(std::vector<std::string> words, Messages messages) {
+std::optional<int> runProgram(std::vector<std::string> words, Messages messages, const std::string& output) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -23,6 +23,10 @@ std::optional<int> runProgram(std::vector<std::string> words, Messages messages)
   if (messages == Messages::Hidden) {
     for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
       ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
+  }
+  if (!output.empty()) {
+    ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                       0600);
   }
   pid_t child = 0;
   const int error = ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);

@@ -18,9 +18,10 @@ namespace sk_tool {
 enum class Messages : std::uint8_t { Shown, Hidden };
 
 /// Runs words[0], searched for in PATH unless it contains a slash, with the other words as its arguments and
-/// with this process's standard streams, or without those for output. Returns its exit status, 128 plus the number of the signal that
+/// with this process's standard streams, or without those for output; its standard output goes to the file `output` if that has a name. Returns its exit status, 128 plus the number of the signal that
 /// ended it, or nullopt if there is no such program.
-std::optional<int> runProgram(std::vector<std::string> words, Messages messages = Messages::Shown);
+std::optional<int> runProgram(std::vector<std::string> words, Messages messages = Messages::Shown,
+                              const std::string& output = "");
 
 /// Throws std::runtime_error unless the file's name ends in .svg or .png.
 void checkChartName(const std::string& file);

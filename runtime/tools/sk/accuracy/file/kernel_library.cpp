@@ -45,12 +45,11 @@ struct Compiled {
 
 /// Compiles a file to FOLDER/NAME.sk.hpp, .cpp and .o.
 void runSkc(const fs::path& file, const BuildOptions& options, const fs::path& folder) {
-  std::string skc = options.skc.empty() ? variable("SK_SKC") : options.skc;
-  if (skc.empty()) skc = fs::exists(ownFolder() / "skc") ? (ownFolder() / "skc").string() : "skc";
-  Words words{skc, "--library", "--quad", "-o", folder.string()};
-  for (const std::string& include : options.includes) words.push_back("-I" + include);
-  for (const std::string& definition : options.definitions) words.push_back("-D" + definition);
-  words.push_back(file.string());
+  Words words = skcWords(options);
+  const std::string skc = words.front();
+  for (const std::string& word :
+       {std::string("--library"), std::string("--quad"), std::string("-o"), folder.string(), file.string()})
+    words.push_back(word);
   const std::optional<int> status = runProgram(words);
   if (!status) {
     throw std::runtime_error(fmt::format("there is no '{}' to compile '{}'; name one by --skc FILE or SK_SKC",
@@ -137,6 +136,15 @@ void linkKept(const Compiled& compiled, const fs::path& library) {
 }
 
 }  // namespace
+
+std::vector<std::string> skcWords(const BuildOptions& options) {
+  std::string skc = options.skc.empty() ? variable("SK_SKC") : options.skc;
+  if (skc.empty()) skc = fs::exists(ownFolder() / "skc") ? (ownFolder() / "skc").string() : "skc";
+  Words words{skc};
+  for (const std::string& include : options.includes) words.push_back("-I" + include);
+  for (const std::string& definition : options.definitions) words.push_back("-D" + definition);
+  return words;
+}
 
 namespace {
 

@@ -23,6 +23,9 @@ struct BuildOptions {
   std::vector<std::string> includes = {}, definitions = {};  ///< -I and -D options of skc
 };
 
+/// The compiler, with the options that a file needs.
+std::vector<std::string> skcWords(const BuildOptions& options);
+
 /// Must outlive every device that runs its kernels, because devices identify kernels by their addresses.
 class KernelLibrary {
  public:

@@ -488,6 +488,7 @@ FileResults measureFile(sk::Device& device, const sk::program::Library& library,
       results.skipped.emplace_back(error.what());
       continue;
     }
+    if (measurement.addBounds) measurement.addBounds(results.experiments.back(), subject);
     report(results.experiments.back());
   }
   if (results.experiments.empty()) failWith(results.skipped);

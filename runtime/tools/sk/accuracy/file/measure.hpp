@@ -26,6 +26,8 @@ struct FileMeasurement {
   Ranges ranges = {};
   std::string inputs =
       {};  ///< a .npz file with recorded inputs, which take the place of drawn ones; empty: none
+  /// Called with each experiment before it is reported; may be empty.
+  std::function<void(Experiment&, const Subject&)> addBounds = {};
 };
 
 /// The results of a file, and for each kernel that was not measured a line that says why.
