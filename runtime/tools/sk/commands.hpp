@@ -24,4 +24,7 @@ void addScale(CLI::App& app);
 /// alone.
 void addServe(CLI::App& app);
 
+/// `sk tune`: finds the cheapest configuration file with which the results of a program are as exact as asked.
+void addTune(CLI::App& app);
+
 }  // namespace sk_tool

@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   sk_tool::addAccuracy(app);
   sk_tool::addScale(app);
   sk_tool::addServe(app);
+  sk_tool::addTune(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& stop) {  // also --help and --version

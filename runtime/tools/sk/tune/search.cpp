@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include "tune/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+#include <span>
+
+#include <fmt/format.h>
+
+namespace sk_tool::tune {
+
+namespace {
+
+using Steps = std::vector<Step>;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// More rounds for short runs, whose times vary more.
+int roundsFor(const Trial& trial) { return trial.median() < 0.5 ? 5 : 3; }
+
+Setting withAll(Setting setting, std::span<const Step> steps) {
+  for (const Step& step : steps) setting = with(std::move(setting), step.changes);
+  return setting;
+}
+
+/// Adds steps to a setting as long as `holds` accepts the result: all at once, else halves of them, down to single ones. Steps for
+/// what an earlier one has changed are left out.
+void grow(Setting& setting, std::span<const Step> steps, const std::function<bool(const Setting&)>& holds) {
+  Steps open;
+  Setting changed;
+  for (const Step& step : steps) {
+    const bool isTaken = std::ranges::any_of(step.changes, [&](const auto& change) {
+      return changed.contains(change.first) || setting.contains(change.first);
+    });
+    if (isTaken) continue;
+    open.push_back(step);
+    changed = with(changed, step.changes);
+  }
+  if (open.empty()) return;
+  if (const Setting grown = withAll(setting, open); holds(grown)) {
+    setting = grown;
+    return;
+  }
+  if (steps.size() == 1) return;
+  const std::size_t half = (steps.size() + 1) / 2;
+  grow(setting, steps.first(half), holds);
+  grow(setting, steps.subspan(half), holds);
+}
+
+/// A smallest part of the steps that still holds with the setting: all do, and no step can be left out of the result.
+Steps shrink(const Setting& setting, Steps steps, const std::function<bool(const Setting&)>& holds) {
+  for (std::size_t parts = 2; steps.size() > 1 && parts <= steps.size();) {
+    bool isSmaller = false;
+    for (std::size_t part = 0; part < parts && !isSmaller; ++part) {
+      Steps rest;
+      for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (i * parts / steps.size() != part) rest.push_back(steps[i]);
+      }
+      if (rest.size() == steps.size() || !holds(withAll(setting, rest))) continue;
+      steps = std::move(rest);
+      isSmaller = true;
+    }
+    if (isSmaller) {
+      parts = std::max<std::size_t>(parts - 1, 2);
+    } else if (parts == steps.size()) {
+      break;
+    } else {
+      parts = std::min(2 * parts, steps.size());
+    }
+  }
+  if (steps.size() == 1 && holds(setting)) steps.clear();
+  return steps;
+}
+
+class CheaperSearch {
+ public:
+  CheaperSearch(Trials& trials, const Choices& choices, Found& found)
+      : trials_(trials), choices_(choices), found_(found), start_(found.setting) {}
+
+  void run() {
+    const Steps promising = tryEach();
+    grow(found_.setting, promising, [&](const Setting& setting) { return isBetter(setting); });
+    leaveOutEach();
+  }
+
+ private:
+  /// The choices that save time and hold the tolerance by themselves, the best first.
+  Steps tryEach() {
+    struct Candidate {
+      Step step;
+      double value;
+    };
+    const Trial& base = trials_.run(start_);
+    std::vector<Candidate> candidates;
+    for (const Step& step : choices_.others) {
+      const bool isOpen = std::ranges::none_of(
+          step.changes, [&](const auto& change) { return start_.contains(change.first); });
+      if (!isOpen) continue;
+      const Setting setting = with(start_, step.changes);
+      const Trial& trial = trials_.run(setting);
+      if (!trial.failure.empty()) {
+        found_.failed.push_back(fmt::format("{}: the program {}", describe(step.changes), trial.failure));
+      }
+      if (!trials_.holds(trial)) continue;
+      if (savedBy(step, trial, base) > 0 && trial.seconds.size() < 2) trials_.time(setting, 2);
+      const double saved = savedBy(step, trial, base);
+      if (saved <= leastGain * base.median()) continue;
+      const double error = std::max(trial.verdict.score - base.verdict.score, 1e-12);
+      candidates.push_back({step, saved / error});
+    }
+    std::ranges::stable_sort(candidates, std::greater(), &Candidate::value);
+    Steps steps;
+    for (Candidate& each : candidates) steps.push_back(std::move(each.step));
+    return steps;
+  }
+
+  /// The seconds that a choice saves: of its kernel, if they are known, which other work on the machine changes less.
+  static double savedBy(const Step& step, const Trial& trial, const Trial& base) {
+    const auto before = base.kernels.find(step.of), after = trial.kernels.find(step.of);
+    if (step.isKernel && before != base.kernels.end() && after != trial.kernels.end())
+      return before->second - after->second;
+    return base.least() - trial.least();
+  }
+
+  bool isBetter(const Setting& setting) {
+    const Trial& trial = trials_.run(setting);
+    if (!trials_.holds(trial) || slower_.contains(setting)) return false;
+    const bool isFaster = trials_.compare(found_.setting, setting, roundsFor(trial)) < 1 - leastGain / 2;
+    if (!isFaster) slower_.insert(setting);
+    return isFaster;
+  }
+
+  /// Leaves out each choice once: this shows what it saves and how exact the rest is, and drops it if it saves nothing.
+  void leaveOutEach() {
+    const Setting all = found_.setting;
+    const double base = trials_.run({}).median();
+    for (const auto& [unit, value] : all) {
+      if (start_.contains(unit)) continue;
+      const Setting rest = without(found_.setting, {{unit, value}});
+      const Trial& trial = trials_.run(rest);
+      Evidence& evidence = found_.evidence[unit];
+      evidence.scoreWithout = trial.failure.empty() ? trial.verdict.score : infinite;
+      if (!trials_.holds(trial)) continue;
+      const double ratio = trials_.compare(rest, found_.setting, roundsFor(trial));
+      evidence.saved = (1 - ratio) * trial.median() / base;
+      evidence.isTimed = true;
+      if (ratio <= 1 - leastGain / 4) continue;
+      found_.setting = rest;
+      found_.evidence.erase(unit);
+    }
+  }
+
+  Trials& trials_;
+  const Choices& choices_;
+  Found& found_;
+  const Setting start_;
+  std::set<Setting> slower_;  ///< settings that were no faster than what they add to
+};
+
+class ExactSearch {
+ public:
+  ExactSearch(Trials& trials, const Choices& choices, Found& found)
+      : trials_(trials), choices_(choices), found_(found) {}
+
+  void run() {
+    const Steps steps = runnable();
+    const Setting all = withAll({}, steps);
+    keepBest(trials_.run(all));
+    if (!trials_.holds(trials_.run(all))) {
+      found_.isReached = false;
+      return;
+    }
+    found_.setting = all;
+    const auto holds = [&](const Setting& setting) {
+      const Trial& trial = trials_.run(setting);
+      if (trials_.holds(trial) && setting.size() < found_.setting.size()) found_.setting = setting;
+      return trials_.holds(trial);
+    };
+    const Steps needed = shrink({}, steps, holds);
+    found_.setting = withAll({}, needed);
+    for (const Step& step : needed) found_.raised.push_back(step.of);
+    leaveOutKeys();
+    timeEach(needed);
+  }
+
+ private:
+  /// The steps with which, together, the program runs and keeps its decisions.
+  Steps runnable() {
+    const auto isAllowed = [&](const Setting& setting) {
+      const Trial& trial = trials_.run(setting);
+      keepBest(trial);
+      return trials_.isAllowed(trial);
+    };
+    if (isAllowed(withAll({}, choices_.raised))) return choices_.raised;
+    Setting setting;
+    grow(setting, choices_.raised, isAllowed);
+    Steps steps;
+    for (const Step& step : choices_.raised) {
+      const bool isIn = std::ranges::all_of(step.changes, [&](const auto& change) {
+        const auto own = setting.find(change.first);
+        return own != setting.end() && own->second == change.second;
+      });
+      if (isIn) {
+        steps.push_back(step);
+      } else {
+        noteFailure(step);
+      }
+    }
+    return steps;
+  }
+
+  void noteFailure(const Step& step) {
+    const Trial& trial = trials_.run(step.changes);
+    const std::string why = trial.failure.empty() ? (trial.verdict.decision.empty()
+                                                         ? "the program does not run with it and the others"
+                                                         : trial.verdict.decision)
+                                                  : "the program " + trial.failure;
+    found_.failed.push_back(fmt::format("{}: {}", describe(step.changes), why));
+  }
+
+  /// Until a setting holds, the most exact one is the result.
+  void keepBest(const Trial& trial) {
+    if (trials_.isAllowed(trial) && trial.verdict.score < bestScore_) {
+      bestScore_ = trial.verdict.score;
+      found_.setting = trial.setting;
+    }
+  }
+
+  /// A kernel that is raised by several keys may not need all of them.
+  void leaveOutKeys() {
+    const Setting all = found_.setting;
+    std::map<std::string, int> keys;
+    for (const auto& [unit, value] : all) ++keys[unit.name];
+    for (const auto& [unit, value] : all) {
+      if (keys[unit.name] < 2) continue;
+      const Setting rest = without(found_.setting, {{unit, value}});
+      if (!trials_.holds(trials_.run(rest))) continue;
+      found_.setting = rest;
+      --keys[unit.name];
+    }
+  }
+
+  void timeEach(const Steps& needed) {
+    const double base = trials_.run({}).median();
+    for (const Step& step : needed) {
+      const Setting rest = without(found_.setting, step.changes);
+      const Trial& trial = trials_.run(rest);
+      const double ratio =
+          trial.failure.empty() ? trials_.compare(rest, found_.setting, roundsFor(trial)) : 1;
+      for (const auto& [unit, value] : step.changes) {
+        if (!found_.setting.contains(unit)) continue;
+        Evidence& evidence = found_.evidence[unit];
+        evidence.scoreWithout = trial.failure.empty() ? trial.verdict.score : infinite;
+        evidence.saved = (1 - ratio) * trial.median() / base;
+        evidence.isTimed = trial.failure.empty();
+      }
+    }
+  }
+
+  Trials& trials_;
+  const Choices& choices_;
+  Found& found_;
+  double bestScore_ = infinite;
+};
+
+}  // namespace
+
+void searchCheaper(Trials& trials, const Choices& choices, Found& found) {
+  try {
+    CheaperSearch(trials, choices, found).run();
+  } catch (const OutOfBudget&) {
+    found.isComplete = false;
+  }
+}
+
+void searchExact(Trials& trials, const Choices& choices, Found& found) {
+  try {
+    ExactSearch(trials, choices, found).run();
+  } catch (const OutOfBudget&) {
+    found.isComplete = false;
+    found.isReached = trials.holds(trials.run(found.setting));
+  }
+}
+
+}  // namespace sk_tool::tune

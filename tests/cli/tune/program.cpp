@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+//
+// A program for tests of `sk tune`: program KIND COUNT [SCALE].
+//   settle COUNT SCALE    reads what settles, of numbers up to SCALE
+//   subtract COUNT        reads a difference that loses digits, and its sum
+//   both COUNT            reads both
+//   decide COUNT          reads which of the results are above a limit
+//   random COUNT          reads something else in each run
+//   silent COUNT          reads nothing
+//   status COUNT          ends with status 3 and a message
+//   signal COUNT          ends by a signal
+//   named COUNT           chooses its device itself
+//   text FILE COUNT       reads nothing, but writes its sum to FILE as JSON
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "tune/tuned.sk.hpp"
+
+namespace {
+
+std::vector<float> numbers(std::size_t count, float scale) {
+  std::vector<float> values(count);
+  std::uint32_t state = 1;
+  for (float& value : values) {
+    state = state * 1664525u + 1013904223u;
+    value = scale * (static_cast<float>(state >> 8) + 1) / 16777216.0f;
+  }
+  return values;
+}
+
+int runKind(const std::string& kind, std::size_t count, float scale, const std::string& file) {
+  sk::Device device = kind == "named" ? sk::Device::native() : sk::Device();
+  tuned::TunedStreams streams(device, static_cast<std::int64_t>(count));
+  auto x = device.stream<float>({static_cast<std::int64_t>(count)});
+  std::vector<float> values = numbers(count, scale);
+  if (kind == "random") values[0] = static_cast<float>(std::random_device()());
+  x.write(values);
+  if (kind != "subtract") tuned::settle(x, streams.state);
+  if (kind != "settle" && kind != "decide") tuned::subtract(x, streams.rest);
+  if (kind == "status") {
+    std::fprintf(stderr, "loading\nthere is no field today\n");
+    return 3;
+  }
+  if (kind == "signal") std::raise(SIGABRT);
+  if (kind == "silent") return 0;
+  if (kind == "text") {
+    std::ofstream(file) << "{\"run\": {\"sums\": [" << tuned::total(streams.rest) << "]}}\n";
+    return 0;
+  }
+  if (kind == "decide") {
+    auto flags = device.stream<int>({static_cast<std::int64_t>(count)}, sk::Storage::Default, "flags");
+    tuned::above(0.75f * scale, streams.state, flags);
+    flags.read();
+    return 0;
+  }
+  if (kind != "subtract") streams.state.read();
+  if (kind != "settle") {
+    streams.rest.read();
+    std::printf("%g\n", tuned::total(streams.rest));
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string kind = argc > 1 ? argv[1] : "";
+  const int first = kind == "text" ? 3 : 2;
+  if (argc <= first) return 2;
+  const float scale = argc > first + 1 ? std::stof(argv[first + 1]) : 1.0f;
+  return runKind(kind, std::stoul(argv[first]), scale, argv[2]);
+}
