@@ -25,6 +25,24 @@ Setting withAll(Setting setting, std::span<const Step> steps) {
   return setting;
 }
 
+/// The seconds that a trial saves over another one: in a kernel, if its times are known, which other work on the machine changes
+/// less than those of the whole.
+double secondsSaved(const std::string& kernel, const Trial& trial, const Trial& before) {
+  const auto first = before.kernels.find(kernel), second = trial.kernels.find(kernel);
+  if (first != before.kernels.end() && second != trial.kernels.end()) return first->second - second->second;
+  return before.least() - trial.least();
+}
+
+/// The kernel whose times show what a unit does; "" for streams.
+std::string kernelOf(const Unit& unit) { return unit.section == "kernels" ? unit.name : ""; }
+
+/// What a choice does, from runs without it and with it in turns; `rest` is the trial without it.
+Evidence evidenceOf(const Comparison& comparison, const Trial& rest, const Trial& base) {
+  return {.saved = comparison.saved / std::max(base.median(), 1e-9),
+          .isTimed = true,
+          .scoreWithout = rest.verdict.score};
+}
+
 /// Adds steps to a setting as long as `holds` accepts the result: all at once, else halves of them, down to single ones. Steps for
 /// what an earlier one has changed are left out.
 void grow(Setting& setting, std::span<const Step> steps, const std::function<bool(const Setting&)>& holds) {
@@ -104,7 +122,8 @@ class CheaperSearch {
         found_.failed.push_back(fmt::format("{}: the program {}", describe(step.changes), trial.failure));
       }
       if (!trials_.holds(trial)) continue;
-      if (savedBy(step, trial, base) > 0 && trial.seconds.size() < 2) trials_.time(setting, 2);
+      const double first = savedBy(step, trial, base);
+      if (std::fabs(first) < 0.5 * base.least()) trials_.time(setting, first > 0 ? 2 : 3);
       const double saved = savedBy(step, trial, base);
       if (saved <= leastGain * base.median()) continue;
       const double error = std::max(trial.verdict.score - base.verdict.score, 1e-12);
@@ -116,18 +135,14 @@ class CheaperSearch {
     return steps;
   }
 
-  /// The seconds that a choice saves: of its kernel, if they are known, which other work on the machine changes less.
   static double savedBy(const Step& step, const Trial& trial, const Trial& base) {
-    const auto before = base.kernels.find(step.of), after = trial.kernels.find(step.of);
-    if (step.isKernel && before != base.kernels.end() && after != trial.kernels.end())
-      return before->second - after->second;
-    return base.least() - trial.least();
+    return secondsSaved(step.isKernel ? step.of : "", trial, base);
   }
 
   bool isBetter(const Setting& setting) {
     const Trial& trial = trials_.run(setting);
     if (!trials_.holds(trial) || slower_.contains(setting)) return false;
-    const bool isFaster = trials_.compare(found_.setting, setting, roundsFor(trial)) < 1 - leastGain / 2;
+    const bool isFaster = trials_.compare(found_.setting, setting, roundsFor(trial)).isFaster(leastGain / 2);
     if (!isFaster) slower_.insert(setting);
     return isFaster;
   }
@@ -135,18 +150,16 @@ class CheaperSearch {
   /// Leaves out each choice once: this shows what it saves and how exact the rest is, and drops it if it saves nothing.
   void leaveOutEach() {
     const Setting all = found_.setting;
-    const double base = trials_.run({}).median();
+    const Trial& base = trials_.run({});
     for (const auto& [unit, value] : all) {
       if (start_.contains(unit)) continue;
       const Setting rest = without(found_.setting, {{unit, value}});
       const Trial& trial = trials_.run(rest);
-      Evidence& evidence = found_.evidence[unit];
-      evidence.scoreWithout = trial.failure.empty() ? trial.verdict.score : infinite;
+      found_.evidence[unit] = {.scoreWithout = trial.failure.empty() ? trial.verdict.score : infinite};
       if (!trials_.holds(trial)) continue;
-      const double ratio = trials_.compare(rest, found_.setting, roundsFor(trial));
-      evidence.saved = (1 - ratio) * trial.median() / base;
-      evidence.isTimed = true;
-      if (ratio <= 1 - leastGain / 4) continue;
+      const Comparison comparison = trials_.compare(rest, found_.setting, roundsFor(trial), kernelOf(unit));
+      found_.evidence[unit] = evidenceOf(comparison, trial, base);
+      if (comparison.isFaster(0) && found_.evidence[unit].saved > leastGain / 2) continue;
       found_.setting = rest;
       found_.evidence.erase(unit);
     }
@@ -243,18 +256,17 @@ class ExactSearch {
   }
 
   void timeEach(const Steps& needed) {
-    const double base = trials_.run({}).median();
+    const Trial& base = trials_.run({});
     for (const Step& step : needed) {
       const Setting rest = without(found_.setting, step.changes);
       const Trial& trial = trials_.run(rest);
-      const double ratio =
-          trial.failure.empty() ? trials_.compare(rest, found_.setting, roundsFor(trial)) : 1;
+      Evidence evidence{.scoreWithout = infinite};
+      if (trial.failure.empty()) {
+        const std::string kernel = step.isKernel ? step.of : "";
+        evidence = evidenceOf(trials_.compare(rest, found_.setting, roundsFor(trial), kernel), trial, base);
+      }
       for (const auto& [unit, value] : step.changes) {
-        if (!found_.setting.contains(unit)) continue;
-        Evidence& evidence = found_.evidence[unit];
-        evidence.scoreWithout = trial.failure.empty() ? trial.verdict.score : infinite;
-        evidence.saved = (1 - ratio) * trial.median() / base;
-        evidence.isTimed = trial.failure.empty();
+        if (found_.setting.contains(unit)) found_.evidence[unit] = evidence;
       }
     }
   }

@@ -132,10 +132,12 @@ void Trials::runOnce(Trial& trial) {
   }
   if (trial.seconds.empty()) trial.verdict = judge_.judge(result.process);
   trial.seconds.push_back(result.seconds());
+  trial.lastKernels.clear();
   for (const sk::results::Kernel& kernel : result.process.kernels) {
     if (!result.process.hasTimes) break;
     const auto [found, isNew] = trial.kernels.try_emplace(kernel.name, kernel.seconds);
     found->second = std::min(found->second, kernel.seconds);
+    trial.lastKernels[kernel.name] = kernel.seconds;
   }
 }
 
@@ -155,17 +157,27 @@ bool Trials::isAllowed(const Trial& trial) const {
 
 bool Trials::holds(const Trial& trial) const { return isAllowed(trial) && trial.verdict.isExact(); }
 
-double Trials::compare(const Setting& first, const Setting& second, int rounds) {
+Comparison Trials::compare(const Setting& first, const Setting& second, int rounds,
+                           const std::string& kernel) {
   Trial& a = trials_.at(first);
   Trial& b = trials_.at(second);
-  std::vector<double> ratios;
+  const auto lastOf = [&](const Trial& trial) {
+    const auto found = trial.lastKernels.find(kernel);
+    return std::max(found == trial.lastKernels.end() ? trial.seconds.back() : found->second, 1e-9);
+  };
+  std::vector<double> ratios, saved;
+  Comparison result{.rounds = rounds};
   for (int round = 0; round < rounds; ++round) {
     for (Trial* each : {round % 2 == 0 ? &a : &b, round % 2 == 0 ? &b : &a}) runOnce(*each);
-    if (!a.failure.empty() || !b.failure.empty()) return std::numeric_limits<double>::infinity();
-    ratios.push_back(b.seconds.back() / std::max(a.seconds.back(), 1e-9));
+    if (!a.failure.empty() || !b.failure.empty()) return result;
+    ratios.push_back(lastOf(b) / lastOf(a));
+    saved.push_back(lastOf(a) - lastOf(b));
+    result.wins += ratios.back() < 1 ? 1 : 0;
   }
+  result.ratio = medianOf(ratios);
+  result.saved = medianOf(saved);
   save();
-  return medianOf(ratios);
+  return result;
 }
 
 void Trials::time(const Setting& setting, std::size_t count) {

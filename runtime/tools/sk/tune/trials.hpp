@@ -22,9 +22,21 @@ struct Trial {
   Verdict verdict = {};
   std::vector<double> seconds = {};  ///< of each run
   std::map<std::string, double> kernels = {};  ///< the fewest seconds of each kernel, where they are known
+  std::map<std::string, double> lastKernels = {};  ///< likewise those of the last run
 
   double median() const;
   double least() const;
+};
+
+/// How two settings compare that have run in turns.
+struct Comparison {
+  double saved = 0;  ///< the median of the seconds that the second saves
+  double ratio = 1;  ///< the median of its seconds over those of the first
+  int wins = 0;  ///< rounds in which it was faster
+  int rounds = 0;
+
+  /// Whether the second is faster by this part of the first, and not by chance: in four of five rounds.
+  bool isFaster(double least) const { return ratio < 1 - least && 5 * wins >= 4 * rounds; }
 };
 
 /// Thrown where another run would go beyond the budget.
@@ -53,8 +65,9 @@ class Trials {
   bool holds(const Trial& trial) const;
   /// Likewise, whatever its errors are.
   bool isAllowed(const Trial& trial) const;
-  /// The median of seconds of `second` over seconds of `first`, which run in turns. Both must have run. Throws OutOfBudget.
-  double compare(const Setting& first, const Setting& second, int rounds);
+  /// Runs two settings in turns, both of which must have run. Compares the seconds of one kernel if one is named and its times are
+  /// known, which other work on the machine changes less. Throws OutOfBudget.
+  Comparison compare(const Setting& first, const Setting& second, int rounds, const std::string& kernel = {});
   /// Runs a setting until it has so many times. Throws OutOfBudget.
   void time(const Setting& setting, std::size_t count);
 

@@ -16,6 +16,7 @@
 #include "assemble/nearest_word.hpp"
 #include "commands.hpp"
 #include "support/cache_folder.hpp"
+#include "tune/baseline.hpp"
 #include "tune/report.hpp"
 #include "tune/truth.hpp"
 
@@ -81,73 +82,6 @@ std::vector<Wanted> wantedOf(const Options& options, const std::vector<ResultFil
   return wanted;
 }
 
-[[noreturn]] void failRun(const Application& application, const std::string& failure) {
-  throw std::runtime_error(fmt::format("{} {}", application.name(), failure));
-}
-
-/// The program as it is: with its times, and what it reads twice.
-struct Baseline {
-  Process times;  ///< of a run that waits around each kernel, on devices that queue calls
-  Process process;
-  std::vector<std::string> differing;  ///< names of reads that are not the same in two runs
-  double wall = 0;  ///< seconds of the longest run
-};
-
-Baseline measure(const Application& application) {
-  Baseline base;
-  RunResult first = application.run({}), second = application.run({});
-  for (const RunResult* each : {&first, &second}) {
-    if (!each->failure.empty()) failRun(application, each->failure);
-    base.wall = std::max(base.wall, each->wall);
-  }
-  base.differing = differences(first.process, second.process);
-  base.times = first.process;
-  base.process = std::move(first.process);
-  if (base.times.hasTimes) return base;
-  RunResult measured = application.run({.measures = true});
-  if (!measured.failure.empty()) failRun(application, measured.failure);
-  base.times = std::move(measured.process);
-  return base;
-}
-
-void checkBase(const Application& application, const Baseline& base, const BaseFile& file) {
-  if (base.process.kernels.empty())
-    failRun(application, "calls no kernels, so that there is nothing to choose");
-  if (base.process.series.empty()) {
-    failRun(application,
-            "reads nothing from its devices, so that its results are unknown; name a file that it writes: "
-            "--result-file picture.png, --result-json run.json:energy");
-  }
-  for (const std::string& name : file.namesIn("kernels")) {
-    const std::vector<std::string>& known = base.process.linkedKernels;
-    if (std::ranges::find(known, name) != known.end()) continue;
-    throw std::runtime_error(fmt::format(
-        "the configuration '{}' (SK_CONFIG) has a kernel '{}', but {} has {}; is it of another program?",
-        file.name(), name, application.name(), fmt::join(known, ", ")));
-  }
-}
-
-/// Reads that do not repeat cannot be judged. Throws if nothing else is left, or if they are asked for.
-std::vector<std::string> checkRepeats(const Application& application, const Baseline& base,
-                                      const std::vector<Wanted>& wanted) {
-  for (const Wanted& each : wanted) {
-    if (std::ranges::find(base.differing, each.name) == base.differing.end()) continue;
-    failRun(application,
-            fmt::format(
-                "reads other numbers of '{}' in each run, so that no error can be told from chance; fix its "
-                "seeds, or order = \"kept\"",
-                each.name));
-  }
-  if (base.differing.size() >= base.process.series.size()) {
-    failRun(
-        application,
-        fmt::format("reads other numbers in each run ({}), so that no error can be told from chance; fix its "
-                    "seeds, or order = \"kept\"",
-                    fmt::join(base.differing, ", ")));
-  }
-  return base.differing;
-}
-
 std::string commandOf(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, " "));
 }
@@ -170,30 +104,36 @@ std::string keyOf(const Options& options, const Judge& judge, const BaseFile& ba
   return fmt::format("{:016x}", sk::hashOf(key));
 }
 
-Verification verify(const std::string& command, const Options& options, const std::vector<ResultFile>& files,
-                    const std::vector<Wanted>& wanted, const std::string& configuration) {
-  const Application application({"/bin/sh", "-c", command}, files);
-  Verification result{.command = command, .asItIs = {}, .tuned = {}};
-  RunResult asItIs = application.run({});
-  if (!asItIs.failure.empty()) {
-    result.failure = "as it is, the program " + asItIs.failure;
-    return result;
-  }
+/// Fills in the verdicts. Returns why a configuration does not hold for the program with other arguments; "" if it does.
+std::string failureFor(Verification& verification, const Options& options,
+                       const std::vector<ResultFile>& files, const std::vector<Wanted>& wanted,
+                       const std::string& configuration) {
+  const Application application({"/bin/sh", "-c", verification.command}, files);
+  const RunResult asItIs = application.run({});
+  if (!asItIs.failure.empty()) return "as it is, the program " + asItIs.failure;
   const Truth truth = truthOf(application, options.isFresh);
-  const Judge judge(asItIs.process, truth.process, wanted, Metric::L2, 0, {});
-  result.asItIs = judge.judge(asItIs.process);
+  const Judge judge(asItIs.process, truth.process, wanted, metricOf(options.metric), options.tolerance, {});
+  verification.asItIs = judge.judge(asItIs.process);
   const RunResult tuned = application.run({.environment = {{"SK_CONFIG", configuration}}});
-  if (!tuned.failure.empty()) {
-    result.failure = "the program " + tuned.failure;
-    return result;
+  if (!tuned.failure.empty()) return "the program " + tuned.failure;
+  verification.tuned = judge.judge(tuned.process);
+  if (!verification.tuned.isExact())
+    return fmt::format("{}; as it is: {}", describe(verification.tuned), describe(verification.asItIs));
+  if (!options.allowsDecisions && !verification.tuned.decision.empty())
+    return verification.tuned.decision + " (--allow-decisions lets it)";
+  return {};
+}
+
+Verification verify(const std::string& command, const Options& options, const std::vector<ResultFile>& files,
+                    const std::string& configuration) {
+  Verification verification{.command = command, .asItIs = {}, .tuned = {}};
+  try {
+    const std::vector<Wanted> wanted = wantedOf(options, files);
+    verification.failure = failureFor(verification, options, files, wanted, configuration);
+  } catch (const std::runtime_error& error) {
+    verification.failure = error.what();
   }
-  result.tuned = judge.judge(tuned.process);
-  if (!result.tuned.isExact()) {
-    result.failure = describe(result.tuned) + "; as it is: " + describe(result.asItIs);
-  } else if (!options.allowsDecisions && !result.tuned.decision.empty()) {
-    result.failure = result.tuned.decision + " (--allow-decisions lets it)";
-  }
-  return result;
+  return verification;
 }
 
 [[noreturn]] void failUnreached(const Report& report) {
@@ -220,7 +160,7 @@ bool finish(Report& report, const Options& options, const std::vector<ResultFile
     const std::string file = (folder.path() / "tuned.toml").string();
     write(report.trials->fileOf(report.tuned->setting), file);
     for (const std::string& command : options.verify)
-      report.verifications.push_back(verify(command, options, files, report.wanted, file));
+      report.verifications.push_back(verify(command, options, files, file));
   }
   const bool holds = std::ranges::all_of(report.verifications,
                                          [](const Verification& each) { return each.failure.empty(); });
@@ -233,70 +173,80 @@ bool finish(Report& report, const Options& options, const std::vector<ResultFile
   return holds;
 }
 
+/// Searches in the direction that the program needs, and times what was found against the program as it is.
+void search(Trials& trials, const Choices& choices, Found& found, Report& report) {
+  try {
+    trials.time({}, 3);
+    report.wasRaised = !trials.holds(trials.run({}));
+    if (report.wasRaised) searchExact(trials, choices, found);
+    if (found.isReached && found.isComplete) searchCheaper(trials, choices, found);
+    if (found.isReached && !found.setting.empty()) report.ratio = trials.compare({}, found.setting, 5).ratio;
+  } catch (const OutOfBudget&) {
+    found.isComplete = false;
+    report.ratio = trials.run(found.setting).median() / std::max(trials.run({}).median(), 1e-9);
+  }
+  report.base = &trials.run({});
+  report.tuned = &trials.run(found.setting);
+}
+
+void checkBudget(const Options& options, const Application& application, double wall) {
+  constexpr double leastRuns = 4, someRuns = 20;
+  if (secondsOf(options.budget) >= leastRuns * wall) return;
+  throw std::runtime_error(fmt::format(
+      "the budget of {} is too small: a run of {} takes {:.2g} s, and a search needs several; give "
+      "--budget {:.0f}s or more",
+      options.budget, application.name(), wall, std::ceil(someRuns * wall)));
+}
+
+void checkFloats(const Application& application, const Verdict& verdict) {
+  if (!verdict.errors.empty()) return;
+  throw std::runtime_error(fmt::format(
+      "{} reads only integers, which have no error; name a file that it writes: --result-file, --result-json",
+      application.name()));
+}
+
+BaseFile baseFile() {
+  const char* const name = std::getenv("SK_CONFIG");
+  return name != nullptr && *name != '\0' ? BaseFile(name) : BaseFile();
+}
+
 void tune(const Options& options) {
   const double budget = secondsOf(options.budget);
   if (!options.chart.empty()) checkChartName(options.chart);
   const std::vector<ResultFile> files = filesOf(options);
   const std::vector<Wanted> wanted = wantedOf(options, files);
-  const char* const configuration = std::getenv("SK_CONFIG");
-  const bool hasBase = configuration != nullptr && *configuration != '\0';
-  const BaseFile baseFile = hasBase ? BaseFile(configuration) : BaseFile();
+  const BaseFile file = baseFile();
   const Application application(options.words, files);
   const Baseline base = measure(application);
-  checkBase(application, base, baseFile);
-  const std::vector<std::string> ignored = checkRepeats(application, base, wanted);
-  constexpr double leastRuns = 4;
-  if (budget < leastRuns * base.wall) {
-    throw std::runtime_error(fmt::format(
-        "the budget of {} is too small: a run of {} takes {:.2g} s, and a search needs several; give "
-        "--budget {:.0f}s or more",
-        options.budget, application.name(), base.wall, std::ceil(20 * base.wall)));
-  }
+  checkBaseline(application, base, file);
+  checkRepeats(application, base, wanted);
+  checkBudget(options, application, base.wall);
   const Truth truth = truthOf(application, options.isFresh);
   const Judge judge(base.process, truth.process, wanted, metricOf(options.metric), options.tolerance,
-                    ignored);
-  if (judge.judge(base.process).errors.empty()) {
-    failRun(
-        application,
-        "reads only integers, which have no error; name a file that it writes: --result-file, --result-json");
-  }
+                    base.differing);
+  checkFloats(application, judge.judge(base.process));
   const Choices choices = choicesOf(base.times);
-  Trials trials(application, baseFile, choices.facts, judge,
+  Trials trials(application, file, choices.facts, judge,
                 {.budget = std::chrono::duration<double>(budget),
                  .limit = std::chrono::duration<double>(10 + 10 * base.wall),
                  .allowsDecisions = options.allowsDecisions,
                  .stateFile = options.output + ".state",
-                 .key = keyOf(options, judge, baseFile, base.process)});
+                 .key = keyOf(options, judge, file, base.process)});
   if (options.continues) trials.load();
-
   Found found;
   Report report{.command = commandOf(options.words),
                 .device = deviceOf(base.process),
                 .wanted = judge.wanted(),
-                .ignored = ignored,
+                .ignored = base.differing,
                 .notes = base.process.notes};
   report.found = &found;
   report.choices = &choices;
   report.trials = &trials;
-  try {
-    trials.time({}, 3);
-    report.base = &trials.run({});
-    if (!report.base->failure.empty()) failRun(application, report.base->failure);
-    report.wasRaised = !trials.holds(*report.base);
-    if (report.wasRaised) searchExact(trials, choices, found);
-    if (found.isReached && found.isComplete) searchCheaper(trials, choices, found);
-    report.tuned = &trials.run(found.setting);
-    if (found.isReached && !found.setting.empty()) report.ratio = trials.compare({}, found.setting, 5);
-  } catch (const OutOfBudget&) {
-    found.isComplete = false;
-  }
-  report.base = &trials.run({});
-  report.tuned = &trials.run(found.setting);
+  search(trials, choices, found, report);
   if (!found.isReached) failUnreached(report);
-  if (report.ratio == 1) report.ratio = report.tuned->median() / std::max(report.base->median(), 1e-9);
-  if (!finish(report, options, files))
-    throw std::runtime_error(fmt::format(
-        "the configuration does not hold on other inputs; it is kept as '{}.rejected'", options.output));
+  if (finish(report, options, files)) return;
+  throw std::runtime_error(fmt::format(
+      "the configuration does not hold on other inputs; it is kept as '{}.rejected'", options.output));
 }
 
 }  // namespace
