@@ -10,6 +10,9 @@
 //   status COUNT          ends with status 3 and a message
 //   signal COUNT          ends by a signal
 //   named COUNT           chooses its device itself
+//   reads COUNT           reads in all ways that there are
+//   called COUNT          calls a kernel in doubles that it could do without
+//   fork COUNT            reads what settles, after a fork
 //   text FILE COUNT       reads nothing, but writes its sum to FILE as JSON
 #include <csignal>
 #include <cstdio>
@@ -18,6 +21,10 @@
 #include <string>
 #include <vector>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <sk/algorithm.hpp>
 #include <sk/sk.hpp>
 
 #include "tune/tuned.sk.hpp"
@@ -34,6 +41,21 @@ std::vector<float> numbers(std::size_t count, float scale) {
   return values;
 }
 
+int readAll(sk::Device& device, tuned::TunedStreams& streams, sk::Stream<float>& x) {
+  auto hits = device.stream<tuned::Hit>({streams.state.size()}, sk::Storage::Default, "hits");
+  tuned::meet(x, hits);
+  hits.read();
+  streams.state.readAsync().get();
+  streams.state.readReals();
+  streams.state.domain({1}, {3}).read();
+  x.read();
+  sk::order(x).read();
+  sk::Scalar<float> sum = device.scalar<float>(2);
+  (sum * 3.0f).read();
+  tuned::extremes(x);
+  return 0;
+}
+
 int runKind(const std::string& kind, std::size_t count, float scale, const std::string& file) {
   sk::Device device = kind == "named" ? sk::Device::native() : sk::Device();
   tuned::TunedStreams streams(device, static_cast<std::int64_t>(count));
@@ -41,7 +63,19 @@ int runKind(const std::string& kind, std::size_t count, float scale, const std::
   std::vector<float> values = numbers(count, scale);
   if (kind == "random") values[0] = static_cast<float>(std::random_device()());
   x.write(values);
+  if (kind == "called") {
+    tuned::smooth.with({.precision = sk::Precision::Double, .contraction = sk::Contraction::Exact})(
+        x, streams.rest);
+    streams.rest.read();
+    return 0;
+  }
+  if (kind == "fork") {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(0);
+    ::waitpid(child, nullptr, 0);
+  }
   if (kind != "subtract") tuned::settle(x, streams.state);
+  if (kind == "reads") return readAll(device, streams, x);
   if (kind != "settle" && kind != "decide") tuned::subtract(x, streams.rest);
   if (kind == "status") {
     std::fprintf(stderr, "loading\nthere is no field today\n");

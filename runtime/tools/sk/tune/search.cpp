@@ -163,6 +163,10 @@ class CheaperSearch {
       found_.setting = rest;
       found_.evidence.erase(unit);
     }
+    for (auto& [unit, evidence] : found_.evidence) {  // some others have been dropped since
+      const Trial& trial = trials_.run(without(found_.setting, {{unit, {}}}));
+      evidence.scoreWithout = trial.failure.empty() ? trial.verdict.score : infinite;
+    }
   }
 
   Trials& trials_;

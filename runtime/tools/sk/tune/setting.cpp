@@ -28,6 +28,7 @@ std::string tomlString(const std::string& text) {
 }
 
 std::string literalOf(const toml::node& node) {
+  if (const auto text = node.value_exact<std::string>()) return tomlString(*text);
   std::ostringstream out;
   node.visit([&](const auto& value) { out << value; });
   return out.str();
