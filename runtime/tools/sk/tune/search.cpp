@@ -10,20 +10,16 @@
 
 #include <fmt/format.h>
 
+#include "tune/subsets.hpp"
+
 namespace sk_tool::tune {
 
 namespace {
 
-using Steps = std::vector<Step>;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// More rounds for short runs, whose times vary more.
 int roundsFor(const Trial& trial) { return trial.median() < 0.5 ? 5 : 3; }
-
-Setting withAll(Setting setting, std::span<const Step> steps) {
-  for (const Step& step : steps) setting = with(std::move(setting), step.changes);
-  return setting;
-}
 
 /// The seconds that a trial saves over another one: in a kernel, if its times are known, which other work on the machine changes
 /// less than those of the whole.
@@ -41,55 +37,6 @@ Evidence evidenceOf(const Comparison& comparison, const Trial& rest, const Trial
   return {.saved = comparison.saved / std::max(base.median(), 1e-9),
           .isTimed = true,
           .scoreWithout = rest.verdict.score};
-}
-
-/// Adds steps to a setting as long as `holds` accepts the result: all at once, else halves of them, down to single ones. Steps for
-/// what an earlier one has changed are left out.
-void grow(Setting& setting, std::span<const Step> steps, const std::function<bool(const Setting&)>& holds) {
-  Steps open;
-  Setting changed;
-  for (const Step& step : steps) {
-    const bool isTaken = std::ranges::any_of(step.changes, [&](const auto& change) {
-      return changed.contains(change.first) || setting.contains(change.first);
-    });
-    if (isTaken) continue;
-    open.push_back(step);
-    changed = with(changed, step.changes);
-  }
-  if (open.empty()) return;
-  if (const Setting grown = withAll(setting, open); holds(grown)) {
-    setting = grown;
-    return;
-  }
-  if (steps.size() == 1) return;
-  const std::size_t half = (steps.size() + 1) / 2;
-  grow(setting, steps.first(half), holds);
-  grow(setting, steps.subspan(half), holds);
-}
-
-/// A smallest part of the steps that still holds with the setting: all do, and no step can be left out of the result.
-Steps shrink(const Setting& setting, Steps steps, const std::function<bool(const Setting&)>& holds) {
-  for (std::size_t parts = 2; steps.size() > 1 && parts <= steps.size();) {
-    bool isSmaller = false;
-    for (std::size_t part = 0; part < parts && !isSmaller; ++part) {
-      Steps rest;
-      for (std::size_t i = 0; i < steps.size(); ++i) {
-        if (i * parts / steps.size() != part) rest.push_back(steps[i]);
-      }
-      if (rest.size() == steps.size() || !holds(withAll(setting, rest))) continue;
-      steps = std::move(rest);
-      isSmaller = true;
-    }
-    if (isSmaller) {
-      parts = std::max<std::size_t>(parts - 1, 2);
-    } else if (parts == steps.size()) {
-      break;
-    } else {
-      parts = std::min(2 * parts, steps.size());
-    }
-  }
-  if (steps.size() == 1 && holds(setting)) steps.clear();
-  return steps;
 }
 
 class CheaperSearch {
