@@ -29,7 +29,7 @@ double ulpOf(double number) {
   constexpr int bits = std::numeric_limits<float>::digits, least = std::numeric_limits<float>::min_exponent;
   int exponent = 0;
   std::frexp(number, &exponent);
-  return std::ldexp(1.0, std::max(exponent, least) - bits);
+  return std::ldexp(1.0, (number == 0 ? least : std::max(exponent, least)) - bits);
 }
 
 /// The sum of squares without overflow: of doubles near the largest, too.
