@@ -118,7 +118,22 @@ sed -i 's/tuned::subtract/ocean::waves/' base.toml
 refuses "has a kernel 'ocean::waves', but" --tolerance 0.5 -- "$program" subtract 500
 unset SK_CONFIG
 
-# Decisions stay as they are.
+# Files that the program writes.
+run 0 --tolerance 1e-3 --budget 20s --result-file state.npy --json all.json -- "$program" array state.npy 500
+json "assert [r['name'] for r in all['results']] == ['state.npy'] and 0 < all['asItIs']['errors'][0]['error'] < 1e-7, all['asItIs']"
+run 0 --result-file state.tga --psnr 40 --budget 20s --json all.json -- "$program" picture state.tga 500
+json "assert all['results'] == [{'name': 'state.tga', 'metric': 'psnr', 'tolerance': 40}], all['results']"
+refuses "there is no tolerance for 'state.npy'; give --tolerance" --result-file state.npy -- "$program" array state.npy 500
+
+# Decisions stay as they are, unless they may change.
+run 0 --tolerance 1e-3 --budget 40s -o odd.toml -- "$program" odd 12000
+lacks odd.toml 'tuned::settle'
+prints "not possible: tuned::settle: precision single: 'flags', of integers, has other values (--allow-decisions lets it)"
+for attempt in 1 2 3; do
+  run 0 --tolerance 1e-3 --budget 40s -o odd.toml --allow-decisions -- "$program" odd 12000
+  grep -qF 'tuned::settle' odd.toml && break
+  ((attempt < 3)) || broken 'odd.toml leaves the kernel in doubles'
+done
 refuses 'reads only integers' --tolerance 1e-3 -- "$program" decide 500
 
 refuses 'reads other numbers in each run (' --tolerance 1e-3 -- "$program" random 500

@@ -191,6 +191,18 @@ Kernel kernelOf(const DeviceState& device, const program::Kernel& kernel,
   return result;
 }
 
+/// The choices of a call, and "tables default" where it has none of tables.
+std::vector<std::string> usedBy(const CallOptions& options) {
+  std::vector<std::string> choices = choicesOf(options);
+  for (const std::string_view key : {"precision", "accumulate", "intrinsics", "tables", "contraction"}) {
+    const auto isOfKey = [&](const std::string& choice) {
+      return choice.starts_with(fmt::format("{} ", key));
+    };
+    if (std::ranges::none_of(choices, isOfKey)) choices.push_back(fmt::format("{} default", key));
+  }
+  return choices;
+}
+
 void addNew(std::vector<std::string>& list, const std::vector<std::string>& more) {
   for (const std::string& each : more) {
     if (std::ranges::find(list, each) == list.end()) list.push_back(each);
@@ -286,6 +298,12 @@ void Recorder::addComponents(const std::string& name, const program::Element& el
                              const std::byte* elements, std::size_t count) {
   for (const Member& member : membersOf(element)) {
     Values values{.kind = kindOf(member.fields.front().scalar), .bytes = {}};
+    const program::Field& only = member.fields.front();
+    if (only.scalar == program::Scalar::Float && only.width * sizeof(float) == element.size) {  // as it is
+      values.bytes.assign(reinterpret_cast<const char*>(elements), count * element.size);
+      keep(nameOf(name, member), std::move(values));
+      continue;
+    }
     for (std::size_t i = 0; i < count; ++i) {
       for (const program::Field& field : member.fields) {
         const std::byte* const first = elements + i * element.size + field.offset;
@@ -360,7 +378,7 @@ void Recorder::addCall(const DeviceState& device, const program::Kernel& kernel,
     call.called = called;
     call.used = used;
     addNew(call.kernel.called, choicesOf(called));
-    addNew(call.kernel.used, choicesOf(used));
+    addNew(call.kernel.used, usedBy(used));
   });
 }
 

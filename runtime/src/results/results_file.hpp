@@ -53,7 +53,7 @@ struct Kernel {
   bool mayContract = false;
   std::vector<std::string> tables = {};  ///< the tabulated functions that it calls
   std::vector<std::string> called = {};  ///< choices that calls made themselves: "precision double"
-  std::vector<std::string> used = {};  ///< choices that a call ran with, whoever made them
+  std::vector<std::string> used = {};  ///< choices that calls ran with, whoever made them; "tables default" for none
 };
 
 /// A stream that has floats and whose storage a configuration file may choose.

@@ -5,6 +5,7 @@
 //   subtract COUNT        reads a difference that loses digits, and its sum
 //   both COUNT            reads both
 //   decide COUNT          reads which of the results are above a limit
+//   odd COUNT             reads what settles, and the last bit of each number
 //   random COUNT          reads something else in each run
 //   silent COUNT          reads nothing
 //   status COUNT          ends with status 3 and a message
@@ -14,6 +15,8 @@
 //   called COUNT          calls a kernel in doubles that it could do without
 //   fork COUNT            reads what settles, after a fork
 //   text FILE COUNT       reads nothing, but writes its sum to FILE as JSON
+//   array FILE COUNT      likewise what settles, to a .npy file
+//   picture FILE COUNT    likewise, to a TGA file of one row
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -25,6 +28,7 @@
 #include <unistd.h>
 
 #include <sk/algorithm.hpp>
+#include <sk/npy.hpp>
 #include <sk/sk.hpp>
 
 #include "tune/tuned.sk.hpp"
@@ -39,6 +43,19 @@ std::vector<float> numbers(std::size_t count, float scale) {
     value = scale * (static_cast<float>(state >> 8) + 1) / 16777216.0f;
   }
   return values;
+}
+
+/// A row of grey texels in a TGA file without compression.
+void writePicture(const std::string& file, const std::vector<float>& numbers) {
+  const std::size_t count = numbers.size();
+  std::string bytes(18, '\0');
+  bytes[2] = 3;
+  bytes[12] = static_cast<char>(count % 256);
+  bytes[13] = static_cast<char>(count / 256);
+  bytes[14] = 1;
+  bytes[16] = 8;
+  for (const float number : numbers) bytes += static_cast<char>(static_cast<unsigned char>(255 * number));
+  std::ofstream(file, std::ios::binary) << bytes;
 }
 
 int readAll(sk::Device& device, tuned::TunedStreams& streams, sk::Stream<float>& x) {
@@ -87,6 +104,20 @@ int runKind(const std::string& kind, std::size_t count, float scale, const std::
     std::ofstream(file) << "{\"run\": {\"sums\": [" << tuned::total(streams.rest) << "]}}\n";
     return 0;
   }
+  if (kind == "array") {
+    sk::writeNpy(file, std::vector<std::int64_t>{static_cast<std::int64_t>(count)}, streams.state.readReals(),
+                 sk::NumberType::Float64);
+    return 0;
+  }
+  if (kind == "picture") {
+    writePicture(file, streams.state.read());
+    return 0;
+  }
+  if (kind == "odd") {
+    auto flags = device.stream<int>({static_cast<std::int64_t>(count)}, sk::Storage::Default, "flags");
+    tuned::parity(streams.state, flags);
+    flags.read();
+  }
   if (kind == "decide") {
     auto flags = device.stream<int>({static_cast<std::int64_t>(count)}, sk::Storage::Default, "flags");
     tuned::above(0.75f * scale, streams.state, flags);
@@ -94,7 +125,7 @@ int runKind(const std::string& kind, std::size_t count, float scale, const std::
     return 0;
   }
   if (kind != "subtract") streams.state.read();
-  if (kind != "settle") {
+  if (kind != "settle" && kind != "odd") {
     streams.rest.read();
     std::printf("%g\n", tuned::total(streams.rest));
   }
@@ -105,7 +136,7 @@ int runKind(const std::string& kind, std::size_t count, float scale, const std::
 
 int main(int argc, char** argv) {
   const std::string kind = argc > 1 ? argv[1] : "";
-  const int first = kind == "text" ? 3 : 2;
+  const int first = kind == "text" || kind == "array" || kind == "picture" ? 3 : 2;
   if (argc <= first) return 2;
   const float scale = argc > first + 1 ? std::stof(argv[first + 1]) : 1.0f;
   return runKind(kind, std::stoul(argv[first]), scale, argv[2]);

@@ -92,8 +92,8 @@ class KernelSteps {
   /// Whether all calls have this value already.
   bool uses(const std::string& key, std::string_view value, std::string_view byDefault) const {
     const std::vector<std::string> values = valuesOfKey(kernel_.used, key);
-    if (values.empty()) return value == byDefault;
-    return std::ranges::all_of(values, [&](const std::string& each) { return each == value; });
+    return std::ranges::all_of(
+        values, [&](const std::string& each) { return (each == "default" ? byDefault : each) == value; });
   }
 
   void leaveOut(std::string_view what, std::string_view why) {

@@ -68,6 +68,10 @@ class CheaperSearch {
       if (!trial.failure.empty()) {
         found_.failed.push_back(fmt::format("{}: the program {}", describe(step.changes), trial.failure));
       }
+      if (trial.failure.empty() && !trials_.isAllowed(trial)) {
+        found_.failed.push_back(fmt::format("{}: {} (--allow-decisions lets it)", describe(step.changes),
+                                            trial.verdict.decision));
+      }
       if (!trials_.holds(trial)) continue;
       const double first = savedBy(step, trial, base);
       if (std::fabs(first) < 0.5 * base.least()) trials_.time(setting, first > 0 ? 2 : 3);
@@ -106,7 +110,7 @@ class CheaperSearch {
       if (!trials_.holds(trial)) continue;
       const Comparison comparison = trials_.compare(rest, found_.setting, roundsFor(trial), kernelOf(unit));
       found_.evidence[unit] = evidenceOf(comparison, trial, base);
-      if (comparison.isFaster(0) && found_.evidence[unit].saved > leastGain / 2) continue;
+      if (comparison.isFaster(0) && found_.evidence[unit].saved > leastGain) continue;
       found_.setting = rest;
       found_.evidence.erase(unit);
     }

@@ -35,8 +35,8 @@ struct Found {
   bool isReached = true;  ///< false if nothing is exact enough; `setting` is then the most exact one
 };
 
-/// Times differ by less than this part of them by chance.
-inline constexpr double leastGain = 0.01;
+/// A choice that saves less than this part of the time is not worth what it may cost on other inputs.
+inline constexpr double leastGain = 0.02;
 
 /// Starts from a setting that holds. Changes nothing of it.
 void searchCheaper(Trials& trials, const Choices& choices, Found& found);

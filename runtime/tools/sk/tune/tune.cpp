@@ -173,6 +173,11 @@ bool finish(Report& report, const Options& options, const std::vector<ResultFile
   return holds;
 }
 
+void finishSearch(Trials& trials, const Found& found, Report& report) {
+  report.base = &trials.run({});
+  report.tuned = &trials.run(found.setting);
+}
+
 /// Searches in the direction that the program needs, and times what was found against the program as it is.
 void search(Trials& trials, const Choices& choices, Found& found, Report& report) {
   try {
@@ -180,13 +185,18 @@ void search(Trials& trials, const Choices& choices, Found& found, Report& report
     report.wasRaised = !trials.holds(trials.run({}));
     if (report.wasRaised) searchExact(trials, choices, found);
     if (found.isReached && found.isComplete) searchCheaper(trials, choices, found);
-    if (found.isReached && !found.setting.empty()) report.ratio = trials.compare({}, found.setting, 5).ratio;
+    if (!found.isReached || found.setting.empty()) return finishSearch(trials, found, report);
+    report.ratio = trials.compare({}, found.setting, 5).ratio;
+    if (!report.wasRaised && report.ratio > 1 - leastGain / 2) {  // what its parts saved was chance
+      found.setting.clear();
+      found.evidence.clear();
+      report.ratio = 1;
+    }
   } catch (const OutOfBudget&) {
     found.isComplete = false;
     report.ratio = trials.run(found.setting).median() / std::max(trials.run({}).median(), 1e-9);
   }
-  report.base = &trials.run({});
-  report.tuned = &trials.run(found.setting);
+  finishSearch(trials, found, report);
 }
 
 void checkBudget(const Options& options, const Application& application, double wall) {
