@@ -142,7 +142,7 @@ refuses "ends with status 3
   there is no field today" --tolerance 1e-3 -- "$program" status 500
 refuses 'ends by signal 6' --tolerance 1e-3 -- "$program" signal 500
 refuses 'reads nothing from its devices' --tolerance 1e-3 -- "$program" silent 500
-refuses "opens 'native' even with SK_DEVICE=reference" --tolerance 1e-3 -- "$program" named 500
+refuses "runs tuned::settle on 'native' even with SK_DEVICE=reference" --tolerance 1e-3 -- "$program" named 500
 refuses "the program reads no 'tuned::rst'; did you mean 'tuned::rest'?" --tolerance 1e-3 --result tuned::rst -- "$program" both 500
 refuses "'sums.json' has no 'sum' (of 'run.sum'); there are sums" --tolerance 1e-3 --result-json sums.json:run.sum -- "$program" text sums.json 500
 refuses "does not write 'other.json'" --tolerance 1e-3 --result-json other.json:run -- "$program" text sums.json 500

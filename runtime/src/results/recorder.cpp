@@ -180,7 +180,12 @@ Kernel kernelOf(const DeviceState& device, const program::Kernel& kernel,
   const bool hasHalf = reduction != nullptr ? reduction->half != nullptr : kernel.half != nullptr;
   const bool hasWide = reduction != nullptr ? reduction->wide != nullptr : kernel.wide != nullptr;
   const bool hasFloats = hasHalf || hasWide || !kernel.whyNotHalf.empty() || !kernel.whyNotWide.empty();
-  Kernel result{.name = std::string(kernel.name), .isReduce = reduction != nullptr, .hasFloats = hasFloats};
+  Kernel result{.name = std::string(kernel.name),
+                .device = device.name(),
+                .isNative = isNative,
+                .isOnReference = device.isReference(),
+                .isReduce = reduction != nullptr,
+                .hasFloats = hasFloats};
   if (!hasHalf) result.whyNotHalf = kernel.whyNotHalf;
   if (!hasWide && !isNative) result.whyNotWide = kernel.whyNotWide;
   result.compensates = reduction != nullptr && reduction->compensated != nullptr;
@@ -221,7 +226,7 @@ Recorder::Recorder(std::string setting, std::uint64_t limit)
   constexpr std::string_view times = ",times";
   if (file_.ends_with(times)) {
     file_.resize(file_.size() - times.size());
-    process_.hasTimes = true;
+    measures_ = true;
   }
   if (const std::size_t place = file_.find("%p"); place != std::string::npos)
     file_.replace(place, 2, std::to_string(process_id_));
@@ -373,6 +378,9 @@ void Recorder::addCall(const DeviceState& device, const program::Kernel& kernel,
                   .first;
     }
     Called& call = found->second;
+    isUnmeasured_ = isUnmeasured_ || (device.hasQueue() && !measures_);
+    call.kernel.isNative = call.kernel.isNative && device.kind() == "native";
+    call.kernel.isOnReference = call.kernel.isOnReference && device.isReference();
     if (!call.isNew && call.called == called && call.used == used) return;
     call.isNew = false;
     call.called = called;
@@ -401,8 +409,7 @@ void Recorder::write() noexcept {
     const std::lock_guard lock(mutex_);
     Process all = process_;
     all.span = static_cast<double>(end_ - begin_) * 1e-9;
-    const auto isNative = [](const Device& device) { return device.isNative; };
-    all.hasTimes = all.hasTimes || std::ranges::all_of(all.devices, isNative);
+    all.hasTimes = measures_ || !isUnmeasured_;
     all.linkedKernels = program::LinkedFile::namesOfAll().kernels;
     for (const std::string& name : kernelOrder_) all.kernels.push_back(kernels_.find(name)->second.kernel);
     for (const auto& [name, stream] : streams_) all.streams.push_back(stream);

@@ -46,7 +46,7 @@ class Recorder {
   explicit Recorder(std::string setting, std::uint64_t limit = mostBytes);
 
   /// Whether devices that queue calls wait around each, to measure it.
-  bool measures() const { return process_.hasTimes; }
+  bool measures() const { return measures_; }
 
   void addDevice(const DeviceState& device) noexcept;
   /// Returns the stream's number, from 1 in order of creation: the name of a stream without one.
@@ -94,6 +94,7 @@ class Recorder {
 
   std::mutex mutex_;
   std::string file_;
+  bool measures_ = false;
   const std::uint64_t limit_;
   const int process_id_;
   Process process_;
@@ -105,6 +106,7 @@ class Recorder {
   std::uint32_t streamCount_ = 0;
   std::uint64_t bytes_ = 0;
   Time begin_ = 0, end_ = 0;
+  bool isUnmeasured_ = false;  ///< a kernel ran on a device that queues its calls
 };
 
 }  // namespace sk::results

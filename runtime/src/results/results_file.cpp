@@ -13,7 +13,7 @@ namespace sk::results {
 
 namespace {
 
-constexpr std::string_view magic = "StreamKernel results 1\n";
+constexpr std::string_view magic = "StreamKernel results 2\n";
 
 /// Appends members to bytes, in the byte order of this machine: the file is read where it was written.
 class Writer {
@@ -88,7 +88,8 @@ void visit(Visit& v, Is<Series> auto& r) {
 }
 template <class Visit>
 void visit(Visit& v, Is<Kernel> auto& r) {
-  v(r.name), v(r.isReduce), v(r.calls), v(r.seconds), v(r.hasFloats), v(r.whyNotHalf), v(r.whyNotWide);
+  v(r.name), v(r.device), v(r.isNative), v(r.isOnReference), v(r.isReduce), v(r.calls), v(r.seconds),
+      v(r.hasFloats), v(r.whyNotHalf), v(r.whyNotWide);
   v(r.compensates), v(r.sumsExactly), v(r.hasFastFunctions), v(r.mayContract), v(r.tables), v(r.called);
   v(r.used);
 }

@@ -41,6 +41,9 @@ struct Series {
 /// A kernel, a reduce or a scan that the program has called.
 struct Kernel {
   std::string name = {};
+  std::string device = {};  ///< of its first call
+  bool isNative = false;  ///< all calls ran on native devices, which may be references
+  bool isOnReference = false;  ///< likewise on reference devices
   bool isReduce = false;
   std::uint64_t calls = 0;
   double seconds =
@@ -53,7 +56,8 @@ struct Kernel {
   bool mayContract = false;
   std::vector<std::string> tables = {};  ///< the tabulated functions that it calls
   std::vector<std::string> called = {};  ///< choices that calls made themselves: "precision double"
-  std::vector<std::string> used = {};  ///< choices that calls ran with, whoever made them; "tables default" for none
+  std::vector<std::string> used =
+      {};  ///< choices that calls ran with, whoever made them; "tables default" for none
 };
 
 /// A stream that has floats and whose storage a configuration file may choose.
@@ -78,7 +82,7 @@ struct Process {
   std::vector<std::string> linkedKernels = {};  ///< all names of the program, whether called or not
   std::vector<std::string> notes = {};  ///< what is missing, and why
   double span = 0;  ///< seconds from the first device to the end of the last read or call
-  bool hasTimes = false;  ///< the seconds of kernels are known
+  bool hasTimes = false;  ///< the seconds of all kernels are known
 };
 
 std::string toBytes(const Process& process);

@@ -155,8 +155,7 @@ std::optional<FileTime> timeOf(const std::string& file) {
 }  // namespace
 
 double RunResult::seconds() const {
-  const auto isNative = [](const sk::results::Device& device) { return device.isNative; };
-  if (!std::ranges::all_of(process.devices, isNative)) return process.span;
+  if (!process.hasTimes) return process.span;
   double sum = 0;
   for (const sk::results::Kernel& kernel : process.kernels) sum += kernel.seconds;
   return sum;

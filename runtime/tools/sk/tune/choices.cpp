@@ -16,10 +16,6 @@ using sk::results::Kernel;
 using sk::results::Process;
 using sk::results::Stream;
 
-bool isNativeProcess(const Process& run) {
-  return std::ranges::all_of(run.devices, [](const sk::results::Device& device) { return device.isNative; });
-}
-
 /// The values of a key in "precision double" and the like.
 std::vector<std::string> valuesOfKey(const std::vector<std::string>& choices, const std::string& key) {
   std::vector<std::string> values;
@@ -32,8 +28,7 @@ std::vector<std::string> valuesOfKey(const std::vector<std::string>& choices, co
 /// Builds the steps of one kernel.
 class KernelSteps {
  public:
-  KernelSteps(const Kernel& kernel, bool isNative, Choices& choices)
-      : kernel_(kernel), isNative_(isNative), choices_(choices) {}
+  KernelSteps(const Kernel& kernel, Choices& choices) : kernel_(kernel), choices_(choices) {}
 
   void addOthers() {
     addPrecisions();
@@ -73,7 +68,7 @@ class KernelSteps {
       leaveOut("precision half", "it sums, and would lose the sum");
     if (!kernel_.whyNotHalf.empty()) leaveOut("precision half", kernel_.whyNotHalf);
     if (!kernel_.whyNotWide.empty()) return leaveOut("precisions extended and double", kernel_.whyNotWide);
-    if (!isNative_) add("precision", "extended", "single");
+    if (!kernel_.isNative) add("precision", "extended", "single");
     add("precision", "double", "single");
   }
 
@@ -101,7 +96,6 @@ class KernelSteps {
   }
 
   const Kernel& kernel_;
-  const bool isNative_;
   Choices& choices_;
 };
 
@@ -139,7 +133,6 @@ std::vector<std::string> ownChoices(const Kernel& kernel) {
 }  // namespace
 
 Choices choicesOf(const Process& run) {
-  const bool isNative = isNativeProcess(run);
   const double seconds =
       std::accumulate(run.kernels.begin(), run.kernels.end(), 0.0,
                       [](double sum, const Kernel& kernel) { return sum + kernel.seconds; });
@@ -147,7 +140,7 @@ Choices choicesOf(const Process& run) {
   for (const Kernel& kernel : run.kernels) {
     if (const std::vector<std::string> own = ownChoices(kernel); !own.empty())
       choices.facts.called[kernel.name] = own;
-    KernelSteps steps(kernel, isNative, choices);
+    KernelSteps steps(kernel, choices);
     steps.addRaised();
     if (kernel.seconds < leastShare * seconds) {
       choices.untried.push_back(fmt::format("{}: takes {:.1f} % of the kernels' time", kernel.name,
@@ -157,7 +150,7 @@ Choices choicesOf(const Process& run) {
     }
   }
   addStreams(run, seconds, choices);
-  if (isNative)
+  if (std::ranges::any_of(run.kernels, &Kernel::isNative))
     choices.untried.emplace_back(
         "intrinsics, and precision extended: natively, there is one form of functions, and extended is "
         "double");

@@ -16,6 +16,7 @@ using sk_tool::tune::Step;
 /// A kernel of floats, whose calls all take the defaults.
 Kernel kernelNamed(const std::string& name, double seconds) {
   return {.name = name,
+          .isNative = true,
           .calls = 1,
           .seconds = seconds,
           .hasFloats = true,
@@ -24,8 +25,9 @@ Kernel kernelNamed(const std::string& name, double seconds) {
                    "contraction default"}};
 }
 
-Process processWith(const std::vector<Kernel>& kernels, bool isNative = true) {
+Process processWith(std::vector<Kernel> kernels, bool isNative = true) {
   Process process;
+  for (Kernel& kernel : kernels) kernel.isNative = isNative;
   process.devices = {{.name = "device", .isReference = false, .isNative = isNative}};
   process.kernels = kernels;
   process.hasTimes = true;

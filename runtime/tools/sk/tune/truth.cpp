@@ -78,13 +78,12 @@ std::string keyOf(const Application& application) {
 }
 
 void checkReference(const Application& application, const sk::results::Process& process) {
-  for (const sk::results::Device& device : process.devices) {
-    if (device.isReference) continue;
-    throw std::runtime_error(
-        fmt::format("{} opens '{}' even with SK_DEVICE=reference, so that its right results are unknown; let "
-                    "it open its devices "
-                    "without a name (sk::Device device;)",
-                    application.name(), device.name));
+  for (const sk::results::Kernel& kernel : process.kernels) {
+    if (kernel.isOnReference) continue;
+    throw std::runtime_error(fmt::format(
+        "{} runs {} on '{}' even with SK_DEVICE=reference, so that its right results are unknown; let it "
+        "open its devices without a name (sk::Device device;)",
+        application.name(), kernel.name, kernel.device));
   }
 }
 
