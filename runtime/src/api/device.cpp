@@ -295,6 +295,10 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
     if (checksWritten()) trackWritten(*stream);
     if (results::Recorder* const recorder = state().results) {
       const std::optional<Storage> chosen = isChosenByFile ? std::optional(storage) : std::nullopt;
+      if (holdsFloats && !isChosenByFile) {
+        recorder->addNote(
+            "some streams have a storage that the program chooses itself, which no file changes");
+      }
       stream->resultNumber = recorder->addStream(name, chosen, shape.size() * std::uint64_t{element.size});
     }
     return stream;

@@ -141,6 +141,7 @@ Verification verify(const std::string& command, const Options& options, const st
   std::string text = fmt::format("nothing reaches the tolerance: the best is {}, with {}",
                                  describe(report.tuned->verdict), describe(report.tuned->setting));
   for (const std::string& failed : found.failed) text += "\nnot possible: " + failed;
+  for (const std::string& note : report.notes) text += "\nnote: " + note;
   if (!found.isComplete)
     text += "\nthe budget has ended the search; a larger --budget, or --continue, may find more";
   throw std::runtime_error(text);
