@@ -2,6 +2,7 @@
 #include "tune/choices.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -32,7 +33,7 @@ class KernelSteps {
 
   void addOthers() {
     addPrecisions();
-    if (kernel_.compensates) {
+    if (kernel_.compensates && uses("precision", "single", "single")) {  // others fold as they compute
       for (const std::string_view value : {"tree", "compensated", "extended"})
         add("accumulate", value, "compensated");
       if (kernel_.sumsExactly) add("accumulate", "exact", "compensated");

@@ -78,6 +78,8 @@ TEST_CASE("sums have accumulations in place of halves") {
   CHECK_FALSE(has(texts, "sum: accumulate compensated"));
   CHECK_FALSE(has(texts, "sum: precision half"));
   CHECK(has(choices.untried, "sum: precision half: it sums, and would lose the sum"));
+  kernel.used = {"precision double"};  // which exact and compensated sums exclude
+  CHECK_FALSE(has(textsOf(choicesOf(processWith({kernel})).others), "sum: accumulate exact"));
 }
 
 TEST_CASE("what a kernel lacks is left out with the reason") {
