@@ -31,7 +31,7 @@ refuses() {
 
 run 0 --help
 for option in --tolerance --metric --result --result-file --psnr --result-json --verify --budget --output --json --chart \
-  --allow-decisions --continue --fresh; do prints "$option"; done
+  --allow-decisions --any-status --continue --fresh; do prints "$option"; done
 
 # Cheaper: the kernel in doubles, which needs none, and nothing that is less exact than asked. The times of a busy machine may
 # hide that once.
@@ -140,6 +140,7 @@ refuses 'reads other numbers in each run (' --tolerance 1e-3 -- "$program" rando
 refuses "ends with status 3
   loading
   there is no field today" --tolerance 1e-3 -- "$program" status 500
+refuses 'reads nothing from its devices' --tolerance 1e-3 --any-status -- "$program" status 500
 refuses 'ends by signal 6' --tolerance 1e-3 -- "$program" signal 500
 refuses 'reads nothing from its devices' --tolerance 1e-3 -- "$program" silent 500
 refuses "runs tuned::settle on 'native' even with SK_DEVICE=reference" --tolerance 1e-3 -- "$program" named 500

@@ -97,12 +97,12 @@ std::string lastLines(const std::filesystem::path& file) {
   return result;
 }
 
-std::string failureOf(int status, const std::filesystem::path& messages) {
+std::string failureOf(int status, bool anyStatus, const std::filesystem::path& messages) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     return fmt::format("ends by signal {} ({}){}", signal, ::strsignal(signal), lastLines(messages));
   }
-  if (WEXITSTATUS(status) == 0) return {};
+  if (WEXITSTATUS(status) == 0 || anyStatus) return {};
   return fmt::format("ends with status {}{}", WEXITSTATUS(status), lastLines(messages));
 }
 
@@ -185,7 +185,7 @@ RunResult Application::run(const RunOptions& options) const {
   RunResult result;
   result.wall = std::chrono::duration<double>(Clock::now() - begin).count();
   result.isTooSlow = !status;
-  result.failure = status ? failureOf(*status, messages)
+  result.failure = status ? failureOf(*status, anyStatus_, messages)
                           : fmt::format("has not ended after {:.0f} s", options.limit.count());
   if (result.failure.empty()) result.failure = collect(folder.path(), result.process);
   for (std::size_t i = 0; i < files_.size() && result.failure.empty(); ++i) {

@@ -49,9 +49,9 @@ struct RunResult {
 
 class Application {
  public:
-  /// `words` are the program and its arguments.
-  Application(std::vector<std::string> words, std::vector<ResultFile> files)
-      : words_(std::move(words)), files_(std::move(files)) {}
+  /// `words` are the program and its arguments. With `anyStatus`, a program that exits has run, whatever its status.
+  Application(std::vector<std::string> words, std::vector<ResultFile> files, bool anyStatus = false)
+      : words_(std::move(words)), files_(std::move(files)), anyStatus_(anyStatus) {}
 
   const std::vector<std::string>& words() const { return words_; }
   const std::vector<ResultFile>& files() const { return files_; }
@@ -64,6 +64,7 @@ class Application {
  private:
   std::vector<std::string> words_;
   std::vector<ResultFile> files_;
+  bool anyStatus_;
 };
 
 }  // namespace sk_tool::tune

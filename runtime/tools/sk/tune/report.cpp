@@ -84,6 +84,11 @@ std::string rowsOf(const Report& report) {
   return rows;
 }
 
+std::string nothingFoundIn(const Report& report) {
+  return report.found->isComplete ? "nothing else is faster within the tolerance"
+                                  : "nothing faster was found before the budget ended";
+}
+
 json numberIn(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json jsonIn(const Verdict& verdict) {
@@ -137,7 +142,7 @@ std::string fileOf(const Report& report) {
         commented(each.failure.empty() ? fmt::format("verified: {}: {}", each.command, describe(each.tuned))
                                        : fmt::format("rejected: {}: {}", each.command, each.failure));
   }
-  if (report.tuned->setting.empty()) texts.head += "# Nothing else is faster within the tolerance.\n";
+  if (report.tuned->setting.empty()) texts.head += commented(nothingFoundIn(report));
   texts.comment = [&](const Unit& unit) -> std::string {
     if (!report.tuned->setting.contains(unit)) return {};
     const auto evidence = report.found->evidence.find(unit);
@@ -155,7 +160,7 @@ void print(const Report& report) {
       names += (names.empty() ? "" : ", ") + (name == "*" ? "streams without a name" : name);
     fmt::print("raised, and none of them can be left out: {}\n", names);
   }
-  if (report.tuned->setting.empty()) fmt::print("nothing else is faster within the tolerance\n");
+  if (report.tuned->setting.empty()) fmt::print("{}\n", nothingFoundIn(report));
   for (const std::string& note : report.notes) fmt::print("note: {}\n", note);
   for (const std::string& failed : report.found->failed) fmt::print("not possible: {}\n", failed);
   for (const std::string& untried : report.choices->untried) fmt::print("not tried: {}\n", untried);

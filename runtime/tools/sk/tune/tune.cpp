@@ -35,7 +35,7 @@ struct Options {
   std::vector<std::string> results, files, json, verify;
   double psnr = 0;
   std::string output = "tuned.toml", chart, report, budget = "5m";
-  bool allowsDecisions = false, continues = false, isFresh = false;
+  bool allowsDecisions = false, anyStatus = false, continues = false, isFresh = false;
 };
 
 /// "90", "90s", "5m", "1.5h".
@@ -109,7 +109,7 @@ std::string keyOf(const Options& options, const Judge& judge, const BaseFile& ba
 std::string failureFor(Verification& verification, const Options& options,
                        const std::vector<ResultFile>& files, const std::vector<Wanted>& wanted,
                        const std::string& configuration) {
-  const Application application({"/bin/sh", "-c", verification.command}, files);
+  const Application application({"/bin/sh", "-c", verification.command}, files, options.anyStatus);
   const RunResult asItIs = application.run({});
   if (!asItIs.failure.empty()) return "as it is, the program " + asItIs.failure;
   const Truth truth = truthOf(application, options.isFresh);
@@ -139,12 +139,14 @@ Verification verify(const std::string& command, const Options& options, const st
 
 [[noreturn]] void failUnreached(const Report& report) {
   const Found& found = *report.found;
-  std::string text = fmt::format("nothing reaches the tolerance: the best is {}, with {}",
-                                 describe(report.tuned->verdict), describe(report.tuned->setting));
+  std::string text =
+      fmt::format("{}: the best is {}, with {}",
+                  found.isComplete ? "nothing reaches the tolerance"
+                                   : "the budget has ended the search before anything reached the tolerance",
+                  describe(report.tuned->verdict), describe(report.tuned->setting));
   for (const std::string& failed : found.failed) text += "\nnot possible: " + failed;
   for (const std::string& note : report.notes) text += "\nnote: " + note;
-  if (!found.isComplete)
-    text += "\nthe budget has ended the search; a larger --budget, or --continue, may find more";
+  if (!found.isComplete) text += "\na larger --budget, or --continue, may find more";
   throw std::runtime_error(text);
 }
 
@@ -228,7 +230,7 @@ void tune(const Options& options) {
   const std::vector<ResultFile> files = filesOf(options);
   const std::vector<Wanted> wanted = wantedOf(options, files);
   const BaseFile file = baseFile();
-  const Application application(options.words, files);
+  const Application application(options.words, files, options.anyStatus);
   const Baseline base = measure(application);
   checkBaseline(application, base, file);
   checkRepeats(application, base, wanted);
@@ -291,6 +293,8 @@ void addTune(CLI::App& app) {
   command->add_option("--chart", options->chart, "a chart of all trials, FILE.svg or FILE.png");
   command->add_flag("--allow-decisions", options->allowsDecisions,
                     "integer results, and how often something is read, may change");
+  command->add_flag("--any-status", options->anyStatus,
+                    "the exit status of the program does not count, because it checks its own results");
   command->add_flag("--continue", options->continues,
                     "goes on where an earlier search of the same program was ended");
   command->add_flag("--fresh", options->isFresh, "computes the right results anew");
