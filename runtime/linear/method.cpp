@@ -20,8 +20,9 @@ Method::Method(sk::Device& device, Matrix& matrix, Preconditioner* preconditione
       r_(vector()),
       rr_(sum()),
       limit_(sum()),
-      state_(device.stream<int>({1})),
-      done_(device.stream<bool>({1})) {}
+      state_(device.stream<int>({1}, Storage::Default,
+                                "sk::linear state")),  // no result of the application (SK_RESULTS)
+      done_(device.stream<bool>({1}, Storage::Default, "sk::linear done")) {}
 
 void Method::begin(std::span<const double> rightHandSide, double limit) {
   r_.writeReals(rightHandSide);

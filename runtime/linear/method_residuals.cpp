@@ -129,7 +129,7 @@ class GeneralizedMinimalResiduals : public Method {
         y_(parts.device.stream<float>({restart_ + 1}, arithmetic_.sums())),
         turns_(parts.device.stream<Turn>({restart_ + 1}, arithmetic_.sums())),
         turned_(parts.device.stream<Turn>({restart_ + 1}, arithmetic_.sums())),
-        steps_(parts.device.stream<int>({1})),
+        steps_(parts.device.stream<int>({1}, Storage::Default, "sk::linear steps")),
         residual_(sum()),
         unused_(sum()) {
     for (int j = 0; j <= restart_; ++j) basis_.push_back(vector());

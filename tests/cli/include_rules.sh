@@ -29,7 +29,8 @@ runtime/src/trace     sk trace
 runtime/src/device    sk toml trace device gl/known_devices.hpp call/resolved_call.hpp call/row_pieces.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp assemble/nearest_word.hpp
 runtime/src/call      sk support device call assemble
 runtime/src/domain    sk domain
-runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp shadow/shadow_device.hpp
+runtime/src/results   sk support device results
+runtime/src/api       sk support trace device call results api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp shadow/shadow_device.hpp
 runtime/src/native    sk support trace device call native assemble probe/copy_bandwidth.hpp
 runtime/src/probe     sk support trace device call gl gl_device probe assemble
 runtime/src/gl        sk gl epoxy EGL GL GLES3
@@ -46,6 +47,7 @@ runtime/mpi           sk support device call api native gl assemble
 runtime/text          sk text
 runtime/linear        sk text
 runtime/tools         sk support/cache_folder.hpp support/npz.hpp native probe/probe.hpp assemble/nearest_word.hpp shadow
+runtime/tools/sk/tune sk support/cache_folder.hpp assemble/nearest_word.hpp results/results_file.hpp toml/read_toml.hpp
 runtime/tests         sk support trace device call gl gl_device native assemble epoxy
 examples              sk toml text linear/grid_stream.hpp epoxy
 tests                 sk
@@ -59,7 +61,7 @@ tests/fuzz            sk ir program driver analysis transforms native/native.hpp
 '
 # What all rooms of the assembler share.
 rules=${rules//ASSEMBLE/assemble/assemble.hpp assemble/condition.hpp assemble/region_layout.hpp assemble/relayed_values.hpp}
-guarded='support|ir|bounds|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|api|probe|gl|toml|text|linear|gl_device|assemble|shadow|shadow_text|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+guarded='support|ir|bounds|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|results|api|probe|gl|toml|text|linear|gl_device|assemble|shadow|shadow_text|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)

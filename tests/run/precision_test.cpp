@@ -342,6 +342,26 @@ TEST_CASE("a file chooses, too") {
   CHECK(precision::count(streamOf<std::int32_t>(device, {1, 2})) == 3);  // no sum of floats
 }
 
+TEST_CASE("a file's forced choices override those of calls") {
+  const std::vector<float> a = numbers(100, 1, 1e4F, 1e6F), b = numbers(100, 2, -1, 1);
+  const auto x = numbers(4000, 9, -1, 1);
+  for (const bool isForced : {false, true}) {
+    const std::string choice =
+        std::string("precision = \"double\"\nforce = ") + (isForced ? "true\n" : "false\n");
+    const ConfigurationFile file("[kernels.\"precision::cancel\"]\n" + choice +
+                                 "[kernels.\"precision::sum\"]\n" + choice);
+    sk::Device device({.device = "native", .configuration = file.path});
+    auto r = device.stream<float>({100});
+    precision::cancel.with({.precision = Precision::Single})(streamOf(device, a), streamOf(device, b), r);
+    CHECK((r.read() == b) == isForced);
+    // an exact sum is of floats: it gives way to the precision of the file, or excludes it
+    const auto exactly = [&] {
+      precision::sum.with({.accumulate = sk::Accumulate::Exact})(streamOf(device, x));
+    };
+    CHECK((errorOf(exactly) == "no error") == isForced);
+  }
+}
+
 TEST_CASE("mistakes in a file are told with their line") {
   const auto errorIn = [](const std::string& text) {
     const ConfigurationFile file(text);
@@ -354,6 +374,7 @@ TEST_CASE("mistakes in a file are told with their line") {
       errorIn("[kernels.a]\ncontraction = \"on\"\n").find(":2: contraction is one of \"exact\", \"fast\"") !=
       std::string::npos);
   CHECK(errorIn("[kernels.a]\n\nspeed = 1\n").find(":3: there is no choice 'speed'") != std::string::npos);
+  CHECK(errorIn("[kernels.a]\nforce = \"yes\"\n").find(":2: force is true or false") != std::string::npos);
   CHECK(errorIn("[kernel]\n").find(":1: expected tables like [kernels.") != std::string::npos);
   CHECK(errorIn("precision\n").find(":1: ") != std::string::npos);
   CHECK(errorOf([&] {

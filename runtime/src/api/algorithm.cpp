@@ -23,6 +23,7 @@
 #include "device/loop_state.hpp"
 #include "device/stream_state.hpp"
 #include "device/write_scope.hpp"
+#include "results/recorder.hpp"
 #include "sk/algorithm.hpp"
 #include "sk/error.hpp"
 #include "sk/host_vector.hpp"
@@ -310,6 +311,7 @@ detail::StreamOwner detail::order(const StreamRegion& keys, const SortOptions& o
     const TraceScope traced(device.trace.get(), "call", "sk::order");
     std::unique_ptr<StreamState> stream =
         device.createStream(ElementTraits<std::int32_t>::element(), keys.shape, Storage::Single);
+    if (device.results != nullptr) stream->resultNumber = device.results->addStream({}, std::nullopt, 0);
     const StreamRegion all{stream.get(), Index::origin(keys.shape.rank()), keys.shape};
     if (!reorder(device, byKeys(options), keys, false, nullptr, &all)) {
       const Permutation order = orderOf(keys, options);

@@ -19,6 +19,7 @@
 #include "gl_device/gl_device.hpp"
 #include "native/native_device.hpp"
 #include "probe/probe.hpp"
+#include "results/recorder.hpp"
 #include "shadow/shadow_device.hpp"
 #include "sk/error.hpp"
 #include "sk/linked_file.hpp"
@@ -146,6 +147,14 @@ Configuration configurationOf(const DeviceOptions& options) {
   return configuration;
 }
 
+/// Has SK_RESULTS record what the device does.
+void startRecording(DeviceState& device) {
+  device.results = results::Recorder::ofProcess();
+  if (device.results == nullptr) return;
+  device.runsCallByCall = device.runsCallByCall || device.results->measures();
+  device.results->addDevice(device);
+}
+
 /// Gives a device its configuration, and the memory limit, the trace and the shadow that are named, if any.
 detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const DeviceOptions& options,
                                Configuration configuration) {
@@ -155,6 +164,7 @@ detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const DeviceO
   state->runsCallByCall = checksWritten() || checksRanges();
   const std::string trace = chosen({}, "SK_TRACE");
   if (!trace.empty()) state->startTrace(trace);
+  startRecording(*state);
   return detail::DeviceOwner(withShadow(std::move(state)).release());
 }
 
@@ -271,6 +281,7 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
   return withHostMemory("a new stream", [&] {
     if (shape.rank() == 0) throw Error("a stream needs a shape of 1 to 4 dimensions", Error::Kind::Shape);
     const bool holdsFloats = assemble::holdsFloats(element);
+    const bool isChosenByFile = storage == Storage::Default && holdsFloats;
     if (storage == Storage::Default) {
       storage = holdsFloats ? state().configuration.storageOf(name) : Storage::Single;
     }
@@ -283,6 +294,14 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
     detail::StreamOwner stream(state().createStream(element, shape, storage).release());
     if (!name.empty()) stream->setName(name);
     if (checksWritten()) trackWritten(*stream);
+    if (results::Recorder* const recorder = state().results) {
+      const std::optional<Storage> chosen = isChosenByFile ? std::optional(storage) : std::nullopt;
+      if (holdsFloats && !isChosenByFile) {
+        recorder->addNote(
+            "some streams have a storage that the program chooses itself, which no file changes");
+      }
+      stream->resultNumber = recorder->addStream(name, chosen, shape.size() * std::uint64_t{element.size});
+    }
     return stream;
   });
 }

@@ -23,6 +23,7 @@
 #include "device/loop_state.hpp"
 #include "device/region.hpp"
 #include "device/write_scope.hpp"
+#include "results/call_scope.hpp"
 #include "sk/call.hpp"
 #include "support/checked_size.hpp"
 
@@ -111,6 +112,7 @@ class FoldCall {
   const ResolvedReduction& resolved() const { return call_; }
 
   void run() const {
+    const results::CallScope measured(call_.device, call_.reduction.fold.name);
     const TraceScope traced(call_.device.trace.get(), "call", call_.reduction.fold.name);
     traced.add("domain", call_.domain);
     traced.add("blocks", call_.blocks);
@@ -250,6 +252,7 @@ void checkAndFold(const Reduction& reduction, std::span<const Argument> given, c
                .run = [&reduction, options](std::span<const Argument> own, std::span<void* const>) {
                  sk::fold(reduction, own, options);
                }});
+  results::noteCall(call.device(), reduction.fold, &reduction, others, call.resolved().options);
   LoopState* const recording = call.device().recording;
   if (recording == nullptr) return call.run();
   recording->add(std::make_unique<RecordedFold>(reduction, folded.arguments, others, folded.placed));

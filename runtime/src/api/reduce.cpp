@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "api/resolved_reduce.hpp"
 #include "call/box.hpp"
@@ -21,6 +24,7 @@
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/rows_state.hpp"
+#include "results/call_scope.hpp"
 #include "sk/call.hpp"
 #include "support/checked_size.hpp"
 
@@ -252,6 +256,7 @@ void runUnchecked(const ResolvedReduction& call) {
 }
 
 void runResolved(const ResolvedReduction& call) {
+  const results::CallScope measured(call.device, call.reduction.fold.name);
   const TraceScope traced(call.device.trace.get(), "call", call.reduction.fold.name);
   traced.add("domain", call.domain);
   if (!call.isToValues()) traced.add("blocks", call.blocks);
@@ -283,6 +288,57 @@ class RecordedReduction final : public RecordedCall {
   const SharedRows rows_;
   ResolvedReduction call_;
 };
+
+/// The values of all accumulators in the doubles of a reference device, which rounds them for the host: folds once more.
+std::vector<std::vector<double>> valuesInDoubles(const ResolvedReduction& call) {
+  const results::InternalWork folding(call.device);
+  std::vector<Argument> all(call.arguments.begin(), call.arguments.end());
+  std::vector<std::vector<double>> values;
+  std::vector<detail::StreamOwner> streams;
+  std::vector<StreamRegion> regions;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Parameter& parameter = call.reduction.fold.parameters[i];
+    if (parameter.role != Role::Accumulator) continue;
+    streams.emplace_back(call.device.createStream(*parameter.element, {1}, Storage::Single).release());
+    all[i].region = regions.emplace_back(detail::wholeRegion(streams.back().get()));
+  }
+  ResolvedReduction toStreams =
+      checkReduction(call.reduction, all, {}, call.scan, call.placed, call.options.over);
+  toStreams.options = call.options;
+  reduceResolved(toStreams);
+  for (const StreamRegion& region : regions) {
+    std::size_t components = 0;
+    for (const program::Field& field : region.stream->element->fields) components += field.width;
+    region.stream->readReals(region, values.emplace_back(components).data());
+  }
+  return values;
+}
+
+bool isOfFloats(const program::Element& element) {
+  return std::ranges::all_of(
+      element.fields, [](const program::Field& field) { return field.scalar == program::Scalar::Float; });
+}
+
+/// Gives the values that the host gets to the recorder of SK_RESULTS.
+void recordValues(const ResolvedReduction& call) {
+  results::Recorder& recorder = *results::recorderOf(call.device);
+  std::vector<const Parameter*> accumulators;
+  for (const Parameter& parameter : call.reduction.fold.parameters) {
+    if (parameter.role == Role::Accumulator) accumulators.push_back(&parameter);
+  }
+  const bool areReals =
+      call.device.isReference() && call.domain.size() != 0 &&
+      std::ranges::all_of(accumulators, [](const Parameter* each) { return isOfFloats(*each->element); });
+  std::vector<std::vector<double>> doubles;
+  if (areReals) doubles = valuesInDoubles(call);
+  for (std::size_t i = 0; i < accumulators.size(); ++i) {
+    std::string name(call.reduction.fold.name);
+    if (accumulators.size() > 1) name += fmt::format(".{}", accumulators[i]->name);
+    areReals
+        ? recorder.addValue(name, *accumulators[i]->element, doubles[i])
+        : recorder.addValue(name, *accumulators[i]->element, static_cast<const std::byte*>(call.values[i]));
+  }
+}
 
 /// A reduction of what is folded, and the arguments and the options that its caller gave.
 struct GivenReduction {
@@ -317,7 +373,12 @@ void checkAndReduce(const GivenReduction& given, std::span<void* const> values, 
   call.options = resolvedOptions(call, options);
   checkFoldAssertions(call.device, reduction.fold, given.arguments, given.options.box, call.options);
   checkReducedRanges(call.device, given, values, scan);
-  if (call.device.recording == nullptr) return runResolved(call);
+  results::noteCall(call.device, reduction.fold, &reduction, options, call.options);
+  if (call.device.recording == nullptr) {
+    runResolved(call);
+    if (results::recorderOf(call.device) != nullptr && call.isToValues()) recordValues(call);
+    return;
+  }
   if (call.isToValues()) {
     fail(reduction.fold,
          "its value is not known while the device records calls; give it a stream of one element for the "

@@ -11,6 +11,7 @@
 #include "device/loop_state.hpp"
 #include "device/rows_state.hpp"
 #include "device/stream_state.hpp"
+#include "results/call_scope.hpp"
 #include "sk/error.hpp"
 #include "support/checked_size.hpp"
 
@@ -36,6 +37,7 @@ void detail::RowsDeleter::operator()(RowsState* state) const noexcept { state->l
 detail::RowsOwner detail::makeRows(const StreamRegion& region) {
   return withHostMemory("rows", [&] {
     const StreamState& stream = liveStream(region, "rows");
+    const results::InternalWork reading(*stream.device);
     refuseInRecording(*stream.device, "rows");
     if (region.shape.rank() != 1 || region.shape.size() == 0) {
       throw Error(fmt::format("rows: the starts have shape {}; give a stream of one dimension, with one "

@@ -18,6 +18,7 @@
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
+#include "results/call_scope.hpp"
 #include "sk/call.hpp"
 #include "support/checked_size.hpp"
 
@@ -56,6 +57,7 @@ void runCheckingWritten(DeviceState& device, const ResolvedCall& call, RecordedC
 
 /// Runs the call, as it was prepared unless `prepared` is null.
 void runResolved(DeviceState& device, const ResolvedCall& call, RecordedCall* prepared = nullptr) {
+  const results::CallScope measured(device, call.kernel.name);
   const TraceScope traced(device.trace.get(), "call", call.kernel.name);
   traced.add("domain", call.domain);
   checksWritten() ? runCheckingWritten(device, call, prepared) : runUnchecked(device, call, prepared);
@@ -147,6 +149,7 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   if (!checked) return;
   DeviceState& device = checked->device;
   checked->call.options = device.configuration.resolve(kernel, options);
+  results::noteCall(device, kernel, nullptr, options, checked->call.options);
   checkTables(kernel, checked->call.options);
   if (hasPlaced(arguments)) return runPlaced(device, checked->call, options);
   if (!options.box.isWhole()) {

@@ -16,6 +16,7 @@
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
 #include "device/scalar_pass.hpp"
+#include "results/recorder.hpp"
 #include "sk/error.hpp"
 #include "support/checked_size.hpp"
 
@@ -136,6 +137,7 @@ void runPass(DeviceState& device, std::span<const std::shared_ptr<ScalarNode>> n
   for (const std::shared_ptr<ScalarNode>& node : nodes) {
     if (node->target != nullptr) continue;
     node->result = detail::StreamOwner(device.createStream(*node->element, {1}, Storage::Single).release());
+    node->result.get()->resultNumber = results::Recorder::scalarNumber;
   }
   PassBuilder builder(nodes);
   checkPass(builder.pass);

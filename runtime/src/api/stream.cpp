@@ -13,6 +13,7 @@
 #include "device/loop_state.hpp"
 #include "device/region.hpp"
 #include "device/stream_state.hpp"
+#include "results/call_scope.hpp"
 #include "sk/error.hpp"
 #include "sk/limits.hpp"
 #include "support/checked_size.hpp"
@@ -183,6 +184,7 @@ void detail::read(const StreamRegion& region, void* elements, std::size_t count)
       const TransferScope traced(*stream, "read", region);
       const DenseRegion dense(region, /*isRead=*/true);
       dense.get().stream->read(dense.get(), static_cast<std::byte*>(elements));
+      results::noteRead(dense.get(), *stream, static_cast<const std::byte*>(elements));
     }
   });
 }
@@ -195,6 +197,18 @@ std::unique_ptr<TransferState> StreamState::readAsync(const StreamRegion& region
 
 void detail::TransferDeleter::operator()(TransferState* state) const noexcept { delete state; }
 
+namespace {
+
+/// With SK_RESULTS, elements are read at once.
+detail::TransferOwner readRecorded(const StreamRegion& dense, const StreamState& stream) {
+  auto elements = detail::hostVector<std::byte>(bytesOf(dense.shape.size(), stream.element->size));
+  dense.stream->read(dense, elements.data());
+  results::noteRead(dense, stream, elements.data());
+  return detail::TransferOwner(new ReadyTransfer(std::move(elements)));
+}
+
+}  // namespace
+
 detail::TransferOwner detail::readAsync(const StreamRegion& region) {
   return withHostMemory("readAsync", [&] {
     StreamState& stream = liveStream(region, "readAsync");
@@ -205,6 +219,7 @@ detail::TransferOwner detail::readAsync(const StreamRegion& region) {
     }
     const TransferScope traced(stream, "readAsync", region);
     const DenseRegion dense(region, /*isRead=*/true);
+    if (results::recorderOf(*stream.device) != nullptr) return readRecorded(dense.get(), stream);
     return TransferOwner(dense.get().stream->readAsync(dense.get()).release());
   });
 }
@@ -293,6 +308,7 @@ std::vector<double> detail::readReals(const StreamRegion& region) {
       const DenseRegion dense(region, /*isRead=*/true);
       dense.get().stream->readReals(dense.get(), values.data());
     }
+    results::noteReals(stream, values);
     return values;
   });
 }
@@ -426,6 +442,7 @@ StreamTexture detail::textureOf(StreamState* state, int plane) {
     checkNotLost({state, {}, {}}, false, "texture");
     checkPlane(stream, plane, "texture");
     const StreamTexture texture = stream.texture(plane);
+    results::noteHandedOut(stream, "texture");
     noteAllWritten(stream);  // the application may draw to it
     return texture;
   });
@@ -445,6 +462,7 @@ void detail::fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t b
     const TraceScope traced(stream.device->trace.get(), "transfer", "fillBuffer");
     traced.add("stream", stream.name);
     stream.fillBuffer(buffer, byteOffset, plane);
+    results::noteHandedOut(stream, "fillBuffer");
   });
 }
 

@@ -40,7 +40,8 @@ Choice choiceOf(std::span<const std::string_view> names, const std::string& file
   return static_cast<Choice>(found - names.begin() + 1);
 }
 
-CallOptions optionsOf(const std::string& file, const toml::table& table) {
+/// Sets `isForced` if the table has `force = true`.
+CallOptions optionsOf(const std::string& file, const toml::table& table, bool& isForced) {
   CallOptions options;
   for (const auto& [key, node] : table) {
     if (key == "precision") {
@@ -57,11 +58,18 @@ CallOptions optionsOf(const std::string& file, const toml::table& table) {
       options.contraction = choiceOf<Contraction>(contractions, file, "contraction", node);
     } else if (key == "order") {
       options.order = choiceOf<Order>(orders, file, "order", node);
+    } else if (key == "force") {
+      const std::optional<bool> value = node.value_exact<bool>();
+      if (!value) {
+        throw Error(fmt::format("{}:{}: force is true or false", file, node.source().begin.line),
+                    Error::Kind::File);
+      }
+      isForced = *value;
     } else {
       throw Error(
           fmt::format(
               "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables, target, "
-              "contraction and order",
+              "contraction, order and force",
               file, key.source().begin.line, key.str()),
           Error::Kind::File);
     }
@@ -184,6 +192,20 @@ CallOptions merged(CallOptions first, const CallOptions& second) {
   return first;
 }
 
+/// The options, with the choices of `forced` in the place of theirs. Choices that these exclude become Default.
+CallOptions withForced(CallOptions options, const CallOptions& forced) {
+  if (forced.precision != Precision::Default && forced.precision != Precision::Single) {
+    const bool isOfFloats =
+        options.accumulate == Accumulate::Exact || options.accumulate == Accumulate::Compensated;
+    if (isOfFloats) options.accumulate = Accumulate::Default;
+    if (options.tables == Tables::On) options.tables = Tables::Default;
+  }
+  const bool needsFloats = forced.accumulate == Accumulate::Exact ||
+                           forced.accumulate == Accumulate::Compensated || forced.tables == Tables::On;
+  if (needsFloats) options.precision = Precision::Default;
+  return options.with(forced);
+}
+
 /// The namespaces of a qualified name, and the rest.
 std::pair<std::string_view, std::string_view> qualifierAndName(std::string_view qualified) {
   const std::size_t end = qualified.rfind("::");
@@ -229,7 +251,9 @@ Configuration::Configuration(const std::string& file) {
                     Error::Kind::File);
       }
       if (key == "kernels") {
-        kernels_[std::string(name.str())] = {optionsOf(file, *choices.as_table()), placeOf(file, name)};
+        KernelChoice& choice = kernels_[std::string(name.str())];
+        choice.options = optionsOf(file, *choices.as_table(), choice.isForced);
+        choice.place = placeOf(file, name);
       } else if (key == "streams") {
         streams_[std::string(name.str())] = sk::storageOf(file, name, *choices.as_table());
       } else if (key == "devices") {
@@ -290,12 +314,14 @@ TableRange Configuration::rangeOf(const program::Table& table) const {
 }
 
 CallOptions Configuration::resolve(const program::Kernel& kernel, const CallOptions& call) const {
-  CallOptions options = call;
+  CallOptions forced, unforced = call;
   for (const std::string_view name : {kernel.name, std::string_view("*")}) {
-    if (const auto found = kernels_.find(name); found != kernels_.end())
-      options = merged(options, found->second.options);
+    const auto found = kernels_.find(name);
+    if (found == kernels_.end()) continue;
+    CallOptions& options = found->second.isForced ? forced : unforced;
+    options = merged(options, found->second.options);
   }
-  return merged(options, kernel.options);
+  return withForced(merged(unforced, kernel.options), forced);
 }
 
 std::vector<std::string> choicesOf(const CallOptions& options) {

@@ -6,6 +6,10 @@
 //   [kernels."heat::diffuse"]
 //   precision = "extended"
 //
+//   [kernels."heat::total"]
+//   accumulate = "tree"
+//   force = true              # over what calls of it choose
+//
 //   [kernels."*"]
 //   intrinsics = "fast"
 //   target = "fragment"
@@ -48,7 +52,8 @@ class Configuration {
   void checkNames(const program::LinkedFile::Names& linked) const;
 
   /// The options of a call: the call's own choices override the file's for the kernel, which override the
-  /// file's for "*", which override the declaration's.
+  /// file's for "*", which override the declaration's. Tables with `force = true` override the call's own choices, and
+  /// replace those that exclude theirs: sums that are exact or compensated, and tables, are of floats.
   CallOptions resolve(const program::Kernel& kernel, const CallOptions& call) const;
   /// The storage of a stream of this name: the file's choice for it, else for "*", else Single.
   Storage storageOf(std::string_view stream) const;
@@ -70,6 +75,7 @@ class Configuration {
  private:
   struct KernelChoice {
     CallOptions options;
+    bool isForced = false;
     std::string place;  ///< FILE:LINE
   };
 

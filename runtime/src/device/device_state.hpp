@@ -27,6 +27,10 @@
 
 namespace sk {
 
+namespace results {
+class Recorder;
+}
+
 /// A stable new order of a stream's elements, which a device may carry out itself (DeviceState::reorder).
 struct Reordering {
   enum class By : std::uint8_t {
@@ -201,7 +205,9 @@ class DeviceState {
   std::optional<PassCount> passCount;  ///< empty unless counting is on
   std::unique_ptr<Trace> trace;  ///< null unless SK_TRACE names a file
   bool runsCallByCall =
-      false;  ///< loops need no LoopRunner: SK_CHECK=written or ranges checks each of their calls
+      false;  ///< loops need no LoopRunner: SK_CHECK=written or ranges checks, or SK_RESULTS measures, each of their calls
+  results::Recorder* results = nullptr;  ///< null unless SK_RESULTS names a file
+  int internalWork = 0;  ///< above 0: calls and reads are the runtime's own (results/call_scope.hpp)
   bool isChecking =
       false;  ///< a call runs that SK_CHECK=written, asserts or ranges checks; its steps are not checked
   LoopState* recording = nullptr;  ///< records calls instead of running them; or null

@@ -113,6 +113,8 @@ class StreamState {
   const Storage storage;
   Shape shape;  ///< valid once the stream is settled
   std::string name;  ///< may be empty
+  std::uint32_t resultNumber =
+      0;  ///< by which SK_RESULTS names it; 0: nothing that the host reads of it is a result
   /// With SK_CHECK=written, its elements that nothing has written since the application created it; null if there are none.
   std::unique_ptr<UnwrittenElements> unwritten;
   detail::StreamOwner* holder = nullptr;  ///< the application's handle, or null

@@ -26,5 +26,7 @@ void addServe(CLI::App& app);
 
 /// `sk shadow`: prints the report of a program that ran beside its reference (SK_SHADOW), and writes its page again.
 void addShadow(CLI::App& app);
+/// `sk tune`: finds the cheapest configuration file with which the results of a program are as exact as asked.
+void addTune(CLI::App& app);
 
 }  // namespace sk_tool

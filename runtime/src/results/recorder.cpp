@@ -1,0 +1,440 @@
+// SPDX-License-Identifier: MIT
+#include "results/recorder.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "device/configuration.hpp"
+#include "device/device_state.hpp"
+#include "device/stream_state.hpp"
+#include "sk/linked_file.hpp"
+#include "sk/narrow.hpp"
+
+namespace sk::results {
+
+namespace {
+
+constinit std::atomic<int> forks = 0;
+
+/// Writes the file when the process ends, or when the library that contains the runtime is unloaded.
+struct WriteAtEnd {
+  ~WriteAtEnd() {
+    if (recorder != nullptr) recorder->write();
+  }
+  Recorder* const recorder;
+};
+
+Recorder* openRecorder() {
+  const char* const setting = std::getenv("SK_RESULTS");
+  if (setting == nullptr || *setting == '\0') return nullptr;
+  ::pthread_atfork(nullptr, [] { forks.fetch_add(1, std::memory_order_relaxed); }, nullptr);
+  return new Recorder(setting);  // never deleted: devices that outlive the end of main() still refer to it
+}
+
+std::size_t hostBytesOf(program::Scalar scalar) {
+  using enum program::Scalar;
+  switch (scalar) {
+    case Bool:
+    case Char:
+    case Uchar:
+    case Unorm8:
+    case Snorm8: return 1;
+    case Half:
+    case Short:
+    case Ushort:
+    case Unorm16:
+    case Snorm16: return 2;
+    case Int:
+    case Uint:
+    case Float: return 4;
+    case Double:
+    case Long:
+    case Ulong: return 8;
+  }
+  return 0;
+}
+
+Values::Kind kindOf(program::Scalar scalar) {
+  using enum program::Scalar;
+  switch (scalar) {
+    case Float:
+    case Half:
+    case Unorm8:
+    case Snorm8:
+    case Unorm16:
+    case Snorm16: return Values::Kind::Single;
+    case Double: return Values::Kind::Double;
+    case Bool:
+    case Int:
+    case Uint:
+    case Long:
+    case Ulong:
+    case Char:
+    case Uchar:
+    case Short:
+    case Ushort: return Values::Kind::Integer;
+  }
+  return Values::Kind::Integer;
+}
+
+template <class T>
+T valueAt(const std::byte* place) {
+  T value;
+  std::memcpy(&value, place, sizeof value);
+  return value;
+}
+
+template <class T>
+void append(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// Appends a component as Values holds it.
+void appendComponent(std::string& bytes, program::Scalar scalar, const std::byte* place) {
+  using enum program::Scalar;
+  switch (scalar) {
+    case Float: return append(bytes, valueAt<float>(place));
+    case Half: return append(bytes, static_cast<float>(valueAt<half>(place)));
+    case Unorm8: return append(bytes, static_cast<float>(valueAt<unorm8>(place)));
+    case Snorm8: return append(bytes, static_cast<float>(valueAt<snorm8>(place)));
+    case Unorm16: return append(bytes, static_cast<float>(valueAt<unorm16>(place)));
+    case Snorm16: return append(bytes, static_cast<float>(valueAt<snorm16>(place)));
+    case Double: return append(bytes, valueAt<double>(place));
+    case Bool:
+    case Uchar: return append(bytes, std::int64_t{valueAt<std::uint8_t>(place)});
+    case Char: return append(bytes, std::int64_t{valueAt<std::int8_t>(place)});
+    case Short: return append(bytes, std::int64_t{valueAt<std::int16_t>(place)});
+    case Ushort: return append(bytes, std::int64_t{valueAt<std::uint16_t>(place)});
+    case Int: return append(bytes, std::int64_t{valueAt<std::int32_t>(place)});
+    case Uint: return append(bytes, std::int64_t{valueAt<std::uint32_t>(place)});
+    case Long:
+    case Ulong: return append(bytes, valueAt<std::int64_t>(place));
+  }
+}
+
+/// The members of an element: fields of one path, which may have several planes.
+struct Member {
+  std::string_view path;
+  std::span<const program::Field> fields;
+};
+
+std::vector<Member> membersOf(const program::Element& element) {
+  std::vector<Member> members;
+  for (std::size_t i = 0; i < element.fields.size(); ++i) {
+    if (!members.empty() && members.back().path == element.fields[i].path) {
+      members.back().fields = {members.back().fields.data(), members.back().fields.size() + 1};
+    } else {
+      members.push_back({element.fields[i].path, element.fields.subspan(i, 1)});
+    }
+  }
+  return members;
+}
+
+std::string nameOf(const std::string& name, const Member& member) {
+  return member.path.empty() ? name : fmt::format("{}.{}", name, member.path);
+}
+
+/// Empty if the stream is the runtime's own.
+std::string nameOf(const StreamState& stream) {
+  if (stream.resultNumber == 0 || stream.name.starts_with("sk::")) return {};
+  if (!stream.name.empty()) return stream.name;
+  if (stream.resultNumber == Recorder::scalarNumber) return "scalar";
+  return fmt::format("stream {}", stream.resultNumber);
+}
+
+std::uint64_t hashOfValues(std::uint64_t hash, const Values& values) {
+  const auto add = [&](std::uint64_t word) {
+    hash = std::rotl((hash ^ word) * 0x9e3779b97f4a7c15, 29) * 0xbf58476d1ce4e5b9;
+  };
+  add(values.bytes.size());
+  add(static_cast<std::uint64_t>(values.kind));
+  std::size_t at = 0;
+  for (; at + sizeof(std::uint64_t) <= values.bytes.size(); at += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, values.bytes.data() + at, sizeof word);
+    add(word);
+  }
+  std::uint64_t rest = 0;
+  std::memcpy(&rest, values.bytes.data() + at, values.bytes.size() - at);
+  add(rest);
+  return hash;
+}
+
+/// The variants and choices of a kernel, or of a reduction whose fold it is.
+Kernel kernelOf(const DeviceState& device, const program::Kernel& kernel,
+                const program::Reduction* reduction) {
+  const bool isNative = device.kind() == "native";
+  const bool hasHalf = reduction != nullptr ? reduction->half != nullptr : kernel.half != nullptr;
+  const bool hasWide = reduction != nullptr ? reduction->wide != nullptr : kernel.wide != nullptr;
+  const bool hasFloats = hasHalf || hasWide || !kernel.whyNotHalf.empty() || !kernel.whyNotWide.empty();
+  Kernel result{.name = std::string(kernel.name),
+                .device = device.name(),
+                .isNative = isNative,
+                .isOnReference = device.isReference(),
+                .isReduce = reduction != nullptr,
+                .hasFloats = hasFloats};
+  if (!hasHalf) result.whyNotHalf = kernel.whyNotHalf;
+  if (!hasWide && !isNative) result.whyNotWide = kernel.whyNotWide;
+  result.compensates = reduction != nullptr && reduction->compensated != nullptr;
+  result.sumsExactly = reduction != nullptr && !reduction->exact.empty();
+  result.hasFastFunctions = !isNative && !kernel.intrinsics.empty();
+  result.mayContract = hasFloats;
+  for (const program::TableUse& use : kernel.tables) result.tables.emplace_back(use.table->function);
+  return result;
+}
+
+/// The choices of a call, and "tables default" where it has none of tables.
+std::vector<std::string> usedBy(const CallOptions& options) {
+  std::vector<std::string> choices = choicesOf(options);
+  for (const std::string_view key : {"precision", "accumulate", "intrinsics", "tables", "contraction"}) {
+    const auto isOfKey = [&](const std::string& choice) {
+      return choice.starts_with(fmt::format("{} ", key));
+    };
+    if (std::ranges::none_of(choices, isOfKey)) choices.push_back(fmt::format("{} default", key));
+  }
+  return choices;
+}
+
+void addNew(std::vector<std::string>& list, const std::vector<std::string>& more) {
+  for (const std::string& each : more) {
+    if (std::ranges::find(list, each) == list.end()) list.push_back(each);
+  }
+}
+
+}  // namespace
+
+Recorder* Recorder::ofProcess() {
+  static const WriteAtEnd end{openRecorder()};
+  return end.recorder;
+}
+
+Recorder::Recorder(std::string setting, std::uint64_t limit)
+    : file_(std::move(setting)), limit_(limit), process_id_(::getpid()) {
+  constexpr std::string_view times = ",times";
+  if (file_.ends_with(times)) {
+    file_.resize(file_.size() - times.size());
+    measures_ = true;
+  }
+  if (const std::size_t place = file_.find("%p"); place != std::string::npos)
+    file_.replace(place, 2, std::to_string(process_id_));
+}
+
+/// Runs what adds to the record, in the process that began it.
+template <class Add>
+void Recorder::add(Add&& add) noexcept {
+  if (::getpid() != process_id_) return;
+  try {
+    const std::lock_guard lock(mutex_);
+    add();
+    end_ = Trace::now();
+  } catch (const std::exception&) {
+    // out of memory: addNote() would need some, too; write() finds that reads are missing
+  }
+}
+
+void Recorder::addDevice(const DeviceState& device) noexcept {
+  add([&] {
+    if (process_.devices.empty()) begin_ = Trace::now();
+    const bool isNative = device.kind() == "native";
+    process_.devices.push_back({device.name(), device.isReference(), isNative});
+  });
+}
+
+std::uint32_t Recorder::addStream(std::string_view name, std::optional<Storage> chosenByFile,
+                                  std::uint64_t bytes) noexcept {
+  add([&] {
+    ++streamCount_;
+    if (!chosenByFile) return;
+    auto found = streams_.find(name);
+    if (found == streams_.end()) {
+      found = streams_.emplace(name, Stream{.name = std::string(name)}).first;
+    }
+    found->second.storage = sk::nameOf(*chosenByFile);
+    ++found->second.count;
+    found->second.bytes += bytes;
+  });
+  return streamCount_;
+}
+
+void Recorder::keep(const std::string& name, Values values) {
+  auto found = series_.find(name);
+  if (found == series_.end()) {
+    order_.push_back(name);
+    found = series_.emplace(name, Recorded{.series = {.name = name}}).first;
+  }
+  Recorded& recorded = found->second;
+  Series& series = recorded.series;
+  series.hash = hashOfValues(series.hash, values);
+  const bool isFirst = series.reads++ < Series::keptAtEnds;
+  makeRoom(recorded, values.bytes.size());
+  if (bytes_ + values.bytes.size() > limit_) {
+    series.droppedBytes += values.bytes.size();
+    return;
+  }
+  bytes_ += values.bytes.size();
+  if (isFirst) return series.first.push_back(std::move(values));
+  recorded.last.push_back(std::move(values));
+}
+
+/// Drops the oldest of the last reads where there are enough of them, or where one more has no room.
+void Recorder::makeRoom(Recorded& recorded, std::size_t bytes) {
+  while (!recorded.last.empty() && (recorded.last.size() >= Series::keptAtEnds || bytes_ + bytes > limit_)) {
+    if (recorded.last.size() < Series::keptAtEnds)
+      recorded.series.droppedBytes += recorded.last.front().bytes.size();
+    bytes_ -= recorded.last.front().bytes.size();
+    recorded.last.pop_front();
+  }
+}
+
+void Recorder::addComponents(const std::string& name, const program::Element& element,
+                             const std::byte* elements, std::size_t count) {
+  for (const Member& member : membersOf(element)) {
+    Values values{.kind = kindOf(member.fields.front().scalar), .bytes = {}};
+    const program::Field& only = member.fields.front();
+    if (only.scalar == program::Scalar::Float && only.width * sizeof(float) == element.size) {  // as it is
+      values.bytes.assign(reinterpret_cast<const char*>(elements), count * element.size);
+      keep(nameOf(name, member), std::move(values));
+      continue;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const program::Field& field : member.fields) {
+        const std::byte* const first = elements + i * element.size + field.offset;
+        for (std::size_t k = 0; k < field.width; ++k)
+          appendComponent(values.bytes, field.scalar, first + k * hostBytesOf(field.scalar));
+      }
+    }
+    keep(nameOf(name, member), std::move(values));
+  }
+}
+
+void Recorder::addComponents(const std::string& name, const program::Element& element,
+                             std::span<const double> components, Values::Kind kind) {
+  std::size_t width = 0;
+  for (const program::Field& field : element.fields) width += field.width;
+  std::size_t first = 0;
+  for (const Member& member : membersOf(element)) {
+    std::size_t own = 0;
+    for (const program::Field& field : member.fields) own += field.width;
+    Values values{.kind = kind, .bytes = {}};
+    for (std::size_t i = first; i < components.size(); i += width) {
+      for (const double component : components.subspan(i, own)) {
+        kind == Values::Kind::Single ? append(values.bytes, static_cast<float>(component))
+                                     : append(values.bytes, component);
+      }
+    }
+    first += own;
+    keep(nameOf(name, member), std::move(values));
+  }
+}
+
+void Recorder::addRead(const StreamState& stream, const std::byte* elements, std::size_t count) noexcept {
+  add([&] {
+    if (const std::string name = nameOf(stream); !name.empty())
+      addComponents(name, *stream.element, elements, count);
+  });
+}
+
+void Recorder::addReals(const StreamState& stream, std::span<const double> components,
+                        Values::Kind kind) noexcept {
+  add([&] {
+    if (const std::string name = nameOf(stream); !name.empty())
+      addComponents(name, *stream.element, components, kind);
+  });
+}
+
+void Recorder::addValue(const std::string& name, const program::Element& element,
+                        const std::byte* value) noexcept {
+  add([&] { addComponents(name, element, value, 1); });
+}
+
+void Recorder::addValue(const std::string& name, const program::Element& element,
+                        std::span<const double> components) noexcept {
+  add([&] { addComponents(name, element, components, Values::Kind::Double); });
+}
+
+void Recorder::addCall(const DeviceState& device, const program::Kernel& kernel,
+                       const program::Reduction* reduction, const CallOptions& called,
+                       const CallOptions& used) noexcept {
+  add([&] {
+    auto found = kernels_.find(kernel.name);
+    if (found == kernels_.end()) {
+      kernelOrder_.emplace_back(kernel.name);
+      found = kernels_
+                  .emplace(kernel.name,
+                           Called{.kernel = kernelOf(device, kernel, reduction), .called = {}, .used = {}})
+                  .first;
+    }
+    Called& call = found->second;
+    isUnmeasured_ = isUnmeasured_ || (device.hasQueue() && !measures_);
+    call.kernel.isNative = call.kernel.isNative && device.kind() == "native";
+    call.kernel.isOnReference = call.kernel.isOnReference && device.isReference();
+    if (!call.isNew && call.called == called && call.used == used) return;
+    call.isNew = false;
+    call.called = called;
+    call.used = used;
+    addNew(call.kernel.called, choicesOf(called));
+    addNew(call.kernel.used, usedBy(used));
+  });
+}
+
+void Recorder::addTime(std::string_view kernel, Time begin, Time end, bool isMeasured) noexcept {
+  add([&] {
+    const auto found = kernels_.find(kernel);
+    if (found == kernels_.end()) return;
+    ++found->second.kernel.calls;
+    if (isMeasured) found->second.kernel.seconds += static_cast<double>(end - begin) * 1e-9;
+  });
+}
+
+void Recorder::addNote(std::string_view note) noexcept {
+  add([&] { addNew(process_.notes, {std::string(note)}); });
+}
+
+void Recorder::write() noexcept {
+  if (::getpid() != process_id_) return;
+  try {
+    const std::lock_guard lock(mutex_);
+    Process all = process_;
+    all.span = static_cast<double>(end_ - begin_) * 1e-9;
+    all.hasTimes = measures_ || !isUnmeasured_;
+    all.linkedKernels = program::LinkedFile::namesOfAll().kernels;
+    for (const std::string& name : kernelOrder_) all.kernels.push_back(kernels_.find(name)->second.kernel);
+    for (const auto& [name, stream] : streams_) all.streams.push_back(stream);
+    for (const std::string& name : order_) {
+      const Recorded& recorded = series_.find(name)->second;
+      Series& series = all.series.emplace_back(recorded.series);
+      series.last.assign(recorded.last.begin(), recorded.last.end());
+      if (series.droppedBytes == 0) continue;
+      all.notes.push_back(fmt::format("{} byte(s) of '{}' are left out, because results end at {} MiB",
+                                      series.droppedBytes, name, limit_ >> 20));
+    }
+    if (const int count = forks.load(std::memory_order_relaxed); count != 0) {
+      all.notes.push_back(
+          fmt::format("the program has forked {} time(s); what its children read is left out", count));
+    }
+    const std::string temporary = fmt::format("{}.{}", file_, process_id_);
+    std::ofstream out(temporary, std::ios::binary);
+    out << toBytes(all);
+    out.close();
+    std::error_code failed;
+    if (out) std::filesystem::rename(temporary, file_, failed);
+    if (!out || failed) std::filesystem::remove(temporary, failed);
+  } catch (const std::exception&) {
+    // out of memory: there is no file, which sk tune reports
+  }
+}
+
+}  // namespace sk::results

@@ -1,0 +1,160 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# `sk tune`: finds what can be cheaper and what must be raised, verifies it on other inputs, and says why where it cannot. Errors are
+# compared; times only where one choice takes less than half of another's.
+# Usage: sk_tune_test.sh SK PROGRAM (tests/cli/tune/program.cpp)
+set -euo pipefail
+sk=$(realpath "$1")
+program=$(realpath "$2")
+tested=("$sk" tune)
+source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
+unset SK_PROFILE SK_CONFIG SK_RESULTS SK_CHECK
+export SK_DEVICE=native SK_CACHE=$place/cache OMP_NUM_THREADS=1
+
+# json EXPRESSION: what Python makes of all.json; `tuned` has the choices of the result by name and key, `tried` those of all trials.
+json() { python3 -c "
+import json
+all = json.load(open('all.json'))
+choices = lambda trial: {(c['name'], c['key']): c['value'] for c in trial['setting']}
+tuned = choices(all['tuned'])
+tried = [choices(t) for t in all['trials']]
+$1" || broken "the JSON is not as expected: $1"; }
+# has FILE TEXT, lacks FILE TEXT
+has() { grep -qF -- "$2" "$1" || broken "$1 lacks: $2"; }
+lacks() { ! grep -qF -- "$2" "$1" || broken "$1 has: $2"; }
+# refuses TEXT ARGUMENT...: ends with this message and a status of 1.
+refuses() {
+  run 1 "${@:2}"
+  says "$1"
+}
+
+run 0 --help
+for option in --tolerance --metric --result --result-file --psnr --result-json --verify --budget --output --json --chart \
+  --allow-decisions --any-status --continue --fresh; do prints "$option"; done
+
+# Cheaper: the kernel in doubles, which needs none, and nothing that is less exact than asked. The times of a busy machine may
+# hide that once.
+for attempt in 1 2 3; do
+  run 0 --tolerance 1e-3 --budget 40s --json all.json --chart all.svg --verify "'$program' both 3000" -- "$program" both 12000
+  grep -qF '[kernels."tuned::settle"]' tuned.toml && break
+  ((attempt < 3)) || broken 'tuned.toml leaves the kernel in doubles'
+done
+has tuned.toml 'precision = "single"'
+has tuned.toml '# results that count: tuned::state, tuned::rest, tuned::total (l2 0.001)'
+has tuned.toml '# verified: '
+has all.svg '<svg'
+prints 'verified: '
+json "
+assert tuned['tuned::settle', 'precision'] == 'single', tuned
+assert {(e['name'], e['key']) for e in all['evidence']} == set(tuned), all['evidence']
+assert all['tuned']['ofTolerance'] <= 1 and all['verified'][0]['holds'], all
+assert {('tuned::state', 'storage'): 'half'} in tried, tried
+assert {r['name'] for r in all['results']} == {'tuned::state', 'tuned::rest', 'tuned::total'}, all['results']"
+# The file does to the program what the search has measured: it runs, with other results than before.
+SK_RESULTS=plain "$program" both 500 >/dev/null
+SK_RESULTS=changed SK_CONFIG=tuned.toml "$program" both 500 >/dev/null
+! cmp -s plain changed || broken 'the file changes nothing'
+
+# More exact: the kernel that loses digits in floats, and no other. The right results come from the cache.
+run 0 --tolerance 1e-6 --budget 40s --json all.json -- "$program" both 12000
+prints 'raised, and none of them can be left out: tuned::subtract'
+json "
+assert all['raised'] == ['tuned::subtract'], all['raised']
+assert tuned['tuned::subtract', 'precision'] == 'double' and all['asItIs']['ofTolerance'] > 100, all
+without = [e['ofToleranceWithout'] for e in all['evidence'] if e['name'] == 'tuned::subtract']
+assert len(without) == 1 and without[0] > 100, without"
+# Goes on from the state, which has all trials, so that only times are measured again.
+run 0 --tolerance 1e-6 --budget 40s --continue -- "$program" both 12000
+prints 'raised, and none of them can be left out: tuned::subtract'
+refuses 'is of another program, other arguments, or other results that count' --tolerance 1e-7 --continue -- "$program" both 12000
+refuses "there is no state 'no.toml.state'" --tolerance 1e-7 -o no.toml --continue -- "$program" both 500
+refuses 'nothing reaches the tolerance: the best is error ' --tolerance 1e-12 --budget 40s -- "$program" both 500
+
+# Only what is asked for counts, each by its own metric.
+run 0 --result 'tuned::rest=ulp:4' --result tuned::total=relative:1e-3 --budget 20s --json all.json -- "$program" both 500
+json "
+assert [(r['name'], r['metric'], r['tolerance']) for r in all['results']] == [('tuned::rest', 'ulp', 4), ('tuned::total', 'relative', 1e-3)]
+assert all['raised'] == ['tuned::subtract'], all['raised']"
+run 0 --tolerance 1e-3 --budget 20s --result-json sums.json:run.sums.0 --json all.json -- "$program" text sums.json 500
+json "assert [r['name'] for r in all['results']] == ['sums.json:run.sums.0'], all['results']"
+
+# A choice of the call itself gives way.
+for attempt in 1 2 3; do
+  run 0 --tolerance 1e-5 --budget 40s -o called.toml -- "$program" called 12000
+  grep -qF 'force = true' called.toml && break
+  ((attempt < 3)) || broken 'called.toml does not override the call'
+done
+has called.toml 'precision = "single"'
+
+# All ways to read, each by its name.
+run 0 --tolerance 1e-3 --budget 20s --json all.json -- "$program" reads 100
+json "
+assert {r['name'] for r in all['results']} == {'hits.t', 'hits.id', 'tuned::state', 'stream 3', 'stream 5', 'scalar',
+                                               'tuned::extremes.least', 'tuned::extremes.most'}, all['results']"
+run 0 --tolerance 1e-3 --budget 20s -- "$program" fork 100
+prints 'note: the program has forked 1 time(s)'
+
+# What does not hold on other inputs is no result: with numbers of 1e30, floats overflow where doubles do not.
+for attempt in 1 2 3; do
+  "$sk" tune --tolerance 1e-3 --budget 40s -o wide.toml --verify "'$program' settle 100 1e30" -- "$program" settle 12000 \
+    >out.txt 2>err.txt || break
+  ((attempt < 3)) || broken 'a kernel in floats holds for numbers of 1e30'
+  rm wide.toml
+done
+line='sk tune ... wide.toml' out=$(<out.txt) err=$(<err.txt)
+says "it is kept as 'wide.toml.rejected'"
+prints 'rejected: '
+has wide.toml.rejected 'precision = "single"'
+[[ ! -e wide.toml ]] || broken 'the rejected file has its own name'
+
+# A search starts from the file that is in force; one of another program is refused.
+printf '[kernels."tuned::subtract"]\nprecision = "double"\ncontraction = "exact"\n' >base.toml
+export SK_CONFIG=$place/base.toml
+run 0 --tolerance 1e-6 --budget 20s -o based.toml -- "$program" subtract 500
+lacks <(printf %s "$out") 'raised'
+has based.toml 'contraction = "exact"'
+sed -i 's/tuned::subtract/ocean::waves/' base.toml
+refuses "has a kernel 'ocean::waves', but" --tolerance 0.5 -- "$program" subtract 500
+unset SK_CONFIG
+
+# Files that the program writes.
+run 0 --tolerance 1e-3 --budget 20s --result-file state.npy --json all.json -- "$program" array state.npy 500
+json "assert [r['name'] for r in all['results']] == ['state.npy'] and 0 < all['asItIs']['errors'][0]['error'] < 1e-7, all['asItIs']"
+run 0 --result-file state.tga --psnr 40 --budget 20s --json all.json -- "$program" picture state.tga 500
+json "assert all['results'] == [{'name': 'state.tga', 'metric': 'psnr', 'tolerance': 40}], all['results']"
+refuses "there is no tolerance for 'state.npy'; give --tolerance" --result-file state.npy -- "$program" array state.npy 500
+
+# Decisions stay as they are, unless they may change.
+run 0 --tolerance 1e-3 --budget 40s -o odd.toml -- "$program" odd 12000
+lacks odd.toml 'tuned::settle'
+prints "not possible: tuned::settle: precision single: 'flags', of integers, has other values (--allow-decisions lets it)"
+for attempt in 1 2 3; do
+  run 0 --tolerance 1e-3 --budget 40s -o odd.toml --allow-decisions -- "$program" odd 12000
+  grep -qF 'tuned::settle' odd.toml && break
+  ((attempt < 3)) || broken 'odd.toml leaves the kernel in doubles'
+done
+refuses 'reads only integers' --tolerance 1e-3 -- "$program" decide 500
+
+refuses 'reads other numbers in each run (' --tolerance 1e-3 -- "$program" random 500
+refuses "ends with status 3
+  loading
+  there is no field today" --tolerance 1e-3 -- "$program" status 500
+refuses 'reads nothing from its devices' --tolerance 1e-3 --any-status -- "$program" status 500
+refuses 'ends by signal 6' --tolerance 1e-3 -- "$program" signal 500
+refuses 'reads nothing from its devices' --tolerance 1e-3 -- "$program" silent 500
+refuses "runs tuned::settle on 'native' even with SK_DEVICE=reference" --tolerance 1e-3 -- "$program" named 500
+refuses "the program reads no 'tuned::rst'; did you mean 'tuned::rest'?" --tolerance 1e-3 --result tuned::rst -- "$program" both 500
+refuses "'sums.json' has no 'sum' (of 'run.sum'); there are sums" --tolerance 1e-3 --result-json sums.json:run.sum -- "$program" text sums.json 500
+refuses "does not write 'other.json'" --tolerance 1e-3 --result-json other.json:run -- "$program" text sums.json 500
+refuses "'run.json' names no number in a file" --tolerance 1e-3 --result-json run.json -- "$program" both 500
+refuses "has recorded no results: it opens no device" --tolerance 1e-3 -- true
+refuses 'starts 2 processes' --tolerance 1e-3 -- sh -c "'$program' both 9; '$program' both 9"
+refuses "there is no program './nothere'" --tolerance 1e-3 -- ./nothere
+refuses "there is no metric 'l3'; choose one of relative, absolute, ulp, l2, psnr" --tolerance 1e-3 --metric l3 -- "$program" both 500
+refuses "'0' is no tolerance above 0" --result tuned::rest=l2:0 -- "$program" both 500
+refuses '--tolerance is required' -- "$program" both 500
+refuses 'is too small: a run of' --tolerance 1e-3 --budget 0.001 -- "$program" both 500
+refuses "'soon' is no budget" --tolerance 1e-3 --budget soon -- "$program" both 500
+refuses 'its name must end in .svg or .png' --tolerance 1e-3 --chart all.txt -- "$program" both 500
+refuses 'program is required' --tolerance 1e-3
