@@ -21,14 +21,16 @@ def load(content):
     return header["descr"], header["shape"], content[end:]
 
 
-with tempfile.TemporaryDirectory() as folder:
-    path = os.path.join(folder, "two.npz")
-    subprocess.run([sys.argv[1], "[.npz_file]"], env={**os.environ, "SK_NPZ_FILE": path}, check=True, stdout=subprocess.DEVNULL)
-    with zipfile.ZipFile(path) as file:
-        assert file.testzip() is None
-        arrays = {name: load(file.read(name)) for name in file.namelist()}
-        assert all(entry.compress_type == zipfile.ZIP_STORED for entry in file.infolist())
-
-assert set(arrays) == {"heat::diffuse/u.npy", "heat::diffuse/k.npy"}, arrays
-assert arrays["heat::diffuse/u.npy"] == ("<f4", (2, 3), struct.pack("<6f", 1, 2.5, -3, 4, 5, 6)), arrays
-assert arrays["heat::diffuse/k.npy"] == ("<i8", (), struct.pack("<q", -7)), arrays
+for long in {}, {"SK_NPZ_LONG": "1"}:  # and with the numbers of 64 bits that only large files have
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "two.npz")
+        subprocess.run([sys.argv[1], "[.npz_file]"], env={**os.environ, **long, "SK_NPZ_FILE": path}, check=True,
+                       stdout=subprocess.DEVNULL)
+        with zipfile.ZipFile(path) as file:
+            assert file.testzip() is None
+            arrays = {name: load(file.read(name)) for name in file.namelist()}
+            assert all(entry.compress_type == zipfile.ZIP_STORED for entry in file.infolist())
+            assert all(bool(entry.extra) == bool(long) for entry in file.infolist())
+    assert set(arrays) == {"heat::diffuse/u.npy", "heat::diffuse/k.npy"}, arrays
+    assert arrays["heat::diffuse/u.npy"] == ("<f4", (2, 3), struct.pack("<6f", 1, 2.5, -3, 4, 5, 6)), arrays
+    assert arrays["heat::diffuse/k.npy"] == ("<i8", (), struct.pack("<q", -7)), arrays

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cerrno>
 #include <charconv>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <system_error>
@@ -31,8 +32,11 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t localSignature = 0x04034b50, directorySignature = 0x02014b50,
                         endSignature = 0x06054b50;
 constexpr std::size_t localLength = 30, directoryLength = 46, endLength = 22, longestComment = 0xffff;
-constexpr std::uint64_t mostBytes = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint16_t version = 20;
+// zip64: numbers of 64 bits, where one of 32 says that it is elsewhere
+constexpr std::uint32_t longEndSignature = 0x06064b50, locatorSignature = 0x07064b50, elsewhere = 0xffffffff;
+constexpr std::size_t longEndLength = 56, locatorLength = 20;
+constexpr std::uint16_t manyEntries = 0xffff, longId = 1;
+constexpr std::uint16_t version = 20, longVersion = 45;
 constexpr std::uint16_t isUtf8 = 1U << 11;
 constexpr std::uint16_t isEncrypted = 1U;
 constexpr std::uint16_t firstDay = 1 << 5 | 1;  // of 1980: equal arrays make equal files
@@ -88,17 +92,32 @@ std::uint16_t flagsOf(std::string_view name) {
   return std::ranges::all_of(name, [](char c) { return static_cast<unsigned char>(c) < 0x80; }) ? 0 : isUtf8;
 }
 
-/// What the headers in front of an entry and in the directory have in common.
-void addCommon(Record& record, std::string_view name, std::uint32_t checksum, std::uint32_t bytes) {
-  constexpr std::uint16_t stored = 0, midnight = 0, noExtra = 0;
-  record.add(version).add(flagsOf(name)).add(stored).add(midnight).add(firstDay).add(checksum);
-  record.add(bytes).add(bytes).add(static_cast<std::uint16_t>(name.size())).add(noExtra);
+/// What the headers in front of an entry and in the directory have in common. `isLong`: the length is in what follows the name.
+void addCommon(Record& record, std::string_view name, std::uint32_t checksum, std::uint64_t bytes,
+               bool isLong, std::size_t extraLength) {
+  constexpr std::uint16_t stored = 0, midnight = 0;
+  const std::uint32_t length = isLong ? elsewhere : static_cast<std::uint32_t>(bytes);
+  record.add(extraLength > 0 ? longVersion : version)
+      .add(flagsOf(name))
+      .add(stored)
+      .add(midnight)
+      .add(firstDay);
+  record.add(checksum).add(length).add(length).add(static_cast<std::uint16_t>(name.size()));
+  record.add(static_cast<std::uint16_t>(extraLength));
+}
+
+/// Numbers of 64 bits that stand beside a header.
+std::string longNumbers(std::initializer_list<std::uint64_t> numbers) {
+  Record record;
+  record.add(longId).add(static_cast<std::uint16_t>(numbers.size() * sizeof(std::uint64_t)));
+  for (const std::uint64_t number : numbers) record.add(number);
+  return record.text();
 }
 
 }  // namespace
 
-NpzWriter::NpzWriter(fs::path file)
-    : file_(std::move(file)), out_(file_, std::ios::binary | std::ios::trunc) {
+NpzWriter::NpzWriter(fs::path file, std::uint64_t longFrom)
+    : longFrom_(longFrom), file_(std::move(file)), out_(file_, std::ios::binary | std::ios::trunc) {
   if (!out_) failIn(file_, fmt::format("it cannot be written: {}", std::generic_category().message(errno)));
 }
 
@@ -122,49 +141,67 @@ void NpzWriter::add(std::string_view name, const NpyArray& array, std::span<cons
   if (entry.size() > std::numeric_limits<std::uint16_t>::max())
     failIn(file_, "the name of an array is too long");
   const std::string header = npyHeader(array);
-  const std::uint64_t bytes = header.size() + elements.size();
-  std::uint64_t directory = endLength + directoryLength + entry.size();
-  for (const auto& [other, ignored] : entries_) directory += directoryLength + other.size();
-  if (size_ + localLength + entry.size() + bytes + directory > mostBytes ||
-      entries_.size() + 1 >= std::numeric_limits<std::uint16_t>::max())
-    failIn(file_,
-           fmt::format("with '{}' it would exceed the 4 GiB or the 65534 arrays of this format; write fewer "
-                       "arrays, or several files",
-                       name));
-  const std::uint32_t checksum = checksumOf(elements, checksumOf(bytesOf(header)));
-  const Entry made{checksum, static_cast<std::uint32_t>(bytes), static_cast<std::uint32_t>(size_)};
+  const Entry made{checksumOf(elements, checksumOf(bytesOf(header))), header.size() + elements.size(), size_};
+  const std::string extra = isLong(made.bytes) ? longNumbers({made.bytes, made.bytes}) : "";
   Record local;
   local.add(localSignature);
-  addCommon(local, entry, made.checksum, made.bytes);
+  addCommon(local, entry, made.checksum, made.bytes, isLong(made.bytes), extra.size());
   write(local.text());
   write(entry);
+  write(extra);
   write(header);
   write(textOf(elements));
   entries_.emplace(entry, made);
 }
 
-void NpzWriter::finish() {
-  const auto begin = static_cast<std::uint32_t>(size_);
-  for (const auto& [name, entry] : entries_) {
-    constexpr std::uint16_t none = 0;
-    constexpr std::uint32_t noAttributes = 0;
-    Record record;
-    record.add(directorySignature).add(version);
-    addCommon(record, name, entry.checksum, entry.bytes);
-    record.add(none)
-        .add(none)
-        .add(none)
-        .add(noAttributes)
-        .add(entry.offset);  // no comment, first disk, binary
-    write(record.text());
-    write(name);
+std::string NpzWriter::directoryEntry(std::string_view name, const Entry& entry) const {
+  constexpr std::uint16_t none = 0;
+  constexpr std::uint32_t noAttributes = 0;
+  std::string extra;
+  if (isLong(entry.bytes) && isLong(entry.offset)) {
+    extra = longNumbers({entry.bytes, entry.bytes, entry.offset});
+  } else if (isLong(entry.bytes)) {
+    extra = longNumbers({entry.bytes, entry.bytes});
+  } else if (isLong(entry.offset)) {
+    extra = longNumbers({entry.offset});
   }
-  const auto count = static_cast<std::uint16_t>(entries_.size());
+  Record record;
+  record.add(directorySignature).add(extra.empty() ? version : longVersion);
+  addCommon(record, name, entry.checksum, entry.bytes, isLong(entry.bytes), extra.size());
+  record.add(none).add(none).add(none).add(noAttributes);  // no comment, first disk, binary
+  record.add(isLong(entry.offset) ? elsewhere : static_cast<std::uint32_t>(entry.offset));
+  return record.text() + std::string(name) + extra;
+}
+
+/// The records behind a directory that begins at `begin` and ends here.
+std::string NpzWriter::endOfDirectory(std::uint64_t begin) const {
   constexpr std::uint16_t onlyDisk = 0, noComment = 0;
+  constexpr std::uint32_t firstDisk = 0, disks = 1;
+  constexpr std::uint64_t restOfLongEnd = longEndLength - 12;
+  const std::uint64_t count = entries_.size(), length = size_ - begin;
+  const bool areMany = count >= manyEntries, isFar = isLong(begin) || isLong(length);
   Record end;
-  end.add(endSignature).add(onlyDisk).add(onlyDisk).add(count).add(count);
-  end.add(static_cast<std::uint32_t>(size_) - begin).add(begin).add(noComment);
-  write(end.text());
+  if (areMany || isFar) {
+    end.add(longEndSignature)
+        .add(restOfLongEnd)
+        .add(longVersion)
+        .add(longVersion)
+        .add(firstDisk)
+        .add(firstDisk);
+    end.add(count).add(count).add(length).add(begin);
+    end.add(locatorSignature).add(firstDisk).add(size_).add(disks);
+  }
+  const std::uint16_t shortCount = areMany ? manyEntries : static_cast<std::uint16_t>(count);
+  end.add(endSignature).add(onlyDisk).add(onlyDisk).add(shortCount).add(shortCount);
+  end.add(isFar ? elsewhere : static_cast<std::uint32_t>(length));
+  end.add(isFar ? elsewhere : static_cast<std::uint32_t>(begin)).add(noComment);
+  return end.text();
+}
+
+void NpzWriter::finish() {
+  const std::uint64_t begin = size_;
+  for (const auto& [name, entry] : entries_) write(directoryEntry(name, entry));
+  write(endOfDirectory(begin));
   if (!out_.flush())
     failIn(file_, fmt::format("it cannot be written: {}", std::generic_category().message(errno)));
   isFinished_ = true;
@@ -205,13 +242,10 @@ class NpzReader {
   }
 
   std::map<std::string, NpzArray, std::less<>> read() const {
-    const std::size_t end = endOfDirectory();
-    const auto count = numberAt<std::uint16_t>(bytes_, end + 10);
-    std::size_t at = numberAt<std::uint32_t>(bytes_, end + 16);
-    if (at == mostBytes || count == std::numeric_limits<std::uint16_t>::max())
-      failIn(file_, "it is longer than 4 GiB; save its arrays to several files");
+    const auto [begin, end, count] = directory();
+    std::size_t at = begin;
     std::map<std::string, NpzArray, std::less<>> arrays;
-    for (int i = 0; i < count; ++i) {
+    for (std::uint64_t i = 0; i < count; ++i) {
       Entry entry = entryAt(at, end);
       at += directoryLength + entry.skipped;
       std::string name = entry.name;
@@ -229,7 +263,7 @@ class NpzReader {
     std::string name;
     std::size_t skipped;  ///< bytes of its names and comments in the directory
     std::uint32_t checksum;
-    std::size_t bytes, offset;
+    std::uint64_t bytes, offset;
   };
 
   void require(bool condition) const {
@@ -247,15 +281,54 @@ class NpzReader {
     failIn(file_, notWhole);
   }
 
+  struct Directory {
+    std::size_t begin, end;
+    std::uint64_t count;
+  };
+  Directory directory() const {
+    const std::size_t end = endOfDirectory();
+    const auto count = numberAt<std::uint16_t>(bytes_, end + 10);
+    const auto begin = numberAt<std::uint32_t>(bytes_, end + 16);
+    if (begin != elsewhere && count != manyEntries) return {begin, end, count};
+    require(end >= locatorLength && numberAt<std::uint32_t>(bytes_, end - locatorLength) == locatorSignature);
+    const auto at = numberAt<std::uint64_t>(bytes_, end - locatorLength + 8);
+    require(at <= end && longEndLength <= end - at &&
+            numberAt<std::uint32_t>(bytes_, at) == longEndSignature);
+    return {numberAt<std::uint64_t>(bytes_, at + 48), at, numberAt<std::uint64_t>(bytes_, at + 32)};
+  }
+
+  /// Replaces numbers that are elsewhere by those of 64 bits.
+  void readLongNumbers(std::span<const std::byte> extra, Entry& entry, bool isStoredElsewhere) const {
+    std::size_t at = 0, length = 0;
+    for (; at + 4 <= extra.size(); at += 4 + length) {
+      length = numberAt<std::uint16_t>(extra, at + 2);
+      require(length <= extra.size() - at - 4);
+      if (numberAt<std::uint16_t>(extra, at) != longId) continue;
+      std::size_t next = at + 4;
+      const auto take = [&](std::uint64_t& number) {
+        require(next + sizeof number <= at + 4 + length);
+        number = numberAt<std::uint64_t>(extra, next);
+        next += sizeof number;
+      };
+      std::uint64_t ignored = 0;
+      if (entry.bytes == elsewhere) take(entry.bytes);
+      if (isStoredElsewhere) take(ignored);
+      if (entry.offset == elsewhere) take(entry.offset);
+      return;
+    }
+  }
+
   Entry entryAt(std::size_t at, std::size_t end) const {
-    require(at + directoryLength <= end && numberAt<std::uint32_t>(bytes_, at) == directorySignature);
+    require(at <= end && directoryLength <= end - at &&
+            numberAt<std::uint32_t>(bytes_, at) == directorySignature);
     const auto flags = numberAt<std::uint16_t>(bytes_, at + 8),
                method = numberAt<std::uint16_t>(bytes_, at + 10);
-    const std::size_t length = numberAt<std::uint16_t>(bytes_, at + 28);
-    const std::size_t skipped =
-        length + numberAt<std::uint16_t>(bytes_, at + 30) + numberAt<std::uint16_t>(bytes_, at + 32);
-    require(at + directoryLength + skipped <= end);
-    Entry entry{.name = std::string(textOf(std::span(bytes_).subspan(at + directoryLength, length))),
+    const std::size_t length = numberAt<std::uint16_t>(bytes_, at + 28),
+                      extraLength = numberAt<std::uint16_t>(bytes_, at + 30);
+    const std::size_t skipped = length + extraLength + numberAt<std::uint16_t>(bytes_, at + 32);
+    require(skipped <= end - at - directoryLength);
+    const std::span<const std::byte> behind = std::span(bytes_).subspan(at + directoryLength, skipped);
+    Entry entry{.name = std::string(textOf(behind.first(length))),
                 .skipped = skipped,
                 .checksum = numberAt<std::uint32_t>(bytes_, at + 16),
                 .bytes = numberAt<std::uint32_t>(bytes_, at + 24),
@@ -266,13 +339,13 @@ class NpzReader {
       failIn(file_, fmt::format(
                         "'{}' is compressed, and only arrays as they are can be read; save it by numpy.savez",
                         entry.name));
-    if (entry.bytes == mostBytes || entry.offset == mostBytes)
-      failIn(file_, fmt::format("'{}' is longer than 4 GiB; save it in parts", entry.name));
+    readLongNumbers(behind.subspan(length, extraLength), entry,
+                    numberAt<std::uint32_t>(bytes_, at + 20) == elsewhere);
     return entry;
   }
 
   NpzArray arrayOf(const Entry& entry) const {
-    require(entry.offset + localLength <= bytes_.size() &&
+    require(entry.offset <= bytes_.size() && localLength <= bytes_.size() - entry.offset &&
             numberAt<std::uint32_t>(bytes_, entry.offset) == localSignature);
     const std::size_t begin = entry.offset + localLength +
                               numberAt<std::uint16_t>(bytes_, entry.offset + 26) +

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // .npz files: arrays with names, as numpy.savez writes and numpy.load reads them. Such a file is a zip archive (PKWARE, APPNOTE 6.3) of
-// .npy files (support/npy_header.hpp) that are stored as they are: nothing here compresses.
+// .npy files (support/npy_header.hpp) that are stored as they are: nothing here compresses. What is longer than 4 GiB has the numbers of
+// zip64 beside, as in NumPy's own files.
 #pragma once
 
 #include <cstddef>
@@ -21,14 +22,15 @@ namespace sk::npy {
 /// Writes arrays one after the other. The file is complete once finish() has returned; a writer that ends before removes it.
 class NpzWriter {
  public:
-  /// Throws sk::Error if the file cannot be written.
-  explicit NpzWriter(std::filesystem::path file);
+  /// Throws sk::Error if the file cannot be written. Lengths and offsets from `longFrom` on are written as numbers of 64 bits; only tests
+  /// choose it.
+  explicit NpzWriter(std::filesystem::path file, std::uint64_t longFrom = 0xffffffff);
   ~NpzWriter();
   NpzWriter(const NpzWriter&) = delete;
   NpzWriter& operator=(const NpzWriter&) = delete;
 
   /// Adds an array, whose elements are row-major and have the array's type, under a name of its own, such as "heat::diffuse/u". Throws
-  /// sk::Error if the name is taken, if it cannot be written, or if the file would exceed 4 GiB, where this format ends.
+  /// sk::Error if the name is taken or too long, or if the array cannot be written.
   void add(std::string_view name, const NpyArray& array, std::span<const std::byte> elements);
   /// Ends the file. Throws sk::Error if it cannot be written.
   void finish();
@@ -38,10 +40,15 @@ class NpzWriter {
 
  private:
   struct Entry {
-    std::uint32_t checksum, bytes, offset;
+    std::uint32_t checksum;
+    std::uint64_t bytes, offset;
   };
   void write(std::string_view bytes);
+  bool isLong(std::uint64_t number) const { return number >= longFrom_; }
+  std::string directoryEntry(std::string_view name, const Entry& entry) const;
+  std::string endOfDirectory(std::uint64_t begin) const;
 
+  const std::uint64_t longFrom_;
   const std::filesystem::path file_;
   std::ofstream out_;
   std::uint64_t size_ = 0;
