@@ -150,6 +150,7 @@ void CallFollower::compareAll() {
   const auto start = std::chrono::steady_clock::now();
   try {
     for (Written& written : written_) compareOutput(written);
+    if (isWorst_ && !device_.recorder().options().inputs.empty()) keepInputs();
     Recorder::Access report(device_.recorder());
     KernelRecord& record = recordOf(*report, kernel_);
     if (amplification_ > 0) record.amplification.add(amplification_);
@@ -160,6 +161,42 @@ void CallFollower::compareAll() {
         fmt::format("call {} of {} was not compared: {}", number_, call_.kernel.name, error.what()));
   }
   comparisonSeconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Keeps what the call has read, for sk accuracy.
+void CallFollower::keepInputs() {
+  std::int64_t bytes = 0;
+  for (const Read& read : read_) bytes += read.device->shape.size() * read.stream->element->size;
+  const std::string name(call_.kernel.name);
+  const bool areRecordable = std::ranges::all_of(call_.kernel.parameters, [](const program::Parameter& parameter) {
+    return shadow::isRecordable(*parameter.element);
+  });
+  if (bytes > shadow::mostRecordedBytes || !areRecordable) {
+    device_.recorder().note(fmt::format("the inputs of {} are not recorded: {}", name,
+                                        areRecordable ? "they are larger than 64 MiB" : "there are arrays in its parameters"));
+    return;
+  }
+  shadow::RecordedInputs inputs;
+  for (std::size_t i = 0; i < call_.arguments.size() && i < call_.kernel.parameters.size(); ++i) {
+    const program::Parameter& parameter = call_.kernel.parameters[i];
+    const Argument& argument = call_.arguments[i];
+    if (argument.isNone) continue;
+    if (isWritten(i)) {
+      if (argument.region.stream != nullptr) inputs.addShape(parameter.name, argument.region.shape);
+      continue;
+    }
+    const auto read = std::ranges::find(read_, i, &Read::argument);
+    if (read != read_.end()) {
+      std::vector<std::byte> elements(static_cast<std::size_t>(read->device->shape.size()) * read->stream->element->size);
+      if (!elements.empty()) read->device->read(detail::wholeRegion(read->device.get()), elements.data());
+      const bool isValue = parameter.role == Role::Uniform;
+      inputs.add(parameter.name, *read->stream->element, isValue ? Shape{} : read->device->shape, elements.data());
+    } else if (argument.value != nullptr) {
+      const bool hasEnds = parameter.role == Role::Iterator;
+      inputs.add(parameter.name, *parameter.element, hasEnds ? Shape{2} : Shape{}, static_cast<const std::byte*>(argument.value));
+    }
+  }
+  device_.recorder().keepInputs(name, std::move(inputs));
 }
 
 void CallFollower::compareOutput(Written& written) {
@@ -236,6 +273,7 @@ void CallFollower::recordErrors(const Written& written, const OutputErrors& erro
     if (errors.own.element >= 0 && worst > record.worstError) {
       record.worstError = worst;
       record.worst = elementOf(written, errors.own.element, errors.own.component);
+      isWorst_ = true;
     }
   } else {
     Recorder::output(record, parameter.name, parameter.element->name);

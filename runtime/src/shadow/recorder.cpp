@@ -115,6 +115,11 @@ std::string Recorder::nameOfKernel(int kernel) {
   return std::string(report_.nameOf(kernel));
 }
 
+void Recorder::keepInputs(const std::string& kernel, RecordedInputs inputs) {
+  const std::lock_guard lock(mutex_);
+  inputs_.insert_or_assign(kernel, std::move(inputs));
+}
+
 void Recorder::note(const std::string& text) {
   const std::lock_guard lock(mutex_);
   constexpr std::size_t most = 100;
@@ -143,6 +148,10 @@ void Recorder::write(bool hasEnded) {
     report.programSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     report.ended =
         hasEnded ? "normally" : fmt::format("early: the program had not ended after {} calls", report.calls);
+    if (hasEnded && !report.options.inputs.empty() && report.rank == 0) {
+      const std::string problem = writeInputs(report.options.inputs, inputs_);
+      if (!problem.empty()) say(problem);
+    }
     if (report.ranks > 1) {
       if (!hasEnded) return;
       addToRanks(report.options.json() + ".ranks", report, [&](std::vector<Report> reports) {

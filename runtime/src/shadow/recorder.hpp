@@ -14,6 +14,7 @@
 #include <string_view>
 #include <utility>
 
+#include "shadow/recorded_inputs.hpp"
 #include "shadow/report.hpp"
 
 namespace sk::shadow {
@@ -48,6 +49,8 @@ class Recorder {
   static std::size_t output(KernelRecord& kernel, std::string_view name, std::string_view type);
   static std::size_t result(Report& report, const std::string& name, bool isValue);
   std::string nameOfKernel(int kernel);
+  /// Takes the place of inputs of the kernel that it has.
+  void keepInputs(const std::string& kernel, RecordedInputs inputs);
   /// Adds a note once.
   void note(const std::string& text);
 
@@ -66,6 +69,7 @@ class Recorder {
 
   std::mutex mutex_;
   Report report_;
+  std::map<std::string, RecordedInputs> inputs_;  ///< of each kernel's worst call, if they are asked for
   const int process_;
   int devices_ = 0;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -66,6 +66,7 @@ class CallFollower {
   bool runOnReference();
   bool runOwn();
   void compareAll();
+  void keepInputs();
   void compareOutput(Written& written);
   void recordErrors(const Written& written, const shadow::OutputErrors& errors, bool hasOwn);
   shadow::ElementRecord elementOf(const Written& written, std::int64_t element, int component) const;
@@ -88,6 +89,7 @@ class CallFollower {
   std::int64_t number_ = 0;
   int kernel_ = 0;  ///< its number in the report
   bool isMeasured_ = false, hasOwn_ = false;
+  bool isWorst_ = false;  ///< no call of its kernel has had a larger own error
   const NativeStream* reference_ = nullptr;  ///< what the output that is recorded is compared with
   double amplification_ = 0;
   double seconds_ = 0, referenceSeconds_ = 0, comparisonSeconds_ = 0;
