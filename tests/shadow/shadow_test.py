@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import zipfile
 
 program, device, source = os.path.realpath(sys.argv[1]), sys.argv[2], os.path.realpath(sys.argv[3])
 folder = tempfile.TemporaryDirectory()
@@ -134,5 +135,12 @@ done, report = run("cell", shadow="report.html,decisions=follow")
 check(all(result["error"]["largest"] < 1e-6 for result in report["results"]), f"follow: {report['results']}")
 done, report = run("fine", SK_CHECK="written")
 check(done.stdout == plain.stdout and "SK_CHECK=written" in report["notes"][0], f"written: {report['notes']}")
+
+# The inputs of the worst calls, which sk accuracy takes.
+done, report = run("half", shadow="report.html,inputs=recorded.npz")
+with zipfile.ZipFile(os.path.join(folder.name, "recorded.npz")) as archive:
+    names = set(archive.namelist())
+expected = {"faults::advance/dt.npy", "faults::advance/u.npy", "faults::advance/r.shape.npy", "faults::smooth/u.npy"}
+check(expected <= names, f"inputs: {sorted(names)}")
 
 sys.exit(1 if failures else 0)

@@ -168,12 +168,13 @@ void CallFollower::keepInputs() {
   std::int64_t bytes = 0;
   for (const Read& read : read_) bytes += read.device->shape.size() * read.stream->element->size;
   const std::string name(call_.kernel.name);
-  const bool areRecordable = std::ranges::all_of(call_.kernel.parameters, [](const program::Parameter& parameter) {
-    return shadow::isRecordable(*parameter.element);
-  });
+  const bool areRecordable = std::ranges::all_of(
+      call_.kernel.parameters,
+      [](const program::Parameter& parameter) { return shadow::isRecordable(*parameter.element); });
   if (bytes > shadow::mostRecordedBytes || !areRecordable) {
-    device_.recorder().note(fmt::format("the inputs of {} are not recorded: {}", name,
-                                        areRecordable ? "they are larger than 64 MiB" : "there are arrays in its parameters"));
+    device_.recorder().note(
+        fmt::format("the inputs of {} are not recorded: {}", name,
+                    areRecordable ? "they are larger than 64 MiB" : "there are arrays in its parameters"));
     return;
   }
   shadow::RecordedInputs inputs;
@@ -187,13 +188,16 @@ void CallFollower::keepInputs() {
     }
     const auto read = std::ranges::find(read_, i, &Read::argument);
     if (read != read_.end()) {
-      std::vector<std::byte> elements(static_cast<std::size_t>(read->device->shape.size()) * read->stream->element->size);
+      std::vector<std::byte> elements(static_cast<std::size_t>(read->device->shape.size()) *
+                                      read->stream->element->size);
       if (!elements.empty()) read->device->read(detail::wholeRegion(read->device.get()), elements.data());
       const bool isValue = parameter.role == Role::Uniform;
-      inputs.add(parameter.name, *read->stream->element, isValue ? Shape{} : read->device->shape, elements.data());
+      inputs.add(parameter.name, *read->stream->element, isValue ? Shape{} : read->device->shape,
+                 elements.data());
     } else if (argument.value != nullptr) {
       const bool hasEnds = parameter.role == Role::Iterator;
-      inputs.add(parameter.name, *parameter.element, hasEnds ? Shape{2} : Shape{}, static_cast<const std::byte*>(argument.value));
+      inputs.add(parameter.name, *parameter.element, hasEnds ? Shape{2} : Shape{},
+                 static_cast<const std::byte*>(argument.value));
     }
   }
   device_.recorder().keepInputs(name, std::move(inputs));
@@ -239,7 +243,8 @@ void CallFollower::compareOutput(Written& written) {
   const OutputErrors errors =
       shadow::compare(*written.device, hasOwn ? written.own.get() : nullptr, *reference);
   reference_ = reference;
-  if (hasOwn && written.stream != nullptr && written.stream->storage == Storage::Half && errors.reference2 > 0) {
+  if (hasOwn && written.stream != nullptr && written.stream->storage == Storage::Half &&
+      errors.reference2 > 0) {
     const double stored = std::sqrt(shadow::squaresOfHalfRounding(*written.own) / errors.reference2);
     Recorder::Access report(device_.recorder());
     recordOf(*report, kernel_).storage.add(stored);

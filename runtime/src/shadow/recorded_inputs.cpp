@@ -30,7 +30,8 @@ void RecordedInputs::add(std::string_view parameter, const program::Element& ele
     for (std::int64_t i = 0; i < count; ++i) {
       for (const program::Field& field : member) {
         const std::byte* const from = elements + static_cast<std::size_t>(i) * element.size + field.offset;
-        array.elements.insert(array.elements.end(), from, from + field.width * program::hostBytes(field.scalar));
+        array.elements.insert(array.elements.end(), from,
+                              from + field.width * program::hostBytes(field.scalar));
       }
     }
     arrays_.push_back(std::move(array));

@@ -20,7 +20,8 @@ namespace sk::shadow {
 class RecordedInputs {
  public:
   /// Adds elements as they are in host memory. A value has a shape without dimensions.
-  void add(std::string_view parameter, const program::Element& element, const Shape& shape, const std::byte* elements);
+  void add(std::string_view parameter, const program::Element& element, const Shape& shape,
+           const std::byte* elements);
   /// Adds the shape of an output.
   void addShape(std::string_view parameter, const Shape& shape);
 

@@ -120,7 +120,7 @@ void CallFollower::run() {
                   record.calls % device_.recorder().options().every == 0;
     ++record.calls;
     ++report->calls;
-    if (record.choices.empty()) record.choices = choicesText(device_.primary(), call_);
+    if (record.calls == 1) record.choices = choicesText(device_.primary(), call_);
   }
   try {
     isFollowed = prepare() && isFollowed;

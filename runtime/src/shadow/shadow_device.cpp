@@ -67,7 +67,8 @@ ShadowDevice::ShadowDevice(std::unique_ptr<DeviceState> primary, shadow::Recorde
   memoryLimit_ = recorder_.options().memory;
   if (memoryLimit_ == 0) memoryLimit_ = reference_->availableMemory().value_or(INT64_MAX) / 2;
   if (std::exchange(primary_->results, nullptr) != nullptr)
-    recorder_.note("SK_RESULTS records nothing beside a shadow, whose own reads it would count; unset one of them");
+    recorder_.note(
+        "SK_RESULTS records nothing beside a shadow, whose own reads it would count; unset one of them");
   recorder_.deviceBegins();
 }
 
