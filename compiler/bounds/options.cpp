@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "bounds/options.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -33,8 +35,7 @@ NamedRange parseRange(std::string_view text) {
   return range;
 }
 
-std::optional<Interval> rangeOf(const Options& options, const ir::KernelParam& /*param*/,
-                                std::string_view name) {
+std::optional<Interval> rangeOf(const Options& options, const ir::KernelParam& param, std::string_view name) {
   for (std::string_view part = name; !part.empty();) {
     // The last of several counts, as of other options.
     for (auto it = options.ranges.rbegin(); it != options.ranges.rend(); ++it) {
@@ -44,7 +45,13 @@ std::optional<Interval> rangeOf(const Options& options, const ir::KernelParam& /
     if (cut == std::string_view::npos) break;
     part = part.substr(0, cut);
   }
-  return std::nullopt;
+  // Of the parameter itself, and not of its index or extent. A stream rounds its ends as it rounds its elements.
+  const bool isOfValue = name.substr(0, name.find_first_of(".[")) == param.name;
+  if (!isOfValue || !param.range || !std::isfinite(param.range->low) || !std::isfinite(param.range->high))
+    return std::nullopt;
+  const double low = param.range->low, high = param.range->high;
+  return Interval{std::min<double>(low, static_cast<float>(low)),
+                  std::max<double>(high, static_cast<float>(high))};
 }
 
 }  // namespace skc::bounds

@@ -35,5 +35,17 @@ TEST_CASE("the longest name given counts, and of equal ones the last") {
   CHECK(!rangeOf(options, param, "w"));
 }
 
+TEST_CASE("a declared range counts where the command line gives none") {
+  ir::KernelParam param{};
+  param.name = "v";
+  param.range = ir::ValueRange{0, 0.1};
+  Options options;
+  CHECK(rangeOf(options, param, "v.x")->high == 0.1F);  // above 0.1, as a stream of floats holds it
+  CHECK(!rangeOf(options, param, "indexof(v)"));
+  options.ranges.push_back(parseRange("v.y=2:3"));
+  CHECK(rangeOf(options, param, "v.y")->low == 2);
+  CHECK(rangeOf(options, param, "v.x")->low == 0);
+}
+
 }  // namespace
 }  // namespace skc::bounds
